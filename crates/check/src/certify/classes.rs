@@ -33,7 +33,7 @@ pub(super) fn judge(
 
     let facets = judge.facets(structure, &cells, &monitor.part(2, 5, 10))?;
     findings.extend(judge.compare(&complex.facets, &facets));
-    findings.extend(windings(structure, &cells, &facets));
+    findings.extend(windings(structure, &cells, &facets, &monitor.part(5, 6, 10))?);
     if judge.has_strays::<3>() {
         let strays = (0..complex.facets.len()).filter(|&i| structure.halves(i).next().is_none());
         let facet = |i: usize| complex.facets.rows()[i].into();
@@ -47,7 +47,7 @@ pub(super) fn judge(
         lower: &complex.edges,
         index: &structure.edges,
     };
-    let (edges, found) = of_facets.judge(judge, &monitor.part(5, 9, 10))?;
+    let (edges, found) = of_facets.judge(judge, &monitor.part(6, 9, 10))?;
     findings.extend(found);
     findings.extend(judge.compare(&complex.edges, &edges));
 
@@ -198,17 +198,22 @@ impl Judge<'_> {
     }
 }
 
-fn windings(structure: &Structure, cells: &[Verdict], facets: &[Verdict]) -> Vec<Finding> {
-    let rows = structure.complex.facets.rows().par_iter().enumerate();
-    let judge = |(i, &facet): (usize, &[u32; 3])| {
+fn windings(
+    structure: &Structure,
+    cells: &[Verdict],
+    facets: &[Verdict],
+    monitor: &Monitor,
+) -> Result<Vec<Finding>, Cancelled> {
+    let rows = structure.complex.facets.rows();
+    of_each(rows.len(), monitor, |i| {
+        let facet = rows[i];
         let inside = |half: &Half| cells[half.cell].class == Class::Interior;
         let half = structure.halves(i).find(inside)?;
         let outward = smallest_even(structure.outward(half)) == smallest_even(facet);
         let behind = structure.apex(half);
         (facets[i].class == Class::Regular && !outward)
             .then(|| Finding::Winding { facet: facet.into(), behind })
-    };
-    rows.filter_map(judge).collect()
+    })
 }
 
 /// Simplices, their verdicts, and the dimension below, whose simplices are their faces.

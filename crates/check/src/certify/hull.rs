@@ -2,21 +2,31 @@
 
 use dashu_int::IBig;
 use rayon::prelude::*;
+use walpha_base::{Cancelled, Monitor};
 
 use super::structure::Structure;
 use super::{Finding, Points};
 use crate::exact::{Exact, Lattice, Star, orientation, six_volume};
 
 /// Six times the volume of all cells.
-pub(super) fn six_volumes(cells: &[[u32; 4]], points: Points) -> (IBig, i64) {
+pub(super) fn six_volumes(
+    cells: &[[u32; 4]],
+    points: Points,
+    monitor: &Monitor,
+) -> Result<(IBig, i64), Cancelled> {
     let lattice = Lattice::through(points.positions);
-    let sum = lattice.six_volumes(cells.len(), |i| points.positions_of(cells[i]));
-    (sum, 3 * i64::from(lattice.exponent()))
+    let sum = lattice.six_volumes(cells.len(), monitor, |i| points.positions_of(cells[i]))?;
+    Ok((sum, 3 * i64::from(lattice.exponent())))
 }
 
 /// Judges that the cells fill the volume that the hull encloses.
-pub(super) fn volume(structure: &Structure, points: Points) -> Vec<Finding> {
-    let (cells, exponent) = six_volumes(structure.complex.cells.rows(), points);
+pub(super) fn volume(
+    structure: &Structure,
+    points: Points,
+    monitor: &Monitor,
+) -> Result<Vec<Finding>, Cancelled> {
+    let rows = structure.complex.cells.rows();
+    let (cells, exponent) = six_volumes(rows, points, &monitor.part(0, 9, 10))?;
     let hull = structure.hull();
     let top = points.positions[0];
     let lattice = Lattice::through(points.positions);
@@ -24,12 +34,12 @@ pub(super) fn volume(structure: &Structure, points: Points) -> Vec<Finding> {
         let [a, b, c] = points.positions_of(hull[i]);
         [top, a, b, c]
     };
-    let enclosed = lattice.six_volumes(hull.len(), cone);
+    let enclosed = lattice.six_volumes(hull.len(), &monitor.part(9, 10, 10), cone)?;
     if cells == enclosed {
-        return Vec::new();
+        return Ok(Vec::new());
     }
     let exact = |value| Exact::integer(value, exponent);
-    vec![Finding::Volume { cells: exact(cells), hull: exact(enclosed) }]
+    Ok(vec![Finding::Volume { cells: exact(cells), hull: exact(enclosed) }])
 }
 
 /// Judges that the hull is a convex surface that goes around the first cell once.

@@ -49,7 +49,7 @@ pub(super) fn triangulation_findings(
     let linked = Linked::new(cells, points, Extent::Whole, monitor)?;
     let regular = linked.is_regular();
     let mut found = linked.broken;
-    found.extend(hull::volume(&linked.structure, points));
+    found.extend(hull::volume(&linked.structure, points, &monitor.unreported())?);
     found.extend(linked.irregular);
     if regular {
         let own: Vec<u32> = (0..points.len() as u32).collect();

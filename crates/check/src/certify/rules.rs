@@ -55,7 +55,10 @@ pub(super) fn apply(
         report(vec![Finding::NoCells])?;
         return Err(Stop::Enough);
     }
-    let (sum, exponent) = hull::six_volumes(complex.cells.rows(), points);
+    // Ends of parts, of 20: volume, links and neighbours, gaps.
+    let [summed, linked, searched] = if whole { [3, 10, 11] } else { [1, 5, 12] };
+    let cells = complex.cells.rows();
+    let (sum, exponent) = hull::six_volumes(cells, points, &monitor.part(0, summed, 20))?;
     *volume = Some(Exact::integer(sum, exponent));
 
     let (kept, equal) = non_vertices::kept_points(points, complex, claim.duplicates);
@@ -63,10 +66,10 @@ pub(super) fn apply(
     let emptiness = (!whole).then(|| Emptiness::new(points, alpha, &kept));
     let extent = claim.extent;
     let judge = Judge { points, alpha, extent, dimension: 3, emptiness: emptiness.as_ref() };
-    let listed = Linked::new(complex, points, extent, &monitor.part(0, 10, 20))?;
-    let gaps = &monitor.part(10, 11, 20);
+    let listed = Linked::new(complex, points, extent, &monitor.part(summed, linked, 20))?;
+    let gaps = &monitor.part(linked, searched, 20);
     let missing = gaps::missing_cells(&listed.structure, points, alpha, judge.emptiness, gaps)?;
-    let rest = monitor.part(11, 20, 20);
+    let rest = monitor.part(searched, 20, 20);
     if !missing.is_empty() {
         let filled = gaps::filled(complex, &missing);
         let filled = Linked::new(&filled, points, extent, &rest.part(0, 1, 3))?;
@@ -107,7 +110,7 @@ fn apply_to(
     };
     report(broken)?;
     if claim.extent == Extent::Whole {
-        report(hull::volume(&structure, points))?;
+        report(hull::volume(&structure, points, &monitor.part(0, 3, 10))?)?;
     }
     report(irregular)?;
     report(non_vertices::duplicates(&structure, kept, claim.duplicates))?;
@@ -123,16 +126,18 @@ fn apply_to(
         report(non_vertices::of_whole(&structure, kept, claim))?;
         if regular {
             let hidden = non_vertices::hidden(&structure, kept);
-            let monitor = monitor.part(0, 1, 10);
+            let monitor = monitor.part(3, 4, 10);
             report(non_vertices::hiddenness(&structure, points, &hidden, &monitor)?)?;
         }
     }
-    report(classes::judge(&structure, judge, &monitor.part(1, 8, 10))?)?;
+    let judging =
+        if judge.emptiness.is_none() { monitor.part(4, 10, 10) } else { monitor.part(1, 6, 10) };
+    report(classes::judge(&structure, judge, &judging)?)?;
     if let (Some(emptiness), false) = (judge.emptiness, wrong.get()) {
         let (singular, mut found) =
-            ties::singular(&structure, points, emptiness, &monitor.part(8, 9, 10))?;
+            ties::singular(&structure, points, emptiness, &monitor.part(6, 8, 10))?;
         if tied.get() || found.iter().any(Finding::is_tie) {
-            let monitor = monitor.part(9, 10, 10);
+            let monitor = monitor.part(8, 10, 10);
             found.extend(ties::cells(&structure, points, emptiness, &singular, &monitor)?);
         }
         report(found)?;
@@ -151,7 +156,11 @@ fn flat(claim: &Claim, cone: &Cone, report: &mut Report, monitor: &Monitor) -> R
     let (structure, repeated) =
         structure::Structure::new(complex, points, &monitor.part(4, 5, 10))?;
     let mut broken = cone.at_base(linked.broken);
-    broken.extend(cone.at_base(hull::volume(&linked.structure, cone.points())));
+    broken.extend(cone.at_base(hull::volume(
+        &linked.structure,
+        cone.points(),
+        &monitor.unreported(),
+    )?));
     broken.extend(cone.at_base(linked.irregular));
     let repeated = repeated.into_iter().filter(|finding| !broken.contains(finding)).collect();
     report(broken)?;

@@ -8,7 +8,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use walpha_base::Monitor;
+use walpha_base::{Cancelled, Monitor};
 use walpha_complex::canonical::sort;
 
 use super::{
@@ -63,7 +63,7 @@ pub(super) fn findings(
     let mut found: Vec<Finding> =
         near.filter(|finding| seen.insert(format!("{finding:?}"))).collect();
     let whole = Extent::of(&placed.complex, placed.alpha) == Extent::Whole;
-    let (volume, missing) = copies.volume(count, sides);
+    let (volume, missing) = copies.volume(count, sides, &monitor.unreported())?;
     certificate.six_volumes = volume;
     // Cells that fill the box are all of the cells.
     if whole || missing.is_none() {
@@ -155,7 +155,12 @@ impl Copies {
     }
 
     /// Six times the volume of the cells of one box, and a finding if they do not fill it.
-    fn volume(&self, count: u32, sides: [f64; 3]) -> (Exact, Option<Finding>) {
+    fn volume(
+        &self,
+        count: u32,
+        sides: [f64; 3],
+        monitor: &Monitor,
+    ) -> Result<(Exact, Option<Finding>), Cancelled> {
         // Each cell once: the copy whose smallest vertex, by its number in the box, is in the box.
         let of_box =
             |cell: &&[u32; 4]| cell.iter().min_by_key(|&&v| v % count).is_some_and(|&v| v < count);
@@ -164,12 +169,13 @@ impl Copies {
         let corner = |i: u32| [0, 1, 2].map(|k| f64::from(i >> k & 1) * sides[k]);
         let corners: Vec<[f64; 3]> = (0..8).map(corner).collect();
         let corners = Points { positions: &corners, weights: &[0.0; 8] };
-        let [cells, hull] = [(&cells[..], points), (&BOX, corners)].map(|(cells, points)| {
-            let (sum, exponent) = hull::six_volumes(cells, points);
-            Exact::integer(sum, exponent)
-        });
+        let volume = |cells: &[[u32; 4]], points: Points| {
+            let (sum, exponent) = hull::six_volumes(cells, points, monitor)?;
+            Ok(Exact::integer(sum, exponent))
+        };
+        let (cells, hull) = (volume(&cells, points)?, volume(&BOX, corners)?);
         let found = (cells != hull).then(|| Finding::Volume { cells: cells.clone(), hull });
-        (cells, found)
+        Ok((cells, found))
     }
 }
 

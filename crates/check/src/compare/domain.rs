@@ -88,16 +88,17 @@ pub(super) fn compare(
         return Ok(Domain::SameCells);
     }
     let lattice = Lattice::through(&common.positions);
-    let six_volumes = |cells: &BTreeSet<[u32; 4]>| {
+    let six_volumes = |cells: &BTreeSet<[u32; 4]>, from: u64| {
         let cells: Vec<_> = cells.iter().map(|cell| at(common, *cell)).collect();
-        let sum = lattice.six_volumes(cells.len(), |i| cells[i]);
-        Exact::integer(sum, 3 * i64::from(lattice.exponent()))
+        let monitor = monitor.part(from, from + 1, 16);
+        let sum = lattice.six_volumes(cells.len(), &monitor, |i| cells[i])?;
+        Ok(Exact::integer(sum, 3 * i64::from(lattice.exponent())))
     };
-    let (six_volumes_a, six_volumes_b) = (six_volumes(&in_a), six_volumes(&in_b));
-    monitor.report(3, 8)?;
+    let (six_volumes_a, six_volumes_b) = (six_volumes(&in_a, 4)?, six_volumes(&in_b, 5)?);
     Ok(if six_volumes_a == six_volumes_b && same_surface(&in_a, &in_b, common, lattice) {
         monitor.report(4, 8)?;
-        let tied = tied(Side::new(a, &common.a, &in_a), Side::new(b, &common.b, &in_b), common);
+        let (of_a, of_b) = (Side::new(a, &common.a, &in_a), Side::new(b, &common.b, &in_b));
+        let tied = tied(of_a, of_b, common, &monitor.unreported())?;
         monitor.report(5, 8)?;
         let verdicts = if tied {
             let of_a = verdict(a, &monitor.part(5, 6, 8))?;
@@ -162,7 +163,7 @@ impl<'a> Side<'a> {
 
 /// Whether the cells that only one has cover the same region with the same lifted heights: for each
 /// hyperplane, and so for each orthogonal sphere, cells of A and of B must cover the same region.
-fn tied(a: Side, b: Side, common: &CommonPositions) -> bool {
+fn tied(a: Side, b: Side, common: &CommonPositions, monitor: &Monitor) -> Result<bool, Cancelled> {
     let corner = |side: &Side, position: u32| WeightedPoint {
         position: common.positions[position as usize],
         weight: side.weights[position as usize],
@@ -182,9 +183,14 @@ fn tied(a: Side, b: Side, common: &CommonPositions) -> bool {
     let lattice = Lattice::through(&common.positions);
     let volume = |cells: &BTreeSet<[u32; 4]>| {
         let cells: Vec<_> = cells.iter().map(|cell| at(common, *cell)).collect();
-        lattice.six_volumes(cells.len(), |i| cells[i])
+        lattice.six_volumes(cells.len(), monitor, |i| cells[i])
     };
-    spheres.values().all(|[a, b]| volume(a) == volume(b) && same_surface(a, b, common, lattice))
+    for [a, b] in spheres.values() {
+        if volume(a)? != volume(b)? || !same_surface(a, b, common, lattice) {
+            return Ok(false);
+        }
+    }
+    Ok(true)
 }
 
 fn same_surface(

@@ -4,6 +4,7 @@ use std::ops::Add;
 use dashu_int::IBig;
 use dashu_int::ops::Gcd;
 use rayon::prelude::*;
+use walpha_base::{Cancelled, Monitor};
 
 use super::binary::{Binary, Range};
 use super::frame::{cross, dot};
@@ -37,7 +38,15 @@ impl Lattice {
 
     /// The exact sum of det(b−a, c−a, d−a) over tetrahedra, in cubed lattice units: six times
     /// their volume. Cost linear, in parallel.
-    pub(crate) fn six_volumes<F>(self, count: usize, tetrahedron: F) -> IBig
+    ///
+    /// # Errors
+    /// The work was cancelled.
+    pub(crate) fn six_volumes<F>(
+        self,
+        count: usize,
+        monitor: &Monitor,
+        tetrahedron: F,
+    ) -> Result<IBig, Cancelled>
     where
         F: Fn(usize) -> [[f64; 3]; 4] + Sync,
     {
@@ -45,16 +54,18 @@ impl Lattice {
         let fits = 3 * (self.bits + 1) + 3 + CHUNK.ilog2() <= 127;
         let chunks = (0..count).into_par_iter().step_by(CHUNK);
         let range = |start: usize| start..(start + CHUNK).min(count);
+        let units = monitor.units(count as u64);
         let sums = chunks.map(|start| {
-            if fits {
+            units.add(range(start).len() as u64)?;
+            Ok(if fits {
                 let det = |i| det4(tetrahedron(i).map(|p| self.small(p)));
                 IBig::from(range(start).map(det).sum::<i128>())
             } else {
                 let det = |i| det4(tetrahedron(i).map(|p| self.big(p)));
                 range(start).map(det).fold(IBig::ZERO, Add::add)
-            }
+            })
         });
-        sums.reduce(|| IBig::ZERO, Add::add)
+        sums.try_reduce(|| IBig::ZERO, |a, b| Ok(a + b))
     }
 
     /// The plane through three points that are not on one line, the same for whichever three:
@@ -138,15 +149,17 @@ mod tests {
     /// The largest tetrahedra of a lattice, so many that their sum exceeds an `i128`.
     #[test]
     fn volumes_do_not_overflow() {
+        let noop = Monitor::noop();
         for bits in 34..42 {
             let m = f64::from(2).powi(bits) - 1.0;
             let cell = [[m, m, m], [m, -m, -m], [-m, -m, m], [-m, m, -m]];
             let lattice = Lattice::through(&cell);
-            let one = lattice.six_volumes(1, |_| cell);
+            let one = lattice.six_volumes(1, &noop, |_| cell).unwrap();
             let side = IBig::from(2 * (1i128 << bits) - 2);
             assert_eq!(one, IBig::from(2) * &side * &side * &side);
             for count in [CHUNK, if bits == 36 { 64 * CHUNK + 5 } else { CHUNK + 5 }] {
-                assert_eq!(lattice.six_volumes(count, |_| cell), &one * count, "{bits} {count}");
+                let sum = lattice.six_volumes(count, &noop, |_| cell).unwrap();
+                assert_eq!(sum, &one * count, "{bits} {count}");
             }
         }
     }

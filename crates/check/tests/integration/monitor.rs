@@ -54,7 +54,7 @@ fn assert_moves<T: Send, E: Debug + Send>(
     assert!(all.last().is_some_and(|[done, total]| done == total), "{all:?}");
     for last in 1..=all.len() {
         let (heard, outcome) = reports(&work, last);
-        assert_eq!(heard[..], all[..last]);
+        assert!(heard[..] == all[..last], "after report {last}: {:?}", &heard[last..]);
         let error = outcome.map(drop).expect_err("it was cancelled");
         assert!(is_cancelled(&error), "{error:?}");
     }
