@@ -1,7 +1,7 @@
 use walpha_base::vector::{self, V3, along, dot, scale, sub, unit};
 
 use super::sphere;
-use super::stage::Stage;
+use crate::light::Stage;
 use crate::pixels::{Patch, PixelBox, SAMPLES, Size, sample_position};
 use crate::scene::{Lens, Tube};
 

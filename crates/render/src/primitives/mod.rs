@@ -2,16 +2,15 @@
 
 mod capsule;
 mod sphere;
-mod stage;
 mod triangle;
 
 use rayon::prelude::*;
 
+use crate::light::Stage;
 use crate::pixels::{Patch, PixelBox, Size};
 use crate::scene::{Lens, Scene};
 use capsule::Capsule;
 use sphere::Sphere;
-pub(crate) use stage::Stage;
 use triangle::Triangle;
 
 /// A triangle, ball or tube that can be nearest in a sample.

@@ -1,6 +1,6 @@
 use walpha_base::vector::{V3, add, along, dot, scale, sub, unit};
 
-use super::stage::Stage;
+use crate::light::Stage;
 use crate::pixels::{Patch, PixelBox, SAMPLES, Size, sample_position};
 use crate::scene::{Ball, Lens, Projection};
 

@@ -1,7 +1,6 @@
 use walpha_base::vector::{V3, add, along, cross, dot, scale, sub, unit};
 
-use super::stage::Stage;
-use crate::light::Side;
+use crate::light::{Side, Stage};
 use crate::pixels::{Patch, PixelBox, SAMPLE, SAMPLES, STEPS, Size, sample_position};
 use crate::scene::{Colours, Lens, Mesh, Projection, Shading};
 

@@ -1,11 +1,126 @@
-//! The pixels of one tile: which primitive is nearest in each sample, and what colour that makes.
+//! From a scene to pixels: primitives are sorted into tiles, each tile keeps for each of 16
+//! samples a pixel the nearest primitive, and each primitive seen in a pixel is shaded once, in
+//! the middle of its samples. A tile is the work of one thread and reads nothing that another
+//! writes, so the picture does not depend on how many there are.
 
-use crate::pixels::{Patch, PixelBox, SAMPLES, sample_position};
-use crate::primitives::{Primitive, Stage};
-use crate::scene::Background;
+use rayon::prelude::*;
+use walpha_base::memory::try_with_capacity;
+
+use crate::error::RenderError;
+use crate::light::{Exposure, Stage, Studio};
+use crate::pixels::{Patch, Picture, PixelBox, SAMPLES, Size, sample_position};
+use crate::primitives::Primitive;
+use crate::scene::{Background, Camera, Lens, Scene};
+
+impl Scene {
+    /// Draws the scene: 16 samples for each pixel, key, fill and rim light fixed to the camera,
+    /// and sky light that reaches into hollows only as far as they are open. Solid surfaces of
+    /// zero area are invisible. 33 000 triangles and 20 000 balls at 1600×1200 take about a second
+    /// on two cores.
+    ///
+    /// # Errors
+    /// [`RenderError::Camera`] for a camera without a direction; [`RenderError::Index`],
+    /// [`RenderError::Attribute`] and [`RenderError::OutOfRange`] for a scene that contradicts
+    /// itself.
+    pub fn render(
+        &self,
+        camera: &Camera,
+        size: Size,
+        background: Background,
+    ) -> Result<Picture, RenderError> {
+        self.check()?;
+        let lens = Lens::new(camera, size)?;
+        // Allocated before the work, so that a failure is reported at once.
+        let (width, height) = (size.width() as usize, size.height() as usize);
+        let mut pixels =
+            try_with_capacity(width * height, || format!("a picture of {width}×{height} pixels"))?;
+        pixels.resize(width * height, [0; 4]);
+        let studio = Studio::new(&lens);
+        let exposure = Exposure::new(self, &studio);
+        let stage = Stage { scene: self, lens, studio, exposure };
+        let primitives = Primitive::all(self, &lens, size);
+        let tiles = Tiles::new(&primitives, size);
+        let rows: Vec<Vec<[u8; 4]>> = (0..tiles.count())
+            .into_par_iter()
+            .map(|tile| {
+                draw(&stage, &primitives, tiles.members(tile), tiles.area(tile), background)
+            })
+            .collect();
+        for (tile, drawn) in rows.iter().enumerate() {
+            let area = tiles.area(tile);
+            let width = (area.x1 - area.x0) as usize;
+            for (row, y) in drawn.chunks_exact(width).zip(area.y0..) {
+                let start = y as usize * size.width() as usize + area.x0 as usize;
+                pixels[start..start + width].copy_from_slice(row);
+            }
+        }
+        Ok(Picture::new(size, pixels))
+    }
+}
+
+/// Which primitives may touch which tile, in rows of one array.
+struct Tiles {
+    size: Size,
+    across: usize,
+    down: usize,
+    starts: Vec<usize>,
+    members: Vec<u32>,
+}
+
+impl Tiles {
+    /// 32×32 pixels: nearness and names of all samples fit in a second-level cache.
+    const SIDE: usize = 32;
+
+    fn new(primitives: &[Primitive], size: Size) -> Self {
+        let across = (size.width() as usize).div_ceil(Self::SIDE);
+        let down = (size.height() as usize).div_ceil(Self::SIDE);
+        let touched = |primitive: &Primitive| {
+            let b = primitive.bounds();
+            let side = Self::SIDE as i32;
+            let tiles =
+                |low: i32, high: i32| (low / side) as usize..((high + side - 1) / side) as usize;
+            let columns = if b.is_empty() { 0..0 } else { tiles(b.x0, b.x1) };
+            tiles(b.y0, b.y1).flat_map(move |y| columns.clone().map(move |x| y * across + x))
+        };
+        let mut starts = vec![0; across * down + 1];
+        for tile in primitives.iter().flat_map(touched) {
+            starts[tile + 1] += 1;
+        }
+        for tile in 0..across * down {
+            starts[tile + 1] += starts[tile];
+        }
+        let mut free = starts.clone();
+        let mut members = vec![0; starts[across * down]];
+        for (name, primitive) in primitives.iter().enumerate() {
+            for tile in touched(primitive) {
+                members[free[tile]] = name as u32;
+                free[tile] += 1;
+            }
+        }
+        Self { size, across, down, starts, members }
+    }
+
+    fn count(&self) -> usize {
+        self.across * self.down
+    }
+
+    fn members(&self, tile: usize) -> &[u32] {
+        &self.members[self.starts[tile]..self.starts[tile + 1]]
+    }
+
+    fn area(&self, tile: usize) -> PixelBox {
+        let (x, y) = (tile % self.across * Self::SIDE, tile / self.across * Self::SIDE);
+        PixelBox {
+            x0: x as i32,
+            y0: y as i32,
+            x1: (x + Self::SIDE).min(self.size.width() as usize) as i32,
+            y1: (y + Self::SIDE).min(self.size.height() as usize) as i32,
+        }
+    }
+}
 
 /// Draws the primitives that may touch `area`, row by row.
-pub(super) fn draw(
+fn draw(
     stage: &Stage,
     primitives: &[Primitive],
     members: &[u32],
@@ -131,3 +246,6 @@ fn encode(samples: &[[f32; 4]; SAMPLES]) -> [u8; 4] {
     let [r, g, b] = [0, 1, 2].map(|c| byte((mean[c] / mean[3]).sqrt()));
     [r, g, b, byte(mean[3])]
 }
+
+#[cfg(test)]
+mod tests;

@@ -5,8 +5,8 @@ mod camera;
 pub(crate) use camera::Lens;
 pub use camera::{Camera, Projection, View};
 
+use crate::colour::Rgb;
 use crate::error::RenderError;
-use crate::pixels::Rgb;
 
 /// A scene, which can be seen by any camera.
 #[derive(Clone, Debug, Default, PartialEq)]

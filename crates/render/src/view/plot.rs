@@ -11,7 +11,7 @@ use plotly::traces::mesh3d::{IntensityMode, LightPosition, Lighting};
 use plotly::{Configuration, Layout, Mesh3D, Plot, Scatter3D};
 
 use super::subject::Subject;
-use crate::pixels::PALETTE;
+use crate::colour::PALETTE;
 
 /// The traces in the order in which the page's script fills them, and the layout. Traces without
 /// data: the arrays of a level are put together in the browser.
