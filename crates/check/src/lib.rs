@@ -31,7 +31,6 @@ mod enumerate;
 mod exact;
 mod flat;
 mod parallel;
-mod periodic;
 pub mod schema;
 
 pub use certify::{

@@ -7,10 +7,10 @@ use rayon::prelude::*;
 use walpha_base::{Cancelled, Monitor};
 use walpha_complex::canonical::smallest_even;
 
+use super::claim::Extent;
 use super::emptiness::Emptiness;
-use super::index::{Index, NONE};
-use super::structure::{Half, Structure};
-use super::{Extent, Finding, Points};
+use super::finding::Finding;
+use super::structure::{Half, Index, NONE, Points, Structure};
 use crate::exact::{Side, collinear, orientation, power_value, radius, radius_value, side};
 use crate::parallel::of_each;
 use crate::{Alpha, Class, Simplices};

@@ -5,9 +5,8 @@ use walpha_base::{Cancelled, Monitor};
 use walpha_complex::canonical::{outward_facets, smallest_even, sort, sorted};
 
 use super::emptiness::Emptiness;
-use super::index::NONE;
-use super::structure::Structure;
-use super::{Finding, Points};
+use super::finding::Finding;
+use super::structure::{NONE, Points, Structure};
 use crate::exact::{Side, orientation, radius, radius_value, side};
 use crate::parallel::of_each;
 use crate::{Alpha, Class, Complex};

@@ -6,10 +6,10 @@ use rayon::prelude::*;
 use walpha_base::{Cancelled, Monitor};
 use walpha_complex::canonical::outward_facets;
 
-use super::emptiness::Emptiness;
-use super::near::Grid;
-use super::structure::{Half, Structure};
-use super::{Claim, Finding, Points};
+use super::claim::Claim;
+use super::emptiness::{Emptiness, Grid};
+use super::finding::Finding;
+use super::structure::{Half, Points, Structure};
 use crate::Complex;
 use crate::exact::{in_conflict, orientation, power_value, radius, radius_value, six_volume};
 use crate::parallel::of_each;

@@ -2,7 +2,10 @@
 
 use walpha_base::Monitor;
 
-use super::{Certificate, CertifyError, Claim, Finding, torus};
+use super::certificate::{Certificate, CertifyError};
+use super::claim::Claim;
+use super::finding::Finding;
+use super::torus;
 use crate::Placed;
 use crate::schema::{ComplexFile, PlacedComplex};
 

@@ -12,10 +12,10 @@ use walpha_base::{Cancelled, Monitor};
 use walpha_complex::canonical::{outward_facets, sorted};
 
 use super::emptiness::Emptiness;
+use super::finding::Finding;
 use super::flat::{Cone, closed};
-use super::linked::triangulation_findings;
-use super::structure::Structure;
-use super::{Finding, Points};
+use super::geometry::triangulation_findings;
+use super::structure::{Points, Structure};
 use crate::exact::{collinear, orientation};
 use crate::flat::auxiliary_positions;
 use crate::parallel::of_each;
@@ -154,13 +154,15 @@ fn sides(structure: &Structure, points: Points, face: &[u32], facet: u32) -> [bo
     sides
 }
 
-/// Singular simplices with further points on their spheres: the row, the simplex, and all points on the
-/// sphere.
+/// A simplex with further points on its sphere: its row, its vertices, and all points on the sphere.
+type Tied<const N: usize> = (u32, [u32; N], Vec<u32>);
+
+/// The singular simplices with further points on their spheres.
 fn tied<const N: usize>(
     simplices: &Simplices<N>,
     emptiness: &Emptiness,
     monitor: &Monitor,
-) -> Result<Vec<(u32, [u32; N], Vec<u32>)>, Cancelled> {
+) -> Result<Vec<Tied<N>>, Cancelled> {
     of_each(simplices.len(), monitor, |i| {
         let row = simplices.rows()[i];
         let singular = simplices.classes()[i] == Class::Singular;

@@ -11,12 +11,13 @@ use std::collections::{BTreeMap, BTreeSet};
 use walpha_base::{Cancelled, Monitor};
 use walpha_complex::canonical::sort;
 
-use super::{
-    Certificate, CertifyError, Claim, Extent, Finding, NotJudged, Points, Verdict, hull, structure,
-};
+use super::certificate::{Certificate, CertifyError, NotJudged, Verdict};
+use super::claim::{Claim, Extent};
+use super::finding::Finding;
+use super::geometry;
+use super::structure::{self, Points};
 use crate::exact::Exact;
-use crate::periodic::{moved, nearest_copy};
-use crate::schema::PlacedComplex;
+use crate::schema::{PlacedComplex, moved, nearest_copy};
 use crate::{Alpha, Complex, Placed, Simplices};
 
 /// All broken rules of a complex of a torus with these sides, and the certificate.
@@ -170,7 +171,7 @@ impl Copies {
         let corners: Vec<[f64; 3]> = (0..8).map(corner).collect();
         let corners = Points { positions: &corners, weights: &[0.0; 8] };
         let volume = |cells: &[[u32; 4]], points: Points| {
-            let (sum, exponent) = hull::six_volumes(cells, points, monitor)?;
+            let (sum, exponent) = geometry::six_volumes(cells, points, monitor)?;
             Ok(Exact::integer(sum, exponent))
         };
         let (cells, hull) = (volume(&cells, points)?, volume(&BOX, corners)?);

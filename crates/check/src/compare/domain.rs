@@ -7,11 +7,12 @@ use serde::Serialize;
 use walpha_base::{Cancelled, Monitor};
 use walpha_complex::canonical::{outward_facets, smallest_even, sorted};
 
-use super::common_positions::{CommonPositions, weights_by_position};
+use super::points::{CommonPositions, weights_by_position};
+use crate::certify::{CertifyError, Claim, Verdict};
 use crate::exact::{Exact, Lattice, Lift, WeightedPoint, orientation};
 use crate::parallel::of_each;
 use crate::schema::orient;
-use crate::{CertifyError, Claim, Class, Placed, Verdict};
+use crate::{Class, Placed};
 
 /// How the regions that the cells of two shapes cover are related.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]

@@ -1,5 +1,6 @@
 //! Comparison of two filtrations over the same points.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::fmt::{self, Display};
 
@@ -8,11 +9,11 @@ use walpha_base::monitor::Units;
 use walpha_base::{Cancelled, Monitor};
 use walpha_complex::canonical::sorted;
 
-use super::WeightDifference;
-use super::common_positions::{CommonPositions, weights_by_position};
-use super::text::{PRINTED, rows};
+use super::complexes::{PRINTED, rows};
+use super::points::{CommonPositions, WeightDifference};
+use crate::Alpha;
+use crate::certify::Simplex;
 use crate::schema::{Below, FiltrationFile, SchemaError};
-use crate::{Alpha, Simplex};
 
 /// The differences between two filtrations A and B.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -117,9 +118,9 @@ pub fn compare_filtrations_monitored(
     let of_a = simplices(a, &common.a, &work)?;
     let mut of_b = simplices(b, &common.b, &work)?;
     let mut found = FiltrationComparison {
-        weights: weights(a, b, &common),
-        points_only_a: only(&common.a, &common.b),
-        points_only_b: only(&common.b, &common.a),
+        weights: common.weight_differences(&weights(a), &weights(b)),
+        points_only_a: common.only_a(),
+        points_only_b: common.only_b(),
         equal: 0,
         only_a: Vec::new(),
         only_b: Vec::new(),
@@ -195,28 +196,12 @@ fn finite(file: &FiltrationFile) -> Result<(), SchemaError> {
     }
 }
 
-fn only(own: &[u32], other: &[u32]) -> Vec<u32> {
-    let other: std::collections::BTreeSet<_> = other.iter().collect();
-    (0..).zip(own).filter(|(_, position)| !other.contains(position)).map(|(i, _)| i).collect()
-}
-
-fn weights(
-    a: &FiltrationFile,
-    b: &FiltrationFile,
-    common: &CommonPositions,
-) -> Vec<WeightDifference> {
-    let of = |file: &FiltrationFile| {
-        file.weights.clone().unwrap_or_else(|| vec![0.0; file.points.len()])
-    };
-    let mut in_a = weights_by_position(&of(a), &common.a);
-    let in_b = weights_by_position(&of(b), &common.b);
-    let difference = |(point, &position): (u32, &u32)| {
-        // Each position once: its weight is replaced.
-        let a = std::mem::replace(&mut in_a[position as usize], f64::NEG_INFINITY);
-        let b = in_b.get(position as usize).copied().filter(|b| *b != f64::NEG_INFINITY)?;
-        (a != b && a != f64::NEG_INFINITY).then_some(WeightDifference { point, a, b })
-    };
-    (0..).zip(&common.a).filter_map(difference).collect()
+/// The weights of the points; all are 0 if the file lists none.
+fn weights(file: &FiltrationFile) -> Cow<'_, [f64]> {
+    match &file.weights {
+        Some(weights) => Cow::Borrowed(weights),
+        None => Cow::Owned(vec![0.0; file.points.len()]),
+    }
 }
 
 /// All simplices by the positions of their vertices.

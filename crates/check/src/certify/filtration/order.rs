@@ -4,10 +4,8 @@ use walpha_base::{Cancelled, Monitor};
 use walpha_complex::canonical::sorted;
 
 use super::finding::FiltrationFinding;
-use super::row_numbers::RowNumbers;
-use super::spans::Spans;
-use super::values::Ranks;
-use crate::certify::Simplex;
+use super::values::{Ranks, RowNumbers, Spans};
+use crate::certify::finding::Simplex;
 use crate::schema::FiltrationFile;
 
 /// Judges that each simplex is in the order once, and comes after the one before it: by the exact

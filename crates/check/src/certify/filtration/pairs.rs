@@ -6,8 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use walpha_base::{Cancelled, Monitor};
 
 use super::finding::FiltrationFinding;
-use super::row_numbers::RowNumbers;
-use super::spans::Spans;
+use super::values::{RowNumbers, Spans};
 use crate::certify::structure::Structure;
 use crate::schema::{FiltrationFile, PairsFile};
 
