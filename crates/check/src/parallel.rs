@@ -1,4 +1,4 @@
-//! Work on many items by all threads, under a monitor.
+//! Parallel work on many items, under a monitor.
 
 use rayon::prelude::*;
 use walpha_base::{Cancelled, Monitor};

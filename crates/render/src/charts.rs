@@ -1,4 +1,4 @@
-//! Results as figures: a ladder of α-shapes, and codecs by rate and distortion.
+//! Charts: ladders of α-shapes, and codecs by rate and distortion.
 
 use walpha_shape::Alpha;
 use walpha_shape::ladder::{Curve, Ladder, Level, Suggestions};

@@ -1,7 +1,7 @@
 //! The light in a scene: lamps, and how much of them and of the sky reaches each position.
 //!
 //! The exposure is measured with small depth maps from 64 directions of the sky and 16 around the main lamp: a position that is hidden in a map
-//! gets no light from its direction. This darkens hollows by what surrounds them, visible or not, and is free of noise.
+//! receives no light from its direction. This darkens hollows, even where what surrounds them is not visible, and is free of noise.
 
 use rayon::prelude::*;
 use walpha_base::vector::{V3, add, along, cross, dot, length, scale, sub, unit};
@@ -24,7 +24,7 @@ pub(crate) struct Studio {
     projection: Projection,
 }
 
-/// Shares of light. White in full light, key and sky, is close to 1.
+/// Shares of light. White that is lit by key and sky is close to 1.
 const SKY: f64 = 0.42;
 const KEY: f64 = 0.66;
 const FILL: f64 = 0.09;
@@ -56,9 +56,9 @@ impl Studio {
         }
     }
 
-    /// The light that a matt surface with a little gloss sends to the eye.
+    /// The light that a matt, slightly glossy surface reflects to the eye.
     ///
-    /// `sky` is the sky light that reaches it, `key` the share of the main lamp, both 1 in the
+    /// `sky` is the sky light that reaches the surface, `key` the share of the main lamp; both are 1 in the
     /// open.
     pub(crate) fn shade(
         &self,
@@ -92,7 +92,7 @@ pub(crate) struct Stage<'a> {
     pub exposure: Exposure,
 }
 
-/// The light that reaches one position.
+/// The light at a position.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Light {
     /// The mean of the sky over all directions.
@@ -241,8 +241,7 @@ fn cone_directions(axis: V3, count: usize) -> Vec<V3> {
         .collect()
 }
 
-/// The middle of each of `count` equal shares of 0..1, with a unit vector turned further by the
-/// golden angle each time.
+/// The midpoints of `count` equal parts of 0..1, each with a unit vector that the golden angle turns further.
 fn spiral(count: usize) -> impl Iterator<Item = (f64, [f64; 2])> {
     let mut turn = [1.0, 0.0];
     (0..count).map(move |k| {
@@ -261,15 +260,15 @@ fn across(axis: V3) -> (V3, V3) {
     (u, cross(axis, u))
 }
 
-/// A position whose light is measured: raised a little along `normal` so that neither its own
-/// surface hides it, nor anything within `radius` of it.
+/// A position whose light is measured. It is raised a little along `normal`, so that neither its own
+/// surface nor anything within `radius` of it hides it.
 struct Receiver {
     pub place: V3,
     pub normal: V3,
     pub radius: f64,
 }
 
-/// A ball that contains the scene.
+/// A ball around the scene.
 struct Space {
     centre: V3,
     radius: f64,
@@ -287,7 +286,7 @@ impl Space {
 
 /// The outermost surface seen from far away in one direction, in parallel projection.
 struct DepthMap {
-    /// Axes in texels, and towards the viewer in the units of the scene.
+    /// Two axes in texels, and one towards the viewer in the units of the scene.
     axes: [V3; 3],
     origin: V3,
     texel: f64,
@@ -364,7 +363,7 @@ impl DepthMap {
         }
     }
 
-    /// How much of a receiver is not hidden in this direction, 0 to 1: the four texels around it.
+    /// The share of a receiver that is visible from this direction, 0 to 1, interpolated between the four texels around it.
     fn openness(&self, receiver: &Receiver) -> f64 {
         let [x, y, height] = self.place(along(receiver.place, 1.5 * self.texel, receiver.normal));
         let height = height + receiver.radius + 1.5 * self.texel;
@@ -384,7 +383,7 @@ impl DepthMap {
     }
 }
 
-/// Texels whose middle may lie between two positions.
+/// Texels whose centre may lie between two positions.
 fn texels(low: f64, high: f64) -> (usize, usize) {
     ((low - 0.5).max(0.0) as usize, ((high + 0.5).max(0.0) as usize).min(DepthMap::SIDE))
 }

@@ -1,4 +1,4 @@
-//! Pictures, the pixels of which they consist, and the samples within a pixel.
+//! Pictures, their pixels, and the samples within a pixel.
 
 use image::ImageEncoder;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};

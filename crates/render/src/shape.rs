@@ -17,7 +17,7 @@ pub enum Colouring<'a> {
     Classes,
 }
 
-/// How a shape becomes a scene.
+/// The look of a shape in a scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShapeStyle<'a> {
     /// The meaning of the colours.

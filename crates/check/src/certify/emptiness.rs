@@ -1,4 +1,4 @@
-//! Points near a position, and spheres that must be empty.
+//! Points near a position, and whether spheres are empty.
 
 use std::cell::RefCell;
 

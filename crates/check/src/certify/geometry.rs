@@ -15,7 +15,7 @@ use crate::parallel::of_each;
 /// A complex with its simplices linked, and the rules of structure and geometry that it breaks.
 pub(super) struct Linked<'a> {
     pub structure: Structure<'a>,
-    /// Broken rules without which the others mean nothing.
+    /// Broken rules on which the others depend.
     pub broken: Vec<Finding>,
     /// Findings on neighbours and hull, which are judged if `broken` is empty.
     pub irregular: Vec<Finding>,

@@ -95,7 +95,7 @@ pub(super) fn duplicates(
     findings
 }
 
-/// How a claim accounts for a point.
+/// What a claim says of a point.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Status {
     /// Not yet.

@@ -1,4 +1,4 @@
-//! Points and listed simplices, linked: cells to facets and back, and each found by its vertices.
+//! The points and the listed simplices: an index by vertices, and links between cells and facets.
 
 use std::collections::BTreeSet;
 
@@ -182,7 +182,7 @@ fn row_findings<const N: usize>(rows: &[[u32; N]], points: usize) -> Vec<Finding
     rows.par_iter().filter_map(judge).collect()
 }
 
-/// Stands for the absence of a simplex or cell.
+/// No simplex, or no cell.
 pub(super) const NONE: u32 = u32::MAX;
 
 /// Finds listed simplices by their vertices, in any order.

@@ -1,5 +1,4 @@
-//! Judging a claim: the rules in their order, which of them are skipped once others are broken, and the verdict that
-//! follows from the findings.
+//! Judging a claim: the rules in order, which of them are skipped once others are broken, and the verdict.
 
 use std::cell::Cell;
 use std::collections::BTreeSet;
@@ -173,9 +172,9 @@ fn afford(complex: &Complex) -> Result<(), CertifyError> {
     Vec::<u8>::new().try_reserve_exact(bytes).map_err(|_| CertifyError::Memory { cells, bytes })
 }
 
-/// Why rules are left out.
+/// Why the remaining rules are not applied.
 enum Stop {
-    /// The visitor breaks, or a rule is broken without which others mean nothing.
+    /// The visitor wants no more, or a rule is broken on which the others depend.
     Enough,
     Cancelled(Cancelled),
 }
@@ -189,8 +188,7 @@ impl From<Cancelled> for Stop {
 /// Takes the findings of a rule; stops when the visitor wants no more.
 type Report<'r> = dyn FnMut(Vec<Finding>) -> Result<(), Stop> + 'r;
 
-/// Applies all rules in turn, until one of the reasons to stop. The parts of the work take about as long as they are
-/// large.
+/// Applies the rules in turn. The monitor's parts are shares of the time that each takes.
 fn apply(
     claim: &Claim,
     report: &mut Report,

@@ -1,4 +1,4 @@
-//! Weighted points relative to one of them, in each kind of number, and signs of formulas over them.
+//! Weighted points relative to one of them, in each number type, and signs of formulas over them.
 
 use std::cmp::Ordering;
 

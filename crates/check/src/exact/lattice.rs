@@ -1,4 +1,4 @@
-//! Volumes, planes and hyperplanes as integers, in units that are common to all points.
+//! Volumes, planes and hyperplanes as integers, in units common to all points.
 
 use std::cmp::Ordering;
 use std::ops::Add;

@@ -1,4 +1,4 @@
-//! The numbers that formulas are evaluated in, and the binary digits of doubles.
+//! The number types of the predicates, and the binary digits of doubles.
 
 use std::cmp::Ordering;
 

@@ -1,4 +1,4 @@
-//! The predicates: orientation, side of a sphere, size of a sphere, and conflict with a cell.
+//! The predicates: orientation, side of a sphere, squared radius against α, and conflict with a cell.
 
 use std::cmp::Ordering;
 

@@ -1,4 +1,4 @@
-//! Exact rational numbers: volumes, powers and squared radii to report, and the doubles nearest to them.
+//! Exact rational numbers: volumes, powers and squared radii, and the nearest doubles.
 
 use std::cmp::Ordering;
 use std::fmt;

@@ -1,4 +1,4 @@
-//! Drawings of points, lines and text in the plane, and how a panel shows them.
+//! Drawings of points, lines and text in the plane, and their SVG.
 
 use std::fmt::Write;
 
@@ -18,7 +18,7 @@ pub struct Drawing {
     pub(super) shapes: Vec<(Shape, Pen)>,
 }
 
-/// How a line or an area is drawn.
+/// The look of a line or an area.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pen {
     /// The colour of the line; `None` for an area without outline.
@@ -63,9 +63,9 @@ pub enum Step {
         to: [f64; 2],
         /// The radius of the circle.
         radius: f64,
-        /// Whether the way there turns counter-clockwise.
+        /// Whether the arc turns counter-clockwise.
         counter_clockwise: bool,
-        /// Whether it is more than half of the circle.
+        /// Whether the arc is more than half of the circle.
         large: bool,
     },
 }
@@ -130,7 +130,7 @@ impl Drawing {
         self.shapes.push((Shape::Dot { at, size }, Pen::area(colour, 1.0)));
     }
 
-    /// Text centred on a point, their size in thousandths of the panel's height.
+    /// Text centred on a point; `size` is in thousandths of the panel's height.
     pub fn text(&mut self, at: [f64; 2], size: f64, text: &str, colour: Rgb) {
         self.shapes.push((Shape::Text { at, size, text: text.into() }, Pen::area(colour, 1.0)));
     }
@@ -226,7 +226,7 @@ impl Drawing {
 /// The height of letters along axes, as a share of the panel's height.
 const LETTERS: f64 = 0.034;
 
-/// From the plane to the panel.
+/// The map from the plane to the panel.
 struct PlaneToPanel {
     scale: [f64; 2],
     shift: [f64; 2],
@@ -294,7 +294,7 @@ fn write_step(path: &mut String, step: &Step, place: &PlaneToPanel) {
         Step::Arc { to, radius, counter_clockwise, large } => {
             let [x, y] = place.at(to).map(num);
             let [rx, ry] = place.scale.map(|s| num(radius * s));
-            // The panel's y points down, so what turned left turns right.
+            // The panel's y points down, which reverses turns.
             let sweep = u8::from(!counter_clockwise);
             write!(path, "A{rx} {ry} 0 {} {sweep} {x} {y}", u8::from(large))
         }

@@ -14,8 +14,8 @@ pub use drawing::{Drawing, Pen, Step};
 use svg::{FAMILIES, LEADING, escape, num, rasterise, text_width, wrap, write_lines};
 use ticks::ticks;
 
-/// A figure as in a paper: panels in rows, each with its letter, title and caption, under a
-/// common title, with the meaning of the colours below. One description gives the SVG and the PNG.
+/// A figure as in a paper: panels in rows, each with a letter, a title and captions, under a
+/// common title, with the meaning of the colours below. SVG and PNG are made from the same description.
 ///
 /// Text in a PNG is set in Ubuntu Light, which has Greek and √ ² ₁ × − ≤ ≥ ∞; a line with a character
 /// that it lacks (arrows, ∈, ⊆, ‖, ₊) is set in Hack as a whole.
@@ -160,7 +160,7 @@ fn write_picture(
 /// A part of a figure.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Panel {
-    /// Above it, after its letter "(a)"; the letter is left out where there is one panel.
+    /// Above it, after its letter "(a)"; a single panel has no letter.
     pub title: String,
     /// What it shows.
     pub content: Content,
@@ -189,7 +189,7 @@ pub struct ColourBar {
 const INK: &str = "#111111";
 const SOFT_INK: &str = "#333333";
 
-/// A page that is filled from top to bottom.
+/// The page of a figure, filled from top to bottom.
 struct Page {
     pub svg: String,
     width: f64,

@@ -1,4 +1,4 @@
-//! Building blocks of SVG text, words in lines, and rasterisation.
+//! The building blocks of SVG, text in lines, and rasterisation.
 
 use std::fmt::Write;
 use std::sync::{Arc, LazyLock};
@@ -8,11 +8,11 @@ use resvg::{tiny_skia, usvg};
 use crate::error::RenderError;
 use crate::pixels::{Picture, Size};
 
-/// The font families for viewers: first the one that PNG files use.
+/// The font families for viewers, first that of PNG files.
 pub(super) const FAMILIES: &str =
     "Ubuntu, 'Noto Sans', 'DejaVu Sans', 'Helvetica Neue', Arial, sans-serif";
 
-/// A number as short as a thousandth of a pixel allows; 0 for NaN.
+/// A number to a thousandth of a pixel, without trailing zeros; 0 for NaN.
 pub(super) fn num(value: f64) -> String {
     if !value.is_finite() {
         return "0".into();
@@ -89,7 +89,7 @@ pub(super) fn write_lines(
     }
 }
 
-/// Words in lines that fit a width; a word that is longer has a line of its own.
+/// Breaks a text into lines that fit a width; a longer word has a line of its own.
 pub(super) fn wrap(text: &str, width: f64, size: f64) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split_whitespace() {
@@ -104,7 +104,7 @@ pub(super) fn wrap(text: &str, width: f64, size: f64) -> Vec<String> {
     lines
 }
 
-/// The estimated width of a text, a little too large, as a viewer may have another font.
+/// The estimated width of a text, a little too large, because viewers may use another font.
 pub(super) fn text_width(text: &str, size: f64) -> f64 {
     let of = |c: char| match c {
         'i' | 'j' | 'l' | '.' | ',' | ':' | ';' | '\'' | '|' | ' ' | '(' | ')' | '·' => 0.3,

@@ -4,7 +4,7 @@ use crate::light::Stage;
 use crate::pixels::{Patch, PixelBox, SAMPLES, Size, sample_position};
 use crate::scene::{Ball, Lens, Projection};
 
-/// A ball on the pixel grid: the exact outline and depth of a sphere, no facets.
+/// A ball on the pixel grid, with the exact outline and depth of a sphere.
 pub(crate) struct Sphere {
     pub bounds: PixelBox,
     ball: u32,

@@ -1,7 +1,6 @@
-//! From a scene to pixels: primitives are sorted into tiles, each tile keeps for each of 16
-//! samples a pixel the nearest primitive, and each primitive seen in a pixel is shaded once, in
-//! the middle of its samples. A tile is the work of one thread and reads nothing that another
-//! writes, so the picture does not depend on how many there are.
+//! From a scene to pixels: primitives are sorted into tiles; a tile keeps the nearest primitive of each of 16
+//! samples per pixel, and shades each primitive that is visible in a pixel once, at the centre of its samples. A tile is drawn
+//! by one thread, which reads nothing that another writes, so the picture does not depend on the number of threads.
 
 use rayon::prelude::*;
 use walpha_base::memory::try_with_capacity;
@@ -58,7 +57,7 @@ impl Scene {
     }
 }
 
-/// Which primitives may touch which tile, in rows of one array.
+/// For each tile the primitives that may touch it, one tile after the other in one array.
 struct Tiles {
     size: Size,
     across: usize,
@@ -68,7 +67,7 @@ struct Tiles {
 }
 
 impl Tiles {
-    /// 32×32 pixels: nearness and names of all samples fit in a second-level cache.
+    /// 32×32 pixels: nearness and names of all samples fit into a second-level cache.
     const SIDE: usize = 32;
 
     fn new(primitives: &[Primitive], size: Size) -> Self {
@@ -136,7 +135,7 @@ fn draw(
         primitives[name as usize].cover(&stage.lens, area, |patch| {
             let (depths, names) = &mut nearest[index(patch)];
             for k in 0..SAMPLES {
-                // Strictly greater: of equally near ones the first in the scene is kept.
+                // Strictly greater: of equally near primitives, the first in the scene is kept.
                 if patch.mask >> k & 1 == 1 && patch.nearness[k] > depths[k] {
                     depths[k] = patch.nearness[k];
                     names[k] = name;
@@ -177,10 +176,10 @@ fn draw(
     pixels
 }
 
-/// Stands for the absence of a primitive.
+/// No primitive.
 const NOTHING: u32 = u32::MAX;
 
-/// A see-through primitive in one pixel.
+/// A translucent primitive in one pixel.
 struct Veil {
     pixel: usize,
     nearness: f32,
@@ -188,7 +187,7 @@ struct Veil {
     mask: u16,
 }
 
-/// The colour of a pixel: solid primitives by their share of samples, veils over them.
+/// The colour of a pixel: opaque primitives by their share of samples, and veils over them.
 fn resolve(
     stage: &Stage,
     primitives: &[Primitive],

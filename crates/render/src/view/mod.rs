@@ -34,16 +34,15 @@ impl Page {
 
     /// Makes the page. The same subject gives the same bytes.
     ///
-    /// The boundary and what is singular are traces of their own, points are sized by weight, a
-    /// slider goes over α, a list over levels of detail, and a click or touch shows index, F, ω and
-    /// class of a point. The library plotly.js, which draws it, is included.
+    /// The boundary, singular facets, singular edges and points are traces of their own, and points are sized by weight. A
+    /// slider chooses α, a list the level of detail, and a click or touch shows index, F, ω and
+    /// class of a point. The page includes plotly.js, which draws it.
     ///
     /// # Errors
-    /// [`RenderError::Isosurface`] for an isovalue that is not a finite
-    /// number.
+    /// [`RenderError::Isosurface`] for an isovalue that is not a finite number.
     ///
     /// # Panics
-    /// When there are no levels of detail, or one with no α or more than [`Page::MOST_LEVELS`].
+    /// If there is no level of detail, or one of them has no α or more than [`Page::MOST_LEVELS`].
     pub fn new(subject: &Subject<'_>) -> Result<Self, RenderError> {
         assert!(!subject.details.is_empty(), "nothing to show");
         let surface = subject.original.as_ref().map(pack::surface).transpose()?;

@@ -1,5 +1,5 @@
-//! The squared radius of each empty smallest orthogonal sphere, exactly; the order of these values; and those from which on each simplex is in
-//! the shape, a face of another simplex of it, and off its boundary.
+//! The exact squared radii of empty smallest orthogonal spheres, their order, and from which of them on each simplex is
+//! in the shape, regular and interior.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
