@@ -45,6 +45,8 @@ pub use compare::{
 };
 pub use enumerate::{EnumerateError, Enumeration, enumerate, enumerate_monitored};
 pub use exact::Exact;
+/// Progress and cancelling of long work.
+pub use walpha_base::{Cancelled, Monitor};
 pub use walpha_complex::{
     Alpha, AlphaError, ByClass, Class, Complex, Placed, Simplices, SimplicesError,
 };

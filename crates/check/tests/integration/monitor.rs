@@ -5,12 +5,11 @@ use std::ops::ControlFlow;
 use std::sync::{Arc, Mutex, OnceLock};
 
 use rayon::ThreadPoolBuilder;
-use walpha_base::Monitor;
 use walpha_base::random::Random;
 use walpha_check::schema::{ComplexFile, FiltrationFile, PairsFile, PlacedComplex};
 use walpha_check::{
     CertifyError, CertifyFiltrationError, Claim, CompareError, CompareFiltrationsError,
-    EnumerateError, Extent, certify_filtration_monitored, compare_filtrations_monitored,
+    EnumerateError, Extent, Monitor, certify_filtration_monitored, compare_filtrations_monitored,
     compare_monitored, enumerate_monitored,
 };
 
