@@ -38,6 +38,8 @@ pub enum Stage {
     Certify,
     /// Builds a complex from its definition.
     Enumerate,
+    /// Compares two complexes or filtrations.
+    Compare,
     /// Makes the interactive page.
     Page,
     /// Writes its result.
@@ -72,6 +74,7 @@ impl Stage {
             Self::Interpolate => "interpolate",
             Self::Certify => "certify",
             Self::Enumerate => "enumerate",
+            Self::Compare => "compare",
             Self::Page => "page",
             Self::Write => "write",
         }

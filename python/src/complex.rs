@@ -6,7 +6,7 @@ use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use walpha::Class;
 use walpha::check::schema::{ComplexFile, PlacedComplex};
-use walpha::check::{Alpha, CertifyError, CompareError};
+use walpha::check::{Alpha, CertifyError, CompareError, compare_monitored};
 use walpha::progress::Stage;
 use walpha::shape::placed_complex;
 
@@ -78,8 +78,8 @@ impl Complex {
     ) -> PyResult<Judged> {
         let placed = Arc::clone(&self.0);
         run(py, progress.as_ref(), move |monitor| {
-            let _ = Stage::Certify.begin(monitor);
-            let (mut findings, certificate) = placed.findings()?;
+            Stage::Certify.begin(monitor)?;
+            let (mut findings, certificate) = placed.findings_monitored(monitor)?;
             findings.retain(|finding| ties_too || !finding.is_tie());
             let told =
                 findings.iter().take(most).map(|finding| (finding.to_string(), json(finding)));
@@ -105,8 +105,8 @@ pub fn compare(
             "complexes of a periodic box are not compared by places; compare the arrays of rows",
         ));
     }
-    run(py, None, move |_| {
-        let comparison = walpha::check::compare(a.placed(), b.placed())?;
+    run(py, None, move |monitor| {
+        let comparison = compare_monitored(a.placed(), b.placed(), monitor)?;
         let text = comparison.to_string();
         Ok::<_, CompareError>((comparison.is_equal(), text, json(&comparison)))
     })

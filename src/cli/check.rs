@@ -11,10 +11,12 @@ use walpha_base::shown::shown;
 
 use crate::Alpha;
 use crate::check::schema::{FiltrationFile, PlacedComplex};
-use crate::check::{Comparison, Extent, Verdict, certify_filtration, compare, enumerate};
+use crate::check::{
+    Comparison, Extent, Verdict, certify_filtration_monitored, compare, enumerate_monitored,
+};
 use crate::pipeline::AlphaRule;
 use crate::points::{self, CellCount};
-use crate::progress::Stage;
+use crate::progress::{Monitor, Stage};
 use crate::shape::placed_complex;
 
 use super::args::{PeriodicArgs, PipelineArgs, ShapeArgs};
@@ -244,11 +246,14 @@ impl Check {
         }
         let (claim, complex) = (judged.claim(), &judged.complex);
         let started = Instant::now();
-        let (mut findings, certificate) = progress.stage(Stage::Certify, || judged.findings())?;
+        let (mut findings, certificate) = progress.watch(|monitor| {
+            Stage::Certify.begin(monitor)?;
+            judged.findings_monitored(monitor)
+        })?;
         findings.retain(|finding| self.ties == Ties::Exact || !finding.is_tie());
         let seconds = started.elapsed().as_secs_f64();
         let enumeration = if self.enumerate {
-            Some(progress.stage(Stage::Enumerate, || by_definition(judged))?)
+            Some(progress.watch(|monitor| by_definition(judged, monitor))?)
         } else {
             None
         };
@@ -292,8 +297,10 @@ impl Check {
         mut progress: Progress,
     ) -> anyhow::Result<ExitCode> {
         let started = Instant::now();
-        let (mut findings, certificate) =
-            progress.stage(Stage::Certify, || certify_filtration(file))?;
+        let (mut findings, certificate) = progress.watch(|monitor| {
+            Stage::Certify.begin(monitor)?;
+            certify_filtration_monitored(file, monitor)
+        })?;
         findings.retain(|finding| self.ties == Ties::Exact || !finding.is_tie());
         let seconds = started.elapsed().as_secs_f64();
         progress.finish();
@@ -327,9 +334,10 @@ struct Subject<'a> {
 }
 
 /// How a complex (A) differs from the one its definition makes (B).
-fn by_definition(judged: &PlacedComplex) -> anyhow::Result<Comparison> {
+fn by_definition(judged: &PlacedComplex, monitor: &Monitor) -> anyhow::Result<Comparison> {
+    Stage::Enumerate.begin(monitor)?;
     let judged = judged.placed();
-    let made = enumerate(judged.positions, judged.weights, judged.alpha)?;
+    let made = enumerate_monitored(judged.positions, judged.weights, judged.alpha, monitor)?;
     Ok(compare(judged, judged.with_complex(&made.complex))?)
 }
 

@@ -13,10 +13,12 @@ use walpha_base::shown::shown;
 use super::errors::{CommandError, command_error, fail};
 use super::global::{DIFFERENT, Global};
 use super::output::{name, print_summary};
+use super::progress::Progress;
 use super::report::SCHEMA_VERSION;
 use crate::check::schema::{AnyFile, ComplexFile, FiltrationFile, PlacedComplex, SchemaError};
-use crate::check::{compare, compare_filtrations};
+use crate::check::{compare_filtrations_monitored, compare_monitored};
 use crate::points::read_points;
+use crate::progress::Stage;
 
 /// Compare two complexes by points, weights, α and simplices with their classes, or two filtrations
 /// by points, weights, simplices with their values, and order.
@@ -53,17 +55,26 @@ struct CompareSummary<C> {
 
 impl Compare {
     pub(super) fn run(self, global: Global) -> anyhow::Result<ExitCode> {
-        let read = |path: &Path| read(path, None);
+        let mut progress = Progress::new(global);
+        let mut read = |path: &Path| progress.stage(Stage::Read, || read(path, None));
         match (read(&self.a)?, read(&self.b)?) {
             (CheckFile::Complex(a), CheckFile::Complex(b)) => {
                 if a.periodic.or(b.periodic).is_some() {
                     fail!("complexes of a periodic box are not compared: their simplices have no one place" => "judge each with `walpha check`");
                 }
-                let comparison = compare(a.placed(), b.placed())?;
+                let comparison = progress.watch(|monitor| {
+                    Stage::Compare.begin(monitor)?;
+                    compare_monitored(a.placed(), b.placed(), monitor)
+                })?;
+                progress.finish();
                 self.tell(global, comparison.is_equal(), comparison)
             }
             (CheckFile::Filtration(a), CheckFile::Filtration(b)) => {
-                let comparison = compare_filtrations(&a, &b)?;
+                let comparison = progress.watch(|monitor| {
+                    Stage::Compare.begin(monitor)?;
+                    compare_filtrations_monitored(&a, &b, monitor)
+                })?;
+                progress.finish();
                 self.tell(global, comparison.is_equal(), comparison)
             }
             _ => {

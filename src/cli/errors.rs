@@ -13,7 +13,7 @@ use super::global::{FAILURE, UNREAD, USAGE};
 use super::output::{OutputError, is_broken_pipe, remark};
 use super::progress;
 use crate::check::schema::SchemaError;
-use crate::check::{CertifyError, CertifyFiltrationError, CompareError};
+use crate::check::{CertifyError, CertifyFiltrationError, CompareError, CompareFiltrationsError};
 use crate::export::TargetError;
 use crate::haar::HaarError;
 use crate::interpolate::InterpolateError;
@@ -136,6 +136,9 @@ fn of_checker(error: &(dyn Error + 'static)) -> Option<&'static str> {
         return error.advice();
     }
     if let Some(error) = error.downcast_ref::<CertifyFiltrationError>() {
+        return error.advice();
+    }
+    if let Some(error) = error.downcast_ref::<CompareFiltrationsError>() {
         return error.advice();
     }
     error.downcast_ref::<CompareError>()?.advice()

@@ -2,6 +2,7 @@ use std::cmp::Ordering;
 use std::collections::{BTreeMap, HashMap};
 
 use rayon::prelude::*;
+use walpha_base::{Cancelled, Monitor};
 use walpha_complex::canonical::{outward_facets, smallest_even, sort, sorted};
 
 use crate::exact::{Side, WeightedPoint, in_conflict, orientation, radius, side};
@@ -39,6 +40,9 @@ pub enum EnumerateError {
     /// No points.
     #[error("there are no points: give at least one")]
     Empty,
+    /// The work was cancelled.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
 }
 
 /// The regular triangulation of weighted points, its hidden points and the α-complex in it,
@@ -61,6 +65,19 @@ pub fn enumerate(
     weights: &[f64],
     alpha: Alpha,
 ) -> Result<Enumeration, EnumerateError> {
+    enumerate_monitored(positions, weights, alpha, &Monitor::noop())
+}
+
+/// The same, as one stage under a monitor, which can cancel it.
+///
+/// # Errors
+/// [`EnumerateError`].
+pub fn enumerate_monitored(
+    positions: &[[f64; 3]],
+    weights: &[f64],
+    alpha: Alpha,
+    monitor: &Monitor,
+) -> Result<Enumeration, EnumerateError> {
     if positions.len() != weights.len() {
         return Err(EnumerateError::Lengths { positions: positions.len(), weights: weights.len() });
     }
@@ -77,7 +94,7 @@ pub fn enumerate(
     if sites.is_empty() {
         return Err(EnumerateError::Empty);
     }
-    let cells = regular_cells(&points, &sites);
+    let cells = regular_cells(&points, &sites, monitor)?;
     let flat = if cells.is_empty() { flat_simplices(&points, &sites) } else { Flat::default() };
     let complex = Definition { points: &points, sites: &sites, alpha }.classify(&cells, flat);
     let is_vertex = |i: &u32| complex.vertices.rows().binary_search(&[*i]).is_ok();
@@ -104,7 +121,11 @@ fn heaviest_at_each_position(points: &[WeightedPoint]) -> (Vec<u32>, Vec<[u32; 2
 }
 
 /// All positively oriented quadruples that no other site refutes.
-fn regular_cells(points: &[WeightedPoint], sites: &[u32]) -> Vec<[u32; 4]> {
+fn regular_cells(
+    points: &[WeightedPoint],
+    sites: &[u32],
+    monitor: &Monitor,
+) -> Result<Vec<[u32; 4]>, Cancelled> {
     let point = |i: u32| &points[i as usize];
     let judge = |[a, b, c, d]: [u32; 4]| -> Option<[u32; 4]> {
         let position = |i: u32| point(i).position;
@@ -118,14 +139,20 @@ fn regular_cells(points: &[WeightedPoint], sites: &[u32]) -> Vec<[u32; 4]> {
         (!refuted).then_some(cell)
     };
     let n = sites.len();
-    (0..n)
-        .into_par_iter()
-        .flat_map_iter(|i| (i + 1..n).map(move |j| (i, j)))
-        .flat_map_iter(|(i, j)| {
-            let pairs = (j + 1..n).flat_map(move |k| (k + 1..n).map(move |l| (k, l)));
-            pairs.filter_map(move |(k, l)| judge([i, j, k, l].map(|s| sites[s])))
-        })
-        .collect()
+    let pairs = |count: usize| (count * count.saturating_sub(1) / 2) as u64;
+    // Quadruples by the first two of them.
+    let quadruples = monitor.units((0..n).map(|j| j as u64 * pairs(n - 1 - j)).sum());
+    let cells_from = |i: usize| -> Result<Vec<[u32; 4]>, Cancelled> {
+        let mut cells = Vec::new();
+        for j in i + 1..n {
+            let others = (j + 1..n).flat_map(|k| (k + 1..n).map(move |l| (k, l)));
+            cells.extend(others.filter_map(|(k, l)| judge([i, j, k, l].map(|s| sites[s]))));
+            quadruples.add(pairs(n - 1 - j))?;
+        }
+        Ok(cells)
+    };
+    let cells: Vec<_> = (0..n).into_par_iter().map(cells_from).collect::<Result<_, Cancelled>>()?;
+    Ok(cells.concat())
 }
 
 /// The definition of the α-complex over given points.

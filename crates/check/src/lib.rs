@@ -30,19 +30,23 @@ mod compare;
 mod enumerate;
 mod exact;
 mod flat;
-mod periodic;
+mod parallel;
 pub mod schema;
 
 pub use certify::{
     Bound, Certificate, CertifyError, CertifyFiltrationError, Claim, Extent, FiltrationCertificate,
     FiltrationFinding, Finding, NotJudged, Simplex, Unjudged, Verdict, certify_filtration,
+    certify_filtration_monitored,
 };
 pub use compare::{
-    ClassDifference, CompareError, Comparison, Differences, Domain, FiltrationComparison,
-    ValueDifference, WeightDifference, compare, compare_filtrations,
+    ClassDifference, CompareError, CompareFiltrationsError, Comparison, Differences, Domain,
+    FiltrationComparison, ValueDifference, WeightDifference, compare, compare_filtrations,
+    compare_filtrations_monitored, compare_monitored,
 };
-pub use enumerate::{EnumerateError, Enumeration, enumerate};
+pub use enumerate::{EnumerateError, Enumeration, enumerate, enumerate_monitored};
 pub use exact::Exact;
+/// Progress and cancelling of long work.
+pub use walpha_base::{Cancelled, Monitor};
 pub use walpha_complex::{
     Alpha, AlphaError, ByClass, Class, Complex, Placed, Simplices, SimplicesError,
 };

@@ -17,14 +17,12 @@ mod alpha;
 pub mod canonical;
 mod class;
 mod complex;
-mod placed;
 pub mod schema;
 mod simplices;
 
 pub use alpha::{Alpha, AlphaError};
 pub use class::{ByClass, Class};
-pub use complex::Complex;
-pub use placed::Placed;
+pub use complex::{Complex, Placed};
 pub use simplices::{Simplices, SimplicesError};
 
 /// The example in the README runs.

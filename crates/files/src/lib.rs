@@ -20,7 +20,6 @@
 mod destination;
 mod error;
 mod filled;
-mod folder;
 mod identity;
 mod inputs;
 mod partial;
@@ -29,8 +28,7 @@ mod target;
 mod unfinished;
 
 pub use error::TargetError;
-pub use filled::{Filled, put_all};
-pub use folder::{fill_folder, make_folder};
+pub use filled::{Filled, fill_folder, make_folder, put_all};
 pub use inputs::{FilesOf, Working, keep_input};
 pub use scratch::Scratch;
 pub use target::{Content, FilledAll, Target, fill_all, write_all};

@@ -25,6 +25,7 @@
 
 mod base64;
 mod charts;
+mod colour;
 mod error;
 mod figure;
 mod light;
@@ -38,10 +39,11 @@ mod shape;
 mod view;
 
 pub use charts::{RateCurve, ladder_figure, rate_figure};
+pub use colour::{ColourMap, PALETTE, Rgb};
 pub use error::RenderError;
 pub use figure::{ColourBar, Content, Drawing, Figure, Panel, Pen, Step};
 pub use marching::Isosurface;
-pub use pixels::{ColourMap, PALETTE, Picture, Rgb, Size};
+pub use pixels::{Picture, Size};
 pub use scene::{Background, Ball, Camera, Colours, Mesh, Projection, Scene, Shading, Tube, View};
 pub use shape::{Colouring, ShapeStyle, class_colours, plain_colours};
 pub use view::{Detail, Differences, Original, Page, Subject};

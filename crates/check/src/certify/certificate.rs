@@ -1,4 +1,5 @@
 use serde::Serialize;
+use walpha_base::Cancelled;
 
 use super::structure::MAX_CELLS;
 use crate::exact::Exact;
@@ -161,6 +162,9 @@ pub enum CertifyError {
         /// Bytes needed.
         bytes: usize,
     },
+    /// The work was cancelled.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
 }
 
 impl CertifyError {

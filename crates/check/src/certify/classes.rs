@@ -4,13 +4,15 @@ use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicU8, AtomicU32, Ordering};
 
 use rayon::prelude::*;
+use walpha_base::{Cancelled, Monitor};
 use walpha_complex::canonical::smallest_even;
 
+use super::claim::Extent;
 use super::emptiness::Emptiness;
-use super::index::{Index, NONE};
-use super::structure::{Half, Structure};
-use super::{Extent, Finding, Points};
+use super::finding::Finding;
+use super::structure::{Half, Index, NONE, Points, Structure};
 use crate::exact::{Side, collinear, orientation, power_value, radius, radius_value, side};
+use crate::parallel::of_each;
 use crate::{Alpha, Class, Simplices};
 
 /// Judges the classes of all simplices, that faces are listed, and that regular facets turn
@@ -20,14 +22,18 @@ use crate::{Alpha, Class, Simplices};
 ///
 /// In a whole triangulation that was found regular, a sphere that contains any point contains a
 /// neighbour of its simplex, so only neighbours are tested; in a shape alone, all points nearby are.
-pub(super) fn judge(structure: &Structure, judge: &Judge) -> Vec<Finding> {
+pub(super) fn judge(
+    structure: &Structure,
+    judge: &Judge,
+    monitor: &Monitor,
+) -> Result<Vec<Finding>, Cancelled> {
     let complex = structure.complex;
-    let (cells, mut findings) = judge.cells(&complex.cells);
+    let (cells, mut findings) = judge.cells(&complex.cells, &monitor.part(0, 2, 10))?;
     findings.extend(judge.compare(&complex.cells, &cells));
 
-    let facets = judge.facets(structure, &cells);
+    let facets = judge.facets(structure, &cells, &monitor.part(2, 5, 10))?;
     findings.extend(judge.compare(&complex.facets, &facets));
-    findings.extend(windings(structure, &cells, &facets));
+    findings.extend(windings(structure, &cells, &facets, &monitor.part(5, 6, 10))?);
     if judge.has_strays::<3>() {
         let strays = (0..complex.facets.len()).filter(|&i| structure.halves(i).next().is_none());
         let facet = |i: usize| complex.facets.rows()[i].into();
@@ -41,7 +47,7 @@ pub(super) fn judge(structure: &Structure, judge: &Judge) -> Vec<Finding> {
         lower: &complex.edges,
         index: &structure.edges,
     };
-    let (edges, found) = of_facets.judge(judge);
+    let (edges, found) = of_facets.judge(judge, &monitor.part(6, 9, 10))?;
     findings.extend(found);
     findings.extend(judge.compare(&complex.edges, &edges));
 
@@ -52,10 +58,10 @@ pub(super) fn judge(structure: &Structure, judge: &Judge) -> Vec<Finding> {
         lower: &complex.vertices,
         index: &structure.vertices,
     };
-    let (vertices, found) = of_edges.judge(judge);
+    let (vertices, found) = of_edges.judge(judge, &monitor.part(9, 10, 10))?;
     findings.extend(found);
     findings.extend(judge.compare(&complex.vertices, &vertices));
-    findings
+    Ok(findings)
 }
 
 /// What the class of a simplex depends on.
@@ -89,8 +95,13 @@ impl Judge<'_> {
         self.extent == Extent::Whole && N != self.dimension + 1
     }
 
-    fn cells(&self, cells: &Simplices<4>) -> (Vec<Verdict>, Vec<Finding>) {
-        let verdict = |&cell: &[u32; 4]| {
+    fn cells(
+        &self,
+        cells: &Simplices<4>,
+        monitor: &Monitor,
+    ) -> Result<(Vec<Verdict>, Vec<Finding>), Cancelled> {
+        let verdict = |i: usize| {
+            let cell = cells.rows()[i];
             let inside = !self.flat(cell) && self.fits(cell);
             let class = if inside { Class::Interior } else { Class::Exterior };
             let refuter = self.emptiness.filter(|_| inside);
@@ -99,15 +110,26 @@ impl Judge<'_> {
                 let power = power_value(corners.each_ref(), &self.points.get(point));
                 Finding::NotRegular { cell: cell.into(), point, power }
             });
-            (Verdict::of(class), finding)
+            Some((class, finding))
         };
-        let (verdicts, findings): (Vec<_>, Vec<_>) = cells.rows().par_iter().map(verdict).unzip();
-        (verdicts, findings.into_iter().flatten().collect())
+        let mut findings = Vec::new();
+        let verdicts = of_each(cells.len(), monitor, verdict)?.into_iter().map(|(class, found)| {
+            findings.extend(found);
+            Verdict::of(class)
+        });
+        let verdicts = verdicts.collect();
+        Ok((verdicts, findings))
     }
 
-    fn facets(&self, structure: &Structure, cells: &[Verdict]) -> Vec<Verdict> {
-        let rows = structure.complex.facets.rows().par_iter().enumerate();
-        let verdict = |(i, &facet): (usize, &[u32; 3])| {
+    fn facets(
+        &self,
+        structure: &Structure,
+        cells: &[Verdict],
+        monitor: &Monitor,
+    ) -> Result<Vec<Verdict>, Cancelled> {
+        let rows = structure.complex.facets.rows();
+        let verdict = |i: usize| {
+            let facet = rows[i];
             let inside =
                 structure.halves(i).filter(|h| cells[h.cell].class == Class::Interior).count();
             if inside > 0 {
@@ -121,7 +143,7 @@ impl Judge<'_> {
             let neighbours = structure.halves(i).map(|half| structure.apex(half));
             self.alone(facet, neighbours.filter(inside).min())
         };
-        rows.map(verdict).collect()
+        of_each(rows.len(), monitor, |i| Some(verdict(i)))
     }
 
     /// The verdict on a simplex whose sphere fits α and that has no coface in the shape.
@@ -176,17 +198,22 @@ impl Judge<'_> {
     }
 }
 
-fn windings(structure: &Structure, cells: &[Verdict], facets: &[Verdict]) -> Vec<Finding> {
-    let rows = structure.complex.facets.rows().par_iter().enumerate();
-    let judge = |(i, &facet): (usize, &[u32; 3])| {
+fn windings(
+    structure: &Structure,
+    cells: &[Verdict],
+    facets: &[Verdict],
+    monitor: &Monitor,
+) -> Result<Vec<Finding>, Cancelled> {
+    let rows = structure.complex.facets.rows();
+    of_each(rows.len(), monitor, |i| {
+        let facet = rows[i];
         let inside = |half: &Half| cells[half.cell].class == Class::Interior;
         let half = structure.halves(i).find(inside)?;
         let outward = smallest_even(structure.outward(half)) == smallest_even(facet);
         let behind = structure.apex(half);
         (facets[i].class == Class::Regular && !outward)
             .then(|| Finding::Winding { facet: facet.into(), behind })
-    };
-    rows.filter_map(judge).collect()
+    })
 }
 
 /// Simplices, their verdicts, and the dimension below, whose simplices are their faces.
@@ -241,35 +268,39 @@ enum State {
 impl<const N: usize, const M: usize> Faces<'_, N, M> {
     /// The verdict on each lower simplex, and findings on those that are missing and, in a whole triangulation,
     /// on those that are no faces.
-    pub(super) fn judge(&self, judge: &Judge) -> (Vec<Verdict>, Vec<Finding>) {
-        let (cofaces, mut findings) = self.cofaces();
-        let states: Vec<State> = (self.lower.rows().par_iter().zip(&cofaces))
-            .map(|(&row, cofaces)| state(row, cofaces, judge))
-            .collect();
-        let refuters = self.neighbours_inside(&states, judge);
-        let verdict = |((&row, &state), refuter): ((&[u32; M], &State), AtomicU32)| match state {
-            State::Closed => Verdict::of(Class::Interior),
-            State::Open => Verdict::of(Class::Regular),
-            State::Outside => Verdict::of(Class::Exterior),
-            State::Candidate => {
-                judge.alone(row, Some(refuter.into_inner()).filter(|&point| point != NONE))
-            }
-        };
-        let rows = self.lower.rows().par_iter();
-        let verdicts = rows.zip(&states).zip(refuters).map(verdict).collect();
+    pub(super) fn judge(
+        &self,
+        judge: &Judge,
+        monitor: &Monitor,
+    ) -> Result<(Vec<Verdict>, Vec<Finding>), Cancelled> {
+        let (cofaces, mut findings) = self.cofaces(&monitor.part(0, 4, 10))?;
+        let rows = self.lower.rows();
+        let states = of_each(rows.len(), &monitor.part(4, 6, 10), |i| {
+            Some(state(rows[i], &cofaces[i], judge))
+        })?;
+        let refuters = self.neighbours_inside(&states, judge, &monitor.part(6, 9, 10))?;
+        let verdicts = of_each(rows.len(), &monitor.part(9, 10, 10), |i| {
+            let refuter = Some(refuters[i].load(Ordering::Relaxed)).filter(|&point| point != NONE);
+            Some(match states[i] {
+                State::Closed => Verdict::of(Class::Interior),
+                State::Open => Verdict::of(Class::Regular),
+                State::Outside => Verdict::of(Class::Exterior),
+                State::Candidate => judge.alone(rows[i], refuter),
+            })
+        })?;
         if judge.has_strays::<M>() {
             let strays = self.lower.rows().iter().zip(&cofaces);
             let strays = strays.filter(|(_, cofaces)| !cofaces.has(Cofaces::SEEN));
             findings.extend(strays.map(|(row, _)| Finding::Stray { simplex: (*row).into() }));
         }
-        (verdicts, findings)
+        Ok((verdicts, findings))
     }
 
     /// What each lower simplex has for cofaces, and which faces are not listed.
-    fn cofaces(&self) -> (Vec<Cofaces>, Vec<Finding>) {
+    fn cofaces(&self, monitor: &Monitor) -> Result<(Vec<Cofaces>, Vec<Finding>), Cancelled> {
         let cofaces: Vec<Cofaces> = self.lower.rows().iter().map(|_| Cofaces::default()).collect();
-        let rows = self.higher.rows().par_iter().zip(self.verdicts);
-        let missing = rows.flat_map_iter(|(row, verdict)| {
+        let missing = of_each(self.higher.len(), monitor, |i| {
+            let (row, verdict) = (self.higher.rows()[i], self.verdicts[i]);
             let cofaces = &cofaces;
             self.corners.iter().filter_map(move |corners| {
                 let face = corners.map(|k| row[k]);
@@ -278,38 +309,44 @@ impl<const N: usize, const M: usize> Faces<'_, N, M> {
                         cofaces.add(verdict.class);
                         None
                     }
-                    None => Some((face, *row)),
+                    None => Some((face, row)),
                 }
             })
-        });
-        let missing: Vec<([u32; M], [u32; N])> = missing.collect();
+        })?;
         // Of several simplices with the face, the first is named.
         let missing: BTreeMap<_, _> = missing.into_iter().rev().collect();
         let finding = |(face, of): ([u32; M], [u32; N])| Finding::MissingFace {
             face: face.into(),
             of: of.into(),
         };
-        (cofaces, missing.into_iter().map(finding).collect())
+        Ok((cofaces, missing.into_iter().map(finding).collect()))
     }
 
     /// For each candidate the smallest corner opposite to it, in an exterior higher simplex, that
     /// is inside its sphere; else [`NONE`].
-    fn neighbours_inside(&self, states: &[State], judge: &Judge) -> Vec<AtomicU32> {
+    fn neighbours_inside(
+        &self,
+        states: &[State],
+        judge: &Judge,
+        monitor: &Monitor,
+    ) -> Result<Vec<AtomicU32>, Cancelled> {
         let refuters: Vec<AtomicU32> = states.iter().map(|_| AtomicU32::new(NONE)).collect();
         if !states.par_iter().any(|&state| state == State::Candidate) {
-            return refuters;
+            return Ok(refuters);
         }
-        let rows = self.higher.rows().par_iter().zip(self.verdicts);
-        rows.filter(|(_, verdict)| verdict.class == Class::Exterior).for_each(|(row, _)| {
-            for (corners, &opposite) in self.corners.iter().zip(row) {
+        of_each(self.higher.len(), monitor, |i| {
+            let row = self.higher.rows()[i];
+            let exterior = self.verdicts[i].class == Class::Exterior;
+            for (corners, &opposite) in self.corners.iter().zip(&row).filter(|_| exterior) {
                 let face = corners.map(|k| row[k]);
                 let at = self.index.row(face) as usize;
                 if states.get(at) == Some(&State::Candidate) && judge.inside(face, opposite) {
                     refuters[at].fetch_min(opposite, Ordering::Relaxed);
                 }
             }
-        });
-        refuters
+            None::<()>
+        })?;
+        Ok(refuters)
     }
 }
 

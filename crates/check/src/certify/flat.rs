@@ -5,7 +5,8 @@ use std::collections::BTreeSet;
 
 use walpha_complex::canonical::{outward_facets, smallest_even, sort, sorted};
 
-use super::{Finding, Points};
+use super::finding::Finding;
+use super::structure::Points;
 use crate::exact::orientation;
 use crate::{Class, Complex, Simplices};
 

@@ -1,13 +1,14 @@
 //! Cells that are not listed although all their faces are.
 
 use rayon::prelude::*;
+use walpha_base::{Cancelled, Monitor};
 use walpha_complex::canonical::{outward_facets, smallest_even, sort, sorted};
 
 use super::emptiness::Emptiness;
-use super::index::NONE;
-use super::structure::Structure;
-use super::{Finding, Points};
+use super::finding::Finding;
+use super::structure::{NONE, Points, Structure};
 use crate::exact::{Side, orientation, radius, radius_value, side};
+use crate::parallel::of_each;
 use crate::{Alpha, Class, Complex};
 
 /// The cells that belong into gaps between four listed facets, positively oriented, with their classes.
@@ -20,22 +21,25 @@ pub(super) fn missing_cells(
     points: Points,
     alpha: Alpha,
     emptiness: Option<&Emptiness>,
-) -> Vec<([u32; 4], Class)> {
+    monitor: &Monitor,
+) -> Result<Vec<([u32; 4], Class)>, Cancelled> {
     let facets = structure.complex.facets.rows();
     let open = |facet: u32| facet != NONE && structure.sides[facet as usize][1] == NONE;
-    let open_rows = || (0..facets.len() as u32).into_par_iter().filter(|&facet| open(facet));
+    let open_rows: Vec<u32> =
+        (0..facets.len() as u32).into_par_iter().filter(|&facet| open(facet)).collect();
     // The open facets around each edge, by the vertex opposite.
-    let edges = |facet: u32| {
+    let edges = |&facet: &u32| {
         let [a, b, c] = sorted(facets[facet as usize]);
         [([a, b], c), ([a, c], b), ([b, c], a)]
     };
-    let mut around: Vec<([u32; 2], u32)> = open_rows().flat_map_iter(edges).collect();
+    let mut around: Vec<([u32; 2], u32)> = open_rows.par_iter().flat_map_iter(edges).collect();
     around.par_sort_unstable();
     let apexes = |edge: [u32; 2]| {
         let from = around.partition_point(|other| other.0 < edge);
         &around[from..][..around[from..].partition_point(|other| other.0 == edge)]
     };
-    let gaps = |facet: u32| {
+    let gaps = |i: usize| {
+        let facet = open_rows[i];
         let [a, b, c] = sorted(facets[facet as usize]);
         let sides = [[a, b], [a, c], [b, c]].map(apexes);
         let fewest = sides.into_iter().min_by_key(|apexes| apexes.len()).expect("three edges");
@@ -47,7 +51,7 @@ pub(super) fn missing_cells(
             gap.then(|| judge(structure, points, alpha, emptiness, [a, b, c, d], rows)).flatten()
         })
     };
-    open_rows().flat_map_iter(gaps).collect()
+    of_each(open_rows.len(), monitor, gaps)
 }
 
 /// The cell of a gap and its class, if the definition has it.

@@ -1,22 +1,86 @@
-//! Rules on cells and on pairs of neighbours.
+//! Rules on cells, on pairs of neighbours, and on the hull, which is the surface of the facets with one cell.
 
+use dashu_int::IBig;
 use rayon::prelude::*;
+use walpha_base::{Cancelled, Monitor};
 
-use super::structure::{Half, Structure};
-use super::{Finding, Points};
-use crate::exact::{in_conflict, orientation, power_value, six_volume};
+use super::claim::Extent;
+use super::finding::Finding;
+use super::non_vertices;
+use super::structure::{Half, Points, Structure};
+use crate::Complex;
+use crate::exact::{Exact, Lattice, Star, in_conflict, orientation, power_value, six_volume};
+use crate::parallel::of_each;
+
+/// A complex with its simplices linked, and the rules of structure and geometry that it breaks.
+pub(super) struct Linked<'a> {
+    pub structure: Structure<'a>,
+    /// Broken rules on which the others depend.
+    pub broken: Vec<Finding>,
+    /// Findings on neighbours and hull, which are judged if `broken` is empty.
+    pub irregular: Vec<Finding>,
+}
+
+impl<'a> Linked<'a> {
+    pub(super) fn new(
+        complex: &'a Complex,
+        points: Points,
+        extent: Extent,
+        monitor: &Monitor,
+    ) -> Result<Self, Cancelled> {
+        let (structure, mut broken) = Structure::new(complex, points, &monitor.part(0, 4, 10))?;
+        let cells = complex.cells.rows();
+        broken.extend(orientations(cells, points, &monitor.part(4, 5, 10))?);
+        let mut irregular = Vec::new();
+        if broken.is_empty() {
+            irregular.extend(neighbours(&structure, points, &monitor.part(5, 10, 10))?);
+            if extent == Extent::Whole {
+                irregular.extend(convexity(&structure, points));
+            }
+        }
+        Ok(Self { structure, broken, irregular })
+    }
+
+    /// Whether no vertex is inside the sphere of a neighbouring cell, and the hull of a whole triangulation is
+    /// convex: then it is regular, up to the choice among ties.
+    pub(super) fn is_regular(&self) -> bool {
+        self.broken.is_empty() && self.irregular.iter().all(Finding::is_tie)
+    }
+}
+
+/// All findings on cells as a whole triangulation of some points, such as those on one sphere.
+pub(super) fn triangulation_findings(
+    cells: &Complex,
+    points: Points,
+    monitor: &Monitor,
+) -> Result<Vec<Finding>, Cancelled> {
+    let linked = Linked::new(cells, points, Extent::Whole, monitor)?;
+    let regular = linked.is_regular();
+    let mut found = linked.broken;
+    found.extend(volume(&linked.structure, points, &monitor.unreported())?);
+    found.extend(linked.irregular);
+    if regular {
+        let own: Vec<u32> = (0..points.len() as u32).collect();
+        let hidden = non_vertices::hidden(&linked.structure, &own);
+        found.extend(non_vertices::hiddenness(&linked.structure, points, &hidden, monitor)?);
+    }
+    Ok(found)
+}
 
 /// Judges that each cell is positively oriented.
-pub(super) fn orientations(cells: &[[u32; 4]], points: Points) -> Vec<Finding> {
-    let judge = |cell: &[u32; 4]| {
-        let corners = points.corners(*cell);
+pub(super) fn orientations(
+    cells: &[[u32; 4]],
+    points: Points,
+    monitor: &Monitor,
+) -> Result<Vec<Finding>, Cancelled> {
+    of_each(cells.len(), monitor, |i| {
+        let corners = points.corners(cells[i]);
         let [a, b, c, d] = corners.map(|p| p.position);
         (!orientation(a, b, c, d).is_gt()).then(|| Finding::Orientation {
-            cell: (*cell).into(),
+            cell: cells[i].into(),
             six_volumes: six_volume(corners.each_ref()),
         })
-    };
-    cells.par_iter().filter_map(judge).collect()
+    })
 }
 
 /// Judges that the cells on a facet are on different sides of it, and neither is refuted by the other's
@@ -24,13 +88,16 @@ pub(super) fn orientations(cells: &[[u32; 4]], points: Points) -> Vec<Finding> {
 ///
 /// Over a convex domain this proves that the whole triangulation is regular: the lifted cells
 /// then make a function that is convex across every facet, hence convex.
-pub(super) fn neighbours(structure: &Structure, points: Points) -> Vec<Finding> {
-    let judge = |facet: usize| {
+pub(super) fn neighbours(
+    structure: &Structure,
+    points: Points,
+    monitor: &Monitor,
+) -> Result<Vec<Finding>, Cancelled> {
+    of_each(structure.sides.len(), monitor, |facet| {
         let mut halves = structure.halves(facet);
         let (one, other) = (halves.next()?, halves.next()?);
         overlap(structure, one, other).or_else(|| refuted(structure, points, one, other))
-    };
-    (0..structure.sides.len()).into_par_iter().filter_map(judge).collect()
+    })
 }
 
 fn overlap(structure: &Structure, one: Half, other: Half) -> Option<Finding> {
@@ -50,4 +117,93 @@ fn refuted(structure: &Structure, points: Points, one: Half, other: Half) -> Opt
         point,
         power: power_value(corners.each_ref(), &q),
     })
+}
+
+/// Six times the volume of all cells.
+pub(super) fn six_volumes(
+    cells: &[[u32; 4]],
+    points: Points,
+    monitor: &Monitor,
+) -> Result<(IBig, i64), Cancelled> {
+    let lattice = Lattice::through(points.positions);
+    let sum = lattice.six_volumes(cells.len(), monitor, |i| points.positions_of(cells[i]))?;
+    Ok((sum, 3 * i64::from(lattice.exponent())))
+}
+
+/// Judges that the cells fill the volume that the hull encloses.
+pub(super) fn volume(
+    structure: &Structure,
+    points: Points,
+    monitor: &Monitor,
+) -> Result<Vec<Finding>, Cancelled> {
+    let rows = structure.complex.cells.rows();
+    let (cells, exponent) = six_volumes(rows, points, &monitor.part(0, 9, 10))?;
+    let hull = structure.hull();
+    let top = points.positions[0];
+    let lattice = Lattice::through(points.positions);
+    let cone = |i: usize| {
+        let [a, b, c] = points.positions_of(hull[i]);
+        [top, a, b, c]
+    };
+    let enclosed = lattice.six_volumes(hull.len(), &monitor.part(9, 10, 10), cone)?;
+    if cells == enclosed {
+        return Ok(Vec::new());
+    }
+    let exact = |value| Exact::integer(value, exponent);
+    Ok(vec![Finding::Volume { cells: exact(cells), hull: exact(enclosed) }])
+}
+
+/// Judges that the hull is a convex surface that goes around the first cell once.
+///
+/// By Mehlhorn et al., "Checking geometric programs or verification of geometric structures",
+/// Comput. Geom. 12, 1999, doi:10.1016/S0925-7721(98)00036-4: a closed surface is the boundary of
+/// a convex polytope if it is convex across each edge, has a point strictly inside all its
+/// facets, and one ray from that point through the interior of a facet meets no other facet.
+pub(super) fn convexity(structure: &Structure, points: Points) -> Vec<Finding> {
+    let hull = structure.hull();
+    let mut findings = edges(&hull, points);
+    if findings.is_empty() && !hull.is_empty() {
+        findings = wraps(structure, &hull, points);
+    }
+    findings
+}
+
+fn edges(hull: &[[u32; 3]], points: Points) -> Vec<Finding> {
+    let mut edges: Vec<([u32; 2], usize, u32)> = hull
+        .par_iter()
+        .enumerate()
+        .flat_map_iter(|(i, &[a, b, c])| {
+            [([a, b], i, c), ([b, c], i, a), ([c, a], i, b)]
+                .map(|([u, v], i, apex)| ([u.min(v), u.max(v)], i, apex))
+        })
+        .collect();
+    edges.par_sort_unstable();
+    let around: Vec<_> = edges.chunk_by(|one, other| one.0 == other.0).collect();
+    let judge = |facets: &&[([u32; 2], usize, u32)]| match facets {
+        [(_, facet, _), (_, _, apex)] => bend(hull[*facet], *apex, points),
+        _ => Some(Finding::HullEdge { edge: facets[0].0.into(), facets: facets.len() }),
+    };
+    around.par_iter().filter_map(judge).collect()
+}
+
+fn bend(facet: [u32; 3], point: u32, points: Points) -> Option<Finding> {
+    let [a, b, c] = points.positions_of(facet);
+    let q = points.get(point);
+    orientation(a, b, c, q.position).is_gt().then(|| {
+        let [a, b, c] = points.corners(facet);
+        let six_volumes = six_volume([&a, &b, &c, &q]);
+        Finding::HullBends { facet: facet.into(), point, six_volumes }
+    })
+}
+
+fn wraps(structure: &Structure, hull: &[[u32; 3]], points: Points) -> Vec<Finding> {
+    let lattice = Lattice::through(points.positions);
+    let star = Star::new(lattice, points.positions_of(structure.complex.cells.rows()[0]));
+    let first = points.positions_of(hull[0]);
+    let judge = |(i, facet): (usize, &[u32; 3])| {
+        let triangle = points.positions_of(*facet);
+        let wrong = !star.inside(triangle) || i > 0 && star.ray_meets(first, triangle);
+        wrong.then(|| Finding::HullWraps { first: hull[0].into(), facet: (*facet).into() })
+    };
+    hull.par_iter().enumerate().filter_map(judge).collect()
 }

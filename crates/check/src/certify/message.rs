@@ -2,7 +2,7 @@
 
 use std::fmt::{self, Formatter};
 
-use super::{Finding, Simplex};
+use super::finding::{Finding, Simplex};
 use crate::Class;
 use crate::exact::Exact;
 

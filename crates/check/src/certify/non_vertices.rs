@@ -3,14 +3,16 @@
 use std::collections::BTreeMap;
 
 use rayon::prelude::*;
+use walpha_base::{Cancelled, Monitor};
 use walpha_complex::canonical::outward_facets;
 
-use super::emptiness::Emptiness;
-use super::near::Grid;
-use super::structure::{Half, Structure};
-use super::{Claim, Finding, Points};
+use super::claim::Claim;
+use super::emptiness::{Emptiness, Grid};
+use super::finding::Finding;
+use super::structure::{Half, Points, Structure};
 use crate::Complex;
 use crate::exact::{in_conflict, orientation, power_value, radius, radius_value, six_volume};
+use crate::parallel::of_each;
 
 /// For each point, the one kept at its position by the rule: the heaviest, of equal weights the first.
 fn by_rule(points: Points) -> Vec<u32> {
@@ -93,7 +95,7 @@ pub(super) fn duplicates(
     findings
 }
 
-/// How a claim accounts for a point.
+/// What a claim says of a point.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Status {
     /// Not yet.
@@ -164,23 +166,20 @@ pub(super) fn of_shape(
     emptiness: &Emptiness,
     kept: &[u32],
     claim: &Claim,
-) -> Vec<Finding> {
+    monitor: &Monitor,
+) -> Result<Vec<Finding>, Cancelled> {
     let points = Points::of(claim.placed);
     let mut statuses = statuses(structure, kept);
-    let missing = |&point: &u32| {
+    let mut findings = of_each(points.len(), monitor, |i| {
+        let point = i as u32;
         let site = points.get(point);
-        statuses[point as usize] == Status::Unaccounted
+        let missing = statuses[i] == Status::Unaccounted
             && radius([&site], claim.placed.alpha).is_le()
-            && emptiness.alone(point)
-    };
-    let all = (0..points.len() as u32).into_par_iter();
-    let finding = |point| {
-        let radius_squared = radius_value([&points.get(point)]);
-        Finding::MissingVertex { point, radius_squared }
-    };
-    let mut findings: Vec<_> = all.filter(missing).map(finding).collect();
+            && emptiness.alone(point);
+        missing.then(|| Finding::MissingVertex { point, radius_squared: radius_value([&site]) })
+    })?;
     findings.extend(listed_hidden(&mut statuses, claim));
-    findings
+    Ok(findings)
 }
 
 /// Judges that each hidden point is hidden: it does not refute the cell it lies in.
@@ -189,9 +188,14 @@ pub(super) fn of_shape(
 /// The cell is found by a walk from a vertex nearby, which ends in a regular triangulation because its
 /// cells have no cycle in front of any point (Edelsbrunner, Combinatorica 10, 1990,
 /// doi:10.1007/BF02122779). The triangulation must have been found regular up to ties, and its hull convex.
-pub(super) fn hiddenness(structure: &Structure, points: Points, hidden: &[u32]) -> Vec<Finding> {
+pub(super) fn hiddenness(
+    structure: &Structure,
+    points: Points,
+    hidden: &[u32],
+    monitor: &Monitor,
+) -> Result<Vec<Finding>, Cancelled> {
     if hidden.is_empty() {
-        return Vec::new();
+        return Ok(Vec::new());
     }
     let cells = structure.complex.cells.rows();
     let mut cell_of = vec![0; points.len()];
@@ -204,7 +208,8 @@ pub(super) fn hiddenness(structure: &Structure, points: Points, hidden: &[u32]) 
     }
     let vertices = (0..points.len() as u32).filter(|&i| is_vertex[i as usize]).collect();
     let grid = Grid::new(points.positions, vertices);
-    let judge = |&point: &u32| {
+    of_each(hidden.len(), monitor, |i| {
+        let point = hidden[i];
         let q = points.get(point);
         let start = grid.some_near(q.position).map_or(0, |v| cell_of[v as usize]);
         match walk(structure, points, start, q.position) {
@@ -222,8 +227,7 @@ pub(super) fn hiddenness(structure: &Structure, points: Points, hidden: &[u32]) 
                 Some(Finding::OutsideHull { point, facet: facet.into(), six_volumes })
             }
         }
-    };
-    hidden.par_iter().filter_map(judge).collect()
+    })
 }
 
 /// The cell that contains a position, or a facet of the hull that it lies beyond.

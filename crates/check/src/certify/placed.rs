@@ -1,6 +1,11 @@
 //! Judging complexes from files.
 
-use super::{Certificate, CertifyError, Claim, Finding, torus};
+use walpha_base::Monitor;
+
+use super::certificate::{Certificate, CertifyError};
+use super::claim::Claim;
+use super::finding::Finding;
+use super::torus;
 use crate::Placed;
 use crate::schema::{ComplexFile, PlacedComplex};
 
@@ -19,9 +24,20 @@ impl PlacedComplex {
     /// # Errors
     /// [`CertifyError`].
     pub fn findings(&self) -> Result<(Vec<Finding>, Certificate), CertifyError> {
+        self.findings_monitored(&Monitor::noop())
+    }
+
+    /// The same, as one stage under a monitor, which can cancel it.
+    ///
+    /// # Errors
+    /// [`CertifyError`].
+    pub fn findings_monitored(
+        &self,
+        monitor: &Monitor,
+    ) -> Result<(Vec<Finding>, Certificate), CertifyError> {
         match self.periodic {
-            None => self.claim().findings(),
-            Some(sides) => torus::findings(self, sides),
+            None => self.claim().findings_monitored(monitor),
+            Some(sides) => torus::findings(self, sides, monitor),
         }
     }
 }

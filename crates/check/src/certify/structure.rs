@@ -1,11 +1,47 @@
+//! The points and the listed simplices: an index by vertices, and links between cells and facets.
+
 use std::collections::BTreeSet;
 
 use rayon::prelude::*;
-use walpha_complex::canonical::outward_facets;
+use walpha_base::{Cancelled, Monitor};
+use walpha_complex::canonical::{outward_facets, sorted};
 
-use super::index::{Index, NONE};
-use super::{Finding, Points};
-use crate::Complex;
+use super::finding::{Finding, Simplex};
+use crate::exact::WeightedPoint;
+use crate::parallel::of_each;
+use crate::{Complex, Placed};
+
+/// The input points.
+#[derive(Clone, Copy)]
+pub(super) struct Points<'a> {
+    pub positions: &'a [[f64; 3]],
+    pub weights: &'a [f64],
+}
+
+impl<'a> Points<'a> {
+    /// The points of a complex.
+    pub(super) fn of(placed: Placed<'a>) -> Self {
+        Self { positions: placed.positions, weights: placed.weights }
+    }
+
+    pub(super) fn len(self) -> usize {
+        self.positions.len()
+    }
+
+    pub(super) fn get(self, i: u32) -> WeightedPoint {
+        WeightedPoint { position: self.positions[i as usize], weight: self.weights[i as usize] }
+    }
+
+    /// The corners of a row.
+    pub(super) fn corners<const N: usize>(self, row: [u32; N]) -> [WeightedPoint; N] {
+        row.map(|i| self.get(i))
+    }
+
+    /// Their positions.
+    pub(super) fn positions_of<const N: usize>(self, row: [u32; N]) -> [[f64; 3]; N] {
+        row.map(|i| self.positions[i as usize])
+    }
+}
 
 /// As many cells as the 32-bit numbers of their sides, 4 · cell + 0..4, leave room for.
 pub(super) const MAX_CELLS: usize = (u32::MAX / 4) as usize;
@@ -44,21 +80,27 @@ impl<'a> Structure<'a> {
     }
 
     /// Links cells by their facets. Vertices of all rows must be valid.
-    pub(super) fn new(complex: &'a Complex, points: Points) -> (Self, Vec<Finding>) {
+    pub(super) fn new(
+        complex: &'a Complex,
+        points: Points,
+        monitor: &Monitor,
+    ) -> Result<(Self, Vec<Finding>), Cancelled> {
         let n = points.len();
         let (cell_index, mut findings) = Index::new(complex.cells.rows(), n);
+        monitor.report(2, 10)?;
         let (facets, found) = Index::new(complex.facets.rows(), n);
         findings.extend(found);
+        monitor.report(5, 10)?;
         let (edges, found) = Index::new(complex.edges.rows(), n);
         findings.extend(found);
         let (vertices, found) = Index::new(complex.vertices.rows(), n);
         findings.extend(found);
+        monitor.report(7, 10)?;
 
         let cells = complex.cells.rows();
-        let cell_facets: Vec<[u32; 4]> = cells
-            .par_iter()
-            .map(|cell| outward_facets(*cell).map(|facet| facets.row(facet)))
-            .collect();
+        let cell_facets: Vec<[u32; 4]> = of_each(cells.len(), &monitor.part(7, 10, 10), |i| {
+            Some(outward_facets(cells[i]).map(|facet| facets.row(facet)))
+        })?;
         let mut crowded = BTreeSet::new();
         let mut sides = vec![[NONE; 2]; complex.facets.len()];
         for (cell, rows) in cell_facets.iter().enumerate() {
@@ -80,7 +122,7 @@ impl<'a> Structure<'a> {
             cells: cells_with(cells, &cell_facets, row),
         }));
         let cells = cell_index;
-        (Self { complex, cells, facets, edges, vertices, sides, cell_facets }, findings)
+        Ok((Self { complex, cells, facets, edges, vertices, sides, cell_facets }, findings))
     }
 
     /// The half-facets of a facet, at most two.
@@ -112,7 +154,7 @@ impl<'a> Structure<'a> {
     }
 }
 
-fn cells_with(cells: &[[u32; 4]], facets: &[[u32; 4]], row: u32) -> Vec<super::Simplex> {
+fn cells_with(cells: &[[u32; 4]], facets: &[[u32; 4]], row: u32) -> Vec<Simplex> {
     let has = |(_, rows): &(&[u32; 4], &[u32; 4])| rows.contains(&row);
     cells.iter().zip(facets).filter(has).map(|(cell, _)| (*cell).into()).collect()
 }
@@ -138,6 +180,53 @@ fn row_findings<const N: usize>(rows: &[[u32; N]], points: usize) -> Vec<Finding
         }
     };
     rows.par_iter().filter_map(judge).collect()
+}
+
+/// No simplex, or no cell.
+pub(super) const NONE: u32 = u32::MAX;
+
+/// Finds listed simplices by their vertices, in any order.
+pub(super) struct Index<const N: usize> {
+    /// Sorted vertices and row number, in lexicographic order.
+    entries: Vec<([u32; N], u32)>,
+    /// Where the entries of each first vertex start.
+    starts: Vec<u32>,
+}
+
+impl<const N: usize> Index<N> {
+    /// Indexes rows of valid vertices, with findings on those that are listed twice.
+    pub(super) fn new(rows: &[[u32; N]], points: usize) -> (Self, Vec<Finding>) {
+        let mut entries: Vec<_> =
+            rows.par_iter().enumerate().map(|(i, row)| (sorted(*row), i as u32)).collect();
+        entries.par_sort_unstable();
+        let twice = entries.windows(2).filter(|pair| pair[0].0 == pair[1].0);
+        let findings =
+            twice.map(|pair| Finding::RepeatedSimplex { simplex: pair[0].0.into() }).collect();
+        let mut starts = vec![0; points + 1];
+        for (row, _) in &entries {
+            starts[row[0] as usize + 1] += 1;
+        }
+        for i in 0..points {
+            starts[i + 1] += starts[i];
+        }
+        (Self { entries, starts }, findings)
+    }
+
+    /// Whether a simplex is listed.
+    pub(super) fn contains(&self, simplex: [u32; N]) -> bool {
+        self.row(simplex) != NONE
+    }
+
+    /// The row of a simplex, or [`NONE`].
+    pub(super) fn row(&self, simplex: [u32; N]) -> u32 {
+        let key = sorted(simplex);
+        let first = key[0] as usize;
+        let bucket = &self.entries[self.starts[first] as usize..self.starts[first + 1] as usize];
+        match bucket.binary_search_by(|(row, _)| row.cmp(&key)) {
+            Ok(at) => bucket[at].1,
+            Err(_) => NONE,
+        }
+    }
 }
 
 #[cfg(test)]

@@ -8,15 +8,17 @@
 use std::collections::BTreeMap;
 
 use rayon::prelude::*;
+use walpha_base::{Cancelled, Monitor};
 use walpha_complex::canonical::{outward_facets, sorted};
 
 use super::emptiness::Emptiness;
+use super::finding::Finding;
 use super::flat::{Cone, closed};
-use super::linked::triangulation_findings;
-use super::structure::Structure;
-use super::{Finding, Points};
+use super::geometry::triangulation_findings;
+use super::structure::{Points, Structure};
 use crate::exact::{collinear, orientation};
 use crate::flat::auxiliary_positions;
+use crate::parallel::of_each;
 use crate::{Class, Complex, Simplices};
 
 /// Singular facets on tied circles: the points of each circle, and the rows.
@@ -28,14 +30,15 @@ pub(super) fn singular(
     structure: &Structure,
     points: Points,
     emptiness: &Emptiness,
-) -> (Circles, Vec<Finding>) {
+    monitor: &Monitor,
+) -> Result<(Circles, Vec<Finding>), Cancelled> {
     let complex = structure.complex;
     let mut findings = Vec::new();
-    for (_, vertex, on) in tied(&complex.vertices, emptiness) {
+    for (_, vertex, on) in tied(&complex.vertices, emptiness, &monitor.part(0, 1, 4))? {
         findings.push(spanned(vertex, &on));
     }
     let mut lines = BTreeMap::<Vec<u32>, Vec<u32>>::new();
-    for (row, edge, on) in tied(&complex.edges, emptiness) {
+    for (row, edge, on) in tied(&complex.edges, emptiness, &monitor.part(1, 2, 4))? {
         let [a, b] = points.positions_of(edge);
         match on.iter().find(|&&q| !collinear(a, b, points.get(q).position)) {
             Some(_) => findings.push(spanned(edge, &on)),
@@ -43,13 +46,14 @@ pub(super) fn singular(
         }
     }
     let mut circles = Circles::new();
-    for (row, facet, on) in tied(&complex.facets, emptiness) {
+    for (row, facet, on) in tied(&complex.facets, emptiness, &monitor.part(2, 3, 4))? {
         let [a, b, c] = points.positions_of(facet);
         match on.iter().find(|&&q| orientation(a, b, c, points.get(q).position).is_ne()) {
             Some(_) => findings.push(spanned(facet, &on)),
             None => circles.entry(on).or_default().push(row),
         }
     }
+    let on_spheres = monitor.unreported();
     for (on, rows) in &lines {
         // All edges between these points, as some may be faces of facets.
         let pairs =
@@ -58,16 +62,16 @@ pub(super) fn singular(
         let edges = listed.map(|pair| (local(pair, on), Class::Exterior)).collect();
         let first = complex.edges.rows()[rows[0] as usize];
         let edges = Complex { edges, ..Complex::default() };
-        findings.extend(flat_findings(on, &edges, first.into(), points));
+        findings.extend(flat_findings(on, &edges, first.into(), points, &on_spheres)?);
     }
     for (on, rows) in &circles {
         let facets = rows.iter().map(|&row| complex.facets.rows()[row as usize]);
         let facets = facets.map(|facet| (sorted(local(facet, on)), Class::Exterior)).collect();
         let first = complex.facets.rows()[rows[0] as usize];
         let facets = Complex { facets, ..Complex::default() };
-        findings.extend(flat_findings(on, &facets, first.into(), points));
+        findings.extend(flat_findings(on, &facets, first.into(), points, &on_spheres)?);
     }
-    (circles, findings)
+    Ok((circles, findings))
 }
 
 /// Judges cells with further points on their spheres, and the facets listed on the flat faces between them.
@@ -76,31 +80,35 @@ pub(super) fn cells(
     points: Points,
     emptiness: &Emptiness,
     singular: &Circles,
-) -> Vec<Finding> {
+    monitor: &Monitor,
+) -> Result<Vec<Finding>, Cancelled> {
     let cells = structure.complex.cells.rows();
     let facets = structure.complex.facets.rows();
-    let on = |(row, &cell): (usize, &[u32; 4])| {
-        let on = emptiness.on_sphere(cell);
+    let tied = of_each(cells.len(), &monitor.part(0, 1, 2), |row| {
+        let on = emptiness.on_sphere(cells[row]);
         (on.len() > 4).then_some((on, row))
-    };
-    let tied: Vec<_> = cells.par_iter().enumerate().filter_map(on).collect();
+    })?;
     let mut spheres = BTreeMap::<Vec<u32>, Vec<usize>>::new();
     for (on, cell) in tied {
         spheres.entry(on).or_default().push(cell);
     }
     let spheres: Vec<_> = spheres.into_iter().collect();
-    let judge = |(on, rows): &(Vec<u32>, Vec<usize>)| {
+    let (rest, on_spheres) = (monitor.part(1, 2, 2), monitor.unreported());
+    let judged = rest.units(spheres.len() as u64);
+    let judge = |(on, rows): &(Vec<u32>, Vec<usize>)| -> Result<Option<Finding>, Cancelled> {
         let own: Vec<_> = rows.iter().map(|&row| local(cells[row], on)).collect();
         let (positions, weights) = placed(on, points);
         let of_sphere = Points { positions: &positions, weights: &weights };
-        let wrong = triangulation_findings(&closed(&own), of_sphere);
-        wrong.iter().any(|finding| !finding.is_tie()).then(|| Finding::TiedSphere {
+        let wrong = triangulation_findings(&closed(&own), of_sphere, &on_spheres)?;
+        judged.add(1)?;
+        Ok(wrong.iter().any(|finding| !finding.is_tie()).then(|| Finding::TiedSphere {
             simplex: cells[rows[0]].into(),
             points: on.clone(),
             listed: rows.len(),
-        })
+        }))
     };
-    let mut findings: Vec<Finding> = spheres.par_iter().filter_map(judge).collect();
+    let found: Vec<_> = spheres.par_iter().map(judge).collect::<Result<_, Cancelled>>()?;
+    let mut findings: Vec<Finding> = found.into_iter().flatten().collect();
 
     // For each flat face with more than three corners, one facet and the sides on which it has cells.
     let mut faces = BTreeMap::<Vec<u32>, (u32, [bool; 2])>::new();
@@ -130,7 +138,7 @@ pub(super) fn cells(
     let of = |row: u32| facets[row as usize].into();
     let crossing = crossing.into_iter();
     findings.extend(crossing.map(|(a, b)| Finding::TiedFacets { facet: of(a), other: of(b) }));
-    findings
+    Ok(findings)
 }
 
 /// The sides of a flat face on which a facet of it has cells.
@@ -146,18 +154,21 @@ fn sides(structure: &Structure, points: Points, face: &[u32], facet: u32) -> [bo
     sides
 }
 
-/// Singular simplices with further points on their spheres: the row, the simplex, and all points on the
-/// sphere.
+/// A simplex with further points on its sphere: its row, its vertices, and all points on the sphere.
+type Tied<const N: usize> = (u32, [u32; N], Vec<u32>);
+
+/// The singular simplices with further points on their spheres.
 fn tied<const N: usize>(
     simplices: &Simplices<N>,
     emptiness: &Emptiness,
-) -> Vec<(u32, [u32; N], Vec<u32>)> {
-    let rows = simplices.rows().par_iter().zip(simplices.classes()).enumerate();
-    let on = |(i, (&row, &class)): (usize, (&[u32; N], &Class))| {
-        let on = (class == Class::Singular).then(|| emptiness.on_sphere(row))?;
+    monitor: &Monitor,
+) -> Result<Vec<Tied<N>>, Cancelled> {
+    of_each(simplices.len(), monitor, |i| {
+        let row = simplices.rows()[i];
+        let singular = simplices.classes()[i] == Class::Singular;
+        let on = singular.then(|| emptiness.on_sphere(row))?;
         (on.len() > N).then_some((i as u32, row, on))
-    };
-    rows.filter_map(on).collect()
+    })
 }
 
 fn spanned<const N: usize>(simplex: [u32; N], on: &[u32]) -> Finding {
@@ -172,19 +183,25 @@ fn flat_findings(
     complex: &Complex,
     simplex: super::Simplex,
     points: Points,
-) -> Vec<Finding> {
+    monitor: &Monitor,
+) -> Result<Vec<Finding>, Cancelled> {
     let listed = complex.facets.len() + complex.edges.len();
     let (positions, weights) = placed(on, points);
     let of_sphere = Points { positions: &positions, weights: &weights };
     let apexes = auxiliary_positions(positions.iter().copied()).unwrap_or_default();
-    let found = Cone::over(complex, of_sphere, &apexes)
-        .map(|cone| cone.at_base(triangulation_findings(&cone.complex, cone.points())));
-    match found {
+    let found = match Cone::over(complex, of_sphere, &apexes) {
+        Some(cone) => {
+            let found = triangulation_findings(&cone.complex, cone.points(), monitor)?;
+            Some(cone.at_base(found))
+        }
+        None => None,
+    };
+    Ok(match found {
         Some(found) if found.iter().all(Finding::is_tie) => {
             found.into_iter().map(|finding| finding.renumbered(on)).collect()
         }
         _ => vec![Finding::TiedSphere { simplex, points: on.to_vec(), listed }],
-    }
+    })
 }
 
 /// A row as indices into an ascending list of points that contains all of its vertices.

@@ -8,14 +8,16 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use walpha_base::{Cancelled, Monitor};
 use walpha_complex::canonical::sort;
 
-use super::{
-    Certificate, CertifyError, Claim, Extent, Finding, NotJudged, Points, Verdict, hull, structure,
-};
+use super::certificate::{Certificate, CertifyError, NotJudged, Verdict};
+use super::claim::{Claim, Extent};
+use super::finding::Finding;
+use super::geometry;
+use super::structure::{self, Points};
 use crate::exact::Exact;
-use crate::periodic::{moved, nearest_copy};
-use crate::schema::PlacedComplex;
+use crate::schema::{PlacedComplex, moved, nearest_copy};
 use crate::{Alpha, Complex, Placed, Simplices};
 
 /// All broken rules of a complex of a torus with these sides, and the certificate.
@@ -25,6 +27,7 @@ use crate::{Alpha, Complex, Placed, Simplices};
 pub(super) fn findings(
     placed: &PlacedComplex,
     sides: [f64; 3],
+    monitor: &Monitor,
 ) -> Result<(Vec<Finding>, Certificate), CertifyError> {
     let bad = |index| Err(CertifyError::NotInBox(index));
     if let Some(index) =
@@ -49,7 +52,7 @@ pub(super) fn findings(
     }
     let copies = Copies::of(placed, sides);
     let claim = copies.claim();
-    let (all, mut certificate) = claim.findings()?;
+    let (all, mut certificate) = claim.findings_monitored(monitor)?;
     let count = placed.positions.len() as u32;
     let mut seen = BTreeSet::new();
     // A sphere that reaches beyond the copied simplices lacks some of its own.
@@ -61,7 +64,7 @@ pub(super) fn findings(
     let mut found: Vec<Finding> =
         near.filter(|finding| seen.insert(format!("{finding:?}"))).collect();
     let whole = Extent::of(&placed.complex, placed.alpha) == Extent::Whole;
-    let (volume, missing) = copies.volume(count, sides);
+    let (volume, missing) = copies.volume(count, sides, &monitor.unreported())?;
     certificate.six_volumes = volume;
     // Cells that fill the box are all of the cells.
     if whole || missing.is_none() {
@@ -153,7 +156,12 @@ impl Copies {
     }
 
     /// Six times the volume of the cells of one box, and a finding if they do not fill it.
-    fn volume(&self, count: u32, sides: [f64; 3]) -> (Exact, Option<Finding>) {
+    fn volume(
+        &self,
+        count: u32,
+        sides: [f64; 3],
+        monitor: &Monitor,
+    ) -> Result<(Exact, Option<Finding>), Cancelled> {
         // Each cell once: the copy whose smallest vertex, by its number in the box, is in the box.
         let of_box =
             |cell: &&[u32; 4]| cell.iter().min_by_key(|&&v| v % count).is_some_and(|&v| v < count);
@@ -162,12 +170,13 @@ impl Copies {
         let corner = |i: u32| [0, 1, 2].map(|k| f64::from(i >> k & 1) * sides[k]);
         let corners: Vec<[f64; 3]> = (0..8).map(corner).collect();
         let corners = Points { positions: &corners, weights: &[0.0; 8] };
-        let [cells, hull] = [(&cells[..], points), (&BOX, corners)].map(|(cells, points)| {
-            let (sum, exponent) = hull::six_volumes(cells, points);
-            Exact::integer(sum, exponent)
-        });
+        let volume = |cells: &[[u32; 4]], points: Points| {
+            let (sum, exponent) = geometry::six_volumes(cells, points, monitor)?;
+            Ok(Exact::integer(sum, exponent))
+        };
+        let (cells, hull) = (volume(&cells, points)?, volume(&BOX, corners)?);
         let found = (cells != hull).then(|| Finding::Volume { cells: cells.clone(), hull });
-        (cells, found)
+        Ok((cells, found))
     }
 }
 

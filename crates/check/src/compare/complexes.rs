@@ -1,11 +1,17 @@
+//! Comparison of two complexes.
+
 use std::collections::BTreeMap;
+use std::fmt::{self, Display};
 
 use serde::Serialize;
+use walpha_base::monitor::Units;
+use walpha_base::{Cancelled, Monitor};
 use walpha_complex::canonical::sorted;
 
-use super::common_positions::{CommonPositions, weights_by_position};
 use super::domain::{self, Domain};
-use crate::{Alpha, Class, Placed, Simplex, Simplices};
+use super::points::{CommonPositions, WeightDifference};
+use crate::certify::Simplex;
+use crate::{Alpha, Class, Complex, Placed, Simplices};
 
 /// The differences between two complexes A and B.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -54,18 +60,6 @@ pub struct ClassDifference {
     pub b: Class,
 }
 
-/// A position where the weights differ.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-#[non_exhaustive]
-pub struct WeightDifference {
-    /// The first point there, by A's indices.
-    pub point: u32,
-    /// The largest weight there in A.
-    pub a: f64,
-    /// The largest weight there in B.
-    pub b: f64,
-}
-
 /// Why two complexes cannot be compared.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
@@ -96,6 +90,9 @@ pub enum CompareError {
         /// The simplex.
         simplex: Simplex,
     },
+    /// The work was cancelled.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
 }
 
 impl CompareError {
@@ -113,29 +110,45 @@ impl CompareError {
 /// # Errors
 /// [`CompareError`].
 pub fn compare(a: Placed, b: Placed) -> Result<Comparison, CompareError> {
+    compare_monitored(a, b, &Monitor::noop())
+}
+
+/// The same, as one stage under a monitor, which can cancel it.
+///
+/// # Errors
+/// [`CompareError`].
+pub fn compare_monitored(
+    a: Placed,
+    b: Placed,
+    monitor: &Monitor,
+) -> Result<Comparison, CompareError> {
     check('A', a)?;
     check('B', b)?;
     let common = CommonPositions::new(a.positions, b.positions);
     let exterior = a.complex.lists_exterior() && b.complex.lists_exterior();
     let (of_a, of_b) = (a.complex, b.complex);
-    let dimensions = [
-        differences(&of_a.vertices, &of_b.vertices, &common, exterior),
-        differences(&of_a.edges, &of_b.edges, &common, exterior),
-        differences(&of_a.facets, &of_b.facets, &common, exterior),
-        differences(&of_a.cells, &of_b.cells, &common, exterior),
-    ];
-    let only = |own: &[u32], other: &[u32]| {
-        let other: std::collections::BTreeSet<_> = other.iter().collect();
-        (0..).zip(own).filter(|(_, position)| !other.contains(position)).map(|(i, _)| i).collect()
+    let rows = |complex: &Complex| {
+        let Complex { cells, facets, edges, vertices } = complex;
+        (cells.len() + facets.len() + edges.len() + vertices.len()) as u64
     };
+    let listing = monitor.part(0, 6, 10);
+    let listed = listing.units(rows(of_a) + rows(of_b));
+    let dimensions = [
+        differences(&of_a.vertices, &of_b.vertices, &common, exterior, &listed)?,
+        differences(&of_a.edges, &of_b.edges, &common, exterior, &listed)?,
+        differences(&of_a.facets, &of_b.facets, &common, exterior, &listed)?,
+        differences(&of_a.cells, &of_b.cells, &common, exterior, &listed)?,
+    ];
+    let domain = domain::compare(a, b, &common, &monitor.part(6, 9, 10))?;
+    monitor.part(9, 10, 10).report(1, 1)?;
     Ok(Comparison {
         alpha: [a.alpha, b.alpha],
-        weights: different_weights(a, b, &common),
-        points_only_a: only(&common.a, &common.b),
-        points_only_b: only(&common.b, &common.a),
+        weights: common.weight_differences(a.weights, b.weights),
+        points_only_a: common.only_a(),
+        points_only_b: common.only_b(),
         exterior,
         dimensions,
-        domain: domain::compare(a, b, &common),
+        domain,
     })
 }
 
@@ -151,18 +164,6 @@ impl Comparison {
             && self.points_only_b.is_empty()
             && self.dimensions.iter().all(same)
     }
-}
-
-fn different_weights(a: Placed, b: Placed, common: &CommonPositions) -> Vec<WeightDifference> {
-    let mut in_a = weights_by_position(a.weights, &common.a);
-    let in_b = weights_by_position(b.weights, &common.b);
-    let difference = |(point, &position): (u32, &u32)| {
-        // Each position once: its weight is replaced.
-        let a = std::mem::replace(&mut in_a[position as usize], f64::NEG_INFINITY);
-        let b = in_b.get(position as usize).copied().filter(|b| *b != f64::NEG_INFINITY)?;
-        (a != b && a != f64::NEG_INFINITY).then_some(WeightDifference { point, a, b })
-    };
-    (0..).zip(&common.a).filter_map(difference).collect()
 }
 
 fn check(
@@ -195,14 +196,18 @@ fn differences<const N: usize>(
     b: &Simplices<N>,
     common: &CommonPositions,
     exterior: bool,
-) -> Differences {
-    let listed = |simplices: &Simplices<N>, position_of: &[u32]| -> BTreeMap<[u32; N], _> {
+    work: &Units,
+) -> Result<Differences, Cancelled> {
+    let listed = |simplices: &Simplices<N>, position_of: &[u32]| {
         let rows = simplices.iter().filter(|(_, class)| exterior || *class != Class::Exterior);
-        rows.map(|(row, class)| (sorted(row.map(|v| position_of[v as usize])), (*row, class)))
-            .collect()
+        let keyed = rows.map(|(row, class)| {
+            work.add(1)?;
+            Ok((sorted(row.map(|v| position_of[v as usize])), (*row, class)))
+        });
+        keyed.collect::<Result<BTreeMap<[u32; N], _>, Cancelled>>()
     };
-    let a = listed(a, &common.a);
-    let mut b = listed(b, &common.b);
+    let a = listed(a, &common.a)?;
+    let mut b = listed(b, &common.b)?;
     let mut differences = Differences::default();
     for (key, (row, class)) in a {
         match b.remove(&key) {
@@ -216,5 +221,72 @@ fn differences<const N: usize>(
     }
     let rest = b.into_values();
     differences.only_b = rest.map(|(row, class)| (Simplex::from(row), class)).collect();
-    differences
+    Ok(differences)
+}
+
+/// The most differences of a kind that are listed.
+pub(super) const PRINTED: usize = 10;
+
+impl Display for Comparison {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (only_a, only_b) = (&self.points_only_a, &self.points_only_b);
+        if only_a.is_empty() && only_b.is_empty() {
+            writeln!(f, "points: at the same positions")?;
+        }
+        rows(f, "points only in A", only_a.iter())?;
+        rows(f, "points only in B", only_b.iter())?;
+        if self.weights.is_empty() {
+            writeln!(f, "weights: equal where both have a point")?;
+        }
+        let weight =
+            |w: &WeightDifference| format!("point {}: {} in A, {} in B", w.point, w.a, w.b);
+        rows(f, "weights that differ", self.weights.iter().map(weight))?;
+        match self.alpha {
+            [a, b] if a == b => writeln!(f, "α: {a} in both")?,
+            [a, b] => writeln!(f, "α: {a} in A, {b} in B")?,
+        }
+        let names = ["vertices", "edges", "facets", "cells"];
+        for (name, d) in names.into_iter().zip(&self.dimensions) {
+            writeln!(
+                f,
+                "{name}: {} equal, {} only in A, {} only in B, {} of different class",
+                d.equal,
+                d.only_a.len(),
+                d.only_b.len(),
+                d.classes.len()
+            )?;
+            for (which, only) in [("A", &d.only_a), ("B", &d.only_b)] {
+                for (simplex, class) in only.iter().take(PRINTED) {
+                    writeln!(f, "  only in {which}: {simplex} {class:?}")?;
+                }
+            }
+            for c in d.classes.iter().take(PRINTED) {
+                writeln!(f, "  {}: A {:?}, B {:?}", c.simplex, c.a, c.b)?;
+            }
+        }
+        writeln!(f, "{}", self.domain)?;
+        let exterior = if self.exterior {
+            ""
+        } else {
+            "exterior simplices (only one or neither lists them), "
+        };
+        write!(f, "not compared: {exterior}windings, lists of hidden points and duplicates")
+    }
+}
+
+/// Writes the number of rows and the first of them; nothing if there are none.
+pub(super) fn rows<T: Display>(
+    f: &mut fmt::Formatter<'_>,
+    what: &str,
+    rows: impl ExactSizeIterator<Item = T>,
+) -> fmt::Result {
+    let count = rows.len();
+    if count == 0 {
+        return Ok(());
+    }
+    writeln!(f, "{what}: {count}")?;
+    for row in rows.take(PRINTED) {
+        writeln!(f, "  {row}")?;
+    }
+    Ok(())
 }

@@ -1,14 +1,18 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
+use std::ops::ControlFlow;
 
 use dashu_int::IBig;
 use serde::Serialize;
+use walpha_base::{Cancelled, Monitor};
 use walpha_complex::canonical::{outward_facets, smallest_even, sorted};
 
-use super::common_positions::{CommonPositions, weights_by_position};
+use super::points::{CommonPositions, weights_by_position};
+use crate::certify::{CertifyError, Claim, Verdict};
 use crate::exact::{Exact, Lattice, Lift, WeightedPoint, orientation};
+use crate::parallel::of_each;
 use crate::schema::orient;
-use crate::{Claim, Class, Placed, Verdict};
+use crate::{Class, Placed};
 
 /// How the regions that the cells of two shapes cover are related.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -73,34 +77,53 @@ impl fmt::Display for Domain {
 /// would have no boundary. The boundaries are compared plane by plane, because a flat face may be cut
 /// into other triangles: within a plane, two sets of triangles cover the same region if their
 /// boundaries cancel, edge by directed edge.
-pub(super) fn compare(a: Placed, b: Placed, common: &CommonPositions) -> Domain {
-    let in_a = interior_cells(a, &common.a, common);
-    let in_b = interior_cells(b, &common.b, common);
+pub(super) fn compare(
+    a: Placed,
+    b: Placed,
+    common: &CommonPositions,
+    monitor: &Monitor,
+) -> Result<Domain, Cancelled> {
+    let in_a = interior_cells(a, &common.a, common, &monitor.part(0, 1, 8))?;
+    let in_b = interior_cells(b, &common.b, common, &monitor.part(1, 2, 8))?;
     if in_a == in_b {
-        return Domain::SameCells;
+        return Ok(Domain::SameCells);
     }
     let lattice = Lattice::through(&common.positions);
-    let six_volumes = |cells: &BTreeSet<[u32; 4]>| {
+    let six_volumes = |cells: &BTreeSet<[u32; 4]>, from: u64| {
         let cells: Vec<_> = cells.iter().map(|cell| at(common, *cell)).collect();
-        let sum = lattice.six_volumes(cells.len(), |i| cells[i]);
-        Exact::integer(sum, 3 * i64::from(lattice.exponent()))
+        let monitor = monitor.part(from, from + 1, 16);
+        let sum = lattice.six_volumes(cells.len(), &monitor, |i| cells[i])?;
+        Ok(Exact::integer(sum, 3 * i64::from(lattice.exponent())))
     };
-    let (six_volumes_a, six_volumes_b) = (six_volumes(&in_a), six_volumes(&in_b));
-    if six_volumes_a == six_volumes_b && same_surface(&in_a, &in_b, common, lattice) {
-        let tied = tied(Side::new(a, &common.a, &in_a), Side::new(b, &common.b, &in_b), common);
-        let verdicts = tied.then(|| [a, b].map(verdict));
+    let (six_volumes_a, six_volumes_b) = (six_volumes(&in_a, 4)?, six_volumes(&in_b, 5)?);
+    Ok(if six_volumes_a == six_volumes_b && same_surface(&in_a, &in_b, common, lattice) {
+        monitor.report(4, 8)?;
+        let (of_a, of_b) = (Side::new(a, &common.a, &in_a), Side::new(b, &common.b, &in_b));
+        let tied = tied(of_a, of_b, common, &monitor.unreported())?;
+        monitor.report(5, 8)?;
+        let verdicts = if tied {
+            let of_a = verdict(a, &monitor.part(5, 6, 8))?;
+            Some([of_a, verdict(b, &monitor.part(6, 7, 8))?])
+        } else {
+            None
+        };
         Domain::SameRegion { six_volumes: six_volumes_a, tied, verdicts }
     } else {
         Domain::Different { six_volumes_a, six_volumes_b }
-    }
+    })
 }
 
 /// The verdict on a complex whose simplices are oriented canonically first, as windings are not compared.
 /// A complex that cannot be judged counts as wrong.
-fn verdict(placed: Placed) -> Verdict {
+fn verdict(placed: Placed, monitor: &Monitor) -> Result<Verdict, Cancelled> {
     let mut complex = placed.complex.clone();
     orient(&mut complex, placed.positions, None);
-    Claim::new(placed.with_complex(&complex)).verdict().unwrap_or(Verdict::Wrong)
+    let claim = Claim::new(placed.with_complex(&complex));
+    match claim.visit_monitored(&mut |_| ControlFlow::Continue(()), monitor) {
+        Ok(certificate) => Ok(certificate.verdict),
+        Err(CertifyError::Cancelled(cancelled)) => Err(cancelled),
+        Err(_) => Ok(Verdict::Wrong),
+    }
 }
 
 /// The interior cells in terms of positions, positively oriented, without flat ones.
@@ -108,18 +131,23 @@ fn interior_cells(
     Placed { complex, .. }: Placed,
     position: &[u32],
     common: &CommonPositions,
-) -> BTreeSet<[u32; 4]> {
-    let cells = complex.cells.of(Class::Interior);
-    let oriented = cells.filter_map(|cell| {
-        let [a, b, c, d] = cell.map(|v| position[v as usize]);
-        let [p, q, r, s] = at(common, [a, b, c, d]);
-        match orientation(p, q, r, s) {
-            std::cmp::Ordering::Greater => Some([a, b, c, d]),
-            std::cmp::Ordering::Less => Some([a, b, d, c]),
-            std::cmp::Ordering::Equal => None,
+    monitor: &Monitor,
+) -> Result<BTreeSet<[u32; 4]>, Cancelled> {
+    let (rows, classes) = (complex.cells.rows(), complex.cells.classes());
+    let oriented = of_each(rows.len(), monitor, |i| {
+        if classes[i] != Class::Interior {
+            return None;
         }
-    });
-    oriented.map(smallest_even).collect()
+        let [a, b, c, d] = rows[i].map(|v| position[v as usize]);
+        let [p, q, r, s] = at(common, [a, b, c, d]);
+        let cell = match orientation(p, q, r, s) {
+            std::cmp::Ordering::Greater => [a, b, c, d],
+            std::cmp::Ordering::Less => [a, b, d, c],
+            std::cmp::Ordering::Equal => return None,
+        };
+        Some(smallest_even(cell))
+    })?;
+    Ok(oriented.into_iter().collect())
 }
 
 /// The cells of a complex, and the largest weight at each position.
@@ -136,7 +164,7 @@ impl<'a> Side<'a> {
 
 /// Whether the cells that only one has cover the same region with the same lifted heights: for each
 /// hyperplane, and so for each orthogonal sphere, cells of A and of B must cover the same region.
-fn tied(a: Side, b: Side, common: &CommonPositions) -> bool {
+fn tied(a: Side, b: Side, common: &CommonPositions, monitor: &Monitor) -> Result<bool, Cancelled> {
     let corner = |side: &Side, position: u32| WeightedPoint {
         position: common.positions[position as usize],
         weight: side.weights[position as usize],
@@ -156,9 +184,14 @@ fn tied(a: Side, b: Side, common: &CommonPositions) -> bool {
     let lattice = Lattice::through(&common.positions);
     let volume = |cells: &BTreeSet<[u32; 4]>| {
         let cells: Vec<_> = cells.iter().map(|cell| at(common, *cell)).collect();
-        lattice.six_volumes(cells.len(), |i| cells[i])
+        lattice.six_volumes(cells.len(), monitor, |i| cells[i])
     };
-    spheres.values().all(|[a, b]| volume(a) == volume(b) && same_surface(a, b, common, lattice))
+    for [a, b] in spheres.values() {
+        if volume(a)? != volume(b)? || !same_surface(a, b, common, lattice) {
+            return Ok(false);
+        }
+    }
+    Ok(true)
 }
 
 fn same_surface(

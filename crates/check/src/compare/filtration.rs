@@ -1,16 +1,19 @@
 //! Comparison of two filtrations over the same points.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::fmt::{self, Display};
 
 use serde::Serialize;
+use walpha_base::monitor::Units;
+use walpha_base::{Cancelled, Monitor};
 use walpha_complex::canonical::sorted;
 
-use super::WeightDifference;
-use super::common_positions::{CommonPositions, weights_by_position};
-use super::text::{PRINTED, rows};
+use super::complexes::{PRINTED, rows};
+use super::points::{CommonPositions, WeightDifference};
+use crate::Alpha;
+use crate::certify::Simplex;
 use crate::schema::{Below, FiltrationFile, SchemaError};
-use crate::{Alpha, Simplex};
 
 /// The differences between two filtrations A and B.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -63,26 +66,61 @@ struct Listing {
     number: u32,
 }
 
+/// Why two filtrations cannot be compared.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum CompareFiltrationsError {
+    /// Fields contradict each other, or a coordinate or weight is not finite.
+    #[error(transparent)]
+    Schema(#[from] SchemaError),
+    /// The work was cancelled.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}
+
+impl CompareFiltrationsError {
+    /// How to resolve the error, if there is a way.
+    pub fn advice(&self) -> Option<&'static str> {
+        match self {
+            Self::Schema(error) => error.advice(),
+            Self::Cancelled(_) => None,
+        }
+    }
+}
+
 /// Compares two filtrations, matching points by their positions, so that the two may number them
 /// differently. Values are compared as doubles. Cost O(n log n).
 ///
 /// # Errors
-/// Fields of different lengths, point numbers out of range.
+/// Fields of different lengths, point numbers out of range, coordinates or weights that are not finite.
 pub fn compare_filtrations(
     a: &FiltrationFile,
     b: &FiltrationFile,
-) -> Result<FiltrationComparison, SchemaError> {
+) -> Result<FiltrationComparison, CompareFiltrationsError> {
+    compare_filtrations_monitored(a, b, &Monitor::noop())
+}
+
+/// The same, as one stage under a monitor, which can cancel it.
+///
+/// # Errors
+/// [`CompareFiltrationsError`].
+pub fn compare_filtrations_monitored(
+    a: &FiltrationFile,
+    b: &FiltrationFile,
+    monitor: &Monitor,
+) -> Result<FiltrationComparison, CompareFiltrationsError> {
     a.check()?;
     b.check()?;
     finite(a)?;
     finite(b)?;
     let common = CommonPositions::new(&a.points, &b.points);
-    let of_a = simplices(a, &common.a);
-    let mut of_b = simplices(b, &common.b);
+    let work = monitor.units(2 * a.order.len() as u64 + b.order.len() as u64);
+    let of_a = simplices(a, &common.a, &work)?;
+    let mut of_b = simplices(b, &common.b, &work)?;
     let mut found = FiltrationComparison {
-        weights: weights(a, b, &common),
-        points_only_a: only(&common.a, &common.b),
-        points_only_b: only(&common.b, &common.a),
+        weights: common.weight_differences(&weights(a), &weights(b)),
+        points_only_a: common.only_a(),
+        points_only_b: common.only_b(),
         equal: 0,
         only_a: Vec::new(),
         only_b: Vec::new(),
@@ -95,6 +133,7 @@ pub fn compare_filtrations(
     };
     let mut same = BTreeMap::new();
     for (key, (simplex, here)) in of_a {
+        work.add(1)?;
         let Some((_, there)) = of_b.remove(&key) else {
             found.only_a.push(simplex);
             continue;
@@ -157,32 +196,20 @@ fn finite(file: &FiltrationFile) -> Result<(), SchemaError> {
     }
 }
 
-fn only(own: &[u32], other: &[u32]) -> Vec<u32> {
-    let other: std::collections::BTreeSet<_> = other.iter().collect();
-    (0..).zip(own).filter(|(_, position)| !other.contains(position)).map(|(i, _)| i).collect()
-}
-
-fn weights(
-    a: &FiltrationFile,
-    b: &FiltrationFile,
-    common: &CommonPositions,
-) -> Vec<WeightDifference> {
-    let of = |file: &FiltrationFile| {
-        file.weights.clone().unwrap_or_else(|| vec![0.0; file.points.len()])
-    };
-    let mut in_a = weights_by_position(&of(a), &common.a);
-    let in_b = weights_by_position(&of(b), &common.b);
-    let difference = |(point, &position): (u32, &u32)| {
-        // Each position once: its weight is replaced.
-        let a = std::mem::replace(&mut in_a[position as usize], f64::NEG_INFINITY);
-        let b = in_b.get(position as usize).copied().filter(|b| *b != f64::NEG_INFINITY)?;
-        (a != b && a != f64::NEG_INFINITY).then_some(WeightDifference { point, a, b })
-    };
-    (0..).zip(&common.a).filter_map(difference).collect()
+/// The weights of the points; all are 0 if the file lists none.
+fn weights(file: &FiltrationFile) -> Cow<'_, [f64]> {
+    match &file.weights {
+        Some(weights) => Cow::Borrowed(weights),
+        None => Cow::Owned(vec![0.0; file.points.len()]),
+    }
 }
 
 /// All simplices by the positions of their vertices.
-fn simplices(file: &FiltrationFile, position_of: &[u32]) -> BTreeMap<Vec<u32>, (Simplex, Listing)> {
+fn simplices(
+    file: &FiltrationFile,
+    position_of: &[u32],
+    work: &Units,
+) -> Result<BTreeMap<Vec<u32>, (Simplex, Listing)>, Cancelled> {
     let mut found = BTreeMap::new();
     let mut number = 0;
     let vertices: Vec<[u32; 1]> = file.vertices.iter().map(|&v| [v]).collect();
@@ -193,8 +220,10 @@ fn simplices(file: &FiltrationFile, position_of: &[u32]) -> BTreeMap<Vec<u32>, (
         rows: &[[u32; N]],
         number: &mut u32,
         data: impl Fn(usize) -> (Alpha, Option<bool>, Option<[Alpha; 2]>),
-    ) {
+        work: &Units,
+    ) -> Result<(), Cancelled> {
         for (i, row) in rows.iter().enumerate() {
+            work.add(1)?;
             let key = sorted(row.map(|v| position_of[v as usize])).to_vec();
             let (value, gabriel, interval) = data(i);
             found.insert(
@@ -203,6 +232,7 @@ fn simplices(file: &FiltrationFile, position_of: &[u32]) -> BTreeMap<Vec<u32>, (
             );
             *number += 1;
         }
+        Ok(())
     }
     let below = |dimension: usize, i: usize| {
         let gabriel = file.gabriel.as_ref().map(|gabriel| of(gabriel, dimension)[i]);
@@ -211,20 +241,48 @@ fn simplices(file: &FiltrationFile, position_of: &[u32]) -> BTreeMap<Vec<u32>, (
             .map(|(regular, interior)| [regular, interior].map(|bound| of(bound, dimension)[i]));
         (gabriel, interval)
     };
-    add(&mut found, position_of, &vertices, &mut number, |i| {
-        let (gabriel, interval) = below(0, i);
-        (values.vertices[i], gabriel, interval)
-    });
-    add(&mut found, position_of, &file.edges, &mut number, |i| {
-        let (gabriel, interval) = below(1, i);
-        (values.edges[i], gabriel, interval)
-    });
-    add(&mut found, position_of, &file.facets, &mut number, |i| {
-        let (gabriel, interval) = below(2, i);
-        (values.facets[i], gabriel, interval)
-    });
-    add(&mut found, position_of, &file.cells, &mut number, |i| (values.cells[i], None, None));
-    found
+    add(
+        &mut found,
+        position_of,
+        &vertices,
+        &mut number,
+        |i| {
+            let (gabriel, interval) = below(0, i);
+            (values.vertices[i], gabriel, interval)
+        },
+        work,
+    )?;
+    add(
+        &mut found,
+        position_of,
+        &file.edges,
+        &mut number,
+        |i| {
+            let (gabriel, interval) = below(1, i);
+            (values.edges[i], gabriel, interval)
+        },
+        work,
+    )?;
+    add(
+        &mut found,
+        position_of,
+        &file.facets,
+        &mut number,
+        |i| {
+            let (gabriel, interval) = below(2, i);
+            (values.facets[i], gabriel, interval)
+        },
+        work,
+    )?;
+    add(
+        &mut found,
+        position_of,
+        &file.cells,
+        &mut number,
+        |i| (values.cells[i], None, None),
+        work,
+    )?;
+    Ok(found)
 }
 
 fn of<T>(below: &Below<T>, dimension: usize) -> &[T] {

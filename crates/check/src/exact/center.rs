@@ -1,6 +1,5 @@
-use super::WeightedPoint;
 use super::formulas::{center3, center4};
-use super::frame::{approx, dot};
+use super::frame::{WeightedPoint, approx, dot};
 use super::number::{Approx, Number};
 
 /// The smallest orthogonal sphere of a simplex in doubles, with a bound on the error, for deciding

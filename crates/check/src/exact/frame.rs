@@ -1,10 +1,26 @@
+//! Weighted points relative to one of them, in each number type, and signs of formulas over them.
+
 use std::cmp::Ordering;
 
 use dashu_int::IBig;
 
-use super::WeightedPoint;
-use super::binary::{Binary, Range};
-use super::number::{Approx, Bits, Number, sign};
+use super::number::{Approx, Binary, Bits, Number, Range, sign};
+
+/// A point with a power weight; all four numbers finite.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct WeightedPoint {
+    /// x, y, z.
+    pub position: [f64; 3],
+    /// The weight, a squared length.
+    pub weight: f64,
+}
+
+impl WeightedPoint {
+    /// A point without its weight: orientations must not spend digits on weights.
+    pub(super) fn bare(position: [f64; 3]) -> Self {
+        Self { position, weight: 0.0 }
+    }
+}
 
 /// Weighted points relative to one of them, the origin p₀: the arguments of every formula.
 ///

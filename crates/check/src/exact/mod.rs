@@ -6,23 +6,17 @@
 //! decides the cases that are far from a tie; `i128` decides the others where the number of digits
 //! proves that it can; big integers decide the rest.
 
-mod binary;
 mod center;
 mod formulas;
 mod frame;
-mod lift;
+mod lattice;
 mod number;
-mod perturb;
-mod point;
 mod predicates;
-mod solid;
 mod value;
 
 pub(crate) use center::RoundedSphere;
-pub(crate) use lift::Lift;
-pub(crate) use perturb::in_conflict;
-pub(crate) use point::WeightedPoint;
-pub(crate) use predicates::{Side, collinear, orientation, radius, side};
-pub(crate) use solid::{Lattice, Star};
+pub(crate) use frame::WeightedPoint;
+pub(crate) use lattice::{Lattice, Lift, Star};
+pub(crate) use predicates::{Side, collinear, in_conflict, orientation, radius, side};
 pub use value::Exact;
 pub(crate) use value::{power_value, radius_value, six_volume};

@@ -1,7 +1,9 @@
 //! Comparison of filtrations: each difference alone.
 
 use walpha_check::schema::{FiltrationFile, SchemaError};
-use walpha_check::{Alpha, FiltrationComparison, Simplex, compare_filtrations};
+use walpha_check::{
+    Alpha, CompareFiltrationsError, FiltrationComparison, Simplex, compare_filtrations,
+};
 
 /// A corner of a cube, with a value for each simplex, in order.
 fn corner() -> FiltrationFile {
@@ -101,6 +103,7 @@ fn numbers_are_finite() {
         wrong.weights.as_mut().unwrap()[3] = weight;
         for (a, b) in [(&wrong, &corner()), (&corner(), &wrong)] {
             let error = compare_filtrations(a, b).unwrap_err();
+            let CompareFiltrationsError::Schema(error) = error else { panic!("{error}") };
             assert!(matches!(error, SchemaError::Value { name: "points", .. }), "{error}");
         }
     }

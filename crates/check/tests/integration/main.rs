@@ -15,6 +15,7 @@ mod each_simplex;
 mod flat;
 mod flat_claims;
 mod geometry;
+mod monitor;
 mod mutations;
 #[cfg(all(feature = "json", feature = "npz"))]
 mod nonsense;

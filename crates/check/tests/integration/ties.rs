@@ -362,10 +362,8 @@ fn a_valid_complex_without_a_cell_is_wrong() {
     }
 }
 
-/// The filtration of a unit cube, cut along the diagonals of its mirror image: values and order are judged
-/// as of the other choice.
-#[test]
-fn a_filtration_with_another_choice_is_valid() {
+/// The filtration of a unit cube, cut along the diagonals of its mirror image.
+pub(crate) fn mirrored_cube() -> FiltrationFile {
     let case = Case { positions: grid(2), weights: vec![0.0; 8], alpha: f64::INFINITY };
     let complex = otherwise(&case, [0, 1, 2], [-1.0, 1.0, 1.0]).complex;
     assert_ne!(complex, definition(&case).unwrap().complex);
@@ -400,7 +398,13 @@ fn a_filtration_with_another_choice_is_valid() {
         (0..).zip(rows).map(|(i, row): (u32, Vec<u32>)| (value(&row), row.len(), row, i)).collect();
     order.sort_by(|a, b| a.partial_cmp(b).unwrap());
     file.order = order.into_iter().map(|(.., number)| number).collect();
+    file
+}
 
+/// Values and order are judged as of the other choice.
+#[test]
+fn a_filtration_with_another_choice_is_valid() {
+    let mut file = mirrored_cube();
     let (found, certificate) = certify_filtration(&file).unwrap();
     assert_eq!(certificate.verdict, Verdict::Valid, "{found:?}");
     assert!(!found.is_empty() && found.iter().all(FiltrationFinding::is_tie), "{found:?}");

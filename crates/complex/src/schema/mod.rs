@@ -44,8 +44,6 @@ mod filtration;
 mod json;
 #[cfg(feature = "npz")]
 mod npz;
-#[cfg(feature = "npz")]
-mod numbers;
 mod open;
 
 use serde::{Deserialize, Serialize};

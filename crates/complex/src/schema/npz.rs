@@ -1,10 +1,12 @@
+//! Complexes and filtrations in NPZ, the archives of arrays that `NumPy` writes.
+
 use std::io::{Read, Seek, SeekFrom};
 
 use walpha_base::npy::Header;
 use zip::ZipArchive;
 use zip::read::ZipFile;
 
-use super::{Classes, ComplexFile, SchemaError, numbers};
+use super::{Below, Classes, ComplexFile, FiltrationFile, PairsFile, SchemaError, Values};
 use crate::{Alpha, Class};
 
 /// Deflate expands by no more than this factor (zlib's technical details), so a larger claim is false.
@@ -23,7 +25,7 @@ impl ComplexFile {
     /// Missing, ill-shaped or unreadable arrays; numbers that cannot be indices or classes.
     pub fn read_npz(reader: impl Read + Seek) -> Result<Self, SchemaError> {
         let mut file = Npz::new(reader)?;
-        file.check(&ARRAYS)?;
+        file.check(&COMPLEX_ARRAYS)?;
         let alpha = file.numbers("alpha")?.ok_or(SchemaError::Missing("alpha"))?[0];
         let alpha = self::alpha("alpha", alpha)?;
         let classes = Classes {
@@ -49,7 +51,7 @@ impl ComplexFile {
 
 /// The shape that an array must have.
 #[derive(Clone, Copy)]
-pub(super) enum Kind {
+enum Kind {
     Scalar,
     /// One number for each row of another array.
     Column(&'static str),
@@ -57,7 +59,7 @@ pub(super) enum Kind {
     Rows(u64),
 }
 
-const ARRAYS: [(&str, Kind); 14] = [
+const COMPLEX_ARRAYS: [(&str, Kind); 14] = [
     ("points", Kind::Rows(3)),
     ("alpha", Kind::Scalar),
     ("periodic", Kind::Rows(1)),
@@ -75,14 +77,14 @@ const ARRAYS: [(&str, Kind); 14] = [
 ];
 
 /// The arrays of a file, read as doubles, which represent every index and class exactly.
-pub(super) struct Npz<R> {
+struct Npz<R> {
     archive: ZipArchive<R>,
     /// Size of the file in bytes.
     length: u64,
 }
 
 impl<R: Read + Seek> Npz<R> {
-    pub(super) fn new(mut reader: R) -> Result<Self, SchemaError> {
+    fn new(mut reader: R) -> Result<Self, SchemaError> {
         let damaged = |error: &dyn std::fmt::Display| SchemaError::Zip(error.to_string());
         let length = reader.seek(SeekFrom::End(0)).map_err(|error| damaged(&error))?;
         let archive = ZipArchive::new(reader).map_err(|error| damaged(&error))?;
@@ -90,7 +92,7 @@ impl<R: Read + Seek> Npz<R> {
     }
 
     /// Checks all headers: shapes, lengths that must be equal, and sizes beyond what the file can contain.
-    pub(super) fn check(&mut self, arrays: &[(&'static str, Kind)]) -> Result<(), SchemaError> {
+    fn check(&mut self, arrays: &[(&'static str, Kind)]) -> Result<(), SchemaError> {
         let mut counts = Vec::new();
         for &(name, kind) in arrays {
             let Some(rows) = self.check_one(name, kind)? else { continue };
@@ -144,7 +146,7 @@ impl<R: Read + Seek> Npz<R> {
     }
 
     /// The array of this name.
-    pub(super) fn member(&mut self, name: &str) -> Result<Option<ZipFile<'_, R>>, SchemaError> {
+    fn member(&mut self, name: &str) -> Result<Option<ZipFile<'_, R>>, SchemaError> {
         let is_it = |entry: &str| entry.strip_suffix(".npy").unwrap_or(entry) == name;
         let at = self.archive.file_names().position(is_it);
         let found = at.map(|at| self.archive.by_index(at)).transpose();
@@ -152,7 +154,7 @@ impl<R: Read + Seek> Npz<R> {
     }
 
     /// All numbers of an array, row by row.
-    pub(super) fn numbers(&mut self, name: &'static str) -> Result<Option<Vec<f64>>, SchemaError> {
+    fn numbers(&mut self, name: &'static str) -> Result<Option<Vec<f64>>, SchemaError> {
         let Some(member) = self.member(name)? else { return Ok(None) };
         let Array { header, mut member } = Array::open(name, member)?;
         let columns = match header.shape[..] {
@@ -162,7 +164,7 @@ impl<R: Read + Seek> Npz<R> {
             _ => None,
         };
         let bytes = member.size().saturating_sub(header.length);
-        let numbers = numbers::read(name, &header, &mut member, bytes)?;
+        let numbers = decoded(name, &header, &mut member, bytes)?;
         Ok(Some(match columns {
             None => numbers,
             Some((rows, columns)) => {
@@ -173,7 +175,7 @@ impl<R: Read + Seek> Npz<R> {
     }
 
     /// The sides of the periodic box, if there is one.
-    pub(super) fn sides(&mut self) -> Result<Option<[f64; 3]>, SchemaError> {
+    fn sides(&mut self) -> Result<Option<[f64; 3]>, SchemaError> {
         let Some(sides) = self.numbers("periodic")? else { return Ok(None) };
         let count = sides.len();
         sides.try_into().map(Some).map_err(|_| SchemaError::Array {
@@ -183,7 +185,7 @@ impl<R: Read + Seek> Npz<R> {
         })
     }
 
-    pub(super) fn list<T>(
+    fn list<T>(
         &mut self,
         name: &'static str,
         convert: impl Fn(&'static str, f64) -> Result<T, SchemaError>,
@@ -192,7 +194,7 @@ impl<R: Read + Seek> Npz<R> {
         numbers.into_iter().map(|x| convert(name, x)).collect::<Result<_, _>>().map(Some)
     }
 
-    pub(super) fn rows<T: Copy + Default, const N: usize>(
+    fn rows<T: Copy + Default, const N: usize>(
         &mut self,
         name: &'static str,
         convert: impl Fn(&'static str, f64) -> Result<T, SchemaError>,
@@ -224,7 +226,7 @@ impl<'a, R: Read> Array<'a, R> {
     }
 }
 
-pub(super) fn index(name: &'static str, value: f64) -> Result<u32, SchemaError> {
+fn index(name: &'static str, value: f64) -> Result<u32, SchemaError> {
     if value.fract() == 0.0 && (0.0..=f64::from(u32::MAX)).contains(&value) {
         Ok(value as u32)
     } else {
@@ -233,7 +235,7 @@ pub(super) fn index(name: &'static str, value: f64) -> Result<u32, SchemaError> 
     }
 }
 
-pub(super) fn alpha(name: &'static str, value: f64) -> Result<Alpha, SchemaError> {
+fn alpha(name: &'static str, value: f64) -> Result<Alpha, SchemaError> {
     Alpha::from_squared(value).map_err(|_| SchemaError::Value {
         name,
         value: value.to_string(),
@@ -248,4 +250,215 @@ fn class(name: &'static str, value: f64) -> Result<Class, SchemaError> {
         value: number.to_string(),
         expected: "a class (0 exterior, 1 interior, 2 regular, 3 singular)",
     })
+}
+
+const FILTRATION_ARRAYS: [(&str, Kind); 28] = [
+    ("points", Kind::Rows(3)),
+    ("weights", Kind::Column("points")),
+    ("vertices", Kind::Rows(1)),
+    ("edges", Kind::Rows(2)),
+    ("facets", Kind::Rows(3)),
+    ("cells", Kind::Rows(4)),
+    ("vertex_values", Kind::Column("vertices")),
+    ("edge_values", Kind::Column("edges")),
+    ("facet_values", Kind::Column("facets")),
+    ("cell_values", Kind::Column("cells")),
+    ("vertex_gabriel", Kind::Column("vertices")),
+    ("edge_gabriel", Kind::Column("edges")),
+    ("facet_gabriel", Kind::Column("facets")),
+    ("vertex_regular", Kind::Column("vertices")),
+    ("edge_regular", Kind::Column("edges")),
+    ("facet_regular", Kind::Column("facets")),
+    ("vertex_interior", Kind::Column("vertices")),
+    ("edge_interior", Kind::Column("edges")),
+    ("facet_interior", Kind::Column("facets")),
+    ("order", Kind::Rows(1)),
+    ("component_pairs", Kind::Rows(2)),
+    ("lasting_components", Kind::Rows(1)),
+    ("void_pairs", Kind::Rows(2)),
+    ("lasting_voids", Kind::Rows(1)),
+    ("last_cell", Kind::Rows(1)),
+    ("periodic", Kind::Rows(1)),
+    ("hidden", Kind::Rows(1)),
+    ("duplicates", Kind::Rows(2)),
+];
+
+/// The names of the arrays of vertices, edges and facets.
+struct ArrayNames([&'static str; 3]);
+
+impl FiltrationFile {
+    /// Whether NPZ holds a filtration: it has an array `order`.
+    pub(super) fn is_npz(reader: impl Read + Seek) -> bool {
+        Npz::new(reader).is_ok_and(|mut file| matches!(file.member("order"), Ok(Some(_))))
+    }
+
+    /// Reads NPZ. Before any array is read, what the headers claim is compared with the size of
+    /// the file and with each other.
+    ///
+    /// # Errors
+    /// Missing, ill-shaped or unreadable arrays; numbers that cannot be indices or values.
+    pub fn read_npz(reader: impl Read + Seek) -> Result<Self, SchemaError> {
+        let mut file = Npz::new(reader)?;
+        file.check(&FILTRATION_ARRAYS)?;
+        let components = file.rows("component_pairs", index)?;
+        let lasting = file.list("lasting_components", index)?;
+        let voids = file.rows("void_pairs", index)?;
+        let pairs = components.zip(lasting).zip(voids);
+        let lasting_voids = file.list("lasting_voids", index)?.unwrap_or_default();
+        let last = file.list("last_cell", index)?.unwrap_or_default().first().copied();
+        let pairs = pairs.map(|((components, lasting), voids)| PairsFile {
+            components,
+            lasting,
+            voids,
+            lasting_voids,
+            last,
+        });
+        let values = ArrayNames(["vertex_values", "edge_values", "facet_values"]);
+        let values =
+            below(&mut file, values, alpha)?.ok_or(SchemaError::Missing("vertex_values"))?;
+        let Below { vertices, edges, facets } = values;
+        let cells = required(&mut file, "cell_values", alpha)?;
+        Ok(Self {
+            points: file.rows("points", |_, x| Ok(x))?.unwrap_or_default(),
+            weights: file.numbers("weights")?,
+            vertices: required(&mut file, "vertices", index)?,
+            edges: file.rows("edges", index)?.ok_or(SchemaError::Missing("edges"))?,
+            facets: file.rows("facets", index)?.ok_or(SchemaError::Missing("facets"))?,
+            cells: file.rows("cells", index)?.ok_or(SchemaError::Missing("cells"))?,
+            values: Values { vertices, edges, facets, cells },
+            gabriel: below(
+                &mut file,
+                ArrayNames(["vertex_gabriel", "edge_gabriel", "facet_gabriel"]),
+                truth,
+            )?,
+            regular: below(
+                &mut file,
+                ArrayNames(["vertex_regular", "edge_regular", "facet_regular"]),
+                alpha,
+            )?,
+            interior: below(
+                &mut file,
+                ArrayNames(["vertex_interior", "edge_interior", "facet_interior"]),
+                alpha,
+            )?,
+            order: required(&mut file, "order", index)?,
+            pairs,
+            hidden: file.list("hidden", index)?,
+            duplicates: file.rows("duplicates", index)?,
+            periodic: file.sides()?,
+            #[cfg(feature = "json")]
+            info: None,
+        })
+    }
+}
+
+type Convert<T> = fn(&'static str, f64) -> Result<T, SchemaError>;
+
+/// Three arrays; `None` if the first is missing, and an error if only others are.
+fn below<R: Read + Seek, T>(
+    file: &mut Npz<R>,
+    ArrayNames([vertices, edges, facets]): ArrayNames,
+    convert: Convert<T>,
+) -> Result<Option<Below<T>>, SchemaError> {
+    let Some(of_vertices) = file.list(vertices, convert)? else { return Ok(None) };
+    let (edges, facets) = (required(file, edges, convert)?, required(file, facets, convert)?);
+    Ok(Some(Below { vertices: of_vertices, edges, facets }))
+}
+
+fn required<R: Read + Seek, T>(
+    file: &mut Npz<R>,
+    name: &'static str,
+    convert: Convert<T>,
+) -> Result<Vec<T>, SchemaError> {
+    file.list(name, convert)?.ok_or(SchemaError::Missing(name))
+}
+
+fn truth(name: &'static str, value: f64) -> Result<bool, SchemaError> {
+    match value {
+        0.0 => Ok(false),
+        1.0 => Ok(true),
+        _ => Err(SchemaError::Value { name, value: value.to_string(), expected: "0 or 1" }),
+    }
+}
+
+/// Bytes decoded at a time, so that the array and its numbers are never both completely in memory.
+const CHUNK_BYTES: usize = 8 << 20;
+
+/// All elements of an array in the order of the file. The reader is positioned after the header;
+/// `bytes` more follow, which must be exactly as many as the header claims.
+fn decoded(
+    name: &'static str,
+    header: &Header,
+    reader: &mut impl Read,
+    bytes: u64,
+) -> Result<Vec<f64>, SchemaError> {
+    let wrong = |got: String, expected: String| SchemaError::Array { name, got, expected };
+    let Some((size, decode)) = element(&header.descr) else {
+        let got = format!("elements of type {}", header.descr);
+        let expected = "bool, an integer of 8 to 64 bits, f4 or f8; save a.astype('f8')";
+        return Err(wrong(got, expected.into()));
+    };
+    let count = header.shape.iter().fold(1u64, |product, &n| product.saturating_mul(n));
+    let needed = count.saturating_mul(size as u64);
+    let claim = || format!("{needed} for shape {:?} of type {}", header.shape, header.descr);
+    if bytes != needed {
+        return Err(wrong(format!("{bytes} bytes of elements"), claim()));
+    }
+    let mut numbers = Vec::<f64>::new();
+    numbers.try_reserve_exact(usize::try_from(count).unwrap_or(usize::MAX)).map_err(|_| {
+        let bytes = u128::from(count) * size_of::<f64>() as u128;
+        SchemaError::Memory { name, bytes }
+    })?;
+    let damaged = |error| SchemaError::Zip(format!("{name}: {error}"));
+    let mut chunk = vec![0; needed.min(CHUNK_BYTES as u64) as usize];
+    let mut left = needed;
+    while left > 0 {
+        let chunk = &mut chunk[..left.min(CHUNK_BYTES as u64) as usize];
+        reader.read_exact(chunk).map_err(damaged)?;
+        numbers.extend(chunk.chunks_exact(size).map(decode));
+        left -= chunk.len() as u64;
+    }
+    // The archive verifies its checksum when a member is read to its end.
+    match reader.read(&mut [0]).map_err(damaged)? {
+        0 => Ok(numbers),
+        _ => Err(wrong("more bytes than its archive claims".into(), claim())),
+    }
+}
+
+/// Converts the bytes of one element to a double.
+type Decode = fn(&[u8]) -> f64;
+
+/// The size of an element in bytes and its conversion to a double, for a `NumPy` type such as `<f4`.
+/// Integers beyond 2⁵³ are rounded; no point number is that large.
+#[expect(clippy::cast_lossless, reason = "one rule for all types, of which two are lossy")]
+fn element(descr: &str) -> Option<(usize, Decode)> {
+    macro_rules! number {
+        ($kind:ty, $from:ident) => {
+            Some((size_of::<$kind>(), |bytes| {
+                <$kind>::$from(bytes.try_into().expect("the bytes of one element")) as f64
+            }))
+        };
+    }
+    let (order, kind) = descr.split_at_checked(1)?;
+    match (order, kind) {
+        ("<" | ">" | "|", "b1" | "u1") => number!(u8, from_le_bytes),
+        ("<" | ">" | "|", "i1") => number!(i8, from_le_bytes),
+        ("<", "u2") => number!(u16, from_le_bytes),
+        (">", "u2") => number!(u16, from_be_bytes),
+        ("<", "i2") => number!(i16, from_le_bytes),
+        (">", "i2") => number!(i16, from_be_bytes),
+        ("<", "u4") => number!(u32, from_le_bytes),
+        (">", "u4") => number!(u32, from_be_bytes),
+        ("<", "i4") => number!(i32, from_le_bytes),
+        (">", "i4") => number!(i32, from_be_bytes),
+        ("<", "u8") => number!(u64, from_le_bytes),
+        (">", "u8") => number!(u64, from_be_bytes),
+        ("<", "i8") => number!(i64, from_le_bytes),
+        (">", "i8") => number!(i64, from_be_bytes),
+        ("<", "f4") => number!(f32, from_le_bytes),
+        (">", "f4") => number!(f32, from_be_bytes),
+        ("<", "f8") => number!(f64, from_le_bytes),
+        (">", "f8") => number!(f64, from_be_bytes),
+        _ => None,
+    }
 }

@@ -1,4 +1,10 @@
-use crate::pixels::Rgb;
+//! Drawings of points, lines and text in the plane, and their SVG.
+
+use std::fmt::Write;
+
+use super::svg::{escape, num};
+use super::ticks::ticks;
+use crate::colour::Rgb;
 
 /// A plane drawing of points, lines, discs and text, y up. It does not depend on
 /// pixels; a [`Figure`](super::Figure) gives it a panel.
@@ -12,7 +18,7 @@ pub struct Drawing {
     pub(super) shapes: Vec<(Shape, Pen)>,
 }
 
-/// How a line or an area is drawn.
+/// The look of a line or an area.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pen {
     /// The colour of the line; `None` for an area without outline.
@@ -57,9 +63,9 @@ pub enum Step {
         to: [f64; 2],
         /// The radius of the circle.
         radius: f64,
-        /// Whether the way there turns counter-clockwise.
+        /// Whether the arc turns counter-clockwise.
         counter_clockwise: bool,
-        /// Whether it is more than half of the circle.
+        /// Whether the arc is more than half of the circle.
         large: bool,
     },
 }
@@ -124,7 +130,7 @@ impl Drawing {
         self.shapes.push((Shape::Dot { at, size }, Pen::area(colour, 1.0)));
     }
 
-    /// Text centred on a point, their size in thousandths of the panel's height.
+    /// Text centred on a point; `size` is in thousandths of the panel's height.
     pub fn text(&mut self, at: [f64; 2], size: f64, text: &str, colour: Rgb) {
         self.shapes.push((Shape::Text { at, size, text: text.into() }, Pen::area(colour, 1.0)));
     }
@@ -137,4 +143,179 @@ impl Drawing {
             self.outline(*start, steps, closed, pen);
         }
     }
+}
+
+impl Drawing {
+    /// The drawing as SVG elements in a panel whose upper left corner is at `corner`. `name` must
+    /// differ between the drawings of one file.
+    pub(super) fn write(&self, svg: &mut String, corner: [f64; 2], size: [f64; 2], name: &str) {
+        let unit = size[1] / 1000.0;
+        let letters = size[1] * LETTERS;
+        let (corner, size) = if self.axes.is_some() {
+            let [left, right, top, bottom] = [4.6, 0.8, 0.6, 2.8].map(|m| m * letters);
+            let inside = [size[0] - left - right, size[1] - top - bottom];
+            ([corner[0] + left, corner[1] + top], inside)
+        } else {
+            (corner, size)
+        };
+        let place = PlaneToPanel::new(self.bounds, corner, size, self.axes.is_some());
+        let [x, y] = corner.map(num);
+        let [w, h] = size.map(num);
+        let _ = writeln!(
+            svg,
+            r#"<clipPath id="{name}"><rect x="{x}" y="{y}" width="{w}" height="{h}"/></clipPath>"#
+        );
+        let _ = writeln!(svg, r#"<g clip-path="url(#{name})" stroke-linejoin="round">"#);
+        for (shape, pen) in &self.shapes {
+            write_shape(svg, shape, pen, &place, unit);
+        }
+        svg.push_str("</g>\n");
+        if let Some(labels) = &self.axes {
+            self.write_axes(svg, labels, &place, (corner, size), letters);
+        }
+    }
+
+    fn write_axes(
+        &self,
+        svg: &mut String,
+        [x_label, y_label]: &[String; 2],
+        place: &PlaneToPanel,
+        (corner, size): ([f64; 2], [f64; 2]),
+        letters: f64,
+    ) {
+        let [low, high] = self.bounds;
+        let (left, bottom) = (corner[0], corner[1] + size[1]);
+        let (mark, thin) = (letters * 0.35, num(letters * 0.07));
+        let mut lines = format!("M{} {}", num(left), num(corner[1]));
+        let _ = write!(lines, "V{}H{}", num(bottom), num(left + size[0]));
+        let mut words = String::new();
+        let mut word = |x: f64, y: f64, anchor: &str, text: &str| {
+            let (x, y, text) = (num(x), num(y), escape(text));
+            let _ =
+                writeln!(words, r#"<text x="{x}" y="{y}" text-anchor="{anchor}">{text}</text>"#);
+        };
+        let columns = (size[0] / (letters * 6.0)) as usize;
+        for (value, text) in ticks(low[0], high[0], columns.max(2)) {
+            let x = place.at([value, low[1]])[0];
+            let _ = write!(lines, "M{} {}v{}", num(x), num(bottom), num(mark));
+            word(x, bottom + letters * 1.25, "middle", &text);
+        }
+        let rows = (size[1] / (letters * 3.0)) as usize;
+        for (value, text) in ticks(low[1], high[1], rows.max(2)) {
+            let y = place.at([low[0], value])[1];
+            let _ = write!(lines, "M{} {}h{}", num(left), num(y), num(-mark));
+            word(left - mark * 1.6, y + letters * 0.35, "end", &text);
+        }
+        word(left + size[0] / 2.0, bottom + letters * 2.5, "middle", x_label);
+        let (x, y) = (num(left - letters * 3.6), num(corner[1] + size[1] / 2.0));
+        let text = escape(y_label);
+        let _ = writeln!(
+            words,
+            r#"<text transform="translate({x} {y}) rotate(-90)" text-anchor="middle">{text}</text>"#
+        );
+        let _ = writeln!(
+            svg,
+            r##"<path d="{lines}" fill="none" stroke="#333" stroke-width="{thin}"/>"##
+        );
+        let _ = writeln!(svg, r##"<g font-size="{}" fill="#222">"##, num(letters));
+        svg.push_str(&words);
+        svg.push_str("</g>\n");
+    }
+}
+
+/// The height of letters along axes, as a share of the panel's height.
+const LETTERS: f64 = 0.034;
+
+/// The map from the plane to the panel.
+struct PlaneToPanel {
+    scale: [f64; 2],
+    shift: [f64; 2],
+}
+
+impl PlaneToPanel {
+    fn new([low, high]: [[f64; 2]; 2], corner: [f64; 2], size: [f64; 2], stretch: bool) -> Self {
+        let extent = [0, 1].map(|k| if high[k] > low[k] { high[k] - low[k] } else { 1.0 });
+        let mut scale = [size[0] / extent[0], size[1] / extent[1]];
+        if !stretch {
+            scale = [scale[0].min(scale[1]); 2];
+        }
+        let middle = [0, 1].map(|k| f64::midpoint(low[k], high[k]));
+        let shift = [
+            corner[0] + size[0] / 2.0 - middle[0] * scale[0],
+            corner[1] + size[1] / 2.0 + middle[1] * scale[1],
+        ];
+        Self { scale, shift }
+    }
+
+    fn at(&self, p: [f64; 2]) -> [f64; 2] {
+        [self.shift[0] + p[0] * self.scale[0], self.shift[1] - p[1] * self.scale[1]]
+    }
+}
+
+fn write_shape(svg: &mut String, shape: &Shape, pen: &Pen, place: &PlaneToPanel, unit: f64) {
+    let look = look(pen, unit);
+    let _ = match shape {
+        Shape::Path { start, steps, closed } => {
+            let [x, y] = place.at(*start).map(num);
+            let mut path = format!("M{x} {y}");
+            for step in steps {
+                write_step(&mut path, step, place);
+            }
+            let end = if *closed { "Z" } else { "" };
+            writeln!(svg, r#"<path d="{path}{end}" {look}/>"#)
+        }
+        Shape::Disc { centre, radius } => {
+            let [x, y] = place.at(*centre).map(num);
+            let [rx, ry] = place.scale.map(|s| num(radius * s));
+            writeln!(svg, r#"<ellipse cx="{x}" cy="{y}" rx="{rx}" ry="{ry}" {look}/>"#)
+        }
+        Shape::Dot { at, size } => {
+            let [x, y] = place.at(*at).map(num);
+            writeln!(svg, r#"<circle cx="{x}" cy="{y}" r="{}" {look}/>"#, num(size * unit))
+        }
+        Shape::Text { at, size, text } => {
+            let [x, y] = place.at(*at);
+            let (letters, text) = (size * unit, escape(text));
+            let (x, y, size) = (num(x), num(y + letters * 0.35), num(letters));
+            writeln!(
+                svg,
+                r#"<text x="{x}" y="{y}" font-size="{size}" text-anchor="middle" {look}>{text}</text>"#
+            )
+        }
+    };
+}
+
+fn write_step(path: &mut String, step: &Step, place: &PlaneToPanel) {
+    let _ = match *step {
+        Step::Line(to) => {
+            let [x, y] = place.at(to).map(num);
+            write!(path, "L{x} {y}")
+        }
+        Step::Arc { to, radius, counter_clockwise, large } => {
+            let [x, y] = place.at(to).map(num);
+            let [rx, ry] = place.scale.map(|s| num(radius * s));
+            // The panel's y points down, which reverses turns.
+            let sweep = u8::from(!counter_clockwise);
+            write!(path, "A{rx} {ry} 0 {} {sweep} {x} {y}", u8::from(large))
+        }
+    };
+}
+
+fn look(pen: &Pen, unit: f64) -> String {
+    let mut look = match pen.fill {
+        Some(colour) => format!(r#"fill="{}""#, colour.hex()),
+        None => r#"fill="none""#.into(),
+    };
+    if pen.fill.is_some() && pen.fill_opacity < 1.0 {
+        let _ = write!(look, r#" fill-opacity="{}""#, num(pen.fill_opacity));
+    }
+    if let Some(colour) = pen.stroke {
+        let width = pen.width * unit;
+        let _ = write!(look, r#" stroke="{}" stroke-width="{}""#, colour.hex(), num(width));
+        if pen.dashed {
+            let _ =
+                write!(look, r#" stroke-dasharray="{} {}""#, num(width * 4.0), num(width * 3.0));
+        }
+    }
+    look
 }

@@ -1,5 +1,5 @@
 /// Round numbers within a range, about `count` of them: multiples of 1, 2 or 5 times a power of
-/// ten, written as short as they can be. None for a range that is empty or not finite.
+/// ten, written as short as possible. None for a range that is empty or not finite.
 pub(super) fn ticks(low: f64, high: f64, count: usize) -> Vec<(f64, String)> {
     let rough = (high - low) / count.max(1) as f64;
     if !(rough > 0.0 && rough.is_finite() && rough > low.abs().max(high.abs()) * 1e-12) {

@@ -1,7 +1,7 @@
 use walpha_base::vector::{self, V3, along, dot, scale, sub, unit};
 
 use super::sphere;
-use super::stage::Stage;
+use crate::light::Stage;
 use crate::pixels::{Patch, PixelBox, SAMPLES, Size, sample_position};
 use crate::scene::{Lens, Tube};
 
@@ -12,7 +12,7 @@ pub(crate) struct Capsule {
     /// In the eye's axes, cut off where the tube would reach the eye.
     ends: [V3; 2],
     radius: f64,
-    /// The ends in pixels, and no pixel centre further than this from the line between them is
+    /// The ends in pixels. No pixel whose centre is further than `reach` from the line between them is
     /// touched.
     line: [[f64; 2]; 2],
     reach: f64,
@@ -103,7 +103,7 @@ impl Capsule {
         let (along_axis, start) = (dot(axis, direction), dot(axis, w));
         let across = dot(direction, direction) * square - along_axis * along_axis;
         if across <= 1e-12 * square {
-            // Seen end-on, or both ends in one place: the nearer cap is all there is to see.
+            // Seen end-on, or both ends at one position: only the nearer cap is visible.
             let nearer = if a[2] <= b[2] { a } else { b };
             return sphere::entry(origin, direction, nearer, self.radius);
         }
@@ -115,7 +115,7 @@ impl Capsule {
         }
         let t = (-half - root.sqrt()) / across;
         let at = start + t * along_axis;
-        // A line that enters the endless cylinder beyond an end can only enter by that cap.
+        // A line that enters the infinite cylinder beyond an end can enter the tube only through that cap.
         if at < 0.0 {
             sphere::entry(origin, direction, a, self.radius)
         } else if at > square {

@@ -1,20 +1,19 @@
-//! Triangles, balls and tubes on the pixel grid: which samples each covers, and its light there.
+//! Triangles, balls and tubes on the pixel grid: the samples that each covers, and its colour there.
 
 mod capsule;
 mod sphere;
-mod stage;
 mod triangle;
 
 use rayon::prelude::*;
 
+use crate::light::Stage;
 use crate::pixels::{Patch, PixelBox, Size};
 use crate::scene::{Lens, Scene};
 use capsule::Capsule;
 use sphere::Sphere;
-pub(crate) use stage::Stage;
 use triangle::Triangle;
 
-/// A triangle, ball or tube that can be nearest in a sample.
+/// A triangle, ball or tube.
 pub(crate) enum Primitive {
     Triangle(Triangle),
     Sphere(Sphere),
@@ -22,7 +21,7 @@ pub(crate) enum Primitive {
 }
 
 impl Primitive {
-    /// All of a scene that may be in the picture.
+    /// The primitives of a scene that may be in the picture.
     pub(crate) fn all(scene: &Scene, lens: &Lens, size: Size) -> Vec<Self> {
         let mut all = Vec::new();
         for (mesh, layer) in scene.meshes.iter().enumerate() {
@@ -57,7 +56,7 @@ impl Primitive {
         }
     }
 
-    /// The light that comes to the eye from what is seen at a pixel position.
+    /// The light that reaches the eye from the surface at a pixel position.
     pub(crate) fn shade(&self, stage: &Stage, x: f64, y: f64) -> [f32; 3] {
         match self {
             Self::Triangle(t) => t.shade(stage, x, y),

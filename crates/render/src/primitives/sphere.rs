@@ -1,10 +1,10 @@
 use walpha_base::vector::{V3, add, along, dot, scale, sub, unit};
 
-use super::stage::Stage;
+use crate::light::Stage;
 use crate::pixels::{Patch, PixelBox, SAMPLES, Size, sample_position};
 use crate::scene::{Ball, Lens, Projection};
 
-/// A ball on the pixel grid: the exact outline and depth of a sphere, no facets.
+/// A ball on the pixel grid, with the exact outline and depth of a sphere.
 pub(crate) struct Sphere {
     pub bounds: PixelBox,
     ball: u32,

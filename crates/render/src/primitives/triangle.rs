@@ -1,7 +1,6 @@
 use walpha_base::vector::{V3, add, along, cross, dot, scale, sub, unit};
 
-use super::stage::Stage;
-use crate::light::Side;
+use crate::light::{Side, Stage};
 use crate::pixels::{Patch, PixelBox, SAMPLE, SAMPLES, STEPS, Size, sample_position};
 use crate::scene::{Colours, Lens, Mesh, Projection, Shading};
 
@@ -13,7 +12,7 @@ pub(crate) struct Triangle {
     pub mesh: u32,
     pub bounds: PixelBox,
     triangle: u32,
-    /// In 1/256 pixel, turning so that the area is positive.
+    /// In 1/256 pixel, ordered so that the area is positive.
     corners: [[i64; 2]; 3],
     /// Nearness is a·x + b·y + c at pixel position (x, y), and is kept within `range`.
     plane: [f64; 3],
@@ -165,7 +164,7 @@ struct Edge {
     delta: [i64; 2],
     /// −1 where samples exactly on the edge belong to the neighbour.
     bias: i64,
-    /// What each sample of a pixel adds to the value at its corner, and the most any adds.
+    /// What each sample of a pixel adds to the value at the pixel's corner, and the largest of these.
     step: [i64; SAMPLES],
     most: i64,
 }
@@ -174,8 +173,8 @@ impl Edge {
     fn new(from: [i64; 2], to: [i64; 2]) -> Self {
         let [dx, dy] = [to[0] - from[0], to[1] - from[1]];
         let step = SAMPLE.map(|[x, y]| dx * y - dy * x);
-        // As if every sample stood a little to the right and, much less, further down: then none
-        // is on an edge, and of the two directions of an edge exactly one owns it.
+        // As if every sample were moved a little to the right and, far less, down: then none is on an edge, and exactly one
+        // of the two directions of an edge owns it.
         let bias = if dy < 0 || (dy == 0 && dx > 0) { 0 } else { -1 };
         let most = step.into_iter().fold(i64::MIN, i64::max);
         Self { from, delta: [dx, dy], bias, step, most }
@@ -189,7 +188,7 @@ impl Edge {
     }
 }
 
-/// The corners in the order of positive area; `None` when the area is zero.
+/// The corners, ordered so that the area is positive; `None` when the area is zero.
 fn turned([a, b, c]: [[i64; 2]; 3]) -> Option<[[i64; 2]; 3]> {
     let area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
     match area {

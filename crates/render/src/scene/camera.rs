@@ -3,7 +3,7 @@ use walpha_base::vector::{V3, add, cross, dot, length, scale, sub, unit};
 use crate::error::RenderError;
 use crate::pixels::Size;
 
-/// How depth changes size.
+/// Perspective or parallel projection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Projection {
     /// Lines of sight meet in the eye.
@@ -48,7 +48,7 @@ impl View {
     }
 }
 
-/// The position of the eye, and its field of view.
+/// The position of the eye and its field of view.
 ///
 /// The opening is given by the height of the visible part at the target, not by an angle, so that
 /// both projections show the target at the same size, and no tangent has to be rounded. A vertical
@@ -87,7 +87,7 @@ impl Camera {
         Self { eye, target, up, height, projection: Projection::Perspective }
     }
 
-    /// The camera in the direction of a view that just sees a whole box in a picture of this size.
+    /// The camera that sees a box from the direction of a view so that the box just fits into a picture of this size.
     ///
     /// `bounds` are the corners of smallest and of largest coordinates. A box that is one point is
     /// seen at height 1.
@@ -133,7 +133,7 @@ impl Camera {
     }
 }
 
-/// A camera made ready for a picture: world to pixel and pixel to line of sight.
+/// A camera for pictures of one size: from the world to pixels, and from pixels to lines of sight.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Lens {
     pub eye: V3,

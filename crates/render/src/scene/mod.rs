@@ -5,10 +5,10 @@ mod camera;
 pub(crate) use camera::Lens;
 pub use camera::{Camera, Projection, View};
 
+use crate::colour::Rgb;
 use crate::error::RenderError;
-use crate::pixels::Rgb;
 
-/// A scene, which can be seen by any camera.
+/// A scene, independent of the camera.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Scene {
     /// Surfaces.
@@ -77,7 +77,7 @@ pub enum Colours {
     Vertex(Vec<Rgb>),
 }
 
-/// How a mesh is shaded.
+/// Flat or smooth shading.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shading {
     /// Each triangle is visible as a plane.

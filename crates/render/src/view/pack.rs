@@ -98,7 +98,7 @@ fn isosurface(original: &Original<'_>) -> Result<Isosurface, RenderError> {
     Ok(surface)
 }
 
-/// Three levels each, which fit bytes.
+/// Three levels per span, a byte each.
 fn bytes<'a>(spans: impl Iterator<Item = &'a Span>) -> Vec<u8> {
     spans.flat_map(|span| [span.first, span.regular, span.interior].map(|k| k as u8)).collect()
 }

@@ -11,10 +11,10 @@ use plotly::traces::mesh3d::{IntensityMode, LightPosition, Lighting};
 use plotly::{Configuration, Layout, Mesh3D, Plot, Scatter3D};
 
 use super::subject::Subject;
-use crate::pixels::PALETTE;
+use crate::colour::PALETTE;
 
-/// The traces in the order in which the page's script fills them, and the layout. Traces without
-/// data: the arrays of a level are put together in the browser.
+/// The traces, in the order in which the page's script fills them, and the layout. The traces have no data: the
+/// arrays of a level are put together in the browser.
 pub(super) fn plot(subject: &Subject<'_>) -> Plot {
     let mut plot = Plot::new();
     let valued = subject.is_valued();

@@ -3,7 +3,7 @@ use std::fmt;
 use serde::Serialize;
 
 use crate::Alpha;
-use crate::certify::{Finding, Simplex};
+use crate::certify::finding::{Finding, Simplex};
 use crate::exact::Exact;
 
 /// An error of a filtration: the rule that is broken, the simplex that breaks it, and the exact

@@ -1,12 +1,11 @@
 //! The order in which simplices enter.
 
+use walpha_base::{Cancelled, Monitor};
 use walpha_complex::canonical::sorted;
 
 use super::finding::FiltrationFinding;
-use super::row_numbers::RowNumbers;
-use super::spans::Spans;
-use super::values::Ranks;
-use crate::certify::Simplex;
+use super::values::{Ranks, RowNumbers, Spans};
+use crate::certify::finding::Simplex;
 use crate::schema::FiltrationFile;
 
 /// Judges that each simplex is in the order once, and comes after the one before it: by the exact
@@ -16,7 +15,8 @@ pub(super) fn judge(
     rows: &RowNumbers,
     ranks: &Ranks,
     spans: &Spans,
-) -> Vec<FiltrationFinding> {
+    monitor: &Monitor,
+) -> Result<Vec<FiltrationFinding>, Cancelled> {
     let counts = [file.vertices.len(), file.edges.len(), file.facets.len(), file.cells.len()];
     let total: usize = counts.iter().sum();
     let mut findings = Vec::new();
@@ -30,10 +30,12 @@ pub(super) fn judge(
     let absent = (0..).zip(&seen).filter(|(_, seen)| !**seen);
     findings.extend(absent.map(|(number, _)| FiltrationFinding::Absent { number }));
     if !findings.is_empty() {
-        return findings;
+        return Ok(findings);
     }
     let key_of = |number: u32| OrderKey::of(file, number, counts, rows, spans);
+    let pairs = monitor.units(total as u64);
     for pair in file.order.windows(2) {
+        pairs.add(1)?;
         let [before, after] = [pair[0], pair[1]].map(key_of);
         if before.key() > after.key() {
             let exact = |key: &OrderKey| ranks.exact(key.rank).cloned().unwrap_or_default();
@@ -45,7 +47,7 @@ pub(super) fn judge(
             });
         }
     }
-    findings
+    Ok(findings)
 }
 
 /// What determines the position of a simplex in the order.

@@ -3,9 +3,10 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use walpha_base::{Cancelled, Monitor};
+
 use super::finding::FiltrationFinding;
-use super::row_numbers::RowNumbers;
-use super::spans::Spans;
+use super::values::{RowNumbers, Spans};
 use crate::certify::structure::Structure;
 use crate::schema::{FiltrationFile, PairsFile};
 
@@ -17,17 +18,18 @@ pub(super) fn judge(
     structure: &Structure,
     rows: &RowNumbers,
     spans: &Spans,
-) -> Vec<FiltrationFinding> {
+    monitor: &Monitor,
+) -> Result<Vec<FiltrationFinding>, Cancelled> {
     let pairing = Pairing { file, structure, rows, spans };
-    let (components, lasting) = pairing.components();
+    let (components, lasting) = pairing.components(&monitor.part(0, 1, 2))?;
     let mut findings = differences(0, &given.components, &components);
-    findings.extend(differences(2, &given.voids, &pairing.voids()));
+    findings.extend(differences(2, &given.voids, &pairing.voids(&monitor.part(1, 2, 2))?));
     let listed: BTreeSet<u32> = given.lasting.iter().copied().collect();
     if listed != lasting || listed.len() != given.lasting.len() {
         let (given, expected) = (given.lasting.clone(), lasting.into_iter().collect());
         findings.push(FiltrationFinding::Lasting { given, expected });
     }
-    findings
+    Ok(findings)
 }
 
 /// Findings on wrong, repeated and missing pairs.
@@ -55,13 +57,18 @@ struct Pairing<'a> {
 
 impl Pairing<'_> {
     /// In order: a vertex creates a component, and an edge between two components ends the younger one.
-    fn components(&self) -> (BTreeSet<[u32; 2]>, BTreeSet<u32>) {
+    fn components(
+        &self,
+        monitor: &Monitor,
+    ) -> Result<(BTreeSet<[u32; 2]>, BTreeSet<u32>), Cancelled> {
+        let work = monitor.units(self.file.order.len() as u64);
         let vertices = self.file.vertices.len() as u32;
         let edges = self.file.edges.len() as u32;
         let number: BTreeMap<u32, u32> = self.file.vertices.iter().copied().zip(0..).collect();
         let mut oldest = Oldest::default();
         let mut pairs = BTreeSet::new();
         for &simplex in &self.file.order {
+            work.add(1)?;
             if simplex < vertices {
                 oldest.begin(simplex);
             } else if simplex - vertices < edges {
@@ -75,12 +82,13 @@ impl Pairing<'_> {
                 }
             }
         }
-        (pairs, oldest.remaining())
+        Ok((pairs, oldest.remaining()))
     }
 
     /// In reverse order: a cell creates a component of the complement, and a facet between two components ends the
     /// younger one. The outside is the oldest.
-    fn voids(&self) -> BTreeSet<[u32; 2]> {
+    fn voids(&self, monitor: &Monitor) -> Result<BTreeSet<[u32; 2]>, Cancelled> {
+        let work = monitor.units(self.file.order.len() as u64);
         let below = self.file.vertices.len() + self.file.edges.len();
         let [facets, cells] = [below, below + self.file.facets.len()].map(|n| n as u32);
         // By rows of the triangulation, the numbers of the file.
@@ -89,6 +97,7 @@ impl Pairing<'_> {
         oldest.begin(OUTSIDE);
         let mut pairs = BTreeSet::new();
         for &simplex in self.file.order.iter().rev() {
+            work.add(1)?;
             if simplex >= cells {
                 oldest.begin(simplex);
             } else if simplex >= facets {
@@ -103,7 +112,7 @@ impl Pairing<'_> {
                 }
             }
         }
-        pairs
+        Ok(pairs)
     }
 }
 

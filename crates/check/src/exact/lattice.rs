@@ -1,13 +1,15 @@
+//! Volumes, planes and hyperplanes as integers, in units common to all points.
+
 use std::cmp::Ordering;
 use std::ops::Add;
 
 use dashu_int::IBig;
 use dashu_int::ops::Gcd;
 use rayon::prelude::*;
+use walpha_base::{Cancelled, Monitor};
 
-use super::binary::{Binary, Range};
-use super::frame::{cross, dot};
-use super::number::{Number, sign};
+use super::frame::{WeightedPoint, cross, dot};
+use super::number::{Binary, Number, Range, sign};
 
 /// The integer grid that holds a set of positions: coordinates in units of a power of two.
 #[derive(Clone, Copy, Debug)]
@@ -37,7 +39,15 @@ impl Lattice {
 
     /// The exact sum of det(b−a, c−a, d−a) over tetrahedra, in cubed lattice units: six times
     /// their volume. Cost linear, in parallel.
-    pub(crate) fn six_volumes<F>(self, count: usize, tetrahedron: F) -> IBig
+    ///
+    /// # Errors
+    /// The work was cancelled.
+    pub(crate) fn six_volumes<F>(
+        self,
+        count: usize,
+        monitor: &Monitor,
+        tetrahedron: F,
+    ) -> Result<IBig, Cancelled>
     where
         F: Fn(usize) -> [[f64; 3]; 4] + Sync,
     {
@@ -45,16 +55,18 @@ impl Lattice {
         let fits = 3 * (self.bits + 1) + 3 + CHUNK.ilog2() <= 127;
         let chunks = (0..count).into_par_iter().step_by(CHUNK);
         let range = |start: usize| start..(start + CHUNK).min(count);
+        let units = monitor.units(count as u64);
         let sums = chunks.map(|start| {
-            if fits {
+            units.add(range(start).len() as u64)?;
+            Ok(if fits {
                 let det = |i| det4(tetrahedron(i).map(|p| self.small(p)));
                 IBig::from(range(start).map(det).sum::<i128>())
             } else {
                 let det = |i| det4(tetrahedron(i).map(|p| self.big(p)));
                 range(start).map(det).fold(IBig::ZERO, Add::add)
-            }
+            })
         });
-        sums.reduce(|| IBig::ZERO, Add::add)
+        sums.try_reduce(|| IBig::ZERO, |a, b| Ok(a + b))
     }
 
     /// The plane through three points that are not on one line, the same for whichever three:
@@ -131,6 +143,56 @@ fn det3(u: &[IBig; 3], v: &[IBig; 3], w: &[IBig; 3]) -> Ordering {
     sign(&dot(&cross(u, v), w))
 }
 
+/// Units in which the coordinates of points and their lifted heights |p|² − ω are integers.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Lift {
+    coordinate: i32,
+    height: i32,
+}
+
+impl Lift {
+    /// The coarsest units for all these points.
+    pub(crate) fn through(points: impl Iterator<Item = WeightedPoint>) -> Self {
+        let (mut lengths, mut squares) = (Range::EMPTY, Range::EMPTY);
+        for point in points {
+            lengths = point.position.iter().fold(lengths, |range, &x| range.with(Binary::new(x)));
+            squares = squares.with(Binary::new(point.weight));
+        }
+        let coordinate = lengths.unit().unwrap_or(0);
+        let height = squares.unit().unwrap_or(i32::MAX).min(2 * coordinate);
+        Self { coordinate, height }
+    }
+
+    /// The hyperplane through four lifted points that span a volume, the same for any four of its
+    /// points: cells with one orthogonal sphere have one hyperplane.
+    ///
+    /// For D = det(b−a, c−a, d−a) and n the normal with n·(b−a) = D·(h(b) − h(a)) and so on, the
+    /// height at x is (n·x + o)/D. These five integers are without common factor, and D > 0.
+    pub(crate) fn hyperplane(self, cell: [WeightedPoint; 4]) -> [IBig; 5] {
+        let [(a, height), others @ ..] = cell.map(|point| self.lifted(&point));
+        let [(u, s), (v, t), (w, r)] =
+            others.map(|(p, h)| ([0, 1, 2].map(|k| &p[k] - &a[k]), h - &height));
+        let det = dot(&u, &cross(&v, &w));
+        let normals = [cross(&v, &w), cross(&w, &u), cross(&u, &v)];
+        let [x, y, z] =
+            [0, 1, 2].map(|k| &normals[0][k] * &s + &normals[1][k] * &t + &normals[2][k] * &r);
+        let offset = &det * height - dot(&[x.clone(), y.clone(), z.clone()], &a);
+        let plane = [x, y, z, offset, det];
+        let numbers = plane.iter().filter(|number| !number.is_zero()).cloned();
+        let divisor = numbers.reduce(|common, number| (&common).gcd(&number).into());
+        let divisor = divisor.expect("four points that span a volume");
+        let divisor = if sign(&plane[4]).is_lt() { -divisor } else { divisor };
+        plane.map(|number| number / &divisor)
+    }
+
+    fn lifted(self, point: &WeightedPoint) -> ([IBig; 3], IBig) {
+        let position = point.position.map(|x| Binary::new(x).big(self.coordinate));
+        let finer = (2 * self.coordinate - self.height) as usize;
+        let square = dot(&position, &position) << finer;
+        (position, square.minus(&Binary::new(point.weight).big(self.height)))
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -138,15 +200,17 @@ mod tests {
     /// The largest tetrahedra of a lattice, so many that their sum exceeds an `i128`.
     #[test]
     fn volumes_do_not_overflow() {
+        let noop = Monitor::noop();
         for bits in 34..42 {
             let m = f64::from(2).powi(bits) - 1.0;
             let cell = [[m, m, m], [m, -m, -m], [-m, -m, m], [-m, m, -m]];
             let lattice = Lattice::through(&cell);
-            let one = lattice.six_volumes(1, |_| cell);
+            let one = lattice.six_volumes(1, &noop, |_| cell).unwrap();
             let side = IBig::from(2 * (1i128 << bits) - 2);
             assert_eq!(one, IBig::from(2) * &side * &side * &side);
             for count in [CHUNK, if bits == 36 { 64 * CHUNK + 5 } else { CHUNK + 5 }] {
-                assert_eq!(lattice.six_volumes(count, |_| cell), &one * count, "{bits} {count}");
+                let sum = lattice.six_volumes(count, &noop, |_| cell).unwrap();
+                assert_eq!(sum, &one * count, "{bits} {count}");
             }
         }
     }
@@ -163,5 +227,25 @@ mod tests {
         assert_eq!(one, lattice.plane([positions[5], positions[0], positions[3]]));
         let above = positions.map(|[x, y, z]| [x, y, z + 0.5]);
         assert_ne!(one, lattice.plane([above[3], above[4], above[5]]));
+    }
+
+    #[test]
+    fn cells_on_one_sphere_have_one_hyperplane() {
+        let corner = |i: usize| [i & 1, i >> 1 & 1, i >> 2].map(|k| 0.5 * k as f64);
+        // Finer than the coordinates, coarser, and none.
+        for weight in [0.1, 2.0, 0.0] {
+            let site = |i: usize| WeightedPoint { position: corner(i), weight };
+            let lift = Lift::through((0..8).map(site));
+            let one = lift.hyperplane([0, 1, 2, 4].map(site));
+            assert_eq!(one, lift.hyperplane([7, 6, 5, 3].map(site)));
+            assert_eq!(one, lift.hyperplane([1, 0, 2, 4].map(site)));
+            let mut far = [7, 6, 5, 3].map(site);
+            far[0].position = [1.0; 3];
+            assert_ne!(one, Lift::through((0..8).map(site)).hyperplane(far));
+            let mut apart = [7, 6, 5, 3].map(site);
+            apart[3].weight = apart[3].weight.next_up();
+            let lift = Lift::through((0..8).map(site).chain(apart));
+            assert_ne!(lift.hyperplane([0, 1, 2, 4].map(site)), lift.hyperplane(apart));
+        }
     }
 }

@@ -1,8 +1,5 @@
 //! Files with filtrations.
 
-#[cfg(feature = "npz")]
-mod npz;
-
 use serde::{Deserialize, Serialize};
 
 use super::SchemaError;

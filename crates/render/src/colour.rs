@@ -7,11 +7,11 @@ pub struct Rgb(pub [u8; 3]);
 impl Rgb {
     /// White.
     pub const WHITE: Self = Self([255; 3]);
-    /// The light warm gray of bare bone, which can become lighter and darker.
+    /// The light, warm gray of bare bone, which leaves room for light and shadow.
     pub const BONE: Self = Self([222, 212, 194]);
 
-    /// Amounts of light, 0 to 1. The square replaces the sRGB curve (exponent 2.2 or so):
-    /// its inverse is a square root, which every machine rounds the same way.
+    /// Linear light, 0 to 1. The square replaces the sRGB curve (an exponent of about 2.2):
+    /// its inverse is a square root, which every machine rounds alike.
     pub(crate) fn light(self) -> [f32; 3] {
         self.0.map(|c| {
             let c = f32::from(c) / 255.0;

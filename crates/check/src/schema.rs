@@ -1,11 +1,45 @@
+//! Complexes from files, ready to be judged. The contents and formats of files are those of [`walpha_complex::schema`].
+
+pub use walpha_complex::schema::*;
+
 use std::collections::{BTreeMap, BTreeSet};
 
 use walpha_complex::canonical::{outward_facets, smallest_even, sort, sorted};
 
-use super::{ComplexFile, PlacedComplex, SchemaError};
 use crate::exact::orientation;
-use crate::periodic::{moved, nearest_copy};
-use crate::{Class, Complex, Simplices};
+use crate::{Alpha, Class, Complex, Placed, Simplices};
+
+/// A complex with its points, in canonical order, ready to be judged.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlacedComplex {
+    /// x, y, z of each point.
+    pub positions: Vec<[f64; 3]>,
+    /// Power weights.
+    pub weights: Vec<f64>,
+    /// α.
+    pub alpha: Alpha,
+    /// The complex.
+    pub complex: Complex,
+    /// Points listed as hidden, if they are listed.
+    pub hidden: Option<Vec<u32>>,
+    /// Duplicates, if they are listed.
+    pub duplicates: Option<Vec<[u32; 2]>>,
+    /// The sides of the periodic box, if there is one.
+    pub periodic: Option<[f64; 3]>,
+}
+
+impl PlacedComplex {
+    /// The complex, borrowed for comparison.
+    pub fn placed(&self) -> Placed<'_> {
+        Placed::new(&self.positions, &self.weights, self.alpha, &self.complex)
+    }
+
+    /// The same complex in a periodic box with these sides, or in space.
+    #[must_use]
+    pub fn with_periodic(self, periodic: Option<[f64; 3]>) -> Self {
+        Self { periodic, ..self }
+    }
+}
 
 impl TryFrom<ComplexFile> for PlacedComplex {
     type Error = SchemaError;
@@ -186,4 +220,17 @@ pub(crate) fn orient(complex: &mut Complex, points: &[[f64; 3]], periodic: Optio
 /// Whether coordinates are finite. The checker reports those that are not.
 fn finite(positions: &[[f64; 3]]) -> bool {
     positions.as_flattened().iter().all(|x| x.is_finite())
+}
+
+/// The multiples of the sides that move `to` to its copy nearest to `from`.
+pub(crate) fn nearest_copy(sides: [f64; 3], from: [f64; 3], to: [f64; 3]) -> [i32; 3] {
+    [0, 1, 2].map(|k| {
+        let (way, half) = (to[k] - from[k], sides[k] / 2.0);
+        i32::from(way < -half) - i32::from(way > half)
+    })
+}
+
+/// A position moved by multiples of the sides.
+pub(crate) fn moved(sides: [f64; 3], position: [f64; 3], by: [i32; 3]) -> [f64; 3] {
+    [0, 1, 2].map(|k| position[k] + f64::from(by[k]) * sides[k])
 }
