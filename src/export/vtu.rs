@@ -139,7 +139,7 @@ struct Grid {
     offsets: Ids,
     types: Vec<u8>,
     classes: Vec<u8>,
-    /// PointData so far.
+    /// Data of points so far.
     end: usize,
 }
 

@@ -129,7 +129,7 @@ impl<T: Number, const N: usize> Number for [T; N] {
     }
 }
 
-/// MergedNumbers out of their bytes; `None` where some are left.
+/// Numbers out of their bytes; `None` where some are left.
 pub(super) fn numbers<T: Number>(bytes: &[u8]) -> Option<Vec<T>> {
     let whole = bytes.len().is_multiple_of(T::SIZE);
     whole.then(|| bytes.chunks(T::SIZE).map(T::get).collect())

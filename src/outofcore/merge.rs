@@ -192,7 +192,7 @@ fn united(count: u32, pairs: &[[u32; 2]]) -> UnionFind {
     sets
 }
 
-/// MergedNumbers components in the order of their smallest vertices: for each part its number, and the
+/// Numbers components in the order of their smallest vertices: for each part its number, and the
 /// components. A part without vertices has none of its own.
 fn number_components<'a>(
     parts: impl Iterator<Item = &'a BlockComponent>,
@@ -219,7 +219,7 @@ fn number_components<'a>(
     (numbers, order.into_iter().map(|(_, _, sums)| sums).collect())
 }
 
-/// MergedNumbers sheets in the order in which they are met: for each part its number, and the sheets with their
+/// Numbers sheets in the order in which they are met: for each part its number, and the sheets with their
 /// components. A part comes with the number of the first component of its block.
 fn number_sheets(
     parts: &[(&BlockSheet, usize)],

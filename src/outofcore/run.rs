@@ -118,7 +118,7 @@ fn points(plan: &Plan, block: usize) -> Result<Points, BlocksError> {
     Ok(points)
 }
 
-/// MergedNumbers from 0 in the order in which keys are met first.
+/// Numbers from 0 in the order in which keys are met first.
 struct Numbering(Vec<u32>, u32);
 
 const NONE: u32 = u32::MAX;

@@ -31,7 +31,7 @@ pub(super) fn write(
     fill_folder(path, failed, |part| fill(plan, merged, part, monitor))
 }
 
-/// Fills a folder: a group for each dimension, with the rows of all blocks, the first block first. PointData are
+/// Fills a folder: a group for each dimension, with the rows of all blocks, the first block first. Corners are
 /// named by their index in the volume, which `vertices/corners` and `vertices/positions` tie to places. A block
 /// for each thread is in memory.
 fn fill(plan: &Plan, merged: &Merged, folder: &Path, monitor: &Monitor) -> Result<(), BlocksError> {

@@ -86,9 +86,8 @@ fn remark(others: &[Compressor]) -> String {
     } else {
         format!(
             "Curves of compressors, and that of points exchanged and fitted (--exchange --refit), which take \
-             longer to choose, were measured on {} by benches/race_compressors.py, each in its own kind of \
-             file; that of {OURS} alone is computed now.",
-            DATE
+             longer to choose, were measured on {DATE} by benches/race_compressors.py, each in its own kind of \
+             file; that of {OURS} alone is computed now."
         )
     };
     format!(

@@ -149,7 +149,7 @@ fn draw_cells(shape: &WeightedPlaneShape) -> Drawing {
         let pen = Pen { fill: Some(Rgb([222, 234, 245])), ..Pen::line(PALETTE[1], 2.5) };
         match boundary[..] {
             [OutlinePiece::Arc(arc)] if arc.is_circle() => {
-                drawing.disc(arc.centre, arc.radius, pen)
+                drawing.disc(arc.centre, arc.radius, pen);
             }
             _ => {
                 let steps = boundary.iter().map(step).collect();

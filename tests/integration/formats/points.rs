@@ -46,7 +46,9 @@ fn points_come_through_a_pipe_that_is_opened_once() {
         let (opened, done) = mpsc::channel();
         let input = path.clone();
         thread::spawn(move || {
-            opened.send(Recipe::default().open(&input, &Monitor::noop()).map_err(|e| e.to_string()))
+            let read = Recipe::default().open(&input, &Monitor::noop());
+            // Nobody listens where the test has ended.
+            drop(opened.send(read.map_err(|error| error.to_string())));
         });
         std::fs::write(&path, text).unwrap();
         let input = done.recv_timeout(Duration::from_secs(60)).expect(name).unwrap();

@@ -21,7 +21,7 @@ fn a_file_that_may_not_grow_leaves_nothing() {
     assert_eq!(fs::read_dir(&folder).unwrap().count(), 0, "a.off was complete, b.json was not");
 }
 
-/// BlockwiseFormat, which are complete, go with the file that is not.
+/// Pieces, which are complete, go with the file that is not.
 #[test]
 fn pieces_are_written_with_all_outputs_or_not_at_all() {
     let folder = tempfile::tempdir().unwrap();
