@@ -69,11 +69,8 @@ fn of_facet(a: &Ray<f64>, b: &Ray<f64>, size: Size) -> Option<Centre<2>> {
 #[inline(always)]
 fn of_cell(a: &Ray<f64>, b: &Ray<f64>, c: &Ray<f64>, size: Size) -> Option<Centre<3>> {
     let rays = [a, b, c];
-    let normals = [
-        cross(&b.vector, &c.vector),
-        cross(&c.vector, &a.vector),
-        cross(&a.vector, &b.vector),
-    ];
+    let normals =
+        [cross(&b.vector, &c.vector), cross(&c.vector, &a.vector), cross(&a.vector, &b.vector)];
     let det = dot(&a.vector, &normals[0]);
     let square = size.length * size.length;
     let least = det.abs() - 6.0 * square * size.length * ROUNDING;
@@ -127,7 +124,8 @@ fn around<const M: usize>(
     // |s|: its terms are those of c̃ and of Σ μᵢaᵢ.
     let gap: f64 = [0, 1, 2]
         .map(|k| {
-            let sum: f64 = rays.iter().zip(factors).map(|(ray, factor)| factor * ray.vector[k]).sum();
+            let sum: f64 =
+                rays.iter().zip(factors).map(|(ray, factor)| factor * ray.vector[k]).sum();
             (at[k] - sum).abs()
         })
         .iter()

@@ -124,8 +124,8 @@ fn corners_inside_opposite_faces() {
 
 /// Corners of cells from round to nearly flat, at places and with weights that no double arithmetic holds.
 fn scattered(random: &mut Random, flatness: f64) -> (Vec<[f64; 3]>, Vec<f64>) {
-    let far = [0.0, 1.0, 1e3][random.below(3) as usize];
-    let weights = [0.0, 0.1, 5.0][random.below(3) as usize];
+    let far = [0.0, 1.0, 1e3][random.below(3)];
+    let weights = [0.0, 0.1, 5.0][random.below(3)];
     let positions = (0..4).map(|_| {
         let [x, y, z] = [0; 3].map(|_| random.unit());
         [x + far, y - far, 0.3 * x + 0.6 * y + flatness * z + far]

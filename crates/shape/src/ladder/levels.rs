@@ -72,21 +72,23 @@ impl Filtration {
         let spheres = self.spheres();
         let complex = self.whole.complex();
         let never = alphas.len() as u32;
-        let cells: Vec<u32> = (complex.cells.rows().par_iter().zip(&self.cells))
+        let cells: Vec<u32> = (complex.cells.rows().par_iter().zip(&self.radii.cells))
             .map(|(&cell, &radius)| level(&spheres, cell, radius, &alphas))
             .collect();
         let own = OwnLevels {
             facets: |row: usize| {
                 let facet = self.incidence.facets[row];
-                self.facets[row].known().map(|radius| level(&spheres, facet, radius, &alphas))
+                self.radii.facets[row].known().map(|radius| level(&spheres, facet, radius, &alphas))
             },
             edges: |row: usize| {
                 let edge = complex.edges.rows()[row];
-                self.edges[row].known().map(|radius| level(&spheres, edge, radius, &alphas))
+                self.radii.edges[row].known().map(|radius| level(&spheres, edge, radius, &alphas))
             },
             vertices: |row: usize| {
                 let vertex = complex.vertices.rows()[row];
-                self.vertices[row].known().map(|radius| level(&spheres, vertex, radius, &alphas))
+                self.radii.vertices[row]
+                    .known()
+                    .map(|radius| level(&spheres, vertex, radius, &alphas))
             },
         };
         let (facets, edges, vertices) = self.spans(never, &cells, own);

@@ -12,6 +12,7 @@ use walpha_regular::{Predicates, Ratio, SmallRadius};
 
 use super::numbers::Numbers;
 use crate::ladder::Filtration;
+use crate::ladder::radii::Radii;
 use crate::ladder::values::{Key, is_small_lattice, key};
 
 /// Stands for the rank of a simplex whose sphere is not empty.
@@ -66,7 +67,7 @@ impl Ranks {
 
 /// The nearest doubles of all radii, by number of the simplex.
 fn collect(filtration: &Filtration, numbers: Numbers, radii: &mut Vec<Radius>) {
-    let Filtration { cells, facets, edges, vertices, .. } = filtration;
+    let Radii { cells, facets, edges, vertices } = &filtration.radii;
     for (from, lower) in numbers.first.into_iter().zip([vertices, edges, facets]) {
         let known = (from..).zip(lower);
         radii.extend(known.filter_map(|(simplex, own)| Some((to_bits(own.known()?), simplex))));
