@@ -148,9 +148,8 @@ fn sorted_cells(rows: &[[u32; 4]]) -> (Vec<[u32; 4]>, Vec<u32>) {
         row
     };
     let mut numbered: Vec<_> = rows.par_iter().map(sorted).zip(0..rows.len() as u32).collect();
-    for near in numbered.chunk_by_mut(|(a, _), (b, _)| a[..2] == b[..2]) {
-        near.sort_unstable();
-    }
+    let runs = numbered.par_chunk_by_mut(|(a, _), (b, _)| a[..2] == b[..2]);
+    runs.for_each(<[_]>::sort_unstable);
     numbered.into_par_iter().unzip()
 }
 

@@ -12,6 +12,7 @@ use walpha_regular::{Predicates, Ratio, SmallRadius};
 
 use super::numbers::Numbers;
 use crate::ladder::Filtration;
+use crate::ladder::along::Table;
 use crate::ladder::radii::Radii;
 use crate::ladder::values::{Key, is_small_lattice, key};
 
@@ -25,6 +26,9 @@ pub(super) struct Ranks {
     /// By number of the simplex; [`NONE`] where the sphere is not empty.
     pub of: Vec<u32>,
 }
+
+/// Radii that one thread numbers at a time.
+const CHUNK: usize = 1 << 16;
 
 /// A squared radius as an integer in the order of doubles, and the number of its simplex.
 type Radius = (u64, u32);
@@ -50,17 +54,32 @@ impl Ranks {
         let mut steps: Vec<u32> =
             several.into_par_iter().flat_map_iter(|run| exact.split_ties(run)).collect();
         steps.par_sort_unstable();
-        let mut of = memory::try_with_capacity(numbers.all(), || "ranks".into())?;
-        of.resize(numbers.all(), NONE);
-        let mut values: Vec<f64> = Vec::new();
-        let mut last = None;
-        for &(key, simplex) in &radii {
-            if last != Some(key) || steps.binary_search(&simplex).is_ok() {
-                values.push(from_bits(key));
-                last = Some(key);
+        let is_first = |at: usize| {
+            let (key, simplex) = radii[at];
+            at == 0 || radii[at - 1].0 != key || steps.binary_search(&simplex).is_ok()
+        };
+        // Values are counted by chunks, then numbered.
+        let chunks = || (0..radii.len()).into_par_iter().step_by(CHUNK);
+        let chunk = |from: usize| from..radii.len().min(from + CHUNK);
+        let counts: Vec<usize> =
+            chunks().map(|from| chunk(from).filter(|&at| is_first(at)).count()).collect();
+        let before = counts.iter().scan(0, |sum, count| Some(std::mem::replace(sum, *sum + count)));
+        let before: Vec<usize> = before.collect();
+        let of: Table<1> = Table::new(numbers.all(), NONE);
+        let number = |(from, before): (usize, &usize)| {
+            let (mut rank, mut values) = (*before, Vec::new());
+            for at in chunk(from) {
+                if is_first(at) {
+                    values.push(from_bits(radii[at].0));
+                    rank += 1;
+                }
+                of.write_at(radii[at].1 as usize, 0, rank as u32 - 1);
             }
-            of[simplex as usize] = values.len() as u32 - 1;
-        }
+            values
+        };
+        let values: Vec<Vec<f64>> = chunks().zip(&before).map(number).collect();
+        let values = values.concat();
+        let of = of.finished().into_flattened();
         Ok(Self { values, of })
     }
 }
