@@ -28,7 +28,7 @@ pub(super) struct Ranks {
 }
 
 /// Radii that one thread numbers at a time.
-const CHUNK: usize = 1 << 16;
+const CHUNK: usize = 1 << 12;
 
 /// A squared radius as an integer in the order of doubles, and the number of its simplex.
 type Radius = (u64, u32);
@@ -63,22 +63,27 @@ impl Ranks {
         let chunk = |from: usize| from..radii.len().min(from + CHUNK);
         let counts: Vec<usize> =
             chunks().map(|from| chunk(from).filter(|&at| is_first(at)).count()).collect();
-        let before = counts.iter().scan(0, |sum, count| Some(std::mem::replace(sum, *sum + count)));
-        let before: Vec<usize> = before.collect();
+        let mut values = vec![0.0; counts.iter().sum()];
+        let mut rest = &mut values[..];
+        let mut before = 0;
+        let parts: Vec<_> = (counts.iter())
+            .map(|&count| {
+                let part = rest.split_off_mut(..count).expect("as many as were counted");
+                before += count;
+                (before - count, part)
+            })
+            .collect();
         let of: Table<1> = Table::new(numbers.all(), NONE);
-        let number = |(from, before): (usize, &usize)| {
-            let (mut rank, mut values) = (*before, Vec::new());
+        chunks().zip(parts).for_each(|(from, (mut rank, values))| {
+            let mut values = values.iter_mut();
             for at in chunk(from) {
                 if is_first(at) {
-                    values.push(from_bits(radii[at].0));
+                    *values.next().expect("a place for each value") = from_bits(radii[at].0);
                     rank += 1;
                 }
                 of.write_at(radii[at].1 as usize, 0, rank as u32 - 1);
             }
-            values
-        };
-        let values: Vec<Vec<f64>> = chunks().zip(&before).map(number).collect();
-        let values = values.concat();
+        });
         let of = of.finished().into_flattened();
         Ok(Self { values, of })
     }
