@@ -53,7 +53,7 @@ const KINDS: [(&str, Make); 8] = [
     }),
     ("periodic lattice", |random, count| {
         let torus = Torus::new([10.0; 3]).expect("a box");
-        let all = (0..1000).map(|i| [i % 10, i / 10 % 10, i / 100].map(|x| f64::from(x)));
+        let all = (0..1000).map(|i| [i % 10, i / 10 % 10, i / 100].map(f64::from));
         let positions: Vec<_> = all.filter(|_| random.below(1000) < 700 + count / 8).collect();
         let weights = positions.iter().map(|_| 0.25 * random.below(3) as f64).collect();
         (positions, weights, Some(torus))

@@ -109,9 +109,9 @@ fn around<const M: usize>(
     for (q, factor) in others.iter().zip(factors) {
         let heavier = Twofold::sum(p.weight, -q.weight);
         let mut sum = Compensated { high: heavier.high, low: heavier.low };
-        for k in 0..3 {
+        for (k, twice) in twice.iter().enumerate() {
             let along = Twofold::sum(q.position[k], -p.position[k]);
-            let less = Twofold::sum(along.high, -twice[k]);
+            let less = Twofold::sum(along.high, -twice);
             sum.add_product(along.high, less.high);
             sum.low += along.high * (less.low + along.low) + along.low * less.high;
         }

@@ -29,7 +29,7 @@ impl Predicates<'_> {
     /// even one. Never −0.
     ///
     /// Where a lattice makes numerator and denominator exact, this takes one division. Otherwise an approximate centre
-    /// is [corrected](centred), or for edges and flat simplices numbers have twice the digits of doubles (only powers do
+    /// is corrected, or for edges and flat simplices numbers have twice the digits of doubles (only powers do
     /// where a lattice makes vectors exact); and integers decide what is too near to the midpoint of two doubles for that.
     pub fn nearest_radius<const N: usize>(&self, simplex: [u32; N]) -> f64 {
         let sites = self.sites(simplex);
