@@ -33,6 +33,7 @@ mod predicates;
 mod sites;
 mod torus;
 
+use rayon::prelude::*;
 use walpha_base::memory::asking;
 
 pub use error::{SitesError, TriangulationError};
@@ -110,6 +111,12 @@ impl Triangulation {
         }
         (0..self.ghost).filter(|&v| !seen[v as usize]).collect()
     }
+}
+
+/// The points along a Hilbert curve, hidden and equal ones included. O(n log n).
+#[doc(hidden)]
+pub fn along_curve(positions: &[[f64; 3]]) -> Vec<u32> {
+    order::along_curve(positions).into_par_iter().map(|(_, point)| point).collect()
 }
 
 /// An empty vector with capacity for `count` elements.

@@ -97,6 +97,39 @@ pub(super) fn side<T: Number>(rays: &[Ray<T>], e: &Ray<T>) -> T {
     }
 }
 
+/// Positive multiples of the barycentric coordinates of the centre p + c, that of p first.
+///
+/// For one ray they are multiplied by 2|a|², for two by 2d with the Gram determinant d, for three by 2d² with
+/// the determinant d.
+#[inline(always)]
+pub(super) fn barycentric(rays: &[Ray<f64>], to: &mut [f64]) {
+    match rays {
+        [a] => {
+            to[1] = a.power;
+            to[0] = 2.0 * dot(&a.vector, &a.vector) - a.power;
+        }
+        [a, b] => {
+            let ([u, v], d) = gram(a, b);
+            (to[1], to[2]) = (u, v);
+            to[0] = 2.0 * d - (u + v);
+        }
+        [a, b, c] => {
+            let normal = |u: &Ray<f64>, v: &Ray<f64>| cross(&u.vector, &v.vector);
+            let normals = [normal(b, c), normal(c, a), normal(a, b)];
+            let component = |k: usize| {
+                let [x, y, z] = [0, 1, 2].map(|i| rays[i].power * normals[i][k]);
+                x + y + z
+            };
+            let twice = [component(0), component(1), component(2)];
+            let det = dot(&a.vector, &normals[0]);
+            let others = normals.map(|normal| dot(&twice, &normal));
+            to[1..].copy_from_slice(&others);
+            to[0] = 2.0 * det * det - (others[0] + others[1] + others[2]);
+        }
+        _ => unreachable!("a simplex has one to three rays"),
+    }
+}
+
 /// The Gram determinant d of two rays, and d times the coefficients of 2c in the basis of the rays.
 #[inline(always)]
 fn gram<T: Scale<V>, V: Number>(a: &Ray<T, V>, b: &Ray<T, V>) -> ([T; 2], V) {

@@ -5,6 +5,7 @@
 //! forward error bound, or if the arithmetic is exact because all numbers are small multiples of a power of two, as on
 //! voxel grids. Otherwise integers decide.
 
+mod centred;
 mod exact;
 mod formulas;
 mod nearest;
@@ -15,7 +16,7 @@ mod twofold;
 
 use std::cmp::Ordering;
 
-use formulas::{determinant, power_determinant, quotient, side};
+use formulas::{barycentric, determinant, power_determinant, quotient, side};
 pub use nearest::SmallRadius;
 pub use ratio::Ratio;
 pub use screen::Screen;
@@ -178,6 +179,46 @@ impl<'a> Predicates<'a> {
             value < 0.0
         } else {
             exact::inside(sites, x)
+        }
+    }
+
+    /// For each corner of an edge, a facet or a cell, whether it lies strictly inside the smallest orthogonal sphere of
+    /// the face opposite it. Exact.
+    ///
+    /// It does if the centre of the simplex's own smallest orthogonal sphere lies beyond that face: the power of a
+    /// corner with respect to the sphere of the face is twice the product of its height above the face and that of
+    /// the centre.
+    #[inline]
+    pub fn inside_opposite<const N: usize>(&self, simplex: [u32; N]) -> [bool; N] {
+        let sites = self.sites(simplex);
+        let View { rays, size } = View::<N>::of(sites[0], sites);
+        let mut values = [0.0; N];
+        barycentric(&rays[1..], &mut values);
+        let bound = size.barycentric_bound(N);
+        let exact = self.lattice.holds_weights && self.holds(bound, 2 * N - 2);
+        let sane = size.is_sane();
+        let error = bound * ROUNDING;
+        let mut inside = [false; N];
+        for (corner, inside) in inside.iter_mut().enumerate() {
+            let value = values[corner];
+            *inside = if exact || (sane && value.abs() > error) {
+                value < 0.0
+            } else {
+                self.inside_face(simplex, corner)
+            };
+        }
+        inside
+    }
+
+    /// Whether a corner lies strictly inside the smallest orthogonal sphere of the face opposite it.
+    #[cold]
+    fn inside_face<const N: usize>(&self, simplex: [u32; N], corner: usize) -> bool {
+        let other = |k: usize| simplex[(corner + k) % N];
+        let x = simplex[corner];
+        match N {
+            2 => self.inside([other(1)], x),
+            3 => self.inside([other(1), other(2)], x),
+            _ => self.inside([other(1), other(2), other(3)], x),
         }
     }
 

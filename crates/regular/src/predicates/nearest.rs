@@ -3,7 +3,7 @@
 use super::formulas::{Ray, quotient};
 use super::size::{Size, View};
 use super::twofold::Twofold;
-use super::{Predicates, Ratio, Site, exact};
+use super::{Predicates, Ratio, Site, centred, exact};
 use crate::number::{Number, dot};
 
 /// A squared radius on a lattice, exactly: numerator / (4 denominator) in squares of the step, less the weight.
@@ -28,9 +28,9 @@ impl Predicates<'_> {
     /// The double nearest to the squared radius of the smallest orthogonal sphere; of two equally near ones the
     /// even one. Never −0.
     ///
-    /// Where a lattice makes numerator and denominator exact, this takes one division. Otherwise numbers have
-    /// twice the digits of doubles (only powers do where a lattice makes vectors exact), and integers decide what
-    /// is too near to the midpoint of two doubles for that.
+    /// Where a lattice makes numerator and denominator exact, this takes one division. Otherwise an approximate centre
+    /// is corrected, or for edges and flat simplices numbers have twice the digits of doubles (only powers do
+    /// where a lattice makes vectors exact); and integers decide what is too near to the midpoint of two doubles for that.
     pub fn nearest_radius<const N: usize>(&self, simplex: [u32; N]) -> f64 {
         let sites = self.sites(simplex);
         if N == 1 {
@@ -45,7 +45,11 @@ impl Predicates<'_> {
             // Simplices of a triangulation are not degenerate, so the exact denominator is not 0.
             return (numerator - 4.0 * weight * denominator) / (4.0 * denominator) + 0.0;
         }
-        let rounded = if !(size.is_sane() && weight.abs() < Size::LARGEST_SQUARE) {
+        let sane = size.is_sane() && weight.abs() < Size::LARGEST_SQUARE;
+        if sane && let Some(nearest) = centred::nearest(&sites, &rays, size) {
+            return nearest;
+        }
+        let rounded = if !sane {
             None
         } else if self.holds_vectors(size, N) {
             let (numerator, denominator) = quotient(&lattice_rays(sites, rays)[1..]);

@@ -53,8 +53,8 @@ pub(super) struct Bounds {
 impl Size {
     /// Lengths between `SHORTEST` and `LONGEST`, and squares up to `LARGEST_SQUARE`, have polynomials up to degree 8
     /// within the range of doubles.
-    const SHORTEST: f64 = 1e-30;
-    const LONGEST: f64 = 1e30;
+    pub(super) const SHORTEST: f64 = 1e-30;
+    pub(super) const LONGEST: f64 = 1e30;
     pub(super) const LARGEST_SQUARE: f64 = 1e60;
 
     #[inline(always)]
@@ -81,6 +81,18 @@ impl Size {
                 numerator: 108.0 * square * square * powers,
                 denominator: 36.0 * square * square * square,
             },
+        }
+    }
+
+    /// A bound of the terms of each number of [`barycentric`](super::formulas::barycentric) for a simplex with this many
+    /// vertices. Squares of lengths are at most a third of a power.
+    #[inline(always)]
+    pub(super) fn barycentric_bound(self, vertices: usize) -> f64 {
+        let square = self.length * self.length;
+        match vertices {
+            2 => 3.0 * self.power,
+            3 => 24.0 * self.power * square,
+            _ => 132.0 * self.power * square * square,
         }
     }
 

@@ -90,3 +90,77 @@ fn a_radius_on_a_lattice_is_a_round_number() {
     assert!(!predicates.inside([0, 1, 2], 4) && !predicates.inside([0, 1, 2], 3));
     assert_eq!(predicates.squared_radius([3]), Interval { low: 0.0, high: 0.0 });
 }
+
+/// What the corners of simplices that are not flat say of the faces opposite them, against the predicate for each alone.
+#[test]
+fn corners_inside_opposite_faces() {
+    let mut random = Random::new(5);
+    let mut counts = [0; 2];
+    for round in 0..6000 {
+        let (positions, weights) = draw(&mut random, round % 2 == 1);
+        let predicates = Predicates::new(&positions, &weights);
+        let sites = [0, 1, 2, 3].map(|v| predicates.site(v));
+        if exact::orientation(sites).is_eq() || exact::collinear([sites[0], sites[1], sites[2]]) {
+            continue;
+        }
+        let [p, q, r, s] = sites;
+        let cell = [
+            exact::inside([q, r, s], p),
+            exact::inside([p, r, s], q),
+            exact::inside([p, q, s], r),
+            exact::inside([p, q, r], s),
+        ];
+        assert_eq!(predicates.inside_opposite([0, 1, 2, 3]), cell);
+        let facet = [exact::inside([q, r], p), exact::inside([p, r], q), exact::inside([p, q], r)];
+        assert_eq!(predicates.inside_opposite([0, 1, 2]), facet);
+        let edge = [exact::inside([q], p), exact::inside([p], q)];
+        assert_eq!(predicates.inside_opposite([0, 1]), edge);
+        for inside in cell.into_iter().chain(facet).chain(edge) {
+            counts[usize::from(inside)] += 1;
+        }
+    }
+    assert!(counts[0] > 10_000 && counts[1] > 10_000, "{counts:?}");
+}
+
+/// Corners of cells from round to nearly flat, at places and with weights that no double arithmetic holds.
+fn scattered(random: &mut Random, flatness: f64) -> (Vec<[f64; 3]>, Vec<f64>) {
+    let far = [0.0, 1.0, 1e3][random.below(3)];
+    let weights = [0.0, 0.1, 5.0][random.below(3)];
+    let positions = (0..4).map(|_| {
+        let [x, y, z] = [0; 3].map(|_| random.unit());
+        [x + far, y - far, 0.3 * x + 0.6 * y + flatness * z + far]
+    });
+    (positions.collect(), (0..4).map(|_| weights * random.unit()).collect())
+}
+
+#[test]
+fn the_nearest_double_is_that_of_the_exact_radius() {
+    let mut random = Random::new(6);
+    let mut found = 0;
+    for round in 0..6000 {
+        let flatness = [1.0, 1e-3, 1e-7, 1e-11][round % 4];
+        let (positions, weights) = scattered(&mut random, flatness);
+        let predicates = Predicates::new(&positions, &weights);
+        let sites = [0, 1, 2, 3].map(|v| predicates.site(v));
+        if exact::orientation(sites).is_eq() {
+            continue;
+        }
+        let View { rays, size } = View::of(sites[0], sites);
+        let cell = exact::squared_radius(sites).nearest();
+        let centred = centred::nearest(&sites, &rays, size);
+        assert!(centred.is_none_or(|radius| radius == cell), "{centred:?} {cell}");
+        assert_eq!(predicates.nearest_radius([0, 1, 2, 3]), cell);
+        found += usize::from(centred.is_some());
+        let facet = [0, 1, 2].map(|v| predicates.site(v));
+        let View { rays, size } = View::of(facet[0], facet);
+        let radius = exact::squared_radius(facet).nearest();
+        let centred = centred::nearest(&facet, &rays, size);
+        assert!(centred.is_none_or(|centred| centred == radius), "{centred:?} {radius}");
+        assert_eq!(predicates.nearest_radius([0, 1, 2]), radius);
+        found += usize::from(centred.is_some());
+        let edge = exact::squared_radius([facet[0], facet[1]]).nearest();
+        assert_eq!(predicates.nearest_radius([0, 1]), edge);
+    }
+    // Slivers need more; all others are found.
+    assert!(found > 8000, "{found}");
+}

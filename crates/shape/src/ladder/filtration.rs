@@ -1,10 +1,9 @@
-use std::sync::atomic::{AtomicBool, Ordering};
-
-use rayon::prelude::*;
 use walpha_base::{Monitor, memory};
 use walpha_regular::{Predicates, Torus};
 
+use super::build::incidence_and_radii;
 use super::incidence::Incidence;
+use super::radii::{Radii, Radius};
 use crate::WeightedPoints;
 use crate::{Alpha, AlphaShape, Complex, Engine, ShapeError, ShapeOptions, alpha_shape_monitored};
 
@@ -20,27 +19,7 @@ use crate::{Alpha, AlphaShape, Complex, Engine, ShapeError, ShapeOptions, alpha_
 pub struct Filtration {
     pub(super) whole: AlphaShape,
     pub(super) incidence: Incidence,
-    /// Squared radii of the smallest orthogonal spheres, each the nearest double, by row; of all cells, …
-    pub(super) cells: Vec<f64>,
-    /// … and of what is Gabriel among lower simplices.
-    pub(super) facets: Vec<Radius>,
-    pub(super) edges: Vec<Radius>,
-    pub(super) vertices: Vec<Radius>,
-}
-
-/// The double nearest to the squared radius of the smallest orthogonal sphere of a simplex, if that is
-/// empty; otherwise no number.
-#[derive(Clone, Copy)]
-pub(super) struct Radius(f64);
-
-impl Radius {
-    fn of(nearest: Option<f64>) -> Self {
-        Self(nearest.unwrap_or(f64::NAN))
-    }
-
-    pub(super) fn known(self) -> Option<f64> {
-        (!self.0.is_nan()).then_some(self.0)
-    }
+    pub(super) radii: Radii,
 }
 
 impl Filtration {
@@ -89,17 +68,9 @@ impl Filtration {
         let done = |parts| rest.report(parts, 4);
         let WeightedPoints { positions, weights, .. } = whole.points();
         let spheres = Predicates::on_torus(positions, weights, torus);
-        let (incidence, cells) = rayon::join(
-            || Incidence::of(complex, positions.len()),
-            || complex.cells.rows().par_iter().map(|&cell| spheres.nearest_radius(cell)).collect(),
-        );
-        done(2)?;
-        let facets = gabriel_facets(complex, &incidence, &spheres);
-        done(3)?;
-        let edges = gabriel_edges(complex, &incidence, &spheres);
-        let vertices = gabriel_vertices(complex, &incidence, &spheres);
-        done(4)?;
-        Ok(Self { whole, incidence, cells, facets, edges, vertices })
+        let (incidence, radii) = incidence_and_radii(complex, positions, &spheres, done)?;
+        rest.report(4, 4)?;
+        Ok(Self { whole, incidence, radii })
     }
 
     /// Bytes of a filtration of these simplices, besides them and without levels.
@@ -138,67 +109,4 @@ impl Filtration {
         let WeightedPoints { positions, weights, .. } = self.points();
         Predicates::on_torus(positions, weights, self.torus())
     }
-}
-
-fn gabriel_facets(whole: &Complex, incidence: &Incidence, spheres: &Predicates<'_>) -> Vec<Radius> {
-    let facets = incidence.facets.par_iter().zip(&incidence.facet_cells);
-    // In a regular triangulation, a smallest orthogonal sphere of a facet that contains any point contains one of the
-    // two vertices opposite the facet.
-    let radius = |(&facet, sides): (&[u32; 3], &[u32; 2])| {
-        let held = sides.iter().filter(|&&cell| cell != Incidence::OUTSIDE).any(|&cell| {
-            let cell = whole.cells.rows()[cell as usize];
-            let apex = cell.into_iter().find(|v| !facet.contains(v)).expect("a fourth corner");
-            spheres.inside(facet, apex)
-        });
-        Radius::of((!held).then(|| spheres.nearest_radius(facet)))
-    };
-    facets.map(radius).collect()
-}
-
-fn gabriel_edges(whole: &Complex, incidence: &Incidence, spheres: &Predicates<'_>) -> Vec<Radius> {
-    let held = flags(whole.edges.len());
-    incidence.facets.par_iter().zip(&incidence.facet_edges).for_each(|(facet, edges)| {
-        for (&apex, &edge) in facet.iter().zip(edges) {
-            let row = whole.edges.rows()[edge as usize];
-            raise(&held[edge as usize], || spheres.inside(row, apex));
-        }
-    });
-    radii(whole.edges.rows(), &held, spheres)
-}
-
-fn gabriel_vertices(
-    whole: &Complex,
-    incidence: &Incidence,
-    spheres: &Predicates<'_>,
-) -> Vec<Radius> {
-    let held = flags(whole.vertices.len());
-    whole.edges.rows().par_iter().for_each(|&[a, b]| {
-        for (v, neighbour) in [(a, b), (b, a)] {
-            let row = incidence.vertex_rows[v as usize];
-            raise(&held[row as usize], || spheres.inside([v], neighbour));
-        }
-    });
-    radii(whole.vertices.rows(), &held, spheres)
-}
-
-/// Flags only ever go up, so their final state does not depend on the order of threads.
-fn flags(count: usize) -> Vec<AtomicBool> {
-    (0..count).map(|_| AtomicBool::new(false)).collect()
-}
-
-fn raise(flag: &AtomicBool, wanted: impl FnOnce() -> bool) {
-    if !flag.load(Ordering::Relaxed) && wanted() {
-        flag.store(true, Ordering::Relaxed);
-    }
-}
-
-fn radii<const N: usize>(
-    rows: &[[u32; N]],
-    held: &[AtomicBool],
-    spheres: &Predicates<'_>,
-) -> Vec<Radius> {
-    let radius = |(&row, held): (&[u32; N], &AtomicBool)| {
-        Radius::of((!held.load(Ordering::Relaxed)).then(|| spheres.nearest_radius(row)))
-    };
-    rows.par_iter().zip(held).map(radius).collect()
 }

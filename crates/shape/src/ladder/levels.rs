@@ -1,3 +1,5 @@
+use std::sync::atomic::{AtomicU32, Ordering};
+
 use rayon::prelude::*;
 use walpha_regular::{Interval, Predicates};
 
@@ -72,21 +74,23 @@ impl Filtration {
         let spheres = self.spheres();
         let complex = self.whole.complex();
         let never = alphas.len() as u32;
-        let cells: Vec<u32> = (complex.cells.rows().par_iter().zip(&self.cells))
+        let cells: Vec<u32> = (complex.cells.rows().par_iter().zip(&self.radii.cells))
             .map(|(&cell, &radius)| level(&spheres, cell, radius, &alphas))
             .collect();
         let own = OwnLevels {
             facets: |row: usize| {
                 let facet = self.incidence.facets[row];
-                self.facets[row].known().map(|radius| level(&spheres, facet, radius, &alphas))
+                self.radii.facets[row].known().map(|radius| level(&spheres, facet, radius, &alphas))
             },
             edges: |row: usize| {
                 let edge = complex.edges.rows()[row];
-                self.edges[row].known().map(|radius| level(&spheres, edge, radius, &alphas))
+                self.radii.edges[row].known().map(|radius| level(&spheres, edge, radius, &alphas))
             },
             vertices: |row: usize| {
                 let vertex = complex.vertices.rows()[row];
-                self.vertices[row].known().map(|radius| level(&spheres, vertex, radius, &alphas))
+                self.radii.vertices[row]
+                    .known()
+                    .map(|radius| level(&spheres, vertex, radius, &alphas))
             },
         };
         let (facets, edges, vertices) = self.spans(never, &cells, own);
@@ -121,22 +125,52 @@ impl Filtration {
         // Without cells, the points span no volume, and no simplex is ever interior.
         let faces =
             Span { interior: if cells.is_empty() { never } else { 0 }, ..Span::until(never) };
-        let mut edges = vec![faces; complex.edges.len()];
-        for (&facet, on) in facets.iter().zip(&incidence.facet_edges) {
-            on.iter().for_each(|&edge| edges[edge as usize].add_coface(facet));
-        }
-        edges.par_iter_mut().enumerate().for_each(|(row, span)| span.set_first((own.edges)(row)));
-        let mut vertices = vec![faces; complex.vertices.len()];
-        for (&edge, ends) in edges.iter().zip(complex.edges.rows()) {
+        let edges = Cofaces::new(complex.edges.len(), faces);
+        facets.par_iter().zip(&incidence.facet_edges).for_each(|(&facet, on)| {
+            on.iter().for_each(|&edge| edges.add(edge as usize, facet));
+        });
+        let edges = edges.finished(own.edges);
+        let vertices = Cofaces::new(complex.vertices.len(), faces);
+        edges.par_iter().zip(complex.edges.rows()).for_each(|(&edge, ends)| {
             for &v in ends {
-                vertices[incidence.vertex_rows[v as usize] as usize].add_coface(edge);
+                vertices.add(incidence.vertex_rows[v as usize] as usize, edge);
             }
-        }
-        vertices
-            .par_iter_mut()
-            .enumerate()
-            .for_each(|(row, span)| span.set_first((own.vertices)(row)));
+        });
+        let vertices = vertices.finished(own.vertices);
         (facets, edges, vertices)
+    }
+}
+
+/// The spans of faces, to which threads add cofaces in any order: least and largest levels do not depend on it.
+struct Cofaces(Vec<[AtomicU32; 2]>);
+
+impl Cofaces {
+    fn new(rows: usize, span: Span) -> Self {
+        let row = |_| [span.regular, span.interior].map(AtomicU32::new);
+        Self((0..rows).into_par_iter().map(row).collect())
+    }
+
+    /// Accounts for a coface, as [`Span::add_coface`].
+    fn add(&self, row: usize, higher: Span) {
+        let [regular, interior] = &self.0[row];
+        // Reading is cheaper, and most cofaces change nothing.
+        if higher.first < regular.load(Ordering::Relaxed) {
+            regular.fetch_min(higher.first, Ordering::Relaxed);
+        }
+        if higher.interior > interior.load(Ordering::Relaxed) {
+            interior.fetch_max(higher.interior, Ordering::Relaxed);
+        }
+    }
+
+    /// The spans, once all cofaces are added, given the levels of own spheres.
+    fn finished(self, own: impl Fn(usize) -> Option<u32> + Sync) -> Vec<Span> {
+        let span = |(row, levels): (usize, [AtomicU32; 2])| {
+            let [regular, interior] = levels.map(AtomicU32::into_inner);
+            let mut span = Span { first: regular, regular, interior };
+            span.set_first(own(row));
+            span
+        };
+        self.0.into_par_iter().enumerate().map(span).collect()
     }
 }
 

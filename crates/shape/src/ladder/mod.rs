@@ -23,12 +23,15 @@
 //! # Ok::<(), walpha_shape::ShapeError>(())
 //! ```
 
+mod along;
+mod build;
 mod critical;
 mod filtration;
 mod incidence;
 mod levels;
 mod maximal;
 mod ordered;
+mod radii;
 mod table;
 mod topology;
 mod values;

@@ -145,7 +145,7 @@ impl Levels<'_> {
         let facets = ByLevel::new(self.len(), self.facets.iter().map(|span| span.first));
         let whole = &self.filtration.whole;
         let hollow = |(row, &cell): (usize, &[u32; 4])| {
-            let radius = Interval::around(self.filtration.cells[row]);
+            let radius = Interval::around(self.filtration.radii.cells[row]);
             Hollow::of(radius, whole.corners(cell))
         };
         let outside = self.cells.len() as u32;
@@ -266,7 +266,7 @@ impl LevelComplement<'_> {
         let cells = filtration.whole.complex().cells.rows();
         let (mut alpha, mut at) = (f64::NEG_INFINITY, root as usize);
         loop {
-            let radius = Interval::around(filtration.cells[at]);
+            let radius = Interval::around(filtration.radii.cells[at]);
             hollow.raise(&mut alpha, &self.spheres, cells[at], radius);
             at = self.next[at] as usize;
             if at == root as usize {

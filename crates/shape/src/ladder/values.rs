@@ -7,7 +7,7 @@ use walpha_regular::number::lowest_bit;
 use walpha_regular::{Interval, Predicates, Torus};
 
 use super::Filtration;
-use super::filtration::Radius;
+use super::radii::Radius;
 use crate::Alpha;
 use crate::WeightedPoints;
 
@@ -48,10 +48,10 @@ impl Filtration {
                 .filter_map(|(i, radius)| Some((Interval::around(radius.known()?), row(i as u32))))
                 .collect()
         };
-        let mut radii = own(&self.facets, Row::Facet);
-        radii.extend(own(&self.edges, Row::Edge));
-        radii.extend(own(&self.vertices, Row::Vertex));
-        let cells = (0..).zip(&self.cells);
+        let mut radii = own(&self.radii.facets, Row::Facet);
+        radii.extend(own(&self.radii.edges, Row::Edge));
+        radii.extend(own(&self.radii.vertices, Row::Vertex));
+        let cells = (0..).zip(&self.radii.cells);
         radii.extend(cells.map(|(i, &radius)| (Interval::around(radius), Row::Cell(i))));
         radii.par_sort_unstable_by(|(a, i), (b, j)| {
             a.low.total_cmp(&b.low).then(a.high.total_cmp(&b.high)).then(i.cmp(j))

@@ -10,8 +10,8 @@ use rayon::prelude::*;
 use walpha_base::{Monitor, memory};
 use walpha_regular::TriangulationError;
 
-use super::filtration::Radius;
 use super::levels::OwnLevels;
+use super::radii::{Radii, Radius};
 use super::{Filtration, Levels};
 use crate::{Alpha, Betti, ShapeError};
 use numbers::Numbers;
@@ -148,9 +148,8 @@ fn sorted_cells(rows: &[[u32; 4]]) -> (Vec<[u32; 4]>, Vec<u32>) {
         row
     };
     let mut numbered: Vec<_> = rows.par_iter().map(sorted).zip(0..rows.len() as u32).collect();
-    for near in numbered.chunk_by_mut(|(a, _), (b, _)| a[..2] == b[..2]) {
-        near.sort_unstable();
-    }
+    let runs = numbered.par_chunk_by_mut(|(a, _), (b, _)| a[..2] == b[..2]);
+    runs.for_each(<[_]>::sort_unstable);
     numbered.into_par_iter().unzip()
 }
 
@@ -191,7 +190,7 @@ impl Ordered<'_> {
     /// # Panics
     /// If it is above 3.
     pub fn gabriel(&self, dimension: usize) -> usize {
-        let Filtration { vertices, edges, facets, .. } = self.filtration();
+        let Radii { vertices, edges, facets, .. } = &self.filtration().radii;
         let own = |radii: &[Radius]| radii.iter().filter(|radius| radius.known().is_some()).count();
         match dimension {
             0 => own(vertices),
@@ -242,18 +241,18 @@ impl Ordered<'_> {
         };
         let (vertices, span, gabriel) = match self.numbers.row(number) {
             (0, row) => {
-                let gabriel = filtration.vertices[row].known().is_some();
+                let gabriel = filtration.radii.vertices[row].known().is_some();
                 (&self.vertices()[row][..], self.levels.vertices[row], gabriel)
             }
             (1, row) => (
                 &self.edges()[row][..],
                 self.levels.edges[row],
-                filtration.edges[row].known().is_some(),
+                filtration.radii.edges[row].known().is_some(),
             ),
             (2, row) => (
                 &self.facets()[row][..],
                 self.levels.facets[row],
-                filtration.facets[row].known().is_some(),
+                filtration.radii.facets[row].known().is_some(),
             ),
             (_, row) => {
                 let first = self.levels.cells[self.cell_rows[row] as usize];

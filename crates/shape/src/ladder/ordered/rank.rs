@@ -12,6 +12,8 @@ use walpha_regular::{Predicates, Ratio, SmallRadius};
 
 use super::numbers::Numbers;
 use crate::ladder::Filtration;
+use crate::ladder::along::Table;
+use crate::ladder::radii::Radii;
 use crate::ladder::values::{Key, is_small_lattice, key};
 
 /// Stands for the rank of a simplex whose sphere is not empty.
@@ -24,6 +26,9 @@ pub(super) struct Ranks {
     /// By number of the simplex; [`NONE`] where the sphere is not empty.
     pub of: Vec<u32>,
 }
+
+/// Radii that one thread numbers at a time.
+const CHUNK: usize = 1 << 12;
 
 /// A squared radius as an integer in the order of doubles, and the number of its simplex.
 type Radius = (u64, u32);
@@ -49,24 +54,44 @@ impl Ranks {
         let mut steps: Vec<u32> =
             several.into_par_iter().flat_map_iter(|run| exact.split_ties(run)).collect();
         steps.par_sort_unstable();
-        let mut of = memory::try_with_capacity(numbers.all(), || "ranks".into())?;
-        of.resize(numbers.all(), NONE);
-        let mut values: Vec<f64> = Vec::new();
-        let mut last = None;
-        for &(key, simplex) in &radii {
-            if last != Some(key) || steps.binary_search(&simplex).is_ok() {
-                values.push(from_bits(key));
-                last = Some(key);
+        let is_first = |at: usize| {
+            let (key, simplex) = radii[at];
+            at == 0 || radii[at - 1].0 != key || steps.binary_search(&simplex).is_ok()
+        };
+        // Values are counted by chunks, then numbered.
+        let chunks = || (0..radii.len()).into_par_iter().step_by(CHUNK);
+        let chunk = |from: usize| from..radii.len().min(from + CHUNK);
+        let counts: Vec<usize> =
+            chunks().map(|from| chunk(from).filter(|&at| is_first(at)).count()).collect();
+        let mut values = vec![0.0; counts.iter().sum()];
+        let mut rest = &mut values[..];
+        let mut before = 0;
+        let parts: Vec<_> = (counts.iter())
+            .map(|&count| {
+                let part = rest.split_off_mut(..count).expect("as many as were counted");
+                before += count;
+                (before - count, part)
+            })
+            .collect();
+        let of: Table<1> = Table::new(numbers.all(), NONE);
+        chunks().zip(parts).for_each(|(from, (mut rank, values))| {
+            let mut values = values.iter_mut();
+            for at in chunk(from) {
+                if is_first(at) {
+                    *values.next().expect("a place for each value") = from_bits(radii[at].0);
+                    rank += 1;
+                }
+                of.write_at(radii[at].1 as usize, 0, rank as u32 - 1);
             }
-            of[simplex as usize] = values.len() as u32 - 1;
-        }
+        });
+        let of = of.finished().into_flattened();
         Ok(Self { values, of })
     }
 }
 
 /// The nearest doubles of all radii, by number of the simplex.
 fn collect(filtration: &Filtration, numbers: Numbers, radii: &mut Vec<Radius>) {
-    let Filtration { cells, facets, edges, vertices, .. } = filtration;
+    let Radii { cells, facets, edges, vertices } = &filtration.radii;
     for (from, lower) in numbers.first.into_iter().zip([vertices, edges, facets]) {
         let known = (from..).zip(lower);
         radii.extend(known.filter_map(|(simplex, own)| Some((to_bits(own.known()?), simplex))));

@@ -1,0 +1,163 @@
+//! A squared radius from an approximate centre: as exact as [`Twofold`](super::twofold::Twofold) numbers, for a third
+//! of their operations.
+//!
+//! Let p be the first vertex of a simplex, aᵢ the rays to the others and tᵢ their powers. The centre p + c has
+//! 2c·aᵢ = tᵢ and c in the span of the rays, and the squared radius is R = |c|² − ω(p). For any c̃ and μᵢ, let
+//!
+//! - rᵢ = tᵢ − 2c̃·aᵢ, by how much c̃ misses the equations of c,
+//! - δ = c̃ − c, and s = c̃ − Σ μᵢaᵢ.
+//!
+//! As 2δ·aᵢ = −rᵢ, c is in the span, and δ·c = δ·Σμᵢaᵢ + δ·(s − δ),
+//!
+//! R = |c̃|² − 2δ·c − |δ|² − ω(p) = |c̃|² − ω(p) + Σ μᵢrᵢ − 2δ·s + |δ|².
+//!
+//! Doubles give c̃ and μ so well that the last two terms, which have two small factors each, are far below half a unit
+//! in the last place of R. The others are sums of products, in which what is rounded off is added up, too. δ is bounded
+//! by its equations, so that no assumption on the shape of the simplex is needed; flat ones have large bounds.
+
+use super::formulas::Ray;
+use super::size::Size;
+use super::twofold::Twofold;
+use super::{ROUNDING, Site};
+use crate::number::{cross, dot};
+
+/// An approximate centre, relative to the first vertex, the factors μ of the rays, and what bounds its distance from
+/// the centre: Σ |rᵢ| times `per_residual`, and |s| if `in_plane`.
+struct Centre<const M: usize> {
+    at: [f64; 3],
+    factors: [f64; M],
+    per_residual: f64,
+    in_plane: bool,
+}
+
+/// The double nearest to the squared radius of a facet or a cell, if the bounds determine it; `rays` are those of `sites`
+/// in doubles, and of this `size`, which is sane.
+#[inline(always)]
+pub(super) fn nearest<const N: usize>(
+    sites: &[Site; N],
+    rays: &[Ray<f64>; N],
+    size: Size,
+) -> Option<f64> {
+    match (&rays[..], &sites[..]) {
+        ([_, a, b], [p, q, r]) => around(*p, [*q, *r], [a, b], size, of_facet(a, b, size)?),
+        ([_, a, b, c], [p, q, r, s]) => {
+            around(*p, [*q, *r, *s], [a, b, c], size, of_cell(a, b, c, size)?)
+        }
+        _ => None,
+    }
+}
+
+#[inline(always)]
+fn of_facet(a: &Ray<f64>, b: &Ray<f64>, size: Size) -> Option<Centre<2>> {
+    let [aa, bb] = [a, b].map(|ray| dot(&ray.vector, &ray.vector));
+    let ab = dot(&a.vector, &b.vector);
+    let gram = aa * bb - ab * ab;
+    let square = size.length * size.length;
+    let least = gram - 18.0 * square * square * ROUNDING;
+    if least <= 0.5 * gram {
+        return None;
+    }
+    let twice = 0.5 / gram;
+    let factors = [(a.power * bb - b.power * ab) * twice, (b.power * aa - a.power * ab) * twice];
+    let at = [0, 1, 2].map(|k| factors[0] * a.vector[k] + factors[1] * b.vector[k]);
+    // In the plane, δ = −½ Σ rᵢaᵢ* in the dual basis: |a*| = |b| / |a×b|, and |b| ≤ √3 times the size. Across the
+    // plane it is that of s.
+    let per_residual = 0.9 * size.length / least.sqrt();
+    Some(Centre { at, factors, per_residual, in_plane: true })
+}
+
+#[inline(always)]
+fn of_cell(a: &Ray<f64>, b: &Ray<f64>, c: &Ray<f64>, size: Size) -> Option<Centre<3>> {
+    let rays = [a, b, c];
+    let normals =
+        [cross(&b.vector, &c.vector), cross(&c.vector, &a.vector), cross(&a.vector, &b.vector)];
+    let det = dot(&a.vector, &normals[0]);
+    let square = size.length * size.length;
+    let least = det.abs() - 6.0 * square * size.length * ROUNDING;
+    if least <= 0.5 * det.abs() {
+        return None;
+    }
+    let inverse = 1.0 / det;
+    let at = [0, 1, 2].map(|k| {
+        let [x, y, z] = [0, 1, 2].map(|i| rays[i].power * normals[i][k]);
+        (x + y + z) * (0.5 * inverse)
+    });
+    let factors = [0, 1, 2].map(|i| dot(&at, &normals[i]) * inverse);
+    // δ = −½ Σ rᵢnᵢ / det for the normals nᵢ, which are at most 3 times the square of the size.
+    Some(Centre { at, factors, per_residual: 1.5 * square / least, in_plane: false })
+}
+
+#[inline(always)]
+fn around<const M: usize>(
+    p: Site,
+    others: [Site; M],
+    rays: [&Ray<f64>; M],
+    size: Size,
+    centre: Centre<M>,
+) -> Option<f64> {
+    let Centre { at, factors, per_residual, in_plane } = centre;
+    let far = at.iter().fold(0f64, |most, x| most.max(x.abs()));
+    // What underflows is far below the errors of what does not; NaN is refused, too.
+    if !(far > Size::SHORTEST && far < Size::LONGEST) {
+        return None;
+    }
+    let twice = at.map(|x| 2.0 * x);
+    // Of one residual; the magnitudes of its terms are aₖ(aₖ + 2c̃ₖ) and the weights, which are summed exactly.
+    let off = Twofold::ROUNDING * (size.power + 6.0 * size.length * far);
+    let (mut missed, mut correction, mut wrong) = (0.0, 0.0, 0.0);
+    let mut sum_of_factors = 0.0;
+    for (q, factor) in others.iter().zip(factors) {
+        let heavier = Twofold::sum(p.weight, -q.weight);
+        let mut sum = Compensated { high: heavier.high, low: heavier.low };
+        for (k, twice) in twice.iter().enumerate() {
+            let along = Twofold::sum(q.position[k], -p.position[k]);
+            let less = Twofold::sum(along.high, -twice);
+            sum.add_product(along.high, less.high);
+            sum.low += along.high * (less.low + along.low) + along.low * less.high;
+        }
+        let residual = sum.high + sum.low;
+        missed += residual.abs() + off;
+        correction += factor * residual;
+        wrong += factor.abs() * residual.abs();
+        sum_of_factors += factor.abs();
+    }
+    // |s|: its terms are those of c̃ and of Σ μᵢaᵢ.
+    let gap: f64 = [0, 1, 2]
+        .map(|k| {
+            let sum: f64 =
+                rays.iter().zip(factors).map(|(ray, factor)| factor * ray.vector[k]).sum();
+            (at[k] - sum).abs()
+        })
+        .iter()
+        .sum();
+    let gap = gap + 3.0 * ROUNDING * (far + sum_of_factors * size.length);
+    let delta = per_residual * missed + if in_plane { gap } else { 0.0 };
+    let mut square = Compensated { high: -p.weight, low: 0.0 };
+    for x in at {
+        square.add_product(x, x);
+    }
+    let error = delta * (delta + 2.0 * gap)
+        + sum_of_factors * off
+        + 4.0 * f64::EPSILON * wrong
+        + Twofold::ROUNDING * (3.0 * far * far + p.weight.abs() + wrong);
+    Twofold::sum(square.high, square.low + correction).nearest(error).map(|radius| radius + 0.0)
+}
+
+/// A sum of doubles and products, in which what is rounded off is added up, too (Ogita, Rump and Oishi 2005,
+/// doi:10.1137/030601818). With u = 2⁻⁵³, the error of fewer than ten terms is below 2⁻⁹⁷ times the sum of their
+/// magnitudes: the parts rounded off have magnitudes of at most 3u times that sum each, and adding them up rounds by
+/// u times theirs.
+struct Compensated {
+    high: f64,
+    low: f64,
+}
+
+impl Compensated {
+    #[inline(always)]
+    fn add_product(&mut self, a: f64, b: f64) {
+        let product = Twofold::product(a, b);
+        let sum = Twofold::sum(self.high, product.high);
+        self.high = sum.high;
+        self.low += product.low + sum.low;
+    }
+}

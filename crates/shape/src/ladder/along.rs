@@ -1,0 +1,113 @@
+use std::ops::Range;
+use std::sync::atomic::{AtomicU32, Ordering};
+
+use rayon::prelude::*;
+use walpha_regular::along_curve;
+
+use crate::Complex;
+
+/// Vertices along a Hilbert curve, and the rows of the simplices of each dimension whose smallest vertex each is.
+///
+/// Rows are in the order of input indices, which need not be close in space. Visited along the curve, most of what a
+/// simplex needs is in a cache still, from those before it.
+pub(super) struct Along {
+    order: Vec<u32>,
+    /// The first row of each vertex, and the end.
+    pub cells: Vec<u32>,
+    pub facets: Vec<u32>,
+    pub edges: Vec<u32>,
+}
+
+/// Vertices that one thread visits at a time.
+const CHUNK: usize = 1 << 6;
+
+impl Along {
+    /// O(n log n).
+    pub(super) fn new(whole: &Complex, positions: &[[f64; 3]]) -> Self {
+        let points = positions.len();
+        Self {
+            order: along_curve(positions),
+            cells: starts(whole.cells.rows(), points, is_before),
+            facets: starts(whole.facets.rows(), points, is_before),
+            edges: starts(whole.edges.rows(), points, is_before),
+        }
+    }
+
+    /// Visits all rows of a dimension on all threads, given the first ones of each vertex.
+    pub(super) fn each(&self, starts: &[u32], visit: impl Fn(usize) + Sync) {
+        self.order.par_chunks(CHUNK).for_each(|chunk| {
+            for &v in chunk {
+                rows(starts, v).for_each(&visit);
+            }
+        });
+    }
+}
+
+/// Whether the smallest vertex of a simplex comes before a vertex.
+pub(super) fn is_before<const N: usize>(row: &[u32; N], v: usize) -> bool {
+    (row[0] as usize) < v
+}
+
+/// The rows of a group.
+pub(super) fn rows(starts: &[u32], group: u32) -> Range<usize> {
+    starts[group as usize] as usize..starts[group as usize + 1] as usize
+}
+
+/// Where the rows of each group start, and where the last ones end. Groups ascend; `before` says whether a row belongs to
+/// one before this.
+pub(super) fn starts<T: Sync>(
+    rows: &[T],
+    groups: usize,
+    before: impl Fn(&T, usize) -> bool + Sync,
+) -> Vec<u32> {
+    const GROUPS: usize = 1 << 14;
+    let mut starts = vec![rows.len() as u32; groups + 1];
+    starts[..groups].par_chunks_mut(GROUPS).enumerate().for_each(|(chunk, starts)| {
+        let first = chunk * GROUPS;
+        let mut at = rows.partition_point(|row| before(row, first));
+        for (group, start) in (first..).zip(starts) {
+            at += rows[at..].iter().take_while(|&row| before(row, group)).count();
+            *start = at as u32;
+        }
+    });
+    starts
+}
+
+/// A table that threads write in the order in which they visit simplices, each element once.
+pub(super) struct Table<const N: usize>(Vec<[AtomicU32; N]>);
+
+impl<const N: usize> Table<N> {
+    pub(super) fn new(rows: usize, element: u32) -> Self {
+        let row = |_| [0; N].map(|_| AtomicU32::new(element));
+        Self((0..rows).into_par_iter().map(row).collect())
+    }
+
+    pub(super) fn write(&self, row: usize, elements: [u32; N]) {
+        for (to, element) in self.0[row].iter().zip(elements) {
+            to.store(element, Ordering::Relaxed);
+        }
+    }
+
+    pub(super) fn write_at(&self, row: usize, place: usize, element: u32) {
+        self.0[row][place].store(element, Ordering::Relaxed);
+    }
+
+    /// The rows, once all are written; in the same memory.
+    pub(super) fn finished(self) -> Vec<[u32; N]> {
+        self.0.into_iter().map(|row| row.map(AtomicU32::into_inner)).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn groups_start_where_their_first_row_is() {
+        assert_eq!(starts(&[], 3, |&row: &usize, group| row < group), [0; 4]);
+        let rows: Vec<usize> = (0..100_000).map(|i| i / 3 * 2 + usize::from(i % 3 == 2)).collect();
+        let found = starts(&rows, 70_000, |&row, group| row < group);
+        let expected = (0..=70_000).map(|v| rows.partition_point(|&row| row < v) as u32);
+        assert!(expected.eq(found));
+    }
+}
