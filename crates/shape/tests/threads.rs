@@ -1,10 +1,10 @@
-//! Filtrations have the same bytes for any number of threads.
+//! Shapes and filtrations have the same bytes for any number of threads.
 
 use walpha_base::random::Random;
 use walpha_shape::ladder::{Entry, Filtration, Ordered};
-use walpha_shape::{AlphaShape, Torus, WeightedPoints};
+use walpha_shape::{AlphaShape, Engine, ShapeOptions, Torus, WeightedPoints, alpha_shape};
 
-const SETS: usize = 240;
+const SETS: usize = 2000;
 
 /// Positions and weights, and a periodic box if there is one.
 type Set = (Vec<[f64; 3]>, Vec<f64>, Option<Torus>);
@@ -74,10 +74,12 @@ fn without_weights(positions: Vec<[f64; 3]>) -> Set {
     (positions, weights, None)
 }
 
-/// All that a filtration says.
+/// A filtration with the order and pairs of its simplices, and a shape.
 #[derive(PartialEq)]
-struct Said {
+struct Results {
     whole: AlphaShape,
+    /// At the median of the critical values, in or out decided by exact equality.
+    shape: AlphaShape,
     /// Vertices, ranks and bits of values of all simplices in order.
     simplices: Vec<(Vec<u32>, u32, [u64; 3], bool)>,
     values: Vec<u64>,
@@ -88,18 +90,19 @@ struct Said {
     last: Option<u32>,
 }
 
-impl Said {
-    fn by(threads: usize, (positions, weights, torus): &Set) -> Self {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
-        pool.install(|| {
-            let points = WeightedPoints::new(positions.clone(), weights.clone()).expect("points");
-            let filtration = Filtration::on(*torus, points).expect("a filtration");
-            let ordered = filtration.simplices().expect("an order");
-            Self::of(&filtration, &ordered)
-        })
+impl Results {
+    fn new((positions, weights, torus): &Set) -> Self {
+        let points = WeightedPoints::new(positions.clone(), weights.clone()).expect("points");
+        let filtration = Filtration::on(*torus, points.clone()).expect("a filtration");
+        let ordered = filtration.simplices().expect("an order");
+        let values = ordered.values();
+        let options = ShapeOptions::new(values[values.len() / 2]);
+        let options = options.engine(Engine::Native).periodic(*torus);
+        let shape = alpha_shape(points, &options).expect("a shape");
+        Self::of(&filtration, &ordered, shape)
     }
 
-    fn of(filtration: &Filtration, ordered: &Ordered<'_>) -> Self {
+    fn of(filtration: &Filtration, ordered: &Ordered<'_>, shape: AlphaShape) -> Self {
         let simplex = |entry: Entry<'_>| {
             let numbers = [entry.value, entry.regular, entry.interior].map(f64::to_bits);
             (entry.vertices.to_vec(), entry.rank, numbers, entry.gabriel)
@@ -107,6 +110,7 @@ impl Said {
         let pairs = ordered.pairs();
         Self {
             whole: filtration.whole().clone(),
+            shape,
             simplices: ordered.iter().map(simplex).collect(),
             values: ordered.values().iter().map(|value| value.squared().to_bits()).collect(),
             order: ordered.order().to_vec(),
@@ -119,17 +123,20 @@ impl Said {
 }
 
 #[test]
-fn a_filtration_is_the_same_for_any_number_of_threads() {
+fn results_are_the_same_for_any_number_of_threads() {
     let mut random = Random::new(31);
+    let pools = [1, 2, 3, 8].map(|threads| {
+        rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads")
+    });
     for round in 0..SETS {
         let (kind, make) = KINDS[round % KINDS.len()];
-        let count = 60 + random.below(900);
+        let count = 60 + random.below(240);
         let set = make(&mut random, count);
-        let one = Said::by(1, &set);
+        let [one, others @ ..] = pools.each_ref().map(|pool| pool.install(|| Results::new(&set)));
         assert!(one.simplices.len() > 60, "{kind}, set {round}");
-        for threads in [2, 3, 8] {
-            let several = Said::by(threads, &set);
-            assert!(several == one, "{kind}, set {round}: {threads} threads differ from one");
+        for (several, pool) in others.iter().zip(&pools[1..]) {
+            let threads = pool.current_num_threads();
+            assert!(*several == one, "{kind}, set {round}: {threads} threads differ from one");
         }
     }
 }
