@@ -40,6 +40,11 @@ impl CellCount {
 /// # Errors
 /// A file that cannot be read, or whose header is damaged.
 pub fn cells_of(path: &Path, options: &PointOptions) -> Result<Vec<CellCount>, PointsError> {
+    // Of what is no file only the name is known; where that promises no cells, the reader says what is wrong.
+    let named = || options.format_named(path);
+    if !path.is_file() && named().is_none_or(|format| format.cells.is_none()) {
+        return Ok(Vec::new());
+    }
     let file = OpenFile::open(path)?;
     let cells = match options.format_of(&file).and_then(|format| format.cells) {
         Some(cells) => cells(&file)?,

@@ -54,7 +54,7 @@ impl PointOptions {
     }
 
     /// The format of the extension, that of the path or the one given.
-    fn format_named(&self, path: &Path) -> Option<&'static PointFormat> {
+    pub(super) fn format_named(&self, path: &Path) -> Option<&'static PointFormat> {
         let own = path.extension().unwrap_or_default().to_string_lossy();
         let extension = self.format.as_deref().unwrap_or(&own);
         FORMATS.iter().find(|format| format.is_named(extension))
