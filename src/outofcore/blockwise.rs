@@ -240,7 +240,7 @@ impl VtkFormat {
             arrays(of_cells),
         )?;
         for name in names {
-            writeln!(out, "<MergedBlock Source=\"{}\"/>", escaped(name))?;
+            writeln!(out, "<Piece Source=\"{}\"/>", escaped(name))?;
         }
         write!(out, "</{kind}>\n</VTKFile>\n")
     }
