@@ -44,7 +44,7 @@ fn errors_say_what_why_and_what_next() {
         (2, "haar sample:phantom@8 -o -", "cannot do this", "--output-format nrrd"),
         (1, "haar sample:phantom@8 -o no/a.npy", "could not start", "choose an existing one"),
         (2, "check flat.csv --points flat.csv", "cannot do this", "omit it"),
-        (1, "compare a.txt b.txt", "could not start", "docs/cross-checking.md"),
+        (1, "compare a.txt b.txt", "could not read its input", "docs/cross-checking.md"),
         (
             1,
             "points sample:phantom@8 --count 999",

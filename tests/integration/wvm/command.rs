@@ -97,7 +97,8 @@ fn points_of_a_volume_take_less_than_chance_would() {
     let folder = tempfile::tempdir().unwrap();
     let select = ["--select", "adaptive", "--count", "3000", "--value-error", "3"];
     ok(folder.path(), &[&["points", "sample:phantom@48", "-o", "m.wvm"][..], &select].concat());
-    let bytes = fs::metadata(folder.path().join("m.wvm")).unwrap().len() as f64;
+    let recipe = json(folder.path(), &["info", "m.wvm"])["recipe"].to_string().len();
+    let bytes = fs::metadata(folder.path().join("m.wvm")).unwrap().len() as f64 - recipe as f64;
     let share: f64 = 3000.0 / 48f64.powi(3);
     let chance = -(share * share.log2() + (1.0 - share) * (1.0 - share).log2()) / share;
     // Of 43 steps of 6 in 0..255, any would take 5.4 bits.
