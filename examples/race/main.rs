@@ -74,7 +74,6 @@ fn shapes(sets: &[Set]) -> Result<()> {
         let mut contestants = vec![
             native("native", points, &alpha, THREADS),
             native("native", points, &alpha, 1),
-            native("cgal", points, &alpha, 1),
             peers.plain(points, &alpha),
         ];
         contestants.extend(command(points, &alpha, THREADS));
