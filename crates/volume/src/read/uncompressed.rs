@@ -9,6 +9,7 @@ use super::layout::{Encoding, Layout};
 use super::payload::Element;
 #[cfg(feature = "formats")]
 use crate::Reason;
+#[cfg(feature = "formats")]
 use crate::error::format_error;
 use crate::error::io_error;
 #[cfg(feature = "formats")]
