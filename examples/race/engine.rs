@@ -1,4 +1,4 @@
-//! One of our engines in a process of its own.
+//! Our engine in a process of its own.
 
 use std::time::Instant;
 
@@ -23,12 +23,11 @@ pub(super) fn run(arguments: &[String]) -> Result<()> {
     let points = WeightedPoints::new(positions, weights)?;
     drop(bytes);
     let alpha = Alpha::from_squared(alpha.parse()?)?;
-    let shape = |engine| ShapeOptions::new(alpha).engine(engine);
+    let shape = ShapeOptions::new(alpha).engine(Engine::Native);
     let started = Instant::now();
     let counts = match what.as_str() {
-        "cgal" => counts(&alpha_shape(points, &shape(Engine::Cgal))?),
-        "native" => counts(&alpha_shape(points, &shape(Engine::Native))?),
-        "whole" => counts(&alpha_shape(points, &shape(Engine::Native).exterior(true))?),
+        "native" => counts(&alpha_shape(points, &shape)?),
+        "whole" => counts(&alpha_shape(points, &shape.exterior(true))?),
         "filtration" => counts(Filtration::new(points)?.whole()),
         "order" => {
             let filtration = Filtration::new(points)?;

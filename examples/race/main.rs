@@ -66,7 +66,7 @@ fn main() -> Result<()> {
     }
 }
 
-/// Shapes at the α of each set: the command, our engines, CGAL on one thread and on all.
+/// Shapes at the α of each set: the command, our engine, CGAL on one thread and on all.
 fn shapes(sets: &[Set]) -> Result<()> {
     let peers = Peers::new()?;
     table(sets, |set, points| {

@@ -24,7 +24,7 @@ fn named(program: &str, threads: usize) -> String {
     format!("{program}, {threads} thread{}", if threads == 1 { "" } else { "s" })
 }
 
-/// One of our engines, in this program ([`engine`](super::engine)).
+/// Our engine, in this program ([`engine`](super::engine)).
 pub(super) fn native(what: &'static str, points: &Path, alpha: &str, threads: usize) -> Contestant {
     let (points, alpha) = (points.to_owned(), alpha.to_owned());
     Contestant::new(what, threads, move || {

@@ -23,7 +23,7 @@ pub struct Filtration {
 }
 
 impl Filtration {
-    /// Triangulates points and computes when each simplex enters. Takes a little less than twice the time of one shape
+    /// Triangulates points and computes when each simplex enters. Takes about twice the time of one shape
     /// of the whole triangulation; expected O(n log n).
     ///
     /// Points in one plane, on one line or at one place have the filtration that they have there: there are no
