@@ -2,6 +2,7 @@
 
 use std::time::Instant;
 
+use rayon::prelude::*;
 use walpha_base::{Cancelled, Monitor};
 
 use super::{Input, ReproduceError, ShapeNumbers, text};
@@ -176,30 +177,42 @@ pub(super) struct Shapes {
 const LADDER: [f64; 5] = [1.0, 3.0, 50.0, 200.0, f64::INFINITY];
 
 impl Shapes {
+    /// Computes all, side by side: CGAL takes one thread for each.
     pub(super) fn new(study: &Study<'_>, clock: &mut Clock<'_>) -> Result<Self, ReproduceError> {
-        let mut make = |name, variant| {
-            clock.enter(name)?;
-            study.shape(variant)
-        };
-        let min_max = make("shape: min-max", Variant::weighted(Weighting::MinMax))?;
+        clock.enter("shapes")?;
+        let min_max = study.shape(Variant::weighted(Weighting::MinMax))?;
         let radius = Variant { balls: Balls::Radius, ..Variant::weighted(Weighting::MinMax) };
-        let mean = min_max.numbers.weights.mean;
+        let variants = [
+            Variant::plain(ALPHA),
+            Variant::weighted(Weighting::Common(COMMON)),
+            Variant::plain(ALPHA + COMMON),
+            radius,
+            Variant::plain(ALPHA + min_max.numbers.weights.mean),
+            Variant::weighted(Weighting::Barycentric),
+            Variant::weighted(Weighting::BarycentricN),
+        ];
+        let others = LADDER.map(Variant::plain);
+        let mut shapes = variants
+            .par_iter()
+            .chain(&others)
+            .map(|&variant| study.shape(variant))
+            .collect::<Result<Vec<_>, _>>()?;
+        let ladder = shapes.split_off(variants.len());
+        let Ok([plain, common, shifted, min_max_radius, min_max_mean, barycentric, barycentric_n]) =
+            <[_; 7]>::try_from(shapes)
+        else {
+            unreachable!("one shape for each variant")
+        };
         Ok(Self {
-            plain: make("shape: ω = 0", Variant::plain(ALPHA))?,
-            common: make("shape: ω = 10", Variant::weighted(Weighting::Common(COMMON)))?,
-            shifted: make("shape: α = 20", Variant::plain(ALPHA + COMMON))?,
-            min_max_radius: make("shape: radius α + ω", radius)?,
-            min_max_mean: make("shape: mean of min-max", Variant::plain(ALPHA + mean))?,
+            plain,
+            common,
+            shifted,
             min_max,
-            barycentric: make("shape: barycentric", Variant::weighted(Weighting::Barycentric))?,
-            barycentric_n: make(
-                "shape: N × barycentric",
-                Variant::weighted(Weighting::BarycentricN),
-            )?,
-            ladder: LADDER
-                .iter()
-                .map(|&alpha| make("shape: other α", Variant::plain(alpha)))
-                .collect::<Result<_, _>>()?,
+            min_max_radius,
+            min_max_mean,
+            barycentric,
+            barycentric_n,
+            ladder,
         })
     }
 
@@ -324,7 +337,7 @@ impl<'a> Clock<'a> {
         }
     }
 
-    /// Seconds of each cameras, and of all.
+    /// Seconds of each stage, and in all.
     pub(super) fn stop(mut self) -> Vec<(&'static str, f64)> {
         self.end();
         self.seconds.push(("total", self.started.elapsed().as_secs_f64()));
