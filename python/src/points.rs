@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use walpha::export::Target;
-use walpha::points::{ModelFacts, Packing, PointOptions, PointWriter, read_model};
+use walpha::points::{ModelMetadata, Packing, PointOptions, PointWriter, read_model};
 use walpha::progress::Stage;
 use walpha::{Alpha, WeightedPoints};
 
@@ -62,7 +62,7 @@ pub fn write_points(
     }
     let alpha = alpha.map(Alpha::from_squared).transpose().map_err(Told::told)?;
     let points = weighted(&points, weights.as_ref(), values.as_ref())?;
-    let facts = ModelFacts::default().alpha(alpha);
+    let facts = ModelMetadata::default().alpha(alpha);
     let packing = Packing::default().value_error(value_error);
     let target = Target::open(&path).map_err(Told::told)?;
     run(py, None, move |_| {

@@ -20,7 +20,7 @@ use super::global::Global;
 use super::output::{name, print_summary};
 use super::pipeline;
 use super::progress::Progress;
-use super::report::{Folded, SCHEMA_VERSION, WeightsReport, ending};
+use super::report::{MovedIntoBox, SCHEMA_VERSION, WeightsReport, ending};
 
 /// Every simplex of the regular triangulation, and the α at which it comes.
 ///
@@ -184,7 +184,7 @@ impl Display for FiltrationSummary {
         writeln!(f, "input     {}", name(&self.input))?;
         let Self { points, duplicates, hidden, .. } = self;
         write!(f, "points    {points}, {duplicates} duplicates, {hidden} hidden")?;
-        writeln!(f, "{}", Folded(self.folded))?;
+        writeln!(f, "{}", MovedIntoBox(self.folded))?;
         writeln!(f, "lengths   in {}", self.coordinates)?;
         writeln!(f, "weights   {} (squared lengths), frozen", self.weights)?;
         if let Some(alpha_ref) = &self.alpha_ref {

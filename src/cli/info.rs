@@ -180,8 +180,8 @@ impl Info {
         }
         let path = input;
         let is_sample = input.to_str().is_some_and(|name| name.starts_with("sample:"));
-        let seen = match Seen::of(input, &options, monitor) {
-            Ok(seen) => seen,
+        let summary = match VolumeSummary::of(input, &options, monitor) {
+            Ok(summary) => summary,
             Err(error) => match error.reason() {
                 Some(Reason::NotScalar { what, dims }) => {
                     let format = volume::format_name(path, &options)?;
@@ -189,7 +189,10 @@ impl Info {
                 }
                 Some(&Reason::Several { count }) if options.frame.is_none() => {
                     let first = options.clone().frame(0);
-                    Seen { volumes: Some(count), ..Seen::of(input, &first, monitor)? }
+                    VolumeSummary {
+                        volumes: Some(count),
+                        ..VolumeSummary::of(input, &first, monitor)?
+                    }
                 }
                 _ => return Err(pipeline::with_points(error)),
             },
@@ -199,7 +202,7 @@ impl Info {
         } else {
             (volume::format_name(path, &options)?, volume::data_files(path, &options)?)
         };
-        let Seen { dims, frame, dtype, gray_levels, stats, volumes } = seen;
+        let VolumeSummary { dims, frame, dtype, gray_levels, stats, volumes } = summary;
         Ok(Content::Volume {
             format,
             samples: dtype.to_string(),
@@ -219,7 +222,7 @@ impl Info {
 }
 
 /// Statistics of a volume.
-struct Seen {
+struct VolumeSummary {
     dims: Dims,
     frame: Frame,
     dtype: Dtype,
@@ -228,7 +231,7 @@ struct Seen {
     volumes: Option<u64>,
 }
 
-impl Seen {
+impl VolumeSummary {
     /// Looks at a volume: part by part where its format allows that, and at all of it otherwise.
     fn of(input: &Path, options: &ReadOptions, monitor: &Monitor) -> Result<Self, VolumeError> {
         let (source, stats) = if let Ok(source) = Source::open(input, options) {

@@ -13,7 +13,7 @@ use crate::export::Scratch;
 use crate::interpolate::{InterpolateError, fill_monitored};
 use crate::ladder::{Curve, Filtration};
 use crate::pipeline::{Input, Model, PipelineError, Source, Values, Weighed};
-use crate::points::ModelFacts;
+use crate::points::ModelMetadata;
 use crate::progress::Stage;
 use crate::shape::{ShapeError, Torus};
 use crate::volume::Reason;
@@ -62,9 +62,9 @@ pub(super) fn points_and_volume(
 }
 
 /// Everything a model file stores besides its points, except their order.
-pub(super) fn model_facts(weighed: &Weighed, volume: Option<&VolumeSummary>) -> ModelFacts {
+pub(super) fn model_facts(weighed: &Weighed, volume: Option<&VolumeSummary>) -> ModelMetadata {
     let origin = weighed.origin;
-    ModelFacts {
+    ModelMetadata {
         grid: origin.grid,
         coordinates: origin.coordinates,
         alpha: weighed.parameter.map(|parameter| parameter.alpha),

@@ -21,7 +21,7 @@ use crate::export::{
     Content, ExportOptions, Exporter, FORMATS, Format, Target, TargetError, write_all,
 };
 use crate::outofcore::{BlockwiseFormat, Team};
-use crate::points::{ModelFacts, Packing, PointWriter};
+use crate::points::{ModelMetadata, Packing, PointWriter};
 use crate::progress::Stage;
 use crate::volume::UnknownFormat;
 use crate::{AlphaShape, Recipe};
@@ -243,7 +243,11 @@ impl Outputs {
     }
 
     /// Writes all that take a whole shape.
-    pub(super) fn write(self, shape: &AlphaShape, facts: &ModelFacts) -> Result<(), TargetError> {
+    pub(super) fn write(
+        self,
+        shape: &AlphaShape,
+        facts: &ModelMetadata,
+    ) -> Result<(), TargetError> {
         let whole = self.whole.into_iter().map(|(target, exporter)| {
             let content = move |out: &mut dyn Write| exporter.write_any(shape, out);
             (target, Box::new(content) as Content<'_>)

@@ -25,7 +25,7 @@ pub struct Survey {
     pub truncation: Truncation,
     /// Which coefficients stay, where blocks need it: not where nothing but zeros goes.
     pub(super) cut: Option<Cut>,
-    pub(super) choice: Chosen,
+    pub(super) choice: Criterion,
     pub(super) differences: Differences,
     /// The first of the points, by its index in the volume.
     pub(super) first: u64,
@@ -132,7 +132,7 @@ pub(super) fn gray_levels(
 
 /// Which samples are points.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct Chosen {
+pub(super) struct Criterion {
     rule: Rule,
     /// The least truncated gray level.
     gray_min: Option<f64>,
@@ -144,7 +144,7 @@ enum Rule {
     Threshold(f64),
 }
 
-impl Chosen {
+impl Criterion {
     /// The difference of a sample that takes part, else NaN.
     fn masked(gray_min: Option<f64>, sample: &Sample) -> f64 {
         let out =
@@ -168,12 +168,12 @@ pub(super) fn choose(
     field: &Field,
     truncated: &Truncated,
     passes: &mut Passes<'_>,
-) -> Result<Chosen, BlocksError> {
+) -> Result<Criterion, BlocksError> {
     let Selection { rule, gray_min } = job.selection(&field.range);
     check_least(gray_min)?;
     let most = match rule.asked(job.dims.samples() as u64)? {
         Asked::Largest(most) => most,
-        Asked::AtLeast(least) => return Ok(Chosen { rule: Rule::Threshold(least), gray_min }),
+        Asked::AtLeast(least) => return Ok(Criterion { rule: Rule::Threshold(least), gray_min }),
     };
     // The first round asks the same whatever the budget is.
     let first = Search::new(Budget::Count(0), FEW);
@@ -187,7 +187,7 @@ pub(super) fn choose(
     search.learn(counts);
     let next = |search: &Search| Ok(round(search, gray_min, field, truncated, passes)?.0);
     let (cut, _) = search.find::<BlocksError>(next)?;
-    Ok(Chosen { rule: Rule::Largest(cut), gray_min })
+    Ok(Criterion { rule: Rule::Largest(cut), gray_min })
 }
 
 /// One round of a search over the differences of all samples, and the highest truncated gray level.
@@ -210,7 +210,7 @@ fn round(
             let mut highest = f32::NEG_INFINITY;
             field.samples(tile, truncated, |sample| {
                 highest = highest.max(sample.smoothed);
-                differences.push((Chosen::masked(gray_min, &sample), sample.voxel));
+                differences.push((Criterion::masked(gray_min, &sample), sample.voxel));
             })?;
             Ok((search.count(differences.into_iter()), highest))
         },
@@ -241,7 +241,7 @@ impl Counted {
 pub(super) fn count(
     field: &Field,
     truncated: &Truncated,
-    choice: &Chosen,
+    choice: &Criterion,
     passes: &mut Passes<'_>,
 ) -> Result<Counted, BlocksError> {
     let ([cx, cy, _], side) = (field.bricks.count(), field.bricks.side());

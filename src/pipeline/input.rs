@@ -3,7 +3,7 @@ use std::path::Path;
 use walpha_base::Monitor;
 
 use super::{PipelineError, Recipe};
-use crate::points::{ModelFacts, Points, PointsError, Units, read_model_file};
+use crate::points::{ModelMetadata, Points, PointsError, Units, read_model_file};
 use crate::volume::{self, GrayRange, OpenFile, Volume};
 
 /// The content of an input.
@@ -13,7 +13,7 @@ pub enum Input {
     /// A grid of gray levels.
     Volume(Grays),
     /// Points, perhaps with weights and values, and what else their file states.
-    Points(Points, ModelFacts),
+    Points(Points, ModelMetadata),
 }
 
 /// A volume in gray levels, and what they stand for.

@@ -21,7 +21,7 @@ use walpha_base::Monitor;
 
 use crate::haar::smooth_monitored;
 use crate::interpolate::{Refit, refit_monitored};
-use crate::points::{ModelFacts, Points, SampleGrid};
+use crate::points::{ModelMetadata, Points, SampleGrid};
 use crate::progress::Stage;
 use crate::shape::{AlphaShape, alpha_shape_monitored};
 use crate::volume::Volume;
@@ -73,7 +73,7 @@ impl Recipe {
         points: Points,
         monitor: &Monitor,
     ) -> Result<Model, PipelineError> {
-        let facts = ModelFacts::default();
+        let facts = ModelMetadata::default();
         self.finish(self.weighed_points(points, &facts, Values::Written, monitor)?, monitor)
     }
 
@@ -147,7 +147,7 @@ impl Recipe {
     pub fn weighed_points(
         &self,
         mut points: Points,
-        facts: &ModelFacts,
+        facts: &ModelMetadata,
         values: Values,
         monitor: &Monitor,
     ) -> Result<Weighed, PipelineError> {

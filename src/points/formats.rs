@@ -16,7 +16,7 @@ use super::read::{obj, off, pcd, ply, stl, table, vtk};
 use super::write;
 #[cfg(feature = "formats")]
 use super::wvm;
-use super::{CellCount, Columns, ModelFacts, Packing, Points, PointsError, WeightedPoints};
+use super::{CellCount, Columns, ModelMetadata, Packing, Points, PointsError, WeightedPoints};
 #[cfg(feature = "formats")]
 use crate::volume::VtkPoints;
 use crate::volume::{NpyFile, OpenFile, Reason, UnknownFormat, built, is_npy, is_vtk, is_vtk_xml};
@@ -25,7 +25,8 @@ use crate::volume::{NpyFile, OpenFile, Reason, UnknownFormat, built, is_npy, is_
 type Read = fn(&OpenFile, Option<&Columns>) -> Result<Points, PointsError>;
 
 /// Reads a file without so many of its last layers, and what it states of its points besides.
-type ReadModel = fn(&OpenFile, Option<&Columns>, u32) -> Result<(Points, ModelFacts), PointsError>;
+type ReadModel =
+    fn(&OpenFile, Option<&Columns>, u32) -> Result<(Points, ModelMetadata), PointsError>;
 
 /// Counts what a file lists besides points.
 type CountCells = fn(&OpenFile) -> Result<Vec<CellCount>, PointsError>;
@@ -67,13 +68,13 @@ pub struct PointFormat {
 pub struct PointWriter {
     /// The extension without its dot.
     pub extension: &'static str,
-    /// Whether it keeps what is known of points besides themselves ([`ModelFacts`]), and is packed.
+    /// Whether it keeps what is known of points besides themselves ([`ModelMetadata`]), and is packed.
     pub packs: bool,
     write: WriteAll,
 }
 
 /// Writes points, with what is known of them.
-type WriteAll = fn(&WeightedPoints, &ModelFacts, &Packing, &mut dyn Write) -> io::Result<()>;
+type WriteAll = fn(&WeightedPoints, &ModelMetadata, &Packing, &mut dyn Write) -> io::Result<()>;
 
 /// A format recognised by extension only.
 const PLAIN: PointFormat = PointFormat {
@@ -314,10 +315,10 @@ impl PointFormat {
         file: &OpenFile,
         columns: Option<&Columns>,
         level: u32,
-    ) -> Result<(Points, ModelFacts), PointsError> {
+    ) -> Result<(Points, ModelMetadata), PointsError> {
         match (self.read_model, self.read) {
             (Some(read_model), _) => read_model(file, columns, level),
-            (None, Some(read)) => Ok((read(file, columns)?, ModelFacts::default())),
+            (None, Some(read)) => Ok((read(file, columns)?, ModelMetadata::default())),
             (None, None) => {
                 let (what, feature) = (self.name, self.feature.unwrap_or_default());
                 Err(format(file.path(), Reason::Without { what, feature }))
@@ -351,7 +352,7 @@ impl PointWriter {
     /// # Errors
     /// Whatever `out` returns.
     pub fn write(&self, points: &WeightedPoints, out: &mut dyn Write) -> io::Result<()> {
-        self.write_model(points, &ModelFacts::default(), &Packing::default(), out)
+        self.write_model(points, &ModelMetadata::default(), &Packing::default(), out)
     }
 
     /// The same with what is known of the points, packed as asked for; both have an effect where the
@@ -362,7 +363,7 @@ impl PointWriter {
     pub fn write_model(
         &self,
         points: &WeightedPoints,
-        facts: &ModelFacts,
+        facts: &ModelMetadata,
         packing: &Packing,
         out: &mut dyn Write,
     ) -> io::Result<()> {

@@ -41,7 +41,7 @@ pub use error::PointsError;
 pub use focus::{Region, focus};
 pub use formats::{FORMATS, PointFormat, PointWriter};
 pub use mesh::{CellCount, cells_of, read_complex};
-pub use model::{Cell, ModelFacts, Packing, SampleGrid};
+pub use model::{Cell, ModelMetadata, Packing, SampleGrid};
 pub(crate) use open::read_model_file;
 pub use open::{PointOptions, is_point_file, read_model, read_points};
 pub use read::{Columns, UnknownColumns};

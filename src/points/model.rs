@@ -61,7 +61,7 @@ impl fmt::Display for Cell {
 /// XYZ states; other formats of points keep nothing.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
-pub struct ModelFacts {
+pub struct ModelMetadata {
     /// The grid that they are samples of.
     pub grid: Option<SampleGrid>,
     /// What coordinates mean.
@@ -90,7 +90,7 @@ pub struct Packing {
     pub layers: u8,
 }
 
-impl ModelFacts {
+impl ModelMetadata {
     setters! {
         grid: Option<SampleGrid>,
         coordinates: Coordinates,

@@ -7,7 +7,7 @@ use walpha_base::setters;
 
 use super::formats::{FORMATS, PointFormat};
 use super::read::{COLUMNS, format};
-use super::{Columns, ModelFacts, Points, PointsError};
+use super::{Columns, ModelMetadata, Points, PointsError};
 use crate::volume::{OpenFile, Reason, begins_as_volume};
 
 /// What a user says about a file of points beyond its name.
@@ -105,7 +105,7 @@ pub fn read_points(path: &Path, columns: Option<&Columns>) -> Result<Points, Poi
 pub fn read_model(
     path: &Path,
     options: &PointOptions,
-) -> Result<(Points, ModelFacts), PointsError> {
+) -> Result<(Points, ModelMetadata), PointsError> {
     read_model_file(&OpenFile::open(path)?, options)
 }
 
@@ -113,7 +113,7 @@ pub fn read_model(
 pub(crate) fn read_model_file(
     file: &OpenFile,
     options: &PointOptions,
-) -> Result<(Points, ModelFacts), PointsError> {
+) -> Result<(Points, ModelMetadata), PointsError> {
     let path = file.path();
     let known = options.format_of(file).unwrap_or(&FORMATS[0]);
     let PointOptions { columns, level, format: named } = options;

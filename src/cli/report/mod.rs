@@ -18,8 +18,8 @@ use crate::{Coordinates, GrayRange};
 use super::output::name;
 use super::pipeline::VolumeSummary;
 use parts::ShapeReport;
-use parts::{Ended, InputReport, PointsReport};
-pub(super) use parts::{Folded, HaarReport, WeightsReport};
+use parts::{EndedEarly, InputReport, PointsReport};
+pub(super) use parts::{HaarReport, MovedIntoBox, WeightsReport};
 
 /// Counted up when a field changes its meaning or goes; new fields may come at any time.
 pub(super) const SCHEMA_VERSION: u32 = 1;
@@ -87,7 +87,7 @@ impl Report {
                 folded: None,
                 hidden: None,
                 in_shape: None,
-                ended_early: origin.ended.map(|Adaptive { count, rmse, max_error }| Ended {
+                ended_early: origin.ended.map(|Adaptive { count, rmse, max_error }| EndedEarly {
                     asked: count,
                     rmse,
                     max_error,

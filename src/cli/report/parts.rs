@@ -42,12 +42,12 @@ pub(super) struct PointsReport {
     pub(super) hidden: Option<usize>,
     pub(super) in_shape: Option<usize>,
     /// Adaptive selection needed fewer than asked for.
-    pub(super) ended_early: Option<Ended>,
+    pub(super) ended_early: Option<EndedEarly>,
 }
 
 /// Why there are fewer points than asked for.
 #[derive(Clone, Copy, Serialize)]
-pub(super) struct Ended {
+pub(super) struct EndedEarly {
     pub(super) asked: u64,
     /// The RMSE that was good enough; 0 where only a perfect interpolant is.
     pub(super) rmse: f64,
@@ -56,7 +56,7 @@ pub(super) struct Ended {
     pub(super) max_error: Option<f64>,
 }
 
-impl Display for Ended {
+impl Display for EndedEarly {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { asked, rmse, max_error } = self;
         write!(f, "fewer than {asked}: ")?;
@@ -151,14 +151,14 @@ impl Display for PointsReport {
                 write!(f, ", {count} {what}")?;
             }
         }
-        Folded(self.folded).fmt(f)
+        MovedIntoBox(self.folded).fmt(f)
     }
 }
 
 /// How many points were moved into a periodic box, to follow other counts; nothing where none was.
-pub(in crate::cli) struct Folded(pub Option<usize>);
+pub(in crate::cli) struct MovedIntoBox(pub Option<usize>);
 
-impl Display for Folded {
+impl Display for MovedIntoBox {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.0 {
             None | Some(0) => Ok(()),

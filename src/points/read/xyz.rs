@@ -4,7 +4,7 @@ use std::path::Path;
 use super::extended::Comment;
 use super::rows::TextRows;
 use super::{COLUMNS, Columns, Points, PointsError, format};
-use crate::points::ModelFacts;
+use crate::points::ModelMetadata;
 use crate::volume::{Lines, OpenFile, Reason, io_error};
 
 /// What lines of numbers are, where nothing else says it.
@@ -39,7 +39,7 @@ pub(crate) fn read(
     file: &OpenFile,
     columns: Option<&Columns>,
     layout: TextLayout,
-) -> Result<(Points, ModelFacts), PointsError> {
+) -> Result<(Points, ModelMetadata), PointsError> {
     let path = file.path();
     let mut lines = Lines::new(file.reader()?);
     let mut rows = TextRows::new(path, columns.cloned());
@@ -65,7 +65,7 @@ pub(crate) fn read(
                     TextLayout::Atoms | TextLayout::Vectors => return atoms(path, lines, count),
                     TextLayout::PointsThenNormals => {
                         let points = points_then_normals(path, lines, count)?;
-                        return Ok((points, ModelFacts::default()));
+                        return Ok((points, ModelMetadata::default()));
                     }
                     TextLayout::Scan => claimed = Some(count),
                 }
@@ -83,7 +83,7 @@ pub(crate) fn read(
     }
     let points = rows.finish()?;
     check_count(path, claimed, points.len(), "points")?;
-    Ok((points, ModelFacts::default()))
+    Ok((points, ModelMetadata::default()))
 }
 
 /// Refuses another number of things than was claimed, if one was.
@@ -122,10 +122,10 @@ fn atoms(
     path: &Path,
     mut lines: Lines<impl BufRead>,
     count: u64,
-) -> Result<(Points, ModelFacts), PointsError> {
+) -> Result<(Points, ModelMetadata), PointsError> {
     let line = lines.read_line().map_err(io_error(path))?.unwrap_or_default();
     let Comment { columns, cell } = Comment::read(path, &line)?;
-    let facts = ModelFacts { cell, ..ModelFacts::default() };
+    let facts = ModelMetadata { cell, ..ModelMetadata::default() };
     let mut points = Points::default();
     let mut rows = columns.map(|columns| TextRows::new(path, Some(columns)));
     let mut number = 2;

@@ -4,7 +4,7 @@ use walpha_complex::Alpha;
 
 use super::fields::{In, Out};
 use crate::points::model::MODEL;
-use crate::points::{ModelFacts, SampleGrid, Units};
+use crate::points::{ModelMetadata, SampleGrid, Units};
 use crate::volume::{Coordinates, Dims, Frame, GrayRange, Reason};
 
 /// The version without a recipe, which is written where there is none.
@@ -84,10 +84,10 @@ const RANGE: u8 = 128;
 
 impl Header {
     /// What is stored besides the points.
-    pub(super) fn facts(&self) -> ModelFacts {
+    pub(super) fn facts(&self) -> ModelMetadata {
         let Self { grid, coordinates, alpha, range, .. } = *self;
         let recipe = self.recipe.clone();
-        ModelFacts { grid, coordinates, alpha, range, recipe, order: None, cell: None }
+        ModelMetadata { grid, coordinates, alpha, range, recipe, order: None, cell: None }
     }
 
     /// The frame of the grid, where it has to be stored.

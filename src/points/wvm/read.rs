@@ -10,7 +10,7 @@ use super::column;
 use super::header::{CHECKSUM, Header, Layer, Values, Weights, damaged, fits};
 use super::write::{Coders, in_order};
 use crate::points::read::format;
-use crate::points::{ModelFacts, Points, PointsError, SampleGrid, WeightedPoints};
+use crate::points::{ModelMetadata, Points, PointsError, SampleGrid, WeightedPoints};
 use crate::volume::{OpenFile, Reason, io_error};
 
 /// Reads points without the last `level` layers, and what is known of them.
@@ -19,7 +19,7 @@ use crate::volume::{OpenFile, Reason, io_error};
 pub(in crate::points) fn read(
     file: &OpenFile,
     level: u32,
-) -> Result<(Points, ModelFacts), PointsError> {
+) -> Result<(Points, ModelMetadata), PointsError> {
     let (path, length) = (file.path(), file.length());
     let fail = |reason: Reason| format(path, reason);
     let mut bytes = try_with_capacity(length as usize, || format!("{length} bytes of a file"))?;

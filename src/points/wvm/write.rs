@@ -8,7 +8,7 @@ use super::column;
 use super::header::{Header, Layer, POINTS_PER_BYTE, Values, Weights};
 use super::places::Places;
 use super::values;
-use crate::points::{ModelFacts, Packing, SampleGrid, WeightedPoints};
+use crate::points::{ModelMetadata, Packing, SampleGrid, WeightedPoints};
 
 /// Writes points and what is known of them.
 ///
@@ -20,7 +20,7 @@ use crate::points::{ModelFacts, Packing, SampleGrid, WeightedPoints};
 /// Whatever `out` returns.
 pub(in crate::points) fn write(
     points: &WeightedPoints,
-    facts: &ModelFacts,
+    facts: &ModelMetadata,
     packing: &Packing,
     out: &mut dyn Write,
 ) -> io::Result<()> {
@@ -61,7 +61,7 @@ pub(in crate::points) fn write(
 }
 
 /// The grid and the sample that each point lies on, if they all do.
-fn on_grid(points: &WeightedPoints, facts: &ModelFacts) -> Option<(SampleGrid, Vec<Cell>)> {
+fn on_grid(points: &WeightedPoints, facts: &ModelMetadata) -> Option<(SampleGrid, Vec<Cell>)> {
     let spanned = || SampleGrid::spanned(&points.positions, facts.coordinates);
     let grid = facts.grid.or_else(spanned)?;
     let cells = points.positions.iter().map(|&position| grid.sample_at(position));
@@ -73,7 +73,7 @@ fn on_grid(points: &WeightedPoints, facts: &ModelFacts) -> Option<(SampleGrid, V
 }
 
 /// The points of each layer, in the order of their samples: all in one where no order is known.
-fn in_layers(cells: &[Cell], facts: &ModelFacts, packing: &Packing) -> Vec<Vec<usize>> {
+fn in_layers(cells: &[Cell], facts: &ModelMetadata, packing: &Packing) -> Vec<Vec<usize>> {
     let all = cells.len();
     let order = facts.order.as_ref().filter(|order| order.len() == all);
     let count = match order {

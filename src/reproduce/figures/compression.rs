@@ -11,7 +11,8 @@ use crate::interpolate::{
     Adaptive, Deviation, Grid, Interpolant, InterpolateError, adaptive_voxels_monitored,
 };
 use crate::points::{
-    ModelFacts, Packing, PointOptions, PointWriter, SampleGrid, Units, WeightedPoints, read_model,
+    ModelMetadata, Packing, PointOptions, PointWriter, SampleGrid, Units, WeightedPoints,
+    read_model,
 };
 use crate::render::{RateCurve, rate_figure};
 use crate::reproduce::{Fact, Item, ReproduceError, Table, text};
@@ -170,7 +171,7 @@ fn through_file(
     const NAME: &str = ".wvm";
     let grid = SampleGrid { dims: volume.dims(), frame: *volume.frame(), units: Units::Voxel };
     let coordinates = Coordinates::VOXEL;
-    let facts = ModelFacts { grid: Some(grid), coordinates, ..ModelFacts::default() };
+    let facts = ModelMetadata { grid: Some(grid), coordinates, ..ModelMetadata::default() };
     let packing = Packing { value_error, ..Packing::default() };
     let writer = PointWriter::of(format!("model{NAME}").as_ref()).map_err(std::io::Error::other)?;
     let mut bytes = Vec::new();

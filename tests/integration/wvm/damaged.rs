@@ -1,14 +1,14 @@
 //! Damaged and forged files.
 
 use proptest::prelude::*;
-use walpha::points::{ModelFacts, Packing, read_points};
+use walpha::points::{ModelMetadata, Packing, read_points};
 
 use super::{checksum, grid, refused, save, scattered, written};
 
 fn small(recipe: Option<&str>) -> Vec<u8> {
     let points = scattered([6, 6, 6], 5, |chance| chance.below(50) as f64);
     let order: Vec<u32> = (0..points.len() as u32).rev().collect();
-    let facts = ModelFacts::default().order(order).grid(grid([6, 6, 6]));
+    let facts = ModelMetadata::default().order(order).grid(grid([6, 6, 6]));
     let facts = facts.recipe(recipe.map(str::to_owned));
     written(&points, &facts, Packing::default().layers(2))
 }

@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use walpha::points::{ModelFacts, Packing};
+use walpha::points::{ModelMetadata, Packing};
 use walpha::{Alpha, GrayRange, WeightedPoints};
 
 use super::{Chance, back, grid, scattered, written};
@@ -21,8 +21,8 @@ fn ball() -> WeightedPoints {
 }
 
 /// A file, what is in it, and how that was packed.
-fn kept() -> [(&'static str, WeightedPoints, ModelFacts, Packing); 3] {
-    let facts = || ModelFacts::default().grid(grid([24, 20, 18]));
+fn kept() -> [(&'static str, WeightedPoints, ModelMetadata, Packing); 3] {
+    let facts = || ModelMetadata::default().grid(grid([24, 20, 18]));
     let all = ball();
     let mut layered = ball();
     for (k, weight) in layered.weights.iter_mut().enumerate() {
@@ -39,7 +39,7 @@ fn kept() -> [(&'static str, WeightedPoints, ModelFacts, Packing); 3] {
     [
         ("whole.wvm", all, facts(), Packing::default()),
         ("layers.wvm", layered, of_layers, Packing::default().layers(3)),
-        ("rough.wvm", rough, ModelFacts::default(), Packing::default().value_error(0.5)),
+        ("rough.wvm", rough, ModelMetadata::default(), Packing::default().value_error(0.5)),
     ]
 }
 

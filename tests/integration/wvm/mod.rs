@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 use proptest::prelude::*;
 use walpha::points::{
-    ModelFacts, Packing, PointOptions, PointWriter, SampleGrid, read_model, read_points,
+    ModelMetadata, Packing, PointOptions, PointWriter, SampleGrid, read_model, read_points,
 };
 use walpha::{
     Alpha, Coordinates, Dims, Frame, GrayRange, LengthUnit, Space, Units, WeightedPoints,
@@ -17,7 +17,7 @@ use walpha::{
 
 use crate::common::Told;
 
-fn written(points: &WeightedPoints, facts: &ModelFacts, packing: Packing) -> Vec<u8> {
+fn written(points: &WeightedPoints, facts: &ModelMetadata, packing: Packing) -> Vec<u8> {
     let mut bytes = Vec::new();
     let writer = PointWriter::of("m.wvm".as_ref()).unwrap();
     writer.write_model(points, facts, &packing, &mut bytes).unwrap();
@@ -31,7 +31,7 @@ fn save(folder: &Path, bytes: &[u8]) -> PathBuf {
 }
 
 /// What a file gives back, without so many layers.
-fn back(bytes: &[u8], level: u32) -> (WeightedPoints, ModelFacts) {
+fn back(bytes: &[u8], level: u32) -> (WeightedPoints, ModelMetadata) {
     let folder = tempfile::tempdir().unwrap();
     let (points, facts) =
         read_model(&save(folder.path(), bytes), &PointOptions::default().level(level)).unwrap();
@@ -96,12 +96,12 @@ fn whole_values_come_back_bit_for_bit() {
     for (dims, one_in) in [([13, 9, 21], 3), ([40, 40, 40], 16), ([1, 1, 97], 5), ([5, 70, 1], 2)] {
         let points = scattered(dims, one_in, |chance| chance.below(256) as f64 - 20.0);
         assert!(points.len() > 10);
-        let facts = ModelFacts::default().grid(grid(dims.map(u64::from)));
+        let facts = ModelMetadata::default().grid(grid(dims.map(u64::from)));
         let bytes = written(&points, &facts, Packing::default());
         assert_eq!(back(&bytes, 0), (points.clone(), facts.clone()), "{dims:?}");
         assert!(bytes.len() < 2 * points.len() + 200, "{} of {}", bytes.len(), points.len());
         // Points at whole numbers need no grid that is told.
-        let (again, told) = back(&written(&points, &ModelFacts::default(), Packing::default()), 0);
+        let (again, told) = back(&written(&points, &ModelMetadata::default(), Packing::default()), 0);
         assert_eq!(again, points);
         assert!(told.grid.is_some());
     }
@@ -125,7 +125,7 @@ fn everything_that_is_known_comes_back() {
     for (k, weight) in points.weights.iter_mut().enumerate() {
         *weight = (k as f64).sqrt() - 3.0;
     }
-    let facts = ModelFacts::default()
+    let facts = ModelMetadata::default()
         .grid(grid)
         .coordinates(coordinates)
         .alpha(Alpha::from_squared(2.1).unwrap())
@@ -152,7 +152,7 @@ fn values_are_within_the_error_asked_for() {
     let mut last = usize::MAX;
     for error in [0.01, 0.5, 3.0, 40.0] {
         let packing = Packing::default().value_error(error);
-        let bytes = written(&points, &ModelFacts::default(), packing);
+        let bytes = written(&points, &ModelMetadata::default(), packing);
         let (again, _) = back(&bytes, 0);
         assert_eq!(again.positions, points.positions);
         let pairs = points.values.iter().flatten().zip(again.values.iter().flatten());
@@ -183,13 +183,13 @@ fn degenerate_sets_come_back() {
     let long = WeightedPoints::unweighted(vec![[7.0, 0.0, 0.0], [3_999_999_999.0, 0.0, 0.0]]);
     let one = full([1, 1, 1], -5.0);
     for points in [full([31, 17, 12], 3.0), full([64, 64, 64], 255.0), one, far, long] {
-        let bytes = written(&points, &ModelFacts::default(), Packing::default());
+        let bytes = written(&points, &ModelMetadata::default(), Packing::default());
         assert_eq!(back(&bytes, 0).0, points);
         assert!(64 * bytes.len() >= points.len(), "a byte holds 64 points at most");
     }
     let empty = WeightedPoints::default();
     assert!(
-        refused(&written(&empty, &ModelFacts::default(), Packing::default())).contains("no point")
+        refused(&written(&empty, &ModelMetadata::default(), Packing::default())).contains("no point")
     );
 }
 
@@ -200,7 +200,7 @@ fn the_first_layers_are_the_most_important_points() {
     // Every third point first, then the others.
     let mut order: Vec<u32> = (0..count as u32).collect();
     order.sort_by_key(|&k| (k % 3, k));
-    let facts = ModelFacts::default().order(order.clone());
+    let facts = ModelMetadata::default().order(order.clone());
     let bytes = written(&points, &facts, Packing::default().layers(3));
     assert_eq!(back(&bytes, 0).0, points);
     for (level, part) in [(1, 4), (2, 16)] {
@@ -244,7 +244,7 @@ proptest! {
         let points = WeightedPoints::new(positions, vec![1.0; cells.len()]).unwrap();
         let points = points.with_values(values).unwrap();
         let order: Vec<u32> = (0..cells.len() as u32).rev().collect();
-        let facts = ModelFacts::default().order(order);
+        let facts = ModelMetadata::default().order(order);
         let bytes = written(&points, &facts, Packing::default().layers(layers));
         prop_assert_eq!(back(&bytes, 0).0, points);
     }
