@@ -160,6 +160,9 @@ pub(crate) fn smallest_first(mut facet: [u32; 3]) -> [u32; 3] {
     facet
 }
 
+/// At least so many cells are renumbered by one thread in one piece.
+const MIN_LEN: usize = 1 << 12;
+
 /// The first corner of a deleted cell, whose slot is free.
 const DELETED: u32 = u32::MAX;
 
@@ -170,11 +173,11 @@ const DELETED: u32 = u32::MAX;
 /// Sites that span no volume; out of memory; more than [`Triangulation::MAX_CELLS`] cells.
 pub fn triangulate(sites: &Sites<'_>) -> Result<Triangulation, TriangulationError> {
     let along = sites.curve();
-    let positions: Vec<_> = along.iter().map(|&i| sites.positions()[i as usize]).collect();
-    let weights: Vec<_> = along.iter().map(|&i| sites.weights()[i as usize]).collect();
+    let positions: Vec<_> = along.par_iter().map(|&i| sites.positions()[i as usize]).collect();
+    let weights: Vec<_> = along.par_iter().map(|&i| sites.weights()[i as usize]).collect();
     let mut triangulation = triangulate_along(&positions, &weights, |_| Ok(()))?;
-    for v in triangulation.cells.as_flattened_mut() {
-        *v = along.get(*v as usize).copied().unwrap_or(*v);
-    }
+    triangulation.cells.par_iter_mut().with_min_len(MIN_LEN).for_each(|cell| {
+        *cell = cell.map(|v| along.get(v as usize).copied().unwrap_or(v));
+    });
     Ok(triangulation)
 }

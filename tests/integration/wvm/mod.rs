@@ -101,7 +101,8 @@ fn whole_values_come_back_bit_for_bit() {
         assert_eq!(back(&bytes, 0), (points.clone(), facts.clone()), "{dims:?}");
         assert!(bytes.len() < 2 * points.len() + 200, "{} of {}", bytes.len(), points.len());
         // Points at whole numbers need no grid that is told.
-        let (again, told) = back(&written(&points, &ModelMetadata::default(), Packing::default()), 0);
+        let (again, told) =
+            back(&written(&points, &ModelMetadata::default(), Packing::default()), 0);
         assert_eq!(again, points);
         assert!(told.grid.is_some());
     }
@@ -189,7 +190,8 @@ fn degenerate_sets_come_back() {
     }
     let empty = WeightedPoints::default();
     assert!(
-        refused(&written(&empty, &ModelMetadata::default(), Packing::default())).contains("no point")
+        refused(&written(&empty, &ModelMetadata::default(), Packing::default()))
+            .contains("no point")
     );
 }
 

@@ -19,7 +19,6 @@ mod open;
 mod slots;
 
 use std::ops::Range;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 use rayon::prelude::*;
 use walpha_base::Cancelled;
@@ -32,13 +31,19 @@ use slots::Mesh;
 
 /// With fewer points than this in all, one thread is as fast.
 const MIN_POINTS: usize = 1 << 16;
-/// Number of leaves per thread, about: small ones fit the cache, and threads that finish early find work.
-const LEAVES_PER_THREAD: usize = 8;
+/// Number of leaves per thread, about: threads that finish early find work, and more would be more to merge.
+const LEAVES_PER_THREAD: usize = 2;
+/// Halves are not equal: a leaf may have a quarter more points than its share before it is divided.
+const MAX_SHARE: f64 = 1.25;
 /// No leaf is divided that has at most this many points.
 const MIN_LEAF: usize = 1 << 12;
-/// Where more than this part of the points of two leaves are corners of open cells, as on a sphere, merging costs more
-/// than threads gain.
-const MAX_OPEN: f64 = 0.35;
+/// Where more than this part of the points of two small leaves are corners of open cells, as on a sphere or a smooth
+/// surface (1), merging costs more than threads gain. At random it is 0.2, of lattices 0.3, of noisy surfaces 0.5.
+const MAX_OPEN: f64 = 0.7;
+/// Number of places along the curve where this is tried.
+const TRIALS: usize = 3;
+/// Points of a small leaf, at most.
+const TRIAL_LEAF: usize = 1 << 11;
 
 /// The regular triangulation of points, which satisfy the conditions of [`Sites`](crate::Sites), on all threads where
 /// they follow the Hilbert curve through them, else on one. `inserted` is called now and then with the number of points inserted since. The result does
@@ -51,38 +56,69 @@ pub fn triangulate_along(
     weights: &[f64],
     inserted: impl Fn(usize) -> Result<(), Cancelled> + Sync,
 ) -> Result<Triangulation, TriangulationError> {
-    let threads = rayon::current_num_threads();
-    if threads > 1 && positions.len() >= MIN_POINTS {
-        let leaf = (positions.len() / (threads * LEAVES_PER_THREAD)).max(MIN_LEAF);
-        if let Some(mesh) = divide_and_merge(positions, weights, leaf, MAX_OPEN, &inserted)? {
-            return numbering::number(mesh.slots, positions.len() as u32);
+    let (count, threads) = (positions.len(), rayon::current_num_threads());
+    if threads > 1 && count >= MIN_POINTS {
+        let share = count as f64 / (threads * LEAVES_PER_THREAD) as f64;
+        let leaf = ((MAX_SHARE * share) as usize).max(MIN_LEAF);
+        if let Some(curve) = Along::new(positions, weights)
+            && curve.merging_pays()?
+            && let Some(mesh) = curve.divide_and_merge(leaf, &inserted)?
+        {
+            return numbering::number(mesh.slots, count as u32);
         }
     }
     let Built { cells, ghost, .. } = insert_cells(positions, weights, &inserted)?;
     Triangulation::of_cells(cells, ghost)
 }
 
-/// The mesh of points, divided into leaves of at most `leaf` points where the curve divides these; `None` where
-/// merging would not pay, or the points span no volume.
-fn divide_and_merge(
-    positions: &[[f64; 3]],
-    weights: &[f64],
-    leaf: usize,
-    max_open: f64,
-    inserted: &(impl Fn(usize) -> Result<(), Cancelled> + Sync),
-) -> Result<Option<Mesh>, TriangulationError> {
-    let curve = Curve::through(positions);
-    let index = |v: usize| curve.index(&positions[v]);
-    if !(1..positions.len()).into_par_iter().all(|v| index(v - 1) <= index(v)) {
-        return Ok(None);
+/// Points along the Hilbert curve through them.
+struct Along<'a> {
+    points: Points<'a>,
+    /// The index of each on the curve, ascending.
+    indices: Vec<u64>,
+}
+
+impl<'a> Along<'a> {
+    /// `None` for points in another order.
+    fn new(positions: &'a [[f64; 3]], weights: &'a [f64]) -> Option<Self> {
+        let curve = Curve::through(positions);
+        let indices: Vec<u64> = positions.par_iter().map(|place| curve.index(place)).collect();
+        let points = Points { positions, weights, ghost: positions.len() as u32 };
+        indices.is_sorted().then_some(Self { points, indices })
     }
-    let mut leaves = 0;
-    let tree = Tree::of(0..positions.len(), leaf, &index, &mut leaves);
-    let points = Points { positions, weights, ghost: positions.len() as u32 };
-    let given_up = AtomicBool::new(false);
-    let work = Work { points, leaf, leaves, max_open, inserted, given_up: &given_up };
-    let half = work.triangulate(&tree)?;
-    Ok(half.map(|half| half.mesh).filter(Mesh::spans))
+
+    /// Tries whether merging is worth its price, by small leaves here and there along the curve.
+    fn merging_pays(&self) -> Result<bool, TriangulationError> {
+        let count = self.indices.len();
+        let pays = |trial: usize| {
+            let middle = count * (2 * trial + 1) / (2 * TRIALS);
+            let around =
+                middle.saturating_sub(2 * TRIAL_LEAF)..(middle + 2 * TRIAL_LEAF).min(count);
+            let mut leaves = 0;
+            let tree = Tree::of(around, TRIAL_LEAF, &self.indices, &mut leaves);
+            let work =
+                Work { points: self.points, leaves, max_open: MAX_OPEN, inserted: &|_| Ok(()) };
+            Ok(work.triangulate(tree.two_leaves())?.is_some())
+        };
+        let pay: Vec<bool> =
+            (0..TRIALS).into_par_iter().map(pays).collect::<Result<_, TriangulationError>>()?;
+        Ok(2 * pay.into_iter().filter(|&pays| pays).count() > TRIALS)
+    }
+
+    /// The mesh of the points, divided into leaves of at most `leaf` points where the curve divides these; `None`
+    /// where a leaf has no slots left, or the points span no volume.
+    fn divide_and_merge(
+        self,
+        leaf: usize,
+        inserted: &(impl Fn(usize) -> Result<(), Cancelled> + Sync),
+    ) -> Result<Option<Mesh>, TriangulationError> {
+        let Self { points, indices } = self;
+        let mut leaves = 0;
+        let tree = Tree::of(0..indices.len(), leaf, &indices, &mut leaves);
+        drop(indices);
+        let half = Work { points, leaves, max_open: 1.0, inserted }.triangulate(&tree)?;
+        Ok(half.map(|half| half.mesh).filter(Mesh::spans))
+    }
 }
 
 /// How points are divided.
@@ -95,15 +131,10 @@ struct Tree {
 
 impl Tree {
     /// Divides a range of points at the first bit in which their indices differ, again and again.
-    fn of(
-        points: Range<usize>,
-        leaf: usize,
-        index: &impl Fn(usize) -> u64,
-        leaves: &mut usize,
-    ) -> Self {
+    fn of(points: Range<usize>, leaf: usize, indices: &[u64], leaves: &mut usize) -> Self {
         let first = *leaves;
-        let halves = middle(&points, index).filter(|_| points.len() > leaf).map(|middle| {
-            let mut half = |points| Self::of(points, leaf, index, leaves);
+        let halves = middle(&points, indices).filter(|_| points.len() > leaf).map(|middle| {
+            let mut half = |points| Self::of(points, leaf, indices, leaves);
             Box::new([half(points.start..middle), half(middle..points.end)])
         });
         if halves.is_none() {
@@ -111,19 +142,22 @@ impl Tree {
         }
         Self { points, leaf: first, halves }
     }
+
+    /// The first part of two leaves, or the only leaf.
+    fn two_leaves(&self) -> &Self {
+        let larger = |halves: &'_ [Self; 2]| halves.iter().position(|half| half.halves.is_some());
+        match &self.halves {
+            Some(halves) => larger(halves).map_or(self, |half| halves[half].two_leaves()),
+            None => self,
+        }
+    }
 }
 
 /// Where the first bit in which indices differ becomes 1.
-fn middle(range: &Range<usize>, index: &impl Fn(usize) -> u64) -> Option<usize> {
-    let (first, last) = (index(range.start), index(range.end - 1));
-    let bit = (first ^ last).checked_ilog2()?;
-    let (mut low, mut high) = (range.start, range.end - 1);
-    // index(low) has 0 there, and index(high) 1.
-    while high - low > 1 {
-        let at = usize::midpoint(low, high);
-        *(if index(at) >> bit & 1 == 0 { &mut low } else { &mut high }) = at;
-    }
-    Some(high)
+fn middle(range: &Range<usize>, indices: &[u64]) -> Option<usize> {
+    let indices = &indices[range.clone()];
+    let bit = (indices.first()? ^ indices.last()?).checked_ilog2()?;
+    Some(range.start + indices.partition_point(|index| index >> bit & 1 == 0))
 }
 
 /// All points, by their numbers along the curve.
@@ -144,35 +178,22 @@ struct Half {
 /// What all calls have in common.
 struct Work<'a, I> {
     points: Points<'a>,
-    /// Points of a leaf, at most.
-    leaf: usize,
     /// Number of leaves.
     leaves: usize,
+    /// Two halves with more open corners than this part of their points are not merged.
     max_open: f64,
     inserted: &'a I,
-    /// Set where merging would not pay.
-    given_up: &'a AtomicBool,
 }
 
 impl<I: Fn(usize) -> Result<(), Cancelled> + Sync> Work<'_, I> {
-    /// Triangulates the points of a tree; `None` where this was given up.
+    /// Triangulates the points of a tree; `None` where halves are not merged, or a leaf has no slots left.
     fn triangulate(&self, tree: &Tree) -> Result<Option<Half>, TriangulationError> {
-        if self.given_up.load(Ordering::Relaxed) {
-            return Ok(None);
-        }
         let Some(halves) = &tree.halves else { return self.triangulate_leaf(tree) };
         let [a, b] = &**halves;
         let (a, b) = rayon::join(|| self.triangulate(a), || self.triangulate(b));
         let (Some(a), Some(b)) = (a?, b?) else { return Ok(None) };
         debug_assert!(a.extent.is_apart(&b.extent), "a plane divides two halves");
-        // Larger halves have fewer open cells, so the first merges tell.
-        let is_small = tree.points.len() <= 2 * self.leaf;
-        let max_open = if is_small { self.max_open } else { 1.0 };
-        let merged = glue::merge(a, b, &self.points, max_open, |_| (self.inserted)(0))?;
-        if merged.is_none() {
-            self.given_up.store(true, Ordering::Relaxed);
-        }
-        Ok(merged)
+        glue::merge(a, b, &self.points, self.max_open, |_| (self.inserted)(0))
     }
 
     fn triangulate_leaf(&self, leaf: &Tree) -> Result<Option<Half>, TriangulationError> {

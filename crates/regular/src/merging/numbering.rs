@@ -2,10 +2,11 @@
 
 use std::sync::atomic::{AtomicU32, Ordering};
 
+use rayon::iter::repeat_n;
 use rayon::prelude::*;
 
 use super::slots::Slots;
-use crate::{Cell, DELETED, Triangulation, TriangulationError, filled};
+use crate::{Cell, DELETED, Triangulation, TriangulationError, with_capacity};
 
 /// The permutations that bring the smallest of four first and the smallest of the others second, and are even: entry
 /// 3·p + r where the smallest was at p, after which the other three are rotated r times. Where each comes from.
@@ -23,6 +24,21 @@ const EVEN: [[u8; 4]; 12] = [
     [3, 1, 0, 2],
     [3, 0, 2, 1],
 ];
+
+/// Where each corner goes by the permutations of [`EVEN`].
+const TO: [[u8; 4]; 12] = {
+    let mut to = [[0; 4]; 12];
+    let mut code = 0;
+    while code < 12 {
+        let mut k = 0;
+        while k < 4 {
+            to[code][EVEN[code][k] as usize] = k as u8;
+            k += 1;
+        }
+        code += 1;
+    }
+    to
+};
 
 /// Which of [`EVEN`] makes corners the lexicographically smallest.
 #[inline(always)]
@@ -51,16 +67,14 @@ impl Triangulation {
 /// Slots that one task looks at.
 const PIECE: usize = 1 << 16;
 /// Vertices whose cells one task puts in order: so few that its working memory stays in the cache.
-const VERTICES: usize = 1 << 12;
+const VERTICES: usize = 1 << 11;
 
 /// The cells in canonical order: each as its lexicographically smallest even permutation, and these ascending. So cells
 /// of consecutive points are close in memory. O(cells) for bounded numbers of cells at a point.
 pub(super) fn number(slots: Slots, ghost: u32) -> Result<Triangulation, TriangulationError> {
     let Slots { chunks: mut old, bits, .. } = slots;
     let ranges = ghost as usize / VERTICES + 1;
-    // By slot, how its corners were permuted; and by piece and range of vertices, the cells whose smallest corner is
-    // there.
-    let by_piece: Vec<_> = (old.par_iter_mut().enumerate())
+    let by_piece: Vec<Vec<Vec<Corners>>> = (old.par_iter_mut().enumerate())
         .flat_map(|(chunk, cells)| {
             let start = (chunk as u32) << bits;
             cells
@@ -69,90 +83,125 @@ pub(super) fn number(slots: Slots, ghost: u32) -> Result<Triangulation, Triangul
                 .map(move |(piece, cells)| permute(cells, start + (piece * PIECE) as u32, ranges))
         })
         .collect();
-    let old: Vec<Vec<Cell>> = old;
-    let mut codes: Vec<Vec<u8>> = old.iter().map(|cells| Vec::with_capacity(cells.len())).collect();
-    let mut lists = Vec::with_capacity(by_piece.len());
-    for Piece { start, codes: more, lists: list } in by_piece {
-        codes[(start >> bits) as usize].extend(more);
-        lists.push(list);
+    // Collected in place; shrinking then frees a quarter of the memory of the old cells.
+    let old: Vec<Vec<Moved>> = (old.into_par_iter())
+        .map(|cells| {
+            let mut moved: Vec<_> = cells.into_iter().map(Moved::of).collect();
+            moved.shrink_to_fit();
+            moved
+        })
+        .collect();
+    let mut by_range: Vec<Vec<Vec<Corners>>> = (0..ranges).map(|_| Vec::new()).collect();
+    for piece in by_piece {
+        for (lists, list) in by_range.iter_mut().zip(piece).filter(|(_, list)| !list.is_empty()) {
+            lists.push(list);
+        }
     }
-    let counts: Vec<usize> =
-        (0..ranges).map(|range| lists.iter().map(|list| list[range].len()).sum()).collect();
-    let count = counts.iter().sum();
-    let mut cells: Vec<[u32; 4]> = filled(count, [0; 4])?;
-    let mut from: Vec<u32> = filled(count, 0)?;
-    let numbers: Vec<Vec<AtomicU32>> =
-        old.iter().map(|cells| cells.iter().map(|_| AtomicU32::new(0)).collect()).collect();
+    let count = by_range.iter().flatten().map(Vec::len).sum();
+    let (mut cells, mut from): (Vec<[u32; 4]>, Vec<u32>) =
+        (with_capacity(count)?, with_capacity(count)?);
+    // In parallel, as a good part of the time is the kernel's, for new pages.
+    cells.par_extend(repeat_n([0; 4], count));
+    from.par_extend(repeat_n(0, count));
     let mask = (1 << bits) - 1;
-    let at = |slot: u32| ((slot >> bits) as usize, (slot & mask) as usize);
+    let at = |slot: u32| &old[(slot >> bits) as usize][(slot & mask) as usize];
     let (mut rest, mut rest_from, mut start) = (&mut cells[..], &mut from[..], 0);
     let mut tasks = Vec::with_capacity(ranges);
-    for (range, &count) in counts.iter().enumerate() {
+    for (range, lists) in by_range.into_iter().enumerate() {
+        let count = lists.iter().map(Vec::len).sum();
         let (Some(cells), Some(from)) =
             (rest.split_off_mut(..count), rest_from.split_off_mut(..count))
         else {
             unreachable!("as many as were counted");
         };
-        tasks.push((range, start as u32, cells, from));
+        tasks.push((range, lists, start as u32, cells, from));
         start += count;
     }
-    tasks.into_par_iter().for_each(|(range, start, cells, from)| {
-        let slots = lists.iter().flat_map(|list| list[range].iter().copied());
-        let corners = |slot: u32| old[at(slot).0][at(slot).1].corners;
-        let mut sorted: Vec<([u32; 4], u32)> = slots.map(|slot| (corners(slot), slot)).collect();
-        sorted.sort_unstable();
+    tasks.into_par_iter().for_each(|(range, lists, start, cells, from)| {
+        let sorted = sort(lists, (range * VERTICES) as u32);
         for ((number, (corners, slot)), (cell, from)) in
             (start..).zip(sorted).zip(cells.iter_mut().zip(from))
         {
             (*cell, *from) = (corners, slot);
-            numbers[at(slot).0][at(slot).1].store(number, Ordering::Relaxed);
+            at(slot).number.store(number, Ordering::Relaxed);
         }
     });
-    drop(lists);
-    // Collected in place; shrinking then frees half the memory of the old cells.
-    let old: Vec<Vec<[u32; 4]>> = (old.into_par_iter())
-        .map(|cells| {
-            let mut across: Vec<_> = cells.into_iter().map(|cell| cell.neighbors).collect();
-            across.shrink_to_fit();
-            across
+    let mut neighbors: Vec<[u32; 4]> = with_capacity(count)?;
+    (from.par_iter().with_min_len(PIECE))
+        .map(|&slot| {
+            at(slot).neighbors.map(|side| {
+                let Moved { number, code, .. } = at(side / 4);
+                let corner = TO[*code as usize][side as usize % 4];
+                4 * number.load(Ordering::Relaxed) + u32::from(corner)
+            })
         })
-        .collect();
-    let mut neighbors: Vec<[u32; 4]> = filled(count, [0; 4])?;
-    neighbors.par_iter_mut().zip(&from).with_min_len(PIECE).for_each(|(neighbors, &slot)| {
-        *neighbors = old[at(slot).0][at(slot).1].map(|side| {
-            let (chunk, slot) = at(side / 4);
-            let from = &EVEN[usize::from(codes[chunk][slot])];
-            let corner = (0..4).find(|&k| u32::from(from[k as usize]) == side % 4).unwrap_or(0);
-            4 * numbers[chunk][slot].load(Ordering::Relaxed) + corner
-        });
-    });
+        .collect_into_vec(&mut neighbors);
     Ok(Triangulation { cells, neighbors, ghost })
 }
 
-/// Consecutive slots of a chunk, the first of which is given.
-struct Piece {
-    start: u32,
-    /// By slot, the entry of [`EVEN`] by which its corners were permuted.
-    codes: Vec<u8>,
-    /// By range of vertices, the slots of the cells whose smallest corner is there.
-    lists: Vec<Vec<u32>>,
+/// The corners of a cell, permuted, and its slot.
+type Corners = ([u32; 4], u32);
+
+/// What a slot holds while cells move from it to their numbers.
+struct Moved {
+    /// In the order of the permuted corners, as 4·slot + corner before these were permuted.
+    neighbors: [u32; 4],
+    number: AtomicU32,
+    /// The entry of [`EVEN`] by which the corners were permuted.
+    code: u32,
 }
 
-/// Permutes the corners of cells, and lists these by range of vertices.
-fn permute(cells: &mut [Cell], start: u32, ranges: usize) -> Piece {
-    let mut lists = vec![Vec::new(); ranges];
-    let mut codes = Vec::with_capacity(cells.len());
+impl Moved {
+    /// A cell that [`permute`] left.
+    fn of(cell: Cell) -> Self {
+        let Cell { corners: [code, ..], neighbors } = cell;
+        Self { neighbors, number: AtomicU32::new(0), code }
+    }
+}
+
+/// Permutes the cells of consecutive slots, the first of which is given, and leaves the entry of [`EVEN`] in place of
+/// their first corner. By range of vertices, the cells whose smallest corner is there.
+fn permute(cells: &mut [Cell], start: u32, ranges: usize) -> Vec<Vec<Corners>> {
+    let range = |cell: &Cell| cell.corners.into_iter().min().unwrap_or(0) as usize / VERTICES;
+    let mut counts = vec![0; ranges];
+    for cell in cells.iter().filter(|cell| cell.corners[0] != DELETED) {
+        counts[range(cell)] += 1;
+    }
+    let mut lists: Vec<Vec<Corners>> = counts.into_iter().map(Vec::with_capacity).collect();
     for (slot, cell) in (start..).zip(cells) {
         if cell.corners[0] == DELETED {
-            codes.push(0);
+            cell.corners[0] = 0;
             continue;
         }
         let code = canonical(cell.corners);
         let from = EVEN[code].map(usize::from);
-        cell.corners = from.map(|k| cell.corners[k]);
+        let corners = from.map(|k| cell.corners[k]);
+        lists[corners[0] as usize / VERTICES].push((corners, slot));
         cell.neighbors = from.map(|k| cell.neighbors[k]);
-        codes.push(code as u8);
-        lists[cell.corners[0] as usize / VERTICES].push(slot);
+        cell.corners[0] = code as u32;
     }
-    Piece { start, codes, lists }
+    lists
+}
+
+/// Sorts the cells of a range of vertices: by their smallest corner in one pass, and then the few cells of each.
+fn sort(lists: Vec<Vec<Corners>>, first: u32) -> Vec<Corners> {
+    let of = |corners: [u32; 4]| (corners[0] - first) as usize;
+    let mut ends = vec![0; VERTICES + 1];
+    lists.iter().flatten().for_each(|&(corners, _)| ends[of(corners) + 1] += 1);
+    for v in 0..VERTICES {
+        ends[v + 1] += ends[v];
+    }
+    let mut sorted = vec![Corners::default(); ends[VERTICES]];
+    // Where the next cell of each vertex goes: at last, where its cells end.
+    for cell in lists.into_iter().flatten() {
+        let at = &mut ends[of(cell.0)];
+        sorted[*at] = cell;
+        *at += 1;
+    }
+    let mut start = 0;
+    for &end in &ends[..VERTICES] {
+        sorted[start..end].sort_unstable();
+        start = end;
+    }
+    sorted
 }

@@ -1,6 +1,6 @@
 use walpha_base::random::Random;
 
-use super::divide_and_merge;
+use super::Along;
 use super::numbering::number;
 use crate::incremental::{Built, insert_cells};
 use crate::{Sites, Triangulation, TriangulationError};
@@ -12,7 +12,8 @@ fn both(points: &[([f64; 3], f64)], leaf: usize) -> [Result<Triangulation, Trian
     let along = |v: &u32| *v as usize;
     let positions: Vec<_> = sites.curve().iter().map(|v| sites.positions()[along(v)]).collect();
     let weights: Vec<_> = sites.curve().iter().map(|v| sites.weights()[along(v)]).collect();
-    let merged = divide_and_merge(&positions, &weights, leaf, 1.0, &|_| Ok(()));
+    let curve = Along::new(&positions, &weights).unwrap();
+    let merged = curve.divide_and_merge(leaf, &|_| Ok(()));
     let one = insert_cells(&positions, &weights, |_| Ok(()));
     [
         merged.and_then(|mesh| {
@@ -117,16 +118,20 @@ fn threads_do_not_change_the_triangulation() {
 
 /// On a sphere all cells are open: merging would be more work than it saves.
 #[test]
-fn a_sphere_is_not_divided() {
+fn merging_pays_but_on_a_sphere() {
+    let mut random = Random::new(3);
+    let mut unit = move || random.unit();
+    let filled: Vec<_> = (0..50_000).map(|_| [unit(), unit(), unit()]).collect();
     let on_sphere = |i: u32| {
-        let (turn, z) = (f64::from(i) * 2.4, f64::from(2 * i) / 4000.0 - 1.0);
+        let (turn, z) = (f64::from(i) * 2.4, f64::from(2 * i) / 50_000.0 - 1.0);
         let radius = (1.0 - z * z).sqrt();
-        ([radius * turn.cos(), radius * turn.sin(), z], 0.0)
+        [radius * turn.cos(), radius * turn.sin(), z]
     };
-    let points: Vec<_> = (0..4000).map(on_sphere).collect();
-    let (positions, weights): (Vec<_>, Vec<_>) = points.iter().copied().unzip();
-    let sites = Sites::new(&positions, &weights).unwrap();
-    let along: Vec<_> = sites.curve().iter().map(|&v| positions[v as usize]).collect();
-    let mesh = divide_and_merge(&along, &weights, 500, super::MAX_OPEN, &|_| Ok(())).unwrap();
-    assert!(mesh.is_none());
+    let sphere: Vec<_> = (0..50_000).map(on_sphere).collect();
+    for (positions, expected) in [(filled, true), (sphere, false)] {
+        let weights = vec![0.0; positions.len()];
+        let sites = Sites::new(&positions, &weights).unwrap();
+        let along: Vec<_> = sites.curve().iter().map(|&v| positions[v as usize]).collect();
+        assert_eq!(Along::new(&along, &weights).unwrap().merging_pays().unwrap(), expected);
+    }
 }
