@@ -73,7 +73,7 @@ def read(path, *, progress=None):
     ----------
     path : str or path-like
         NRRD, NIfTI, MetaImage, VTK, VTI, TIFF, NPY, NPZ, INRIMAGE, a folder of slices; or
-        ``"sample:skull"``, ``"sample:phantom"``, ``"sample:phantom@N"``.
+        ``"sample:ct"``, ``"sample:skull"``, ``"sample:phantom"``, ``"sample:phantom@N"``.
     progress : callable, optional
         ``progress(stage, done, total)``.
 

@@ -10,6 +10,8 @@ mod common;
 mod convert;
 #[cfg(feature = "dicom")]
 mod dicom;
+#[cfg(all(unix, feature = "render"))]
+mod documents;
 mod engines;
 mod exchange;
 mod filtration;

@@ -1,4 +1,4 @@
-//! Pseudorandom numbers for tests, the same on every machine.
+//! Pseudorandom numbers for samples and tests, the same on every machine.
 
 /// `SplitMix64`: Steele, Lea and Flood 2014, doi:10.1145/2714064.2660195.
 #[derive(Clone, Debug)]

@@ -24,7 +24,7 @@ pub(crate) struct InputArgs {
     /// Options typed on the command line.
     #[command(flatten)]
     pub typed: TypedOptions,
-    /// Volume or point file, - (standard input), sample:skull, sample:phantom or sample:phantom@N.
+    /// Volume or point file, - (standard input), sample:ct, sample:skull, sample:phantom or sample:phantom@N.
     #[arg(value_name = "INPUT", help_heading = None::<&str>)]
     pub input: InputName,
     /// Format of INPUT where neither its content nor its name says it, as in --input-format xyz: the

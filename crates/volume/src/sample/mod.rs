@@ -1,5 +1,6 @@
-//! Sample volumes: the skull of CGAL's data, and a phantom.
+//! Sample volumes: the skull of CGAL's data, a phantom, and a CT of it.
 
+mod ct;
 mod phantom;
 
 use std::fs::File;
@@ -12,6 +13,7 @@ use walpha_base::advice::Advice;
 use walpha_base::near::nearest;
 use walpha_base::shown::shown;
 
+pub use ct::ct;
 pub(super) use phantom::PhantomBoxes;
 pub use phantom::phantom;
 
@@ -20,14 +22,15 @@ use crate::read::{Length, OpenFile, inr};
 use crate::{Frame, Reason, Volume, VolumeError};
 
 /// The samples there are, as a user writes them.
-pub const SAMPLES: [&str; 3] = ["sample:skull", "sample:phantom", "sample:phantom@N"];
+pub const SAMPLES: [&str; 4] = ["sample:ct", "sample:skull", "sample:phantom", "sample:phantom@N"];
 /// Samples along each axis of the phantom unless `@N` says otherwise: as many as the skull has.
 const PHANTOM_SIZE: u64 = 64;
 
 /// A sample by its name: one of [`SAMPLES`].
 ///
 /// `sample:skull` is `skull_2.9.inr` of CGAL's own data, 64³ samples of a CT scan, read in place;
-/// `sample:phantom` is a [`phantom`] of 64³ samples, `sample:phantom@N` one of N³.
+/// `sample:phantom` is a [`phantom`] of 64³ samples, `sample:phantom@N` one of N³;
+/// `sample:ct` is a [`ct`] of the phantom, in Hounsfield units.
 ///
 /// # Errors
 /// Unknown name; the skull is not installed, or its archive is damaged; N is not a size.
@@ -36,6 +39,7 @@ pub fn sample(name: &str) -> Result<Volume, VolumeError> {
         // Its header has numbers, but the paper's lengths are voxels.
         Some("skull") => Ok(skull()?.resolve_nan(None)?.with_frame(Frame::VOXEL)),
         Some("phantom") => phantom(PHANTOM_SIZE),
+        Some("ct") => ct(),
         Some(other) if other.starts_with("phantom@") => {
             if let Ok(size) = other["phantom@".len()..].parse() {
                 phantom(size)

@@ -70,7 +70,7 @@ impl BoxReader for PhantomBoxes {
 }
 
 /// The gray level at a point of the box −1..1 in each axis.
-fn gray([x, y, z]: Point) -> f64 {
+pub(super) fn gray([x, y, z]: Point) -> f64 {
     // The head is symmetric: all parts are laid out for x ≥ 0.
     let p = [x.abs(), y, z];
     let skin = skin(p);
