@@ -27,7 +27,7 @@ use crate::outofcore::{
 use crate::progress::Stage;
 use crate::volume::files_of;
 
-/// Compute a shape in blocks, on as many machines as see one folder: plan, run each block, merge.
+/// Compute a shape in blocks, on any number of machines that share a folder: plan, run each block, merge.
 ///
 /// Examples:
 ///
@@ -55,10 +55,10 @@ enum Step {
 /// Survey the volume, cut it into blocks, and write the plan.
 #[derive(Args)]
 struct PlanStep {
-    /// Folder for the plan and its blocks, made if it is not there.
+    /// Folder for the plan and its blocks, created if needed.
     #[arg(short, long, value_name = "DIR", required_unless_present = "dry_run")]
     output: Option<PathBuf>,
-    /// Print what the work will cost, by a model, without reading the volume.
+    /// Print an estimate of the cost, from a model, without reading the volume.
     #[arg(long, conflicts_with = "output")]
     dry_run: bool,
     #[command(flatten)]
@@ -67,33 +67,33 @@ struct PlanStep {
     shape: ShapeArgs,
 }
 
-/// Compute blocks; those that are there already are left alone, and those that are damaged computed again.
+/// Compute blocks; finished ones are kept, damaged ones are computed again.
 #[derive(Args)]
 struct RunStep {
     /// Folder of the plan.
     #[arg(value_name = "DIR")]
     folder: PathBuf,
-    /// Numbers of blocks, from 0 [default: all that are missing or do not verify].
+    /// Numbers of blocks, from 0 [default: all that are missing or damaged].
     #[arg(value_name = "I")]
     blocks: Vec<usize>,
 }
 
-/// Verify and merge all blocks, and write what comes out: all outputs, or none.
+/// Verify and merge all blocks, and write the shape: all outputs, or none.
 #[derive(Args)]
 struct MergeStep {
     /// Folder of the plan.
     #[arg(value_name = "DIR")]
     folder: PathBuf,
     /// Files to write: .pvtu (all simplices) or .pvtp (boundary) with a file for each block, .zarr (arrays, with
-    /// the feature zarr), or any format of `walpha shape` in one file, for which the shape must fit the
-    /// memory.
+    /// the feature zarr), or any format of `walpha shape` in one file, for which the shape must fit
+    /// into memory.
     #[arg(short, long, value_name = "FILE", num_args = 1..)]
     output: Vec<PathBuf>,
 }
 
-/// Read all files of a plan, and name those that are not what was written.
+/// Read all files of a plan, and name those that differ from what was written.
 ///
-/// The exit code is 0 where all blocks are there and sound, and 3 where one is missing, damaged or of
+/// The exit code is 0 if all blocks are present and intact, and 3 if one is missing, damaged or belongs to
 /// another plan.
 #[derive(Args)]
 struct CheckStep {
@@ -186,7 +186,7 @@ impl MergeStep {
         let plan = Plan::open(&self.folder)?;
         let input = Some(plan.job.input.clone());
         let export = ExportOptions { input, ..ExportOptions::default() };
-        // An output there would replace the plan.
+        // An output in this folder could replace files of the plan.
         let _working = (!global.in_place).then(|| Working::folder(&self.folder));
         if !global.in_place {
             keep_input(Path::new(&plan.job.input), files_of);
@@ -223,7 +223,7 @@ pub(super) struct Outputs {
 }
 
 impl Outputs {
-    /// Writes all outputs or none as one of a team, of which the first process has what was merged, and targets.
+    /// Writes all outputs or none, as one process of a team. Only the first process has the merged shape, and targets.
     pub(super) fn write(
         self,
         plan: &Plan,
@@ -231,7 +231,7 @@ impl Outputs {
         team: &dyn Team,
         monitor: &Monitor,
     ) -> anyhow::Result<()> {
-        // Dropped in the reverse order: folders go when they are empty.
+        // Dropped in reverse order: a folder can be removed only once it is empty.
         let (mut folders, mut files) = (Vec::new(), Vec::new());
         for (pieces, path) in &self.pieces {
             let written = pieces.fill(plan, merged, path, team, monitor)?;
@@ -249,7 +249,7 @@ impl Outputs {
             Some((target, Box::new(content) as Content<'_>))
         });
         let whole = fill_all(whole)?;
-        // Nothing gets its name before all is written, and what names other files comes after these.
+        // No file gets its final name before all are written, and files that refer to others come after them.
         team.barrier();
         if team.is_first() {
             team.barrier();
@@ -286,7 +286,7 @@ pub(super) fn job(args: &InputArgs, recipe: Recipe) -> anyhow::Result<Job> {
     })
 }
 
-/// Printed after planning.
+/// Summary printed after planning.
 #[derive(Serialize)]
 pub(super) struct PlanSummary {
     folder: String,
@@ -296,7 +296,7 @@ pub(super) struct PlanSummary {
     points: u64,
     blocks: usize,
     largest_block: u64,
-    /// Points that are looked at by more than one block, as a share of all.
+    /// Points in halos, summed over all blocks, as a share of all points.
     halo_share: f64,
     seconds: f64,
 }
@@ -363,7 +363,7 @@ impl Display for CostSummary {
     }
 }
 
-/// Printed after running blocks.
+/// Summary printed after running blocks.
 #[derive(Serialize)]
 pub(super) struct RunSummary {
     pub folder: String,
@@ -379,17 +379,17 @@ impl Display for RunSummary {
     }
 }
 
-/// Printed after checking the files of a plan.
+/// Summary printed after checking the files of a plan.
 #[derive(Serialize)]
 pub(super) struct CheckSummary {
     folder: String,
-    /// What identifies the plan; nothing where it cannot be read.
+    /// Digest of the plan; null if the plan cannot be read.
     plan: Option<String>,
-    /// Number of blocks of the plan.
+    /// Number of blocks of the plan; null if the plan cannot be read.
     blocks: Option<usize>,
     missing: Vec<usize>,
     findings: Vec<FileFinding>,
-    /// Whether all is there, as it was written.
+    /// Whether all files are present and intact.
     pub whole: bool,
 }
 

@@ -1,4 +1,4 @@
-//! `walpha check`: is it the α-complex?
+//! `walpha check`: whether a complex is the α-complex of its points.
 
 use std::fmt::{self, Display};
 use std::path::{Path, PathBuf};
@@ -28,14 +28,15 @@ use super::pipeline;
 use super::progress::Progress;
 use super::report::SCHEMA_VERSION;
 
-/// Check a complex exactly: one of an engine, or one that another program wrote.
+/// Check a complex exactly: one computed here, or one that another program wrote.
 ///
 /// INPUT is a volume or points, from which an engine computes a shape; a complex or filtration
-/// (.json, .npz); or a mesh of tetrahedra (.vtu), of which the cells are judged. The checker shares no
+/// (.json, .npz); or a mesh of tetrahedra (.vtu), whose cells are judged. The checker shares no
 /// code with the engines or CGAL.
 ///
-/// The verdict is exact; valid, where points lie on one empty sphere, or are equal, and another
-/// choice was made than CGAL's; or wrong. Exit code 3 if it is wrong, or with --ties exact, not exact.
+/// The verdict is exact; or valid, if it differs from CGAL's answer only in how ties are broken (points
+/// on one empty sphere, or equal points); or wrong. Exit code 3 if it is wrong or, with --ties exact, not
+/// exact.
 ///
 /// Examples:
 ///
@@ -48,13 +49,13 @@ use super::report::SCHEMA_VERSION;
 /// walpha check theirs.vtu --ties exact
 #[derive(Args)]
 pub(super) struct Check {
-    /// Points of the complex or filtration, where its file lists none: .csv or .npy.
+    /// Points of the complex or filtration, if its file lists none: .csv or .npy.
     #[arg(long, value_name = "FILE")]
     points: Option<PathBuf>,
-    /// Also build the answer from the definition, and compare (at most 200 points).
+    /// Also build the complex from the definition, and compare (at most 200 points).
     #[arg(long)]
     enumerate: bool,
-    /// Which choice at ties is right: any, or CGAL's alone (exact), so that another is a finding.
+    /// Which ways to break ties are right: any, or only CGAL's (exact), so that any other is a finding.
     #[arg(long, value_enum, default_value_t, value_name = "CHOICE")]
     ties: Ties,
     #[command(flatten)]
@@ -65,43 +66,44 @@ pub(super) struct Check {
     periodic: PeriodicArgs,
 }
 
-/// Which choice at ties is right.
+/// Which ways to break ties are right.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 enum Ties {
     /// Any.
     #[default]
     Any,
-    /// The one that the perturbation makes.
+    /// Only that of the perturbation.
     Exact,
 }
 
-/// Points that `--enumerate` takes: more would take hours.
+/// Most points that `--enumerate` accepts: more would take hours.
 const MOST_ENUMERATED: usize = 200;
-/// Findings that are printed as text, and as JSON; all are counted.
+/// Most findings printed as text; all are counted.
 const MOST_PRINTED: usize = 20;
+/// Most findings listed in JSON.
 const MOST_LISTED: usize = 1000;
 
-/// Printed after checking a complex or filtration.
+/// Summary printed after checking a complex or filtration.
 #[derive(Serialize)]
 struct CheckSummary<F, C> {
     schema_version: u32,
     input: String,
-    /// In words: the complex of a file, or our own shape.
+    /// What was judged, in words: the complex of a file, or our own shape.
     judged: String,
     points: usize,
     /// Cells, facets, edges, vertices.
     simplices: [usize; 4],
-    /// Of a complex.
+    /// Extent of a complex; absent for a filtration.
     #[serde(skip_serializing_if = "Option::is_none")]
     extent: Option<&'static str>,
     verdict: Verdict,
-    /// Whether that is right: with --ties exact, whether it is exact.
+    /// Whether the verdict counts as right: with --ties exact, whether it is exact.
     valid: bool,
     findings_total: usize,
-    /// The first of them.
+    /// The first findings.
     findings: Vec<F>,
     certificate: C,
-    /// In words.
+    /// Rules and points that were not judged, in words.
     #[serde(skip)]
     not_judged: Vec<String>,
     /// The verdict with its reason.
@@ -114,7 +116,7 @@ struct CheckSummary<F, C> {
 impl Check {
     pub(super) fn run(self, global: Global) -> anyhow::Result<ExitCode> {
         let input = self.pipeline.input.clone();
-        // All of this looks at one file, which standard input is for that time.
+        // All steps read one file; standard input is copied to a temporary one.
         pipeline::with_file(&input, |file| {
             let mut check = self;
             check.pipeline.input.input = file.as_os_str().to_owned().into();
@@ -122,31 +124,37 @@ impl Check {
         })
     }
 
-    /// Judges INPUT, whose name is told as `input`.
+    /// Judges INPUT, reported under the name `input`.
     fn judge(self, global: Global, input: &str) -> anyhow::Result<ExitCode> {
         let file = self.pipeline.input.input.clone();
         let path = file.path();
         let mut progress = Progress::new(global);
         if !compare::is_named(path) {
             if self.pipeline.input.recipe().is_points(path)? {
-                let cells = points::cells_of(path, &self.pipeline.input.of_points())?;
+                let cells = points::cells_of(path, &self.pipeline.input.point_options())?;
                 if !cells.is_empty() {
                     return self.mesh(global, input, &cells, progress);
                 }
             }
-            let made = self.made(path, &mut progress)?;
+            let computed = self.compute(path, &mut progress)?;
             let judged = format!("our own shape of {}", name(input));
-            return self.complex(global, Subject { input, judged }, &made, &[], progress);
+            return self.complex(global, Subject { input, judged }, &computed, &[], progress);
         }
         let read = || compare::read(path, self.points.as_deref());
         match progress.stage(Stage::Read, read)? {
             CheckFile::Complex(complex) => {
-                self.refuse_ours(&[], format!("{} is a complex, made already", name(input)))?;
+                self.refuse_shape_options(
+                    &[],
+                    format!("{} is a complex, made already", name(input)),
+                )?;
                 let judged = format!("the complex of {}", name(input));
                 self.complex(global, Subject { input, judged }, &complex, &[], progress)
             }
             CheckFile::Filtration(filtration) => {
-                self.refuse_ours(&[], format!("{} is a filtration, made already", name(input)))?;
+                self.refuse_shape_options(
+                    &[],
+                    format!("{} is a filtration, made already", name(input)),
+                )?;
                 if self.enumerate {
                     fail_usage!("--enumerate belongs to a complex, and {} is a filtration", name(input) => "omit it");
                 }
@@ -166,13 +174,13 @@ impl Check {
     ) -> anyhow::Result<ExitCode> {
         let listed = cells.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
         let why = format!("{} lists {listed}, which are judged", name(input));
-        self.refuse_ours(&["alpha", "alpha_radius"], why)?;
+        self.refuse_shape_options(&["alpha", "alpha_radius"], why)?;
         if self.points.is_some() {
             fail_usage!("--points has no effect: {} has points of its own", name(input) => "omit it");
         }
         let path = self.pipeline.input.input.path();
         let read = || -> anyhow::Result<(PlacedComplex, bool)> {
-            let mut file = points::read_complex(path, &self.pipeline.input.of_points()).map_err(|error| {
+            let mut file = points::read_complex(path, &self.pipeline.input.point_options()).map_err(|error| {
                 let CommandError { why, next, usage } = CommandError::from(error);
                 let csv = "write its points by `walpha points INPUT -o points.csv` to judge our own shape of them";
                 let next = next.map_or(csv.to_owned(), |next| format!("{next}, or {csv}"));
@@ -199,18 +207,18 @@ impl Check {
         self.complex(global, Subject { input, judged }, &complex, &unjudged, progress)
     }
 
-    /// Refuses options of how a complex is made, but some.
-    fn refuse_ours(&self, but: &[&str], why: String) -> Result<(), CommandError> {
+    /// Refuses the options that control how a shape is computed, except `except`.
+    fn refuse_shape_options(&self, except: &[&str], why: String) -> Result<(), CommandError> {
         let ours = ShapeArgs::augment_args(<PipelineArgs>::augment_args(Command::new("check")));
         let ours = PeriodicArgs::augment_args(ours);
         let options = ours.get_arguments().filter(|arg| !arg.is_positional());
         let names = options.map(|arg| arg.get_id().as_str());
-        let names: Vec<&str> = names.filter(|name| !but.contains(name)).collect();
+        let names: Vec<&str> = names.filter(|name| !except.contains(name)).collect();
         self.pipeline.input.typed.refuse(&names, why)
     }
 
-    /// The shape of INPUT, by an engine.
-    fn made(&self, path: &Path, progress: &mut Progress) -> anyhow::Result<PlacedComplex> {
+    /// Computes the shape of INPUT.
+    fn compute(&self, path: &Path, progress: &mut Progress) -> anyhow::Result<PlacedComplex> {
         let periodic = self.periodic.periodic;
         let mut recipe = self.pipeline.recipe_of(&self.shape, periodic)?;
         if self.points.is_some() {
@@ -219,8 +227,8 @@ impl Check {
         let given = &self.pipeline.input.typed;
         given.refuse(&["refit"], "values are not judged")?;
         let (weighed, _) = pipeline::weighted_points(&self.pipeline.input, &recipe, progress)?;
-        // The whole triangulation can be judged wholly. Several blocks are judged as they are; and of a
-        // torus the shape may have no long edge where the whole has one.
+        // With the whole triangulation every rule can be judged. Shapes made in several blocks are judged as
+        // they are; and on a torus the whole may have an edge that is too long where the shape has none.
         recipe.exterior |= recipe.blocks.is_none_or(|blocks| blocks.get() == 1)
             && recipe.memory.is_none()
             && periodic.is_none();
@@ -259,7 +267,7 @@ impl Check {
         };
         progress.finish();
         let rules = certificate.not_judged.iter().map(ToString::to_string);
-        // The definition decides ties by the rule.
+        // Enumeration breaks ties by CGAL's rule, so it may differ where other ways are right, too.
         let is_excused = |comparison: &Comparison| {
             comparison.is_equal() || self.ties == Ties::Any && certificate.verdict == Verdict::Valid
         };
@@ -285,7 +293,7 @@ impl Check {
             enumeration,
             seconds,
         };
-        facts.tell(global)
+        facts.print(global)
     }
 
     /// Judges a filtration.
@@ -323,17 +331,17 @@ impl Check {
             enumeration: None,
             seconds,
         };
-        facts.tell(global)
+        facts.print(global)
     }
 }
 
-/// The name of INPUT, and which part of it is checked.
+/// The name of INPUT, and what of it is judged, in words.
 struct Subject<'a> {
     input: &'a str,
     judged: String,
 }
 
-/// How a complex (A) differs from the one its definition makes (B).
+/// Compares a complex (A) with the one built from the definition (B).
 fn by_definition(judged: &PlacedComplex, monitor: &Monitor) -> anyhow::Result<Comparison> {
     Stage::Enumerate.begin(monitor)?;
     let judged = judged.placed();
@@ -342,8 +350,8 @@ fn by_definition(judged: &PlacedComplex, monitor: &Monitor) -> anyhow::Result<Co
 }
 
 impl<F: Serialize + Display, C: Serialize> CheckSummary<F, C> {
-    /// Prints them.
-    fn tell(mut self, global: Global) -> anyhow::Result<ExitCode> {
+    /// Prints the summary, and returns the exit code.
+    fn print(mut self, global: Global) -> anyhow::Result<ExitCode> {
         self.findings.truncate(MOST_LISTED);
         print_summary(global, &self)?;
         Ok(if self.valid { ExitCode::SUCCESS } else { ExitCode::from(DIFFERENT) })

@@ -1,4 +1,5 @@
-//! The options that were typed: those without effect are refused, and inputs are kept from being overwritten.
+//! The options typed on the command line: those without effect are refused, and inputs are protected from being
+//! overwritten.
 
 use std::fmt;
 use std::path::Path;
@@ -11,10 +12,10 @@ use super::config;
 use super::errors::{CommandError, fail_usage};
 use crate::volume::files_of;
 
-/// The names of the options that the user gave on the command line; those of a file of `--config` are
-/// for all inputs, and need not fit this one.
+/// The names of the options that the user typed. Those from the file of `--config` are left out: they are for all
+/// inputs, and need not apply to this one.
 ///
-/// It must be the first field that a command parses: others take their values out of the matches.
+/// It must be the first field that a command parses: the others remove their values from the matches.
 #[derive(Clone, Debug, Default)]
 pub(super) struct TypedOptions(Vec<String>);
 
@@ -64,15 +65,15 @@ impl Args for TypedOptions {
     }
 }
 
-/// Options that name files to read, as arguments without a name do.
+/// Options that name files to read; positional arguments do so, too.
 const READ: [&str; 2] = ["input", "points"];
 /// Options that name files to write.
 const WRITTEN: [&str; 3] = ["output", "out", "mask"];
-/// The option that allows it.
+/// The option that lets outputs replace inputs.
 const IN_PLACE: &str = "in_place";
 
-/// Keeps all that a command line names as inputs from being replaced by an output.
-pub(super) fn keep(command: &Command, matches: &ArgMatches) -> anyhow::Result<()> {
+/// Protects all inputs that a command line names from being replaced by an output.
+pub(super) fn protect_inputs(command: &Command, matches: &ArgMatches) -> anyhow::Result<()> {
     let (mut command, mut matches, mut name) = (command, matches, String::from("walpha"));
     while let Some((of, inner)) = matches.subcommand()
         && let Some(subcommand) = command.find_subcommand(of)

@@ -23,7 +23,7 @@ use crate::progress::Stage;
 /// Compare two complexes by points, weights, α and simplices with their classes, or two filtrations
 /// by points, weights, simplices with their values, and order.
 ///
-/// Points are matched by their places, so the two may number them differently. Exterior simplices
+/// Points are matched by position, so the two may number them differently. Exterior simplices
 /// are compared where both complexes list some; windings and lists of hidden points and duplicates
 /// are not. Exit code 3 if anything compared differs.
 ///
@@ -38,7 +38,7 @@ pub(super) struct Compare {
     /// A complex or a filtration: .json or .npz, as docs/cross-checking.md describes.
     #[arg(value_name = "A")]
     a: PathBuf,
-    /// Another.
+    /// The complex or filtration to compare it with.
     #[arg(value_name = "B")]
     b: PathBuf,
 }
@@ -67,7 +67,7 @@ impl Compare {
                     compare_monitored(a.placed(), b.placed(), monitor)
                 })?;
                 progress.finish();
-                self.tell(global, comparison.is_equal(), comparison)
+                self.print(global, comparison.is_equal(), comparison)
             }
             (CheckFile::Filtration(a), CheckFile::Filtration(b)) => {
                 let comparison = progress.watch(|monitor| {
@@ -75,7 +75,7 @@ impl Compare {
                     compare_filtrations_monitored(&a, &b, monitor)
                 })?;
                 progress.finish();
-                self.tell(global, comparison.is_equal(), comparison)
+                self.print(global, comparison.is_equal(), comparison)
             }
             _ => {
                 fail!("one file is a filtration, the other a complex" => "compare two of a kind")
@@ -83,7 +83,7 @@ impl Compare {
         }
     }
 
-    fn tell(
+    fn print(
         &self,
         global: Global,
         equal: bool,
@@ -110,9 +110,9 @@ impl<C: Display> Display for CompareSummary<C> {
 /// A file to check or compare.
 #[expect(clippy::large_enum_variant, reason = "there are one or two, moved a few times")]
 pub(super) enum CheckFile {
-    /// A complex, whose fields fit together.
+    /// A complex whose fields are consistent.
     Complex(PlacedComplex),
-    /// A filtration, whose fields fit together.
+    /// A filtration whose fields are consistent.
     Filtration(FiltrationFile),
 }
 
@@ -121,8 +121,8 @@ pub(super) fn is_named(path: &Path) -> bool {
     ComplexFile::is_named(path)
 }
 
-/// Reads a complex or filtration, with points (and weights, if it has some) from a file of their own
-/// if one is given.
+/// Reads a complex or filtration. If `points` is given, its points, and its weights if it has any, replace those
+/// of the file.
 pub(super) fn read(path: &Path, points: Option<&Path>) -> anyhow::Result<CheckFile> {
     let mut file = opened(path)?;
     if let Some(points) = points {
@@ -141,7 +141,7 @@ pub(super) fn read(path: &Path, points: Option<&Path>) -> anyhow::Result<CheckFi
     judged.map_err(|error| refusal(path, error))
 }
 
-/// Opens a file, or explains why it cannot.
+/// Opens a file; the error says why it cannot be opened.
 fn opened(path: &Path) -> anyhow::Result<AnyFile> {
     match AnyFile::open(path) {
         Ok(file) => Ok(file),
@@ -158,7 +158,7 @@ fn opened(path: &Path) -> anyhow::Result<AnyFile> {
     }
 }
 
-/// Why the fields of a file do not fit together.
+/// The error for a file whose fields are inconsistent.
 fn refusal(path: &Path, error: SchemaError) -> anyhow::Error {
     match error {
         SchemaError::NoPoints => command_error!(

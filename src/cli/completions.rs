@@ -1,13 +1,13 @@
-//! `walpha completions`: so that the shell knows commands and options.
+//! `walpha completions`: shell completion of commands and options.
 
 use clap::Args;
 use clap_complete::{Shell, generate};
 
-use super::described;
+use super::build_command;
 use super::global::Global;
 use super::output::print;
 
-/// Print the completions of a shell: what to type after `walpha` and the tab key.
+/// Print the script with which a shell completes `walpha` commands.
 ///
 /// Example: walpha completions bash > ~/.local/share/bash-completion/completions/walpha
 #[derive(Args)]
@@ -20,7 +20,7 @@ pub(super) struct Completions {
 impl Completions {
     pub(super) fn run(self, _: Global) -> anyhow::Result<()> {
         let mut script = Vec::new();
-        generate(self.shell, &mut described(), "walpha", &mut script);
+        generate(self.shell, &mut build_command(), "walpha", &mut script);
         Ok(print(&String::from_utf8(script)?)?)
     }
 }

@@ -1,7 +1,7 @@
 //! Options from a file, and as a file: `--config` and `--print-config`.
 //!
-//! What a file says becomes arguments of the command line, behind those the user gave, so each option
-//! is checked once and in one place; a new command or option takes part by itself.
+//! The settings of a file become command-line arguments after those that the user gave, so each option is
+//! checked once and in one place, and new commands and options need no code here.
 
 use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
@@ -21,28 +21,28 @@ use super::errors::{CommandError, command_error, fail};
 const FILE: &str = "config";
 /// The option that prints one.
 pub(super) const PRINT: &str = "print-config";
-/// Options that speak of the configuration itself, or of nothing but this call.
+/// Options that a file cannot set: they concern the configuration itself, or only this call.
 const NOT_CONFIGURED: [&str; 4] = [FILE, PRINT, "help", "version"];
 
-/// The two options, for every command.
-pub(super) fn options_of_it() -> [Arg; 2] {
+/// `--config` and `--print-config`, for every command.
+pub(super) fn config_options() -> [Arg; 2] {
     let option =
         |name| Arg::new(name).long(name).global(true).help_heading(super::global::EVERY_COMMAND);
     let file = option(FILE).value_name("FILE");
     let print = option(PRINT).action(ArgAction::SetTrue);
     [
         file.value_parser(clap::value_parser!(PathBuf)).help(
-            "TOML file with options by their long names, as in alpha = 4; the command line wins",
+            "TOML file with options by their long names, as in alpha = 4; the command line takes precedence",
         ),
-        print.help("Print the options in force as a file for --config, and do nothing else"),
+        print.help("Print the options in effect as a file for --config, and do nothing else"),
     ]
 }
 
-/// The arguments with those of the file that `--config` names, if it is there.
+/// The arguments, with those from the file that `--config` names, if it is given.
 ///
-/// Keys are the long names of options. Those at the top are for every command that has such an option;
-/// a table named like a command is for that command, and wins. The command line wins over both, and
-/// silences what it excludes.
+/// Keys are the long names of options. Those at the top level are for every command that has the option;
+/// a table named after a command is for that command, and takes precedence. The command line takes
+/// precedence over both, and settings that conflict with it are ignored.
 pub(super) fn with_file(
     command: &Command,
     mut args: Vec<OsString>,
@@ -51,8 +51,8 @@ pub(super) fn with_file(
     if !args.iter().any(names_file) {
         return Ok(args);
     }
-    // Parsed once before, to learn what the file may not set. What is wrong with the arguments is reported once all of
-    // them are parsed.
+    // A first, lenient pass finds out what the file may not set. Errors in the arguments are reported when all of them
+    // are parsed.
     let lenient = command.clone().ignore_errors(true).try_get_matches_from(&args);
     let Some((given, (name, of_command))) =
         lenient.as_ref().ok().and_then(|given| Some((given, given.subcommand()?)))
@@ -62,18 +62,18 @@ pub(super) fn with_file(
     let Some(file) = path(given).or_else(|| path(of_command)) else { return Ok(args) };
     let settings = read(command, &file, name)?;
     let subcommand = command.find_subcommand(name).context("a command that was parsed")?;
-    let said = |arg: &Arg| {
+    let is_typed = |arg: &Arg| {
         of_command.value_source(arg.get_id().as_str()) == Some(ValueSource::CommandLine)
     };
     let (mut more, mut set) = (Vec::new(), Vec::new());
     for (key, value) in settings {
         let Some(arg) = option(subcommand, &key) else { continue };
-        if said(arg) || rivals(subcommand, arg).into_iter().any(said) {
+        if is_typed(arg) || conflicting(subcommand, arg).into_iter().any(is_typed) {
             continue;
         }
-        let text = texts(arg, &value)
+        let text = arguments(arg, &value)
             .with_context(|| format!("{}: {key} = {value} makes no sense", shown(&file)))?;
-        // A default needs no saying, and may not be said where it depends on another option.
+        // A default need not be passed, and must not be where its option requires another.
         let defaults = arg.get_default_values();
         if matches!((&text[..], defaults), ([one], [default]) if *one == default_text(arg, default))
         {
@@ -103,8 +103,8 @@ pub(super) fn print(subcommand: &Command, matches: &ArgMatches) -> String {
         |arg: &Arg| matches.value_source(arg.get_id().as_str()) == Some(ValueSource::DefaultValue);
     let is_given = |arg: &Arg| matches!(matches.value_source(arg.get_id().as_str()), Some(source) if source != ValueSource::DefaultValue);
     for arg in options(subcommand) {
-        // A default that something given excludes is not in force.
-        if is_default(arg) && rivals(subcommand, arg).into_iter().any(is_given) {
+        // A default that conflicts with a given option is not in force.
+        if is_default(arg) && conflicting(subcommand, arg).into_iter().any(is_given) {
             continue;
         }
         let Some(values) = matches.get_raw(arg.get_id().as_str()) else { continue };
@@ -126,10 +126,10 @@ fn read(command: &Command, file: &Path, name: &str) -> anyhow::Result<Table> {
         command_error!("cannot read {}: {error}", shown(file) => "give --config the name of a TOML file")
     })?;
     let table: Table = text.parse().map_err(|error: toml::de::Error| {
-        let said = error.to_string();
-        let lines = said.lines().map(str::trim).filter(|line| !line.is_empty());
-        let said: Vec<&str> = lines.collect();
-        command_error!("{} is no TOML file: {}", shown(file), said.join(" ") => "walpha {name} --print-config shows how one looks")
+        let message = error.to_string();
+        let lines = message.lines().map(str::trim).filter(|line| !line.is_empty());
+        let words: Vec<&str> = lines.collect();
+        command_error!("{} is no TOML file: {}", shown(file), words.join(" ") => "walpha {name} --print-config shows how one looks")
     })?;
     let (mut settings, mut own) = (Table::new(), Table::new());
     for (key, value) in table {
@@ -162,7 +162,7 @@ fn read(command: &Command, file: &Path, name: &str) -> anyhow::Result<Table> {
 fn unknown(file: &Path, name: &str, key: &str, known: Vec<&str>) -> CommandError {
     let next = match nearest(key, known) {
         Some(near) => format!("did you mean {near}?"),
-        None => "take it away, or see --print-config".to_owned(),
+        None => "remove it, or see --print-config".to_owned(),
     };
     command_error!("{}: no option has the name {name}", shown(file) => "{next}")
 }
@@ -178,8 +178,8 @@ fn option<'a>(subcommand: &'a Command, key: &str) -> Option<&'a Arg> {
     options(subcommand).find(|arg| arg.get_long() == Some(key))
 }
 
-/// The options that cannot go with this one.
-fn rivals<'a>(subcommand: &'a Command, arg: &Arg) -> Vec<&'a Arg> {
+/// The options that conflict with this one.
+fn conflicting<'a>(subcommand: &'a Command, arg: &Arg) -> Vec<&'a Arg> {
     let of_groups = subcommand
         .get_groups()
         .filter(|group| !ArgGroup::clone(group).is_multiple())
@@ -205,8 +205,8 @@ fn takes_many(arg: &Arg) -> bool {
         || matches!(arg.get_action(), ArgAction::Append)
 }
 
-/// The arguments that say what a key and its value say.
-fn texts(arg: &Arg, value: &Value) -> anyhow::Result<Vec<String>> {
+/// The command-line arguments for a key and its value.
+fn arguments(arg: &Arg, value: &Value) -> anyhow::Result<Vec<String>> {
     let long = arg.get_long().unwrap_or_default();
     let one = |value: &Value| match value {
         Value::String(text) => Ok(text.clone()),
@@ -227,7 +227,7 @@ fn texts(arg: &Arg, value: &Value) -> anyhow::Result<Vec<String>> {
     if takes_many(arg) && arg.get_value_delimiter().is_none() {
         return Ok(std::iter::once(format!("--{long}")).chain(values).collect());
     }
-    // Sizes and places are written with commas on the command line.
+    // Lists of numbers are comma-separated on the command line.
     Ok(vec![format!("--{long}={}", values.join(","))])
 }
 
@@ -235,7 +235,7 @@ fn default_text(arg: &Arg, default: &OsStr) -> String {
     format!("--{}={}", arg.get_long().unwrap_or_default(), default.to_string_lossy())
 }
 
-/// A value as TOML has it: a number where it reads as one, else a text.
+/// A value in TOML: a number if it parses as one, else a string.
 fn value(arg: &Arg, raw: &str) -> Value {
     if !arg.get_action().takes_values() {
         return Value::Boolean(raw == "true");
@@ -243,7 +243,7 @@ fn value(arg: &Arg, raw: &str) -> Value {
     let number =
         format!("number = {raw}").parse::<Table>().ok().and_then(|mut t| t.remove("number"));
     match number {
-        // Only if nothing is lost on the way back.
+        // Only if it is printed as the same text again.
         Some(number @ (Value::Integer(_) | Value::Float(_))) if number.to_string() == raw => number,
         _ => Value::String(raw.to_owned()),
     }

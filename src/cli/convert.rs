@@ -18,15 +18,15 @@ use super::progress::Progress;
 
 /// Convert a volume to Zarr, which can be read in parts.
 ///
-/// Formats that can be read in parts are converted so, of any size; others are read at once. Values stay as they
-/// are.
+/// Formats that can be read in parts are converted part by part, at any size; others are read at once. Values are
+/// written unchanged.
 ///
 /// Example:
 ///
 /// walpha convert scan.nrrd -o scan.zarr
 #[derive(Args)]
 pub(super) struct Convert {
-    /// Folder to write, .zarr; it must not be there yet.
+    /// Folder to write (.zarr); it must not exist yet.
     #[arg(short, long, value_name = "DIR")]
     output: PathBuf,
     #[command(flatten)]
@@ -55,8 +55,8 @@ impl Convert {
             let path = shown(&self.output);
             fail_usage!("{path} does not end with .zarr, the one format written" => "name it so");
         }
-        let meaningless = ["gray", "gray_out", "columns", "nan"];
-        self.input.typed.refuse(&meaningless, "values are converted as they are")?;
+        let without_effect = ["gray", "gray_out", "columns", "nan"];
+        self.input.typed.refuse(&without_effect, "values are converted as they are")?;
         let mut progress = Progress::new(global);
         let monitor = progress.monitor();
         let options = self.input.options();

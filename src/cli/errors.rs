@@ -32,12 +32,12 @@ use crate::{CgalError, PointsError, VolumeError};
 pub(crate) struct CommandError {
     pub why: String,
     pub next: Option<String>,
-    /// Whether the command line makes no sense, whatever is in the files: exit code 2.
+    /// Whether the command line itself is wrong, whatever the files contain: exit code 2.
     pub usage: bool,
 }
 
 impl CommandError {
-    /// An error of the library that the command line is to blame for.
+    /// An error of the library that the command line caused.
     pub(super) fn usage_of(error: &(impl Error + 'static)) -> Self {
         Self { why: error.to_string(), next: advice(error), usage: true }
     }
@@ -147,7 +147,7 @@ fn of_checker(error: &(dyn Error + 'static)) -> Option<&'static str> {
 /// Advice of any error, with settings named as options.
 pub(super) fn advice(error: &(dyn Error + 'static)) -> Option<String> {
     match error.downcast_ref::<CommandError>() {
-        Some(said) => said.next.clone(),
+        Some(error) => error.next.clone(),
         None => of_checker(error)
             .map(Into::into)
             .or_else(|| of_library(error).map(|advice| advice.with_names(option))),
@@ -169,14 +169,14 @@ pub(super) fn coloured() -> bool {
     std::io::stderr().is_terminal() && !forbidden
 }
 
-/// Three lines for standard error.
+/// An error as three lines on standard error.
 struct ErrorMessage {
     what: String,
     why: String,
     next: String,
 }
 
-/// Prints why a command failed. The work that was going on is the one last announced.
+/// Prints why a command failed. The stage that failed is the one announced last.
 pub(super) fn print_error(command: &str, error: &anyhow::Error) {
     let what = match progress::current().as_str() {
         _ if is_usage(error) => "cannot do this".to_owned(),
@@ -194,10 +194,10 @@ pub(super) fn print_error(command: &str, error: &anyhow::Error) {
     ErrorMessage { what: format!("{command} {what}"), why, next }.print();
 }
 
-/// Whether the command line makes no sense, whatever is in the files.
+/// Whether the command line itself is wrong, whatever the files contain.
 pub(super) fn is_usage(error: &anyhow::Error) -> bool {
     error.is::<UnknownFormat>()
-        || error.downcast_ref::<CommandError>().is_some_and(|said| said.usage)
+        || error.downcast_ref::<CommandError>().is_some_and(|error| error.usage)
 }
 
 /// The exit code after an error.
@@ -235,7 +235,7 @@ pub(super) fn print_usage_error(command: &str, error: &clap::Error, configured: 
         (what, rest) = (format!("{head}'"), tail.to_owned());
     }
     if what.contains("'--format'") {
-        // Its name in 0.2, for both ends of a pipe.
+        // In 0.2, `--format` was the name of both options.
         tips = vec!["give --input-format for INPUT, or --output-format for standard output".into()];
     }
     if what.ends_with(':') {
@@ -253,7 +253,7 @@ pub(super) fn print_usage_error(command: &str, error: &clap::Error, configured: 
     };
     tips.extend(next);
     if configured {
-        tips.push("mind that --config sets options, too".into());
+        tips.push("note that --config sets options, too".into());
     }
     let next = if tips.is_empty() { help(command) } else { tips.join("; ") };
     ErrorMessage { what, why, next }.print();
@@ -263,7 +263,7 @@ impl ErrorMessage {
     fn print(&self) {
         let (red, bold, plain) =
             if coloured() { ("\x1b[1;31m", "\x1b[1m", "\x1b[0m") } else { ("", "", "") };
-        // They contain names of files and arguments.
+        // They contain names of files and arguments, which may hold control characters.
         let [what, why, next] =
             [&self.what, &self.why, &self.next].map(|text| escaped(text, |_| false));
         remark(&format!("{red}error:{plain} {what}"));
@@ -276,7 +276,7 @@ fn help(command: &str) -> String {
     format!("`{command} --help` lists its options")
 }
 
-/// The reason in an error and its causes, each said once, and the advice of the last that has some.
+/// The messages of an error and its causes, each once, and the advice of the innermost one that has some.
 pub(super) fn reasons(error: &anyhow::Error) -> (String, Option<String>) {
     let (mut why, mut next) = (String::new(), None);
     for cause in error.chain() {

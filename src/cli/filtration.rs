@@ -1,4 +1,4 @@
-//! `walpha filtration`: every simplex, and when it comes.
+//! `walpha filtration`: every simplex, and the α at which it enters the shape.
 
 use std::collections::BTreeMap;
 use std::fmt::{self, Display};
@@ -22,13 +22,14 @@ use super::pipeline;
 use super::progress::Progress;
 use super::report::{MovedIntoBox, SCHEMA_VERSION, WeightsReport, ending};
 
-/// Every simplex of the regular triangulation, and the α at which it comes.
+/// List every simplex of the regular triangulation with the α at which it enters the shape.
 ///
-/// For each simplex: its value, the α from which on it is in the shape, the double nearest to the exact
-/// number; whether its own smallest sphere is empty (Gabriel; otherwise it comes with a simplex that
-/// it is a face of); and from where on it is regular and interior. The order is by the exact values,
-/// then by dimension and vertices, so that faces come before what they are faces of. Persistence
-/// pairs of components and voids are in .npz, .json and what --json prints. Weights are frozen.
+/// For each simplex: its value, the α from which it is in the shape, as the double nearest to the exact
+/// number; whether its own smallest sphere is empty (Gabriel; otherwise it enters with a simplex that
+/// it is a face of); and the α from which it is regular and interior. Simplices are ordered by exact
+/// value, then by dimension and vertices, so that faces come before the simplices that they bound.
+/// Persistence pairs of components and voids are in .npz, .json and the output of --json. Weights are
+/// frozen.
 ///
 /// Examples:
 ///
@@ -56,7 +57,7 @@ struct FiltrationSummary {
     points: usize,
     hidden: usize,
     duplicates: usize,
-    /// Outside of the periodic box, and moved into it; absent without a box.
+    /// Points outside the periodic box that were moved into it; absent without a box.
     #[serde(skip_serializing_if = "Option::is_none")]
     folded: Option<usize>,
     /// Unit of points and all lengths; values are in its square.
@@ -68,7 +69,7 @@ struct FiltrationSummary {
     facets: Count,
     edges: Count,
     vertices: Count,
-    /// Values that are different numbers.
+    /// Number of distinct values.
     values: usize,
     persistence: Option<Persistence>,
     files: Vec<String>,
@@ -82,11 +83,11 @@ struct Count {
     attached: usize,
 }
 
-/// From which value to which components and voids last, where these differ.
+/// Persistence intervals of components and voids, without empty ones.
 #[derive(Serialize)]
 struct Persistence {
     components: Vec<[f64; 2]>,
-    /// Components that never end, from these values on.
+    /// Values at which the components begin that never end.
     lasting_components: Vec<f64>,
     voids: Vec<[f64; 2]>,
 }

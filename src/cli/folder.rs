@@ -1,4 +1,4 @@
-//! A folder that results go to.
+//! The output folder of a command.
 
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -9,17 +9,17 @@ use crate::export::{Filled, NewFolder, Target, put_all};
 
 use super::errors::{CommandError, command_error};
 
-/// The folder results go to: found writable before the long work. All files appear in it at the end,
+/// An output folder, checked to be writable before the long work. At the end either all files appear in it,
 /// or none.
 pub(super) struct Folder {
     path: PathBuf,
     files: Vec<Filled>,
     written: Vec<String>,
-    /// It is ours, to be taken away again if nothing comes of it: after the files.
+    /// The folder, if this command created it: it is removed on failure, after the files.
     new: Option<NewFolder>,
 }
 
-/// Makes a folder if it is not there; `instead` says how another is chosen.
+/// Creates a folder if needed; `instead` tells the user how to choose another.
 pub(super) fn make(path: &Path, instead: &str) -> Result<Option<NewFolder>, CommandError> {
     NewFolder::make(path).map_err(|error| {
         command_error!("cannot make the folder {}: {error}", shown(path) => "choose another {instead}")
@@ -27,8 +27,8 @@ pub(super) fn make(path: &Path, instead: &str) -> Result<Option<NewFolder>, Comm
 }
 
 impl Folder {
-    /// Makes the folder if it is not there; `option` names the option it was given by, `names` files
-    /// that will be written for certain.
+    /// Creates the folder if needed. `option` is the option that it was given by, `names` are files that are
+    /// certain to be written.
     pub(super) fn open(path: &Path, option: &str, names: &[&str]) -> anyhow::Result<Self> {
         let new = make(path, &format!("with {option}"))?;
         let folder = Self { path: path.to_owned(), files: Vec::new(), written: Vec::new(), new };
@@ -38,7 +38,7 @@ impl Folder {
         Ok(folder)
     }
 
-    /// Writes a file, which appears when all are finished; says how many bytes it has.
+    /// Writes a file, which appears when all are finished; returns its size in bytes.
     pub(super) fn write(
         &mut self,
         name: &str,
@@ -57,7 +57,7 @@ impl Folder {
         &self.written
     }
 
-    /// Puts all files in their places.
+    /// Moves all files into place.
     pub(super) fn finish(self) -> anyhow::Result<()> {
         put_all(self.files)?;
         if let Some(new) = self.new {

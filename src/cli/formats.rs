@@ -1,4 +1,4 @@
-//! What help says of formats, from the library's tables.
+//! Help texts that list formats, from the library's tables.
 
 use crate::outofcore::BlockwiseFormat;
 use crate::{export, points, volume};
@@ -39,10 +39,10 @@ fn dotted<'a>(extensions: impl IntoIterator<Item = &'a str>) -> String {
     }
 }
 
-/// The help of an output of a volume of `what`.
+/// The help of an output that is a volume; `what` is what to write.
 pub(super) fn volume_output(what: &str) -> String {
     format!(
-        "{what}, as f32, replaced if it is there: {}; or - (standard output, with --output-format)",
+        "{what}, as f32, replaced if it exists: {}; or - (standard output, with --output-format)",
         dotted(volume::VolumeWriter::all().map(|writer| writer.extension))
     )
 }
@@ -55,9 +55,9 @@ pub(super) fn shape_output() -> String {
     };
     format!(
         "Files to write: {} (boundary), {} (all simplices), .png (a picture), .wvm (the points, packed, with \
-         what the shape is made from again); {} (for shapes \
-         made in blocks that are never in memory together, of a volume that is read in parts); or \
-         - (standard output, with --output-format). Files that are there are replaced",
+         all that is needed to make the shape again); {} (for shapes \
+         of a volume read in parts, made in blocks that are never in memory together); or \
+         - (standard output, with --output-format). Existing files are replaced",
         of(true),
         of(false),
         dotted(BlockwiseFormat::ALL.iter().map(|(_, extension)| *extension))
@@ -67,7 +67,7 @@ pub(super) fn shape_output() -> String {
 /// The help of the outputs of a filtration.
 pub(super) fn filtration_output() -> String {
     format!(
-        "Files to write: {}; or - (standard output, with --output-format). Files that are there are replaced",
+        "Files to write: {}; or - (standard output, with --output-format). Existing files are replaced",
         dotted(export::FILTRATION_FORMATS.iter().map(|format| format.extension))
     )
 }
@@ -75,7 +75,7 @@ pub(super) fn filtration_output() -> String {
 /// The help of an output of points.
 pub(super) fn points_output() -> String {
     format!(
-        "File to write, replaced if it is there: {} (columns x, y, z, weight and value); or - (standard \
+        "File to write, replaced if it exists: {} (columns x, y, z, weight and value); or - (standard \
          output, with --output-format)",
         dotted(points::PointWriter::all().map(|writer| writer.extension))
     )

@@ -5,7 +5,7 @@ use clap::Args;
 /// Options of every command.
 #[derive(Args, Clone, Copy, Default)]
 #[command(next_help_heading = EVERY_COMMAND)]
-#[expect(clippy::struct_excessive_bools, reason = "each is an answer of its own")]
+#[expect(clippy::struct_excessive_bools, reason = "each is a switch of its own")]
 pub(super) struct Global {
     /// Print one JSON object instead of text.
     #[arg(long, global = true)]
@@ -34,13 +34,13 @@ pub(super) const EVERY_COMMAND: &str = "Every command";
 pub(super) const FAILURE: u8 = 1;
 /// Exit code of wrong arguments.
 pub(super) const USAGE: u8 = 2;
-/// Exit code of a panic, as Rust has it.
+/// Exit code of a panic, as in Rust.
 pub(super) const PANICKED: u8 = 101;
-/// Exit code after a broken pipe, as shells have it for the signal PIPE.
+/// Exit code after a broken pipe, as in shells after SIGPIPE.
 pub(super) const UNREAD: u8 = 141;
 /// Exit code of a check or comparison that found differences.
 pub(super) const DIFFERENT: u8 = 3;
-/// Stack of a thread in bytes, as in rayon.
+/// Stack size of a thread in bytes, as in rayon.
 pub(super) const STACK: usize = 2 << 20;
-/// Exit code after Ctrl-C, as shells have it.
+/// Exit code after Ctrl-C, as in shells.
 pub(super) const INTERRUPTED: i32 = 130;

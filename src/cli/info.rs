@@ -50,7 +50,7 @@ struct InfoSummary {
 enum Content {
     Volume {
         format: String,
-        /// How a sample is stored.
+        /// Type of a stored sample.
         samples: String,
         dims: [usize; 3],
         spacing: [f64; 3],
@@ -64,7 +64,7 @@ enum Content {
         max: Option<f32>,
         /// Samples that are NaN or infinite.
         missing: u64,
-        /// Volumes in the file, of which --frame reads one and the first is described; absent where it is one.
+        /// Volumes in the file, of which --frame reads one; the first is described. Absent if there is only one.
         #[serde(skip_serializing_if = "Option::is_none")]
         volumes: Option<u64>,
         gray_levels: bool,
@@ -77,7 +77,7 @@ enum Content {
         format: String,
         /// Content of a voxel.
         voxels: String,
-        /// Null where that takes reading it.
+        /// Null if only reading the samples would tell.
         dims: Option<[u64; 3]>,
     },
     /// Several series in a folder, of which --series reads one.
@@ -87,19 +87,19 @@ enum Content {
         low: [f64; 3],
         high: [f64; 3],
         weights: bool,
-        /// Whether the weights are squares of radii, which the file has in place of weights.
+        /// Whether the weights are squares of radii, which the file has instead of weights.
         of_radii: bool,
         values: bool,
         /// Cells that the file lists.
         #[serde(skip_serializing_if = "Vec::is_empty")]
         cells: Vec<CellCount>,
-        /// The cell in which they repeat; absent where the file states none.
+        /// The cell in which the points repeat; absent if the file states none.
         #[serde(skip_serializing_if = "Option::is_none")]
         cell: Option<CellSummary>,
         /// Samples along x, y and z of their grid; null where the file states none.
         grid: Option<[usize; 3]>,
         coordinates: Coordinates,
-        /// The α that their shape is meant to be made at, a squared length.
+        /// The α intended for their shape, a squared length.
         alpha: Option<Alpha>,
         /// The values that were gray 0 and 255.
         gray_range: Option<[f64; 2]>,
@@ -114,7 +114,7 @@ enum Content {
 struct CellSummary {
     vectors: [[f64; 3]; 3],
     repeats: [bool; 3],
-    /// What --periodic takes; null where the cell is no box along the axes.
+    /// Value for --periodic; null if the cell is not a box along the axes.
     sides: Option<[f64; 3]>,
     #[serde(skip)]
     sides_text: String,
@@ -137,8 +137,8 @@ impl Info {
     pub(super) fn run(self, global: Global) -> anyhow::Result<()> {
         let mut progress = Progress::new(global);
         let monitor = progress.monitor();
-        let look = || pipeline::with_file(&self.input, |input| self.look(input, &monitor));
-        let content = progress.stage(Stage::Read, look)?;
+        let describe = || pipeline::with_file(&self.input, |input| self.describe(input, &monitor));
+        let content = progress.stage(Stage::Read, describe)?;
         print_summary(
             global,
             &InfoSummary {
@@ -149,21 +149,21 @@ impl Info {
         )
     }
 
-    fn look(&self, input: &Path, monitor: &Monitor) -> anyhow::Result<Content> {
+    fn describe(&self, input: &Path, monitor: &Monitor) -> anyhow::Result<Content> {
         if self.input.recipe().is_points(input)? {
-            let (points, facts) = read_model(input, &self.input.of_points())?;
-            let axis = |end: fn(f64, f64) -> f64, start: f64, axis: usize| {
-                points.positions.iter().fold(start, |so_far, p| end(so_far, p[axis]))
+            let (points, facts) = read_model(input, &self.input.point_options())?;
+            let extreme = |pick: fn(f64, f64) -> f64, start: f64, axis: usize| {
+                points.positions.iter().fold(start, |so_far, p| pick(so_far, p[axis]))
             };
             return Ok(Content::Points {
                 count: points.len(),
-                low: [0, 1, 2].map(|i| axis(f64::min, f64::INFINITY, i)),
-                high: [0, 1, 2].map(|i| axis(f64::max, f64::NEG_INFINITY, i)),
+                low: [0, 1, 2].map(|i| extreme(f64::min, f64::INFINITY, i)),
+                high: [0, 1, 2].map(|i| extreme(f64::max, f64::NEG_INFINITY, i)),
                 weights: points.weights.is_some(),
                 of_radii: points.of_radii,
                 cell: facts.cell.map(Into::into),
                 values: points.values.is_some(),
-                cells: cells_of(input, &self.input.of_points())?,
+                cells: cells_of(input, &self.input.point_options())?,
                 grid: facts.grid.map(|grid| grid.dims.xyz()),
                 coordinates: facts.coordinates,
                 alpha: facts.alpha,
@@ -232,13 +232,13 @@ struct VolumeSummary {
 }
 
 impl VolumeSummary {
-    /// Looks at a volume: part by part where its format allows that, and at all of it otherwise.
+    /// Summarises a volume: part by part if its format allows that, otherwise at once.
     fn of(input: &Path, options: &ReadOptions, monitor: &Monitor) -> Result<Self, VolumeError> {
         let (source, stats) = if let Ok(source) = Source::open(input, options) {
             let stats = SampleStats::of(&source, options.nan)?;
             (source, stats)
         } else {
-            // It says what is wrong where something is.
+            // Reading the whole volume also reports what is wrong with it.
             let opened = |nan| open_monitored(input, &options.clone().nan(nan), monitor);
             match opened(options.nan.or(Some(Nan::Mask))) {
                 Ok(volume) => {
@@ -266,8 +266,8 @@ impl std::fmt::Display for InfoSummary {
 }
 
 impl Content {
-    /// Purpose of the points.
-    fn fmt_meant(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+    /// How the points were made, and are meant to be used: recipe, α and gray range.
+    fn fmt_usage(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let Self::Points { alpha, gray_range, coordinates, recipe, .. } = self else {
             return Ok(());
         };
@@ -286,7 +286,7 @@ impl Content {
     }
 }
 
-/// How the samples lie in the world.
+/// Position and orientation of the samples in world coordinates.
 fn fmt_frame(
     f: &mut std::fmt::Formatter<'_>,
     spacing: [f64; 3],
@@ -403,7 +403,7 @@ impl std::fmt::Display for Content {
                 if let Some([x, y, z]) = grid {
                     writeln!(f, "grid      {x}×{y}×{z} samples, coordinates in {coordinates}")?;
                 }
-                self.fmt_meant(f)
+                self.fmt_usage(f)
             }
         }
     }

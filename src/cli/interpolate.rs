@@ -36,10 +36,10 @@ use crate::{AlphaShape, Dims, GrayRange, LengthUnit, SelectionRule, Units, Volum
 /// is sampled on the grid of the volume or, with --dims, on another grid over the same extent; samples
 /// outside the shape are gray 0, the lowest value. The error is measured on the samples of INPUT that the
 /// shape covers; PSNR is relative to gray 255. Hidden points carry no value. Points without a volume need
-/// --dims, a grid over their box; a .wvm knows the grid that its points are samples of.
+/// --dims, a grid over their box; a .wvm file states the grid of which its points are samples.
 ///
-/// With --curve: error and covered samples over the number of points instead, from a sixteenth to twice
-/// those selected, for each way to select them and the weights common=0, min-max and barycentric, as
+/// With --curve, instead: error and coverage against the number of points, from a sixteenth to twice those
+/// selected, for each selection method and the weights common=0, min-max and barycentric, as
 #[cfg_attr(feature = "render", doc = " CSV, PNG and SVG.")]
 #[cfg_attr(not(feature = "render"), doc = " CSV.")]
 ///
@@ -53,7 +53,7 @@ use crate::{AlphaShape, Dims, GrayRange, LengthUnit, SelectionRule, Units, Volum
 #[derive(Args)]
 #[command(mut_arg("dims", |arg| {
     arg.requires(clap::builder::Resettable::<clap::Id>::Reset)
-        .help("Sample F at so many places along x, y and z; with --dtype: read bare samples")
+        .help("Sample F at this many places along x, y and z; with --dtype: the sizes of a raw file")
         .help_heading("Grid")
 }))]
 pub(super) struct Interpolate {
@@ -94,9 +94,9 @@ struct Interpolation {
     grid: [usize; 3],
     /// Samples on the shape.
     on_shape: usize,
-    /// On the samples of INPUT that the shape covers; null for points.
+    /// Error on the samples of INPUT that the shape covers; null for points.
     inside: Option<Error>,
-    /// On all samples of INPUT; null without `--fill`.
+    /// Error on all samples of INPUT; null without `--fill`.
     filled: Option<Error>,
 }
 
@@ -109,7 +109,7 @@ struct Error {
     max_in_values: Option<f64>,
     /// The share of samples on the shape.
     covered_share: f64,
-    /// Decibels; "inf" where nothing differs.
+    /// Decibels; "inf" if nothing differs.
     #[serde(serialize_with = "number_or_null_or_name")]
     psnr: Option<f64>,
 }
@@ -129,7 +129,7 @@ impl Error {
 
 fn output_help() -> String {
     let files = volume_output("Volume to write F to");
-    format!("{files}. With --curve: a folder, or what names of files begin with")
+    format!("{files}. With --curve: a folder, or the prefix of file names")
 }
 
 impl Interpolate {
@@ -139,7 +139,7 @@ impl Interpolate {
                 fail_usage!("--curve measures on the samples of INPUT" => "omit --dims");
             }
             let base = self.output.as_deref().expect("clap requires it");
-            return run(global, &self.pipeline, base);
+            return run_curve(global, &self.pipeline, base);
         }
         self.format.check(self.output.iter())?;
         let recipe = self.pipeline.recipe_of(&self.shape, None)?;
@@ -242,17 +242,17 @@ fn sample(shape: &AlphaShape, grid: &Grid, original: Option<&Source>) -> anyhow:
     Ok(Sampled { resampled, error })
 }
 
-/// Where a volume goes.
+/// The destination of a volume.
 type Output = (&'static VolumeWriter, Target);
 
 fn open(path: &Path) -> anyhow::Result<Output> {
     Ok((VolumeWriter::of(path)?, Target::open(path)?))
 }
 
-/// Writes volumes where they go, if there are both.
+/// Writes each volume that has a destination.
 fn write(volumes: [(Option<Output>, Option<&Volume>); 2]) -> Result<(), TargetError> {
-    write_all(volumes.into_iter().filter_map(|(place, volume)| {
-        let ((format, target), volume) = (place?, volume?);
+    write_all(volumes.into_iter().filter_map(|(output, volume)| {
+        let ((format, target), volume) = (output?, volume?);
         let content = move |out: &mut dyn Write| format.write(volume, out);
         Some((target, Box::new(content) as Content<'_>))
     }))
@@ -291,7 +291,7 @@ impl Display for Error {
 struct CurveSummary {
     schema_version: u32,
     input: String,
-    /// Squared, in the square of the unit.
+    /// A squared length, in the square of `unit`.
     alpha: f64,
     unit: LengthUnit,
     curve: Vec<CurvePoint>,
@@ -300,7 +300,11 @@ struct CurveSummary {
 }
 
 /// Measures the curve and writes it as CSV, PNG and SVG.
-pub(super) fn run(global: Global, pipeline: &PipelineArgs, base: &Path) -> anyhow::Result<()> {
+pub(super) fn run_curve(
+    global: Global,
+    pipeline: &PipelineArgs,
+    base: &Path,
+) -> anyhow::Result<()> {
     let PipelineArgs { input, select, .. } = pipeline;
     let recipe = pipeline.recipe()?;
     let (new, paths) = paths(base)?;
@@ -377,8 +381,8 @@ const EXTENSIONS: &[&str] = &[
     "svg",
 ];
 
-/// `curve.csv`, `.png` and `.svg` in a folder, made if it is not there, or files whose names begin as
-/// given.
+/// `curve.csv`, `.png` and `.svg` in a folder, created if its name ends with a slash, or files with the given
+/// prefix.
 fn paths(base: &Path) -> anyhow::Result<(Option<NewFolder>, Vec<PathBuf>)> {
     let asked = base.to_string_lossy().ends_with(['/', std::path::MAIN_SEPARATOR]);
     let new = if asked { folder::make(base, "with --curve")? } else { None };

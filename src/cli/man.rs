@@ -8,7 +8,7 @@ use walpha_base::shown::shown;
 
 use crate::export::Target;
 
-use super::described;
+use super::build_command;
 use super::global::Global;
 use super::output::print;
 
@@ -17,16 +17,16 @@ use super::output::print;
 /// Example: walpha man -o ~/.local/share/man/man1
 #[derive(Args)]
 pub(super) struct Man {
-    /// Folder to write walpha.1, walpha-shape.1 and so on to, replaced if they are there [default:
-    /// walpha.1 to standard output].
+    /// Folder for walpha.1, walpha-shape.1 and so on; existing files are replaced [default: walpha.1 to
+    /// standard output].
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
 }
 
 impl Man {
     pub(super) fn run(self, global: Global) -> anyhow::Result<()> {
-        // The long form names the licence, too, which has its place elsewhere in a page.
-        let command = described().version(env!("CARGO_PKG_VERSION"));
+        // The long version also names the licence, which belongs elsewhere in a page.
+        let command = build_command().version(env!("CARGO_PKG_VERSION"));
         let Some(folder) = self.output else {
             let mut page = Vec::new();
             Page::new(command).render(&mut page)?;

@@ -91,9 +91,9 @@ enum Command {
     Man(man::Man),
 }
 
-/// The command line, with all its options in place.
-fn described() -> clap::Command {
-    let mut command = Cli::command().args(config::options_of_it());
+/// The command with all its options.
+fn build_command() -> clap::Command {
+    let mut command = Cli::command().args(config::config_options());
     command.build();
     command
 }
@@ -101,9 +101,9 @@ fn described() -> clap::Command {
 /// Runs the command line of this process.
 pub fn run() -> ExitCode {
     signals::prepare();
-    let command = described();
+    let command = build_command();
     let typed: Vec<OsString> = std::env::args_os().collect();
-    let name = named(&command, &typed);
+    let name = command_name(&command, &typed);
     let ranks = Ranks::find(&name);
     ranks.run(
         &name,
@@ -112,7 +112,7 @@ pub fn run() -> ExitCode {
     )
 }
 
-/// Runs a command line. The error is the exit code after a failure, which has been told.
+/// Runs a command line. The error is the exit code after a failure, which has been reported.
 fn lead(
     mut command: clap::Command,
     name: &str,
@@ -127,7 +127,7 @@ fn lead(
         }
     };
     if typed.iter().any(|arg| arg == "--print-config") {
-        // What to work on is not an option.
+        // Positional arguments are not options, and need not be given to print these.
         command = command.mut_subcommands(|sub| {
             sub.mut_args(|arg| if arg.is_positional() { arg.required(false) } else { arg })
         });
@@ -137,7 +137,7 @@ fn lead(
         if matches.get_flag(config::PRINT) {
             return Ok(Err(matches));
         }
-        kept = command_line::keep(&command, &matches);
+        kept = command_line::protect_inputs(&command, &matches);
         Cli::from_arg_matches(&matches).map(|cli| Ok((cli, is_piped(&matches))))
     });
     let done = match parsed {
@@ -171,7 +171,7 @@ fn lead(
 }
 
 /// The command as the user calls it: `walpha shape`.
-fn named(command: &clap::Command, args: &[OsString]) -> String {
+fn command_name(command: &clap::Command, args: &[OsString]) -> String {
     let names =
         |arg: &&OsString| arg.to_str().is_some_and(|arg| command.find_subcommand(arg).is_some());
     match args.iter().skip(1).find(names) {
@@ -203,10 +203,10 @@ fn execute(global: Global, command: Command, ranks: &Ranks) -> anyhow::Result<Ex
         _ => LevelFilter::WARN,
     };
     let log = tracing_subscriber::fmt::layer().with_ansi(errors::coloured()).with_target(false);
-    // Nor does what cannot be logged end the command.
+    // A message that cannot be logged does not end the command.
     let log = log.log_internal_errors(false);
     let log = log.with_writer(std::io::stderr).without_time().with_filter(level);
-    let warnings = output::Listener.with_filter(LevelFilter::WARN);
+    let warnings = output::WarningCollector.with_filter(LevelFilter::WARN);
     tracing_subscriber::registry().with(warnings).with(log).init();
     let alone = ranks.team().size() == 1;
     threads::start(global.threads.or((!alone).then_some(1)))?;

@@ -1,4 +1,4 @@
-//! From INPUT to weighted points and shapes, as all commands go.
+//! The steps from INPUT to weighted points and shapes, which commands share.
 
 use std::fmt::{self, Display};
 use std::path::Path;
@@ -25,7 +25,7 @@ use crate::{
 #[derive(Clone, Copy)]
 pub(super) struct VolumeSummary {
     pub dims: [usize; 3],
-    /// The volume of the samples' box.
+    /// The volume of the box between the outermost samples.
     pub extent: f64,
     pub range: GrayRange,
     pub written: GrayRange,
@@ -87,7 +87,7 @@ pub(super) fn shape(
     })
 }
 
-/// All shapes of weighted points with the weights that they have; of a torus, if there is one.
+/// The filtration of weighted points with the weights that they have; on a torus, if one is given.
 pub(super) fn filtration(
     torus: Option<Torus>,
     weighed: &Weighed,
@@ -97,7 +97,7 @@ pub(super) fn filtration(
     Filtration::monitored(torus, weighed.points.clone(), monitor)
 }
 
-/// Readable critical values, those suggested, and the α that the weights are meant for.
+/// The α of a ladder: about `count` critical values, the suggested ones, and the one that the weights are computed for.
 pub(super) fn readable(
     filtration: &Filtration,
     curve: &Curve,
@@ -135,7 +135,7 @@ pub(super) fn read(
     })
 }
 
-/// Adds the formats of points to the error for a file of no format known.
+/// Adds the formats of points to the error about an unknown format.
 pub(super) fn with_points(error: VolumeError) -> anyhow::Error {
     if !matches!(error, VolumeError::Format { reason: Reason::Unknown { .. }, .. }) {
         return error.into();
@@ -145,8 +145,8 @@ pub(super) fn with_points(error: VolumeError) -> anyhow::Error {
     CommandError { why: format!("{}, {} as points", said.why, names.join(", ")), ..said }.into()
 }
 
-/// Does something with INPUT as a file or the name of a sample. Standard input becomes a file for that
-/// time: formats are read in several passes.
+/// Runs `work` on INPUT, a file or the name of a sample. Standard input is copied to a temporary file, because
+/// formats are read in several passes.
 pub(super) fn with_file<T>(
     args: &InputArgs,
     work: impl FnOnce(&Path) -> anyhow::Result<T>,
@@ -159,7 +159,7 @@ pub(super) fn with_file<T>(
         |error| command_error!("cannot read standard input: {error}" => "name a file instead"),
     )?;
     let path = file.path().to_string_lossy().into_owned();
-    // Nobody knows the name of that file.
+    // The user does not know the name of the temporary file.
     work(file.path()).map_err(|error| {
         let (why, next) = reasons(&error);
         let named = |text: String| text.replace(&path, "standard input");
@@ -168,7 +168,7 @@ pub(super) fn with_file<T>(
     })
 }
 
-/// Refuses options that have no effect on what INPUT is.
+/// Refuses options that have no effect on this kind of INPUT.
 pub(super) fn accept(input: &Input, args: &InputArgs) -> Result<(), CommandError> {
     let holds = |what| format!("{} holds {what}", args.input);
     match input {
@@ -178,12 +178,12 @@ pub(super) fn accept(input: &Input, args: &InputArgs) -> Result<(), CommandError
             if facts.range.is_none() {
                 args.typed.refuse(&["gray_out"], &what)?;
             }
-            args.typed.refuse(&args::of_volumes(), what)
+            args.typed.refuse(&args::volume_options(), what)
         }
     }
 }
 
-/// The volume that coverage is a share of.
+/// The region that coverage is a share of, with its volume.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub(super) struct Domain {
     pub volume: f64,
@@ -221,14 +221,14 @@ pub(super) fn domain(weighed: &Weighed, volume: Option<&VolumeSummary>) -> Domai
     Domain { volume: extent(0) * extent(1) * extent(2), unit, of: "the box of the points" }
 }
 
-/// The box between the outermost samples.
+/// The volume of the box between the outermost samples.
 pub(super) fn box_volume(volume: &Volume, units: Units) -> f64 {
     let steps: f64 = volume.dims().xyz().map(|n| (n - 1) as f64).iter().product();
     steps * units.voxel_volume(volume)
 }
 
-/// A shape of a volume's points filled in, and the gray levels of its points, of which the first are given:
-/// the shape may have other values.
+/// The shape of a volume's points, filled in, and the gray levels of all its points. Those of the first points are
+/// given, because the shape may carry other values.
 pub(super) fn filled_in(
     shape: &AlphaShape,
     grays: &[f64],
@@ -237,7 +237,7 @@ pub(super) fn filled_in(
     monitor: &Monitor,
 ) -> Result<(AlphaShape, Vec<f64>), InterpolateError> {
     let whole = fill_monitored(shape, Some(volume), units, monitor)?;
-    // The corners follow the points, in gray levels already.
+    // The corners come after the points, and are in gray levels already.
     let corners = whole.points().values.iter().flatten().skip(grays.len());
     let all = grays.iter().chain(corners).copied().collect();
     Ok((whole, all))

@@ -27,8 +27,8 @@ pub(crate) struct InputArgs {
     /// Volume or point file, - (standard input), sample:ct, sample:skull, sample:phantom or sample:phantom@N.
     #[arg(value_name = "INPUT", help_heading = None::<&str>)]
     pub input: InputName,
-    /// Format of INPUT where neither its content nor its name says it, as in --input-format xyz: the
-    /// extension that a file of it has.
+    /// Format of INPUT where neither its content nor its name shows it, given as a file extension, as in
+    /// --input-format xyz.
     #[arg(long, value_name = "EXTENSION", value_parser = input_format, conflicts_with = "dims")]
     input_format: Option<String>,
     #[command(flatten)]
@@ -49,7 +49,7 @@ pub(crate) struct InputArgs {
 }
 
 impl InputArgs {
-    /// How to read a volume.
+    /// Options for reading a volume.
     pub(crate) fn options(&self) -> ReadOptions {
         let PartArgs { level, array, frame, series, skip_damaged, nan, roi, downsample } =
             self.part.clone();
@@ -66,7 +66,7 @@ impl InputArgs {
             .downsample(downsample)
     }
 
-    /// The extension that stands for the format of standard input.
+    /// The extension of a file in the format of `--input-format`, with its dot; empty without that option.
     pub(crate) fn extension(&self) -> String {
         self.input_format.as_ref().map(|format| format!(".{format}")).unwrap_or_default()
     }
@@ -80,12 +80,12 @@ impl InputArgs {
             .gray_out(self.gray_out)
     }
 
-    /// How to read points.
-    pub(crate) fn of_points(&self) -> PointOptions {
+    /// Options for reading points.
+    pub(crate) fn point_options(&self) -> PointOptions {
         self.recipe().of_points()
     }
 
-    /// Refuses a format of INPUT that is a sample, or a folder.
+    /// Refuses `--input-format` for a sample or a folder.
     pub(crate) fn check_format(&self) -> Result<(), CommandError> {
         if self.input.starts_with("sample:") {
             self.typed.refuse(&["input_format"], "a sample is no file")?;
@@ -96,7 +96,7 @@ impl InputArgs {
     }
 }
 
-/// Which part of a file is the volume, and what of it is taken.
+/// Which volume of a file is read, and which part of it.
 #[derive(Args, Clone)]
 #[command(next_help_heading = "Parts of a volume")]
 pub(super) struct PartArgs {
@@ -113,7 +113,7 @@ pub(super) struct PartArgs {
     /// UID.
     #[arg(long, value_name = "N", conflicts_with = "dims")]
     series: Option<String>,
-    /// Go on without damaged slices of a series (DICOM): a warning names each.
+    /// Skip damaged slices of a series (DICOM), with a warning for each.
     #[arg(long, conflicts_with = "dims")]
     skip_damaged: bool,
     /// Value that replaces samples that are NaN or infinite; without a value they are masked: no points, no
@@ -148,12 +148,12 @@ pub(crate) struct RawArgs {
 }
 
 impl RawArgs {
-    /// The grid that `--dims` asks for where it does not describe a raw file.
+    /// The grid that `--dims` asks for, if it does not describe a raw file.
     pub(crate) fn grid(&self) -> Option<Dims> {
         self.dims.filter(|_| self.dtype.is_none())
     }
 
-    /// How samples lie in the file, if it is raw.
+    /// The layout of the samples, if the file is raw.
     fn layout(&self) -> Option<RawLayout> {
         let layout = |(dims, dtype)| RawLayout::new(dims, dtype).endian(self.endian);
         self.dims.zip(self.dtype).map(|of| layout(of).offset(self.offset))
@@ -165,7 +165,8 @@ fn dtype_help() -> String {
     format!("Type of a sample: {}", Dtype::ALL.map(Dtype::name).join(", "))
 }
 
-/// A sample or a file: as the system has its name, which need not be text, and as people and reports are shown it.
+/// The name of a sample or a file: the path as the system has it, which need not be UTF-8, and the text shown to users and
+/// in reports.
 #[derive(Clone, Debug)]
 pub(crate) struct InputName {
     path: PathBuf,
@@ -190,7 +191,7 @@ impl From<OsString> for InputName {
     }
 }
 
-/// The text.
+/// Dereferences to the text.
 impl Deref for InputName {
     type Target = str;
 

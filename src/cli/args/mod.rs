@@ -39,7 +39,7 @@ pub(super) struct PipelineArgs<W: Args = WeightArgs> {
 }
 
 impl<W: Args + Copy + Into<WeightArgs>> PipelineArgs<W> {
-    /// The options of all stages, but how the shape is computed.
+    /// The options of all stages except that of the shape.
     pub(super) fn recipe(&self) -> Result<Recipe, CommandError> {
         let recipe = self.input.recipe().haar(self.haar.options()).refit(self.refit.refit);
         Ok(self.weights.into().set(self.select.set(recipe)?))
@@ -69,8 +69,8 @@ impl PipelineArgs {
 /// From an input to points with weights that stay fixed while α varies.
 pub(super) type FrozenPipelineArgs = PipelineArgs<FrozenArgs>;
 
-/// The names of the options that only a volume has: points may have levels, too, and gray levels.
-pub(super) fn of_volumes() -> Vec<String> {
+/// The names of the options that apply to volumes only. `--level` and `--gray-out` apply to some files of points, too.
+pub(super) fn volume_options() -> Vec<String> {
     let part = PartArgs::augment_args(Command::new("volume"));
     let points = SelectArgs::augment_args(HaarArgs::augment_args(part));
     let all = RefitArgs::augment_args(points);

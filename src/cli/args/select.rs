@@ -61,14 +61,14 @@ pub(crate) struct SelectArgs {
     #[arg(long, value_name = "E", value_parser = not_negative,
           conflicts_with_all = ["target_rmse", "exchange"])]
     max_error: Option<f64>,
-    /// Adaptive: exchange points whose loss costs little for samples that matter more, until nothing is
-    /// gained. The error is that of fitted values: give --refit, too.
+    /// Adaptive: exchange points that contribute little for samples that contribute more, until no
+    /// exchange gains anything. The error is that of fitted values: give --refit, too.
     #[arg(long)]
     exchange: bool,
     /// Keep N samples.
     #[arg(long, value_name = "N", group = "rule", value_parser = count)]
     count: Option<u64>,
-    /// Keep this share of all samples, 0 < R ≤ 1 [default: 0.0609, or all that take part where these are
+    /// Keep this share of all samples, 0 < R ≤ 1 [default: 0.0609, or all eligible samples if these are
     /// fewer].
     #[arg(long, value_name = "R", group = "rule", value_parser = share)]
     ratio: Option<f64>,
@@ -83,7 +83,7 @@ pub(crate) struct SelectArgs {
     #[arg(long, value_name = "V", allow_negative_numbers = true, conflicts_with = "gray_min")]
     value_min: Option<f64>,
     #[command(flatten)]
-    place: PlaceArgs,
+    coordinates: CoordinateArgs,
 }
 
 /// Which values points get.
@@ -98,10 +98,10 @@ pub(crate) struct RefitArgs {
     pub refit: Option<Refit>,
 }
 
-/// In what coordinates points, shapes and all lengths are.
+/// Coordinates of points and shapes, and the unit of all lengths.
 #[derive(Args, Clone, Copy)]
 #[command(next_help_heading = "Coordinates")]
-pub(super) struct PlaceArgs {
+pub(super) struct CoordinateArgs {
     /// Coordinates, α, weights and sizes in voxels, or in the unit of the file [default: world where the
     /// file states a spacing or an origin, otherwise voxel].
     #[arg(long, value_enum, value_name = "UNITS")]
@@ -120,7 +120,7 @@ enum SelectArg {
 }
 
 impl SelectArgs {
-    /// By what rule samples are chosen.
+    /// The rule by which samples are selected.
     pub(crate) fn rule(&self) -> SelectionRule {
         match (self.count, self.threshold) {
             (Some(count), _) => SelectionRule::Count(count),
@@ -129,7 +129,7 @@ impl SelectArgs {
         }
     }
 
-    /// Which samples become points, and the least value of the input.
+    /// How samples are chosen as points, and the least value of INPUT that is kept.
     fn choice(&self) -> Result<(Choice, Option<f64>), CommandError> {
         if self.select != SelectArg::Adaptive {
             if self.target_rmse.is_some() {
@@ -156,7 +156,7 @@ impl SelectArgs {
     /// A recipe with these options.
     pub(super) fn set(&self, recipe: Recipe) -> Result<Recipe, CommandError> {
         let (choice, value_min) = self.choice()?;
-        let PlaceArgs { units, space } = self.place;
+        let CoordinateArgs { units, space } = self.coordinates;
         Ok(recipe.choice(choice).value_min(value_min).units(units).space(space))
     }
 }
@@ -179,7 +179,7 @@ pub(crate) struct WeightArgs {
 }
 
 impl WeightArgs {
-    /// α as it is asked for.
+    /// The α asked for.
     pub(crate) fn alpha(&self) -> AlphaRule {
         self.alpha_radius.map(AlphaRule::Given).or(self.alpha).unwrap_or_default()
     }
@@ -190,7 +190,7 @@ impl WeightArgs {
     }
 }
 
-/// α for work on a volume that makes several sets of points.
+/// α for a command that makes several sets of points from a volume. `auto` is refused, because each set would have its own.
 pub(crate) fn one_alpha(rule: AlphaRule, source: &Source) -> anyhow::Result<Parameter> {
     rule.of_volume(&source.volume, source.units)?.ok_or_else(|| {
         command_error!(
@@ -222,10 +222,10 @@ impl From<FrozenArgs> for WeightArgs {
 /// The α of a ladder.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Alphas {
-    /// Critical values, chosen to be readable.
+    /// Critical values, chosen automatically.
     Auto,
-    /// These.
-    TypedOptions(Vec<Alpha>),
+    /// The values given.
+    Given(Vec<Alpha>),
 }
 
 impl FromStr for Alphas {
@@ -235,9 +235,7 @@ impl FromStr for Alphas {
         if text == "auto" {
             return Ok(Self::Auto);
         }
-        Ok(Self::TypedOptions(
-            text.split(',').map(|item| item.trim().parse()).collect::<Result<_, _>>()?,
-        ))
+        Ok(Self::Given(text.split(',').map(|item| item.trim().parse()).collect::<Result<_, _>>()?))
     }
 }
 

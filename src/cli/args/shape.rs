@@ -24,8 +24,8 @@ pub(crate) struct ShapeArgs {
     /// Number of blocks [default: from threads and memory].
     #[arg(long, value_name = "N")]
     blocks: Option<NonZeroUsize>,
-    /// Memory limit to size blocks for, as in 2G or 500M; not with what needs the whole triangulation
-    /// (α = inf, --exterior, --hidden, --engine cgal).
+    /// Memory limit to size blocks for, as in 2G or 500M; not with options that need the whole
+    /// triangulation (α = inf, --exterior, --hidden, --engine cgal).
     #[arg(long, value_name = "SIZE", value_parser = bytes, conflicts_with = "blocks")]
     memory: Option<u64>,
     /// Keep the simplices outside the shape, too: the whole triangulation.
@@ -37,7 +37,7 @@ pub(crate) struct ShapeArgs {
 }
 
 impl ShapeArgs {
-    /// A recipe with these options, which are refused where they have no use for each other.
+    /// The recipe with these options; refuses options that contradict each other.
     pub(crate) fn set(&self, recipe: Recipe) -> Result<Recipe, CommandError> {
         let Self { balls, engine, exterior, hidden, blocks, memory } = *self;
         if engine == Engine::Cgal && blocks.is_some_and(|blocks| blocks.get() > 1) {
@@ -55,11 +55,11 @@ impl ShapeArgs {
     }
 }
 
-/// Points of a torus.
+/// A periodic box.
 #[derive(Args, Clone, Copy)]
 #[command(next_help_heading = "Shape")]
 pub(crate) struct PeriodicArgs {
-    /// Sides of a box that repeats along x, y and z, in the unit of the points: these are those of a torus.
+    /// Sides of a periodic box along x, y and z, in the unit of the points, which then lie on a torus.
     /// No edge may span half of the box; with 4·√(α + largest weight) less than each side none does.
     #[arg(long, value_name = "X,Y,Z", value_parser = torus)]
     pub periodic: Option<Torus>,
@@ -77,14 +77,14 @@ fn torus(text: &str) -> Result<Torus, CommandError> {
 #[derive(Args, Clone)]
 #[command(next_help_heading = "Output")]
 pub(crate) struct OutputArgs {
-    /// Format of an output whose name does not say it, as standard output (-): its extension, as in
-    /// --output-format nrrd.
+    /// Format of an output whose name has no extension, such as standard output (-), given as an
+    /// extension, as in --output-format nrrd.
     #[arg(long, value_name = "EXTENSION")]
     output_format: Option<String>,
 }
 
 impl OutputArgs {
-    /// A path for an output whose extension names the format: its own path, if it has one.
+    /// A path whose extension names the format of an output: its own path, if that has an extension.
     pub(crate) fn named(&self, path: &Path) -> anyhow::Result<PathBuf> {
         match &self.output_format {
             _ if path.extension().is_some() => Ok(path.to_owned()),
@@ -96,7 +96,7 @@ impl OutputArgs {
         }
     }
 
-    /// Refuses the format where no output needs it.
+    /// Refuses `--output-format` if no output needs it.
     pub(crate) fn check<'a>(
         &self,
         mut outputs: impl Iterator<Item = &'a PathBuf>,

@@ -1,4 +1,4 @@
-//! Values of options: what their texts mean.
+//! Parsers of the values of options.
 
 use crate::cli::errors::{CommandError, command_error, fail};
 use crate::volume::Nan;

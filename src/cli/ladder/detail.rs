@@ -27,15 +27,15 @@ use crate::{
 };
 
 /// How a level selects its points.
-struct Wanted {
+struct LevelOptions {
     name: String,
     haar: HaarOptions,
     selection: Selection,
 }
 
 impl Ladder {
-    /// Makes each level, and writes its meshes and numbers. One function, because it is a list of steps that
-    /// hand each other nearly everything.
+    /// Makes each level, and writes its meshes and numbers. One function, because its steps share nearly all of
+    /// their data.
     pub(super) fn over_detail(
         &self,
         global: Global,
@@ -64,8 +64,8 @@ impl Ladder {
         let full =
             progress.stage(Stage::Points, || self.full(&mut front_end, &recipe, selection))?;
         let mut rows = Vec::new();
-        for wanted in self.wanted(&recipe, selection) {
-            let found = || front_end.points(&wanted.haar, &wanted.selection);
+        for level in self.level_options(&recipe, selection) {
+            let found = || front_end.points(&level.haar, &level.selection);
             let (mut points, truncation) = progress.stage(Stage::Points, found)?;
             if let Some((full, region)) = &full {
                 points = focus(full, &points, region);
@@ -83,7 +83,7 @@ impl Ladder {
             let errors = progress.stage(Stage::Interpolate, errors)?;
             let mut row = Row::of(&shape, &truncation, &domain, errors);
             progress.stage(Stage::Write, || {
-                write_meshes(&shape, &wanted.name, meshes, &mut folder, &mut row)
+                write_meshes(&shape, &level.name, meshes, &mut folder, &mut row)
             })?;
             rows.push(row);
         }
@@ -104,7 +104,7 @@ impl Ladder {
         print_summary(global, &facts)
     }
 
-    /// The points of full detail, and the region that keeps them, if one does.
+    /// The points of full detail, and the region that keeps them, if `--focus` is given.
     fn full(
         &self,
         front_end: &mut FrontEnd<'_>,
@@ -119,14 +119,14 @@ impl Ladder {
         Ok(Some((points, region)))
     }
 
-    fn wanted(&self, recipe: &Recipe, selection: Selection) -> Vec<Wanted> {
+    fn level_options(&self, recipe: &Recipe, selection: Selection) -> Vec<LevelOptions> {
         let haar = recipe.haar;
-        let by_count = self.counts.iter().map(|&count| Wanted {
+        let by_count = self.counts.iter().map(|&count| LevelOptions {
             name: count.to_string(),
             haar,
             selection: Selection { rule: SelectionRule::Count(count), ..selection },
         });
-        let by_epsilon = self.epsilons.iter().map(|&epsilon| Wanted {
+        let by_epsilon = self.epsilons.iter().map(|&epsilon| LevelOptions {
             name: format!("epsilon-{}", short(epsilon)),
             haar: HaarOptions { tolerance: Tolerance::Epsilon(epsilon), ..haar },
             selection,
@@ -135,12 +135,12 @@ impl Ladder {
     }
 }
 
-/// How many points lie in a region.
+/// Number of points in a region.
 fn inside(points: &Points, region: &Region) -> usize {
     points.positions.iter().filter(|&&p| region.contains(p)).count()
 }
 
-/// Writes a level's shape in each format, and notes it.
+/// Writes a level's shape in each format, and adds names and sizes to its row.
 fn write_meshes(
     shape: &AlphaShape,
     level: &str,
@@ -156,7 +156,7 @@ fn write_meshes(
     Ok(())
 }
 
-/// What comes before weights; the truncated volume is kept for the next level.
+/// The stages before the weights; the truncated volume is kept for the next level.
 struct FrontEnd<'a> {
     volume: &'a Volume,
     units: Units,
@@ -182,7 +182,7 @@ impl FrontEnd<'_> {
     }
 }
 
-/// What `walpha ladder` did over detail.
+/// Summary of `walpha ladder` over levels of detail.
 #[derive(Serialize)]
 pub(super) struct DetailSummary {
     pub schema_version: u32,
@@ -211,16 +211,16 @@ pub(super) struct Row {
     #[serde(flatten)]
     pub measures: Measures,
     pub coverage: f64,
-    /// How far F is from the volume, in gray levels: on the samples of the shape, and on all.
+    /// RMSE of F, in gray levels: on the samples of the shape, and on all.
     #[serde(flatten)]
     pub errors: LevelErrors,
-    /// Meshes of this level.
+    /// Size of this level's meshes.
     pub bytes: u64,
     pub files: Vec<String>,
 }
 
 impl Row {
-    /// Of a level's shape, before its meshes are written.
+    /// The row of a level, before its meshes are written.
     pub(super) fn of(
         shape: &AlphaShape,
         truncation: &Truncation,

@@ -35,7 +35,7 @@ use summary::{LadderSummary, write_levels, write_voids};
 /// Betti numbers, volume and area of each level, voids.csv has every void with the α that fills
 #[cfg_attr(feature = "render", doc = " it, ladder.png and ladder.svg draw it.")]
 #[cfg_attr(not(feature = "render"), doc = " it.")]
-/// The α to try are suggested. Over points (--counts) or the
+/// Values of α to try are suggested. Over points (--counts) or the
 /// error of the wavelet stage (--epsilons) there is a mesh for each level of detail, at α = --alpha-ref,
 /// and detail.csv and detail.json list error and size.
 ///
@@ -68,7 +68,7 @@ pub(super) struct Ladder {
           value_parser = super::args::not_negative)]
     epsilons: Vec<f64>,
     /// A region that keeps full detail (the points of --count, --ratio or --threshold, besides those
-    /// of the level) at every level of detail; borders belong to it. In the units of the points.
+    /// of the level) at every level of detail; borders included. In the units of the points.
     #[arg(long, value_name = "X0:X1,Y0:Y1,Z0:Z1", value_parser = ranges::places,
           allow_hyphen_values = true)]
     focus: Option<Region>,
@@ -80,8 +80,8 @@ pub(super) struct Ladder {
     pipeline: FrozenPipelineArgs,
 }
 
-/// Levels that `--alphas auto` chooses, suggested ones not counted.
-const READABLE: usize = 24;
+/// Number of levels that `--alphas auto` chooses, besides the suggested ones.
+const AUTO_LEVELS: usize = 24;
 
 impl Ladder {
     pub(super) fn run(self, global: Global) -> anyhow::Result<()> {
@@ -89,8 +89,8 @@ impl Ladder {
         if self.focus.is_some() && !detail {
             fail_usage!("--focus belongs to levels of detail" => "give --counts or --epsilons too");
         }
-        once("--counts", &self.counts)?;
-        once("--epsilons", &self.epsilons)?;
+        refuse_repeated("--counts", &self.counts)?;
+        refuse_repeated("--epsilons", &self.epsilons)?;
         let meshes = meshes(&self.mesh, if detail { &["ply"] } else { &[] })?;
         let names: &[&str] = if detail {
             &["detail.csv", "detail.json"]
@@ -131,9 +131,9 @@ impl Ladder {
         let curve = progress.stage(Stage::Curve, || filtration.curve());
         let suggested = progress.stage(Stage::Curve, || filtration.suggest(&curve));
         let alphas = match &self.alphas {
-            Alphas::TypedOptions(alphas) => alphas.clone(),
+            Alphas::Given(alphas) => alphas.clone(),
             Alphas::Auto => progress.stage(Stage::Curve, || {
-                pipeline::readable(&filtration, &curve, READABLE, reference.alpha)
+                pipeline::readable(&filtration, &curve, AUTO_LEVELS, reference.alpha)
             }),
         };
         let levels = progress.stage(Stage::Ladder, || filtration.levels(&alphas));
@@ -186,7 +186,7 @@ fn write_meshes(
     Ok(())
 }
 
-/// The name of a level's mesh: its place in the ladder, and its α.
+/// The name of a level's mesh: its position in the ladder, and its α.
 fn level_name(ladder: &Levels, k: usize, level: &Level, extension: &str) -> String {
     let digits = ladder.levels.len().to_string().len();
     format!("level-{:0digits$}-alpha-{}.{extension}", k + 1, short(level.alpha.squared()))
@@ -200,8 +200,8 @@ fn short(number: impl Display + LowerExp) -> String {
     if text.len() > LONG { format!("{number:e}") } else { text }
 }
 
-/// Refuses what is named twice, as one file would replace the other.
-fn once<T: PartialEq + Display>(option: &str, values: &[T]) -> anyhow::Result<()> {
+/// Refuses values that are given twice, because one file would replace the other.
+fn refuse_repeated<T: PartialEq + Display>(option: &str, values: &[T]) -> anyhow::Result<()> {
     match values.iter().enumerate().find(|(k, value)| values[..*k].contains(value)) {
         Some((_, value)) => {
             fail_usage!("{option} names {value} twice" => "each level has a file of its own")
@@ -219,7 +219,7 @@ struct Mesh {
 fn meshes(asked: &[String], default: &[&str]) -> anyhow::Result<Vec<Mesh>> {
     let plain = |extension: &str| extension.trim().trim_start_matches('.').to_ascii_lowercase();
     let mut extensions: Vec<String> = asked.iter().map(|extension| plain(extension)).collect();
-    once("--mesh", &extensions)?;
+    refuse_repeated("--mesh", &extensions)?;
     if extensions.is_empty() {
         extensions = default.iter().map(|extension| plain(extension)).collect();
     }
@@ -237,17 +237,17 @@ fn meshes(asked: &[String], default: &[&str]) -> anyhow::Result<Vec<Mesh>> {
 /// Root mean square differences of F from a volume, in gray levels.
 #[derive(Clone, Copy, Serialize)]
 pub(super) struct LevelErrors {
-    /// On the samples that the shape covers; null where there are none.
+    /// On the samples that the shape covers; null if it covers none.
     #[serde(rename = "rmse_inside")]
     pub inside: Option<f64>,
-    /// On all samples, F being filled in.
+    /// On all samples, with F filled in.
     #[serde(rename = "rmse_filled")]
     pub filled: f64,
 }
 
 impl LevelErrors {
-    /// Of the shape of a volume's points, whose gray levels are given: its own values may be others. One
-    /// triangulation, and two passes over the volume.
+    /// The errors of the shape of a volume's points, whose gray levels are given, because the shape may carry other
+    /// values. Costs one triangulation, and two passes over the volume.
     pub(super) fn of(
         shape: &AlphaShape,
         grays: &[f64],

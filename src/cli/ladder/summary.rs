@@ -15,7 +15,7 @@ use crate::cli::output::name;
 use crate::cli::pipeline::Domain;
 use crate::cli::report::{SCHEMA_VERSION, WeightsReport, ending};
 
-/// What `walpha ladder` did over α.
+/// Summary of `walpha ladder` over α.
 #[derive(Serialize)]
 pub(super) struct LadderSummary {
     schema_version: u32,
@@ -30,7 +30,7 @@ pub(super) struct LadderSummary {
     domain: Domain,
     /// Cells, facets, edges, vertices of the triangulation.
     simplices: [usize; 4],
-    /// Critical values, as far as some α lies between them.
+    /// Number of critical values; those that no double separates count as one.
     critical_values: usize,
     suggested: Option<Suggestions>,
     levels: Vec<Row>,
@@ -54,7 +54,7 @@ struct Row {
     measures: Measures,
     coverage: f64,
     void_volume: f64,
-    /// All are in voids.csv.
+    /// The largest void; voids.csv lists all.
     largest_void: Option<Void>,
 }
 
@@ -84,7 +84,7 @@ impl LadderSummary {
         }
     }
 
-    /// Adds what was found.
+    /// Adds the results.
     pub(super) fn add(
         &mut self,
         filtration: &Filtration,
@@ -120,7 +120,7 @@ impl LadderSummary {
         self.levels = ladder.levels.iter().map(row).collect();
     }
 
-    /// Adds what it cost and what it left.
+    /// Adds the times, and the files written.
     pub(super) fn finish(&mut self, seconds: Vec<(&'static str, f64)>, files: Vec<String>) {
         self.seconds = seconds.into_iter().collect();
         self.files = files;
