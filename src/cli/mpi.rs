@@ -1,4 +1,4 @@
-//! MPI.
+//! The processes of a team, connected by MPI.
 
 use std::time::Duration;
 
@@ -11,8 +11,8 @@ use crate::outofcore::Team;
 
 /// Bytes sent at once: the counts of MPI have 32 bits.
 const CHUNK: usize = 1 << 20;
-/// MPI waits by asking again and again, which takes a core from those who work. So it is asked without a
-/// pause so many times, and then now and then.
+/// MPI waits by polling, which takes a core from working threads. So it is polled this many times without a
+/// pause, and then once every [`PAUSE`].
 const EAGER: u32 = 200;
 const PAUSE: Duration = Duration::from_micros(500);
 
@@ -23,7 +23,7 @@ pub(super) struct World {
 }
 
 impl World {
-    /// Starts MPI; `None` if that has been done. Only this thread may use it.
+    /// Starts MPI; `None` if it has been started before. Only this thread may use it.
     pub(super) fn start() -> Option<Self> {
         let (universe, _) = initialize_with_threading(Threading::Funneled)?;
         Some(Self { world: universe.world(), _universe: universe })
@@ -76,15 +76,15 @@ impl Team for World {
     }
 }
 
-/// Asks until there is an answer.
-fn wait<T>(mut ask: impl FnMut() -> Option<T>) -> T {
-    for asked in 0u32.. {
-        if let Some(answer) = ask() {
+/// Polls until there is an answer.
+fn wait<T>(mut poll: impl FnMut() -> Option<T>) -> T {
+    for polled in 0u32.. {
+        if let Some(answer) = poll() {
             return answer;
         }
-        if asked >= EAGER {
+        if polled >= EAGER {
             std::thread::sleep(PAUSE);
         }
     }
-    unreachable!("it asks for ever")
+    unreachable!("it polls for ever")
 }

@@ -1,4 +1,4 @@
-//! Replaces pictures where the command is built without them: no options, no files.
+//! Stands in for pictures if the command is built without them: no options, no files.
 
 use std::path::Path;
 

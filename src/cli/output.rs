@@ -15,37 +15,37 @@ use walpha_base::standard_output;
 
 use super::global::Global;
 
-/// Prints facts as the user wants them: as JSON, as text, or not at all; to standard error when
-/// standard output has a file (`-o -`).
+/// Prints facts as the options ask for: as JSON, as text, or not at all; to standard error if a file goes to
+/// standard output (`-o -`).
 pub(super) fn print_summary<T: Serialize + Display>(
     global: Global,
     facts: &T,
 ) -> anyhow::Result<()> {
     if global.json {
-        let warnings = heard();
+        let warnings = warnings();
         let text =
-            if warnings.is_empty() { json(facts) } else { json(&Warned { facts, warnings }) };
-        say(global, &text?)?;
+            if warnings.is_empty() { json(facts) } else { json(&WithWarnings { facts, warnings }) };
+        write_text(global, &text?)?;
     } else if !global.quiet {
-        say(global, &escaped(&facts.to_string(), |c| c == '\n'))?;
+        write_text(global, &escaped(&facts.to_string(), |c| c == '\n'))?;
     }
     Ok(())
 }
 
 /// Facts, with the warnings of the run.
 #[derive(Serialize)]
-struct Warned<'a, T> {
+struct WithWarnings<'a, T> {
     #[serde(flatten)]
     facts: &'a T,
     warnings: Vec<String>,
 }
 
-/// A name within a text, where it must not begin a line.
+/// A name escaped for use within a line of text.
 pub(super) fn name(name: &str) -> String {
     escaped(name, |_| false)
 }
 
-fn say(global: Global, text: &str) -> anyhow::Result<()> {
+fn write_text(global: Global, text: &str) -> anyhow::Result<()> {
     if global.piped {
         io::stderr().lock().write_all(text.as_bytes())?;
     } else {
@@ -54,7 +54,7 @@ fn say(global: Global, text: &str) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Standard output is closed, full, or nobody reads it any more: what was to be printed is lost.
+/// Standard output is closed, full, or no longer read: what was to be printed is lost.
 #[derive(Debug, thiserror::Error)]
 #[error("standard output does not take it: {0}")]
 pub(super) struct OutputError(#[from] io::Error);
@@ -68,12 +68,12 @@ impl OutputError {
     }
 }
 
-/// Prints text, without the panic of `println!` when it cannot be.
+/// Prints text; a failure is an error, not a panic as in `println!`.
 pub(super) fn print(text: &str) -> Result<(), OutputError> {
     print_with(|out| out.write_all(text.as_bytes()))
 }
 
-/// Prints what is written, to the last byte.
+/// Prints what `write` writes, and flushes it.
 pub(super) fn print_with(
     write: impl FnOnce(&mut io::StdoutLock<'static>) -> io::Result<()>,
 ) -> Result<(), OutputError> {
@@ -83,8 +83,7 @@ pub(super) fn print_with(
     Ok(out.flush()?)
 }
 
-/// Says something beside the result, on standard error. Where nobody hears it, that is no error, nor a panic
-/// as `eprintln!` has it.
+/// Prints a remark to standard error. A failure is ignored, where `eprintln!` would panic.
 pub(super) fn remark(text: &str) {
     let _ = writeln!(io::stderr().lock(), "{text}");
 }
@@ -93,7 +92,7 @@ fn json(value: &impl Serialize) -> serde_json::Result<String> {
     Ok(serde_json::to_string_pretty(value)? + "\n")
 }
 
-/// Whether an error means that our reader has gone.
+/// Whether an error means that the reader of our output is gone.
 pub(super) fn is_broken_pipe(error: &anyhow::Error) -> bool {
     let broken = |cause: &(dyn std::error::Error + 'static)| {
         cause.downcast_ref::<io::Error>().is_some_and(|e| e.kind() == ErrorKind::BrokenPipe)
@@ -101,22 +100,22 @@ pub(super) fn is_broken_pipe(error: &anyhow::Error) -> bool {
     error.chain().any(broken)
 }
 
-/// Warnings so far.
-static HEARD: Mutex<Vec<String>> = Mutex::new(Vec::new());
+/// Distinct warnings so far.
+static WARNINGS: Mutex<Vec<String>> = Mutex::new(Vec::new());
 
 /// Collects warnings, once each.
-pub(super) struct Listener;
+pub(super) struct WarningCollector;
 
-impl<S: Subscriber> Layer<S> for Listener {
+impl<S: Subscriber> Layer<S> for WarningCollector {
     fn on_event(&self, event: &Event<'_>, _: Context<'_, S>) {
         if *event.metadata().level() != Level::WARN {
             return;
         }
         let mut message = Message::default();
         event.record(&mut message);
-        let mut heard = HEARD.lock().unwrap_or_else(PoisonError::into_inner);
-        if !heard.contains(&message.0) {
-            heard.push(message.0);
+        let mut warnings = WARNINGS.lock().unwrap_or_else(PoisonError::into_inner);
+        if !warnings.contains(&message.0) {
+            warnings.push(message.0);
         }
     }
 }
@@ -128,12 +127,13 @@ struct Message(String);
 impl Visit for Message {
     fn record_debug(&mut self, field: &Field, value: &dyn Debug) {
         if field.name() == "message" {
-            fmt::write(&mut self.0, format_args!("{value:?}")).expect("strings take all");
+            fmt::write(&mut self.0, format_args!("{value:?}"))
+                .expect("writing to a string cannot fail");
         }
     }
 }
 
 /// The warnings so far.
-pub(super) fn heard() -> Vec<String> {
-    HEARD.lock().unwrap_or_else(PoisonError::into_inner).clone()
+pub(super) fn warnings() -> Vec<String> {
+    WARNINGS.lock().unwrap_or_else(PoisonError::into_inner).clone()
 }

@@ -81,7 +81,7 @@ impl PictureArgs {
         extension.is_some_and(|e| Self::EXTENSIONS.iter().any(|png| e.eq_ignore_ascii_case(png)))
     }
 
-    /// What writes the picture.
+    /// The exporter that writes the picture.
     pub(super) fn exporter(self) -> Box<dyn Exporter> {
         Box::new(self)
     }
@@ -96,7 +96,7 @@ impl PictureArgs {
         };
         let bounds = bounds(positions);
         let diagonal = (0..3).map(|k| (bounds[1][k] - bounds[0][k]).powi(2)).sum::<f64>().sqrt();
-        // Thin beside the whole, whatever the units: 0.12 for 64³ voxels, as in the figures.
+        // Thin compared with the shape, in any unit: 0.12 for 64³ voxels, as in the figures.
         let edge_radius = diagonal * 0.0011;
         let style = ShapeStyle { colouring, edge_radius, ..ShapeStyle::default() };
         let scene = Scene::of_shape(positions, shape.complex(), &style)?;

@@ -32,9 +32,9 @@ pub(super) struct Points {
     output: Option<PathBuf>,
     #[command(flatten)]
     pipeline: PipelineArgs,
-    // Behind the input, which sees first what was given.
-    /// Largest error of a value in a .wvm, in gray levels (of points without a volume: in their values): the
-    /// values of F are off by as much at most, everywhere, and the file is smaller; 0 keeps every bit.
+    // After the input, whose `TypedOptions` must be parsed first.
+    /// Largest error of a value in a .wvm, in gray levels (for points without a volume: in units of their
+    /// values). F is off by at most as much everywhere, and the file is smaller; 0 keeps every bit.
     #[arg(long, value_name = "E", value_parser = not_negative, default_value = "0",
           help_heading = "Packing")]
     value_error: f64,

@@ -1,4 +1,4 @@
-//! Which stage is at work, how far it is, and how long each took.
+//! The running stage, its progress, and the time that each stage took.
 
 use std::fmt;
 use std::io::{self, IsTerminal};
@@ -28,7 +28,7 @@ pub(super) struct Progress {
     monitor: Monitor,
 }
 
-/// Seconds of stages that ended, and the one at work.
+/// Seconds of the stages that ended, and the running one.
 struct Times {
     started: Instant,
     stages: Vec<(&'static str, f64)>,
@@ -36,16 +36,16 @@ struct Times {
     running: Option<(&'static str, Instant)>,
 }
 
-/// The work that an interrupt cancels: that which began last.
+/// The work that an interrupt cancels: the last that began.
 static WORK: Mutex<Option<Monitor>> = Mutex::new(None);
 
-/// Cancels what is at work. Says whether there is anything.
+/// Cancels the running work. Returns whether there is any.
 pub(super) fn cancel() -> bool {
     let work = WORK.lock().unwrap_or_else(PoisonError::into_inner);
     work.as_ref().inspect(|monitor| monitor.cancel()).is_some()
 }
 
-/// Whether it was cancelled.
+/// Whether the running work was cancelled.
 pub(super) fn is_cancelled() -> bool {
     let work = WORK.lock().unwrap_or_else(PoisonError::into_inner);
     work.as_ref().is_some_and(|monitor| monitor.check().is_err())
@@ -56,7 +56,7 @@ pub(super) fn current() -> String {
     BAR.message()
 }
 
-/// Takes the bar away, so that something can be said.
+/// Removes the bar, so that text can be printed.
 pub(super) fn clear() {
     BAR.finish_and_clear();
 }
@@ -64,7 +64,7 @@ pub(super) fn clear() {
 impl Progress {
     /// Draws on standard error if that is a terminal and nobody asked for quiet.
     pub(super) fn new(global: Global) -> Self {
-        // What draws is a thread of its own, which cannot always be had.
+        // A thread of its own draws the bar, and cannot always be started.
         let watched = !global.quiet && !global.verbose && io::stderr().is_terminal();
         let watched = watched && threads::available(1, STACK) == 1;
         if watched {
@@ -78,7 +78,7 @@ impl Progress {
         Self { times, monitor }
     }
 
-    /// The monitor of the work: what it hears of stages is shown and timed.
+    /// The monitor of the work: stages reported to it are shown and timed.
     pub(super) fn monitor(&self) -> Monitor {
         self.monitor.clone()
     }
@@ -86,7 +86,7 @@ impl Progress {
     /// Runs a stage. Calls with the same stage add up.
     pub(super) fn stage<T>(&mut self, stage: Stage, work: impl FnOnce() -> T) -> T {
         self.watch(|monitor| {
-            // Work that was cancelled ends when it asks.
+            // Cancelled work ends at its next check.
             let _ = stage.begin(monitor);
             work()
         })
@@ -103,12 +103,12 @@ impl Progress {
         self.times.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Ends the show: seconds in all.
+    /// Removes the bar; returns the total seconds.
     pub(super) fn total(self) -> f64 {
         self.finish().last().map_or(0.0, |(_, seconds)| *seconds)
     }
 
-    /// Ends the show: seconds per stage, and in all.
+    /// Removes the bar; returns the seconds of each stage, and in total.
     pub(super) fn finish(self) -> Vec<(&'static str, f64)> {
         clear();
         let times = self.lock();
@@ -121,14 +121,14 @@ impl Progress {
 fn style(template: &str) -> ProgressStyle {
     let rate = |state: &ProgressState, out: &mut dyn fmt::Write| {
         let rate = state.per_sec();
-        // An error of the progress bar is nobody's concern.
+        // Errors of the progress bar are ignored.
         let _ = if rate < 10.0 {
             write!(out, "{rate:.1}/s")
         } else {
             write!(out, "{}/s", HumanCount(rate as u64))
         };
     };
-    let style = ProgressStyle::with_template(template).expect("a template that is right");
+    let style = ProgressStyle::with_template(template).expect("a valid template");
     style.with_key("rate", rate).progress_chars("=> ")
 }
 

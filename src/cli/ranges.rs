@@ -5,7 +5,7 @@ use crate::volume::Region;
 
 use super::errors::{CommandError, command_error, fail};
 
-/// The ends of three ranges as they are written, without the white space around them.
+/// The ends of three ranges as text, without surrounding white space.
 fn ends(text: &str) -> Result<[[&str; 2]; 3], CommandError> {
     let ranges: Vec<&str> = text.split(',').collect();
     let &[x, y, z] = ranges.as_slice() else {

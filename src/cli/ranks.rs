@@ -25,11 +25,11 @@ pub(super) enum Ranks {
 pub(super) struct Launched {
     rank: usize,
     size: usize,
-    /// The variable that says how many there are.
+    /// The environment variable that holds the size.
     variable: &'static str,
 }
 
-/// Where launchers say how many processes they started, and which this is.
+/// Environment variables in which launchers set the number of processes, and the rank of this one.
 const VARIABLES: [[&str; 2]; 4] = [
     // Open MPI.
     ["OMPI_COMM_WORLD_SIZE", "OMPI_COMM_WORLD_RANK"],
@@ -50,7 +50,7 @@ impl Launched {
         launched.into_iter().find(|launched| launched.size > 1)
     }
 
-    /// Why the command cannot be run by so many.
+    /// The error for a command that several processes cannot share.
     fn refusal(self, command: &str) -> CommandError {
         let Self { size, variable, .. } = self;
         let each = format!("unset {variable} where each process is to work on its own");
@@ -71,7 +71,7 @@ const SHARED: &str = "walpha shape";
 const SINGLE: &str = "walpha blocks";
 
 impl Ranks {
-    /// Finds out how this process was started to run a command, and begins to talk to the others.
+    /// Finds out how this process was started to run a command, and connects to the others.
     pub(super) fn find(command: &str) -> Self {
         match Launched::of(|name| std::env::var_os(name)) {
             Some(launched) if command != SINGLE => Self::of(launched, command),
@@ -102,7 +102,7 @@ impl Ranks {
         }
     }
 
-    /// Runs the command line in the first process, while the others serve it. What fails or panics ends all;
+    /// Runs the command line in the first process, while the others serve it. A failure or panic ends all of them;
     /// `lead` gives the exit code of a failure as its error.
     pub(super) fn run(
         &self,
@@ -122,7 +122,9 @@ impl Ranks {
             catch_unwind(AssertUnwindSafe(lead))
         } else {
             catch_unwind(AssertUnwindSafe(|| {
-                serve().map(|()| ExitCode::SUCCESS).map_err(|error| self.tell(command, &error))
+                serve()
+                    .map(|()| ExitCode::SUCCESS)
+                    .map_err(|error| self.report_failure(command, &error))
             }))
         };
         match done {
@@ -134,8 +136,8 @@ impl Ranks {
     }
 
     /// Reports a failure in a process that is not the first, and returns its exit code.
-    fn tell(&self, command: &str, error: &anyhow::Error) -> u8 {
-        /// What fails everywhere is reported by the first process, which ends all others meanwhile.
+    fn report_failure(&self, command: &str, error: &anyhow::Error) -> u8 {
+        /// A failure in all processes is reported by the first, which ends the others within this time.
         const PATIENCE: std::time::Duration = std::time::Duration::from_secs(2);
         std::thread::sleep(PATIENCE);
         errors::print_error(&format!("{command} (rank {})", self.team().rank()), error);

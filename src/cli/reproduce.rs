@@ -1,4 +1,4 @@
-//! `walpha reproduce`: the paper, made again.
+//! `walpha reproduce`: reproduces the paper.
 
 use std::path::{Path, PathBuf};
 use std::time::{SystemTime, UNIX_EPOCH};
@@ -32,12 +32,12 @@ pub(super) struct Reproduce {
     /// installed].
     #[arg(long, value_name = "INPUT")]
     input: Option<String>,
-    /// Folder to write to, made if it is not there; files in it are replaced, all at the end.
+    /// Folder to write to, created if needed; existing files in it are replaced, all at the end.
     #[arg(long, value_name = "DIR", default_value = "reproduction")]
     out: PathBuf,
 }
 
-/// The paper's own kind of volume, and what always is at hand.
+/// A volume like the paper's, and one that is always available.
 const SKULL: &str = "sample:skull";
 const PHANTOM: &str = "sample:phantom";
 
@@ -83,7 +83,7 @@ impl Reproduce {
                 if !global.quiet {
                     remark(&format!(
                         "walpha: {SKULL} is not installed (on Debian and Ubuntu, `apt-get install \
-                         libcgal-demo` brings it); going on with {PHANTOM}"
+                         libcgal-demo` installs it); continuing with {PHANTOM}"
                     ));
                 }
                 Ok((PHANTOM.into(), open_monitored(PHANTOM, &ReadOptions::default(), monitor)?))
@@ -96,13 +96,13 @@ impl Reproduce {
 /// The day in UTC, or that of `SOURCE_DATE_EPOCH` (<https://reproducible-builds.org/specs/source-date-epoch/>).
 fn today() -> String {
     let asked = std::env::var("SOURCE_DATE_EPOCH").ok().and_then(|seconds| seconds.parse().ok());
-    // Beyond the year 9999 it is a mistake.
+    // Times beyond the year 9999 are taken for mistakes.
     let asked = asked.filter(|&seconds: &u64| seconds < 253_402_300_800);
     let now = || SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs());
     date(asked.unwrap_or_else(now) / 86_400)
 }
 
-/// The date so many days after 1970-01-01.
+/// The date `days` days after 1970-01-01.
 fn date(mut days: u64) -> String {
     let leap = |year: u64| {
         year.is_multiple_of(4) && (!year.is_multiple_of(100) || year.is_multiple_of(400))
@@ -124,7 +124,7 @@ fn date(mut days: u64) -> String {
     format!("{year:04}-{month:02}-{:02}", days + 1)
 }
 
-/// What is printed: the verdicts, and where to look.
+/// The text to print: the verdicts, and where the page is.
 fn text(report: &Report, out: &Path, files: usize) -> String {
     let mut text = String::new();
     let input = &report.input;

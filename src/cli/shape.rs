@@ -52,8 +52,8 @@ pub(super) struct Shape {
     /// colours (OFF) or numbers (PLY, with components and sheets).
     #[arg(long)]
     groups: bool,
-    /// Refuse points that span no volume; without it those in one plane or on one line get the shape
-    /// that they have there: triangles or edges, and no cells.
+    /// Refuse points that span no volume. Otherwise points in one plane or on one line get the shape that
+    /// they have there: triangles or edges, and no cells.
     #[arg(long, value_name = "3", value_parser = clap::value_parser!(u8).range(3..=3))]
     dimension: Option<u8>,
     #[command(flatten)]
@@ -77,7 +77,7 @@ fn unused(name: &str, given: bool, why: &str) -> anyhow::Result<()> {
 }
 
 impl Shape {
-    /// The options of all stages; refuses those that no output has a use for.
+    /// The options of all stages; refuses those that no output uses.
     fn recipe(&self) -> anyhow::Result<Recipe> {
         let input = &self.pipeline.input;
         self.format.check(self.output.iter())?;
@@ -117,14 +117,14 @@ impl Shape {
     }
 
     pub(super) fn run(self, global: Global, team: &dyn Team) -> anyhow::Result<()> {
-        // Before the long work: a bad option, extension or place costs nothing yet.
+        // Before the long work, a bad option, extension or path costs nothing yet.
         let recipe = self.recipe()?;
         let folder = shape_in_blocks::working_folder(&self.output, &self.pipeline.input.input);
         let in_blocks =
             team.size() > 1 || self.output.iter().any(|path| BlockwiseFormat::of(path).is_some());
         let working = (in_blocks && !global.in_place).then(|| Working::folder(&folder));
         let outputs = Outputs::open(&self)?;
-        // From here on the blocks are written there.
+        // From here on, blocks are written to the working folder.
         drop(working);
         let mut progress = Progress::new(global);
         let mut report = if in_blocks {
@@ -140,7 +140,7 @@ impl Shape {
         print_summary(global, &report)
     }
 
-    /// Makes the shape in blocks, from file to file.
+    /// Makes the shape in blocks, which are kept in files.
     fn in_blocks(
         &self,
         recipe: Recipe,
@@ -194,19 +194,19 @@ impl Shape {
     }
 }
 
-/// The outputs by what they take.
+/// The outputs, by what they are made from.
 #[derive(Default)]
 pub(super) struct Outputs {
-    /// A file for each block.
+    /// The blocks: a file for each.
     pub pieces: Vec<(BlockwiseFormat, PathBuf)>,
     /// The shape.
     pub whole: Vec<(Target, Box<dyn Exporter>)>,
-    /// The points, and what the shape can be made from again.
+    /// The points, with all that is needed to make the shape again.
     pub models: Vec<(Target, &'static PointWriter)>,
 }
 
 impl Outputs {
-    /// Looks at what the options name.
+    /// Opens the outputs that the options name.
     pub(super) fn open(shape: &Shape) -> anyhow::Result<Self> {
         let export = ExportOptions {
             ascii: shape.ascii,
@@ -242,7 +242,7 @@ impl Outputs {
         self.whole.iter().filter_map(remark).collect()
     }
 
-    /// Writes all that take a whole shape.
+    /// Writes all outputs that are made from a whole shape.
     pub(super) fn write(
         self,
         shape: &AlphaShape,

@@ -23,9 +23,9 @@ use crate::progress::Stage;
 pub(super) struct SharedWork {
     job: Job,
     cutting: Cutting,
-    /// Holds unfinished work.
+    /// Folder for unfinished work.
     folder: PathBuf,
-    /// Where pieces go.
+    /// Destinations of the outputs with a file for each block.
     pieces: Vec<(BlockwiseFormat, PathBuf)>,
     /// Threads of each process.
     threads: u16,
@@ -45,7 +45,7 @@ impl SharedWork {
         Ok(Self { job: job(input, recipe)?, cutting, folder, pieces, threads })
     }
 
-    /// Does the work as the first process, and writes what is written in one file.
+    /// Does the work as the first process, which also writes the outputs in one file.
     pub(super) fn lead(
         self,
         outputs: Outputs,
@@ -62,7 +62,7 @@ impl SharedWork {
         Ok(report)
     }
 
-    /// The share of each process.
+    /// Does the share of one process.
     fn share(
         &self,
         new: Option<NewFolder>,
@@ -102,19 +102,19 @@ pub(super) fn serve(team: &dyn Team) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Lets all others end.
+/// Tells all other processes to end.
 pub(super) fn dismiss(team: &dyn Team) {
     order(team, None);
 }
 
-/// The most memory that any process held, in bytes; every process asks at the end of its work.
+/// The largest peak memory of a process, in bytes. Every process must call this at the end of its work.
 pub(super) fn peak(team: &dyn Team) -> Option<u64> {
     team.reduce(memory::peak_bytes(), |most, other| *most = (*most).max(other))
 }
 
-/// Where unfinished work is kept: beside the first output with pieces, `bone.blocks` for `bone.pvtp`, or else the
-/// first file; without any in the current folder, named after the input. It goes at the end, and after an
-/// interruption the same command goes on with it.
+/// The folder for unfinished work: next to the first output with a file for each block, `bone.blocks` for
+/// `bone.pvtp`, or else next to the first file; without files, in the current folder, named after the input. It is
+/// removed at the end; after an interruption the same command continues from it.
 pub(super) fn working_folder(outputs: &[PathBuf], input: &str) -> PathBuf {
     let pieces = outputs.iter().find(|path| BlockwiseFormat::of(path).is_some());
     let file = || outputs.iter().find(|path| *path != Path::new(Target::STDOUT));

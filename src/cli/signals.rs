@@ -1,4 +1,4 @@
-//! What ends the command before its time, and how it goes then: no file is left half written.
+//! Interrupts and aborts: the command ends without leaving unfinished files.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
@@ -9,10 +9,10 @@ use walpha_files::abandon;
 use super::global::INTERRUPTED;
 use super::progress;
 
-/// How long work that was cancelled may take to end.
+/// How long cancelled work may take to end.
 const GRACE: Duration = Duration::from_secs(1);
 
-/// Ends the process without what it was about to write.
+/// Ends the process, and removes unfinished files.
 fn leave() -> ! {
     progress::clear();
     abandon(INTERRUPTED)
@@ -20,15 +20,14 @@ fn leave() -> ! {
 
 /// Prepares for Ctrl-C, for a file that may not grow, and for a lack of memory.
 ///
-/// The large allocations of the library return errors. Where one of the others fails, Rust has no way
-/// back in stable form: it says how many bytes were wanted and aborts, and so does C++ where it cannot
-/// throw. An allocator of our own could not distinguish those from the allocations that return errors, so
-/// the abort itself is caught.
+/// The large allocations of the library return errors. If any other fails, stable Rust cannot recover: it
+/// prints how many bytes were wanted and aborts, and so does C++ where it cannot throw. An allocator of our
+/// own could not distinguish these from the allocations that return errors, so the abort itself is caught.
 pub(super) fn prepare() {
-    // A handler that cannot be set leaves the system's own.
+    // If the handler cannot be set, the system's own stays.
     let _ = ctrlc::set_handler(|| {
-        // What is cancelled ends soon, and the command with it. What does not look (CGAL) is abandoned, as it is
-        // when nothing is at work, and on the second Ctrl-C.
+        // Cancelled work ends soon, and the command with it. Work that does not check for it (CGAL) is abandoned.
+        // If no work is running, and on the second Ctrl-C, the process ends at once.
         static AGAIN: AtomicBool = AtomicBool::new(false);
         if progress::cancel() && !AGAIN.swap(true, Ordering::Relaxed) {
             thread::spawn(|| {

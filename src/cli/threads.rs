@@ -1,11 +1,11 @@
-//! The threads that a command works with.
+//! The thread pool of a command.
 
 use crate::threads;
 
 use super::errors::command_error;
 use super::global::STACK;
 
-/// Starts the threads asked for, or as many as are right; fewer where not so many can be had.
+/// Starts the threads asked for, or the default number; fewer if the system allows no more.
 pub(super) fn start(asked: Option<u16>) -> anyhow::Result<()> {
     let asked = asked.map(usize::from);
     let (wanted, most) = (threads::wanted(asked), threads::most());
@@ -23,7 +23,7 @@ pub(super) fn start(asked: Option<u16>) -> anyhow::Result<()> {
         );
     }
     let pool = rayon::ThreadPoolBuilder::new().num_threads(count.max(1));
-    // Where no thread can be had, this one does the work.
+    // If no thread can be started, this one does the work.
     let pool = if count == 0 { pool.use_current_thread() } else { pool };
     pool.build_global().map_err(|error| {
         command_error!("threads cannot be started: {error}" => "give fewer with --threads").into()

@@ -131,7 +131,7 @@ impl View {
         Ok((details, Some(source)))
     }
 
-    /// The page of the shapes, and what is reported of each level of detail.
+    /// Makes the page of the shapes, and the summary of each level of detail.
     fn page(
         &self,
         details: &[Detail],
@@ -154,7 +154,7 @@ impl View {
         for detail in details {
             let opening = detail.opening(self.alpha);
             let alphas = match &self.alphas {
-                Alphas::TypedOptions(alphas) => {
+                Alphas::Given(alphas) => {
                     [&alphas[..], self.alpha.map(|_| opening).as_slice()].concat()
                 }
                 Alphas::Auto => progress.stage(Stage::Curve, || detail.stops(opening)),
@@ -166,7 +166,7 @@ impl View {
             }
             let domain = pipeline::domain(&detail.weighed, facts).volume;
             let ladder = progress.stage(Stage::Ladder, || levels.ladder(domain));
-            // That level, or the last below it.
+            // The level at this α, or the last below it.
             let first = levels.alphas().partition_point(|alpha| *alpha <= opening);
             shown.push((levels, ladder, first.saturating_sub(1)));
         }
@@ -194,7 +194,7 @@ impl View {
         Ok((page, rendered.iter().map(DetailSummary::of).collect()))
     }
 
-    /// Parts of the page besides the numbers of levels.
+    /// The facts that the page lists besides the numbers of levels.
     fn page_facts(
         &self,
         weighed: &Weighed,
@@ -227,13 +227,13 @@ impl View {
     }
 }
 
-/// Levels that `--alphas auto` chooses, suggested ones not counted.
+/// Number of levels that `--alphas auto` chooses, besides the suggested ones.
 const STOPS: usize = 28;
 
 pub(super) struct Detail {
     pub weighed: Weighed,
     pub filtration: Filtration,
-    /// How far F is from the volume, in the values that are written.
+    /// Difference of F from the volume, in the values that are written.
     pub differences: Option<Differences>,
 }
 
@@ -247,32 +247,33 @@ impl Detail {
         let differences = match source {
             Some(source) => {
                 let monitor = progress.monitor();
-                let found = || differences(&weighed, source, &filtration, &monitor);
-                progress.stage(Stage::Interpolate, found)?
+                let measure = || differences(&weighed, source, &filtration, &monitor);
+                progress.stage(Stage::Interpolate, measure)?
             }
             None => None,
         };
         Ok(Self { weighed, filtration, differences })
     }
 
-    /// The α that weights are meant for, or else the one found.
+    /// The α that the weights are computed for, or else that of `auto`.
     pub(super) fn reference(&self) -> Parameter {
-        self.weighed.parameter.unwrap_or_else(|| self.found())
+        self.weighed.parameter.unwrap_or_else(|| self.auto_alpha())
     }
 
     /// The α that the page opens at.
     pub(super) fn opening(&self, asked: Option<AlphaRule>) -> Alpha {
         let given = |rule: AlphaRule| {
-            rule.given(self.weighed.origin.coordinates.unit).unwrap_or_else(|| self.found())
+            rule.given(self.weighed.origin.coordinates.unit).unwrap_or_else(|| self.auto_alpha())
         };
         asked.map_or_else(|| self.reference(), given).alpha
     }
 
-    fn found(&self) -> Parameter {
+    /// The smallest α at which all points are in one solid component.
+    fn auto_alpha(&self) -> Parameter {
         Parameter::of_filtration(&self.filtration, self.weighed.origin.coordinates.unit)
     }
 
-    /// Levels that each show something, and something else than the one before: the one to open at,
+    /// Stops of the slider that each show something, and something other than the one before: the one to open at,
     /// suggested ones, and others between.
     pub(super) fn stops(&self, opening: Alpha) -> Vec<Alpha> {
         let curve = self.filtration.curve();
@@ -284,7 +285,7 @@ impl Detail {
     }
 }
 
-/// How far the interpolant, filled in, is from the volume; `None` where the points have no values.
+/// Difference of the interpolant, filled in, from the volume; `None` if the points have no values.
 fn differences(
     weighed: &Weighed,
     source: &Source,

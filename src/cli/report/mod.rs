@@ -21,7 +21,7 @@ use parts::ShapeReport;
 use parts::{EndedEarly, InputReport, PointsReport};
 pub(super) use parts::{HaarReport, MovedIntoBox, WeightsReport};
 
-/// Counted up when a field changes its meaning or goes; new fields may come at any time.
+/// Incremented when a field is removed or changes its meaning; new fields may be added at any time.
 pub(super) const SCHEMA_VERSION: u32 = 1;
 
 /// The stages whose times are printed, in the order of the work.
@@ -39,17 +39,17 @@ const STAGES: [&str; 11] = [
     "total",
 ];
 
-/// What `walpha shape` and `walpha points` did. A fact that is not known is null.
+/// The report of `walpha shape` and `walpha points`. Unknown facts are null.
 #[derive(Serialize)]
 pub(super) struct Report {
     schema_version: u32,
     input: InputReport,
-    /// Of points and all lengths: areas are in the square of this unit, volumes in its cube, α and
+    /// Coordinates of points, and the unit of all lengths: areas are in the square of this unit, volumes in its cube, α and
     /// weights in the square.
     coordinates: Coordinates,
     haar: Option<HaarReport>,
     points: PointsReport,
-    /// How values were fitted; null where they are those of samples.
+    /// How values were fitted; null if they are those of samples.
     fit: Option<Fit>,
     /// Null where no α was needed.
     alpha: Option<Parameter>,
@@ -105,7 +105,7 @@ impl Report {
         }
     }
 
-    /// Adds what the shape is.
+    /// Adds the shape.
     pub(super) fn add_model(&mut self, model: &Model) {
         let shape = &model.shape;
         self.alpha = Some(model.parameter);
@@ -164,7 +164,7 @@ impl Report {
         self.solid = Some(cuts);
     }
 
-    /// Adds what it cost and what it left.
+    /// Adds the times, the files written, and the peak memory.
     pub(super) fn finish(&mut self, seconds: Vec<(&'static str, f64)>, files: Vec<String>) {
         self.seconds = seconds.into_iter().collect();
         self.files = files;

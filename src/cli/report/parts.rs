@@ -36,12 +36,12 @@ pub(in crate::cli) struct HaarReport {
 pub(super) struct PointsReport {
     pub(super) selected: usize,
     pub(super) duplicates: Option<usize>,
-    /// Outside of the periodic box, and moved into it; absent without a box.
+    /// Points outside the periodic box that were moved into it; absent without a box.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) folded: Option<usize>,
     pub(super) hidden: Option<usize>,
     pub(super) in_shape: Option<usize>,
-    /// Adaptive selection needed fewer than asked for.
+    /// Set if adaptive selection needed fewer points than asked for.
     pub(super) ended_early: Option<EndedEarly>,
 }
 
@@ -49,7 +49,7 @@ pub(super) struct PointsReport {
 #[derive(Clone, Copy, Serialize)]
 pub(super) struct EndedEarly {
     pub(super) asked: u64,
-    /// The RMSE that was good enough; 0 where only a perfect interpolant is.
+    /// The RMSE that was good enough; 0 if only a perfect interpolant is.
     pub(super) rmse: f64,
     /// The bound on the largest error, if there was one.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -77,7 +77,7 @@ impl Display for EndedEarly {
 #[derive(Serialize)]
 pub(in crate::cli) struct WeightsReport {
     pub(super) kind: String,
-    /// Whether they are squares of radii, which the input has in place of weights.
+    /// Whether they are squares of radii, which the input has instead of weights.
     pub(super) of_radii: bool,
     pub(super) min: f64,
     pub(super) mean: f64,
@@ -87,7 +87,7 @@ pub(in crate::cli) struct WeightsReport {
 }
 
 impl WeightsReport {
-    /// The weights of some points.
+    /// Kind and range of the weights of points.
     pub(in crate::cli) fn of(weighed: &Weighed) -> Self {
         let WeightSummary { min, mean, max } = weighed.points.summary();
         let origin = weighed.origin;
@@ -155,7 +155,7 @@ impl Display for PointsReport {
     }
 }
 
-/// How many points were moved into a periodic box, to follow other counts; nothing where none was.
+/// The number of points moved into a periodic box, as text after other counts; empty if none were.
 pub(in crate::cli) struct MovedIntoBox(pub Option<usize>);
 
 impl Display for MovedIntoBox {
@@ -180,7 +180,7 @@ pub(super) struct ShapeReport {
     pub(super) volume: f64,
     pub(super) area: f64,
     pub(super) singular_area: f64,
-    /// The largest by volume, each with what its boundary shuts in.
+    /// The largest by volume, each with the voids that its boundary encloses.
     pub(super) components: Vec<Component>,
     /// Null unless the simplices outside the shape are kept.
     pub(super) voids: Option<Vec<Void>>,
@@ -191,7 +191,7 @@ pub(super) struct Cells {
     pub(super) interior: usize,
 }
 
-/// The simplices of a dimension in a line.
+/// The counts of the simplices of one dimension, as a line.
 pub(super) struct Line<'a>(&'a ByClass<usize>);
 
 impl Display for Line<'_> {
@@ -235,7 +235,7 @@ impl ShapeReport {
         }
     }
 
-    /// Prints what the shape is, lengths in `unit`.
+    /// Prints the numbers of the shape, with lengths in `unit`.
     pub(super) fn print(&self, f: &mut fmt::Formatter<'_>, unit: &str) -> fmt::Result {
         writeln!(f, "cells     {:>9} interior", self.cells.interior)?;
         writeln!(f, "facets    {}", Line(&self.facets))?;
@@ -272,7 +272,7 @@ impl ShapeReport {
     }
 }
 
-/// Components listed at most.
+/// Most components listed.
 const MAX_LISTED: usize = 20;
 
 fn largest(mut components: Vec<Component>) -> Vec<Component> {
