@@ -1,4 +1,4 @@
-//! How far two shapes or pictures are the same.
+//! How much two shapes or pictures differ.
 
 use std::collections::BTreeSet;
 
@@ -8,9 +8,9 @@ use crate::shape::{AlphaShape, Class, Complex, Simplices};
 /// Simplices that two shapes over the same points do not share.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Difference {
-    /// Cells of one only.
+    /// Cells in only one of them.
     pub cells: usize,
-    /// Facets on the boundary, regular or singular, of one only.
+    /// Boundary facets, regular or singular, in only one of them.
     pub boundary: usize,
 }
 
@@ -24,7 +24,7 @@ impl Difference {
     }
 }
 
-/// Rows of these classes that are in one list only. Rows ascend in both.
+/// Number of rows of these classes that are in only one of the lists. Both lists ascend.
 fn not_shared<const N: usize>(a: &Simplices<N>, b: &Simplices<N>, classes: &[Class]) -> usize {
     let rows = |list: &Simplices<N>| -> Vec<([u32; N], Class)> {
         let rows = list.iter().filter(|(_, class)| classes.contains(class));
@@ -42,17 +42,17 @@ fn not_shared<const N: usize>(a: &Simplices<N>, b: &Simplices<N>, classes: &[Cla
 /// of the boundary along its other diagonal. In each plane of the boundary the edges that its
 /// triangles share cancel, and what is left is the outline of the part of the plane that belongs
 /// to the boundary: equal outlines, equal sets. Exact for coordinates that are whole numbers below
-/// 10⁵. A point that splits an outline's edge in one shape only makes them differ, so "the same" is
-/// always true.
+/// 10⁵. A point that splits an edge of the outline in only one shape makes the outlines differ: `true` is
+/// always right, `false` may not be.
 pub(super) fn same_set(a: &AlphaShape, b: &AlphaShape) -> bool {
-    let alone = |shape: &AlphaShape| {
+    let singular = |shape: &AlphaShape| {
         let complex = shape.complex();
         let edges: Vec<[u32; 2]> = complex.edges.of(Class::Singular).copied().collect();
         let vertices: Vec<[u32; 1]> = complex.vertices.of(Class::Singular).copied().collect();
         (edges, vertices)
     };
     let both = [Class::Regular, Class::Singular];
-    both.iter().all(|&class| outlines(a, class) == outlines(b, class)) && alone(a) == alone(b)
+    both.iter().all(|&class| outlines(a, class) == outlines(b, class)) && singular(a) == singular(b)
 }
 
 /// A plane by its primitive normal and its offset along it.
@@ -93,12 +93,12 @@ fn gcd(a: i64, b: i64) -> i64 {
     if b == 0 { a } else { gcd(b, a % b) }
 }
 
-/// How far two pictures of one size differ.
+/// How much two pictures of one size differ.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct PixelDifference {
     /// Pixels that are not the same.
     pub pixels: usize,
-    /// The largest difference of a colour, of 255.
+    /// The largest difference in a colour channel, of 255.
     pub largest: u8,
 }
 

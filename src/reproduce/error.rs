@@ -10,11 +10,11 @@ use crate::points::PointsError;
 use crate::render::RenderError;
 use crate::shape::ShapeError;
 
-/// Why the paper cannot be made again on a volume.
+/// Why the paper cannot be reproduced on a volume.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ReproduceError {
-    /// The wavelet stage refused.
+    /// The wavelet stage failed.
     #[error(transparent)]
     Haar(HaarError),
     /// The volume yields no points.
@@ -26,7 +26,7 @@ pub enum ReproduceError {
     /// The points in the plane have no shape.
     #[error(transparent)]
     Plane(#[from] PlaneError),
-    /// A curvature that is none.
+    /// A number given as α that is not a curvature.
     #[error(transparent)]
     Curvature(#[from] NotACurvature),
     /// The points have no interpolant.
@@ -49,7 +49,7 @@ pub enum ReproduceError {
 wraps! { ReproduceError: Haar(HaarError), Shape(ShapeError), Interpolate(InterpolateError) }
 
 impl ReproduceError {
-    /// What to do about it, where there is something.
+    /// Advice on what to do, if there is any.
     pub fn advice(&self) -> Option<Advice> {
         match self {
             Self::Haar(error) => error.advice(),

@@ -9,7 +9,7 @@ use crate::shape::ByClass;
 
 const STYLE: &str = include_str!("page.css");
 
-/// `report.html`: what the report says, with the pictures among `files` inside. The same report
+/// `report.html`: the report as a page, with the pictures among `files` embedded. The same report
 /// and files give the same bytes; times are left out.
 pub fn page(report: &Report, files: &[File]) -> String {
     let mut html =
@@ -66,7 +66,7 @@ fn head(html: &mut String, report: &Report) {
     );
 }
 
-/// The conclusion.
+/// The conclusion, in plain words.
 fn in_plain_words(report: &Report) -> String {
     let verdict = |part: &str| {
         let mut findings = report.items.iter().flat_map(|item| &item.findings);

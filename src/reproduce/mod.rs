@@ -1,8 +1,7 @@
-//! The paper, made again: Table 1, Figures 1 to 11, and a report that says of each claim
-//! whether our numbers bear it out.
+//! Reproduction of the paper: Table 1, Figures 1 to 11, and a report on whether our numbers bear out
+//! each of its claims.
 //!
-//! Every verdict is a comparison of computed numbers; the paper's own numbers and words stand
-//! beside them. Nothing is tuned to agree.
+//! Every verdict is a comparison of computed numbers, shown next to the paper's own numbers and words. Nothing is tuned to agree.
 
 mod compare;
 mod error;
@@ -25,7 +24,7 @@ use walpha_base::Monitor;
 
 use study::{Clock, Shapes, Study};
 
-/// The report, and the files that belong beside it.
+/// The report, and the files that belong to it.
 #[derive(Clone, Debug)]
 pub struct Reproduction {
     /// Every number and verdict.
@@ -36,7 +35,7 @@ pub struct Reproduction {
 
 /// Makes the table and all figures, and judges the paper's claims.
 ///
-/// The monitor hears what is being worked at. Everything but [`Report::seconds`] is a function of
+/// Stages are reported to the monitor. Everything but [`Report::seconds`] is a function of
 /// the subject alone. Half a minute for 64³ samples on two cores; memory for one whole
 /// triangulation of the points and for the files.
 ///

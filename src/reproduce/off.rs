@@ -1,6 +1,6 @@
 use crate::render::{Colours, Mesh, Rgb, Scene, Shading};
 
-/// Triangles as an OFF file has them.
+/// The triangles of an OFF file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct OffMesh {
     /// Vertices, (x, y, z).
@@ -59,8 +59,8 @@ impl OffMesh {
         Ok(mesh)
     }
 
-    /// The facets to draw, each in its own plane, the colours of the file, and seen from both
-    /// sides, as Geomview shows them.
+    /// A scene of the facets as Geomview shows them: flat-shaded, in the colours of the file, and visible
+    /// from both sides.
     pub fn scene(&self) -> Scene {
         let mut colours: Vec<Rgb> = self.colours.clone();
         colours.sort_by_key(|colour| colour.0);

@@ -6,24 +6,24 @@ use crate::haar::Truncation;
 use crate::points::WeightSummary;
 use crate::shape::{Alpha, AlphaShape, Balls, Betti, ByClass, Void};
 
-/// Everything that was found, as `report.json` has it.
+/// All results, as in `report.json`.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
     /// Incremented when a field is removed or changes its meaning; new fields may be added at any time.
     pub schema_version: u32,
-    /// What is made again.
+    /// Title of the paper.
     pub paper: &'static str,
-    /// Who wrote it, and where it appeared, as far as it says.
+    /// What is known of the paper's origin.
     pub source: &'static str,
     /// The version of this program.
     pub version: &'static str,
     /// The day on which the report was made.
     pub date: String,
-    /// What it is made again on.
+    /// The volume that it is reproduced on.
     pub input: Input,
     /// Table and figures, in the paper's order.
     pub items: Vec<Item>,
-    /// How many claims have each verdict.
+    /// Number of claims with each verdict.
     pub verdicts: BTreeMap<Verdict, usize>,
     /// Seconds of each stage and in all: the only thing that differs between two runs.
     pub seconds: BTreeMap<&'static str, f64>,
@@ -63,7 +63,7 @@ pub struct Item {
     pub picture: Option<String>,
     /// Other files that belong to it.
     pub files: Vec<String>,
-    /// Command lines that make it again.
+    /// Command lines that reproduce it.
     pub commands: Vec<String>,
     /// Shapes measured for it.
     pub shapes: Vec<ShapeNumbers>,
@@ -125,7 +125,7 @@ impl Verdict {
     /// All verdicts.
     pub const ALL: [Self; 3] = [Self::Reproduced, Self::NotReproduced, Self::Undecided];
 
-    /// Its words.
+    /// The verdict in words.
     pub fn words(self) -> &'static str {
         match self {
             Self::Reproduced => "reproduced",
@@ -134,7 +134,7 @@ impl Verdict {
         }
     }
 
-    /// Reproduced if so, else not.
+    /// `Reproduced` if the claim holds, else `NotReproduced`.
     pub(super) fn of(holds: bool) -> Self {
         if holds { Self::Reproduced } else { Self::NotReproduced }
     }
@@ -191,7 +191,7 @@ pub struct ShapeNumbers {
     pub weights: WeightSummary,
     /// Points given.
     pub points: usize,
-    /// Points that went because another is at the same place.
+    /// Points dropped because another is at the same position.
     pub duplicates: usize,
     /// Points that are not vertices of the regular triangulation.
     pub hidden: usize,
@@ -223,7 +223,7 @@ pub struct ShapeNumbers {
 }
 
 impl ShapeNumbers {
-    /// Most voids listed.
+    /// The most voids that are listed.
     pub const VOIDS: usize = 10;
 
     /// Measures a shape that was made with its exterior simplices.
@@ -253,7 +253,7 @@ impl ShapeNumbers {
         }
     }
 
-    /// Tunnels and voids together: what one may call holes.
+    /// Tunnels and voids together, both of which may be called holes.
     pub(super) fn holes(&self) -> u64 {
         self.betti.b1 + self.betti.b2
     }

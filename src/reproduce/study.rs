@@ -92,7 +92,7 @@ impl<'a> Study<'a> {
         }
     }
 
-    /// The shape with these weights at this α, in its whole triangulation.
+    /// The shape with these weights at this α, with its exterior simplices.
     pub(super) fn shape(&self, variant: Variant) -> Result<Shaped, ReproduceError> {
         let Variant { weighting, alpha, balls } = variant;
         let alpha = Alpha::from_squared(alpha).expect("a variant's α is a number");
@@ -113,11 +113,11 @@ impl<'a> Study<'a> {
     }
 }
 
-/// How a shape is made of the points.
+/// How a shape is made from the points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Variant {
     weighting: Weighting,
-    /// Squared.
+    /// A squared length.
     alpha: f64,
     balls: Balls,
 }
@@ -144,7 +144,7 @@ impl Variant {
     }
 }
 
-/// A shape and what was measured of it.
+/// A shape and its numbers.
 pub(super) struct Shaped {
     pub shape: AlphaShape,
     pub numbers: ShapeNumbers,
@@ -172,8 +172,8 @@ pub(super) struct Shapes {
     pub ladder: Vec<Shaped>,
 }
 
-/// Values of α beside 10 and 20 that show how the shape grows: of the edge, the diagonals and
-/// some multiples of the voxel, and ∞.
+/// Values of α besides 10 and 20 that show how the shape grows: the squares of a voxel's edge and space
+/// diagonal, larger ones, and ∞.
 const LADDER: [f64; 5] = [1.0, 3.0, 50.0, 200.0, f64::INFINITY];
 
 impl Shapes {
@@ -225,7 +225,7 @@ impl Shapes {
     }
 }
 
-/// From where a head is seen whose face is turned to −y and whose crown to +z.
+/// The viewpoint on a head whose face is turned to −y and whose crown to +z.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Eye {
     /// From the front and a little to its left: the portrait.
@@ -246,7 +246,7 @@ pub(super) struct Cameras {
 
 /// Pixels of a panel with a shape, two in a row.
 pub(super) fn panel_size() -> Size {
-    Size::new(900, 960).expect("a size that is right")
+    Size::new(900, 960).expect("a valid size")
 }
 
 impl Cameras {
@@ -301,7 +301,7 @@ impl Cameras {
     }
 }
 
-/// A picture with words around it.
+/// A panel of a picture, with a title and captions.
 pub(super) fn panel(title: impl Into<String>, picture: Picture, captions: Vec<String>) -> Panel {
     Panel { title: title.into(), content: Content::Picture(picture), captions }
 }

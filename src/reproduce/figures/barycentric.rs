@@ -4,7 +4,7 @@ use crate::reproduce::compare::{Difference, same_set};
 use crate::reproduce::study::{ALPHA, Shapes};
 use crate::reproduce::{Fact, Item, ReproduceError, ShapeNumbers, Verdict, text};
 
-/// The shapes of barycentric weights beside that of none.
+/// The shapes with barycentric weights, and the one without weights.
 struct Evidence {
     /// ω = 0.
     plain: ShapeNumbers,
@@ -12,11 +12,11 @@ struct Evidence {
     literal: ShapeNumbers,
     /// N times that.
     scaled: ShapeNumbers,
-    /// Of the weights as printed.
+    /// Sum of the weights as printed.
     sum: f64,
-    /// From ω = 0, as printed.
+    /// Difference from ω = 0, with the weights as printed.
     apart: Difference,
-    /// From ω = 0, N times.
+    /// Difference from ω = 0, with N times these weights.
     scaled_apart: Difference,
     /// Whether ω = 0 and the weights as printed give the same set of points in space.
     same: bool,

@@ -31,13 +31,13 @@ impl<'a> Bench<'a> {
         Self { study, shapes, monitor, files: Vec::new(), views: BTreeMap::new() }
     }
 
-    /// Adds a file; gives its name.
+    /// Adds a file; returns its name.
     pub(super) fn file(&mut self, name: &str, bytes: Vec<u8>) -> String {
         self.files.push(File { name: name.to_owned(), bytes });
         name.to_owned()
     }
 
-    /// The boundary of a shape as a PLY file; gives its name.
+    /// Adds the boundary of a shape as a PLY file; returns its name.
     pub(super) fn mesh(&mut self, name: &str, shaped: &Shaped) -> Result<String, ReproduceError> {
         let mut bytes = Vec::new();
         Ply::default().write(&shaped.shape, &mut bytes)?;
@@ -71,12 +71,12 @@ impl<'a> Bench<'a> {
         Ok(vec![front, panel(VIEWS[1], side, Vec::new())])
     }
 
-    /// The command line that makes everything again.
+    /// The command line that reproduces everything.
     pub(super) fn reproduce_command(&self) -> String {
         format!("walpha reproduce --input {}", text::shell(self.study.subject.name))
     }
 
-    /// The command line that draws a shape as our figure does, words left out.
+    /// The command line that draws a shape as our figure does, without titles and captions.
     pub(super) fn drawing_command(&self, shaped: &Shaped, file: &str) -> String {
         format!("{} {} -o {file}", shaped.numbers.command, self.study.cameras.options())
     }
@@ -115,7 +115,7 @@ pub(super) fn captions(shaped: &Shaped) -> Vec<String> {
     ]
 }
 
-/// A claim of the paper, and how what was measured decides it.
+/// A claim of the paper, and how the measurements decide it.
 pub(super) struct Claim<Evidence> {
     /// The claim.
     pub text: &'static str,

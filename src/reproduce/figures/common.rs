@@ -4,10 +4,10 @@ use crate::reproduce::study::{ALPHA, COMMON, Shapes};
 use crate::reproduce::{Item, ReproduceError, ShapeNumbers, Verdict, text};
 use crate::shape::Complex;
 
-/// The α without weights that a common factor comes to.
+/// The α at which the shape without weights equals the one with the common factor.
 const SHIFTED: f64 = ALPHA + COMMON;
 
-/// The shape with the common factor beside two without weights.
+/// The shape with the common factor, and two without weights.
 struct Evidence {
     /// ω = 10 at α = 10.
     common: ShapeNumbers,
@@ -15,7 +15,7 @@ struct Evidence {
     plain: ShapeNumbers,
     /// Simplices of ω = 10 at α = 10 and of ω = 0 at α = 20, exterior ones included.
     simplices: [usize; 2],
-    /// Whether these two are the same, classes too.
+    /// Whether these two are the same, classes included.
     same: bool,
 }
 

@@ -5,7 +5,7 @@ use crate::reproduce::study::ALPHA;
 use crate::reproduce::study::Eye;
 use crate::reproduce::{Fact, Item, ReproduceError, ShapeNumbers, Table, Verdict, text};
 
-/// Four shapes, and how far the paper's two differ: without weights, left, and with barycentric
+/// Four shapes, and how much the paper's two differ: without weights, left, and with barycentric
 /// ones, right.
 struct Evidence {
     /// ω = 0.
@@ -18,18 +18,18 @@ struct Evidence {
     min_max: ShapeNumbers,
     /// ω = 0 at α plus the mean of these weights: for `scaled`, and for `min_max`.
     raised: [ShapeNumbers; 2],
-    /// Simplices of left or right only.
+    /// Simplices of only the left or only the right shape.
     apart: Difference,
     /// Whether left and right are the same set of points in space.
     same: bool,
-    /// How far their pictures differ.
+    /// How much their pictures differ.
     pixels: PixelDifference,
-    /// Pixels of each.
+    /// Number of pixels of each picture.
     all_pixels: usize,
 }
 
-/// A weighted shape and the one without weights at α plus the mean weight, which weights must be
-/// better than.
+/// A weighted shape, and the one without weights at α plus the mean weight, on which the weights must
+/// improve.
 #[derive(Clone, Copy)]
 struct Trial<'a> {
     weighted: &'a ShapeNumbers,
@@ -140,7 +140,7 @@ const CLAIMS: [Claim<Evidence>; 3] = [
     },
 ];
 
-/// Figure 10: without weights and with barycentric ones; what would change the picture beside.
+/// Figure 10: without weights and with barycentric ones; below, weights that do change the shape.
 pub(super) fn figure_10(bench: &mut Bench<'_>) -> Result<Item, ReproduceError> {
     let shapes = bench.shapes;
     let shown = [&shapes.plain, &shapes.barycentric, &shapes.barycentric_n, &shapes.min_max];

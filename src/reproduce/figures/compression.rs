@@ -1,5 +1,5 @@
-//! What compressors of volumes make of the skull: constants, because they are not part of this program; and
-//! what our own slowest choice of points makes of it, which takes longer than the report may.
+//! Error against bits per sample on the skull: of compressors of volumes, as constants, because they are not part
+//! of this program, and of our own slowest choice of points, which takes too long for the report.
 //!
 //! `benches/race_compressors.py sample:skull` measures all of them again.
 
@@ -19,16 +19,16 @@ use crate::reproduce::{Fact, Item, ReproduceError, Table, text};
 use crate::shape::{Alpha, ShapeOptions, alpha_shape};
 use crate::volume::{Coordinates, Volume};
 
-/// Points of the largest model, of all samples.
+/// Points of the largest model, as a share of all samples.
 const MOST: f64 = 0.08;
 
 /// The largest error of a stored value, over the RMSE of the model without rounding.
 const ROUNDING: f64 = 1.5;
 
-/// The name of our curves, with what they need besides.
+/// The name of our curves, or what it begins with.
 const OURS: &str = "walpha .wvm";
 
-/// A model as a file.
+/// A model, measured as a file.
 struct Measured {
     points: usize,
     bytes: usize,
@@ -42,7 +42,7 @@ impl Measured {
     }
 }
 
-/// What the paper does not measure: how few bytes stand for the volume, beside compressors of volumes.
+/// What the paper does not measure: how few bytes represent the volume, compared with compressors of volumes.
 pub(super) fn bytes_against_error(bench: &mut Bench<'_>) -> Result<Item, ReproduceError> {
     let subject = bench.study.subject;
     let measured = models(subject.volume, &bench.monitor)?;
@@ -76,14 +76,14 @@ pub(super) fn bytes_against_error(bench: &mut Bench<'_>) -> Result<Item, Reprodu
             bench.study.command("points")
         )],
         facts: measured.iter().map(fact).collect(),
-        tables: vec![own(&measured, subject.volume), beside(&curves)],
+        tables: vec![model_table(&measured, subject.volume), curve_table(&curves)],
         ..Item::default()
     })
 }
 
 fn remark(others: &[Compressor]) -> String {
-    let beside = if others.is_empty() {
-        "Figures of compressors are known of sample:skull only.".to_owned()
+    let compared = if others.is_empty() {
+        "Compressors were measured on sample:skull only.".to_owned()
     } else {
         format!(
             "Curves of compressors, and that of points exchanged and fitted (--exchange --refit), which take \
@@ -94,7 +94,7 @@ fn remark(others: &[Compressor]) -> String {
     format!(
         "Points chosen where the interpolant is worst, ω = 0, written as .wvm and read back, the whole \
          file counted; F is taken over the whole volume. Values are rounded to {ROUNDING} of the RMSE at \
-         most. {beside}"
+         most. {compared}"
     )
 }
 
@@ -154,7 +154,7 @@ fn points_at(volume: &Volume, voxels: &[u32]) -> WeightedPoints {
     }
 }
 
-/// How far F on the whole triangulation is from the volume.
+/// The error of F on the whole triangulation.
 fn deviation(volume: &Volume, points: WeightedPoints) -> Result<Deviation, ReproduceError> {
     let options = ShapeOptions::new(Alpha::INFINITE).refuse_flat(true);
     let shape = alpha_shape(points, &options).map_err(InterpolateError::from)?;
@@ -162,7 +162,7 @@ fn deviation(volume: &Volume, points: WeightedPoints) -> Result<Deviation, Repro
     Ok(Deviation::of(volume, &resampled))
 }
 
-/// The bytes of a file, and the points that it gives back.
+/// Writes points to a file and reads them back: the size of the file in bytes, and the points read.
 fn through_file(
     volume: &Volume,
     points: &WeightedPoints,
@@ -182,7 +182,7 @@ fn through_file(
     Ok((bytes.len(), WeightedPoints { positions: read.positions, weights, values: read.values }))
 }
 
-fn own(measured: &[Measured], volume: &Volume) -> Table {
+fn model_table(measured: &[Measured], volume: &Volume) -> Table {
     let head = ["points", "bytes", "bits per sample", "RMSE", "PSNR (dB)", "largest error"];
     let row = |model: &Measured| {
         vec![
@@ -201,8 +201,8 @@ fn own(measured: &[Measured], volume: &Volume) -> Table {
     }
 }
 
-/// Bits per sample at some errors, and PSNR at some rates, of everybody.
-fn beside(curves: &[RateCurve]) -> Table {
+/// Bits per sample at some errors, and PSNR at some rates, of all curves.
+fn curve_table(curves: &[RateCurve]) -> Table {
     let head = ["", "bits at RMSE 1", "at 2", "at 4", "PSNR at ¼ bit", "at ½", "at 1"];
     let cell = |value: Option<f64>| value.map_or_else(|| "–".into(), text::number);
     let row = |curve: &RateCurve| {
@@ -224,7 +224,7 @@ fn beside(curves: &[RateCurve]) -> Table {
     }
 }
 
-/// y at x, straight between the logarithms of points; `None` beyond them.
+/// y at x, interpolated linearly between the logarithms of points; `None` beyond them.
 fn read_off(curve: &[[f64; 2]], x: f64) -> Option<f64> {
     let mut sorted = curve.to_vec();
     sorted.sort_by(|a, b| a[0].total_cmp(&b[0]));
@@ -239,7 +239,7 @@ fn read_off(curve: &[[f64; 2]], x: f64) -> Option<f64> {
 /// The day of the measurement.
 pub(super) const DATE: &str = "2026-11-22";
 
-/// What a compressor makes of `sample:skull`, of gray levels 0..255 as `f32`.
+/// The curve of a compressor on `sample:skull`, as gray levels 0..255 in `f32`.
 pub(super) struct Compressor {
     /// Its name.
     pub name: &'static str,
@@ -247,7 +247,7 @@ pub(super) struct Compressor {
     pub curve: &'static [[f64; 2]],
 }
 
-/// Those raced; of two builds of one the better.
+/// The compressors measured; of two builds of one, the better.
 pub(super) const SKULL: [Compressor; 6] = [
     Compressor {
         name: "walpha .wvm, exchanged and fitted",

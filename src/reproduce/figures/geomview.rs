@@ -13,7 +13,7 @@ use crate::shape::{Betti, Surface};
 struct Evidence {
     /// Left and right.
     sides: [Side; 2],
-    /// How far their pictures differ.
+    /// How much their pictures differ.
     pixels: PixelDifference,
     /// Whether they are the same set of points in space.
     same: bool,
@@ -34,7 +34,7 @@ impl Evidence {
         })
     }
 
-    /// Whether both files say just what the shapes' surfaces are.
+    /// Whether both files hold exactly the surfaces of the shapes.
     fn agrees(&self) -> bool {
         self.sides.iter().all(|side| side.agrees)
     }
@@ -133,7 +133,7 @@ struct Side {
     file: String,
     mesh: OffMesh,
     picture: Picture,
-    /// Whether the file says just what the shape's surface is.
+    /// Whether the file holds exactly the surface of the shape.
     agrees: bool,
 }
 
@@ -155,6 +155,7 @@ impl Side {
         let picture = bench.study.cameras.render(&mesh.scene(), Eye::Portrait)?;
         Ok(Self { title, file: bench.file(name, bytes), mesh, picture, agrees })
     }
+
     fn panel(&self) -> Panel {
         let Self { file, mesh, .. } = self;
         let (vertices, facets) = (mesh.positions.len(), mesh.facets.len());

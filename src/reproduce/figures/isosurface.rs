@@ -11,23 +11,23 @@ use crate::volume::Volume;
 const THRESHOLD: f64 = 50.0;
 /// The data reduction rate the paper prints, in percent.
 const PRINTED_PERCENT: &str = "6.07";
-/// What its own numbers make of it.
+/// The rate that follows from its own numbers.
 const COMPUTED_PERCENT: f64 = 100.0 * PAPER_POINTS as f64 / PAPER_SAMPLES as f64;
 
-/// What the isosurface and the shape are made of.
+/// What the isosurface and the shape are made from.
 struct Evidence {
     samples: usize,
-    /// That marching cubes reads.
+    /// Samples that marching cubes reads.
     read: usize,
-    /// Of these, those beside the surface.
+    /// Of these, those next to the surface.
     beside: usize,
     vertices: usize,
     triangles: usize,
-    /// In squared voxels.
+    /// Area of the isosurface in squared voxels.
     area: f64,
     points: usize,
     points_in_shape: usize,
-    /// What the threshold may be held against, and how many samples each leaves.
+    /// Quantities that the threshold may be meant for, and how many samples each leaves.
     readings: [(&'static str, usize); 5],
 }
 
@@ -52,7 +52,7 @@ impl Evidence {
         100.0 * samples as f64 / self.samples as f64
     }
 
-    /// Whether one reading of the threshold leaves as much as the paper says.
+    /// Whether one reading of the threshold leaves as many samples as the paper says.
     fn is_as_printed(&self) -> bool {
         let paper: f64 = PRINTED_PERCENT.parse().expect("a number");
         let near =
@@ -170,7 +170,7 @@ fn draw(
     Ok(Figure { legend: Vec::new(), ..figure(&title, panels) })
 }
 
-/// What a threshold of 50 may be held against, and how many samples each leaves.
+/// Quantities that a threshold of 50 may be meant for, and how many samples each leaves.
 fn readings(study: &Study<'_>) -> [(&'static str, usize); 5] {
     let least = THRESHOLD;
     let differences = difference(&study.smoothed);

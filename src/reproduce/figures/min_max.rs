@@ -10,7 +10,7 @@ struct Evidence {
     power: ShapeNumbers,
     /// Radius α + ω.
     radius: ShapeNumbers,
-    /// Simplices of one reading only.
+    /// Simplices of only one reading.
     apart: Difference,
 }
 

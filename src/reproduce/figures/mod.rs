@@ -18,10 +18,10 @@ mod unweighted;
 use super::{Item, ReproduceError};
 pub(in crate::reproduce) use bench::Bench;
 
-/// Makes one item, and leaves its files with the bench.
+/// Makes one item, and adds its files to the bench.
 type Make = fn(&mut Bench<'_>) -> Result<Item, ReproduceError>;
 
-/// All there is, in the paper's order, and what we add.
+/// All items in the paper's order, and our extensions.
 pub(super) const ALL: [(&str, Make); 14] = [
     ("Table 1", table::table_1),
     ("Figure 1", points::figure_1),

@@ -37,11 +37,11 @@ const GROWS: Claim<Growth> = Claim {
     },
 };
 
-/// Where positive α end.
+/// The limit of positive α.
 struct Limit {
     /// ρ, the radius of the smallest enclosing circle.
     enclosing: f64,
-    /// 0.1 % below 1/ρ, and as much above.
+    /// The shapes 0.1 % below 1/ρ, and as much above.
     around: [Rung; 2],
 }
 

@@ -13,7 +13,7 @@ use crate::shape::{Alpha, Class};
 /// The α of Figure 4, a squared length.
 const DISCS: f64 = 1.0;
 
-/// The dual complex beside the union of the discs.
+/// Measurements of the dual complex, and of the union of the discs.
 struct Evidence {
     discs: usize,
     hidden: usize,
@@ -26,7 +26,7 @@ struct Evidence {
     parts: f64,
     /// The area within the outline of the union.
     union: f64,
-    /// Closed curves of that outline.
+    /// Number of closed curves in that outline.
     rings: usize,
 }
 

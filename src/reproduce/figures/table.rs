@@ -7,14 +7,14 @@ use crate::reproduce::{Item, ReproduceError, Table, Verdict, text};
 /// The paper's row of gray levels.
 const ROW: [f64; 4] = [9.0, 7.0, 3.0, 5.0];
 
-/// Its coefficients, and what comes of it without some.
+/// The coefficients of the row, and the row restored without some of them.
 struct Evidence {
     whole: Unnormalised,
     /// Without the detail −1.
     one: Vec<f64>,
     /// Without both details of the first level.
     both: Vec<f64>,
-    /// Of the latter.
+    /// Weights of the row without both.
     weights: Vec<f64>,
 }
 
@@ -83,7 +83,7 @@ const CLAIMS: [Claim<Evidence>; 4] = [
     },
 ];
 
-/// Whether what is computed is what is printed.
+/// Whether the computed numbers are those printed in the paper.
 fn agree(pairs: &[(&[f64], &[f64])]) -> (Verdict, String) {
     let reason = |(computed, printed): &(&[f64], &[f64])| {
         format!("computed {}, printed {}", list(computed), list(printed))
@@ -93,7 +93,7 @@ fn agree(pairs: &[(&[f64], &[f64])]) -> (Verdict, String) {
 }
 
 /// Table 1: the Haar coefficients of a row, what remains when details go, and its weights.
-#[expect(clippy::unnecessary_wraps, reason = "a figure as any other")]
+#[expect(clippy::unnecessary_wraps, reason = "all items have this signature")]
 pub(super) fn table_1(_: &mut Bench<'_>) -> Result<Item, ReproduceError> {
     let evidence = Evidence::new();
     Ok(Item {

@@ -1,4 +1,4 @@
-//! Whether a surface is the convex hull, from its definition alone.
+//! Figure 6: the shape without weights, and whether at α = ∞ its boundary is the convex hull, by definition.
 
 use walpha_base::vector::{cross, dot, sub};
 
@@ -30,7 +30,7 @@ impl Evidence {
         &self.ladder[self.ladder.len() - 1]
     }
 
-    /// The one of most voids.
+    /// The shape with the most voids.
     fn hollow(&self) -> &ShapeNumbers {
         self.ladder.iter().max_by_key(|n| n.betti.b2).expect("a ladder has steps")
     }
@@ -146,7 +146,7 @@ pub(super) struct Hull {
 }
 
 impl Hull {
-    /// Judges the regular facets of a shape. Each point is held against each plane; signs are
+    /// Judges the regular facets of a shape. Each point is tested against each plane; signs are
     /// exact for coordinates that are whole numbers below 10⁵, as those of voxels are.
     pub(super) fn of(shape: &AlphaShape) -> Self {
         let positions = &shape.points().positions;

@@ -18,18 +18,18 @@ use walpha_base::UnionFind;
 /// Contacts of all generalised discs for one α ≠ 0, or of half-planes; by site, sorted.
 #[derive(Default)]
 pub(super) struct Contacts {
-    /// Pairs that one disc touches both.
+    /// Pairs of points that one disc touches.
     pub(super) edges: Vec<[u32; 2]>,
     /// Triangles that no touching disc cuts off.
     pub(super) inside: Vec<[u32; 3]>,
-    /// Ways counter-clockwise around a touching disc from one of its points to the next, where the
-    /// outline of the α-hull may run: those up to half the circle. At a longer way the disc has
-    /// room to move, and other discs reach beyond it (α < 0) or stay behind it (α > 0). For
-    /// half-planes, the ways along the lines, all points on the left.
+    /// Arcs counter-clockwise around a touching disc from one of its points to the next, where the
+    /// outline of the α-hull may run: those of at most half the circle. On a longer arc the disc can
+    /// still move, and other discs reach beyond it (α < 0) or stay behind it (α > 0). For
+    /// half-planes, the segments along their boundaries, all points on the left.
     pub(super) arcs: Vec<[u32; 2]>,
 }
 
-/// Which of the two Voronoi diagrams.
+/// One of the two Voronoi diagrams.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Diagram {
     /// α < 0: no point strictly inside the circle.
@@ -86,7 +86,7 @@ pub(super) fn of_discs(mesh: &Mesh, exact: &Exact, curve: &Curve, diagram: Diagr
     }
     on_circles(mesh, &radii, circles).iter().for_each(|points| edges.extend(pairs(points)));
     if diagram == Diagram::Closest {
-        // Two empty discs on both sides of pq cover each other's way from p to q.
+        // Two empty discs on both sides of pq cover each other's arc from p to q.
         let both = arcs.clone();
         arcs.retain(|&[p, q]| !both.contains(&[q, p]));
     }

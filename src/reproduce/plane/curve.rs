@@ -2,28 +2,28 @@
 
 use std::f64::consts::TAU;
 
-/// A piece of a drawn line, from start to end.
+/// A piece of an outline, from start to end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum OutlinePiece {
     /// Part of a circle.
     Arc(Arc),
-    /// Straight, from the first to the second place.
+    /// A segment, from the first to the second point.
     Segment([[f64; 2]; 2]),
 }
 
-/// Part of a circle, walked from start to end; if these are the same place, all of it. Rounded.
+/// Part of a circle, from start to end; the whole circle if these are equal. Coordinates are rounded.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Arc {
     /// Centre (x, y).
     pub centre: [f64; 2],
     /// Radius, a length.
     pub radius: f64,
-    /// Where the walk begins.
+    /// Start (x, y).
     pub start: [f64; 2],
-    /// Where it ends.
+    /// End (x, y).
     pub end: [f64; 2],
-    /// Whether the walk goes counter-clockwise (x to the right, y upwards), so that the centre is
-    /// on its left.
+    /// Whether the arc runs counter-clockwise (x to the right, y upwards), so that the centre is on its
+    /// left.
     pub counter_clockwise: bool,
 }
 
@@ -44,7 +44,7 @@ impl Arc {
         angle(self.centre, self.start)
     }
 
-    /// The angle walked, in radians: positive counter-clockwise, at most 2π in magnitude.
+    /// The angle from start to end, in radians: positive counter-clockwise, at most 2π in magnitude.
     pub fn sweep(&self) -> f64 {
         let (from, to) =
             if self.counter_clockwise { (self.start, self.end) } else { (self.end, self.start) };
@@ -55,14 +55,14 @@ impl Arc {
         if self.counter_clockwise { angle } else { -angle }
     }
 
-    /// The place reached after a share, 0 to 1, of the walk.
+    /// The point at a share, 0 to 1, of the arc from its start.
     pub fn at(&self, share: f64) -> [f64; 2] {
         at(self.centre, self.radius, self.start_angle() + share * self.sweep())
     }
 }
 
 impl OutlinePiece {
-    /// Where the piece begins and ends.
+    /// Start and end.
     pub fn ends(&self) -> [[f64; 2]; 2] {
         match *self {
             Self::Arc(Arc { start, end, .. }) => [start, end],
@@ -70,7 +70,7 @@ impl OutlinePiece {
         }
     }
 
-    /// The place halfway.
+    /// The point halfway along the piece.
     pub fn middle(&self) -> [f64; 2] {
         match self {
             Self::Arc(arc) => arc.at(0.5),
@@ -79,17 +79,17 @@ impl OutlinePiece {
     }
 }
 
-/// The place on a circle at an angle.
+/// The point on a circle at an angle.
 pub(super) fn at(centre: [f64; 2], radius: f64, angle: f64) -> [f64; 2] {
     [centre[0] + radius * angle.cos(), centre[1] + radius * angle.sin()]
 }
 
-/// The direction from one place to another, in radians.
+/// The direction from one point to another, in radians.
 pub(super) fn angle(from: [f64; 2], to: [f64; 2]) -> f64 {
     (to[1] - from[1]).atan2(to[0] - from[0])
 }
 
-/// The distance of two places.
+/// The distance of two points.
 pub(super) fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
     (b[0] - a[0]).hypot(b[1] - a[1])
 }
@@ -106,7 +106,7 @@ pub(in crate::reproduce) fn area(pieces: &[OutlinePiece]) -> f64 {
     double.sum::<f64>() / 2.0
 }
 
-/// How many closed curves the pieces make, each beginning where another ends, up to rounding.
+/// Number of closed curves that the pieces form, each beginning where another ends, up to rounding. O(n²).
 pub(in crate::reproduce) fn loops(pieces: &[OutlinePiece]) -> usize {
     let follows = |piece: &OutlinePiece, next: &OutlinePiece| {
         let ([_, end], [start, _]) = (piece.ends(), next.ends());

@@ -11,14 +11,14 @@ use super::mesh::Mesh;
 /// The generalised disc of radius 1/α is a disc of that radius for α > 0, a half-plane for α = 0,
 /// and the complement of an open disc of radius −1/α for α < 0; it always contains its boundary.
 /// As α grows from −∞ the shape goes from single points by way of the convex hull (α = 0) to the
-/// points that hold the smallest enclosing circle.
+/// points that determine the smallest enclosing circle.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
 pub struct Curvature(f64);
 
 impl Curvature {
     /// Straight: half-planes, the convex hull.
     pub const ZERO: Self = Self(0.0);
-    /// The least and the greatest magnitude but 0, 2^∓1000: beyond these, lengths near the radius
+    /// The least and the greatest magnitude of an α that is not 0, 2^∓1000: beyond these, lengths near the radius
     /// are not doubles.
     pub const MAGNITUDE: [f64; 2] =
         [f64::from_bits((1023 - 1000) << 52), f64::from_bits((1023 + 1000) << 52)];
@@ -100,7 +100,7 @@ pub struct NoDisc {
     pub radius: f64,
     /// ρ, a length, rounded.
     pub enclosing: f64,
-    /// Different places among the input.
+    /// Number of distinct positions in the input.
     pub points: usize,
 }
 
@@ -110,14 +110,14 @@ pub struct NoDisc {
 /// For α < 0 it is found in the closest-point Delaunay triangulation, where −1/α is the radius
 /// that CGAL's `Alpha_shape_2` knows as the square root of *its* α; for α > 0 in the
 /// farthest-point one. α beyond 1/ρ, with ρ the radius of the smallest enclosing circle, gives an
-/// empty shape, which says so: [`EksShape::no_disc`]. Every decision is exact, α and the
-/// coordinates being taken as the numbers they are, to the last bit.
+/// empty shape, and [`EksShape::no_disc`] says why. Every decision is exact for α and the coordinates as
+/// the doubles that they are.
 ///
 /// Expected O(n log n), unless many points lie on one touching circle or line: all their pairs
 /// are edges.
 ///
 /// # Errors
-/// No point; NaN, infinities or absurd magnitudes.
+/// No point; NaN, infinities or magnitudes out of range.
 pub fn eks_shape(points: &[[f64; 2]], alpha: Curvature) -> Result<EksShape, PlaneError> {
     let unweighted = vec![0.0; points.len()];
     let sites = Sites::in_plane(points, &unweighted)?;
@@ -152,9 +152,9 @@ pub fn eks_shape(points: &[[f64; 2]], alpha: Curvature) -> Result<EksShape, Plan
     })
 }
 
-/// Points that some disc has on its boundary: those at an edge, and those that a disc can roll
-/// around without touching another point. The latter has either a point alone, or, for α < 0, one
-/// whose whole Voronoi cell is not within reach of the disc, as it is in a triangle of the inside.
+/// Points on the boundary of some disc: ends of edges, and points that a disc can roll around without
+/// touching another. The latter are a point on its own or, for α < 0, points whose Voronoi cell is not
+/// within one radius of them, as it is at the vertices of inside triangles.
 fn extreme(mesh: &Mesh, contacts: &Contacts, alpha: f64) -> Vec<u32> {
     let end = mesh.vertices.last().map_or(0, |&last| last as usize + 1);
     let (mut at_edge, mut inside) = (vec![false; end], vec![false; end]);
@@ -192,8 +192,8 @@ impl EksShape {
         self.alpha
     }
 
-    /// α-neighbours: pairs that one generalised disc has both on its boundary while it contains
-    /// all points. Each pair ascends, rows are sorted.
+    /// α-neighbours: pairs of points on the boundary of one generalised disc that contains all
+    /// points. Each pair ascends, rows are sorted.
     ///
     /// This is the definition to the letter. Where one disc touches more than two points, at a
     /// critical α or along a side of the convex hull (α = 0), *all* their pairs are neighbours;
@@ -208,7 +208,7 @@ impl EksShape {
         &self.extreme
     }
 
-    /// Triangles of the inside, counter-clockwise from the smallest index, sorted; what one shades.
+    /// Triangles of the inside, counter-clockwise from the smallest index, sorted: the part to shade.
     /// For α ≤ 0 Delaunay triangles with a circumradius *below* −1/α: at −1/α exactly the disc
     /// around the triangle is empty, and takes it away, while CGAL's α-complex, which is closed,
     /// keeps it. For α > 0 farthest-point triangles with a circumradius of at most 1/α.
@@ -216,7 +216,7 @@ impl EksShape {
         &self.triangles
     }
 
-    /// Pairs of input indices: a point that went, and the one at the same place that stayed.
+    /// Pairs of input indices: a point that was dropped, and the one kept at the same position.
     pub fn duplicates(&self) -> &[[u32; 2]] {
         &self.duplicates
     }

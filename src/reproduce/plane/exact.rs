@@ -1,4 +1,4 @@
-//! Exact geometry of the plane: every number an integer multiple of one power of two.
+//! Exact geometry in the plane: every number is an integer multiple of one power of two.
 
 use std::cmp::Ordering;
 
@@ -35,7 +35,7 @@ impl Exact {
         Self::scaled(positions, &[], 0.0, exponent.unwrap_or(0))
     }
 
-    /// With power weights and an α of their unit.
+    /// With power weights, and α in the same unit.
     pub(super) fn weighted(positions: &[[f64; 2]], weights: &[f64], alpha: f64) -> Self {
         let lengths = positions.as_flattened().iter().filter_map(|&v| lowest_bit(v));
         let squares = weights.iter().chain([&alpha]).filter_map(|&v| lowest_bit(v));
@@ -98,7 +98,7 @@ impl Exact {
         Square { numerator: a * b * c, denominator: 4 * (&t * &t) }
     }
 
-    /// The length that a square is of, rounded at its last digits only.
+    /// The length with this square, rounded only in its last digits.
     pub(super) fn length(&self, Square { numerator, denominator }: &Square) -> f64 {
         if *numerator == IBig::ZERO {
             return 0.0;

@@ -10,13 +10,13 @@ use super::curve::{Arc, OutlinePiece, angle, at, distance};
 pub struct AlphaHull {
     /// Pieces with the hull on their left; each is an arc of radius 1/|α|, bulging out of the hull
     /// (counter-clockwise) for α > 0 and into it for α < 0, or straight for α = 0. For α > 0 they
-    /// follow each other around the hull. When the hull at α = 0 is but a line, it is walked once.
+    /// follow each other around the hull. If the hull at α = 0 is only a segment, it is listed once.
     pub outline: Vec<OutlinePiece>,
-    /// Input indices of points that are parts of the hull by themselves, ascending.
+    /// Input indices of points that are parts of the hull on their own, ascending.
     pub points: Vec<u32>,
 }
 
-/// Numbers this close, as a share of the radius, count as one in the search for pieces.
+/// Numbers this close, as a share of the radius, count as equal in the search for pieces.
 const TOLERANCE: f64 = 1e-9;
 
 impl EksShape {
@@ -71,7 +71,7 @@ impl EksShape {
         Arc { centre, radius, start, end, counter_clockwise: true }
     }
 
-    /// What of the arcs of empty discs no other empty disc covers.
+    /// The parts of the arcs of empty discs that no other empty disc covers.
     fn uncovered(&self) -> Vec<Arc> {
         let arcs: Vec<Arc> = self.arcs.iter().map(|&way| self.arc(way)).collect();
         let cover = Cover {
@@ -106,14 +106,14 @@ struct Cover<'a> {
 }
 
 impl Cover<'_> {
-    /// The parts of an arc that are not covered, walked the other way: the discs are outside.
+    /// The parts of an arc that are not covered, in the opposite direction: the discs are outside.
     fn cut(&self, arc: &Arc) -> Vec<Arc> {
         let mut shares = vec![0.0, 1.0];
         shares.extend(self.centres.iter().flat_map(|&centre| self.crossings(arc, centre)));
         shares.retain(|share| (0.0..=1.0).contains(share));
         shares.sort_unstable_by(f64::total_cmp);
         shares.dedup_by(|b, a| *b - *a < TOLERANCE);
-        // A share close to the end gave way to one before it.
+        // The end may have been dropped for a share just before it.
         if let Some(last) = shares.last_mut() {
             *last = 1.0;
         }
@@ -155,9 +155,9 @@ impl Cover<'_> {
             .map(move |angle| (angle - start).rem_euclid(TAU) / sweep)
     }
 
-    /// Whether an open empty disc contains a place: whether a centre is nearer than the radius.
-    /// The nearest centre is the place itself, or a corner of the region of centres, or on the
-    /// circle that bounds the region around some site, beyond the place as seen from the site.
+    /// Whether an open empty disc contains a point: whether a centre is nearer than the radius.
+    /// The nearest centre is the point itself, or a corner of the region of centres, or on the
+    /// circle that bounds the region around some site, beyond the point as seen from the site.
     fn covers(&self, place: [f64; 2]) -> bool {
         let reach = self.radius * (1.0 - TOLERANCE);
         let near = |&centre: &[f64; 2]| distance(centre, place) < reach;

@@ -23,9 +23,9 @@ pub(super) struct Edge {
 /// A triangle at an edge.
 #[derive(Clone, Copy)]
 pub(super) struct Side {
-    /// Its number.
+    /// Its index in [`Mesh::triangles`].
     pub(super) triangle: usize,
-    /// Its vertex that the edge has not.
+    /// Its vertex opposite the edge.
     pub(super) apex: u32,
 }
 
@@ -85,10 +85,10 @@ fn from_smallest(mut triangle: [u32; 3]) -> [u32; 3] {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PlaneError {
-    /// The points are no sites.
+    /// The points or weights cannot be triangulated.
     #[error(transparent)]
     Sites(#[from] SitesError),
-    /// CGAL gave no answer.
+    /// CGAL failed.
     #[error(transparent)]
     Cgal(#[from] CgalError),
     /// Discs of infinite or no size cannot be drawn.

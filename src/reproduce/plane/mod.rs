@@ -6,9 +6,9 @@
 //! [`weighted_plane_shape`]. What belongs to a shape is decided exactly; curves drawn around it
 //! ([`OutlinePiece`]) are rounded.
 //!
-//! Points are (x, y), in any one unit; results name them by input index. Any number of points from
-//! one up will do, on one line too. Of several points at one place the heaviest stays, of equal
-//! ones the first.
+//! Points are (x, y), in any one unit; results name them by input index. One point is enough, and points
+//! may be collinear. Of several points at the same position the heaviest is kept, of equally heavy ones
+//! the first.
 //!
 //! ```
 //! use walpha::Alpha;

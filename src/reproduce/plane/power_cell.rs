@@ -13,7 +13,7 @@ pub struct PowerCell {
     pub boundary: Vec<OutlinePiece>,
 }
 
-/// Pieces shorter than this share of the radius are rounding.
+/// Pieces shorter than this share of the radius are rounding errors.
 const SLIVER: f64 = 1e-12;
 
 /// The half-plane x·normal ≤ offset, around a disc's centre.
@@ -54,7 +54,7 @@ impl WeightedPlaneShape {
             .collect()
     }
 
-    /// What is at least as near to p as to q in power: x·a ≤ (a² + ωₚ − `ω_q)/2` with a = q − p.
+    /// The half-plane at least as near to p as to q in power: x·a ≤ (a² + ωₚ − `ω_q)/2` with a = q − p.
     fn wall(&self, p: u32, q: u32) -> HalfPlane {
         let (p, q) = (p as usize, q as usize);
         let ([px, py], [qx, qy]) = (self.positions[p], self.positions[q]);

@@ -3,8 +3,8 @@ use std::f64::consts::PI;
 /// 60 points (x, y) for Figures 2 and 3, about 11 across around the origin: a thick letter C, open
 /// to the right, with a denser cluster in its mouth. Always the same; multiples of 1/64.
 ///
-/// It turns at α = −2 (points and a few edges), −1 (the letter and the cluster), −0.5 (one
-/// ring), 0 (the convex hull); for α > 0 the shape loses its corners until 1/ρ.
+/// The shape is points and a few edges at α = −2, the letter and the cluster at −1, one ring at −0.5,
+/// and the convex hull at 0; for α > 0 it loses its corners until 1/ρ.
 pub fn sample_points() -> Vec<[f64; 2]> {
     let mut random = Random(1);
     let mut points = Vec::with_capacity(60);
@@ -42,7 +42,7 @@ pub fn sample_discs() -> (Vec<[f64; 2]>, Vec<f64>) {
     DISCS.into_iter().unzip()
 }
 
-/// Adds points that keep apart: of 32 candidates each time the one farthest from all before it.
+/// Adds well-spaced points: each time, of 32 candidates, the one farthest from all points before it.
 fn scatter(points: &mut Vec<[f64; 2]>, count: usize, mut candidate: impl FnMut() -> [f64; 2]) {
     for _ in 0..count {
         let clearance = |place: &[f64; 2]| {

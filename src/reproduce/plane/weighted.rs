@@ -14,7 +14,7 @@ pub struct WeightedPlaneShape {
     pub(super) weights: Vec<f64>,
     pub(super) alpha: Alpha,
     complex: PlaneComplex,
-    /// Edges of the whole regular triangulation: whose power cells may meet.
+    /// Edges of the whole regular triangulation: pairs whose power cells may meet.
     pub(super) neighbours: Vec<[u32; 2]>,
     /// Vertices of the whole regular triangulation, ascending.
     pub(super) vertices: Vec<u32>,
@@ -44,7 +44,7 @@ pub struct PlaneComplex {
 /// Expected O(n log n).
 ///
 /// # Errors
-/// No point; lists of different lengths; NaN, infinities or absurd magnitudes; an infinite α.
+/// No point; lists of different lengths; NaN, infinities or magnitudes out of range; an infinite α.
 pub fn weighted_plane_shape(
     points: &[[f64; 2]],
     weights: &[f64],
@@ -125,7 +125,7 @@ fn edge_class(edge: &Edge, exact: &Exact, triangles: &[bool]) -> Class {
     match edge.sides().filter(|side| triangles[side.triangle]).count() {
         2 => Class::Interior,
         1 => Class::Regular,
-        // Whatever refutes an edge, one of the points next to it does.
+        // If any point lies inside the edge's circle, an apex next to it does.
         _ if exact.edge_fits(p, q)
             && !edge.sides().any(|side| exact.inside_edge(p, q, side.apex)) =>
         {
@@ -142,7 +142,7 @@ fn of_shape<const N: usize>(rows: impl Iterator<Item = ([u32; N], Class)>) -> Si
 impl PlaneComplex {
     /// Betti numbers [b0, b1]: components, and holes by the Euler characteristic. The union of the
     /// discs has the same. O(n log n).
-    #[expect(clippy::missing_panics_doc, reason = "an invariant, never met")]
+    #[expect(clippy::missing_panics_doc, reason = "an invariant, never broken")]
     pub fn betti(&self) -> [u64; 2] {
         let number = |v: u32| {
             self.vertices.rows().binary_search(&[v]).expect("ends of edges are vertices") as u32
@@ -155,7 +155,7 @@ impl PlaneComplex {
         [(self.vertices.len() - united) as u64, loops as u64]
     }
 
-    /// Numbers that keep their order, so that rows stay canonical.
+    /// Renumbers the vertices; `number` keeps their order, so rows stay canonical.
     fn renumbered(mut self, number: impl Fn(u32) -> u32) -> Self {
         let rows = self.triangles.rows_mut().as_flattened_mut().iter_mut();
         let rows = rows.chain(self.edges.rows_mut().as_flattened_mut());
@@ -197,7 +197,7 @@ impl WeightedPlaneShape {
         &self.hidden
     }
 
-    /// Pairs of input indices: a point that went, and the one at the same place that stayed.
+    /// Pairs of input indices: a point that was dropped, and the one kept at the same position.
     pub fn duplicates(&self) -> &[[u32; 2]] {
         &self.duplicates
     }
