@@ -270,7 +270,7 @@ pub(super) fn job(args: &InputArgs, recipe: Recipe) -> anyhow::Result<Job> {
         fail_usage!("standard input cannot be read in parts, as blocks are" => "name a file");
     }
     if input.path().to_str().is_none() {
-        fail_usage!("the plan of blocks is a text, and {input} is no name in UTF-8" => "name a link to it");
+        fail_usage!("the plan of blocks is stored as text, and the name {input} is not UTF-8" => "give a link to it that has such a name");
     }
     if recipe.is_points(input.path())? {
         let name = shown(input.path());

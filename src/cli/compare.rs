@@ -60,7 +60,7 @@ impl Compare {
         match (read(&self.a)?, read(&self.b)?) {
             (CheckFile::Complex(a), CheckFile::Complex(b)) => {
                 if a.periodic.or(b.periodic).is_some() {
-                    fail!("complexes of a periodic box are not compared: their simplices have no one place" => "judge each with `walpha check`");
+                    fail!("complexes of a periodic box are not compared: their simplices have no unique position" => "judge each with `walpha check`");
                 }
                 let comparison = progress.watch(|monitor| {
                     Stage::Compare.begin(monitor)?;
@@ -78,7 +78,7 @@ impl Compare {
                 self.print(global, comparison.is_equal(), comparison)
             }
             _ => {
-                fail!("one file is a filtration, the other a complex" => "compare two of a kind")
+                fail!("one file is a filtration, the other a complex" => "compare two files of the same kind")
             }
         }
     }

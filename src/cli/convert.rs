@@ -53,7 +53,7 @@ impl Convert {
     pub(super) fn run(self, global: Global) -> anyhow::Result<()> {
         if self.output.extension().is_none_or(|extension| extension != "zarr") {
             let path = shown(&self.output);
-            fail_usage!("{path} does not end with .zarr, the one format written" => "name it so");
+            fail_usage!("{path} does not end with .zarr, the one format written" => "give it a name that does");
         }
         let without_effect = ["gray", "gray_out", "columns", "nan"];
         self.input.typed.refuse(&without_effect, "values are converted as they are")?;

@@ -56,14 +56,16 @@ fn write_text(global: Global, text: &str) -> anyhow::Result<()> {
 
 /// Standard output is closed, full, or no longer read: what was to be printed is lost.
 #[derive(Debug, thiserror::Error)]
-#[error("standard output does not take it: {0}")]
+#[error("cannot write to standard output: {0}")]
 pub(super) struct OutputError(#[from] io::Error);
 
 impl OutputError {
     pub(super) fn advice(&self) -> Advice {
         match self.0.kind() {
-            ErrorKind::BrokenPipe => "have its reader read to the end, if all is needed".into(),
-            _ => "look at where standard output goes, or give --quiet to go without".into(),
+            ErrorKind::BrokenPipe => {
+                "let the reading program read to the end, if all is needed".into()
+            }
+            _ => "check where standard output goes, or give --quiet to print nothing".into(),
         }
     }
 }

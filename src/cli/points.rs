@@ -66,7 +66,7 @@ impl Points {
         let recipe = self.pipeline.recipe()?;
         let (weighed, volume) = pipeline::weighted_points(input, &recipe, &mut progress)?;
         if self.layers > 1 && weighed.order().is_none() {
-            fail_usage!("--layers has no effect: which points are the most important is known only where they are selected from a volume" => "omit it");
+            fail_usage!("--layers has no effect: the order of importance is known only of points selected from a volume" => "omit it");
         }
         if let Some((target, writer)) = target {
             let facts = pipeline::model_facts(&weighed, volume.as_ref()).order(weighed.order());

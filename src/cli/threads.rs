@@ -18,7 +18,7 @@ pub(super) fn start(asked: Option<u16>) -> anyhow::Result<()> {
     let count = threads::available(wanted, STACK);
     if count < wanted {
         tracing::warn!(
-            "memory, or the number of processes, is limited so much that {} of {wanted} threads start",
+            "memory or the number of processes is limited: only {} of {wanted} threads start",
             count.max(1)
         );
     }

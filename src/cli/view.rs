@@ -162,7 +162,7 @@ impl View {
             let levels = detail.filtration.levels(&alphas);
             if levels.len() > Page::MOST_LEVELS {
                 let (levels, most) = (levels.len(), Page::MOST_LEVELS);
-                fail_usage!("{levels} levels are too many for a page" => "give --alphas at most {most}");
+                fail_usage!("{levels} levels are too many for a page" => "give at most {most} values in --alphas");
             }
             let domain = pipeline::domain(&detail.weighed, facts).volume;
             let ladder = progress.stage(Stage::Ladder, || levels.ladder(domain));

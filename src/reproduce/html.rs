@@ -42,8 +42,8 @@ fn head(html: &mut String, report: &Report) {
         html,
         "<h1>{}, reproduced</h1>\n\
          <p class=\"soft\">The paper: {}. This report: walpha {}, {}.</p>\n{}\
-         <p>Table 1 and the figures, made again on <b>{}</b> ({x}×{y}×{z} samples, values {} to {} \
-         taken as gray levels 0 to 255). Each claim of the paper is held against our numbers, and nothing is tuned \
+         <p>Table 1 and the figures, reproduced on <b>{}</b> ({x}×{y}×{z} samples, values {} to {} \
+         taken as gray levels 0 to 255). Each claim of the paper is compared with our numbers, and nothing is tuned \
          to agree.</p>\n\
          <p>{} of {} points ({} %) are selected after the Haar transform kept {} of {} coefficients, \
          ε = {}, RMS {} gray levels. <b>α and ω are squared lengths</b>, in voxels: at α = 10 with \
@@ -224,7 +224,7 @@ fn shapes(html: &mut String, shapes: &[ShapeNumbers]) {
     row("α, and √α", &|s| {
         format!("{}, {}", number(s.alpha.squared()), number(s.alpha.squared().sqrt()))
     });
-    row("ω: least, mean, most", &|s| {
+    row("ω: least, mean, largest", &|s| {
         let w = s.weights;
         format!("{}, {}, {}", number(w.min), number(w.mean), number(w.max))
     });
