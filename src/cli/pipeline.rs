@@ -97,7 +97,7 @@ pub(super) fn filtration(
     Filtration::monitored(torus, weighed.points.clone(), monitor)
 }
 
-/// The α of a ladder: about `count` critical values, the suggested ones, and the one that the weights are computed for.
+/// The α of a ladder: at most `count` critical values, the suggested ones, and the one that the weights are computed for.
 pub(super) fn readable(
     filtration: &Filtration,
     curve: &Curve,
