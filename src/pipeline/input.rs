@@ -72,7 +72,7 @@ impl Recipe {
         }
         // From here on the file is open, and nothing opens it again.
         let file = OpenFile::open(input).map_err(PointsError::from)?;
-        if self.read.raw.is_none() && self.of_points().is_of_points(&file)? {
+        if self.read.raw.is_none() && self.of_points().holds_points(&file)? {
             let (mut points, mut facts) = read_model_file(&file, &self.of_points())?;
             if let Some(range) = &mut facts.range {
                 let written = self.written(*range);
