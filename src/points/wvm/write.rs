@@ -107,7 +107,7 @@ struct Steps {
 }
 
 impl Steps {
-    /// The multiples for values within an error, or exact if it is 0; `None` if there are none.
+    /// The multiples for values within an error, or exact if it is 0; `None` if a value has none.
     fn of(values: &[f64], error: f64) -> Option<Self> {
         let base = values.iter().copied().reduce(f64::min)?;
         let step = if error > 0.0 { 2.0 * error } else { common_step(values, base)? };
