@@ -122,7 +122,7 @@ pub(crate) fn read_model_file(
         return Err(format(path, Reason::needless(Setting::Format, what)));
     }
     if columns.is_some() && !known.takes_columns {
-        let reason = Reason::needless(Setting::Columns, "names its own columns");
+        let reason = Reason::needless(Setting::Columns, "defines its own columns");
         return Err(format(path, reason));
     }
     if level.is_some() && !known.has_levels() {
