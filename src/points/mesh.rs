@@ -64,7 +64,7 @@ pub fn read_complex(path: &Path, options: &PointOptions) -> Result<ComplexFile, 
         return read(&file);
     }
     let reason = Reason::unsupported(
-        "has no cells that can be read as a complex",
+        "its cells cannot be read as a complex",
         "give a complex as .json, .npz or .vtu (docs/cross-checking.md)",
     );
     Err(format(path, reason))
