@@ -3,7 +3,7 @@
 //! A volume is Haar-transformed, small coefficients are dropped under an L² error, the samples of
 //! largest gray difference are kept as points, each gets a weight from that difference, and the
 //! weighted alpha shape of these points is computed exactly: tetrahedra, facets, edges, vertices.
-//! After "Volume Modeling of Scattered Data based on Weighted Alpha Shapes", which uses CGAL, too.
+//! The method is that of "Volume Modeling of Scattered Data based on Weighted Alpha Shapes", which also uses CGAL.
 //!
 //! A [`Recipe`] runs every stage, from a volume to the shape:
 //!
@@ -26,7 +26,7 @@
 //! α and ω are squared lengths. Points are (x, y, z); volumes are stored `[z, y, x]`. Results are
 //! independent of the number of threads.
 
-// Not in Cargo.toml: the modules that tests share are `pub` in each of them.
+// Not in Cargo.toml, where it would apply to tests too: their shared modules are `pub` in each test.
 #![warn(unreachable_pub)]
 
 pub use ndarray;
@@ -47,7 +47,7 @@ pub mod reproduce;
 mod select;
 pub mod shape;
 
-/// What errors advise.
+/// The advice of errors.
 pub use walpha_base::advice;
 /// Exact regular triangulations: a crate of its own, `walpha-regular`, for use in other programs.
 pub use walpha_regular as triangulation;

@@ -1,4 +1,4 @@
-//! Progress and cancelling of long work: its [`Monitor`], and the stages that it hears of.
+//! Progress and cancelling of long work: the [`Monitor`], and the stages reported to it.
 
 pub use walpha_base::monitor::{Cancelled, Listener, Monitor};
 
@@ -24,17 +24,17 @@ pub enum Stage {
     Filtration,
     /// Counts what each critical α changes.
     Curve,
-    /// Puts all simplices in order.
+    /// Sorts all simplices.
     Order,
     /// Pairs the simplices that begin and end components and voids.
     Pairs,
-    /// Takes levels from a filtration.
+    /// Extracts levels from a filtration.
     Ladder,
     /// Triangulates the whole volume.
     Fill,
     /// Samples the interpolant.
     Interpolate,
-    /// Judges a complex.
+    /// Checks a complex.
     Certify,
     /// Builds a complex from its definition.
     Enumerate,

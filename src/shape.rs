@@ -1,4 +1,4 @@
-//! Alpha shapes, by either engine: what `walpha-shape` has, and CGAL beside it.
+//! Alpha shapes by either engine: everything in `walpha-shape`, and CGAL.
 
 pub use walpha_shape::*;
 
@@ -7,15 +7,15 @@ use walpha_base::Monitor;
 use crate::check::Claim;
 use crate::check::schema::PlacedComplex;
 
-/// The most points for which [`Engine::Auto`] takes CGAL: the paper's size, for which it takes a third
-/// of a second.
+/// The largest number of points for which [`Engine::Auto`] chooses CGAL: about the paper's size, which takes CGAL
+/// a third of a second.
 pub const MOST_FOR_CGAL: usize = 20_000;
 
 /// The alpha shape of weighted points, by the engine of the options; both give the same answer. See
 /// [`walpha_shape::alpha_shape`] for what a shape is; [`AlphaShape::options`] says which engine ran.
 ///
 /// # Errors
-/// The errors of that function; [`CgalError`] where CGAL gives no answer.
+/// The errors of that function; [`CgalError`] if CGAL fails.
 pub fn alpha_shape(
     points: WeightedPoints,
     options: &ShapeOptions,
@@ -40,7 +40,7 @@ pub fn alpha_shape_monitored(
     walpha_shape::alpha_shape_monitored(points, &options, monitor)
 }
 
-/// The engine that runs: what was asked for, or what [`Engine::Auto`] takes for so many points.
+/// The engine that runs: the one asked for, or the choice of [`Engine::Auto`] for this number of points.
 fn chosen(points: usize, options: &ShapeOptions) -> Engine {
     let needs_native = options.periodic.is_some()
         || options.memory.is_some()
@@ -53,12 +53,12 @@ fn chosen(points: usize, options: &ShapeOptions) -> Engine {
     }
 }
 
-/// The claim of a shape, for the checker to judge as a complex in space.
+/// The claim of a shape, for the checker, as a complex in space.
 pub fn claim(shape: &AlphaShape) -> Claim<'_> {
     Claim::new(shape.placed()).with_hidden(shape.hidden()).with_duplicates(shape.duplicates())
 }
 
-/// A copy of a shape's complex with its points, for the checker to judge, on a torus too.
+/// A copy of a shape's complex with its points, for the checker; on a torus too.
 pub fn placed_complex(shape: &AlphaShape) -> PlacedComplex {
     let sides = shape.options().periodic.map(|torus| torus.sides());
     PlacedComplex::from(claim(shape)).with_periodic(sides)

@@ -14,13 +14,13 @@ pub trait Exporter {
     /// Whatever `out` returns.
     fn write(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()>;
 
-    /// Whether what it writes can say that a box repeats.
+    /// Whether the format can represent a periodic box.
     fn knows_torus(&self) -> bool {
         false
     }
 
-    /// Writes the whole file, of a shape of a torus as it is [laid out](AlphaShape::unwrapped) where the format
-    /// knows no torus.
+    /// Writes the whole file; a shape on a torus is [unwrapped](AlphaShape::unwrapped) first if the format cannot
+    /// represent a torus.
     ///
     /// # Errors
     /// Whatever `out` returns.
@@ -31,23 +31,23 @@ pub trait Exporter {
         }
     }
 
-    /// A remark for readers of the file, if this shape calls for one.
+    /// A remark for users of the file, if this shape needs one.
     fn remark(&self, _shape: &AlphaShape) -> Option<Advice> {
         None
     }
 }
 
-/// How a shape is written down.
+/// Options of the writers.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct ExportOptions {
-    /// Text where the format has a binary form too: PLY.
+    /// Text, if the format also has a binary form: PLY.
     pub ascii: bool,
-    /// The boundary as that of a [solid](AlphaShape::solid): regular facets alone, closed, oriented and
-    /// cut apart into a manifold. For formats of boundaries.
+    /// The boundary of a [solid](AlphaShape::solid): only regular facets, closed, oriented and cut apart into a
+    /// manifold. For formats that hold the boundary.
     pub solid: bool,
-    /// Separate regular and singular facets, where some programs do not expect it: by groups (OBJ, edges
-    /// and points too), colours (OFF) or numbers (PLY, components and sheets too).
+    /// Separates regular and singular facets in ways that some programs do not expect: by groups (OBJ, also edges
+    /// and points), colours (OFF) or properties (PLY, also components and sheets).
     pub groups: bool,
     /// The input of the shape, recorded in VTP and VTU files.
     pub input: Option<String>,

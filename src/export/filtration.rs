@@ -1,4 +1,4 @@
-//! Filtrations as files: every simplex and when it comes.
+//! Filtrations as files: every simplex with the values of α at which it enters and changes class.
 
 use std::fmt;
 use std::io::{self, Write};
@@ -25,8 +25,8 @@ pub struct FiltrationFormat {
     write: fn(&Ordered<'_>, &mut dyn Write, &Monitor) -> io::Result<()>,
 }
 
-/// The formats there are. The [`schema`](crate::check::schema::FiltrationFile) of NPZ and JSON is that
-/// which `walpha check` and `walpha compare` read.
+/// All formats. NPZ and JSON follow the [`schema`](crate::check::schema::FiltrationFile) that `walpha check` and
+/// `walpha compare` read.
 pub static FILTRATION_FORMATS: [FiltrationFormat; 3] = [
     FiltrationFormat {
         name: "NPZ",
@@ -49,20 +49,20 @@ pub static FILTRATION_FORMATS: [FiltrationFormat; 3] = [
 ];
 
 impl FiltrationFormat {
-    /// The format a path asks for.
+    /// The format for the extension of a path.
     ///
     /// # Errors
-    /// [`UnknownFormat`] names the ones there are.
+    /// [`UnknownFormat`], which names the known extensions.
     pub fn of(path: &Path) -> Result<&'static Self, UnknownFormat> {
         let all = FILTRATION_FORMATS.iter().map(|format| (format.extension, format));
         UnknownFormat::find(path, "a filtration", all)
     }
 
-    /// Writes the whole file. The same filtration gives the same bytes. Of the pairs those are written
-    /// whose simplices have different values.
+    /// Writes the whole file. The same filtration gives the same bytes. Only pairs of simplices with different
+    /// values are written.
     ///
     /// # Errors
-    /// Whatever `out` returns; no memory.
+    /// Whatever `out` returns; not enough memory.
     pub fn write(&self, ordered: &Ordered<'_>, out: &mut dyn Write) -> io::Result<()> {
         self.write_monitored(ordered, out, &Monitor::noop())
     }
@@ -70,7 +70,8 @@ impl FiltrationFormat {
     /// [`write`](Self::write) with progress and cancelling through `monitor`.
     ///
     /// # Errors
-    /// Those of [`write`](Self::write), and one of the kind `Other` around [`Cancelled`](crate::progress::Cancelled).
+    /// Those of [`write`](Self::write), and [`Cancelled`](crate::progress::Cancelled) wrapped in an error of the
+    /// kind `Other`.
     pub fn write_monitored(
         &self,
         ordered: &Ordered<'_>,
@@ -92,7 +93,7 @@ fn lasting(ordered: &Ordered<'_>, pairs: &[[u32; 2]]) -> Vec<[u32; 2]> {
     pairs.iter().copied().filter(|&pair| ordered.lasts(pair)).collect()
 }
 
-/// Arrays of each dimension, by their names.
+/// Prefixes of the names of arrays, by dimension.
 const DIMENSIONS: [&str; 4] = ["vertex", "edge", "facet", "cell"];
 
 fn write_npz(ordered: &Ordered<'_>, out: &mut dyn Write, monitor: &Monitor) -> io::Result<()> {
@@ -115,7 +116,7 @@ fn write_npz(ordered: &Ordered<'_>, out: &mut dyn Write, monitor: &Monitor) -> i
             numbers.clone().map(|number| of(ordered.simplex(number))).collect()
         };
         archive.list(&format!("{name}_values"), &doubles(|simplex| simplex.value))?;
-        // A cell is interior from its value on, by its own sphere.
+        // A cell needs only its value, which is that of its own sphere: it is interior from there on.
         if name != "cell" {
             archive.list(&format!("{name}_regular"), &doubles(|simplex| simplex.regular))?;
             archive.list(&format!("{name}_interior"), &doubles(|simplex| simplex.interior))?;
@@ -138,7 +139,7 @@ fn write_npz(ordered: &Ordered<'_>, out: &mut dyn Write, monitor: &Monitor) -> i
 }
 
 fn write_json(ordered: &Ordered<'_>, out: &mut dyn Write, _: &Monitor) -> io::Result<()> {
-    // Rows, four numbers each, and a place in the order.
+    // Per simplex at most four vertices, three numbers, and its position in the order.
     let bytes = ordered.len() * (size_of::<[u32; 4]>() + size_of::<[f64; 3]>() + size_of::<u32>());
     memory::afford(bytes, || format!("the JSON of {} simplices", ordered.len()))
         .map_err(io::Error::other)?;
@@ -206,7 +207,7 @@ fn alpha(squared: f64) -> Alpha {
     Alpha::from_squared(squared).expect("radii are numbers")
 }
 
-/// Lines between two words on how far it is.
+/// Lines between two reports of progress.
 const REPORT_STEP: usize = 1 << 16;
 
 fn write_text(ordered: &Ordered<'_>, out: &mut dyn Write, monitor: &Monitor) -> io::Result<()> {
@@ -215,7 +216,7 @@ fn write_text(ordered: &Ordered<'_>, out: &mut dyn Write, monitor: &Monitor) -> 
         if at % REPORT_STEP == 0 {
             monitor.report(at as u64, ordered.len() as u64).map_err(io::Error::other)?;
         }
-        // With an exponent where a number would be hundreds of digits long.
+        // Debug formatting uses an exponent for numbers that would be hundreds of digits long.
         let (value, gabriel) = (simplex.value, u8::from(simplex.gabriel));
         write!(out, "{value:?} {gabriel} {:?} {:?}", simplex.regular, simplex.interior)?;
         simplex.vertices.iter().try_for_each(|v| write!(out, " {v}"))?;

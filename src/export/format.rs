@@ -13,16 +13,16 @@ pub struct Format {
     pub extension: &'static str,
     /// Its content.
     pub about: &'static str,
-    /// Whether it holds the boundary alone, and so may be that of a solid.
+    /// Whether it holds only the boundary, which may then be that of a solid.
     pub boundary: bool,
-    /// Whether it has a text form and a binary one.
+    /// Whether it has both a text form and a binary form.
     pub ascii: bool,
-    /// Whether it can separate regular and singular facets where some programs do not expect it.
+    /// Whether it can separate regular and singular facets in a way that some programs do not expect.
     pub groups: bool,
     exporter: fn(ExportOptions) -> Box<dyn Exporter>,
 }
 
-/// A format of all simplices.
+/// Defaults: a format of all simplices.
 const PLAIN: Format = Format {
     name: "",
     extension: "",
@@ -33,7 +33,7 @@ const PLAIN: Format = Format {
     exporter: |_| Box::new(Json),
 };
 
-/// The formats there are.
+/// All formats.
 pub static FORMATS: [Format; 9] = [
     Format {
         name: "PLY",
@@ -109,10 +109,10 @@ pub static FORMATS: [Format; 9] = [
 ];
 
 impl Format {
-    /// The format a path asks for.
+    /// The format for the extension of a path.
     ///
     /// # Errors
-    /// [`UnknownFormat`] names the ones there are.
+    /// [`UnknownFormat`], which names the known extensions.
     pub fn of(path: &Path) -> Result<&'static Self, UnknownFormat> {
         UnknownFormat::find(
             path,

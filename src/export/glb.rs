@@ -7,9 +7,9 @@ use super::{ExportOptions, Exporter, colour};
 use crate::shape::{AlphaShape, Surface};
 
 /// GLB, glTF 2.0 in one binary file: the boundary as triangles, singular edges as lines and singular
-/// vertices as points. Vertices are coloured by F from dark blue (least) over green to yellow (most)
-/// where it is known. Coordinates are rounded to `f32`; the scene turns them, so that our z is glTF's y,
-/// which is up.
+/// vertices as points. If F is known, vertices are coloured by it, from dark blue (least) through green to
+/// yellow (most). Coordinates are rounded to `f32`; the scene rotates them so that z becomes glTF's y, which
+/// points up.
 #[derive(Clone, Debug, Default)]
 pub struct Glb(pub ExportOptions);
 
@@ -38,7 +38,7 @@ impl Exporter for Glb {
             "scene": 0,
             "scenes": [{}],
         });
-        // glTF knows no empty mesh.
+        // glTF does not allow empty meshes.
         if surface.vertex_count() > 0 {
             let primitives = file.primitives(shape, &surface);
             document["scenes"][0] = json!({ "nodes": [0] });
@@ -62,7 +62,7 @@ impl Exporter for Glb {
             chunks.push((b"BIN\0", &file.data));
         }
         let length = 12 + chunks.iter().map(|(_, chunk)| 8 + chunk.len()).sum::<usize>();
-        let too_long = |_| io::Error::other("the shape passes the 4 GB that GLB can say");
+        let too_long = |_| io::Error::other("the shape exceeds the 4 GiB that a GLB file can hold");
         out.write_all(b"glTF")?;
         out.write_all(&2u32.to_le_bytes())?;
         out.write_all(&u32::try_from(length).map_err(too_long)?.to_le_bytes())?;
@@ -75,7 +75,7 @@ impl Exporter for Glb {
     }
 }
 
-/// What the document points to; everything is of 4-byte numbers, so all is aligned.
+/// The binary chunk, and the views and accessors that refer to it. All numbers have 4 bytes, so all are aligned.
 #[derive(Default)]
 struct File {
     data: Vec<u8>,

@@ -5,8 +5,8 @@ use crate::check::schema::{ComplexFile, SchemaError};
 use crate::shape::{AlphaShape, claim};
 
 /// JSON: the complex with its points, power weights and α, in the [`schema`](crate::check::schema)
-/// that `walpha check` and `walpha compare` read. α and the weights are those that simplices were
-/// judged by: for [`Balls::Radius`](crate::shape::Balls) the weights are (α + ω)², and α is 0.
+/// that `walpha check` and `walpha compare` read. α and the weights are those that
+/// classify the simplices: for [`Balls::Radius`](crate::shape::Balls) the weights are (α + ω)², and α is 0.
 #[derive(Clone, Copy, Debug)]
 pub struct Json;
 

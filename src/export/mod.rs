@@ -1,7 +1,7 @@
 //! Shapes as files for other programs.
 //!
-//! A writer turns a shape into bytes behind one trait and knows no paths; [`Target`] gives it a
-//! file that appears under its name only when it is complete.
+//! All writers implement one trait, which turns a shape into bytes and does not deal with paths. [`Target`]
+//! provides a file that appears under its name only when it is complete.
 //!
 //! ```
 //! use std::path::Path;
@@ -17,7 +17,7 @@
 //! let mut bytes = Vec::new();
 //! exporter.write(&shape, &mut bytes)?;
 //! assert!(bytes.starts_with(b"OFF"));
-//! // Into a file, which appears under its name only when the last byte is written.
+//! // To a file, which appears under its name only after the last byte is written.
 //! let folder = tempfile::tempdir()?;
 //! let path = folder.path().join("tetrahedron.off");
 //! Target::open(&path)?.write(|out| exporter.write(&shape, out))?;

@@ -10,10 +10,9 @@ use crate::shape::{AlphaShape, Class, NO_COMPONENT};
 
 /// NPZ, `NumPy`'s archive of arrays: the complex with its points, power weights and α, in the
 /// [`schema`](crate::check::schema) that `walpha check` and `walpha compare` read, as in
-/// [`Json`](super::Json). Beside it, where known: `values` of all points; `components` (n), the number
-/// of each point's component, −1 for points that are not in the shape; `boundary_sheets` (k×2), the
-/// [sheets](crate::shape::Sheets) in front of and behind the regular facets, then the singular ones,
-/// −1 for none.
+/// [`Json`](super::Json). Also, if known: `values` of all points; `components` (n), the component number of
+/// each point, −1 for points outside the shape; `boundary_sheets` (k×2), the [sheets](crate::shape::Sheets) in
+/// front of and behind the regular facets, then the singular ones, −1 for none.
 #[derive(Clone, Copy, Debug)]
 pub struct Npz;
 
@@ -56,7 +55,7 @@ impl Exporter for Npz {
     }
 }
 
-/// An archive of arrays that grows.
+/// An archive of arrays under construction.
 pub(super) struct Archive<W: Write + Seek> {
     zip: ZipWriter<W>,
     options: SimpleFileOptions,
@@ -64,7 +63,7 @@ pub(super) struct Archive<W: Write + Seek> {
 
 impl<W: Write + Seek> Archive<W> {
     pub(super) fn new(zip: ZipWriter<W>) -> Self {
-        // Without the time of writing, so that the same shape gives the same bytes.
+        // A fixed time of modification, so that the same shape gives the same bytes.
         let options = SimpleFileOptions::default()
             .compression_method(CompressionMethod::Stored)
             .large_file(true)
@@ -72,7 +71,7 @@ impl<W: Write + Seek> Archive<W> {
         Self { zip, options }
     }
 
-    /// With arrays that are compressed, quickly rather than well.
+    /// An archive of compressed arrays, tuned for speed rather than size.
     pub(super) fn compressed(zip: ZipWriter<W>) -> Self {
         let Self { zip, options } = Self::new(zip);
         let options =

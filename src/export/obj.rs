@@ -4,8 +4,8 @@ use super::{ExportOptions, Exporter};
 use crate::shape::AlphaShape;
 use crate::volume::annotation;
 
-/// Wavefront OBJ: facets, regular ones first, singular edges and singular vertices; in one group, or
-/// if asked in the groups `regular`, `singular`, `edges` and `points`. Numbering starts at 1.
+/// Wavefront OBJ: facets, regular ones first, singular edges and singular vertices; ungrouped, or on request
+/// in the groups `regular`, `singular`, `edges` and `points`. Numbering starts at 1.
 #[derive(Clone, Debug, Default)]
 pub struct Obj(pub ExportOptions);
 

@@ -4,8 +4,8 @@ use super::{ExportOptions, Exporter};
 use crate::shape::AlphaShape;
 use crate::volume::annotation;
 
-/// OFF, the object file format of Geomview: boundary facets; where groups are asked for with a colour
-/// each, regular ones light, singular ones orange. It knows no edges or lone points, so singular ones are left out.
+/// OFF, the object file format of Geomview: boundary facets; with groups, regular facets are light and singular
+/// ones orange. The format has no edges or isolated points, so singular edges and vertices are left out.
 #[derive(Clone, Debug, Default)]
 pub struct Off(pub ExportOptions);
 

@@ -6,14 +6,13 @@ use super::{ExportOptions, Exporter, colour};
 use crate::shape::{AlphaShape, Class, Surface};
 use crate::volume::annotation;
 
-/// PLY: vertices of the boundary with weight, input index and, where known, value and the colour
-/// (red, green, blue) that it has between the least and the most; facets. Where groups are asked for,
-/// facets come with their class (2 regular, 3 singular), their component and, where known and not of a
-/// solid, the [sheets](crate::shape::Sheets) in front and behind, −1 for none. Coordinates are doubles.
-/// Binary little-endian, or text.
+/// PLY: vertices of the boundary with weight, input index and, if known, value and its colour (red, green, blue);
+/// facets. With groups, facets have their class (2 regular, 3 singular), their component and, if known and not of
+/// a solid, the [sheets](crate::shape::Sheets) in front and behind, −1 for none. Coordinates are doubles. Binary
+/// little-endian, or text.
 ///
-/// Singular edges are left out, as most programs refuse a PLY file with edges; meshio cannot read numbers
-/// of facets.
+/// Singular edges are left out, as most programs refuse a PLY file with edges. Groups are optional because meshio
+/// cannot read properties of facets.
 #[derive(Clone, Debug, Default)]
 pub struct Ply(pub ExportOptions);
 
@@ -63,7 +62,7 @@ impl Exporter for Ply {
     }
 
     fn remark(&self, shape: &AlphaShape) -> Option<Advice> {
-        // A solid has none.
+        // A solid has no singular edges.
         let edges = shape.complex().edges.of(Class::Singular).count();
         (edges > 0 && !self.0.solid).then(|| {
             format!(

@@ -7,8 +7,8 @@ use crate::shape::AlphaShape;
 use crate::volume::annotation;
 
 /// Binary STL: the regular facets, counter-clockwise seen from outside, with their normals.
-/// Coordinates are rounded to `f32`. Singular facets, edges and vertices bound no solid and are left
-/// out.
+/// Coordinates are rounded to `f32`. Singular facets, edges and vertices do not bound a solid and are
+/// left out.
 #[derive(Clone, Debug, Default)]
 pub struct Stl(pub ExportOptions);
 
@@ -17,7 +17,7 @@ impl Exporter for Stl {
         let surface = self.0.surface(shape);
         let positions: Vec<_> = surface.positions(&shape.points().positions).collect();
         let mut head = [b' '; 80];
-        // Some readers take a file for text if its head begins with "solid".
+        // The header must not begin with "solid", as some readers would take the file for text.
         let stated = annotation::comment(shape.coordinates());
         let about = format!("walpha, boundary of an alpha shape{stated}");
         head[..about.len()].copy_from_slice(about.as_bytes());
@@ -50,7 +50,7 @@ impl Exporter for Stl {
     }
 }
 
-/// The unit normal; 0 for a facet of no area.
+/// The unit normal of a triangle; 0 if it has no area.
 fn normal([a, b, c]: [[f64; 3]; 3]) -> [f64; 3] {
     let from_a = |p: [f64; 3]| [0, 1, 2].map(|i| p[i] - a[i]);
     let (u, v) = (from_a(b), from_a(c));

@@ -8,9 +8,8 @@ use crate::volume::annotation;
 /// VTP, VTK's polygons: the boundary, singular edges and singular vertices. Cell data are their
 /// `class` (2 regular, 3 singular), the `component` of the shape they belong to and, where known, the
 /// [sheets](crate::shape::Sheets) in front (`sheet`) and behind (`sheet_behind`), −1 for none; point
-/// data are `weight`, `value` and `input_index`. Field data say what [`Vtu`](super::Vtu)'s do, texts as such. Of a solid
-/// there are no sheets. Arrays are appended raw, little-endian, with 64-bit
-/// sizes.
+/// data are `weight`, `value` and `input_index`. Field data are those of [`Vtu`](super::Vtu), with texts as strings.
+/// Solids have no sheets. Arrays are appended raw, little-endian, with 64-bit sizes.
 #[derive(Clone, Debug, Default)]
 pub struct Vtp(pub ExportOptions);
 
@@ -64,7 +63,7 @@ pub(crate) fn write_surface(
     if let Some(values) = corners.values {
         file.array("Float64", "value", 1, of(values))?;
     }
-    corners.names(&mut file, surface.indices())?;
+    corners.write_ids(&mut file, surface.indices())?;
     write!(file.xml, "</PointData>\n<CellData>\n")?;
     cell_data(&mut file, surface, membership)?;
     write!(file.xml, "</CellData>\n<Points>\n")?;
@@ -81,7 +80,7 @@ pub(crate) fn write_surface(
     write!(out, "\n</AppendedData>\n</VTKFile>\n")
 }
 
-/// Class, component and sheets of each cell.
+/// Writes class, component and sheets of each cell.
 fn cell_data(
     file: &mut Appended,
     surface: &Surface,
@@ -111,7 +110,7 @@ fn cell_data(
     Ok(())
 }
 
-/// Cells of so many vertices each.
+/// Writes cells of `size` vertices each.
 fn cells(file: &mut Appended, name: &str, size: usize, vertices: &[u32]) -> io::Result<()> {
     writeln!(file.xml, "<{name}>")?;
     let most = vertices.len().max(vertices.iter().max().map_or(0, |&v| v as usize));

@@ -6,11 +6,12 @@ use crate::volume::{Coordinates, annotation};
 
 /// VTU, VTK's unstructured grid: every simplex of the shape, vertices first, with its class as
 /// cell data (1 interior, 2 regular, 3 singular); `weight`, `value` and `input_index` as point
-/// data. Field data say how it was made: `alpha` (a squared length), `alpha_radius` where there is one,
-/// `class_legend`, `made_by` (program and version) and, where known, `input` and `unit`, the unit of length; texts
-/// are numbers of UTF-8, as meshio refuses a file with texts. Arrays are appended raw, little-endian, with 64-bit sizes.
+/// data. Field data record how it was made: `alpha` (a squared length), `alpha_radius` unless α is negative,
+/// `class_legend`, `made_by` (program and version) and, if known, `input` and `unit`, the unit of length. Texts
+/// are arrays of UTF-8 bytes, as meshio refuses files with strings. Arrays are appended raw, little-endian, with
+/// 64-bit sizes.
 ///
-/// Where a complex holds exterior simplices they are written too, as class 0.
+/// Exterior simplices of the complex, if it has any, are written as class 0.
 #[derive(Clone, Debug, Default)]
 pub struct Vtu(pub ExportOptions);
 
@@ -22,7 +23,7 @@ impl Exporter for Vtu {
     }
 }
 
-/// How a shape was made, as far as files record it.
+/// How a shape was made, for the field data of files.
 pub(crate) struct Provenance<'a> {
     pub alpha: Alpha,
     pub coordinates: Coordinates,
@@ -30,20 +31,20 @@ pub(crate) struct Provenance<'a> {
 }
 
 impl<'a> Provenance<'a> {
-    /// How a shape was made of an input.
+    /// How a shape was made from the input in the options.
     pub(crate) fn of(shape: &AlphaShape, options: &'a ExportOptions) -> Self {
         let (alpha, coordinates) = (shape.options().alpha, shape.coordinates());
         Self { alpha, coordinates, input: options.input.as_deref() }
     }
 }
 
-/// Data of the points that are corners of simplices, by number.
+/// Data of the points, by the numbers that corners of simplices refer to.
 pub(crate) struct PointData<'a> {
     pub positions: &'a [[f64; 3]],
     pub weights: &'a [f64],
     pub values: Option<&'a [f64]>,
-    /// Their indices in a volume, where they are numbered within a block; else their numbers are indices
-    /// of the input.
+    /// Their indices in a volume, if they are numbered within a block; otherwise their numbers are indices of
+    /// the input.
     pub voxels: Option<&'a [u64]>,
 }
 
@@ -59,8 +60,8 @@ impl<'a> PointData<'a> {
         }
     }
 
-    /// What names the points.
-    pub(super) fn names(
+    /// Writes the array that identifies the points: `voxel` or `input_index`.
+    pub(super) fn write_ids(
         &self,
         file: &mut Appended,
         vertices: impl Iterator<Item = u32>,
@@ -74,7 +75,7 @@ impl<'a> PointData<'a> {
     }
 }
 
-/// Writes simplices of all dimensions, whose corners are these vertices, ascending.
+/// Writes simplices of all dimensions. `vertices` are all their corners, ascending.
 pub(crate) fn write_grid(
     complex: &Complex,
     vertices: &[u32],
@@ -110,7 +111,7 @@ pub(crate) fn write_grid(
     if let Some(values) = corners.values {
         file.array("Float64", "value", 1, of(values))?;
     }
-    corners.names(&mut file, vertices.iter().copied())?;
+    corners.write_ids(&mut file, vertices.iter().copied())?;
     write!(file.xml, "</PointData>\n<CellData>\n")?;
     file.array("UInt8", "class", 1, grid.classes)?;
     write!(file.xml, "</CellData>\n<Points>\n")?;
@@ -139,12 +140,12 @@ struct Grid {
     offsets: Ids,
     types: Vec<u8>,
     classes: Vec<u8>,
-    /// Data of points so far.
+    /// Number of corners so far: the next offset.
     end: usize,
 }
 
 impl Grid {
-    /// A grid with room for a complex.
+    /// An empty grid with ids wide enough for a complex.
     fn of(complex: &Complex) -> Self {
         let Complex { cells, facets, edges, vertices } = complex;
         let corners = 4 * cells.len() + 3 * facets.len() + 2 * edges.len() + vertices.len();
@@ -168,14 +169,14 @@ impl Grid {
     }
 }
 
-/// What VTK counts: 32-bit numbers where all fit, which halves most files.
+/// Indices and offsets in VTK: 32-bit numbers if all fit, which halves most files.
 pub(super) struct Ids {
     is_wide: bool,
     bytes: Vec<u8>,
 }
 
 impl Ids {
-    /// None yet, and none above `most`.
+    /// An empty list for ids up to `most`.
     pub(super) fn up_to(most: usize) -> Self {
         Self { is_wide: i32::try_from(most).is_err(), bytes: Vec::new() }
     }
@@ -189,7 +190,7 @@ impl Ids {
     }
 }
 
-/// The head of the file, and the arrays it points to.
+/// The XML of the file, and the appended arrays that it refers to.
 #[derive(Default)]
 pub(super) struct Appended {
     pub xml: Vec<u8>,
@@ -200,17 +201,13 @@ pub(super) struct Appended {
 const LEGEND: &str = "0 exterior, 1 interior, 2 regular, 3 singular";
 
 impl Appended {
-    /// How the shape was made, for whoever finds the file later; texts as such, or as numbers.
-    pub(super) fn field_data(
-        &mut self,
-        made: &Provenance<'_>,
-        texts_as_such: bool,
-    ) -> io::Result<()> {
+    /// Writes how the shape was made, with texts as strings or as arrays of bytes.
+    pub(super) fn field_data(&mut self, made: &Provenance<'_>, as_strings: bool) -> io::Result<()> {
         let alpha = made.alpha;
         writeln!(self.xml, "<FieldData>")?;
         for (name, number) in [("alpha", Some(alpha.squared())), ("alpha_radius", alpha.radius())] {
             if let Some(number) = number {
-                // Not as text: VTK reads no "inf".
+                // In binary, as VTK cannot read "inf".
                 self.field("DataArray", "Float64", name, 1, &number.to_le_bytes())?;
             }
         }
@@ -222,9 +219,9 @@ impl Appended {
         ];
         let texts = texts.into_iter().filter_map(|(name, text)| Some((name, text?)));
         for (name, text) in texts.chain(annotation::pairs(made.coordinates)) {
-            // A zero ends it, so there is none in it.
+            // A zero byte ends the string, so the text must not contain one.
             let text = text.replace('\0', " ");
-            if texts_as_such {
+            if as_strings {
                 self.field("Array", "String", name, 1, (text + "\0").as_bytes())?;
             } else {
                 self.field("DataArray", "UInt8", name, text.len(), text.as_bytes())?;
@@ -233,7 +230,7 @@ impl Appended {
         writeln!(self.xml, "</FieldData>")
     }
 
-    /// Numbers or a text about the whole.
+    /// Writes an array of field data.
     fn field(
         &mut self,
         element: &str,

@@ -14,14 +14,15 @@ use crate::volume::Volume;
 pub enum Choice {
     /// The voxels of largest difference, as in the paper.
     Difference(Selection),
-    /// The voxels where the interpolant of the earlier ones is worst.
+    /// Greedily, the voxels where the interpolant of those chosen so far is worst.
     Adaptive(Goal),
-    /// The same, and then those whose loss costs little exchanged for others
+    /// As `Adaptive`, and then voxels whose loss costs little are exchanged for others
     /// ([`exchange`](crate::interpolate::exchange())).
     Exchanged(Goal),
 }
 
-/// Where adaptive selection ends: at whichever comes first. Without any goal at the paper's share of all samples.
+/// Where adaptive selection ends: at the first goal that is reached. Without any goal, at the paper's share of all
+/// samples.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Goal {
@@ -29,14 +30,14 @@ pub struct Goal {
     pub count: Option<u64>,
     /// This share of all samples, in place of `count`.
     pub ratio: Option<f64>,
-    /// A root mean square error of the interpolant over all samples, in gray levels.
+    /// The root mean square error of the interpolant over all samples, in gray levels.
     pub rmse: Option<f64>,
-    /// An error of the interpolant at any sample, in gray levels; points are chosen by that error.
+    /// The largest error of the interpolant at a sample, in gray levels; points are then chosen by that error.
     pub max_error: Option<f64>,
 }
 
 impl Goal {
-    /// A number of points.
+    /// The goal of this number of points.
     pub fn of_count(count: u64) -> Self {
         Self { count: Some(count), ..Self::default() }
     }
@@ -61,12 +62,12 @@ impl Default for Choice {
 pub(super) struct Chosen {
     pub(super) points: Points,
     pub(super) importance: Importance,
-    /// The goal, where fewer points reach it.
+    /// The goal, if it was reached with fewer points than allowed.
     pub(super) ended: Option<Adaptive>,
 }
 
 impl Choice {
-    /// The choice without samples below a gray level, where there is one.
+    /// The choice without samples below a gray level, if one is given.
     pub(super) fn at_least(self, gray_min: Option<f64>) -> Self {
         match (self, gray_min) {
             (Self::Difference(selection), Some(_)) => {
@@ -77,7 +78,7 @@ impl Choice {
         }
     }
 
-    /// The choice with another number of points.
+    /// The choice with this number of points.
     #[must_use]
     pub fn with_count(self, count: u64) -> Self {
         let goal = |goal: Goal| Goal { count: Some(count), ratio: None, ..goal };
@@ -90,7 +91,7 @@ impl Choice {
         }
     }
 
-    /// Chooses samples of a volume, of which `smoothed` is what truncation left.
+    /// Chooses samples of a volume; `smoothed` is the volume after truncation.
     pub(super) fn points(
         &self,
         volume: &Volume,
@@ -112,12 +113,12 @@ impl Choice {
         if matches!(self, Self::Exchanged(_)) {
             voxels = exchange_monitored(volume, &voxels, units, monitor)?;
         }
-        // Points are in the order of their voxels; the order of importance is kept beside them.
+        // Points are in the order of their voxels; the order of importance is stored separately.
         let chosen = voxels.clone();
         voxels.sort_unstable();
         let place = |voxel: &u32| voxels.binary_search(voxel).expect("the same voxels") as u32;
         let importance = Importance::Order(chosen.iter().map(place).collect());
-        // With a target alone as many as there are samples may be needed, and none is asked for.
+        // A goal of error alone allows as many points as there are samples: no number was asked for.
         let asked = goal.count < volume.dims().samples() as u64;
         let fewer = asked && (voxels.len() as u64) < goal.count;
         let points = points_at(volume, &differences, &voxels, units);

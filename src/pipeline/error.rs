@@ -7,20 +7,20 @@ use crate::interpolate::InterpolateError;
 use crate::points::PointsError;
 use crate::shape::{AlphaError, ShapeError};
 
-/// Why a pipeline gives no shape: what one of its stages refuses, or options that contradict each other.
+/// Why a pipeline fails: an error of one of its stages, or contradicting options.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum PipelineError {
-    /// The wavelet stage.
+    /// An error of the wavelet stage.
     #[error(transparent)]
     Haar(HaarError),
-    /// Selection or weights.
+    /// An error in reading or selecting points, or in their weights.
     #[error(transparent)]
     Points(#[from] PointsError),
-    /// Adaptive selection.
+    /// An error in adaptive selection or fitting.
     #[error(transparent)]
     Interpolate(InterpolateError),
-    /// The shape.
+    /// An error in computing the shape.
     #[error(transparent)]
     Shape(ShapeError),
     /// A voxel so large that 10 h² is not finite.
@@ -29,21 +29,25 @@ pub enum PipelineError {
     /// The work was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
-    /// With [`Balls::Radius`](crate::shape::Balls) α is a radius, and the α that was found is a squared one.
-    #[error("with balls of radius α + ω, α is a radius, and the one found is a squared one")]
+    /// With [`Balls::Radius`](crate::shape::Balls) α is a radius, but the α that was found is a squared radius.
+    #[error(
+        "with balls of radius α + ω, α is a radius, but the α that was found is a squared radius"
+    )]
     Radii {
         /// The radius of the α that was found.
         radius: f64,
     },
-    /// A space of coordinates in voxels.
+    /// A space was given for coordinates in voxels.
     #[error("a space is for world coordinates, and these are voxels")]
     SpaceOfVoxels,
-    /// A space for a volume that does not say how it lies in one.
-    #[error("the input does not say how its axes lie in a patient, so that no space can be chosen")]
-    UnknownSpace,
-    /// Weights of scattered points from differences to neighbours, on a torus.
+    /// A space was given for a volume that does not state its orientation.
     #[error(
-        "these weights come from differences to neighbours, and those beyond the sides of a periodic box are not looked for"
+        "the input does not state the orientation of its axes in a patient, so no space can be chosen"
+    )]
+    UnknownSpace,
+    /// Weights from differences to neighbours, for scattered points on a torus.
+    #[error(
+        "these weights come from differences to neighbours, and neighbours across the sides of a periodic box are not considered"
     )]
     PeriodicWeights,
 }
@@ -51,7 +55,7 @@ pub enum PipelineError {
 wraps! { PipelineError: Haar(HaarError), Interpolate(InterpolateError), Shape(ShapeError) }
 
 impl PipelineError {
-    /// What to do about it, where there is something.
+    /// What to do about it, if anything.
     pub fn advice(&self) -> Option<Advice> {
         match self {
             Self::Haar(error) => error.advice(),

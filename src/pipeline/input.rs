@@ -12,11 +12,11 @@ use crate::volume::{self, GrayRange, OpenFile, Volume};
 pub enum Input {
     /// A grid of gray levels.
     Volume(Grays),
-    /// Points, perhaps with weights and values, and what else their file states.
+    /// Points, perhaps with weights and values, and the metadata of their file.
     Points(Points, ModelMetadata),
 }
 
-/// A volume in gray levels, and what they stand for.
+/// A volume in gray levels, and the values that they stand for.
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct Grays {
@@ -28,13 +28,13 @@ pub struct Grays {
     pub written: GrayRange,
 }
 
-/// A volume in gray levels, in the space that its points are in.
+/// A volume in gray levels, in the coordinates of its points.
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct Source {
     /// Gray levels.
     pub volume: Volume,
-    /// What coordinates are measured in.
+    /// Units of the coordinates.
     pub units: Units,
     /// The values that became gray 0 and 255.
     pub range: GrayRange,
@@ -42,12 +42,12 @@ pub struct Source {
     pub written: GrayRange,
 }
 
-/// Which values points get.
+/// Which values the points get.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Values {
-    /// Gray levels, where they come from a volume.
+    /// Gray levels, if the points come from a volume.
     Gray,
-    /// Those that are written: of the input, unless the recipe asks for gray levels.
+    /// The values to write: those of the input, unless the recipe asks for gray levels.
     Written,
 }
 
@@ -55,7 +55,7 @@ impl Recipe {
     /// Whether this file or sample holds points rather than a volume.
     ///
     /// # Errors
-    /// It cannot be read.
+    /// The input cannot be read.
     pub fn is_points(&self, input: &Path) -> Result<bool, PipelineError> {
         let is_volume = is_sample(input) || self.read.raw.is_some();
         Ok(!is_volume && self.of_points().is_point_file(input)?)
@@ -64,30 +64,30 @@ impl Recipe {
     /// Reads a file or a sample.
     ///
     /// # Errors
-    /// [`PipelineError::Points`]: what cannot be read, and why.
+    /// [`PipelineError::Points`] if the input cannot be read.
     pub fn open(&self, input: &Path, monitor: &Monitor) -> Result<Input, PipelineError> {
         if is_sample(input) || input.is_dir() {
             let volume = volume::open_monitored(input, &self.read, monitor);
             return Ok(Input::Volume(self.grays(volume.map_err(PointsError::from)?)?));
         }
-        // From here on the file is open, and nothing opens it again.
+        // Everything below reads this open file and does not open it again.
         let file = OpenFile::open(input).map_err(PointsError::from)?;
-        if self.read.raw.is_none() && self.of_points().is_of_points(&file)? {
-            let (mut points, mut facts) = read_model_file(&file, &self.of_points())?;
-            if let Some(range) = &mut facts.range {
+        if self.read.raw.is_none() && self.of_points().holds_points(&file)? {
+            let (mut points, mut metadata) = read_model_file(&file, &self.of_points())?;
+            if let Some(range) = &mut metadata.range {
                 let written = self.written(*range);
                 if written != *range {
                     to_gray(&mut points, range);
                     *range = written;
                 }
             }
-            return Ok(Input::Points(points, facts));
+            return Ok(Input::Points(points, metadata));
         }
         let volume = volume::read_file(&file, &self.read, monitor).map_err(PointsError::from)?;
         Ok(Input::Volume(self.grays(volume)?))
     }
 
-    /// A volume in gray levels. One that has gray levels stays as it is, unless the recipe has a range.
+    /// Maps a volume to gray levels. One that has gray levels is left unchanged, unless the recipe has a range.
     ///
     /// # Errors
     /// A range that is empty, or too narrow for a sample.
@@ -96,7 +96,7 @@ impl Recipe {
         Ok(Grays { volume, range, written: self.written(range) })
     }
 
-    /// The volume in the space that its points are going to be in.
+    /// The volume in the coordinates that its points will have.
     ///
     /// # Errors
     /// The errors of [`Recipe::place`].
@@ -111,7 +111,7 @@ fn is_sample(input: &Path) -> bool {
     input.to_str().is_some_and(|name| name.starts_with("sample:"))
 }
 
-/// Gives points gray levels for values. As in a volume, they are of single precision.
+/// Maps the values of points to gray levels, in single precision as in a volume.
 pub(super) fn to_gray(points: &mut Points, range: &GrayRange) {
     let gray = |value: &mut f64| *value = f64::from(range.gray(*value) as f32);
     points.values.iter_mut().flatten().for_each(gray);

@@ -1,4 +1,4 @@
-//! All stages in one call: a [`Recipe`] holds their options, and makes a shape of a volume or of points. The crate's
+//! All stages in one call: a [`Recipe`] holds their options, and turns a volume or points into a shape. The crate's
 //! first page has an example.
 
 mod choice;
@@ -26,31 +26,31 @@ use crate::progress::Stage;
 use crate::shape::{AlphaShape, alpha_shape_monitored};
 use crate::volume::Volume;
 
-/// A shape, and how it came about.
+/// A shape, and how it was made.
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct Model {
-    /// The shape; it knows what its coordinates mean.
+    /// The shape, with the axes and unit of its coordinates.
     pub shape: AlphaShape,
-    /// The α it is at.
+    /// The α of the shape.
     pub parameter: Parameter,
-    /// How its points came about.
+    /// Where its points come from.
     pub origin: Origin,
 }
 
 impl Recipe {
-    /// The shape of a volume, which is turned into gray levels if it has others.
+    /// The shape of a volume, whose values are mapped to gray levels first if needed.
     ///
     /// # Errors
-    /// Whatever a stage refuses.
+    /// The errors of its stages.
     pub fn run(&self, volume: Volume) -> Result<Model, PipelineError> {
         self.run_monitored(volume, &Monitor::noop())
     }
 
-    /// With a monitor, which hears of each stage and can cancel it.
+    /// With a monitor, which receives the progress of each stage and can cancel the work.
     ///
     /// # Errors
-    /// Whatever a stage refuses, and [`PipelineError::Cancelled`].
+    /// The errors of its stages, and [`PipelineError::Cancelled`].
     pub fn run_monitored(&self, volume: Volume, monitor: &Monitor) -> Result<Model, PipelineError> {
         let source = self.source(self.grays(volume)?)?;
         self.finish(self.weighed(&source, Values::Written, monitor)?, monitor)
@@ -59,28 +59,29 @@ impl Recipe {
     /// The shape of scattered points.
     ///
     /// # Errors
-    /// Whatever a stage refuses.
+    /// The errors of its stages.
     pub fn run_points(&self, points: Points) -> Result<Model, PipelineError> {
         self.run_points_monitored(points, &Monitor::noop())
     }
 
-    /// With a monitor, which hears of each stage and can cancel it.
+    /// With a monitor, which receives the progress of each stage and can cancel the work.
     ///
     /// # Errors
-    /// Whatever a stage refuses, and [`PipelineError::Cancelled`].
+    /// The errors of its stages, and [`PipelineError::Cancelled`].
     pub fn run_points_monitored(
         &self,
         points: Points,
         monitor: &Monitor,
     ) -> Result<Model, PipelineError> {
-        let facts = ModelMetadata::default();
-        self.finish(self.weighed_points(points, &facts, Values::Written, monitor)?, monitor)
+        let metadata = ModelMetadata::default();
+        self.finish(self.weighed_points(points, &metadata, Values::Written, monitor)?, monitor)
     }
 
-    /// The weighted points of an input, and the volume that they come from. The monitor hears of each stage.
+    /// The weighted points of an input, and the volume that they come from, if any. Each stage is reported to the
+    /// monitor.
     ///
     /// # Errors
-    /// Whatever a stage refuses.
+    /// The errors of its stages.
     pub fn weigh(
         &self,
         input: Input,
@@ -88,8 +89,8 @@ impl Recipe {
         monitor: &Monitor,
     ) -> Result<(Weighed, Option<Source>), PipelineError> {
         match input {
-            Input::Points(points, facts) => {
-                Ok((self.weighed_points(points, &facts, values, monitor)?, None))
+            Input::Points(points, metadata) => {
+                Ok((self.weighed_points(points, &metadata, values, monitor)?, None))
             }
             Input::Volume(grays) => {
                 let source = self.source(grays)?;
@@ -98,10 +99,10 @@ impl Recipe {
         }
     }
 
-    /// The weighted points of a volume. The monitor hears of each stage.
+    /// The weighted points of a volume. Each stage is reported to the monitor.
     ///
     /// # Errors
-    /// Whatever a stage refuses.
+    /// The errors of its stages.
     pub fn weighed(
         &self,
         source: &Source,
@@ -139,53 +140,53 @@ impl Recipe {
         Ok(weighed)
     }
 
-    /// The points of a file, weighted, with what it states about them: α by default is the one there. The monitor
-    /// hears of each stage.
+    /// The weighted points of a file with this metadata. The default α is the stored one, if any. Each stage is
+    /// reported to the monitor.
     ///
     /// # Errors
-    /// Whatever a stage refuses.
+    /// The errors of its stages.
     pub fn weighed_points(
         &self,
         mut points: Points,
-        facts: &ModelMetadata,
+        metadata: &ModelMetadata,
         values: Values,
         monitor: &Monitor,
     ) -> Result<Weighed, PipelineError> {
-        if let (Values::Gray, Some(range)) = (values, &facts.range) {
+        if let (Values::Gray, Some(range)) = (values, &metadata.range) {
             to_gray(&mut points, range);
         }
         let origin = Origin {
-            coordinates: facts.coordinates,
+            coordinates: metadata.coordinates,
             weighting: self.weighting_of(&points),
             truncation: None,
-            grid: facts.grid,
-            range: facts.range,
+            grid: metadata.grid,
+            range: metadata.range,
             ended: None,
             of_radii: points.of_radii,
             folded: None,
             fit: None,
         };
-        if let (Some(cell), None) = (facts.cell, self.periodic) {
+        if let (Some(cell), None) = (metadata.cell, self.periodic) {
             tracing::warn!(
                 "the file states a cell in which points repeat, and it is not used: {cell}"
             );
         }
         let unit = origin.coordinates.unit;
-        let stored = facts.alpha.filter(|_| self.alpha == AlphaRule::Default);
+        let stored = metadata.alpha.filter(|_| self.alpha == AlphaRule::Default);
         let stored = stored.map(|alpha| Parameter { alpha, unit, origin: ParameterOrigin::Stored });
         let parameter = stored.or_else(|| self.alpha.given(unit));
         let mut weighed = Weighed::new(points, origin, parameter, monitor)?;
-        weighed.recipe = Some(facts.recipe.clone().unwrap_or_else(|| self.to_json()));
+        weighed.recipe = Some(metadata.recipe.clone().unwrap_or_else(|| self.to_json()));
         Ok(weighed)
     }
 
-    /// The shape of weighted points. The monitor hears of each stage.
+    /// The shape of weighted points. Each stage is reported to the monitor.
     ///
     /// # Errors
-    /// Whatever the stage refuses, and [`PipelineError::Radii`].
+    /// The errors of its stages, and [`PipelineError::Radii`].
     pub fn finish(&self, mut weighed: Weighed, monitor: &Monitor) -> Result<Model, PipelineError> {
         weighed.on_torus(self.periodic)?;
-        let parameter = weighed.find_on(self.periodic, monitor)?;
+        let parameter = weighed.find_parameter_on(self.periodic, monitor)?;
         let options = self.shape_of(parameter)?;
         Stage::Shape.begin(monitor)?;
         let Weighed { points, origin, .. } = weighed;

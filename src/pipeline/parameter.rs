@@ -14,7 +14,7 @@ use crate::volume::{Frame, LengthUnit, Volume};
 
 /// Which α a shape is made at.
 ///
-/// It is written as `default`, `auto` or a number.
+/// Serialised as `default`, `auto` or a number.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(into = "String", try_from = "String")]
 #[non_exhaustive]
@@ -22,10 +22,10 @@ pub enum AlphaRule {
     /// For a volume 10 h², h³ being the volume of a voxel; [`AlphaRule::Auto`] for scattered points.
     #[default]
     Default,
-    /// The smallest at which all points are in one solid component ([`Filtration::one_region`]). Where
-    /// weights are in proportion to α, that of the points without weights.
+    /// The smallest α at which all points are in one solid component ([`Filtration::one_region`]); if weights are
+    /// proportional to α, that of the points without weights.
     Auto,
-    /// This.
+    /// This α.
     Given(Alpha),
 }
 
@@ -67,7 +67,7 @@ impl TryFrom<String> for AlphaRule {
 #[serde(into = "ParameterFields")]
 #[non_exhaustive]
 pub struct Parameter {
-    /// A squared length.
+    /// α, a squared length.
     pub alpha: Alpha,
     /// Unit of length; α is in its square.
     pub unit: LengthUnit,
@@ -84,11 +84,11 @@ pub enum ParameterOrigin {
     Given,
     /// Ten squared voxels, as in the paper.
     Default,
-    /// The file that points come from has it.
+    /// Stored in the file of points.
     Stored,
     /// The smallest at which all points are in one solid component.
     Auto,
-    /// Suggested for the points without weights, as weights are in proportion to it.
+    /// The same for the points without weights, as the weights are proportional to α.
     AutoUnweighted,
 }
 
@@ -106,7 +106,7 @@ struct ParameterFields {
 const SQUARED_VOXELS: f64 = 10.0;
 
 impl AlphaRule {
-    /// The α of a volume's points; `None` where it is to be found.
+    /// The α for the points of a volume; `None` if it is still to be found.
     ///
     /// # Errors
     /// A voxel so large that 10 h² is not finite.
@@ -118,7 +118,7 @@ impl AlphaRule {
         self.of_frame(volume.frame(), units)
     }
 
-    /// The α for points of a grid.
+    /// [`of_volume`](Self::of_volume) for the grid of a volume.
     pub(crate) fn of_frame(
         self,
         frame: &Frame,
@@ -133,7 +133,7 @@ impl AlphaRule {
         Ok(Some(Parameter { alpha, unit, origin: ParameterOrigin::Default }))
     }
 
-    /// The α given; `None` where it is to be found.
+    /// The given α; `None` if it is still to be found.
     pub fn given(self, unit: LengthUnit) -> Option<Parameter> {
         match self {
             Self::Given(alpha) => Some(Parameter { alpha, unit, origin: ParameterOrigin::Given }),
@@ -148,7 +148,7 @@ impl Parameter {
         Self { alpha: filtration.one_region(), unit, origin: ParameterOrigin::Auto }
     }
 
-    /// The α for points, which are triangulated for it; on a torus, if there is one.
+    /// Finds α for points, optionally on a torus, from their triangulation.
     pub(super) fn find(
         points: &WeightedPoints,
         torus: Option<Torus>,
@@ -158,7 +158,7 @@ impl Parameter {
         Ok(Self::of_filtration(&Filtration::monitored(torus, points.clone(), monitor)?, unit))
     }
 
-    /// The α that weights are to be in proportion to: that of the points alone.
+    /// Finds the α that weights will be proportional to: that of the points without weights.
     pub(super) fn find_unweighted(
         points: &Points,
         unit: LengthUnit,

@@ -11,9 +11,9 @@ use crate::points::{Columns, PointOptions, Points, Selection, Units, Weighting};
 use crate::shape::{Alpha, Balls, Engine, ShapeError, ShapeOptions, Torus};
 use crate::volume::{Coordinates, Frame, Gray, GrayRange, LengthUnit, ReadOptions, Space};
 
-/// The options of all stages, from an input to its shape. By default those of the paper, without weights.
+/// The options of all stages, from an input to its shape. The defaults are those of the paper, without weights.
 ///
-/// The command makes one of its arguments, a plan of blocks holds one, and so can a file: it can be serialised.
+/// Recipes can be serialised. The command builds one from its arguments, and a plan of blocks stores one.
 ///
 /// ```
 /// use walpha::{Alpha, Recipe, Weighting};
@@ -31,35 +31,35 @@ use crate::volume::{Coordinates, Frame, Gray, GrayRange, LengthUnit, ReadOptions
 pub struct Recipe {
     /// How a volume is read.
     pub read: ReadOptions,
-    /// What the columns of a table of points hold; `None` leaves that to its header or its numbers.
+    /// The columns of a table of points; `None` takes them from its header or guesses them from its numbers.
     pub columns: Option<Columns>,
-    /// The values that become gray 0 and 255; `None` leaves unsigned bytes as they are, and takes the smallest
-    /// and largest value of others.
+    /// The values that become gray 0 and 255; `None` leaves unsigned bytes unchanged, and otherwise takes the
+    /// smallest and largest value.
     pub gray: Option<GrayRange>,
     /// Whether points get gray levels rather than the values of the input.
     pub gray_out: bool,
-    /// What coordinates are measured in; `None` is [`Units::World`] where the input states a unit of length, a spacing
-    /// or an origin, else [`Units::Voxel`].
+    /// Units of the coordinates; `None` is [`Units::World`] if the input states a unit of length, a spacing or an
+    /// origin, and otherwise [`Units::Voxel`].
     pub units: Option<Units>,
-    /// Direction of world coordinates, where the input states the patient's orientation; `None` is [`Space::Lps`].
+    /// Directions of the world axes, if the input states the patient's orientation; `None` is [`Space::Lps`].
     pub space: Option<Space>,
     /// How the volume is transformed and truncated.
     pub haar: HaarOptions,
     /// Which samples become points.
     pub choice: Choice,
-    /// Drops samples below this value of the input; instead of [`Selection::gray_min`].
+    /// Leaves out samples below this value of the input; an alternative to [`Selection::gray_min`].
     pub value_min: Option<f64>,
-    /// Fits the values of points to the volume by least squares; `None` leaves them those of its samples.
+    /// Fits the values of points to the volume by least squares; `None` keeps the values of its samples.
     pub refit: Option<Refit>,
-    /// Where weights come from; `None` is a column of the input, or else they are 0.
+    /// Where weights come from; `None` is the column of the input, or 0 if there is none.
     pub weighting: Option<Weighting>,
     /// α, or how to find it.
     pub alpha: AlphaRule,
-    /// What α + ω means.
+    /// How α and ω define the balls.
     pub balls: Balls,
-    /// Which program computes the shape.
+    /// Which engine computes the shape.
     pub engine: Engine,
-    /// Whether the simplices outside the shape are listed, too ([`ShapeOptions::exterior`]).
+    /// Whether the simplices outside the shape are listed too ([`ShapeOptions::exterior`]).
     pub exterior: bool,
     /// Whether hidden points are listed ([`ShapeOptions::hidden`]).
     pub hidden: bool,
@@ -69,7 +69,7 @@ pub struct Recipe {
     pub memory: Option<u64>,
     /// Whether points that span no volume are an error ([`ShapeOptions::refuse_flat`]).
     pub refuse_flat: bool,
-    /// The periodic box, if there is one; written as its sides.
+    /// The periodic box, if there is one; serialised as its sides.
     #[serde(with = "sides")]
     pub periodic: Option<Torus>,
 }
@@ -97,7 +97,8 @@ impl Recipe {
         periodic: Option<Torus>,
     }
 
-    /// What differs from the default, as a JSON object, from which it can be deserialised: what a `.wvm` keeps.
+    /// The options that differ from the default, as a JSON object from which the recipe can be deserialised. A
+    /// `.wvm` stores this.
     ///
     /// # Panics
     /// Never: all options can be serialised.
@@ -118,22 +119,22 @@ impl Recipe {
         Self { gray: gray.into(), ..self }
     }
 
-    /// Sets `units`, or leaves them to the input.
+    /// Sets `units`; `None` leaves them to the input.
     pub fn units(self, units: impl Into<Option<Units>>) -> Self {
         Self { units: units.into(), ..self }
     }
 
-    /// Sets `space`, or leaves it at LPS.
+    /// Sets `space`; `None` is LPS.
     pub fn space(self, space: impl Into<Option<Space>>) -> Self {
         Self { space: space.into(), ..self }
     }
 
-    /// Sets `refit`, or leaves values as they are.
+    /// Sets `refit`; `None` keeps the values of the samples.
     pub fn refit(self, to: impl Into<Option<Refit>>) -> Self {
         Self { refit: to.into(), ..self }
     }
 
-    /// Sets `weighting`, or leaves weights to the input.
+    /// Sets `weighting`; `None` leaves weights to the input.
     pub fn weighting(self, weighting: impl Into<Option<Weighting>>) -> Self {
         Self { weighting: weighting.into(), ..self }
     }
@@ -161,7 +162,7 @@ impl Recipe {
         if self.gray_out { GrayRange::IDENTITY } else { range }
     }
 
-    /// A grid in the space that its points are in, and what their coordinates are measured in.
+    /// The grid in the coordinates that its points will have, and their units.
     ///
     /// # Errors
     /// [`PipelineError::SpaceOfVoxels`] and [`PipelineError::UnknownSpace`].
@@ -179,7 +180,7 @@ impl Recipe {
         Ok((frame.to(Coordinates { space, unit }), units))
     }
 
-    /// The selection by differences of a volume whose values `range` are gray 0..255; `None` where points are chosen
+    /// The selection by differences in a volume whose values `range` are gray 0..255; `None` if points are chosen
     /// adaptively.
     pub(crate) fn selection(&self, range: &GrayRange) -> Option<Selection> {
         match self.choice.at_least(self.value_min.map(|value| range.gray(value))) {
@@ -208,14 +209,14 @@ impl Recipe {
             .periodic(self.periodic)
     }
 
-    /// Checks before all work that the options of the shape are compatible, as far as α is known.
+    /// Checks in advance that the options of the shape are compatible, as far as α is known.
     ///
     /// # Errors
     /// Those of [`ShapeOptions::check`].
     pub fn check(&self) -> Result<(), ShapeError> {
         let alpha = match self.alpha {
             AlphaRule::Given(alpha) => alpha,
-            // What is found is finite.
+            // An α that is found is finite.
             AlphaRule::Auto | AlphaRule::Default => Alpha::ZERO,
         };
         self.shape_at(alpha).check()
@@ -230,7 +231,7 @@ impl Recipe {
     }
 }
 
-/// Drops fields that are null: those are options that are absent by default.
+/// Drops null fields: they are options that are absent by default.
 fn drop_nulls(value: &mut Value) {
     if let Value::Object(fields) = value {
         fields.retain(|_, value| !value.is_null());
@@ -266,7 +267,7 @@ mod tests {
     use crate::SelectionRule;
     use crate::pipeline::Goal;
 
-    /// Also what JSON has no number for, and what α is to be found.
+    /// Including an infinite α, which JSON has no number for, and one that is to be found.
     #[test]
     fn recipes_survive_json() {
         let base = Recipe::new()

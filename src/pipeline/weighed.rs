@@ -11,28 +11,28 @@ use crate::progress::Stage;
 use crate::shape::{Alpha, Torus};
 use crate::volume::{Coordinates, GrayRange};
 
-/// Weighted points, and how they came about.
+/// Weighted points, and how they were made.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Weighed {
-    /// Their values are those that [`Values`](super::Values) asked for.
+    /// The points, with the values that [`Values`](super::Values) asked for.
     pub points: WeightedPoints,
-    /// How it all came about.
+    /// Where the points come from.
     pub origin: Origin,
-    /// α; `None` where it is still to be found ([`Weighed::find_parameter`]), because weights do not need it.
+    /// α; `None` while it is still to be found ([`Weighed::find_parameter`]) because weights do not need it.
     pub parameter: Option<Parameter>,
     /// The recipe that made them ([`Recipe::to_json`](super::Recipe::to_json)), or else that of the file they were read from.
     pub recipe: Option<String>,
-    /// By what the points are ordered, where they were selected from a volume.
+    /// What orders the points, if they were selected from a volume.
     importance: Option<Importance>,
 }
 
-/// How much points matter.
+/// The order of importance of points.
 #[derive(Clone, Debug)]
 pub(super) enum Importance {
     /// By their differences L.
     Differences(Vec<f64>),
-    /// They are in this order, by their indices.
+    /// In this order, given by their indices.
     Order(Vec<u32>),
 }
 
@@ -46,23 +46,22 @@ pub struct Origin {
     pub weighting: Weighting,
     /// The truncation of the volume.
     pub truncation: Option<Truncation>,
-    /// The grid that they are samples of, where that is known.
+    /// The grid whose samples the points are, if known.
     pub grid: Option<SampleGrid>,
-    /// The values that were gray 0 and 255, where a file of points states them.
+    /// The values that were gray 0 and 255, if a file of points states them.
     pub range: Option<GrayRange>,
-    /// Adaptive selection ended before it had as many points as asked for.
+    /// The goal of adaptive selection, if it was reached with fewer points than allowed.
     pub ended: Option<Adaptive>,
     /// Whether their weights are squares of radii.
     pub of_radii: bool,
-    /// How many of them lay outside of the periodic box, and were moved to their copies inside; `None` without
-    /// a box.
+    /// Number of points outside the periodic box, which are moved to their copies inside; `None` without a box.
     pub folded: Option<usize>,
-    /// How values were fitted to the volume; `None` where they are those of its samples.
+    /// How values were fitted to the volume; `None` if they are those of its samples.
     pub fit: Option<Fit>,
 }
 
 impl Weighed {
-    /// Gives points their weights, and finds α first where these are in proportion to it.
+    /// Gives points their weights, and finds α first if the weights are proportional to it.
     pub(super) fn new(
         mut points: Points,
         origin: Origin,
@@ -76,7 +75,7 @@ impl Weighed {
             points.differences = Some(scattered_difference(&points)?);
         }
         if parameter.is_none() && weighting.needs_differences() {
-            // Weights are checked before the search.
+            // Checks the weights before the costly search for α.
             weights(&points, weighting, Alpha::ZERO)?;
             Stage::Alpha.begin(monitor)?;
             parameter = Some(Parameter::find_unweighted(&points, coordinates.unit, monitor)?);
@@ -88,13 +87,13 @@ impl Weighed {
         Ok(Self { points, origin, parameter, recipe: None, importance: None })
     }
 
-    /// The same points with what they are ordered by.
+    /// The same points with their order of importance.
     pub(super) fn ordered(self, importance: Importance) -> Self {
         Self { importance: Some(importance), ..self }
     }
 
-    /// The points by their indices, the most important first, where they were selected from a volume: the
-    /// first so many are what a smaller count would have selected. O(n log n).
+    /// The indices of the points, the most important first, if they were selected from a volume. The first k are
+    /// what a count of k would have selected, unless points were exchanged. O(n log n).
     pub fn order(&self) -> Option<Vec<u32>> {
         Some(match self.importance.as_ref()? {
             Importance::Differences(differences) => largest_first(differences),
@@ -105,13 +104,13 @@ impl Weighed {
     /// α, found now if weights did not need it.
     ///
     /// # Errors
-    /// What a [`Filtration`](crate::ladder::Filtration) refuses.
+    /// The errors of a [`Filtration`](crate::ladder::Filtration).
     pub fn find_parameter(&mut self, monitor: &Monitor) -> Result<Parameter, PipelineError> {
-        self.find_on(None, monitor)
+        self.find_parameter_on(None, monitor)
     }
 
-    /// The filtration on a torus, if there is one.
-    pub(super) fn find_on(
+    /// [`find_parameter`](Self::find_parameter), on a torus if there is one.
+    pub(super) fn find_parameter_on(
         &mut self,
         torus: Option<Torus>,
         monitor: &Monitor,
@@ -125,11 +124,11 @@ impl Weighed {
         Ok(found)
     }
 
-    /// Says that the points are those of a torus, if there is one, and counts those outside of its box.
+    /// Marks the points as those of a torus, if there is one, and counts the points outside its box.
     ///
     /// # Errors
-    /// [`PipelineError::PeriodicWeights`]: weights of scattered points that come from differences to neighbours
-    /// know nothing of the copies beyond the sides of the box.
+    /// [`PipelineError::PeriodicWeights`]: weights of scattered points from differences to neighbours do not take
+    /// the copies across the sides of the box into account.
     pub fn on_torus(&mut self, torus: Option<Torus>) -> Result<(), PipelineError> {
         let Some(torus) = torus else { return Ok(()) };
         let Origin { weighting, truncation, .. } = self.origin;

@@ -5,7 +5,7 @@ use walpha_regular::{Sites, Triangulation, TriangulationError, triangulate};
 use super::{Points, PointsError};
 use crate::volume::Volume;
 
-/// Rows of voxels handed to a thread at once, at least.
+/// Minimum number of voxel rows in one parallel task.
 const ROWS: usize = 32;
 
 /// The difference L of each voxel, `[z, y, x]`: a sixth of the sum of |f(voxel) − f(neighbour)|
@@ -21,7 +21,7 @@ pub fn difference(volume: &Volume) -> Array3<f64> {
     let rows = differences.par_chunks_mut(nx).with_min_len(ROWS).enumerate();
     rows.for_each(|(row, differences)| {
         let (y, z) = (row % ny, row / ny);
-        // Where there is no neighbour the row itself stands in, and adds 0.
+        // The row itself replaces a missing neighbour, and adds 0.
         let at = |y: usize, z: usize| &samples[(z * ny + y) * nx..][..nx];
         let neighbours = [
             at(y.saturating_sub(1), z),
@@ -34,7 +34,7 @@ pub fn difference(volume: &Volume) -> Array3<f64> {
     Array3::from_shape_vec(volume.dims().shape(), differences).expect("one for each voxel")
 }
 
-/// Differences along a row, with its own divisor: the worked example of the paper's Table 1.
+/// Differences along a single row, with a given divisor: the worked example of the paper's Table 1.
 ///
 /// ```
 /// use walpha::points::difference_row;
@@ -47,18 +47,18 @@ pub fn difference_row(row: &[f32], divisor: f64) -> Vec<f64> {
     differences
 }
 
-/// The differences of a row from itself and from the rows beside it.
-fn row_differences(row: &[f32], beside: [&[f32]; 4], divisor: f64, differences: &mut [f64]) {
+/// The differences of a row, from neighbours in the row itself and in the four rows next to it.
+fn row_differences(row: &[f32], neighbours: [&[f32]; 4], divisor: f64, differences: &mut [f64]) {
     let n = row.len();
-    let [a, b, c, d] = beside.map(|row| &row[..n]);
-    let one = |i: usize, left: f32, right: f32| {
+    let [a, b, c, d] = neighbours.map(|row| &row[..n]);
+    let at = |i: usize, left: f32, right: f32| {
         let value = f64::from(row[i]);
         let from = |other: f32| (value - f64::from(other)).abs();
         let sum = from(left) + from(right) + from(a[i]) + from(b[i]) + from(c[i]) + from(d[i]);
         sum / divisor
     };
     let differences = &mut differences[..n];
-    // Slices of one length, so that the middle is vectorised; the ends are written again below.
+    // Slices of equal length let the compiler vectorise the middle; the ends follow below.
     if n > 2 {
         let m = n - 2;
         let (left, here, right) = (&row[..m], &row[1..][..m], &row[2..][..m]);
@@ -72,46 +72,46 @@ fn row_differences(row: &[f32], beside: [&[f32]; 4], divisor: f64, differences: 
         }
     }
     if n > 0 {
-        differences[0] = one(0, row[0], row[1.min(n - 1)]);
-        differences[n - 1] = one(n - 1, row[n.saturating_sub(2)], row[n - 1]);
+        differences[0] = at(0, row[0], row[1.min(n - 1)]);
+        differences[n - 1] = at(n - 1, row[n.saturating_sub(2)], row[n - 1]);
     }
 }
 
 /// The difference L of each scattered point: the mean of |F(point) − F(neighbour)| over its
-/// neighbours in the Delaunay triangulation of the places.
+/// neighbours in the Delaunay triangulation of the positions.
 ///
-/// Of several points at one place the first is in the triangulation; each differs from the
-/// neighbours of that place by its own value. On a regular grid, where neighbours on one sphere are
-/// many, the symbolic perturbation chooses among them. Sums in f64 in ascending order of the
-/// neighbours. The time and memory of a
-/// triangulation.
+/// Of several points at one position only the first is in the triangulation; all share its neighbours, and
+/// each uses its own value. On a regular grid, where many neighbours lie on one sphere, the symbolic
+/// perturbation chooses among them. Sums are in f64, in ascending order of the neighbours. Takes the time and
+/// memory of a triangulation.
 ///
 /// # Errors
-/// Points without values, and what [`Sites`] refuses: numbers that are not finite, fewer than four
-/// places, or places in one plane.
+/// Points without values, and the errors of [`Sites`]: numbers that are not finite, fewer than four distinct
+/// positions, or coplanar positions.
 pub fn scattered_difference(points: &Points) -> Result<Vec<f64>, PointsError> {
     let values = points.values.as_deref().ok_or(PointsError::NoValues)?;
     let unweighted = vec![0.0; points.len()];
     let sites = Sites::new(&points.positions, &unweighted).map_err(TriangulationError::from)?;
     let neighbours = Neighbours::of(&triangulate(&sites)?);
 
-    let mut place: Vec<u32> = vec![0; points.len()];
+    let mut site_of: Vec<u32> = vec![0; points.len()];
     for (site, &point) in sites.input().iter().enumerate() {
-        place[point as usize] = site as u32;
+        site_of[point as usize] = site as u32;
     }
-    for &[went, stayed] in sites.duplicates() {
-        place[went as usize] = place[stayed as usize];
+    for &[removed, kept] in sites.duplicates() {
+        site_of[removed as usize] = site_of[kept as usize];
     }
     let difference = |(&value, &site): (&f64, &u32)| {
         let around = neighbours.around(site);
         let from = |&other: &u32| (value - values[sites.input()[other as usize] as usize]).abs();
         around.iter().map(from).sum::<f64>() / around.len() as f64
     };
-    Ok(values.iter().zip(&place).map(difference).collect())
+    Ok(values.iter().zip(&site_of).map(difference).collect())
 }
 
-/// The neighbours of each site, ascending, in one row.
+/// The neighbours of all sites, ascending, in one list.
 struct Neighbours {
+    /// End of the neighbours of each site in `sites`.
     ends: Vec<usize>,
     sites: Vec<u32>,
 }
@@ -119,11 +119,12 @@ struct Neighbours {
 impl Neighbours {
     fn of(delaunay: &Triangulation) -> Self {
         let ghost = delaunay.ghost();
-        let beside = |cell: &[u32; 4]| {
+        let edges_of = |cell: &[u32; 4]| {
             let [a, b, c, d] = *cell;
             [[a, b], [a, c], [a, d], [b, c], [b, d], [c, d]]
         };
-        let edges = delaunay.cells().iter().flat_map(beside).filter(|edge| !edge.contains(&ghost));
+        let edges =
+            delaunay.cells().iter().flat_map(edges_of).filter(|edge| !edge.contains(&ghost));
         let mut pairs: Vec<[u32; 2]> = edges.flat_map(|[a, b]| [[a, b], [b, a]]).collect();
         pairs.sort_unstable();
         pairs.dedup();
@@ -134,7 +135,7 @@ impl Neighbours {
         Self { ends, sites: pairs.into_iter().map(|[_, neighbour]| neighbour).collect() }
     }
 
-    /// Every site of an unweighted triangulation is a vertex, and has neighbours.
+    /// The neighbours of a site. Never empty: every site of an unweighted triangulation is a vertex.
     fn around(&self, site: u32) -> &[u32] {
         let site = site as usize;
         let start = if site == 0 { 0 } else { self.ends[site - 1] };

@@ -17,14 +17,14 @@ pub enum PointsError {
     /// A number of the selection is out of its range.
     #[error("{what} {given} makes no sense")]
     Number {
-        /// Which one.
+        /// Which number.
         what: &'static str,
         /// The number given.
         given: f64,
-        /// What would do.
+        /// What is valid instead.
         need: &'static str,
     },
-    /// A column of another length than the points.
+    /// A column whose length differs from the number of points.
     #[error(transparent)]
     Lengths(#[from] LengthsError),
     /// More voxels asked for than there are, or none.
@@ -42,10 +42,10 @@ pub enum PointsError {
     Masked {
         /// The least gray level asked for.
         least: f64,
-        /// The highest there is.
+        /// The highest gray level of the truncated volume.
         highest: f64,
     },
-    /// The threshold or the mask leaves no voxel.
+    /// The threshold, or the mask, leaves no voxel.
     #[error("none of {voxels} voxels is selected")]
     Empty {
         /// Voxels of the volume.
@@ -71,7 +71,7 @@ pub enum PointsError {
     /// Scattered points without values have no differences.
     #[error("differences of scattered points need a column `value` in the input")]
     NoValues,
-    /// Scattered points whose neighbours cannot be found.
+    /// The neighbours of scattered points cannot be found.
     #[error("the neighbours of the points cannot be found: {0}")]
     Neighbours(#[from] TriangulationError),
     /// The input has no weights.
@@ -85,7 +85,7 @@ pub enum PointsError {
         /// Its weight.
         weight: f64,
     },
-    /// A point file is not what it should be.
+    /// A file of points is invalid or unsupported.
     #[error("{}: {reason}", shown(path))]
     Format {
         /// The file.
@@ -102,7 +102,7 @@ pub enum PointsError {
 }
 
 impl PointsError {
-    /// What to do about it, where there is something.
+    /// What to do about it, if anything.
     pub fn advice(&self) -> Option<Advice> {
         Some(match self {
             Self::Number { need, .. } => format!("give {need}").into(),

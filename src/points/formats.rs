@@ -1,5 +1,5 @@
-//! The formats of points: what each is called, how it is recognised, read and written. Whatever else
-//! lists formats is made from the [table](FORMATS).
+//! The formats of points: their names, and how each is recognised, read and written. Every other list of
+//! formats is derived from the [table](FORMATS).
 
 use std::fmt;
 use std::io::{self, Write};
@@ -21,14 +21,14 @@ use super::{CellCount, Columns, ModelMetadata, Packing, Points, PointsError, Wei
 use crate::volume::VtkPoints;
 use crate::volume::{NpyFile, OpenFile, Reason, UnknownFormat, built, is_npy, is_vtk, is_vtk_xml};
 
-/// Reads a file whose columns may be named.
+/// Reads the points of a file; the user may name its columns.
 type Read = fn(&OpenFile, Option<&Columns>) -> Result<Points, PointsError>;
 
-/// Reads a file without so many of its last layers, and what it states of its points besides.
+/// Reads the points of a file, without its last layers if a level is given, and their metadata.
 type ReadModel =
     fn(&OpenFile, Option<&Columns>, u32) -> Result<(Points, ModelMetadata), PointsError>;
 
-/// Counts what a file lists besides points.
+/// Counts the cells of a file.
 type CountCells = fn(&OpenFile) -> Result<Vec<CellCount>, PointsError>;
 
 /// Reads the cells of a file as a complex.
@@ -36,30 +36,31 @@ type ReadComplex = fn(&OpenFile) -> Result<ComplexFile, PointsError>;
 
 /// A format of points.
 pub struct PointFormat {
-    /// For people.
+    /// Its name, as users know it.
     pub name: &'static str,
     /// Extensions, without dots.
     pub extensions: &'static [&'static str],
-    /// Whether a user may say what its columns are.
+    /// Whether a user may name its columns.
     pub takes_columns: bool,
-    /// The feature that reads it; `None` where it needs none.
+    /// The Cargo feature that its reader needs, if any.
     pub feature: Option<&'static str>,
-    /// Its target for fuzzing.
+    /// Its fuzz target.
     pub fuzzed_by: &'static str,
     /// Its writers.
     pub writers: &'static [PointWriter],
+    /// Whether a file that starts with these bytes is of this format.
     begins: fn(&[u8]) -> bool,
-    /// Whether a file of it holds points, where it may hold others.
+    /// Whether a file holds points, for formats that may hold something else.
     holds_points: fn(&OpenFile) -> Result<bool, PointsError>,
     /// Whether its files may hold several levels.
     has_levels: bool,
-    /// Reads a file that states nothing of its points besides.
+    /// Reader of a format without metadata.
     read: Option<Read>,
-    /// Reads a file that may. Where both are `None`, the format was left out of the build.
+    /// Reader of a format with metadata or levels. If both are `None`, the format was left out of the build.
     read_model: Option<ReadModel>,
-    /// What it lists besides points, where it may list cells.
+    /// Counts its cells, if the format has any.
     pub(super) cells: Option<CountCells>,
-    /// Reads its cells, where they may be a complex.
+    /// Reads its cells as a complex, if the format can hold one.
     pub(super) read_complex: Option<ReadComplex>,
 }
 
@@ -68,12 +69,12 @@ pub struct PointFormat {
 pub struct PointWriter {
     /// The extension without its dot.
     pub extension: &'static str,
-    /// Whether it keeps what is known of points besides themselves ([`ModelMetadata`]), and is packed.
+    /// Whether it stores metadata ([`ModelMetadata`]) and compresses ([`Packing`]).
     pub packs: bool,
     write: WriteAll,
 }
 
-/// Writes points, with what is known of them.
+/// Writes points and their metadata.
 type WriteAll = fn(&WeightedPoints, &ModelMetadata, &Packing, &mut dyn Write) -> io::Result<()>;
 
 /// A format recognised by extension only.
@@ -93,8 +94,8 @@ const PLAIN: PointFormat = PointFormat {
     read_complex: None,
 };
 
-/// The formats of points, in the order in which they are looked for. The first is the default for
-/// files that nothing identifies.
+/// The formats of points, in the order in which they are tried. The first is the default for files of no
+/// recognised format.
 pub static FORMATS: [PointFormat; 15] = [
     PointFormat {
         name: "CSV, TSV",
@@ -212,7 +213,7 @@ pub static FORMATS: [PointFormat; 15] = [
         extensions: &["vtk"],
         fuzzed_by: "vtk_geometry",
         begins: is_vtk,
-        holds_points: are_listed,
+        holds_points: lists_points,
         read: built!("formats", |file, _| vtk::read_legacy(file)),
         cells: built!("formats", vtk::cells_of_legacy),
         ..PLAIN
@@ -253,13 +254,13 @@ pub static FORMATS: [PointFormat; 15] = [
     },
 ];
 
-/// The writers of models, where these are built in.
+/// The writers of `.wvm`, if built in.
 const MODEL_WRITERS: &[PointWriter] = &[
     #[cfg(feature = "formats")]
     PointWriter { extension: "wvm", packs: true, write: wvm::write },
 ];
 
-/// Whether a file of VTK's XML holds points.
+/// Whether a VTK XML file holds points.
 #[cfg_attr(
     not(feature = "formats"),
     expect(clippy::unnecessary_wraps, reason = "the file is not read")
@@ -274,9 +275,9 @@ fn is_geometry(file: &OpenFile) -> Result<bool, PointsError> {
     }
 }
 
-/// Whether a legacy file of VTK lists points.
-#[expect(clippy::unnecessary_wraps, reason = "what is damaged is for the reader to say")]
-fn are_listed(file: &OpenFile) -> Result<bool, PointsError> {
+/// Whether a legacy VTK file lists points.
+#[expect(clippy::unnecessary_wraps, reason = "the reader reports damaged files")]
+fn lists_points(file: &OpenFile) -> Result<bool, PointsError> {
     #[cfg(feature = "formats")]
     return Ok(VtkPoints::lists_points(file).unwrap_or(false));
     #[cfg(not(feature = "formats"))]
@@ -287,25 +288,27 @@ fn are_listed(file: &OpenFile) -> Result<bool, PointsError> {
 }
 
 impl PointFormat {
-    /// Whether it was built in.
+    /// Whether its reader is part of this build.
     pub fn is_built_in(&self) -> bool {
         self.read.is_some() || self.read_model.is_some()
     }
 
-    /// Whether it has this extension, in any case.
+    /// Whether this is one of its extensions, in any letter case.
     pub(super) fn is_named(&self, extension: &str) -> bool {
         self.extensions.iter().any(|own| own.eq_ignore_ascii_case(extension))
     }
 
+    /// Whether a file that starts with these bytes is of this format.
     pub(super) fn begins(&self, start: &[u8]) -> bool {
         (self.begins)(start)
     }
 
+    /// Whether a file of this format holds points.
     pub(super) fn holds_points(&self, file: &OpenFile) -> Result<bool, PointsError> {
         (self.holds_points)(file)
     }
 
-    /// Whether files of it may hold several levels.
+    /// Whether its files may hold several levels.
     pub fn has_levels(&self) -> bool {
         self.has_levels
     }
@@ -334,15 +337,15 @@ impl fmt::Debug for PointFormat {
 }
 
 impl PointWriter {
-    /// All there are.
+    /// All writers.
     pub fn all() -> impl Iterator<Item = &'static Self> + Clone {
         FORMATS.iter().flat_map(|format| format.writers)
     }
 
-    /// The writer a path asks for by its extension.
+    /// The writer for the extension of a path.
     ///
     /// # Errors
-    /// [`UnknownFormat`] names the ones there are.
+    /// [`UnknownFormat`], which names the known extensions.
     pub fn of(path: &Path) -> Result<&'static Self, UnknownFormat> {
         UnknownFormat::find(path, "points", Self::all().map(|writer| (writer.extension, writer)))
     }
@@ -355,19 +358,19 @@ impl PointWriter {
         self.write_model(points, &ModelMetadata::default(), &Packing::default(), out)
     }
 
-    /// The same with what is known of the points, packed as asked for; both have an effect where the
-    /// format [packs](Self::packs).
+    /// [`write`](Self::write) with metadata and packing options, which only formats that
+    /// [pack](Self::packs) use.
     ///
     /// # Errors
     /// Whatever `out` returns.
     pub fn write_model(
         &self,
         points: &WeightedPoints,
-        facts: &ModelMetadata,
+        metadata: &ModelMetadata,
         packing: &Packing,
         out: &mut dyn Write,
     ) -> io::Result<()> {
-        (self.write)(points, facts, packing, out)
+        (self.write)(points, metadata, packing, out)
     }
 }
 

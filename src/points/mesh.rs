@@ -1,4 +1,4 @@
-//! What files of points list besides points: cells of meshes, which are read as complexes where they can be.
+//! The mesh cells that a file of points may list: their counts, and reading them as a complex.
 
 use std::fmt;
 use std::path::Path;
@@ -10,17 +10,17 @@ use super::read::format;
 use super::{PointOptions, PointsError};
 use crate::volume::{OpenFile, Reason};
 
-/// How many cells of a kind a file lists.
+/// Number of cells of one kind in a file.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 #[non_exhaustive]
 pub struct CellCount {
-    /// In the plural: tetrahedra, faces.
+    /// Name of the kind, in the plural: tetrahedra, faces.
     pub kind: &'static str,
-    /// How many.
+    /// Number of cells.
     pub count: usize,
 }
 
-/// As in `200 tetrahedra`.
+/// For example `200 tetrahedra`.
 impl fmt::Display for CellCount {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { kind, count } = self;
@@ -35,12 +35,12 @@ impl CellCount {
     }
 }
 
-/// The cells that a file lists besides its points, by kind; none for a list of points alone.
+/// The cells that a file lists besides its points, by kind; empty for plain points.
 ///
 /// # Errors
 /// A file that cannot be read, or whose header is damaged.
 pub fn cells_of(path: &Path, options: &PointOptions) -> Result<Vec<CellCount>, PointsError> {
-    // Of what is no file only the name is known; where that promises no cells, the reader says what is wrong.
+    // Without a regular file only the name is known. If its format has no cells, the error is left to the reader.
     let named = || options.format_named(path);
     if !path.is_file() && named().is_none_or(|format| format.cells.is_none()) {
         return Ok(Vec::new());
@@ -53,18 +53,18 @@ pub fn cells_of(path: &Path, options: &PointOptions) -> Result<Vec<CellCount>, P
     Ok(cells.into_iter().filter(|cells| cells.count > 0).collect())
 }
 
-/// Reads the cells of a file as a complex, to be judged: of VTU, tetrahedra, triangles, edges and vertices, with
-/// the point data `weight`, and where walpha wrote the file its α and classes. Otherwise α is ∞.
+/// Reads the cells of a file as a complex for the checker. For VTU these are tetrahedra, triangles, edges and
+/// vertices with the point data `weight`, and α and classes if walpha wrote the file. Otherwise α is ∞.
 ///
 /// # Errors
-/// A format whose cells are not read, cells that are no simplices, and what [`super::read_points`] refuses.
+/// A format whose cells are not read, cells that are not simplices, and the errors of [`super::read_points`].
 pub fn read_complex(path: &Path, options: &PointOptions) -> Result<ComplexFile, PointsError> {
     let file = OpenFile::open(path)?;
     if let Some(read) = options.format_of(&file).and_then(|format| format.read_complex) {
         return read(&file);
     }
     let reason = Reason::unsupported(
-        "lists cells that are no tetrahedra of a complex",
+        "its cells cannot be read as a complex",
         "give a complex as .json, .npz or .vtu (docs/cross-checking.md)",
     );
     Err(format(path, reason))

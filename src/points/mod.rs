@@ -1,7 +1,7 @@
 //! From a volume to weighted points.
 //!
-//! Steps 5 to 7 of the paper: the difference L of each voxel of the truncated volume, the voxels
-//! of the largest, and their weights (equations 4.1 and 4.2).
+//! Steps 5 to 7 of the paper: the difference L of each voxel of the truncated volume, the selection of the
+//! voxels of largest L, and their weights (equations 4.1 and 4.2).
 //!
 //! ```
 //! use walpha::Alpha;

@@ -9,26 +9,25 @@ use crate::volume::{Coordinates, Dims, Frame, GrayRange};
 /// The grid that points are samples of.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SampleGrid {
-    /// Samples along the axes.
+    /// Number of samples along each axis.
     pub dims: Dims,
-    /// Where they lie in the world.
+    /// Position of the samples in the world.
     pub frame: Frame,
-    /// What coordinates of points are measured in.
+    /// Units of the coordinates of points.
     pub units: Units,
 }
 
-/// A cell in which points repeat, as crystals do.
+/// A unit cell that repeats, as in crystals.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cell {
-    /// Its edges, in the unit of the points.
+    /// Its edge vectors, in the unit of the points.
     pub vectors: [[f64; 3]; 3],
-    /// Along which of these points repeat.
+    /// Along which of these vectors the points repeat.
     pub repeats: [bool; 3],
 }
 
 impl Cell {
-    /// Its sides, where it is a box along the axes that repeats along all of them: then points are those of
-    /// a torus.
+    /// Its sides, if it is an axis-aligned box that repeats along all axes: the points then lie on a torus.
     pub fn sides(&self) -> Option<[f64; 3]> {
         let [[x, a, b], [c, y, d], [e, f, z]] = self.vectors;
         let is_box = [a, b, c, d, e, f] == [0.0; 6] && [x, y, z].iter().all(|&side| side > 0.0);
@@ -57,24 +56,24 @@ impl fmt::Display for Cell {
     }
 }
 
-/// What is known of weighted points besides themselves. A `.wvm` keeps it but for the cell, which extended
-/// XYZ states; other formats of points keep nothing.
+/// Metadata of weighted points. A `.wvm` stores all of it but the cell, which comes from extended XYZ; other
+/// formats of points store none.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct ModelMetadata {
-    /// The grid that they are samples of.
+    /// The grid whose samples the points are.
     pub grid: Option<SampleGrid>,
-    /// What coordinates mean.
+    /// Axes and unit of the coordinates.
     pub coordinates: Coordinates,
-    /// The α that their shape is meant to be made at, and weights in proportion to.
+    /// The α intended for their shape, which the weights may be proportional to.
     pub alpha: Option<Alpha>,
     /// The values that were gray 0 and 255.
     pub range: Option<GrayRange>,
     /// The [`Recipe`](crate::Recipe) that made them, as JSON ([`Recipe::to_json`](crate::Recipe::to_json)).
     pub recipe: Option<String>,
-    /// All points by their indices, the most important first.
+    /// Indices of all points, the most important first.
     pub order: Option<Vec<u32>>,
-    /// The cell in which they repeat.
+    /// The unit cell of periodic points.
     pub cell: Option<Cell>,
 }
 
@@ -82,11 +81,11 @@ pub struct ModelMetadata {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Packing {
-    /// The largest error of a value, in units of the values. The values of F then are off by as much at
-    /// most, everywhere. 0 keeps every value bit for bit.
+    /// The largest error of a value, in units of the values; it bounds the error of F everywhere. 0 keeps
+    /// every value bit for bit.
     pub value_error: f64,
-    /// Layers of points, the most important first; a reader may stop behind any, and has a quarter of the
-    /// points without the last, a quarter of these without the last two. One layer makes the smallest file.
+    /// Number of layers of points, the most important first. A reader may stop after any layer: without the
+    /// last it has a quarter of the points, without the last two a sixteenth. One layer makes the smallest file.
     pub layers: u8,
 }
 
@@ -109,14 +108,14 @@ impl Default for Packing {
 }
 
 impl Packing {
-    /// Layers at most.
+    /// Maximum number of layers.
     pub const MOST_LAYERS: u8 = 8;
 
     setters! { value_error: f64, layers: u8 }
 }
 
 impl SampleGrid {
-    /// The position of a sample, by its indices (x, y, z).
+    /// The position of the sample with these indices (x, y, z).
     pub fn position(&self, sample: [u32; 3]) -> [f64; 3] {
         let index = sample.map(f64::from);
         match self.units {
@@ -125,7 +124,7 @@ impl SampleGrid {
         }
     }
 
-    /// The sample exactly at a position.
+    /// The sample exactly at a position, if there is one.
     pub fn sample_at(&self, position: [f64; 3]) -> Option<[u32; 3]> {
         let index = match self.units {
             Units::Voxel => position,
@@ -143,8 +142,8 @@ impl SampleGrid {
         (self.position(sample) == position).then_some(sample)
     }
 
-    /// The grid in voxels that reaches from 0 to the last of some positions, all of them whole numbers
-    /// from 0 up.
+    /// The grid in voxels from 0 to the largest coordinates of some positions; `None` unless all are
+    /// nonnegative whole numbers.
     #[cfg(feature = "formats")]
     pub(super) fn spanned(positions: &[[f64; 3]], coordinates: Coordinates) -> Option<Self> {
         let mut end = [0u64; 3];
@@ -162,5 +161,5 @@ impl SampleGrid {
     }
 }
 
-/// How a `.wvm` begins. As with PNG, a transfer that changes the ends of lines damages it.
+/// Signature of a `.wvm`. As in PNG, a transfer that converts line endings damages it detectably.
 pub(super) const MODEL: &[u8] = b"\x89wvm\r\n\x1a\n";

@@ -1,4 +1,4 @@
-//! Points from files: by what the file holds first, then by its extension.
+//! Reading points from files. The format is recognised by the content first, then by the extension.
 
 use std::path::Path;
 
@@ -10,41 +10,41 @@ use super::read::{COLUMNS, format};
 use super::{Columns, ModelMetadata, Points, PointsError};
 use crate::volume::{OpenFile, Reason, begins_as_volume};
 
-/// What a user says about a file of points beyond its name.
+/// What a user may state about a file of points.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct PointOptions {
     /// What the columns of a table hold.
     pub columns: Option<Columns>,
-    /// How many of the last layers of a `.wvm` are left out: each level is a coarser model, of a quarter of
-    /// the points.
+    /// Number of layers of a `.wvm` to leave out, from the last: each level is a coarser model with a quarter
+    /// of the points.
     pub level: Option<u32>,
-    /// The extension of the format that the file is of, whatever its own; content still says more.
+    /// The extension of the file's format, in place of its own extension; the content takes precedence.
     pub format: Option<String>,
 }
 
 impl PointOptions {
     setters! { columns: Option<Columns>, level: Option<u32>, format: Option<String> }
 
-    /// Whether a file so described holds points rather than a volume, as [`is_point_file`].
+    /// Whether a file holds points rather than a volume under these options; see [`is_point_file`].
     ///
     /// # Errors
     /// As [`is_point_file`].
     pub fn is_point_file(&self, path: &Path) -> Result<bool, PointsError> {
-        // A pipe is known by its name alone: what is read of it is gone.
+        // A pipe is recognised by name alone, as bytes read from it are gone.
         if path.is_file() {
-            self.is_of_points(&OpenFile::open(path)?)
+            self.holds_points(&OpenFile::open(path)?)
         } else {
             Ok(!path.is_dir() && self.format_named(path).is_some())
         }
     }
 
-    /// The same of a file that is open.
-    pub(crate) fn is_of_points(&self, file: &OpenFile) -> Result<bool, PointsError> {
+    /// [`is_point_file`](Self::is_point_file) for an open file.
+    pub(crate) fn holds_points(&self, file: &OpenFile) -> Result<bool, PointsError> {
         self.format_of(file).map_or(Ok(false), |format| format.holds_points(file))
     }
 
-    /// The format of a file, by its content and then its extension.
+    /// The format of a file, by its content, or else by its extension.
     pub(super) fn format_of(&self, file: &OpenFile) -> Option<&'static PointFormat> {
         let of_content = FORMATS.iter().find(|format| format.begins(file.start()));
         if of_content.is_some() || begins_as_volume(file.start()) {
@@ -53,7 +53,7 @@ impl PointOptions {
         self.format_named(file.path())
     }
 
-    /// The format of the extension, that of the path or the one given.
+    /// The format of the given extension, or else of the path's.
     pub(super) fn format_named(&self, path: &Path) -> Option<&'static PointFormat> {
         let own = path.extension().unwrap_or_default().to_string_lossy();
         let extension = self.format.as_deref().unwrap_or(&own);
@@ -62,46 +62,45 @@ impl PointOptions {
 }
 
 /// Whether a file holds points rather than a volume, by its content or else by its extension
-/// ([`FORMATS`](super::FORMATS)); NPY files do where their array has two axes, VTK's XML where it is
-/// geometry.
+/// ([`FORMATS`](super::FORMATS)). NPY files hold points if their array has two axes, VTK XML files if they
+/// hold geometry.
 ///
 /// # Errors
-/// A file that begins as NPY or VTK's XML does and cannot be read.
+/// A file that cannot be opened, or that begins like NPY or VTK XML and cannot be read.
 pub fn is_point_file(path: &Path) -> Result<bool, PointsError> {
     PointOptions::default().is_point_file(path)
 }
 
-/// Reads points, with their weights and values where the file has such columns. Points are counted
-/// from 0.
+/// Reads points, with weights and values if the file has such columns. Points are counted from 0.
 ///
-/// - CSV, TSV (fields between commas, semicolons or tabs) and XYZ (between white space): the first line
+/// - CSV, TSV (fields separated by commas, semicolons or tabs) and XYZ (by white space): the first line
 ///   may name the columns: x, y, z, optionally weight (or radius, whose square is the weight) and value, in
 ///   any order and case; others are skipped. Without names, `columns` gives them; without both, x y z are
-///   read, followed by a value, or by a normal or a colour, which are skipped. XYZ may be atoms as
-///   chemistry writes them, too, with the columns and the cell that extended XYZ states.
-/// - PTS: as XYZ, after a line with the number of points or without; the intensity is the value.
+///   read, followed by a value, or by a normal or a colour, which are skipped. XYZ may also hold atoms, as
+///   in chemistry, with the columns and the cell that extended XYZ states.
+/// - PTS: as XYZ, optionally after a line with the number of points; the intensity is the value.
 /// - PWN: as XYZ; or the number of points, the points, and as many normals.
-/// - OFF, OBJ, STL: the vertices; of STL each place once.
+/// - OFF, OBJ, STL: the vertices; for STL each position once.
 /// - PCD: the fields x, y, z, optionally weight or radius, and value or else intensity.
 /// - LAS and LAZ: coordinates, and the intensity as value.
 /// - PLY (text, or binary of either byte order), VTU, VTP and legacy VTK: the vertices, with their properties
-///   or point data `weight` or `radius`, and `value`; VTK's active scalars are the values where none are
-///   named so.
+///   or point data `weight` or `radius`, and `value`; VTK's active scalars are the values if no array has
+///   that name.
 /// - NPY: an array n×3 (x, y, z), n×4 (…, weight) or n×5 (…, value).
-/// - WVM: all layers ([`read_model`] knows more).
+/// - WVM: all layers ([`read_model`] can leave some out).
 ///
 /// # Errors
 /// The file cannot be read, is truncated or longer than it claims, a column is missing or named twice,
-/// a number is not finite or a radius negative (the message has its place), the file holds no point, or
+/// a number is not finite or a radius negative (the message says where), the file holds no point, or
 /// `columns` are given for a format that names its own.
 pub fn read_points(path: &Path, columns: Option<&Columns>) -> Result<Points, PointsError> {
     Ok(read_model(path, &PointOptions::default().columns(columns.cloned()))?.0)
 }
 
-/// Reads points with what is known of them besides; nothing, where their format keeps nothing.
+/// Reads points and their metadata, which is empty if the format stores none.
 ///
 /// # Errors
-/// As [`read_points`]; a level that the file does not have; another format than the content is of.
+/// As [`read_points`]; a level that the file does not have; a stated format that contradicts the content.
 pub fn read_model(
     path: &Path,
     options: &PointOptions,
@@ -109,7 +108,7 @@ pub fn read_model(
     read_model_file(&OpenFile::open(path)?, options)
 }
 
-/// The same from a file that is open.
+/// [`read_model`] from an open file.
 pub(crate) fn read_model_file(
     file: &OpenFile,
     options: &PointOptions,
@@ -119,26 +118,23 @@ pub(crate) fn read_model_file(
     let PointOptions { columns, level, format: named } = options;
     let (columns, level) = (columns.as_ref(), *level);
     if named.as_ref().is_some_and(|named| !known.is_named(named)) {
-        let what = format!("begins as files of the format {} do", known.name);
+        let what = format!("begins like a file of the format {}", known.name);
         return Err(format(path, Reason::needless(Setting::Format, what)));
     }
     if columns.is_some() && !known.takes_columns {
-        let reason = Reason::needless(Setting::Columns, "says itself what its columns are");
+        let reason = Reason::needless(Setting::Columns, "defines its own columns");
         return Err(format(path, reason));
     }
     if level.is_some() && !known.has_levels() {
         let reason = Reason::needless(Setting::Level, "has no layers of points");
         return Err(format(path, reason));
     }
-    let (points, facts) = known.read(file, columns, level.unwrap_or_default())?;
+    let (points, metadata) = known.read(file, columns, level.unwrap_or_default())?;
     if points.is_empty() {
-        return Err(format(
-            path,
-            Reason::content("holds no point: there is nothing to shape", "name another file"),
-        ));
+        return Err(format(path, Reason::content("holds no points", "name another file")));
     }
     finite(path, &points)?;
-    Ok((points, facts))
+    Ok((points, metadata))
 }
 
 /// Refuses NaN and infinities.

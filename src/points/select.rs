@@ -8,16 +8,16 @@ use super::{Points, PointsError};
 use crate::select::{Budget, Cut};
 use crate::volume::{Coordinates, Dims, Frame, Volume};
 
-/// Voxels looked at as one piece of work.
+/// Number of voxels in one parallel task.
 const CHUNK: usize = 1 << 16;
 
 /// Which voxels become points.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Selection {
-    /// By what rule.
+    /// How many voxels, or which.
     pub rule: SelectionRule,
-    /// Voxels of the truncated volume below this gray level take no part.
+    /// Voxels of the truncated volume below this gray level are left out.
     pub gray_min: Option<f64>,
 }
 
@@ -33,17 +33,16 @@ pub enum SelectionRule {
     /// This many voxels of the largest L, ties in order of the voxel index.
     Count(u64),
     /// This share of all voxels of the volume, above 0 and up to 1, rounded to the nearest count
-    /// (half up, and at least 1), then as `Count`; the voxels that `gray_min` leaves are too few
-    /// if they are fewer than that.
+    /// (half up, and at least 1), then as `Count`: an error if `gray_min` leaves fewer voxels.
     Ratio(f64),
-    /// Like a ratio, or all voxels that take part where these are fewer.
+    /// As `Ratio`, but all voxels that take part if they are fewer.
     AtMost(f64),
-    /// All voxels with L of at least this, in gray levels: as doubles, 5/6 is at least 5/6.
+    /// All voxels with L of at least this, in gray levels. Ties count: as doubles, 5/6 is at least 5/6.
     Threshold(f64),
 }
 
 impl SelectionRule {
-    /// 6.09 %: the paper keeps 15956 of 262144 points.
+    /// 6.09 %: the paper keeps 15956 of 262144 samples.
     pub(crate) const PAPER: f64 = 0.0609;
 }
 
@@ -63,17 +62,17 @@ pub enum Units {
     /// Indices of samples, as in the paper.
     #[default]
     Voxel,
-    /// The file's units, by the spacing, origin and direction of its grid.
+    /// World coordinates, by the spacing, origin and direction of the file's grid.
     World,
 }
 
 impl Units {
-    /// What coordinates of this volume's points mean in these units.
+    /// Axes and unit of the coordinates of a volume's points.
     pub fn coordinates(self, volume: &Volume) -> Coordinates {
         self.coordinates_of(volume.frame())
     }
 
-    /// What coordinates of the points of a grid mean in these units.
+    /// Axes and unit of the coordinates of a grid's points.
     pub fn coordinates_of(self, frame: &Frame) -> Coordinates {
         match self {
             Self::Voxel => Coordinates::VOXEL,
@@ -86,7 +85,7 @@ impl Units {
         self.cell(volume.frame())
     }
 
-    /// The same, of a voxel of a grid.
+    /// [`voxel_volume`](Self::voxel_volume) for a grid.
     pub fn cell(self, frame: &Frame) -> f64 {
         match self {
             Self::Voxel => 1.0,
@@ -99,7 +98,7 @@ impl Units {
         self.place(volume.frame(), volume.dims(), voxel.into())
     }
 
-    /// The same, of a voxel of a grid of so many samples.
+    /// [`position`](Self::position) for a grid of `dims` samples.
     pub fn place(self, frame: &Frame, dims: Dims, voxel: u64) -> [f64; 3] {
         let [nx, ny, _] = dims.xyz();
         let voxel = voxel as usize;
@@ -113,16 +112,16 @@ impl Units {
 
 /// Selects voxels, in order of their index x + X·(y + Y·z).
 ///
-/// `volume` gives the values of the points and the grid, and its missing samples take no part; `smoothed` is the truncated volume, which
-/// `gray_min` judges, and `differences` are its [`difference`](super::difference)s. O(n),
-/// parallel, independent of the number of threads.
+/// `volume` gives the grid and the values of the points, and its missing samples are left out. `smoothed` is
+/// the truncated volume, to which `gray_min` applies, and `differences` are its
+/// [`difference`](super::difference)s. O(n), parallel, independent of the number of threads.
 ///
 /// # Errors
-/// A rule whose number makes no sense, more voxels asked for than there are, no voxel left, or no
+/// A rule whose number is out of range, more voxels asked for than there are, no voxel left, or not enough
 /// memory.
 ///
 /// # Panics
-/// When the three are not of one shape.
+/// If the three shapes differ.
 pub fn select(
     volume: &Volume,
     smoothed: &Volume,
@@ -158,11 +157,11 @@ pub fn select(
     Ok(points_at(volume, differences, &voxels, units))
 }
 
-/// The points at some voxels, by their index x + X·(y + Y·z), in the order given: values are those
-/// of `volume`, differences those of `differences` there.
+/// The points at some voxels, given by index x + X·(y + Y·z), in the order given, with their values in
+/// `volume` and their differences in `differences`.
 ///
 /// # Panics
-/// When the two are not of one shape, or have no such voxel.
+/// If the two shapes differ, or a voxel is out of range.
 pub fn points_at(
     volume: &Volume,
     differences: &Array3<f64>,
@@ -181,7 +180,7 @@ pub fn points_at(
     }
 }
 
-/// The indices the rule chooses, ascending. Masked voxels are NaN, and `available` are not.
+/// The indices that the rule selects, ascending. Masked voxels are NaN, and the other `available` ones are not.
 fn chosen(
     differences: &[f64],
     available: u64,
@@ -203,9 +202,9 @@ fn chosen(
 
 /// A rule applied to a volume.
 pub(crate) enum Asked {
-    /// The voxels of the largest L, this many.
+    /// This many voxels, those of largest L.
     Largest(Most),
-    /// All with an L of at least this.
+    /// All voxels with an L of at least this.
     AtLeast(f64),
 }
 
@@ -213,12 +212,12 @@ pub(crate) enum Asked {
 #[derive(Clone, Copy)]
 pub(crate) struct Most {
     count: u64,
-    /// Whether fewer do where there are no more.
+    /// Whether all voxels are taken if there are fewer.
     or_all: bool,
 }
 
 impl Most {
-    /// How many voxels are left out of those available.
+    /// Number of available voxels that are not selected.
     pub(crate) fn not_chosen(self, available: u64) -> Result<u64, PointsError> {
         let Self { count: asked, or_all } = self;
         if or_all && asked > available {
@@ -236,7 +235,7 @@ impl Most {
 }
 
 impl SelectionRule {
-    /// The rule for a volume of `samples` voxels.
+    /// The rule for a volume of `voxels` voxels.
     pub(crate) fn asked(&self, voxels: u64) -> Result<Asked, PointsError> {
         let wrong = |what, given, need| Err(PointsError::Number { what, given, need });
         match *self {
@@ -257,7 +256,7 @@ impl SelectionRule {
     }
 }
 
-/// Refuses a least gray level that is none.
+/// Refuses NaN as the least gray level.
 pub(crate) fn check_least(gray_min: Option<f64>) -> Result<(), PointsError> {
     match gray_min {
         Some(given) if given.is_nan() => {
@@ -268,7 +267,7 @@ pub(crate) fn check_least(gray_min: Option<f64>) -> Result<(), PointsError> {
     }
 }
 
-/// The indices of the values that are wanted, ascending.
+/// The indices of the wanted values, ascending.
 fn collect(values: &[f64], wanted: impl Fn(f64, usize) -> bool + Sync) -> Vec<u32> {
     let of_chunk = |(chunk, values): (usize, &[f64])| {
         let indices = (chunk * CHUNK..).zip(values);

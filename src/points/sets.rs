@@ -1,7 +1,7 @@
 use super::PointsError;
 use crate::shape::LengthsError;
 
-/// Points with what is known of them: columns of one length.
+/// Points with their optional data: columns of equal length.
 ///
 /// ```
 /// use walpha::points::Points;
@@ -15,18 +15,18 @@ use crate::shape::LengthsError;
 pub struct Points {
     /// Coordinates (x, y, z).
     pub positions: Vec<[f64; 3]>,
-    /// Values F: the original gray levels, or a column of the input.
+    /// Values F: original gray levels, or a column of the input.
     pub values: Option<Vec<f64>>,
     /// Differences L, of a voxel or of scattered values.
     pub differences: Option<Vec<f64>>,
-    /// Weights ω that came with the input, squared lengths.
+    /// Weights ω of the input, as squared lengths.
     pub weights: Option<Vec<f64>>,
-    /// Whether the weights are squares of radii, which the input has in place of weights.
+    /// Whether the weights are squares of radii, which the input has instead of weights.
     pub of_radii: bool,
 }
 
 impl Points {
-    /// Points at these places (x, y, z), of which nothing else is known.
+    /// Points at these positions (x, y, z), without other data.
     pub fn new(positions: Vec<[f64; 3]>) -> Self {
         Self { positions, ..Self::default() }
     }
@@ -63,13 +63,13 @@ impl Points {
         self.positions.len()
     }
 
-    /// Whether there is none.
+    /// Whether there are no points.
     pub fn is_empty(&self) -> bool {
         self.positions.is_empty()
     }
 }
 
-/// A column, if it has an entry for each point.
+/// Returns the column if it has an entry for each point.
 fn column(name: &'static str, column: Vec<f64>, points: usize) -> Result<Vec<f64>, PointsError> {
     LengthsError::unless_equal(name, column.len(), points)?;
     Ok(column)

@@ -1,4 +1,4 @@
-//! Points and their weights.
+//! Weights of points.
 
 use walpha_complex::Alpha;
 
@@ -21,13 +21,13 @@ pub fn weigh(
     Ok(WeightedPoints { positions: points.positions, weights, values: points.values })
 }
 
-/// The weights of points. `alpha` is that of the shape, or the one at which weights are
-/// frozen; common and column weights do not depend on it. O(n).
+/// The weights of points. `alpha` is the α of the shape, or the one at which weights are frozen; common and
+/// column weights do not depend on it. O(n).
 ///
 /// # Errors
-/// α is infinite or NaN where weights are proportional to it; points without differences (those of
-/// scattered points are [`scattered_difference`](super::scattered_difference)s) or without a column of
-/// weights, where these are needed; a weight that is not a finite number.
+/// An infinite α where weights are proportional to it; missing differences (for scattered points they are
+/// [`scattered_difference`](super::scattered_difference)s) or a missing column of weights, if the weighting
+/// needs them; a weight that is not finite.
 pub fn weights(
     points: &Points,
     weighting: Weighting,
@@ -45,7 +45,7 @@ pub fn weights(
     })
 }
 
-/// Weights, all of which are finite numbers.
+/// Returns the weights if all are finite.
 fn finite(weights: Vec<f64>) -> Result<Vec<f64>, PointsError> {
     match weights.iter().position(|weight| !weight.is_finite()) {
         Some(index) => Err(PointsError::Weight { index, weight: weights[index] }),
@@ -54,10 +54,10 @@ fn finite(weights: Vec<f64>) -> Result<Vec<f64>, PointsError> {
 }
 
 impl Weighting {
-    /// How weights in proportion to differences come from these.
+    /// The formula of weights proportional to differences.
     ///
     /// # Errors
-    /// α is infinite or NaN; the weights are of another kind.
+    /// α is infinite; the weighting is of another kind.
     pub(crate) fn shares(
         self,
         differences: &Differences,

@@ -1,4 +1,4 @@
-//! Where weights may come from: each kind is an entry in a table.
+//! The kinds of weights, one table entry each.
 
 use std::fmt;
 use std::mem::discriminant;
@@ -14,7 +14,7 @@ use walpha_base::advice::Advice;
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum Weighting {
-    /// ω = C for all: the shape at α is the unweighted one at α + C.
+    /// ω = C for all points: the shape at α is the unweighted one at α + C.
     Common(f64),
     /// ω = α·(L − Lmin)/(Lmax − Lmin), all 0 where Lmax = Lmin (equation 4.1).
     MinMax,
@@ -34,16 +34,16 @@ impl Weighting {
     }
 }
 
-/// What weights in proportion to differences need to know of all of them.
+/// Statistics of the differences, which weights proportional to them need.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Differences {
     /// Number of points.
     pub count: u64,
-    /// The smallest.
+    /// The smallest difference.
     pub min: f64,
-    /// The largest.
+    /// The largest difference.
     pub max: f64,
-    /// Their sum, which does not depend on an order.
+    /// Their sum, independent of the order of summation.
     pub sum: Sum,
 }
 
@@ -54,7 +54,7 @@ impl Default for Differences {
 }
 
 impl Differences {
-    /// Collects the differences of some points. O(n).
+    /// The statistics of some differences. O(n).
     pub(crate) fn of(differences: &[f64]) -> Self {
         let (min, max) = range(differences);
         let sum = differences.iter().copied().collect();
@@ -69,19 +69,19 @@ impl Differences {
     }
 }
 
-/// Weights factor·((L − base)/whole), or all 0 where the whole is.
+/// Weights factor·((L − base)/divisor), or all 0 if the divisor is 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Shares {
     factor: f64,
     base: f64,
-    whole: f64,
+    divisor: f64,
 }
 
 impl Shares {
     /// The weight of a difference.
     pub(crate) fn of(self, l: f64) -> f64 {
-        let Self { factor, base, whole } = self;
-        if whole == 0.0 { 0.0 } else { factor * ((l - base) / whole) }
+        let Self { factor, base, divisor } = self;
+        if divisor == 0.0 { 0.0 } else { factor * ((l - base) / divisor) }
     }
 }
 
@@ -100,19 +100,19 @@ pub(super) enum Rule {
     Proportional(fn(&Differences, f64) -> Shares),
 }
 
-/// A kind of weights: all that is known of it.
+/// A kind of weights.
 pub(super) struct WeightKind {
     weighting: Weighting,
-    /// What users call it.
+    /// Its name on the command line.
     name: &'static str,
-    /// What follows the name and a `=`.
+    /// Placeholder of the parameter that follows the name and a `=`.
     parameter: Option<&'static str>,
-    /// Where it comes from, in few words.
+    /// A short explanation.
     about: &'static str,
     pub(super) rule: Rule,
 }
 
-/// The kinds there are.
+/// All kinds.
 const KINDS: [WeightKind; 5] = [
     WeightKind {
         weighting: Weighting::Common(0.0),
@@ -128,7 +128,7 @@ const KINDS: [WeightKind; 5] = [
         about: "eq. 4.1",
         rule: Rule::Proportional(|differences, alpha| {
             let Differences { min, max, .. } = *differences;
-            Shares { factor: alpha, base: min, whole: max - min }
+            Shares { factor: alpha, base: min, divisor: max - min }
         }),
     },
     WeightKind {
@@ -157,7 +157,7 @@ const KINDS: [WeightKind; 5] = [
 ];
 
 fn barycentric(differences: &Differences, factor: f64) -> Shares {
-    Shares { factor, base: 0.0, whole: differences.sum.value() }
+    Shares { factor, base: 0.0, divisor: differences.sum.value() }
 }
 
 impl Weighting {
@@ -166,7 +166,7 @@ impl Weighting {
         KINDS.iter().find(own).expect("each kind is in the table")
     }
 
-    /// The kinds as a user writes them, each with what it is: `common=C, min-max (eq. 4.1), … or column
+    /// The kinds as a user writes them, each with an explanation: `common=C, min-max (eq. 4.1), … or column
     /// (from the input)`.
     pub fn known() -> String {
         let names = KINDS.map(|WeightKind { name, parameter, about, .. }| {
@@ -189,7 +189,7 @@ impl fmt::Display for Weighting {
     }
 }
 
-/// A text that names no weighting.
+/// The error for a text that names no weighting.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{0:?} names no weights")]
 pub struct UnknownWeighting(String);

@@ -5,8 +5,8 @@ use ndarray_npy::{WriteNpyError, WriteNpyExt};
 
 use super::WeightedPoints;
 
-/// Writes points as CSV with the columns x, y, z, weight and, where known, value, each number in
-/// the shortest form that reads back as the same double.
+/// Writes points as CSV with the columns x, y, z, weight and, if known, value. Each number has the shortest
+/// form that reads back as the same double.
 ///
 /// # Errors
 /// Errors of the writer.
@@ -23,7 +23,7 @@ pub(super) fn csv(points: &WeightedPoints, writer: &mut dyn Write) -> io::Result
     writer.flush()
 }
 
-/// Writes points as an NPY array of doubles, n×4 (x, y, z, weight) or, where values are known, n×5.
+/// Writes points as an NPY array of doubles, n×4 (x, y, z, weight) or, if values are known, n×5.
 ///
 /// # Errors
 /// Errors of the writer.

@@ -5,10 +5,10 @@ use walpha_base::advice::Advice;
 
 use super::COLUMNS;
 
-/// What the columns of a table of points hold, in their order: of the names `x`, `y`, `z`, `weight`, `value`
-/// and `radius` each at most once, in any case; columns of other names are passed over. Where all names are
-/// among these, and there is no `z`, the points lie in the plane z = 0. Surveyors' names `easting`,
-/// `northing`, and `height`, `elevation` or `altitude`, stand for x, y and z where these are not named.
+/// The columns of a table of points, in order. The names `x`, `y`, `z`, `weight`, `value` and `radius` may occur
+/// once each, in any letter case; columns of other names are skipped. If there are no other names and no `z`, the
+/// points lie in the plane z = 0. The surveying names `easting`, `northing`, and `height`, `elevation` or
+/// `altitude`, stand for x, y and z if these are not named.
 ///
 /// ```
 /// use walpha::points::Columns;
@@ -23,7 +23,7 @@ use super::COLUMNS;
 #[serde(into = "String", try_from = "String")]
 pub struct Columns(pub(super) Vec<Option<usize>>);
 
-/// Names that do not say where x, y and z are.
+/// The error for names that do not identify x, y and z.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("columns {names:?} {what}")]
 pub struct UnknownColumns {
@@ -39,48 +39,49 @@ impl UnknownColumns {
     }
 }
 
-/// What to do about names without an x, y or z.
+/// The advice for names without an x, y or z.
 const NAME_THEM: &str = "name each column of the file, x, y and z once each, perhaps weight (or radius) and \
                          value, and others as you like, as in x,y,z,nx,ny,nz";
 
-/// What x, y and z are called on maps.
-const ON_MAPS: [&[&str]; 3] = [&["easting"], &["northing"], &["height", "elevation", "altitude"]];
+/// Surveying names of x, y and z.
+const SURVEY_NAMES: [&[&str]; 3] =
+    [&["easting"], &["northing"], &["height", "elevation", "altitude"]];
 
-/// Names of angles, which are no lengths.
+/// Names of angles, which cannot be coordinates.
 const ANGLES: [&str; 5] = ["lon", "lat", "lng", "longitude", "latitude"];
 
-/// Whether a name is among these, in any case.
+/// Whether a name is one of these, in any letter case.
 fn is_among(name: &str, known: &[&str]) -> bool {
     known.iter().any(|known| known.eq_ignore_ascii_case(name.trim()))
 }
 
-#[expect(clippy::len_without_is_empty, reason = "there are two at least")]
+#[expect(clippy::len_without_is_empty, reason = "there are at least two")]
 impl Columns {
     /// The number of columns.
     pub fn len(&self) -> usize {
         self.0.len()
     }
 
-    /// By their names.
+    /// The columns with these names.
     ///
     /// # Errors
-    /// x or y is missing, or z among names that say more than these; or one of the names that are read
-    /// occurs twice.
+    /// x or y is missing; z is missing and other columns than those read are named; or a name that is read occurs
+    /// twice.
     pub fn named(names: &[&str]) -> Result<Self, UnknownColumns> {
         let known = |name: &&str| COLUMNS.iter().position(|c| c.eq_ignore_ascii_case(name.trim()));
         let mut columns: Vec<Option<usize>> = names.iter().map(known).collect();
-        for (axis, on_maps) in ON_MAPS.iter().enumerate() {
+        for (axis, survey_names) in SURVEY_NAMES.iter().enumerate() {
             if !columns.contains(&Some(axis)) {
                 let others = columns.iter_mut().zip(names).filter(|(column, _)| column.is_none());
-                let meant = others.filter(|(_, name)| is_among(name, on_maps));
-                meant.for_each(|(column, _)| *column = Some(axis));
+                let synonyms = others.filter(|(_, name)| is_among(name, survey_names));
+                synonyms.for_each(|(column, _)| *column = Some(axis));
             }
         }
-        let of_plane = columns.iter().all(Option::is_some);
+        let is_planar = columns.iter().all(Option::is_some);
         for (place, name) in COLUMNS.iter().enumerate() {
             let count = columns.iter().filter(|&&column| column == Some(place)).count();
             let (what, next) = match count {
-                0 if place == 2 && of_plane => continue,
+                0 if place == 2 && is_planar => continue,
                 0 if place < 3 && names.iter().any(|name| is_among(name, &ANGLES)) => (
                     "name longitude and latitude, which are angles and no lengths".to_owned(),
                     "project them to a plane first, as UTM does",
@@ -95,7 +96,7 @@ impl Columns {
     }
 }
 
-/// The names, with `-` for a column that is passed over.
+/// The names, with `-` for a skipped column.
 impl From<Columns> for String {
     fn from(columns: Columns) -> Self {
         let name = |column: &Option<usize>| column.map_or("-", |column| COLUMNS[column]);

@@ -1,4 +1,4 @@
-//! The second line of extended XYZ: what the columns are, and the cell in which the points repeat.
+//! The second line of extended XYZ: the columns, and the unit cell of periodic points.
 
 use std::path::Path;
 
@@ -6,17 +6,17 @@ use super::{COLUMNS, Columns, PointsError, format};
 use crate::points::Cell;
 use crate::volume::Reason;
 
-/// What the line says.
+/// The content of the line.
 #[derive(Default)]
 pub(super) struct Comment {
     /// From `Properties=species:S:1:pos:R:3:…`.
     pub columns: Option<Columns>,
-    /// From `Lattice="…"`, unless `pbc` says that nothing repeats.
+    /// From `Lattice="…"`, unless `pbc` says that the points do not repeat.
     pub cell: Option<Cell>,
 }
 
 impl Comment {
-    /// Reads the pairs of a line; whatever else is in it is somebody's title.
+    /// Reads the pairs of a line; the rest of the line is a free-form title.
     pub(super) fn read(path: &Path, line: &str) -> Result<Self, PointsError> {
         let mut comment = Self::default();
         let mut repeats = [true; 3];
@@ -34,7 +34,7 @@ impl Comment {
     }
 }
 
-/// The pairs `key=value` of a line; values with white space are between quotes or braces.
+/// The pairs `key=value` of a line; values with white space are in quotes, braces or brackets.
 fn pairs(line: &str) -> Vec<(&str, &str)> {
     let mut pairs = Vec::new();
     let mut rest = line;
@@ -58,7 +58,7 @@ fn pairs(line: &str) -> Vec<(&str, &str)> {
     pairs
 }
 
-/// Which columns are read, where each property has a name, a type and a number of columns.
+/// The columns, from properties that each have a name, a type and a number of columns.
 fn columns(path: &Path, text: &str) -> Result<Columns, PointsError> {
     let wrong = |what: &str| {
         let what = format!("has Properties={text}, {what}");
@@ -101,7 +101,7 @@ fn cell(path: &Path, text: &str) -> Result<Cell, PointsError> {
     }
 }
 
-/// Along which vectors of the cell points repeat: T or F, or 1 or 0, for each.
+/// Along which vectors of the cell the points repeat: T or F, or 1 or 0, for each.
 fn directions(text: &str) -> Option<[bool; 3]> {
     let yes = |word: &str| match word.to_ascii_lowercase().as_str() {
         "t" | "true" | "1" => Some(true),

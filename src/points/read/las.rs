@@ -1,4 +1,4 @@
-//! LAS and LAZ, what laser scanners write.
+//! LAS and LAZ, the formats of laser scanners.
 
 use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;
@@ -6,11 +6,11 @@ use std::path::Path;
 use super::{Points, PointsError, format};
 use crate::volume::{OpenFile, Reason};
 
-/// Bytes of points read at once. A header may claim records of 64 KiB each, and more than there are.
+/// Bytes of points read at once: a header may claim records of up to 64 KiB, and more than the file has.
 const BATCH: u64 = 1 << 22;
 
-/// Reads the places of the points, and their intensity as values. Numbers are those that the file's
-/// scales and offsets make, in doubles.
+/// Reads the positions of the points, and their intensities as values. Coordinates are doubles, computed with
+/// the file's scales and offsets.
 pub(crate) fn read(file: &OpenFile) -> Result<Points, PointsError> {
     let path = file.path();
     check(file)?;
@@ -36,8 +36,8 @@ pub(crate) fn read(file: &OpenFile) -> Result<Points, PointsError> {
     Ok(points)
 }
 
-/// Refuses what the library that reads points would believe: so many of them that their bytes are no number of
-/// 64 bits, and an extended record that is longer than the file, for which it would take the memory.
+/// Refuses claims that the library would trust: more bytes of points than 64 bits can count, and an extended
+/// record longer than the file, for which it would allocate memory.
 fn check(file: &OpenFile) -> Result<(), PointsError> {
     let (path, length) = (file.path(), file.length());
     let mut reader = file.reader()?;
@@ -50,7 +50,8 @@ fn check(file: &OpenFile) -> Result<(), PointsError> {
         return Err(format(path, Reason::damaged(what)));
     }
     let Some(records) = header.evlr else { return Ok(()) };
-    // Its length comes after 2 bytes, a name of 16 and a number of 2. If it is not there, the library says so.
+    // The length follows 2 reserved bytes, a user id of 16 and a record id of 2. If it is missing, the library
+    // reports that.
     let mut claimed = [0; 8];
     let place = SeekFrom::Start(records.start_of_first_evlr.saturating_add(20));
     if reader.seek(place).and_then(|_| reader.read_exact(&mut claimed)).is_err() {
@@ -66,5 +67,5 @@ fn check(file: &OpenFile) -> Result<(), PointsError> {
 }
 
 fn unreadable(path: &Path, error: &las::Error) -> PointsError {
-    format(path, Reason::other(format!("is no LAS file that can be read: {error}")))
+    format(path, Reason::other(format!("is not a readable LAS file: {error}")))
 }

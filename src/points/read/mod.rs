@@ -37,17 +37,18 @@ use super::mesh::CellCount;
 use super::{Points, PointsError};
 use crate::volume::Reason;
 
-/// The columns of a point file that are read.
+/// The names of the columns that are read.
 pub(super) const COLUMNS: [&str; 6] = ["x", "y", "z", "weight", "value", "radius"];
-/// The place among them of the radius, whose square is a weight.
+/// Index in [`COLUMNS`] of the radius, whose square is a weight.
 #[cfg(feature = "formats")]
 const RADIUS: usize = 5;
 
+/// The error for a file of points.
 pub(super) fn format(path: &Path, reason: Reason) -> PointsError {
     PointsError::Format { path: path.into(), reason }
 }
 
-/// Takes radii for weights, which are their squares, where the file has no weights.
+/// Sets the weights to the squares of radii, unless the file has weights.
 #[cfg(feature = "formats")]
 fn take_radii(
     path: &Path,

@@ -2,7 +2,7 @@ use super::off::position;
 use super::{CellCount, Points, PointsError};
 use crate::volume::{Lines, OpenFile, io_error};
 
-/// Reads the vertices (`v x y z …`) of a Wavefront OBJ file; everything else is passed over.
+/// Reads the vertices (`v x y z …`) of a Wavefront OBJ file; everything else is skipped.
 pub(crate) fn read(file: &OpenFile) -> Result<Points, PointsError> {
     let path = file.path();
     let mut lines = Lines::new(file.reader()?);
@@ -18,7 +18,7 @@ pub(crate) fn read(file: &OpenFile) -> Result<Points, PointsError> {
     Ok(points)
 }
 
-/// How many faces and lines there are.
+/// The numbers of faces and lines.
 pub(crate) fn cells(file: &OpenFile) -> Result<Vec<CellCount>, PointsError> {
     let mut lines = Lines::new(file.reader()?);
     let mut counts = [CellCount::new("faces", 0), CellCount::new("lines", 0)];

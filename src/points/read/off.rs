@@ -5,7 +5,7 @@ use super::{COLUMNS, CellCount, Points, PointsError, format};
 use crate::volume::{Lines, OpenFile, Reason, io_error};
 
 /// Reads the vertices of an OFF file in text, with normals, colours or texture coordinates (NOFF, COFF,
-/// STOFF) or without: the first three numbers of each line. Its faces must be there as it claims.
+/// STOFF) or without: the first three numbers of each line. There must be as many faces as it claims.
 pub(crate) fn read(file: &OpenFile) -> Result<Points, PointsError> {
     let path = file.path();
     let fail = |reason: Reason| format(path, reason);
@@ -26,13 +26,13 @@ pub(crate) fn read(file: &OpenFile) -> Result<Points, PointsError> {
     Ok(points)
 }
 
-/// How many faces there are.
+/// The number of faces.
 pub(crate) fn cells(file: &OpenFile) -> Result<Vec<CellCount>, PointsError> {
     let faces = read_counts(file)?.2;
     Ok(vec![CellCount::new("faces", usize::try_from(faces).unwrap_or(usize::MAX))])
 }
 
-/// What follows the head of a file, and how many vertices and faces it claims.
+/// Reads the header of a file: the lines after it, and the numbers of vertices and faces that it claims.
 fn read_counts(file: &OpenFile) -> Result<(ContentLines<impl BufRead>, u64, u64), PointsError> {
     let path = file.path();
     let fail = |reason: Reason| format(path, reason);
@@ -77,14 +77,16 @@ pub(super) fn position<'a>(
         *number = read.ok_or_else(|| {
             format(
                 path,
-                Reason::value(format!("line {line}: {name} is {word:?}, no finite number")),
+                Reason::value(format!(
+                    "line {line}: {name} is {word:?}, which is not a finite number"
+                )),
             )
         })?;
     }
     Ok(position)
 }
 
-/// Lines without remarks and empty ones.
+/// Lines without comments and empty lines.
 struct ContentLines<R> {
     lines: Lines<R>,
     number: u64,

@@ -5,8 +5,8 @@ use super::{Points, PointsError, RADIUS, format, take_radii};
 use crate::volume::{Lines, OpenFile, Reason, io_error};
 
 /// Reads PCD, the Point Cloud Library's format: text, binary or compressed, with the fields x, y and z,
-/// optionally weight or radius, and value or else intensity. Points without a place (NaN, as scanners mark them) are
-/// left out.
+/// optionally weight or radius, and value or else intensity. Points without a position (NaN, as scanners write them)
+/// are left out.
 pub(crate) fn read(file: &OpenFile) -> Result<Points, PointsError> {
     let path = file.path();
     let fail = |reason: Reason| format(path, reason);
@@ -20,7 +20,7 @@ pub(crate) fn read(file: &OpenFile) -> Result<Points, PointsError> {
         if let Some(data) = line.strip_prefix("DATA ") {
             break data.trim().to_owned();
         }
-        header.take(&line).map_err(fail)?;
+        header.parse_line(&line).map_err(fail)?;
     };
     header.check(file.length()).map_err(fail)?;
     let mut bytes = Vec::new();
@@ -42,19 +42,19 @@ struct Header {
     names: Vec<String>,
     sizes: Vec<usize>,
     types: Vec<String>,
-    /// Numbers of each field.
+    /// How many numbers each field has.
     counts: Vec<usize>,
     points: usize,
 }
 
-/// A column to read: its offset from the start of a point, type and size.
+/// A column to read: its index in the lists of the header, and its offset within a point, in numbers or bytes.
 struct Field {
     index: usize,
     offset: usize,
 }
 
 impl Header {
-    fn take(&mut self, line: &str) -> Result<(), Reason> {
+    fn parse_line(&mut self, line: &str) -> Result<(), Reason> {
         let damaged =
             || Reason::header(format!("has a header line {line:?}, which is not understood"));
         let mut words = line.split_whitespace();
@@ -89,7 +89,7 @@ impl Header {
                 "has fields of no bytes or numbers, or of more than 65536: it is damaged",
             ));
         }
-        // Compressed to a hundredth, which is more than LZF can.
+        // A point takes at least a byte, and LZF packs at most 264 bytes into 3, so 256 points per byte is generous.
         if self.points as u64 > length.saturating_mul(256) {
             let points = self.points;
             return Err(Reason::header(format!(
@@ -99,14 +99,14 @@ impl Header {
         Ok(())
     }
 
-    /// Where the field of a name is: its place in the lists, and in a row of numbers or bytes.
+    /// The field with a name; its offset is in bytes, or else in numbers.
     fn field(&self, name: &str, bytes: bool) -> Option<Field> {
         let index = self.names.iter().position(|known| known == name)?;
         let width = |k: usize| self.counts[k] * if bytes { self.sizes[k] } else { 1 };
         Some(Field { index, offset: (0..index).map(width).sum() })
     }
 
-    /// x, y, z, weight, value and radius of each point.
+    /// The fields x, y, z, weight, value and radius.
     fn fields(&self, bytes: bool) -> Result<[Option<Field>; 6], Reason> {
         let field = |name| self.field(name, bytes);
         let fields = [
@@ -161,7 +161,7 @@ impl Header {
         Ok(rows)
     }
 
-    /// Numbers of a point side by side, or all of a field.
+    /// Reads binary data, stored point by point, or field by field.
     fn binary(&self, bytes: &[u8], by_field: bool) -> Result<Vec<[Option<f64>; 6]>, Reason> {
         let fields = self.fields(true)?;
         let width: usize =
@@ -200,7 +200,7 @@ impl Header {
         let left_out = self.points - kept.len();
         if left_out > 0 {
             tracing::warn!(
-                "{left_out} of {} points have no place (NaN) and are left out",
+                "{left_out} of {} points have no position (NaN) and are left out",
                 self.points
             );
         }
@@ -239,7 +239,7 @@ fn number(kind: &str, bytes: &[u8]) -> Result<f64, Reason> {
     })
 }
 
-/// Unpacks LZF: two sizes, then pieces that are literal or repeat earlier output.
+/// Unpacks LZF: the packed and the unpacked size, then literals and references to earlier output.
 fn unpacked(bytes: &[u8]) -> Result<Vec<u8>, Reason> {
     let damaged = || Reason::damaged("has compressed data that are damaged or truncated");
     let sizes = bytes.first_chunk::<8>().ok_or_else(damaged)?;
@@ -264,7 +264,7 @@ fn unpacked(bytes: &[u8]) -> Result<Vec<u8>, Reason> {
         let low = usize::from(take(1).ok_or_else(damaged)?[0]);
         let back = (usize::from(control & 31) << 8) + low + 1;
         let start = out.len().checked_sub(back).ok_or_else(damaged)?;
-        // Pieces may reach into themselves.
+        // A reference may overlap its own output.
         (start..start + length).for_each(|from| out.push(out[from]));
         if out.len() > whole {
             return Err(damaged());
@@ -277,7 +277,7 @@ fn unpacked(bytes: &[u8]) -> Result<Vec<u8>, Reason> {
 mod tests {
     use super::*;
 
-    /// Copies of what is near and far, as long as a byte can say, and into themselves.
+    /// References to near and far output, of the greatest length, and overlapping their own output.
     #[test]
     fn pieces_repeat_what_came_before() {
         let literal: Vec<u8> = (0..320u32).map(|i| (i * i % 251) as u8).collect();

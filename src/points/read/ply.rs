@@ -5,7 +5,7 @@ use super::{COLUMNS, CellCount, Points, PointsError, RADIUS, format, take_radii}
 use crate::volume::{Dtype, Element as _, Endian, Lines, OpenFile, Reason, io_error};
 
 /// Reads the vertices of a PLY file, text or binary of either byte order: properties x, y and z,
-/// optionally weight or radius, and value. All other elements must be there as the header claims.
+/// optionally weight or radius, and value. All other elements must be as the header declares.
 pub(crate) fn read(file: &OpenFile) -> Result<Points, PointsError> {
     let path = file.path();
     let fail = |reason: Reason| format(path, reason);
@@ -31,18 +31,15 @@ pub(crate) fn read(file: &OpenFile) -> Result<Points, PointsError> {
     }
     if !numbers.at_end() {
         return Err(fail(Reason::header(
-            "goes on behind its last element: it is too long or mislabelled",
+            "continues after its last element: it is too long or mislabelled",
         )));
     }
     points.ok_or_else(|| {
-        fail(Reason::content(
-            "has no element vertex: there are no points in it",
-            "name another file",
-        ))
+        fail(Reason::content("has no element vertex, and so no points", "name another file"))
     })
 }
 
-/// How many faces, edges and so on the header claims.
+/// The numbers of faces, edges and so on that the header declares.
 pub(crate) fn cells(file: &OpenFile) -> Result<Vec<CellCount>, PointsError> {
     let header = Header::read(file.path(), &mut Lines::new(file.reader()?))?;
     let count = |element: &Element| {
@@ -114,9 +111,9 @@ struct Element {
 }
 
 enum Property {
-    /// Its name and type.
+    /// A number, by its name and type.
     Scalar(String, Dtype),
-    /// The types of its length and of its items.
+    /// A list, by the types of its length and of its items.
     List(Dtype, Dtype),
 }
 
@@ -188,7 +185,7 @@ impl Element {
     }
 
     fn skip(&self, numbers: &mut Numbers<impl Read>) -> Result<(), Reason> {
-        // Without properties there is nothing to pass over, however many there are.
+        // Elements without properties take no bytes, however many there are.
         let rows = if self.properties.is_empty() { 0 } else { self.count };
         for _ in 0..rows {
             for property in &self.properties {
@@ -200,7 +197,7 @@ impl Element {
 }
 
 impl Property {
-    /// Reads a number, or passes over a list.
+    /// Reads a number, or skips a list and returns its length.
     fn read(&self, numbers: &mut Numbers<impl Read>) -> Result<f64, Reason> {
         match *self {
             Self::Scalar(_, dtype) => numbers.next(dtype),
@@ -233,7 +230,9 @@ impl<R: Read> Numbers<R> {
                 let word = rest.split_whitespace().next().ok_or_else(cut)?;
                 *at = text.len() - rest.len() + word.len();
                 let number = word.parse::<f64>().ok().filter(|&number| dtype.holds(number));
-                number.ok_or_else(|| Reason::value(format!("has {word:?}, which is no {dtype}")))
+                number.ok_or_else(|| {
+                    Reason::value(format!("has {word:?}, which is not a valid {dtype}"))
+                })
             }
             Self::Binary(reader, endian) => {
                 let mut bytes = [0; 8];

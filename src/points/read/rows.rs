@@ -6,7 +6,7 @@ use super::{COLUMNS, Columns, Points, PointsError, RADIUS, format, take_radii};
 use crate::volume::Reason;
 
 impl Columns {
-    /// By the numbers in them: x y z, followed by a value, with a normal (of length 1 or 0) or with a
+    /// Guesses columns from their numbers: x y z, perhaps followed by a value, a normal (of length 1 or 0) or a
     /// colour (whole numbers up to 255).
     fn guess(rows: &[Vec<f64>]) -> Result<Self, Reason> {
         let count = rows.first().map_or(0, Vec::len);
@@ -42,18 +42,18 @@ impl Columns {
     }
 }
 
-/// Rows that columns without names are guessed from.
-const MOST_WAITING: usize = 100;
+/// Number of rows from which columns without names are guessed.
+const MAX_PENDING: usize = 100;
 
-/// Makes points of rows of text.
+/// Turns rows of text into points.
 pub(super) struct TextRows<'a> {
     path: &'a Path,
     columns: Option<Columns>,
     /// The first lines, while their columns are not known.
-    waiting: Vec<(u64, Vec<String>)>,
+    pending: Vec<(u64, Vec<String>)>,
     /// Whether the decimal mark is a comma.
     pub decimal_comma: bool,
-    /// What columns without names hold, where there are as many as these.
+    /// The columns without names, if their number matches.
     pub default_columns: Option<Columns>,
     points: Points,
     radii: Option<Vec<f64>>,
@@ -61,11 +61,11 @@ pub(super) struct TextRows<'a> {
 
 impl<'a> TextRows<'a> {
     pub(super) fn new(path: &'a Path, columns: Option<Columns>) -> Self {
-        let (waiting, points) = (Vec::new(), Points::default());
+        let (pending, points) = (Vec::new(), Points::default());
         Self {
             path,
             columns,
-            waiting,
+            pending,
             decimal_comma: false,
             default_columns: None,
             points,
@@ -73,7 +73,7 @@ impl<'a> TextRows<'a> {
         }
     }
 
-    /// Sets the columns, unless the user has named them.
+    /// Sets the columns, unless they are known.
     pub(super) fn set_columns(&mut self, columns: Columns) {
         self.columns.get_or_insert(columns);
     }
@@ -83,27 +83,27 @@ impl<'a> TextRows<'a> {
         if self.columns.is_some() {
             return self.add(line, words);
         }
-        let first = self.waiting.first().map_or(words.len(), |(_, words)| words.len());
+        let first = self.pending.first().map_or(words.len(), |(_, words)| words.len());
         self.check_width(line, words.len(), first)?;
-        self.waiting.push((line, words.iter().map(|&word| word.into()).collect()));
-        if self.waiting.len() < MOST_WAITING { Ok(()) } else { self.flush() }
+        self.pending.push((line, words.iter().map(|&word| word.into()).collect()));
+        if self.pending.len() < MAX_PENDING { Ok(()) } else { self.flush() }
     }
 
-    /// The points.
+    /// All points.
     pub(super) fn finish(mut self) -> Result<Points, PointsError> {
         self.flush()?;
         take_radii(self.path, &mut self.points, self.radii)?;
         Ok(self.points)
     }
 
-    /// Adds the waiting lines.
+    /// Adds the pending lines.
     fn flush(&mut self) -> Result<(), PointsError> {
-        let waiting = std::mem::take(&mut self.waiting);
-        if waiting.is_empty() {
+        let pending = std::mem::take(&mut self.pending);
+        if pending.is_empty() {
             return Ok(());
         }
         let mut rows = Vec::new();
-        for (line, words) in &waiting {
+        for (line, words) in &pending {
             let number = |(k, word): (usize, &String)| {
                 self.number(*line, COLUMNS.get(k).copied().unwrap_or("behind"), word)
             };
@@ -115,8 +115,8 @@ impl<'a> TextRows<'a> {
             Some(columns) => columns,
             None => Columns::guess(&rows).map_err(|reason| format(self.path, reason))?,
         });
-        let mut waiting = waiting.into_iter();
-        waiting.try_for_each(|(line, words)| {
+        let mut pending = pending.into_iter();
+        pending.try_for_each(|(line, words)| {
             self.add(line, &words.iter().map(String::as_str).collect::<Vec<_>>())
         })
     }
@@ -145,7 +145,7 @@ impl<'a> TextRows<'a> {
             return Ok(());
         }
         let reason = Reason::value(format!(
-            "line {line} has {found} columns, but there are {expected} before or named"
+            "line {line} has {found} columns, but {expected} were named or are in earlier lines"
         ));
         Err(format(self.path, reason))
     }

@@ -5,12 +5,12 @@ use super::off::position;
 use super::{CellCount, Points, PointsError, format};
 use crate::volume::{Lines, OpenFile, Reason, io_error};
 
-/// Bytes before the facets of a binary STL file: a head, and how many there are.
+/// Bytes before the facets of a binary STL file: a header, and the number of facets.
 const HEAD: u64 = 84;
-/// Bytes of a facet: its normal, its corners, and two more.
+/// Bytes of a facet: its normal, its corners, and two attribute bytes.
 const FACET: u64 = 50;
 
-/// Reads the vertices of an STL file, binary or text: the corners of its facets, each place once.
+/// Reads the vertices of an STL file, binary or text: the corners of its facets, each position once.
 pub(crate) fn read(file: &OpenFile) -> Result<Points, PointsError> {
     let (path, length) = (file.path(), file.length());
     let mut reader = file.reader()?;
@@ -38,12 +38,12 @@ pub(crate) fn read(file: &OpenFile) -> Result<Points, PointsError> {
     Ok(corners.points)
 }
 
-/// Binary files may begin with the word of a text, too; their length decides.
+/// Whether a file is text. Binary files may begin with `solid` too, so their length decides.
 fn is_text(head: &[u8], length: u64, count: u64) -> bool {
     head.starts_with(b"solid") && length != HEAD + FACET * count
 }
 
-/// How many facets there are.
+/// The number of facets.
 pub(crate) fn cells(file: &OpenFile) -> Result<Vec<CellCount>, PointsError> {
     let (path, length) = (file.path(), file.length());
     let mut head = Vec::new();
@@ -89,7 +89,7 @@ struct Corners {
 
 impl Corners {
     fn add(&mut self, corner: [f64; 3]) {
-        // Not −0, which is the same place as 0.
+        // Adding 0 turns −0 into 0, which is the same position.
         if self.seen.insert(corner.map(|c| (c + 0.0).to_bits())) {
             self.points.positions.push(corner);
         }

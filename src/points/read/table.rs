@@ -2,8 +2,8 @@ use super::rows::TextRows;
 use super::{Columns, Points, PointsError, format};
 use crate::volume::{Lines, OpenFile, Reason, io_error};
 
-/// Reads CSV, or tables whose fields are separated by tabs or semicolons; then 0,5 is a half. The first
-/// line may name the columns.
+/// Reads CSV, or tables whose fields are separated by tabs or semicolons; with semicolons, 0,5 is a half. The
+/// first line may name the columns.
 pub(crate) fn read(file: &OpenFile, columns: Option<&Columns>) -> Result<Points, PointsError> {
     let path = file.path();
     let fail = |error: csv::Error| {
@@ -46,11 +46,11 @@ pub(crate) fn read(file: &OpenFile, columns: Option<&Columns>) -> Result<Points,
     rows.finish()
 }
 
-/// What a first line is to be.
+/// What the first line must be, for error messages.
 const FIRST_LINE: &str = "its first line must name the columns x, y and z, perhaps weight (or radius) and \
                           value, or hold numbers alone";
 
-/// Whether a first line is one of data: it begins with a number, and names none.
+/// Whether a first line holds data: a field of it is a number.
 fn is_numbers(words: &[&str]) -> bool {
     let number = |word: &&str| {
         let word = word.trim_start_matches('\u{feff}').replace(',', ".");
@@ -59,7 +59,7 @@ fn is_numbers(words: &[&str]) -> bool {
     words.iter().any(number)
 }
 
-/// What the first line has: a semicolon, a comma or a tab, in this order.
+/// The first of semicolon, comma and tab that occurs in the first line; a comma if there is none.
 fn delimiter(file: &OpenFile) -> Result<u8, PointsError> {
     let line = Lines::new(file.reader()?).read_line().map_err(io_error(file.path()))?;
     let line = line.unwrap_or_default();

@@ -6,10 +6,10 @@ use walpha_complex::{Alpha, Class};
 use super::{CellCount, Points, PointsError, format, take_radii};
 use crate::volume::{OpenFile, Reason, VtkPoints, VtkXml};
 
-/// Arrays that are no values, though they may be the active scalars.
-const OF_WEIGHTS: [&str; 2] = ["weight", "radius"];
+/// Names of arrays that are not read as values, even if they are the active scalars.
+const WEIGHT_NAMES: [&str; 2] = ["weight", "radius"];
 
-/// Whether a file holds points and not a volume.
+/// Whether a file holds points rather than a volume.
 pub(crate) fn holds_points(file: &OpenFile) -> Result<bool, PointsError> {
     Ok(is_geometry(&VtkXml::open(file)?))
 }
@@ -18,8 +18,8 @@ fn is_geometry(file: &VtkXml) -> bool {
     matches!(file.kind(), "UnstructuredGrid" | "PolyData")
 }
 
-/// Reads the points of VTU or VTP, VTK's unstructured grids and polygons in XML, in one piece, with
-/// the point data `weight` (or `radius`) and `value`, in any case; where none is named value, the active scalars.
+/// Reads the points of VTU or VTP, VTK's unstructured grids and polygons in XML, in one piece, with the point
+/// data `weight` (or `radius`) and `value`, in any letter case. Without a `value`, the active scalars are read.
 pub(crate) fn read(file: &OpenFile) -> Result<Points, PointsError> {
     points(file.path(), &VtkXml::open(file)?)
 }
@@ -60,8 +60,8 @@ fn points(path: &Path, file: &VtkXml) -> Result<Points, PointsError> {
     };
     let column = |array: Option<usize>| array.map(|array| file.values(array, count)).transpose();
     let active = data.and_then(|data| file.attribute(data, "Scalars"));
-    let of_weights = |name: &&str| OF_WEIGHTS.iter().any(|known| known.eq_ignore_ascii_case(name));
-    let active = active.filter(|name| !of_weights(name));
+    let is_weight = |name: &&str| WEIGHT_NAMES.iter().any(|known| known.eq_ignore_ascii_case(name));
+    let active = active.filter(|name| !is_weight(name));
     let mut points = Points {
         positions: coordinates.as_chunks().0.to_vec(),
         weights: column(named("weight"))?,
@@ -72,7 +72,7 @@ fn points(path: &Path, file: &VtkXml) -> Result<Points, PointsError> {
     Ok(points)
 }
 
-/// Reads the points of legacy VTK files, with the same data.
+/// Reads the points of a legacy VTK file, with the same point data.
 pub(crate) fn read_legacy(file: &OpenFile) -> Result<Points, PointsError> {
     let path = file.path();
     let file = VtkPoints::open(file)?;
@@ -81,7 +81,7 @@ pub(crate) fn read_legacy(file: &OpenFile) -> Result<Points, PointsError> {
         weights: file.named("weight")?,
         values: match file.named("value")? {
             Some(values) => Some(values),
-            None => file.active(&OF_WEIGHTS)?,
+            None => file.active(&WEIGHT_NAMES)?,
         },
         ..Points::default()
     };
@@ -89,8 +89,8 @@ pub(crate) fn read_legacy(file: &OpenFile) -> Result<Points, PointsError> {
     Ok(points)
 }
 
-/// How many cells of each kind a VTU or VTP file has. Where all are vertices and no α is stated, they are but
-/// points.
+/// Number of cells of each kind in a VTU or VTP file. If all are vertices and no α is stated, the file is a list
+/// of points and has none.
 pub(crate) fn cells(file: &OpenFile) -> Result<Vec<CellCount>, PointsError> {
     let path = file.path();
     let file = VtkXml::open(file)?;
@@ -119,14 +119,14 @@ pub(crate) fn cells(file: &OpenFile) -> Result<Vec<CellCount>, PointsError> {
     Ok(if are_points && stated_alpha(&file, dataset)?.is_none() { Vec::new() } else { counts })
 }
 
-/// How many cells of each kind a legacy file has, single points aside.
+/// Number of cells of each kind in a legacy file, without vertices.
 pub(crate) fn cells_of_legacy(file: &OpenFile) -> Result<Vec<CellCount>, PointsError> {
     let cells = VtkPoints::open(file)?.cells.into_iter();
     Ok(cells.map(|(kind, count)| CellCount::new(kind, count as usize)).collect())
 }
 
-/// Reads the simplices of a VTU file with its points and weights. Where walpha wrote it, the classes and α
-/// too; otherwise α is ∞, and all that is listed is in the shape.
+/// Reads the simplices of a VTU file with its points and weights, and the classes and α if walpha wrote it.
+/// Otherwise α is ∞, and all listed simplices are in the shape.
 pub(crate) fn read_complex(file: &OpenFile) -> Result<ComplexFile, PointsError> {
     let path = file.path();
     let file = VtkXml::open(file)?;
@@ -134,7 +134,7 @@ pub(crate) fn read_complex(file: &OpenFile) -> Result<ComplexFile, PointsError> 
     let (dataset, piece) = file.piece()?;
     if file.kind() != "UnstructuredGrid" {
         let reason = Reason::unsupported(
-            "lists polygons, which are no tetrahedra of a complex",
+            "lists polygons, which cannot be read as a complex",
             "give an unstructured grid (.vtu), .json or .npz",
         );
         return Err(format(path, reason));
@@ -155,7 +155,7 @@ pub(crate) fn read_complex(file: &OpenFile) -> Result<ComplexFile, PointsError> 
         let to = end as usize;
         let bad = |what: String| format(path, Reason::damaged(what));
         let found = corners.get(from..to).ok_or_else(|| {
-            bad(format!("has cells {row} with offsets that do not ascend: it is damaged"))
+            bad(format!("has offsets of cells that do not ascend, at cell {row}: it is damaged"))
         })?;
         let wanted = match kind {
             VERTEX => 1,
@@ -164,7 +164,7 @@ pub(crate) fn read_complex(file: &OpenFile) -> Result<ComplexFile, PointsError> 
             TETRA => 4,
             _ => {
                 let reason = Reason::unsupported(
-                    format!("lists {}, which are no simplices", kind_of(kind)),
+                    format!("lists {}, which are not simplices", kind_of(kind)),
                     "cut them into tetrahedra and triangles",
                 );
                 return Err(format(path, reason));
@@ -172,13 +172,16 @@ pub(crate) fn read_complex(file: &OpenFile) -> Result<ComplexFile, PointsError> 
         };
         if found.len() != wanted {
             let kind = kind_of(kind);
-            return Err(bad(format!("has {} corners for cell {row} of its {kind}", found.len())));
+            return Err(bad(format!(
+                "has {} corners in cell {row}, one of its {kind}",
+                found.len()
+            )));
         }
         let number = |i: usize| {
             let corner = found[i];
             let is_whole = corner >= 0.0 && corner < f64::from(u32::MAX) && corner.fract() == 0.0;
             is_whole.then_some(corner as u32).ok_or_else(|| {
-                bad(format!("has corner {corner} in cell {row}, which is no number of a point"))
+                bad(format!("has corner {corner} in cell {row}, which is not the index of a point"))
             })
         };
         match kind {
@@ -192,7 +195,7 @@ pub(crate) fn read_complex(file: &OpenFile) -> Result<ComplexFile, PointsError> 
         }
         from = to;
     }
-    // With classes what is not listed is not there; otherwise it is made of the faces of what is.
+    // With classes, an empty list means that there are no such simplices; without, they are derived as faces.
     fn listed<T>(rows: Vec<T>, all: bool) -> Option<Vec<T>> {
         (all || !rows.is_empty()).then_some(rows)
     }
@@ -210,7 +213,7 @@ const LINE: u8 = 3;
 const TRIANGLE: u8 = 5;
 const TETRA: u8 = 10;
 
-/// What a type of cells is called (VTK User's Guide, "Linear cell types in VTK").
+/// The name of a cell type (VTK User's Guide, "Linear cell types in VTK").
 fn kind_of(kind: u8) -> &'static str {
     match kind {
         VERTEX => "vertices",
@@ -229,7 +232,7 @@ fn kind_of(kind: u8) -> &'static str {
     }
 }
 
-/// The field `alpha`, which walpha writes.
+/// The α in the field data `alpha`, which walpha writes.
 fn stated_alpha(file: &VtkXml, dataset: usize) -> Result<Option<Alpha>, PointsError> {
     let Some(fields) = file.children(dataset, "FieldData").next() else { return Ok(None) };
     let named = |&array: &usize| file.attribute(array, "Name") == Some("alpha");
@@ -259,7 +262,7 @@ impl<'a> Grid<'a> {
         Ok(self.array("types", self.count)?.into_iter().map(|kind| kind as u8).collect())
     }
 
-    /// An array of the element Cells.
+    /// An array of the element `Cells`.
     fn array(&self, name: &str, count: u64) -> Result<Vec<f64>, PointsError> {
         if self.count == 0 {
             return Ok(Vec::new());

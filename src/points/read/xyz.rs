@@ -7,13 +7,13 @@ use super::{COLUMNS, Columns, Points, PointsError, format};
 use crate::points::ModelMetadata;
 use crate::volume::{Lines, OpenFile, Reason, io_error};
 
-/// What lines of numbers are, where nothing else says it.
+/// How lines of numbers are laid out, unless they have names.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum TextLayout {
-    /// A first line with nothing but a count begins chemistry's XYZ: a line of words, which extended XYZ has a
-    /// form for, then an element and the coordinates of each atom, and whatever follows these.
+    /// A first line with only a count begins chemistry's XYZ: a comment line, whose form extended XYZ defines,
+    /// then for each atom an element, its coordinates, and possibly more columns.
     Atoms,
-    /// The same, and six columns are a place with a normal or colour.
+    /// As `Atoms`, but six columns are a position with a normal or colour.
     Vectors,
     /// PTS: a count may come first; seven columns are x y z, the intensity and a colour.
     Scan,
@@ -22,7 +22,7 @@ pub(crate) enum TextLayout {
 }
 
 impl TextLayout {
-    /// What columns without names are, where it does not depend on their numbers.
+    /// The columns without names, unless they are guessed from the numbers in them.
     fn default_columns(self) -> Option<Columns> {
         let axes = [Some(0), Some(1), Some(2)];
         match self {
@@ -33,8 +33,8 @@ impl TextLayout {
     }
 }
 
-/// Reads lines of numbers between white space (or commas). A first line of names, optionally after `#` or
-/// `//`, says what they are; other lines that begin so are remarks.
+/// Reads lines of numbers separated by white space or commas. A first line may name the columns, optionally after
+/// `#` or `//`; other lines that begin with `#` or `/` are comments.
 pub(crate) fn read(
     file: &OpenFile,
     columns: Option<&Columns>,
@@ -47,7 +47,7 @@ pub(crate) fn read(
     let (mut number, mut first, mut claimed) = (0, true, None);
     while let Some(line) = lines.read_line().map_err(io_error(path))? {
         number += 1;
-        let remark = line.trim_start().starts_with(['#', '/']);
+        let is_comment = line.trim_start().starts_with(['#', '/']);
         let words = words(line.trim_start_matches(['\u{feff}', '#', '/', ' ', '\t']));
         if words.is_empty() {
             continue;
@@ -58,7 +58,7 @@ pub(crate) fn read(
                 first = false;
                 continue;
             }
-            if let ([count], false) = (words.as_slice(), remark)
+            if let ([count], false) = (words.as_slice(), is_comment)
                 && let Ok(count) = count.parse()
             {
                 match layout {
@@ -72,11 +72,11 @@ pub(crate) fn read(
                 continue;
             }
             if words[0].eq_ignore_ascii_case("ncols") {
-                let what = "is a grid of heights (ESRI ASCII), and no list of points";
+                let what = "is a grid of heights (ESRI ASCII), not a list of points";
                 return Err(format(path, Reason::unsupported(what, "convert it to x,y,z")));
             }
         }
-        if !remark {
+        if !is_comment {
             first = false;
             rows.push(number, &words)?;
         }
@@ -86,7 +86,7 @@ pub(crate) fn read(
     Ok((points, ModelMetadata::default()))
 }
 
-/// Refuses another number of things than was claimed, if one was.
+/// Refuses a number of items that differs from the claimed number, if there is one.
 fn check_count(
     path: &Path,
     claimed: Option<u64>,
@@ -117,7 +117,7 @@ fn finite(path: &Path, line: u64, name: &str, word: &str) -> Result<f64, PointsE
     })
 }
 
-/// Reads atoms, after the line that counts them.
+/// Reads atoms, after the line with their number.
 fn atoms(
     path: &Path,
     mut lines: Lines<impl BufRead>,
@@ -125,7 +125,7 @@ fn atoms(
 ) -> Result<(Points, ModelMetadata), PointsError> {
     let line = lines.read_line().map_err(io_error(path))?.unwrap_or_default();
     let Comment { columns, cell } = Comment::read(path, &line)?;
-    let facts = ModelMetadata { cell, ..ModelMetadata::default() };
+    let metadata = ModelMetadata { cell, ..ModelMetadata::default() };
     let mut points = Points::default();
     let mut rows = columns.map(|columns| TextRows::new(path, Some(columns)));
     let mut number = 2;
@@ -150,10 +150,10 @@ fn atoms(
         points = rows.finish()?;
     }
     check_count(path, Some(count), points.len(), "atoms")?;
-    Ok((points, facts))
+    Ok((points, metadata))
 }
 
-/// Reads so many points, and as many normals, which are passed over.
+/// Reads `count` points, and as many normals, if any, which are skipped.
 fn points_then_normals(
     path: &Path,
     mut lines: Lines<impl BufRead>,

@@ -1,26 +1,26 @@
-//! What is known around a voxel, and the contexts that its bit is coded under.
+//! Counts of the known points around a voxel, and the contexts that its bit is coded under.
 
 use super::blocks::{AROUND, Window, is_earlier, reached, squared, steps};
 
-/// Where points are counted around a voxel.
+/// The windows around a voxel in which points are counted.
 pub(super) struct Windows {
-    /// Earlier voxels, the nearest, farther ones, and so on.
+    /// Shells of voxels that are coded earlier, the nearest first.
     earlier: [Window; 4],
-    /// Later ones, where only points of earlier layers are known.
+    /// Shells of voxels that are coded later: only their points of earlier layers are known.
     later: [Window; 3],
-    /// The nine nearest earlier ones.
+    /// Steps to the nine nearest earlier voxels.
     nearest: Vec<[i32; 3]>,
 }
 
-/// How many points there are around a voxel.
+/// Numbers of points around a voxel.
 pub(super) struct Counts {
     earlier: [usize; 4],
     later: [usize; 3],
-    /// One bit for each of the nine nearest.
+    /// One bit for each of the nine nearest earlier voxels.
     pattern: usize,
 }
 
-/// The nearest earlier steps first; of equal ones in the order of z, then y, then x.
+/// The steps to earlier voxels, the nearest first, ties in the order of z, then y, then x.
 pub(super) fn earlier_steps(reach: i32) -> Vec<[i32; 3]> {
     let mut earlier: Vec<[i32; 3]> = steps(reach).filter(|&step| is_earlier(step)).collect();
     earlier.sort_by_key(|&step| squared(step));
@@ -55,14 +55,15 @@ impl Windows {
     }
 }
 
-/// 0 for 0, else one more than the number of the highest bit.
+/// Number of binary digits; 0 for 0.
 fn size(count: usize) -> usize {
     (usize::BITS - count.leading_zeros()) as usize
 }
 
 impl Counts {
-    /// The contexts of a voxel: besides the counts, which blocks nearby have points of this layer, how many
-    /// voxels are left of a block that has none yet (0 where it has), and whether it is at an end of the grid.
+    /// The contexts of a voxel, from the counts and: which blocks nearby have points of this layer, how many
+    /// voxels are left in a block without points so far (0 if it has some), and whether the voxel is at an end
+    /// of the grid.
     pub(super) fn contexts(&self, sides: usize, left: usize, edge: usize) -> [usize; 8] {
         let ([a, b, c, d], [e, f, g]) = (self.earlier, self.later);
         let left = if left == 0 { 0 } else { left.min(63) / 4 + 1 };

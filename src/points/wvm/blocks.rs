@@ -1,20 +1,20 @@
-//! Voxels of a grid in blocks of 4×4×4, one bit each, and what surrounds a voxel.
+//! Sets of voxels in blocks of 4×4×4, one bit per voxel, and the neighbourhoods of voxels.
 
 use std::collections::HashMap;
 
 /// A voxel or a block, by its indices (x, y, z).
 pub(super) type Cell = [u32; 3];
 
-/// Voxels along the side of a block.
+/// Voxels along each side of a block.
 pub(super) const SIDE: u32 = 4;
 
-/// The blocks around a block, itself in the middle.
+/// Number of blocks in the neighbourhood of a block, with itself in the middle.
 pub(super) const AROUND: usize = 27;
 
-/// Itself among these.
+/// Index of the block itself in its neighbourhood.
 pub(super) const MIDDLE: usize = AROUND / 2;
 
-/// A grid in blocks.
+/// The size of a grid, in voxels and in blocks.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Shape {
     /// Voxels along each axis.
@@ -28,14 +28,14 @@ impl Shape {
         Self { voxels, blocks: voxels.map(|n| n.div_ceil(SIDE)) }
     }
 
-    /// The number of a block. There are no more blocks than voxels, and of these less than 2³².
+    /// The number of a block. There are no more blocks than voxels, which are fewer than 2³².
     pub(super) fn number(&self, [x, y, z]: Cell) -> u32 {
         let [nx, ny, _] = self.blocks;
         x + nx * (y + ny * z)
     }
 
-    /// A cell beside another, by the step to it, if it is within `end`.
-    pub(super) fn beside(cell: Cell, step: [i32; 3], end: Cell) -> Option<Cell> {
+    /// The cell at a step from another, if it is within `end`.
+    pub(super) fn offset(cell: Cell, step: [i32; 3], end: Cell) -> Option<Cell> {
         let mut there = cell;
         for k in 0..3 {
             there[k] = cell[k].checked_add_signed(step[k]).filter(|&x| x < end[k])?;
@@ -43,7 +43,7 @@ impl Shape {
         Some(there)
     }
 
-    /// The voxels of a block that are within the grid.
+    /// The voxels of a block that are within the grid, as bits.
     pub(super) fn within(&self, block: Cell) -> u64 {
         let ends = [0, 1, 2].map(|k| (self.voxels[k] - SIDE * block[k]).min(SIDE));
         let inside = |bit: &u32| (0..3).all(|k| place_in_block(*bit)[k] < ends[k]);
@@ -57,17 +57,17 @@ pub(super) fn bit_of(voxel: Cell) -> u32 {
     x + SIDE * (y + SIDE * z)
 }
 
-/// Where the voxel of a bit is in its block.
+/// The position in its block of the voxel of a bit.
 pub(super) fn place_in_block(bit: u32) -> Cell {
     [bit % SIDE, bit / SIDE % SIDE, bit / (SIDE * SIDE)]
 }
 
-/// A set of voxels. Blocks without any are not kept.
+/// A set of voxels. Empty blocks are not stored.
 #[derive(Debug, Default)]
 pub(super) struct Blocks(HashMap<u32, u64>);
 
 impl Blocks {
-    /// The voxels of a block, by its number.
+    /// The voxels of the block with this number, as bits.
     pub(super) fn of(&self, number: u32) -> u64 {
         self.0.get(&number).copied().unwrap_or_default()
     }
@@ -77,11 +77,11 @@ impl Blocks {
         *self.0.entry(number).or_default() |= 1 << bit;
     }
 
-    /// The voxels of the blocks around a block.
+    /// The voxels of a block and of the blocks around it.
     pub(super) fn around(&self, shape: &Shape, block: Cell) -> [u64; AROUND] {
         let mut around = [0; AROUND];
         for (voxels, step) in around.iter_mut().zip(steps(1)) {
-            if let Some(there) = Shape::beside(block, step, shape.blocks) {
+            if let Some(there) = Shape::offset(block, step, shape.blocks) {
                 *voxels = self.of(shape.number(there));
             }
         }
@@ -95,11 +95,11 @@ pub(super) fn steps(reach: i32) -> impl Iterator<Item = [i32; 3]> {
     along().flat_map(move |z| along().flat_map(move |y| along().map(move |x| [x, y, z])))
 }
 
-/// For each voxel of a block the voxels of the blocks around that lie at some steps from it.
+/// For each voxel of a block, a mask of the voxels at certain steps from it, in the blocks around.
 pub(super) struct Window(Vec<[u64; AROUND]>);
 
 impl Window {
-    /// Of the steps, up to 4 along each axis, that are wanted.
+    /// The window of the wanted steps, which are at most 4 along each axis.
     pub(super) fn new(wanted: impl Fn([i32; 3]) -> bool) -> Self {
         let steps: Vec<[i32; 3]> =
             steps(SIDE as i32).filter(|&step| step != [0; 3] && wanted(step)).collect();
@@ -114,14 +114,14 @@ impl Window {
         Self((0..64).map(of).collect())
     }
 
-    /// How many of the voxels around are in the window of the voxel of a bit.
+    /// Number of the voxels around that are in the window of the voxel of a bit.
     pub(super) fn count(&self, around: &[u64; AROUND], bit: u32) -> usize {
         let pairs = self.0[bit as usize].iter().zip(around);
         pairs.map(|(window, voxels)| (window & voxels).count_ones() as usize).sum()
     }
 }
 
-/// The block, among those around, and the bit of what lies at a step from a voxel.
+/// The voxel at a step from the voxel of a bit: its block among those around, and its bit.
 pub(super) fn reached(bit: u32, step: [i32; 3]) -> (usize, u32) {
     let place = place_in_block(bit);
     let (mut block, mut voxel) = (0, [0; 3]);

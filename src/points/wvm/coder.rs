@@ -1,4 +1,4 @@
-//! Bits in and out of the range coder, each with the probability that a model gives it.
+//! Range coding of bits, each with a probability from a model.
 
 use std::borrow::Borrow;
 use std::num::NonZeroU32;
@@ -10,32 +10,32 @@ use constriction::stream::{Decode, Encode};
 /// Probabilities are multiples of 2⁻¹⁶.
 const PRECISION: usize = 16;
 
-/// The whole of a probability.
+/// The probability 1.
 pub(super) const WHOLE: u32 = 1 << PRECISION;
 
-/// What codes bits. A model is written once, for both directions.
+/// An encoder or decoder of bits, so that one model serves both directions.
 pub(super) trait Coder {
     /// Codes a bit that is 1 with the probability `one`/2¹⁶, from 1 to 2¹⁶ − 1, and returns it. A
-    /// decoder takes no notice of `bit`.
+    /// decoder ignores `bit`.
     fn bit(&mut self, one: u32, bit: bool) -> bool;
 }
 
-/// Bits that go into a stream.
+/// Encodes bits into a stream.
 #[derive(Default)]
 pub(super) struct Encoder(DefaultRangeEncoder);
 
-/// Bits that come out of a stream. Behind its end, and from a damaged one, come arbitrary bits.
+/// Decodes bits from a stream. After its end, or if it is damaged, the bits are arbitrary.
 pub(super) struct Decoder(DefaultRangeDecoder);
 
-/// A bit that is 1 with a probability.
+/// The distribution of a bit that is 1 with the probability `one`/2¹⁶.
 #[derive(Clone, Copy)]
 struct Bit {
     one: u32,
 }
 
 impl Bit {
-    /// Where the share of a bit begins, and how long it is.
-    fn share(self, bit: bool) -> (u32, NonZeroU32) {
+    /// The start and length of the interval of a bit.
+    fn interval(self, bit: bool) -> (u32, NonZeroU32) {
         let (start, length) = if bit { (0, self.one) } else { (self.one, WHOLE - self.one) };
         (start, NonZeroU32::new(length).expect("neither bit is certain"))
     }
@@ -51,14 +51,14 @@ impl EncoderModel<PRECISION> for Bit {
         &self,
         symbol: impl Borrow<bool>,
     ) -> Option<(u32, NonZeroU32)> {
-        Some(self.share(*symbol.borrow()))
+        Some(self.interval(*symbol.borrow()))
     }
 }
 
 impl DecoderModel<PRECISION> for Bit {
     fn quantile_function(&self, quantile: u32) -> (bool, u32, NonZeroU32) {
         let bit = quantile < self.one;
-        let (start, length) = self.share(bit);
+        let (start, length) = self.interval(bit);
         (bit, start, length)
     }
 }
@@ -71,9 +71,9 @@ impl Coder for Encoder {
 }
 
 impl Encoder {
-    /// The stream: words of 32 bits, little-endian.
+    /// The stream, as little-endian words of 32 bits.
     pub(super) fn finish(self) -> Vec<u8> {
-        let words = self.0.into_compressed().expect("memory takes what is written to it");
+        let words = self.0.into_compressed().expect("writing to memory cannot fail");
         words.iter().flat_map(|word| word.to_le_bytes()).collect()
     }
 }
@@ -85,7 +85,7 @@ impl Coder for Decoder {
 }
 
 impl Decoder {
-    /// Reads a stream; bytes behind its last whole word are not looked at.
+    /// Reads a stream; bytes after its last whole word are ignored.
     pub(super) fn new(bytes: &[u8]) -> Self {
         let words = bytes.chunks_exact(4);
         let words = words.map(|word| u32::from_le_bytes([word[0], word[1], word[2], word[3]]));

@@ -1,4 +1,4 @@
-//! The fields of a header, as bytes.
+//! Encoding of the fields of a header.
 
 use walpha_complex::Alpha;
 
@@ -18,15 +18,15 @@ const UNITS: [LengthUnit; 8] = [
     LengthUnit::Angstrom,
 ];
 
-/// The number of one of several.
+/// The code of an item: its index in the list.
 fn code<T: PartialEq>(all: &[T], one: T) -> u8 {
     all.iter().position(|other| *other == one).expect("all are in the list") as u8
 }
 
-/// Bytes to be.
-pub(super) struct Out(pub Vec<u8>);
+/// Appends fields to bytes.
+pub(super) struct FieldWriter(pub Vec<u8>);
 
-impl Out {
+impl FieldWriter {
     /// A whole number: seven bits to a byte, the lowest first, the eighth bit set on all but the last.
     pub(super) fn whole(&mut self, mut number: u64) {
         while number >= 128 {
@@ -52,12 +52,13 @@ impl Out {
     }
 }
 
-/// Bytes that are left.
-pub(super) struct In<'a> {
+/// Reads fields from bytes.
+pub(super) struct FieldReader<'a> {
+    /// The bytes not yet read.
     pub rest: &'a [u8],
 }
 
-impl In<'_> {
+impl FieldReader<'_> {
     pub(super) fn bytes<const N: usize>(&mut self) -> Result<[u8; N], Reason> {
         let Some((first, rest)) = self.rest.split_first_chunk::<N>() else {
             return Err(Reason::truncated("is truncated: it ends within its header"));
@@ -97,7 +98,8 @@ impl In<'_> {
 
     fn one_of<T: Copy>(&mut self, all: &[T], what: &str) -> Result<T, Reason> {
         let code = self.byte()?;
-        let unknown = || Reason::header(format!("its header names a {what} {code}, which is none"));
+        let unknown =
+            || Reason::header(format!("its header names the {what} {code}, which is unknown"));
         all.get(usize::from(code)).copied().ok_or_else(unknown)
     }
 

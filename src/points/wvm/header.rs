@@ -1,29 +1,29 @@
-//! The head of a file: what it holds, and the length of everything behind it.
+//! The header of a file: its metadata, and the lengths of its layers.
 
 use walpha_complex::Alpha;
 
-use super::fields::{In, Out};
+use super::fields::{FieldReader, FieldWriter};
 use crate::points::model::MODEL;
 use crate::points::{ModelMetadata, SampleGrid, Units};
 use crate::volume::{Coordinates, Dims, Frame, GrayRange, Reason};
 
-/// The version without a recipe, which is written where there is none.
+/// The version without a recipe, written if there is none.
 const WITHOUT_RECIPE: u8 = 1;
 /// The version whose header ends with a recipe.
 const WITH_RECIPE: u8 = 2;
-/// Longest recipe that is kept, in bytes: the length of a header has 16 bits.
+/// Longest recipe that is stored, in bytes: the length of a header has 16 bits. Longer ones are dropped.
 const MAX_RECIPE: usize = 1 << 15;
 
-/// Points per byte of a layer, at most: what is believed of a header is in proportion to the file.
+/// Maximum number of points per byte of a layer, so that a reader's memory is proportional to the file.
 pub(super) const POINTS_PER_BYTE: u64 = 64;
 
-/// Bytes of a checksum.
+/// Size of a checksum, in bytes.
 pub(super) const CHECKSUM: usize = 4;
 
-/// Bytes of the length of the head.
+/// Size of the field with the length of the header, in bytes.
 const LENGTH: usize = 2;
 
-/// What a file holds.
+/// The header of a file.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Header {
     pub grid: Option<SampleGrid>,
@@ -40,7 +40,7 @@ pub(super) struct Header {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Values {
     None,
-    /// As whole multiples of a step, from a base on.
+    /// As `base` plus whole multiples of `step`.
     Steps {
         base: f64,
         step: f64,
@@ -58,7 +58,7 @@ pub(super) enum Weights {
     Exact,
 }
 
-/// Points of a layer, and the bytes of its places, values and weights.
+/// The number of points of a layer, and the bytes of its positions, values and weights.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Layer {
     pub count: u64,
@@ -66,13 +66,13 @@ pub(super) struct Layer {
 }
 
 impl Layer {
-    /// Bytes of all its parts; `None` where they are more than can be.
+    /// Bytes of all its parts; `None` on overflow.
     pub(super) fn length(&self) -> Option<u64> {
         self.bytes.iter().try_fold(0u64, |sum, &part| sum.checked_add(part))
     }
 }
 
-/// The bits of the byte of flags.
+// The bits of the flags.
 const GRID: u8 = 1;
 const FRAME: u8 = 2;
 const WORLD: u8 = 4;
@@ -83,20 +83,20 @@ const ALPHA: u8 = 64;
 const RANGE: u8 = 128;
 
 impl Header {
-    /// What is stored besides the points.
-    pub(super) fn facts(&self) -> ModelMetadata {
+    /// The metadata of the points.
+    pub(super) fn metadata(&self) -> ModelMetadata {
         let Self { grid, coordinates, alpha, range, .. } = *self;
         let recipe = self.recipe.clone();
         ModelMetadata { grid, coordinates, alpha, range, recipe, order: None, cell: None }
     }
 
-    /// The frame of the grid, where it has to be stored.
+    /// The frame of the grid, unless it is the default.
     fn frame(&self) -> Option<Frame> {
         let default = Frame::VOXEL.with_coordinates(self.coordinates);
         self.grid.map(|grid| grid.frame).filter(|frame| *frame != default)
     }
 
-    /// The bytes of the head, with its checksum.
+    /// The bytes of the header, with its checksum.
     pub(super) fn to_bytes(&self) -> Vec<u8> {
         let frame = self.frame();
         let world = self.grid.is_some_and(|grid| grid.units == Units::World);
@@ -112,7 +112,7 @@ impl Header {
         ];
         let flags = flags.iter().filter(|(_, set)| *set).map(|(flag, _)| flag).sum();
         let recipe = self.recipe.as_ref().filter(|recipe| recipe.len() <= MAX_RECIPE);
-        let mut out = Out(MODEL.to_vec());
+        let mut out = FieldWriter(MODEL.to_vec());
         out.0.push(if recipe.is_some() { WITH_RECIPE } else { WITHOUT_RECIPE });
         let length = out.0.len();
         out.0.extend([0; LENGTH]);
@@ -152,13 +152,13 @@ impl Header {
         out.0
     }
 
-    /// Reads the head of a file, and says how long it is. Nothing is believed of it beyond that; what is
-    /// allocated is a few kilobytes.
+    /// Reads the header of a file, and returns it with its length. Allocates a few kilobytes, whatever the
+    /// header claims.
     pub(super) fn of_bytes(file: &[u8]) -> Result<(Self, usize), Reason> {
         let Some(rest) = file.strip_prefix(MODEL) else {
-            return Err(Reason::other("is no .wvm: it does not begin as one"));
+            return Err(Reason::other("is not a .wvm file: its signature is missing"));
         };
-        let mut fields = In { rest };
+        let mut fields = FieldReader { rest };
         let version = fields.byte()?;
         if ![WITHOUT_RECIPE, WITH_RECIPE].contains(&version) {
             let what = format!(
@@ -171,11 +171,11 @@ impl Header {
         let Some((head, checksum)) = whole else {
             return Err(Reason::truncated("is truncated: it ends within its header"));
         };
-        if !fits(head, u32::from_le_bytes(*checksum)) {
+        if !checksum_matches(head, u32::from_le_bytes(*checksum)) {
             return Err(damaged("its header"));
         }
         let mut fields =
-            In { rest: head.get(file.len() - fields.rest.len()..).unwrap_or_default() };
+            FieldReader { rest: head.get(file.len() - fields.rest.len()..).unwrap_or_default() };
         let mut header = Self::of_fields(&mut fields)?;
         if version == WITH_RECIPE {
             let recipe = String::from_utf8(fields.rest.to_vec());
@@ -186,7 +186,7 @@ impl Header {
         Ok((header, length))
     }
 
-    fn of_fields(fields: &mut In<'_>) -> Result<Self, Reason> {
+    fn of_fields(fields: &mut FieldReader<'_>) -> Result<Self, Reason> {
         let flags = fields.byte()?;
         let has = |flag: u8| flags & flag != 0;
         let coordinates = fields.coordinates()?;
@@ -203,7 +203,9 @@ impl Header {
             None
         };
         let values = match (has(STEPS), has(EXACT_VALUES)) {
-            (true, true) => return Err(Reason::header("its header keeps values in two ways")),
+            (true, true) => {
+                return Err(Reason::header("its header says that values are stored in two ways"));
+            }
             (true, false) => Values::Steps { base: fields.double()?, step: fields.double()? },
             (false, true) => Values::Exact,
             (false, false) => Values::None,
@@ -223,7 +225,7 @@ impl Header {
         Ok(header)
     }
 
-    /// Refuses what contradicts itself.
+    /// Refuses a header that contradicts itself.
     fn check(&self) -> Result<(), Reason> {
         let what = |what: &str| Err(Reason::header(format!("its header {what}")));
         if self.grid.is_none()
@@ -233,7 +235,9 @@ impl Header {
         }
         let mut points = 0u64;
         for layer in &self.layers {
-            let Some(length) = layer.length() else { return what("claims more bytes than can be") };
+            let Some(length) = layer.length() else {
+                return what("claims more bytes than 64 bits can count");
+            };
             if layer.count > length.saturating_mul(POINTS_PER_BYTE) {
                 return what("claims more points than its bytes can hold");
             }
@@ -244,12 +248,12 @@ impl Header {
     }
 }
 
-/// Whether bytes have this checksum. Fuzzers, which cannot guess one, get past it.
-pub(super) fn fits(bytes: &[u8], checksum: u32) -> bool {
+/// Whether bytes have this checksum. Always true for fuzzers, which cannot guess one.
+pub(super) fn checksum_matches(bytes: &[u8], checksum: u32) -> bool {
     cfg!(fuzzing) || crc32fast::hash(bytes) == checksum
 }
 
-/// The error for damaged bytes.
+/// The error for a wrong checksum.
 pub(super) fn damaged(what: &str) -> Reason {
-    Reason::damaged(format!("is damaged: the checksum of {what} does not fit"))
+    Reason::damaged(format!("is damaged: the checksum of {what} does not match"))
 }

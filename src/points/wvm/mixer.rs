@@ -1,35 +1,36 @@
-//! How likely a bit is, from what followed like places before: adaptive probabilities under several
-//! contexts, mixed by weights that are learnt as well.
+//! The probability of a bit from the bits so far: adaptive probabilities under several contexts, mixed with
+//! weights that are learnt as well.
 //!
 //! This is mixing by gradient descent on the coding cost, as in the PAQ programs (Mahoney, "Adaptive
 //! weighing of context models for lossless data compression", 2005), with an algebraic link x/√(1 + x²)
-//! in place of the logistic one: addition, multiplication, division and square roots alone are the same
-//! on every machine, to the last bit.
+//! in place of the logistic one: addition, multiplication, division and square roots give the same bits on
+//! every machine.
 
 use super::coder::{Coder, WHOLE};
 
 /// Contexts are numbers below this.
 pub(super) const CONTEXTS: usize = 1 << 16;
 
-/// A probability is kept this far from 0 and from 1.
+/// Minimum distance of a probability from 0 and from 1, in multiples of 2⁻¹⁶.
 const LEAST: u32 = 16;
 
-/// Bits known under some contexts.
+/// Predicts and codes bits under several contexts.
 pub(super) struct Mixer {
-    /// For each kind of context one slot per context: the balance of bits, from −1 (only 0 so far) to 1
+    /// For each kind of context one slot per context: the balance of its bits, from −1 (only 0 so far) to 1
     /// (only 1), and their number.
     slots: Vec<[f64; 2]>,
-    /// For each set of weights one for each input.
+    /// One weight per input, for each set of weights.
     weights: Vec<f64>,
     inputs: Vec<f64>,
     kinds: usize,
-    /// Bits that a slot averages over, at most.
+    /// Maximum number of bits that a slot averages over.
     memory: f64,
+    /// Learning rate of the weights.
     rate: f64,
 }
 
 impl Mixer {
-    /// A mixer of so many kinds of contexts, with so many sets of weights.
+    /// A mixer of `kinds` kinds of contexts, with `sets` sets of weights.
     pub(super) fn new(kinds: usize, sets: usize, memory: f64, rate: f64) -> Self {
         let inputs = 2 * kinds + 1;
         Self {
@@ -80,9 +81,10 @@ impl Mixer {
         bit
     }
 
-    /// Codes a whole number of a kind, in a mixer of one kind of contexts: of the number plus 1, as many ones
-    /// as it has binary digits behind the first, and a zero; then these, each as likely 0 as 1. `None` of
-    /// more digits than any number coded here has.
+    /// Codes a whole number in a mixer of one kind of contexts, as an Elias gamma code of the number plus 1: as
+    /// many ones as it has binary digits after the first, and a zero; then these digits, at probability ½. The
+    /// ones and the zero have contexts of their own for each `kind` of number. `None` for more digits than any
+    /// number coded here has.
     pub(super) fn number(
         &mut self,
         coder: &mut impl Coder,

@@ -1,8 +1,8 @@
-//! `.wvm`: points of a model in few bytes. `docs/wvm.md` describes the format byte by byte.
+//! `.wvm`: the compressed points of a model. `docs/wvm.md` describes the format byte by byte.
 //!
-//! Places are coded as voxels of a grid, values as whole numbers, each bit by a range coder with a
-//! probability that is learnt on the way ([`mixer`]); what does not fit that is kept bit for bit
-//! ([`column`]). The tetrahedra are not kept: they are a function of the points.
+//! Positions are coded as voxels of a grid and values as whole numbers, bit by bit with a range coder and
+//! adaptive probabilities ([`mixer`]); anything else is stored bit for bit ([`column`]). The tetrahedra are not
+//! stored, as the points determine them.
 
 mod around;
 mod blocks;

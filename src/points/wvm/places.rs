@@ -1,4 +1,4 @@
-//! Which voxels of a grid have points.
+//! Coding of the voxels that have points.
 
 use std::collections::HashSet;
 
@@ -7,11 +7,11 @@ use super::blocks::{Blocks, Cell, MIDDLE, SIDE, Shape, bit_of};
 use super::coder::Coder;
 use super::mixer::Mixer;
 
-/// Blocks along the side of a superblock.
+/// Blocks along each side of a superblock.
 const SUPER: u32 = 8;
 
-/// Codes places layer by layer: the superblocks that have points, then their blocks, then the voxels of
-/// these, each in the order of z, then y, then x. What is known already says what is likely.
+/// Codes occupied voxels layer by layer: the superblocks that have points, then their blocks, then the voxels
+/// of these, each in the order of z, then y, then x. The voxels known so far are the contexts.
 pub(super) struct Places {
     shape: Shape,
     known: Blocks,
@@ -23,7 +23,7 @@ pub(super) struct Places {
 }
 
 impl Places {
-    /// Of a grid of which no point is known.
+    /// A coder for a grid without known points.
     pub(super) fn new(voxels: Cell) -> Self {
         Self {
             shape: Shape::new(voxels),
@@ -36,14 +36,14 @@ impl Places {
         }
     }
 
-    /// The voxels that are known to have points.
+    /// The voxels known to have points.
     pub(super) fn known(&self) -> &Blocks {
         &self.known
     }
 
-    /// Codes a layer of so many voxels, and returns them in order. `fresh` are those that an encoder
-    /// adds, in order, and none of them known before; a decoder has none. `None` where a stream does
-    /// not hold as many.
+    /// Codes a layer of `count` voxels, and returns them in order. `fresh` are the voxels that an encoder
+    /// adds, in order, none of them known before; a decoder passes none. `None` if a stream does not hold
+    /// `count` voxels.
     pub(super) fn code(
         &mut self,
         coder: &mut impl Coder,
@@ -64,7 +64,7 @@ impl Places {
         self.code_voxels(coder, &blocks, &wanted, count)
     }
 
-    /// The superblocks, by how many are passed over between one and the next.
+    /// Codes the superblocks by the number of empty ones between one and the next.
     fn supers(
         &mut self,
         coder: &mut impl Coder,
@@ -118,7 +118,7 @@ impl Places {
     fn block_contexts(&self, flagged: &HashSet<u32>, block: Cell) -> [usize; 4] {
         let end = self.shape.blocks;
         let is_flagged = |step: &[i32; 3]| {
-            let there = Shape::beside(block, *step, end);
+            let there = Shape::offset(block, *step, end);
             there.is_some_and(|there| flagged.contains(&self.shape.number(there)))
         };
         let (near, far) = self.earlier_blocks.split_at(13);
@@ -158,7 +158,7 @@ impl Places {
                 if open >> bit & 1 == 0 {
                     continue;
                 }
-                // The last voxel that can be it, of a block that has none yet, must be it.
+                // If a block has no point yet, the last candidate must be one.
                 let left = (open >> bit).count_ones() as usize;
                 let left = if fresh.of(number) == 0 { left } else { 0 };
                 let has = wanted.of(number) >> bit & 1 == 1;
@@ -182,13 +182,13 @@ impl Places {
         (voxels.len() == count).then_some(voxels)
     }
 
-    /// Which of the three blocks nearest to a voxel of a block have points of this layer.
+    /// Which of the three face neighbours of a block that are nearest to a voxel have points of this layer.
     fn sides(&self, flagged: &HashSet<u32>, block: Cell, voxel: Cell) -> usize {
         let mut sides = 0;
         for k in 0..3 {
             let mut step = [0; 3];
             step[k] = if voxel[k] % SIDE < SIDE / 2 { -1 } else { 1 };
-            let there = Shape::beside(block, step, self.shape.blocks);
+            let there = Shape::offset(block, step, self.shape.blocks);
             let has = there.is_some_and(|there| flagged.contains(&self.shape.number(there)));
             sides |= usize::from(has) << k;
         }
@@ -196,13 +196,13 @@ impl Places {
     }
 }
 
-/// The part of a side that a cell covers.
+/// The range of smaller cells that a cell covers along an axis.
 fn span(cell: u32, factor: u32, end: u32) -> std::ops::Range<u32> {
     cell * factor..end.min((cell + 1).saturating_mul(factor))
 }
 
-/// The rows of smaller cells, `factor` along each side, of cells in order, in the order of the smaller
-/// ones: each by the cell it is in, its y and its z. Ends at the first `None`.
+/// Visits the rows of smaller cells, `factor` along each side of a cell, in the order of the smaller cells:
+/// each by its cell, its y and its z. Stops at the first `None`.
 fn rows(
     cells: &[Cell],
     factor: u32,

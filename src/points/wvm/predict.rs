@@ -1,26 +1,26 @@
-//! What the value at a voxel may be, from known values around it.
+//! Prediction of the value at a voxel from known values around it.
 //!
-//! Sums are in the order of the neighbours, and nothing but +, −, ×, ÷ and √ is used, so that every
-//! machine makes the same prediction, to the last bit.
+//! Sums are in the order of the neighbours, and only +, −, ×, ÷ and √ are used, so that every machine makes the
+//! same prediction, bit for bit.
 
 use std::collections::HashMap;
 
 use super::blocks::{Cell, SIDE, Shape, bit_of, place_in_block, squared, steps};
 
-/// Known values that take part.
+/// Maximum number of known values in a prediction.
 const NEIGHBOURS: usize = 14;
 
-/// Of these, in the first estimate.
+/// How many of these are in the first estimate.
 const NEAR: usize = 8;
 
-/// Rings of blocks that are searched for neighbours, at most.
+/// Maximum number of rings of blocks that are searched for neighbours.
 const RINGS: i32 = 3;
 
-/// Values known so far, by blocks: the bit of each voxel, and its value.
+/// Values known so far, by block: the bit of each voxel, and its value.
 #[derive(Debug, Default)]
 pub(super) struct Known(HashMap<u32, Vec<(u8, u32)>>);
 
-/// A known value, and where it lies as seen from the voxel.
+/// A known value, and its step from the voxel.
 #[derive(Clone, Copy)]
 struct Neighbour {
     step: [i32; 3],
@@ -28,15 +28,15 @@ struct Neighbour {
     value: f64,
 }
 
-/// What is to be expected at a voxel.
+/// The prediction at a voxel.
 pub(super) struct Guess {
-    /// The value.
+    /// The expected value.
     pub value: f64,
-    /// How far neighbours are from their mean.
+    /// Standard deviation of the near neighbours, weighted like their mean.
     pub spread: f64,
-    /// The squared distance of the nearest.
+    /// Squared distance of the nearest known value.
     pub squared: f64,
-    /// Other estimates: the nearest value, the next, a mean of more, and a plane.
+    /// Other estimates: the nearest value, the second nearest, a mean of all neighbours, and a plane.
     pub others: [f64; 4],
 }
 
@@ -47,15 +47,15 @@ impl Known {
         self.0.entry(block).or_default().push((bit_of(voxel) as u8, value));
     }
 
-    /// The nearest known values: those of the blocks around, and of as many rings of blocks more as it
-    /// takes to have enough. The nearest first; of equally near ones in the order of z, then y, then x.
+    /// The nearest known values, from the blocks around and from further rings of blocks until there are
+    /// enough. The nearest first, ties in the order of z, then y, then x.
     fn near(&self, shape: &Shape, voxel: Cell) -> Vec<Neighbour> {
         let block = voxel.map(|v| v / SIDE);
         let mut found = Vec::new();
         for ring in 1..=RINGS {
             let inner = |step: &[i32; 3]| ring > 1 && step.iter().all(|s| s.abs() < ring);
             for step in steps(ring).filter(|step| !inner(step)) {
-                let Some(there) = Shape::beside(block, step, shape.blocks) else { continue };
+                let Some(there) = Shape::offset(block, step, shape.blocks) else { continue };
                 let Some(values) = self.0.get(&shape.number(there)) else { continue };
                 found.extend(values.iter().map(|&(bit, value)| {
                     let place = place_in_block(bit.into());
@@ -77,7 +77,7 @@ impl Known {
         found
     }
 
-    /// What the value at a voxel may be.
+    /// Predicts the value at a voxel.
     pub(super) fn guess(&self, shape: &Shape, voxel: Cell) -> Guess {
         let all = self.near(shape, voxel);
         let Some(nearest) = all.first() else {
@@ -102,18 +102,18 @@ impl Known {
 fn average(
     near: &[Neighbour],
     weight: impl Fn(&Neighbour) -> f64,
-    what: impl Fn(&Neighbour) -> f64,
+    quantity: impl Fn(&Neighbour) -> f64,
 ) -> f64 {
-    let (mut sum, mut whole) = (0.0, 0.0);
+    let (mut sum, mut total) = (0.0, 0.0);
     for n in near {
-        sum += weight(n) * what(n);
-        whole += weight(n);
+        sum += weight(n) * quantity(n);
+        total += weight(n);
     }
-    sum / whole
+    sum / total
 }
 
-/// How much a plane through the neighbours is above the mean at the voxel: least squares with weights
-/// 1/d², with a pull of 1 on slopes and of 0.05 on the height, by elimination in the order of the columns.
+/// Height above the mean, at the voxel, of a plane fitted to the neighbours: least squares with weights 1/d²,
+/// regularised by 1 for slopes and by 0.05 for the height, solved by elimination in the order of the columns.
 fn plane(near: &[Neighbour], mean: f64) -> f64 {
     let mut rows = [[0.0; 5]; 4];
     for n in near {

@@ -1,4 +1,4 @@
-//! From bytes to points.
+//! Reading of `.wvm`.
 
 use std::io::Read;
 
@@ -7,15 +7,15 @@ use walpha_base::memory::try_with_capacity;
 
 use super::coder::Decoder;
 use super::column;
-use super::header::{CHECKSUM, Header, Layer, Values, Weights, damaged, fits};
-use super::write::{Coders, in_order};
+use super::header::{CHECKSUM, Header, Layer, Values, Weights, checksum_matches, damaged};
+use super::write::{Coders, sort_key};
 use crate::points::read::format;
 use crate::points::{ModelMetadata, Points, PointsError, SampleGrid, WeightedPoints};
 use crate::volume::{OpenFile, Reason, io_error};
 
-/// Reads points without the last `level` layers, and what is known of them.
+/// Reads points without the last `level` layers, and their metadata.
 ///
-/// Memory is in proportion to the file, whatever its header claims: a byte holds 64 points at most.
+/// Memory is proportional to the size of the file, whatever its header claims: a byte holds at most 64 points.
 pub(in crate::points) fn read(
     file: &OpenFile,
     level: u32,
@@ -37,7 +37,7 @@ pub(in crate::points) fn read(
     let mut model = Model::new(&header);
     for (k, (layer, bytes)) in header.layers.iter().zip(body).enumerate() {
         let Some((bytes, checksum)) = bytes.split_last_chunk::<CHECKSUM>() else { continue };
-        if !fits(bytes, u32::from_le_bytes(*checksum)) {
+        if !checksum_matches(bytes, u32::from_le_bytes(*checksum)) {
             return Err(fail(damaged(&format!("layer {k}"))));
         }
         model.reserve(layer.count as usize)?;
@@ -47,7 +47,10 @@ pub(in crate::points) fn read(
         }
     }
     let WeightedPoints { positions, weights, values } = model.points();
-    Ok((Points { positions, weights: Some(weights), values, ..Points::default() }, header.facts()))
+    Ok((
+        Points { positions, weights: Some(weights), values, ..Points::default() },
+        header.metadata(),
+    ))
 }
 
 /// The bytes of the first layers, each with its checksum.
@@ -85,11 +88,11 @@ fn layers_of<'a>(
     Ok(layers)
 }
 
-/// Points as they are read.
+/// The points read so far.
 struct Model<'a> {
     header: &'a Header,
     coders: Option<(SampleGrid, Coders)>,
-    /// The sample of each, where there is a grid.
+    /// The sample of each point, if there is a grid.
     cells: Vec<[u32; 3]>,
     points: WeightedPoints,
 }
@@ -105,16 +108,16 @@ impl<'a> Model<'a> {
         }
     }
 
-    /// Sees that there is memory for so many more points.
+    /// Checks that there is memory for `count` more points.
     fn reserve(&self, count: usize) -> Result<(), PointsError> {
-        /// Of a point, as it is read and as it is sorted.
+        /// Memory for a point, while it is read and sorted.
         const BYTES: usize = 128;
         let all = self.points.len().saturating_add(count);
         Ok(try_with_capacity::<[u8; BYTES]>(all, || format!("a model of {all} points"))
             .map(drop)?)
     }
 
-    /// Adds a layer; `None` where its bytes do not hold it.
+    /// Adds a layer; `None` if its bytes are inconsistent with it.
     fn layer(&mut self, layer: &Layer, bytes: &[u8]) -> Option<()> {
         let count = usize::try_from(layer.count).ok()?;
         let (places, rest) = bytes.split_at_checked(layer.bytes[0] as usize)?;
@@ -153,14 +156,14 @@ impl<'a> Model<'a> {
         Some(())
     }
 
-    /// The points, those of a grid in the order of its samples.
+    /// The points; on a grid, in the order of its samples.
     fn points(self) -> WeightedPoints {
         let Self { cells, points, .. } = self;
-        if cells.is_sorted_by_key(|&cell| in_order(cell)) {
+        if cells.is_sorted_by_key(|&cell| sort_key(cell)) {
             return points;
         }
         let mut order: Vec<usize> = (0..cells.len()).collect();
-        order.sort_unstable_by_key(|&point| in_order(cells[point]));
+        order.sort_unstable_by_key(|&point| sort_key(cells[point]));
         let sorted = |column: &[f64]| order.iter().map(|&point| column[point]).collect();
         WeightedPoints {
             positions: order.iter().map(|&point| points.positions[point]).collect(),

@@ -1,14 +1,14 @@
-//! Whole numbers at the voxels of points, as differences from what is to be expected there.
+//! Whole numbers at the voxels of points, coded as differences from a prediction.
 
 use super::blocks::{Blocks, Cell, SIDE, Shape, Window, bit_of, squared};
 use super::coder::Coder;
 use super::mixer::Mixer;
 use super::predict::{Guess, Known};
 
-/// Differences up to this are counted one by one.
+/// Differences up to this are coded in unary.
 const COUNTED: u64 = 12;
 
-/// Codes values layer by layer, in the order of the places, from 0 to 2³² − 1.
+/// Codes values from 0 to 2³² − 1, layer by layer, in the order of the voxels.
 pub(super) struct Values {
     shape: Shape,
     known: Known,
@@ -17,22 +17,22 @@ pub(super) struct Values {
     density: Window,
 }
 
-/// What the contexts of the bits of one value have in common.
-struct Around {
-    /// The expected value, rounded, and in which quarter around it that was.
+/// What the contexts of all bits of one value share.
+struct ValueContext {
+    /// The expected value, rounded, and the quarter of the rounding interval that it was in.
     expected: u64,
     quarter: usize,
     /// A logarithm of the spread, 0 to 23.
     spread: usize,
     level: usize,
     distance: usize,
-    /// Other estimates, from the expected value, 0 to 12 with 6 for none.
+    /// Other estimates as differences from the expected value, clamped to ±6, plus 6.
     others: [usize; 4],
     density: usize,
 }
 
 impl Values {
-    /// Of a grid of which no value is known.
+    /// A coder for a grid without known values.
     pub(super) fn new(voxels: Cell) -> Self {
         Self {
             shape: Shape::new(voxels),
@@ -44,7 +44,7 @@ impl Values {
     }
 
     /// Codes the values at some voxels, in order, and returns them. `occupied` are all voxels that have
-    /// points. A decoder has no `values`. `None` where a stream holds none that can be.
+    /// points. A decoder passes no `values`. `None` if a stream holds a value out of range.
     pub(super) fn code(
         &mut self,
         coder: &mut impl Coder,
@@ -54,21 +54,21 @@ impl Values {
     ) -> Option<Vec<u32>> {
         let mut coded = Vec::new();
         for (k, &voxel) in voxels.iter().enumerate() {
-            let around = self.around(voxel, occupied);
-            let value = self.value(coder, &around, values.get(k).map_or(0, |&v| v.into()))?;
+            let context = self.context(voxel, occupied);
+            let value = self.value(coder, &context, values.get(k).map_or(0, |&v| v.into()))?;
             self.known.add(&self.shape, voxel, value);
             coded.push(value);
         }
         Some(coded)
     }
 
-    fn around(&self, voxel: Cell, occupied: &Blocks) -> Around {
+    fn context(&self, voxel: Cell, occupied: &Blocks) -> ValueContext {
         let Guess { value, spread, squared, others } = self.known.guess(&self.shape, voxel);
         let expected = (value + 0.5) as u64;
         let offset = |other: f64| (other - expected as f64).round().clamp(-6.0, 6.0) as i64 + 6;
         let block = voxel.map(|v| v / SIDE);
         let around = occupied.around(&self.shape, block);
-        Around {
+        ValueContext {
             expected,
             quarter: ((value + 0.5 - expected as f64) * 4.0).clamp(0.0, 3.0) as usize,
             spread: logarithm(spread + 0.3),
@@ -79,15 +79,15 @@ impl Values {
         }
     }
 
-    fn value(&mut self, coder: &mut impl Coder, around: &Around, value: u64) -> Option<u32> {
-        let expected = around.expected;
+    fn value(&mut self, coder: &mut impl Coder, context: &ValueContext, value: u64) -> Option<u32> {
+        let expected = context.expected;
         let mut bit = |this: &mut Self, node: usize, bit: bool| {
-            this.small.code(coder, &around.contexts(node), node.min(24), bit)
+            this.small.code(coder, &context.contexts(node), node.min(24), bit)
         };
         if !bit(self, 0, value != expected) {
             return u32::try_from(expected).ok();
         }
-        // No value is negative, which decides the sign where 0 is expected.
+        // Values are not negative: if 0 is expected, the sign is known.
         let above = expected == 0 || bit(self, 1, value > expected);
         let (size, most) = (value.abs_diff(expected), if above { u64::MAX } else { expected });
         let mut counted = 1;
@@ -98,9 +98,9 @@ impl Values {
             }
             counted += 1;
             if counted > COUNTED {
-                // What is above those counted.
+                // The part beyond the unary code.
                 let rest = size.saturating_sub(counted);
-                counted += self.large.number(coder, around.spread, rest)?;
+                counted += self.large.number(coder, context.spread, rest)?;
                 break;
             }
         }
@@ -118,7 +118,7 @@ fn logarithm(number: f64) -> usize {
     (2 * exponent + half + 4).clamp(0, 23) as usize
 }
 
-impl Around {
+impl ValueContext {
     fn contexts(&self, node: usize) -> [usize; 7] {
         let Self { quarter, spread, level, distance, density, .. } = *self;
         let [nearest, next, wide, plane] = self.others;

@@ -1,4 +1,4 @@
-//! From points to bytes.
+//! Writing of `.wvm`.
 
 use std::io::{self, Write};
 
@@ -10,23 +10,23 @@ use super::places::Places;
 use super::values;
 use crate::points::{ModelMetadata, Packing, SampleGrid, WeightedPoints};
 
-/// Writes points and what is known of them.
+/// Writes points and their metadata.
 ///
-/// Places become voxels where each lies exactly on a sample of the grid, or of one in whole numbers,
-/// and none on another's; the points then come back in the order of the samples. Otherwise they are kept
-/// as doubles, in their order and in one layer.
+/// Positions are stored as voxels if each lies exactly on a sample of the grid, or of a grid of whole numbers,
+/// and no two on the same; the points are then read in the order of the samples. Otherwise positions are
+/// stored as doubles, in their order and in one layer.
 ///
 /// # Errors
 /// Whatever `out` returns.
 pub(in crate::points) fn write(
     points: &WeightedPoints,
-    facts: &ModelMetadata,
+    metadata: &ModelMetadata,
     packing: &Packing,
     out: &mut dyn Write,
 ) -> io::Result<()> {
-    let on_grid = on_grid(points, facts);
+    let on_grid = on_grid(points, metadata);
     let layers = match &on_grid {
-        Some((_, cells)) => in_layers(cells, facts, packing),
+        Some((_, cells)) => in_layers(cells, metadata, packing),
         None => vec![(0..points.len()).collect()],
     };
     let values = points.values.as_deref().filter(|_| on_grid.is_some());
@@ -39,10 +39,10 @@ pub(in crate::points) fn write(
     };
     let header = Header {
         grid: file.on_grid.as_ref().map(|(grid, _)| *grid),
-        coordinates: facts.coordinates,
-        alpha: facts.alpha,
-        range: facts.range,
-        recipe: facts.recipe.clone(),
+        coordinates: metadata.coordinates,
+        alpha: metadata.alpha,
+        range: metadata.range,
+        recipe: metadata.recipe.clone(),
         values: match (&points.values, &file.steps) {
             (None, _) => Values::None,
             (_, Some(Steps { base, step, .. })) => Values::Steps { base: *base, step: *step },
@@ -60,33 +60,33 @@ pub(in crate::points) fn write(
     out.flush()
 }
 
-/// The grid and the sample that each point lies on, if they all do.
-fn on_grid(points: &WeightedPoints, facts: &ModelMetadata) -> Option<(SampleGrid, Vec<Cell>)> {
-    let spanned = || SampleGrid::spanned(&points.positions, facts.coordinates);
-    let grid = facts.grid.or_else(spanned)?;
+/// The grid and the sample of each point, if all points lie on distinct samples.
+fn on_grid(points: &WeightedPoints, metadata: &ModelMetadata) -> Option<(SampleGrid, Vec<Cell>)> {
+    let spanned = || SampleGrid::spanned(&points.positions, metadata.coordinates);
+    let grid = metadata.grid.or_else(spanned)?;
     let cells = points.positions.iter().map(|&position| grid.sample_at(position));
     let cells = cells.collect::<Option<Vec<_>>>()?;
     let mut sorted = cells.clone();
     sorted.sort_unstable();
-    let apart = sorted.windows(2).all(|pair| pair[0] != pair[1]);
-    apart.then_some((grid, cells))
+    let are_distinct = sorted.windows(2).all(|pair| pair[0] != pair[1]);
+    are_distinct.then_some((grid, cells))
 }
 
-/// The points of each layer, in the order of their samples: all in one where no order is known.
-fn in_layers(cells: &[Cell], facts: &ModelMetadata, packing: &Packing) -> Vec<Vec<usize>> {
+/// The points of each layer, in the order of their samples: a single layer if no order is known.
+fn in_layers(cells: &[Cell], metadata: &ModelMetadata, packing: &Packing) -> Vec<Vec<usize>> {
     let all = cells.len();
-    let order = facts.order.as_ref().filter(|order| order.len() == all);
+    let order = metadata.order.as_ref().filter(|order| order.len() == all);
     let count = match order {
         Some(_) => usize::from(packing.layers.clamp(1, Packing::MOST_LAYERS)),
         None => 1,
     };
-    let place = |k: usize| order.map_or(k, |order| order[k] as usize);
-    // Where a layer ends: each level has a quarter of the points of the next.
-    let end = |layer: usize| if layer == 0 { 0 } else { all >> (2 * (count - layer)) };
+    let nth = |k: usize| order.map_or(k, |order| order[k] as usize);
+    // The start of a layer, and the end of the one before it: each level has a quarter of the points of the next.
+    let start = |layer: usize| if layer == 0 { 0 } else { all >> (2 * (count - layer)) };
     let mut layers = Vec::new();
     for layer in 0..count {
-        let mut points: Vec<usize> = (end(layer)..end(layer + 1)).map(place).collect();
-        points.sort_unstable_by_key(|&point| in_order(cells[point]));
+        let mut points: Vec<usize> = (start(layer)..start(layer + 1)).map(nth).collect();
+        points.sort_unstable_by_key(|&point| sort_key(cells[point]));
         if !points.is_empty() {
             layers.push(points);
         }
@@ -94,12 +94,12 @@ fn in_layers(cells: &[Cell], facts: &ModelMetadata, packing: &Packing) -> Vec<Ve
     layers
 }
 
-/// What sorts cells.
-pub(super) fn in_order([x, y, z]: Cell) -> Cell {
+/// Sorts cells by z, then y, then x.
+pub(super) fn sort_key([x, y, z]: Cell) -> Cell {
     [z, y, x]
 }
 
-/// Values as whole multiples of a step.
+/// Values as a base plus whole multiples of a step.
 struct Steps {
     base: f64,
     step: f64,
@@ -107,28 +107,30 @@ struct Steps {
 }
 
 impl Steps {
-    /// Within an error, or without any; `None` where that cannot be.
+    /// The multiples for values within an error, or exact if it is 0; `None` if a value has none.
     fn of(values: &[f64], error: f64) -> Option<Self> {
         let base = values.iter().copied().reduce(f64::min)?;
         let step = if error > 0.0 { 2.0 * error } else { common_step(values, base)? };
         let multiple = |&value: &f64| {
             let multiple = ((value - base) / step).round();
-            let back = base + multiple * step;
-            let kept = error > 0.0 || back.to_bits() == value.to_bits();
-            (kept && multiple <= f64::from(u32::MAX)).then_some(multiple as u32)
+            let decoded = base + multiple * step;
+            let is_valid = error > 0.0 || decoded.to_bits() == value.to_bits();
+            (is_valid && multiple <= f64::from(u32::MAX)).then_some(multiple as u32)
         };
         let multiples = values.iter().map(multiple).collect::<Option<_>>()?;
         Some(Self { base, step, multiples })
     }
 }
 
-/// The largest whole number that all values, whole numbers too, are multiples of from a base on.
+/// The largest step such that all values are whole multiples of it above the base; `None` unless values are
+/// whole numbers.
 fn common_step(values: &[f64], base: f64) -> Option<f64> {
-    const WHOLE: f64 = 9_007_199_254_740_992.0;
+    /// 2⁵³: doubles up to it represent all whole numbers.
+    const MAX_WHOLE: f64 = 9_007_199_254_740_992.0;
     let mut common = 0u64;
     for value in values {
         let above = value - base;
-        if value.fract() != 0.0 || value.abs() > WHOLE || above > WHOLE {
+        if value.fract() != 0.0 || value.abs() > MAX_WHOLE || above > MAX_WHOLE {
             return None;
         }
         let mut rest = above as u64;
@@ -139,14 +141,14 @@ fn common_step(values: &[f64], base: f64) -> Option<f64> {
     Some(common.max(1) as f64)
 }
 
-/// What is written of points.
+/// The content of a file, before it is coded.
 struct Content<'a> {
     points: &'a WeightedPoints,
     on_grid: Option<(SampleGrid, Vec<Cell>)>,
     steps: Option<Steps>,
 }
 
-/// What is learnt from layer to layer.
+/// The coders of positions and values, which learn from layer to layer.
 pub(super) struct Coders {
     pub places: Places,
     pub values: values::Values,
@@ -154,21 +156,21 @@ pub(super) struct Coders {
 
 impl Coders {
     pub(super) fn new(grid: &SampleGrid) -> Self {
-        // Each is below 2³², as their product is.
+        // Each dimension is below 2³², as their product is.
         let voxels = grid.dims.xyz().map(|n| n as u32);
         Self { places: Places::new(voxels), values: values::Values::new(voxels) }
     }
 }
 
 impl Content<'_> {
-    /// The weight of all points, if they have one.
+    /// The weight of all points, if they have the same.
     fn common_weight(&self) -> Option<f64> {
         let weights = &self.points.weights;
         let first = weights.first().copied().unwrap_or_default();
         weights.iter().all(|weight| weight.to_bits() == first.to_bits()).then_some(first)
     }
 
-    /// The bytes of places, values and weights of each layer.
+    /// The bytes of positions, values and weights of each layer.
     fn parts(&self, layers: &[Vec<usize>]) -> io::Result<Vec<[Vec<u8>; 3]>> {
         let mut coders = self.on_grid.as_ref().map(|(grid, _)| Coders::new(grid));
         let common = self.common_weight().is_some();
@@ -191,7 +193,7 @@ impl Content<'_> {
         Ok(parts)
     }
 
-    /// The bytes of the places of a layer, and of its values if they are multiples of a step.
+    /// The bytes of the voxels of a layer, and of its values if they are multiples of a step.
     fn coded(&self, coders: &mut Coders, layer: &[usize]) -> [Vec<u8>; 2] {
         let (_, cells) = self.on_grid.as_ref().expect("coders are for grids");
         let cells = pick(cells, layer);
