@@ -90,6 +90,8 @@ struct Persistence {
     /// Values at which the components begin that never end.
     lasting_components: Vec<f64>,
     voids: Vec<[f64; 2]>,
+    /// Values at which the voids begin that never end: three in a periodic box, otherwise none.
+    lasting_voids: Vec<f64>,
 }
 
 impl Filtration {
@@ -170,6 +172,7 @@ impl Persistence {
             components: lasting(&pairs.components),
             lasting_components: pairs.lasting.iter().map(|&number| value(number)).collect(),
             voids: lasting(&pairs.voids),
+            lasting_voids: pairs.lasting_voids.iter().map(|&number| value(number)).collect(),
         }
     }
 }

@@ -69,7 +69,7 @@ pub(super) struct Interpolate {
     /// Measure error against the number of points.
     #[arg(long, requires = "output", conflicts_with_all = [
         "mask", "fill", "select", "target_rmse", "max_error", "exchange", "threshold", "gray_min", "value_min", "refit", "weights", "balls",
-        "engine", "blocks", "memory", "exterior", "output_format",
+        "engine", "blocks", "memory", "exterior", "hidden", "gray_out", "output_format",
     ])]
     curve: bool,
     #[command(flatten)]

@@ -28,7 +28,8 @@ pub fn focus(fine: &Points, coarse: &Points, region: &Region) -> Points {
     let coarse_ones = (0..coarse.len()).map(|i| (coarse, i));
     let mut chosen: Vec<(&Points, usize)> = inside.map(|i| (fine, i)).chain(coarse_ones).collect();
     let key = |&(points, i): &(&Points, usize)| {
-        let [x, y, z] = points.positions[i];
+        // −0 becomes 0, at the same position.
+        let [x, y, z] = points.positions[i].map(|x| x + 0.0);
         [z, y, x]
     };
     chosen.sort_by(|a, b| {
@@ -80,5 +81,19 @@ mod tests {
         let region = Region { low: [1.0, -1.0, 0.0], high: [3.0, 1.0, 0.0] };
         let xs: Vec<f64> = focus(&few, &many, &region).positions.iter().map(|p| p[0]).collect();
         assert_eq!(xs, [0.0, 1.0, 2.0, 2.5, 3.0, 4.0]);
+    }
+
+    #[test]
+    fn zeros_of_either_sign_are_one_position() {
+        let point = |y: f64, value: f64| Points {
+            positions: vec![[2.0, y, 0.0]],
+            values: Some(vec![value]),
+            ..Points::default()
+        };
+        let region = Region { low: [1.0, -1.0, 0.0], high: [3.0, 1.0, 0.0] };
+        for (fine, coarse) in [(0.0, -0.0), (-0.0, 0.0)] {
+            let both = focus(&point(fine, 1.0), &point(coarse, 2.0), &region);
+            assert_eq!(both.values, Some(vec![1.0]));
+        }
     }
 }

@@ -153,6 +153,8 @@ fn what_makes_no_sense_is_refused() {
         ("interpolate sample:phantom@9 -o a.txt", 2, "a.txt"),
         ("interpolate sample:phantom@9 --curve", 2, "--output"),
         ("interpolate sample:phantom@9 --curve -o c --fill", 2, "--fill"),
+        ("interpolate sample:phantom@9 --curve -o c --hidden", 2, "--hidden"),
+        ("interpolate sample:phantom@9 --curve -o c --gray-out", 2, "--gray-out"),
         ("interpolate sample:phantom@9 --curve -o c --dims 3,3,3", 2, "--dims"),
         ("interpolate sample:phantom@9 --curve -o no/such/place", 1, "no/such"),
         ("points sample:phantom@9 --target-rmse 3", 2, "--select adaptive"),

@@ -168,7 +168,10 @@ fn shapes_filtrations_and_checks() {
     let auto = common::json(f, &["shape", "p.xyz", "--periodic", "4,4,4", "-o", "b.json"]);
     assert_eq!(auto["alpha"]["squared"], 0.3125);
     let made = ["filtration", "p.xyz", "--periodic", "4,4,4", "-o", "f.npz", "f.json"];
-    assert_eq!(common::json(f, &made)["values"], 5);
+    let filtration = common::json(f, &made);
+    assert_eq!(filtration["values"], 5);
+    // Of the torus, whose second Betti number is 3.
+    assert_eq!(filtration["persistence"]["lasting_voids"].as_array().unwrap().len(), 3);
     assert_eq!(common::run(f, &["check", "f.npz"]).0, 1);
     assert_eq!(common::run(f, &["compare", "a.json", "a.npz"]).0, 1);
 }

@@ -39,7 +39,7 @@ pub fn sample(name: &str) -> Result<Volume, VolumeError> {
         // Its header has numbers, but the paper's lengths are voxels.
         Some("skull") => Ok(skull()?.resolve_nan(None)?.with_frame(Frame::VOXEL)),
         Some("phantom") => phantom(PHANTOM_SIZE),
-        Some("ct") => ct(),
+        Some("ct") => Ok(ct()),
         Some(other) if other.starts_with("phantom@") => {
             if let Ok(size) = other["phantom@".len()..].parse() {
                 phantom(size)
