@@ -59,7 +59,7 @@ fn the_format_may_be_said() {
         f,
         1,
         "info a.ply --input-format xyz",
-        &["as files of the format PLY do", "omit --input-format"],
+        &["like a file of the format PLY", "omit --input-format"],
     );
     save(f, "v.nrrd", "NRRD0004\n");
     fails(
