@@ -1,39 +1,12 @@
 //! The mesh cells that a file of points may list: their counts, and reading them as a complex.
 
-use std::fmt;
 use std::path::Path;
 
-use serde::Serialize;
 use walpha_check::schema::ComplexFile;
 
 use super::read::format;
-use super::{PointOptions, PointsError};
+use super::{CellCount, PointOptions, PointsError};
 use crate::volume::{OpenFile, Reason};
-
-/// Number of cells of one kind in a file.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-#[non_exhaustive]
-pub struct CellCount {
-    /// Name of the kind, in the plural: tetrahedra, faces.
-    pub kind: &'static str,
-    /// Number of cells.
-    pub count: usize,
-}
-
-/// For example `200 tetrahedra`.
-impl fmt::Display for CellCount {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { kind, count } = self;
-        write!(f, "{count} {kind}")
-    }
-}
-
-impl CellCount {
-    #[cfg(feature = "formats")]
-    pub(super) fn new(kind: &'static str, count: usize) -> Self {
-        Self { kind, count }
-    }
-}
 
 /// The cells that a file lists besides its points, by kind; empty for plain points.
 ///

@@ -18,6 +18,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod cell_count;
 mod difference;
 mod error;
 mod focus;
@@ -35,12 +36,13 @@ mod write;
 mod wvm;
 
 pub use crate::shape::{WeightSummary, WeightedPoints};
+pub use cell_count::CellCount;
 pub use difference::scattered_difference;
 pub use difference::{difference, difference_row};
 pub use error::PointsError;
 pub use focus::{Region, focus};
 pub use formats::{FORMATS, PointFormat, PointWriter};
-pub use mesh::{CellCount, cells_of, read_complex};
+pub use mesh::{cells_of, read_complex};
 pub use model::{Cell, ModelMetadata, Packing, SampleGrid};
 pub(crate) use open::read_model_file;
 pub use open::{PointOptions, is_point_file, read_model, read_points};

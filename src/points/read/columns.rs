@@ -3,7 +3,11 @@ use std::str::FromStr;
 use serde::{Deserialize, Serialize};
 use walpha_base::advice::Advice;
 
-use super::COLUMNS;
+/// The names of the columns that are read.
+pub(in crate::points) const COLUMNS: [&str; 6] = ["x", "y", "z", "weight", "value", "radius"];
+/// Index in [`COLUMNS`] of the radius, whose square is a weight.
+#[cfg(feature = "formats")]
+pub(super) const RADIUS: usize = 5;
 
 /// The columns of a table of points, in order. The names `x`, `y`, `z`, `weight`, `value` and `radius` may occur
 /// once each, in any letter case; columns of other names are skipped. If there are no other names and no `z`, the

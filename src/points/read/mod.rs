@@ -25,6 +25,9 @@ pub(super) mod vtk;
 #[cfg(feature = "formats")]
 pub(super) mod xyz;
 
+pub(super) use columns::COLUMNS;
+#[cfg(feature = "formats")]
+use columns::RADIUS;
 pub use columns::{Columns, UnknownColumns};
 
 use std::path::Path;
@@ -33,15 +36,9 @@ use std::path::Path;
 use walpha_base::shown::shown;
 
 #[cfg(feature = "formats")]
-use super::mesh::CellCount;
+use super::CellCount;
 use super::{Points, PointsError};
 use crate::volume::Reason;
-
-/// The names of the columns that are read.
-pub(super) const COLUMNS: [&str; 6] = ["x", "y", "z", "weight", "value", "radius"];
-/// Index in [`COLUMNS`] of the radius, whose square is a weight.
-#[cfg(feature = "formats")]
-const RADIUS: usize = 5;
 
 /// The error for a file of points.
 pub(super) fn format(path: &Path, reason: Reason) -> PointsError {

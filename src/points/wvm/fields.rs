@@ -2,7 +2,6 @@
 
 use walpha_complex::Alpha;
 
-use super::header::Layer;
 use crate::volume::{Coordinates, Frame, LengthUnit, Reason, Space};
 
 const SPACES: [Space; 4] = [Space::Unknown, Space::Lps, Space::Ras, Space::Las];
@@ -101,11 +100,6 @@ impl FieldReader<'_> {
         let unknown =
             || Reason::header(format!("its header names the {what} {code}, which is unknown"));
         all.get(usize::from(code)).copied().ok_or_else(unknown)
-    }
-
-    pub(super) fn layer(&mut self) -> Result<Layer, Reason> {
-        let count = self.whole()?;
-        Ok(Layer { count, bytes: [self.whole()?, self.whole()?, self.whole()?] })
     }
 
     pub(super) fn coordinates(&mut self) -> Result<Coordinates, Reason> {

@@ -66,6 +66,11 @@ pub(super) struct Layer {
 }
 
 impl Layer {
+    fn of_fields(fields: &mut FieldReader<'_>) -> Result<Self, Reason> {
+        let count = fields.whole()?;
+        Ok(Self { count, bytes: [fields.whole()?, fields.whole()?, fields.whole()?] })
+    }
+
     /// Bytes of all its parts; `None` on overflow.
     pub(super) fn length(&self) -> Option<u64> {
         self.bytes.iter().try_fold(0u64, |sum, &part| sum.checked_add(part))
@@ -191,7 +196,7 @@ impl Header {
         let has = |flag: u8| flags & flag != 0;
         let coordinates = fields.coordinates()?;
         let count = fields.byte()?;
-        let layers = (0..count).map(|_| fields.layer()).collect::<Result<Vec<_>, _>>()?;
+        let layers = (0..count).map(|_| Layer::of_fields(fields)).collect::<Result<Vec<_>, _>>()?;
         let grid = if has(GRID) {
             let [x, y, z] = [fields.whole()?, fields.whole()?, fields.whole()?];
             let dims = Dims::new(x, y, z).map_err(|error| Reason::header(error.to_string()))?;

@@ -1,0 +1,30 @@
+//! What `info` says of the cells of a file.
+
+use std::fmt;
+
+use serde::Serialize;
+
+/// Number of cells of one kind in a file.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[non_exhaustive]
+pub struct CellCount {
+    /// Name of the kind, in the plural: tetrahedra, faces.
+    pub kind: &'static str,
+    /// Number of cells.
+    pub count: usize,
+}
+
+/// For example `200 tetrahedra`.
+impl fmt::Display for CellCount {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { kind, count } = self;
+        write!(f, "{count} {kind}")
+    }
+}
+
+impl CellCount {
+    #[cfg(feature = "formats")]
+    pub(super) fn new(kind: &'static str, count: usize) -> Self {
+        Self { kind, count }
+    }
+}
