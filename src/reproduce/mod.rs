@@ -36,8 +36,8 @@ pub struct Reproduction {
 /// Makes the table and all figures, and judges the paper's claims.
 ///
 /// Stages are reported to the monitor. Everything but [`Report::seconds`] is a function of
-/// the subject alone. Half a minute for 64³ samples on two cores; memory for one whole
-/// triangulation of the points and for the files.
+/// the subject alone. A quarter of a minute for 64³ samples on two cores; memory for one whole
+/// triangulation of the points for each thread, for the shapes and for the files.
 ///
 /// # Errors
 /// When the subject yields no points, or points that span no volume.

@@ -21,7 +21,7 @@ fn reader_files(folder: &Path) {
     fs::write(folder.join("foam.xyz"), points.join("\n")).expect("a file");
 }
 
-/// The lines of a document's shell blocks that begin with `walpha`, without their comments.
+/// The lines of a document's shell blocks that begin with `walpha` or make a folder, without their comments.
 fn commands(document: &str) -> Vec<String> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(document);
     let text = fs::read_to_string(path).expect("a document");

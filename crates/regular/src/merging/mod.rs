@@ -145,7 +145,7 @@ impl Tree {
 
     /// The first part of two leaves, or the only leaf.
     fn two_leaves(&self) -> &Self {
-        let larger = |halves: &'_ [Self; 2]| halves.iter().position(|half| half.halves.is_some());
+        let larger = |halves: &[Self; 2]| halves.iter().position(|half| half.halves.is_some());
         match &self.halves {
             Some(halves) => larger(halves).map_or(self, |half| halves[half].two_leaves()),
             None => self,

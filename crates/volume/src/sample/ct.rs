@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use walpha_base::random::Random;
 use walpha_base::{Coordinates, LengthUnit, Space};
 
-use super::phantom::gray;
+use super::phantom::{gray, position};
 use crate::{Dims, Dtype, Frame, Volume};
 
 /// Samples along x, y and z.
@@ -30,12 +30,12 @@ pub fn ct() -> Volume {
     let mut samples = vec![0f32; dims.samples()];
     samples.par_chunks_mut(dims.x()).enumerate().for_each(|(row, samples)| {
         let mut noise = Random::new(row as u64);
-        let at = |i: usize, axis: usize| (2 * i + 1) as f64 / DIMS[axis] as f64 - 1.0;
-        let (y, z) = (at(row % dims.y(), 1), at(row / dims.y(), 2));
+        let (y, z) = (position(row % dims.y(), dims.y()), position(row / dims.y(), dims.z()));
         for (x, sample) in samples.iter_mut().enumerate() {
             // The sum of twelve has variance 1, and is nearly normal.
             let normal = (0..12).map(|_| noise.unit()).sum::<f64>() - 6.0;
-            *sample = (hounsfield(gray([at(x, 0), y, z])) + NOISE * normal).round() as f32;
+            *sample =
+                (hounsfield(gray([position(x, dims.x()), y, z])) + NOISE * normal).round() as f32;
         }
     });
     let [cos, sin] = TILT;

@@ -40,11 +40,16 @@ pub fn phantom(size: u64) -> Result<Volume, VolumeError> {
 
 /// A piece of a row of the phantom of `n` samples along each axis, from a voxel on.
 fn fill(n: usize, [x, y, z]: [usize; 3], samples: &mut [f32]) {
-    let at = |i: usize| (2 * i + 1) as f64 / n as f64 - 1.0;
+    let at = |i: usize| position(i, n);
     let (y, z) = (at(y), at(z));
     for (x, sample) in (x..).zip(samples) {
         *sample = gray([at(x), y, z]) as f32;
     }
+}
+
+/// Where sample i of n along an axis is in the box −1..1.
+pub(super) fn position(i: usize, n: usize) -> f64 {
+    (2 * i + 1) as f64 / n as f64 - 1.0
 }
 
 /// The phantom part by part, of any size.
