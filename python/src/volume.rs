@@ -13,7 +13,7 @@ use walpha::{Alpha, Points, Recipe, Selection, SelectionRule, Units};
 
 use crate::arrays::{numbers, samples as owned};
 use crate::errors::{Told, wrong};
-use crate::shape::{Options, Shape, alpha_rule, json, unknown, with_options};
+use crate::shape::{AlphaArgument, Options, Shape, alpha_rule, json, unknown, with_options};
 use crate::work::run;
 
 /// A file or sample: its samples, whether they are gray levels, and its frame as JSON, in LPS where it says in
@@ -141,7 +141,7 @@ pub fn pipeline(
     gray_min: Option<f64>,
     adaptive: Option<(u64, f64, Option<f64>, bool)>,
     weighting: &str,
-    alpha: Option<f64>,
+    alpha: Option<AlphaArgument>,
     how: Options,
     refit: Option<&str>,
     progress: Option<Bound<'_, PyAny>>,
@@ -171,7 +171,7 @@ pub fn pipeline(
         // Coordinates stay in the space that the frame is in.
         .space(Some(frame.coordinates.space).filter(|space| space.is_known()))
         .weighting(weighting.parse::<Weighting>().map_err(Told::told)?)
-        .alpha(alpha_rule(alpha))
+        .alpha(alpha_rule(alpha)?)
         .refit(refit);
     let recipe = with_options(recipe, &how)?;
     let samples = owned(&samples)?;

@@ -45,9 +45,17 @@ def test_engines_agree(cloud, weights, engine, exterior):
     assert exterior == bool((shape.cell_classes == Class.EXTERIOR).any())
 
 
-def test_auto_is_one_solid_component(cloud):
+def test_strays_do_not_decide(cloud):
     shape = walpha.alpha_shape(cloud)
-    assert shape.alpha_origin == "auto" and shape.betti.b0 == 1 and len(shape.components) == 1
+    stray = walpha.alpha_shape(np.vstack([cloud, [[100.0, 0, 0]]]))
+    assert shape.alpha_origin == stray.alpha_origin == "auto"
+    assert abs(stray.alpha / shape.alpha - 1) < 0.05 and stray.betti.b0 == 2
+    assert walpha.alpha_shape(cloud, alpha="auto").alpha == shape.alpha
+
+
+def test_auto_connected_is_one_solid_component(cloud):
+    shape = walpha.alpha_shape(cloud, alpha="auto:connected")
+    assert shape.alpha_origin == "connected" and shape.betti.b0 == 1 and len(shape.components) == 1
     assert shape.alpha == walpha.filtration(cloud).optimal_alpha()
     assert len(np.unique(shape.cells)) == len(cloud)
 

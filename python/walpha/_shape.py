@@ -62,7 +62,8 @@ class AlphaShape:
 
     @property
     def alpha_origin(self):
-        """str: ``given``, ``default`` (10 h² for a volume), ``auto``, or ``auto-unweighted``."""
+        """str: ``given``, ``default`` (10 h² for a volume), ``auto`` or ``connected``, or these
+        with ``-unweighted``, where weights are proportional to α."""
         return self._facts["alpha_origin"]
 
     @property
@@ -376,9 +377,11 @@ def alpha_shape(
         plane or on one line get the shape that they have there: triangles or edges, no cells.
     weights : array_like, (n,), optional
         ω, squared lengths: at α a point is a ball of squared radius α + ω. By default 0.
-    alpha : float or "auto"
-        α, a **squared** length, as in CGAL and GUDHI; ``inf`` gives the convex hull. "auto" is the
-        smallest α at which all points are in one solid component.
+    alpha : float, "auto" or "auto:connected"
+        α, a **squared** length, as in CGAL and GUDHI; ``inf`` gives the convex hull. "auto" comes from
+        the spacing of the points, so that a few strays do not matter: the squared distance within which
+        nine of ten points have eight neighbours, less their weights. "auto:connected" is the smallest α
+        at which all points are in one solid component.
     alpha_radius : float, optional
         √α instead of α, as Open3D and PyVista have it.
     engine : {"auto", "cgal", "native"}
@@ -444,7 +447,7 @@ def alpha_shape(
 
 
 def squared(alpha, alpha_radius):
-    """α as the library has it: None by default, NaN to be found, or a squared length."""
+    """α as the library has it: None by default, the name of a rule, or a squared length."""
     if alpha_radius is not None:
         if alpha is not None and not isinstance(alpha, str):
             raise ValueError("alpha is the square of alpha_radius: give one of them")
@@ -452,13 +455,4 @@ def squared(alpha, alpha_radius):
         if not radius >= 0:
             raise ValueError(f"alpha_radius={radius} is not a radius: give a number from 0 up")
         return radius * radius
-    if alpha is None:
-        return None
-    if isinstance(alpha, str):
-        if alpha != "auto":
-            raise ValueError(f'alpha={alpha!r}: give a squared length, or "auto"')
-        return math.nan
-    alpha = float(alpha)
-    if math.isnan(alpha):
-        raise ValueError('alpha is NaN: give a squared length, or "auto"')
-    return alpha
+    return alpha if alpha is None or isinstance(alpha, str) else float(alpha)

@@ -271,8 +271,9 @@ def pipeline(
         for use with ``refit``.
     weighting : str
         As in :func:`weigh`.
-    alpha : float or "auto", optional
-        A squared length; by default 10 h², h³ being the volume of a voxel. "auto" as in
+    alpha : float, "auto" or "auto:connected", optional
+        A squared length; by default 10 h², h³ being the volume of a voxel. The rules are
+        those of
         :func:`alpha_shape`.
     alpha_radius, engine, balls, exterior, hidden, progress
         As in :func:`alpha_shape`.

@@ -102,7 +102,7 @@ def alpha_shape(
     points: _Floats,
     weights: _Floats | None,
     values: _Floats | None,
-    alpha: float | None,
+    alpha: float | str | None,
     engine: str,
     balls: str,
     exterior: bool,
@@ -124,7 +124,7 @@ def write_points(
     points: NDArray[np.float64],
     weights: NDArray[np.float64] | None,
     values: NDArray[np.float64] | None,
-    alpha: float | None,
+    alpha: float | str | None,
     value_error: float,
 ) -> None: ...
 def haar(
@@ -152,7 +152,7 @@ def pipeline(
     gray_min: float | None,
     adaptive: tuple[int, float, float | None, bool] | None,
     weighting: str,
-    alpha: float | None,
+    alpha: float | str | None,
     engine: str,
     balls: str,
     exterior: bool,

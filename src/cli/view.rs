@@ -255,22 +255,18 @@ impl Detail {
         Ok(Self { weighed, filtration, differences })
     }
 
-    /// The α that the weights are computed for, or else that of `auto`.
+    /// The α that the weights are computed for, or else the one that is found.
     pub(super) fn reference(&self) -> Parameter {
-        self.weighed.parameter.unwrap_or_else(|| self.auto_alpha())
+        self.weighed.parameter.unwrap_or_else(|| self.by_rule(self.weighed.rule))
     }
 
     /// The α that the page opens at.
     pub(super) fn opening(&self, asked: Option<AlphaRule>) -> Alpha {
-        let given = |rule: AlphaRule| {
-            rule.given(self.weighed.origin.coordinates.unit).unwrap_or_else(|| self.auto_alpha())
-        };
-        asked.map_or_else(|| self.reference(), given).alpha
+        asked.map_or_else(|| self.reference(), |rule| self.by_rule(rule)).alpha
     }
 
-    /// The smallest α at which all points are in one solid component.
-    fn auto_alpha(&self) -> Parameter {
-        Parameter::of_filtration(&self.filtration, self.weighed.origin.coordinates.unit)
+    fn by_rule(&self, rule: AlphaRule) -> Parameter {
+        rule.on(&self.filtration, self.weighed.origin.coordinates.unit)
     }
 
     /// Stops of the slider that each show something, and something other than the one before: the one to open at,

@@ -6,6 +6,7 @@ mod error;
 mod input;
 mod parameter;
 mod recipe;
+mod spacing;
 mod weighed;
 
 pub use choice::{Choice, Goal};
@@ -129,7 +130,8 @@ impl Recipe {
             folded: None,
             fit: None,
         };
-        let mut weighed = Weighed::new(points, origin, parameter, monitor)?.ordered(importance);
+        let mut weighed =
+            Weighed::new(points, origin, self.alpha, parameter, monitor)?.ordered(importance);
         weighed.recipe = Some(self.to_json());
         if let Some(to) = self.refit {
             self.fit(&mut weighed, source, to, monitor)?;
@@ -175,7 +177,7 @@ impl Recipe {
         let stored = metadata.alpha.filter(|_| self.alpha == AlphaRule::Default);
         let stored = stored.map(|alpha| Parameter { alpha, unit, origin: ParameterOrigin::Stored });
         let parameter = stored.or_else(|| self.alpha.given(unit));
-        let mut weighed = Weighed::new(points, origin, parameter, monitor)?;
+        let mut weighed = Weighed::new(points, origin, self.alpha, parameter, monitor)?;
         weighed.recipe = Some(metadata.recipe.clone().unwrap_or_else(|| self.to_json()));
         Ok(weighed)
     }

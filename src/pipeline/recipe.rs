@@ -217,7 +217,7 @@ impl Recipe {
         let alpha = match self.alpha {
             AlphaRule::Given(alpha) => alpha,
             // An α that is found is finite.
-            AlphaRule::Auto | AlphaRule::Default => Alpha::ZERO,
+            AlphaRule::Auto | AlphaRule::Connected | AlphaRule::Default => Alpha::ZERO,
         };
         self.shape_at(alpha).check()
     }
@@ -283,7 +283,7 @@ mod tests {
             .periodic(Some(Torus::new([1.0, 2.5, 0.7]).unwrap()));
         let goal = Goal { ratio: Some(0.1), max_error: Some(3.5), ..Goal::default() };
         let selection = Selection::default().rule(SelectionRule::Threshold(30.0)).gray_min(64.5);
-        let alphas = ["auto", "inf", "0.1", "-3"];
+        let alphas = ["auto", "auto:connected", "inf", "0.1", "-3"];
         for alpha in
             alphas.map(|text| text.parse().unwrap()).into_iter().chain([AlphaRule::Default])
         {

@@ -1,7 +1,7 @@
 use rayon::prelude::*;
 use walpha_base::Monitor;
 
-use super::{Parameter, PipelineError};
+use super::{AlphaRule, Parameter, PipelineError};
 use crate::haar::Truncation;
 use crate::interpolate::{Adaptive, Fit};
 use crate::points::{
@@ -21,6 +21,8 @@ pub struct Weighed {
     pub origin: Origin,
     /// α; `None` while it is still to be found ([`Weighed::find_parameter`]) because weights do not need it.
     pub parameter: Option<Parameter>,
+    /// How α is found where it is still to be found.
+    pub rule: AlphaRule,
     /// The recipe that made them ([`Recipe::to_json`](super::Recipe::to_json)), or else that of the file they were read from.
     pub recipe: Option<String>,
     /// What orders the points, if they were selected from a volume.
@@ -65,6 +67,7 @@ impl Weighed {
     pub(super) fn new(
         mut points: Points,
         origin: Origin,
+        rule: AlphaRule,
         mut parameter: Option<Parameter>,
         monitor: &Monitor,
     ) -> Result<Self, PipelineError> {
@@ -78,13 +81,13 @@ impl Weighed {
             // Checks the weights before the costly search for α.
             weights(&points, weighting, Alpha::ZERO)?;
             Stage::Alpha.begin(monitor)?;
-            parameter = Some(Parameter::find_unweighted(&points, coordinates.unit, monitor)?);
+            parameter = Some(Parameter::find_unweighted(rule, &points, coordinates.unit, monitor)?);
             Stage::Points.begin(monitor)?;
         }
         // Weights that do not depend on α are the same at ∞.
         let alpha = parameter.map_or(Alpha::INFINITE, |parameter| parameter.alpha);
         let points = weigh(points, weighting, alpha)?;
-        Ok(Self { points, origin, parameter, recipe: None, importance: None })
+        Ok(Self { points, origin, parameter, rule, recipe: None, importance: None })
     }
 
     /// The same points with their order of importance.
@@ -104,7 +107,7 @@ impl Weighed {
     /// α, found now if weights did not need it.
     ///
     /// # Errors
-    /// The errors of a [`Filtration`](crate::ladder::Filtration).
+    /// For [`AlphaRule::Connected`], the errors of a [`Filtration`](crate::ladder::Filtration).
     pub fn find_parameter(&mut self, monitor: &Monitor) -> Result<Parameter, PipelineError> {
         self.find_parameter_on(None, monitor)
     }
@@ -119,7 +122,8 @@ impl Weighed {
             return Ok(parameter);
         }
         Stage::Alpha.begin(monitor)?;
-        let found = Parameter::find(&self.points, torus, self.origin.coordinates.unit, monitor)?;
+        let unit = self.origin.coordinates.unit;
+        let found = Parameter::find(self.rule, &self.points, torus, unit, monitor)?;
         self.parameter = Some(found);
         Ok(found)
     }

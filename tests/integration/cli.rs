@@ -2,6 +2,8 @@
 
 use std::fs;
 
+use walpha_base::random::Random;
+
 use crate::common::{fails, json, ok, run};
 
 fn cube() -> String {
@@ -167,6 +169,38 @@ fn a_constant_volume_is_no_accident() {
     assert_eq!(report["shape"]["volume"], 27.0);
 }
 
+/// α of scattered points comes from their spacing: a stray is left apart, and the report says so.
+#[test]
+fn a_stray_point_does_not_decide_alpha() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    let mut random = Random::new(7);
+    let rows = |rows: &[[f64; 3]]| {
+        let row = |[x, y, z]: &[f64; 3]| format!("{x} {y} {z}\n");
+        rows.iter().map(row).collect::<String>()
+    };
+    let points: Vec<[f64; 3]> = (0..5000).map(|_| [0; 3].map(|_| random.unit())).collect();
+    fs::write(f.join("ball.xyz"), rows(&points)).unwrap();
+    fs::write(f.join("stray.xyz"), rows(&[&points[..], &[[30.0, 0.0, 0.0]]].concat())).unwrap();
+    let [ball, stray] = ["ball.xyz", "stray.xyz"].map(|name| json(f, &["shape", name]));
+    let alpha = |made: &serde_json::Value| made["alpha"]["squared"].as_f64().unwrap();
+    assert_eq!(ball["alpha"]["origin"], "auto");
+    assert!((alpha(&stray) / alpha(&ball) - 1.0).abs() < 0.01);
+    let numbers = |made: &serde_json::Value| {
+        (made["shape"]["betti"][0].as_u64(), made["shape"]["apart"].as_u64())
+    };
+    assert_eq!((numbers(&ball), numbers(&stray)), ((Some(1), Some(0)), (Some(2), Some(1))));
+    assert!(ball["shape"]["volume"].as_f64().unwrap() > 0.9, "the cube is filled");
+    let told = ok(f, &["shape", "stray.xyz"]);
+    assert!(told.contains("apart     1 of 5001 points"), "{told}");
+    assert!(!ok(f, &["shape", "ball.xyz"]).contains("apart"));
+    // By the other rule the stray decides.
+    let connected = json(f, &["shape", "stray.xyz", "--alpha", "auto:connected"]);
+    assert!(alpha(&connected) > 100.0 * alpha(&stray) && numbers(&connected) == (Some(1), Some(0)));
+    let ladder = json(f, &["ladder", "ball.xyz", "--alphas", "1", "-o", "ladder"]);
+    assert_eq!(ladder["alpha_ref"]["squared"], ball["alpha"]["squared"]);
+}
+
 #[test]
 fn alpha_is_found_where_nobody_gives_it() {
     let folder = tempfile::tempdir().unwrap();
@@ -181,16 +215,14 @@ fn alpha_is_found_where_nobody_gives_it() {
         }
     }
     fs::write(f.join("two.csv"), &text).unwrap();
-    let silent = json(f, &["shape", "two.csv"]);
-    let asked = json(f, &["shape", "two.csv", "--alpha", "auto"]);
-    assert_eq!(silent["alpha"], asked["alpha"]);
-    assert_eq!(silent["alpha"]["origin"], "auto");
+    let connected = json(f, &["shape", "two.csv", "--alpha", "auto:connected"]);
+    assert_eq!(connected["alpha"]["origin"], "connected");
     assert_eq!(
-        (&silent["points"]["in_shape"], &silent["shape"]["betti"][0]),
+        (&connected["points"]["in_shape"], &connected["shape"]["betti"][0]),
         (&16.into(), &1.into())
     );
     // It is the smallest: just below it the shape falls apart, or leaves a point out.
-    let alpha = silent["alpha"]["squared"].as_f64().unwrap();
+    let alpha = connected["alpha"]["squared"].as_f64().unwrap();
     let solid = |alpha: f64| {
         ok(f, &["shape", "two.csv", "--alpha", &alpha.to_string(), "-o", "two.json", "-q"]);
         let made: serde_json::Value =
@@ -214,13 +246,15 @@ fn alpha_is_found_where_nobody_gives_it() {
     assert!(!solid(alpha.next_down()));
     // The same number, given, gives the same shape; and every command finds it.
     let given = json(f, &["shape", "two.csv", "--alpha", &alpha.to_string()]);
-    assert_eq!(given["shape"], silent["shape"]);
+    assert_eq!(given["shape"], connected["shape"]);
     assert_eq!(given["alpha"]["origin"], "given");
-    let interpolated = json(f, &["interpolate", "two.csv", "--dims", "3,3,3"]);
-    assert_eq!(interpolated["alpha"], silent["alpha"]);
-    assert_eq!(run(f, &["check", "two.csv"]).0, 0);
-    let weighted = json(f, &["shape", "two.csv", "--weights", "min-max"]);
-    assert_eq!(weighted["alpha"]["origin"], "auto-unweighted");
+    let interpolated =
+        json(f, &["interpolate", "two.csv", "--dims", "3,3,3", "--alpha", "auto:connected"]);
+    assert_eq!(interpolated["alpha"], connected["alpha"]);
+    assert_eq!(run(f, &["check", "two.csv", "--alpha", "auto:connected"]).0, 0);
+    let min_max = ["shape", "two.csv", "--weights", "min-max", "--alpha", "auto:connected"];
+    let weighted = json(f, &min_max);
+    assert_eq!(weighted["alpha"]["origin"], "connected-unweighted");
     assert_eq!(
         (&weighted["alpha"]["squared"], &weighted["weights"]["max"]),
         (&alpha.into(), &alpha.into())
@@ -231,7 +265,7 @@ fn alpha_is_found_where_nobody_gives_it() {
         (&volume["alpha"]["squared"], &volume["alpha"]["origin"]),
         (&10.0.into(), &"default".into())
     );
-    let volume = json(f, &["shape", "sample:phantom@8", "--alpha", "auto"]);
+    let volume = json(f, &["shape", "sample:phantom@8", "--alpha", "auto:connected"]);
     assert_eq!(volume["alpha"]["squared"], 4.75);
     let skull = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 8 8 8\nspacings: 0.25 0.5 1\nencoding: raw\n\n";
     let samples: Vec<u8> = (0..512u32).map(|i| (i * i % 251) as u8).collect();

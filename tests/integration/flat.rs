@@ -197,7 +197,7 @@ fn all_commands_take_what_lies_in_a_plane_on_a_line_or_at_a_point() {
         );
         assert!((last["singular_area"].as_f64().unwrap() - area).abs() < 1e-9, "{last}");
         common::ok(f, &["view", &table, "-o", "a.html"]);
-        let told = common::json(f, &["shape", &table, "--alpha", "auto"]);
+        let told = common::json(f, &["shape", &table, "--alpha", "auto:connected"]);
         assert!((told["alpha"]["squared"].as_f64().unwrap() - one_region).abs() < 1e-9, "{name}");
         assert_eq!(
             told["shape"]["vertices"]["regular"].as_u64().unwrap()

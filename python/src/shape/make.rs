@@ -43,11 +43,32 @@ pub fn unknown(option: &str, name: &str, known: &str) -> PyErr {
     wrong(format!("{option}={name:?} is unknown: there are {known}"))
 }
 
-/// `None` is the default, NaN is to be found, anything else is α.
-pub fn alpha_rule(alpha: Option<f64>) -> AlphaRule {
+/// α as Python has it: a number, or the name of a rule.
+#[derive(FromPyObject)]
+pub enum AlphaArgument {
+    /// A squared length.
+    Squared(f64),
+    /// `auto` or `auto:connected`.
+    Rule(String),
+}
+
+/// The rule for α; `None` is the default.
+///
+/// # Errors
+/// NaN, and the name of no rule.
+pub fn alpha_rule(alpha: Option<AlphaArgument>) -> PyResult<AlphaRule> {
+    let wrong = |alpha: String| {
+        wrong(format!("alpha={alpha}: give a squared length, \"auto\" or \"auto:connected\""))
+    };
     match alpha {
-        None => AlphaRule::Default,
-        Some(alpha) => Alpha::from_squared(alpha).map_or(AlphaRule::Auto, AlphaRule::Given),
+        None => Ok(AlphaRule::Default),
+        Some(AlphaArgument::Squared(alpha)) => {
+            Alpha::from_squared(alpha).map(AlphaRule::Given).map_err(|_| wrong(alpha.to_string()))
+        }
+        Some(AlphaArgument::Rule(name)) => match name.parse() {
+            Ok(rule @ (AlphaRule::Auto | AlphaRule::Connected)) => Ok(rule),
+            _ => Err(wrong(format!("{name:?}"))),
+        },
     }
 }
 
@@ -59,12 +80,12 @@ pub fn alpha_shape(
     points: PyReadonlyArray2<'_, f64>,
     weights: Option<PyReadonlyArray1<'_, f64>>,
     values: Option<PyReadonlyArray1<'_, f64>>,
-    alpha: Option<f64>,
+    alpha: Option<AlphaArgument>,
     how: Options,
     periodic: Option<[f64; 3]>,
     progress: Option<Bound<'_, PyAny>>,
 ) -> PyResult<Shape> {
-    let recipe = with_options(Recipe::new().alpha(alpha_rule(alpha)), &how)?;
+    let recipe = with_options(Recipe::new().alpha(alpha_rule(alpha)?), &how)?;
     let recipe = recipe.periodic(torus(periodic)?);
     let points = weighted(&points, weights.as_ref(), values.as_ref())?;
     let shape = move |monitor: &_| recipe.run_points_monitored(points, monitor);

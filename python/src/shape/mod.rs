@@ -21,7 +21,9 @@ use crate::arrays::{column, copied, lend, numbers, rows};
 use crate::errors::{Told, wrong};
 use crate::work::run;
 use boundary::{Boundary, boundary};
-pub use make::{Options, alpha_rule, alpha_shape, torus, unknown, weighted, with_options};
+pub use make::{
+    AlphaArgument, Options, alpha_rule, alpha_shape, torus, unknown, weighted, with_options,
+};
 
 /// A shape, which is never changed.
 #[pyclass(frozen, module = "walpha._walpha")]

@@ -165,9 +165,10 @@ impl SelectArgs {
 #[derive(Args, Clone, Copy)]
 #[command(next_help_heading = "Weights and α")]
 pub(crate) struct WeightArgs {
-    /// The parameter α, a squared length in the units of the points; `inf` gives the convex hull,
-    /// `auto` the smallest α at which all points lie in one solid component [default: auto for
-    /// scattered points; 10·h² for a volume, where h³ is the volume of a voxel].
+    /// The parameter α, a squared length in the units of the points: `auto` takes it from the spacing of
+    /// the points, `auto:connected` is the smallest at which all points lie in one solid component, and
+    /// `inf` gives the convex hull [default: auto for scattered points; 10·h² for a volume, where h³ is the
+    /// volume of a voxel].
     #[arg(long, value_name = "A", group = "parameter", allow_negative_numbers = true)]
     alpha: Option<AlphaRule>,
     /// The parameter as a radius: α = R².

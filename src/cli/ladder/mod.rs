@@ -21,7 +21,6 @@ use super::ranges;
 use crate::export::{ExportOptions, Exporter, Format};
 use crate::interpolate::{Deviation, Grid, Interpolant, InterpolateError};
 use crate::ladder::{Ladder as Levels, Level};
-use crate::pipeline::Parameter;
 use crate::points::Region;
 use crate::progress::Stage;
 #[cfg(feature = "render")]
@@ -125,7 +124,7 @@ impl Ladder {
         let domain = pipeline::domain(&weighed, volume.as_ref());
         let filtration = progress.watch(|monitor| pipeline::filtration(None, &weighed, monitor))?;
         let coordinates = weighed.origin.coordinates;
-        let found = || Parameter::of_filtration(&filtration, coordinates.unit);
+        let found = || weighed.rule.on(&filtration, coordinates.unit);
         let reference = weighed.parameter.unwrap_or_else(found);
         let mut facts = LadderSummary::new(&self.pipeline.input.input, &weighed, reference, domain);
         let curve = progress.stage(Stage::Curve, || filtration.curve());

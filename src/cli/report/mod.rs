@@ -204,6 +204,15 @@ impl Display for Report {
         if let Some(shape) = &self.shape {
             shape.print(f, unit)?;
         }
+        // Where α was given, the user knows what holds together.
+        let (found, apart) =
+            (self.alpha.filter(Parameter::is_found), self.shape.as_ref().map(|s| s.apart));
+        if let (Some(_), Some(apart @ 1..), Some(all)) = (found, apart, self.points.in_shape) {
+            writeln!(
+                f,
+                "apart     {apart} of {all} points are not connected to the others; raise --alpha to join them"
+            )?;
+        }
         if self.points.in_shape == Some(0) {
             writeln!(f, "the shape is empty: every α + ω is negative; raise --alpha")?;
         }

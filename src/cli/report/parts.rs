@@ -180,6 +180,8 @@ pub(super) struct ShapeReport {
     pub(super) volume: f64,
     pub(super) area: f64,
     pub(super) singular_area: f64,
+    /// Points of the shape outside the component that has the most.
+    pub(super) apart: usize,
     /// The largest by volume, each with the voids that its boundary encloses.
     pub(super) components: Vec<Component>,
     /// Null unless the simplices outside the shape are kept.
@@ -205,7 +207,9 @@ impl ShapeReport {
     /// The report on a shape.
     pub(super) fn of(shape: &AlphaShape) -> Self {
         let complex = shape.complex();
+        let components = shape.components();
         Self {
+            apart: apart(&components),
             cells: Cells { interior: complex.cells.counts().interior },
             facets: complex.facets.counts(),
             edges: complex.edges.counts(),
@@ -214,7 +218,7 @@ impl ShapeReport {
             volume: shape.measures().volume,
             area: shape.measures().area,
             singular_area: shape.measures().singular_area,
-            components: largest(shape.components()),
+            components: largest(components),
             voids: shape.voids(),
         }
     }
@@ -222,6 +226,7 @@ impl ShapeReport {
     /// The report on a shape made in blocks.
     pub(super) fn of_blocks(merged: &Merged) -> Self {
         Self {
+            apart: apart(&merged.components),
             cells: Cells { interior: merged.cells },
             facets: merged.facets,
             edges: merged.edges,
@@ -270,6 +275,12 @@ impl ShapeReport {
         }
         Ok(())
     }
+}
+
+/// The number of points outside the component that has the most.
+fn apart(components: &[Component]) -> usize {
+    let sizes = components.iter().map(|component| component.vertices);
+    sizes.clone().sum::<usize>() - sizes.max().unwrap_or_default()
 }
 
 /// Most components listed.

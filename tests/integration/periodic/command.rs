@@ -165,7 +165,8 @@ fn shapes_filtrations_and_checks() {
     }
     common::ok(f, &["check", "p.xyz", "--periodic", "4,4,4"]);
     // The smallest α with one solid component is that at which all is filled.
-    let auto = common::json(f, &["shape", "p.xyz", "--periodic", "4,4,4", "-o", "b.json"]);
+    let rule = ["--alpha", "auto:connected", "-o", "b.json"];
+    let auto = common::json(f, &[&["shape", "p.xyz", "--periodic", "4,4,4"][..], &rule].concat());
     assert_eq!(auto["alpha"]["squared"], 0.3125);
     let made = ["filtration", "p.xyz", "--periodic", "4,4,4", "-o", "f.npz", "f.json"];
     let filtration = common::json(f, &made);
