@@ -17,7 +17,7 @@ use super::global::{DIFFERENT, Global};
 use super::output::{name, print_summary};
 use super::progress::Progress;
 use super::report::Report;
-use super::{folder, pipeline};
+use super::{folder, pipeline, preset};
 use crate::Recipe;
 use crate::export::{Content, ExportOptions, Exporter, Format, NewFolder, Target};
 use crate::outofcore::{
@@ -25,7 +25,7 @@ use crate::outofcore::{
     Plan, Team, estimate_cost, merge_monitored, run, run_all, whole,
 };
 use crate::progress::Stage;
-use crate::volume::files_of;
+use crate::volume::{Hounsfield, Source, files_of};
 
 /// Compute a shape in blocks, on any number of machines that share a folder: plan, run each block, merge.
 ///
@@ -279,6 +279,8 @@ pub(super) fn job(args: &InputArgs, recipe: Recipe) -> anyhow::Result<Job> {
     args.typed.refuse(&["columns"], format!("{input} holds a volume"))?;
     let alone = ["refit", "exchange", "max_error"];
     args.typed.refuse(&alone, "blocks look at a part of the volume each")?;
+    let found = || Hounsfield::of(&Source::open(input.path(), &recipe.read).ok()?).ok()?;
+    let recipe = preset::suited(args, &recipe, found).unwrap_or(recipe);
     Job::new(input, recipe).map_err(|error| match error {
         BlocksError::Volume(error) => pipeline::with_points(error),
         error @ BlocksError::NotLocal { .. } => CommandError::usage_of(&error).into(),

@@ -20,6 +20,11 @@ use crate::volume::files_of;
 pub(super) struct TypedOptions(Vec<String>);
 
 impl TypedOptions {
+    /// Whether the user typed this option.
+    pub(super) fn has(&self, name: &str) -> bool {
+        self.0.iter().any(|given| given == name)
+    }
+
     /// Refuses options that would have no effect; `why` follows their names.
     pub(super) fn refuse(
         &self,

@@ -16,13 +16,14 @@ use walpha_base::near::nearest;
 use walpha_base::shown::shown;
 
 use super::errors::{CommandError, command_error, fail};
+use super::preset;
 
 /// The option that names the file.
 const FILE: &str = "config";
 /// The option that prints one.
 pub(super) const PRINT: &str = "print-config";
 /// Options that a file cannot set: they concern the configuration itself, or only this call.
-const NOT_CONFIGURED: [&str; 4] = [FILE, PRINT, "help", "version"];
+const NOT_CONFIGURED: [&str; 5] = [FILE, PRINT, preset::OPTION, "help", "version"];
 
 /// `--config` and `--print-config`, for every command.
 pub(super) fn config_options() -> [Arg; 2] {
@@ -38,41 +39,67 @@ pub(super) fn config_options() -> [Arg; 2] {
     ]
 }
 
-/// The arguments, with those from the file that `--config` names, if it is given.
+/// The arguments, with those from the file that `--config` names and from the preset that `--preset` names.
 ///
 /// Keys are the long names of options. Those at the top level are for every command that has the option;
 /// a table named after a command is for that command, and takes precedence. The command line takes
-/// precedence over both, and settings that conflict with it are ignored.
-pub(super) fn with_file(
+/// precedence over the file, the file over the preset, and settings that conflict with what takes precedence are ignored.
+pub(super) fn with_settings(
+    command: &Command,
+    args: Vec<OsString>,
+) -> anyhow::Result<Vec<OsString>> {
+    let mut set = Vec::new();
+    let args = with_layer(command, args, FILE, &mut set, |given, name| {
+        path(given).map(|file| read(command, &file, name)).transpose()
+    })?;
+    let args = with_layer(command, args, preset::OPTION, &mut set, |given, _| {
+        let name = given.try_get_one::<String>(preset::OPTION).ok().flatten();
+        Ok(name.and_then(|name| preset::text(name)).map(preset_table))
+    })?;
+    SET.get_or_init(|| set);
+    Ok(args)
+}
+
+/// The arguments, with those that an option names; `set` collects what they set.
+fn with_layer(
     command: &Command,
     mut args: Vec<OsString>,
+    option_name: &str,
+    set: &mut Vec<String>,
+    settings: impl Fn(&ArgMatches, &str) -> anyhow::Result<Option<Table>>,
 ) -> anyhow::Result<Vec<OsString>> {
-    let names_file = |arg: &OsString| arg.to_string_lossy().starts_with("--config");
-    if !args.iter().any(names_file) {
+    let long = format!("--{option_name}");
+    if !args.iter().any(|arg| arg.to_string_lossy().starts_with(&long)) {
         return Ok(args);
     }
-    // A first, lenient pass finds out what the file may not set. Errors in the arguments are reported when all of them
-    // are parsed.
+    // A first, lenient pass finds out what the settings may not set. Errors in the arguments are reported when all of
+    // them are parsed.
     let lenient = command.clone().ignore_errors(true).try_get_matches_from(&args);
-    let Some((given, (name, of_command))) =
-        lenient.as_ref().ok().and_then(|given| Some((given, given.subcommand()?)))
-    else {
-        return Ok(args);
-    };
-    let Some(file) = path(given).or_else(|| path(of_command)) else { return Ok(args) };
-    let settings = read(command, &file, name)?;
-    let subcommand = command.find_subcommand(name).context("a command that was parsed")?;
+    let Ok(given) = lenient else { return Ok(args) };
+    // `blocks plan` is a command of a command.
+    let (mut subcommand, mut of_command, mut name) = (command, &given, "");
+    let mut found = settings(&given, name)?;
+    while let Some((inner_name, inner)) = of_command.subcommand()
+        && let Some(inner_command) = subcommand.find_subcommand(inner_name)
+    {
+        if name.is_empty() {
+            name = inner_name;
+        }
+        (subcommand, of_command) = (inner_command, inner);
+        found = settings(of_command, name)?.or(found);
+    }
+    let Some(settings) = found else { return Ok(args) };
     let is_typed = |arg: &Arg| {
         of_command.value_source(arg.get_id().as_str()) == Some(ValueSource::CommandLine)
     };
-    let (mut more, mut set) = (Vec::new(), Vec::new());
+    let mut more = Vec::new();
     for (key, value) in settings {
         let Some(arg) = option(subcommand, &key) else { continue };
         if is_typed(arg) || conflicting(subcommand, arg).into_iter().any(is_typed) {
             continue;
         }
-        let text = arguments(arg, &value)
-            .with_context(|| format!("{}: {key} = {value} makes no sense", shown(&file)))?;
+        let text =
+            arguments(arg, &value).with_context(|| format!("{key} = {value} makes no sense"))?;
         // A default need not be passed, and must not be where its option requires another.
         let defaults = arg.get_default_values();
         if matches!((&text[..], defaults), ([one], [default]) if *one == default_text(arg, default))
@@ -84,14 +111,27 @@ pub(super) fn with_file(
     }
     let end = args.iter().position(|arg| arg == "--").unwrap_or(args.len());
     args.splice(end..end, more);
-    SET.get_or_init(|| set);
     Ok(args)
+}
+
+/// The settings of a preset.
+fn preset_table(text: &str) -> Table {
+    text.parse().expect("presets are TOML")
+}
+
+/// The settings of a preset as arguments of a command that has all of them.
+pub(super) fn settings_as_arguments(command: &Command, preset: &str) -> Vec<String> {
+    let all = preset_table(preset).into_iter().map(|(key, value)| {
+        let arg = option(command, &key).expect("an option of the command");
+        arguments(arg, &value).expect("a value of the option")
+    });
+    all.flatten().collect()
 }
 
 /// The names of the options that the file set, for this process.
 static SET: OnceLock<Vec<String>> = OnceLock::new();
 
-/// Whether the file set this option.
+/// Whether the file or the preset set this option.
 pub(super) fn has_set(name: &str) -> bool {
     SET.get().is_some_and(|set| set.iter().any(|known| known == name))
 }

@@ -11,7 +11,7 @@ use walpha_base::shown::number;
 use crate::points::{Cell, CellCount, cells_of, read_model};
 use crate::progress::Stage;
 use crate::volume::{
-    self, Dtype, Nan, ReadOptions, Reason, SampleStats, Series, Source, open_monitored,
+    self, Dtype, Hounsfield, Nan, ReadOptions, Reason, SampleStats, Series, Source, open_monitored,
 };
 use crate::{Alpha, Coordinates, Dims, Frame, LengthUnit, VolumeError};
 
@@ -19,6 +19,7 @@ use super::args::InputArgs;
 use super::global::Global;
 use super::output::{name, print_summary};
 use super::pipeline;
+use super::preset;
 use super::progress::Progress;
 use super::report::SCHEMA_VERSION;
 
@@ -64,6 +65,9 @@ enum Content {
         max: Option<f32>,
         /// Samples that are NaN or infinite.
         missing: u64,
+        /// The preset that `walpha shape` uses where no option says what to look for. Absent if there is none.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        preset: Option<&'static str>,
         /// Volumes in the file, of which --frame reads one; the first is described. Absent if there is only one.
         #[serde(skip_serializing_if = "Option::is_none")]
         volumes: Option<u64>,
@@ -202,7 +206,7 @@ impl Info {
         } else {
             (volume::format_name(path, &options)?, volume::data_files(path, &options)?)
         };
-        let VolumeSummary { dims, frame, dtype, gray_levels, stats, volumes } = summary;
+        let VolumeSummary { dims, frame, dtype, gray_levels, hounsfield, stats, volumes } = summary;
         Ok(Content::Volume {
             format,
             samples: dtype.to_string(),
@@ -214,6 +218,7 @@ impl Info {
             min: stats.range.map(|(min, _)| min),
             max: stats.range.map(|(_, max)| max),
             missing: stats.missing,
+            preset: hounsfield.then_some(preset::OF_CT),
             volumes,
             gray_levels,
             data_files: data_files.iter().map(|file| file.display().to_string()).collect(),
@@ -227,6 +232,8 @@ struct VolumeSummary {
     frame: Frame,
     dtype: Dtype,
     gray_levels: bool,
+    /// Whether the values look like Hounsfield units.
+    hounsfield: bool,
     stats: SampleStats,
     volumes: Option<u64>,
 }
@@ -255,7 +262,8 @@ impl VolumeSummary {
         };
         let (dims, frame, dtype) = (source.dims(), *source.frame(), source.dtype());
         let gray_levels = source.has_gray_levels();
-        Ok(Self { dims, frame, dtype, gray_levels, stats, volumes: None })
+        let hounsfield = Hounsfield::of(&source)?.is_some();
+        Ok(Self { hounsfield, dims, frame, dtype, gray_levels, stats, volumes: None })
     }
 }
 
@@ -326,6 +334,7 @@ impl std::fmt::Display for Content {
                 min,
                 max,
                 missing,
+                preset,
                 volumes,
                 gray_levels,
                 data_files,
@@ -340,6 +349,13 @@ impl std::fmt::Display for Content {
                         writeln!(f, "values    {min} to {max}{gray}")?;
                     }
                     _ => writeln!(f, "values    none that is a finite number")?,
+                }
+                if let Some(preset) = preset {
+                    writeln!(
+                        f,
+                        "units     the values look like Hounsfield units: `walpha shape` selects bone unless told \
+                         otherwise, as by --preset {preset}"
+                    )?;
                 }
                 if *missing > 0 {
                     writeln!(

@@ -15,6 +15,7 @@ mod folder;
 mod formats;
 mod global;
 mod haar;
+mod help;
 mod info;
 mod interpolate;
 mod ladder;
@@ -26,6 +27,7 @@ mod output;
 mod picture;
 mod pipeline;
 mod points;
+mod preset;
 mod progress;
 mod ranges;
 mod ranks;
@@ -56,13 +58,20 @@ use ranks::Ranks;
 
 /// Volume modelling of scattered data with wavelet-weighted alpha shapes.
 #[derive(Parser)]
-#[command(name = "walpha", version = VERSION, long_about = formats::about(), max_term_width = 100, arg_required_else_help = true)]
+#[command(name = "walpha", version = VERSION, long_about = formats::about(), max_term_width = 100, arg_required_else_help = true, after_help = FIRST)]
 struct Cli {
     #[command(flatten)]
     global: Global,
     #[command(subcommand)]
     command: Command,
 }
+
+/// What to type first.
+const FIRST: &str = "\
+To begin:
+  walpha info sample:ct                what a built-in CT contains
+  walpha shape sample:ct -o bone.ply   a mesh of its bone; put your own file in its place
+  walpha shape --help                  all options of a command; -h, the common ones";
 
 const VERSION: &str = concat!(
     env!("CARGO_PKG_VERSION"),
@@ -71,29 +80,29 @@ const VERSION: &str = concat!(
 
 #[derive(Subcommand)]
 enum Command {
-    #[cfg(feature = "paper")]
-    Reproduce(reproduce::Reproduce),
-    Shape(shape::Shape),
-    Blocks(blocks::Blocks),
-    Points(points::Points),
-    Haar(haar::Haar),
-    Interpolate(interpolate::Interpolate),
-    #[cfg(feature = "zarr")]
-    Convert(convert::Convert),
     Info(info::Info),
-    Check(check::Check),
-    Compare(compare::Compare),
-    Ladder(ladder::Ladder),
-    Filtration(filtration::Filtration),
+    Shape(shape::Shape),
     #[cfg(feature = "render")]
     View(view::View),
+    Ladder(ladder::Ladder),
+    Filtration(filtration::Filtration),
+    Interpolate(interpolate::Interpolate),
+    Check(check::Check),
+    Compare(compare::Compare),
+    Points(points::Points),
+    Haar(haar::Haar),
+    Blocks(blocks::Blocks),
+    #[cfg(feature = "zarr")]
+    Convert(convert::Convert),
+    #[cfg(feature = "paper")]
+    Reproduce(reproduce::Reproduce),
     Completions(completions::Completions),
     Man(man::Man),
 }
 
 /// The command with all its options.
 fn build_command() -> clap::Command {
-    let mut command = Cli::command().args(config::config_options());
+    let mut command = help::arranged(Cli::command().args(config::config_options()));
     command.build();
     command
 }
@@ -119,7 +128,7 @@ fn lead(
     typed: Vec<OsString>,
     ranks: &Ranks,
 ) -> Result<ExitCode, u8> {
-    let args = match config::with_file(&command, typed.clone()) {
+    let args = match config::with_settings(&command, typed.clone()) {
         Ok(args) => args,
         Err(error) => {
             errors::print_error(name, &error);

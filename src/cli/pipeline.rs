@@ -8,6 +8,7 @@ use walpha_base::Monitor;
 
 use super::args::{self, InputArgs};
 use super::errors::{CommandError, command_error, is_usage, reasons};
+use super::preset;
 use super::progress::Progress;
 use crate::export::Scratch;
 use crate::interpolate::{InterpolateError, fill_monitored};
@@ -56,7 +57,8 @@ pub(super) fn points_and_volume(
     values: Values,
     progress: &mut Progress,
 ) -> anyhow::Result<(Weighed, Option<Source>)> {
-    let read = read(args, recipe, progress)?;
+    let mut recipe = recipe.clone();
+    let read = read_suited(args, &mut recipe, progress)?;
     accept(&read, args)?;
     Ok(progress.watch(|monitor| recipe.weigh(read, values, monitor))?)
 }
@@ -124,10 +126,29 @@ pub(super) fn read(
     recipe: &Recipe,
     progress: &mut Progress,
 ) -> anyhow::Result<Input> {
+    read_with(args, progress, |input, monitor| recipe.open(input, monitor))
+}
+
+/// Reads INPUT for selecting points of it. If it is a CT, and no option says what to look for, the recipe is made
+/// to ([`preset::suited`]).
+pub(super) fn read_suited(
+    args: &InputArgs,
+    recipe: &mut Recipe,
+    progress: &mut Progress,
+) -> anyhow::Result<Input> {
+    let suited = |recipe: &Recipe, volume: &Volume| preset::suited_to(args, recipe, volume);
+    read_with(args, progress, |input, monitor| recipe.open_suited(input, monitor, suited))
+}
+
+fn read_with(
+    args: &InputArgs,
+    progress: &mut Progress,
+    open: impl FnOnce(&Path, &Monitor) -> Result<Input, PipelineError>,
+) -> anyhow::Result<Input> {
     let monitor = progress.monitor();
     progress.stage(Stage::Read, || {
         with_file(args, |input| {
-            recipe.open(input, &monitor).map_err(|error| match error {
+            open(input, &monitor).map_err(|error| match error {
                 PipelineError::Points(PointsError::File(error)) => with_points(error),
                 error => error.into(),
             })

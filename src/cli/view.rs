@@ -45,8 +45,7 @@ pub(super) struct View {
     /// Page to write (.html); an existing file is replaced.
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
-    /// The α, a squared length, that the page opens at: a number, `inf`, or `auto`, the smallest at
-    /// which all points are in one solid component [default: --alpha-ref].
+    /// The α, a squared length, that the page opens at, given as for `walpha shape` [default: --alpha-ref].
     #[arg(long, value_name = "A", allow_negative_numbers = true)]
     alpha: Option<AlphaRule>,
     /// Stops of the slider: squared lengths, as in 1,2,5,inf; or auto, critical values that each change
@@ -101,8 +100,8 @@ impl View {
     /// volume that they come from.
     fn weighed(&self, progress: &mut Progress) -> anyhow::Result<(Vec<Weighed>, Option<Source>)> {
         let input = &self.pipeline.input;
-        let recipe = self.pipeline.recipe()?;
-        let read = pipeline::read(input, &recipe, progress)?;
+        let mut recipe = self.pipeline.recipe()?;
+        let read = pipeline::read_suited(input, &mut recipe, progress)?;
         pipeline::accept(&read, input)?;
         let grays = match read {
             Input::Points(..) => {

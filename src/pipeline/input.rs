@@ -16,6 +16,12 @@ pub enum Input {
     Points(Points, ModelMetadata),
 }
 
+/// The content of an input, with the values of a volume as they are.
+enum Content {
+    Volume(Volume),
+    Points(Points, ModelMetadata),
+}
+
 /// A volume in gray levels, and the values that they stand for.
 #[derive(Debug)]
 #[non_exhaustive]
@@ -66,9 +72,34 @@ impl Recipe {
     /// # Errors
     /// [`PipelineError::Points`] if the input cannot be read.
     pub fn open(&self, input: &Path, monitor: &Monitor) -> Result<Input, PipelineError> {
+        self.clone().open_suited(input, monitor, |_, _| None)
+    }
+
+    /// Reads a file or a sample. For a volume `suited` may change the recipe, before its values become gray levels.
+    ///
+    /// # Errors
+    /// [`PipelineError::Points`] if the input cannot be read.
+    pub fn open_suited(
+        &mut self,
+        input: &Path,
+        monitor: &Monitor,
+        suited: impl FnOnce(&Self, &Volume) -> Option<Self>,
+    ) -> Result<Input, PipelineError> {
+        let volume = match self.content(input, monitor)? {
+            Content::Points(points, metadata) => return Ok(Input::Points(points, metadata)),
+            Content::Volume(volume) => volume,
+        };
+        if let Some(suited) = suited(self, &volume) {
+            *self = suited;
+        }
+        Ok(Input::Volume(self.grays(volume)?))
+    }
+
+    /// Reads a file or a sample, whose values stay as they are if it is a volume.
+    fn content(&self, input: &Path, monitor: &Monitor) -> Result<Content, PipelineError> {
         if is_sample(input) || input.is_dir() {
             let volume = volume::open_monitored(input, &self.read, monitor);
-            return Ok(Input::Volume(self.grays(volume.map_err(PointsError::from)?)?));
+            return Ok(Content::Volume(volume.map_err(PointsError::from)?));
         }
         // Everything below reads this open file and does not open it again.
         let file = OpenFile::open(input).map_err(PointsError::from)?;
@@ -81,10 +112,10 @@ impl Recipe {
                     *range = written;
                 }
             }
-            return Ok(Input::Points(points, metadata));
+            return Ok(Content::Points(points, metadata));
         }
         let volume = volume::read_file(&file, &self.read, monitor).map_err(PointsError::from)?;
-        Ok(Input::Volume(self.grays(volume)?))
+        Ok(Content::Volume(volume))
     }
 
     /// Maps a volume to gray levels. One that has gray levels is left unchanged, unless the recipe has a range.

@@ -6,7 +6,7 @@ use std::io::Read;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-use crate::common::{json, ok, run};
+use crate::common::{fails, json, ok, run};
 
 /// The three lines of an error: what, why, next.
 fn complaint(folder: &Path, code: i32, args: &str) -> [String; 3] {
@@ -375,4 +375,58 @@ fn nobody_hears_standard_error() {
         drop(child.stderr.take());
         assert_eq!(child.wait().unwrap().code(), Some(code), "{args:?}");
     }
+}
+
+/// `-h` fits one screen, and shows the common options in the order of use.
+#[test]
+fn short_help_fits_a_screen() {
+    let folder = tempfile::tempdir().unwrap();
+    let commands =
+        ["info", "shape", "view", "ladder", "filtration", "interpolate", "check", "points"];
+    for command in commands {
+        let help = ok(folder.path(), &[command, "-h"]);
+        let lines = help.lines().count();
+        assert!(lines <= 40, "{command}: {lines} lines\n{help}");
+    }
+    let help = ok(folder.path(), &["shape", "-h"]);
+    let places = ["--preset", "--alpha", "--weights", "--output", "--json"]
+        .map(|option| help.find(option).unwrap_or_else(|| panic!("{option} is common:\n{help}")));
+    assert!(places.is_sorted(), "{help}");
+    let long = ok(folder.path(), &["shape", "--help"]);
+    let groups = ["Input:", "Weights and α:", "Output:", "Raw volumes:", "Every command:"];
+    let places = groups.map(|group| long.find(group).expect("a group"));
+    assert!(places.is_sorted() && !long.contains('`'), "{long}");
+}
+
+/// A CT gets a bone window if no option says what to look for, as the preset says, and other presets are others.
+#[test]
+fn presets_are_options() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    let shape = |options: &[&str]| {
+        let made = json(f, &[&["points", "sample:ct"][..], options].concat());
+        (made["input"]["gray_range"].clone(), made["points"]["selected"].as_u64().unwrap())
+    };
+    let stated = ["--gray", "0..1000", "--gray-min", "64", "--threshold", "30", "--rms", "4"];
+    let bone = shape(&stated);
+    assert_eq!(shape(&[]), bone);
+    assert_eq!(shape(&["--preset", "ct-bone"]), bone);
+    assert_ne!(shape(&["--preset", "ct-skin"]), bone);
+    assert_eq!(json(f, &["info", "sample:ct"])["preset"], "ct-bone");
+    // What is stated takes precedence, and with it nothing is assumed.
+    assert!(shape(&["--preset", "ct-bone", "--threshold", "60"]).1 < bone.1);
+    assert_eq!(shape(&["--count", "500"]), (serde_json::json!([-1105.0, 1863.0]), 500));
+    fs::write(f.join("own.toml"), "threshold = 60\n").unwrap();
+    let both = shape(&["--config", "own.toml", "--preset", "ct-bone"]);
+    assert_eq!(both, shape(&["--preset", "ct-bone", "--threshold", "60"]));
+    let warned = run(f, &["points", "sample:ct"]).2;
+    assert!(warned.contains("--gray 0..1000") && warned.contains("ct-bone"), "{warned}");
+    let printed = ok(f, &["shape", "--preset", "paper", "--print-config"]);
+    assert!(printed.contains("weights = \"min-max\"") && !printed.contains("preset"), "{printed}");
+    let paper = json(f, &["points", "sample:phantom", "--preset", "paper"]);
+    assert_eq!(
+        (&paper["points"]["selected"], &paper["weights"]["kind"]),
+        (&15956.into(), &"min-max".into())
+    );
+    fails(f, 2, "shape sample:ct --preset bone", &["ct-bone"]);
 }

@@ -19,6 +19,7 @@ mod error;
 mod formats;
 mod gray;
 mod grid;
+mod hounsfield;
 mod open;
 mod read;
 mod reason;
@@ -36,6 +37,7 @@ pub use formats::{
 };
 pub use gray::{Gray, GrayRange};
 pub use grid::{Dims, Frame};
+pub use hounsfield::Hounsfield;
 #[cfg(feature = "zarr")]
 pub use open::{convert, convert_monitored};
 pub use open::{open, open_monitored};

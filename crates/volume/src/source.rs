@@ -122,6 +122,21 @@ impl Source {
         assert!((0..3).all(|k| first[k] + size[k] <= sizes[k]), "a box of the volume");
         self.parts.read([0, 1, 2].map(|k| self.first[k] + first[k]), size)
     }
+
+    /// Reads all samples, a part at a time.
+    pub(crate) fn for_each_part(&self, mut look: impl FnMut(&[f32])) -> Result<(), VolumeError> {
+        let (dims, step) = (self.dims().xyz(), step(self));
+        for z in (0..dims[2]).step_by(step[2]) {
+            for y in (0..dims[1]).step_by(step[1]) {
+                for x in (0..dims[0]).step_by(step[0]) {
+                    let first = [x, y, z];
+                    let size = [0, 1, 2].map(|k| step[k].min(dims[k] - first[k]));
+                    look(&self.read(first, size)?);
+                }
+            }
+        }
+        Ok(())
+    }
 }
 
 impl BoxReader for Volume {
@@ -156,27 +171,20 @@ impl SampleStats {
     /// # Errors
     /// The file cannot be read or is damaged.
     pub fn of(source: &Source, nan: Option<Nan>) -> Result<Self, VolumeError> {
-        let (dims, step) = (source.dims().xyz(), step(source));
         let (mut low, mut high, mut missing) = (f32::INFINITY, f32::NEG_INFINITY, 0);
-        for z in (0..dims[2]).step_by(step[2]) {
-            for y in (0..dims[1]).step_by(step[1]) {
-                for x in (0..dims[0]).step_by(step[0]) {
-                    let first = [x, y, z];
-                    let size = [0, 1, 2].map(|k| step[k].min(dims[k] - first[k]));
-                    for value in source.read(first, size)? {
-                        let value = match nan {
-                            Some(Nan::Value(instead)) if !value.is_finite() => instead,
-                            _ => value,
-                        };
-                        if value.is_finite() {
-                            (low, high) = (low.min(value), high.max(value));
-                        } else {
-                            missing += 1;
-                        }
-                    }
+        source.for_each_part(|values| {
+            for &value in values {
+                let value = match nan {
+                    Some(Nan::Value(instead)) if !value.is_finite() => instead,
+                    _ => value,
+                };
+                if value.is_finite() {
+                    (low, high) = (low.min(value), high.max(value));
+                } else {
+                    missing += 1;
                 }
             }
-        }
+        })?;
         Ok(Self { range: (low <= high).then_some((low, high)), missing })
     }
 

@@ -19,6 +19,7 @@ pub(super) use values::not_negative;
 pub(super) use values::number;
 
 use super::errors::{CommandError, fail_usage};
+use super::preset::PresetArgs;
 use crate::Recipe;
 use crate::interpolate::Refit;
 use crate::shape::Torus;
@@ -28,6 +29,8 @@ use crate::shape::Torus;
 pub(super) struct PipelineArgs<W: Args = WeightArgs> {
     #[command(flatten)]
     pub input: InputArgs,
+    #[command(flatten)]
+    preset: PresetArgs,
     #[command(flatten)]
     pub haar: HaarArgs,
     #[command(flatten)]

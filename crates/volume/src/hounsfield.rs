@@ -1,0 +1,116 @@
+//! Whether the values of a volume are Hounsfield units.
+
+use crate::{Source, Volume, VolumeError};
+
+/// The values of a volume that look like Hounsfield units (HU), in which air is −1000 and water 0.
+///
+/// Few formats state the unit of a value, so this is told from the histogram: values from −4096 to 32 767, some of
+/// 300 or more (bone), at least 2 % below −900 (air around the patient), at least 5 % between −200 and 200 (soft
+/// tissue), and both ranges at least twice as dense as that between −600 and −300, where hardly any tissue is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Hounsfield {
+    /// The share of samples below −900 HU.
+    pub air: f64,
+    /// The share of samples between −200 and 200 HU.
+    pub soft_tissue: f64,
+}
+
+impl Hounsfield {
+    /// Of a volume in memory; `None` if its values are no Hounsfield units. One pass.
+    pub fn of_volume(volume: &Volume) -> Option<Self> {
+        if volume.has_gray_levels() {
+            return None;
+        }
+        let mut counts = Counts::default();
+        counts.add(volume.as_slice());
+        counts.judge()
+    }
+
+    /// Of a volume that is read for it, a part at a time. One pass.
+    ///
+    /// # Errors
+    /// The file cannot be read or is damaged.
+    pub fn of(source: &Source) -> Result<Option<Self>, VolumeError> {
+        if source.has_gray_levels() {
+            return Ok(None);
+        }
+        let mut counts = Counts::default();
+        source.for_each_part(|values| counts.add(values))?;
+        Ok(counts.judge())
+    }
+}
+
+/// How many finite values there are, and how many of each kind.
+#[derive(Default)]
+struct Counts {
+    all: u64,
+    air: u64,
+    between: u64,
+    soft_tissue: u64,
+    bone: u64,
+    outside: u64,
+}
+
+impl Counts {
+    fn add(&mut self, values: &[f32]) {
+        for &value in values.iter().filter(|value| value.is_finite()) {
+            self.all += 1;
+            self.air += u64::from(value < -900.0);
+            self.between += u64::from((-600.0..-300.0).contains(&value));
+            self.soft_tissue += u64::from((-200.0..200.0).contains(&value));
+            self.bone += u64::from(value >= 300.0);
+            self.outside += u64::from(!(-4096.0..=32_767.0).contains(&value));
+        }
+    }
+
+    fn judge(&self) -> Option<Hounsfield> {
+        let share = |count: u64| count as f64 / self.all.max(1) as f64;
+        let (air, between, soft_tissue) =
+            (share(self.air), share(self.between), share(self.soft_tissue));
+        // Shares per HU, of ranges that are 200, 300 and 400 HU wide.
+        let most = 2.0 * between / 300.0;
+        let dense = air / 200.0 >= most && soft_tissue / 400.0 >= most;
+        let enough = air >= 0.02 && soft_tissue >= 0.05 && self.bone > 0 && self.outside == 0;
+        (dense && enough).then_some(Hounsfield { air, soft_tissue })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use ndarray::Array3;
+    use walpha_base::random::Random;
+
+    use super::*;
+    use crate::{Frame, ct, phantom};
+
+    fn volume(value: impl FnMut() -> f32) -> Volume {
+        let mut value = value;
+        Volume::new(Array3::from_shape_simple_fn((20, 20, 20), &mut value), Frame::VOXEL).unwrap()
+    }
+
+    #[test]
+    fn a_ct_has_hounsfield_units() {
+        let ct = ct();
+        let found = Hounsfield::of_volume(&ct).expect("HU");
+        assert!(found.air > 0.3 && found.soft_tissue > 0.1, "{found:?}");
+        assert_eq!(Hounsfield::of(&Source::of_volume(ct)).unwrap(), Some(found));
+    }
+
+    #[test]
+    fn other_values_are_none() {
+        let mut random = Random::new(3);
+        let spread = volume(|| (4000.0 * random.unit() - 1500.0) as f32);
+        assert_eq!(Hounsfield::of_volume(&spread), None, "all values alike");
+        let mut sign = 1.0;
+        let waves = volume(|| {
+            sign = -sign;
+            sign * 1000.0
+        });
+        assert_eq!(Hounsfield::of_volume(&waves), None, "no soft tissue");
+        assert_eq!(Hounsfield::of_volume(&phantom(32).unwrap()), None, "gray levels");
+        let ct = ct();
+        let shifted = Volume::new(ct.samples().mapv(|value| value + 1024.0), *ct.frame()).unwrap();
+        assert_eq!(Hounsfield::of_volume(&shifted), None, "as scanners store them, unshifted");
+    }
+}

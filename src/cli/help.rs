@@ -1,0 +1,72 @@
+//! Help: the order of options, and the few that `-h` shows.
+
+use clap::{Arg, Command};
+
+use super::global::EVERY_COMMAND;
+
+/// Heading of outputs, and the options of commands that belong there.
+const OUTPUT: &str = "Output";
+const OUTPUTS: [&str; 4] = ["output", "ascii", "solid", "groups"];
+/// The headings in the order of use; others come after those, and what every command has is last.
+const HEADINGS: [&str; 7] =
+    ["Input", "Weights and α", OUTPUT, "Points", "Wavelet stage", "Shape", "Coordinates"];
+/// The headings of advanced options, last but those of every command.
+const ADVANCED: [&str; 4] = ["Parts of a volume", "Raw volumes", "Pictures (.png)", "Packing"];
+/// Of the options with a heading, those that `-h` shows.
+const COMMON: [&str; 14] = [
+    "preset",
+    "gray",
+    "columns",
+    "alpha",
+    "alpha_ref",
+    "weights",
+    "output",
+    "solid",
+    "count",
+    "threshold",
+    "value_min",
+    "periodic",
+    "json",
+    "config",
+];
+
+/// The command with its options in the order of use, of which `-h` shows the common ones.
+pub(super) fn arranged(command: Command) -> Command {
+    let mut command = command.mut_subcommands(arranged);
+    let mut order: Vec<(usize, String)> = command
+        .get_arguments()
+        .filter(|arg| !arg.is_positional())
+        .map(|arg| (rank(heading(arg)), arg.get_id().to_string()))
+        .collect();
+    order.sort_by_key(|(rank, _)| *rank);
+    for (_, name) in order {
+        // An option that is changed becomes the last.
+        command = command.mut_arg(&name, |arg| {
+            let hidden = heading(&arg).is_some() && !COMMON.contains(&name.as_str());
+            let arg = if is_output(&arg) { arg.help_heading(OUTPUT) } else { arg };
+            arg.hide_short_help(hidden)
+        });
+    }
+    command
+}
+
+fn heading(arg: &Arg) -> Option<&str> {
+    if is_output(arg) { Some(OUTPUT) } else { arg.get_help_heading() }
+}
+
+fn is_output(arg: &Arg) -> bool {
+    OUTPUTS.contains(&arg.get_id().as_str())
+}
+
+fn rank(heading: Option<&str>) -> usize {
+    let Some(heading) = heading else { return 0 };
+    let among = |headings: &[&str]| headings.iter().position(|known| *known == heading);
+    if heading == EVERY_COMMAND {
+        return usize::MAX;
+    }
+    let others = HEADINGS.len() + 1;
+    among(&HEADINGS)
+        .map(|at| at + 1)
+        .or(among(&ADVANCED).map(|at| others + 1 + at))
+        .unwrap_or(others)
+}
