@@ -50,11 +50,13 @@ pub(super) fn with_settings(
 ) -> anyhow::Result<Vec<OsString>> {
     let mut set = Vec::new();
     let args = with_layer(command, args, FILE, &mut set, |given, name| {
-        path(given).map(|file| read(command, &file, name)).transpose()
+        let Some(file) = path(given) else { return Ok(None) };
+        Ok(Some((shown(&file), read(command, &file, name)?)))
     })?;
     let args = with_layer(command, args, preset::OPTION, &mut set, |given, _| {
         let name = given.try_get_one::<String>(preset::OPTION).ok().flatten();
-        Ok(name.and_then(|name| preset::text(name)).map(preset_table))
+        let text = name.and_then(|name| Some((name.clone(), preset::text(name)?)));
+        Ok(text.map(|(name, text)| (name, preset_table(text))))
     })?;
     SET.get_or_init(|| set);
     Ok(args)
@@ -66,7 +68,7 @@ fn with_layer(
     mut args: Vec<OsString>,
     option_name: &str,
     set: &mut Vec<String>,
-    settings: impl Fn(&ArgMatches, &str) -> anyhow::Result<Option<Table>>,
+    settings: impl Fn(&ArgMatches, &str) -> anyhow::Result<Option<(String, Table)>>,
 ) -> anyhow::Result<Vec<OsString>> {
     let long = format!("--{option_name}");
     if !args.iter().any(|arg| arg.to_string_lossy().starts_with(&long)) {
@@ -88,7 +90,7 @@ fn with_layer(
         (subcommand, of_command) = (inner_command, inner);
         found = settings(of_command, name)?.or(found);
     }
-    let Some(settings) = found else { return Ok(args) };
+    let Some((source, settings)) = found else { return Ok(args) };
     let is_typed = |arg: &Arg| {
         of_command.value_source(arg.get_id().as_str()) == Some(ValueSource::CommandLine)
     };
@@ -98,8 +100,8 @@ fn with_layer(
         if is_typed(arg) || conflicting(subcommand, arg).into_iter().any(is_typed) {
             continue;
         }
-        let text =
-            arguments(arg, &value).with_context(|| format!("{key} = {value} makes no sense"))?;
+        let text = arguments(arg, &value)
+            .with_context(|| format!("{source}: {key} = {value} makes no sense"))?;
         // A default need not be passed, and must not be where its option requires another.
         let defaults = arg.get_default_values();
         if matches!((&text[..], defaults), ([one], [default]) if *one == default_text(arg, default))

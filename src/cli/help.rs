@@ -3,6 +3,7 @@
 use clap::{Arg, Command};
 
 use super::global::EVERY_COMMAND;
+use super::preset;
 
 /// Heading of outputs, and the options of commands that belong there.
 const OUTPUT: &str = "Output";
@@ -13,7 +14,7 @@ const HEADINGS: [&str; 7] =
 /// The headings of advanced options, last but those of every command.
 const ADVANCED: [&str; 4] = ["Parts of a volume", "Raw volumes", "Pictures (.png)", "Packing"];
 /// Of the options with a heading, those that `-h` shows.
-const COMMON: [&str; 14] = [
+const COMMON: [&str; 12] = [
     "preset",
     "gray",
     "columns",
@@ -25,9 +26,7 @@ const COMMON: [&str; 14] = [
     "count",
     "threshold",
     "value_min",
-    "periodic",
     "json",
-    "config",
 ];
 
 /// The command with its options in the order of use, of which `-h` shows the common ones.
@@ -38,16 +37,25 @@ pub(super) fn arranged(command: Command) -> Command {
         .filter(|arg| !arg.is_positional())
         .map(|arg| (rank(heading(arg)), arg.get_id().to_string()))
         .collect();
-    order.sort_by_key(|(rank, _)| *rank);
+    order.sort_by_key(|(rank, name)| (*rank, name != preset::OPTION));
     for (_, name) in order {
         // An option that is changed becomes the last.
         command = command.mut_arg(&name, |arg| {
             let hidden = heading(&arg).is_some() && !COMMON.contains(&name.as_str());
             let arg = if is_output(&arg) { arg.help_heading(OUTPUT) } else { arg };
-            arg.hide_short_help(hidden)
+            shortened(arg).hide_short_help(hidden)
         });
     }
     command
+}
+
+/// The option with the first clause of its help for `-h`, unless it has a short help of its own.
+fn shortened(arg: Arg) -> Arg {
+    let (Some(help), None) = (arg.get_help(), arg.get_long_help()) else { return arg };
+    let help = help.to_string();
+    let ends = ["; ", ". ", ": ", " [default"];
+    let end = ends.iter().filter_map(|end| help.find(end)).min().unwrap_or(help.len());
+    arg.help(help[..end].to_owned()).long_help(help)
 }
 
 fn heading(arg: &Arg) -> Option<&str> {

@@ -39,7 +39,8 @@ use crate::{AlphaShape, Recipe};
 /// walpha shape foam.xyz --periodic 20,20,20 --alpha 1.5 -o foam.npz foam.vtu
 #[derive(Args)]
 pub(super) struct Shape {
-    #[arg(short, long, value_name = "FILE", num_args = 1.., help = shape_output())]
+    #[arg(short, long, value_name = "FILE", num_args = 1.., help = "Files to write, as in bone.ply; --help lists the formats",
+          long_help = shape_output())]
     output: Vec<PathBuf>,
     /// Write PLY as text instead of binary.
     #[arg(long)]

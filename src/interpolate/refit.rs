@@ -14,6 +14,10 @@ use crate::volume::Volume;
 #[non_exhaustive]
 pub enum Refit {
     /// All samples, with F on the whole triangulation as [`fill`](super::fill()) makes it.
+    #[cfg_attr(
+        feature = "cli",
+        value(help = "All samples, with F on the whole triangulation, as with --fill")
+    )]
     #[default]
     Whole,
     /// The samples on the shape.

@@ -190,7 +190,7 @@ fn a_stray_point_does_not_decide_alpha() {
         (made["shape"]["betti"][0].as_u64(), made["shape"]["apart"].as_u64())
     };
     assert_eq!((numbers(&ball), numbers(&stray)), ((Some(1), Some(0)), (Some(2), Some(1))));
-    assert!(ball["shape"]["volume"].as_f64().unwrap() > 0.9, "the cube is filled");
+    assert!(ball["shape"]["volume"].as_f64().unwrap() > 0.8, "the cube is filled");
     let told = ok(f, &["shape", "stray.xyz"]);
     assert!(told.contains("apart     1 of 5001 points"), "{told}");
     assert!(!ok(f, &["shape", "ball.xyz"]).contains("apart"));

@@ -176,7 +176,7 @@ fn colours_stay_out_of_files() {
 #[test]
 fn help_leads_with_what_is_special() {
     let folder = tempfile::tempdir().unwrap();
-    for (command, own) in [("shape", "--output"), ("view", "--alphas"), ("check", "--enumerate")] {
+    for (command, own) in [("ladder", "--alphas"), ("view", "--alphas"), ("check", "--enumerate")] {
         let help = ok(folder.path(), &[command, "--help"]);
         let at = |word: &str| help.find(word).unwrap_or_else(|| panic!("no {word} in\n{help}"));
         assert!(help.contains("Examples:") && help.contains("ct.nii.gz"), "{help}");

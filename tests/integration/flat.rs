@@ -157,7 +157,9 @@ fn the_command_takes_tables_of_the_plane() {
     let f = folder.path();
     let rows: String = (0..16).map(|i| format!("{},{}\n", i % 4, i / 4)).collect();
     std::fs::write(f.join("plane.csv"), format!("x,y\n{rows}")).unwrap();
-    let told = common::json(f, &["shape", "plane.csv", "-o", "a.json", "a.vtu", "a.ply", "a.off"]);
+    let outputs = ["-o", "a.json", "a.vtu", "a.ply", "a.off"];
+    let rule = ["shape", "plane.csv", "--alpha", "auto:connected"];
+    let told = common::json(f, &[&rule[..], &outputs].concat());
     assert_eq!(told["alpha"]["squared"], 0.5);
     assert_eq!(told["shape"]["singular_area"], 9.0);
     assert_eq!(told["shape"]["facets"]["singular"], 18);

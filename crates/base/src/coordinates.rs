@@ -7,9 +7,17 @@ use serde::{Deserialize, Serialize};
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum Space {
     /// x to the left, y to the back, z to the head: DICOM, ITK, `MetaImage`.
+    #[cfg_attr(
+        feature = "clap",
+        value(help = "x to the left, y to the back, z to the head, as in DICOM and ITK")
+    )]
     #[serde(rename = "LPS")]
     Lps,
     /// x to the right, y to the front, z to the head: `NIfTI`.
+    #[cfg_attr(
+        feature = "clap",
+        value(help = "x to the right, y to the front, z to the head, as in NIfTI")
+    )]
     #[serde(rename = "RAS")]
     Ras,
     /// x to the left, y to the front, z to the head: some NRRD files.

@@ -13,10 +13,20 @@ use super::{Alpha, ShapeError, Torus, Whole};
 pub enum Engine {
     /// Native; in the crate `walpha`, CGAL for up to 20 000 points, and native for more or for what only it can do:
     /// blocks, a limit on memory, periodic boxes, a build without CGAL.
+    #[cfg_attr(
+        feature = "clap",
+        value(help = "CGAL for up to 20 000 points; native for more, and for what only it can do")
+    )]
     #[default]
     Auto,
     /// CGAL's `Regular_triangulation_3` and `Fixed_alpha_shape_3`, as in the paper, on one thread, in the crate
     /// `walpha`.
+    #[cfg_attr(
+        feature = "clap",
+        value(
+            help = "CGAL's Regular_triangulation_3 and Fixed_alpha_shape_3, as in the paper, on one thread"
+        )
+    )]
     Cgal,
     /// Triangulation and classes in Rust: without C++, on all cores, in bounded memory, and the fastest.
     Native,

@@ -34,15 +34,16 @@ pub(crate) struct InputArgs {
     #[command(flatten)]
     part: PartArgs,
     /// Values mapped to gray 0 and 255 [default: unchanged for unsigned 8-bit samples, otherwise min..max].
-    #[arg(long, value_name = "LO..HI", value_parser = gray_range, allow_hyphen_values = true)]
+    #[arg(long, value_name = "LO..HI", value_parser = gray_range, allow_hyphen_values = true,
+          help_heading = "Input")]
     gray: Option<GrayRange>,
     /// Write gray levels 0..255 instead of the values of INPUT.
-    #[arg(long)]
+    #[arg(long, help_heading = "Input")]
     gray_out: bool,
     /// Columns of a table of points (CSV, XYZ): x, y, z, optionally weight and value, others under any
     /// name, as in x,y,z,nx,ny,nz; without z and others, points lie in the plane z = 0 [default: from
     /// its header, otherwise from its numbers].
-    #[arg(long, value_name = "NAME,NAME,…")]
+    #[arg(long, value_name = "NAME,NAME,…", help_heading = "Input")]
     columns: Option<Columns>,
     #[command(flatten)]
     pub raw: RawArgs,
@@ -109,7 +110,7 @@ pub(super) struct PartArgs {
     /// Volume to read from a file with several (a fourth axis), counted from 0.
     #[arg(long, value_name = "K", conflicts_with = "dims")]
     frame: Option<u64>,
-    /// Series to read from a folder with several (DICOM): its number in `walpha info`, or the end of its
+    /// Series to read from a folder with several (DICOM): its number in walpha info, or the end of its
     /// UID.
     #[arg(long, value_name = "N", conflicts_with = "dims")]
     series: Option<String>,

@@ -91,7 +91,7 @@ pub(crate) struct SelectArgs {
 #[command(next_help_heading = "Points")]
 pub(crate) struct RefitArgs {
     /// Fit the values of points to the volume by least squares: to all its samples, on the triangulation
-    /// that `interpolate --fill` uses, or to those that the shape covers. Otherwise points have the
+    /// that interpolate --fill uses, or to those that the shape covers. Otherwise points have the
     /// values of their samples.
     #[arg(long, value_enum, value_name = "TO", num_args = 0..=1, require_equals = true,
           default_missing_value = "whole")]
@@ -165,9 +165,9 @@ impl SelectArgs {
 #[derive(Args, Clone, Copy)]
 #[command(next_help_heading = "Weights and α")]
 pub(crate) struct WeightArgs {
-    /// The parameter α, a squared length in the units of the points: `auto` takes it from the spacing of
-    /// the points, `auto:connected` is the smallest at which all points lie in one solid component, and
-    /// `inf` gives the convex hull [default: auto for scattered points; 10·h² for a volume, where h³ is the
+    /// The parameter α, a squared length in the units of the points: auto takes it from the spacing of
+    /// the points, auto:connected is the smallest at which all points lie in one solid component, and
+    /// inf gives the convex hull [default: auto for scattered points; 10·h² for a volume, where h³ is the
     /// volume of a voxel].
     #[arg(long, value_name = "A", group = "parameter", allow_negative_numbers = true)]
     alpha: Option<AlphaRule>,
@@ -175,7 +175,7 @@ pub(crate) struct WeightArgs {
     #[arg(long, value_name = "R", value_parser = alpha_radius, group = "parameter",
           allow_negative_numbers = true)]
     alpha_radius: Option<Alpha>,
-    #[arg(long, value_name = "KIND", allow_hyphen_values = true, help = weights_help())]
+    #[arg(long, value_name = "KIND", allow_hyphen_values = true, help = WEIGHTS, long_help = weights_help())]
     pub weights: Option<Weighting>,
 }
 
@@ -207,10 +207,10 @@ pub(crate) fn one_alpha(rule: AlphaRule, source: &Source) -> anyhow::Result<Para
 #[command(next_help_heading = "Weights, frozen")]
 pub(crate) struct FrozenArgs {
     /// The α, a squared length, for which weights are computed; they are the same at every level, so
-    /// that levels are nested [default: as --alpha of `walpha shape`].
+    /// that levels are nested [default: as --alpha of walpha shape].
     #[arg(long, value_name = "A", allow_negative_numbers = true)]
     alpha_ref: Option<AlphaRule>,
-    #[arg(long, value_name = "KIND", allow_hyphen_values = true, help = weights_help())]
+    #[arg(long, value_name = "KIND", allow_hyphen_values = true, help = WEIGHTS, long_help = weights_help())]
     weights: Option<Weighting>,
 }
 
@@ -239,6 +239,9 @@ impl FromStr for Alphas {
         Ok(Self::Given(text.split(',').map(|item| item.trim().parse()).collect::<Result<_, _>>()?))
     }
 }
+
+/// The short help of `--weights`.
+const WEIGHTS: &str = "Weights ω: common=C, min-max, barycentric, barycentric-n or column; none unless the input has a column";
 
 /// The help of `--weights`.
 fn weights_help() -> String {
