@@ -33,6 +33,10 @@ pub struct Recipe {
     pub read: ReadOptions,
     /// The columns of a table of points; `None` takes them from its header or guesses them from its numbers.
     pub columns: Option<Columns>,
+    /// The classes of points to read from LAS and LAZ ([`PointOptions::classes`]).
+    pub classes: Option<Vec<u8>>,
+    /// Keeps the first point in each cube of this side ([`PointOptions::thin`]).
+    pub thin: Option<f64>,
     /// The values that become gray 0 and 255; `None` leaves unsigned bytes unchanged, and otherwise takes the
     /// smallest and largest value.
     pub gray: Option<GrayRange>,
@@ -83,6 +87,8 @@ impl Recipe {
     setters! {
         read: ReadOptions,
         columns: Option<Columns>,
+        classes: Option<Vec<u8>>,
+        thin: Option<f64>,
         gray_out: bool,
         haar: HaarOptions,
         choice: Choice,
@@ -150,6 +156,8 @@ impl Recipe {
             .columns(self.columns.clone())
             .level(self.read.level)
             .format(self.read.format.clone())
+            .classes(self.classes.clone())
+            .thin(self.thin)
     }
 
     /// How values become gray levels.

@@ -5,6 +5,7 @@ use std::fmt;
 use std::io::{self, Write};
 use std::path::Path;
 
+use walpha_base::advice::Setting;
 use walpha_check::schema::ComplexFile;
 
 use super::model::MODEL;
@@ -27,6 +28,9 @@ type Read = fn(&OpenFile, Option<&Columns>) -> Result<Points, PointsError>;
 /// Reads the points of a file, without its last layers if a level is given, and their metadata.
 type ReadModel =
     fn(&OpenFile, Option<&Columns>, u32) -> Result<(Points, ModelMetadata), PointsError>;
+
+/// Reads the points of these classes.
+type ReadClasses = fn(&OpenFile, &[u8]) -> Result<Points, PointsError>;
 
 /// Counts the cells of a file.
 type CountCells = fn(&OpenFile) -> Result<Vec<CellCount>, PointsError>;
@@ -58,6 +62,8 @@ pub struct PointFormat {
     read: Option<Read>,
     /// Reader of a format with metadata or levels. If both are `None`, the format was left out of the build.
     read_model: Option<ReadModel>,
+    /// Reads the points of some classes alone, if the format has classes.
+    read_classes: Option<ReadClasses>,
     /// Counts its cells, if the format has any.
     pub(super) cells: Option<CountCells>,
     /// Reads its cells as a complex, if the format can hold one.
@@ -90,6 +96,7 @@ const PLAIN: PointFormat = PointFormat {
     has_levels: false,
     read: None,
     read_model: None,
+    read_classes: None,
     cells: None,
     read_complex: None,
 };
@@ -239,7 +246,8 @@ pub static FORMATS: [PointFormat; 15] = [
         feature: Some("las"),
         fuzzed_by: "las",
         begins: |start| start.starts_with(b"LASF"),
-        read: built!("las", |file, _| super::read::las::read(file)),
+        read: built!("las", |file, _| super::read::las::read(file, None)),
+        read_classes: built!("las", |file, classes| super::read::las::read(file, Some(classes))),
         ..PLAIN
     },
     PointFormat {
@@ -311,6 +319,23 @@ impl PointFormat {
     /// Whether its files may hold several levels.
     pub fn has_levels(&self) -> bool {
         self.has_levels
+    }
+
+    /// Reads the points of these classes.
+    pub(super) fn read_classes(
+        &self,
+        file: &OpenFile,
+        classes: &[u8],
+    ) -> Result<Points, PointsError> {
+        match self.read_classes {
+            Some(read) => read(file, classes),
+            // Without its reader, the format says so itself.
+            None if !self.is_built_in() => Ok(self.read(file, None, 0)?.0),
+            None => {
+                let reason = Reason::needless(Setting::Class, "has no classes of points");
+                Err(format(file.path(), reason))
+            }
+        }
     }
 
     pub(super) fn read(

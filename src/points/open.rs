@@ -21,10 +21,20 @@ pub struct PointOptions {
     pub level: Option<u32>,
     /// The extension of the file's format, in place of its own extension; the content takes precedence.
     pub format: Option<String>,
+    /// The classes of points to read from LAS and LAZ, by their ASPRS codes; `None` reads all.
+    pub classes: Option<Vec<u8>>,
+    /// Keeps the first point in each cube of this side, in the unit of the points; `None` keeps all.
+    pub thin: Option<f64>,
 }
 
 impl PointOptions {
-    setters! { columns: Option<Columns>, level: Option<u32>, format: Option<String> }
+    setters! {
+        columns: Option<Columns>,
+        level: Option<u32>,
+        format: Option<String>,
+        classes: Option<Vec<u8>>,
+        thin: Option<f64>,
+    }
 
     /// Whether a file holds points rather than a volume under these options; see [`is_point_file`].
     ///
@@ -115,7 +125,7 @@ pub(crate) fn read_model_file(
 ) -> Result<(Points, ModelMetadata), PointsError> {
     let path = file.path();
     let known = options.format_of(file).unwrap_or(&FORMATS[0]);
-    let PointOptions { columns, level, format: named } = options;
+    let PointOptions { columns, level, format: named, classes, thin } = options;
     let (columns, level) = (columns.as_ref(), *level);
     if named.as_ref().is_some_and(|named| !known.is_named(named)) {
         let what = format!("begins like a file of the format {}", known.name);
@@ -129,11 +139,21 @@ pub(crate) fn read_model_file(
         let reason = Reason::needless(Setting::Level, "has no layers of points");
         return Err(format(path, reason));
     }
-    let (points, metadata) = known.read(file, columns, level.unwrap_or_default())?;
+    let (mut points, metadata) = match classes {
+        Some(classes) => (known.read_classes(file, classes)?, ModelMetadata::default()),
+        None => known.read(file, columns, level.unwrap_or_default())?,
+    };
+    if points.is_empty() && classes.is_some() {
+        let what = "holds no point of these classes";
+        return Err(format(path, Reason::content(what, "see which classes it has, or read all")));
+    }
     if points.is_empty() {
         return Err(format(path, Reason::content("holds no points", "name another file")));
     }
     finite(path, &points)?;
+    if let Some(side) = *thin {
+        points.thin(side);
+    }
     Ok((points, metadata))
 }
 

@@ -1,3 +1,5 @@
+use std::collections::HashSet;
+
 use super::PointsError;
 use crate::shape::LengthsError;
 
@@ -56,6 +58,28 @@ impl Points {
     pub fn with_weights(self, weights: Vec<f64>) -> Result<Self, PointsError> {
         let weights = column("weights", weights, self.len())?;
         Ok(Self { weights: Some(weights), ..self })
+    }
+
+    /// Keeps the first point in each cube of a grid of this side, in the order of the points. The grid starts at the
+    /// least coordinates. O(n).
+    pub fn thin(&mut self, side: f64) {
+        let least = self.positions.iter().fold([f64::INFINITY; 3], |least, place| {
+            [0, 1, 2].map(|axis| least[axis].min(place[axis]))
+        });
+        // Floats, as a side may be so small that the number of a cube fits no integer.
+        let cube = |place: &[f64; 3]| {
+            [0, 1, 2].map(|axis| ((place[axis] - least[axis]) / side).floor().to_bits())
+        };
+        let mut taken = HashSet::new();
+        let kept: Vec<bool> =
+            self.positions.iter().map(|place| taken.insert(cube(place))).collect();
+        let mut columns = [&mut self.values, &mut self.differences, &mut self.weights];
+        for column in columns.iter_mut().filter_map(|column| column.as_mut()) {
+            let mut kept = kept.iter();
+            column.retain(|_| kept.next() == Some(&true));
+        }
+        let mut kept = kept.iter();
+        self.positions.retain(|_| kept.next() == Some(&true));
     }
 
     /// The number of points.

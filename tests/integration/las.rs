@@ -1,9 +1,9 @@
 //! LAS and LAZ against the crate that writes them.
 
-use walpha::points::{is_point_file, read_points};
+use walpha::points::{PointOptions, is_point_file, read_model, read_points};
 
 use crate::common::Told;
-use crate::common::alone;
+use crate::common::{alone, fails, json};
 
 /// Coordinates are whole numbers of thousandths, so that the format's scales keep them.
 fn write(path: &std::path::Path, version: (u8, u8)) {
@@ -14,7 +14,9 @@ fn write(path: &std::path::Path, version: (u8, u8)) {
     let mut writer = las::Writer::from_path(path, builder.into_header().unwrap()).unwrap();
     for k in 0..5u16 {
         let (x, y, z) = (f64::from(k), f64::from(2 * k), -f64::from(k));
-        let point = las::Point { x, y, z, intensity: 100 * k, ..las::Point::default() };
+        let classification = las::point::Classification::new([2, 2, 5, 6, 2][k as usize]).unwrap();
+        let point =
+            las::Point { x, y, z, intensity: 100 * k, classification, ..las::Point::default() };
         writer.write_point(point).unwrap();
     }
     writer.close().unwrap();
@@ -91,4 +93,30 @@ fn more_than_there_can_be_is_refused() {
     std::fs::write(&path, &bytes).unwrap();
     let error = read_points(&path, None).unwrap_err().told();
     assert!(error.contains("claims a record of 4611686018427387904 bytes"), "{error}");
+}
+
+/// Of a class, and one in each cube: points 0, 1 and 4 are ground, and the first two share a cube of side 2.5.
+#[test]
+fn classes_and_thinning() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    write(&f.join("a.laz"), (1, 2));
+    let options = PointOptions::default().classes(Some(vec![2]));
+    let values =
+        |options: &PointOptions| read_model(&f.join("a.laz"), options).unwrap().0.values.unwrap();
+    assert_eq!(values(&options), [0.0, 100.0, 400.0]);
+    assert_eq!(values(&options.thin(Some(2.5))), [0.0, 400.0]);
+    assert_eq!(values(&PointOptions::default().thin(Some(2.0))), [0.0, 100.0, 200.0, 300.0, 400.0]);
+    let selected = |options: &[&str]| {
+        let made = json(f, &[&["points", "a.laz"][..], options].concat());
+        made["points"]["selected"].as_u64().unwrap()
+    };
+    assert_eq!(selected(&["--class", "ground"]), 3);
+    assert_eq!(selected(&["--class", "vegetation,6"]), 2);
+    assert_eq!(selected(&["--class", "ground", "--thin", "2.5"]), 2);
+    fails(f, 1, "points a.laz --class water", &["of these classes"]);
+    fails(f, 2, "points a.laz --class trees", &["ground"]);
+    fails(f, 2, "points sample:phantom@8 --thin 1", &["--thin", "a volume"]);
+    std::fs::write(f.join("a.xyz"), "0 0 0\n1 0 0\n").unwrap();
+    fails(f, 1, "points a.xyz --class ground", &["no classes"]);
 }

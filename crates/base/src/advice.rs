@@ -34,6 +34,8 @@ pub enum Setting {
     Array,
     Balls,
     Blocks,
+    /// Which classes of points are read.
+    Class,
     Columns,
     Dims,
     Downsample,
@@ -68,6 +70,7 @@ impl Setting {
             Self::Array => "array",
             Self::Balls => "balls",
             Self::Blocks => "blocks",
+            Self::Class => "class",
             Self::Columns => "columns",
             Self::Dims => "dims",
             Self::Downsample => "downsample",

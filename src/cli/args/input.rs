@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::values::{dims, gray_range, input_format, nan};
+use super::values::{class, dims, gray_range, input_format, nan, positive};
 use crate::cli::command_line::TypedOptions;
 use crate::cli::errors::CommandError;
 use crate::cli::ranges;
@@ -45,6 +45,13 @@ pub(crate) struct InputArgs {
     /// its header, otherwise from its numbers].
     #[arg(long, value_name = "NAME,NAME,…", help_heading = "Input")]
     columns: Option<Columns>,
+    /// Classes of points to read from LAS and LAZ: ground, vegetation, building, water, unclassified, or
+    /// their numbers, as in 2,9 [default: all].
+    #[arg(long, value_name = "CLASS,…", value_delimiter = ',', value_parser = class, help_heading = "Input")]
+    class: Vec<Vec<u8>>,
+    /// Keep the first point in each cube of this side, in the unit of the points.
+    #[arg(long, value_name = "SIDE", value_parser = positive, help_heading = "Input")]
+    thin: Option<f64>,
     #[command(flatten)]
     pub raw: RawArgs,
 }
@@ -77,6 +84,8 @@ impl InputArgs {
         Recipe::new()
             .read(self.options())
             .columns(self.columns.clone())
+            .classes((!self.class.is_empty()).then(|| self.class.concat()))
+            .thin(self.thin)
             .gray(self.gray)
             .gray_out(self.gray_out)
     }

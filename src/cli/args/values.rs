@@ -102,6 +102,31 @@ pub(crate) fn not_negative(text: &str) -> Result<f64, CommandError> {
     Ok(number)
 }
 
+pub(super) fn positive(text: &str) -> Result<f64, CommandError> {
+    let number = number(text)?;
+    if !(number > 0.0 && number.is_finite()) {
+        fail!("a positive number is needed" => "give it as in 0.5");
+    }
+    Ok(number)
+}
+
+/// The codes of a class in LAS, by name or number (ASPRS LAS 1.4, table 17).
+pub(super) fn class(text: &str) -> Result<Vec<u8>, CommandError> {
+    Ok(match text.trim() {
+        "unclassified" => vec![0, 1],
+        "ground" => vec![2],
+        "vegetation" => vec![3, 4, 5],
+        "building" => vec![6],
+        "water" => vec![9],
+        number => match number.parse() {
+            Ok(number) => vec![number],
+            Err(_) => {
+                fail!("{number:?} is no class of points" => "give ground, vegetation, building, water, unclassified, or a number from 0 to 255")
+            }
+        },
+    })
+}
+
 pub(super) fn alpha_radius(text: &str) -> Result<Alpha, CommandError> {
     Ok(Alpha::from_radius(number(text)?)?)
 }

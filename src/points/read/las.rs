@@ -9,9 +9,9 @@ use crate::volume::{OpenFile, Reason};
 /// Bytes of points read at once: a header may claim records of up to 64 KiB, and more than the file has.
 const BATCH: u64 = 1 << 22;
 
-/// Reads the positions of the points, and their intensities as values. Coordinates are doubles, computed with
-/// the file's scales and offsets.
-pub(crate) fn read(file: &OpenFile) -> Result<Points, PointsError> {
+/// Reads the positions of the points, of these classes (ASPRS codes) or of all, and their intensities as values.
+/// Coordinates are doubles, computed with the file's scales and offsets.
+pub(crate) fn read(file: &OpenFile, classes: Option<&[u8]>) -> Result<Points, PointsError> {
     let path = file.path();
     check(file)?;
     let fail = |error| unreadable(path, &error);
@@ -20,17 +20,22 @@ pub(crate) fn read(file: &OpenFile) -> Result<Points, PointsError> {
     let record = u64::from(reader.header().point_format().len()).max(1);
     let at_once = (BATCH / record).max(1);
     let mut batch = las::PointDataBuilder::new().for_header(reader.header()).build();
+    let mut found = 0;
     while reader.fill_points(at_once, &mut batch).map_err(fail)? > 0 {
-        let places = batch.x().zip(batch.y()).zip(batch.z());
-        points.positions.extend(places.map(|((x, y), z)| [x, y, z]));
-        points.values.get_or_insert_default().extend(batch.intensity().map(f64::from));
+        let places = batch.x().zip(batch.y()).zip(batch.z()).map(|((x, y), z)| [x, y, z]);
+        let rows = places.zip(batch.intensity()).zip(batch.classification());
+        for ((place, intensity), class) in rows {
+            found += 1;
+            if classes.is_none_or(|classes| classes.contains(&class)) {
+                points.positions.push(place);
+                points.values.get_or_insert_default().push(f64::from(intensity));
+            }
+        }
     }
     let claimed = reader.header().number_of_points();
-    if points.len() as u64 != claimed {
-        let reason = Reason::truncated(format!(
-            "claims {claimed} points, but has {}: it is truncated",
-            points.len()
-        ));
+    if found != claimed {
+        let reason =
+            Reason::truncated(format!("claims {claimed} points, but has {found}: it is truncated"));
         return Err(format(path, reason));
     }
     Ok(points)
