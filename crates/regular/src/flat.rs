@@ -68,8 +68,9 @@ pub fn check_span(sites: &Sites<'_>) -> Result<(), SitesError> {
     }
 }
 
-/// At most four of the positions, affinely independent, with the same affine hull as all.
-fn spanning(all: &[[f64; 3]]) -> Vec<[f64; 3]> {
+/// At most four of at least one position, affinely independent, with the same affine hull as all: four where they span a
+/// volume, three in a plane, two on a line. Exact. O(n) where they span no volume, usually less where they do.
+pub fn spanning(all: &[[f64; 3]]) -> Vec<[f64; 3]> {
     let mut spanning = vec![all[0]];
     for &position in &all[1..] {
         if spanning.len() == 4 {
