@@ -7,8 +7,8 @@ use serde_json::{Value, json};
 
 use crate::common::{fails, json as told, names, ok, run};
 
-/// A square of side 5 with a square hole of side 3 around its middle, and far off an edge and a point alone, as a
-/// table. Coordinates are no short decimals, and z has this value.
+/// A square of 5×5 small squares of side 1/3 without the middle 3×3 but for the halves at their corners, and far off an
+/// edge and a point alone, as a table. Coordinates are no short decimals, and z has this value.
 fn table(folder: &Path, name: &str, z: Option<f64>) -> Vec<[f64; 2]> {
     let square = (0..36).map(|i| [i % 6, i / 6]).filter(|p| !p.iter().all(|x| (2..4).contains(x)));
     let mut points: Vec<[f64; 2]> = square.map(|p| p.map(|x| f64::from(x) / 3.0)).collect();
@@ -47,12 +47,14 @@ fn one_command_makes_polygons_of_points() {
 
     let plane = &report["shape"]["plane"];
     assert_eq!((&plane["polygons"], &plane["holes"]), (&json!(1), &json!(1)));
-    assert_eq!(plane["facets"], json!({"interior": 32, "regular": 0, "singular": 0}));
-    assert_eq!(plane["edges"], json!({"interior": 32, "regular": 32, "singular": 1}));
-    assert_eq!(plane["vertices"], json!({"interior": 0, "regular": 34, "singular": 1}));
-    assert!(close(&plane["area"], 16.0 / 9.0) && close(&plane["perimeter"], 32.0 / 3.0), "{plane}");
+    assert_eq!(plane["facets"], json!({"interior": 36, "regular": 0, "singular": 0}));
+    assert_eq!(plane["edges"], json!({"interior": 40, "regular": 28, "singular": 1}));
+    assert_eq!(plane["vertices"], json!({"interior": 4, "regular": 30, "singular": 1}));
+    assert!(close(&plane["area"], 18.0 / 9.0), "{plane}");
+    let perimeter = (24.0 + 4.0 * 2f64.sqrt()) / 3.0;
+    assert!(close(&plane["perimeter"], perimeter), "{plane}");
     // Classes of space are there, too.
-    assert_eq!(report["shape"]["facets"]["singular"], 32);
+    assert_eq!(report["shape"]["facets"]["singular"], 36);
 
     let made: Value = serde_json::from_str(&read(f, "outline.geojson")).unwrap();
     assert_eq!(made["type"], "FeatureCollection");
@@ -73,7 +75,7 @@ fn one_command_makes_polygons_of_points() {
     };
     let [outer, hole] = rings.as_array().unwrap().as_slice() else { panic!("one hole") };
     assert!((twice_area(outer) - 50.0 / 9.0).abs() < 1e-12, "counter-clockwise");
-    assert!((twice_area(hole) + 18.0 / 9.0).abs() < 1e-12, "clockwise");
+    assert!((twice_area(hole) + 14.0 / 9.0).abs() < 1e-12, "clockwise");
     // The same doubles, and no z.
     let places = |value: &Value| serde_json::from_value::<Vec<[f64; 2]>>(value.clone()).unwrap();
     assert!(places(outer).iter().chain(&places(hole)).all(|place| points.contains(place)));
@@ -125,8 +127,8 @@ fn text_reports_say_that_points_are_in_a_plane() {
     let f = folder.path();
     table(f, "points.csv", Some(2.0));
     let text = ok(f, &["shape", "points.csv", "--alpha", ALPHA]);
-    names(&text, &["plane     ", "32 interior         0 regular", "1 polygons with 1 holes"]);
-    names(&text, &["area      1.777778 unit², perimeter 10.666667 unit\n"]);
+    names(&text, &["plane     ", "36 interior         0 regular", "1 polygons with 1 holes"]);
+    names(&text, &["area      2.000000 unit², perimeter 9.885618 unit\n"]);
     assert!(!text.contains("volume") && !text.contains("cells"), "{text}");
 }
 
