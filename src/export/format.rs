@@ -8,6 +8,7 @@ use crate::volume::UnknownFormat;
 
 /// A format that shapes are written in, chosen by file name extension.
 #[derive(Clone, Copy)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a property of its own")]
 pub struct Format {
     /// Its name, as users know it.
     pub name: &'static str,

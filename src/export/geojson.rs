@@ -90,6 +90,7 @@ type Place<'a> = &'a [f64];
 
 #[derive(Serialize)]
 #[serde(tag = "type", content = "coordinates")]
+#[expect(clippy::enum_variant_names, reason = "these are the names of the format")]
 enum Geometry<'a> {
     MultiPolygon(Vec<Vec<Vec<Place<'a>>>>),
     MultiLineString(Vec<Vec<Place<'a>>>),
