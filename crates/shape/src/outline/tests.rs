@@ -217,7 +217,7 @@ fn tilted_planes() {
 fn extreme_coordinates() {
     let places = lattice(6, |x, y| (2..4).contains(&x) && (2..4).contains(&y));
     let wanted = shape(flat(&places), 0.5).outline().unwrap().polygons;
-    for scale in [2f64.powi(-1000), 2f64.powi(-160), 2f64.powi(400)] {
+    for scale in [5e-324, 2f64.powi(-1000), 2f64.powi(-160), 2f64.powi(400)] {
         let scaled: Vec<_> = places.iter().map(|&[x, y]| [scale * x, scale * y]).collect();
         let outline = Outline::of(shape(flat(&places), 0.5).complex(), &flat(&scaled), 0.0);
         assert_eq!(outline.unwrap().polygons, wanted, "{scale}");
