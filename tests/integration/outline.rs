@@ -193,6 +193,10 @@ fn what_has_no_outline_is_refused() {
     fails(f, 2, "shape points.csv --require-3d -o a.geojson", &["GeoJSON", "--require-3d"]);
     let blocks = "shape sample:phantom@8 --alpha 1 -o a.pvtu a.wkt";
     fails(f, 2, blocks, &["WKT holds the outline", "blocks"]);
+    let plan =
+        ["blocks", "plan", "sample:phantom@8", "--alpha", "1", "--blocks", "2", "-o", "work"];
+    ok(f, &plan);
+    fails(f, 2, "blocks merge work -o a.geojson", &["GeoJSON holds the outline", "a plan"]);
 }
 
 #[test]
