@@ -15,7 +15,7 @@ use walpha::haar::HaarError;
 use walpha::interpolate::InterpolateError;
 use walpha::pipeline::PipelineError;
 use walpha::points::{PointsError, UnknownWeighting};
-use walpha::shape::{ShapeError, TorusError};
+use walpha::shape::{OutlineError, ShapeError, TorusError};
 use walpha::triangulation::TriangulationError;
 use walpha::volume::VolumeError;
 use walpha::{CgalError, NoMemory};
@@ -54,6 +54,7 @@ macro_rules! wrong_value {
 wrong_value! {
     AlphaError, |error| Some(error.advice().into());
     CompareError, |error| error.advice().map(Into::into);
+    OutlineError, |error| error.advice().into();
     SchemaError, |error| error.advice().map(Into::into);
     TorusError, |error| error.advice().into();
     UnknownFormat, |error| error.advice().into();

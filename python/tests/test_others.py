@@ -1,4 +1,4 @@
-"""Against GUDHI, SciPy, PyVista, trimesh and meshio."""
+"""Against GUDHI, SciPy, PyVista, trimesh, meshio and shapely."""
 
 import itertools
 
@@ -113,7 +113,7 @@ def test_a_missing_package_is_named(cloud, monkeypatch):
     import sys
 
     shape = walpha.alpha_shape(cloud, alpha=0.004)
-    for name in ("pyvista", "meshio", "trimesh"):
+    for name in ("pyvista", "meshio", "trimesh", "shapely"):
         monkeypatch.setitem(sys.modules, name, None)
         with pytest.raises(ImportError, match=f"pip install {name}"):
             getattr(shape, f"to_{name}")()
@@ -123,7 +123,7 @@ def test_importing_walpha_imports_none_of_them():
     import subprocess
     import sys
 
-    code = "import sys, walpha; print([m for m in ('pyvista', 'meshio', 'trimesh', 'scipy') if m in sys.modules])"
+    code = "import sys, walpha; print([m for m in ('pyvista', 'meshio', 'trimesh', 'shapely', 'scipy') if m in sys.modules])"
     assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True).stdout == "[]\n"
 
 

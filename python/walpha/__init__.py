@@ -26,7 +26,7 @@ from ._filtration import (
     TorusBettiCurve,
     filtration,
 )
-from ._parts import Betti, Boundary, Component, TorusBetti, Void
+from ._parts import Betti, Boundary, Component, Outline, Polygon, TorusBetti, Void
 from ._points import PointFile, read_points, write_points
 from ._shape import AlphaShape, alpha_shape
 from ._volume import Selected, Volume, difference, haar, pipeline, read, select, weigh
@@ -45,7 +45,9 @@ __all__ = [
     "Filtration",
     "Finding",
     "Level",
+    "Outline",
     "PointFile",
+    "Polygon",
     "Selected",
     "Simplices",
     "Suggestions",

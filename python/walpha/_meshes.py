@@ -64,6 +64,23 @@ def to_trimesh(shape):
     return mesh
 
 
+def to_shapely(shape):
+    shapely = wanted("shapely", "to_shapely")
+    outline = shape.outline()
+    if outline.axes != (0, 1):
+        raise ValueError(
+            "the points lie in a vertical plane, in which polygons have no area to shapely, which looks at x and y "
+            "alone: exchange coordinates first"
+        )
+    # As in files, z is left out where it is 0 everywhere.
+    points = shape.points if shape.points[:, 2].any() else shape.points[:, :2]
+    polygons = [
+        shapely.Polygon(points[outer], [points[hole] for hole in holes])
+        for outer, holes in outline.polygons
+    ]
+    return polygons[0] if len(polygons) == 1 else shapely.MultiPolygon(polygons)
+
+
 def _with_sizes(rows, dtype):
     """Rows as VTK lists them, each after its length."""
     listed = np.empty((len(rows), rows.shape[1] + 1), dtype)

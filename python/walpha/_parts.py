@@ -137,6 +137,57 @@ class Component(NamedTuple):
         )
 
 
+class Polygon(NamedTuple):
+    """A region of a plane without its holes.
+
+    Rings are rows of input indices that pass each vertex once; they are closed without repeating the first.
+
+    Attributes
+    ----------
+    outer : ndarray of uint32, (k,)
+        The ring around it, counter-clockwise.
+    holes : list of ndarray of uint32
+        The rings around its holes, clockwise.
+    """
+
+    outer: np.ndarray
+    holes: list
+
+
+class Outline(NamedTuple):
+    """The shape of points in a plane, as a region of it.
+
+    Attributes
+    ----------
+    polygons : list of Polygon
+        Triangles that are joined through edges make one. Polygons touch each other at vertices at most.
+    edges : ndarray of uint32, (k, 2)
+        The singular edges, those on no triangle.
+    points : ndarray of uint32, (k,)
+        The singular vertices, those on no edge.
+    area : float
+        Of the polygons, in squared units of the points.
+    perimeter : float
+        The length of all rings.
+    axes : tuple of int
+        The two coordinates in which the plane is seen: the first of (0, 1), (0, 2) and (1, 2) that tell
+        its points apart. Counter-clockwise is the way from the first axis to the second.
+    """
+
+    polygons: list
+    edges: np.ndarray
+    points: np.ndarray
+    area: float
+    perimeter: float
+    axes: tuple
+
+    @classmethod
+    def of(cls, polygons, edges, points, area, perimeter, axes):
+        """From the parts that the library gives."""
+        polygons = [Polygon(outer, holes) for outer, holes in polygons]
+        return cls(polygons, edges, points, area, perimeter, tuple(axes))
+
+
 class Boundary(NamedTuple):
     """A triangle mesh.
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from . import _arrays, _meshes, _parts, _walpha
 from ._class import Class
-from ._parts import Boundary, Component, Void
+from ._parts import Boundary, Component, Outline, Void
 
 
 class AlphaShape:
@@ -241,6 +241,30 @@ class AlphaShape:
             return self.unwrapped().boundary(solid=False)
         return Boundary(*self._shape.boundary(solid))
 
+    def outline(self):
+        """The shape of points in one plane as polygons with holes.
+
+        The plane may be tilted; that all points lie in it is decided exactly. Classes
+        (:attr:`facet_classes` and the others) stay those of space.
+
+        Returns
+        -------
+        Outline
+            Rings are simple, and polygons valid in the sense of OGC Simple Features.
+
+        Raises
+        ------
+        ValueError
+            The points span a volume or lie on one line, or the box is periodic.
+
+        Examples
+        --------
+        >>> square = [[0, 0], [1, 0], [1, 1], [0, 1]]
+        >>> walpha.alpha_shape(square, alpha=0.5).outline().area
+        1.0
+        """
+        return Outline.of(*self._shape.outline())
+
     # The interpolant.
 
     def at(self, places, values=None):
@@ -303,7 +327,8 @@ class AlphaShape:
         ----------
         path : str or path-like
             Its extension says the format: ``.ply .off .obj .stl .glb .vtp`` (the boundary),
-            ``.vtu .npz .json`` (all simplices).
+            ``.vtu .npz .json`` (all simplices), ``.geojson .wkt .svg`` (the :meth:`outline` of points
+            in a plane).
         solid : bool
             For boundaries: a closed manifold, as :meth:`boundary` makes it.
 
@@ -312,7 +337,7 @@ class AlphaShape:
         OSError
             The file cannot be written. Nothing is left behind.
         ValueError
-            No format has this extension, or it holds no boundary.
+            No format has this extension, or it holds no boundary, or the shape has no outline for it.
         """
         self._shape.save(os.fspath(path), solid)
 
@@ -327,6 +352,22 @@ class AlphaShape:
     def to_trimesh(self):
         """For trimesh: the solid boundary as a ``trimesh.Trimesh``, closed and oriented."""
         return _meshes.to_trimesh(self)
+
+    def to_shapely(self):
+        """For shapely (2.0 and later): the polygons of the :meth:`outline`.
+
+        Returns
+        -------
+        shapely.Polygon or shapely.MultiPolygon
+            A Polygon where there is one, else a MultiPolygon, which may be empty. Singular edges and vertices are
+            left out. Coordinates have a z unless it is 0 everywhere; shapely's areas are those in x and y.
+
+        Raises
+        ------
+        ValueError
+            As :meth:`outline`; or the plane is vertical.
+        """
+        return _meshes.to_shapely(self)
 
     def counts(self):
         """dict: for each dimension, how many simplices there are of each class, by its name."""

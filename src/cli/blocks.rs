@@ -17,7 +17,7 @@ use super::global::{DIFFERENT, Global};
 use super::output::{name, print_summary};
 use super::progress::Progress;
 use super::report::Report;
-use super::{folder, pipeline, preset};
+use super::{folder, outline, pipeline, preset};
 use crate::Recipe;
 use crate::export::{Content, ExportOptions, Exporter, Format, NewFolder, Target};
 use crate::outofcore::{
@@ -197,7 +197,9 @@ impl MergeStep {
                 pieces.check(path)?;
                 outputs.pieces.push((pieces, path.clone()));
             } else {
-                let exporter = Format::of(path)?.exporter(&export);
+                let format = Format::of(path)?;
+                outline::refuse([format], "a plan is of points that span a volume")?;
+                let exporter = format.exporter(&export);
                 outputs.whole.push((Target::open(path)?, exporter));
             }
         }

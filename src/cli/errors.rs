@@ -22,7 +22,7 @@ use crate::pipeline::PipelineError;
 use crate::points::{UnknownColumns, UnknownWeighting};
 #[cfg(feature = "paper")]
 use crate::reproduce::ReproduceError;
-use crate::shape::{AlphaError, PlanError, ShapeError, TorusError};
+use crate::shape::{AlphaError, OutlineError, PlanError, ShapeError, TorusError};
 use crate::volume::{UnknownFormat, UnknownName};
 use crate::{CgalError, PointsError, VolumeError};
 
@@ -100,6 +100,7 @@ advising![
     HaarError,
     InterpolateError,
     NoMemory,
+    OutlineError,
     PipelineError,
     PlanError,
     PointsError,

@@ -49,17 +49,18 @@ pub(super) fn volume_output(what: &str) -> String {
 
 /// The help of the outputs of a shape.
 pub(super) fn shape_output() -> String {
-    let of = |boundary: bool| {
-        let formats = export::FORMATS.iter().filter(move |format| format.boundary == boundary);
-        dotted(formats.map(|format| format.extension))
+    let of = |is_meant: fn(&&export::Format) -> bool| {
+        dotted(export::FORMATS.iter().filter(is_meant).map(|format| format.extension))
     };
     format!(
-        "Files to write: {} (boundary), {} (all simplices), .png (a picture), .wvm (the points, packed, with \
+        "Files to write: {} (boundary), {} (all simplices), {} (outlines of points in a \
+         plane: polygons with holes), .png (a picture), .wvm (the points, packed, with \
          all that is needed to make the shape again); {} (for shapes \
          of a volume read in parts, made in blocks that are never in memory together); or \
          - (standard output, with --output-format). Existing files are replaced",
-        of(true),
-        of(false),
+        of(|format| format.boundary),
+        of(|format| !format.boundary && !format.outline),
+        of(|format| format.outline),
         dotted(BlockwiseFormat::ALL.iter().map(|(_, extension)| *extension))
     )
 }

@@ -59,6 +59,17 @@ pub(super) fn points_and_volume(
 ) -> anyhow::Result<(Weighed, Option<Source>)> {
     let mut recipe = recipe.clone();
     let read = read_suited(args, &mut recipe, progress)?;
+    weigh(read, args, &recipe, values, progress)
+}
+
+/// Weighted points of what has been read, and the volume they were selected from.
+pub(super) fn weigh(
+    read: Input,
+    args: &InputArgs,
+    recipe: &Recipe,
+    values: Values,
+    progress: &mut Progress,
+) -> anyhow::Result<(Weighed, Option<Source>)> {
     accept(&read, args)?;
     Ok(progress.watch(|monitor| recipe.weigh(read, values, monitor))?)
 }

@@ -13,14 +13,16 @@ use super::formats::shape_output;
 use super::global::Global;
 use super::output::{print_summary, remark};
 use super::picture::PictureArgs;
+use super::pipeline::VolumeSummary;
 use super::progress::Progress;
 use super::report::Report;
 use super::shape_in_blocks::{self, SharedWork};
-use super::{blocks, pipeline};
+use super::{blocks, outline, pipeline};
 use crate::export::{
     Content, ExportOptions, Exporter, FORMATS, Format, Target, TargetError, write_all,
 };
 use crate::outofcore::{BlockwiseFormat, Team};
+use crate::pipeline::{Input, Values};
 use crate::points::{ModelMetadata, Packing, PointWriter};
 use crate::progress::Stage;
 use crate::volume::UnknownFormat;
@@ -36,8 +38,11 @@ use crate::{AlphaShape, Recipe};
 ///
 /// walpha shape scan.xyz --alpha auto --solid -o scan.stl
 ///
+/// walpha shape trees.csv --alpha-radius 50 -o forest.geojson forest.svg
+///
 /// walpha shape foam.xyz --periodic 20,20,20 --alpha 1.5 -o foam.npz foam.vtu
 #[derive(Args)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a switch of its own")]
 pub(super) struct Shape {
     #[arg(short, long, value_name = "FILE", num_args = 1.., help = "Files to write, as in bone.ply; --help lists the formats",
           long_help = shape_output())]
@@ -55,8 +60,8 @@ pub(super) struct Shape {
     groups: bool,
     /// Refuse points that span no volume. Otherwise points in one plane or on one line get the shape that
     /// they have there: triangles or edges, and no cells.
-    #[arg(long, value_name = "3", value_parser = clap::value_parser!(u8).range(3..=3))]
-    dimension: Option<u8>,
+    #[arg(long)]
+    require_3d: bool,
     #[command(flatten)]
     pipeline: PipelineArgs,
     #[command(flatten)]
@@ -67,6 +72,11 @@ pub(super) struct Shape {
     format: OutputArgs,
     #[command(flatten)]
     picture: PictureArgs,
+}
+
+/// The formats of shapes among the outputs with these names.
+fn formats(names: &[PathBuf]) -> impl Iterator<Item = &'static Format> {
+    names.iter().filter_map(|name| Format::of(name).ok())
 }
 
 /// Refuses a switch that has no effect.
@@ -82,10 +92,9 @@ impl Shape {
     fn recipe(&self) -> anyhow::Result<Recipe> {
         let input = &self.pipeline.input;
         self.format.check(self.output.iter())?;
-        let names: Vec<PathBuf> =
-            self.output.iter().map(|path| self.format.named(path)).collect::<Result<_, _>>()?;
-        let written =
-            |has: fn(&Format) -> bool| names.iter().any(|name| Format::of(name).is_ok_and(has));
+        let names = self.names()?;
+        let formats: Vec<&Format> = formats(&names).collect();
+        let written = |has: fn(&Format) -> bool| formats.iter().any(|format| has(format));
         let known = |has: fn(&Format) -> bool| {
             let names = FORMATS.iter().filter(|format| has(format)).map(|format| format.name);
             let mut names: Vec<&str> = names.collect();
@@ -97,6 +106,12 @@ impl Shape {
         };
         if self.solid && self.periodic.periodic.is_some() {
             fail_usage!("--solid is for shapes in space, and the boundary of one of a torus is cut open at the sides of the box" => "omit it, or omit --periodic");
+        }
+        if self.periodic.periodic.is_some() {
+            outline::refuse(formats.iter().copied(), "a periodic box is a torus and no plane")?;
+        }
+        if self.require_3d {
+            outline::refuse(formats.iter().copied(), "--require-3d refuses these")?;
         }
         if !names.iter().any(|name| PictureArgs::wanted(name)) {
             input.typed.refuse(&PictureArgs::NAMES, "no picture (.png) is written")?;
@@ -114,7 +129,12 @@ impl Shape {
             unused("--solid", self.solid, "no output holds a boundary alone")?;
         }
         let recipe = self.pipeline.recipe_of(&self.shape, self.periodic.periodic)?;
-        Ok(recipe.refuse_flat(self.dimension.is_some()))
+        Ok(recipe.refuse_flat(self.require_3d))
+    }
+
+    /// The outputs, under names whose extensions say their formats.
+    fn names(&self) -> anyhow::Result<Vec<PathBuf>> {
+        self.output.iter().map(|path| self.format.named(path)).collect()
     }
 
     pub(super) fn run(self, global: Global, team: &dyn Team) -> anyhow::Result<()> {
@@ -152,7 +172,8 @@ impl Shape {
         team: &dyn Team,
     ) -> anyhow::Result<Report> {
         let flat = "a block may be flat where the whole is not";
-        unused("--dimension", self.dimension.is_some(), flat)?;
+        unused("--require-3d", self.require_3d, flat)?;
+        outline::refuse(formats(&self.names()?), "there are blocks, which span a volume")?;
         let parts = "it takes the whole boundary, and there are blocks";
         unused("--solid", self.solid, parts)?;
         self.pipeline.input.typed.refuse(&["refit", "periodic"], "there are blocks")?;
@@ -175,7 +196,20 @@ impl Shape {
         progress: &mut Progress,
     ) -> anyhow::Result<Report> {
         let input = &self.pipeline.input;
-        let (weighed, volume) = pipeline::weighted_points(input, recipe, progress)?;
+        let names = self.names()?;
+        // A CT may tell the recipe what to look for.
+        let mut recipe = recipe.clone();
+        let read = pipeline::read_suited(input, &mut recipe, progress)?;
+        let recipe = &recipe;
+        if let Input::Points(points, _) = &read {
+            outline::check(formats(&names), &points.positions)?;
+        }
+        let (weighed, source) = pipeline::weigh(read, input, recipe, Values::Written, progress)?;
+        if source.is_some() {
+            outline::check(formats(&names), &weighed.points.positions)?;
+        }
+        let volume = source.as_ref().map(VolumeSummary::of);
+        drop(source);
         let mut report = Report::of_points(&input.input, &weighed, volume.as_ref());
         let mut facts = pipeline::model_facts(&weighed, volume.as_ref());
         let model = pipeline::shape(weighed, recipe, progress)?;

@@ -1,11 +1,14 @@
 use std::fmt;
 use std::path::Path;
 
-use super::{ExportOptions, Exporter, Glb, Json, Npz, Obj, Off, Ply, Stl, Vtp, Vtu};
+use super::{
+    ExportOptions, Exporter, GeoJson, Glb, Json, Npz, Obj, Off, Ply, Stl, Svg, Vtp, Vtu, Wkt,
+};
 use crate::volume::UnknownFormat;
 
 /// A format that shapes are written in, chosen by file name extension.
 #[derive(Clone, Copy)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a property of its own")]
 pub struct Format {
     /// Its name, as users know it.
     pub name: &'static str,
@@ -15,6 +18,8 @@ pub struct Format {
     pub about: &'static str,
     /// Whether it holds only the boundary, which may then be that of a solid.
     pub boundary: bool,
+    /// Whether it holds the outline of points in a plane, and nothing else.
+    pub outline: bool,
     /// Whether it has both a text form and a binary form.
     pub ascii: bool,
     /// Whether it can separate regular and singular facets in a way that some programs do not expect.
@@ -28,13 +33,14 @@ const PLAIN: Format = Format {
     extension: "",
     about: "",
     boundary: false,
+    outline: false,
     ascii: false,
     groups: false,
     exporter: |_| Box::new(Json),
 };
 
 /// All formats.
-pub static FORMATS: [Format; 9] = [
+pub static FORMATS: [Format; 12] = [
     Format {
         name: "PLY",
         extension: "ply",
@@ -43,6 +49,7 @@ pub static FORMATS: [Format; 9] = [
         ascii: true,
         groups: true,
         exporter: |options| Box::new(Ply(options)),
+        ..PLAIN
     },
     Format {
         name: "OFF",
@@ -104,6 +111,30 @@ pub static FORMATS: [Format; 9] = [
         name: "JSON",
         extension: "json",
         about: "The whole complex, for `walpha check` and other programs.",
+        ..PLAIN
+    },
+    Format {
+        name: "GeoJSON",
+        extension: "geojson",
+        about: "Points in a plane: polygons with holes, with area and perimeter; singular edges and vertices.",
+        outline: true,
+        exporter: |_| Box::new(GeoJson),
+        ..PLAIN
+    },
+    Format {
+        name: "WKT",
+        extension: "wkt",
+        about: "Points in a plane: polygons with holes, singular edges and vertices, as well-known text.",
+        outline: true,
+        exporter: |_| Box::new(Wkt),
+        ..PLAIN
+    },
+    Format {
+        name: "SVG",
+        extension: "svg",
+        about: "Points in a plane: a drawing of polygons with holes, singular edges and vertices.",
+        outline: true,
+        exporter: |_| Box::new(Svg),
         ..PLAIN
     },
 ];

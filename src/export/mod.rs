@@ -28,20 +28,25 @@ mod colour;
 mod exporter;
 mod filtration;
 mod format;
+mod geojson;
 mod glb;
 mod json;
 mod npz;
 mod obj;
 mod off;
+mod planar;
 mod ply;
 mod stl;
+mod svg;
 mod vtp;
 mod vtu;
+mod wkt;
 
 pub use crate::volume::UnknownFormat;
 pub use exporter::{ExportOptions, Exporter};
 pub use filtration::{FILTRATION_FORMATS, FiltrationFormat};
 pub use format::{FORMATS, Format};
+pub use geojson::GeoJson;
 pub use glb::Glb;
 pub use json::Json;
 pub use npz::Npz;
@@ -49,6 +54,7 @@ pub use obj::Obj;
 pub use off::Off;
 pub use ply::Ply;
 pub use stl::Stl;
+pub use svg::Svg;
 pub use vtp::Vtp;
 pub(crate) use vtp::{Membership, write_surface};
 pub use vtu::Vtu;
@@ -56,3 +62,4 @@ pub(crate) use vtu::{PointData, Provenance, write_grid};
 pub use walpha_files::{
     Content, Filled, NewFolder, Scratch, Target, TargetError, put_all, sweep, write_all,
 };
+pub use wkt::Wkt;

@@ -161,7 +161,7 @@ fn a_constant_volume_is_no_accident() {
     let f = folder.path();
     fs::write(f.join("flat.raw"), [7; 64]).unwrap();
     let raw = ["flat.raw", "--dims", "4,4,4", "--dtype", "u8"];
-    let flat = "shape flat.raw --dims 4,4,4 --dtype u8 --count 10 --dimension 3";
+    let flat = "shape flat.raw --dims 4,4,4 --dtype u8 --count 10 --require-3d";
     fails(f, 1, flat, &["in one plane"]);
     let args = [&["shape"], &raw[..], &["--ratio", "1", "--weights", "min-max"]].concat();
     let report = json(f, &args);

@@ -76,11 +76,11 @@ fn bad_selections_exit_with_1() {
     let folder = tempfile::tempdir().unwrap();
     let f = folder.path();
     fails(f, 1, "shape sample:phantom@8 --count 513", &["from 1 to 512"]);
-    let few = "shape sample:phantom@8 --count 3 --dimension 3";
+    let few = "shape sample:phantom@8 --count 3 --require-3d";
     fails(f, 1, few, &["3 distinct points", "at least 4"]);
     fails(f, 1, "shape sample:phantom@8 --threshold 300", &["none of 512 voxels"]);
     fails(f, 1, "shape sample:phantom@8 --gray-min 300", &["no voxel reaches", "give less"]);
-    fails(f, 1, "shape sample:phantom@1 --ratio 1 --dimension 3", &["1 distinct points"]);
+    fails(f, 1, "shape sample:phantom@1 --ratio 1 --require-3d", &["1 distinct points"]);
     fails(f, 1, "shape sample:phantom@8 --weights column", &["column"]);
     fails(f, 1, "shape sample:phantom@8 --weights min-max --alpha inf", &["proportional to α"]);
 }
@@ -106,7 +106,7 @@ fn bad_points_exit_with_1() {
         if let Some(text) = text {
             fs::write(f.join(name), text).unwrap();
         }
-        fails(f, 1, &format!("shape {name} --dimension 3 --alpha 1 -o out.ply"), &[word]);
+        fails(f, 1, &format!("shape {name} --require-3d --alpha 1 -o out.ply"), &[word]);
     }
 }
 
@@ -150,7 +150,7 @@ fn bad_outputs_exit_with_1() {
     fails(f, 1, "shape sample:phantom@8 -o folder.ply", &["folder.ply"]);
     // A failure after the target was opened leaves what stood there.
     fs::write(f.join("old.ply"), "precious").unwrap();
-    let few = "shape sample:phantom@8 --count 3 --dimension 3 -o old.ply";
+    let few = "shape sample:phantom@8 --count 3 --require-3d -o old.ply";
     fails(f, 1, few, &["3 distinct points"]);
     assert_eq!(fs::read_to_string(f.join("old.ply")).unwrap(), "precious");
 }

@@ -165,10 +165,7 @@ fn the_command_takes_tables_of_the_plane() {
     assert_eq!(told["shape"]["facets"]["singular"], 18);
     assert_eq!(told["shape"]["betti"], serde_json::json!([1, 0, 0]));
     common::ok(f, &["compare", "a.json", "a.json"]);
-    let (code, _, said) =
-        common::run(f, &["shape", "plane.csv", "--dimension", "3", "--alpha", "1"]);
-    assert!(code == 1 && said.contains("in one plane"), "{said}");
-    assert_eq!(common::run(f, &["shape", "plane.csv", "--dimension", "2"]).0, 2);
+    common::fails(f, 1, "shape plane.csv --require-3d --alpha 1", &["in one plane"]);
 }
 
 /// What makes all shapes at once, shows them, or interpolates on them takes what `shape` takes.

@@ -25,6 +25,7 @@ mod las;
 mod laws;
 #[cfg(feature = "mpi")]
 mod mpi;
+mod outline;
 mod outofcore;
 #[cfg(unix)]
 mod outputs;

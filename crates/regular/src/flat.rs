@@ -68,10 +68,11 @@ pub fn check_span(sites: &Sites<'_>) -> Result<(), SitesError> {
     }
 }
 
-/// At most four of the positions, affinely independent, with the same affine hull as all.
-fn spanning(all: &[[f64; 3]]) -> Vec<[f64; 3]> {
-    let mut spanning = vec![all[0]];
-    for &position in &all[1..] {
+/// At most four of the positions, affinely independent, with the same affine hull as all: four where they span a volume,
+/// three in a plane, two on a line. Exact. O(n) where they span no volume, usually less where they do.
+pub fn spanning(all: &[[f64; 3]]) -> Vec<[f64; 3]> {
+    let mut spanning = Vec::new();
+    for &position in all {
         if spanning.len() == 4 {
             break;
         }
@@ -89,6 +90,7 @@ fn is_independent(spanning: &[[f64; 3]], position: [f64; 3]) -> bool {
     let weights = vec![0.0; positions.len()];
     let predicates = Predicates::new(&positions, &weights);
     match positions.len() {
+        1 => true,
         2 => positions[0] != positions[1],
         3 => !predicates.collinear([0, 1, 2]),
         _ => predicates.orientation([0, 1, 2, 3]).is_ne(),

@@ -42,7 +42,7 @@ pub use torus::{Torus, TorusError};
 
 // For the other crates of walpha: not covered by semantic versioning.
 #[doc(hidden)]
-pub use flat::{Flat, auxiliary_positions, check_span, is_flat, triangulate_flat};
+pub use flat::{Flat, auxiliary_positions, check_span, is_flat, spanning, triangulate_flat};
 #[doc(hidden)]
 pub use incremental::{Growing, Workspace, insert_all};
 #[doc(hidden)]

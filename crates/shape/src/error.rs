@@ -184,6 +184,32 @@ impl From<SitesError> for ShapeError {
     }
 }
 
+/// Why a shape has no outline.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum OutlineError {
+    /// The points span a volume.
+    #[error("the points span a volume, and only a shape in one plane has an outline")]
+    Space,
+    /// The points lie on one line, or at one place.
+    #[error("the points lie on one line, where a shape has no area and so no outline")]
+    Line,
+    /// The shape is that of a torus.
+    #[error("a shape of a periodic box lies on a torus and in no plane, so it has no outline")]
+    Torus,
+}
+
+impl OutlineError {
+    /// How to resolve the error.
+    pub fn advice(self) -> Advice {
+        match self {
+            Self::Space => "take its boundary, a surface, or leave out a coordinate".into(),
+            Self::Line => "take its edges and vertices".into(),
+            Self::Torus => advice!["omit ", Setting::Periodic],
+        }
+    }
+}
+
 /// Why CGAL failed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]

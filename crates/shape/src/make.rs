@@ -20,7 +20,7 @@ use super::{
 ///
 /// Points in one plane or on one line, which is decided exactly, have their shape there: there are no cells, a
 /// simplex of the shape is singular if it is a face of no other one, else regular, and none is interior.
-/// Ties are broken as in space. Such a shape is computed in one block, whatever the options say.
+/// Ties are broken as in space. [`AlphaShape::outline`] has the classes of the plane, and polygons. Such a shape is computed in one block, whatever the options say.
 ///
 /// With [`ShapeOptions::periodic`] the shape is that of a torus. Its points are those given, moved into the
 /// box and rounded as [`Torus::wrap`](super::Torus::wrap) does. A simplex of the torus is listed once, by the input indices of

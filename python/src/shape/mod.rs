@@ -2,6 +2,7 @@
 
 mod boundary;
 mod make;
+mod outline;
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -13,7 +14,7 @@ use walpha::export::{ExportOptions, Format, Target};
 use walpha::interpolate::{Grid, Interpolant, InterpolateError};
 use walpha::pipeline::Model;
 use walpha::progress::Stage;
-use walpha::shape::{Engine, LengthsError};
+use walpha::shape::{Engine, LengthsError, OutlineError};
 use walpha::volume::Dims;
 use walpha::{AlphaShape, PointsError, Simplices, Weighting};
 
@@ -24,6 +25,7 @@ use boundary::{Boundary, boundary};
 pub use make::{
     AlphaArgument, Options, alpha_rule, alpha_shape, torus, unknown, weighted, with_options,
 };
+use outline::{Outline, outline};
 
 /// A shape, which is never changed.
 #[pyclass(frozen, module = "walpha._walpha")]
@@ -55,6 +57,14 @@ impl Shape {
 
     pub fn shape(&self) -> &Arc<AlphaShape> {
         &self.shape
+    }
+
+    /// Whether the shape has an outline, or why not.
+    fn check_outline(&self) -> Result<(), OutlineError> {
+        match self.shape.options().periodic {
+            Some(_) => Err(OutlineError::Torus),
+            None => walpha::shape::Outline::check(&self.shape.points().positions),
+        }
     }
 
     /// The values to interpolate: these, or those of the points.
@@ -221,6 +231,11 @@ impl Shape {
         boundary(py, Arc::clone(&self.shape), solid)
     }
 
+    /// Polygons, singular edges and vertices, area, perimeter, and axes of points in a plane.
+    fn outline<'py>(&self, py: Python<'py>) -> PyResult<Outline<'py>> {
+        outline(py, Arc::clone(&self.shape))
+    }
+
     /// F at places; NaN outside the shape.
     fn at<'py>(
         &self,
@@ -271,6 +286,9 @@ impl Shape {
             return Err(wrong(
                 "solid=True is for shapes in space: the boundary of one of a torus is cut open; omit it",
             ));
+        }
+        if format.outline {
+            self.check_outline().map_err(Told::told)?;
         }
         let options = ExportOptions::default().solid(solid);
         let (shape, target) = (Arc::clone(&self.shape), Target::open(&path).map_err(Told::told)?);

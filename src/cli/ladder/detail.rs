@@ -12,6 +12,7 @@ use crate::cli::args::one_alpha;
 use crate::cli::errors::{fail, fail_usage};
 use crate::cli::folder::Folder;
 use crate::cli::global::Global;
+use crate::cli::outline;
 use crate::cli::output::{name, print_summary};
 use crate::cli::pipeline::{Domain, read};
 use crate::cli::progress::Progress;
@@ -74,6 +75,7 @@ impl Ladder {
             if let Some(values) = &mut points.values {
                 values.iter_mut().for_each(|value| *value = written.value(*value));
             }
+            outline::check(meshes.iter().map(|mesh| mesh.format), &points.positions)?;
             let weighted = weigh(points, weighting, alpha)?;
             let options = ShapeOptions::new(alpha);
             let shape = progress

@@ -17,7 +17,7 @@ use super::global::Global;
 use super::output::print_summary;
 use super::pipeline::{self, filled_in};
 use super::progress::Progress;
-use super::ranges;
+use super::{outline, ranges};
 use crate::export::{ExportOptions, Exporter, Format};
 use crate::interpolate::{Deviation, Grid, Interpolant, InterpolateError};
 use crate::ladder::{Ladder as Levels, Level};
@@ -121,6 +121,7 @@ impl Ladder {
         let recipe = self.pipeline.recipe()?;
         let input = &self.pipeline.input;
         let (weighed, volume) = pipeline::weighted_points(input, &recipe, &mut progress)?;
+        outline::check(meshes.iter().map(|mesh| mesh.format), &weighed.points.positions)?;
         let domain = pipeline::domain(&weighed, volume.as_ref());
         let filtration = progress.watch(|monitor| pipeline::filtration(None, &weighed, monitor))?;
         let coordinates = weighed.origin.coordinates;
@@ -212,6 +213,7 @@ fn refuse_repeated<T: PartialEq + Display>(option: &str, values: &[T]) -> anyhow
 /// A format of meshes.
 struct Mesh {
     extension: String,
+    format: &'static Format,
     exporter: Box<dyn Exporter>,
 }
 
@@ -228,7 +230,7 @@ fn meshes(asked: &[String], default: &[&str]) -> anyhow::Result<Vec<Mesh>> {
             let unknown = CommandError::usage_of(&unknown);
             CommandError { why: format!("--mesh: {}", unknown.why), ..unknown }
         })?;
-        Ok(Mesh { exporter: format.exporter(&ExportOptions::default()), extension })
+        Ok(Mesh { exporter: format.exporter(&ExportOptions::default()), format, extension })
     };
     extensions.into_iter().map(mesh).collect()
 }

@@ -1,6 +1,7 @@
 //! The facts a command prints, as JSON or as text.
 
 mod parts;
+mod plane;
 
 use std::collections::BTreeMap;
 use std::fmt::{self, Display};

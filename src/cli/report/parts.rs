@@ -5,6 +5,7 @@ use std::fmt::{self, Display};
 use serde::Serialize;
 use walpha_base::shown::number;
 
+use super::plane::PlaneReport;
 use crate::cli::output::name;
 use crate::outofcore::Merged;
 use crate::pipeline::Weighed;
@@ -182,6 +183,9 @@ pub(super) struct ShapeReport {
     pub(super) singular_area: f64,
     /// Points of the shape outside the component that has the most.
     pub(super) apart: usize,
+    /// Absent unless the points lie in one plane; all other fields have the classes and sizes of space.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) plane: Option<PlaneReport>,
     /// The largest by volume, each with the voids that its boundary encloses.
     pub(super) components: Vec<Component>,
     /// Null unless the simplices outside the shape are kept.
@@ -194,7 +198,7 @@ pub(super) struct Cells {
 }
 
 /// The counts of the simplices of one dimension, as a line.
-pub(super) struct Line<'a>(&'a ByClass<usize>);
+pub(super) struct Line<'a>(pub &'a ByClass<usize>);
 
 impl Display for Line<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -218,6 +222,7 @@ impl ShapeReport {
             volume: shape.measures().volume,
             area: shape.measures().area,
             singular_area: shape.measures().singular_area,
+            plane: PlaneReport::of(shape),
             components: largest(components),
             voids: shape.voids(),
         }
@@ -235,17 +240,26 @@ impl ShapeReport {
             volume: merged.measures.volume,
             area: merged.measures.area,
             singular_area: merged.measures.singular_area,
+            plane: None,
             components: largest(merged.components.clone()),
             voids: None,
         }
     }
 
-    /// Prints the numbers of the shape, with lengths in `unit`.
-    pub(super) fn print(&self, f: &mut fmt::Formatter<'_>, unit: &str) -> fmt::Result {
+    /// Prints the numbers of simplices by the classes of space.
+    fn print_classes(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "cells     {:>9} interior", self.cells.interior)?;
         writeln!(f, "facets    {}", Line(&self.facets))?;
         writeln!(f, "edges     {}", Line(&self.edges))?;
-        writeln!(f, "vertices  {}", Line(&self.vertices))?;
+        writeln!(f, "vertices  {}", Line(&self.vertices))
+    }
+
+    /// Prints the numbers of the shape, with lengths in `unit`.
+    pub(super) fn print(&self, f: &mut fmt::Formatter<'_>, unit: &str) -> fmt::Result {
+        match &self.plane {
+            Some(plane) => plane.print_classes(f)?,
+            None => self.print_classes(f)?,
+        }
         match self.betti {
             None => {}
             Some(Betti { b0, b1, b2, b3: None }) => {
@@ -254,6 +268,9 @@ impl ShapeReport {
             Some(Betti { b0, b1, b2, b3: Some(b3) }) => {
                 writeln!(f, "topology  b0 = {b0}, b1 = {b1}, b2 = {b2}, b3 = {b3} on the torus")?;
             }
+        }
+        if let Some(plane) = &self.plane {
+            return plane.print_sizes(f, unit);
         }
         writeln!(f, "volume    {:.6} {unit}³", self.volume)?;
         let (area, singular) = (self.area, self.singular_area);

@@ -1,0 +1,57 @@
+//! The part of a report on points in a plane.
+
+use std::fmt;
+
+use serde::Serialize;
+
+use super::parts::Line;
+use crate::AlphaShape;
+use crate::shape::ByClass;
+
+/// The shape of points in a plane, as a region of it.
+#[derive(Serialize)]
+pub(super) struct PlaneReport {
+    /// By the classes that they have in the plane.
+    #[serde(serialize_with = "ByClass::serialize_shape")]
+    facets: ByClass<usize>,
+    #[serde(serialize_with = "ByClass::serialize_shape")]
+    edges: ByClass<usize>,
+    #[serde(serialize_with = "ByClass::serialize_shape")]
+    vertices: ByClass<usize>,
+    polygons: usize,
+    holes: usize,
+    area: f64,
+    /// The length of all rings.
+    perimeter: f64,
+}
+
+impl PlaneReport {
+    /// The report on a shape; `None` unless its points lie in one plane, and on no line.
+    pub(super) fn of(shape: &AlphaShape) -> Option<Self> {
+        let outline = shape.outline().ok()?;
+        Some(Self {
+            facets: outline.complex.facets.counts(),
+            edges: outline.complex.edges.counts(),
+            vertices: outline.complex.vertices.counts(),
+            polygons: outline.polygons.len(),
+            holes: outline.holes(),
+            area: outline.area,
+            perimeter: outline.perimeter,
+        })
+    }
+
+    /// Prints the numbers of simplices.
+    pub(super) fn print_classes(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "plane     all points lie in one; simplices have the classes of the plane")?;
+        writeln!(f, "facets    {}", Line(&self.facets))?;
+        writeln!(f, "edges     {}", Line(&self.edges))?;
+        writeln!(f, "vertices  {}", Line(&self.vertices))
+    }
+
+    /// Prints the sizes, with lengths in `unit`.
+    pub(super) fn print_sizes(&self, f: &mut fmt::Formatter<'_>, unit: &str) -> fmt::Result {
+        let Self { polygons, holes, area, perimeter, .. } = self;
+        writeln!(f, "outline   {polygons} polygons with {holes} holes")?;
+        writeln!(f, "area      {area:.6} {unit}², perimeter {perimeter:.6} {unit}")
+    }
+}
