@@ -117,7 +117,8 @@ impl<'a> Study<'a> {
         let engine = Engine::Cgal;
         let options =
             ShapeOptions::new(alpha).balls(balls).engine(engine).exterior(true).refuse_flat(true);
-        let shape = alpha_shape(weighted, &options)?;
+        let coordinates = Units::Voxel.coordinates(self.subject.volume);
+        let shape = alpha_shape(weighted, &options)?.with_coordinates(coordinates);
         let mut command = self.command("shape");
         command += &format!(" --weights {weighting} --alpha {}", alpha.squared());
         if balls == Balls::Radius {

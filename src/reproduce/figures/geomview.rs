@@ -121,7 +121,7 @@ pub(super) fn figure_11(bench: &mut Bench<'_>) -> Result<Item, ReproduceError> {
         commands: shown
             .iter()
             .zip([LEFT, RIGHT])
-            .map(|(shaped, file)| shaped.makes(file))
+            .map(|(shaped, file)| shaped.makes(file) + " --groups")
             .collect(),
         shapes: shown.map(|shaped| shaped.numbers.clone()).into(),
         facts: evidence.facts(),
