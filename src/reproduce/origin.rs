@@ -38,7 +38,7 @@ impl Origin {
         }
         let read = skull_sha256()?;
         let judgement = if read == SKULL_SHA256 {
-            judge_skull(subject)
+            OF_THE_SKULL.into()
         } else {
             "This is another file than CGAL 5.5 has, so nothing is known about it.".into()
         };
@@ -68,21 +68,11 @@ impl Origin {
     }
 }
 
-/// The numbers of the file speak for both sides.
-fn judge_skull(subject: &Subject<'_>) -> String {
-    let mut levels: Vec<u32> =
-        subject.volume.as_slice().iter().map(|value| value.to_bits()).collect();
-    levels.sort_unstable();
-    levels.dedup();
-    format!(
-        "It may show the paper's skull, but it is not known to, and it is not the same data if the paper's gray levels \
-         were bytes. For it: it is a skull, has the paper's 64 × 64 × 64 samples, and comes with the library that \
-         the paper used. Against it: the paper gives gray levels in the range from 0 to 255, and this file has {} \
-         different values in {} samples, where bytes have 256; and no reading of the paper's threshold of 50 that \
-         was tried leaves as many samples as the paper says (Figure 5). The paper names neither a source nor a \
-         checksum, and prints no number of its shapes, so this cannot be settled. Claims about the method do not \
-         depend on it; those about holes in Figures 10 and 11 do.",
-        levels.len(),
-        subject.volume.dims().samples(),
-    )
-}
+/// Of the file with this checksum, so that its numbers are known.
+const OF_THE_SKULL: &str = "It may show the paper's skull, but it is not known to, and it is not the same data if the \
+     paper's gray levels were bytes. For it: it is a skull, has the paper's 64 × 64 × 64 samples, and comes with the \
+     library that the paper used. Against it: the paper gives gray levels in the range from 0 to 255, and this file has \
+     213528 different values in 262144 samples, where bytes have 256; and no reading of the paper's threshold of 50 \
+     that was tried leaves as many samples as the paper says (Figure 5). The paper names neither a source nor a \
+     checksum, and prints no number of its shapes, so this cannot be settled. Claims about the method do not depend on \
+     it; those about holes in Figures 10 and 11 do.";
