@@ -40,11 +40,11 @@ impl Origin {
         let judgement = if read == SKULL_SHA256 {
             OF_THE_SKULL.into()
         } else {
-            "This is another file than CGAL 5.5 has, so nothing is known about it.".into()
+            "This is not the file that CGAL 5.5 has, which alone was compared with what the paper says.".into()
         };
         Ok(Self {
             source: "CGAL's own data: skull_2.9.inr, an INRIMAGE of 64 × 64 × 64 floats, in Debian's and Ubuntu's \
-                     package libcgal-demo. CGAL does not say who scanned it."
+                     package libcgal-demo. The file does not say who scanned it."
                 .into(),
             sha256: Some(Checksum { read, expected: SKULL_SHA256 }),
             judgement,
