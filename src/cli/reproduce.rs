@@ -4,11 +4,14 @@ use std::path::{Path, PathBuf};
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use clap::Args;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use walpha_base::Monitor;
 use walpha_base::shown::shown;
 
 use crate::progress::Stage;
-use crate::reproduce::{File, Report, Subject, page, reproduce};
+use crate::reproduce::{
+    File, ItemName, Report, Subject, markdown, page, reproduce, reproduce_only,
+};
 use crate::volume::{ReadOptions, open_monitored};
 use crate::{Gray, Volume, VolumeError};
 
@@ -19,22 +22,34 @@ use super::progress::Progress;
 
 /// Reproduce the paper: Table 1, the figures, and a report on its claims.
 ///
-/// Writes PNG, SVG and OFF files, report.html (self-contained) and report.json into a folder.
+/// Writes PNG, SVG, PLY and OFF files, report.html (self-contained), report.json and reproduction.md (claims,
+/// verdicts and commands) into a folder. With --only the items named are made as they always are; the reports then
+/// contain these alone.
 ///
 /// Examples:
 ///
 /// walpha reproduce
 ///
 /// walpha reproduce --input ct.nii.gz --out paper
+///
+/// walpha reproduce --only figure-06,table-1
 #[derive(Args)]
 pub(super) struct Reproduce {
     /// Volume or sample [default: sample:skull, or sample:phantom where CGAL's data is not
     /// installed].
     #[arg(long, value_name = "INPUT")]
     input: Option<String>,
+    /// Items to make; may be repeated [default: all].
+    #[arg(long, value_name = "NAME,…", value_delimiter = ',', value_parser = item_names())]
+    only: Vec<ItemName>,
     /// Folder to write to, created if needed; existing files in it are replaced, all at the end.
     #[arg(long, value_name = "DIR", default_value = "reproduction")]
     out: PathBuf,
+}
+
+fn item_names() -> impl TypedValueParser<Value = ItemName> {
+    PossibleValuesParser::new(ItemName::all().map(ItemName::as_str))
+        .map(|name| ItemName::find(&name).expect("one of the possible values"))
 }
 
 /// A volume like the paper's, and one that is always available.
@@ -45,17 +60,28 @@ impl Reproduce {
     pub(super) fn run(self, global: Global) -> anyhow::Result<()> {
         let mut progress = Progress::new(global);
         // Before the long work.
-        let mut folder = Folder::open(&self.out, "--out", &["report.html", "report.json"])?;
+        let mut folder =
+            Folder::open(&self.out, "--out", &["report.html", "report.json", "reproduction.md"])?;
         let monitor = progress.monitor();
         let (name, volume) = progress.stage(Stage::Read, || self.volume(global, &monitor))?;
         let (volume, range) = volume.into_gray(Gray::Automatic)?;
         let date = today();
         let subject = Subject { volume: &volume, range, name: &name, date: &date };
-        let made = progress.watch(|monitor| reproduce(&subject, monitor))?;
+        let made = progress.watch(|monitor| {
+            if self.only.is_empty() {
+                reproduce(&subject, monitor)
+            } else {
+                reproduce_only(&subject, &self.only, monitor)
+            }
+        })?;
         let mut files = made.files;
         files.push(File {
             name: "report.html".into(),
             bytes: page(&made.report, &files).into_bytes(),
+        });
+        files.push(File {
+            name: "reproduction.md".into(),
+            bytes: markdown(&made.report).into_bytes(),
         });
         let json = serde_json::to_string_pretty(&made.report)? + "\n";
         files.push(File { name: "report.json".into(), bytes: json.clone().into_bytes() });

@@ -9,11 +9,15 @@ use crate::interpolate::InterpolateError;
 use crate::points::PointsError;
 use crate::render::RenderError;
 use crate::shape::ShapeError;
+use crate::volume::VolumeError;
 
 /// Why the paper cannot be reproduced on a volume.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ReproduceError {
+    /// The file of the volume cannot be read again for its checksum.
+    #[error(transparent)]
+    Volume(#[from] VolumeError),
     /// The wavelet stage failed.
     #[error(transparent)]
     Haar(HaarError),
@@ -52,6 +56,7 @@ impl ReproduceError {
     /// Advice on what to do, if there is any.
     pub fn advice(&self) -> Option<Advice> {
         match self {
+            Self::Volume(error) => error.advice(),
             Self::Haar(error) => error.advice(),
             Self::Points(error) => error.advice(),
             Self::Shape(error) => error.advice(),

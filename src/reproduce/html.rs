@@ -23,6 +23,7 @@ pub fn page(report: &Report, files: &[File]) -> String {
     );
     head(&mut html, report);
     summary(&mut html, report);
+    volume(&mut html, report);
     for item in &report.items {
         section(&mut html, item, files);
     }
@@ -52,7 +53,7 @@ fn head(html: &mut String, report: &Report) {
         report.source,
         report.version,
         escape(&report.date),
-        in_plain_words(report),
+        conclusion(report),
         escape(&input.name),
         number(low),
         number(high),
@@ -64,6 +65,20 @@ fn head(html: &mut String, report: &Report) {
         number(input.haar.epsilon),
         number(input.haar.rms),
     );
+}
+
+/// The conclusion of a whole report; of others, what is missing.
+fn conclusion(report: &Report) -> String {
+    if report.complete {
+        return in_plain_words(report);
+    }
+    let names: Vec<&str> = report.items.iter().map(|item| item.id).collect();
+    format!(
+        "<p><b>Not all of it.</b> Only {} was asked for, with <code>--only</code>. All items, and the \
+         conclusion drawn from them, are made with:</p>\n<pre>{}</pre>\n",
+        names.join(", "),
+        escape(&report.command)
+    )
 }
 
 /// The conclusion, in plain words.
@@ -122,6 +137,29 @@ fn summary(html: &mut String, report: &Report) {
     html.push_str("</tbody></table></div>\n");
 }
 
+/// Where the volume comes from.
+fn volume(html: &mut String, report: &Report) {
+    let origin = &report.input.origin;
+    let _ = writeln!(
+        html,
+        "<section id=\"volume\"><h2>The volume</h2>\n<p><b>Where it comes from.</b> {}</p>",
+        escape(&origin.source)
+    );
+    if let Some(sum) = &origin.sha256 {
+        let _ = writeln!(
+            html,
+            "<table class=\"facts\"><caption>SHA-256</caption><tbody><tr><td>of the file read</td><td>{}</td></tr>\
+             <tr><td>expected</td><td>{}</td></tr></tbody></table>",
+            sum.read, sum.expected
+        );
+    }
+    let _ = writeln!(
+        html,
+        "<p><b>Can it be the paper's?</b> {}</p>\n</section>",
+        escape(&origin.judgement)
+    );
+}
+
 fn section(html: &mut String, item: &Item, files: &[File]) {
     let _ = write!(
         html,
@@ -162,10 +200,11 @@ fn section(html: &mut String, item: &Item, files: &[File]) {
         html.push_str("</tbody></table></div>\n");
     }
     html.push_str("</div>\n");
+    let _ = writeln!(html, "<h3>Make it with</h3>\n<pre>{}</pre>", escape(&item.command));
     if !item.commands.is_empty() {
         let _ = writeln!(
             html,
-            "<h3>Reproduce with</h3>\n<pre>{}</pre>",
+            "<h3>Its parts by hand</h3>\n<pre>{}</pre>",
             escape(&item.commands.join("\n"))
         );
     }

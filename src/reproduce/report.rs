@@ -2,6 +2,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use super::{ItemName, Origin, Subject};
 use crate::haar::Truncation;
 use crate::points::WeightSummary;
 use crate::shape::{Alpha, AlphaShape, Balls, Betti, ByClass, Void};
@@ -21,7 +22,11 @@ pub struct Report {
     pub date: String,
     /// The volume that it is reproduced on.
     pub input: Input,
-    /// Table and figures, in the paper's order.
+    /// The command line that makes all items.
+    pub command: String,
+    /// Whether `items` are all.
+    pub complete: bool,
+    /// Table and figures, in the paper's order: all, or those asked for.
     pub items: Vec<Item>,
     /// Number of claims with each verdict.
     pub verdicts: BTreeMap<Verdict, usize>,
@@ -38,6 +43,8 @@ pub struct Input {
     pub dims: [usize; 3],
     /// Samples in all.
     pub samples: usize,
+    /// Where it comes from, and whether it can be the paper's.
+    pub origin: Origin,
     /// The values that became gray 0 and 255.
     pub gray_range: [f64; 2],
     /// The truncation.
@@ -51,7 +58,7 @@ pub struct Input {
 /// The table or a figure.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Item {
-    /// `table-1`, `figure-1`, …
+    /// `table-1`, `figure-01`, …
     pub id: &'static str,
     /// Its name, and what it shows.
     pub title: String,
@@ -63,7 +70,9 @@ pub struct Item {
     pub picture: Option<String>,
     /// Other files that belong to it.
     pub files: Vec<String>,
-    /// Command lines that reproduce it.
+    /// The command line that makes this item alone, with the same files.
+    pub command: String,
+    /// Command lines that make its parts without this module: meshes among its files, shapes, points.
     pub commands: Vec<String>,
     /// Shapes measured for it.
     pub shapes: Vec<ShapeNumbers>,
@@ -155,7 +164,7 @@ impl Fact {
 impl Report {
     pub(super) fn new(
         input: Input,
-        date: &str,
+        subject: &Subject<'_>,
         items: Vec<Item>,
         seconds: Vec<(&'static str, f64)>,
     ) -> Self {
@@ -167,7 +176,9 @@ impl Report {
             source: "in English, with a Korean abstract; the copy followed here names neither \
                      authors nor a journal, and its latest reference is of 2004",
             version: env!("CARGO_PKG_VERSION"),
-            date: date.into(),
+            date: subject.date.into(),
+            command: subject.command(None),
+            complete: items.len() == ItemName::all().count(),
             verdicts: Verdict::ALL.map(|verdict| (verdict, count(verdict))).into(),
             input,
             items,

@@ -1,11 +1,13 @@
 //! The volume, points, shapes and cameras that the figures share.
 
+use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Index;
 use std::time::Instant;
 
 use rayon::prelude::*;
 use walpha_base::{Cancelled, Monitor};
 
-use super::{Input, ReproduceError, ShapeNumbers, text};
+use super::{Input, ItemName, Origin, ReproduceError, ShapeNumbers, text};
 use crate::haar::{HaarOptions, Truncation, smooth_monitored};
 use crate::points::{
     Points, Selection, SelectionRule, Units, Weighting, difference, select, weigh,
@@ -28,6 +30,14 @@ pub struct Subject<'a> {
     pub name: &'a str,
     /// The day to write into the report, as 2025-12-31.
     pub date: &'a str,
+}
+
+impl Subject<'_> {
+    /// The command line that makes one item, or all.
+    pub(super) fn command(&self, item: Option<ItemName>) -> String {
+        let all = format!("walpha reproduce --input {}", text::shell(self.name));
+        item.map_or(all.clone(), |item| format!("{all} --only {}", item.as_str()))
+    }
 }
 
 /// The paper's points.
@@ -69,17 +79,23 @@ impl<'a> Study<'a> {
         Ok(Self { subject, smoothed, truncation, points, select: select_option, cameras })
     }
 
-    pub(super) fn input(&self) -> Input {
+    pub(super) fn input(&self, origin: Origin) -> Input {
         let dims = self.subject.volume.dims();
         Input {
             name: self.subject.name.to_owned(),
             dims: dims.xyz(),
             samples: dims.samples(),
+            origin,
             gray_range: [self.subject.range.low, self.subject.range.high],
             haar: self.truncation,
             points: self.points.len(),
-            percent: 100.0 * self.points.len() as f64 / dims.samples() as f64,
+            percent: self.percent(),
         }
+    }
+
+    /// Points over samples, in percent.
+    pub(super) fn percent(&self) -> f64 {
+        100.0 * self.points.len() as f64 / self.subject.volume.dims().samples() as f64
     }
 
     /// `walpha COMMAND INPUT` with the options that select our points.
@@ -101,7 +117,8 @@ impl<'a> Study<'a> {
         let engine = Engine::Cgal;
         let options =
             ShapeOptions::new(alpha).balls(balls).engine(engine).exterior(true).refuse_flat(true);
-        let shape = alpha_shape(weighted, &options)?;
+        let coordinates = Units::Voxel.coordinates(self.subject.volume);
+        let shape = alpha_shape(weighted, &options)?.with_coordinates(coordinates);
         let mut command = self.command("shape");
         command += &format!(" --weights {weighting} --alpha {}", alpha.squared());
         if balls == Balls::Radius {
@@ -150,78 +167,108 @@ pub(super) struct Shaped {
     pub numbers: ShapeNumbers,
 }
 
-/// The shapes that several figures share, all at α = 10 unless said otherwise.
-pub(super) struct Shapes {
-    /// ω = 0.
-    pub plain: Shaped,
-    /// ω = 10.
-    pub common: Shaped,
-    /// ω = 0 at α = 20, which Figure 7 must equal.
-    pub shifted: Shaped,
-    /// Equation 4.1.
-    pub min_max: Shaped,
-    /// Equation 4.1 with balls of radius α + ω.
-    pub min_max_radius: Shaped,
-    /// ω = 0 at α + the mean of the min-max weights.
-    pub min_max_mean: Shaped,
-    /// Equation 4.2 as printed.
-    pub barycentric: Shaped,
-    /// N times that.
-    pub barycentric_n: Shaped,
-    /// ω = 0 at other α, ascending; the last is ∞.
-    pub ladder: Vec<Shaped>,
+impl Shaped {
+    /// The command line that writes the boundary of this shape, without the figure.
+    pub(super) fn makes(&self, file: &str) -> String {
+        format!("{} -o {file}", self.numbers.command)
+    }
 }
 
-/// Values of α besides 10 and 20 that show how the shape grows: the squares of a voxel's edge and space
-/// diagonal, larger ones, and ∞.
-const LADDER: [f64; 5] = [1.0, 3.0, 50.0, 200.0, f64::INFINITY];
+/// A shape that figures share, at α = 10 unless said otherwise.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Shared {
+    /// ω = 0.
+    Plain,
+    /// ω = 10.
+    Common,
+    /// ω = 0 at α = 20, which Figure 7 must equal.
+    Shifted,
+    /// Equation 4.1.
+    MinMax,
+    /// Equation 4.1 with balls of radius α + ω.
+    MinMaxRadius,
+    /// ω = 0 at α + the mean of the min-max weights.
+    MinMaxMean,
+    /// Equation 4.2 as printed.
+    Barycentric,
+    /// N times that.
+    BarycentricN,
+    /// ω = 0 at α = 1, the square of a voxel's edge.
+    Edge,
+    /// ω = 0 at α = 3, the square of a voxel's diagonal.
+    Diagonal,
+    /// ω = 0 at α = 50.
+    Wide,
+    /// ω = 0 at α = 200.
+    Wider,
+    /// ω = 0 at α = ∞.
+    Hull,
+}
 
-impl Shapes {
-    /// Computes all, side by side: CGAL takes one thread for each.
-    pub(super) fn new(study: &Study<'_>, clock: &mut Clock<'_>) -> Result<Self, ReproduceError> {
-        clock.enter("shapes")?;
-        let min_max = study.shape(Variant::weighted(Weighting::MinMax))?;
-        let radius = Variant { balls: Balls::Radius, ..Variant::weighted(Weighting::MinMax) };
-        let variants = [
-            Variant::plain(ALPHA),
-            Variant::weighted(Weighting::Common(COMMON)),
-            Variant::plain(ALPHA + COMMON),
-            radius,
-            Variant::plain(ALPHA + min_max.numbers.weights.mean),
-            Variant::weighted(Weighting::Barycentric),
-            Variant::weighted(Weighting::BarycentricN),
-        ];
-        let others = LADDER.map(Variant::plain);
-        let mut shapes = variants
-            .par_iter()
-            .chain(&others)
-            .map(|&variant| study.shape(variant))
-            .collect::<Result<Vec<_>, _>>()?;
-        let ladder = shapes.split_off(variants.len());
-        let Ok([plain, common, shifted, min_max_radius, min_max_mean, barycentric, barycentric_n]) =
-            <[_; 7]>::try_from(shapes)
-        else {
-            unreachable!("one shape for each variant")
-        };
-        Ok(Self {
-            plain,
-            common,
-            shifted,
-            min_max,
-            min_max_radius,
-            min_max_mean,
-            barycentric,
-            barycentric_n,
-            ladder,
+/// The shapes without weights, by ascending α.
+pub(super) const BY_ALPHA: [Shared; 7] = [
+    Shared::Edge,
+    Shared::Diagonal,
+    Shared::Plain,
+    Shared::Shifted,
+    Shared::Wide,
+    Shared::Wider,
+    Shared::Hull,
+];
+
+impl Shared {
+    fn variant(self, study: &Study<'_>) -> Result<Variant, ReproduceError> {
+        Ok(match self {
+            Self::Plain => Variant::plain(ALPHA),
+            Self::Common => Variant::weighted(Weighting::Common(COMMON)),
+            Self::Shifted => Variant::plain(ALPHA + COMMON),
+            Self::MinMax => Variant::weighted(Weighting::MinMax),
+            Self::MinMaxRadius => {
+                Variant { balls: Balls::Radius, ..Variant::weighted(Weighting::MinMax) }
+            }
+            Self::MinMaxMean => {
+                let alpha = Alpha::from_squared(ALPHA).expect("a number");
+                let weighted = weigh(study.points.clone(), Weighting::MinMax, alpha)?;
+                Variant::plain(ALPHA + weighted.summary().mean)
+            }
+            Self::Barycentric => Variant::weighted(Weighting::Barycentric),
+            Self::BarycentricN => Variant::weighted(Weighting::BarycentricN),
+            Self::Edge => Variant::plain(1.0),
+            Self::Diagonal => Variant::plain(3.0),
+            Self::Wide => Variant::plain(50.0),
+            Self::Wider => Variant::plain(200.0),
+            Self::Hull => Variant::plain(f64::INFINITY),
         })
     }
+}
 
-    /// The unweighted shapes, by ascending α.
-    pub(super) fn by_alpha(&self) -> Vec<&Shaped> {
-        let mut shapes: Vec<&Shaped> = [&self.plain, &self.shifted].into();
-        shapes.extend(&self.ladder);
-        shapes.sort_by(|a, b| a.numbers.alpha.squared().total_cmp(&b.numbers.alpha.squared()));
-        shapes
+/// The shapes that the figures asked for need.
+pub(super) struct Shapes(BTreeMap<Shared, Shaped>);
+
+impl Shapes {
+    /// Computes them side by side: CGAL takes one thread for each.
+    pub(super) fn new(
+        study: &Study<'_>,
+        needed: &BTreeSet<Shared>,
+    ) -> Result<Self, ReproduceError> {
+        let shape = |&shared: &Shared| Ok((shared, study.shape(shared.variant(study)?)?));
+        let shapes = needed.par_iter().map(shape).collect::<Result<Vec<_>, ReproduceError>>()?;
+        Ok(Self(shapes.into_iter().collect()))
+    }
+
+    /// The shapes without weights, by ascending α.
+    pub(super) fn by_alpha(&self) -> [&Shaped; 7] {
+        BY_ALPHA.map(|shared| &self[shared])
+    }
+}
+
+impl Index<Shared> for Shapes {
+    type Output = Shaped;
+
+    /// # Panics
+    /// When the item does not list this shape among those it needs.
+    fn index(&self, shared: Shared) -> &Shaped {
+        &self.0[&shared]
     }
 }
 
@@ -266,14 +313,6 @@ impl Cameras {
             Eye::Side => [150.0, -36.0, 22.0],
         };
         [0, 1, 2].map(|k| self.target[k] + away[k] * self.scale)
-    }
-
-    /// The options of `walpha shape` that draw a shape as the portrait panels do.
-    pub(super) fn options(&self) -> String {
-        let all = [self.place(Eye::Portrait), self.target].concat();
-        let numbers: Vec<String> = all.iter().map(f64::to_string).collect();
-        let size = panel_size();
-        format!("--camera={} --size {}x{}", numbers.join(","), size.width(), size.height())
     }
 
     pub(super) fn render(&self, scene: &Scene, eye: Eye) -> Result<Picture, ReproduceError> {

@@ -43,7 +43,7 @@ pub use open::{convert, convert_monitored};
 pub use open::{open, open_monitored};
 pub use read::{RawLayout, ReadOptions, Series};
 pub use reason::Reason;
-pub use sample::{SAMPLES, ct, phantom, sample};
+pub use sample::{SAMPLES, SKULL_SHA256, ct, phantom, sample, skull_sha256};
 pub use source::{SampleStats, Source};
 pub use volume::{Nan, Volume};
 pub use walpha_base::{Conversion, Coordinates, LengthUnit, Space};

@@ -1,7 +1,7 @@
 use super::bench::{Bench, figure};
 use super::bench::{Claim, judge};
 use crate::reproduce::compare::{Difference, same_set};
-use crate::reproduce::study::{ALPHA, Shapes};
+use crate::reproduce::study::{ALPHA, Shapes, Shared};
 use crate::reproduce::{Fact, Item, ReproduceError, ShapeNumbers, Verdict, text};
 
 /// The shapes with barycentric weights, and the one without weights.
@@ -24,7 +24,8 @@ struct Evidence {
 
 impl Evidence {
     fn of(shapes: &Shapes) -> Self {
-        let (literal, scaled, plain) = (&shapes.barycentric, &shapes.barycentric_n, &shapes.plain);
+        let (literal, scaled, plain) =
+            (&shapes[Shared::Barycentric], &shapes[Shared::BarycentricN], &shapes[Shared::Plain]);
         let [from, to, n_times] = [plain, literal, scaled].map(|shaped| shaped.shape.complex());
         Self {
             plain: plain.numbers.clone(),
@@ -96,7 +97,7 @@ const CLAIMS: [Claim<Evidence>; 2] = [
 /// Figure 9: barycentric weights, as printed and N times that.
 pub(super) fn figure_9(bench: &mut Bench<'_>) -> Result<Item, ReproduceError> {
     let shapes = bench.shapes;
-    let (literal, scaled) = (&shapes.barycentric, &shapes.barycentric_n);
+    let (literal, scaled) = (&shapes[Shared::Barycentric], &shapes[Shared::BarycentricN]);
     let panels = vec![
         bench.shape_panel("equation 4.2 as printed", literal)?,
         bench.shape_panel("N times equation 4.2 (ours)", scaled)?,
@@ -105,7 +106,6 @@ pub(super) fn figure_9(bench: &mut Bench<'_>) -> Result<Item, ReproduceError> {
     let drawn = figure(&title, panels);
     let evidence = Evidence::of(shapes);
     Ok(Item {
-        id: "figure-9",
         title: "Figure 9. Barycentric weights".into(),
         paper: "ω = α·L/ΣL: each point has its portion of α (equation 4.2).".into(),
         ours:
@@ -114,10 +114,7 @@ pub(super) fn figure_9(bench: &mut Bench<'_>) -> Result<Item, ReproduceError> {
                the paper."
                 .into(),
         picture: Some(bench.file("figure-09.png", drawn.to_png()?)),
-        commands: vec![
-            bench.drawing_command(literal, "figure-09-literal.png"),
-            bench.drawing_command(scaled, "figure-09-n.png"),
-        ],
+        commands: vec![literal.makes("figure-09-literal.ply"), scaled.makes("figure-09-n.ply")],
         files: vec![
             bench.mesh("figure-09-literal.ply", literal)?,
             bench.mesh("figure-09-n.ply", scaled)?,

@@ -70,16 +70,6 @@ impl<'a> Bench<'a> {
         let front = self.shape_panel(VIEWS[0], shaped)?;
         Ok(vec![front, panel(VIEWS[1], side, Vec::new())])
     }
-
-    /// The command line that reproduces everything.
-    pub(super) fn reproduce_command(&self) -> String {
-        format!("walpha reproduce --input {}", text::shell(self.study.subject.name))
-    }
-
-    /// The command line that draws a shape as our figure does, without titles and captions.
-    pub(super) fn drawing_command(&self, shaped: &Shaped, file: &str) -> String {
-        format!("{} {} -o {file}", shaped.numbers.command, self.study.cameras.options())
-    }
 }
 
 /// Titles of the two views of a shape.

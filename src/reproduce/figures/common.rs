@@ -1,6 +1,6 @@
 use super::bench::{Bench, figure};
 use super::bench::{Claim, judge};
-use crate::reproduce::study::{ALPHA, COMMON, Shapes};
+use crate::reproduce::study::{ALPHA, COMMON, Shapes, Shared};
 use crate::reproduce::{Item, ReproduceError, ShapeNumbers, Verdict, text};
 use crate::shape::Complex;
 
@@ -21,12 +21,13 @@ struct Evidence {
 
 impl Evidence {
     fn of(shapes: &Shapes) -> Self {
-        let (a, b) = (shapes.common.shape.complex(), shapes.shifted.shape.complex());
+        let (a, b) =
+            (shapes[Shared::Common].shape.complex(), shapes[Shared::Shifted].shape.complex());
         let simplices =
             |c: &Complex| c.cells.len() + c.facets.len() + c.edges.len() + c.vertices.len();
         Self {
-            common: shapes.common.numbers.clone(),
-            plain: shapes.plain.numbers.clone(),
+            common: shapes[Shared::Common].numbers.clone(),
+            plain: shapes[Shared::Plain].numbers.clone(),
             simplices: [simplices(a), simplices(b)],
             same: a == b,
         }
@@ -66,13 +67,12 @@ const CLAIMS: [Claim<Evidence>; 2] = [
 
 /// Figure 7: ω = 10 for all, which is α = 20 without weights.
 pub(super) fn figure_7(bench: &mut Bench<'_>) -> Result<Item, ReproduceError> {
-    let (common, shifted) = (&bench.shapes.common, &bench.shapes.shifted);
+    let (common, shifted) = (&bench.shapes[Shared::Common], &bench.shapes[Shared::Shifted]);
     let title = format!(
         "Figure 7. Common factor {COMMON}, α = {ALPHA}: the unweighted shape at α = {SHIFTED}"
     );
     let drawn = figure(&title, bench.two_views(common)?);
     Ok(Item {
-        id: "figure-7",
         title: "Figure 7. Common factor 10".into(),
         paper: "All points weigh 10, at α = 10.".into(),
         ours: format!(
@@ -80,10 +80,7 @@ pub(super) fn figure_7(bench: &mut Bench<'_>) -> Result<Item, ReproduceError> {
              α = {SHIFTED}, and was computed both ways."
         ),
         picture: Some(bench.file("figure-07.png", drawn.to_png()?)),
-        commands: vec![
-            bench.drawing_command(common, "figure-07.png"),
-            shifted.numbers.command.clone(),
-        ],
+        commands: vec![common.makes("figure-07.ply"), shifted.numbers.command.clone()],
         files: vec![bench.mesh("figure-07.ply", common)?],
         shapes: vec![common.numbers.clone(), shifted.numbers.clone()],
         findings: judge(&CLAIMS, &Evidence::of(bench.shapes)),

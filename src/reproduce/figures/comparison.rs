@@ -1,8 +1,7 @@
 use super::bench::{Bench, figure};
 use super::bench::{Claim, judge};
 use crate::reproduce::compare::{Difference, PixelDifference, same_set};
-use crate::reproduce::study::ALPHA;
-use crate::reproduce::study::Eye;
+use crate::reproduce::study::{ALPHA, Eye, Shared};
 use crate::reproduce::{Fact, Item, ReproduceError, ShapeNumbers, Table, Verdict, text};
 
 /// Four shapes, and how much the paper's two differ: without weights, left, and with barycentric
@@ -39,15 +38,16 @@ struct Trial<'a> {
 impl Evidence {
     fn of(bench: &mut Bench<'_>) -> Result<Self, ReproduceError> {
         let shapes = bench.shapes;
-        let (plain, literal) = (&shapes.plain, &shapes.barycentric);
+        let (plain, literal) = (&shapes[Shared::Plain], &shapes[Shared::Barycentric]);
         let left = bench.view(plain, Eye::Portrait)?;
         let right = bench.view(literal, Eye::Portrait)?;
         Ok(Self {
             plain: plain.numbers.clone(),
             literal: literal.numbers.clone(),
-            scaled: shapes.barycentric_n.numbers.clone(),
-            min_max: shapes.min_max.numbers.clone(),
-            raised: [&shapes.shifted, &shapes.min_max_mean].map(|shaped| shaped.numbers.clone()),
+            scaled: shapes[Shared::BarycentricN].numbers.clone(),
+            min_max: shapes[Shared::MinMax].numbers.clone(),
+            raised: [&shapes[Shared::Shifted], &shapes[Shared::MinMaxMean]]
+                .map(|shaped| shaped.numbers.clone()),
             apart: Difference::between(plain.shape.complex(), literal.shape.complex()),
             same: same_set(&plain.shape, &literal.shape),
             pixels: PixelDifference::between(&left, &right),
@@ -143,7 +143,12 @@ const CLAIMS: [Claim<Evidence>; 3] = [
 /// Figure 10: without weights and with barycentric ones; below, weights that do change the shape.
 pub(super) fn figure_10(bench: &mut Bench<'_>) -> Result<Item, ReproduceError> {
     let shapes = bench.shapes;
-    let shown = [&shapes.plain, &shapes.barycentric, &shapes.barycentric_n, &shapes.min_max];
+    let shown = [
+        &shapes[Shared::Plain],
+        &shapes[Shared::Barycentric],
+        &shapes[Shared::BarycentricN],
+        &shapes[Shared::MinMax],
+    ];
     let titles = [
         "ω = 0 (the paper's left image)",
         "barycentric, equation 4.2 (its right image)",
@@ -155,17 +160,11 @@ pub(super) fn figure_10(bench: &mut Bench<'_>) -> Result<Item, ReproduceError> {
     let panels = panels.collect::<Result<_, _>>()?;
     let title = format!("Figure 10. Unweighted and weighted shapes at α = {ALPHA}, one camera");
     let drawn = figure(&title, panels);
-    let names = ["omega-0", "barycentric", "barycentric-n", "min-max"];
-    let commands = shown
-        .iter()
-        .zip(names)
-        .map(|(shaped, name)| bench.drawing_command(shaped, &format!("figure-10-{name}.png")))
-        .collect();
+    let commands = shown.iter().map(|shaped| shaped.numbers.command.clone()).collect();
     let evidence = Evidence::of(bench)?;
     let mut listed: Vec<_> = evidence.shown().map(Clone::clone).into();
-    listed.push(shapes.min_max_mean.numbers.clone());
+    listed.push(shapes[Shared::MinMaxMean].numbers.clone());
     Ok(Item {
-        id: "figure-10",
         title: "Figure 10. The hole, and whether it is filled".into(),
         paper: "Left, common weight 0 and α = 10; right, barycentric weights and α = 10. “In the \
                 left image, we can find hole (cavity). In the right image, the hole is filled.”"

@@ -62,7 +62,6 @@ pub(super) fn bytes_against_error(bench: &mut Bench<'_>) -> Result<Item, Reprodu
         Fact::new(label, model.bits(subject.volume))
     };
     Ok(Item {
-        id: "extension-2",
         title: "Our extension. Bytes against error".into(),
         paper:
             "Says that few points stand for the volume (6.07 %), and does not count bytes. This \
@@ -71,10 +70,6 @@ pub(super) fn bytes_against_error(bench: &mut Bench<'_>) -> Result<Item, Reprodu
         ours: format!("{} {}", remark(others), verdict(&curves)),
         picture: Some(picture),
         files: vec![svg],
-        commands: vec![format!(
-            "{} --select adaptive --target-rmse 1.9 --value-error 3 -o model.wvm",
-            bench.study.command("points")
-        )],
         facts: measured.iter().map(fact).collect(),
         tables: vec![model_table(&measured, subject.volume), curve_table(&curves)],
         ..Item::default()

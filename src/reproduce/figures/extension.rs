@@ -9,7 +9,7 @@ use crate::shape::Alpha;
 
 /// What the paper does not measure: how well F, linear on the cells, approximates the volume.
 ///
-/// Three counts and two kinds of weights keep it short; `walpha interpolate --curve` has more.
+/// Three counts and two kinds of weights keep it short; `walpha interpolate --curve` measures more.
 pub(super) fn error_against_points(bench: &mut Bench<'_>) -> Result<Item, ReproduceError> {
     let study = bench.study;
     let n = study.points.len() as u64;
@@ -31,7 +31,6 @@ pub(super) fn error_against_points(bench: &mut Bench<'_>) -> Result<Item, Reprod
     let csv = bench.file("extension-1.csv", csv);
     let facts = at_the_papers_size(&curve, n as usize);
     Ok(Item {
-        id: "extension-1",
         title: "Our extension. Error against points".into(),
         paper: "Says that the weighted alpha shape of the points represents the volume, \
                 but does not measure how well. This section is not in the paper."
@@ -45,10 +44,6 @@ pub(super) fn error_against_points(bench: &mut Bench<'_>) -> Result<Item, Reprod
             .into(),
         picture: Some(picture),
         files: vec![svg, csv],
-        commands: vec![
-            format!("{} --curve -o curve", study.command("interpolate")),
-            format!("{} --select adaptive --fill", study.command("interpolate")),
-        ],
         facts,
         tables: vec![table(&curve)],
         ..Item::default()

@@ -4,9 +4,9 @@ use crate::export::{ExportOptions, Exporter, Off};
 use crate::render::{Figure, Panel, Picture};
 use crate::reproduce::compare::{PixelDifference, same_set};
 use crate::reproduce::off::OffMesh;
-use crate::reproduce::study::{ALPHA, Shaped};
+use crate::reproduce::study::{ALPHA, Shaped, Shared};
 use crate::reproduce::study::{Eye, panel};
-use crate::reproduce::{Fact, Item, ReproduceError, ShapeNumbers, Verdict};
+use crate::reproduce::{Fact, Item, ReproduceError, Verdict};
 use crate::shape::{Betti, Surface};
 
 /// The pair, read back from its files.
@@ -23,7 +23,8 @@ struct Evidence {
 
 impl Evidence {
     fn of(bench: &mut Bench<'_>) -> Result<Self, ReproduceError> {
-        let (plain, barycentric) = (&bench.shapes.plain, &bench.shapes.barycentric);
+        let (plain, barycentric) =
+            (&bench.shapes[Shared::Plain], &bench.shapes[Shared::Barycentric]);
         let left = Side::new(bench, "ω = 0", plain, LEFT)?;
         let right = Side::new(bench, "barycentric, equation 4.2", barycentric, RIGHT)?;
         Ok(Self {
@@ -107,10 +108,8 @@ pub(super) fn figure_11(bench: &mut Bench<'_>) -> Result<Item, ReproduceError> {
     let title = format!("Figure 11. The pair as OFF files, read back; α = {ALPHA}");
     let panels = evidence.sides.iter().map(Side::panel).collect();
     let drawn = Figure { legend: Vec::new(), ..figure(&title, panels) };
-    let numbers = [&bench.shapes.plain, &bench.shapes.barycentric].map(|s| s.numbers.clone());
-    let command = |(n, side): (&ShapeNumbers, &Side)| format!("{} -o {}", n.command, side.file);
+    let shown = [Shared::Plain, Shared::Barycentric].map(|shared| &bench.shapes[shared]);
     Ok(Item {
-        id: "figure-11",
         title: "Figure 11. The pair in Geomview".into(),
         paper: "The pair of Figure 10, shown by Geomview, the paper's second viewer.".into(),
         ours:
@@ -119,8 +118,12 @@ pub(super) fn figure_11(bench: &mut Bench<'_>) -> Result<Item, ReproduceError> {
                 .into(),
         picture: Some(bench.file("figure-11.png", drawn.to_png()?)),
         files: evidence.sides.iter().map(|side| side.file.clone()).collect(),
-        commands: numbers.iter().zip(&evidence.sides).map(command).collect(),
-        shapes: numbers.into(),
+        commands: shown
+            .iter()
+            .zip([LEFT, RIGHT])
+            .map(|(shaped, file)| shaped.makes(file) + " --groups")
+            .collect(),
+        shapes: shown.map(|shaped| shaped.numbers.clone()).into(),
         facts: evidence.facts(),
         findings: judge(&CLAIMS, &evidence),
         ..Item::default()

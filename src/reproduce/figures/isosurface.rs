@@ -3,7 +3,7 @@ use super::bench::{Claim, judge};
 use crate::points::difference;
 use crate::render::{Figure, Isosurface, Scene};
 use crate::reproduce::study::{Eye, panel};
-use crate::reproduce::study::{PAPER_POINTS, PAPER_SAMPLES, Study};
+use crate::reproduce::study::{PAPER_POINTS, PAPER_SAMPLES, Shared, Study};
 use crate::reproduce::{Fact, Item, ReproduceError, Table, Verdict};
 use crate::volume::Volume;
 
@@ -42,7 +42,7 @@ impl Evidence {
             triangles: surface.triangles.len(),
             area: surface.area(),
             points: study.points.len(),
-            points_in_shape: bench.shapes.plain.numbers.points_in_shape,
+            points_in_shape: bench.shapes[Shared::Plain].numbers.points_in_shape,
             readings: readings(study),
         }
     }
@@ -132,7 +132,6 @@ pub(super) fn figure_5(bench: &mut Bench<'_>) -> Result<Item, ReproduceError> {
     let evidence = Evidence::of(bench, &surface);
     let drawn = draw(bench.study, &evidence, surface)?;
     Ok(Item {
-        id: "figure-5",
         title: "Figure 5. The original image".into(),
         paper: format!(
             "The skull of 64 × 64 × 64 samples. The threshold value is {THRESHOLD} in the range from \
@@ -145,7 +144,6 @@ pub(super) fn figure_5(bench: &mut Bench<'_>) -> Result<Item, ReproduceError> {
             evidence.vertices, evidence.triangles
         ),
         picture: Some(bench.file("figure-05.png", drawn.to_png()?)),
-        commands: vec![bench.reproduce_command()],
         facts: evidence.facts(),
         tables: vec![evidence.table()],
         findings: judge(&CLAIMS, &evidence),

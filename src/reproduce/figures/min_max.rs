@@ -1,7 +1,7 @@
 use super::bench::{Bench, figure};
 use super::bench::{Claim, judge};
 use crate::reproduce::compare::Difference;
-use crate::reproduce::study::{ALPHA, Shapes};
+use crate::reproduce::study::{ALPHA, Shapes, Shared};
 use crate::reproduce::{Fact, Item, ReproduceError, ShapeNumbers, Verdict, text};
 
 /// The shape in both readings of "radius".
@@ -16,7 +16,7 @@ struct Evidence {
 
 impl Evidence {
     fn of(shapes: &Shapes) -> Self {
-        let (power, radius) = (&shapes.min_max, &shapes.min_max_radius);
+        let (power, radius) = (&shapes[Shared::MinMax], &shapes[Shared::MinMaxRadius]);
         Self {
             power: power.numbers.clone(),
             radius: radius.numbers.clone(),
@@ -82,7 +82,7 @@ const CLAIMS: [Claim<Evidence>; 3] = [
 /// Figure 8: min-max weights, in both readings of "radius".
 pub(super) fn figure_8(bench: &mut Bench<'_>) -> Result<Item, ReproduceError> {
     let shapes = bench.shapes;
-    let (power, radius) = (&shapes.min_max, &shapes.min_max_radius);
+    let (power, radius) = (&shapes[Shared::MinMax], &shapes[Shared::MinMaxRadius]);
     let panels = vec![
         bench.shape_panel("squared radius α + ω (power)", power)?,
         bench.shape_panel("radius α + ω", radius)?,
@@ -91,7 +91,6 @@ pub(super) fn figure_8(bench: &mut Bench<'_>) -> Result<Item, ReproduceError> {
     let drawn = figure(&title, panels);
     let evidence = Evidence::of(shapes);
     Ok(Item {
-        id: "figure-8",
         title: "Figure 8. Weights by min-max".into(),
         paper:
             "ω = α·(L − Lmin)/(Lmax − Lmin): weights from 0 to α by the difference of gray value \
@@ -102,10 +101,7 @@ pub(super) fn figure_8(bench: &mut Bench<'_>) -> Result<Item, ReproduceError> {
                the other reading of the paper's section 4.2."
                 .into(),
         picture: Some(bench.file("figure-08.png", drawn.to_png()?)),
-        commands: vec![
-            bench.drawing_command(power, "figure-08-power.png"),
-            bench.drawing_command(radius, "figure-08-radius.png"),
-        ],
+        commands: vec![power.makes("figure-08-power.ply"), radius.makes("figure-08-radius.ply")],
         files: vec![
             bench.mesh("figure-08-power.ply", power)?,
             bench.mesh("figure-08-radius.ply", radius)?,

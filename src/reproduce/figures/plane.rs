@@ -83,7 +83,6 @@ pub(super) fn figure_2(bench: &mut Bench<'_>) -> Result<Item, ReproduceError> {
     let item = item(bench, title, "figure-02", &ladder)?;
     ladder.push(Rung::at(0.0)?);
     Ok(Item {
-        id: "figure-2",
         title: "Figure 2. α-shapes of negative α".into(),
         paper:
             "Generalised discs: for α < 0 the complement of a disc of radius −1/α. The α-hull is \
@@ -112,7 +111,6 @@ pub(super) fn figure_3(bench: &mut Bench<'_>) -> Result<Item, ReproduceError> {
     let mut findings = judge(&[GROWS], &Growth::of(&ladder));
     findings.extend(judge(&[LIMITED], &limit));
     Ok(Item {
-        id: "figure-3",
         title: "Figure 3. α-shapes of positive α".into(),
         paper: "For α > 0 the α-hull is the intersection of all closed discs of radius 1/α that \
                 contain the points; α increases from top to bottom (Definition 1)."
@@ -141,7 +139,6 @@ fn item(
     Ok(Item {
         picture: Some(bench.file(&format!("{name}.png"), drawn.to_png()?)),
         files: vec![bench.file(&format!("{name}.svg"), drawn.to_svg()?.into_bytes())],
-        commands: vec![bench.reproduce_command()],
         facts: vec![Fact::count("points", sample_points().len())],
         tables: vec![table(ladder)],
         ..Item::default()

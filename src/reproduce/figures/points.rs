@@ -2,8 +2,7 @@ use super::bench::{Bench, figure};
 use super::bench::{Claim, judge};
 use crate::haar::Truncation;
 use crate::render::{Ball, ColourBar, ColourMap, Figure, Scene, Size};
-use crate::reproduce::study::Study;
-use crate::reproduce::study::panel;
+use crate::reproduce::study::{Shared, Study, panel};
 use crate::reproduce::{Fact, Item, ReproduceError, Verdict, text};
 
 /// The truncation, and the points.
@@ -30,8 +29,8 @@ impl Evidence {
             lost: pairs.map(|(a, b)| (f64::from(*a) - f64::from(*b)).powi(2)).sum(),
             points: study.points.len(),
             values: values(study).len(),
-            duplicates: bench.shapes.plain.numbers.duplicates,
-            hull: bench.shapes.by_alpha().last().map_or(0.0, |shaped| shaped.numbers.volume),
+            duplicates: bench.shapes[Shared::Plain].numbers.duplicates,
+            hull: bench.shapes[Shared::Hull].numbers.volume,
         }
     }
 
@@ -42,7 +41,7 @@ impl Evidence {
             Fact::new("ε = ‖f − f̂‖ (gray levels)", self.truncation.epsilon),
             Fact::new("RMS of f − f̂ (gray levels)", self.truncation.rms),
             Fact::count("points", self.points),
-            Fact::new("points per sample (%)", study.input().percent),
+            Fact::new("points per sample (%)", study.percent()),
             Fact::new("smallest F", low),
             Fact::new("largest F", high),
         ]
@@ -84,7 +83,6 @@ pub(super) fn figure_1(bench: &mut Bench<'_>) -> Result<Item, ReproduceError> {
     let evidence = Evidence::of(bench);
     let Truncation { kept, total, .. } = evidence.truncation;
     Ok(Item {
-        id: "figure-1",
         title: "Figure 1. Scattered points with values".into(),
         paper:
             "Volumetric scattered data: points v = (x, y, z) with F(v) = F. The points are those \

@@ -97,7 +97,6 @@ pub(super) fn figure_4(bench: &mut Bench<'_>) -> Result<Item, ReproduceError> {
     let drawn = draw(&shape)?;
     let evidence = Evidence::of(&shape);
     Ok(Item {
-        id: "figure-4",
         title: "Figure 4. Weighted α-shape in the plane".into(),
         paper:
             "The union of discs is decomposed by the weighted Voronoi cells; the shaded triangles \
@@ -109,7 +108,6 @@ pub(super) fn figure_4(bench: &mut Bench<'_>) -> Result<Item, ReproduceError> {
             .into(),
         picture: Some(bench.file("figure-04.png", drawn.to_png()?)),
         files: vec![bench.file("figure-04.svg", drawn.to_svg()?.into_bytes())],
-        commands: vec![bench.reproduce_command()],
         facts: evidence.facts(),
         findings: judge(&CLAIMS, &evidence),
         ..Item::default()

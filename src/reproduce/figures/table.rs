@@ -97,7 +97,6 @@ fn agree(pairs: &[(&[f64], &[f64])]) -> (Verdict, String) {
 pub(super) fn table_1(_: &mut Bench<'_>) -> Result<Item, ReproduceError> {
     let evidence = Evidence::new();
     Ok(Item {
-        id: "table-1",
         title: "Table 1. Wavelet coefficients of a row of four".into(),
         paper: "The row [9, 7, 3, 5] decomposed into averages and half-differences; details are \
                 removed, and each value that is left weighs as much as it differs from its \

@@ -3,7 +3,7 @@
 use walpha_base::vector::{cross, dot, sub};
 
 use super::bench::{Bench, Claim, figure, judge};
-use crate::reproduce::study::{ALPHA, Shapes};
+use crate::reproduce::study::{ALPHA, Shapes, Shared};
 use crate::reproduce::{Fact, Item, ReproduceError, ShapeNumbers, Table, Verdict, text};
 use crate::shape::{AlphaShape, Class};
 
@@ -17,9 +17,8 @@ struct Evidence {
 impl Evidence {
     fn of(shapes: &Shapes) -> Self {
         let ladder = shapes.by_alpha();
-        let largest = ladder.last().expect("a ladder has steps");
-        let hull = Hull::of(&largest.shape);
-        Self { hull, ladder: ladder.iter().map(|shaped| shaped.numbers.clone()).collect() }
+        let hull = Hull::of(&shapes[Shared::Hull].shape);
+        Self { hull, ladder: ladder.map(|shaped| shaped.numbers.clone()).into() }
     }
 
     fn smallest(&self) -> &ShapeNumbers {
@@ -107,12 +106,11 @@ const CLAIMS: [Claim<Evidence>; 3] = [
 
 /// Figure 6: ω = 0, and how the shape depends on α.
 pub(super) fn figure_6(bench: &mut Bench<'_>) -> Result<Item, ReproduceError> {
-    let plain = &bench.shapes.plain;
+    let plain = &bench.shapes[Shared::Plain];
     let evidence = Evidence::of(bench.shapes);
     let title = format!("Figure 6. Common factor 0, α = {ALPHA} (√α = {:.3} voxels)", ALPHA.sqrt());
     let drawn = figure(&title, bench.two_views(plain)?);
     Ok(Item {
-        id: "figure-6",
         title: "Figure 6. Common factor 0".into(),
         paper: "All points weigh 0: the unweighted α-shape, at α = 10. It shrinks and develops \
                 cavities as α decreases, and becomes the convex hull as α grows."
@@ -122,7 +120,7 @@ pub(super) fn figure_6(bench: &mut Bench<'_>) -> Result<Item, ReproduceError> {
                ours are below."
                 .into(),
         picture: Some(bench.file("figure-06.png", drawn.to_png()?)),
-        commands: vec![bench.drawing_command(plain, "figure-06.png")],
+        commands: vec![plain.makes("figure-06.ply")],
         files: vec![bench.mesh("figure-06.ply", plain)?],
         shapes: vec![plain.numbers.clone()],
         facts: vec![
@@ -131,6 +129,7 @@ pub(super) fn figure_6(bench: &mut Bench<'_>) -> Result<Item, ReproduceError> {
         ],
         tables: vec![evidence.table()],
         findings: judge(&CLAIMS, &evidence),
+        ..Item::default()
     })
 }
 

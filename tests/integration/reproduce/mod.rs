@@ -1,5 +1,7 @@
 //! The paper, made again: files, numbers, and the same bytes each time.
 
+mod brief;
+mod only;
 mod page;
 
 use std::collections::BTreeMap;
@@ -32,13 +34,13 @@ fn all_there_and_the_same_each_time() {
     let mut report: Value = serde_json::from_slice(&files["report.json"]).unwrap();
     let ids: Vec<_> =
         report["items"].as_array().unwrap().iter().map(|i| i["id"].as_str().unwrap()).collect();
-    let figures: Vec<String> = (1..=11).map(|k| format!("figure-{k}")).collect();
+    let figures: Vec<String> = (1..=11).map(|k| format!("figure-{k:02}")).collect();
     assert_eq!(ids[0], "table-1");
     assert_eq!(ids[1..12], figures);
     assert_eq!(ids[12..], ["extension-1", "extension-2"]);
 
     // Each figure has a picture, each file named is there, and none is there without a name.
-    let mut named = vec!["report.html".to_owned(), "report.json".to_owned()];
+    let mut named = ["report.html", "report.json", "reproduction.md"].map(String::from).to_vec();
     for item in report["items"].as_array().unwrap() {
         let picture = item["picture"].as_str();
         assert_eq!(picture.is_some(), item["id"] != "table-1", "{}", item["id"]);
@@ -54,6 +56,7 @@ fn all_there_and_the_same_each_time() {
 
     page::numbers_stand_in_the_report(&files, &report);
     shapes_agree_with_the_shape_command(&report);
+    only::commands_make_their_files(&files, &report);
 
     let mut again = reproduction("1");
     assert_eq!(again.keys().collect::<Vec<_>>(), files.keys().collect::<Vec<_>>());

@@ -57,6 +57,11 @@ pub fn numbers_stand_in_the_report(files: &BTreeMap<String, Vec<u8>>, report: &V
     assert!(html.contains("In plain words.") && html.contains("stays open"), "the conclusion");
     assert!(html.contains("<a href=\"figure-10.png\"><img"), "figures open large");
     let mut sections = html.split("<section").skip(1);
+    let volume = sections.next().expect("a section on the volume");
+    let origin = &report["input"]["origin"];
+    compare("volume", &visible(&format!("<section{volume}")), {
+        [words(&origin["source"]), words(&origin["judgement"])].concat()
+    });
     for item in report["items"].as_array().unwrap() {
         let section = sections.next().expect("a section for each item");
         let id = item["id"].as_str().unwrap();
@@ -127,6 +132,7 @@ fn of_item(item: &Value) -> Vec<Shown> {
         rows(&[path]);
     }
     all.extend(each(&item["facts"], |f| [words(&f["label"]), rounded(&f["value"])].concat()));
+    all.extend(words(&item["command"]));
     all.extend(each(&item["commands"], words));
     all.extend(each(&item["files"], words));
     all

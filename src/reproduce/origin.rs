@@ -1,0 +1,78 @@
+//! Where the volume comes from, and whether it can be the paper's.
+
+use serde::Serialize;
+
+use super::study::PAPER_SAMPLES;
+use super::{ReproduceError, Subject};
+use crate::volume::{SKULL_SHA256, skull_sha256};
+
+/// Where the volume comes from, and whether it can be the paper's.
+#[derive(Clone, Debug, Serialize)]
+pub struct Origin {
+    /// Where it comes from.
+    pub source: String,
+    /// The SHA-256 of the file, of CGAL's skull alone.
+    pub sha256: Option<Checksum>,
+    /// Whether it can be the paper's, and why.
+    pub judgement: String,
+}
+
+/// A SHA-256 in hexadecimal: of the file that was read, and of the one that the judgement is about.
+#[derive(Clone, Debug, Serialize)]
+pub struct Checksum {
+    /// Of the file that was read.
+    pub read: String,
+    /// Of `skull_2.9.inr` as CGAL 5.5 has it.
+    pub expected: &'static str,
+}
+
+/// What a user writes for the skull.
+const SKULL: &str = "sample:skull";
+
+impl Origin {
+    /// # Errors
+    /// When the file of the skull cannot be read again.
+    pub(super) fn of(subject: &Subject<'_>) -> Result<Self, ReproduceError> {
+        if subject.name != SKULL {
+            return Ok(Self::other(subject));
+        }
+        let read = skull_sha256()?;
+        let judgement = if read == SKULL_SHA256 {
+            OF_THE_SKULL.into()
+        } else {
+            "This is not the file that CGAL 5.5 has, which alone was compared with what the paper says.".into()
+        };
+        Ok(Self {
+            source: "CGAL's own data: skull_2.9.inr, an INRIMAGE of 64 × 64 × 64 floats, in Debian's and Ubuntu's \
+                     package libcgal-demo. The file does not say who scanned it."
+                .into(),
+            sha256: Some(Checksum { read, expected: SKULL_SHA256 }),
+            judgement,
+        })
+    }
+
+    fn other(subject: &Subject<'_>) -> Self {
+        let samples = subject.volume.dims().samples();
+        let size = if samples == PAPER_SAMPLES {
+            "It has as many samples as the paper's"
+        } else {
+            "It does not have the paper's 64 × 64 × 64 samples, so it is another volume"
+        };
+        Self {
+            source: format!("{}, as given.", subject.name),
+            sha256: None,
+            judgement: format!(
+                "{size}. What the paper says of its own skull, a verdict on another volume cannot settle."
+            ),
+        }
+    }
+}
+
+/// Of the file with this checksum, so that its numbers are known.
+const OF_THE_SKULL: &str = "It may show the paper's skull, but it is not known to, and it is not the same data if the \
+     paper's gray levels were bytes. For it: it is a skull, has the paper's 64 × 64 × 64 samples, and comes with the \
+     library that the paper used. Against it: the paper gives gray levels in the range from 0 to 255, and this file has \
+     213528 different values in 262144 samples, where bytes have 256; and no reading of the paper's threshold of 50 \
+     that was tried leaves as many samples as the paper says (Figure 5). The paper names neither a source nor a \
+     checksum, and prints no number of its shapes, so this cannot be settled. Claims about the method do not depend on \
+     it; those about holes in Figures 10 and 11 do.";
