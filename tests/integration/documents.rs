@@ -10,7 +10,7 @@ use walpha_base::random::Random;
 use crate::common::ok;
 
 /// Documents whose commands need nothing but the files that [`reader_files`] makes.
-const DOCUMENTS: [&str; 4] = ["README.md", "docs/ct.md", "docs/periodic.md", "docs/wvm.md"];
+const DOCUMENTS: [&str; 4] = ["README.md", "docs/tutorials/ct.md", "docs/periodic.md", "docs/wvm.md"];
 
 /// What a reader would bring.
 fn reader_files(folder: &Path) {
