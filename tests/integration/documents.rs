@@ -84,7 +84,7 @@ fn buckyball() -> Vec<String> {
         [[0.0, 1.0, 3.0 * phi], [1.0, 2.0 + phi, 2.0 * phi], [phi, 2.0, 2.0 * phi + 1.0]]
     {
         for signs in 0..8 {
-            let sign = |bit: u32| if signs >> bit & 1 == 1 { -0.71 } else { 0.71 };
+            let sign = |bit: u32| if (signs >> bit) & 1 == 1 { -0.71 } else { 0.71 };
             let place = [a * sign(0), b * sign(1), c * sign(2)];
             for turn in 0..3 {
                 let [x, y, z] = [0, 1, 2].map(|k| place[(k + turn) % 3] + 0.0);
