@@ -98,7 +98,7 @@ pub enum VolumeError {
         /// What is wrong with them.
         source: Box<VolumeError>,
     },
-    /// Memory for the samples cannot be had.
+    /// There is not enough memory for the samples.
     #[error(transparent)]
     Memory(#[from] NoMemory),
     /// No sample has this name.
