@@ -112,7 +112,7 @@ pub enum VolumeError {
         advice: Advice,
     },
     /// The skull is not installed.
-    #[error("sample:skull is not installed: it was sought {sought}")]
+    #[error("sample:skull is not installed: looked for it {sought}")]
     NoSkull {
         /// Where it would be.
         sought: String,
