@@ -68,9 +68,7 @@ fn room<T>(count: usize) -> PyResult<Vec<T>> {
     let mut items = Vec::new();
     let refused = |_| {
         let bytes = count as u128 * size_of::<T>() as u128;
-        PyMemoryError::new_err(format!(
-            "a copy of an array needs {bytes} bytes of memory, which are not available"
-        ))
+        PyMemoryError::new_err(format!("not enough memory: a copy of an array needs {bytes} bytes"))
     };
     items.try_reserve_exact(count).map_err(refused)?;
     Ok(items)

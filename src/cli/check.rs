@@ -247,7 +247,7 @@ impl Check {
     ) -> anyhow::Result<ExitCode> {
         let n = judged.positions.len();
         if self.enumerate && judged.periodic.is_some() {
-            fail!("--enumerate knows no periodic box" => "omit it");
+            fail!("--enumerate does not support a periodic box" => "omit it");
         }
         if self.enumerate && n > MOST_ENUMERATED {
             fail!("--enumerate takes at most {MOST_ENUMERATED} points, and there are {n}" => "omit it");

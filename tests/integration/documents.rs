@@ -1,31 +1,131 @@
-//! The commands of README and documents work as printed.
+//! The commands of the README, of the documentation and of help work as printed.
 
+use std::collections::BTreeSet;
 use std::env;
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use walpha_base::random::Random;
 
 use crate::common::ok;
 
-/// Documents whose commands need nothing but the files that [`reader_files`] makes.
-const DOCUMENTS: [&str; 4] = ["README.md", "docs/ct.md", "docs/periodic.md", "docs/wvm.md"];
+/// Documents that teach by commands: that one of them has none is a mistake of [`shell_lines`].
+const TEACHING: [&str; 6] = [
+    "README.md",
+    "docs/clusters.md",
+    "docs/gallery.md",
+    "docs/tutorials/ct.md",
+    "docs/tutorials/lidar.md",
+    "docs/tutorials/molecules.md",
+];
+
+/// Commands whose help has examples.
+const COMMANDS: [&str; 9] =
+    ["info", "shape", "view", "ladder", "filtration", "interpolate", "check", "points", "haar"];
+
+/// The README and all pages of the documentation.
+fn documents() -> Vec<PathBuf> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut found = vec![root.join("README.md")];
+    let mut folders = vec![root.join("docs")];
+    while let Some(folder) = folders.pop() {
+        for entry in fs::read_dir(folder).expect("a folder") {
+            let path = entry.expect("an entry").path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|extension| extension == "md") {
+                found.push(path);
+            }
+        }
+    }
+    found.sort();
+    found
+}
 
 /// What a reader would bring.
 fn reader_files(folder: &Path) {
-    ok(folder, &["haar", "sample:ct", "-o", "ct.nii.gz"]);
+    // An eighth of the samples, as pages of the whole take long.
+    ok(folder, &["haar", "sample:ct", "--downsample", "2", "-o", "ct.nii.gz"]);
+    for scan in ["scan.nrrd", "scan.nii.gz"] {
+        ok(folder, &["haar", "sample:phantom@48", "-o", scan]);
+    }
+    let write = |name: &str, lines: &[String]| {
+        fs::write(folder.join(name), lines.join("\n")).expect("a file");
+    };
     let mut random = Random::new(1);
-    let mut point = || [0; 3].map(|_| (20.0 * random.unit()).to_string()).join(" ");
-    let points: Vec<String> = (0..500).map(|_| point()).collect();
-    fs::write(folder.join("foam.xyz"), points.join("\n")).expect("a file");
+    let mut row = |n: usize, separator: &str| {
+        let numbers: Vec<String> = (0..n).map(|_| (20.0 * random.unit()).to_string()).collect();
+        numbers.join(separator)
+    };
+    write("foam.xyz", &(0..500).map(|_| row(3, " ")).collect::<Vec<_>>());
+    // Points with normals, which all point up.
+    write("scan.xyz", &(0..500).map(|_| row(3, " ") + " 0 0 1").collect::<Vec<_>>());
+    let mut table = |header: &str, n: usize| {
+        let rows = (0..500).map(|_| row(n, ","));
+        std::iter::once(header.to_owned()).chain(rows).collect::<Vec<_>>()
+    };
+    write("scattered.csv", &table("x,y,z,value", 4));
+    write("outline.csv", &table("x,y", 2));
+    write("trees.csv", &table("x,y", 2));
+    write("buckyball.csv", &buckyball());
+    // What other programs would write.
+    ok(folder, &["points", "sample:phantom@16", "-o", "skull.csv"]);
+    let theirs = ["shape", "skull.csv", "--weights", "common=0", "--alpha", "2", "-o"];
+    ok(folder, &[&theirs[..], &["gudhi.json", "theirs.json", "theirs.vtu"]].concat());
+    #[cfg(feature = "las")]
+    tile(&folder.join("tile.laz"));
+}
+
+/// The atoms of C₆₀, as `docs/tutorials/molecules.md` makes them.
+fn buckyball() -> Vec<String> {
+    let phi = f64::midpoint(1.0, 5_f64.sqrt());
+    let mut atoms = BTreeSet::new();
+    for [a, b, c] in
+        [[0.0, 1.0, 3.0 * phi], [1.0, 2.0 + phi, 2.0 * phi], [phi, 2.0, 2.0 * phi + 1.0]]
+    {
+        for signs in 0..8 {
+            let sign = |bit: u32| if (signs >> bit) & 1 == 1 { -0.71 } else { 0.71 };
+            let place = [a * sign(0), b * sign(1), c * sign(2)];
+            for turn in 0..3 {
+                let [x, y, z] = [0, 1, 2].map(|k| place[(k + turn) % 3] + 0.0);
+                atoms.insert(format!("{x:.4},{y:.4},{z:.4},1.70"));
+            }
+        }
+    }
+    assert_eq!(atoms.len(), 60);
+    std::iter::once("x,y,z,radius".to_owned()).chain(atoms).collect()
+}
+
+/// A tile of ground, with points of a building and of vegetation above it.
+#[cfg(feature = "las")]
+fn tile(path: &Path) {
+    use las::point::Classification;
+
+    let mut builder = las::Builder::from((1, 2));
+    builder.point_format.is_compressed = true;
+    let transform = las::Transform { scale: 0.001, offset: 0.0 };
+    builder.transforms = las::Vector { x: transform, y: transform, z: transform };
+    let header = builder.into_header().expect("a header");
+    let mut writer = las::Writer::from_path(path, header).expect("a file");
+    let mut random = Random::new(1);
+    for k in 0..3000 {
+        let (classification, side, floor, height) = match k % 3 {
+            0 => (Classification::Ground, 30.0, 0.0, 0.1),
+            1 => (Classification::Building, 12.0, 8.0, 0.1),
+            _ => (Classification::HighVegetation, 6.0, 2.0, 6.0),
+        };
+        let (x, y) = (side * random.unit(), side * random.unit());
+        let z = floor + height * random.unit();
+        let point = las::Point { x, y, z, classification, ..las::Point::default() };
+        writer.write_point(point).expect("a point");
+    }
+    writer.close().expect("a file");
 }
 
 /// The lines of a document's shell blocks that begin with `walpha` or make a folder, without their comments.
-fn commands(document: &str) -> Vec<String> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(document);
-    let text = fs::read_to_string(path).expect("a document");
-    let mut blocks = text.split("```");
+fn shell_lines(document: &str) -> Vec<String> {
+    let mut blocks = document.split("```");
     // Text and blocks take turns.
     blocks.next();
     let shell = blocks.step_by(2).filter_map(|block| block.strip_prefix("sh\n"));
@@ -34,30 +134,72 @@ fn commands(document: &str) -> Vec<String> {
     lines.map(|line| line.split("  #").next().unwrap_or(line).trim().to_owned()).collect()
 }
 
+/// The lines of a command's help that are examples.
+fn examples(help: &str) -> Vec<String> {
+    let (_, rest) = help.split_once("Examples:").expect("examples");
+    let (examples, _) = rest.split_once("Usage:").expect("how it is used");
+    examples.lines().filter(|line| line.starts_with("walpha ")).map(str::to_owned).collect()
+}
+
+/// Whether a command can be run here, within seconds.
+fn is_run_here(command: &str) -> bool {
+    let has = |words: &[&str]| words.iter().any(|word| command.contains(word));
+    // A folder of DICOM slices is what the tests of the feature dicom read.
+    let of_others = has(&[" ct/", "/scratch", "phantom1024"]);
+    // Minutes each; the reproduction is a step of CI.
+    let long = has(&["--count 100000", "--curve", "walpha reproduce"]);
+    let without_las = !cfg!(feature = "las") && has(&["tile.laz", "building.csv"]);
+    let without_zarr = !cfg!(feature = "zarr") && has(&[".zarr", "walpha blocks"]);
+    let without_skull = has(&["sample:skull", "skull.json"]) && !crate::common::has_skull();
+    !(of_others || long || without_las || without_zarr || without_skull)
+}
+
+/// Runs a command in a shell that finds the built program.
+fn run(folder: &Path, command: &str, printed_in: &str) {
+    let program = Path::new(env!("CARGO_BIN_EXE_walpha")).parent().expect("its folder");
+    let path = env::var("PATH").unwrap_or_default();
+    let made = Command::new("sh")
+        .args(["-ec", command])
+        .current_dir(folder)
+        .env("PATH", format!("{}:{path}", program.display()))
+        .env("HOME", folder)
+        .output()
+        .expect("a shell");
+    let errors = String::from_utf8_lossy(&made.stderr);
+    assert!(made.status.success(), "{printed_in}: {command}\n{errors}");
+}
+
 #[test]
 fn printed_commands_work() {
     let folder = tempfile::tempdir().expect("a folder");
     let folder = folder.path();
     reader_files(folder);
-    let program = Path::new(env!("CARGO_BIN_EXE_walpha")).parent().expect("its folder");
-    let path = env::var("PATH").unwrap_or_default();
-    for document in DOCUMENTS {
-        let commands = commands(document);
-        assert!(commands.len() > 1, "{document} has commands");
-        // A folder of DICOM slices is what the tests of the feature dicom read.
-        for command in commands.iter().filter(|command| !command.contains(" ct/")) {
-            if command.contains("sample:skull") && !crate::common::has_skull() {
-                continue;
+    // What is printed twice is run once.
+    let mut seen = BTreeSet::new();
+    for path in documents() {
+        let lines = shell_lines(&fs::read_to_string(&path).expect("a document"));
+        let name =
+            path.strip_prefix(env!("CARGO_MANIFEST_DIR")).expect("a part").display().to_string();
+        assert!(lines.len() > 1 || !TEACHING.contains(&name.as_str()), "{name} has commands");
+        for line in lines.iter().filter(|line| is_run_here(line)) {
+            if seen.insert(line.clone()) {
+                run(folder, line, &name);
             }
-            let made = Command::new("sh")
-                .args(["-ec", command])
-                .current_dir(folder)
-                .env("PATH", format!("{}:{path}", program.display()))
-                .env("HOME", folder)
-                .output()
-                .expect("a shell");
-            let errors = String::from_utf8_lossy(&made.stderr);
-            assert!(made.status.success(), "{document}: {command}\n{errors}");
+        }
+    }
+    assert!(seen.len() > TEACHING.len(), "{seen:?}");
+}
+
+#[test]
+fn examples_of_help_work() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder.path();
+    reader_files(folder);
+    for command in COMMANDS {
+        let examples = examples(&ok(folder, &[command, "--help"]));
+        assert!(examples.len() > 1, "{command} has examples");
+        for example in examples.iter().filter(|example| is_run_here(example)) {
+            run(folder, example, command);
         }
     }
 }

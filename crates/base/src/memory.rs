@@ -44,7 +44,7 @@ fn status(field: &str) -> Option<u64> {
 
 /// There is not enough memory for something large.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{what} needs {bytes} bytes of memory, which are not available")]
+#[error("not enough memory: {what} needs {}", readable(u64::try_from(*bytes).unwrap_or(u64::MAX)))]
 pub struct NoMemory {
     what: String,
     bytes: u128,
@@ -53,7 +53,7 @@ pub struct NoMemory {
 impl NoMemory {
     /// How to resolve the error.
     pub fn advice(&self) -> Advice {
-        "reduce its size".into()
+        "crop or downsample the input, or ask for a smaller result".into()
     }
 
     /// What the memory was for.
@@ -121,11 +121,11 @@ mod tests {
     fn what_is_too_large_is_an_error() {
         let asked = try_with_capacity::<u64>(usize::MAX / 8, || "a volume".into());
         let text = asked.unwrap_err().to_string();
-        assert!(text.starts_with("a volume needs 18446744073709551608 bytes"), "{text}");
+        assert!(text == "not enough memory: a volume needs 17592186044415 MiB", "{text}");
         assert!(try_with_capacity::<u64>(1000, String::new).unwrap().capacity() >= 1000);
         let planned = afford(usize::MAX / 2, || "transforming it".into());
         let text = planned.unwrap_err().to_string();
-        assert!(text.starts_with("transforming it needs 9223372036854775807 bytes"), "{text}");
+        assert!(text == "not enough memory: transforming it needs 8796093022207 MiB", "{text}");
         assert_eq!(afford(1000, String::new), Ok(()));
     }
 }

@@ -59,7 +59,7 @@ pub enum ShapeError {
     },
     /// CGAL has no weighted alpha shapes of periodic boxes.
     #[error(
-        "the engine cgal is CGAL's alpha shape of points in space, which knows no periodic box"
+        "the engine cgal is CGAL's alpha shape of points in space, which does not support a periodic box"
     )]
     Unrepeated,
     /// An edge is so long that its ends do not determine which of their copies it joins.

@@ -98,7 +98,7 @@ pub enum VolumeError {
         /// What is wrong with them.
         source: Box<VolumeError>,
     },
-    /// Memory for the samples cannot be had.
+    /// There is not enough memory for the samples.
     #[error(transparent)]
     Memory(#[from] NoMemory),
     /// No sample has this name.
@@ -112,7 +112,7 @@ pub enum VolumeError {
         advice: Advice,
     },
     /// The skull is not installed.
-    #[error("sample:skull is not installed: it was sought {sought}")]
+    #[error("sample:skull is not installed: looked for it {sought}")]
     NoSkull {
         /// Where it would be.
         sought: String,

@@ -100,7 +100,7 @@ pub enum Reason {
         /// What is wrong with it.
         reason: Box<Reason>,
     },
-    /// What it holds needs memory that cannot be had.
+    /// There is not enough memory for what it holds.
     Memory {
         /// What it holds.
         claim: String,

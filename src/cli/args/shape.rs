@@ -41,7 +41,7 @@ impl ShapeArgs {
     pub(crate) fn set(&self, recipe: Recipe) -> Result<Recipe, CommandError> {
         let Self { balls, engine, exterior, hidden, blocks, memory } = *self;
         if engine == Engine::Cgal && blocks.is_some_and(|blocks| blocks.get() > 1) {
-            fail_usage!("--blocks has no effect: the engine cgal knows no blocks" => "omit it, or take --engine native");
+            fail_usage!("--blocks has no effect: the engine cgal does not work in blocks" => "omit it, or take --engine native");
         }
         let recipe = recipe
             .balls(balls)

@@ -1,4 +1,4 @@
-//! What is made of the tables of formats: the README's table, the list of fuzz targets, and help.
+//! What is made of the tables of formats: the tables of docs/formats.md, the list of fuzz targets, and help.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -25,7 +25,7 @@ fn read(extensions: &'static [&str], tells: bool) -> String {
     }
 }
 
-/// The README's tables, as the library's are.
+/// The tables of docs/formats.md, as the library's are.
 fn tables() -> String {
     let mut text =
         "| volumes | read | written | keeps | feature |\n|---|---|---|---|---|\n".to_owned();
@@ -68,9 +68,9 @@ fn tables() -> String {
 }
 
 #[test]
-fn the_readme_has_the_tables() {
-    let (readme, tables) = (file("README.md"), tables());
-    assert!(readme.contains(&tables), "README.md lacks these tables:\n\n{tables}");
+fn the_documentation_has_the_tables() {
+    let (page, tables) = (file("docs/formats.md"), tables());
+    assert!(page.contains(&tables), "docs/formats.md lacks these tables:\n\n{tables}");
 }
 
 /// Every format that is read has a target, and every target is one of a format, of complexes, or of the files of

@@ -155,7 +155,7 @@ pub enum CertifyError {
     #[error("{0} cells or points are too many to check: at most {max} fit", max = MAX_CELLS)]
     TooMany(usize),
     /// There is not enough memory for the links between simplices.
-    #[error("the check of {cells} cells needs {bytes} bytes of memory, which are not available")]
+    #[error("not enough memory: the check of {cells} cells needs {bytes} bytes")]
     Memory {
         /// Cells of the complex.
         cells: usize,

@@ -27,7 +27,7 @@ pub enum SchemaError {
         source: NpyError,
     },
     /// There is not enough memory for an array.
-    #[error("array `{name}` needs {bytes} bytes of memory, which are not available")]
+    #[error("not enough memory: array `{name}` needs {bytes} bytes")]
     Memory {
         /// Its name.
         name: &'static str,
