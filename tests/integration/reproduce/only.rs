@@ -24,7 +24,7 @@ pub fn commands_make_their_files(files: &BTreeMap<String, Vec<u8>>, report: &Val
         run(&words(command));
         let mut made = read_all(&f.join("reproduction"));
         let alone: Value = serde_json::from_slice(&made.remove("report.json").unwrap()).unwrap();
-        assert_eq!(alone["items"].as_array().unwrap(), &[item.clone()], "{command}");
+        assert_eq!(alone["items"].as_array().unwrap(), std::slice::from_ref(item), "{command}");
         assert_eq!(alone["complete"], false);
         let brief = String::from_utf8(made.remove("reproduction.md").unwrap()).unwrap();
         assert!(brief.contains(&format!("```sh\n{}\n```", command.as_str().unwrap())), "{brief}");
