@@ -24,7 +24,7 @@ use super::progress::Progress;
 ///
 /// Writes PNG, SVG, PLY and OFF files, report.html (self-contained), report.json and reproduction.md (claims,
 /// verdicts and commands) into a folder. With --only the items named are made as they always are; the reports then
-/// contain these alone.
+/// contain these alone, and replace earlier ones in the folder.
 ///
 /// Examples:
 ///

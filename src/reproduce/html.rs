@@ -148,8 +148,8 @@ fn volume(html: &mut String, report: &Report) {
     if let Some(sum) = &origin.sha256 {
         let _ = writeln!(
             html,
-            "<table class=\"facts\"><caption>SHA-256</caption><tbody><tr><td>of the file read</td><td>{}</td></tr>\
-             <tr><td>expected</td><td>{}</td></tr></tbody></table>",
+            "<div class=\"wide\"><table class=\"facts\"><caption>SHA-256</caption><tbody><tr><td>of the file read</td><td>{}</td></tr>\
+             <tr><td>expected</td><td>{}</td></tr></tbody></table></div>",
             sum.read, sum.expected
         );
     }
