@@ -76,8 +76,7 @@ fn page(subject: &Subject<'_>, packed: &[Packed], surface: Option<&Arrays>) -> S
     let mut html = format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
-         <title>{title}</title>\n<style>\n{STYLE}</style>\n{}\n</head>\n<body>\n<h1>{title}</h1>\n",
-        library()
+         <title>{title}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n<h1>{title}</h1>\n"
     );
     let simplified = packed.iter().any(|packed| packed.simplified.is_some());
     let _ = write!(
@@ -119,11 +118,13 @@ fn page(subject: &Subject<'_>, packed: &[Packed], surface: Option<&Arrays>) -> S
         "colours": colours,
         "bars": bars(subject),
     });
+    // The library comes last, so that the text is there before it.
     let _ = write!(
         html,
-        "</table>\n</div>\n<script id=\"plot\" type=\"application/json\">{}</script>\n\
+        "</table>\n</div>\n{}\n<script id=\"plot\" type=\"application/json\">{}</script>\n\
          <script id=\"data\" type=\"application/json\">{}</script>\n\
          <script>\n{SCRIPT}</script>\n</body>\n</html>\n",
+        library(),
         inert(&plot(subject).to_json()),
         inert(&data.to_string()),
     );
