@@ -13,7 +13,7 @@
     Object.fromEntries(Object.entries(arrays).map(([name, array]) => [name, unpack(array)]));
   // Points have a trace for each class.
   const [REGULAR, SINGULAR, EDGES, POINTS, ISOSURFACE] = [0, 1, 2, 3, 6];
-  const EVEN = { ambient: 0.93, diffuse: 0.18, specular: 0, roughness: 1 };
+  const EVEN = { ...plot.data[REGULAR].lighting, ambient: 0.93, diffuse: 0.18, specular: 0, roughness: 1 };
   const CLASSES = ["exterior", "interior", "regular", "singular"];
   const classAt = (spans, row, level) => {
     const [first, regular, interior] = [spans[3 * row], spans[3 * row + 1], spans[3 * row + 2]];
@@ -90,8 +90,7 @@
         facets.push(numbers[v]);
       }
     }
-    // plotly takes facets of small coordinates for degenerate unless it is told not to.
-    const mesh = { ...places(points), text: textOf(points, level), ...corners(facets), facenormalsepsilon: 0 };
+    const mesh = { ...places(points), text: textOf(points, level), ...corners(facets) };
     // Nearly without shades: a colour means a value, wherever the facet looks.
     return scale ? { ...mesh, intensity: pick(scale, points), lighting: EVEN } : mesh;
   }
@@ -251,19 +250,17 @@
   const beside = () => (scene.clientWidth < 600 ? 48 : 30) + (data.scales[colour.value] ? 62 : 10);
   const [LEAST, STEP] = [160, 8];
 
-  // Nothing is left empty above and below what the width allows.
-  function trim() {
+  // Nothing is left empty above and below what the width allows. The camera found here is home, whatever is chosen later.
+  let home = null;
+  function settle() {
     scene.style.height = "";
     const width = scene.clientWidth;
     let height = scene.clientHeight - beside();
     while (height > LEAST && fit(width, height).spare) height -= STEP;
     scene.style.height = `${height + beside()}px`;
-  }
-
-  function camera() {
-    const { centre, eye } = fit(scene.clientWidth, scene.clientHeight - beside());
+    const { centre, eye } = fit(width, height);
     const place = (at) => Object.fromEntries(AXES.map((axis, k) => [axis, at[k]]));
-    return { center: place(centre), eye: place(eye), up: place([0, 0, 1]) };
+    home = { center: place(centre), eye: place(eye), up: place([0, 0, 1]) };
   }
 
   async function show() {
@@ -284,8 +281,8 @@
     const traces = fill(level, colour.value);
     if (colour.value === scene.dataset.colour) return Plotly.react(scene, traces, plot.layout, plot.config);
     // A mesh that had a colour scale keeps it, so that other colours need another mesh. The camera stays.
-    if (!scene.data) trim();
-    plot.layout.scene.camera = scene._fullLayout?.scene?.camera ?? camera();
+    if (!scene.data) settle();
+    plot.layout.scene.camera = scene._fullLayout?.scene?.camera ?? structuredClone(home);
     await Plotly.newPlot(scene, traces, plot.layout, plot.config);
     scene.on("plotly_restyle", () => {
       remember();
@@ -349,15 +346,16 @@
     stop();
     return refresh();
   });
+  const goHome = () => Plotly.relayout(scene, { "scene.camera": structuredClone(home) });
   for (const event of ["pointermove", "pointerdown"]) scene.addEventListener(event, writeTexts, true);
   let width = innerWidth;
   addEventListener("resize", () => {
     if (innerWidth === width || !scene.data) return undefined;
     width = innerWidth;
-    trim();
-    return Plotly.relayout(scene, { "scene.camera": camera() });
+    settle();
+    return goHome();
   });
-  byId("reset").addEventListener("click", () => Plotly.relayout(scene, { "scene.camera": camera() }));
+  byId("reset").addEventListener("click", goHome);
   byId("save").addEventListener("click", () => Plotly.downloadImage(scene, {
     format: "png", filename: `${document.title}, ${detail.levels[Number(slider.value)].name}`, scale: 2,
     width: scene.clientWidth, height: scene.clientHeight,

@@ -18,13 +18,20 @@ use crate::colour::PALETTE;
 pub(super) fn plot(subject: &Subject<'_>) -> Plot {
     let mut plot = Plot::new();
     let valued = subject.is_valued();
+    // With plotly's bound, facets that are a thousandth as long as the shape or less have no normal, and are dark.
+    let lighting = Lighting::new()
+        .ambient(0.8)
+        .diffuse(0.9)
+        .specular(0.1)
+        .roughness(0.8)
+        .face_normals_epsilon(0.0);
     let mesh = |name: &str, colour: Rgb| {
         Mesh3D::<f64, f64, f64>::new(vec![], vec![], vec![], None::<Vec<usize>>, None, None)
             .name(name)
             .show_legend(true)
             .color(colour)
             .flat_shading(true)
-            .lighting(Lighting::new().ambient(0.8).diffuse(0.9).specular(0.1).roughness(0.8))
+            .lighting(lighting.clone())
             .light_position(LightPosition::new().x(vec![-1e4]).y(vec![-2e4]).z(vec![2e4]))
             .hover_info(HoverInfo::Text)
     };
@@ -32,7 +39,9 @@ pub(super) fn plot(subject: &Subject<'_>) -> Plot {
         mesh.intensity_mode(IntensityMode::Vertex)
             .color_scale(ColorScale::Palette(ColorScalePalette::Viridis))
     };
-    plot.add_trace(by_value(mesh("regular facets", rgb(1))).show_scale(valued).color_bar(colour_bar()));
+    plot.add_trace(
+        by_value(mesh("regular facets", rgb(1))).show_scale(valued).color_bar(colour_bar()),
+    );
     plot.add_trace(by_value(mesh("singular facets", rgb(0))).show_scale(false));
     plot.add_trace(
         Scatter3D::<f64, f64, f64>::new(vec![], vec![], vec![])
