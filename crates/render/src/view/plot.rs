@@ -1,7 +1,7 @@
 use plotly::color::Rgb;
 use plotly::common::{
-    Anchor, ColorBar, ColorScale, ColorScalePalette, Font, HoverInfo, Line, Marker, Mode,
-    Orientation, Side, Title, Visible,
+    Anchor, ColorBar, ColorScale, ColorScalePalette, Font, HoverInfo, Line, Mode, Orientation,
+    Side, Title, Visible,
 };
 use plotly::configuration::DisplayModeBar;
 use plotly::layout::{
@@ -17,7 +17,6 @@ use crate::colour::PALETTE;
 /// arrays of a level are put together in the browser.
 pub(super) fn plot(subject: &Subject<'_>) -> Plot {
     let mut plot = Plot::new();
-    let valued = subject.is_valued();
     // With plotly's bound, facets that are a thousandth as long as the shape or less have no normal, and are dark.
     let lighting = Lighting::new()
         .ambient(0.8)
@@ -39,10 +38,8 @@ pub(super) fn plot(subject: &Subject<'_>) -> Plot {
         mesh.intensity_mode(IntensityMode::Vertex)
             .color_scale(ColorScale::Palette(ColorScalePalette::Viridis))
     };
-    plot.add_trace(
-        by_value(mesh("regular facets", rgb(1))).show_scale(valued).color_bar(colour_bar()),
-    );
-    plot.add_trace(by_value(mesh("singular facets", rgb(0))).show_scale(false));
+    plot.add_trace(by_value(mesh("regular facets", rgb(1))).color_bar(colour_bar()));
+    plot.add_trace(by_value(mesh("singular facets", rgb(0))));
     plot.add_trace(
         Scatter3D::<f64, f64, f64>::new(vec![], vec![], vec![])
             .name("singular edges")
