@@ -4,7 +4,7 @@
     scripts/check_view.py page.html [--chromium /usr/bin/chromium] [--out DIR]
 
 From a file: URL, at the width of a desk and of a phone: no error on the console, no request to a network,
-the scene is not blank, moving the slider, changing the colour and the level of detail change the picture, pointing at the
+the first picture comes soon, the scene is not blank and fills its place, the legend names what is drawn in its colours, moving the slider, changing the colour and the level of detail change the picture, pointing at the
 shape tells index, weight and class, points and isosurface can be shown, and nothing is wider than the screen. Leaves two screenshots.
 Prints a line for each check; exits with 1 when one fails, and with 77 without Chromium.
 """
@@ -25,6 +25,8 @@ FLAGS = [
     "--use-angle=swiftshader", "--disable-gpu-sandbox", "--hide-scrollbars", "--no-first-run",
     "--disable-background-networking", "--remote-debugging-pipe",
 ]
+# Seconds until the first picture; generous, as others may use the machine.
+SOON = 20
 SCREENS = {"desk": (1280, 900, False), "phone": (390, 844, True)}
 
 
@@ -185,6 +187,66 @@ INKED = """(async () => {
 })()"""
 
 
+# The empty rows below and above what is drawn, the legend and the colour bar aside, as shares of the picture.
+EMPTY = """(async () => {
+  const image = await createImageBitmap(await (await fetch('data:image/png;base64,%s')).blob());
+  const context = new OffscreenCanvas(image.width, image.height).getContext('2d');
+  context.drawImage(image, 0, 0);
+  const { top, bottom } = (({ t, b, h }) => ({ top: t, bottom: t + h }))(document.getElementById('scene')._fullLayout._size);
+  const inked = [];
+  for (let row = Math.ceil(top); row < Math.floor(bottom); row++) {
+    const pixels = new Uint32Array(context.getImageData(0, row, image.width, 1).data.buffer);
+    inked.push(pixels.some((pixel) => pixel !== 0xffffffff));
+  }
+  return [inked.reverse().indexOf(true), inked.reverse().indexOf(true)].map((rows) => rows / image.height);
+})()"""
+
+
+# For each trace that can be seen: its name, its colour in the legend, whether it has an entry there, and how many of it there are.
+LEGEND = """(() => {
+  const scene = document.getElementById('scene');
+  const entries = new Map([...scene.querySelectorAll('.legend .traces')].map((entry) => {
+    const icon = entry.querySelector('.legendpoints path, .legendlines path, .legend3dandfriends');
+    const style = icon && getComputedStyle(icon);
+    return [entry.querySelector('.legendtext').textContent, style && (style.fill !== 'none' ? style.fill : style.stroke)];
+  }));
+  const traces = scene.data.map((trace) => ({
+    name: trace.name, colour: trace.color ?? trace.marker?.color ?? trace.line?.color,
+    drawn: trace.visible !== false && trace.x.length > 0,
+  }));
+  return { entries: [...entries], traces };
+})()"""
+
+
+def rgb(colour):
+    """Red, green and blue of `#rrggbb` or `rgb(r, g, b)`."""
+    if colour.startswith("#"):
+        return [int(colour[k:k + 2], 16) for k in (1, 3, 5)]
+    return [int(float(number)) for number in colour[colour.index("(") + 1:-1].split(",")[:3]]
+
+
+def legend_faults(browser):
+    """What the legend has too much, too little, or in another colour than is drawn."""
+    told = browser.evaluate(LEGEND)
+    entries = dict(told["entries"])
+    drawn = {trace["name"]: trace["colour"] for trace in told["traces"] if trace["drawn"]}
+    found = [f"{name} is not there" for name in entries.keys() - drawn.keys()]
+    found += [f"{name} is not listed" for name in drawn.keys() - entries.keys()]
+    if browser.evaluate("document.getElementById('colour').value") == "class":
+        for name in entries.keys() & drawn.keys():
+            if rgb(entries[name]) != rgb(drawn[name]):
+                found.append(f"{name} is {drawn[name]} and listed as {entries[name]}")
+    return found
+
+
+# The numbers of a level that the page tells: name of a trace to how many there are.
+TOLD = """Object.fromEntries([...document.querySelectorAll('#numbers tr')].flatMap((row) => {
+  const [kind, text] = [row.children[0].textContent, row.children[1].textContent];
+  if (!['facets', 'edges', 'vertices'].includes(kind)) return [];
+  return text.split(', ').map((part) => [part.split(' ')[1] + ' ' + kind.replace('vertices', 'points'), Number(part.split(' ')[0])]);
+}))"""
+
+
 def choose(browser, colour):
     browser.evaluate(
         "(() => { const c = document.getElementById('colour'); c.value = '%s';"
@@ -242,7 +304,7 @@ def look(browser, checks, page, screen, out):
     browser.call("Page.navigate", url=pathlib.Path(page).resolve().as_uri())
     there = browser.wait("document.getElementById('scene')?.dataset.level !== undefined")
     seconds = time.monotonic() - started
-    checks.say(f"{screen}: opens", there, f"in {seconds:.2f} s")
+    checks.say(f"{screen}: opens soon", there and seconds < SOON, f"in {seconds:.2f} s")
     if not there:
         checks.say(f"{screen}: console", False, str(faults(browser.events)))
         return
@@ -253,6 +315,11 @@ def look(browser, checks, page, screen, out):
     checks.say(
         f"{screen}: not blank", colours > 100 and share > 0.1,
         f"{colours} colours, {100 * share:.0f} % of the pixels not background",
+    )
+    below, above = browser.evaluate(EMPTY % first)
+    checks.say(
+        f"{screen}: nothing is empty above and below the shape", max(below, above) < 0.13,
+        f"{100 * below:.0f} % of the scene below, {100 * above:.0f} % above",
     )
     whole = browser.call("Page.captureScreenshot", format="png")["data"]
     (out / f"{screen}.png").write_bytes(base64.b64decode(whole))
@@ -268,8 +335,18 @@ def look(browser, checks, page, screen, out):
     checks.say(f"{screen}: only F and classes are two pictures", same(browser, picture(browser), first) != valued)
     inked = browser.evaluate(INKED % picture(browser))
     checks.say(f"{screen}: by class nothing has a colour of F", inked < 0.002, f"{100 * inked:.2f} % of the pixels")
+    wrong = legend_faults(browser)
+    told = browser.evaluate(TOLD)
+    listed = dict(browser.evaluate(LEGEND)["entries"])
+    kinds = ["regular facets", "singular facets", "singular edges", "interior points", "regular points", "singular points"]
+    # What is simplified may lose all of a class.
+    if browser.evaluate("document.getElementById('simplified') === null"):
+        wrong += [f"{told[kind]} {kind}" for kind in kinds if (kind in listed) != (told[kind] > 0)]
+    checks.say(f"{screen}: the legend is of the classes as drawn", not wrong, "; ".join(wrong) or ", ".join(listed))
     if valued:
         choose(browser, "value")
+        wrong = legend_faults(browser)
+        checks.say(f"{screen}: and of the colours of F", not wrong, "; ".join(wrong))
         checks.say(f"{screen}: and F is back as it was", same(browser, picture(browser), first))
         choose(browser, "class")
     if browser.evaluate("document.querySelector('#colour option[value=difference]') !== null"):
@@ -319,10 +396,13 @@ def look(browser, checks, page, screen, out):
         before = picture(browser)
         shown = browser.evaluate(
             "(async () => { const s = document.getElementById('scene');"
-            f" const k = s.data.findIndex((t) => t.name.startsWith('{trace}'));"
-            " if (k < 0) return false; await Plotly.restyle(s, { visible: true }, [k]); return true })()"
+            f" const k = s.data.findIndex((t) => t.name.includes('{trace}') && t.visible !== false);"
+            " if (k < 0) return -1; await Plotly.restyle(s, { visible: true }, [k]); return k })()"
         )
-        if shown:
+        if shown >= 0:
+            # Filled only now.
+            number = {"points": 3, "isosurface": 6}[trace]
+            browser.wait(f"document.getElementById('scene').dataset.shown.includes('{number}')")
             checks.say(f"{screen}: {trace} can be shown", not same(browser, picture(browser), before))
     found = faults(browser.events)
     checks.say(f"{screen}: console and network are quiet", not found, "; ".join(found))

@@ -67,7 +67,12 @@ fn the_page_holds_every_level() {
     }
     let data: Value = serde_json::from_str(element(&html, "data")).unwrap();
     let plot: Value = serde_json::from_str(element(&html, "plot")).unwrap();
-    assert_eq!(plot["data"].as_array().unwrap().len(), 5, "with the isosurface");
+    let names =
+        plot["data"].as_array().unwrap().iter().map(|trace| trace["name"].as_str().unwrap());
+    let classes = ["interior points", "regular points", "singular points"];
+    let facets = ["regular facets", "singular facets", "singular edges"];
+    let expected = [&facets[..], &classes, &["isosurface at 50"]].concat();
+    assert_eq!(names.collect::<Vec<_>>(), expected, "the script counts on this order");
     let [page] = &data["details"].as_array().unwrap()[..] else { panic!("one level of detail") };
     assert_eq!(page["levels"].as_array().unwrap().len(), 5);
     let arrays = &page["arrays"];

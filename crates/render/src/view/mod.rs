@@ -34,7 +34,8 @@ impl Page {
 
     /// Makes the page. The same subject gives the same bytes.
     ///
-    /// The boundary, singular facets, singular edges and points are traces of their own, and points are sized by weight. A
+    /// Regular facets (the boundary), singular facets, singular edges and the points of each class are traces of their own,
+    /// listed in the legend where there are some, and points are sized by weight. A
     /// slider chooses α, a list the level of detail, and a click or touch shows index, F, ω and
     /// class of a point. The page includes plotly.js, which draws it.
     ///
@@ -76,8 +77,7 @@ fn page(subject: &Subject<'_>, packed: &[Packed], surface: Option<&Arrays>) -> S
     let mut html = format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
-         <title>{title}</title>\n<style>\n{STYLE}</style>\n{}\n</head>\n<body>\n<h1>{title}</h1>\n",
-        library()
+         <title>{title}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n<h1>{title}</h1>\n"
     );
     let simplified = packed.iter().any(|packed| packed.simplified.is_some());
     let _ = write!(
@@ -94,7 +94,8 @@ fn page(subject: &Subject<'_>, packed: &[Packed], surface: Option<&Arrays>) -> S
          <button id=\"save\" type=\"button\">Save picture</button></form>\n\
          <div id=\"scene\" role=\"img\" aria-label=\"The shape in three dimensions\"></div>\n\
          <p class=\"soft\">Drag to turn, pinch or scroll to zoom; tap a point for its index, {}ω and \
-         class; tap a name above the scene to show or hide it.{}</p>\n\
+         class; tap a name above the scene to show or hide it. \
+         Regular facets bound the solid part; points are sized by weight.{}</p>\n\
          <div class=\"tables\">\n<table id=\"numbers\"></table>\n<table>\n",
         choice_of_detail(subject),
         if subject.is_valued() { "<option value=\"value\">F</option>" } else { "" },
@@ -119,11 +120,13 @@ fn page(subject: &Subject<'_>, packed: &[Packed], surface: Option<&Arrays>) -> S
         "colours": colours,
         "bars": bars(subject),
     });
+    // The library comes last, so that the text is there before it.
     let _ = write!(
         html,
-        "</table>\n</div>\n<script id=\"plot\" type=\"application/json\">{}</script>\n\
+        "</table>\n</div>\n{}\n<script id=\"plot\" type=\"application/json\">{}</script>\n\
          <script id=\"data\" type=\"application/json\">{}</script>\n\
          <script>\n{SCRIPT}</script>\n</body>\n</html>\n",
+        library(),
         inert(&plot(subject).to_json()),
         inert(&data.to_string()),
     );

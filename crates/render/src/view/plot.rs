@@ -1,11 +1,11 @@
 use plotly::color::Rgb;
 use plotly::common::{
-    Anchor, ColorBar, ColorScale, ColorScalePalette, Font, HoverInfo, Line, Marker, Mode,
-    Orientation, Side, Title, Visible,
+    Anchor, ColorBar, ColorScale, ColorScalePalette, Font, HoverInfo, Line, Mode, Orientation,
+    Side, Title, Visible,
 };
 use plotly::configuration::DisplayModeBar;
 use plotly::layout::{
-    AspectMode, Axis, Camera, CameraCenter, Eye, ItemSizing, LayoutScene, Legend, Margin,
+    AspectMode, Axis, Camera, Eye, ItemSizing, LayoutScene, Legend, Margin, TraceOrder,
 };
 use plotly::traces::mesh3d::{IntensityMode, LightPosition, Lighting};
 use plotly::{Configuration, Layout, Mesh3D, Plot, Scatter3D};
@@ -17,14 +17,20 @@ use crate::colour::PALETTE;
 /// arrays of a level are put together in the browser.
 pub(super) fn plot(subject: &Subject<'_>) -> Plot {
     let mut plot = Plot::new();
-    let valued = subject.is_valued();
+    // With plotly's bound, facets that are a thousandth as long as the shape or less have no normal, and are dark.
+    let lighting = Lighting::new()
+        .ambient(0.8)
+        .diffuse(0.9)
+        .specular(0.1)
+        .roughness(0.8)
+        .face_normals_epsilon(0.0);
     let mesh = |name: &str, colour: Rgb| {
         Mesh3D::<f64, f64, f64>::new(vec![], vec![], vec![], None::<Vec<usize>>, None, None)
             .name(name)
             .show_legend(true)
             .color(colour)
             .flat_shading(true)
-            .lighting(Lighting::new().ambient(0.8).diffuse(0.9).specular(0.1).roughness(0.8))
+            .lighting(lighting.clone())
             .light_position(LightPosition::new().x(vec![-1e4]).y(vec![-2e4]).z(vec![2e4]))
             .hover_info(HoverInfo::Text)
     };
@@ -32,8 +38,8 @@ pub(super) fn plot(subject: &Subject<'_>) -> Plot {
         mesh.intensity_mode(IntensityMode::Vertex)
             .color_scale(ColorScale::Palette(ColorScalePalette::Viridis))
     };
-    plot.add_trace(by_value(mesh("boundary", rgb(1))).show_scale(valued).color_bar(colour_bar()));
-    plot.add_trace(by_value(mesh("singular facets", rgb(0))).show_scale(false));
+    plot.add_trace(by_value(mesh("regular facets", rgb(1))).color_bar(colour_bar()));
+    plot.add_trace(by_value(mesh("singular facets", rgb(0))));
     plot.add_trace(
         Scatter3D::<f64, f64, f64>::new(vec![], vec![], vec![])
             .name("singular edges")
@@ -41,14 +47,18 @@ pub(super) fn plot(subject: &Subject<'_>) -> Plot {
             .line(Line::new().color(rgb(3)).width(2.0))
             .hover_info(HoverInfo::Skip),
     );
-    plot.add_trace(
-        Scatter3D::<f64, f64, f64>::new(vec![], vec![], vec![])
-            .name("points, by weight")
-            .mode(Mode::Markers)
-            .marker(Marker::new().color(rgb(5)))
-            .visible(Visible::LegendOnly)
-            .hover_info(HoverInfo::Text),
-    );
+    // A legend has one colour for a trace, so that each class has its own.
+    for class in ["interior", "regular", "singular"] {
+        plot.add_trace(
+            Scatter3D::<f64, f64, f64>::new(vec![], vec![], vec![])
+                .name(format!("{class} points"))
+                .legend_group("points")
+                .show_legend(true)
+                .mode(Mode::Markers)
+                .visible(Visible::LegendOnly)
+                .hover_info(HoverInfo::Text),
+        );
+    }
     if let Some(original) = &subject.original {
         plot.add_trace(
             mesh(&format!("isosurface at {}", original.isovalue), Rgb::new(190, 190, 190))
@@ -85,11 +95,10 @@ fn layout(unit: &str) -> Layout {
     let label =
         |name: &str| if unit.contains(' ') { name.to_owned() } else { format!("{name} ({unit})") };
     let axis = |name: &str| Axis::new().title(Title::with_text(label(name))).n_ticks(6);
-    let camera = Camera::new()
-        .center(CameraCenter::from((0.0, 0.0, -0.16)))
-        .eye(Eye::from((1.0, -1.62, 0.6)));
+    // From where to look; the script finds how far away.
+    let camera = Camera::new().eye(Eye::from((1.0, -1.62, 0.76)));
     let scene = LayoutScene::new()
-        .aspect_mode(AspectMode::Data)
+        .aspect_mode(AspectMode::Manual)
         .camera(camera)
         .x_axis(axis("x"))
         .y_axis(axis("y"))
@@ -102,6 +111,8 @@ fn layout(unit: &str) -> Layout {
         .legend(
             Legend::new()
                 .orientation(Orientation::Horizontal)
+                // Points are switched together, and listed like the others.
+                .trace_order(TraceOrder::Normal)
                 .item_sizing(ItemSizing::Constant)
                 .x(0.0)
                 .y(1.0)
