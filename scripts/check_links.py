@@ -4,7 +4,7 @@
     python3 scripts/check_links.py              # README.md, ARCHITECTURE.md, docs/, crates/*/README.md, python/README.md
     python3 scripts/check_links.py SITE         # the pages that mdBook made, too
 
-Exit code 1 where a link leads nowhere, or to a registry of packages: documents link to projects.
+Exit code 1 where a link leads nowhere.
 """
 
 import re
