@@ -64,7 +64,7 @@ def test_progress_is_told_in_this_thread(cloud):
         assert threading.current_thread() is threading.main_thread()
         told.append((stage, done, total))
 
-    walpha.alpha_shape(points, engine="native", progress=progress)
+    walpha.alpha_shape(points, alpha="auto:connected", engine="native", progress=progress)
     stages = [stage for stage, _, _ in told]
     assert set(stages) >= {"alpha", "shape"} and stages.index("alpha") < stages.index("shape")
     for name in ("alpha", "shape"):

@@ -71,7 +71,7 @@ def test_too_little_memory(given, asked):
     ],
 )
 def test_views_larger_than_any_memory(given, asked):
-    assert limited(1000, given, asked).startswith("MemoryError: a copy of an array needs")
+    assert limited(1000, given, asked).startswith("MemoryError: not enough memory: a copy of an array needs")
 
 
 def test_what_nobody_could_estimate(tmp_path):

@@ -1,7 +1,6 @@
 from __future__ import annotations
 
 import json
-import math
 from typing import NamedTuple
 
 import numpy as np
@@ -59,7 +58,7 @@ class Complex:
         duplicates=None,
     ):
         alpha = squared(alpha, alpha_radius)
-        if alpha is None or math.isnan(alpha):
+        if alpha is None or isinstance(alpha, str):
             raise ValueError("what a complex should be depends on alpha: give it, a squared length")
         classes = (cell_classes, facet_classes, edge_classes, vertex_classes)
         rows = (
@@ -96,6 +95,8 @@ class Complex:
         Complex
         """
         most = squared(alpha, alpha_radius)
+        if isinstance(most, str):
+            raise ValueError(f"alpha={most!r}: give a squared length")
         rows = ([], [], [], [])
         for simplex in simplices:
             if len(simplex) == 2 and isinstance(simplex[0], (list, tuple, np.ndarray)):

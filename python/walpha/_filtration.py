@@ -331,7 +331,7 @@ class Filtration:
         AlphaShape
         """
         rule = squared(alpha, alpha_radius)
-        if rule is None or rule != rule:
+        if rule is None or isinstance(rule, str):
             raise ValueError("give alpha, a squared length, or alpha_radius; see optimal_alpha()")
         return AlphaShape(self._filtration.shape(rule, exterior, progress))
 

@@ -496,4 +496,9 @@ def squared(alpha, alpha_radius):
         if not radius >= 0:
             raise ValueError(f"alpha_radius={radius} is not a radius: give a number from 0 up")
         return radius * radius
-    return alpha if alpha is None or isinstance(alpha, str) else float(alpha)
+    if alpha is None or isinstance(alpha, str):
+        return alpha
+    alpha = float(alpha)
+    if math.isnan(alpha):
+        raise ValueError('alpha is NaN: give a squared length, "auto" or "auto:connected"')
+    return alpha
