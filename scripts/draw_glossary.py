@@ -65,6 +65,10 @@ class Drawing:
     def text(self, x, y, words, anchor="middle", colour=TEXT):
         self.add(f'<text x="{x:.0f}" y="{y:.0f}" text-anchor="{anchor}" fill="{colour}">{words}</text>')
 
+    def paragraph(self, x, y, texts):
+        for k, words in enumerate(texts):
+            self.text(x, y + 22 * k, words, "start")
+
     def circle(self, x, y, radius, fill, stroke="none", dash=""):
         dash = f' stroke-dasharray="{dash}"' if dash else ""
         self.add(f'<circle cx="{x:.1f}" cy="{y:.1f}" r="{radius:.1f}" fill="{fill}" stroke="{stroke}"{dash}/>')
@@ -128,9 +132,7 @@ def weight():
         drawing.line((x, y), (x, y - radius), SINGULAR, 2)
         drawing.text(x, 226, name)
     drawing.text(330, 90, "radius √(α + ω)", "start", SINGULAR)
-    drawing.text(330, 116, "The two balls overlap, so the", "start")
-    drawing.text(330, 138, "edge of their centres belongs", "start")
-    drawing.text(330, 160, "to the shape.", "start")
+    drawing.paragraph(330, 116, ["The two balls overlap, so the", "edge of their centres belongs", "to the shape."])
     return drawing
 
 
@@ -171,9 +173,7 @@ def ties():
         for x, y in corners:
             drawing.circle(x, y, 4, POINT)
         drawing.text(120 + 220 * k, 205, name)
-    drawing.text(450, 80, "Four points on one", "start")
-    drawing.text(450, 102, "circle can be cut", "start")
-    drawing.text(450, 124, "in two ways.", "start")
+    drawing.paragraph(450, 80, ["Four points on one", "circle can be cut", "in two ways."])
     return drawing
 
 
