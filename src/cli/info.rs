@@ -11,7 +11,7 @@ use walpha_base::shown::number;
 use crate::points::{Cell, CellCount, cells_of, read_model};
 use crate::progress::Stage;
 use crate::volume::{
-    self, Dtype, Hounsfield, Nan, ReadOptions, Reason, SampleStats, Series, Source, open_monitored,
+    self, Dtype, Nan, ReadOptions, Reason, SampleStats, Series, Source, open_monitored,
 };
 use crate::{Alpha, Coordinates, Dims, Frame, LengthUnit, VolumeError};
 
@@ -206,7 +206,7 @@ impl Info {
         } else {
             (volume::format_name(path, &options)?, volume::data_files(path, &options)?)
         };
-        let VolumeSummary { dims, frame, dtype, gray_levels, hounsfield, stats, volumes } = summary;
+        let VolumeSummary { dims, frame, dtype, gray_levels, stats, volumes } = summary;
         Ok(Content::Volume {
             format,
             samples: dtype.to_string(),
@@ -218,7 +218,7 @@ impl Info {
             min: stats.range.map(|(min, _)| min),
             max: stats.range.map(|(_, max)| max),
             missing: stats.missing,
-            preset: hounsfield.then_some(preset::OF_CT),
+            preset: stats.hounsfield.map(|_| preset::OF_CT),
             volumes,
             gray_levels,
             data_files: data_files.iter().map(|file| file.display().to_string()).collect(),
@@ -232,8 +232,6 @@ struct VolumeSummary {
     frame: Frame,
     dtype: Dtype,
     gray_levels: bool,
-    /// Whether the values look like Hounsfield units.
-    hounsfield: bool,
     stats: SampleStats,
     volumes: Option<u64>,
 }
@@ -255,15 +253,17 @@ impl VolumeSummary {
                 Err(error) if error.is_not_finite() => {
                     let volume = opened(Some(Nan::Value(0.0)))?;
                     let missing = volume.dims().samples() as u64;
-                    (Source::of_volume(volume), SampleStats { range: None, missing })
+                    (
+                        Source::of_volume(volume),
+                        SampleStats { range: None, missing, hounsfield: None },
+                    )
                 }
                 Err(error) => return Err(error),
             }
         };
         let (dims, frame, dtype) = (source.dims(), *source.frame(), source.dtype());
         let gray_levels = source.has_gray_levels();
-        let hounsfield = Hounsfield::of(&source)?.is_some();
-        Ok(Self { hounsfield, dims, frame, dtype, gray_levels, stats, volumes: None })
+        Ok(Self { dims, frame, dtype, gray_levels, stats, volumes: None })
     }
 }
 

@@ -43,7 +43,7 @@ impl Hounsfield {
 
 /// How many finite values there are, and how many of each kind.
 #[derive(Default)]
-struct Counts {
+pub(crate) struct Counts {
     all: u64,
     air: u64,
     between: u64,
@@ -53,7 +53,7 @@ struct Counts {
 }
 
 impl Counts {
-    fn add(&mut self, values: &[f32]) {
+    pub(crate) fn add(&mut self, values: &[f32]) {
         for &value in values.iter().filter(|value| value.is_finite()) {
             self.all += 1;
             self.air += u64::from(value < -900.0);
@@ -64,7 +64,7 @@ impl Counts {
         }
     }
 
-    fn judge(&self) -> Option<Hounsfield> {
+    pub(crate) fn judge(&self) -> Option<Hounsfield> {
         let share = |count: u64| count as f64 / self.all.max(1) as f64;
         let (air, between, soft_tissue) =
             (share(self.air), share(self.between), share(self.soft_tissue));
@@ -82,7 +82,7 @@ mod tests {
     use walpha_base::random::Random;
 
     use super::*;
-    use crate::{Frame, ct, phantom};
+    use crate::{Frame, SampleStats, ct, phantom};
 
     fn volume(value: impl FnMut() -> f32) -> Volume {
         let mut value = value;
@@ -94,7 +94,9 @@ mod tests {
         let ct = ct();
         let found = Hounsfield::of_volume(&ct).expect("HU");
         assert!(found.air > 0.3 && found.soft_tissue > 0.1, "{found:?}");
-        assert_eq!(Hounsfield::of(&Source::of_volume(ct)).unwrap(), Some(found));
+        let source = Source::of_volume(ct);
+        assert_eq!(Hounsfield::of(&source).unwrap(), Some(found));
+        assert_eq!(SampleStats::of(&source, None).unwrap().hounsfield, Some(found));
     }
 
     #[test]

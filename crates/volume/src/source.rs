@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use crate::hounsfield::{Counts, Hounsfield};
 use crate::{Dims, Dtype, Frame, Nan, Reason, Region, Volume, VolumeError};
 
 /// What to do about volumes that cannot be read in parts.
@@ -162,6 +163,8 @@ pub struct SampleStats {
     pub range: Option<(f32, f32)>,
     /// How many samples are NaN or infinite.
     pub missing: u64,
+    /// Whether the values look like Hounsfield units.
+    pub hounsfield: Option<Hounsfield>,
 }
 
 impl SampleStats {
@@ -172,7 +175,9 @@ impl SampleStats {
     /// The file cannot be read or is damaged.
     pub fn of(source: &Source, nan: Option<Nan>) -> Result<Self, VolumeError> {
         let (mut low, mut high, mut missing) = (f32::INFINITY, f32::NEG_INFINITY, 0);
+        let mut counts = Counts::default();
         source.for_each_part(|values| {
+            counts.add(values);
             for &value in values {
                 let value = match nan {
                     Some(Nan::Value(instead)) if !value.is_finite() => instead,
@@ -185,13 +190,18 @@ impl SampleStats {
                 }
             }
         })?;
-        Ok(Self { range: (low <= high).then_some((low, high)), missing })
+        let hounsfield = counts.judge().filter(|_| !source.has_gray_levels());
+        Ok(Self { range: (low <= high).then_some((low, high)), missing, hounsfield })
     }
 
     /// Of a volume in memory, whose [missing](Volume::is_missing) samples are not finite in its file.
     pub fn of_volume(volume: &Volume) -> Self {
         let missing = volume.dims().samples() - volume.samples_there();
-        Self { range: Some(volume.value_range()), missing: missing as u64 }
+        Self {
+            range: Some(volume.value_range()),
+            missing: missing as u64,
+            hounsfield: Hounsfield::of_volume(volume),
+        }
     }
 }
 
