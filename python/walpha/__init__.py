@@ -1,7 +1,7 @@
 """Exact weighted alpha shapes of points and volumes.
 
 >>> import walpha
->>> shape = walpha.alpha_shape(points)          # α found: all points in one solid component
+>>> shape = walpha.alpha_shape(points)          # α found from the spacing of the points
 >>> shape.cells, shape.boundary().triangles, shape.betti, shape.volume
 >>> walpha.filtration(points).betti_curve()     # every α at once
 >>> walpha.check(points, np.inf, cells=delaunay.simplices)
