@@ -228,6 +228,8 @@ impl View {
 
 /// Number of levels that `--alphas auto` chooses, besides the suggested ones.
 const STOPS: usize = 28;
+/// Critical values among which it chooses: all of them would take longer than the shape.
+const CANDIDATES: usize = 1024;
 
 pub(super) struct Detail {
     pub weighed: Weighed,
@@ -271,7 +273,7 @@ impl Detail {
     /// Stops of the slider that each show something, and something other than the one before: the one to open at,
     /// suggested ones, and others between.
     pub(super) fn stops(&self, opening: Alpha) -> Vec<Alpha> {
-        let curve = self.filtration.curve();
+        let curve = self.filtration.coarse_curve(CANDIDATES);
         let mut alphas = self.filtration.stops(&curve, STOPS);
         alphas.push(opening);
         alphas.extend(pipeline::suggested(&self.filtration, &curve));
@@ -290,16 +292,15 @@ fn differences(
     let Source { volume, units, written, .. } = source;
     let Some(values) = &weighed.points.values else { return Ok(None) };
     let grays: Vec<f64> = values.iter().map(|&value| written.gray(value)).collect();
-    let hull = filtration.levels(&[Alpha::INFINITE]);
-    let hull = hull.shape(0, false, hull.betti()[0]);
-    let (whole, grays) = filled_in(&hull, &grays, volume, *units, monitor)?;
+    let (whole, grays) = filled_in(filtration.whole(), &grays, volume, *units, monitor)?;
     let interpolant = Interpolant::with_values(&whole, &grays)?;
     let grid = Grid::of(volume, *units);
-    let mut local = interpolant.local_deviations(volume, &grid)?;
+    let resampled = interpolant.resample(&grid)?;
+    let mut local = interpolant.local_deviations(volume, &grid, &resampled);
     local.truncate(weighed.points.len());
     let step = written.step();
     local.iter_mut().for_each(|difference| *difference *= step);
-    let rmse = Deviation::of(volume, &interpolant.resample(&grid)?).rmse.unwrap_or_default() * step;
+    let rmse = Deviation::of(volume, &resampled).rmse.unwrap_or_default() * step;
     Ok(Some(Differences { local, rmse }))
 }
 

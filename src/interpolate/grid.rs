@@ -1,6 +1,8 @@
 use std::ops::Range;
 
+use rayon::prelude::*;
 use walpha_regular::BitRange;
+use walpha_regular::number::{cross, dot};
 
 use crate::points::{SampleGrid, Units};
 use crate::volume::{Coordinates, Dims, Frame, Volume, inverse};
@@ -91,14 +93,35 @@ impl Grid {
         BitRange::of_all((0..nx.max(ny).max(nz)).map(|i| self.position(along(i))))
     }
 
+    /// The same samples, at their indices in the volume instead of in the world.
+    pub(super) fn by_index(&self) -> Self {
+        Self { world: None, ..self.clone() }
+    }
+
+    /// The indices of positions in the world, all of which are samples of the volume; `None` where one is no sample, or
+    /// positions are indices already.
+    pub(super) fn indices(&self, positions: &[[f64; 3]]) -> Option<Vec<[f64; 3]>> {
+        let world = self.world.as_ref()?;
+        let index = |&position: &[f64; 3]| {
+            let index = world.index(position).map(f64::round);
+            (world.frame.to_world(index) == position).then_some(index)
+        };
+        positions.par_iter().map(index).collect()
+    }
+
+    /// Whether a cell that turns positively in the world turns negatively in indices.
+    pub(super) fn is_mirrored(&self) -> bool {
+        self.world.as_ref().is_some_and(|World { frame, .. }| {
+            let [a, b, c] = frame.axes();
+            dot(&a, &cross(&b, &c)) < 0.0
+        })
+    }
+
     /// The fractional index of a position, rounded.
     pub(super) fn index(&self, position: [f64; 3]) -> [f64; 3] {
         let place = match &self.world {
             None => position,
-            Some(World { frame, inverse }) => {
-                let from = [0, 1, 2].map(|k| position[k] - frame.origin[k]);
-                inverse.map(|row| row[0] * from[0] + row[1] * from[1] + row[2] * from[2])
-            }
+            Some(world) => world.index(position),
         };
         [0, 1, 2].map(|k| {
             let axis = &self.axes[k];
@@ -116,6 +139,14 @@ impl Grid {
         }
         let (low, high) = (low.ceil().max(0.0), (high.floor() + 1.0).clamp(0.0, n as f64));
         low as usize..high as usize
+    }
+}
+
+impl World {
+    /// The fractional index of a position in the volume, rounded.
+    fn index(&self, position: [f64; 3]) -> [f64; 3] {
+        let from = [0, 1, 2].map(|k| position[k] - self.frame.origin[k]);
+        self.inverse.map(|row| dot(&row, &from))
     }
 }
 

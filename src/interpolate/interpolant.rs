@@ -1,12 +1,13 @@
+use std::borrow::Cow;
 use std::cmp::Ordering;
 use std::sync::OnceLock;
 
 use rayon::prelude::*;
 use walpha_regular::BitRange;
 
-use super::InterpolateError;
 use super::barycentric::coordinates;
 use super::least_squares::PiecewiseLinear;
+use super::{Grid, InterpolateError};
 use crate::shape::{AlphaShape, Class, Simplices};
 
 /// Places located as one piece of work, at least.
@@ -24,10 +25,13 @@ const CHUNK: usize = 256;
 /// its value bit for bit. Where coordinates are small multiples of a power of two, as those of
 /// voxels are, it makes no difference at all which of several simplices a place belongs to.
 ///
+/// Where all points are samples of a volume, the samples of a grid over it are located by their indices in the volume, which
+/// are exact in any frame, and not by the rounded coordinates of the world.
+///
 /// Of points at one place the one that stayed in the shape has the say; hidden points have none.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Interpolant<'a> {
-    positions: &'a [[f64; 3]],
+    positions: Cow<'a, [[f64; 3]]>,
     values: &'a [f64],
     simplices: Vec<SupportSimplex>,
     bit_range: BitRange,
@@ -82,9 +86,36 @@ impl<'a> Interpolant<'a> {
         add(&mut simplices, &complex.facets, Class::Singular);
         add(&mut simplices, &complex.edges, Class::Singular);
         add(&mut simplices, &complex.vertices, Class::Singular);
-        let positions = &shape.points().positions;
+        let positions = &shape.points().positions[..];
         let bit_range = BitRange::of(positions);
-        Ok(Self { positions, values, simplices, bit_range, tree: OnceLock::new() })
+        Ok(Self {
+            positions: positions.into(),
+            values,
+            simplices,
+            bit_range,
+            tree: OnceLock::new(),
+        })
+    }
+
+    /// The same function of indices, and the grid by index, where the points are samples of the grid's volume and their
+    /// coordinates are those of the world; else both as they are.
+    ///
+    /// In a tilted or anisotropic frame the coordinates of samples are rounded, so a sample on the boundary of the shape may
+    /// be outside of it by a rounding error, and each decision near a facet takes big integers. Indices are exact in
+    /// any frame, and barycentric coordinates do not depend on it. O(n).
+    pub(super) fn by_index<'b>(&'b self, grid: &'b Grid) -> (Cow<'b, Self>, Cow<'b, Grid>) {
+        let Some(indices) = grid.indices(&self.positions) else {
+            return (Cow::Borrowed(self), Cow::Borrowed(grid));
+        };
+        let mut simplices = self.simplices.clone();
+        if grid.is_mirrored() {
+            let cells = simplices.iter_mut().filter(|simplex| simplex.count == 4);
+            cells.for_each(|cell| cell.vertices.swap(0, 1));
+        }
+        let (bit_range, tree) = (BitRange::of(&indices), OnceLock::new());
+        let (positions, values) = (indices.into(), self.values);
+        let there = Self { positions, values, simplices, bit_range, tree };
+        (Cow::Owned(there), Cow::Owned(grid.by_index()))
     }
 
     /// F at a place (x, y, z) in the units of the points; `None` outside the shape, and for what is
@@ -212,14 +243,14 @@ fn add<const N: usize>(supports: &mut Vec<SupportSimplex>, simplices: &Simplices
 ///
 /// Nodes are in preorder, each with the node that follows its whole subtree, so that a search
 /// needs no stack. Memory: a node for every two boxes or so.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Tree {
     nodes: Vec<Node>,
     /// The boxes' numbers, those of a leaf side by side.
     order: Vec<u32>,
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct Node {
     low: [f64; 3],
     high: [f64; 3],

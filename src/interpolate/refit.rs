@@ -85,10 +85,11 @@ pub fn refit_monitored(
     };
     let interpolant = Interpolant::new(filled.as_ref().unwrap_or(shape))?;
     let grid = Grid::of(volume, units);
+    let (interpolant, grid) = interpolant.by_index(&grid);
     let resampled = interpolant.resample(&grid)?;
     // The corners that were added come last.
     let free = shape.points().len();
-    let normal = Normal::assemble(&interpolant, &resampled.owners, &grid, volume, free)?;
+    let normal = Normal::assemble(&*interpolant, &resampled.owners, &grid, volume, free)?;
     let Solved { change, steps, residual } = normal.solve(monitor)?;
     tracing::debug!(steps, residual, "refit");
     let values = interpolant.values()[..free].iter().zip(change).map(|(v, d)| v + d).collect();

@@ -25,7 +25,8 @@ impl Interpolant<'_> {
     /// Values that pass the range of `f32`; no memory for as many samples.
     #[expect(clippy::missing_panics_doc, reason = "an invariant, never met")]
     pub fn resample(&self, grid: &Grid) -> Result<Resampled, InterpolateError> {
-        let owners = owners(self, grid)?;
+        let (there, grid) = self.by_index(grid);
+        let owners = owners(&there, &grid)?;
         let [nx, ny, _] = grid.dims().xyz();
         let dims = grid.dims();
         let mut samples =
@@ -36,9 +37,9 @@ impl Interpolant<'_> {
                 for (i, (sample, &part)) in samples.iter_mut().zip(owners).enumerate() {
                     let place = || grid.position([i, row % ny, row / ny]);
                     if part != OUTSIDE
-                        && let Some(coordinates) = self.coordinates(part, place())
+                        && let Some(coordinates) = there.coordinates(part, place())
                     {
-                        *sample = self.value(part, &coordinates) as f32;
+                        *sample = there.value(part, &coordinates) as f32;
                     }
                 }
             },
@@ -169,30 +170,29 @@ impl Interpolant<'_> {
     /// How far F is from a volume around each point: the root mean square difference at the samples of the
     /// point's simplices, each weighted by the point's barycentric coordinate there. In the units of the
     /// values; 0 for a point that no sample counts for. `grid` is that of the volume, in the units of the
-    /// points. O(samples).
-    ///
-    /// # Errors
-    /// No memory.
+    /// points, and `resampled` this interpolant on it. O(samples).
     ///
     /// # Panics
-    /// When grid and volume are not of one shape.
+    /// When grid, volume and samples are not of one shape.
     pub fn local_deviations(
         &self,
         original: &Volume,
         grid: &Grid,
-    ) -> Result<Vec<f64>, InterpolateError> {
-        assert_eq!(original.dims(), grid.dims(), "one grid");
+        resampled: &Resampled,
+    ) -> Vec<f64> {
+        let dims = [original.dims(), resampled.volume().dims()];
+        assert_eq!(dims, [grid.dims(); 2], "one grid");
+        let (there, grid) = self.by_index(grid);
         let [nx, ny, _] = grid.dims().xyz();
-        let owners = owners(self, grid)?;
         let mut sums = vec![[0.0; 2]; self.values().len()];
-        for (sample, &part) in owners.iter().enumerate() {
+        for (sample, &part) in resampled.owners.iter().enumerate() {
             if part == OUTSIDE || original.is_missing(sample) {
                 continue;
             }
             let place = grid.position([sample % nx, sample / nx % ny, sample / (nx * ny)]);
-            let Some(shares) = self.coordinates(part, place) else { continue };
-            let difference = self.value(part, &shares) - f64::from(original.as_slice()[sample]);
-            let (vertices, count) = self.vertices(part);
+            let Some(shares) = there.coordinates(part, place) else { continue };
+            let difference = there.value(part, &shares) - f64::from(original.as_slice()[sample]);
+            let (vertices, count) = there.vertices(part);
             for (vertex, share) in vertices[..count].iter().zip(shares) {
                 let [squares, weights] = &mut sums[*vertex as usize];
                 *squares += share * difference * difference;
@@ -202,6 +202,6 @@ impl Interpolant<'_> {
         let root = |[squares, weights]: [f64; 2]| {
             if weights > 0.0 { (squares / weights).sqrt() } else { 0.0 }
         };
-        Ok(sums.into_iter().map(root).collect())
+        sums.into_iter().map(root).collect()
     }
 }

@@ -215,7 +215,8 @@ fn differences_around_points_are_those_of_their_samples() {
     let whole = fill(&made, Some(&volume), Units::Voxel).unwrap();
     let interpolant = Interpolant::new(&whole).unwrap();
     let grid = Grid::of(&volume, Units::Voxel);
-    let found = interpolant.local_deviations(&volume, &grid).unwrap();
+    let resampled = interpolant.resample(&grid).unwrap();
+    let found = interpolant.local_deviations(&volume, &grid, &resampled);
     let mut sums = vec![(0.0, 0.0); whole.points().len()];
     for ((z, y, x), &sample) in volume.samples().indexed_iter() {
         let place = interpolant.locate([x, y, z].map(|i| i as f64)).expect("filled in");

@@ -50,7 +50,21 @@ pub struct Suggestions {
 impl Filtration {
     /// The topology at all critical values. O(n log n).
     pub fn curve(&self) -> Curve {
-        let values = self.values();
+        self.curve_of(self.values())
+    }
+
+    /// The topology at about `most` of the critical values, spread evenly over their ranks, the first and the last among
+    /// them: for pictures, where all would take several times as long. Each value of α is a double just above the critical
+    /// one, and what is said of it holds exactly. O(n log n).
+    ///
+    /// # Panics
+    /// When `most` is less than 2.
+    pub fn coarse_curve(&self, most: usize) -> Curve {
+        assert!(most >= 2, "two ends are needed");
+        self.curve_of(self.some_values(most))
+    }
+
+    fn curve_of(&self, values: Vec<Value>) -> Curve {
         let levels = self.levels_of(&values);
         let (betti, solid_components) =
             rayon::join(|| levels.betti(), || levels.solid_components());

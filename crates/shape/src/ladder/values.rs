@@ -42,6 +42,38 @@ impl Filtration {
     /// All critical values, ascending; those between the same two doubles are one. Radii whose intervals meet no other
     /// are sorted by interval, all others by exact arithmetic.
     pub(super) fn values(&self) -> Vec<Value> {
+        let radii = self.sorted_radii();
+        let spheres = self.spheres();
+        let exact = is_small_lattice(self.points(), self.torus());
+        let firsts = Firsts { filtration: self, spheres: &spheres, exact };
+        let split = |known: &mut HashMap<Key, f64>, cluster: &&[(Interval, Row)]| match cluster {
+            [(radius, row)] => vec![Value::Of(*row, radius.high)],
+            several => {
+                let first = |(_, row): &(Interval, Row)| firsts.of(*row, known);
+                let mut alphas: Vec<f64> = several.iter().map(first).collect();
+                alphas.sort_by(f64::total_cmp);
+                alphas.dedup();
+                alphas.into_iter().map(Value::First).collect()
+            }
+        };
+        clusters(&radii).par_iter().map_init(HashMap::new, split).flatten_iter().collect()
+    }
+
+    /// About `most` of the critical values, those of the most even rank, without exact arithmetic: of values that rounded
+    /// radii do not tell apart, a double just above the last one.
+    pub(super) fn some_values(&self, most: usize) -> Vec<Value> {
+        let radii = self.sorted_radii();
+        let clusters = clusters(&radii);
+        let last = clusters.len() - 1;
+        let mut ranks: Vec<usize> = (0..most).map(|k| k * last / (most - 1)).collect();
+        ranks.dedup();
+        let above = |rank: usize| clusters[rank].iter().map(|(radius, _)| radius.high);
+        let above = |rank| Value::First(above(rank).fold(f64::NEG_INFINITY, f64::max));
+        ranks.into_iter().map(above).collect()
+    }
+
+    /// The squared radii of all spheres that are empty, as intervals, ascending.
+    fn sorted_radii(&self) -> Vec<(Interval, Row)> {
         let own = |radii: &[Radius], row: fn(u32) -> Row| -> Vec<(Interval, Row)> {
             let known = radii.par_iter().enumerate();
             known
@@ -56,31 +88,7 @@ impl Filtration {
         radii.par_sort_unstable_by(|(a, i), (b, j)| {
             a.low.total_cmp(&b.low).then(a.high.total_cmp(&b.high)).then(i.cmp(j))
         });
-        let mut high = f64::NEG_INFINITY;
-        let mut clusters: Vec<usize> = Vec::new();
-        for (at, (radius, _)) in radii.iter().enumerate() {
-            if clusters.is_empty() || radius.low > high {
-                clusters.push(at);
-            }
-            high = high.max(radius.high);
-        }
-        let ends = clusters.iter().copied().skip(1).chain([radii.len()]);
-        let clusters: Vec<_> =
-            clusters.iter().zip(ends).map(|(&from, to)| &radii[from..to]).collect();
-        let spheres = self.spheres();
-        let exact = is_small_lattice(self.points(), self.torus());
-        let firsts = Firsts { filtration: self, spheres: &spheres, exact };
-        let split = |known: &mut HashMap<Key, f64>, cluster: &&[(Interval, Row)]| match cluster {
-            [(radius, row)] => vec![Value::Of(*row, radius.high)],
-            several => {
-                let first = |(_, row): &(Interval, Row)| firsts.of(*row, known);
-                let mut alphas: Vec<f64> = several.iter().map(first).collect();
-                alphas.sort_by(f64::total_cmp);
-                alphas.dedup();
-                alphas.into_iter().map(Value::First).collect()
-            }
-        };
-        clusters.par_iter().map_init(HashMap::new, split).flatten_iter().collect()
+        radii
     }
 
     /// The least double that is not below a value.
@@ -95,6 +103,20 @@ impl Filtration {
         };
         Alpha::from_squared(first).expect("radii are numbers")
     }
+}
+
+/// Runs of intervals that overlap.
+fn clusters(sorted: &[(Interval, Row)]) -> Vec<&[(Interval, Row)]> {
+    let mut high = f64::NEG_INFINITY;
+    let mut starts: Vec<usize> = Vec::new();
+    for (at, (radius, _)) in sorted.iter().enumerate() {
+        if starts.is_empty() || radius.low > high {
+            starts.push(at);
+        }
+        high = high.max(radius.high);
+    }
+    let ends = starts.iter().copied().skip(1).chain([sorted.len()]);
+    starts.iter().zip(ends).map(|(&from, to)| &sorted[from..to]).collect()
 }
 
 /// Bits of the weights of up to four corners and their up to six squared distances, which determine the radius.
