@@ -84,8 +84,11 @@ pub(super) fn suited(
     let command = PipelineArgs::<WeightArgs>::augment_args(Command::new(OF_CT));
     let settings = config::settings_as_arguments(&command, text(OF_CT)?);
     let explicit = settings.join(" ").replace('=', " ");
-    let typed: Vec<String> =
-        std::env::args_os().skip(1).map(|arg| arg.to_string_lossy().into_owned()).collect();
+    // For a shell; no argument holds a zero byte.
+    let typed: Vec<String> = std::env::args_os()
+        .skip(1)
+        .map(|arg| shlex::try_quote(&arg.to_string_lossy()).unwrap_or_default().into_owned())
+        .collect();
     tracing::warn!(
         "the values look like Hounsfield units ({:.0} % air, {:.0} % soft tissue), so bone is selected, as by \
          --preset {OF_CT}. The same, stated: walpha {} {explicit}",
