@@ -35,6 +35,8 @@ use crate::volume::{Hounsfield, Source, files_of};
 ///
 /// walpha blocks run work 0 1 2
 ///
+/// walpha blocks run work
+///
 /// walpha blocks merge work -o bone.pvtp bone.ply
 ///
 /// walpha blocks check work

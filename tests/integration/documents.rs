@@ -20,9 +20,21 @@ const TEACHING: [&str; 6] = [
     "docs/tutorials/molecules.md",
 ];
 
-/// Commands whose help has examples.
-const COMMANDS: [&str; 9] =
-    ["info", "shape", "view", "ladder", "filtration", "interpolate", "check", "points", "haar"];
+/// Commands whose help has examples that are run, in an order in which each finds the files of those before.
+const COMMANDS: [&str; 12] = [
+    "info",
+    "shape",
+    "view",
+    "ladder",
+    "filtration",
+    "interpolate",
+    "check",
+    "points",
+    "haar",
+    "compare",
+    "convert",
+    "blocks",
+];
 
 /// The README and all pages of the documentation.
 fn documents() -> Vec<PathBuf> {
@@ -136,7 +148,7 @@ fn shell_lines(document: &str) -> Vec<String> {
 
 /// The lines of a command's help that are examples.
 fn examples(help: &str) -> Vec<String> {
-    let (_, rest) = help.split_once("Examples:").expect("examples");
+    let (_, rest) = help.split_once("\nExample").expect("examples");
     let (examples, _) = rest.split_once("Usage:").expect("how it is used");
     examples.lines().filter(|line| line.starts_with("walpha ")).map(str::to_owned).collect()
 }
@@ -149,7 +161,8 @@ fn is_run_here(command: &str) -> bool {
     // Minutes each; the reproduction is a step of CI.
     let long = has(&["--count 100000", "--curve", "walpha reproduce"]);
     let without_las = !cfg!(feature = "las") && has(&["tile.laz", "building.csv"]);
-    let without_zarr = !cfg!(feature = "zarr") && has(&[".zarr", "walpha blocks"]);
+    let without_zarr =
+        !cfg!(feature = "zarr") && has(&[".zarr", "walpha convert", "walpha blocks"]);
     let without_skull = has(&["sample:skull", "skull.json"]) && !crate::common::has_skull();
     !(of_others || long || without_las || without_zarr || without_skull)
 }
@@ -195,9 +208,13 @@ fn examples_of_help_work() {
     let folder = tempfile::tempdir().expect("a folder");
     let folder = folder.path();
     reader_files(folder);
+    // What the text above the examples of `compare` says how to make.
+    let shape = ["shape", "sample:phantom@16", "--weights", "min-max", "-o"];
+    ok(folder, &[&shape[..], &["skull.json", "theirs.json"]].concat());
+    ok(folder, &[&shape[..], &["cgal.npz", "--engine", "cgal"]].concat());
     for command in COMMANDS {
         let examples = examples(&ok(folder, &[command, "--help"]));
-        assert!(examples.len() > 1, "{command} has examples");
+        assert!(!examples.is_empty(), "{command} has examples");
         for example in examples.iter().filter(|example| is_run_here(example)) {
             run(folder, example, command);
         }
