@@ -9,7 +9,7 @@ use crate::shape::{AlphaShape, Outline};
 /// An outline and the places of its points, as text formats of geographic data have them: x and y, and z unless it is 0
 /// for all points.
 pub(super) struct Planar<'a> {
-    pub outline: Outline,
+    pub outline: &'a Outline,
     positions: &'a [[f64; 3]],
     columns: usize,
 }

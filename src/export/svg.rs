@@ -12,7 +12,7 @@ use crate::volume::annotation;
 pub struct Svg;
 
 impl Exporter for Svg {
-    fn write(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
+    fn encode(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
         let outline = shape.outline().map_err(io::Error::other)?;
         let [u, v] = outline.axes;
         let place = |point: u32| {
@@ -20,7 +20,7 @@ impl Exporter for Svg {
             // From 0, so that there is no −0.
             [position[u], 0.0 - position[v]]
         };
-        let Frame { low: [x, y], size: [width, height], pen } = Frame::around(&outline, place);
+        let Frame { low: [x, y], size: [width, height], pen } = Frame::around(outline, place);
         writeln!(
             out,
             r#"<svg xmlns="http://www.w3.org/2000/svg" viewBox="{x} {y} {width} {height}">"#

@@ -85,6 +85,11 @@ pub fn spanning(all: &[[f64; 3]]) -> Vec<[f64; 3]> {
 
 /// Whether a position is outside the affine hull of others. Exact.
 fn is_independent(spanning: &[[f64; 3]], position: [f64; 3]) -> bool {
+    // Most planes are those of a map or a slice, where comparing is enough.
+    let is_shared = |k: usize| spanning.iter().all(|other| other[k] == position[k]);
+    if spanning.len() == 3 && (0..3).any(is_shared) {
+        return false;
+    }
     let mut positions = spanning.to_vec();
     positions.push(position);
     let weights = vec![0.0; positions.len()];

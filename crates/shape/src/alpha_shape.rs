@@ -1,10 +1,12 @@
 use walpha_base::Coordinates;
 use walpha_complex::Placed;
 
+use super::derived::Derived;
 use super::measure::together;
-use super::solid::{Cuts, Solid};
+use super::solid::Cuts;
 use super::{
-    Alpha, Betti, Complex, Measures, ShapeError, ShapeOptions, Sheets, Surface, WeightedPoints,
+    Alpha, Betti, Complex, Measures, Outline, OutlineError, ShapeError, ShapeOptions, Sheets,
+    Surface, WeightedPoints,
 };
 
 /// The weighted alpha shape of a set of points: a classified subcomplex of their regular
@@ -24,7 +26,8 @@ pub struct AlphaShape {
     pub(super) betti: Option<Betti>,
     pub(super) sheets: Option<Sheets>,
     pub(super) measures: Measures,
-    pub(super) solid: Solid,
+    pub(super) solid: Derived<(Surface, Cuts)>,
+    pub(super) outline: Derived<Result<Outline, OutlineError>>,
 }
 
 /// The data of a shape that has been computed elsewhere, in canonical order.
@@ -61,7 +64,8 @@ impl AlphaShape {
             betti: Some(parts.betti),
             sheets: Some(parts.sheets),
             measures: parts.measures,
-            solid: Solid::default(),
+            solid: Derived::default(),
+            outline: Derived::default(),
         })
     }
 
@@ -81,7 +85,8 @@ impl AlphaShape {
             betti: Some(betti),
             sheets: None,
             measures,
-            solid: Solid::default(),
+            solid: Derived::default(),
+            outline: Derived::default(),
         }
     }
 
@@ -177,7 +182,7 @@ impl AlphaShape {
     /// of its ends are in one fan, two of them get a vertex at its midpoint. No vertex moves; only such midpoints
     /// are rounded. O(n log n) for the first call; the shape keeps it.
     pub fn solid(&self) -> (&Surface, Cuts) {
-        let (surface, cuts) = self.solid.of(&self.complex);
+        let (surface, cuts) = self.solid.get(|| Surface::solid(&self.complex));
         (surface, *cuts)
     }
 }

@@ -20,11 +20,14 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+#![cfg_attr(docsrs, feature(doc_cfg))]
+
 mod alpha_shape;
 mod betti;
 mod blocks;
 mod complement;
 mod components;
+mod derived;
 mod error;
 mod flat;
 pub mod ladder;

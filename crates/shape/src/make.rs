@@ -5,8 +5,8 @@ use walpha_base::{Coordinates, Monitor};
 use walpha_regular::{Sites, check_numbers, lattice};
 
 use super::blocks::{self, Limits, Plan, Question, Reach};
+use super::derived::Derived;
 use super::flat::{self, flat};
-use super::solid::Solid;
 use super::topology::{components, connected_on_torus, sheet_betti, torus_betti};
 use super::{
     AlphaShape, Betti, CgalError, Complex, Engine, Measures, ShapeError, ShapeOptions, Sheets,
@@ -135,7 +135,8 @@ fn shape_by(
         betti: betti.or(counted),
         sheets: boundary.map(|(_, sheets, _)| sheets),
         measures,
-        solid: Solid::default(),
+        solid: Derived::default(),
+        outline: Derived::default(),
     })
 }
 

@@ -1,7 +1,6 @@
 //! The boundary of a shape as a closed, oriented manifold, which other programs accept as the boundary of a solid.
 
 use std::collections::{BTreeMap, HashMap};
-use std::sync::{Arc, OnceLock};
 
 use serde::Serialize;
 use walpha_base::UnionFind;
@@ -22,26 +21,9 @@ pub struct Cuts {
 /// A corner of a facet: 3·row + corner.
 type Corner = u32;
 
-/// A solid once it has been asked for. It follows from the rest of its shape, so all are equal.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Solid(OnceLock<Arc<(Surface, Cuts)>>);
-
-impl Solid {
-    /// The solid of this complex, which is computed once.
-    pub(crate) fn of(&self, complex: &Complex) -> &(Surface, Cuts) {
-        self.0.get_or_init(|| Arc::new(Surface::solid(complex)))
-    }
-}
-
-impl PartialEq for Solid {
-    fn eq(&self, _: &Self) -> bool {
-        true
-    }
-}
-
 impl Surface {
     /// As [`AlphaShape::solid`](crate::AlphaShape::solid) says.
-    fn solid(complex: &Complex) -> (Self, Cuts) {
+    pub(super) fn solid(complex: &Complex) -> (Self, Cuts) {
         let whole = Self::of_complex(complex);
         let pairs = Pairs::of(complex, &whole);
         let fans = UnionFind::new(3 * whole.regular.len());

@@ -78,7 +78,7 @@ impl Outline {
 
 impl AlphaShape {
     /// The outline of a shape whose points lie in one plane, which is decided exactly: polygons with holes, and what is
-    /// beside them. The plane may be tilted. O(n log n).
+    /// beside them. The plane may be tilted. O(n log n) at the first call, and computed once.
     ///
     /// Every ring is simple: it passes each vertex once. Rings of one polygon touch each other at vertices at most, and
     /// its interior is connected, so polygons are valid in the sense of OGC Simple Features (ISO 19125-1). The result does
@@ -98,11 +98,14 @@ impl AlphaShape {
     ///
     /// # Errors
     /// Points that span a volume or lie on one line; a shape of a torus, unwrapped or not.
-    pub fn outline(&self) -> Result<Outline, OutlineError> {
-        if self.options.periodic.is_some() || !self.copies.is_empty() {
-            return Err(OutlineError::Torus);
-        }
-        // In space each triangle of a flat shape is singular.
-        Outline::of(&self.complex, &self.points.positions, self.measures.singular_area)
+    pub fn outline(&self) -> Result<&Outline, OutlineError> {
+        let compute = || {
+            if self.options.periodic.is_some() || !self.copies.is_empty() {
+                return Err(OutlineError::Torus);
+            }
+            // In space each triangle of a flat shape is singular.
+            Outline::of(&self.complex, &self.points.positions, self.measures.singular_area)
+        };
+        self.outline.get(compute).as_ref().map_err(|&error| error)
     }
 }
