@@ -284,7 +284,7 @@ impl Outputs {
         facts: &ModelMetadata,
     ) -> Result<(), TargetError> {
         let whole = self.whole.into_iter().map(|(target, exporter)| {
-            let content = move |out: &mut dyn Write| exporter.write_any(shape, out);
+            let content = move |out: &mut dyn Write| exporter.write(shape, out);
             (target, Box::new(content) as Content<'_>)
         });
         let models = self.models.into_iter().map(|(target, writer)| {

@@ -8,27 +8,28 @@ use crate::shape::{AlphaShape, Surface};
 
 /// A writer of shapes in one format.
 pub trait Exporter {
-    /// Writes the whole file. The same shape gives the same bytes.
+    /// Writes the whole file. The same shape gives the same bytes. A shape on a torus is
+    /// [unwrapped](AlphaShape::unwrapped) first if the format cannot represent a torus.
     ///
     /// # Errors
     /// Whatever `out` returns.
-    fn write(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()>;
+    fn write(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
+        match shape.options().periodic {
+            Some(_) if !self.knows_torus() => self.encode(&shape.unwrapped(), out),
+            _ => self.encode(shape, out),
+        }
+    }
+
+    /// The bytes of a format, for [`Exporter::write`]: the shape is one on a torus only if the format
+    /// [knows](Exporter::knows_torus) these.
+    ///
+    /// # Errors
+    /// Whatever `out` returns.
+    fn encode(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()>;
 
     /// Whether the format can represent a periodic box.
     fn knows_torus(&self) -> bool {
         false
-    }
-
-    /// Writes the whole file; a shape on a torus is [unwrapped](AlphaShape::unwrapped) first if the format cannot
-    /// represent a torus.
-    ///
-    /// # Errors
-    /// Whatever `out` returns.
-    fn write_any(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
-        match shape.options().periodic {
-            Some(_) if !self.knows_torus() => self.write(&shape.unwrapped(), out),
-            _ => self.write(shape, out),
-        }
     }
 
     /// A remark for users of the file, if this shape needs one.

@@ -53,7 +53,8 @@ impl FiltrationFormat {
     ///
     /// # Errors
     /// [`UnknownFormat`], which names the known extensions.
-    pub fn of(path: &Path) -> Result<&'static Self, UnknownFormat> {
+    pub fn of(path: impl AsRef<Path>) -> Result<&'static Self, UnknownFormat> {
+        let path = path.as_ref();
         let all = FILTRATION_FORMATS.iter().map(|format| (format.extension, format));
         UnknownFormat::find(path, "a filtration", all)
     }

@@ -144,9 +144,9 @@ impl Format {
     ///
     /// # Errors
     /// [`UnknownFormat`], which names the known extensions.
-    pub fn of(path: &Path) -> Result<&'static Self, UnknownFormat> {
+    pub fn of(path: impl AsRef<Path>) -> Result<&'static Self, UnknownFormat> {
         UnknownFormat::find(
-            path,
+            path.as_ref(),
             "a shape",
             FORMATS.iter().map(|format| (format.extension, format)),
         )

@@ -17,7 +17,7 @@ use crate::shape::{Alpha, AlphaShape};
 pub struct GeoJson;
 
 impl Exporter for GeoJson {
-    fn write(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
+    fn encode(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
         let planar = Planar::of(shape)?;
         let outline = &planar.outline;
         let polygons = outline.polygons.iter().map(|polygon| {

@@ -26,7 +26,7 @@ const LINES: u32 = 1;
 const TRIANGLES: u32 = 4;
 
 impl Exporter for Glb {
-    fn write(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
+    fn encode(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
         let surface = self.0.surface(shape);
         let mut file = File::default();
         let mut document = json!({

@@ -15,7 +15,7 @@ impl Exporter for Json {
         true
     }
 
-    fn write(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
+    fn encode(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
         let mut file = ComplexFile::from(claim(shape));
         file.periodic = shape.options().periodic.map(|torus| torus.sides());
         file.info = Some(serde_json::json!({

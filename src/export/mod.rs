@@ -4,23 +4,22 @@
 //! provides a file that appears under its name only when it is complete.
 //!
 //! ```
-//! use std::path::Path;
 //! use walpha::WeightedPoints;
-//! use walpha::export::{ExportOptions, Format, Target};
+//! use walpha::export::{ExportOptions, Format, Save};
 //! use walpha::shape::{Alpha, ShapeOptions, alpha_shape};
 //!
 //! let positions = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 //! let points = WeightedPoints::unweighted(positions);
 //! let shape = alpha_shape(points, &ShapeOptions::new(Alpha::from_squared(1.0)?))?;
 //!
-//! let exporter = Format::of(Path::new("tetrahedron.off"))?.exporter(&ExportOptions::default());
+//! // To a file, which appears under its name only after the last byte is written.
+//! let folder = tempfile::tempdir()?;
+//! shape.save(folder.path().join("tetrahedron.ply"))?;
+//! // To anything else.
+//! let exporter = Format::of("tetrahedron.off")?.exporter(&ExportOptions::default());
 //! let mut bytes = Vec::new();
 //! exporter.write(&shape, &mut bytes)?;
 //! assert!(bytes.starts_with(b"OFF"));
-//! // To a file, which appears under its name only after the last byte is written.
-//! let folder = tempfile::tempdir()?;
-//! let path = folder.path().join("tetrahedron.off");
-//! Target::open(&path)?.write(|out| exporter.write(&shape, out))?;
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
@@ -36,6 +35,7 @@ mod obj;
 mod off;
 mod planar;
 mod ply;
+mod save;
 mod stl;
 mod svg;
 mod vtp;
@@ -53,6 +53,7 @@ pub use npz::Npz;
 pub use obj::Obj;
 pub use off::Off;
 pub use ply::Ply;
+pub use save::{Save, SaveError};
 pub use stl::Stl;
 pub use svg::Svg;
 pub use vtp::Vtp;

@@ -21,7 +21,7 @@ impl Exporter for Npz {
         true
     }
 
-    fn write(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
+    fn encode(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
         let (points, complex) = (shape.points(), shape.complex());
         let mut archive = Archive::new(ZipWriter::new(Cursor::new(Vec::new())));
         archive.rows("points", &points.positions)?;

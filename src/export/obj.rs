@@ -10,7 +10,7 @@ use crate::volume::annotation;
 pub struct Obj(pub ExportOptions);
 
 impl Exporter for Obj {
-    fn write(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
+    fn encode(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
         let surface = self.0.surface(shape);
         writeln!(out, "# walpha: {}", annotation::alpha(shape.options().alpha))?;
         write!(out, "{}", annotation::line("#", shape.coordinates()))?;

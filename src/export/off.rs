@@ -10,7 +10,7 @@ use crate::volume::annotation;
 pub struct Off(pub ExportOptions);
 
 impl Exporter for Off {
-    fn write(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
+    fn encode(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
         let surface = self.0.surface(shape);
         writeln!(out, "OFF")?;
         writeln!(out, "# walpha: {}", annotation::alpha(shape.options().alpha))?;

@@ -17,7 +17,7 @@ use crate::volume::annotation;
 pub struct Ply(pub ExportOptions);
 
 impl Exporter for Ply {
-    fn write(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
+    fn encode(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
         let Self(options) = self;
         let surface = options.surface(shape);
         let sheets = shape.sheets().filter(|_| options.groups && !options.solid);

@@ -13,7 +13,7 @@ use crate::volume::annotation;
 pub struct Stl(pub ExportOptions);
 
 impl Exporter for Stl {
-    fn write(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
+    fn encode(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
         let surface = self.0.surface(shape);
         let positions: Vec<_> = surface.positions(&shape.points().positions).collect();
         let mut head = [b' '; 80];

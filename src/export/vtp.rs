@@ -14,7 +14,7 @@ use crate::volume::annotation;
 pub struct Vtp(pub ExportOptions);
 
 impl Exporter for Vtp {
-    fn write(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
+    fn encode(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
         let membership = Membership {
             components: &shape.component_numbers(),
             sheets: shape.sheets().filter(|_| !self.0.solid),

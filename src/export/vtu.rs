@@ -16,7 +16,7 @@ use crate::volume::{Coordinates, annotation};
 pub struct Vtu(pub ExportOptions);
 
 impl Exporter for Vtu {
-    fn write(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
+    fn encode(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
         let vertices: Vec<u32> = shape.complex().vertices.rows().iter().map(|&[v]| v).collect();
         let made = Provenance::of(shape, &self.0);
         write_grid(shape.complex(), &vertices, &PointData::of(shape), &made, out)

@@ -13,7 +13,7 @@ use crate::shape::AlphaShape;
 pub struct Wkt;
 
 impl Exporter for Wkt {
-    fn write(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
+    fn encode(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
         let planar = Planar::of(shape)?;
         let outline = &planar.outline;
         let z = if planar.has_z() { " Z" } else { "" };

@@ -92,7 +92,8 @@ impl Plan {
     ///
     /// # Errors
     /// What a stage refuses; what is not local ([`Job::check`]); a folder that cannot be written to.
-    pub fn make(job: Job, cutting: Cutting, folder: &Path) -> Result<Self, BlocksError> {
+    pub fn make(job: Job, cutting: Cutting, folder: impl AsRef<Path>) -> Result<Self, BlocksError> {
+        let folder = folder.as_ref();
         Self::make_with(job, cutting, folder, &Alone, &Monitor::noop())
     }
 
@@ -217,7 +218,8 @@ impl Plan {
     ///
     /// # Errors
     /// There is none, it cannot be read, or does not verify.
-    pub fn open(folder: &Path) -> Result<Self, BlocksError> {
+    pub fn open(folder: impl AsRef<Path>) -> Result<Self, BlocksError> {
+        let folder = folder.as_ref();
         Self::of_text(&read_file(&folder.join(Self::FILE))?, folder)
     }
 

@@ -190,7 +190,12 @@ impl Plan {
     ///
     /// # Errors
     /// The errors of [`Plan::make`].
-    pub fn resume(job: Job, cutting: Cutting, folder: &Path) -> Result<Self, BlocksError> {
+    pub fn resume(
+        job: Job,
+        cutting: Cutting,
+        folder: impl AsRef<Path>,
+    ) -> Result<Self, BlocksError> {
+        let folder = folder.as_ref();
         Self::resume_with(job, cutting, folder, &Alone, &Monitor::noop())
     }
 

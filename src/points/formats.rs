@@ -371,7 +371,8 @@ impl PointWriter {
     ///
     /// # Errors
     /// [`UnknownFormat`], which names the known extensions.
-    pub fn of(path: &Path) -> Result<&'static Self, UnknownFormat> {
+    pub fn of(path: impl AsRef<Path>) -> Result<&'static Self, UnknownFormat> {
+        let path = path.as_ref();
         UnknownFormat::find(path, "points", Self::all().map(|writer| (writer.extension, writer)))
     }
 

@@ -12,7 +12,11 @@ use crate::volume::{OpenFile, Reason};
 ///
 /// # Errors
 /// A file that cannot be read, or whose header is damaged.
-pub fn cells_of(path: &Path, options: &PointOptions) -> Result<Vec<CellCount>, PointsError> {
+pub fn cells_of(
+    path: impl AsRef<Path>,
+    options: &PointOptions,
+) -> Result<Vec<CellCount>, PointsError> {
+    let path = path.as_ref();
     // Without a regular file only the name is known. If its format has no cells, the error is left to the reader.
     let named = || options.format_named(path);
     if !path.is_file() && named().is_none_or(|format| format.cells.is_none()) {
@@ -31,7 +35,11 @@ pub fn cells_of(path: &Path, options: &PointOptions) -> Result<Vec<CellCount>, P
 ///
 /// # Errors
 /// A format whose cells are not read, cells that are not simplices, and the errors of [`super::read_points`].
-pub fn read_complex(path: &Path, options: &PointOptions) -> Result<ComplexFile, PointsError> {
+pub fn read_complex(
+    path: impl AsRef<Path>,
+    options: &PointOptions,
+) -> Result<ComplexFile, PointsError> {
+    let path = path.as_ref();
     let file = OpenFile::open(path)?;
     if let Some(read) = options.format_of(&file).and_then(|format| format.read_complex) {
         return read(&file);

@@ -40,7 +40,8 @@ impl PointOptions {
     ///
     /// # Errors
     /// As [`is_point_file`].
-    pub fn is_point_file(&self, path: &Path) -> Result<bool, PointsError> {
+    pub fn is_point_file(&self, path: impl AsRef<Path>) -> Result<bool, PointsError> {
+        let path = path.as_ref();
         // A pipe is recognised by name alone, as bytes read from it are gone.
         if path.is_file() {
             self.holds_points(&OpenFile::open(path)?)
@@ -103,7 +104,10 @@ pub fn is_point_file(path: &Path) -> Result<bool, PointsError> {
 /// The file cannot be read, is truncated or longer than it claims, a column is missing or named twice,
 /// a number is not finite or a radius negative (the message says where), the file holds no point, or
 /// `columns` are given for a format that names its own.
-pub fn read_points(path: &Path, columns: Option<&Columns>) -> Result<Points, PointsError> {
+pub fn read_points(
+    path: impl AsRef<Path>,
+    columns: Option<&Columns>,
+) -> Result<Points, PointsError> {
     Ok(read_model(path, &PointOptions::default().columns(columns.cloned()))?.0)
 }
 
@@ -112,9 +116,10 @@ pub fn read_points(path: &Path, columns: Option<&Columns>) -> Result<Points, Poi
 /// # Errors
 /// As [`read_points`]; a level that the file does not have; a stated format that contradicts the content.
 pub fn read_model(
-    path: &Path,
+    path: impl AsRef<Path>,
     options: &PointOptions,
 ) -> Result<(Points, ModelMetadata), PointsError> {
+    let path = path.as_ref();
     read_model_file(&OpenFile::open(path)?, options)
 }
 

@@ -46,7 +46,8 @@ impl Target {
     /// # Errors
     /// When the folder does not exist or cannot be written to, `path` is a folder itself or a
     /// write-protected file, its name is too long, or a target of the same file is open.
-    pub fn open(path: &Path) -> Result<Self, TargetError> {
+    pub fn open(path: impl AsRef<Path>) -> Result<Self, TargetError> {
+        let path = path.as_ref();
         Self::sink(path)
             .map(|(sink, claim)| Self { path: path.to_owned(), sink, claim })
             .map_err(TargetError::of(path, ""))

@@ -11,6 +11,8 @@
 //! # Ok::<(), walpha_volume::VolumeError>(())
 //! ```
 
+#![cfg_attr(docsrs, feature(doc_cfg))]
+
 #[doc(hidden)]
 pub mod annotation;
 mod crop;

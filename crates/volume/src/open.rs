@@ -68,7 +68,7 @@ impl Source {
 /// # Errors
 /// `folder` is there already or cannot be made; the volume cannot be read. Nothing is left behind then.
 #[cfg(feature = "zarr")]
-pub fn convert(source: &Source, folder: &Path) -> Result<(), VolumeError> {
+pub fn convert(source: &Source, folder: impl AsRef<Path>) -> Result<(), VolumeError> {
     convert_monitored(source, folder, &Monitor::noop())
 }
 
@@ -79,10 +79,10 @@ pub fn convert(source: &Source, folder: &Path) -> Result<(), VolumeError> {
 #[cfg(feature = "zarr")]
 pub fn convert_monitored(
     source: &Source,
-    folder: &Path,
+    folder: impl AsRef<Path>,
     monitor: &Monitor,
 ) -> Result<(), VolumeError> {
-    crate::write::zarr(source, folder, monitor)
+    crate::write::zarr(source, folder.as_ref(), monitor)
 }
 
 #[cfg(test)]

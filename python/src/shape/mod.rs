@@ -292,7 +292,7 @@ impl Shape {
         }
         let options = ExportOptions::default().solid(solid);
         let (shape, target) = (Arc::clone(&self.shape), Target::open(&path).map_err(Told::told)?);
-        run(py, None, move |_| target.write(|out| format.exporter(&options).write_any(&shape, out)))
+        run(py, None, move |_| target.write(|out| format.exporter(&options).write(&shape, out)))
     }
 }
 

@@ -134,8 +134,8 @@ fn files_hold_the_box() {
     let (points, sides) = dense(1);
     let shape = shape(&points, sides, 0.3).unwrap();
     let (mut json, mut npz) = (Vec::new(), Vec::new());
-    Json.write_any(&shape, &mut json).unwrap();
-    Npz.write_any(&shape, &mut npz).unwrap();
+    Json.write(&shape, &mut json).unwrap();
+    Npz.write(&shape, &mut npz).unwrap();
     let json = PlacedComplex::try_from(ComplexFile::read_json(&json[..]).unwrap()).unwrap();
     let npz =
         PlacedComplex::try_from(ComplexFile::read_npz(std::io::Cursor::new(npz)).unwrap()).unwrap();

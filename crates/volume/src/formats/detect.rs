@@ -48,7 +48,8 @@ const REFUSED: [(&[u8], &str, &str); 8] = [
 /// The file cannot be read, is of no format known, is truncated, longer than it claims or
 /// otherwise not what it says, has an empty axis or too many samples, or holds a NaN or infinity.
 /// Every message names the file.
-pub fn read(path: &Path, options: &ReadOptions) -> Result<Volume, VolumeError> {
+pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Volume, VolumeError> {
+    let path = path.as_ref();
     read_monitored(path, options, &Monitor::noop())
 }
 
@@ -166,7 +167,8 @@ fn is_folder(path: &Path, options: &ReadOptions) -> bool {
 ///
 /// # Errors
 /// The file cannot be read or is of no format known.
-pub fn format_name(path: &Path, options: &ReadOptions) -> Result<String, VolumeError> {
+pub fn format_name(path: impl AsRef<Path>, options: &ReadOptions) -> Result<String, VolumeError> {
+    let path = path.as_ref();
     if options.raw.is_some() {
         return Ok("raw samples".into());
     }
@@ -182,7 +184,11 @@ pub fn format_name(path: &Path, options: &ReadOptions) -> Result<String, VolumeE
 ///
 /// # Errors
 /// The header cannot be read.
-pub fn data_files(path: &Path, options: &ReadOptions) -> Result<Vec<PathBuf>, VolumeError> {
+pub fn data_files(
+    path: impl AsRef<Path>,
+    options: &ReadOptions,
+) -> Result<Vec<PathBuf>, VolumeError> {
+    let path = path.as_ref();
     if options.raw.is_some() || !path.is_file() {
         return Ok(Vec::new());
     }
@@ -245,7 +251,8 @@ fn files_below(folder: &Path) -> Vec<PathBuf> {
 ///
 /// # Errors
 /// The folder or a file in it cannot be read.
-pub fn series(folder: &Path) -> Result<Vec<Series>, VolumeError> {
+pub fn series(folder: impl AsRef<Path>) -> Result<Vec<Series>, VolumeError> {
+    let folder = folder.as_ref();
     #[cfg(feature = "dicom")]
     return crate::read::dicom::series(folder);
     #[cfg(not(feature = "dicom"))]

@@ -109,7 +109,8 @@ impl VolumeWriter {
     ///
     /// # Errors
     /// [`UnknownFormat`] names the ones there are.
-    pub fn of(path: &Path) -> Result<&'static Self, UnknownFormat> {
+    pub fn of(path: impl AsRef<Path>) -> Result<&'static Self, UnknownFormat> {
+        let path = path.as_ref();
         UnknownFormat::find(path, "a volume", Self::all().map(|writer| (writer.extension, writer)))
     }
 
