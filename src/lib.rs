@@ -25,7 +25,23 @@
 //!
 //! α and ω are squared lengths. Points are (x, y, z); volumes are stored `[z, y, x]`. Results are
 //! independent of the number of threads.
+//!
+//! # Features
+//!
+//! | feature | default | what it adds |
+//! |---|---|---|
+//! | `cgal` | yes | CGAL's engine, through a bridge to C++; without it the crate is Rust alone |
+//! | `gmp` | yes | CGAL computes with GMP and MPFR where they are installed |
+//! | `formats` | yes | readers and writers of volumes beyond NPY, NPZ, raw samples, pictures and INRIMAGE |
+//! | `render` | yes | pictures, charts and the interactive page: the module `render` |
+//! | `paper` | yes | the paper's figures and its table: the module `reproduce` |
+//! | `cli` | yes | the command `walpha`; libraries leave it out |
+//! | `dicom` | no | DICOM series |
+//! | `las` | no | LAS and LAZ |
+//! | `zarr` | no | Zarr, versions 2 and 3, and OME-Zarr; builds the C libraries blosc and zstd |
+//! | `mpi` | no | blocks on the processes of `mpirun` |
 
+#![cfg_attr(docsrs, feature(doc_cfg))]
 // Not in Cargo.toml, where it would apply to tests too: their shared modules are `pub` in each test.
 #![warn(unreachable_pub)]
 
@@ -63,6 +79,7 @@ pub use walpha_base::threads;
 /// The exact checker: a crate of its own, `walpha-check`, for use in other programs.
 pub use walpha_check as check;
 
+pub use export::Save;
 pub use haar::{Coefficients, Decomposition, HaarOptions, Tolerance, Truncation};
 pub use interpolate::Interpolant;
 pub use pipeline::Recipe;

@@ -11,6 +11,8 @@
 //! assert_eq!(sum.value(), 1.0);
 //! ```
 
+#![cfg_attr(docsrs, feature(doc_cfg))]
+
 pub mod advice;
 #[cfg(feature = "serde")]
 mod coordinates;

@@ -13,6 +13,8 @@
 //! assert_eq!(tetrahedron.facets.counts().regular, 4);
 //! ```
 
+#![cfg_attr(docsrs, feature(doc_cfg))]
+
 mod alpha;
 pub mod canonical;
 mod class;
