@@ -15,6 +15,7 @@ use crate::{Cell, DELETED, Sites, TriangulationError, order};
 /// triangulation alone, and not on the order of insertions and removals. Points are numbered from
 /// [`Growing::FIRST`] on in the order in which they are registered; a registered point need not be a vertex. The
 /// ghost is vertex 0.
+#[derive(Debug)]
 pub struct Growing {
     positions: Vec<[f64; 3]>,
     weights: Vec<f64>,
@@ -22,6 +23,7 @@ pub struct Growing {
 }
 
 /// What the insertion of a point would change; see [`Growing::insertion`].
+#[derive(Debug)]
 pub struct Insertion {
     /// The cells in conflict with the point, infinite ones included.
     pub removed: Vec<u32>,
@@ -30,6 +32,7 @@ pub struct Insertion {
 }
 
 /// The part of [`Growing`] that insertions and removals change, apart from the points that they read.
+#[derive(Debug)]
 pub(super) struct State {
     pub builder: Builder,
     /// The [`position_bits`] of all vertices: no two are equal.

@@ -6,6 +6,7 @@ use crate::predicates::Screen;
 use crate::{Cell, DELETED, Triangulation, TriangulationError, facets, smallest_first};
 
 /// The star of a vertex, and the cells that would replace it.
+#[derive(Debug)]
 pub struct Hole {
     /// The cells at the vertex.
     pub star: Vec<u32>,
@@ -17,6 +18,7 @@ pub struct Hole {
 }
 
 /// Working memory of [`Growing::hole`](super::Growing::hole), kept so that the next call need not allocate.
+#[derive(Debug)]
 pub struct Workspace {
     /// The triangulation of the neighbours.
     builder: Builder,

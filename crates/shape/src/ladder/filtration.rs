@@ -16,6 +16,7 @@ use crate::{Alpha, AlphaShape, Complex, Engine, ShapeError, ShapeOptions, alpha_
 /// intervals, in rounded numbers). Here a radius is the nearest double, and where an α is as near to the
 /// exact number, exact arithmetic decides: a shape taken from a filtration equals that of
 /// [`alpha_shape`](crate::alpha_shape()).
+#[derive(Debug)]
 pub struct Filtration {
     pub(super) whole: AlphaShape,
     pub(super) incidence: Incidence,

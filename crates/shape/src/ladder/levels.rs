@@ -54,6 +54,7 @@ impl Span {
 
 /// A filtration at several α: for each simplex, the first level at which it is in the shape, and
 /// the levels at which its class changes. Levels are nested, as a simplex never leaves.
+#[derive(Debug)]
 pub struct Levels<'a> {
     pub(super) filtration: &'a Filtration,
     pub(super) alphas: Vec<Alpha>,

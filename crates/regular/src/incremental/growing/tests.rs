@@ -16,10 +16,8 @@ fn cells(rows: impl Iterator<Item = [u32; 4]>, positions: &[[f64; 3]]) -> Vec<[[
 }
 
 fn from_the_start(positions: &[[f64; 3]]) -> Vec<[[u64; 3]; 4]> {
-    let weights = vec![0.0; positions.len()];
-    let made = triangulate(&Sites::new(positions, &weights).unwrap()).unwrap();
-    let finite = made.cells().iter().filter(|cell| !cell.contains(&made.ghost()));
-    cells(finite.copied(), positions)
+    let made = triangulate(positions, None).unwrap();
+    cells(made.finite_cells().map(|(_, corners)| corners), positions)
 }
 
 fn agree(growing: &Growing, when: &str) {

@@ -30,6 +30,7 @@ use rank::{NONE, Ranks};
 ///
 /// Simplices have *numbers*: vertices first, then edges, facets, cells; those of one dimension in
 /// lexicographic order of their vertices, which ascend in each.
+#[derive(Debug)]
 pub struct Ordered<'a> {
     /// A level for each value.
     pub(super) levels: Levels<'a>,
