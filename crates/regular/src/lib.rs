@@ -30,6 +30,7 @@
 //! ```
 
 mod arrays;
+mod dynamic;
 mod error;
 mod flat;
 mod incremental;
@@ -47,6 +48,7 @@ mod triangulation;
 use rayon::prelude::*;
 use walpha_base::memory::asking;
 
+pub use dynamic::DynamicDelaunay;
 pub use error::{SitesError, TriangulationError};
 pub use locate::Location;
 pub use sites::{MAX_COORDINATE, MAX_WEIGHT};

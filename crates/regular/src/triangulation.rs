@@ -102,7 +102,7 @@ impl Triangulation {
     /// The largest number of cells: 4·cell + corner fits 32 bits.
     pub const MAX_CELLS: usize = 1 << 30;
 
-    fn new(
+    pub(crate) fn new(
         positions: Vec<[f64; 3]>,
         arrays: CellArrays,
         duplicates: Vec<[u32; 2]>,

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use super::Builder;
 use super::removal::{Hole, Workspace};
-use crate::order::rounds;
+use crate::order::{position_bits, rounds};
 use crate::predicates::{Predicates, Screen};
 use crate::{Cell, DELETED, Sites, TriangulationError, order};
 
@@ -100,7 +100,7 @@ impl Growing {
         state.insert_all(positions, &Screen::with_ghost(&predicates, GHOST)?, points)
     }
 
-    /// Removes vertices, except those whose neighbours span no volume. Returns the number of vertices removed.
+    /// Removes vertices, except those without which the others span no volume. Returns the number of vertices removed.
     ///
     /// # Errors
     /// Too many cells; out of memory.
@@ -134,7 +134,7 @@ impl Growing {
         Screen::with_ghost(predicates, GHOST)
     }
 
-    /// What the removal of a vertex would change; `None` where its neighbours span no volume.
+    /// What the removal of a vertex would change; `None` where all others span no volume.
     ///
     /// # Errors
     /// Out of memory.
@@ -242,11 +242,6 @@ impl State {
             self.cell_at[v as usize] = cell;
         }
     }
-}
-
-/// Bits of a position that are equal for equal positions: adding 0.0 turns −0.0 into 0.0.
-fn position_bits(position: [f64; 3]) -> [u64; 3] {
-    position.map(|x| (x + 0.0).to_bits())
 }
 
 #[cfg(test)]
