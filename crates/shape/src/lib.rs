@@ -44,7 +44,7 @@ mod voids;
 mod winding;
 
 pub use alpha_shape::AlphaShape;
-pub use betti::Betti;
+pub use betti::{Betti, BettiError};
 pub use components::NO_COMPONENT;
 pub use error::{CgalError, OutlineError, PlanError, ShapeError, Whole};
 pub use make::{alpha_shape, alpha_shape_by, alpha_shape_monitored};
