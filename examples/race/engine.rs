@@ -36,7 +36,7 @@ pub(super) fn run(arguments: &[String]) -> Result<()> {
             counts(filtration.whole())
         }
         "triangulation" => {
-            let made = triangulate(&points.positions, Some(&points.weights))?;
+            let made = triangulate(points.positions(), Some(points.weights()))?;
             assert!(!made.cells().is_empty());
             String::new()
         }

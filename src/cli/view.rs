@@ -288,7 +288,7 @@ fn differences(
     monitor: &Monitor,
 ) -> anyhow::Result<Option<Differences>> {
     let Source { volume, units, written, .. } = source;
-    let Some(values) = &weighed.points.values else { return Ok(None) };
+    let Some(values) = weighed.points.values() else { return Ok(None) };
     let grays: Vec<f64> = values.iter().map(|&value| written.gray(value)).collect();
     let hull = filtration.levels(&[Alpha::INFINITE]);
     let hull = hull.shape(0, false, hull.betti()[0]);

@@ -12,7 +12,7 @@ fn shape(points: WeightedPoints, alpha: f64) -> AlphaShape {
 }
 
 fn unweighted(positions: &[[f64; 3]]) -> WeightedPoints {
-    let values = (0..positions.len()).map(|i| i as f64).collect();
+    let values: Vec<f64> = (0..positions.len()).map(|i| i as f64).collect();
     WeightedPoints::unweighted(positions.to_vec()).with_values(values).unwrap()
 }
 
@@ -33,7 +33,7 @@ fn is_solid(shape: &AlphaShape) -> Cuts {
     }
     let defects = surface.manifold_defects();
     assert!(defects.is_empty(), "{defects:?}");
-    let at: Vec<[f64; 3]> = surface.positions(&shape.points().positions).collect();
+    let at: Vec<[f64; 3]> = surface.positions(shape.points().positions()).collect();
     assert_eq!(at.len(), surface.vertex_count());
     let volume: f64 = surface
         .regular
@@ -113,7 +113,7 @@ fn sheets_that_share_both_ends_are_bent_apart() {
     let cuts = is_solid(&shape);
     assert_eq!((cuts.edges, cuts.midpoints), (1, 1), "{cuts:?}");
     let (solid, _) = shape.solid();
-    let values = shape.points().values.as_ref().unwrap();
+    let values = shape.points().values().unwrap();
     let value = solid.numbers(values).last().unwrap();
     let ends = solid.midpoints[0].map(|v| values[solid.vertices[v as usize] as usize]);
     assert_eq!(value, f64::midpoint(ends[0], ends[1]), "F is linear on an edge");

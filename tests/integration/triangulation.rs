@@ -104,7 +104,7 @@ fn line_and_a_few(r: &mut Random) -> WeightedPoints {
 
 /// Our triangulation.
 fn made(points: &WeightedPoints) -> Result<Triangulation, TriangulationError> {
-    triangulate(&points.positions, Some(&points.weights))
+    triangulate(points.positions(), Some(points.weights()))
 }
 
 /// All of CGAL's triangulation.
@@ -178,7 +178,8 @@ fn a_hundred_thousand_degenerate_sets() {
         let family = (seed % FAMILIES.len() as u64) as usize;
         let points = FAMILIES[family](&mut random);
         // Shapes of every tenth set: triangulations are where engines may differ.
-        let scale = points.positions.as_flattened().iter().fold(0f64, |most, x| most.max(x.abs()));
+        let scale =
+            points.positions().as_flattened().iter().fold(0f64, |most, x| most.max(x.abs()));
         let alphas = [0.0, 0.25, 0.5, 1.0].map(|alpha| alpha * scale * scale);
         let every_tenth = (seed / FAMILIES.len() as u64).is_multiple_of(10);
         let alphas = if every_tenth { &alphas[..] } else { &[] };

@@ -70,7 +70,7 @@ impl Filtration {
     /// O(n log m) for m levels, and exact arithmetic for ties.
     pub fn levels(&self, alphas: &[Alpha]) -> Levels<'_> {
         let mut alphas = alphas.to_vec();
-        alphas.sort_by(|a, b| a.squared().total_cmp(&b.squared()));
+        alphas.sort_unstable();
         alphas.dedup();
         let spheres = self.spheres();
         let complex = self.whole.complex();
