@@ -1,7 +1,7 @@
 use serde::{Deserialize, Serialize};
 
 /// The Betti numbers of a shape: components, tunnels, voids. Written `[b0, b1, b2]`, of a torus
-/// `[b0, b1, b2, b3]`.
+/// `[b0, b1, b2, b3]`. Open: there are no more.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(into = "Vec<u64>", try_from = "Vec<u64>")]
 pub struct Betti {

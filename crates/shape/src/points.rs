@@ -39,7 +39,7 @@ pub struct LengthsError {
     pub points: usize,
 }
 
-/// The range of weights.
+/// The range of weights. Open, as they are plain numbers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct WeightSummary {
     /// The smallest.

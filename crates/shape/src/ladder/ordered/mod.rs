@@ -44,6 +44,7 @@ pub struct Ordered<'a> {
 
 /// A simplex and when it enters.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Entry<'a> {
     /// Input indices, ascending.
     pub vertices: &'a [u32],
@@ -65,6 +66,7 @@ pub struct Entry<'a> {
 ///
 /// Pairs of persistence 0, whose simplices have the same value, are included.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Pairs {
     /// Components: a vertex, and the edge that unites its component with one that came before; in
     /// the order of edges. All vertices but one have such an edge.
