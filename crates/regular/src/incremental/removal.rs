@@ -131,7 +131,8 @@ impl State {
         around.sort_unstable();
         around.dedup();
         if !workspace.triangulate(screen, &around)? {
-            // A peak over a plane of neighbours. What is in the plane's other side adds nothing to the filling.
+            // A peak over a plane of neighbours: with points beyond the plane they span a volume. The cells that
+            // fill the hole are cells of any set of vertices that has their corners.
             around.extend(boundary.iter().map(|&(_, outside)| self.corner(outside)));
             around.retain(|&w| w != GHOST);
             around.sort_unstable();
