@@ -36,7 +36,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     for (kind, factor) in kinds() {
         let alpha = Alpha::from_squared(factor.abs())?;
         let mut weighted = weigh(points.clone(), kind, alpha)?;
-        weighted.weights.iter_mut().for_each(|weight| *weight *= factor.signum());
+        weighted.weights_mut().iter_mut().for_each(|weight| *weight *= factor.signum());
         let Judged { own, fitted, hidden, .. } = Judged::new(&volume, weighted)?;
         println!("{:<15} {factor:<8} {own:<18.4} {fitted:<8.4} {hidden}", kind.to_string());
     }
@@ -59,7 +59,7 @@ fn kinds() -> Vec<(Weighting, f64)> {
 fn search(volume: &Volume, points: &Points, steps: usize) -> Result<(), Box<dyn Error>> {
     let mut random = Random(1);
     let mut best = weigh(points.clone(), Weighting::Common(0.0), Alpha::INFINITE)?;
-    let blocks = in_blocks(volume, &best.positions);
+    let blocks = in_blocks(volume, best.positions());
     let mut judged = Judged::new(volume, best.clone())?;
     for step in 1..=steps {
         let picked: Vec<(usize, f64)> = (blocks.iter())
@@ -67,12 +67,12 @@ fn search(volume: &Volume, points: &Points, steps: usize) -> Result<(), Box<dyn 
             .collect();
         let with = |changes: &[(usize, f64)]| {
             let mut changed = best.clone();
-            changes.iter().for_each(|&(point, change)| changed.weights[point] += change);
+            changes.iter().for_each(|&(point, change)| changed.weights_mut()[point] += change);
             changed
         };
         let tried = Judged::new(volume, with(&picked))?;
         let fall = |point: usize| {
-            let block = block_at(volume, best.positions[point]);
+            let block = block_at(volume, best.positions()[point]);
             judged.blocks[block] - tried.blocks[block]
         };
         let mut better: Vec<(usize, f64)> =

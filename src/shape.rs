@@ -2,8 +2,6 @@
 
 pub use walpha_shape::*;
 
-use walpha_base::Monitor;
-
 use crate::check::Claim;
 use crate::check::schema::PlacedComplex;
 
@@ -17,7 +15,7 @@ pub const MOST_FOR_CGAL: usize = 20_000;
 /// # Errors
 /// The errors of that function; [`CgalError`] if CGAL fails.
 pub fn alpha_shape(
-    points: WeightedPoints,
+    points: impl Into<WeightedPoints>,
     options: &ShapeOptions,
 ) -> Result<AlphaShape, ShapeError> {
     alpha_shape_monitored(points, options, &Monitor::noop())
@@ -28,10 +26,11 @@ pub fn alpha_shape(
 /// # Errors
 /// Those of [`alpha_shape`], and [`ShapeError::Cancelled`].
 pub fn alpha_shape_monitored(
-    points: WeightedPoints,
+    points: impl Into<WeightedPoints>,
     options: &ShapeOptions,
     monitor: &Monitor,
 ) -> Result<AlphaShape, ShapeError> {
+    let points = points.into();
     let options = options.engine(chosen(points.len(), options));
     #[cfg(feature = "cgal")]
     if options.engine == Engine::Cgal {

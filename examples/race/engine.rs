@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use walpha::ladder::Filtration;
 use walpha::shape::{Engine, ShapeOptions};
-use walpha::triangulation::{Sites, triangulate};
+use walpha::triangulation::triangulate;
 use walpha::{Alpha, AlphaShape, Simplices, WeightedPoints, alpha_shape};
 
 use super::Result;
@@ -36,8 +36,8 @@ pub(super) fn run(arguments: &[String]) -> Result<()> {
             counts(filtration.whole())
         }
         "triangulation" => {
-            let sites = Sites::new(&points.positions, &points.weights)?;
-            assert!(!triangulate(&sites)?.cells().is_empty());
+            let made = triangulate(points.positions(), Some(points.weights()))?;
+            assert!(!made.cells().is_empty());
             String::new()
         }
         other => return Err(format!("{other} cannot be run").into()),

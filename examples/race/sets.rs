@@ -100,10 +100,10 @@ impl Set {
 /// Writes a set as plain CGAL reads it, and as NPY for the command; returns the number of points.
 pub(super) fn write(set: &Set, path: &Path) -> Result<usize> {
     let points = weigh(set.points()?, set.weighting, Alpha::from_squared(set.alpha())?)?;
-    let rows = points.positions.iter().zip(&points.weights);
+    let rows = points.positions().iter().zip(points.weights());
     let numbers: Vec<f64> = rows.flat_map(|(p, w)| [p[0], p[1], p[2], *w]).collect();
     std::fs::write(path, numbers.iter().flat_map(|x| x.to_le_bytes()).collect::<Vec<u8>>())?;
-    let count = points.positions.len();
+    let count = points.positions().len();
     write_npy(path.with_extension("npy"), &Array2::from_shape_vec((count, 4), numbers)?)?;
     Ok(count)
 }

@@ -67,9 +67,9 @@ pub fn write_points(
     let target = Target::open(&path).map_err(Told::told)?;
     run(py, None, move |_| {
         let weights = points.weights.unwrap_or_else(|| vec![0.0; points.positions.len()]);
-        let mut weighted =
-            WeightedPoints::new(points.positions, weights).expect("as many weights as points");
-        weighted.values = points.values;
+        let weighted = WeightedPoints::new(points.positions, weights)
+            .and_then(|weighted| weighted.with_values(points.values))
+            .expect("columns of one length");
         target.write(|out| writer.write_model(&weighted, &facts, &packing, out))
     })
 }

@@ -205,7 +205,7 @@ impl Interpolate {
                 Ok(Grid::over_samples(&samples, asked.unwrap_or(samples.dims)))
             }
             (None, None, Some(dims)) => {
-                let positions = &weighed.points.positions;
+                let positions = weighed.points.positions();
                 let end = |f: fn(f64, f64) -> f64| {
                     let join = |a: [f64; 3], b: [f64; 3]| [0, 1, 2].map(|k| f(a[k], b[k]));
                     positions.iter().copied().reduce(join).unwrap_or_default()

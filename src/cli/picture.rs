@@ -87,8 +87,8 @@ impl PictureArgs {
     }
 
     fn draw(&self, shape: &AlphaShape) -> Result<Vec<u8>, RenderError> {
-        let positions = &shape.points().positions;
-        let values = shape.points().values.as_deref();
+        let positions = shape.points().positions();
+        let values = shape.points().values();
         let colouring = match (self.colour, values) {
             (ColourArg::Value, Some(values)) => Colouring::Values(values, ColourMap::over(values)),
             (ColourArg::Class, _) => Colouring::Classes,
@@ -111,7 +111,7 @@ impl PictureArgs {
 
 impl Exporter for PictureArgs {
     fn write(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
-        if self.colour == ColourArg::Value && shape.points().values.is_none() {
+        if self.colour == ColourArg::Value && shape.points().values().is_none() {
             return Err(io::Error::other(
                 "the points have no values to colour by; choose --colour plain or class",
             ));

@@ -246,7 +246,7 @@ pub(super) fn domain(weighed: &Weighed, volume: Option<&VolumeSummary>) -> Domai
         return Domain { volume: volume.extent, unit, of: "the box of the samples" };
     }
     let extent = |k: usize| {
-        let ends = (weighed.points.positions.iter())
+        let ends = (weighed.points.positions().iter())
             .fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], p| [l.min(p[k]), h.max(p[k])]);
         ends[1] - ends[0]
     };
@@ -270,7 +270,7 @@ pub(super) fn filled_in(
 ) -> Result<(AlphaShape, Vec<f64>), InterpolateError> {
     let whole = fill_monitored(shape, Some(volume), units, monitor)?;
     // The corners come after the points, and are in gray levels already.
-    let corners = whole.points().values.iter().flatten().skip(grays.len());
+    let corners = whole.points().values().into_iter().flatten().skip(grays.len());
     let all = grays.iter().chain(corners).copied().collect();
     Ok((whole, all))
 }

@@ -206,7 +206,7 @@ impl Shape {
         }
         let (weighed, source) = pipeline::weigh(read, input, recipe, Values::Written, progress)?;
         if source.is_some() {
-            outline::check(formats(&names), &weighed.points.positions)?;
+            outline::check(formats(&names), weighed.points.positions())?;
         }
         let volume = source.as_ref().map(VolumeSummary::of);
         drop(source);

@@ -290,7 +290,7 @@ fn differences(
     monitor: &Monitor,
 ) -> anyhow::Result<Option<Differences>> {
     let Source { volume, units, written, .. } = source;
-    let Some(values) = &weighed.points.values else { return Ok(None) };
+    let Some(values) = weighed.points.values() else { return Ok(None) };
     let grays: Vec<f64> = values.iter().map(|&value| written.gray(value)).collect();
     let (whole, grays) = filled_in(filtration.whole(), &grays, volume, *units, monitor)?;
     let interpolant = Interpolant::with_values(&whole, &grays)?;

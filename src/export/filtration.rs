@@ -101,7 +101,7 @@ fn write_npz(ordered: &Ordered<'_>, out: &mut dyn Write, monitor: &Monitor) -> i
     let pairs = ordered.pairs();
     let mut archive = Archive::compressed(ZipWriter::new_stream(out));
     let whole = ordered.filtration().whole();
-    archive.rows("points", &whole.points().positions)?;
+    archive.rows("points", whole.points().positions())?;
     archive.list("weights", whole.power_weights())?;
     archive.list("vertices", ordered.vertices().as_flattened())?;
     archive.rows("edges", ordered.edges())?;
@@ -171,7 +171,7 @@ fn filtration_file(ordered: &Ordered<'_>) -> FiltrationFile {
         Below { vertices, edges, facets }
     }
     FiltrationFile {
-        points: whole.points().positions.clone(),
+        points: whole.points().positions().to_vec(),
         weights: Some(whole.power_weights().to_vec()),
         vertices: ordered.vertices().as_flattened().to_vec(),
         edges: ordered.edges().to_vec(),

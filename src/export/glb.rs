@@ -86,14 +86,14 @@ struct File {
 impl File {
     fn primitives(&mut self, shape: &AlphaShape, surface: &Surface) -> Vec<Value> {
         let points = shape.points();
-        let places = surface.positions(&points.positions);
+        let places = surface.positions(points.positions());
         let positions: Vec<[f32; 3]> = places.map(|place| place.map(|c| c as f32)).collect();
         let bound = |pick: fn(f32, f32) -> f32| {
             [0, 1, 2].map(|axis| positions.iter().map(|p| p[axis]).reduce(pick))
         };
         let bounds = json!({ "min": bound(f32::min), "max": bound(f32::max) });
         let mut attributes = json!({ "POSITION": self.vectors(&positions, bounds) });
-        if let Some(values) = &points.values {
+        if let Some(values) = points.values() {
             let values: Vec<f64> = surface.numbers(values).collect();
             let colours: Vec<_> = colour::linear(&values)
                 .into_iter()

@@ -22,7 +22,7 @@ impl Exporter for Json {
             "program": concat!("walpha ", env!("CARGO_PKG_VERSION")),
             "balls": shape.options().balls,
             "coordinates": shape.coordinates(),
-            "values": shape.points().values,
+            "values": shape.points().values(),
         }));
         file.write_json(out).map_err(|error| match error {
             SchemaError::Io(error) => error,

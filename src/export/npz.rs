@@ -24,7 +24,7 @@ impl Exporter for Npz {
     fn encode(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
         let (points, complex) = (shape.points(), shape.complex());
         let mut archive = Archive::new(ZipWriter::new(Cursor::new(Vec::new())));
-        archive.rows("points", &points.positions)?;
+        archive.rows("points", points.positions())?;
         archive.list("weights", shape.power_weights())?;
         archive.array("alpha", arr0(shape.power_alpha().squared()))?;
         archive.rows("cells", complex.cells.rows())?;
@@ -42,7 +42,7 @@ impl Exporter for Npz {
         if let Some(torus) = shape.options().periodic {
             archive.list("periodic", &torus.sides())?;
         }
-        if let Some(values) = &points.values {
+        if let Some(values) = points.values() {
             archive.list("values", values)?;
         }
         let number = |n: u32| if n == NO_COMPONENT { -1 } else { i64::from(n) };

@@ -14,7 +14,7 @@ impl Exporter for Obj {
         let surface = self.0.surface(shape);
         writeln!(out, "# walpha: {}", annotation::alpha(shape.options().alpha))?;
         write!(out, "{}", annotation::line("#", shape.coordinates()))?;
-        for [x, y, z] in surface.positions(&shape.points().positions) {
+        for [x, y, z] in surface.positions(shape.points().positions()) {
             writeln!(out, "v {x} {y} {z}")?;
         }
         let name = |group| self.0.groups.then_some(group);

@@ -17,7 +17,7 @@ impl Exporter for Off {
         write!(out, "{}", annotation::line("#", shape.coordinates()))?;
         let facets = surface.regular.len() + surface.singular.len();
         writeln!(out, "{} {facets} 0", surface.vertex_count())?;
-        for [x, y, z] in surface.positions(&shape.points().positions) {
+        for [x, y, z] in surface.positions(shape.points().positions()) {
             writeln!(out, "{x} {y} {z}")?;
         }
         for (facets, colour) in

@@ -31,7 +31,7 @@ impl<'a> Planar<'a> {
     /// The shape has no outline.
     pub(super) fn of(shape: &'a AlphaShape) -> io::Result<Self> {
         let outline = shape.outline().map_err(io::Error::other)?;
-        let positions = &shape.points().positions[..];
+        let positions = shape.points().positions();
         let columns = if positions.iter().all(|place| place[2] == 0.0) { 2 } else { 3 };
         Ok(Self { outline, positions, columns })
     }

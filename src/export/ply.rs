@@ -22,7 +22,7 @@ impl Exporter for Ply {
         let surface = options.surface(shape);
         let sheets = shape.sheets().filter(|_| options.groups && !options.solid);
         let sheets: Option<Vec<_>> = sheets.map(|sheets| sheets.sides().collect());
-        let valued = shape.points().values.is_some();
+        let valued = shape.points().values().is_some();
         write!(
             out,
             "ply\nformat {} 1.0\ncomment walpha: {}\n{}element vertex {}\n\
@@ -80,9 +80,9 @@ const VALUED: &str =
 
 fn vertices(row: &mut Row<'_>, shape: &AlphaShape, surface: &Surface) -> io::Result<()> {
     let points = shape.points();
-    let values: Option<Vec<f64>> = points.values.as_ref().map(|v| surface.numbers(v).collect());
+    let values: Option<Vec<f64>> = points.values().map(|v| surface.numbers(v).collect());
     let colours = values.as_deref().map(colour::bytes);
-    let places = surface.positions(&points.positions).zip(surface.numbers(&points.weights));
+    let places = surface.positions(points.positions()).zip(surface.numbers(points.weights()));
     for (i, ((place, weight), index)) in places.zip(surface.indices()).enumerate() {
         for number in [place[0], place[1], place[2], weight] {
             row.put(number, f64::to_le_bytes)?;

@@ -15,7 +15,7 @@ pub struct Stl(pub ExportOptions);
 impl Exporter for Stl {
     fn encode(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
         let surface = self.0.surface(shape);
-        let positions: Vec<_> = surface.positions(&shape.points().positions).collect();
+        let positions: Vec<_> = surface.positions(shape.points().positions()).collect();
         let mut head = [b' '; 80];
         // The header must not begin with "solid", as some readers would take the file for text.
         let stated = annotation::comment(shape.coordinates());

@@ -16,7 +16,7 @@ impl Exporter for Svg {
         let outline = shape.outline().map_err(io::Error::other)?;
         let [u, v] = outline.axes;
         let place = |point: u32| {
-            let position = shape.points().positions[point as usize];
+            let position = shape.points().positions()[point as usize];
             // From 0, so that there is no −0.
             [position[u], 0.0 - position[v]]
         };

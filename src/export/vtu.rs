@@ -53,9 +53,9 @@ impl<'a> PointData<'a> {
     pub(crate) fn of(shape: &'a AlphaShape) -> Self {
         let points = shape.points();
         Self {
-            positions: &points.positions,
-            weights: &points.weights,
-            values: points.values.as_deref(),
+            positions: points.positions(),
+            weights: points.weights(),
+            values: points.values(),
             voxels: None,
         }
     }

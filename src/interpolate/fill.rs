@@ -34,34 +34,47 @@ pub fn fill_monitored(
     units: Units,
     monitor: &Monitor,
 ) -> Result<AlphaShape, InterpolateError> {
-    let mut points = shape.points().clone();
-    points.weights = shape.power_weights().to_vec();
+    let points = shape.points();
+    let mut columns = Columns {
+        positions: points.positions().to_vec(),
+        weights: shape.power_weights().to_vec(),
+        values: points.values().map(<[f64]>::to_vec),
+    };
     if let Some(volume) = volume {
-        add_corners(&mut points, volume, units)?;
+        columns.add_corners(volume, units)?;
     }
     let engine = shape.options().engine;
     let options = ShapeOptions::new(Alpha::INFINITE).engine(engine).hidden(true);
-    Ok(alpha_shape_monitored(points, &options, monitor)?)
+    Ok(alpha_shape_monitored(columns.points(), &options, monitor)?)
 }
 
-fn add_corners(
-    points: &mut WeightedPoints,
-    volume: &Volume,
-    units: Units,
-) -> Result<(), InterpolateError> {
-    let values = points.values.as_mut().ok_or(InterpolateError::NoValues)?;
-    let lightest = points.weights.iter().copied().reduce(f64::min).unwrap_or(0.0);
-    let missing: Vec<(f64, [f64; 3])> = corners(volume)
-        .into_iter()
-        .map(|voxel| (f64::from(volume.as_slice()[voxel as usize]), units.position(volume, voxel)))
-        .filter(|(_, corner)| !points.positions.contains(corner))
-        .collect();
-    for (value, corner) in missing {
-        points.positions.push(corner);
-        points.weights.push(lightest);
-        values.push(value);
+/// The columns of points, to append to.
+struct Columns {
+    positions: Vec<[f64; 3]>,
+    weights: Vec<f64>,
+    values: Option<Vec<f64>>,
+}
+
+impl Columns {
+    fn add_corners(&mut self, volume: &Volume, units: Units) -> Result<(), InterpolateError> {
+        let values = self.values.as_mut().ok_or(InterpolateError::NoValues)?;
+        let lightest = self.weights.iter().copied().reduce(f64::min).unwrap_or(0.0);
+        let position = |voxel| units.position(volume, voxel);
+        let mut missing = corners(volume);
+        missing.retain(|&voxel| !self.positions.contains(&position(voxel)));
+        for voxel in missing {
+            self.positions.push(position(voxel));
+            self.weights.push(lightest);
+            values.push(f64::from(volume.as_slice()[voxel as usize]));
+        }
+        Ok(())
     }
-    Ok(())
+
+    fn points(self) -> WeightedPoints {
+        WeightedPoints::new(self.positions, self.weights)
+            .and_then(|points| points.with_values(self.values))
+            .expect("columns that grow together")
+    }
 }
 
 /// The corner samples of a volume, ascending: 8, or fewer where an axis has one sample.

@@ -61,7 +61,7 @@ impl<'a> Interpolant<'a> {
     /// # Errors
     /// Points without values, or with one that is not finite.
     pub fn new(shape: &'a AlphaShape) -> Result<Self, InterpolateError> {
-        let values = shape.points().values.as_deref().ok_or(InterpolateError::NoValues)?;
+        let values = shape.points().values().ok_or(InterpolateError::NoValues)?;
         Self::with_values(shape, values)
     }
 
@@ -86,7 +86,7 @@ impl<'a> Interpolant<'a> {
         add(&mut simplices, &complex.facets, Class::Singular);
         add(&mut simplices, &complex.edges, Class::Singular);
         add(&mut simplices, &complex.vertices, Class::Singular);
-        let positions = &shape.points().positions[..];
+        let positions = shape.points().positions();
         let bit_range = BitRange::of(positions);
         Ok(Self {
             positions: positions.into(),

@@ -174,7 +174,7 @@ impl Model {
         let needed = |blocks: u64| threads * self.memory(blocks);
         let mut powers = (0..POWERS).map(|power| threads << power);
         let most = 1 << (POWERS - 1);
-        let none = PlanError { asked, needed: needed(threads * most), blocks: most as usize };
+        let none = PlanError::new(asked, needed(threads * most), most as usize);
         powers.find(|&blocks| needed(blocks) <= asked).ok_or(ShapeError::Plan(none))
     }
 }

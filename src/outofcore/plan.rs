@@ -408,7 +408,7 @@ impl Boxes<'_> {
             let tiles = TILE_SAMPLE * tile;
             memory::resident_bytes().unwrap_or(0) + threads * (tiles + AT_WORK * largest)
         };
-        let mut least = PlanError { asked, needed: u64::MAX, blocks: 1 };
+        let mut least = PlanError::new(asked, u64::MAX, 1);
         let mut blocks = processes * threads as usize;
         while blocks <= MAX_BLOCKS {
             let cut = with_halo(blocks);
@@ -417,7 +417,7 @@ impl Boxes<'_> {
                 return Ok(cut);
             }
             if needed < least.needed {
-                least = PlanError { needed, blocks, ..least };
+                least = PlanError::new(asked, needed, blocks);
             } else if cut.len() < blocks / 2 {
                 break;
             }

@@ -11,6 +11,7 @@ use crate::shape::{
 ///
 /// # Errors
 /// A file cannot be read or does not verify; more points than 32-bit indices name.
+#[expect(clippy::missing_panics_doc, reason = "an invariant, never met")]
 pub fn whole(plan: &Plan, merged: &Merged) -> Result<AlphaShape, BlocksError> {
     if merged.points > u64::from(u32::MAX) {
         return Err(BlocksError::TooLarge { what: format!("{} points", merged.points) });
@@ -40,11 +41,11 @@ pub fn whole(plan: &Plan, merged: &Merged) -> Result<AlphaShape, BlocksError> {
     let (complex, sheets) = rows.finish(merged.sheets);
     let job = &plan.job;
     let place = |voxel: u64| job.units.place(&job.frame, job.dims, voxel);
-    let points = WeightedPoints {
-        positions: points.iter().map(|&(voxel, ..)| place(voxel)).collect(),
-        weights: points.iter().map(|&(.., weight)| weight).collect(),
-        values: Some(points.iter().map(|&(_, value, _)| value).collect()),
-    };
+    let positions = points.iter().map(|&(voxel, ..)| place(voxel)).collect();
+    let weights = points.iter().map(|&(.., weight)| weight).collect();
+    let values: Vec<f64> = points.iter().map(|&(_, value, _)| value).collect();
+    let points = WeightedPoints::new(positions, weights).and_then(|all| all.with_values(values));
+    let points = points.expect("columns of one list");
     let assembled = Assembled {
         points,
         coordinates: job.units.coordinates_of(&job.frame),

@@ -136,7 +136,7 @@ impl Recipe {
         if let Some(to) = self.refit {
             self.fit(&mut weighed, source, to, monitor)?;
         }
-        if let (Values::Written, Some(values)) = (values, &mut weighed.points.values) {
+        if let (Values::Written, Some(values)) = (values, weighed.points.values_mut()) {
             values.iter_mut().for_each(|value| *value = written.value(*value));
         }
         Ok(weighed)
@@ -210,7 +210,8 @@ impl Recipe {
         let options = self.shape_of(parameter)?;
         let shape = alpha_shape_monitored(weighed.points.clone(), &options, &monitor.unreported())?;
         let fitted = refit_monitored(&shape, &source.volume, source.units, to, monitor)?;
-        weighed.points.values = Some(fitted.values);
+        let points = std::mem::take(&mut weighed.points);
+        weighed.points = points.with_values(fitted.values).expect("a value for each point");
         weighed.origin.fit = Some(fitted.fit);
         Ok(())
     }

@@ -46,8 +46,12 @@ pub(super) fn spacing_alpha(points: &WeightedPoints, torus: Option<Torus>) -> Al
 /// The distinct places of points, in order, each with the largest weight there.
 fn places(points: &WeightedPoints, torus: Option<Torus>) -> Vec<Neighbour> {
     let place = |&place: &[f64; 3]| torus.map_or(place, |torus| torus.wrap(place));
-    let mut places: Vec<([f64; 3], f64)> =
-        points.positions.par_iter().map(place).zip(points.weights.par_iter().copied()).collect();
+    let mut places: Vec<([f64; 3], f64)> = points
+        .positions()
+        .par_iter()
+        .map(place)
+        .zip(points.weights().par_iter().copied())
+        .collect();
     let order = |a: &[f64; 3], b: &[f64; 3]| {
         let axes =
             [0, 1, 2].map(|axis| a[axis].partial_cmp(&b[axis]).expect("coordinates are numbers"));
@@ -147,7 +151,7 @@ mod tests {
     fn weights_are_taken_off() {
         let mut points = WeightedPoints::unweighted(lattice(12));
         let without = spacing_alpha(&points, None).squared();
-        points.weights.iter_mut().for_each(|weight| *weight = 3.0);
+        points.weights_mut().iter_mut().for_each(|weight| *weight = 3.0);
         assert_eq!(spacing_alpha(&points, None).squared(), without - 3.0);
     }
 }

@@ -140,7 +140,7 @@ impl Weighed {
             return Err(PipelineError::PeriodicWeights);
         }
         let is_outside = |place: &&[f64; 3]| !torus.holds(**place);
-        self.origin.folded = Some(self.points.positions.par_iter().filter(is_outside).count());
+        self.origin.folded = Some(self.points.positions().par_iter().filter(is_outside).count());
         Ok(())
     }
 }

@@ -1,6 +1,6 @@
 use ndarray::Array3;
 use rayon::prelude::*;
-use walpha_regular::{Sites, Triangulation, TriangulationError, triangulate};
+use walpha_regular::{Triangulation, triangulate};
 
 use super::{Points, PointsError};
 use crate::volume::Volume;
@@ -86,59 +86,55 @@ fn row_differences(row: &[f32], neighbours: [&[f32]; 4], divisor: f64, differenc
 /// memory of a triangulation.
 ///
 /// # Errors
-/// Points without values, and the errors of [`Sites`]: numbers that are not finite, fewer than four distinct
+/// Points without values, and the errors of [`triangulate`]: numbers that are not finite, fewer than four distinct
 /// positions, or coplanar positions.
 pub fn scattered_difference(points: &Points) -> Result<Vec<f64>, PointsError> {
     let values = points.values.as_deref().ok_or(PointsError::NoValues)?;
-    let unweighted = vec![0.0; points.len()];
-    let sites = Sites::new(&points.positions, &unweighted).map_err(TriangulationError::from)?;
-    let neighbours = Neighbours::of(&triangulate(&sites)?);
+    let delaunay = triangulate(&points.positions, None)?;
+    let neighbours = Neighbours::of(&delaunay);
 
-    let mut site_of: Vec<u32> = vec![0; points.len()];
-    for (site, &point) in sites.input().iter().enumerate() {
-        site_of[point as usize] = site as u32;
+    let mut vertex_of: Vec<u32> = (0..delaunay.ghost()).collect();
+    for &[removed, kept] in delaunay.duplicates() {
+        vertex_of[removed as usize] = kept;
     }
-    for &[removed, kept] in sites.duplicates() {
-        site_of[removed as usize] = site_of[kept as usize];
-    }
-    let difference = |(&value, &site): (&f64, &u32)| {
-        let around = neighbours.around(site);
-        let from = |&other: &u32| (value - values[sites.input()[other as usize] as usize]).abs();
+    let difference = |(&value, &vertex): (&f64, &u32)| {
+        let around = neighbours.around(vertex);
+        let from = |&other: &u32| (value - values[other as usize]).abs();
         around.iter().map(from).sum::<f64>() / around.len() as f64
     };
-    Ok(values.iter().zip(&site_of).map(difference).collect())
+    Ok(values.iter().zip(&vertex_of).map(difference).collect())
 }
 
-/// The neighbours of all sites, ascending, in one list.
+/// The neighbours of all points, ascending, in one list.
 struct Neighbours {
-    /// End of the neighbours of each site in `sites`.
+    /// End of the neighbours of each point in `vertices`.
     ends: Vec<usize>,
-    sites: Vec<u32>,
+    vertices: Vec<u32>,
 }
 
 impl Neighbours {
     fn of(delaunay: &Triangulation) -> Self {
-        let ghost = delaunay.ghost();
-        let edges_of = |cell: &[u32; 4]| {
-            let [a, b, c, d] = *cell;
-            [[a, b], [a, c], [a, d], [b, c], [b, d], [c, d]]
-        };
-        let edges =
-            delaunay.cells().iter().flat_map(edges_of).filter(|edge| !edge.contains(&ghost));
+        let edges_of = |[a, b, c, d]: [u32; 4]| [[a, b], [a, c], [a, d], [b, c], [b, d], [c, d]];
+        // All edges of the hull are edges of finite cells.
+        let edges = delaunay.finite_cells().flat_map(|(_, corners)| edges_of(corners));
         let mut pairs: Vec<[u32; 2]> = edges.flat_map(|[a, b]| [[a, b], [b, a]]).collect();
         pairs.sort_unstable();
         pairs.dedup();
-        let mut ends = vec![0; ghost as usize];
-        for (i, &[site, _]) in pairs.iter().enumerate() {
-            ends[site as usize] = i + 1;
+        let mut ends = vec![0; delaunay.ghost() as usize];
+        for (i, &[vertex, _]) in pairs.iter().enumerate() {
+            ends[vertex as usize] = i + 1;
         }
-        Self { ends, sites: pairs.into_iter().map(|[_, neighbour]| neighbour).collect() }
+        // Duplicates have none.
+        for v in 1..ends.len() {
+            ends[v] = ends[v].max(ends[v - 1]);
+        }
+        Self { ends, vertices: pairs.into_iter().map(|[_, neighbour]| neighbour).collect() }
     }
 
-    /// The neighbours of a site. Never empty: every site of an unweighted triangulation is a vertex.
-    fn around(&self, site: u32) -> &[u32] {
-        let site = site as usize;
-        let start = if site == 0 { 0 } else { self.ends[site - 1] };
-        &self.sites[start..self.ends[site]]
+    /// The neighbours of a vertex. Never empty: every position of an unweighted triangulation is a vertex.
+    fn around(&self, vertex: u32) -> &[u32] {
+        let vertex = vertex as usize;
+        let start = if vertex == 0 { 0 } else { self.ends[vertex - 1] };
+        &self.vertices[start..self.ends[vertex]]
     }
 }

@@ -18,7 +18,7 @@ pub fn weigh(
         Weighting::Column => finite(points.weights.take().ok_or(PointsError::NoColumn)?)?,
         _ => weights(&points, weighting, alpha)?,
     };
-    Ok(WeightedPoints { positions: points.positions, weights, values: points.values })
+    Ok(WeightedPoints::new(points.positions, weights)?.with_values(points.values)?)
 }
 
 /// The weights of points. `alpha` is the α of the shape, or the one at which weights are frozen; common and

@@ -11,11 +11,11 @@ use super::WeightedPoints;
 /// # Errors
 /// Errors of the writer.
 pub(super) fn csv(points: &WeightedPoints, writer: &mut dyn Write) -> io::Result<()> {
-    let value = if points.values.is_some() { ",value" } else { "" };
+    let value = if points.values().is_some() { ",value" } else { "" };
     writeln!(writer, "x,y,z,weight{value}")?;
-    for (i, ([x, y, z], weight)) in points.positions.iter().zip(&points.weights).enumerate() {
+    for (i, ([x, y, z], weight)) in points.positions().iter().zip(points.weights()).enumerate() {
         write!(writer, "{x},{y},{z},{weight}")?;
-        if let Some(values) = &points.values {
+        if let Some(values) = points.values() {
             write!(writer, ",{}", values[i])?;
         }
         writeln!(writer)?;
@@ -28,11 +28,11 @@ pub(super) fn csv(points: &WeightedPoints, writer: &mut dyn Write) -> io::Result
 /// # Errors
 /// Errors of the writer.
 pub(super) fn npy(points: &WeightedPoints, mut writer: &mut dyn Write) -> io::Result<()> {
-    let columns = if points.values.is_some() { 5 } else { 4 };
+    let columns = if points.values().is_some() { 5 } else { 4 };
     let rows = Array2::from_shape_fn((points.len(), columns), |(i, column)| match column {
-        3 => points.weights[i],
-        4 => points.values.as_ref().map_or(0.0, |values| values[i]),
-        axis => points.positions[i][axis],
+        3 => points.weights()[i],
+        4 => points.values().map_or(0.0, |values| values[i]),
+        axis => points.positions()[i][axis],
     });
     rows.write_npy(&mut writer).map_err(|error| match error {
         WriteNpyError::Io(error) => error,

@@ -61,7 +61,7 @@ type Plane = ([i64; 3], i64);
 /// In each plane of the boundary, the edges that an odd number of its facets have. Planes of
 /// regular facets have an outer side, those of singular ones none.
 fn outlines(shape: &AlphaShape, class: Class) -> BTreeSet<(Plane, [u32; 2])> {
-    let positions = &shape.points().positions;
+    let positions = shape.points().positions();
     let mut odd = BTreeSet::new();
     for &facet in shape.complex().facets.of(class) {
         let corners = facet.map(|v| positions[v as usize].map(|c| c as i64));
@@ -141,7 +141,7 @@ mod tests {
                 (0..12).map(|i| [i & 1, i >> 1 & 1, i >> 2].map(f64::from)).collect();
             let mut weights = vec![0.0; positions.len()];
             weights[0] = weight;
-            let points = WeightedPoints { positions, weights, values: None };
+            let points = WeightedPoints::new(positions, weights).unwrap();
             let options = ShapeOptions::new(Alpha::from_squared(alpha).unwrap());
             alpha_shape(points, &options).unwrap()
         };

@@ -336,7 +336,7 @@ impl Cameras {
     /// The picture of a shape, in the colour of bone.
     pub(super) fn shape(&self, shape: &AlphaShape, eye: Eye) -> Result<Picture, ReproduceError> {
         let style = ShapeStyle { colouring: Colouring::Plain, ..ShapeStyle::default() };
-        self.render(&Scene::of_shape(&shape.points().positions, shape.complex(), &style)?, eye)
+        self.render(&Scene::of_shape(shape.points().positions(), shape.complex(), &style)?, eye)
     }
 }
 

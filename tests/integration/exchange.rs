@@ -15,7 +15,7 @@ use crate::common::{has_skull, json, names, ok, run};
 
 fn whole(volume: &Volume, voxels: &[u32], units: Units) -> AlphaShape {
     let positions = voxels.iter().map(|&v| units.position(volume, v)).collect();
-    let values = voxels.iter().map(|&v| volume.as_slice()[v as usize].into()).collect();
+    let values: Vec<f64> = voxels.iter().map(|&v| volume.as_slice()[v as usize].into()).collect();
     let points = WeightedPoints::unweighted(positions).with_values(values).unwrap();
     let options = ShapeOptions::new(Alpha::INFINITE).engine(Engine::Native);
     alpha_shape(points, &options).unwrap()

@@ -66,16 +66,19 @@ fn flat_shapes_are_those_of_the_definition() {
     let mut done = 0;
     while done < 400 {
         let points = set(&mut random);
-        if common::spans_a_volume(&points.positions) {
+        if common::spans_a_volume(points.positions()) {
             continue;
         }
         done += 1;
-        let scale = points.positions.as_flattened().iter().fold(1e-3f64, |m, x| m.max(x.abs()));
+        let scale = points.positions().as_flattened().iter().fold(1e-3f64, |m, x| m.max(x.abs()));
         for alpha in [-0.5, 0.0, 0.02, 0.05, 0.1, 0.25, 1.0, f64::INFINITY] {
             let alpha = alpha * scale * scale;
-            let made =
-                enumerate(&points.positions, &points.weights, Alpha::from_squared(alpha).unwrap())
-                    .unwrap();
+            let made = enumerate(
+                points.positions(),
+                points.weights(),
+                Alpha::from_squared(alpha).unwrap(),
+            )
+            .unwrap();
             for engine in [Engine::Native, Engine::Cgal] {
                 let whole = shape(&points, alpha, engine, true);
                 assert_eq!(*whole.complex(), made.complex, "{engine:?} at {alpha}: {points:?}");

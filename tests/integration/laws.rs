@@ -14,7 +14,7 @@ type Site = ([i32; 3], i32);
 fn lattice() -> impl Strategy<Value = Vec<Site>> {
     let site = ([0..4, 0..4, 0..4i32], prop_oneof![3 => Just(0), 1 => 0..12i32]);
     let sites = prop::collection::vec(site, 4..40);
-    sites.prop_filter("in one plane", |sites| common::spans_a_volume(&points(sites).positions))
+    sites.prop_filter("in one plane", |sites| common::spans_a_volume(points(sites).positions()))
 }
 
 fn points(sites: &[Site]) -> WeightedPoints {
@@ -54,7 +54,7 @@ proptest! {
         let (common, alpha) = (f64::from(common) / 4.0, f64::from(alpha) / 4.0);
         let plain = points(&sites);
         let mut shifted = plain.clone();
-        shifted.weights.iter_mut().for_each(|w| *w += common);
+        shifted.weights_mut().iter_mut().for_each(|w| *w += common);
         let shifted = shape(shifted, alpha);
         let plain = shape(plain, alpha + common);
         prop_assert_eq!(shifted.complex(), plain.complex());
@@ -76,8 +76,8 @@ proptest! {
         let alpha = f64::from(alpha) / 4.0;
         let factor = 2f64.powi(exponent);
         let here = points(&sites);
-        let positions = here.positions.iter().map(|p| p.map(|v| v * factor)).collect();
-        let weights = here.weights.iter().map(|w| w * factor * factor).collect();
+        let positions = here.positions().iter().map(|p| p.map(|v| v * factor)).collect();
+        let weights = here.weights().iter().map(|w| w * factor * factor).collect();
         let scaled = WeightedPoints::new(positions, weights).unwrap();
         let here = shape(here, alpha);
         let scaled = shape(scaled, alpha * factor * factor);

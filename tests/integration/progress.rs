@@ -162,7 +162,7 @@ fn a_pipeline_that_is_cancelled_within_a_stage_says_so() {
     assert_ends(|monitor| recipe.weighed(&source, Values::Written, monitor).map(drop));
     let alpha = Alpha::from_squared(1.0).unwrap();
     let recipe = Recipe::new().alpha(alpha).engine(Engine::Native);
-    let points = || Points::new(lattice(27).positions);
+    let points = || Points::new(lattice(27).into_parts().0);
     assert_ends(|monitor| recipe.run_points_monitored(points(), monitor).map(drop));
 }
 

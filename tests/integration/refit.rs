@@ -20,7 +20,8 @@ fn shape_at(points: WeightedPoints, alpha: f64) -> AlphaShape {
 fn points_of(volume: &Volume, voxels: &[(u32, f64)], units: Units) -> WeightedPoints {
     let positions = voxels.iter().map(|&(v, _)| units.position(volume, v)).collect();
     let weights = voxels.iter().map(|&(_, weight)| weight).collect();
-    let values = voxels.iter().map(|&(v, _)| volume.as_slice()[v as usize].into()).collect();
+    let values: Vec<f64> =
+        voxels.iter().map(|&(v, _)| volume.as_slice()[v as usize].into()).collect();
     WeightedPoints::new(positions, weights).unwrap().with_values(values).unwrap()
 }
 
@@ -69,11 +70,11 @@ proptest! {
         let sites: Vec<(u32, f64)> = there.map(|(v, w)| (v, f64::from(w))).collect();
         let shape = shape_at(points_of(&volume, &sites, units), 1.5);
         let to = if whole { Refit::Whole } else { Refit::Shape };
-        let before = shape.points().values.clone().unwrap();
+        let before = shape.points().values().unwrap().to_vec();
         let fitted = refit(&shape, &volume, units, to).unwrap();
         let judged = if whole { fill(&shape, Some(&volume), units).unwrap() } else { shape };
         // The values of corners that were added stay.
-        let own = judged.points().values.clone().unwrap();
+        let own = judged.points().values().unwrap().to_vec();
         let with = |values: &[f64]| [values, &own[values.len()..]].concat();
         let of = |values: &[f64], v| gradient(&judged, &with(values), &volume, units, v);
         let norm = |values: &[f64]| {
@@ -92,7 +93,7 @@ fn what_no_sample_depends_on_stays() {
     let sites = [(0, 0.0), (40, 0.0), (700, 60.0), (701, 0.0), (1500, 0.0), (1000, 0.0)];
     let shape = shape_at(points_of(&volume, &sites, Units::Voxel), 50.0);
     let fitted = refit(&shape, &volume, Units::Voxel, Refit::Whole).unwrap();
-    let own = shape.points().values.as_ref().unwrap();
+    let own = shape.points().values().unwrap();
     assert_eq!(fill(&shape, Some(&volume), Units::Voxel).unwrap().hidden(), Some(&[3][..]));
     assert_eq!(fitted.values[3], own[3]);
     assert_ne!(fitted.values[2], own[2]);
@@ -107,7 +108,7 @@ fn a_linear_volume_is_fitted_already() {
     let shape = shape_at(points_of(&volume, &sites, Units::Voxel), 20.0);
     for to in [Refit::Whole, Refit::Shape] {
         let fitted = refit(&shape, &volume, Units::Voxel, to).unwrap();
-        for (ours, own) in fitted.values.iter().zip(shape.points().values.as_ref().unwrap()) {
+        for (ours, own) in fitted.values.iter().zip(shape.points().values().unwrap()) {
             assert!((ours - own).abs() < 1e-9, "{ours} {own}");
         }
     }

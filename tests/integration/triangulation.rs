@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 use walpha::shape::{Engine, ShapeError, ShapeOptions};
-use walpha::triangulation::{Sites, Triangulation, TriangulationError, triangulate};
+use walpha::triangulation::{Triangulation, TriangulationError, triangulate};
 use walpha::{Alpha, AlphaShape, WeightedPoints, alpha_shape};
 use walpha_base::random::Random;
 
@@ -102,11 +102,9 @@ fn line_and_a_few(r: &mut Random) -> WeightedPoints {
     weighted(points)
 }
 
-/// The triangulation, by input index.
-fn made(points: &WeightedPoints) -> Result<(Triangulation, Vec<u32>), TriangulationError> {
-    let sites = Sites::new(&points.positions, &points.weights)?;
-    let input = sites.input().to_vec();
-    Ok((triangulate(&sites)?, input))
+/// Our triangulation.
+fn made(points: &WeightedPoints) -> Result<Triangulation, TriangulationError> {
+    triangulate(points.positions(), Some(points.weights()))
 }
 
 /// All of CGAL's triangulation.
@@ -115,10 +113,9 @@ fn whole(points: &WeightedPoints) -> Result<AlphaShape, ShapeError> {
     alpha_shape(points.clone(), &options.hidden(true))
 }
 
-/// Finite cells by input index, whatever their order: from the smallest corner on, oriented.
-fn cells(triangulation: &Triangulation, input: &[u32]) -> Vec<[u32; 4]> {
-    let canonical = |cell: &[u32; 4]| {
-        let cell = cell.map(|site| input[site as usize]);
+/// Finite cells, whatever their order: from the smallest corner on, oriented.
+fn cells(triangulation: &Triangulation) -> Vec<[u32; 4]> {
+    let canonical = |(_, cell): (u32, [u32; 4])| {
         let mut sorted = cell;
         sorted.sort_unstable();
         let pairs = (0..4).flat_map(|j| (0..j).map(move |i| (i, j)));
@@ -127,8 +124,7 @@ fn cells(triangulation: &Triangulation, input: &[u32]) -> Vec<[u32; 4]> {
         }
         sorted
     };
-    let finite = triangulation.cells().iter().filter(|cell| !cell.contains(&triangulation.ghost()));
-    let mut cells: Vec<_> = finite.map(canonical).collect();
+    let mut cells: Vec<_> = triangulation.finite_cells().map(canonical).collect();
     cells.sort_unstable();
     cells
 }
@@ -141,24 +137,24 @@ fn check_neighbours(triangulation: &Triangulation) {
         facet.sort_unstable();
         facet
     };
-    for (side, &across) in (0..).zip(triangulation.neighbors().as_flattened()) {
-        assert_eq!(triangulation.neighbors()[across as usize / 4][across as usize % 4], side);
+    for (side, &across) in (0..).zip(triangulation.adjacency().as_flattened()) {
+        assert_eq!(triangulation.adjacency()[across as usize / 4][across as usize % 4], side);
         assert_eq!(facet(side), facet(across));
     }
 }
 
 fn check(points: &WeightedPoints, alphas: &[f64]) -> &'static str {
     let (native, cgal) = (made(points), whole(points));
-    let ((native, input), cgal) = match (native, cgal) {
+    let (native, cgal) = match (native, cgal) {
         (Ok(native), Ok(cgal)) => (native, cgal),
         (native, cgal) => {
             assert_eq!(native.err().map(ShapeError::from), cgal.err());
             return "refused";
         }
     };
-    assert_eq!(cells(&native, &input), cgal.complex().cells.rows());
-    let hidden: Vec<u32> = native.hidden().iter().map(|&site| input[site as usize]).collect();
-    assert_eq!(Some(&hidden[..]), cgal.hidden());
+    assert_eq!(cells(&native), cgal.complex().cells.rows());
+    assert_eq!(Some(native.hidden()), cgal.hidden());
+    assert_eq!(native.duplicates(), cgal.duplicates());
     check_neighbours(&native);
     for &alpha in alphas {
         let alpha = Alpha::from_squared(alpha).unwrap();
@@ -182,7 +178,8 @@ fn a_hundred_thousand_degenerate_sets() {
         let family = (seed % FAMILIES.len() as u64) as usize;
         let points = FAMILIES[family](&mut random);
         // Shapes of every tenth set: triangulations are where engines may differ.
-        let scale = points.positions.as_flattened().iter().fold(0f64, |most, x| most.max(x.abs()));
+        let scale =
+            points.positions().as_flattened().iter().fold(0f64, |most, x| most.max(x.abs()));
         let alphas = [0.0, 0.25, 0.5, 1.0].map(|alpha| alpha * scale * scale);
         let every_tenth = (seed / FAMILIES.len() as u64).is_multiple_of(10);
         let alphas = if every_tenth { &alphas[..] } else { &[] };
@@ -213,7 +210,7 @@ fn two_lines_that_do_not_meet() {
     let one = line.clone().map(|x| ([x, 0.0, 0.0], 0.0));
     let points = weighted(one.chain(line.map(|y| ([0.0, y, 500.0], 0.0))));
     assert_eq!(check(&points, &[1.0]), "triangulated");
-    assert!(made(&points).unwrap().0.cells().len() > 119 * 119);
+    assert!(made(&points).unwrap().cells().len() > 119 * 119);
 }
 
 /// A line of points and two more: time must not grow with the square of their number.
@@ -222,6 +219,5 @@ fn a_long_line_and_two_points() {
     let line = (0..200_000).map(|i| ([f64::from(i), 0.0, 0.0], 0.0));
     let more = [([0.0, 1.0, 0.0], 0.0), ([5.0, 0.0, 1.0], 0.0)];
     let points = weighted(line.chain(more));
-    let (made, _) = made(&points).unwrap();
-    assert_eq!(made.cells().iter().filter(|cell| !cell.contains(&made.ghost())).count(), 199_999);
+    assert_eq!(made(&points).unwrap().finite_cells().count(), 199_999);
 }

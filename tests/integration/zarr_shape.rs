@@ -66,7 +66,7 @@ fn arrays_have_every_simplex_once() {
     let (points, complex) = (model.shape.points(), model.shape.complex());
     let voxel =
         |p: &[f64; 3]| p[0] as u64 + SIDE as u64 * (p[1] as u64 + SIDE as u64 * p[2] as u64);
-    let voxels: Vec<u64> = points.positions.iter().map(voxel).collect();
+    let voxels: Vec<u64> = points.positions().iter().map(voxel).collect();
 
     assert_eq!(found::<1>(&zarr, "vertices"), expected(&complex.vertices, &voxels));
     assert_eq!(found::<2>(&zarr, "edges"), expected(&complex.edges, &voxels));
@@ -81,9 +81,9 @@ fn arrays_have_every_simplex_once() {
     assert_eq!([positions.len(), weights.len(), values.len()], [corners.len(); 3]);
     for (k, corner) in corners.iter().enumerate() {
         let v = voxels.binary_search(corner).unwrap();
-        assert_eq!(positions[k], points.positions[v]);
-        assert_eq!(weights[k], points.weights[v]);
-        assert_eq!(values[k], points.values.as_ref().unwrap()[v]);
+        assert_eq!(positions[k], points.positions()[v]);
+        assert_eq!(weights[k], points.weights()[v]);
+        assert_eq!(values[k], points.values().unwrap()[v]);
     }
     let components = array::<u32>(&zarr, "vertices/components");
     let most = components.iter().max().unwrap() + 1;

@@ -1,11 +1,13 @@
+use std::cmp::Ordering;
 use std::fmt;
+use std::hash::{Hash, Hasher};
 use std::str::FromStr;
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
 
 /// The parameter α of a shape: a **squared** length, as in CGAL and in Edelsbrunner 1992.
 ///
-/// α = ∞ gives the convex hull; with weights a negative α is legal. It is never NaN.
+/// α = ∞ gives the convex hull; with weights a negative α is legal. It is never NaN, so any two compare; −0 is 0.
 ///
 /// As text, and in JSON, it is a number, `inf` or `-inf`:
 ///
@@ -18,7 +20,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
 /// assert_eq!(Alpha::INFINITE.to_string(), "inf");
 /// # Ok::<(), walpha_complex::AlphaError>(())
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Alpha(f64);
 
 impl Alpha {
@@ -33,7 +35,8 @@ impl Alpha {
     /// # Errors
     /// [`AlphaError::NaN`].
     pub fn from_squared(squared: f64) -> Result<Self, AlphaError> {
-        if squared.is_nan() { Err(AlphaError::NaN) } else { Ok(Self(squared)) }
+        // Adding 0.0 turns −0.0 into 0.0, so that equal α have equal bits.
+        if squared.is_nan() { Err(AlphaError::NaN) } else { Ok(Self(squared + 0.0)) }
     }
 
     /// α given by the radius it is the square of, rounded once.
@@ -56,6 +59,26 @@ impl Alpha {
     /// √α, a length; `None` when α is negative.
     pub fn radius(self) -> Option<f64> {
         (self.0 >= 0.0).then(|| self.0.sqrt())
+    }
+}
+
+impl Eq for Alpha {}
+
+impl Ord for Alpha {
+    fn cmp(&self, other: &Self) -> Ordering {
+        self.0.total_cmp(&other.0)
+    }
+}
+
+impl PartialOrd for Alpha {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Hash for Alpha {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        self.0.to_bits().hash(state);
     }
 }
 

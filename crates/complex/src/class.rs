@@ -42,7 +42,7 @@ impl fmt::Display for Class {
     }
 }
 
-/// A value for each class, such as the number of simplices.
+/// A value for each class, such as the number of simplices. Open: there are four classes.
 ///
 /// ```
 /// use walpha_complex::{ByClass, Class};

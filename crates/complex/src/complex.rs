@@ -9,6 +9,8 @@ use crate::{Alpha, Class, Simplices};
 /// facets turn counter-clockwise seen from outside; each is written as the lexicographically
 /// smallest even permutation of its vertices. All other simplices are sorted. Rows are in
 /// lexicographic order. So equal complexes are equal byte by byte.
+///
+/// The fields are open, so that any program can make one; [`canonical`](crate::canonical) puts it in order.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Complex {
     /// Tetrahedra.
@@ -48,7 +50,7 @@ impl Complex {
     }
 }
 
-/// A complex with its weighted points and α, to be judged or compared.
+/// A complex with its weighted points and α, to be judged or compared. Open: these four determine it.
 #[derive(Clone, Copy, Debug)]
 pub struct Placed<'a> {
     /// x, y, z of each input point.

@@ -5,7 +5,7 @@
 use std::time::Instant;
 
 use walpha_base::random::Random;
-use walpha_regular::{Sites, triangulate};
+use walpha_regular::triangulate;
 
 fn main() {
     let mut numbers = std::env::args().skip(1).filter_map(|argument| argument.parse().ok());
@@ -17,7 +17,6 @@ fn main() {
         // Nearly cospherical points take exact arithmetic.
         let count = if name == "sphere" { count / 10 } else { count };
         let (positions, weights): (Vec<_>, Vec<_>) = (0..count).map(|_| set(&mut random)).unzip();
-        let sites = Sites::new(&positions, &weights).expect("points of space");
         let pools = [1, threads].map(|threads| {
             rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads")
         });
@@ -25,7 +24,9 @@ fn main() {
         for _ in 0..5 {
             for (pool, times) in pools.iter().zip(&mut times) {
                 let begun = Instant::now();
-                let made = pool.install(|| triangulate(&sites)).expect("a triangulation");
+                let made = pool
+                    .install(|| triangulate(&positions, Some(&weights)))
+                    .expect("a triangulation");
                 times.push(begun.elapsed().as_secs_f64());
                 assert!(!made.cells().is_empty());
             }

@@ -3,7 +3,7 @@ use walpha_base::advice::Advice;
 
 use super::Triangulation;
 
-/// Why points are no [`Sites`](super::Sites).
+/// What is wrong with points.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SitesError {

@@ -20,6 +20,9 @@ impl Lattice {
     /// The largest magnitude of the exponent of the step: its powers up to the eighth are doubles.
     const MAX_EXPONENT: i32 = 100;
 
+    /// No lattice: no polynomial counts as exact in doubles.
+    pub(crate) const NONE: Self = Self { step: 0.0, holds_weights: false };
+
     /// The lattice of points. O(n).
     pub fn of(positions: &[[f64; 3]], weights: &[f64]) -> Self {
         let lowest = |numbers: &mut dyn Iterator<Item = f64>| numbers.filter_map(lowest_bit).min();
@@ -30,7 +33,7 @@ impl Lattice {
         let holds_weights = wanted >= coordinates - Self::MAX_REFINEMENT;
         let exponent = if holds_weights { wanted } else { coordinates };
         if exponent.abs() > Self::MAX_EXPONENT {
-            return Self { step: 0.0, holds_weights: false };
+            return Self::NONE;
         }
         Self { step: 2f64.powi(exponent), holds_weights }
     }

@@ -9,22 +9,33 @@
 //! point comes in the order of (x, y, z) (Devillers and Teillaud 2011, doi:10.1016/j.comgeo.2010.09.010). The
 //! triangulation is therefore a function of the set of points, whatever their order.
 //!
+//! [`triangulate`] makes one, and [`Triangulation`] answers: which cells there are, which are neighbours, what the hull
+//! is, where a point lies. Points are named by their indices, and may be given in any order.
+//!
 //! ```
-//! use walpha_regular::{Sites, triangulate};
+//! use walpha_regular::{Location, triangulate};
 //!
 //! let corner = |i: usize| [i & 1, i >> 1 & 1, i >> 2].map(|c| c as f64);
-//! let (positions, weights): (Vec<_>, Vec<_>) = (0..8).map(|i| (corner(i), 0.0)).unzip();
-//! let cube = triangulate(&Sites::new(&positions, &weights)?)?;
-//! let finite = cube.cells().iter().filter(|cell| !cell.contains(&cube.ghost()));
-//! assert_eq!(finite.count(), 6);
-//! assert!(cube.hidden().is_empty());
+//! let points: Vec<[f64; 3]> = (0..8).map(corner).collect();
+//! let cube = triangulate(&points, None)?;
+//! assert_eq!(cube.finite_cells().count(), 6);
+//! assert_eq!(cube.hull_facets().count(), 12);
+//! assert!(matches!(cube.locate([1.0; 3]), Some(Location::OnVertex { vertex: 7, .. })));
+//!
+//! // Weights are squared lengths. A point in the middle so light that the corners hide it:
+//! let points: Vec<[f64; 3]> = points.into_iter().chain([[0.5; 3]]).collect();
+//! let weights = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1.0];
+//! assert_eq!(triangulate(&points, Some(&weights))?.hidden(), [8]);
 //! # Ok::<(), walpha_regular::TriangulationError>(())
 //! ```
 
+mod arrays;
+mod dynamic;
 mod error;
 mod flat;
 mod incremental;
 mod lattice;
+mod locate;
 mod merging;
 #[doc(hidden)]
 pub mod number;
@@ -32,15 +43,22 @@ mod order;
 mod predicates;
 mod sites;
 mod torus;
+mod triangulation;
 
 use rayon::prelude::*;
 use walpha_base::memory::asking;
 
+pub use dynamic::DynamicDelaunay;
 pub use error::{SitesError, TriangulationError};
-pub use sites::{MAX_COORDINATE, MAX_WEIGHT, Sites};
+pub use locate::Location;
+pub use sites::{MAX_COORDINATE, MAX_WEIGHT};
 pub use torus::{Torus, TorusError};
+pub use triangulation::{Triangulation, triangulate, triangulate_monitored};
+pub use walpha_base::{Cancelled, Monitor};
 
 // For the other crates of walpha: not covered by semantic versioning.
+#[doc(hidden)]
+pub use arrays::CellArrays;
 #[doc(hidden)]
 pub use flat::{Flat, auxiliary_positions, check_span, is_flat, spanning, triangulate_flat};
 #[doc(hidden)]
@@ -52,7 +70,7 @@ pub use merging::triangulate_along;
 #[doc(hidden)]
 pub use predicates::{Interval, Predicates, Ratio, Screen, SmallRadius, lattice};
 #[doc(hidden)]
-pub use sites::check as check_numbers;
+pub use sites::{Sites, check as check_numbers};
 #[doc(hidden)]
 pub use torus::AXES;
 
@@ -60,58 +78,6 @@ pub use torus::AXES;
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;
-
-/// A regular triangulation: its cells and their adjacency.
-///
-/// The outside of the convex hull is divided into infinite cells, one for each facet of the hull. Their
-/// fourth corner is the infinite vertex, called the *ghost*: its number is the number of points, one past
-/// the last point. Cells are positively oriented: a, b, c turn counter-clockwise seen from d, where the
-/// ghost counts as a point far outside the hull.
-///
-/// Example: four points have the cell `[0, 1, 2, 3]` and four infinite cells, among them
-/// `[0, 2, 1, 4]` with the ghost 4 as its corner 3. If that cell has number 2, `neighbors()[0][3]` is
-/// 4·2 + 3: the facet opposite corner 3 of cell 0 is also the facet opposite corner 3 of cell 2.
-#[derive(Clone, Debug)]
-pub struct Triangulation {
-    cells: Vec<[u32; 4]>,
-    neighbors: Vec<[u32; 4]>,
-    ghost: u32,
-}
-
-impl Triangulation {
-    /// Maximum number of cells: 4·cell + corner fits 32 bits.
-    pub const MAX_CELLS: usize = 1 << 30;
-
-    /// The corners of each cell, infinite cells included. Cells of sites that are close on a Hilbert curve are close.
-    pub fn cells(&self) -> &[[u32; 4]] {
-        &self.cells
-    }
-
-    /// For each corner of each cell, the neighbour across the facet opposite that corner, as 4·cell + corner:
-    /// the neighbouring cell, and its own corner opposite the same facet.
-    pub fn neighbors(&self) -> &[[u32; 4]] {
-        &self.neighbors
-    }
-
-    /// The infinite vertex, a corner of every infinite cell. Its number is the number of points.
-    pub fn ghost(&self) -> u32 {
-        self.ghost
-    }
-
-    /// Cells, neighbours and ghost, by value, so that each can be dropped on its own.
-    pub fn into_parts(self) -> (Vec<[u32; 4]>, Vec<[u32; 4]>, u32) {
-        (self.cells, self.neighbors, self.ghost)
-    }
-
-    /// The hidden points, those that are no vertices, in ascending order. O(cells).
-    pub fn hidden(&self) -> Vec<u32> {
-        let mut seen = vec![false; self.ghost as usize + 1];
-        for &v in self.cells.as_flattened() {
-            seen[v as usize] = true;
-        }
-        (0..self.ghost).filter(|&v| !seen[v as usize]).collect()
-    }
-}
 
 /// The points along a Hilbert curve, hidden and equal ones included. O(n log n).
 #[doc(hidden)]
@@ -141,7 +107,7 @@ fn no_memory(bytes: usize) -> TriangulationError {
 
 /// A cell under construction: its corners, and 4·cell + corner across the facet opposite each.
 #[doc(hidden)]
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Cell {
     pub corners: [u32; 4],
     pub neighbors: [u32; 4],
@@ -160,24 +126,5 @@ pub(crate) fn smallest_first(mut facet: [u32; 3]) -> [u32; 3] {
     facet
 }
 
-/// At least so many cells are renumbered by one thread in one piece.
-const MIN_LEN: usize = 1 << 12;
-
 /// The first corner of a deleted cell, whose slot is free.
 const DELETED: u32 = u32::MAX;
-
-/// The regular triangulation of sites, by site index, on all threads of the current rayon pool. The order of cells and
-/// of their corners does not depend on the number of threads. Expected O(n log n) for evenly distributed points.
-///
-/// # Errors
-/// Sites that span no volume; out of memory; more than [`Triangulation::MAX_CELLS`] cells.
-pub fn triangulate(sites: &Sites<'_>) -> Result<Triangulation, TriangulationError> {
-    let along = sites.curve();
-    let positions: Vec<_> = along.par_iter().map(|&i| sites.positions()[i as usize]).collect();
-    let weights: Vec<_> = along.par_iter().map(|&i| sites.weights()[i as usize]).collect();
-    let mut triangulation = triangulate_along(&positions, &weights, |_| Ok(()))?;
-    triangulation.cells.par_iter_mut().with_min_len(MIN_LEN).for_each(|cell| {
-        *cell = cell.map(|v| along.get(v as usize).copied().unwrap_or(v));
-    });
-    Ok(triangulation)
-}

@@ -54,6 +54,11 @@ impl<const D: usize> Curve<D> {
     }
 }
 
+/// Bits of a position that are equal for equal positions: adding 0.0 turns −0.0 into 0.0.
+pub(super) fn position_bits<const D: usize>(position: [f64; D]) -> [u64; D] {
+    position.map(|x| (x + 0.0).to_bits())
+}
+
 /// The index of a grid cell on the curve: Skilling's transform ("Programming the Hilbert
 /// curve", AIP Conference Proceedings 707, 2004, doi:10.1063/1.1751381), then bits interleaved.
 fn hilbert_index(mut x: [u32; 3]) -> u64 {

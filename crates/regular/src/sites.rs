@@ -2,7 +2,7 @@ use std::borrow::Cow;
 
 use rayon::prelude::*;
 
-use super::order::{self, Keyed};
+use super::order::{self, Keyed, position_bits};
 use super::{SitesError, Torus};
 
 /// Weighted points of space (or, with `D` = 2, of the plane) that can be triangulated: all numbers are
@@ -179,12 +179,11 @@ fn duplicates<const D: usize>(
     positions: &[[f64; D]],
     weights: &[f64],
 ) -> Vec<[u32; 2]> {
-    // Adding 0.0 turns −0.0 into 0.0, so equal numbers have equal bits.
-    let position_bits = |i: u32| positions[i as usize].map(|v| (v + 0.0).to_bits());
+    let bits = |i: u32| position_bits(positions[i as usize]);
     let mut duplicates = Vec::new();
     for same_index in curve.chunk_by_mut(|a, b| a.0 == b.0).filter(|points| points.len() > 1) {
-        same_index.sort_unstable_by_key(|&(_, i)| (position_bits(i), i));
-        for equal in same_index.chunk_by(|a, b| position_bits(a.1) == position_bits(b.1)) {
+        same_index.sort_unstable_by_key(|&(_, i)| (bits(i), i));
+        for equal in same_index.chunk_by(|a, b| bits(a.1) == bits(b.1)) {
             let mut best = equal[0].1;
             for &(_, i) in equal {
                 // Of equal weights the lowest index, which comes first.

@@ -32,6 +32,7 @@ pub struct AlphaShape {
 
 /// The data of a shape that has been computed elsewhere, in canonical order.
 #[doc(hidden)]
+#[derive(Debug)]
 pub struct Assembled {
     pub points: WeightedPoints,
     pub coordinates: Coordinates,

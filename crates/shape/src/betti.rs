@@ -1,7 +1,7 @@
 use serde::{Deserialize, Serialize};
 
 /// The Betti numbers of a shape: components, tunnels, voids. Written `[b0, b1, b2]`, of a torus
-/// `[b0, b1, b2, b3]`.
+/// `[b0, b1, b2, b3]`. Open: there are no more.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(into = "Vec<u64>", try_from = "Vec<u64>")]
 pub struct Betti {
@@ -42,14 +42,37 @@ impl From<Betti> for Vec<u64> {
     }
 }
 
+/// A list that is not one of Betti numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{given} Betti numbers: there must be three, or four of a torus")]
+#[non_exhaustive]
+pub struct BettiError {
+    /// How many numbers there are.
+    pub given: usize,
+}
+
 impl TryFrom<Vec<u64>> for Betti {
-    type Error = &'static str;
+    type Error = BettiError;
 
     fn try_from(numbers: Vec<u64>) -> Result<Self, Self::Error> {
         match numbers[..] {
             [b0, b1, b2] => Ok(Self::in_space(b0, b1, b2)),
             [b0, b1, b2, b3] => Ok(Self { b0, b1, b2, b3: Some(b3) }),
-            _ => Err("three Betti numbers, or four of a torus"),
+            _ => Err(BettiError { given: numbers.len() }),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn three_numbers_or_four() {
+        let betti = |numbers: &[u64]| Betti::try_from(numbers.to_vec());
+        assert_eq!(betti(&[1, 2, 3]), Ok(Betti::in_space(1, 2, 3)));
+        assert_eq!(betti(&[1, 3, 3, 1]).map(Vec::from), Ok(vec![1, 3, 3, 1]));
+        let error = betti(&[1, 2]).unwrap_err();
+        assert_eq!(error.to_string(), "2 Betti numbers: there must be three, or four of a torus");
     }
 }

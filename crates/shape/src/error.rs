@@ -87,6 +87,7 @@ pub enum ShapeError {
     memory::readable(*asked),
     memory::readable(*needed)
 )]
+#[non_exhaustive]
 pub struct PlanError {
     /// Bytes allowed.
     pub asked: u64,
@@ -97,6 +98,11 @@ pub struct PlanError {
 }
 
 impl PlanError {
+    /// With so many bytes allowed, and those that the most economical plan needs, in so many blocks.
+    pub fn new(asked: u64, needed: u64, blocks: usize) -> Self {
+        Self { asked, needed, blocks }
+    }
+
     /// How to resolve the error.
     pub fn advice(&self) -> Advice {
         "allow more, or select fewer points".into()

@@ -7,12 +7,12 @@
 //! treatment. α and weights are squared lengths.
 //!
 //! ```
-//! use walpha_shape::{Alpha, ShapeOptions, WeightedPoints, alpha_shape};
+//! use walpha_shape::{Alpha, ShapeOptions, alpha_shape};
 //!
 //! // The corners of a cube lie on a sphere of squared radius 3/4: the least α at which the shape is the whole cube.
 //! let corner = |i: usize| [i & 1, i >> 1 & 1, i >> 2].map(|c| c as f64);
-//! let cube = WeightedPoints::unweighted((0..8).map(corner).collect());
-//! let shape = alpha_shape(cube, &ShapeOptions::new(Alpha::from_squared(0.75)?))?;
+//! let cube: Vec<[f64; 3]> = (0..8).map(corner).collect();
+//! let shape = alpha_shape(&cube, &ShapeOptions::new(Alpha::from_squared(0.75)?))?;
 //! assert_eq!(shape.measures().volume, 1.0);
 //! assert_eq!(shape.complex().facets.counts().regular, 12);
 //! let betti = shape.betti().expect("counted");
@@ -23,6 +23,8 @@
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
 mod alpha_shape;
+#[cfg(feature = "ndarray")]
+mod arrays;
 mod betti;
 mod blocks;
 mod complement;
@@ -47,7 +49,9 @@ mod voids;
 mod winding;
 
 pub use alpha_shape::AlphaShape;
-pub use betti::Betti;
+#[cfg(feature = "ndarray")]
+pub use arrays::ArrayError;
+pub use betti::{Betti, BettiError};
 pub use components::NO_COMPONENT;
 pub use error::{CgalError, OutlineError, PlanError, ShapeError, Whole};
 pub use make::{alpha_shape, alpha_shape_by, alpha_shape_monitored};
@@ -62,7 +66,7 @@ pub use sums::{Component, Enclosed};
 pub use surface::Surface;
 pub use topology::direct_betti;
 pub use voids::Void;
-pub use walpha_base::{Coordinates, LengthUnit, Space};
+pub use walpha_base::{Cancelled, Coordinates, LengthUnit, Monitor, Space};
 pub use walpha_complex::{Alpha, AlphaError, ByClass, Class, Complex, Placed, Simplices};
 pub use walpha_regular::{Torus, TorusError};
 

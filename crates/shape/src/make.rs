@@ -15,6 +15,8 @@ use super::{
 
 /// The alpha shape of weighted points.
 ///
+/// The shape owns its points: a `Vec` or [`WeightedPoints`] are taken over, and borrowed points are copied, 24 bytes each.
+///
 /// Of points with equal positions the heaviest is kept ([`AlphaShape::duplicates`]). An empty shape
 /// is a result, not an error. At α = ∞ the shape is the convex hull.
 ///
@@ -35,7 +37,7 @@ use super::{
 /// [`SitesError`](walpha_regular::SitesError); a negative radius: [`ShapeError::Radius`]; incompatible options:
 /// [`ShapeOptions::check`].
 pub fn alpha_shape(
-    points: WeightedPoints,
+    points: impl Into<WeightedPoints>,
     options: &ShapeOptions,
 ) -> Result<AlphaShape, ShapeError> {
     alpha_shape_monitored(points, options, &Monitor::noop())
@@ -46,7 +48,7 @@ pub fn alpha_shape(
 /// # Errors
 /// Those of [`alpha_shape`], and [`ShapeError::Cancelled`].
 pub fn alpha_shape_monitored(
-    points: WeightedPoints,
+    points: impl Into<WeightedPoints>,
     options: &ShapeOptions,
     monitor: &Monitor,
 ) -> Result<AlphaShape, ShapeError> {
@@ -55,7 +57,7 @@ pub fn alpha_shape_monitored(
         return Err(CgalError::Absent.into());
     }
     let find = |sites: &Sites<'_>, options: &ShapeOptions| by_blocks(sites, options, monitor);
-    shape_by(points, options.engine(Engine::Native), &find, monitor)
+    shape_by(points.into(), options.engine(Engine::Native), &find, monitor)
 }
 
 /// Like [`alpha_shape`], where another program classifies the simplices: `classify` returns the whole triangulation of
@@ -65,7 +67,7 @@ pub fn alpha_shape_monitored(
 /// # Errors
 /// As [`alpha_shape`], and those of the other program.
 pub fn alpha_shape_by(
-    points: WeightedPoints,
+    points: impl Into<WeightedPoints>,
     options: &ShapeOptions,
     classify: impl Fn(&Sites<'_>, f64) -> Result<Complex, ShapeError>,
     monitor: &Monitor,
@@ -78,7 +80,7 @@ pub fn alpha_shape_by(
         let duplicates = sites.duplicates().to_vec();
         Ok(Found { complex, boundary, hidden, duplicates, betti: None })
     };
-    shape_by(points, *options, &find, monitor)
+    shape_by(points.into(), *options, &find, monitor)
 }
 
 /// An engine: computes the shape of sites that span a volume.

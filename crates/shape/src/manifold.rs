@@ -5,6 +5,7 @@ use super::Surface;
 /// Numbers of edges and vertices where the boundary of a shape is not a manifold. Other programs expect of a solid
 /// that there are none; alpha shapes often have some.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct ManifoldDefects {
     /// Edges on more than two regular facets, where parts of the shape touch along a line.
     pub edges: usize,

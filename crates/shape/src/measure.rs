@@ -6,7 +6,8 @@ use walpha_regular::Torus;
 
 use super::{Class, Complex, Simplices};
 
-/// Volume and areas of a shape in the units of its points, summed exactly and rounded once.
+/// Volume and areas of a shape in the units of its points, summed exactly and rounded once. Open, as they are plain
+/// numbers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Measures {
     /// Volume of the interior cells.

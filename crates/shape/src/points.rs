@@ -1,15 +1,29 @@
 use serde::{Deserialize, Serialize};
 use walpha_base::Sum;
 
-/// Weighted points, with values where they are known.
+/// Weighted points, with values where they are known; as many weights, and values, as positions.
+///
+/// They are made of what is at hand: a `Vec` of positions is taken over, borrowed positions are copied, 24 bytes each.
+/// Without weights all are 0. The numbers are checked where they are used.
+///
+/// ```
+/// use walpha_shape::{Alpha, ShapeOptions, WeightedPoints, alpha_shape};
+///
+/// let points = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+/// let weights = [0.25; 4];
+/// let options = ShapeOptions::new(Alpha::from_squared(0.75)?);
+/// let shape = alpha_shape(&points, &options)?;
+/// let weighted = alpha_shape(WeightedPoints::try_from((&points, &weights))?, &options)?;
+/// assert_eq!(shape.measures(), weighted.measures());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// With the feature `ndarray`, an n×3 array can be converted, too, alone or with weights.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct WeightedPoints {
-    /// Coordinates (x, y, z).
-    pub positions: Vec<[f64; 3]>,
-    /// Weights ω, squared lengths, one for each point.
-    pub weights: Vec<f64>,
-    /// Values F, one for each point.
-    pub values: Option<Vec<f64>>,
+    pub(crate) positions: Vec<[f64; 3]>,
+    pub(crate) weights: Vec<f64>,
+    pub(crate) values: Option<Vec<f64>>,
 }
 
 /// A column whose number of entries is not the number of points.
@@ -25,7 +39,7 @@ pub struct LengthsError {
     pub points: usize,
 }
 
-/// The range of weights.
+/// The range of weights. Open, as they are plain numbers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct WeightSummary {
     /// The smallest.
@@ -61,13 +75,53 @@ impl WeightedPoints {
         Self { weights: vec![0.0; positions.len()], positions, values: None }
     }
 
-    /// The same points with values F.
+    /// The same points with values F, or without values.
     ///
     /// # Errors
     /// The numbers of points and values differ.
-    pub fn with_values(self, values: Vec<f64>) -> Result<Self, LengthsError> {
-        LengthsError::unless_equal("values", values.len(), self.len())?;
-        Ok(Self { values: Some(values), ..self })
+    pub fn with_values(self, values: impl Into<Option<Vec<f64>>>) -> Result<Self, LengthsError> {
+        let values = values.into();
+        LengthsError::unless_equal(
+            "values",
+            values.as_ref().map_or(self.len(), Vec::len),
+            self.len(),
+        )?;
+        Ok(Self { values, ..self })
+    }
+
+    /// Coordinates (x, y, z).
+    pub fn positions(&self) -> &[[f64; 3]] {
+        &self.positions
+    }
+
+    /// Weights ω, squared lengths, one for each point.
+    pub fn weights(&self) -> &[f64] {
+        &self.weights
+    }
+
+    /// Values F, one for each point, where they are known.
+    pub fn values(&self) -> Option<&[f64]> {
+        self.values.as_deref()
+    }
+
+    /// The coordinates, to change in place.
+    pub fn positions_mut(&mut self) -> &mut [[f64; 3]] {
+        &mut self.positions
+    }
+
+    /// The weights, to change in place.
+    pub fn weights_mut(&mut self) -> &mut [f64] {
+        &mut self.weights
+    }
+
+    /// The values, to change in place.
+    pub fn values_mut(&mut self) -> Option<&mut [f64]> {
+        self.values.as_deref_mut()
+    }
+
+    /// Positions, weights, and values where they are known.
+    pub fn into_parts(self) -> (Vec<[f64; 3]>, Vec<f64>, Option<Vec<f64>>) {
+        (self.positions, self.weights, self.values)
     }
 
     /// The number of points.
@@ -90,5 +144,71 @@ impl WeightedPoints {
         // Summed exactly, so that the order and the number of threads do not matter.
         let sum: Sum = self.weights.iter().copied().collect();
         WeightSummary { min, mean: sum.value() / self.weights.len() as f64, max }
+    }
+}
+
+/// Points without weights.
+impl From<Vec<[f64; 3]>> for WeightedPoints {
+    fn from(positions: Vec<[f64; 3]>) -> Self {
+        Self::unweighted(positions)
+    }
+}
+
+/// Copies of points without weights: of a slice, a `Vec` or an array.
+impl<P: AsRef<[[f64; 3]]> + ?Sized> From<&P> for WeightedPoints {
+    fn from(positions: &P) -> Self {
+        Self::unweighted(positions.as_ref().to_vec())
+    }
+}
+
+/// A copy.
+impl From<&Self> for WeightedPoints {
+    fn from(points: &Self) -> Self {
+        points.clone()
+    }
+}
+
+/// Copies of points and their weights ω, squared lengths.
+impl<P, W> TryFrom<(&P, &W)> for WeightedPoints
+where
+    P: AsRef<[[f64; 3]]> + ?Sized,
+    W: AsRef<[f64]> + ?Sized,
+{
+    type Error = LengthsError;
+
+    fn try_from((positions, weights): (&P, &W)) -> Result<Self, LengthsError> {
+        Self::new(positions.as_ref().to_vec(), weights.as_ref().to_vec())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const POSITIONS: [[f64; 3]; 2] = [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]];
+
+    #[test]
+    fn points_are_made_of_what_is_at_hand() {
+        let expected = WeightedPoints::unweighted(POSITIONS.to_vec());
+        assert_eq!(expected.weights(), [0.0; 2]);
+        let owned = POSITIONS.to_vec();
+        assert_eq!(WeightedPoints::from(&owned), expected);
+        assert_eq!(WeightedPoints::from(&owned[..]), expected);
+        assert_eq!(WeightedPoints::from(&POSITIONS), expected);
+        assert_eq!(WeightedPoints::from(&expected), expected);
+        assert_eq!(WeightedPoints::from(owned), expected);
+        let weighted = WeightedPoints::try_from((&POSITIONS, &[7.0, 8.0])).unwrap();
+        assert_eq!((weighted.positions(), weighted.weights()), (&POSITIONS[..], &[7.0, 8.0][..]));
+    }
+
+    #[test]
+    fn columns_of_other_lengths_are_refused() {
+        let error = WeightedPoints::try_from((&POSITIONS[..], &[1.0])).unwrap_err();
+        assert_eq!(error.to_string(), "1 weights for 2 points: each point needs one");
+        let points = WeightedPoints::from(&POSITIONS);
+        assert!(points.clone().with_values(vec![0.0; 3]).is_err());
+        assert_eq!(points.clone().with_values(None), Ok(points.clone()));
+        let (positions, weights, values) = points.with_values(vec![0.5, 1.5]).unwrap().into_parts();
+        assert_eq!((positions.len(), weights.len(), values), (2, 2, Some(vec![0.5, 1.5])));
     }
 }

@@ -9,6 +9,7 @@ use super::{Class, Complex, Surface};
 
 /// Where a boundary was cut apart to become a manifold.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[non_exhaustive]
 pub struct Cuts {
     /// Edges on more than two facets, along which parts of the shape touch.
     pub edges: usize,

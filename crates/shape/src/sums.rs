@@ -11,6 +11,7 @@ use super::{Class, Measures};
 
 /// A connected component of a shape.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct Component {
     /// Number of its vertices.
     pub vertices: usize,
@@ -37,6 +38,7 @@ pub struct Component {
 
 /// A void, described by the sheet around it. The volume includes that of other components inside.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct Enclosed {
     /// The number of the sheet.
     pub sheet: u32,

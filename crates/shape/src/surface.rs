@@ -8,6 +8,7 @@ use super::{Class, Complex};
 /// If the boundary has the points 4, 7, 8 and 9, `vertices` is `[4, 7, 8, 9]` and a facet
 /// over the points 4, 9 and 8 is the row `[0, 3, 2]`.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Surface {
     /// Input indices of the vertices used below, ascending.
     pub vertices: Vec<u32>,

@@ -10,6 +10,7 @@ use super::{Alpha, AlphaShape, Class};
 
 /// A void of a shape: a bounded component of its complement, which consists of exterior cells.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct Void {
     /// Number of its cells.
     pub cells: usize,

@@ -51,6 +51,7 @@ fn cross(a: Winding, b: Winding) -> [i128; 3] {
 /// A union-find over objects on a torus, which are united at given copies. If the members of a set can be laid out in
 /// space so that all unions hold, the set is as in space. Otherwise some closed paths through the set end at
 /// another copy of their start: the set winds round the torus.
+#[derive(Debug)]
 pub struct WindingSets {
     /// By member: its parent, and its winding relative to the parent.
     parents: Vec<(u32, Winding)>,

@@ -32,7 +32,7 @@ pub fn boundary<'py>(
             }
             false => (Surface::of(&shape), Default::default()),
         };
-        let places: Vec<[f64; 3]> = surface.positions(&shape.points().positions).collect();
+        let places: Vec<[f64; 3]> = surface.positions(shape.points().positions()).collect();
         let indices: Vec<u32> = surface.indices().collect();
         let cuts = (cuts.edges, cuts.vertices, cuts.midpoints);
         Ok::<_, InterpolateError>((places, surface.regular, indices, cuts))

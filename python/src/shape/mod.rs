@@ -63,7 +63,7 @@ impl Shape {
     fn check_outline(&self) -> Result<(), OutlineError> {
         match self.shape.options().periodic {
             Some(_) => Err(OutlineError::Torus),
-            None => walpha::shape::Outline::check(&self.shape.points().positions),
+            None => walpha::shape::Outline::check(self.shape.points().positions()),
         }
     }
 
@@ -76,7 +76,7 @@ impl Shape {
                     .map_err(|error| Told::told(PointsError::from(error)))?;
                 Ok(values)
             }
-            None => copied(self.shape.points().values.as_ref().ok_or_else(|| {
+            None => copied(self.shape.points().values().ok_or_else(|| {
                 wrong("the points carry no values to interpolate: give values=, one for each point")
             })?),
         }
@@ -96,17 +96,17 @@ impl Shape {
     #[getter]
     fn points<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         // SAFETY: the shape is frozen.
-        unsafe { lend(&slf.get().shape.points().positions, slf.as_any()) }
+        unsafe { lend(slf.get().shape.points().positions(), slf.as_any()) }
     }
 
     #[getter]
     fn weights<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        column(py, self.shape.points().weights.iter().copied())
+        column(py, self.shape.points().weights().iter().copied())
     }
 
     #[getter(values)]
     fn own_values<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray1<f64>>>> {
-        let values = self.shape.points().values.as_ref();
+        let values = self.shape.points().values();
         values.map(|values| column(py, values.iter().copied())).transpose()
     }
 

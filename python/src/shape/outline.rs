@@ -26,7 +26,7 @@ pub type Outline<'py> = (
 /// As [`AlphaShape::outline`] makes it.
 pub fn outline<'py>(py: Python<'py>, shape: Arc<AlphaShape>) -> PyResult<Outline<'py>> {
     let outline = run(py, None, move |_| shape.outline().cloned())?;
-    let polygon = |Polygon { outer, holes }| {
+    let polygon = |Polygon { outer, holes, .. }| {
         let holes = holes.into_iter().map(|hole: Vec<u32>| hole.into_pyarray(py)).collect();
         (Vec::into_pyarray(outer, py), holes)
     };

@@ -121,7 +121,7 @@ impl Ladder {
         let recipe = self.pipeline.recipe()?;
         let input = &self.pipeline.input;
         let (weighed, volume) = pipeline::weighted_points(input, &recipe, &mut progress)?;
-        outline::check(meshes.iter().map(|mesh| mesh.format), &weighed.points.positions)?;
+        outline::check(meshes.iter().map(|mesh| mesh.format), weighed.points.positions())?;
         let domain = pipeline::domain(&weighed, volume.as_ref());
         let filtration = progress.watch(|monitor| pipeline::filtration(None, &weighed, monitor))?;
         let coordinates = weighed.origin.coordinates;

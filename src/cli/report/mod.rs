@@ -222,7 +222,7 @@ impl Display for Report {
             Some(cuts) if cuts == Cuts::default() => {
                 writeln!(f, "solid     the boundary is a manifold as it is")?;
             }
-            Some(Cuts { edges, vertices, midpoints }) => writeln!(
+            Some(Cuts { edges, vertices, midpoints, .. }) => writeln!(
                 f,
                 "solid     the boundary is not a manifold: cut apart at {edges} edges, with {vertices} more \
                  vertices and {midpoints} midpoints of edges"

@@ -10,7 +10,7 @@ use super::column;
 use super::header::{CHECKSUM, Header, Layer, Values, Weights, checksum_matches, damaged};
 use super::write::{Coders, sort_key};
 use crate::points::read::format;
-use crate::points::{ModelMetadata, Points, PointsError, SampleGrid, WeightedPoints};
+use crate::points::{ModelMetadata, Points, PointsError, SampleGrid};
 use crate::volume::{OpenFile, Reason, io_error};
 
 /// Reads points without the last `level` layers, and their metadata.
@@ -46,11 +46,7 @@ pub(in crate::points) fn read(
             return Err(fail(Reason::damaged(what)));
         }
     }
-    let WeightedPoints { positions, weights, values } = model.points();
-    Ok((
-        Points { positions, weights: Some(weights), values, ..Points::default() },
-        header.metadata(),
-    ))
+    Ok((model.points(), header.metadata()))
 }
 
 /// The bytes of the first layers, each with its checksum.
@@ -94,17 +90,20 @@ struct Model<'a> {
     coders: Option<(SampleGrid, Coders)>,
     /// The sample of each point, if there is a grid.
     cells: Vec<[u32; 3]>,
-    points: WeightedPoints,
+    positions: Vec<[f64; 3]>,
+    weights: Vec<f64>,
+    values: Option<Vec<f64>>,
 }
 
 impl<'a> Model<'a> {
     fn new(header: &'a Header) -> Self {
-        let values = (header.values != Values::None).then(Vec::new);
         Self {
             header,
             coders: header.grid.map(|grid| (grid, Coders::new(&grid))),
             cells: Vec::new(),
-            points: WeightedPoints { values, ..WeightedPoints::default() },
+            positions: Vec::new(),
+            weights: Vec::new(),
+            values: (header.values != Values::None).then(Vec::new),
         }
     }
 
@@ -112,7 +111,7 @@ impl<'a> Model<'a> {
     fn reserve(&self, count: usize) -> Result<(), PointsError> {
         /// Memory for a point, while it is read and sorted.
         const BYTES: usize = 128;
-        let all = self.points.len().saturating_add(count);
+        let all = self.positions.len().saturating_add(count);
         Ok(try_with_capacity::<[u8; BYTES]>(all, || format!("a model of {all} points"))
             .map(drop)?)
     }
@@ -126,7 +125,7 @@ impl<'a> Model<'a> {
         match &mut self.coders {
             None => {
                 let numbers = column::unpack(places, count.checked_mul(3)?)?;
-                self.points.positions.extend(numbers.as_chunks().0);
+                self.positions.extend(numbers.as_chunks().0);
             }
             Some((grid, coders)) => {
                 let cells = coders.places.code(&mut Decoder::new(places), &[], count)?;
@@ -135,11 +134,11 @@ impl<'a> Model<'a> {
                     multiples =
                         coders.values.code(&mut Decoder::new(values), &cells, known, &[])?;
                 }
-                self.points.positions.extend(cells.iter().map(|&cell| grid.position(cell)));
+                self.positions.extend(cells.iter().map(|&cell| grid.position(cell)));
                 self.cells.extend(cells);
             }
         }
-        if let Some(all) = &mut self.points.values {
+        if let Some(all) = &mut self.values {
             match self.header.values {
                 Values::Steps { base, step } => {
                     all.extend(multiples.iter().map(|&k| base + f64::from(k) * step));
@@ -149,26 +148,24 @@ impl<'a> Model<'a> {
         }
         match self.header.weights {
             Weights::Common(weight) => {
-                self.points.weights.resize(self.points.weights.len() + count, weight);
+                self.weights.resize(self.weights.len() + count, weight);
             }
-            Weights::Exact => self.points.weights.extend(column::unpack(weights, count)?),
+            Weights::Exact => self.weights.extend(column::unpack(weights, count)?),
         }
         Some(())
     }
 
     /// The points; on a grid, in the order of its samples.
-    fn points(self) -> WeightedPoints {
-        let Self { cells, points, .. } = self;
-        if cells.is_sorted_by_key(|&cell| sort_key(cell)) {
-            return points;
+    fn points(self) -> Points {
+        let Self { cells, mut positions, mut weights, mut values, .. } = self;
+        if !cells.is_sorted_by_key(|&cell| sort_key(cell)) {
+            let mut order: Vec<usize> = (0..cells.len()).collect();
+            order.sort_unstable_by_key(|&point| sort_key(cells[point]));
+            let sorted = |column: &[f64]| order.iter().map(|&point| column[point]).collect();
+            positions = order.iter().map(|&point| positions[point]).collect();
+            weights = sorted(&weights);
+            values = values.as_deref().map(sorted);
         }
-        let mut order: Vec<usize> = (0..cells.len()).collect();
-        order.sort_unstable_by_key(|&point| sort_key(cells[point]));
-        let sorted = |column: &[f64]| order.iter().map(|&point| column[point]).collect();
-        WeightedPoints {
-            positions: order.iter().map(|&point| points.positions[point]).collect(),
-            weights: sorted(&points.weights),
-            values: points.values.as_deref().map(sorted),
-        }
+        Points { positions, weights: Some(weights), values, ..Points::default() }
     }
 }

@@ -29,7 +29,7 @@ pub(in crate::points) fn write(
         Some((_, cells)) => in_layers(cells, metadata, packing),
         None => vec![(0..points.len()).collect()],
     };
-    let values = points.values.as_deref().filter(|_| on_grid.is_some());
+    let values = points.values().filter(|_| on_grid.is_some());
     let steps = values.and_then(|values| Steps::of(values, packing.value_error));
     let file = Content { points, on_grid, steps };
     let parts = file.parts(&layers)?;
@@ -43,7 +43,7 @@ pub(in crate::points) fn write(
         alpha: metadata.alpha,
         range: metadata.range,
         recipe: metadata.recipe.clone(),
-        values: match (&points.values, &file.steps) {
+        values: match (points.values(), &file.steps) {
             (None, _) => Values::None,
             (_, Some(Steps { base, step, .. })) => Values::Steps { base: *base, step: *step },
             _ => Values::Exact,
@@ -62,9 +62,9 @@ pub(in crate::points) fn write(
 
 /// The grid and the sample of each point, if all points lie on distinct samples.
 fn on_grid(points: &WeightedPoints, metadata: &ModelMetadata) -> Option<(SampleGrid, Vec<Cell>)> {
-    let spanned = || SampleGrid::spanned(&points.positions, metadata.coordinates);
+    let spanned = || SampleGrid::spanned(points.positions(), metadata.coordinates);
     let grid = metadata.grid.or_else(spanned)?;
-    let cells = points.positions.iter().map(|&position| grid.sample_at(position));
+    let cells = points.positions().iter().map(|&position| grid.sample_at(position));
     let cells = cells.collect::<Option<Vec<_>>>()?;
     let mut sorted = cells.clone();
     sorted.sort_unstable();
@@ -165,7 +165,7 @@ impl Coders {
 impl Content<'_> {
     /// The weight of all points, if they have the same.
     fn common_weight(&self) -> Option<f64> {
-        let weights = &self.points.weights;
+        let weights = self.points.weights();
         let first = weights.first().copied().unwrap_or_default();
         weights.iter().all(|weight| weight.to_bits() == first.to_bits()).then_some(first)
     }
@@ -179,12 +179,12 @@ impl Content<'_> {
             let exact = |column: &[f64]| column::pack(&pick(column, layer));
             let [mut places, mut values] = match &mut coders {
                 Some(coders) => self.coded(coders, layer),
-                None => [column::pack(self.points.positions.as_flattened())?, Vec::new()],
+                None => [column::pack(self.points.positions().as_flattened())?, Vec::new()],
             };
-            if let (None, Some(column)) = (&self.steps, &self.points.values) {
+            if let (None, Some(column)) = (&self.steps, self.points.values()) {
                 values = exact(column)?;
             }
-            let weights = if common { Vec::new() } else { exact(&self.points.weights)? };
+            let weights = if common { Vec::new() } else { exact(self.points.weights())? };
             let least = layer.len().div_ceil(POINTS_PER_BYTE as usize);
             let rest = values.len() + weights.len();
             places.resize(places.len().max(least.saturating_sub(rest)), 0);

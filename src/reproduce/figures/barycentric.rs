@@ -31,7 +31,7 @@ impl Evidence {
             plain: plain.numbers.clone(),
             literal: literal.numbers.clone(),
             scaled: scaled.numbers.clone(),
-            sum: literal.shape.points().weights.iter().sum(),
+            sum: literal.shape.points().weights().iter().sum(),
             apart: Difference::between(from, to),
             scaled_apart: Difference::between(from, n_times),
             same: same_set(&plain.shape, &literal.shape),

@@ -12,7 +12,7 @@ use crate::interpolate::{
 };
 use crate::points::{
     ModelMetadata, Packing, PointOptions, PointWriter, SampleGrid, Units, WeightedPoints,
-    read_model,
+    Weighting, read_model, weigh,
 };
 use crate::render::{RateCurve, rate_figure};
 use crate::reproduce::{Fact, Item, ReproduceError, Table, text};
@@ -142,11 +142,10 @@ fn models(volume: &Volume, monitor: &Monitor) -> Result<Vec<Measured>, Reproduce
 
 fn points_at(volume: &Volume, voxels: &[u32]) -> WeightedPoints {
     let value = |&voxel: &u32| f64::from(volume.as_slice()[voxel as usize]);
-    WeightedPoints {
-        positions: voxels.iter().map(|&voxel| Units::Voxel.position(volume, voxel)).collect(),
-        weights: vec![0.0; voxels.len()],
-        values: Some(voxels.iter().map(value).collect()),
-    }
+    let positions = voxels.iter().map(|&voxel| Units::Voxel.position(volume, voxel)).collect();
+    WeightedPoints::unweighted(positions)
+        .with_values(voxels.iter().map(value).collect::<Vec<_>>())
+        .expect("a value for each voxel")
 }
 
 /// The error of F on the whole triangulation.
@@ -173,8 +172,7 @@ fn through_file(
     writer.write_model(points, &facts, &packing, &mut bytes)?;
     let file = Scratch::of(&mut &bytes[..], NAME)?;
     let (read, _) = read_model(file.path(), &PointOptions::default())?;
-    let weights = read.weights.unwrap_or_default();
-    Ok((bytes.len(), WeightedPoints { positions: read.positions, weights, values: read.values }))
+    Ok((bytes.len(), weigh(read, Weighting::Column, Alpha::INFINITE)?))
 }
 
 fn model_table(measured: &[Measured], volume: &Volume) -> Table {

@@ -152,7 +152,7 @@ impl Side {
             .write(&shaped.shape, &mut bytes)?;
         let mesh = OffMesh::parse(&String::from_utf8_lossy(&bytes))?;
         let surface = Surface::of(&shaped.shape);
-        let positions = &shaped.shape.points().positions;
+        let positions = shaped.shape.points().positions();
         let places = surface.vertices.iter().map(|&v| positions[v as usize]);
         let agrees = places.eq(mesh.positions.iter().copied()) && surface.facets().eq(&mesh.facets);
         let picture = bench.study.cameras.render(&mesh.scene(), Eye::Portrait)?;

@@ -148,7 +148,7 @@ impl Hull {
     /// Judges the regular facets of a shape. Each point is tested against each plane; signs are
     /// exact for coordinates that are whole numbers below 10⁵, as those of voxels are.
     pub(super) fn of(shape: &AlphaShape) -> Self {
-        let positions = &shape.points().positions;
+        let positions = shape.points().positions();
         let mut planes: Vec<([f64; 3], f64)> = Vec::new();
         let mut sixfold = 0.0;
         for facet in shape.complex().facets.of(Class::Regular) {
@@ -175,8 +175,7 @@ mod tests {
         let lattice = (0..32).map(|i| [i % 4, i / 4 % 4, i / 16]);
         let positions: Vec<_> =
             lattice.filter(|p| p[0] < 2 || p[1] < 2).map(|p| p.map(f64::from)).collect();
-        let weights = vec![0.0; positions.len()];
-        let points = WeightedPoints { positions, weights, values: None };
+        let points = WeightedPoints::unweighted(positions);
         let at = |alpha| {
             let options = ShapeOptions::new(alpha);
             Hull::of(&alpha_shape(points.clone(), &options).unwrap())

@@ -42,7 +42,7 @@ fn sets(count: usize, most: usize) -> impl Iterator<Item = WeightedPoints> {
         let (positions, weights) = (0..size).map(|_| family(&mut random)).unzip();
         WeightedPoints::new(positions, weights).unwrap()
     });
-    sets.filter(|points| common::spans_a_volume(&points.positions)).take(count)
+    sets.filter(|points| common::spans_a_volume(points.positions())).take(count)
 }
 
 #[test]
@@ -214,7 +214,7 @@ fn flat_filtrations_are_those_of_the_definition() {
     let (mut done, mut dimensions, mut hidden, mut attached) = (0, [0; 3], 0, 0);
     while done < 200 {
         let points = set(&mut random);
-        if common::spans_a_volume(&points.positions) {
+        if common::spans_a_volume(points.positions()) {
             continue;
         }
         done += 1;
@@ -230,7 +230,7 @@ fn flat_filtrations_are_those_of_the_definition() {
             // At the value, and below it.
             for alpha in [alpha, alpha.next_down()].map(|alpha| Alpha::from_squared(alpha).unwrap())
             {
-                let made = enumerate(&points.positions, &points.weights, alpha).unwrap();
+                let made = enumerate(points.positions(), points.weights(), alpha).unwrap();
                 let levels = filtration.levels(&[alpha]);
                 let shape = levels.shape(0, true, levels.betti()[0]);
                 assert_eq!(*shape.complex(), made.complex, "{alpha:?}: {points:?}");

@@ -90,7 +90,7 @@ fn written_shapes_are_read_back() {
     for (extension, corners) in [("ply", 4), ("vtp", 4), ("vtu", 5)] {
         let path = save(folder.path(), &format!("s.{extension}"), exported(extension, &shape));
         let back = read_points(&path, None).unwrap();
-        assert_eq!(back.positions, shape.points().positions[..corners], "{extension}");
+        assert_eq!(back.positions, shape.points().positions()[..corners], "{extension}");
         assert_eq!(back.values.unwrap(), [1.0, 2.0, 3.0, 5.0, 10.0][..corners], "{extension}");
         assert_eq!(back.weights, Some(vec![0.0; corners]), "{extension}");
     }

@@ -221,7 +221,7 @@ fn differences_around_points_are_those_of_their_samples() {
     for ((z, y, x), &sample) in volume.samples().indexed_iter() {
         let place = interpolant.locate([x, y, z].map(|i| i as f64)).expect("filled in");
         let shares = place.simplex.iter().zip(place.coordinates);
-        let values = whole.points().values.as_ref().unwrap();
+        let values = whole.points().values().unwrap();
         let ours: f64 = shares.clone().map(|(&v, share)| share * values[v as usize]).sum();
         for (&v, share) in shares {
             sums[v as usize].0 += share * (ours - f64::from(sample)).powi(2);
@@ -255,7 +255,7 @@ fn filling_covers_the_grid_and_keeps_the_points() {
         // Vertices have their values; hidden points need not.
         let mut vertices = 0;
         for &[v] in whole.complex().vertices.rows() {
-            let [x, y, z] = whole.points().positions[v as usize].map(|c| c as usize);
+            let [x, y, z] = whole.points().positions()[v as usize].map(|c| c as usize);
             assert_eq!(resampled.volume().samples()[[z, y, x]], volume.samples()[[z, y, x]]);
             vertices += 1;
         }

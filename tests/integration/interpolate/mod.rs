@@ -21,7 +21,7 @@ fn phantom(size: u64) -> Volume {
 }
 
 fn points(positions: Vec<Place>, weights: Vec<f64>, f: impl Fn(Place) -> f64) -> WeightedPoints {
-    let values = positions.iter().map(|&p| f(p)).collect();
+    let values: Vec<f64> = positions.iter().map(|&p| f(p)).collect();
     WeightedPoints::new(positions, weights).unwrap().with_values(values).unwrap()
 }
 
@@ -73,13 +73,13 @@ fn cross(a: Place, b: Place) -> Place {
 
 #[test]
 fn what_has_no_values_has_no_interpolant() {
-    let places: Vec<Place> = phantom_points(&phantom(8), 60).positions;
+    let places: Vec<Place> = phantom_points(&phantom(8), 60).into_parts().0;
     let mut points = points(places, vec![0.0; 60], linear);
-    points.values.as_mut().unwrap()[7] = f64::NAN;
+    points.values_mut().unwrap()[7] = f64::NAN;
     let bad = shape(points.clone(), 10.0);
     let error = Interpolant::new(&bad).unwrap_err();
     assert!(matches!(error, InterpolateError::Value { index: 7, .. }), "{error}");
-    points.values = None;
+    let points = points.with_values(None).unwrap();
     let error = Interpolant::new(&shape(points, 10.0)).unwrap_err();
     assert!(matches!(error, InterpolateError::NoValues), "{error}");
 }
@@ -114,8 +114,8 @@ proptest! {
 /// F where coordinates are multiples of a half: determinants are exact in doubles then.
 fn by_definition(shape: &AlphaShape, place: Place) -> Option<f64> {
     let complex = shape.complex();
-    let values = shape.points().values.as_ref().unwrap();
-    let corner = |v: u32| minus(shape.points().positions[v as usize], place);
+    let values = shape.points().values().unwrap();
+    let corner = |v: u32| minus(shape.points().positions()[v as usize], place);
     let sum = |row: &[u32], parts: &[f64]| {
         let whole: f64 = parts.iter().sum();
         let inside = parts.iter().all(|&part| part >= 0.0);
@@ -182,7 +182,7 @@ fn within(shape: &AlphaShape, simplex: &[u32], shares: [f64; 4]) -> Place {
     let whole: f64 = shares[..simplex.len()].iter().sum();
     [0, 1, 2].map(|k| {
         let at =
-            |(&v, share): (&u32, &f64)| shape.points().positions[v as usize][k] * share / whole;
+            |(&v, share): (&u32, &f64)| shape.points().positions()[v as usize][k] * share / whole;
         simplex.iter().zip(&shares).map(at).sum()
     })
 }
@@ -204,8 +204,8 @@ proptest! {
                 let value = value.expect("well within a cell");
                 prop_assert!((value - linear(place)).abs() < 1e-12 * 40.0, "{value} at {place:?}");
                 for &vertex in cell {
-                    let place = shape.points().positions[vertex as usize];
-                    let expected = shape.points().values.as_ref().unwrap()[vertex as usize];
+                    let place = shape.points().positions()[vertex as usize];
+                    let expected = shape.points().values().unwrap()[vertex as usize];
                     prop_assert_eq!(interpolant.value_at(place).map(f64::to_bits), Some(expected.to_bits()));
                 }
             }
@@ -221,7 +221,7 @@ proptest! {
         let zeros = vec![0.0; floats.len()];
         let shape = shape(points(floats, zeros, wild), f64::INFINITY);
         let interpolant = Interpolant::new(&shape).unwrap();
-        let values = shape.points().values.as_ref().unwrap();
+        let values = shape.points().values().unwrap();
         for facet in shape.complex().facets.of(Class::Interior) {
             let place = within(&shape, facet, shares);
             let whole: f64 = shares[..3].iter().sum();
@@ -294,7 +294,7 @@ proptest! {
 
 /// The least height of the cells on a facet.
 fn thinnest(shape: &AlphaShape, facet: &[u32; 3]) -> f64 {
-    let at = |v: u32| shape.points().positions[v as usize];
+    let at = |v: u32| shape.points().positions()[v as usize];
     let on = |cell: &&[u32; 4]| facet.iter().all(|v| cell.contains(v));
     let heights = shape.complex().cells.rows().iter().filter(on).flat_map(|cell| {
         let [a, b, c, d] = cell.map(at);

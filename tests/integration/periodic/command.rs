@@ -38,7 +38,7 @@ fn shapes_of_a_torus_are_certified() {
 
 /// A grid in a box of 96. Its cells have spheres of squared radius 768.
 fn grid() -> Vec<[f64; 3]> {
-    crystal([3; 3], &CUBIC).positions.iter().map(|place| place.map(|x| 32.0 * x)).collect()
+    crystal([3; 3], &CUBIC).positions().iter().map(|place| place.map(|x| 32.0 * x)).collect()
 }
 
 /// Large ones, and that much beyond weights far below zero.
@@ -144,8 +144,11 @@ fn files_hold_the_box() {
 }
 
 fn points(folder: &std::path::Path) {
-    let lines =
-        crystal([4, 4, 4], &BCC).positions.into_iter().map(|[x, y, z]| format!("{x} {y} {z}\n"));
+    let lines = crystal([4, 4, 4], &BCC)
+        .into_parts()
+        .0
+        .into_iter()
+        .map(|[x, y, z]| format!("{x} {y} {z}\n"));
     std::fs::write(folder.join("p.xyz"), lines.collect::<String>()).unwrap();
 }
 

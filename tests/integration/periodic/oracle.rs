@@ -12,13 +12,13 @@ pub fn copies(points: &WeightedPoints, sides: [f64; 3], around: i32) -> Weighted
     let mut moves: Vec<[i32; 3]> =
         range().flat_map(|x| range().flat_map(move |y| range().map(move |z| [x, y, z]))).collect();
     moves.sort_by_key(|m| *m != [0; 3]);
-    let mut all = WeightedPoints::default();
+    let (mut positions, mut weights) = (Vec::new(), Vec::new());
     for by in moves {
         let place = |p: &[f64; 3]| [0, 1, 2].map(|k| p[k] + f64::from(by[k]) * sides[k]);
-        all.positions.extend(points.positions.iter().map(place));
-        all.weights.extend(&points.weights);
+        positions.extend(points.positions().iter().map(place));
+        weights.extend(points.weights());
     }
-    all
+    WeightedPoints::new(positions, weights).unwrap()
 }
 
 /// The rows of copies that stand for all others: their smallest vertex, by the number of the point it is a
@@ -29,9 +29,9 @@ fn orbits(
     all: &WeightedPoints,
     complex: &Complex,
 ) -> Option<Complex> {
-    let n = points.positions.len() as u32;
+    let n = points.positions().len() as u32;
     let long = complex.edges.rows().iter().any(|&[a, b]| {
-        let [p, q] = [a, b].map(|v| all.positions[v as usize]);
+        let [p, q] = [a, b].map(|v| all.positions()[v as usize]);
         (a < n || b < n) && (0..3).any(|k| 2.0 * (p[k] - q[k]).abs() >= sides[k])
     });
     (!long).then(|| Complex {

@@ -8,8 +8,8 @@ fn written_points_are_read_back() {
     let third = 1.0 / 3.0;
     for values in [None, Some(vec![1e-300, -7.5])] {
         let positions = vec![[third, -2.0, 1e20], [0.0, 5.0, 6.25]];
-        let mut points = WeightedPoints::new(positions, vec![third * third, -1.0]).unwrap();
-        points.values = values;
+        let points = WeightedPoints::new(positions, vec![third * third, -1.0]).unwrap();
+        let points = points.with_values(values).unwrap();
         assert_eq!((points.is_empty(), points.len()), (false, 2));
         let (csv, npy) = (folder.path().join("p.csv"), folder.path().join("p.npy"));
         for path in [csv, npy] {
@@ -73,8 +73,8 @@ fn corners_of_facets_are_points_once() {
 #[test]
 fn content_goes_before_names() {
     let folder = tempfile::tempdir().unwrap();
-    let mut points = WeightedPoints::unweighted(vec![[1.0, 2.0, 3.0], [0.5, 0.0, -1.0]]);
-    points.values = Some(vec![7.0, 8.0]);
+    let points = WeightedPoints::unweighted(vec![[1.0, 2.0, 3.0], [0.5, 0.0, -1.0]]);
+    let points = points.with_values(vec![7.0, 8.0]).unwrap();
     let ply = "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\n\
         property float z\nend_header\n1 2 3\n0.5 0 -1\n";
     let pcd = "# .PCD v0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS 2\nDATA ascii\n\
@@ -94,7 +94,7 @@ fn content_goes_before_names() {
             let start = String::from_utf8_lossy(&bytes[..10]);
             assert!(is_point_file(&path).unwrap(), "{start} in {name}");
             let found = read_points(&path, None).unwrap();
-            assert_eq!(found.positions, points.positions, "{start} in {name}");
+            assert_eq!(found.positions, points.positions(), "{start} in {name}");
         }
     }
 }

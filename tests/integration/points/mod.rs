@@ -236,7 +236,7 @@ fn points(differences: &[f64]) -> Points {
 fn weights_follow_their_equations() {
     let four = points(&[1.0, 2.0, 2.0, 5.0]);
     let of = |weighting| {
-        weigh(four.clone(), weighting, Alpha::from_squared(8.0).unwrap()).unwrap().weights
+        weigh(four.clone(), weighting, Alpha::from_squared(8.0).unwrap()).unwrap().into_parts().1
     };
     assert_eq!(of(Weighting::Common(3.0)), [3.0; 4]);
     assert_eq!(of(Weighting::MinMax), [0.0, 2.0, 2.0, 8.0]);
@@ -244,7 +244,7 @@ fn weights_follow_their_equations() {
     let n =
         weigh(four.clone(), Weighting::BarycentricN, Alpha::from_squared(8.0).unwrap()).unwrap();
     assert_eq!((n.len(), n.is_empty()), (4, false));
-    assert_eq!(n.weights, [3.2, 6.4, 6.4, 16.0]);
+    assert_eq!(n.weights(), [3.2, 6.4, 6.4, 16.0]);
     assert_eq!(n.summary(), WeightSummary { min: 3.2, mean: 8.0, max: 16.0 });
 }
 
@@ -253,12 +253,14 @@ fn equal_differences_weigh_nothing_by_min_max() {
     assert_eq!(
         weigh(points(&[2.0; 3]), Weighting::MinMax, Alpha::from_squared(9.0).unwrap())
             .unwrap()
-            .weights,
+            .weights(),
         [0.0; 3]
     );
     for weighting in [Weighting::MinMax, Weighting::Barycentric, Weighting::BarycentricN] {
         assert_eq!(
-            weigh(points(&[0.0; 3]), weighting, Alpha::from_squared(9.0).unwrap()).unwrap().weights,
+            weigh(points(&[0.0; 3]), weighting, Alpha::from_squared(9.0).unwrap())
+                .unwrap()
+                .weights(),
             [0.0; 3]
         );
     }

@@ -10,14 +10,14 @@ use super::{Chance, back, grid, scattered, written};
 
 /// Points of a volume that is dark outside of a ball and brighter along x, with some noise.
 fn ball() -> WeightedPoints {
-    let mut points = scattered([24, 20, 18], 3, |_| 0.0);
+    let points = scattered([24, 20, 18], 3, |_| 0.0);
     let mut noise = Chance(11);
     let value = |[x, y, z]: [f64; 3]| {
         let inside = (x - 11.0).powi(2) + (y - 9.0).powi(2) + (z - 8.0).powi(2) < 60.0;
         (if inside { 120.0 + 4.0 * x } else { 0.0 }) + noise.below(5) as f64
     };
-    points.values = Some(points.positions.iter().copied().map(value).collect());
-    points
+    let values: Vec<f64> = points.positions().iter().copied().map(value).collect();
+    points.with_values(values).unwrap()
 }
 
 /// A file, what is in it, and how that was packed.
@@ -25,7 +25,7 @@ fn kept() -> [(&'static str, WeightedPoints, ModelMetadata, Packing); 3] {
     let facts = || ModelMetadata::default().grid(grid([24, 20, 18]));
     let all = ball();
     let mut layered = ball();
-    for (k, weight) in layered.weights.iter_mut().enumerate() {
+    for (k, weight) in layered.weights_mut().iter_mut().enumerate() {
         *weight = f64::from(k as u32 % 19) / 4.0 - 1.0;
     }
     let mut order: Vec<u32> = (0..layered.len() as u32).collect();
@@ -35,7 +35,7 @@ fn kept() -> [(&'static str, WeightedPoints, ModelMetadata, Packing); 3] {
         .alpha(Alpha::from_squared(2.25).unwrap())
         .range(GrayRange { low: 0.0, high: 255.0 });
     let mut rough = scattered([9, 30, 14], 5, |chance| chance.below(1 << 20) as f64 / 4096.0);
-    rough.values.as_mut().unwrap().sort_by(f64::total_cmp);
+    rough.values_mut().unwrap().sort_by(f64::total_cmp);
     [
         ("whole.wvm", all, facts(), Packing::default()),
         ("layers.wvm", layered, of_layers, Packing::default().layers(3)),
@@ -49,15 +49,16 @@ fn files_that_were_kept_are_read_and_written_as_ever() {
     for (name, points, facts, packing) in kept() {
         let file = std::fs::read(folder.join(name)).unwrap();
         let (found, told) = back(&file, 0);
-        assert_eq!((&found.positions, &found.weights), (&points.positions, &points.weights));
+        assert_eq!((found.positions(), found.weights()), (points.positions(), points.weights()));
         if name == "rough.wvm" {
-            let values = found.values.iter().flatten().zip(points.values.iter().flatten());
+            let values =
+                found.values().into_iter().flatten().zip(points.values().into_iter().flatten());
             assert!(values.into_iter().all(|(a, b)| (a - b).abs() <= 0.5), "{name}");
             // What is written again is the middle of each step.
             assert_eq!(written(&found, &facts, packing), file, "{name}");
         } else {
-            let known = (points.values.clone(), facts.clone().order(None));
-            assert_eq!((found.values, told), known, "{name}");
+            let known = (points.values(), facts.clone().order(None));
+            assert_eq!((found.values(), told), known, "{name}");
         }
         assert_eq!(written(&points, &facts, packing), file, "{name}");
     }

@@ -35,9 +35,8 @@ fn back(bytes: &[u8], level: u32) -> (WeightedPoints, ModelMetadata) {
     let folder = tempfile::tempdir().unwrap();
     let (points, facts) =
         read_model(&save(folder.path(), bytes), &PointOptions::default().level(level)).unwrap();
-    let mut weighted = WeightedPoints::new(points.positions, points.weights.unwrap()).unwrap();
-    weighted.values = points.values;
-    (weighted, facts)
+    let weighted = WeightedPoints::new(points.positions, points.weights.unwrap()).unwrap();
+    (weighted.with_values(points.values).unwrap(), facts)
 }
 
 fn refused(bytes: &[u8]) -> String {
@@ -120,10 +119,10 @@ fn everything_that_is_known_comes_back() {
         coordinates,
     };
     let grid = SampleGrid { frame, units: Units::World, ..grid([9, 8, 7]) };
-    for position in &mut points.positions {
+    for position in points.positions_mut() {
         *position = grid.position(position.map(|x| x as u32));
     }
-    for (k, weight) in points.weights.iter_mut().enumerate() {
+    for (k, weight) in points.weights_mut().iter_mut().enumerate() {
         *weight = (k as f64).sqrt() - 3.0;
     }
     let facts = ModelMetadata::default()
@@ -135,15 +134,15 @@ fn everything_that_is_known_comes_back() {
     let on_grid = written(&points, &facts, Packing::default());
     assert_eq!(back(&on_grid, 0), (points.clone(), facts.clone()));
     // Off the grid, or twice at one place: in their order, and larger.
-    for other in [[0.25, 0.0, 0.0], points.positions[3]] {
+    for other in [[0.25, 0.0, 0.0], points.positions()[3]] {
         let mut moved = points.clone();
-        moved.positions[0] = other;
+        moved.positions_mut()[0] = other;
         let bytes = written(&moved, &facts, Packing::default().value_error(0.5).layers(3));
         let (again, told) = back(&bytes, 0);
         assert_eq!((again, told.alpha, told.grid), (moved, facts.alpha, None));
         assert!(bytes.len() > on_grid.len());
     }
-    points.values = None;
+    let points = points.with_values(None).unwrap();
     assert_eq!(back(&written(&points, &facts, Packing::default()), 0).0, points);
 }
 
@@ -155,8 +154,8 @@ fn values_are_within_the_error_asked_for() {
         let packing = Packing::default().value_error(error);
         let bytes = written(&points, &ModelMetadata::default(), packing);
         let (again, _) = back(&bytes, 0);
-        assert_eq!(again.positions, points.positions);
-        let pairs = points.values.iter().flatten().zip(again.values.iter().flatten());
+        assert_eq!(again.positions(), points.positions());
+        let pairs = points.values().into_iter().flatten().zip(again.values().into_iter().flatten());
         let worst = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         assert!(worst <= error * (1.0 + 1e-12) && worst > error / 2.0, "{worst} for {error}");
         assert!(bytes.len() < last);
@@ -209,9 +208,9 @@ fn the_first_layers_are_the_most_important_points() {
         let mut wanted = order[..count / part].to_vec();
         wanted.sort_unstable();
         let of = |column: &[f64]| wanted.iter().map(|&k| column[k as usize]).collect();
-        let positions = wanted.iter().map(|&k| points.positions[k as usize]).collect();
-        let expected = WeightedPoints::new(positions, of(&points.weights)).unwrap();
-        let expected = expected.with_values(of(points.values.as_deref().unwrap())).unwrap();
+        let positions = wanted.iter().map(|&k| points.positions()[k as usize]).collect();
+        let expected = WeightedPoints::new(positions, of(points.weights())).unwrap();
+        let expected = expected.with_values(of(points.values().unwrap())).unwrap();
         assert_eq!(back(&bytes, level).0, expected);
     }
     let folder = tempfile::tempdir().unwrap();
@@ -242,7 +241,7 @@ proptest! {
     ) {
         // A map sorts by its keys: z first.
         let positions = cells.keys().map(|&[z, y, x]| [x, y, z].map(f64::from)).collect();
-        let values = cells.values().map(|&value| f64::from(value)).collect();
+        let values: Vec<f64> = cells.values().map(|&value| f64::from(value)).collect();
         let points = WeightedPoints::new(positions, vec![1.0; cells.len()]).unwrap();
         let points = points.with_values(values).unwrap();
         let order: Vec<u32> = (0..cells.len() as u32).rev().collect();

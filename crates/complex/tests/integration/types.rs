@@ -1,5 +1,8 @@
 //! α, simplices and counts.
 
+use std::cmp::Ordering;
+use std::collections::HashSet;
+
 use serde_json::json;
 use walpha_complex::{Alpha, AlphaError, ByClass, Class, Complex, Simplices, SimplicesError};
 
@@ -13,6 +16,21 @@ fn alpha_is_read_as_it_is_printed() {
     }
     assert_eq!(serde_json::to_string(&Alpha::INFINITE).unwrap(), "\"inf\"");
     assert_eq!(serde_json::from_str::<Alpha>("3").unwrap().squared(), 3.0);
+}
+
+#[test]
+fn alphas_are_ordered_and_hashed_as_numbers() {
+    let alpha = |squared: f64| Alpha::from_squared(squared).unwrap();
+    let mut alphas: Vec<Alpha> = ["inf", "0", "-3", "2", "-inf", "1e-300", "-0", "2"]
+        .map(|text| text.parse().unwrap())
+        .to_vec();
+    alphas.sort_unstable();
+    let squared: Vec<f64> = alphas.iter().map(|alpha| alpha.squared()).collect();
+    assert_eq!(squared, [f64::NEG_INFINITY, -3.0, 0.0, 0.0, 1e-300, 2.0, 2.0, f64::INFINITY]);
+    assert_eq!(alphas.iter().max(), Some(&Alpha::INFINITE));
+    let distinct: HashSet<Alpha> = alphas.into_iter().collect();
+    assert_eq!(distinct.len(), 6);
+    assert_eq!((alpha(-0.0), alpha(-0.0).cmp(&Alpha::ZERO)), (Alpha::ZERO, Ordering::Equal));
 }
 
 #[test]

@@ -9,6 +9,7 @@ use crate::{Cell, Triangulation, TriangulationError, filled};
 const TABLE_SIDE: usize = 64;
 
 /// Working memory of an insertion, kept so that the next one need not allocate.
+#[derive(Debug)]
 pub(super) struct Cavity {
     /// The cells in conflict with the point. Empty once their slots belong to new cells.
     conflicts: Vec<u32>,
@@ -33,7 +34,7 @@ pub(super) struct Cavity {
 }
 
 /// A boundary facet of the cavity.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy, Debug, Default)]
 struct Facet {
     /// Its vertices; with the new point as fourth corner they are a positively oriented cell.
     corners: [u32; 3],

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use super::Builder;
 use super::removal::{Hole, Workspace};
-use crate::order::rounds;
+use crate::order::{position_bits, rounds};
 use crate::predicates::{Predicates, Screen};
 use crate::{Cell, DELETED, Sites, TriangulationError, order};
 
@@ -15,6 +15,7 @@ use crate::{Cell, DELETED, Sites, TriangulationError, order};
 /// triangulation alone, and not on the order of insertions and removals. Points are numbered from
 /// [`Growing::FIRST`] on in the order in which they are registered; a registered point need not be a vertex. The
 /// ghost is vertex 0.
+#[derive(Debug)]
 pub struct Growing {
     positions: Vec<[f64; 3]>,
     weights: Vec<f64>,
@@ -22,6 +23,7 @@ pub struct Growing {
 }
 
 /// What the insertion of a point would change; see [`Growing::insertion`].
+#[derive(Debug)]
 pub struct Insertion {
     /// The cells in conflict with the point, infinite ones included.
     pub removed: Vec<u32>,
@@ -30,6 +32,7 @@ pub struct Insertion {
 }
 
 /// The part of [`Growing`] that insertions and removals change, apart from the points that they read.
+#[derive(Debug)]
 pub(super) struct State {
     pub builder: Builder,
     /// The [`position_bits`] of all vertices: no two are equal.
@@ -97,7 +100,7 @@ impl Growing {
         state.insert_all(positions, &Screen::with_ghost(&predicates, GHOST)?, points)
     }
 
-    /// Removes vertices, except those whose neighbours span no volume. Returns the number of vertices removed.
+    /// Removes vertices, except those without which the others span no volume. Returns the number of vertices removed.
     ///
     /// # Errors
     /// Too many cells; out of memory.
@@ -131,7 +134,7 @@ impl Growing {
         Screen::with_ghost(predicates, GHOST)
     }
 
-    /// What the removal of a vertex would change; `None` where its neighbours span no volume.
+    /// What the removal of a vertex would change; `None` where all others span no volume.
     ///
     /// # Errors
     /// Out of memory.
@@ -239,11 +242,6 @@ impl State {
             self.cell_at[v as usize] = cell;
         }
     }
-}
-
-/// Bits of a position that are equal for equal positions: adding 0.0 turns −0.0 into 0.0.
-fn position_bits(position: [f64; 3]) -> [u64; 3] {
-    position.map(|x| (x + 0.0).to_bits())
 }
 
 #[cfg(test)]

@@ -19,7 +19,7 @@ use walpha_base::memory::asking;
 
 use super::order::rounds;
 use super::predicates::{Predicates, Screen};
-use super::{Cell, DELETED, SitesError, Triangulation, TriangulationError, no_memory};
+use super::{Cell, CellArrays, DELETED, SitesError, TriangulationError, no_memory};
 use cavity::Cavity;
 pub use growing::Growing;
 pub use removal::Workspace;
@@ -37,9 +37,9 @@ pub fn insert_all(
     positions: &[[f64; 3]],
     weights: &[f64],
     inserted: impl FnMut(usize) -> Result<(), Cancelled>,
-) -> Result<Triangulation, TriangulationError> {
+) -> Result<CellArrays, TriangulationError> {
     let Built { cells, ghost, .. } = insert_cells(positions, weights, inserted)?;
-    Triangulation::of_cells(cells, ghost)
+    CellArrays::of_cells(cells, ghost)
 }
 
 /// The same, with cells in the order in which they were made. The corner 0 of free slots is [`DELETED`].
@@ -81,6 +81,7 @@ const MIN_CELLS: usize = 64;
 const CELL_BYTES: usize = size_of::<Cell>() + size_of::<u32>();
 
 /// A triangulation under construction.
+#[derive(Debug)]
 struct Builder {
     mesh: Mesh,
     /// Visit stamp per cell: the last insertion that visited it, and whether the cell was in conflict. See
@@ -203,10 +204,11 @@ impl Builder {
     }
 }
 
-/// Cells and their adjacency as in [`Triangulation`].
+/// Cells and their adjacency as in [`CellArrays`].
+#[derive(Debug)]
 struct Mesh {
     cells: Vec<Cell>,
-    /// The number of the infinite vertex. In a [`Triangulation`] it is the number of points, so that the points are
+    /// The number of the infinite vertex. In [`CellArrays`] it is the number of points, so that the points are
     /// 0, 1, …; in [`Growing`], where points are added later, it is 0 and the points are 1, 2, …
     ghost: u32,
 }

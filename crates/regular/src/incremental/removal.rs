@@ -6,6 +6,7 @@ use crate::predicates::Screen;
 use crate::{Cell, DELETED, Triangulation, TriangulationError, facets, smallest_first};
 
 /// The star of a vertex, and the cells that would replace it.
+#[derive(Debug)]
 pub struct Hole {
     /// The cells at the vertex.
     pub star: Vec<u32>,
@@ -17,6 +18,7 @@ pub struct Hole {
 }
 
 /// Working memory of [`Growing::hole`](super::Growing::hole), kept so that the next call need not allocate.
+#[derive(Debug)]
 pub struct Workspace {
     /// The triangulation of the neighbours.
     builder: Builder,
@@ -112,7 +114,7 @@ impl Workspace {
 }
 
 impl State {
-    /// The star of a vertex and what would replace it; `None` if its neighbours span no volume.
+    /// The star of a vertex and what would replace it; `None` if all other vertices span no volume.
     ///
     /// The sphere of a cell that replaces part of the star contains no other point, in particular no neighbour of
     /// the vertex. So it is a cell of the triangulation of the neighbours, of which the part within the boundary
@@ -129,9 +131,22 @@ impl State {
         around.sort_unstable();
         around.dedup();
         if !workspace.triangulate(screen, &around)? {
-            return Ok(None);
+            // A peak over a plane of neighbours: with points beyond the plane they span a volume. The cells that
+            // fill the hole are cells of any set of vertices that has their corners.
+            around.extend(boundary.iter().map(|&(_, outside)| self.corner(outside)));
+            around.retain(|&w| w != GHOST);
+            around.sort_unstable();
+            around.dedup();
+            if !workspace.triangulate(screen, &around)? {
+                return Ok(None);
+            }
         }
         Ok(workspace.fill(star, &boundary))
+    }
+
+    /// The vertex of the cell 4·cell + corner that is this corner.
+    fn corner(&self, side: u32) -> u32 {
+        self.builder.mesh.cells[side as usize / 4].corners[side as usize % 4]
     }
 
     /// The star of a vertex: its cells, and of each the facet opposite the vertex (its link) with 4·cell + corner

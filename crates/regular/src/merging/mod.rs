@@ -25,7 +25,7 @@ use walpha_base::Cancelled;
 
 use crate::incremental::{Built, insert_cells};
 use crate::order::Curve;
-use crate::{Triangulation, TriangulationError};
+use crate::{CellArrays, TriangulationError};
 use open::Extent;
 use slots::Mesh;
 
@@ -55,7 +55,7 @@ pub fn triangulate_along(
     positions: &[[f64; 3]],
     weights: &[f64],
     inserted: impl Fn(usize) -> Result<(), Cancelled> + Sync,
-) -> Result<Triangulation, TriangulationError> {
+) -> Result<CellArrays, TriangulationError> {
     let (count, threads) = (positions.len(), rayon::current_num_threads());
     if threads > 1 && count >= MIN_POINTS {
         let share = count as f64 / (threads * LEAVES_PER_THREAD) as f64;
@@ -68,7 +68,7 @@ pub fn triangulate_along(
         }
     }
     let Built { cells, ghost, .. } = insert_cells(positions, weights, &inserted)?;
-    Triangulation::of_cells(cells, ghost)
+    CellArrays::of_cells(cells, ghost)
 }
 
 /// Points along the Hilbert curve through them.

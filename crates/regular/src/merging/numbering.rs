@@ -6,7 +6,7 @@ use rayon::iter::repeat_n;
 use rayon::prelude::*;
 
 use super::slots::Slots;
-use crate::{Cell, DELETED, Triangulation, TriangulationError, with_capacity};
+use crate::{Cell, CellArrays, DELETED, TriangulationError, with_capacity};
 
 /// The permutations that bring the smallest of four first and the smallest of the others second, and are even: entry
 /// 3·p + r where the smallest was at p, after which the other three are rotated r times. Where each comes from.
@@ -57,7 +57,7 @@ fn canonical(corners: [u32; 4]) -> usize {
         }
 }
 
-impl Triangulation {
+impl CellArrays {
     /// The triangulation of cells in the order in which they were made.
     pub(crate) fn of_cells(cells: Vec<Cell>, ghost: u32) -> Result<Self, TriangulationError> {
         number(Slots::of_one(cells), ghost)
@@ -71,7 +71,7 @@ const VERTICES: usize = 1 << 11;
 
 /// The cells in canonical order: each as its lexicographically smallest even permutation, and these ascending. So cells
 /// of consecutive points are close in memory. O(cells) for bounded numbers of cells at a point.
-pub(super) fn number(slots: Slots, ghost: u32) -> Result<Triangulation, TriangulationError> {
+pub(super) fn number(slots: Slots, ghost: u32) -> Result<CellArrays, TriangulationError> {
     let Slots { chunks: mut old, bits, .. } = slots;
     let ranges = ghost as usize / VERTICES + 1;
     let by_piece: Vec<Vec<Vec<Corners>>> = (old.par_iter_mut().enumerate())
@@ -126,7 +126,7 @@ pub(super) fn number(slots: Slots, ghost: u32) -> Result<Triangulation, Triangul
             at(slot).number.store(number, Ordering::Relaxed);
         }
     });
-    let mut neighbors: Vec<[u32; 4]> = with_capacity(count)?;
+    let mut adjacency: Vec<[u32; 4]> = with_capacity(count)?;
     (from.par_iter().with_min_len(PIECE))
         .map(|&slot| {
             at(slot).neighbors.map(|side| {
@@ -135,8 +135,8 @@ pub(super) fn number(slots: Slots, ghost: u32) -> Result<Triangulation, Triangul
                 4 * number.load(Ordering::Relaxed) + u32::from(corner)
             })
         })
-        .collect_into_vec(&mut neighbors);
-    Ok(Triangulation { cells, neighbors, ghost })
+        .collect_into_vec(&mut adjacency);
+    Ok(CellArrays { cells, adjacency, ghost })
 }
 
 /// The corners of a cell, permuted, and its slot.

@@ -3,10 +3,10 @@ use walpha_base::random::Random;
 use super::Along;
 use super::numbering::number;
 use crate::incremental::{Built, insert_cells};
-use crate::{Sites, Triangulation, TriangulationError};
+use crate::{CellArrays, Sites, TriangulationError};
 
 /// The triangulation with leaves of at most `leaf` points, and that of one leaf, whichever can be made.
-fn both(points: &[([f64; 3], f64)], leaf: usize) -> [Result<Triangulation, TriangulationError>; 2] {
+fn both(points: &[([f64; 3], f64)], leaf: usize) -> [Result<CellArrays, TriangulationError>; 2] {
     let (positions, weights): (Vec<_>, Vec<_>) = points.iter().copied().unzip();
     let sites = Sites::any(&positions, &weights).unwrap();
     let along = |v: &u32| *v as usize;
@@ -27,8 +27,8 @@ fn both(points: &[([f64; 3], f64)], leaf: usize) -> [Result<Triangulation, Trian
     ]
 }
 
-fn one_leaf(built: Result<Built, TriangulationError>) -> Result<Triangulation, TriangulationError> {
-    built.and_then(|Built { cells, ghost, .. }| Triangulation::of_cells(cells, ghost))
+fn one_leaf(built: Result<Built, TriangulationError>) -> Result<CellArrays, TriangulationError> {
+    built.and_then(|Built { cells, ghost, .. }| CellArrays::of_cells(cells, ghost))
 }
 
 /// Sets of points, most of them degenerate; each case has a number.
@@ -79,7 +79,7 @@ fn merged_leaves_are_the_whole() {
             match both(&points, leaf) {
                 [Ok(a), Ok(b)] => {
                     assert_eq!(a.cells(), b.cells(), "case {case}, leaves of {leaf}");
-                    assert_eq!(a.neighbors(), b.neighbors(), "case {case}, leaves of {leaf}");
+                    assert_eq!(a.adjacency(), b.adjacency(), "case {case}, leaves of {leaf}");
                     merged += 1;
                 }
                 [Err(a), Err(b)] => assert_eq!(a.to_string(), b.to_string()),
@@ -104,14 +104,13 @@ fn threads_do_not_change_the_triangulation() {
     ];
     for set in sets {
         let (positions, weights): (Vec<_>, Vec<_>) = set.into_iter().unzip();
-        let sites = Sites::new(&positions, &weights).unwrap();
         let made = [1, 2, 3, 8].map(|threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            pool.install(|| crate::triangulate(&sites)).unwrap()
+            pool.install(|| crate::triangulate(&positions, Some(&weights))).unwrap()
         });
         for other in &made[1..] {
             assert_eq!(other.cells(), made[0].cells());
-            assert_eq!(other.neighbors(), made[0].neighbors());
+            assert_eq!(other.adjacency(), made[0].adjacency());
         }
     }
 }

@@ -49,6 +49,7 @@ impl Interval {
 }
 
 /// Predicates on weighted points, which are given by index.
+#[derive(Debug)]
 pub struct Predicates<'a> {
     positions: &'a [[f64; 3]],
     weights: &'a [f64],

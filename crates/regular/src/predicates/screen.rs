@@ -10,6 +10,7 @@ use crate::{TriangulationError, with_capacity};
 /// h = |p|² − ω. Both determinants are computed from these four doubles. On a lattice where the terms of a determinant
 /// sum to at most 2⁵³ in magnitude, every sign is exact, ties included. Otherwise a sign is accepted beyond one error
 /// bound for the whole set, and [`Predicates`] decide the rest.
+#[derive(Debug)]
 pub struct Screen<'a> {
     predicates: &'a Predicates<'a>,
     /// Points as [x, z, y, h], not [x, y, z, h]: `power_determinant` multiplies the lanes (x, z) by the lanes (y, h),

@@ -50,11 +50,11 @@ impl Packed {
         let points = detail.levels.points();
         let mut facets = detail.levels.facets();
         let mut edges = detail.levels.singular_edges();
-        let simplified = simplify(&points.positions, &mut facets, &mut edges, most_facets);
-        let axis = |k: usize| Array::f32(points.positions.iter().map(move |p| p[k]));
+        let simplified = simplify(points.positions(), &mut facets, &mut edges, most_facets);
+        let axis = |k: usize| Array::f32(points.positions().iter().map(move |p| p[k]));
         let mut arrays = Arrays::from([("x", axis(0)), ("y", axis(1)), ("z", axis(2))]);
-        arrays.insert("weights", Array::f32(points.weights.iter().copied()));
-        if let Some(values) = &points.values {
+        arrays.insert("weights", Array::f32(points.weights().iter().copied()));
+        if let Some(values) = points.values() {
             arrays.insert("values", Array::f32(values.iter().copied()));
         }
         if let Some(differences) = detail.differences {

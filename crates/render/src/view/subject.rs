@@ -45,7 +45,7 @@ pub struct Differences {
 impl Subject<'_> {
     /// Whether points have values: at every level of detail, or at none.
     pub(super) fn is_valued(&self) -> bool {
-        self.details.iter().all(|detail| detail.levels.points().values.is_some())
+        self.details.iter().all(|detail| detail.levels.points().values().is_some())
     }
 
     /// Whether points have differences to the original at every level of detail.

@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use walpha_base::monitor::Units;
 use walpha_regular::{
-    Lattice, Torus, Triangulation, TriangulationError, insert_all, triangulate_along,
+    CellArrays, Lattice, Torus, TriangulationError, insert_all, triangulate_along,
 };
 
 use crate::Complex;
@@ -72,7 +72,7 @@ pub(super) const TRIANGULATION: u64 = 2;
 pub(super) fn triangulate(
     points: &Block,
     work: &Units<'_>,
-) -> Result<Triangulation, TriangulationError> {
+) -> Result<CellArrays, TriangulationError> {
     let (own, all) = (TRIANGULATION * u64::from(points.own), points.input.len() as u64);
     if u64::from(points.own) == all {
         // The only block: all threads are free for it.

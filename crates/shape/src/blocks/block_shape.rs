@@ -12,7 +12,7 @@ use super::spanning::spanning;
 use crate::{Complex, ShapeError};
 
 /// The points of a block and those around it, in the order of their indices in the whole set.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub struct Own<'a> {
     /// Coordinates (x, y, z).
     pub positions: &'a [[f64; 3]],
@@ -24,7 +24,7 @@ pub struct Own<'a> {
 
 /// The simplices that a block owns, in canonical order, and what is needed to merge it with other blocks. Points are
 /// numbered by their index among those given; sheets and components from 0 within the block.
-#[derive(Default)]
+#[derive(Debug, Default)]
 pub struct BlockShape {
     /// The simplices that the block owns.
     pub complex: Complex,

@@ -1,7 +1,7 @@
 use rayon::prelude::*;
 use walpha_base::Monitor;
 use walpha_base::monitor::Units;
-use walpha_regular::{Lattice, Sites, Triangulation, TriangulationError, check_span};
+use walpha_regular::{CellArrays, Lattice, Sites, TriangulationError, check_span};
 
 use super::block::{Answer, Block, Question, WORK};
 use super::classify::{Buckets, Owned, classify};
@@ -74,7 +74,7 @@ pub(super) fn in_space(
     block: usize,
     question: &Question,
     work: &Units<'_>,
-) -> Result<(Block, Triangulation, Lattice), ShapeError> {
+) -> Result<(Block, CellArrays, Lattice), ShapeError> {
     let mut points = partition.block(sites, Reach::Balls(question.alpha), block);
     let (inside, next) = (points.input.len(), sites.input().last().map_or(0, |last| last + 1));
     let made = spanning(&mut points, question.alpha, next, work)?;

@@ -1,7 +1,7 @@
 //! Triangulation of blocks whose points may span no volume; along a line of points, most do not.
 
 use walpha_base::monitor::Units;
-use walpha_regular::{SitesError, Triangulation, TriangulationError, auxiliary_positions};
+use walpha_regular::{CellArrays, SitesError, TriangulationError, auxiliary_positions};
 
 use super::block::{Block, triangulate};
 
@@ -12,7 +12,7 @@ pub(super) fn spanning(
     alpha: f64,
     next: u32,
     work: &Units<'_>,
-) -> Result<Triangulation, TriangulationError> {
+) -> Result<CellArrays, TriangulationError> {
     match triangulate(block, work) {
         Err(TriangulationError::Sites(SitesError::Flat { .. } | SitesError::TooFew { .. })) => {
             let auxiliary = auxiliary_positions(&block.positions);

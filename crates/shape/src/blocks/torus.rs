@@ -3,9 +3,7 @@
 use rayon::prelude::*;
 use walpha_base::monitor::Units;
 use walpha_regular::Lattice;
-use walpha_regular::{
-    AXES, Predicates, Sites, SitesError, Torus, Triangulation, TriangulationError,
-};
+use walpha_regular::{AXES, CellArrays, Predicates, Sites, SitesError, Torus, TriangulationError};
 
 use super::block::{Block, Question, triangulate};
 use super::classify::Long;
@@ -21,7 +19,7 @@ pub(super) fn on_torus(
     block: usize,
     question: &Question,
     work: &Units<'_>,
-) -> Result<(Block, Triangulation, Lattice), ShapeError> {
+) -> Result<(Block, CellArrays, Lattice), ShapeError> {
     for reach in question.reaches(sites, torus) {
         let points = partition.block(sites, reach, block);
         match triangulate(&points, work) {
@@ -54,7 +52,7 @@ impl Question {
 
     /// Whether the triangulation of a block with a halo decides the block. A halo for a smaller α does if no
     /// orthogonal sphere at the block's points is larger: then all of these spheres are empty.
-    fn decides(&self, reach: Reach, points: &Block, made: &Triangulation) -> bool {
+    fn decides(&self, reach: Reach, points: &Block, made: &CellArrays) -> bool {
         let Reach::Balls(alpha) = reach else { return true };
         if alpha >= self.alpha && !self.exterior {
             return true;

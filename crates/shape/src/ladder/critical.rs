@@ -30,6 +30,7 @@ pub struct Curve {
 
 /// Suggested values of α, squared lengths, each the least double at which the shape has the property.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Suggestions {
     /// Every vertex of the triangulation is one of a cell: MATLAB's
     /// `criticalAlpha(shp, 'all-points')`, CGAL's `Alpha_shape_3::find_alpha_solid`.

@@ -16,6 +16,7 @@ use crate::{Alpha, AlphaShape, Complex, Engine, ShapeError, ShapeOptions, alpha_
 /// intervals, in rounded numbers). Here a radius is the nearest double, and where an α is as near to the
 /// exact number, exact arithmetic decides: a shape taken from a filtration equals that of
 /// [`alpha_shape`](crate::alpha_shape()).
+#[derive(Debug)]
 pub struct Filtration {
     pub(super) whole: AlphaShape,
     pub(super) incidence: Incidence,
@@ -24,14 +25,14 @@ pub struct Filtration {
 
 impl Filtration {
     /// Triangulates points and computes when each simplex enters. Takes about twice the time of one shape
-    /// of the whole triangulation; expected O(n log n).
+    /// of the whole triangulation; expected O(n log n). Borrowed points are copied, as for a shape.
     ///
     /// Points in one plane, on one line or at one place have the filtration that they have there: there are no
     /// cells, triangles (edges, the vertex) enter by their own spheres, and none is ever interior.
     ///
     /// # Errors
     /// As [`alpha_shape`](crate::alpha_shape()).
-    pub fn new(points: WeightedPoints) -> Result<Self, ShapeError> {
+    pub fn new(points: impl Into<WeightedPoints>) -> Result<Self, ShapeError> {
         Self::on(None, points)
     }
 
@@ -40,7 +41,7 @@ impl Filtration {
     ///
     /// # Errors
     /// As [`alpha_shape`](crate::alpha_shape()) at α = ∞; so no edge of the whole triangulation may span half of the box.
-    pub fn on(torus: Option<Torus>, points: WeightedPoints) -> Result<Self, ShapeError> {
+    pub fn on(torus: Option<Torus>, points: impl Into<WeightedPoints>) -> Result<Self, ShapeError> {
         Self::monitored(torus, points, &Monitor::noop())
     }
 
@@ -50,7 +51,7 @@ impl Filtration {
     /// Those of [`on`](Self::on), and [`ShapeError::Cancelled`].
     pub fn monitored(
         torus: Option<Torus>,
-        points: WeightedPoints,
+        points: impl Into<WeightedPoints>,
         monitor: &Monitor,
     ) -> Result<Self, ShapeError> {
         let options = ShapeOptions {

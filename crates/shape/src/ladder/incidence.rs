@@ -4,6 +4,7 @@ use super::along::{Along, rows, starts};
 use crate::Complex;
 
 /// The incidences of the simplices of a whole triangulation, by row.
+#[derive(Debug)]
 pub(super) struct Incidence {
     /// The facets, each sorted, in lexicographic order.
     pub facets: Vec<[u32; 3]>,

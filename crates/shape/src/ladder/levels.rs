@@ -8,6 +8,7 @@ use super::incidence::Incidence;
 use crate::{Alpha, AlphaShape, Betti, Class, Complex, WeightedPoints};
 
 /// The levels at which the class of a simplex changes. Levels count from 0; the number of levels stands for never.
+/// Open: there are three changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Span {
     /// From here on it is in the shape.
@@ -54,6 +55,7 @@ impl Span {
 
 /// A filtration at several α: for each simplex, the first level at which it is in the shape, and
 /// the levels at which its class changes. Levels are nested, as a simplex never leaves.
+#[derive(Debug)]
 pub struct Levels<'a> {
     pub(super) filtration: &'a Filtration,
     pub(super) alphas: Vec<Alpha>,
@@ -69,7 +71,7 @@ impl Filtration {
     /// O(n log m) for m levels, and exact arithmetic for ties.
     pub fn levels(&self, alphas: &[Alpha]) -> Levels<'_> {
         let mut alphas = alphas.to_vec();
-        alphas.sort_by(|a, b| a.squared().total_cmp(&b.squared()));
+        alphas.sort_unstable();
         alphas.dedup();
         let spheres = self.spheres();
         let complex = self.whole.complex();

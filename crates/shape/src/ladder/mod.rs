@@ -5,12 +5,12 @@
 //!
 //! ```
 //! use walpha_shape::ladder::Filtration;
-//! use walpha_shape::{Alpha, WeightedPoints};
+//! use walpha_shape::Alpha;
 //!
 //! // The 26 outer points of a 3×3×3 lattice: a hollow cube.
 //! let at = |i: i32| [i % 3, i / 3 % 3, i / 9].map(f64::from);
-//! let positions: Vec<_> = (0..27).filter(|&i| i != 13).map(at).collect();
-//! let filtration = Filtration::new(WeightedPoints::unweighted(positions))?;
+//! let points: Vec<[f64; 3]> = (0..27).filter(|&i| i != 13).map(at).collect();
+//! let filtration = Filtration::new(&points)?;
 //!
 //! let alphas = [0.25, 0.75, 1.0].map(|alpha| Alpha::from_squared(alpha).unwrap());
 //! let ladder = filtration.ladder(&alphas, 8.0);

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 /// The double nearest to the squared radius of the smallest orthogonal sphere of a simplex, if that is
 /// empty; otherwise no number.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Radius(pub f64);
 
 impl Radius {
@@ -16,6 +16,7 @@ impl Radius {
 }
 
 /// Squared radii of the smallest orthogonal spheres, each the nearest double, by row.
+#[derive(Debug)]
 pub(super) struct Radii {
     /// Of all cells, …
     pub cells: Vec<f64>,

@@ -8,6 +8,7 @@ use crate::{Alpha, Betti, ByClass, Class, Measures, Void, facet_area, six_volume
 
 /// Measurements of each level of a filtration, by ascending α.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Ladder {
     /// A row for each α.
     pub levels: Vec<Level>,
@@ -15,6 +16,7 @@ pub struct Ladder {
 
 /// The measurements of a level.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Level {
     /// α, a squared length; the string "inf" where it is infinite.
     pub alpha: Alpha,

@@ -21,6 +21,7 @@ use view::{View, spanning_plane};
 
 /// The shape of points in a plane, as a region of that plane: see [`AlphaShape::outline`].
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Outline {
     /// The two coordinates in which the plane is seen, 0 for x, 1 for y and 2 for z: the first of (x, y), (x, z) and
     /// (y, z) that tell its points apart. Counter-clockwise is the way from the first axis to the second.

@@ -17,6 +17,7 @@ use super::view::Seen;
 
 /// A region of a plane without its holes; rings are lists of input indices, not closed by repeating the first.
 #[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+#[non_exhaustive]
 pub struct Polygon {
     /// The ring around it, counter-clockwise. It begins with its smallest index.
     pub outer: Vec<u32>,

@@ -21,7 +21,7 @@ use std::sync::Mutex;
 use rayon::prelude::*;
 use walpha_base::monitor::Units;
 use walpha_base::{Cancelled, UnionFind};
-use walpha_regular::{Predicates, Triangulation};
+use walpha_regular::{CellArrays, Predicates};
 
 use super::block::{Block, Question, TRIANGULATION, WORK};
 use around::{Walker, Worker};
@@ -41,7 +41,7 @@ const CELLS: usize = 1 << 10;
 /// Cancelled.
 pub(super) fn classify(
     block: &Block,
-    mesh: Triangulation,
+    mesh: CellArrays,
     question: &Question,
     buckets: Buckets,
     work: &Units<'_>,

@@ -218,6 +218,7 @@ impl PointRows {
 }
 
 /// One side of a facet, or a singular edge, with vertices in several blocks.
+#[derive(Debug)]
 pub struct Side {
     /// Sorted input indices; an edge repeats its last one.
     pub simplex: [u32; 3],

@@ -30,6 +30,7 @@ use rank::{NONE, Ranks};
 ///
 /// Simplices have *numbers*: vertices first, then edges, facets, cells; those of one dimension in
 /// lexicographic order of their vertices, which ascend in each.
+#[derive(Debug)]
 pub struct Ordered<'a> {
     /// A level for each value.
     pub(super) levels: Levels<'a>,
@@ -43,6 +44,7 @@ pub struct Ordered<'a> {
 
 /// A simplex and when it enters.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Entry<'a> {
     /// Input indices, ascending.
     pub vertices: &'a [u32],
@@ -64,6 +66,7 @@ pub struct Entry<'a> {
 ///
 /// Pairs of persistence 0, whose simplices have the same value, are included.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Pairs {
     /// Components: a vertex, and the edge that unites its component with one that came before; in
     /// the order of edges. All vertices but one have such an edge.

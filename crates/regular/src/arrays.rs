@@ -1,0 +1,32 @@
+//! The cells of a triangulation as flat arrays, by the numbers of points alone.
+
+/// Corners and adjacency of all cells. The infinite cells, one beyond each facet of the hull, have the ghost as a corner;
+/// see [`Triangulation`](crate::Triangulation), whose arrays these become.
+#[derive(Clone, Debug)]
+pub struct CellArrays {
+    pub(crate) cells: Vec<[u32; 4]>,
+    pub(crate) adjacency: Vec<[u32; 4]>,
+    pub(crate) ghost: u32,
+}
+
+impl CellArrays {
+    /// The corners of each cell, positively oriented. Cells of points that are close on a Hilbert curve are close.
+    pub fn cells(&self) -> &[[u32; 4]] {
+        &self.cells
+    }
+
+    /// For each corner of each cell, 4·cell + corner across the facet opposite that corner.
+    pub fn adjacency(&self) -> &[[u32; 4]] {
+        &self.adjacency
+    }
+
+    /// The infinite vertex. Its number is the number of points.
+    pub fn ghost(&self) -> u32 {
+        self.ghost
+    }
+
+    /// Cells, adjacency and ghost, by value, so that each can be dropped on its own.
+    pub fn into_parts(self) -> (Vec<[u32; 4]>, Vec<[u32; 4]>, u32) {
+        (self.cells, self.adjacency, self.ghost)
+    }
+}
