@@ -12,11 +12,16 @@ mod errors;
 mod filtration;
 mod points;
 mod shape;
+mod triangulation;
 mod volume;
 mod work;
 
 /// The module.
-#[pyo3::pymodule]
+///
+/// It needs no global lock. Every class is frozen and `Sync`, so the compiler has checked that threads may share its
+/// objects. The `unsafe` code lends memory of frozen objects to arrays that cannot be written to, and keeps the owner
+/// alive; the allocator passes on to the system's. What one call changes belongs to that call ([`call`]).
+#[pyo3::pymodule(gil_used = false)]
 mod _walpha {
     use pyo3::prelude::*;
 
@@ -27,7 +32,9 @@ mod _walpha {
     #[pymodule_export]
     use super::points::{read_points, write_points};
     #[pymodule_export]
-    use super::shape::{Shape, alpha_shape};
+    use super::shape::{Shape, alpha_shape, restored};
+    #[pymodule_export]
+    use super::triangulation::Triangulation;
     #[pymodule_export]
     use super::volume::{difference, haar, pipeline, read, select, weigh};
 

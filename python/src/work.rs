@@ -1,5 +1,6 @@
 //! Long work beside the interpreter.
 
+use std::num::NonZeroUsize;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::Arc;
 use std::sync::mpsc::{RecvTimeoutError, sync_channel};
@@ -22,14 +23,19 @@ const GRACE: Duration = Duration::from_secs(2);
 /// As a main thread has it; rayon's default is a quarter.
 const STACK: usize = 8 << 20;
 
+/// How a call wants its work done: on how many threads, all that may be used if `None`; and what is called as
+/// `progress(stage, done, total)`.
+#[derive(FromPyObject, Default)]
+pub struct Task<'py>(Option<NonZeroUsize>, Option<Bound<'py, PyAny>>);
+
 /// Does work in threads of its own while other threads of Python run, and returns its result.
 ///
-/// This thread waits; it asks Python for interrupts and calls `progress(stage, done, total)`. After an
+/// This thread waits; it asks Python for interrupts and calls the task's `progress`. After an
 /// interrupt, or an exception of `progress`, it returns at once, and with `MemoryError` soon after memory ran out. The work is
 /// cancelled then; it owns all that it works on, and ends when it next asks its monitor.
 pub fn run<T, E>(
     py: Python<'_>,
-    progress: Option<&Bound<'_, PyAny>>,
+    Task(threads, progress): &Task<'_>,
     work: impl FnOnce(&Monitor) -> Result<T, E> + Send + 'static,
 ) -> PyResult<T>
 where
@@ -38,7 +44,7 @@ where
 {
     let call = Arc::new(Call::new());
     let wanted = Wanted(Arc::clone(&call));
-    let threads = pool(&call)?;
+    let threads = pool(&call, *threads)?;
     let (sender, mut receiver) = sync_channel(1);
     let mut starved = None;
     thread::Builder::new().name("walpha".into()).spawn(move || {
@@ -83,12 +89,13 @@ fn no_memory() -> PyErr {
     )
 }
 
-/// Threads that work for one call: their progress reports belong to it. `RAYON_NUM_THREADS` says how many, or else
-/// the cores; where not so many can be had, fewer.
-fn pool(call: &Arc<Call>) -> PyResult<ThreadPool> {
+/// Threads that work for one call: their progress reports belong to it. If the call does not say how many,
+/// `RAYON_NUM_THREADS` does, or else the cores; where not so many can be had, fewer.
+fn pool(call: &Arc<Call>, asked: Option<NonZeroUsize>) -> PyResult<ThreadPool> {
     let call = Arc::clone(call);
     // The last is for the thread that waits for them.
-    let available = threads::available(threads::wanted(None) + 1, STACK).saturating_sub(1);
+    let available = threads::available(threads::wanted(asked.map(NonZeroUsize::get)) + 1, STACK)
+        .saturating_sub(1);
     if available == 0 {
         let text = "no threads to work in: memory, or the number of processes, is limited too much";
         return Err(PyMemoryError::new_err(text));
