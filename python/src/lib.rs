@@ -20,7 +20,8 @@ mod work;
 ///
 /// It needs no global lock. Every class is frozen and `Sync`, so the compiler has checked that threads may share its
 /// objects. The `unsafe` code lends memory of frozen objects to arrays that cannot be written to, and keeps the owner
-/// alive; the allocator passes on to the system's. What one call changes belongs to that call ([`call`]).
+/// alive; the allocator passes on to the system's. What one call changes belongs to that call ([`call`]). An array that is
+/// given is copied before the work begins; as with numpy, nobody may write to it meanwhile.
 #[pyo3::pymodule(gil_used = false)]
 mod _walpha {
     use pyo3::prelude::*;
