@@ -54,7 +54,8 @@ def test_scikit_learn_takes_it(clouds):
     pipeline = pytest.importorskip("sklearn.pipeline")
     preprocessing = pytest.importorskip("sklearn.preprocessing")
     given = AlphaPersistence((0,), threads=1)
-    assert base.clone(given).get_params() == given.get_params()
+    cloned = base.clone(given)
+    assert cloned is not given and cloned.homology_dimensions == (0,) and cloned.threads == 1
     flat = preprocessing.FunctionTransformer(lambda diagrams: diagrams.reshape(len(diagrams), -1))
     steps = pipeline.make_pipeline(given, flat, preprocessing.StandardScaler())
     assert steps.fit_transform(clouds).shape == (3, 79 * 3)

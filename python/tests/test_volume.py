@@ -64,6 +64,8 @@ def test_bytes_are_gray_levels(phantom):
     gray = np.clip(phantom.samples, 10, 200).astype(np.uint8)
     as_bytes = walpha.pipeline(gray, count=500)
     assert same(as_bytes, walpha.pipeline(gray.astype(float), gray=(0, 255), count=500))
+    assert walpha.Volume(gray).gray and not walpha.Volume(gray / 2).gray and not walpha.Volume(gray, gray=False).gray
+    assert same(as_bytes, walpha.pipeline(walpha.Volume(gray, unit="voxel"), count=500))
     strided = np.asfortranarray(gray)
     assert same(as_bytes, walpha.pipeline(strided, count=500))
 
