@@ -147,7 +147,8 @@ impl Arrays {
     }
 
     /// Walks towards each place, through facets that it lies beyond. In a regular triangulation no such walk comes back to
-    /// a cell (Edelsbrunner 1990, doi:10.1007/BF02122777), and signs are exact.
+    /// a cell (Edelsbrunner, An acyclicity theorem for cell complexes in d dimension,
+    /// Combinatorica 10, 1990), and signs are exact.
     fn find(&self, places: &[[f64; 3]], monitor: &Monitor) -> Result<Vec<i64>, TriangulationError> {
         monitor.stage("location")?;
         let sane = |place: &[f64; 3]| place.iter().all(|x| x.abs() <= MAX_COORDINATE);

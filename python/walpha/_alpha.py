@@ -33,13 +33,17 @@ def squared(alpha: Any, alpha_radius: Any, otherwise: str) -> float:
     found = rule(alpha, alpha_radius)
     if found is None or isinstance(found, str):
         given = "" if found is None else f"={found!r}"
-        raise ValueError(f"alpha{given} must be a squared length here: give it as alpha or its root as alpha_radius{otherwise}")
+        raise ValueError(
+            f"alpha{given} must be a squared length here: give it as alpha or its root as alpha_radius{otherwise}"
+        )
     return found
 
 
 def _number(name: str, given: Any, advice: str) -> float:
     if np.ndim(given):
-        raise ValueError(f"{name} is one number, not an array of shape {np.shape(given)}: {advice}; weights have the name weights=")
+        raise ValueError(
+            f"{name} is one number, not an array of shape {np.shape(given)}: {advice}; weights have the name weights="
+        )
     try:
         number = float(given)
     except (TypeError, ValueError):

@@ -64,7 +64,8 @@ def alpha_shape(
         of ``total`` equal parts of a stage ("alpha", "shape", …) are done. A total of 0 says that a
         stage begins. An exception ends the work. True writes a line on standard error.
     threads : int, optional
-        How many threads work; by default as many as ``RAYON_NUM_THREADS`` says, or as there are cores.
+        How many threads work, at most four for each core; by default as many as ``RAYON_NUM_THREADS`` says, or as
+        there are cores.
 
     Returns
     -------

@@ -103,7 +103,8 @@ def _codes(classes: Iterable[int | Ground]) -> list[int]:
     for given in [classes] if isinstance(classes, (str, int)) else classes:
         known = _CLASSES.get(given) if isinstance(given, str) else [given] if 0 <= given < 256 else None
         if known is None:
-            raise ValueError(f"classes: {given!r} is none: give codes from 0 to 255, or of {', '.join(map(repr, _CLASSES))}")
+            known_names = ", ".join(map(repr, _CLASSES))
+            raise ValueError(f"classes: {given!r} is none: give codes from 0 to 255, or of {known_names}")
         codes += known
     return codes
 

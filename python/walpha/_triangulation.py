@@ -38,8 +38,8 @@ class Triangulation:
     convex_hull: Indices
     #: ndarray of int64, (k,): points that heavier ones near them make redundant, which are on no cell.
     hidden: Indices
-    #: ndarray of int64, (k, 2): a point that went, and the one at its place that stayed, the heaviest or first; columns 0
-    #: and 2 of scipy's ``coplanar``.
+    #: ndarray of int64, (k, 2): a point that went, and the one at its place that stayed, the heaviest or first;
+    #: columns 0 and 2 of scipy's ``coplanar``.
     duplicates: Indices
 
     def __init__(self) -> None:

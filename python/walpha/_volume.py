@@ -22,8 +22,8 @@ _ALONG = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 class Volume:
     """A grid of samples, and where it lies.
 
-    What has the form of an array, ``samples`` and its shape, is ``[z, y, x]``, as numpy and scikit-image have it. What is
-    a place, a length or a direction is (x, y, z), as of points.
+    What has the form of an array, ``samples`` and its shape, is ``[z, y, x]``, as numpy and scikit-image have it.
+    What is a place, a length or a direction is (x, y, z), as of points.
 
     Parameters
     ----------
