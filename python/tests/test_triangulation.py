@@ -89,6 +89,8 @@ def test_places_on_facets_vertices_and_elsewhere():
         assert (share > -1e-12).all()
     outside = [[1, 1, np.nextafter(1, 2)], [np.nan, 0, 0], [1e300, 0, 0], [-np.inf, 0, 0]]
     assert made.find_simplex(outside).tolist() == [-1] * 4
+    first, last = made.points[made.simplices[[0, 5]]].mean(axis=1)
+    assert made.find_simplex([[np.nan] * 3, last, [2, 2, 2], first]).tolist() == [-1, 5, -1, 0]
     assert made.find_simplex([0.5, 0.25, 0.125]).shape == () and made.find_simplex(np.zeros((0, 3))).shape == (0,)
     with pytest.raises(ValueError, match=r"xi has shape \(2,\)"):
         made.find_simplex([0, 1])
