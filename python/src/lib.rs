@@ -2,7 +2,7 @@
 //!
 //! Arrays go in and out, options as numbers and names, and what is small and has many fields as JSON. Names,
 //! defaults and documentation for people are in Python (`walpha/*.py`). Long work runs in threads of its own,
-//! without the interpreter ([`work`]).
+//! without the interpreter (`work`).
 
 mod allocator;
 mod arrays;
@@ -20,7 +20,7 @@ mod work;
 ///
 /// It needs no global lock. Every class is frozen and `Sync`, so the compiler has checked that threads may share its
 /// objects. The `unsafe` code lends memory of frozen objects to arrays that cannot be written to, and keeps the owner
-/// alive; the allocator passes on to the system's. What one call changes belongs to that call ([`call`]). An array that is
+/// alive; the allocator passes on to the system's. What one call changes belongs to that call (`call`). An array that is
 /// given is copied before the work begins; as with numpy, nobody may write to it meanwhile.
 #[pyo3::pymodule(gil_used = false)]
 mod _walpha {
