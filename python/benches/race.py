@@ -41,8 +41,8 @@ def contestants(points, weights, alpha):
         yield f"`alpha_shape`, `engine=\"{engine}\"`", lambda engine=engine: walpha.alpha_shape(
             points, weights, alpha, engine=engine
         ).cells
-    yield "`filtration`", lambda: walpha.filtration(points, weights)
-    yield "`filtration`, `.simplices()`", lambda: walpha.filtration(points, weights).simplices()
+    yield "`filtration`", lambda: walpha.filtration(points, weights=weights)
+    yield "`filtration`, `.simplices()`", lambda: walpha.filtration(points, weights=weights).simplices()
     try:
         import gudhi
     except ImportError:

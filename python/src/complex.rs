@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use numpy::{PyReadonlyArray1, PyReadonlyArray2};
+use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use walpha::Class;
 use walpha::check::schema::{ComplexFile, PlacedComplex};
@@ -10,10 +10,10 @@ use walpha::check::{Alpha, CertifyError, CompareError, compare_monitored};
 use walpha::progress::Stage;
 use walpha::shape::placed_complex;
 
-use crate::arrays::{numbers, rows};
+use crate::arrays::{column, lend, numbers, rows};
 use crate::errors::{Told, wrong};
-use crate::shape::{Shape, json};
-use crate::work::run;
+use crate::shape::{Shape, all_classes, json};
+use crate::work::{Task, run};
 
 /// A complex with its points, in canonical order.
 #[pyclass(frozen, module = "walpha._walpha")]
@@ -42,6 +42,8 @@ impl Complex {
         vertices: Listed<'_>,
         hidden: Option<PyReadonlyArray1<'_, u32>>,
         duplicates: Option<PyReadonlyArray2<'_, u32>>,
+        periodic: Option<[f64; 3]>,
+        task: Task<'_>,
     ) -> PyResult<Self> {
         let alpha = Alpha::from_squared(alpha).map_err(Told::told)?;
         let mut file = ComplexFile::of_points(rows("points", &points)?, alpha);
@@ -56,15 +58,81 @@ impl Complex {
         file.classes.vertices = classes("vertex_classes", &vertices)?;
         file.hidden = hidden.as_ref().map(numbers).transpose()?;
         file.duplicates = duplicates.as_ref().map(|pairs| rows("duplicates", pairs)).transpose()?;
-        Ok(Self(Arc::new(run(py, None, move |_| PlacedComplex::try_from(file))?)))
+        file.periodic = periodic;
+        Ok(Self(Arc::new(run(py, &task, move |_| PlacedComplex::try_from(file))?)))
     }
 
     /// What a shape claims to be.
     #[staticmethod]
     fn of(py: Python<'_>, shape: &Bound<'_, Shape>) -> PyResult<Self> {
         let shape = Arc::clone(shape.get().shape());
-        let placed = run(py, None, move |_| Ok::<_, CertifyError>(placed_complex(&shape)))?;
+        let placed =
+            run(py, &Task::default(), move |_| Ok::<_, CertifyError>(placed_complex(&shape)))?;
         Ok(Self(Arc::new(placed)))
+    }
+
+    #[getter]
+    fn points<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        // SAFETY: the complex is frozen.
+        unsafe { lend(&slf.get().0.positions, slf.as_any()) }
+    }
+
+    #[getter]
+    fn weights<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        column(py, self.0.weights.iter().copied())
+    }
+
+    #[getter]
+    fn alpha(&self) -> f64 {
+        self.0.alpha.squared()
+    }
+
+    #[getter]
+    fn cells<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray2<u32>>> {
+        // SAFETY: the complex is frozen.
+        unsafe { lend(slf.get().0.complex.cells.rows(), slf.as_any()) }
+    }
+
+    #[getter]
+    fn facets<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray2<u32>>> {
+        // SAFETY: the complex is frozen.
+        unsafe { lend(slf.get().0.complex.facets.rows(), slf.as_any()) }
+    }
+
+    #[getter]
+    fn edges<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray2<u32>>> {
+        // SAFETY: the complex is frozen.
+        unsafe { lend(slf.get().0.complex.edges.rows(), slf.as_any()) }
+    }
+
+    #[getter]
+    fn vertices<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray2<u32>>> {
+        // SAFETY: the complex is frozen.
+        unsafe { lend(slf.get().0.complex.vertices.rows(), slf.as_any()) }
+    }
+
+    /// Classes of cells, facets, edges and vertices.
+    fn classes<'py>(&self, py: Python<'py>) -> PyResult<[Bound<'py, PyArray1<u8>>; 4]> {
+        all_classes(py, &self.0.complex)
+    }
+
+    #[getter]
+    fn hidden<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray1<u32>>>> {
+        let hidden = self.0.hidden.as_ref();
+        hidden.map(|hidden| column(py, hidden.iter().copied())).transpose()
+    }
+
+    #[getter]
+    fn duplicates<'py>(slf: &Bound<'py, Self>) -> PyResult<Option<Bound<'py, PyArray2<u32>>>> {
+        let duplicates = slf.get().0.duplicates.as_ref();
+        // SAFETY: the complex is frozen.
+        duplicates.map(|pairs| unsafe { lend(pairs, slf.as_any()) }).transpose()
+    }
+
+    /// The sides of the periodic box.
+    #[getter]
+    fn periodic(&self) -> Option<[f64; 3]> {
+        self.0.periodic
     }
 
     /// What is wrong with it; of the first `most` findings what they say and their fields. Other choices among
@@ -74,10 +142,10 @@ impl Complex {
         py: Python<'_>,
         most: usize,
         ties_too: bool,
-        progress: Option<Bound<'_, PyAny>>,
+        task: Task<'_>,
     ) -> PyResult<Judged> {
         let placed = Arc::clone(&self.0);
-        run(py, progress.as_ref(), move |monitor| {
+        run(py, &task, move |monitor| {
             Stage::Certify.begin(monitor)?;
             let (mut findings, certificate) = placed.findings_monitored(monitor)?;
             findings.retain(|finding| ties_too || !finding.is_tie());
@@ -98,6 +166,7 @@ pub fn compare(
     py: Python<'_>,
     a: &Bound<'_, Complex>,
     b: &Bound<'_, Complex>,
+    task: Task<'_>,
 ) -> PyResult<(bool, String, String)> {
     let (a, b) = (Arc::clone(&a.get().0), Arc::clone(&b.get().0));
     if a.periodic.or(b.periodic).is_some() {
@@ -105,7 +174,8 @@ pub fn compare(
             "complexes of a periodic box are not compared by places; compare the arrays of rows",
         ));
     }
-    run(py, None, move |monitor| {
+    run(py, &task, move |monitor| {
+        Stage::Compare.begin(monitor)?;
         let comparison = compare_monitored(a.placed(), b.placed(), monitor)?;
         let text = comparison.to_string();
         Ok::<_, CompareError>((comparison.is_equal(), text, json(&comparison)))

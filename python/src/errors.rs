@@ -14,7 +14,7 @@ use walpha::export::{TargetError, UnknownFormat};
 use walpha::haar::HaarError;
 use walpha::interpolate::InterpolateError;
 use walpha::pipeline::PipelineError;
-use walpha::points::{PointsError, UnknownWeighting};
+use walpha::points::{PointsError, UnknownColumns, UnknownWeighting};
 use walpha::shape::{OutlineError, ShapeError, TorusError};
 use walpha::triangulation::TriangulationError;
 use walpha::volume::VolumeError;
@@ -57,6 +57,7 @@ wrong_value! {
     OutlineError, |error| error.advice().into();
     SchemaError, |error| error.advice().map(Into::into);
     TorusError, |error| error.advice().into();
+    UnknownColumns, |error| error.advice().into();
     UnknownFormat, |error| error.advice().into();
     UnknownWeighting, |error| error.advice().into();
 }

@@ -12,7 +12,7 @@ use walpha::{Alpha, WeightedPoints, ladder};
 use crate::arrays::{column, lend, numbers};
 use crate::errors::{Told, wrong};
 use crate::shape::{Shape, json, torus, weighted};
-use crate::work::run;
+use crate::work::{Task, run};
 
 /// A filtration, which is never changed.
 #[pyclass(frozen, module = "walpha._walpha")]
@@ -29,11 +29,11 @@ impl Filtration {
         points: PyReadonlyArray2<'_, f64>,
         weights: Option<PyReadonlyArray1<'_, f64>>,
         periodic: Option<[f64; 3]>,
-        progress: Option<Bound<'_, PyAny>>,
+        task: Task<'_>,
     ) -> PyResult<Self> {
         let torus = torus(periodic)?;
         let points = weighted(&points, weights.as_ref(), None)?;
-        let made = run(py, progress.as_ref(), move |monitor| {
+        let made = run(py, &task, move |monitor| {
             Stage::Filtration.begin(monitor)?;
             let positions = points.positions;
             let weights = points.weights.unwrap_or_else(|| vec![0.0; positions.len()]);
@@ -47,21 +47,16 @@ impl Filtration {
     /// The whole triangulation, as a shape.
     fn whole(&self, py: Python<'_>) -> PyResult<Shape> {
         let filtration = Arc::clone(&self.0);
-        let whole = run(py, None, move |_| Ok::<_, ShapeError>(filtration.whole().clone()))?;
+        let whole =
+            run(py, &Task::default(), move |_| Ok::<_, ShapeError>(filtration.whole().clone()))?;
         Ok(Shape::at_level(whole))
     }
 
     /// The shape at an α.
-    fn shape(
-        &self,
-        py: Python<'_>,
-        alpha: f64,
-        exterior: bool,
-        progress: Option<Bound<'_, PyAny>>,
-    ) -> PyResult<Shape> {
+    fn shape(&self, py: Python<'_>, alpha: f64, exterior: bool, task: Task<'_>) -> PyResult<Shape> {
         let alpha = Alpha::from_squared(alpha).map_err(Told::told)?;
         let filtration = Arc::clone(&self.0);
-        let shape = run(py, progress.as_ref(), move |monitor| {
+        let shape = run(py, &task, move |monitor| {
             Stage::Ladder.begin(monitor)?;
             let levels = filtration.levels(&[alpha]);
             Ok::<_, ShapeError>(levels.shape(0, exterior, levels.betti()[0]))
@@ -74,12 +69,12 @@ impl Filtration {
         &self,
         py: Python<'_>,
         alphas: PyReadonlyArray1<'_, f64>,
-        progress: Option<Bound<'_, PyAny>>,
+        task: Task<'_>,
     ) -> PyResult<String> {
         let alphas = numbers(&alphas)?.into_iter().map(Alpha::from_squared);
         let alphas: Vec<Alpha> = alphas.collect::<Result<_, _>>().map_err(Told::told)?;
         let filtration = Arc::clone(&self.0);
-        run(py, progress.as_ref(), move |monitor| {
+        run(py, &task, move |monitor| {
             Stage::Ladder.begin(monitor)?;
             let hull = filtration.whole().measures().volume;
             Ok::<_, ShapeError>(json(&filtration.ladder(&alphas, hull).levels))
@@ -87,13 +82,9 @@ impl Filtration {
     }
 
     /// The topology at every critical value.
-    fn curve<'py>(
-        &self,
-        py: Python<'py>,
-        progress: Option<Bound<'_, PyAny>>,
-    ) -> PyResult<Columns<'py>> {
+    fn curve<'py>(&self, py: Python<'py>, task: Task<'_>) -> PyResult<Columns<'py>> {
         let filtration = Arc::clone(&self.0);
-        let (alphas, columns) = run(py, progress.as_ref(), move |monitor| {
+        let (alphas, columns) = run(py, &task, move |monitor| {
             Stage::Curve.begin(monitor)?;
             let curve = filtration.curve();
             let alphas: Vec<f64> = curve.alphas().collect();
@@ -109,6 +100,17 @@ impl Filtration {
         Ok((alphas.into_pyarray(py), columns.collect()))
     }
 
+    #[getter]
+    fn points<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        // SAFETY: the filtration is frozen.
+        unsafe { lend(slf.get().0.whole().points().positions(), slf.as_any()) }
+    }
+
+    #[getter]
+    fn weights<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        column(py, self.0.whole().points().weights().iter().copied())
+    }
+
     /// The sides of the periodic box.
     #[getter]
     fn periodic(&self) -> Option<[f64; 3]> {
@@ -116,34 +118,29 @@ impl Filtration {
     }
 
     /// All simplices, their values and order, and the persistence pairs.
-    fn simplices(&self, py: Python<'_>, progress: Option<Bound<'_, PyAny>>) -> PyResult<Simplices> {
+    fn simplices(&self, py: Python<'_>, task: Task<'_>) -> PyResult<Simplices> {
         let filtration = Arc::clone(&self.0);
-        run(py, progress.as_ref(), move |monitor| {
+        run(py, &task, move |monitor| {
             Stage::Order.begin(monitor)?;
             Ok::<_, ShapeError>(Simplices::of(&filtration.simplices_monitored(monitor)?))
         })
     }
 
     /// Values of α to try, as JSON.
-    fn suggestions(&self, py: Python<'_>, progress: Option<Bound<'_, PyAny>>) -> PyResult<String> {
+    fn suggestions(&self, py: Python<'_>, task: Task<'_>) -> PyResult<String> {
         let filtration = Arc::clone(&self.0);
-        run(py, progress.as_ref(), move |monitor| {
+        run(py, &task, move |monitor| {
             Stage::Curve.begin(monitor)?;
             Ok::<_, ShapeError>(json(&filtration.suggest(&filtration.curve())))
         })
     }
 
     /// The smallest α at which all points are in at most so many solid components.
-    fn optimal_alpha(
-        &self,
-        py: Python<'_>,
-        components: u64,
-        progress: Option<Bound<'_, PyAny>>,
-    ) -> PyResult<f64> {
+    fn optimal_alpha(&self, py: Python<'_>, components: u64, task: Task<'_>) -> PyResult<f64> {
         let components = NonZeroU64::new(components)
             .ok_or_else(|| wrong("components=0 makes no sense: give a number from 1 up"))?;
         let filtration = Arc::clone(&self.0);
-        run(py, progress.as_ref(), move |monitor| {
+        run(py, &task, move |monitor| {
             Stage::Alpha.begin(monitor)?;
             Ok::<_, ShapeError>(filtration.optimal_alpha(components).squared())
         })

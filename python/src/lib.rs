@@ -2,7 +2,7 @@
 //!
 //! Arrays go in and out, options as numbers and names, and what is small and has many fields as JSON. Names,
 //! defaults and documentation for people are in Python (`walpha/*.py`). Long work runs in threads of its own,
-//! without the interpreter ([`work`]).
+//! without the interpreter (`work`).
 
 mod allocator;
 mod arrays;
@@ -12,11 +12,17 @@ mod errors;
 mod filtration;
 mod points;
 mod shape;
+mod triangulation;
 mod volume;
 mod work;
 
 /// The module.
-#[pyo3::pymodule]
+///
+/// It needs no global lock. Every class is frozen and `Sync`, so the compiler has checked that threads may share its
+/// objects. The `unsafe` code lends memory of frozen objects to arrays that cannot be written to, and keeps the owner
+/// alive; the allocator passes on to the system's. What one call changes belongs to that call (`call`). An array that is
+/// given is copied before the work begins; as with numpy, nobody may write to it meanwhile.
+#[pyo3::pymodule(gil_used = false)]
 mod _walpha {
     use pyo3::prelude::*;
 
@@ -27,7 +33,9 @@ mod _walpha {
     #[pymodule_export]
     use super::points::{read_points, write_points};
     #[pymodule_export]
-    use super::shape::{Shape, alpha_shape};
+    use super::shape::{Shape, alpha_shape, restored};
+    #[pymodule_export]
+    use super::triangulation::Triangulation;
     #[pymodule_export]
     use super::volume::{difference, haar, pipeline, read, select, weigh};
 

@@ -5,13 +5,13 @@ use std::path::PathBuf;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use walpha::export::Target;
-use walpha::points::{ModelMetadata, Packing, PointOptions, PointWriter, read_model};
+use walpha::points::{Columns, ModelMetadata, Packing, PointOptions, PointWriter, read_model};
 use walpha::progress::Stage;
 use walpha::{Alpha, WeightedPoints};
 
 use crate::errors::{Told, wrong};
 use crate::shape::{json, weighted};
-use crate::work::run;
+use crate::work::{Task, run};
 
 /// Places, weights, values, samples along (x, y, z), α, and the unit of lengths as JSON.
 type Read<'py> = (
@@ -23,12 +23,22 @@ type Read<'py> = (
     String,
 );
 
-/// A file of points, without so many of its last layers.
+/// A file of points: without so many of its last layers, with these columns of a table, of these classes, and thinned to
+/// one point in each cube of this side.
 #[pyfunction]
-pub fn read_points<'py>(py: Python<'py>, path: PathBuf, level: Option<u32>) -> PyResult<Read<'py>> {
-    let (points, facts) = run(py, None, move |monitor| {
+pub fn read_points<'py>(
+    py: Python<'py>,
+    path: PathBuf,
+    level: Option<u32>,
+    columns: Option<&str>,
+    classes: Option<Vec<u8>>,
+    thin: Option<f64>,
+) -> PyResult<Read<'py>> {
+    let columns = columns.map(str::parse::<Columns>).transpose().map_err(Told::told)?;
+    let options = PointOptions::default().level(level).columns(columns).classes(classes).thin(thin);
+    let (points, facts) = run(py, &Task::default(), move |monitor| {
         let _ = Stage::Read.begin(monitor);
-        read_model(&path, &PointOptions::default().level(level))
+        read_model(&path, &options)
     })?;
     let rows = points.positions.len();
     let places = points.positions.into_flattened().into_pyarray(py).reshape([rows, 3])?;
@@ -65,7 +75,7 @@ pub fn write_points(
     let facts = ModelMetadata::default().alpha(alpha);
     let packing = Packing::default().value_error(value_error);
     let target = Target::open(&path).map_err(Told::told)?;
-    run(py, None, move |_| {
+    run(py, &Task::default(), move |_| {
         let weights = points.weights.unwrap_or_else(|| vec![0.0; points.positions.len()]);
         let weighted = WeightedPoints::new(points.positions, weights)
             .and_then(|weighted| weighted.with_values(points.values))

@@ -1,39 +1,54 @@
 //! Volumes of Python: arrays `[z, y, x]`.
 
-use numpy::ndarray::Array3;
+use std::path::PathBuf;
+
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArray3, PyReadonlyArray1, PyReadonlyArray3};
 use pyo3::prelude::*;
 use walpha::haar::{Decomposition, HaarOptions, Tolerance, smooth_monitored};
 use walpha::interpolate::Refit;
-use walpha::pipeline::{Choice, Goal, PipelineError};
+use walpha::pipeline::{Choice, Goal};
 use walpha::points::{self, PointsError, Weighting};
 use walpha::progress::Stage;
-use walpha::volume::{Coordinates, Frame, GrayRange, ReadOptions, Space, Volume, open_monitored};
+use walpha::volume::{
+    Coordinates, Frame, GrayRange, Nan, ReadOptions, Space, Volume, open_monitored,
+};
 use walpha::{Alpha, Points, Recipe, Selection, SelectionRule, Units};
 
 use crate::arrays::{numbers, samples as owned};
 use crate::errors::{Told, wrong};
 use crate::shape::{AlphaArgument, Options, Shape, alpha_rule, json, unknown, with_options};
-use crate::work::run;
+use crate::work::{Task, run};
 
-/// A file or sample: its samples, whether they are gray levels, and its frame as JSON, in LPS where it says in
-/// which space it is.
+/// A file or sample, read with options as JSON: its samples, whether they are gray levels, and its frame as JSON, in LPS
+/// where it says in which space it is. Samples that the options mask are NaN.
 #[pyfunction]
 pub fn read<'py>(
     py: Python<'py>,
-    input: String,
-    progress: Option<Bound<'_, PyAny>>,
+    input: PathBuf,
+    options: &str,
+    task: Task<'_>,
 ) -> PyResult<(Bound<'py, PyArray3<f32>>, bool, String)> {
-    let volume = run(py, progress.as_ref(), move |monitor| {
+    let options: ReadOptions =
+        serde_json::from_str(options).map_err(|error| wrong(format!("the options: {error}")))?;
+    let volume = run(py, &task, move |monitor| {
         Stage::Read.begin(monitor)?;
-        open_monitored(&input, &ReadOptions::default(), monitor)
+        open_monitored(&input, &options, monitor)
     })?;
     let mut frame = *volume.frame();
     if frame.coordinates.space.is_known() {
         frame = frame.to(Coordinates { space: Space::Lps, ..frame.coordinates });
     }
     let gray = volume.has_gray_levels();
-    Ok((volume.into_samples().into_pyarray(py), gray, json(&frame)))
+    let missing = volume.missing().map(|missing| missing.to_owned());
+    let mut samples = volume.into_samples();
+    if let Some(missing) = missing {
+        samples.zip_mut_with(&missing, |sample, &missing| {
+            if missing {
+                *sample = f32::NAN;
+            }
+        });
+    }
+    Ok((samples.into_pyarray(py), gray, json(&frame)))
 }
 
 /// The truncated volume, and what truncation did as JSON.
@@ -43,11 +58,11 @@ pub fn haar<'py>(
     samples: PyReadonlyArray3<'_, f32>,
     tolerance: (String, f64),
     decomposition: &str,
-    progress: Option<Bound<'_, PyAny>>,
+    task: Task<'_>,
 ) -> PyResult<(Bound<'py, PyArray3<f32>>, String)> {
     let options = haar_options(&tolerance, decomposition)?;
     let samples = owned(&samples)?;
-    let (smoothed, truncation) = run(py, progress.as_ref(), move |monitor| {
+    let (smoothed, truncation) = run(py, &task, move |monitor| {
         Stage::Haar.begin(monitor)?;
         smooth_monitored(&Volume::new(samples, Frame::VOXEL)?, &options, monitor)
     })?;
@@ -61,7 +76,7 @@ pub fn difference<'py>(
     samples: PyReadonlyArray3<'_, f32>,
 ) -> PyResult<Bound<'py, PyArray3<f64>>> {
     let samples = owned(&samples)?;
-    let found = run(py, None, move |_| {
+    let found = run(py, &Task::default(), move |_| {
         Ok::<_, PointsError>(points::difference(&Volume::new(samples, Frame::VOXEL)?))
     })?;
     Ok(found.into_pyarray(py))
@@ -91,7 +106,7 @@ pub fn select<'py>(
     let (samples, smoothed) = (owned(&samples)?, owned(&smoothed)?);
     let (frame, units) = place(frame)?;
     let selection = Selection::default().rule(selection_rule(&rule)?).gray_min(gray_min);
-    let found = run(py, None, move |monitor| {
+    let found = run(py, &Task::default(), move |monitor| {
         let _ = Stage::Points.begin(monitor);
         let (volume, smoothed) = (Volume::new(samples, frame)?, Volume::new(smoothed, frame)?);
         let differences = points::difference(&smoothed);
@@ -116,7 +131,7 @@ pub fn weigh<'py>(
     let weighting: Weighting = weighting.parse().map_err(Told::told)?;
     let differences = numbers(&differences)?;
     let alpha = Alpha::from_squared(alpha).map_err(Told::told)?;
-    let weights = run(py, None, move |_| {
+    let weights = run(py, &Task::default(), move |_| {
         // Places do not count here.
         let positions = vec![[0.0; 3]; differences.len()];
         let points = Points::new(positions).with_differences(differences)?;
@@ -125,8 +140,9 @@ pub fn weigh<'py>(
     Ok(weights.into_pyarray(py))
 }
 
-/// All stages. `gray` is the range of values that becomes 0 to 255, `frame` JSON; without one, coordinates are
-/// indices; `adaptive`, instead of `rule`, how many points at most, an RMSE and a largest error that are good
+/// All stages. `nan` is what replaces samples that are NaN or infinite, which NaN itself masks; `gray` is the range of
+/// values that becomes 0 to 255, `frame` JSON; without one, coordinates are indices; `least` is the smallest sample that
+/// takes part, in gray levels and in values; `adaptive`, instead of `rule`, how many points at most, an RMSE and a largest error that are good
 /// enough, and whether points are exchanged.
 #[pyfunction]
 #[expect(clippy::too_many_arguments, reason = "they have names in Python")]
@@ -134,19 +150,21 @@ pub fn pipeline(
     py: Python<'_>,
     samples: PyReadonlyArray3<'_, f32>,
     is_gray: bool,
+    nan: Option<f32>,
     gray: Option<(f64, f64)>,
     frame: Option<&str>,
     haar: ((String, f64), String),
     rule: (String, f64),
-    gray_min: Option<f64>,
+    least: (Option<f64>, Option<f64>),
     adaptive: Option<(u64, f64, Option<f64>, bool)>,
     weighting: &str,
     alpha: Option<AlphaArgument>,
     how: Options,
     refit: Option<&str>,
-    progress: Option<Bound<'_, PyAny>>,
+    task: Task<'_>,
 ) -> PyResult<Shape> {
     let (frame, units) = place(frame)?;
+    let (gray_min, value_min) = least;
     let choice = match adaptive {
         None => {
             Choice::Difference(Selection::default().rule(selection_rule(&rule)?).gray_min(gray_min))
@@ -167,6 +185,7 @@ pub fn pipeline(
         .gray(gray.map(|(low, high)| GrayRange { low, high }))
         .haar(haar_options(&haar.0, &haar.1)?)
         .choice(choice)
+        .value_min(value_min)
         .units(units)
         // Coordinates stay in the space that the frame is in.
         .space(Some(frame.coordinates.space).filter(|space| space.is_known()))
@@ -174,16 +193,15 @@ pub fn pipeline(
         .alpha(alpha_rule(alpha)?)
         .refit(refit);
     let recipe = with_options(recipe, &how)?;
+    let nan = nan.map(|value| if value.is_nan() { Nan::Mask } else { Nan::Value(value) });
     let samples = owned(&samples)?;
-    let model = run(py, progress.as_ref(), move |monitor| {
-        recipe.run_monitored(grays(samples, frame, is_gray)?, monitor)
+    let model = run(py, &task, move |monitor| {
+        let volume = Volume::of_file(samples, frame).and_then(|volume| volume.resolve_nan(nan));
+        let volume = volume.map_err(PointsError::from)?;
+        let volume = if is_gray { volume.with_gray_levels() } else { volume };
+        recipe.run_monitored(volume, monitor)
     })?;
     Ok(Shape::of(model))
-}
-
-fn grays(samples: Array3<f32>, frame: Frame, is_gray: bool) -> Result<Volume, PipelineError> {
-    let volume = Volume::new(samples, frame).map_err(PointsError::from)?;
-    Ok(if is_gray { volume.with_gray_levels() } else { volume })
 }
 
 /// Where a grid lies, and what coordinates of its points are measured in.

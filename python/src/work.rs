@@ -1,12 +1,13 @@
 //! Long work beside the interpreter.
 
+use std::num::NonZeroUsize;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::Arc;
 use std::sync::mpsc::{RecvTimeoutError, sync_channel};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use pyo3::exceptions::{PyMemoryError, PyOSError};
+use pyo3::exceptions::PyMemoryError;
 use pyo3::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use walpha::progress::Monitor;
@@ -22,14 +23,19 @@ const GRACE: Duration = Duration::from_secs(2);
 /// As a main thread has it; rayon's default is a quarter.
 const STACK: usize = 8 << 20;
 
+/// How a call wants its work done: on how many threads, all that may be used if `None`; and what is called as
+/// `progress(stage, done, total)`.
+#[derive(FromPyObject, Default)]
+pub struct Task<'py>(Option<NonZeroUsize>, Option<Bound<'py, PyAny>>);
+
 /// Does work in threads of its own while other threads of Python run, and returns its result.
 ///
-/// This thread waits; it asks Python for interrupts and calls `progress(stage, done, total)`. After an
+/// This thread waits; it asks Python for interrupts and calls the task's `progress`. After an
 /// interrupt, or an exception of `progress`, it returns at once, and with `MemoryError` soon after memory ran out. The work is
 /// cancelled then; it owns all that it works on, and ends when it next asks its monitor.
 pub fn run<T, E>(
     py: Python<'_>,
-    progress: Option<&Bound<'_, PyAny>>,
+    Task(threads, progress): &Task<'_>,
     work: impl FnOnce(&Monitor) -> Result<T, E> + Send + 'static,
 ) -> PyResult<T>
 where
@@ -38,14 +44,16 @@ where
 {
     let call = Arc::new(Call::new());
     let wanted = Wanted(Arc::clone(&call));
-    let threads = pool(&call)?;
+    let threads = pool(&call, *threads)?;
     let (sender, mut receiver) = sync_channel(1);
     let mut starved = None;
-    thread::Builder::new().name("walpha".into()).spawn(move || {
+    let waiting = thread::Builder::new().name("walpha".into());
+    let started = waiting.spawn(move || {
         let outcome = catch_unwind(AssertUnwindSafe(|| threads.install(|| work(call.monitor()))));
         // Nobody waits after an interrupt.
         let _ = sender.send(outcome);
-    })?;
+    });
+    started.map_err(|_| no_threads())?;
     loop {
         // A receiver may be sent to where Python is not, but not lent.
         let (back, received) = py.detach(move || {
@@ -83,15 +91,15 @@ fn no_memory() -> PyErr {
     )
 }
 
-/// Threads that work for one call: their progress reports belong to it. `RAYON_NUM_THREADS` says how many, or else
-/// the cores; where not so many can be had, fewer.
-fn pool(call: &Arc<Call>) -> PyResult<ThreadPool> {
+/// Threads that work for one call: their progress reports belong to it. If the call does not say how many,
+/// `RAYON_NUM_THREADS` does, or else the cores; where not so many can be had, fewer.
+fn pool(call: &Arc<Call>, asked: Option<NonZeroUsize>) -> PyResult<ThreadPool> {
     let call = Arc::clone(call);
     // The last is for the thread that waits for them.
-    let available = threads::available(threads::wanted(None) + 1, STACK).saturating_sub(1);
+    let available = threads::available(threads::wanted(asked.map(NonZeroUsize::get)) + 1, STACK)
+        .saturating_sub(1);
     if available == 0 {
-        let text = "no threads to work in: memory, or the number of processes, is limited too much";
-        return Err(PyMemoryError::new_err(text));
+        return Err(no_threads());
     }
     ThreadPoolBuilder::new()
         .num_threads(available)
@@ -99,7 +107,14 @@ fn pool(call: &Arc<Call>) -> PyResult<ThreadPool> {
         .stack_size(STACK)
         .start_handler(move |_| Arc::clone(&call).enter())
         .build()
-        .map_err(|error| PyOSError::new_err(format!("no threads to work in: {error}")))
+        .map_err(|_| no_threads())
+}
+
+/// What was free when threads were counted may be gone when they start.
+fn no_threads() -> PyErr {
+    PyMemoryError::new_err(
+        "no threads to work in: memory, or the number of processes, is limited too much",
+    )
 }
 
 /// Stops the work of a call when nobody waits for it any more.

@@ -9,7 +9,7 @@ from walpha import Class
 
 def test_our_shapes_are_valid(cloud, weights):
     for exterior in (False, True):
-        verdict = walpha.check(walpha.alpha_shape(cloud, weights, 0.004, exterior=exterior))
+        verdict = walpha.check(walpha.alpha_shape(cloud, 0.004, weights=weights, exterior=exterior))
         assert verdict and verdict.total == 0 and verdict.findings == []
         assert verdict.verdict == "exact" and verdict.ties == 0
         assert exterior == (not any("hidden" in rule for rule in verdict.not_judged))
@@ -30,7 +30,7 @@ def test_a_wrong_class_is_found(cloud):
     (finding,) = verdict.findings
     assert finding.rule == "class" and sorted(finding.facts["simplex"]) == sorted(shape.facets[row].tolist())
     assert "singular" in str(finding) and finding.facts["expected"] == "regular"
-    comparison = walpha.compare(walpha.Complex(cloud, 0.004, **given), shape)
+    comparison = walpha.compare(walpha.Complex(cloud, alpha=0.004, **given), shape)
     assert not comparison and len(comparison.facts["dimensions"][2]["classes"]) == 1
     assert walpha.check(cloud, 0.004, **{**given, "facet_classes": shape.facet_classes})
 
@@ -89,5 +89,5 @@ def test_another_choice_at_ties_is_valid():
     assert walpha.check(grid, np.inf, cells=cells[1:]).verdict == "wrong"
     with pytest.raises(ValueError, match="'any' or 'exact'"):
         walpha.check(grid, np.inf, cells=cells, ties="none")
-    comparison = walpha.compare(walpha.Complex(grid, np.inf, cells=cells), walpha.alpha_shape(grid, alpha=np.inf))
+    comparison = walpha.compare(walpha.Complex(grid, alpha=np.inf, cells=cells), walpha.alpha_shape(grid, alpha=np.inf))
     assert comparison.facts["domain"]["same_region"]["verdicts"] == ["valid", "exact"]

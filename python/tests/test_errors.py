@@ -44,6 +44,12 @@ def test_points_of_a_plane_have_the_shape_that_they_have_there(engine):
         ({"alpha": np.nan}, "alpha is NaN"),
         ({"alpha": "car"}, "auto"),
         ({"alpha_radius": -1}, "not a radius"),
+        ({"alpha": np.zeros(600)}, r"alpha is one number.*\(600,\).*weights="),
+        ({"alpha": "auto:connected", "alpha_radius": 1}, "one of them"),
+        ({"alpha": object()}, "alpha=.* is not a number"),
+        ({"threads": 0}, "threads=0.*from 1 up"),
+        ({"threads": 1.5}, "threads=1.5"),
+        ({"progress": 7}, "progress=7"),
         ({"engine": "qhull"}, "'auto', 'cgal' and 'native'"),
         ({"balls": "cubes"}, "'power' and 'radius'"),
         ({"balls": "radius"}, "α is a radius"),
@@ -59,6 +65,24 @@ def test_options_that_make_no_sense(cloud, options, message):
 def test_unknown_names_are_type_errors(cloud):
     with pytest.raises(TypeError):
         walpha.alpha_shape(cloud, apha=1)
+
+
+def test_one_order_of_arguments(cloud, weights):
+    """Points, then α, then names: weights are never taken for α, nor α for weights."""
+    assert walpha.alpha_shape(cloud, 0.01).alpha == walpha.filtration(cloud).shape(0.01).alpha == 0.01
+    assert walpha.check(cloud, 0.01, cells=walpha.alpha_shape(cloud, 0.01, exterior=True).cells[:0]) is not None
+    for call in (
+        lambda: walpha.alpha_shape(cloud, 0.01, weights),
+        lambda: walpha.filtration(cloud, weights),
+        lambda: walpha.Complex(cloud, 0.01),
+        lambda: walpha.check(cloud, 0.01, weights),
+        lambda: walpha.write_points("never.csv", cloud, weights),
+    ):
+        with pytest.raises(TypeError, match="positional"):
+            call()
+    for kind in (walpha.AlphaShape, walpha.Triangulation, walpha.Simplices):
+        with pytest.raises(TypeError, match=f"walpha\\.{'alpha_shape' if kind is walpha.AlphaShape else ''}"):
+            kind()
 
 
 def test_files(tmp_path, cloud):

@@ -11,7 +11,7 @@ import walpha
 HASH = """
 import hashlib, numpy as np, walpha
 points = np.round(np.random.default_rng(5).random((20_000, 3)) * 40)
-shape = walpha.alpha_shape(points, np.random.default_rng(6).random(20_000), 2.0)
+shape = walpha.alpha_shape(points, 2.0, weights=np.random.default_rng(6).random(20_000))
 curve = walpha.filtration(points[:3000]).betti_curve()
 parts = [shape.cells, shape.facets, shape.edges, shape.vertices, *shape._classes, shape.boundary().triangles, *curve]
 print(hashlib.sha256(b"".join(np.ascontiguousarray(p).tobytes() for p in parts)).hexdigest(), shape.volume)
@@ -38,7 +38,7 @@ def test_every_format_is_written_the_same_twice(tmp_path, cloud, ending):
 
 
 def test_npz_is_the_arrays(tmp_path, cloud, weights):
-    shape = walpha.alpha_shape(cloud, weights, 0.004)
+    shape = walpha.alpha_shape(cloud, 0.004, weights=weights)
     shape.save(str(tmp_path / "shape.npz"))
     with np.load(tmp_path / "shape.npz") as arrays:
         assert np.array_equal(arrays["cells"], shape.cells)
@@ -65,7 +65,7 @@ def test_points_come_back_from_a_file(tmp_path):
     exact, small, table = (tmp_path / name for name in ("exact.wvm", "small.wvm", "table.csv"))
     walpha.write_points(exact, points, values=values, alpha=2.5)
     walpha.write_points(small, points, values=values, value_error=4)
-    walpha.write_points(table, points, np.ones(len(points)), values)
+    walpha.write_points(table, points, weights=np.ones(len(points)), values=values)
     read = walpha.read_points(exact)
     assert np.array_equal(read.points, points) and np.array_equal(read.values, values)
     assert (read.weights == 0).all() and read.alpha == 2.5

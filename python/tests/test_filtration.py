@@ -11,10 +11,10 @@ from test_shape import same
 @pytest.mark.parametrize("weighted", [False, True])
 def test_each_shape_is_that_of_alpha_shape(cloud, weights, weighted):
     weights = weights if weighted else None
-    filtration = walpha.filtration(cloud, weights)
+    filtration = walpha.filtration(cloud, weights=weights)
     for alpha in (-0.001, 0, 0.001, 0.004, 0.02, np.inf):
         shape = filtration.shape(alpha)
-        wanted = walpha.alpha_shape(cloud, weights, alpha)
+        wanted = walpha.alpha_shape(cloud, alpha, weights=weights)
         assert same(shape, wanted) and shape.betti == wanted.betti and shape.volume == wanted.volume
     assert same(filtration.whole(), filtration.shape(np.inf))
 
@@ -63,7 +63,7 @@ def test_alpha_is_needed(cloud):
 
 
 def test_simplices_come_in_exact_order(cloud, weights):
-    filtration = walpha.filtration(cloud, weights)
+    filtration = walpha.filtration(cloud, weights=weights)
     simplices = filtration.simplices()
     whole = filtration.whole()
     counts = [len(whole.vertices), len(whole.edges), len(whole.facets), len(whole.cells)]
@@ -81,7 +81,7 @@ def test_simplices_come_in_exact_order(cloud, weights):
 
 def test_gudhi_agrees(cloud, weights):
     gudhi = pytest.importorskip("gudhi")
-    filtration = walpha.filtration(cloud, weights)
+    filtration = walpha.filtration(cloud, weights=weights)
     theirs = gudhi.AlphaComplex(cloud, weights=weights, precision="exact").create_simplex_tree()
     ours = filtration.simplex_tree()
     values = dict((tuple(s), v) for s, v in ours.get_filtration())

@@ -47,11 +47,12 @@ CLOUD = "points = np.random.default_rng(0).random((100_000, 3))"
         (CLOUD, "walpha.alpha_shape(points, alpha=1e-3, engine='cgal')"),
         (CLOUD, "walpha.filtration(points).simplices().values"),
         (CLOUD, "walpha.filtration(points).betti_curve()"),
+        (CLOUD, "walpha.triangulation(points).find_simplex(points)"),
         (CLOUD + "; shape = walpha.alpha_shape(points, alpha=1e-3)", "walpha.check(shape)"),
         (CLOUD + "; shape = walpha.alpha_shape(points, alpha=1e-3)", "shape.components"),
         ("volume = np.random.default_rng(0).random((128, 128, 128))", "walpha.haar(volume, rms=0.1)"),
     ],
-    ids=["native", "cgal", "simplices", "betti_curve", "check", "components", "haar"],
+    ids=["native", "cgal", "simplices", "betti_curve", "triangulation", "check", "components", "haar"],
 )
 def test_too_little_memory(given, asked):
     told = [limited(megabytes, given, asked).split(":")[0] for megabytes in (5, 30, 60, 120, 250, 3000)]

@@ -1,4 +1,4 @@
-"""Against GUDHI, SciPy, PyVista, trimesh, meshio and shapely."""
+"""Against GUDHI, SciPy, PyVista, trimesh, meshio, Open3D and shapely."""
 
 import itertools
 
@@ -10,7 +10,7 @@ from walpha import Class
 
 
 def simplices(shape):
-    return {tuple(sorted(row)) for rows in (shape.cells, shape.facets, shape.edges, shape.vertices) for row in rows.tolist()}
+    return {tuple(sorted(row)) for rows in (shape.cells, shape.facets, shape.edges, shape.vertices[:, None]) for row in rows.tolist()}
 
 
 @pytest.mark.parametrize("weighted", [False, True])
@@ -18,17 +18,17 @@ def test_gudhi_has_the_same_complex(cloud, weights, weighted):
     gudhi = pytest.importorskip("gudhi")
     weights = weights if weighted else None
     tree = gudhi.AlphaComplex(points=cloud, weights=weights, precision="exact").create_simplex_tree()
-    filtration = walpha.filtration(cloud, weights)
+    filtration = walpha.filtration(cloud, weights=weights)
     values = np.array([value for _, value in tree.get_filtration()])
     # Between values, so that their rounding does not matter.
     alphas = [(a + b) / 2 for a, b in zip(values, values[1:]) if b - a > 1e-9][:: len(values) // 12]
     assert len(alphas) > 5
     for alpha in alphas:
         theirs = {tuple(sorted(s)) for s, value in tree.get_filtration() if value <= alpha}
-        ours = walpha.alpha_shape(cloud, weights, alpha)
+        ours = walpha.alpha_shape(cloud, alpha, weights=weights)
         assert len(simplices(ours)) == len(theirs) and simplices(ours) == theirs
         assert simplices(filtration.shape(alpha)) == theirs
-        complex_ = walpha.Complex.from_simplices(cloud, tree.get_filtration(), alpha, weights=weights)
+        complex_ = walpha.Complex.from_simplices(cloud, tree.get_filtration(), alpha=alpha, weights=weights)
         comparison = walpha.compare(complex_, ours)
         assert comparison.equal, str(comparison)
         assert walpha.check(complex_).valid
@@ -91,6 +91,26 @@ def test_trimesh_has_a_closed_oriented_surface(hollow, cloud):
         assert len(mesh.faces) == len(shape.boundary().triangles)
 
 
+def test_open3d_has_a_closed_oriented_surface(hollow):
+    pytest.importorskip("open3d")
+    shape = walpha.alpha_shape(hollow, alpha=0.75)
+    mesh = shape.to_open3d()
+    assert mesh.is_edge_manifold(allow_boundary_edges=False) and mesh.is_orientable()
+    a, b, c = np.moveaxis(np.asarray(mesh.vertices)[np.asarray(mesh.triangles)], 1, 0)
+    # Positive: outward, and the void counts off.
+    assert np.isclose(np.einsum("ij,ij->", a, np.cross(b, c)) / 6, shape.volume)
+
+
+def test_a_layer_for_napari(hollow):
+    shape = walpha.alpha_shape(hollow, alpha=0.75, values=hollow[:, 2])
+    (places, triangles, values), options, kind = shape.to_napari()
+    assert kind == "surface" and options["name"] == "α = 0.75"
+    # Axes are (z, y, x), and values are those of z.
+    assert np.array_equal(places[:, 0], values) and len(triangles) == len(shape.boundary().triangles)
+    without, _, _ = walpha.alpha_shape(hollow, alpha=0.75).to_napari()
+    assert len(without) == 2
+
+
 def test_meshio_writes_what_it_gets(cloud, tmp_path):
     meshio = pytest.importorskip("meshio")
     shape = walpha.alpha_shape(cloud, alpha=0.004, values=cloud[:, 1])
@@ -113,7 +133,7 @@ def test_a_missing_package_is_named(cloud, monkeypatch):
     import sys
 
     shape = walpha.alpha_shape(cloud, alpha=0.004)
-    for name in ("pyvista", "meshio", "trimesh", "shapely"):
+    for name in ("pyvista", "meshio", "trimesh", "open3d", "shapely"):
         monkeypatch.setitem(sys.modules, name, None)
         with pytest.raises(ImportError, match=f"pip install {name}"):
             getattr(shape, f"to_{name}")()
@@ -123,7 +143,7 @@ def test_importing_walpha_imports_none_of_them():
     import subprocess
     import sys
 
-    code = "import sys, walpha; print([m for m in ('pyvista', 'meshio', 'trimesh', 'shapely', 'scipy') if m in sys.modules])"
+    code = "import sys, walpha; print([m for m in ('pyvista', 'meshio', 'trimesh', 'shapely', 'scipy', 'open3d', 'pandas') if m in sys.modules])"
     assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True).stdout == "[]\n"
 
 

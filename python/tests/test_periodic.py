@@ -46,11 +46,11 @@ def test_a_layout_in_space():
 def test_a_filtration_of_a_torus():
     rng = np.random.default_rng(3)
     points, weights = rng.random((400, 3)), rng.random(400) * 0.002
-    filtration = walpha.filtration(points, weights, periodic=1)
+    filtration = walpha.filtration(points, weights=weights, periodic=1)
     curve = filtration.betti_curve()
     assert (curve.b0[-1], curve.b1[-1], curve.b2[-1], curve.b3[-1]) == (1, 3, 3, 1)
     for k in range(0, len(curve.alpha), len(curve.alpha) // 7):
-        shape = walpha.alpha_shape(points, weights, curve.alpha[k], periodic=1)
+        shape = walpha.alpha_shape(points, curve.alpha[k], weights=weights, periodic=1)
         assert shape.betti == (curve.b0[k], curve.b1[k], curve.b2[k], curve.b3[k])
         assert np.array_equal(shape.cells, filtration.shape(curve.alpha[k]).cells)
     simplices = filtration.simplices()

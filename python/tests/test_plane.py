@@ -35,7 +35,7 @@ def test_a_square_with_a_hole(ring):
     (polygon,) = outline.polygons
     (hole,) = polygon.holes
     assert (twice_area(ring[polygon.outer]), twice_area(ring[hole])) == (50.0, -14.0)
-    assert polygon.outer.dtype == np.uint32 and polygon.outer[0] == 0
+    assert polygon.outer.dtype == np.int64 and polygon.outer[0] == 0
     # A filtration's shapes have it, too.
     again = walpha.filtration(ring).shape(0.5).outline()
     assert np.array_equal(again.polygons[0].outer, polygon.outer) and again.area == 18.0

@@ -30,7 +30,7 @@ def test_stages_by_hand_are_the_pipeline(phantom):
     assert np.array_equal(chosen.values, gray[z, y, x])
     weights = walpha.weigh(chosen.differences, "min-max", alpha=10)
     assert weights.min() == 0 and weights.max() == 10
-    by_hand = walpha.alpha_shape(chosen.points, weights, 10)
+    by_hand = walpha.alpha_shape(chosen.points, 10, weights=weights)
     whole = walpha.pipeline(phantom, gray=(low, high), count=1500, weighting="min-max", alpha=10)
     assert same(by_hand, whole) and np.array_equal(by_hand.weights, whole.weights)
     assert whole.truncation["kept"] == truncation["kept"]
@@ -45,12 +45,16 @@ def test_haar_keeps_what_is_asked(phantom):
     assert not np.array_equal(standard, nonstandard)
 
 
-def test_spacing_is_z_y_x(phantom):
+def test_spacing_is_x_y_z_as_places_are(phantom):
     voxels = walpha.pipeline(phantom.samples, count=1000, alpha=10)
-    world = walpha.pipeline(phantom.samples, count=1000, spacing=(4, 2, 1), origin=(7, 8, 9), alpha=10)
+    world = walpha.pipeline(phantom.samples, count=1000, spacing=(1, 2, 4), origin=(7, 8, 9), alpha=10)
     assert np.array_equal(world.points, voxels.points * [1, 2, 4] + [7, 8, 9])
-    chosen = walpha.select(phantom.samples, count=9, spacing=(4, 2, 1))
+    chosen = walpha.select(phantom.samples, count=9, spacing=(1, 2, 4))
     assert np.array_equal(chosen.points, walpha.select(phantom.samples, count=9).points * [1, 2, 4])
+    given = walpha.Volume(phantom.samples, spacing=(1, 2, 4), origin=(7, 8, 9), unit="mm")
+    assert np.array_equal(walpha.pipeline(given, count=1000, alpha=10).points, world.points)
+    with pytest.raises(ValueError, match="has its own spacing"):
+        walpha.pipeline(given, spacing=(1, 1, 1))
     # 10 h², h³ being the volume of a voxel.
     default = walpha.pipeline(phantom.samples, count=1000, spacing=(2, 2, 2))
     assert default.alpha == pytest.approx(40) and default.alpha_origin == "default"
@@ -60,6 +64,8 @@ def test_bytes_are_gray_levels(phantom):
     gray = np.clip(phantom.samples, 10, 200).astype(np.uint8)
     as_bytes = walpha.pipeline(gray, count=500)
     assert same(as_bytes, walpha.pipeline(gray.astype(float), gray=(0, 255), count=500))
+    assert walpha.Volume(gray).gray and not walpha.Volume(gray / 2).gray and not walpha.Volume(gray, gray=False).gray
+    assert same(as_bytes, walpha.pipeline(walpha.Volume(gray, unit="voxel"), count=500))
     strided = np.asfortranarray(gray)
     assert same(as_bytes, walpha.pipeline(strided, count=500))
 
@@ -86,11 +92,12 @@ def test_axes_are_not_exchanged():
         ({"count": 1.5}, "not a count"),
         ({"ratio": 2}, "ratio of 2"),
         ({"origin": (0, 0, 0)}, "spacing"),
-        ({"spacing": (1, 1)}, "three lengths"),
+        ({"spacing": (1, 1)}, "spacing.*three"),
         ({"spacing": (1, 1, -1)}, "above 0"),
         ({"weighting": "heavy"}, "min-max"),
         ({"gray": (5, 5)}, "gray range"),
         ({"gray_min": 300}, "less for `gray_min`"),
+        ({"gray_min": 30, "value_min": 30}, "gray_min and value_min"),
         ({"decomposition": "cosine"}, "nonstandard"),
     ],
 )
@@ -137,3 +144,92 @@ def test_the_largest_error_is_bounded(phantom):
 def test_options_of_adaptive_selection_go_together(phantom, how):
     with pytest.raises(ValueError):
         walpha.pipeline(phantom, **how)
+
+
+def test_an_affine_places_samples(phantom):
+    turned = walpha.Volume(
+        phantom.samples, spacing=(0.5, 1, 2), origin=(10, 20, 30), direction=[[0, 1, 0], [-1, 0, 0], [0, 0, 1]], space="LPS", unit="mm"
+    )
+    chosen = walpha.select(turned, count=20)
+    x, y, z = walpha.select(phantom.samples, count=20).points.T
+    assert np.allclose(chosen.points, (turned.affine @ [x, y, z, np.ones(20)]).T[:, :3])
+    assert np.array_equal(phantom.affine, np.eye(4))
+
+
+def test_what_is_no_volume(phantom):
+    for how, message in (
+        ({"spacing": (1, 0, 1)}, "above 0"),
+        ({"origin": (0, np.nan, 0)}, "origin"),
+        ({"direction": [[1, 0], [0, 1]]}, "direction"),
+    ):
+        with pytest.raises(ValueError, match=message):
+            walpha.Volume(phantom.samples, **how)
+    with pytest.raises(ValueError, match="three axes"):
+        walpha.Volume(np.zeros((3, 3)))
+
+
+def test_a_part_is_read(phantom):
+    part = walpha.read("sample:phantom@32", roi=np.s_[4:20, 8:, :30])
+    assert np.array_equal(part.samples, phantom.samples[4:20, 8:, :30]) and part.origin == (0, 8, 4)
+    coarse = walpha.read("sample:phantom@32", downsample=4)
+    blocks = phantom.samples.reshape(8, 4, 8, 4, 8, 4).mean(axis=(1, 3, 5))
+    assert np.allclose(coarse.samples, blocks, atol=1e-3) and coarse.affine[0, 3] == 1.5
+    for how, message in (
+        ({"roi": np.s_[::2, :, :]}, "steps"),
+        ({"roi": np.s_[:-1, :, :]}, "from 0 up"),
+        ({"roi": np.s_[1, :, :]}, "three slices"),
+        ({"roi": np.s_[:99, :, :]}, "32"),
+        ({"downsample": 0}, "downsample=0"),
+    ):
+        with pytest.raises(ValueError, match=message):
+            walpha.read("sample:phantom@32", **how)
+
+
+@pytest.mark.parametrize("dtype", ["u1", "<i2", ">i2", ">f4", "<f8"])
+def test_bare_samples(tmp_path, dtype):
+    wanted = np.arange(60).reshape(3, 4, 5).astype(dtype)
+    (tmp_path / "bare").write_bytes(b"header!" + wanted.tobytes())
+    read = walpha.read(tmp_path / "bare", shape=(3, 4, 5), dtype=dtype, offset=7)
+    assert np.array_equal(read.samples, wanted) and read.gray == (dtype == "u1")
+    with pytest.raises(ValueError, match="bytes"):
+        walpha.read(tmp_path / "bare", shape=(3, 4, 5), dtype=dtype)
+    for how in ({"shape": (3, 4, 5)}, {"dtype": dtype}, {"offset": 7}):
+        with pytest.raises(ValueError, match="shape= and dtype="):
+            walpha.read(tmp_path / "bare", **how)
+    with pytest.raises(ValueError, match="complex128"):
+        walpha.read(tmp_path / "bare", shape=(3, 4, 5), dtype=complex)
+
+
+def test_an_array_and_a_frame_of_several(tmp_path):
+    first, second = np.random.default_rng(0).random((2, 3, 4, 5))
+    np.savez(tmp_path / "two.npz", first=first, second=second)
+    for name, wanted in (("first", first), ("second", second)):
+        assert np.array_equal(walpha.read(tmp_path / "two.npz", array=name).samples, wanted.astype(np.float32))
+    with pytest.raises(ValueError, match="first"):
+        walpha.read(tmp_path / "two.npz")
+
+
+def test_samples_that_are_missing(tmp_path, phantom):
+    holed = phantom.samples.copy()
+    holed[:, :, :16] = np.nan
+    np.save(tmp_path / "holed.npy", holed)
+    with pytest.raises(ValueError, match="NaN|nan"):
+        walpha.read(tmp_path / "holed.npy")
+    assert (walpha.read(tmp_path / "holed.npy", nan=-5).samples[:, :, :16] == -5).all()
+    left = walpha.read(tmp_path / "holed.npy", nan=np.nan)
+    assert np.array_equal(left.samples, holed, equal_nan=True)
+    with pytest.raises(ValueError, match="NaN|nan"):
+        walpha.pipeline(left, count=200)
+    masked, filled = walpha.pipeline(left, count=200, nan=np.nan), walpha.pipeline(left, count=200, nan=1e4)
+    assert masked.points[:, 0].min() >= 16 > filled.points[:, 0].min()
+
+
+def test_values_below_a_bound_take_no_part(phantom):
+    # Between two values, so that their rounding does not matter.
+    least, bound = np.unique(phantom.samples)[[-100, -99]]
+    bound = float(least + bound) / 2
+    above = int((phantom.samples >= bound).sum())
+    shape = walpha.pipeline(phantom, count=above, value_min=bound, rms=0)
+    assert np.allclose(np.sort(shape.values), np.sort(phantom.samples[phantom.samples >= bound]), atol=1e-3)
+    with pytest.raises(ValueError, match=f"{above}"):
+        walpha.pipeline(phantom, count=above + 1, value_min=bound, rms=0)

@@ -1,35 +1,41 @@
 """Exact weighted alpha shapes of points and volumes.
 
->>> import walpha
->>> shape = walpha.alpha_shape(points)          # α found from the spacing of the points
->>> shape.cells, shape.boundary().triangles, shape.betti, shape.volume
->>> walpha.filtration(points).betti_curve()     # every α at once
->>> walpha.check(points, np.inf, cells=delaunay.simplices)
+α and the weights ω are **squared** lengths, as in CGAL and GUDHI (``alpha_radius=`` takes a radius). Simplices are
+rows of input indices, int64. What has the form of an array, volumes and their shapes, is ``[z, y, x]``; places,
+lengths and directions are (x, y, z).
 
-α and the weights ω are **squared** lengths, as in CGAL and GUDHI (``alpha_radius=`` takes a radius).
-Simplices name input indices. Points are (x, y, z), volumes are arrays ``[z, y, x]``. Work runs without the
-interpreter's lock, on as many threads as ``RAYON_NUM_THREADS`` says or there are cores, and gives the same
-result on any number of them. Ctrl-C interrupts it.
+Points come first, α second, all else by name. Work runs without the interpreter's lock, on ``threads=``, or as
+many as ``RAYON_NUM_THREADS`` says or there are cores, and gives the same result on any number of them. Ctrl-C
+interrupts it, and ``progress=True`` tells how far it is. Every object can be pickled.
+
+Examples
+--------
+>>> points = np.random.default_rng(0).random((1000, 3))
+>>> shape = walpha.alpha_shape(points)          # α found from the spacing of the points
+>>> shape.cells.shape, shape.boundary().triangles.shape, shape.betti
+((5522, 4), (700, 3), Betti(b0=1, b1=0, b2=0))
+>>> curve = walpha.filtration(points).betti_curve()     # every α at once
+>>> bool(walpha.check(shape))                   # exactly, by a program of its own
+True
+>>> walpha.triangulation(points).find_simplex([[0.5, 0.5, 0.5], [2, 2, 2]]) >= 0
+array([ True, False])
 """
 
 import atexit as _atexit
 
 from . import _walpha
+from ._alpha_shape import alpha_shape
 from ._check import Comparison, Complex, Finding, Verdict, check, compare
 from ._class import Class
-from ._filtration import (
-    BettiCurve,
-    Filtration,
-    Level,
-    Simplices,
-    Suggestions,
-    TorusBettiCurve,
-    filtration,
-)
+from ._curves import BettiCurve, Level, Suggestions, TorusBettiCurve
+from ._filtration import Filtration, filtration
 from ._parts import Betti, Boundary, Component, Outline, Polygon, TorusBetti, Void
+from ._pipeline import Selected, difference, haar, pipeline, select, weigh
 from ._points import PointFile, read_points, write_points
-from ._shape import AlphaShape, alpha_shape
-from ._volume import Selected, Volume, difference, haar, pipeline, read, select, weigh
+from ._shape import AlphaShape
+from ._simplices import Simplices
+from ._triangulation import Triangulation, triangulation
+from ._volume import Volume, read
 
 __version__ = _walpha.__version__
 
@@ -53,6 +59,7 @@ __all__ = [
     "Suggestions",
     "TorusBetti",
     "TorusBettiCurve",
+    "Triangulation",
     "Verdict",
     "Void",
     "Volume",
@@ -66,6 +73,7 @@ __all__ = [
     "read",
     "read_points",
     "select",
+    "triangulation",
     "weigh",
     "write_points",
 ]

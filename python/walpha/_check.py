@@ -1,22 +1,27 @@
 from __future__ import annotations
 
+import functools
 import json
-from typing import NamedTuple
+from collections.abc import Iterable, Sequence
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
-from . import _arrays, _walpha
-from ._shape import AlphaShape, squared
-
-_CLASSES = ("cell_classes", "facet_classes", "edge_classes", "vertex_classes")
+from . import _alpha, _arrays, _walpha
+from ._shape import AlphaShape
+from ._typing import Arrays, Classes, Floats, Indices, Progress
+from ._work import task
 
 
 class Complex:
     """A complex that some program made, with its points, to be judged and compared.
 
+    Rows and classes that are missing are filled in, and all are in canonical order; what is given
+    stays as it is otherwise, right or wrong.
+
     Parameters
     ----------
-    points : array_like, (n, 3)
+    points : array_like, (n, 3) or (n, 2)
         x, y, z.
     alpha : float
         A squared length; ``inf`` for a whole triangulation. An unweighted complex whose radii are
@@ -37,48 +42,68 @@ class Complex:
         Points that are not vertices of the regular triangulation.
     duplicates : array_like of int, (m, 2); optional
         Pairs: a point that went, and the one at its place that stayed.
+    periodic : array_like, (3,), or float, optional
+        Sides of a box that repeats, as in :func:`alpha_shape`.
+
+    Raises
+    ------
+    ValueError
+        No α, no simplices, columns of different lengths, indices that no point has.
+
+    Examples
+    --------
+    >>> corners = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
+    >>> walpha.Complex(corners, alpha=1, cells=[[3, 1, 2, 0]])
+    <walpha.Complex α=1: 4 points, 1 cells, 4 facets, 6 edges, 4 vertices>
     """
+
+    _complex: _walpha.Complex
 
     def __init__(
         self,
-        points,
-        alpha=None,
+        points: Arrays,
         *,
-        alpha_radius=None,
-        weights=None,
-        cells=None,
-        facets=None,
-        edges=None,
-        vertices=None,
-        cell_classes=None,
-        facet_classes=None,
-        edge_classes=None,
-        vertex_classes=None,
-        hidden=None,
-        duplicates=None,
-    ):
-        alpha = squared(alpha, alpha_radius)
-        if alpha is None or isinstance(alpha, str):
-            raise ValueError("what a complex should be depends on alpha: give it, a squared length")
-        classes = (cell_classes, facet_classes, edge_classes, vertex_classes)
-        rows = (
-            _arrays.indices("cells", cells, 4),
-            _arrays.indices("facets", facets, 3),
-            _arrays.indices("edges", edges, 2),
-            _arrays.indices("vertices", vertices, 1),
-        )
-        hidden = _arrays.indices("hidden", hidden, 1)
-        self._complex = _walpha.Complex(
-            _arrays.points(points),
-            None if weights is None else _arrays.floats("weights", weights, 1),
-            alpha,
-            *((r, _numbers(name, c)) for r, name, c in zip(rows, _CLASSES, classes)),
-            None if hidden is None else hidden[:, 0],
-            _arrays.indices("duplicates", duplicates, 2),
-        )
+        alpha: float | None = None,
+        alpha_radius: float | None = None,
+        weights: Arrays | None = None,
+        cells: Arrays | None = None,
+        facets: Arrays | None = None,
+        edges: Arrays | None = None,
+        vertices: Arrays | None = None,
+        cell_classes: Arrays | None = None,
+        facet_classes: Arrays | None = None,
+        edge_classes: Arrays | None = None,
+        vertex_classes: Arrays | None = None,
+        hidden: Arrays | None = None,
+        duplicates: Arrays | None = None,
+        periodic: Arrays | None = None,
+    ) -> None:
+        unseen = _arrays.indices("hidden", hidden, 1)
+        with task(None, None) as how:
+            self._complex = _walpha.Complex(
+                _arrays.points(points),
+                _arrays.optional("weights", weights),
+                _alpha.squared(alpha, alpha_radius, "; it says what the complex should be"),
+                (_arrays.indices("cells", cells, 4), _classes("cell_classes", cell_classes)),
+                (_arrays.indices("facets", facets, 3), _classes("facet_classes", facet_classes)),
+                (_arrays.indices("edges", edges, 2), _classes("edge_classes", edge_classes)),
+                (_arrays.indices("vertices", vertices, 1), _classes("vertex_classes", vertex_classes)),
+                None if unseen is None else unseen[:, 0],
+                _arrays.indices("duplicates", duplicates, 2),
+                _arrays.sides(periodic),
+                how,
+            )
 
     @classmethod
-    def from_simplices(cls, points, simplices, alpha=None, *, alpha_radius=None, weights=None):
+    def from_simplices(
+        cls,
+        points: Arrays,
+        simplices: Iterable[Sequence[Any]],
+        *,
+        alpha: float | None = None,
+        alpha_radius: float | None = None,
+        weights: Arrays | None = None,
+    ) -> Complex:
         """A complex from lists of simplices, as GUDHI has them.
 
         Parameters
@@ -93,30 +118,145 @@ class Complex:
         Returns
         -------
         Complex
+
+        Raises
+        ------
+        ValueError
+            As above; a simplex of no or more than four vertices.
+
+        Examples
+        --------
+        >>> walpha.Complex.from_simplices([[0, 0, 0], [2, 0, 0]], [([0], 0), ([1], 0), ([0, 1], 1)], alpha=0.5)
+        <walpha.Complex α=0.5: 2 points, 0 cells, 0 facets, 0 edges, 2 vertices>
         """
-        most = squared(alpha, alpha_radius)
-        if isinstance(most, str):
-            raise ValueError(f"alpha={most!r}: give a squared length")
-        rows = ([], [], [], [])
+        most = _alpha.squared(alpha, alpha_radius, "; it says what the complex should be")
+        rows: tuple[list[Any], ...] = ([], [], [], [])
         for simplex in simplices:
             if len(simplex) == 2 and isinstance(simplex[0], (list, tuple, np.ndarray)):
                 simplex, value = simplex
-                if most is not None and value > most:
+                if value > most:
                     continue
             if not 1 <= len(simplex) <= 4:
-                raise ValueError(f"{simplex!r} is not a simplex of 1 to 4 vertices")
+                raise ValueError(f"simplices: {simplex!r} has not 1 to 4 vertices")
             rows[len(simplex) - 1].append(simplex)
         vertices, edges, facets, cells = rows
         return cls(
-            points, most, weights=weights, cells=cells, facets=facets, edges=edges, vertices=vertices
+            points, alpha=most, weights=weights, cells=cells, facets=facets, edges=edges, vertices=vertices
         )
 
     @classmethod
-    def of(cls, shape):
-        """What an :class:`AlphaShape` claims to be."""
-        complex_ = cls.__new__(cls)
-        complex_._complex = _walpha.Complex.of(shape._shape)
-        return complex_
+    def of(cls, shape: AlphaShape) -> Complex:
+        """What an alpha shape claims to be.
+
+        Parameters
+        ----------
+        shape : AlphaShape
+            Of any kind.
+
+        Returns
+        -------
+        Complex
+            With the weights and the α that its triangulation is regular for.
+        """
+        made = cls.__new__(cls)
+        made._complex = _walpha.Complex.of(shape._shape)
+        return made
+
+    @property
+    def points(self) -> Floats:
+        """ndarray of float64, (n, 3)."""
+        return self._complex.points
+
+    @property
+    def weights(self) -> Floats:
+        """ndarray of float64, (n,): the weights ω, squared lengths."""
+        return self._complex.weights
+
+    @property
+    def alpha(self) -> float:
+        """float: α, a squared length."""
+        return self._complex.alpha
+
+    @functools.cached_property
+    def cells(self) -> Indices:
+        """ndarray of int64, (m, 4)."""
+        return _arrays.kept(self._complex.cells)
+
+    @functools.cached_property
+    def facets(self) -> Indices:
+        """ndarray of int64, (m, 3)."""
+        return _arrays.kept(self._complex.facets)
+
+    @functools.cached_property
+    def edges(self) -> Indices:
+        """ndarray of int64, (m, 2)."""
+        return _arrays.kept(self._complex.edges)
+
+    @functools.cached_property
+    def vertices(self) -> Indices:
+        """ndarray of int64, (m,)."""
+        return _arrays.kept(self._complex.vertices[:, 0])
+
+    @functools.cached_property
+    def _classes(self) -> list[Classes]:
+        return self._complex.classes()
+
+    @property
+    def cell_classes(self) -> Classes:
+        """ndarray of uint8, (m,): the :class:`Class` of each cell."""
+        return self._classes[0]
+
+    @property
+    def facet_classes(self) -> Classes:
+        """ndarray of uint8, (m,): the :class:`Class` of each facet."""
+        return self._classes[1]
+
+    @property
+    def edge_classes(self) -> Classes:
+        """ndarray of uint8, (m,): the :class:`Class` of each edge."""
+        return self._classes[2]
+
+    @property
+    def vertex_classes(self) -> Classes:
+        """ndarray of uint8, (m,): the :class:`Class` of each vertex."""
+        return self._classes[3]
+
+    @property
+    def hidden(self) -> Indices | None:
+        """ndarray of int64, (m,), or None where nobody said which points are hidden."""
+        hidden = self._complex.hidden
+        return None if hidden is None else _arrays.int64(hidden)
+
+    @property
+    def duplicates(self) -> Indices | None:
+        """ndarray of int64, (m, 2), or None where nobody said which points are equal."""
+        duplicates = self._complex.duplicates
+        return None if duplicates is None else _arrays.int64(duplicates)
+
+    @property
+    def periodic(self) -> tuple[float, ...] | None:
+        """tuple of float or None: the sides of the box that repeats, if one does."""
+        sides = self._complex.periodic
+        return None if sides is None else tuple(sides)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        names = ("alpha", "weights", "cells", "facets", "edges", "vertices", "cell_classes", "facet_classes",
+                 "edge_classes", "vertex_classes", "hidden", "duplicates", "periodic")
+        return _again, (self.points, {name: getattr(self, name) for name in names})
+
+    def __copy__(self) -> Complex:
+        return self
+
+    def __deepcopy__(self, memo: object) -> Complex:
+        return self
+
+    def __repr__(self) -> str:
+        counts = ", ".join(f"{len(getattr(self, name))} {name}" for name in ("cells", "facets", "edges", "vertices"))
+        return f"<walpha.Complex α={self.alpha:g}: {len(self.points)} points, {counts}>"
+
+
+def _again(points: Arrays, given: dict[str, Any]) -> Complex:
+    return Complex(points, **given)
 
 
 class Finding(NamedTuple):
@@ -134,9 +274,9 @@ class Finding(NamedTuple):
 
     rule: str
     text: str
-    facts: dict
+    facts: dict[str, Any]
 
-    def __str__(self):
+    def __str__(self) -> str:
         return self.text
 
 
@@ -165,10 +305,10 @@ class Verdict(NamedTuple):
     valid: bool
     ties: int
     total: int
-    findings: list
-    not_judged: list
+    findings: list[Finding]
+    not_judged: list[str]
 
-    def __bool__(self):
+    def __bool__(self) -> bool:
         return self.valid
 
 
@@ -188,16 +328,37 @@ class Comparison(NamedTuple):
 
     equal: bool
     text: str
-    facts: dict
+    facts: dict[str, Any]
 
-    def __bool__(self):
+    def __bool__(self) -> bool:
         return self.equal
 
-    def __str__(self):
+    def __str__(self) -> str:
         return self.text
 
 
-def check(points, alpha=None, *, ties="any", most=1000, progress=None, **complex_):
+def check(
+    points: Arrays | AlphaShape | Complex,
+    alpha: float | None = None,
+    *,
+    alpha_radius: float | None = None,
+    weights: Arrays | None = None,
+    cells: Arrays | None = None,
+    facets: Arrays | None = None,
+    edges: Arrays | None = None,
+    vertices: Arrays | None = None,
+    cell_classes: Arrays | None = None,
+    facet_classes: Arrays | None = None,
+    edge_classes: Arrays | None = None,
+    vertex_classes: Arrays | None = None,
+    hidden: Arrays | None = None,
+    duplicates: Arrays | None = None,
+    periodic: Arrays | None = None,
+    ties: Literal["any", "exact"] = "any",
+    most: int = 1000,
+    progress: Progress = None,
+    threads: int | None = None,
+) -> Verdict:
     """Judge a complex exactly: is it the alpha shape of its points?
 
     Parameters
@@ -207,19 +368,26 @@ def check(points, alpha=None, *, ties="any", most=1000, progress=None, **complex
         or a shape or complex, alone.
     alpha : float
         A squared length.
+    alpha_radius, weights, cells, facets, edges, vertices : optional
+        As :class:`Complex` takes them.
+    cell_classes, facet_classes, edge_classes, vertex_classes, hidden, duplicates, periodic : optional
+        As :class:`Complex` takes them.
     ties : {"any", "exact"}
         Whether another choice at ties is a finding.
     most : int
         So many findings are listed; all are counted.
-    progress : callable, optional
-        ``progress(stage, done, total)``.
-    **complex_
-        ``weights``, ``cells``, ``facets``, ``edges``, ``vertices``, … of :class:`Complex`.
+    progress, threads
+        As in :func:`alpha_shape`.
 
     Returns
     -------
     Verdict
         True if it is right.
+
+    Raises
+    ------
+    ValueError
+        As :class:`Complex`; simplices beside a shape or complex, which has its own.
 
     Notes
     -----
@@ -228,44 +396,75 @@ def check(points, alpha=None, *, ties="any", most=1000, progress=None, **complex
 
     Examples
     --------
-    >>> tri = scipy.spatial.Delaunay(points)
-    >>> walpha.check(points, np.inf, cells=tri.simplices).valid
-    True
+    >>> corners = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
+    >>> walpha.check(corners, np.inf, cells=[[0, 1, 2, 3]]).verdict
+    'exact'
+    >>> print(walpha.check(corners, np.inf, facets=[[0, 1, 2]]).verdict)
+    wrong
     """
     if ties not in ("any", "exact"):
         raise ValueError(f"ties is {ties!r}, and must be 'any' or 'exact'")
+    given = {
+        "alpha": alpha, "alpha_radius": alpha_radius, "weights": weights, "cells": cells, "facets": facets,
+        "edges": edges, "vertices": vertices, "cell_classes": cell_classes, "facet_classes": facet_classes,
+        "edge_classes": edge_classes, "vertex_classes": vertex_classes, "hidden": hidden,
+        "duplicates": duplicates, "periodic": periodic,
+    }  # fmt: skip
     if isinstance(points, (AlphaShape, Complex)):
-        if alpha is not None or complex_:
-            raise ValueError("a shape or complex knows its alpha and simplices: give it alone")
+        named = [name for name, value in given.items() if value is not None]
+        if named:
+            raise ValueError(f"a shape or complex has its own {' and '.join(named)}: give it alone")
         judged = _complex(points)
     else:
-        judged = Complex(points, alpha, **complex_)
-    verdict, tied, total, findings, not_judged = judged._complex.check(most, ties == "exact", progress)
+        judged = _again(points, given)
+    with task(progress, threads) as how:
+        verdict, tied, total, findings, not_judged = judged._complex.check(most, ties == "exact", how)
     listed = []
-    for text, facts in findings:
-        facts = json.loads(facts)
+    for text, fields in findings:
+        facts = json.loads(fields)
         listed.append(Finding(facts.pop("rule"), text, facts))
     return Verdict(verdict, total == 0, tied, total, listed, json.loads(not_judged))
 
 
-def compare(a, b):
+def compare(
+    a: AlphaShape | Complex,
+    b: AlphaShape | Complex,
+    *,
+    progress: Progress = None,
+    threads: int | None = None,
+) -> Comparison:
     """Say how two complexes over the same points differ.
 
     Parameters
     ----------
     a, b : AlphaShape or Complex
         Points are matched by their places: the two may number them differently.
+    progress, threads
+        As in :func:`alpha_shape`.
 
     Returns
     -------
     Comparison
         True if they are equal. Windings do not count.
+
+    Raises
+    ------
+    ValueError
+        One of them is neither, or of a periodic box.
+
+    Examples
+    --------
+    >>> corners = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
+    >>> theirs = walpha.Complex(corners, alpha=1, cells=[[0, 1, 2, 3]])
+    >>> walpha.compare(theirs, walpha.alpha_shape(corners, 1)).equal
+    True
     """
-    equal, text, facts = _walpha.compare(_complex(a)._complex, _complex(b)._complex)
+    with task(progress, threads) as how:
+        equal, text, facts = _walpha.compare(_complex(a)._complex, _complex(b)._complex, how)
     return Comparison(equal, text, json.loads(facts))
 
 
-def _complex(given):
+def _complex(given: AlphaShape | Complex) -> Complex:
     if isinstance(given, AlphaShape):
         return Complex.of(given)
     if isinstance(given, Complex):
@@ -273,10 +472,10 @@ def _complex(given):
     raise ValueError(f"{type(given).__name__} is not a complex: give an AlphaShape or a walpha.Complex")
 
 
-def _numbers(name, classes):
-    if classes is None:
+def _classes(name: str, given: Arrays | None) -> Classes | None:
+    if given is None:
         return None
-    classes = np.asarray(classes)
+    classes = np.asarray(given)
     if classes.ndim != 1 or classes.dtype.kind not in "iu" or not ((classes >= 0) & (classes < 256)).all():
         raise ValueError(f"{name} must be a row of classes, numbers from 0 to 3")
     return classes.astype(np.uint8)

@@ -9,9 +9,13 @@ class Class(enum.IntEnum):
     The names are those of CGAL's ``Fixed_alpha_shape_3::Classification_type``. Cells are
     ``INTERIOR`` or ``EXTERIOR`` only.
 
-    Notes
-    -----
-    ``shape.facets[shape.facet_classes == walpha.Class.REGULAR]`` are the boundary of the solid part.
+    Examples
+    --------
+    The boundary of the solid part of a shape:
+
+    >>> shape = walpha.alpha_shape([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], alpha=1)
+    >>> len(shape.facets[shape.facet_classes == walpha.Class.REGULAR])
+    4
     """
 
     #: Not in the shape.

@@ -1,201 +1,21 @@
 from __future__ import annotations
 
 import json
-from typing import NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from . import _arrays, _walpha
+from . import _alpha, _arrays, _walpha
+from ._curves import BettiCurve, Level, Suggestions, TorusBettiCurve
 from ._meshes import wanted
-from ._parts import Void, betti
-from ._shape import AlphaShape, squared
+from ._parts import Void
+from ._shape import AlphaShape
+from ._simplices import Simplices
+from ._typing import Arrays, Floats, Progress
+from ._work import task
 
-
-class BettiCurve(NamedTuple):
-    """The topology at every critical value of α.
-
-    Attributes
-    ----------
-    alpha : ndarray of float64, (m,)
-        A double just above each critical value, ascending; row k holds from ``alpha[k]`` on to the
-        next. Squared lengths.
-    b0, b1, b2 : ndarray of uint64, (m,)
-        Components, tunnels, voids.
-    solid_components : ndarray of uint64, (m,)
-        Components of the cells, joined through facets; of points that span no volume triangles joined
-        through edges, or edges through vertices.
-    """
-
-    alpha: np.ndarray
-    b0: np.ndarray
-    b1: np.ndarray
-    b2: np.ndarray
-    solid_components: np.ndarray
-
-
-class TorusBettiCurve(NamedTuple):
-    """The topology of a torus's shapes at every critical value of α.
-
-    Attributes
-    ----------
-    alpha, b0, b1, b2, solid_components : ndarray, (m,)
-        As in :class:`BettiCurve`.
-    b3 : ndarray of uint64, (m,)
-        1 from where on the shape is the whole torus: the last row.
-    """
-
-    alpha: np.ndarray
-    b0: np.ndarray
-    b1: np.ndarray
-    b2: np.ndarray
-    solid_components: np.ndarray
-    b3: np.ndarray
-
-
-class Simplices:
-    """Every simplex of a filtration, and when it comes.
-
-    Simplices have *numbers*: vertices first, then edges, facets, cells, those of one dimension in
-    lexicographic order of their vertices. All arrays but those of vertices are by these numbers.
-
-    Attributes
-    ----------
-    vertices, edges, facets, cells : ndarray of uint32, (m, 1) to (m, 4)
-        Input indices, ascending in each row.
-    values : ndarray of float64, (n,)
-        The α, squared lengths, from which on each is in the shape: the double nearest to the exact number.
-    ranks : ndarray of uint32, (n,)
-        The place of the exact number among all that are different, from 0: equal for equal numbers
-        only, even where two different ones have one nearest double.
-    gabriel : ndarray of bool, (n,)
-        Whether its own smallest orthogonal sphere is empty; else it comes with a simplex it is a face of.
-    regular, interior : ndarray of float64, (n,)
-        From which α on it is a face of another simplex of the shape, and off the boundary.
-    order : ndarray of uint32, (n,)
-        Numbers in the order in which simplices come: by exact value, dimension, vertices. Faces come
-        before what they are faces of.
-    component_pairs, void_pairs : ndarray of uint32, (k, 2)
-        Persistence pairs of dimensions 0 and 2 as numbers: what makes a component or shuts a void in, and
-        what ends it. Those that last no time are there too.
-    lasting : tuple of ndarray of uint32
-        What begins something that never ends, by dimension 0, 2 and 3; of a torus 1, 3 and 1.
-    """
-
-    def __init__(self, simplices):
-        self._simplices = simplices
-        self.vertices, self.edges = simplices.vertices, simplices.edges
-        self.facets, self.cells = simplices.facets, simplices.cells
-        self.values, self.regular, self.interior = simplices.intervals.T
-        self.ranks, self.gabriel, self.order = simplices.ranks, simplices.gabriel, simplices.order
-        self.component_pairs, self.void_pairs = simplices.component_pairs, simplices.void_pairs
-        self.lasting = tuple(np.array(numbers, np.uint32) for numbers in simplices.lasting)
-
-    def __len__(self):
-        return len(self.values)
-
-    def __iter__(self):
-        """Pairs in order: a tuple of vertices, and the value."""
-        rows = [row for table in self._tables() for row in table.tolist()]
-        for number in self.order.tolist():
-            yield tuple(rows[number]), float(self.values[number])
-
-    def __repr__(self):
-        counts = ", ".join(str(len(table)) for table in self._tables())
-        return f"<walpha.Simplices {counts} vertices, edges, facets, cells>"
-
-    def persistence(self, dimension):
-        """Intervals of dimension 0 or 2 that last some time.
-
-        Parameters
-        ----------
-        dimension : {0, 2}
-            Components or voids. Loops take a reduction of matrices: see :meth:`Filtration.simplex_tree`.
-
-        Returns
-        -------
-        ndarray of float64, (k, 2)
-            Values of birth and death, in order of death for 0 and of birth for 2; what never ends is
-            last and has inf.
-        """
-        if dimension not in (0, 2):
-            raise ValueError(f"dimension={dimension}: pairs are known of 0 and 2; see simplex_tree()")
-        pairs = self.component_pairs if dimension == 0 else self.void_pairs
-        lasting = self.lasting[0 if dimension == 0 else 1]
-        pairs = pairs[self.ranks[pairs[:, 0]] != self.ranks[pairs[:, 1]]]
-        never = np.column_stack([self.values[lasting], np.full(len(lasting), np.inf)])
-        return np.vstack([self.values[pairs], never])
-
-    def _tables(self):
-        return self.vertices, self.edges, self.facets, self.cells
-
-
-class Level(NamedTuple):
-    """One α of a ladder, in numbers.
-
-    Attributes
-    ----------
-    alpha : float
-        A squared length.
-    cells : int
-        Cells of the shape.
-    facets, edges, vertices : dict
-        How many there are, by the name of their class.
-    betti : Betti
-        Of a torus TorusBetti.
-    solid_components : int
-        Components of the cells, joined through facets.
-    volume, area, singular_area : float
-        As those of :class:`AlphaShape`.
-    coverage : float
-        The share of the volume of the convex hull that the cells fill; 0 of points that span no volume.
-    voids : list of Void
-        Largest first.
-    """
-
-    alpha: float
-    cells: int
-    facets: dict
-    edges: dict
-    vertices: dict
-    betti: tuple
-    solid_components: int
-    volume: float
-    area: float
-    singular_area: float
-    coverage: float
-    voids: list
-
-    @classmethod
-    def of(cls, facts):
-        """From the fields of the library."""
-        changed = {
-            "alpha": float(facts["alpha"]),
-            "betti": betti(facts["betti"]),
-            "voids": [Void.of(void) for void in facts["voids"]],
-        }
-        return cls(**{name: changed.get(name, facts[name]) for name in cls._fields})
-
-
-class Suggestions(NamedTuple):
-    """Values of α to try, squared lengths.
-
-    Attributes
-    ----------
-    all_points : float
-        Every vertex is one of a cell (MATLAB's ``criticalAlpha(shp, 'all-points')``).
-    one_region : float
-        That, and the cells are one solid component (CGAL's ``find_optimal_alpha(1)``).
-    no_void : float
-        The same, and without voids.
-    plateau : tuple of float
-        From where to where the Betti numbers stay the same longest, as a ratio of the squared radii
-        of the largest balls.
-    """
-
-    all_points: float
-    one_region: float
-    no_void: float
-    plateau: tuple
+if TYPE_CHECKING:
+    import gudhi
 
 
 class Filtration:
@@ -203,20 +23,20 @@ class Filtration:
 
     Parameters
     ----------
-    points : array_like, (n, 3)
-        x, y, z.
+    points : array_like, (n, 3) or (n, 2)
+        As in :func:`alpha_shape`.
     weights : array_like, (n,), optional
         ω, squared lengths, the same for every α. By default 0.
     periodic : array_like, (3,), or float, optional
         Sides of a box that repeats, as in :func:`alpha_shape`. No edge of the whole triangulation may
         span half of it.
-    progress : callable, optional
-        ``progress(stage, done, total)``.
+    progress, threads
+        As in :func:`alpha_shape`.
 
     Raises
     ------
     ValueError
-        As :func:`alpha_shape`, and points in one plane.
+        As :func:`alpha_shape`.
 
     Notes
     -----
@@ -224,31 +44,76 @@ class Filtration:
     with the first simplex it is a face of. What is in a shape is decided exactly: each shape is
     the one that :func:`alpha_shape` makes.
 
+    A pickle holds points, weights and box, and loading it computes the filtration again.
+
     References
     ----------
     H. Edelsbrunner and E. P. Mücke, Three-dimensional alpha shapes, ACM Transactions on Graphics
     13 (1994), doi:10.1145/174462.156635.
+
+    Examples
+    --------
+    >>> cube = [[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)]
+    >>> filtration = walpha.filtration(cube)
+    >>> filtration
+    <walpha.Filtration of 8 points>
+    >>> filtration.optimal_alpha()
+    0.75
+    >>> filtration.shape(0.5).betti
+    Betti(b0=1, b1=0, b2=1)
     """
 
-    def __init__(self, points, weights=None, *, periodic=None, progress=None):
-        weights = None if weights is None else _arrays.floats("weights", weights, 1)
-        sides = _arrays.sides(periodic)
-        self._filtration = _walpha.Filtration(_arrays.points(points), weights, sides, progress)
-        self._simplices = None
+    def __init__(
+        self,
+        points: Arrays,
+        *,
+        weights: Arrays | None = None,
+        periodic: Arrays | None = None,
+        progress: Progress = None,
+        threads: int | None = None,
+    ) -> None:
+        with task(progress, threads) as how:
+            self._filtration = _walpha.Filtration(
+                _arrays.points(points), _arrays.optional("weights", weights), _arrays.sides(periodic), how
+            )
+        self._simplices: Simplices | None = None
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _again, (self.points, self.weights, self.periodic)
+
+    def __copy__(self) -> Filtration:
+        return self
+
+    def __deepcopy__(self, memo: object) -> Filtration:
+        return self
+
+    def __repr__(self) -> str:
+        box = "" if self.periodic is None else f" in a periodic box {self.periodic}"
+        return f"<walpha.Filtration of {len(self.points)} points{box}>"
 
     @property
-    def periodic(self):
+    def points(self) -> Floats:
+        """ndarray of float64, (n, 3): the points as given; of a torus, in its box."""
+        return self._filtration.points
+
+    @property
+    def weights(self) -> Floats:
+        """ndarray of float64, (n,): the weights ω, squared lengths."""
+        return self._filtration.weights
+
+    @property
+    def periodic(self) -> tuple[float, ...] | None:
         """tuple of float or None: the sides of the box that repeats, if one does."""
         sides = self._filtration.periodic
         return None if sides is None else tuple(sides)
 
-    def simplices(self, *, progress=None):
+    def simplices(self, *, progress: Progress = None, threads: int | None = None) -> Simplices:
         """Every simplex with its exact value, in order.
 
         Parameters
         ----------
-        progress : callable, optional
-            ``progress(stage, done, total)``.
+        progress, threads
+            As in :func:`alpha_shape`.
 
         Returns
         -------
@@ -256,10 +121,11 @@ class Filtration:
             Computed once.
         """
         if self._simplices is None:
-            self._simplices = Simplices(self._filtration.simplices(progress))
+            with task(progress, threads) as how:
+                self._simplices = Simplices._of(self._filtration.simplices(how))
         return self._simplices
 
-    def simplex_tree(self, *, ranks=False):
+    def simplex_tree(self, *, ranks: bool = False) -> gudhi.SimplexTree:
         """For GUDHI: a ``gudhi.SimplexTree`` of all simplices.
 
         Parameters
@@ -286,7 +152,7 @@ class Filtration:
             first += len(rows)
         return tree
 
-    def dionysus(self, *, ranks=False):
+    def dionysus(self, *, ranks: bool = False) -> Any:
         """For Dionysus 2: a ``dionysus.Filtration`` of all simplices, in order.
 
         Parameters
@@ -308,11 +174,25 @@ class Filtration:
             made.append(dionysus.Simplex(tables[number], float(values[number])))
         return made
 
-    def whole(self):
-        """AlphaShape: the whole regular triangulation, α = ∞."""
-        return AlphaShape(self._filtration.whole())
+    def whole(self) -> AlphaShape:
+        """The whole regular triangulation as a shape.
 
-    def shape(self, alpha=None, *, alpha_radius=None, exterior=False, progress=None):
+        Returns
+        -------
+        AlphaShape
+            α = ∞.
+        """
+        return AlphaShape._of(self._filtration.whole())
+
+    def shape(
+        self,
+        alpha: float | None = None,
+        *,
+        alpha_radius: float | None = None,
+        exterior: bool = False,
+        progress: Progress = None,
+        threads: int | None = None,
+    ) -> AlphaShape:
         """The shape at an α.
 
         Parameters
@@ -323,61 +203,118 @@ class Filtration:
             √α instead.
         exterior : bool
             Keep the simplices outside the shape.
-        progress : callable, optional
-            ``progress(stage, done, total)``.
+        progress, threads
+            As in :func:`alpha_shape`.
 
         Returns
         -------
         AlphaShape
         """
-        rule = squared(alpha, alpha_radius)
-        if rule is None or isinstance(rule, str):
-            raise ValueError("give alpha, a squared length, or alpha_radius; see optimal_alpha()")
-        return AlphaShape(self._filtration.shape(rule, exterior, progress))
+        at = _alpha.squared(alpha, alpha_radius, "; optimal_alpha() finds one")
+        with task(progress, threads) as how:
+            return AlphaShape._of(self._filtration.shape(at, exterior, how))
 
-    def levels(self, alphas, *, progress=None):
+    def levels(
+        self, alphas: Arrays, *, progress: Progress = None, threads: int | None = None
+    ) -> list[Level]:
         """Shapes at several α in numbers, for about the price of one.
 
         Parameters
         ----------
         alphas : array_like, (m,)
             Squared lengths.
-        progress : callable, optional
-            ``progress(stage, done, total)``.
+        progress, threads
+            As in :func:`alpha_shape`.
 
         Returns
         -------
         list of Level
             Ascending; equal α are one.
+
+        Examples
+        --------
+        >>> cube = [[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)]
+        >>> [level.volume for level in walpha.filtration(cube).levels([0.5, 0.75])]
+        [0.0, 1.0]
         """
-        alphas = _arrays.floats("alphas", alphas, 1)
-        return [Level.of(facts) for facts in json.loads(self._filtration.ladder(alphas, progress))]
+        given = _arrays.column("alphas", alphas, "shape")
+        with task(progress, threads) as how:
+            return [Level._of(facts) for facts in json.loads(self._filtration.ladder(given, how))]
 
-    def voids(self, alpha, *, progress=None):
-        """list of Void: those of the shape at ``alpha``, a squared length, largest first."""
-        return self.levels([alpha], progress=progress)[0].voids
+    def voids(
+        self, alpha: float, *, progress: Progress = None, threads: int | None = None
+    ) -> list[Void]:
+        """The voids of the shape at an α.
 
-    def betti_curve(self, *, progress=None):
-        """BettiCurve, of a torus TorusBettiCurve: Betti numbers and solid components at every critical value."""
-        alpha, columns = self._filtration.curve(progress)
+        Parameters
+        ----------
+        alpha : float
+            A squared length.
+        progress, threads
+            As in :func:`alpha_shape`.
+
+        Returns
+        -------
+        list of Void
+            Largest first.
+        """
+        at = _alpha.squared(alpha, None, "")
+        return self.levels([at], progress=progress, threads=threads)[0].voids
+
+    def betti_curve(
+        self, *, progress: Progress = None, threads: int | None = None
+    ) -> BettiCurve | TorusBettiCurve:
+        """Betti numbers and solid components at every critical value.
+
+        Parameters
+        ----------
+        progress, threads
+            As in :func:`alpha_shape`.
+
+        Returns
+        -------
+        BettiCurve
+            Of a torus TorusBettiCurve.
+
+        Examples
+        --------
+        >>> curve = walpha.filtration(np.eye(4)[:, :3]).betti_curve()
+        >>> curve.b0
+        array([4, 1, 1, 1])
+        """
+        with task(progress, threads) as how:
+            alpha, columns = self._filtration.curve(how)
         kind = BettiCurve if self.periodic is None else TorusBettiCurve
-        return kind(alpha, *columns)
+        return kind(alpha, *map(_arrays.int64, columns))
 
-    def suggestions(self, *, progress=None):
-        """Suggestions: values of α to try."""
-        facts = json.loads(self._filtration.suggestions(progress))
-        facts["plateau"] = tuple(float(end) for end in facts["plateau"])
-        return Suggestions(**facts)
+    def suggestions(self, *, progress: Progress = None, threads: int | None = None) -> Suggestions:
+        """Values of α to try.
 
-    def optimal_alpha(self, components=1, *, progress=None):
+        Parameters
+        ----------
+        progress, threads
+            As in :func:`alpha_shape`.
+
+        Returns
+        -------
+        Suggestions
+        """
+        with task(progress, threads) as how:
+            facts = json.loads(self._filtration.suggestions(how))
+        low, high = facts["plateau"]
+        return Suggestions(**{**facts, "plateau": (float(low), float(high))})
+
+    def optimal_alpha(
+        self, components: int = 1, *, progress: Progress = None, threads: int | None = None
+    ) -> float:
         """The smallest α at which all points are in at most so many solid components.
 
         Parameters
         ----------
         components : int
             From 1 up.
-        progress : callable, optional
-            ``progress(stage, done, total)``.
+        progress, threads
+            As in :func:`alpha_shape`.
 
         Returns
         -------
@@ -385,9 +322,36 @@ class Filtration:
             A squared length: the first double at which the shape is so, exactly. CGAL's
             ``find_optimal_alpha`` searches by halving, and may find a larger one.
         """
-        return self._filtration.optimal_alpha(components, progress)
+        with task(progress, threads) as how:
+            return self._filtration.optimal_alpha(components, how)
 
 
-def filtration(points, weights=None, *, periodic=None, progress=None):
-    """All alpha shapes of weighted points: a :class:`Filtration`, which see."""
-    return Filtration(points, weights, periodic=periodic, progress=progress)
+def filtration(
+    points: Arrays,
+    *,
+    weights: Arrays | None = None,
+    periodic: Arrays | None = None,
+    progress: Progress = None,
+    threads: int | None = None,
+) -> Filtration:
+    """All alpha shapes of weighted points.
+
+    Parameters
+    ----------
+    points, weights, periodic, progress, threads
+        As :class:`Filtration` takes them.
+
+    Returns
+    -------
+    Filtration
+
+    Examples
+    --------
+    >>> walpha.filtration([[0, 0, 0], [2, 0, 0], [0, 2, 0], [0, 0, 2]], weights=[1, 1, 1, 1]).optimal_alpha()
+    2.0
+    """
+    return Filtration(points, weights=weights, periodic=periodic, progress=progress, threads=threads)
+
+
+def _again(points: Floats, weights: Floats, periodic: tuple[float, ...] | None) -> Filtration:
+    return Filtration(points, weights=weights, periodic=periodic)

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Sequence
+from typing import Any, NamedTuple, cast
 
-import numpy as np
+from . import _arrays, _walpha
+from ._typing import Floats, Indices, Place
 
 
 class Betti(NamedTuple):
@@ -46,10 +48,8 @@ class TorusBetti(NamedTuple):
     b3: int
 
 
-def betti(numbers):
-    """Three Betti numbers, or four of a torus; None as it is."""
-    if numbers is None:
-        return None
+def betti(numbers: Sequence[int | None]) -> Betti | TorusBetti:
+    """Three Betti numbers, or four of a torus."""
     known = [number for number in numbers if number is not None]
     return Betti(*known) if len(known) == 3 else TorusBetti(*known)
 
@@ -70,18 +70,18 @@ class Void(NamedTuple):
     """
 
     volume: float
-    low: tuple
-    high: tuple
+    low: Place
+    high: Place
     cells: int | None = None
     filling_alpha: float | None = None
 
     @classmethod
-    def of(cls, facts):
+    def _of(cls, facts: dict[str, Any]) -> Void:
         """From the fields of the library."""
         return cls(
             facts["volume"],
-            tuple(facts["low"]),
-            tuple(facts["high"]),
+            cast(Place, tuple(facts["low"])),
+            cast(Place, tuple(facts["high"])),
             facts.get("cells"),
             facts.get("filling_alpha"),
         )
@@ -115,13 +115,13 @@ class Component(NamedTuple):
     volume: float
     area: float
     singular_area: float
-    low: tuple
-    high: tuple
-    voids: list | None
+    low: Place
+    high: Place
+    voids: list[Void] | None
     rounds: int | None = None
 
     @classmethod
-    def of(cls, facts):
+    def _of(cls, facts: dict[str, Any]) -> Component:
         """From the fields of the library."""
         voids = facts["voids"]
         return cls(
@@ -130,9 +130,9 @@ class Component(NamedTuple):
             facts["volume"],
             facts["area"],
             facts["singular_area"],
-            tuple(facts["low"]),
-            tuple(facts["high"]),
-            None if voids is None else [Void.of(void) for void in voids],
+            cast(Place, tuple(facts["low"])),
+            cast(Place, tuple(facts["high"])),
+            None if voids is None else [Void._of(void) for void in voids],
             facts.get("rounds"),
         )
 
@@ -144,14 +144,14 @@ class Polygon(NamedTuple):
 
     Attributes
     ----------
-    outer : ndarray of uint32, (k,)
+    outer : ndarray of int64, (k,)
         The ring around it, counter-clockwise.
-    holes : list of ndarray of uint32
+    holes : list of ndarray of int64
         The rings around its holes, clockwise.
     """
 
-    outer: np.ndarray
-    holes: list
+    outer: Indices
+    holes: list[Indices]
 
 
 class Outline(NamedTuple):
@@ -161,9 +161,9 @@ class Outline(NamedTuple):
     ----------
     polygons : list of Polygon
         Triangles that are joined through edges make one. Polygons touch each other at vertices at most.
-    edges : ndarray of uint32, (k, 2)
+    edges : ndarray of int64, (k, 2)
         The singular edges, those on no triangle.
-    points : ndarray of uint32, (k,)
+    points : ndarray of int64, (k,)
         The singular vertices, those on no edge.
     area : float
         Of the polygons, in squared units of the points.
@@ -174,18 +174,23 @@ class Outline(NamedTuple):
         its points apart. Counter-clockwise is the way from the first axis to the second.
     """
 
-    polygons: list
-    edges: np.ndarray
-    points: np.ndarray
+    polygons: list[Polygon]
+    edges: Indices
+    points: Indices
     area: float
     perimeter: float
-    axes: tuple
+    axes: tuple[int, int]
 
     @classmethod
-    def of(cls, polygons, edges, points, area, perimeter, axes):
+    def _of(cls, parts: _walpha.Outline) -> Outline:
         """From the parts that the library gives."""
-        polygons = [Polygon(outer, holes) for outer, holes in polygons]
-        return cls(polygons, edges, points, area, perimeter, tuple(axes))
+        polygons, edges, points, area, perimeter, axes = parts
+        rings = [
+            Polygon(_arrays.int64(outer), [_arrays.int64(hole) for hole in holes])
+            for outer, holes in polygons
+        ]
+        one, other = axes
+        return cls(rings, _arrays.int64(edges), _arrays.int64(points), area, perimeter, (one, other))
 
 
 class Boundary(NamedTuple):
@@ -195,16 +200,16 @@ class Boundary(NamedTuple):
     ----------
     points : ndarray of float64, (m, 3)
         Places of its vertices.
-    triangles : ndarray of uint32, (k, 3)
+    triangles : ndarray of int64, (k, 3)
         Rows of ``points``, counter-clockwise seen from outside the solid.
-    indices : ndarray of uint32, (m,)
+    indices : ndarray of int64, (m,)
         The input index of each vertex; of a midpoint, that of one end of its edge.
     cuts : tuple of int
         Edges at which parts of the solid touched, vertices that occur there more than once, and
         midpoints added; all 0 unless the boundary was cut apart into a manifold.
     """
 
-    points: np.ndarray
-    triangles: np.ndarray
-    indices: np.ndarray
-    cuts: tuple
+    points: Floats
+    triangles: Indices
+    indices: Indices
+    cuts: tuple[int, int, int]

@@ -2,11 +2,21 @@ from __future__ import annotations
 
 import json
 import os
-from typing import NamedTuple
+from collections.abc import Iterable
+from typing import Literal, NamedTuple, TypeAlias
 
-import numpy as np
+from . import _alpha, _arrays, _walpha
+from ._typing import Arrays, Floats
 
-from . import _arrays, _walpha
+Ground: TypeAlias = Literal["unclassified", "ground", "vegetation", "building", "water"]
+# Codes of the ASPRS, in the words of the command.
+_CLASSES: dict[object, list[int]] = {
+    "unclassified": [0, 1],
+    "ground": [2],
+    "vegetation": [3, 4, 5],
+    "building": [6],
+    "water": [9],
+}
 
 
 class PointFile(NamedTuple):
@@ -26,24 +36,38 @@ class PointFile(NamedTuple):
         Of lengths: "mm", say; "voxel" where coordinates are indices, "unit" where nobody says.
     """
 
-    points: np.ndarray
-    weights: np.ndarray | None
-    values: np.ndarray | None
-    grid: tuple | None
+    points: Floats
+    weights: Floats | None
+    values: Floats | None
+    grid: tuple[int, int, int] | None
     alpha: float | None
     unit: str
 
 
-def read_points(path, *, level=None):
+def read_points(
+    path: str | os.PathLike[str],
+    *,
+    level: int | None = None,
+    columns: Iterable[str] | None = None,
+    classes: Iterable[int | Ground] | None = None,
+    thin: float | None = None,
+) -> PointFile:
     """Read points.
 
     Parameters
     ----------
     path : str or path-like
-        CSV, XYZ, PTS, PLY, OFF, OBJ, STL, PCD, VTU, VTP, VTK, NPY or WVM. Weights are a column ``weight``,
-        or else the squares of a column ``radius``.
+        CSV, XYZ, PTS, PLY, OFF, OBJ, STL, PCD, LAS, LAZ, VTU, VTP, VTK, NPY or WVM. Weights are a column
+        ``weight``, or else the squares of a column ``radius``.
     level : int, optional
         For WVM in layers: how many of the last layers to leave out.
+    columns : iterable of str, optional
+        Names of the columns of a table (CSV, XYZ): x, y, z, perhaps weight and value, others under any name.
+    classes : iterable of int or str, optional
+        For LAS and LAZ: the classes to read, by their codes or as "ground", "vegetation", "building", "water",
+        "unclassified".
+    thin : float, optional
+        Keep the first point in each cube of this side, in the unit of the points.
 
     Returns
     -------
@@ -55,13 +79,45 @@ def read_points(path, *, level=None):
         The system refuses.
     ValueError
         The file is not what it says.
+
+    Examples
+    --------
+    >>> walpha.write_points("corners.csv", np.eye(3))
+    >>> walpha.read_points("corners.csv").points
+    array([[1., 0., 0.],
+           [0., 1., 0.],
+           [0., 0., 1.]])
     """
-    points, weights, values, grid, alpha, coordinates = _walpha.read_points(os.fspath(path), level)
-    grid = None if grid is None else tuple(reversed(grid))
+    if thin is not None and not 0 < thin < float("inf"):
+        raise ValueError(f"thin={thin} is not the side of a cube: give a length above 0")
+    named = None if columns is None else ",".join([columns] if isinstance(columns, str) else columns)
+    points, weights, values, sizes, alpha, coordinates = _walpha.read_points(
+        os.fspath(path), level, named, None if classes is None else _codes(classes), thin
+    )
+    grid = None if sizes is None else (sizes[2], sizes[1], sizes[0])
     return PointFile(points, weights, values, grid, alpha, json.loads(coordinates)["unit"])
 
 
-def write_points(path, points, weights=None, values=None, *, alpha=None, value_error=0.0):
+def _codes(classes: Iterable[int | Ground]) -> list[int]:
+    codes = []
+    for given in [classes] if isinstance(classes, (str, int)) else classes:
+        known = _CLASSES.get(given) if isinstance(given, str) else [given] if 0 <= given < 256 else None
+        if known is None:
+            known_names = ", ".join(map(repr, _CLASSES))
+            raise ValueError(f"classes: {given!r} is none: give codes from 0 to 255, or of {known_names}")
+        codes += known
+    return codes
+
+
+def write_points(
+    path: str | os.PathLike[str],
+    points: Arrays,
+    *,
+    weights: Arrays | None = None,
+    values: Arrays | None = None,
+    alpha: float | None = None,
+    value_error: float = 0.0,
+) -> None:
     """Write points; the file appears under its name only when it is complete.
 
     Parameters
@@ -84,12 +140,16 @@ def write_points(path, points, weights=None, values=None, *, alpha=None, value_e
         The file cannot be written. Nothing is left behind.
     ValueError
         No format has this extension, or columns are not one for each point.
+
+    Examples
+    --------
+    >>> walpha.write_points("weighted.csv", np.eye(3), weights=[1, 2, 3])
     """
     _walpha.write_points(
         os.fspath(path),
         _arrays.points(points),
-        None if weights is None else _arrays.floats("weights", weights, 1),
-        None if values is None else _arrays.floats("values", values, 1),
-        alpha,
+        _arrays.optional("weights", weights),
+        _arrays.optional("values", values),
+        None if alpha is None else _alpha.squared(alpha, None, ""),
         float(value_error),
     )

@@ -4,172 +4,215 @@ import functools
 import html
 import json
 import math
+import operator
 import os
+from typing import TYPE_CHECKING, Any, Literal, cast, overload
 
 import numpy as np
 
 from . import _arrays, _meshes, _parts, _walpha
 from ._class import Class
-from ._parts import Boundary, Component, Outline, Void
+from ._parts import Betti, Boundary, Component, Outline, TorusBetti, Void
+from ._typing import Arrays, Classes, Floats, Indices, Progress, Samples
+from ._work import task
+
+if TYPE_CHECKING:
+    import meshio
+    import open3d
+    import pyvista
+    import shapely
+    import trimesh
 
 
 class AlphaShape:
     """The alpha shape of weighted points, by input index.
 
-    Made by :func:`alpha_shape`, :func:`pipeline` and :meth:`Filtration.shape`. Arrays of simplices
-    and of points lend the library's memory: they cost nothing, and cannot be written to.
+    Made by :func:`alpha_shape`, :func:`pipeline` and :meth:`Filtration.shape`. It does not change:
+    its arrays cannot be written to.
 
     Notes
     -----
     Rows are in a canonical order. Cells are positively oriented, regular facets turn
     counter-clockwise seen from outside, and equal shapes have equal arrays whatever the engine or
     the number of threads.
+
+    A pickle holds the points and how the shape was made, and loading it computes the same shape again.
+
+    Examples
+    --------
+    >>> shape = walpha.alpha_shape([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], alpha=1)
+    >>> shape.cells
+    array([[0, 1, 2, 3]])
+    >>> shape
+    <walpha.AlphaShape α=1 (√α=1): 4 points, 1 cells, volume 0.166667, betti (1, 0, 0)>
     """
 
-    def __init__(self, shape):
-        self._shape = shape
+    _shape: _walpha.Shape
+    #: The shape of a torus that this one lays out.
+    _wrapped: AlphaShape | None
+
+    def __init__(self) -> None:
+        raise TypeError("an AlphaShape is made by walpha.alpha_shape(points, alpha)")
+
+    @classmethod
+    def _of(cls, shape: _walpha.Shape, wrapped: AlphaShape | None = None) -> AlphaShape:
+        made = cls.__new__(cls)
+        made._shape, made._wrapped = shape, wrapped
+        return made
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        if self._wrapped is not None:
+            return operator.methodcaller("unwrapped"), (self._wrapped,)
+        return _restored, (self.points, self.weights, self.values, self._shape.state())
+
+    def __copy__(self) -> AlphaShape:
+        return self
+
+    def __deepcopy__(self, memo: object) -> AlphaShape:
+        return self
 
     # What it was made of.
 
     @functools.cached_property
-    def points(self):
-        """ndarray of float64, (n, 3): the points as given, duplicates and hidden ones too."""
+    def points(self) -> Floats:
+        """ndarray of float64, (n, 3): the points as given, duplicates and hidden ones too; of a torus, in its box."""
         return self._shape.points
 
     @functools.cached_property
-    def weights(self):
+    def weights(self) -> Floats:
         """ndarray of float64, (n,): the weights ω, squared lengths."""
         return self._shape.weights
 
     @functools.cached_property
-    def values(self):
+    def values(self) -> Floats | None:
         """ndarray of float64, (n,), or None: the values that :meth:`at` interpolates."""
         return self._shape.values
 
     @property
-    def alpha(self):
+    def alpha(self) -> float:
         """float: α, a **squared** length, as in CGAL and GUDHI. See :attr:`alpha_radius`."""
         return self._shape.alpha
 
     @property
-    def alpha_radius(self):
+    def alpha_radius(self) -> float:
         """float: √α, the radius of the balls of points of weight 0; NaN for a negative α."""
         return math.sqrt(self.alpha) if self.alpha >= 0 else math.nan
 
     @functools.cached_property
-    def _facts(self):
-        return json.loads(self._shape.facts)
+    def _facts(self) -> dict[str, Any]:
+        return cast(dict[str, Any], json.loads(self._shape.facts))
 
     @property
-    def alpha_origin(self):
+    def alpha_origin(self) -> str:
         """str: ``given``, ``default`` (10 h² for a volume), ``auto`` or ``connected``, or these
         with ``-unweighted``, where weights are proportional to α."""
-        return self._facts["alpha_origin"]
+        return cast(str, self._facts["alpha_origin"])
 
     @property
-    def truncation(self):
+    def truncation(self) -> dict[str, Any] | None:
         """dict or None: what truncation kept of a volume: kept, total, epsilon, rms, asked."""
-        return self._facts["truncation"]
+        return cast(dict[str, Any] | None, self._facts["truncation"])
 
     # Simplices.
 
     @functools.cached_property
-    def cells(self):
-        """ndarray of uint32, (n, 4): tetrahedra, positively oriented."""
-        return self._shape.cells
+    def cells(self) -> Indices:
+        """ndarray of int64, (n, 4): tetrahedra, positively oriented."""
+        return _arrays.kept(self._shape.cells)
 
     @functools.cached_property
-    def facets(self):
-        """ndarray of uint32, (n, 3): triangles; regular ones turn outward."""
-        return self._shape.facets
+    def facets(self) -> Indices:
+        """ndarray of int64, (n, 3): triangles; regular ones turn outward."""
+        return _arrays.kept(self._shape.facets)
 
     @functools.cached_property
-    def edges(self):
-        """ndarray of uint32, (n, 2): edges."""
-        return self._shape.edges
+    def edges(self) -> Indices:
+        """ndarray of int64, (n, 2): edges."""
+        return _arrays.kept(self._shape.edges)
 
     @functools.cached_property
-    def vertices(self):
-        """ndarray of uint32, (n, 1): vertices."""
-        return self._shape.vertices
+    def vertices(self) -> Indices:
+        """ndarray of int64, (n,): vertices."""
+        return _arrays.kept(self._shape.vertices[:, 0])
 
     @functools.cached_property
-    def _classes(self):
+    def _classes(self) -> list[Classes]:
         return self._shape.classes()
 
     @property
-    def cell_classes(self):
+    def cell_classes(self) -> Classes:
         """ndarray of uint8, (n,): the :class:`Class` of each cell."""
         return self._classes[0]
 
     @property
-    def facet_classes(self):
+    def facet_classes(self) -> Classes:
         """ndarray of uint8, (n,): the :class:`Class` of each facet."""
         return self._classes[1]
 
     @property
-    def edge_classes(self):
+    def edge_classes(self) -> Classes:
         """ndarray of uint8, (n,): the :class:`Class` of each edge."""
         return self._classes[2]
 
     @property
-    def vertex_classes(self):
+    def vertex_classes(self) -> Classes:
         """ndarray of uint8, (n,): the :class:`Class` of each vertex."""
         return self._classes[3]
 
     @property
-    def engine(self):
+    def engine(self) -> Literal["cgal", "native"]:
         """str: which program computed it, "cgal" or "native"."""
         return self._shape.engine
 
     @functools.cached_property
-    def hidden(self):
-        """ndarray of uint32, (n,), or None.
+    def hidden(self) -> Indices | None:
+        """ndarray of int64, (n,), or None.
 
         Points that are not vertices of the regular triangulation, as heavier ones near them make
         them redundant. None unless they were asked for, with ``hidden=True`` or ``exterior=True``.
         """
-        return self._shape.hidden
+        hidden = self._shape.hidden
+        return None if hidden is None else _arrays.kept(hidden)
 
     @functools.cached_property
-    def duplicates(self):
-        """ndarray of uint32, (n, 2): a point that went, and the one at its place that stayed."""
-        return self._shape.duplicates
+    def duplicates(self) -> Indices:
+        """ndarray of int64, (n, 2): a point that went, and the one at its place that stayed."""
+        return _arrays.kept(self._shape.duplicates)
 
     # Topology and size.
 
     @property
-    def volume(self):
+    def volume(self) -> float:
         """float: the volume of the cells, in cubed units of the points."""
         return self._shape.measures[0]
 
     @property
-    def area(self):
+    def area(self) -> float:
         """float: the area of the regular facets, the boundary of the solid part, in squared units."""
         return self._shape.measures[1]
 
     @property
-    def singular_area(self):
+    def singular_area(self) -> float:
         """float: the area of the singular facets, one side of each, in squared units."""
         return self._shape.measures[2]
 
     @property
-    def betti(self):
-        """Betti or None: components, tunnels and voids. Of a torus a TorusBetti."""
+    def betti(self) -> Betti | TorusBetti:
+        """Betti: components, tunnels and voids. Of a torus a TorusBetti."""
         return _parts.betti(self._shape.betti)
 
     @functools.cached_property
-    def components(self):
+    def components(self) -> list[Component]:
         """list of Component: in the order of their smallest vertices."""
-        return [Component.of(facts) for facts in json.loads(self._shape.components())]
+        return [Component._of(facts) for facts in json.loads(self._shape.components())]
 
     @functools.cached_property
-    def component_numbers(self):
+    def component_numbers(self) -> Indices:
         """ndarray of int64, (n,): for each point the number of its component; −1 outside."""
         return self._shape.component_numbers()
 
     @functools.cached_property
-    def voids(self):
+    def voids(self) -> list[Void]:
         """list of Void: largest first, in space as many as ``betti.b2``.
 
         Of a torus those parts of the complement that do not go round it.
@@ -186,24 +229,24 @@ class AlphaShape:
         """
         exact = self._shape.voids()
         if exact is not None:
-            return [Void.of(facts) for facts in json.loads(exact)]
+            return [Void._of(facts) for facts in json.loads(exact)]
         shut_in = [component.voids for component in self.components]
         if any(voids is None for voids in shut_in):
             raise ValueError("the voids of this shape are not known: make it with exterior=True")
-        return sorted((void for voids in shut_in for void in voids), key=lambda void: -void.volume)
+        return sorted((void for voids in shut_in for void in voids or ()), key=lambda void: -void.volume)
 
     @property
-    def periodic(self):
+    def periodic(self) -> tuple[float, ...] | None:
         """tuple of float or None: the sides of the box that repeats, if one does."""
         sides = self._shape.periodic
         return None if sides is None else tuple(sides)
 
     @functools.cached_property
-    def copies(self):
-        """ndarray of uint32, (k,): of which points the last k are copies, in a shape laid out."""
-        return self._shape.copies
+    def copies(self) -> Indices:
+        """ndarray of int64, (k,): of which points the last k are copies, in a shape laid out."""
+        return _arrays.kept(self._shape.copies)
 
-    def unwrapped(self):
+    def unwrapped(self) -> AlphaShape:
         """A shape of a torus laid out in space.
 
         Each simplex is placed where its lowest coordinates are in the box; beyond the upper sides it has
@@ -215,9 +258,9 @@ class AlphaShape:
             Classes, sizes, components and Betti numbers are those of the torus. The layout is cut
             open along the sides of the box, so its boundary is not closed.
         """
-        return AlphaShape(self._shape.unwrapped()) if self.periodic else self
+        return AlphaShape._of(self._shape.unwrapped(), wrapped=self) if self.periodic else self
 
-    def boundary(self, solid=True):
+    def boundary(self, *, solid: bool = True) -> Boundary:
         """The boundary of the solid part, as a triangle mesh.
 
         Parameters
@@ -232,6 +275,17 @@ class AlphaShape:
         Boundary
             Its triangles turn counter-clockwise seen from outside; the volume they enclose is
             :attr:`volume`.
+
+        Raises
+        ------
+        ValueError
+            A closed boundary of a shape of a torus.
+
+        Examples
+        --------
+        >>> cube = [[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)]
+        >>> walpha.alpha_shape(cube, 0.75).boundary().triangles.shape
+        (12, 3)
         """
         if self.periodic:
             if solid:
@@ -239,9 +293,10 @@ class AlphaShape:
                     "the boundary of a shape of a torus is not closed in space: give solid=False"
                 )
             return self.unwrapped().boundary(solid=False)
-        return Boundary(*self._shape.boundary(solid))
+        points, triangles, indices, cuts = self._shape.boundary(solid)
+        return Boundary(points, _arrays.int64(triangles), _arrays.int64(indices), cuts)
 
-    def outline(self):
+    def outline(self) -> Outline:
         """The shape of points in one plane as polygons with holes.
 
         The plane may be tilted; that all points lie in it is decided exactly. Classes
@@ -263,11 +318,11 @@ class AlphaShape:
         >>> walpha.alpha_shape(square, alpha=0.5).outline().area
         1.0
         """
-        return Outline.of(*self._shape.outline())
+        return Outline._of(self._shape.outline())
 
     # The interpolant.
 
-    def at(self, places, values=None):
+    def at(self, places: Arrays, *, values: Arrays | None = None) -> Floats:
         """F at places: linear on each simplex of the shape.
 
         Parameters
@@ -281,10 +336,30 @@ class AlphaShape:
         -------
         ndarray of float64, (m,)
             NaN outside the shape. Which simplex holds a place is decided exactly.
-        """
-        return self._shape.at(_arrays.points(places), self._own(values))
 
-    def interpolate(self, shape, low=None, high=None, values=None, progress=None):
+        Raises
+        ------
+        ValueError
+            The points carry no values; the shape is one of a torus.
+
+        Examples
+        --------
+        >>> corners = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
+        >>> walpha.alpha_shape(corners, alpha=1, values=[0, 1, 2, 3]).at([[0.5, 0.25, 0], [1, 1, 1]])
+        array([ 1., nan])
+        """
+        return self._shape.at(_arrays.points(places, "places"), _arrays.optional("values", values))
+
+    def interpolate(
+        self,
+        shape: tuple[int, int, int],
+        *,
+        low: Arrays | None = None,
+        high: Arrays | None = None,
+        values: Arrays | None = None,
+        progress: Progress = None,
+        threads: int | None = None,
+    ) -> Samples:
         """F on a grid over a box.
 
         Parameters
@@ -296,31 +371,39 @@ class AlphaShape:
             those of the points.
         values : array_like, (n,), optional
             As in :meth:`at`.
-        progress : callable, optional
-            ``progress(stage, done, total)``.
+        progress, threads
+            As in :func:`alpha_shape`.
 
         Returns
         -------
         ndarray of float32, ``shape``
             ``[z, y, x]``, NaN outside the shape.
-        """
-        nz, ny, nx = (int(n) for n in shape)
-        low = self.points.min(axis=0) if low is None else _arrays.floats("low", low, 1)
-        high = self.points.max(axis=0) if high is None else _arrays.floats("high", high, 1)
-        if low.shape != (3,) or high.shape != (3,) or not (np.isfinite([low, high]).all()):
-            raise ValueError("low and high are corners: give three finite numbers x, y, z for each")
-        if min(nz, ny, nx) < 1:
-            raise ValueError(f"a grid of shape {tuple(shape)} is empty: every axis needs a sample")
-        sizes = [nx, ny, nz]
-        return self._shape.interpolate(sizes, list(low), list(high), self._own(values), progress)
 
-    @staticmethod
-    def _own(values):
-        return None if values is None else _arrays.floats("values", values, 1)
+        Raises
+        ------
+        ValueError
+            As :meth:`at`, and an empty grid.
+
+        Examples
+        --------
+        >>> corners = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
+        >>> shape = walpha.alpha_shape(corners, alpha=1, values=[0, 1, 2, 3])
+        >>> shape.interpolate((1, 2, 2), high=(1, 1, 0))
+        array([[[ 0.,  1.],
+                [ 2., nan]]], dtype=float32)
+        """
+        nz, ny, nx = map(operator.index, shape)
+        first = _arrays.place("low", self.points.min(axis=0) if low is None else low)
+        last = _arrays.place("high", self.points.max(axis=0) if high is None else high)
+        if min(nz, ny, nx) < 1:
+            raise ValueError(f"shape={tuple(shape)} is an empty grid: every axis needs a sample")
+        own = _arrays.optional("values", values)
+        with task(progress, threads) as how:
+            return self._shape.interpolate([nx, ny, nz], first, last, own, how)
 
     # Elsewhere.
 
-    def save(self, path, solid=False):
+    def save(self, path: str | os.PathLike[str], *, solid: bool = False) -> None:
         """Write a file; it appears under its name only when it is complete.
 
         Parameters
@@ -338,22 +421,89 @@ class AlphaShape:
             The file cannot be written. Nothing is left behind.
         ValueError
             No format has this extension, or it holds no boundary, or the shape has no outline for it.
+
+        Examples
+        --------
+        >>> shape = walpha.alpha_shape(np.eye(4)[:, :3], alpha=1)
+        >>> shape.save("shape.ply", solid=True)
         """
         self._shape.save(os.fspath(path), solid)
 
-    def to_pyvista(self, what="boundary"):
-        """For PyVista: the solid boundary (PolyData), or ``what="cells"`` (UnstructuredGrid)."""
-        return _meshes.to_pyvista(self, what)
+    @overload
+    def to_pyvista(self, what: Literal["boundary"] = "boundary") -> pyvista.PolyData: ...
 
-    def to_meshio(self):
-        """For meshio: cells, boundary and singular simplices as a ``meshio.Mesh``."""
-        return _meshes.to_meshio(self)
+    @overload
+    def to_pyvista(self, what: Literal["cells"]) -> pyvista.UnstructuredGrid: ...
 
-    def to_trimesh(self):
-        """For trimesh: the solid boundary as a ``trimesh.Trimesh``, closed and oriented."""
-        return _meshes.to_trimesh(self)
+    def to_pyvista(
+        self, what: Literal["boundary", "cells"] = "boundary"
+    ) -> pyvista.PolyData | pyvista.UnstructuredGrid:
+        """For PyVista.
 
-    def to_shapely(self):
+        Parameters
+        ----------
+        what : {"boundary", "cells"}
+            The solid boundary, or the tetrahedra.
+
+        Returns
+        -------
+        pyvista.PolyData or pyvista.UnstructuredGrid
+            With ``index`` (of the input), ``weight`` and, where points have values, ``value`` at each point.
+        """
+        mesh: pyvista.PolyData | pyvista.UnstructuredGrid = _meshes.to_pyvista(self, what)
+        return mesh
+
+    def to_meshio(self) -> meshio.Mesh:
+        """For meshio.
+
+        Returns
+        -------
+        meshio.Mesh
+            Cells, boundary and singular simplices, with their ``class``, over all points.
+        """
+        mesh: meshio.Mesh = _meshes.to_meshio(self)
+        return mesh
+
+    def to_trimesh(self) -> trimesh.Trimesh:
+        """For trimesh.
+
+        Returns
+        -------
+        trimesh.Trimesh
+            The solid boundary, closed and oriented; the attribute ``index`` of its vertices is that of the input.
+        """
+        mesh: trimesh.Trimesh = _meshes.to_trimesh(self)
+        return mesh
+
+    def to_open3d(self) -> open3d.geometry.TriangleMesh:
+        """For Open3D.
+
+        Returns
+        -------
+        open3d.geometry.TriangleMesh
+            The solid boundary, closed and oriented.
+        """
+        mesh: open3d.geometry.TriangleMesh = _meshes.to_open3d(self)
+        return mesh
+
+    def to_napari(self) -> tuple[tuple[np.ndarray[Any, Any], ...], dict[str, Any], str]:
+        """For napari, which need not be installed: a layer as data, options and type.
+
+        Returns
+        -------
+        tuple
+            The solid boundary as a layer "surface": places in the order of napari's axes (z, y, x), triangles and,
+            where points have values, these. ``napari.layers.Layer.create(*shape.to_napari())`` makes the layer.
+
+        Examples
+        --------
+        >>> data, options, kind = walpha.alpha_shape(np.eye(4)[:, :3], alpha=1).to_napari()
+        >>> kind, data[0].shape, data[1].shape
+        ('surface', (4, 3), (4, 3))
+        """
+        return _meshes.to_napari(self)
+
+    def to_shapely(self) -> shapely.Polygon | shapely.MultiPolygon:
         """For shapely (2.0 and later): the polygons of the :meth:`outline`.
 
         Returns
@@ -367,23 +517,35 @@ class AlphaShape:
         ValueError
             As :meth:`outline`; or the plane is vertical.
         """
-        return _meshes.to_shapely(self)
+        polygons: shapely.Polygon | shapely.MultiPolygon = _meshes.to_shapely(self)
+        return polygons
 
-    def counts(self):
-        """dict: for each dimension, how many simplices there are of each class, by its name."""
+    def counts(self) -> dict[str, dict[str, int]]:
+        """How many simplices there are.
+
+        Returns
+        -------
+        dict of dict of int
+            By dimension ("cells", "facets", "edges", "vertices") and name of the class ("exterior", …).
+
+        Examples
+        --------
+        >>> walpha.alpha_shape(np.eye(4)[:, :3], alpha=1).counts()["cells"]
+        {'exterior': 0, 'interior': 1, 'regular': 0, 'singular': 0}
+        """
         names = ("cells", "facets", "edges", "vertices")
         return {
             name: {c.name.lower(): int((classes == c).sum()) for c in Class}
             for name, classes in zip(names, self._classes)
         }
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         return (
             f"<walpha.AlphaShape α={self.alpha:g} (√α={self.alpha_radius:g}): {len(self.points)} points, "
-            f"{len(self.cells)} cells, volume {self.volume:g}, betti {tuple(self.betti or ())}>"
+            f"{len(self.cells)} cells, volume {self.volume:g}, betti {tuple(self.betti)}>"
         )
 
-    def _repr_html_(self):
+    def _repr_html_(self) -> str:
         head = "".join(f"<th>{c.name.lower()}</th>" for c in Class)
         rows = "".join(
             f"<tr><th>{name}</th>" + "".join(f"<td>{n}</td>" for n in counts.values()) + "</tr>"
@@ -392,113 +554,5 @@ class AlphaShape:
         return f"<p>{html.escape(repr(self))}</p><table><tr><th></th>{head}</tr>{rows}</table>"
 
 
-def alpha_shape(
-    points,
-    weights=None,
-    alpha="auto",
-    *,
-    alpha_radius=None,
-    engine="auto",
-    exterior=False,
-    hidden=False,
-    balls="power",
-    values=None,
-    periodic=None,
-    progress=None,
-):
-    """The alpha shape of weighted points.
-
-    The simplices of their regular triangulation whose smallest orthogonal sphere is empty and has
-    a squared radius of at most α, and the faces of these. Every decision is exact.
-
-    Parameters
-    ----------
-    points : array_like, (n, 3) or (n, 2)
-        x, y, z, or the points of a plane. Any real type, contiguous or not; taken as float64. Points in one
-        plane or on one line get the shape that they have there: triangles or edges, no cells.
-    weights : array_like, (n,), optional
-        ω, squared lengths: at α a point is a ball of squared radius α + ω. By default 0.
-    alpha : float, "auto" or "auto:connected"
-        α, a **squared** length, as in CGAL and GUDHI; ``inf`` gives the convex hull. "auto" comes from
-        the spacing of the points, so that a few strays do not matter: the squared distance within which
-        nine of ten points have eight neighbours, less their weights. "auto:connected" is the smallest α
-        at which all points are in one solid component.
-    alpha_radius : float, optional
-        √α instead of α, as Open3D and PyVista have it.
-    engine : {"auto", "cgal", "native"}
-        Which program computes it; both give the same answer. "auto" takes CGAL for up to 20 000 points, and
-        our own, the fastest, beyond and for periodic boxes: :attr:`AlphaShape.engine` says which one it was.
-    exterior : bool
-        Keep the simplices outside the shape: the whole triangulation. Voids then know what fills
-        them, and hidden points are known.
-    hidden : bool
-        Find the points that heavier ones hide (:attr:`AlphaShape.hidden`), which takes the whole triangulation, too.
-    balls : {"power", "radius"}
-        "radius": a point is a ball of radius α + ω instead.
-    values : array_like, (n,), optional
-        Values that :meth:`AlphaShape.at` interpolates.
-    periodic : array_like, (3,), or float, optional
-        Sides of a box that repeats along x, y and z: the points are those of a torus, moved into the box
-        (:attr:`AlphaShape.points`). A row of input indices means the copies nearest to its first vertex,
-        along each axis; no edge may span half of the box. With ``4 * sqrt(alpha + max(weights))`` less
-        than each side, none does. ``betti.b3`` is 1 where the shape is the whole torus.
-    progress : callable, optional
-        ``progress(stage, done, total)``, called in this thread, at most 20 times a second: so many
-        of ``total`` equal parts of a stage ("alpha", "shape", …) are done. A total of 0 says that a
-        stage begins. An exception ends the work.
-
-    Returns
-    -------
-    AlphaShape
-
-    Raises
-    ------
-    ValueError
-        Numbers that are NaN, infinite or absurd, no points, an edge that spans half of the periodic box,
-        options that contradict each other.
-    MemoryError
-        The system gives no more.
-
-    References
-    ----------
-    H. Edelsbrunner and E. P. Mücke, Three-dimensional alpha shapes, ACM Transactions on Graphics
-    13 (1994), doi:10.1145/174462.156635.
-
-    H. Edelsbrunner, Weighted alpha shapes, UIUCDCS-R-92-1760 (1992).
-
-    Examples
-    --------
-    >>> cube = [[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)]
-    >>> walpha.alpha_shape(cube, alpha=0.75).volume
-    1.0
-    """
-    weights = None if weights is None else _arrays.floats("weights", weights, 1)
-    values = None if values is None else _arrays.floats("values", values, 1)
-    rule = squared(alpha, alpha_radius)
-    shape = _walpha.alpha_shape(
-        _arrays.points(points),
-        weights,
-        values,
-        rule,
-        (engine, balls, exterior, hidden),
-        _arrays.sides(periodic),
-        progress,
-    )
-    return AlphaShape(shape)
-
-
-def squared(alpha, alpha_radius):
-    """α as the library has it: None by default, the name of a rule, or a squared length."""
-    if alpha_radius is not None:
-        if alpha is not None and not isinstance(alpha, str):
-            raise ValueError("alpha is the square of alpha_radius: give one of them")
-        radius = float(alpha_radius)
-        if not radius >= 0:
-            raise ValueError(f"alpha_radius={radius} is not a radius: give a number from 0 up")
-        return radius * radius
-    if alpha is None or isinstance(alpha, str):
-        return alpha
-    alpha = float(alpha)
-    if math.isnan(alpha):
-        raise ValueError('alpha is NaN: give a squared length, "auto" or "auto:connected"')
-    return alpha
+def _restored(points: Floats, weights: Floats, values: Floats | None, state: tuple[str, str, str]) -> AlphaShape:
+    return AlphaShape._of(_walpha.restored(points, weights, values, state))

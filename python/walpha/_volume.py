@@ -1,381 +1,241 @@
 from __future__ import annotations
 
+import dataclasses
 import json
+import math
+import operator
 import os
-from typing import NamedTuple
+import sys
+from typing import Any
 
 import numpy as np
+from numpy.typing import DTypeLike, NDArray
 
 from . import _arrays, _walpha
-from ._shape import AlphaShape, squared
+from ._typing import Floats, Place, Progress, Samples
+from ._work import task
 
-# The share of all voxels that the paper selects.
-_RATIO = 0.0609
-_UNKNOWN = {"space": "unknown", "unit": "unit"}
-_ALONG = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
+_ALONG = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
 
-class Volume(NamedTuple):
-    """A grid of samples as a file has it.
+@dataclasses.dataclass(frozen=True, eq=False, repr=False)
+class Volume:
+    """A grid of samples, and where it lies.
 
-    Attributes
+    What has the form of an array, ``samples`` and its shape, is ``[z, y, x]``, as numpy and scikit-image have it.
+    What is a place, a length or a direction is (x, y, z), as of points.
+
+    Parameters
     ----------
-    samples : ndarray of float32, (nz, ny, nx)
-        ``[z, y, x]``.
+    samples : array_like, (nz, ny, nx)
+        Kept as float32, in whatever unit the values have.
     spacing : tuple of float
-        Distances between samples along z, y and x.
+        Distances between samples along x, y and z.
     origin : tuple of float
         The place (x, y, z) of the first sample.
     direction : tuple of tuple of float
         ``direction[r][c]`` is component r (x, y, z) of the unit vector of the grid's axis c (x, y, z).
-    space : str
-        "LPS" where the file says in which space it is (RAS is converted), else "unknown".
+    space : {"LPS", "RAS", "unknown"}
+        Where x, y and z point to, of a patient.
     unit : str
-        Of lengths: "mm", say; "voxel" where coordinates are indices, "unit" where nobody says.
-    gray : bool
-        Whether samples are gray levels 0 to 255 already: those of unsigned bytes.
+        Of lengths: "mm", say; "unit" where nobody says; "voxel" where coordinates are indices.
+    gray : bool, optional
+        Whether samples are gray levels 0 to 255 already; by default those of unsigned bytes are.
+
+    Raises
+    ------
+    ValueError
+        Samples that are no array of three axes; spacing that is not above 0.
+
+    Examples
+    --------
+    >>> volume = walpha.Volume(np.zeros((4, 3, 2)), spacing=(0.5, 0.5, 2), unit="mm")
+    >>> volume
+    <walpha.Volume of 4×3×2 samples [z, y, x], spacing (0.5, 0.5, 2.0) mm>
+    >>> volume.affine @ [1, 2, 3, 1]
+    array([0.5, 1. , 6. , 1. ])
     """
 
-    samples: np.ndarray
-    spacing: tuple
-    origin: tuple
-    direction: tuple
-    space: str
-    unit: str
-    gray: bool
+    samples: Samples
+    spacing: Place = (1.0, 1.0, 1.0)
+    origin: Place = (0.0, 0.0, 0.0)
+    direction: tuple[Place, Place, Place] = _ALONG
+    space: str = "unknown"
+    unit: str = "unit"
+    gray: bool | None = None
 
-    def __array__(self, dtype=None, copy=None):
+    def __post_init__(self) -> None:
+        samples, gray = _arrays.samples(self.samples)
+        axes = np.asarray(self.direction, float)
+        if axes.shape != (3, 3) or not np.isfinite(axes).all():
+            raise ValueError(f"direction has shape {axes.shape}: give three rows of three numbers")
+        spacing = _arrays.place("spacing", self.spacing)
+        if min(spacing) <= 0:
+            raise ValueError(f"spacing={self.spacing} must be three lengths above 0, along x, y and z")
+        own = {
+            "samples": samples,
+            "spacing": tuple(spacing),
+            "origin": tuple(_arrays.place("origin", self.origin)),
+            "direction": tuple(map(tuple, axes.tolist())),
+            "gray": gray if self.gray is None else self.gray,
+        }
+        for name, value in own.items():
+            object.__setattr__(self, name, value)
+
+    @property
+    def affine(self) -> Floats:
+        """ndarray of float64, (4, 4): from the index (x, y, z, 1) of a sample to its place.
+
+        As nibabel has it, for arrays ``samples.T`` that are indexed [x, y, z], but in :attr:`space`: places in LPS are
+        those in RAS+ with x and y negated, ``np.diag([-1, -1, 1, 1]) @ volume.affine``.
+        """
+        affine = np.eye(4)
+        affine[:3, :3] = np.array(self.direction) * self.spacing
+        affine[:3, 3] = self.origin
+        return affine
+
+    def __array__(self, dtype: DTypeLike | None = None, copy: bool | None = None) -> NDArray[Any]:
         return np.array(self.samples, dtype, copy=True if copy else None)
 
+    def __repr__(self) -> str:
+        sizes = "×".join(map(str, self.samples.shape))
+        return f"<walpha.Volume of {sizes} samples [z, y, x], spacing {self.spacing} {self.unit}>"
 
-class Selected(NamedTuple):
-    """Points of a volume.
-
-    Attributes
-    ----------
-    points : ndarray of float64, (n, 3)
-        x, y, z, in the order of their voxels.
-    values : ndarray of float64, (n,)
-        The samples there.
-    differences : ndarray of float64, (n,)
-        L, of which weights are made.
-    """
-
-    points: np.ndarray
-    values: np.ndarray
-    differences: np.ndarray
+    def _frame(self) -> str | None:
+        """Where it lies, as the library reads it; None where coordinates are indices."""
+        if self.unit == "voxel":
+            return None
+        return json.dumps({
+            "origin": self.origin,
+            "spacing": self.spacing,
+            "direction": self.direction,
+            "coordinates": {"space": self.space, "unit": self.unit},
+        })  # fmt: skip
 
 
-def read(path, *, progress=None):
+def read(
+    path: str | os.PathLike[str],
+    *,
+    roi: tuple[slice, slice, slice] | None = None,
+    downsample: int | None = None,
+    nan: float | None = None,
+    format: str | None = None,
+    level: int | None = None,
+    array: str | None = None,
+    frame: int | None = None,
+    series: int | str | None = None,
+    skip_damaged: bool = False,
+    shape: tuple[int, int, int] | None = None,
+    dtype: DTypeLike | None = None,
+    offset: int = 0,
+    progress: Progress = None,
+    threads: int | None = None,
+) -> Volume:
     """Read a volume.
 
     Parameters
     ----------
     path : str or path-like
-        NRRD, NIfTI, MetaImage, VTK, VTI, TIFF, NPY, NPZ, INRIMAGE, a folder of slices; or
+        NRRD, NIfTI, MetaImage, VTK, VTI, TIFF, NPY, NPZ, INRIMAGE, OME-Zarr, DICOM, a folder of slices; or
         ``"sample:ct"``, ``"sample:skull"``, ``"sample:phantom"``, ``"sample:phantom@N"``.
-    progress : callable, optional
-        ``progress(stage, done, total)``.
+    roi : tuple of slice, optional
+        The part to read, as one indexes the samples [z, y, x]: ``np.s_[10:, :, 20:40]``. Its place stays.
+    downsample : int, optional
+        Average blocks of so many samples along each axis, after ``roi``.
+    nan : float, optional
+        What replaces samples that are NaN or infinite, an error otherwise. NaN leaves them NaN, for ``nan=`` of
+        :func:`pipeline`.
+    format : str, optional
+        The extension of the file's format, where neither its content nor its name shows it.
+    level : int, optional
+        Of a pyramid (OME-Zarr); 0 is the finest.
+    array : str, optional
+        Which array of a file with several (VTK, NPZ).
+    frame : int, optional
+        Which volume of a file with several (a fourth axis), from 0.
+    series : int or str, optional
+        Which series of a folder with several (DICOM): its number, from 1, or the end of its UID.
+    skip_damaged : bool
+        Go on without damaged slices (DICOM).
+    shape, dtype, offset : tuple of int, dtype, int; optional
+        Of a file of bare samples, as ``numpy.memmap`` takes them: samples along z, y and x; their type, with its byte
+        order; and the bytes before the first.
+    progress, threads
+        As in :func:`alpha_shape`.
 
     Returns
     -------
     Volume
+        In LPS where the file says in which space it is.
 
     Raises
     ------
     OSError
         The system refuses.
     ValueError
-        The file is not what it says.
-    """
-    samples, gray, frame = _walpha.read(os.fspath(path), progress)
-    frame = json.loads(frame)
-    return Volume(
-        samples,
-        tuple(reversed(frame["spacing"])),
-        tuple(frame["origin"]),
-        tuple(map(tuple, frame["direction"])),
-        frame["coordinates"]["space"],
-        frame["coordinates"]["unit"],
-        gray,
-    )
-
-
-def haar(
-    volume, *, rms=None, epsilon=None, coefficients=None, decomposition="nonstandard", progress=None
-):
-    """Drop small coefficients of the orthonormal Haar basis.
-
-    Parameters
-    ----------
-    volume : array_like or Volume, (nz, ny, nx)
-        Taken as float32, in whatever unit its values have.
-    rms, epsilon, coefficients : float, float, int; optional
-        One of: the root mean square of the error, in the volume's values (1 by default); its L²
-        norm; how many coefficients stay.
-    decomposition : {"nonstandard", "standard"}
-        All axes at each level, or each axis fully.
-    progress : callable, optional
-        ``progress(stage, done, total)``.
-
-    Returns
-    -------
-    smoothed : ndarray of float32, (nz, ny, nx)
-    truncation : dict
-        kept, total, epsilon and rms reached, and what was asked.
-
-    References
-    ----------
-    E. J. Stollnitz, T. D. DeRose and D. H. Salesin, Wavelets for computer graphics: a primer,
-    IEEE Computer Graphics and Applications 15 (1995), doi:10.1109/38.376616.
-    """
-    tolerance = _tolerance(rms, epsilon, coefficients)
-    samples, facts = _walpha.haar(_grid(volume)[0], tolerance, decomposition, progress)
-    return samples, json.loads(facts)
-
-
-def difference(volume):
-    """The difference L of each voxel.
-
-    A sixth of the sum of the absolute differences to its six neighbours; a missing neighbour adds 0.
-
-    Parameters
-    ----------
-    volume : array_like or Volume, (nz, ny, nx)
-        Taken as float32.
-
-    Returns
-    -------
-    ndarray of float64, (nz, ny, nx)
-    """
-    return _walpha.difference(_grid(volume)[0])
-
-
-def select(
-    volume,
-    smoothed=None,
-    *,
-    count=None,
-    ratio=None,
-    threshold=None,
-    gray_min=None,
-    spacing=None,
-    origin=None,
-):
-    """Select the voxels of the largest differences as points.
-
-    Parameters
-    ----------
-    volume : array_like or Volume, (nz, ny, nx)
-        Gives the values of the points.
-    smoothed : array_like, (nz, ny, nx), optional
-        The truncated volume, which differences and ``gray_min`` are judged on; by default the same.
-    count, ratio, threshold : int, float, float; optional
-        One of: so many voxels; this share of all (0.0609 by default, that of the paper, or all that take
-        part where these are fewer); all of at least this L.
-    gray_min : float, optional
-        Voxels of the smoothed volume below this take no part.
-    spacing : tuple of float, optional
-        Distances between samples along z, y and x. Without, coordinates are indices.
-    origin : tuple of float, optional
-        The place (x, y, z) of the first sample.
-
-    Returns
-    -------
-    Selected
-    """
-    samples, _, frame = _grid(volume, spacing, origin)
-    smoothed = samples if smoothed is None else _grid(smoothed)[0]
-    rule = _rule(count, ratio, threshold)
-    return Selected(*_walpha.select(samples, smoothed, frame, rule, gray_min))
-
-
-def weigh(differences, weighting="min-max", *, alpha):
-    """Weights ω from differences L.
-
-    Parameters
-    ----------
-    differences : array_like, (n,)
-        L of each point.
-    weighting : str
-        "min-max": α (L − Lmin)/(Lmax − Lmin); "barycentric": α L/ΣL; "barycentric-n": n times that;
-        "common=C": C for all.
-    alpha : float
-        The α, a squared length, that weights are in proportion to.
-
-    Returns
-    -------
-    ndarray of float64, (n,)
-        Squared lengths.
-    """
-    return _walpha.weigh(_arrays.floats("differences", differences, 1), weighting, float(alpha))
-
-
-def pipeline(
-    volume,
-    *,
-    spacing=None,
-    origin=None,
-    gray=None,
-    rms=None,
-    epsilon=None,
-    coefficients=None,
-    decomposition="nonstandard",
-    count=None,
-    ratio=None,
-    threshold=None,
-    gray_min=None,
-    select="difference",
-    target_rmse=None,
-    max_error=None,
-    exchange=False,
-    weighting="common=0",
-    alpha=None,
-    alpha_radius=None,
-    engine="auto",
-    balls="power",
-    exterior=False,
-    hidden=False,
-    refit=None,
-    progress=None,
-):
-    """From a volume to its alpha shape: truncation, selection, weights, shape.
-
-    Parameters
-    ----------
-    volume : array_like or Volume, (nz, ny, nx)
-        ``[z, y, x]``, as scikit-image has it. Unsigned bytes are gray levels; anything else is
-        mapped to gray levels 0 to 255 from its minimum to its maximum, or from ``gray``.
-    spacing : tuple of float, optional
-        Distances between samples along z, y and x. Without, and for a :class:`Volume` without a
-        unit, coordinates are indices (voxels).
-    origin : tuple of float, optional
-        The place (x, y, z) of the first sample.
-    gray : tuple of float, optional
-        The values that become gray 0 and 255.
-    rms, epsilon, coefficients, decomposition
-        As in :func:`haar`, in gray levels.
-    count, ratio, threshold, gray_min
-        As in :func:`select`, in gray levels.
-    select : {"difference", "adaptive"}
-        Which voxels become points: those of the largest differences, or those where the interpolant
-        of the ones before is worst, on the whole triangulation, after Garland and Heckbert
-        (CMU-CS-95-181, 1995), with ``count`` or ``ratio``, the corners of the volume among them. The
-        parameters below are for these.
-    target_rmse : float, optional
-        End as soon as the root mean square of the error is so small, in gray levels.
-    max_error : float, optional
-        Choose by the largest error until no sample is off by more, in gray levels. Not with ``exchange``.
-    exchange : bool
-        Then exchange points whose loss costs little for voxels that lower the error of fitted values;
-        for use with ``refit``.
-    weighting : str
-        As in :func:`weigh`.
-    alpha : float, "auto" or "auto:connected", optional
-        A squared length; by default 10 h², h³ being the volume of a voxel. The rules are
-        those of
-        :func:`alpha_shape`.
-    alpha_radius, engine, balls, exterior, hidden, progress
-        As in :func:`alpha_shape`.
-    refit : {"whole", "shape"}, optional
-        Fit the values of the points to the volume by least squares: to all its samples, interpolated on
-        the whole triangulation of the points and the corners of the volume, or to those that the shape
-        covers.
-
-    Returns
-    -------
-    AlphaShape
-        Its points are (x, y, z), their values those of the volume, or fitted.
+        The file is not what it says; options that the file has no use for.
 
     Examples
     --------
-    >>> shape = walpha.pipeline(walpha.read("sample:phantom@32"), weighting="min-max")
-    >>> shape.betti.b0
-    1
+    >>> walpha.read("sample:phantom@32", roi=np.s_[8:24, :, :])
+    <walpha.Volume of 16×32×32 samples [z, y, x], spacing (1.0, 1.0, 1.0) voxel>
+
+    >>> np.arange(24, dtype="<u2").tofile("bare.raw")
+    >>> walpha.read("bare.raw", shape=(2, 3, 4), dtype="<u2").samples[1, 2, 3]
+    np.float32(23.0)
     """
-    samples, is_gray, frame = _grid(volume, spacing, origin)
-    tolerance = _tolerance(rms, epsilon, coefficients)
-    rule = _rule(count, ratio, threshold)
-    adaptive = _adaptive(samples.size, select, count, ratio, target_rmse, max_error, exchange)
-    if adaptive is not None and (threshold is not None or gray_min is not None):
-        raise ValueError("threshold and gray_min choose by gray levels, which select='adaptive' does not: give a count")
-    shape = _walpha.pipeline(
-        samples,
-        is_gray,
-        None if gray is None else tuple(map(float, gray)),
-        frame,
-        (tolerance, decomposition),
-        rule,
-        gray_min,
-        adaptive,
-        weighting,
-        squared(alpha, alpha_radius),
-        (engine, balls, exterior, hidden),
-        refit,
-        progress,
-    )
-    return AlphaShape(shape)
+    options = {
+        "raw": _raw(shape, dtype, offset),
+        "format": None if format is None else format.lower().removeprefix("."),
+        "level": level,
+        "array": array,
+        "frame": frame,
+        "series": None if series is None else str(series),
+        "skip_damaged": bool(skip_damaged),
+        "nan": None if nan is None else "mask" if math.isnan(nan) else {"value": float(nan)},
+        "region": None if roi is None else _region(roi),
+        "downsample": _block(downsample),
+    }
+    with task(progress, threads) as how:
+        samples, gray, frame_of = _walpha.read(os.fspath(path), json.dumps(options), how)
+    placed = json.loads(frame_of)
+    coordinates = placed.pop("coordinates")
+    return Volume(samples, **placed, **coordinates, gray=gray)
 
 
-def _adaptive(samples, select, count, ratio, target_rmse, max_error, exchange):
-    """How many voxels at most, the errors that are good enough, and whether points are exchanged."""
-    if select == "difference":
-        if target_rmse is not None or max_error is not None or exchange:
-            raise ValueError("target_rmse, max_error and exchange belong to select='adaptive'")
+def _raw(shape: Any, dtype: DTypeLike | None, offset: int) -> dict[str, Any] | None:
+    """The layout of bare samples."""
+    if shape is None or dtype is None:
+        if shape is not None or dtype is not None or offset:
+            raise ValueError("a file of bare samples needs shape= and dtype=, and only such a file has an offset=")
         return None
-    if select != "adaptive":
-        raise ValueError(f"select={select!r} is unknown: 'difference' and 'adaptive' are known")
-    if exchange and max_error is not None:
-        raise ValueError("exchange=True may raise the largest error: leave max_error out")
-    if count is None and ratio is None and (target_rmse is not None or max_error is not None):
-        count = samples
-    elif count is None:
-        count = round((_RATIO if ratio is None else ratio) * samples)
-    optional = None if max_error is None else float(max_error)
-    return int(count), float(target_rmse or 0), optional, bool(exchange)
+    nz, ny, nx = map(operator.index, shape)
+    of = np.dtype(dtype)
+    if of.kind not in "iuf" or of == np.float16 or of.itemsize > 8:
+        raise ValueError(f"dtype={of} is no type of samples: give integers of 8 to 64 bits, float32 or float64")
+    order = sys.byteorder if of.byteorder in "=|" else "big" if of.byteorder == ">" else "little"
+    return {
+        "dims": {"x": nx, "y": ny, "z": nz},
+        "dtype": f"{of.kind}{8 * of.itemsize}",
+        "endian": order,
+        "offset": operator.index(offset),
+    }
 
 
-def _grid(volume, spacing=None, origin=None):
-    """Samples, whether they are gray levels, and the frame as the library reads it."""
-    if isinstance(volume, Volume):
-        if spacing is not None or origin is not None:
-            raise ValueError("this volume knows its spacing and origin: give volume.samples to say others")
-        return volume.samples, volume.gray, _frame_of(volume)
-    samples, gray = _arrays.samples(volume)
-    if spacing is None:
-        if origin is not None:
-            raise ValueError("origin is in units of length: give spacing, too")
-        return samples, gray, None
-    origin = [0.0, 0.0, 0.0] if origin is None else origin
-    return samples, gray, _frame(reversed(tuple(spacing)), origin, _ALONG, _UNKNOWN)
+def _region(roi: Any) -> dict[str, Any]:
+    """From slices along z, y and x to ends along x, y and z."""
+    if len(roi) != 3 or not all(isinstance(part, slice) for part in roi):
+        raise ValueError(f"roi={roi!r}: give three slices along z, y and x, as in np.s_[10:, :, 20:40]")
+    if any(part.step not in (None, 1) for part in roi):
+        raise ValueError(f"roi={roi!r} has steps: leave them out, and see downsample=")
+    first = [0 if part.start is None else operator.index(part.start) for part in reversed(roi)]
+    end = [None if part.stop is None else operator.index(part.stop) for part in reversed(roi)]
+    if any(number < 0 for number in [*first, *(n for n in end if n is not None)]):
+        raise ValueError(f"roi={roi!r} counts from the end: give indices from 0 up")
+    return {"first": first, "end": end}
 
 
-def _frame_of(volume):
-    if volume.unit == "voxel":
-        return None
-    coordinates = {"space": volume.space, "unit": volume.unit}
-    return _frame(reversed(volume.spacing), volume.origin, volume.direction, coordinates)
-
-
-def _frame(spacing, origin, direction, coordinates):
-    spacing, origin = [float(x) for x in spacing], [float(x) for x in origin]
-    if len(spacing) != 3 or len(origin) != 3 or not np.isfinite(spacing + origin).all():
-        raise ValueError("spacing are three lengths (z, y, x), and origin is a place (x, y, z)")
-    frame = {"origin": origin, "spacing": spacing, "direction": direction, "coordinates": coordinates}
-    return json.dumps(frame)
-
-
-def _tolerance(rms, epsilon, coefficients):
-    given = {"rms": rms, "epsilon": epsilon, "coefficients": coefficients}
-    return _one_of(given, ("rms", 1.0))
-
-
-def _rule(count, ratio, threshold):
-    return _one_of({"count": count, "ratio": ratio, "threshold": threshold}, ("at_most", _RATIO))
-
-
-def _one_of(options, default):
-    given = [(name, float(value)) for name, value in options.items() if value is not None]
-    if len(given) > 1:
-        raise ValueError(f"{' and '.join(name for name, _ in given)} contradict each other: give one")
-    return given[0] if given else default
+def _block(downsample: int | None) -> int | None:
+    if downsample is not None and operator.index(downsample) < 1:
+        raise ValueError(f"downsample={downsample}: give a number of samples from 1 up")
+    return downsample

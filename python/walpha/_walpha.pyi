@@ -1,167 +1,193 @@
 """What the Python modules of walpha ask of the library. Not for users: see the modules."""
 
-from collections.abc import Callable
-from typing import final
+from typing import Literal, TypeAlias, final
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ._typing import Classes, Floats, Indices, Listener, Samples
+
 __version__: str
 
-_Floats = NDArray[np.float64]
-_Indices = NDArray[np.uint32]
-_Progress = Callable[[str, int, int], object] | None
-_Listed = tuple[_Indices | None, NDArray[np.uint8] | None]
+_Rows: TypeAlias = NDArray[np.uint32]
+# How many threads, and what hears of progress.
+_Task: TypeAlias = tuple[int | None, Listener | None]
+# Rows of one dimension, and their classes.
+_Listed: TypeAlias = tuple[_Rows | None, Classes | None]
+# Engine, balls, exterior, hidden.
+_Options: TypeAlias = tuple[str, str, bool, bool]
+_State: TypeAlias = tuple[str, str, str]
+# Polygons of a ring and holes, edges, vertices, area, perimeter, axes.
+Outline: TypeAlias = tuple[list[tuple[_Rows, list[_Rows]]], _Rows, _Rows, float, float, list[int]]
 
 @final
 class Shape:
     facts: str
-    points: _Floats
-    weights: _Floats
-    values: _Floats | None
-    cells: _Indices
-    facets: _Indices
-    edges: _Indices
-    vertices: _Indices
+    points: Floats
+    weights: Floats
+    values: Floats | None
+    cells: _Rows
+    facets: _Rows
+    edges: _Rows
+    vertices: _Rows
     alpha: float
+    engine: Literal["cgal", "native"]
     exterior: bool
     measures: tuple[float, float, float]
-    betti: tuple[int, int, int, int | None] | None
+    betti: tuple[int, int, int, int | None]
     periodic: list[float] | None
-    copies: _Indices
+    copies: _Rows
+    hidden: _Rows | None
+    duplicates: _Rows
+    def state(self) -> _State: ...
     def unwrapped(self) -> Shape: ...
-    hidden: _Indices | None
-    duplicates: _Indices
-    def classes(self) -> list[NDArray[np.uint8]]: ...
+    def classes(self) -> list[Classes]: ...
     def components(self) -> str: ...
-    def component_numbers(self) -> NDArray[np.int64]: ...
+    def component_numbers(self) -> Indices: ...
     def voids(self) -> str | None: ...
-    def boundary(self, solid: bool) -> tuple[_Floats, _Indices, _Indices, tuple[int, int, int]]: ...
-    def outline(
-        self,
-    ) -> tuple[
-        list[tuple[_Indices, list[_Indices]]], _Indices, _Indices, float, float, tuple[int, int]
-    ]: ...
-    def at(self, places: _Floats, values: _Floats | None) -> _Floats: ...
+    def boundary(self, solid: bool) -> tuple[Floats, _Rows, _Rows, tuple[int, int, int]]: ...
+    def outline(self) -> Outline: ...
+    def at(self, places: Floats, values: Floats | None) -> Floats: ...
     def interpolate(
         self,
         sizes: list[int],
         low: list[float],
         high: list[float],
-        values: _Floats | None,
-        progress: _Progress,
-    ) -> NDArray[np.float32]: ...
+        values: Floats | None,
+        task: _Task,
+    ) -> Samples: ...
     def save(self, path: str, solid: bool) -> None: ...
 
 @final
 class Filtration:
+    points: Floats
+    weights: Floats
     periodic: list[float] | None
     def __init__(
-        self,
-        points: _Floats,
-        weights: _Floats | None,
-        periodic: list[float] | None,
-        progress: _Progress,
+        self, points: Floats, weights: Floats | None, periodic: list[float] | None, task: _Task
     ) -> None: ...
-    def simplices(self, progress: _Progress) -> Simplices: ...
+    def simplices(self, task: _Task) -> Simplices: ...
     def whole(self) -> Shape: ...
-    def shape(self, alpha: float, exterior: bool, progress: _Progress) -> Shape: ...
-    def ladder(self, alphas: _Floats, progress: _Progress) -> str: ...
-    def curve(self, progress: _Progress) -> tuple[_Floats, list[NDArray[np.uint64]]]: ...
-    def suggestions(self, progress: _Progress) -> str: ...
-    def optimal_alpha(self, components: int, progress: _Progress) -> float: ...
+    def shape(self, alpha: float, exterior: bool, task: _Task) -> Shape: ...
+    def ladder(self, alphas: Floats, task: _Task) -> str: ...
+    def curve(self, task: _Task) -> tuple[Floats, list[NDArray[np.uint64]]]: ...
+    def suggestions(self, task: _Task) -> str: ...
+    def optimal_alpha(self, components: int, task: _Task) -> float: ...
 
 @final
 class Simplices:
-    vertices: _Indices
-    edges: _Indices
-    facets: _Indices
-    cells: _Indices
-    intervals: _Floats
-    ranks: _Indices
+    vertices: _Rows
+    edges: _Rows
+    facets: _Rows
+    cells: _Rows
+    intervals: Floats
+    ranks: _Rows
     gabriel: NDArray[np.bool_]
-    order: _Indices
-    component_pairs: _Indices
-    void_pairs: _Indices
+    order: _Rows
+    component_pairs: _Rows
+    void_pairs: _Rows
     lasting: tuple[list[int], list[int], list[int]]
 
 @final
+class Triangulation:
+    points: Floats
+    weights: Floats
+    simplices: Indices
+    neighbors: Indices
+    convex_hull: Indices
+    hidden: Indices
+    duplicates: Indices
+    def __init__(self, points: Floats, weights: Floats | None, task: _Task) -> None: ...
+    def find(self, places: Floats, task: _Task) -> Indices: ...
+
+@final
 class Complex:
+    points: Floats
+    weights: Floats
+    alpha: float
+    cells: _Rows
+    facets: _Rows
+    edges: _Rows
+    vertices: _Rows
+    hidden: _Rows | None
+    duplicates: _Rows | None
+    periodic: list[float] | None
     def __init__(
         self,
-        points: _Floats,
-        weights: _Floats | None,
+        points: Floats,
+        weights: Floats | None,
         alpha: float,
         cells: _Listed,
         facets: _Listed,
         edges: _Listed,
         vertices: _Listed,
-        hidden: _Indices | None,
-        duplicates: _Indices | None,
+        hidden: _Rows | None,
+        duplicates: _Rows | None,
+        periodic: list[float] | None,
+        task: _Task,
     ) -> None: ...
     @staticmethod
     def of(shape: Shape) -> Complex: ...
-    def check(self, most: int, progress: _Progress) -> tuple[int, list[tuple[str, str]], str]: ...
+    def classes(self) -> list[Classes]: ...
+    def check(
+        self, most: int, ties_too: bool, task: _Task
+    ) -> tuple[str, int, int, list[tuple[str, str]], str]: ...
 
 def alpha_shape(
-    points: _Floats,
-    weights: _Floats | None,
-    values: _Floats | None,
+    points: Floats,
+    weights: Floats | None,
+    values: Floats | None,
     alpha: float | str | None,
-    engine: str,
-    balls: str,
-    exterior: bool,
+    how: _Options,
     periodic: list[float] | None,
-    progress: _Progress,
+    task: _Task,
 ) -> Shape: ...
-def compare(a: Complex, b: Complex) -> tuple[bool, str, str]: ...
-def read(input: str, progress: _Progress) -> tuple[NDArray[np.float32], bool, str]: ...
-def read_points(path: str, level: int | None) -> tuple[
-    NDArray[np.float64],
-    NDArray[np.float64] | None,
-    NDArray[np.float64] | None,
-    list[int] | None,
-    float | None,
-    str,
-]: ...
+def restored(
+    points: Floats, weights: Floats, values: Floats | None, state: _State
+) -> Shape: ...
+def compare(a: Complex, b: Complex, task: _Task) -> tuple[bool, str, str]: ...
+def read(input: str, options: str, task: _Task) -> tuple[Samples, bool, str]: ...
+def read_points(
+    path: str,
+    level: int | None,
+    columns: str | None,
+    classes: list[int] | None,
+    thin: float | None,
+) -> tuple[Floats, Floats | None, Floats | None, list[int] | None, float | None, str]: ...
 def write_points(
     path: str,
-    points: NDArray[np.float64],
-    weights: NDArray[np.float64] | None,
-    values: NDArray[np.float64] | None,
-    alpha: float | str | None,
+    points: Floats,
+    weights: Floats | None,
+    values: Floats | None,
+    alpha: float | None,
     value_error: float,
 ) -> None: ...
 def haar(
-    samples: NDArray[np.float32],
-    tolerance: tuple[str, float],
-    decomposition: str,
-    progress: _Progress,
-) -> tuple[NDArray[np.float32], str]: ...
-def difference(samples: NDArray[np.float32]) -> _Floats: ...
+    samples: Samples, tolerance: tuple[str, float], decomposition: str, task: _Task
+) -> tuple[Samples, str]: ...
+def difference(samples: Samples) -> Floats: ...
 def select(
-    samples: NDArray[np.float32],
-    smoothed: NDArray[np.float32],
+    samples: Samples,
+    smoothed: Samples,
     frame: str | None,
     rule: tuple[str, float],
     gray_min: float | None,
-) -> tuple[_Floats, _Floats, _Floats]: ...
-def weigh(differences: _Floats, weighting: str, alpha: float) -> _Floats: ...
+) -> tuple[Floats, Floats, Floats]: ...
+def weigh(differences: Floats, weighting: str, alpha: float) -> Floats: ...
 def pipeline(
-    samples: NDArray[np.float32],
+    samples: Samples,
     is_gray: bool,
+    nan: float | None,
     gray: tuple[float, float] | None,
     frame: str | None,
     haar: tuple[tuple[str, float], str],
     rule: tuple[str, float],
-    gray_min: float | None,
+    least: tuple[float | None, float | None],
     adaptive: tuple[int, float, float | None, bool] | None,
     weighting: str,
     alpha: float | str | None,
-    engine: str,
-    balls: str,
-    exterior: bool,
+    how: _Options,
     refit: str | None,
-    progress: _Progress,
+    task: _Task,
 ) -> Shape: ...
 def sweep() -> None: ...

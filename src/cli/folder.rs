@@ -33,7 +33,7 @@ impl Folder {
         let new = make(path, &format!("with {option}"))?;
         let folder = Self { path: path.to_owned(), files: Vec::new(), written: Vec::new(), new };
         for name in names {
-            Target::open(&path.join(name))?;
+            Target::open(path.join(name))?;
         }
         Ok(folder)
     }

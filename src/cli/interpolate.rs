@@ -308,7 +308,7 @@ pub(super) fn run_curve(
     let PipelineArgs { input, select, .. } = pipeline;
     let recipe = pipeline.recipe()?;
     let (new, paths) = paths(base)?;
-    let targets = paths.iter().map(|path| Target::open(path)).collect::<Result<Vec<_>, _>>()?;
+    let targets = paths.iter().map(Target::open).collect::<Result<Vec<_>, _>>()?;
     let mut progress = Progress::new(global);
     let Input::Volume(grays) = read(input, &recipe, &mut progress)? else {
         fail!("{} holds points, and --curve needs a volume", input.input);

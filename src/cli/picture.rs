@@ -110,7 +110,7 @@ impl PictureArgs {
 }
 
 impl Exporter for PictureArgs {
-    fn write(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
+    fn encode(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
         if self.colour == ColourArg::Value && shape.points().values().is_none() {
             return Err(io::Error::other(
                 "the points have no values to colour by; choose --colour plain or class",

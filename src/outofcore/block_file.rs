@@ -72,7 +72,7 @@ impl Arrays {
         let version = Plan::VERSION.into();
         let header = Header { version, plan: plan.digest, block, summary, arrays };
         let header = serde_json::to_vec(&header).expect("it has no maps");
-        Target::open(&plan.block_file(block))?.write(|out| {
+        Target::open(plan.block_file(block))?.write(|out| {
             out.write_all(MAGIC)?;
             out.write_all(&(header.len() as u64).to_le_bytes())?;
             out.write_all(Digest::of(&header).bytes())?;

@@ -197,7 +197,7 @@ impl Plan {
     }
 
     fn write(&self) -> Result<(), BlocksError> {
-        let target = Target::open(&self.folder.join(Self::FILE))?;
+        let target = Target::open(self.folder.join(Self::FILE))?;
         Ok(target.write(|out| out.write_all(&self.text()))?)
     }
 

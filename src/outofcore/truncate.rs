@@ -32,7 +32,7 @@ impl DigestedFile {
     /// Writes the sums of bricks into a folder.
     pub(super) fn write_sums(sums: &[f64], folder: &Path) -> Result<Self, BlocksError> {
         let bytes: Vec<u8> = sums.iter().flat_map(|sum| sum.to_le_bytes()).collect();
-        Target::open(&folder.join(SUMS))?.write(|out| out.write_all(&bytes))?;
+        Target::open(folder.join(SUMS))?.write(|out| out.write_all(&bytes))?;
         let digest = Digest::of(&bytes);
         Ok(Self { name: SUMS.into(), bytes: bytes.len() as u64, digest })
     }
@@ -248,7 +248,7 @@ impl StandardTransform<'_> {
             self.slabs.inverse_walls(&mut values, walls.first[1]);
             self.write(walls, &values)
         })?;
-        let target = Target::open(&self.folder.join(SMOOTHED))?;
+        let target = Target::open(self.folder.join(SMOOTHED))?;
         let (mut failed, mut hasher, mut length) = (None, Hasher::default(), 0);
         let written = target.write(|out| {
             let done = passes.serial(planes, |planes| {

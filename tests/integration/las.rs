@@ -103,7 +103,7 @@ fn classes_and_thinning() {
     write(&f.join("a.laz"), (1, 2));
     let options = PointOptions::default().classes(Some(vec![2]));
     let values =
-        |options: &PointOptions| read_model(&f.join("a.laz"), options).unwrap().0.values.unwrap();
+        |options: &PointOptions| read_model(f.join("a.laz"), options).unwrap().0.values.unwrap();
     assert_eq!(values(&options), [0.0, 100.0, 400.0]);
     assert_eq!(values(&options.thin(Some(2.5))), [0.0, 400.0]);
     assert_eq!(values(&PointOptions::default().thin(Some(2.0))), [0.0, 100.0, 200.0, 300.0, 400.0]);

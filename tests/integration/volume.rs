@@ -27,7 +27,7 @@ impl Folder {
 
     /// Reads bytes under this name; the message of the error must name the file and these parts.
     fn refuses(&self, name: &str, bytes: &[u8], options: &ReadOptions, parts: &[&str]) {
-        let text = read(&self.file(name, bytes), options).unwrap_err().told();
+        let text = read(self.file(name, bytes), options).unwrap_err().told();
         for part in parts.iter().chain(&[name]) {
             assert!(text.contains(part), "{part:?} is missing in: {text}");
         }
@@ -201,7 +201,7 @@ fn inrimages_of_every_type_and_order() {
             for (name, bytes) in
                 [("v.inr", bytes.clone()), ("v.inr.gz", gzip(&bytes)), ("v", bytes)]
             {
-                let volume = read(&folder.file(name, &bytes), &known()).unwrap();
+                let volume = read(folder.file(name, &bytes), &known()).unwrap();
                 assert_eq!(volume.as_slice(), expected, "{dtype} {cpu} {name}");
                 assert_eq!(volume.dims().xyz(), [1, 3, 1]);
                 assert_eq!(volume.frame().spacing, [0.5, 2.0, 3.25]);
@@ -220,7 +220,7 @@ fn long_inrimage_headers_are_read() {
     );
     let bytes = inr(&header, &2.5f32.to_le_bytes());
     assert_eq!(bytes.len(), 4 * 256 + 4, "four blocks");
-    let volume = read(&Folder::new().file("v.inr", &bytes), &known());
+    let volume = read(Folder::new().file("v.inr", &bytes), &known());
     assert_eq!(volume.unwrap().as_slice(), [2.5]);
 }
 
@@ -231,7 +231,7 @@ fn inrimage_headers_of_any_length_are_read() {
     for padding in [0, 1, 100, 255, 256, 700] {
         let header = format!("#INRIMAGE-4#{{\n{lines}{}##}}\n", "\n".repeat(padding));
         let bytes = [header.as_bytes(), &2.5f32.to_le_bytes()].concat();
-        let volume = read(&Folder::new().file("v.inr", &bytes), &known());
+        let volume = read(Folder::new().file("v.inr", &bytes), &known());
         assert_eq!(volume.unwrap().as_slice(), [2.5], "{padding}");
     }
 }
@@ -242,7 +242,7 @@ fn damaged_inrimages_are_refused() {
     let refuses = |bytes: &[u8], parts: &[&str]| folder.refuses("v.inr", bytes, &known(), parts);
     let good = "XDIM=3\nYDIM=1\nZDIM=1\nTYPE=float\nPIXSIZE=32 bits\nCPU=decm\n";
     let payload = [0; 12];
-    assert!(read(&folder.file("v.inr", &inr(good, &payload)), &known()).is_ok());
+    assert!(read(folder.file("v.inr", &inr(good, &payload)), &known()).is_ok());
 
     refuses(b"", &["is empty"]);
     refuses(b"hello", &["not an INRIMAGE"]);
@@ -291,10 +291,10 @@ fn npy_arrays_of_every_type_and_order() {
     each!(u8, i8, u16, i16, u32, i32, u64, i64, f32, f64);
     let (payload, expected) = three(Dtype::I16, Endian::Big);
     let header = "{'descr': '>i2', 'fortran_order': False, 'shape': (3, 1, 1), }\n";
-    let volume = read(&folder.file("v.npy", &npy_of(header, &payload)), &known()).unwrap();
+    let volume = read(folder.file("v.npy", &npy_of(header, &payload)), &known()).unwrap();
     assert_eq!(volume.as_slice(), expected);
     let mask = Array3::from_shape_vec((1, 1, 2), vec![true, false]).unwrap();
-    let volume = read(&folder.file("mask", &npy(&mask)), &known()).unwrap();
+    let volume = read(folder.file("mask", &npy(&mask)), &known()).unwrap();
     assert_eq!(volume.as_slice(), [1.0, 0.0]);
     assert!(!volume.has_gray_levels(), "0 and 1 are not gray levels");
 }
@@ -315,7 +315,7 @@ fn damaged_npy_files_are_refused() {
             &[0; 4],
         )
     };
-    assert!(read(&folder.file("v.npy", &header("'<f4'", "False", "(1, 1, 1)")), &known()).is_ok());
+    assert!(read(folder.file("v.npy", &header("'<f4'", "False", "(1, 1, 1)")), &known()).is_ok());
     refuses(&header("'<f4'", "False", "(1,)"), &["1 axes", "three"]);
     refuses(&header("'<c8'", "False", "(1, 1, 1)"), &["<c8"]);
     refuses(&header("'<f2'", "False", "(1, 1, 1)"), &["<f2", "astype"]);
@@ -340,7 +340,7 @@ fn raw_samples_of_every_type_and_order() {
             for offset in [0, 7] {
                 let bytes = [vec![9; offset], payload.clone()].concat();
                 let options = raw([3, 1, 1], dtype, endian, offset as u64);
-                let volume = read(&folder.file("v.raw", &bytes), &options).unwrap();
+                let volume = read(folder.file("v.raw", &bytes), &options).unwrap();
                 assert_eq!(volume.as_slice(), expected, "{dtype} {endian}");
                 assert_eq!(volume.has_gray_levels(), dtype == Dtype::U8);
             }

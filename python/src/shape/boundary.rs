@@ -8,7 +8,7 @@ use walpha::AlphaShape;
 use walpha::interpolate::InterpolateError;
 use walpha::shape::Surface;
 
-use crate::work::run;
+use crate::work::{Task, run};
 
 /// Places, triangles over them, and the input index of each; then edges cut, vertices doubled, midpoints.
 pub type Boundary<'py> = (
@@ -24,7 +24,7 @@ pub fn boundary<'py>(
     shape: Arc<AlphaShape>,
     solid: bool,
 ) -> PyResult<Boundary<'py>> {
-    let (places, triangles, indices, cuts) = run(py, None, move |_| {
+    let (places, triangles, indices, cuts) = run(py, &Task::default(), move |_| {
         let (surface, cuts) = match solid {
             true => {
                 let (surface, cuts) = shape.solid();

@@ -9,7 +9,7 @@ use walpha::{Alpha, Points, Recipe};
 use super::Shape;
 use crate::arrays::{numbers, rows};
 use crate::errors::{Told, wrong};
-use crate::work::run;
+use crate::work::{Task, run};
 
 /// Engine and balls by the names that Python has, and whether exterior simplices and hidden points are wanted.
 pub type Options = (String, String, bool, bool);
@@ -83,13 +83,13 @@ pub fn alpha_shape(
     alpha: Option<AlphaArgument>,
     how: Options,
     periodic: Option<[f64; 3]>,
-    progress: Option<Bound<'_, PyAny>>,
+    task: Task<'_>,
 ) -> PyResult<Shape> {
     let recipe = with_options(Recipe::new().alpha(alpha_rule(alpha)?), &how)?;
     let recipe = recipe.periodic(torus(periodic)?);
     let points = weighted(&points, weights.as_ref(), values.as_ref())?;
     let shape = move |monitor: &_| recipe.run_points_monitored(points, monitor);
-    let model = run(py, progress.as_ref(), shape)?;
+    let model = run(py, &task, shape)?;
     Ok(Shape::of(model))
 }
 

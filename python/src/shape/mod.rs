@@ -3,6 +3,7 @@
 mod boundary;
 mod make;
 mod outline;
+mod state;
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -16,16 +17,18 @@ use walpha::pipeline::Model;
 use walpha::progress::Stage;
 use walpha::shape::{Engine, LengthsError, OutlineError};
 use walpha::volume::Dims;
-use walpha::{AlphaShape, PointsError, Simplices, Weighting};
+use walpha::{AlphaShape, Complex, PointsError, Simplices, Weighting};
 
 use crate::arrays::{column, copied, lend, numbers, rows};
 use crate::errors::{Told, wrong};
-use crate::work::run;
+use crate::work::{Task, run};
 use boundary::{Boundary, boundary};
 pub use make::{
     AlphaArgument, Options, alpha_rule, alpha_shape, torus, unknown, weighted, with_options,
 };
 use outline::{Outline, outline};
+pub use state::restored;
+use state::{State, state};
 
 /// A shape, which is never changed.
 #[pyclass(frozen, module = "walpha._walpha")]
@@ -91,6 +94,19 @@ fn class_numbers<'py, const N: usize>(
     column(py, simplices.classes().iter().map(|&class| class as u8))
 }
 
+/// Class numbers of cells, facets, edges and vertices.
+pub fn all_classes<'py>(
+    py: Python<'py>,
+    complex: &Complex,
+) -> PyResult<[Bound<'py, PyArray1<u8>>; 4]> {
+    Ok([
+        class_numbers(py, &complex.cells)?,
+        class_numbers(py, &complex.facets)?,
+        class_numbers(py, &complex.edges)?,
+        class_numbers(py, &complex.vertices)?,
+    ])
+}
+
 #[pymethods]
 impl Shape {
     #[getter]
@@ -136,13 +152,7 @@ impl Shape {
 
     /// Classes of cells, facets, edges and vertices.
     fn classes<'py>(&self, py: Python<'py>) -> PyResult<[Bound<'py, PyArray1<u8>>; 4]> {
-        let complex = self.shape.complex();
-        Ok([
-            class_numbers(py, &complex.cells)?,
-            class_numbers(py, &complex.facets)?,
-            class_numbers(py, &complex.edges)?,
-            class_numbers(py, &complex.vertices)?,
-        ])
+        all_classes(py, self.shape.complex())
     }
 
     #[getter]
@@ -171,8 +181,9 @@ impl Shape {
     }
 
     #[getter]
-    fn betti(&self) -> Option<(u64, u64, u64, Option<u64>)> {
-        self.shape.betti().map(|betti| (betti.b0, betti.b1, betti.b2, betti.b3))
+    fn betti(&self) -> (u64, u64, u64, Option<u64>) {
+        let betti = self.shape.betti().expect("every way to make a shape counts them");
+        (betti.b0, betti.b1, betti.b2, betti.b3)
     }
 
     /// The sides of the periodic box.
@@ -181,10 +192,16 @@ impl Shape {
         self.shape.options().periodic.map(|torus| torus.sides())
     }
 
+    /// How it was made, for [`restored`].
+    fn state(&self) -> State {
+        state(&self.shape, &self.facts)
+    }
+
     /// The shape laid out in space.
     fn unwrapped(&self, py: Python<'_>) -> PyResult<Self> {
         let shape = Arc::clone(&self.shape);
-        let unwrapped = run(py, None, move |_| Ok::<_, InterpolateError>(shape.unwrapped()))?;
+        let unwrapped =
+            run(py, &Task::default(), move |_| Ok::<_, InterpolateError>(shape.unwrapped()))?;
         Ok(Self { shape: Arc::new(unwrapped), facts: self.facts.clone() })
     }
 
@@ -209,21 +226,25 @@ impl Shape {
     /// The components, as JSON.
     fn components(&self, py: Python<'_>) -> PyResult<String> {
         let shape = Arc::clone(&self.shape);
-        run(py, None, move |_| Ok::<_, InterpolateError>(json(&shape.components())))
+        run(py, &Task::default(), move |_| Ok::<_, InterpolateError>(json(&shape.components())))
     }
 
     /// The number of the component of each point; −1 outside.
     fn component_numbers<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<i64>>> {
         let number = |n: u32| if n == walpha::shape::NO_COMPONENT { -1 } else { i64::from(n) };
         let shape = Arc::clone(&self.shape);
-        let numbers = run(py, None, move |_| Ok::<_, InterpolateError>(shape.component_numbers()))?;
+        let numbers = run(py, &Task::default(), move |_| {
+            Ok::<_, InterpolateError>(shape.component_numbers())
+        })?;
         column(py, numbers.into_iter().map(number))
     }
 
     /// The voids, as JSON; `None` without exterior simplices.
     fn voids(&self, py: Python<'_>) -> PyResult<Option<String>> {
         let shape = Arc::clone(&self.shape);
-        run(py, None, move |_| Ok::<_, InterpolateError>(shape.voids().as_ref().map(json)))
+        run(py, &Task::default(), move |_| {
+            Ok::<_, InterpolateError>(shape.voids().as_ref().map(json))
+        })
     }
 
     /// Places, triangles over them, and the input index of each; then edges cut, vertices doubled, midpoints.
@@ -245,7 +266,7 @@ impl Shape {
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let (places, values) = (rows("places", &places)?, self.values(values)?);
         let shape = Arc::clone(&self.shape);
-        let found = run(py, None, move |_| {
+        let found = run(py, &Task::default(), move |_| {
             let interpolant = Interpolant::with_values(&shape, &values)?;
             let values = interpolant.values_at(&places).into_iter();
             Ok::<Vec<f64>, InterpolateError>(values.map(|v| v.unwrap_or(f64::NAN)).collect())
@@ -261,12 +282,12 @@ impl Shape {
         low: [f64; 3],
         high: [f64; 3],
         values: Option<PyReadonlyArray1<'_, f64>>,
-        progress: Option<Bound<'_, PyAny>>,
+        task: Task<'_>,
     ) -> PyResult<Bound<'py, PyArray3<f32>>> {
         let [nx, ny, nz] = sizes;
         let grid = Grid::spanning(low, high, Dims::new(nx, ny, nz).map_err(Told::told)?);
         let (values, shape) = (self.values(values)?, Arc::clone(&self.shape));
-        let samples = run(py, progress.as_ref(), move |monitor| {
+        let samples = run(py, &task, move |monitor| {
             Stage::Interpolate.begin(monitor)?;
             let found = Interpolant::with_values(&shape, &values)?.resample(&grid)?;
             Ok::<_, InterpolateError>(with_nan(found))
@@ -292,7 +313,9 @@ impl Shape {
         }
         let options = ExportOptions::default().solid(solid);
         let (shape, target) = (Arc::clone(&self.shape), Target::open(&path).map_err(Told::told)?);
-        run(py, None, move |_| target.write(|out| format.exporter(&options).write(&shape, out)))
+        run(py, &Task::default(), move |_| {
+            target.write(|out| format.exporter(&options).write(&shape, out))
+        })
     }
 }
 

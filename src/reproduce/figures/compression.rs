@@ -167,7 +167,7 @@ fn through_file(
     let coordinates = Coordinates::VOXEL;
     let facts = ModelMetadata { grid: Some(grid), coordinates, ..ModelMetadata::default() };
     let packing = Packing { value_error, ..Packing::default() };
-    let writer = PointWriter::of(format!("model{NAME}").as_ref()).map_err(std::io::Error::other)?;
+    let writer = PointWriter::of(format!("model{NAME}")).map_err(std::io::Error::other)?;
     let mut bytes = Vec::new();
     writer.write_model(points, &facts, &packing, &mut bytes)?;
     let file = Scratch::of(&mut &bytes[..], NAME)?;

@@ -17,7 +17,7 @@ use crate::common;
 
 fn written(ordered: &Ordered<'_>, extension: &str) -> Vec<u8> {
     let mut bytes = Vec::new();
-    let format = FiltrationFormat::of(&Path::new("a").with_extension(extension)).unwrap();
+    let format = FiltrationFormat::of(Path::new("a").with_extension(extension)).unwrap();
     format.write(ordered, &mut bytes).unwrap();
     bytes
 }

@@ -22,7 +22,7 @@ fn points_of_every_format_are_read() {
         assert_eq!(points.weights, None, "{name}");
     }
     let atoms = "2\na molecule\nC 1 2 3\nH 4 5 6 0.1\n";
-    let points = read_points(&save(folder.path(), "m.xyz", atoms), None).unwrap();
+    let points = read_points(save(folder.path(), "m.xyz", atoms), None).unwrap();
     assert_eq!((points.len(), points.values), (2, None));
     for (name, bytes) in examples() {
         let path = save(folder.path(), name, bytes);
@@ -60,7 +60,7 @@ fn points_come_through_a_pipe_that_is_opened_once() {
 fn damaged_points_say_what_is_wrong() {
     let folder = tempfile::tempdir().unwrap();
     let refuses = |name: &str, text: &str, part: &str| {
-        let error = read_points(&save(folder.path(), name, text), None).unwrap_err().told();
+        let error = read_points(save(folder.path(), name, text), None).unwrap_err().told();
         assert!(error.contains(part) && error.contains(name), "{part:?} is missing in: {error}");
     };
     let rows = "2 0 1\n1 2 3 0 7\n4 5 6 0 8\n";
@@ -225,13 +225,13 @@ fn pcd_examples() -> [(&'static str, Vec<u8>); 4] {
 fn point_clouds_are_read() {
     let folder = tempfile::tempdir().unwrap();
     for (name, bytes) in pcd_examples() {
-        let points = read_points(&save(folder.path(), name, bytes), None).unwrap();
+        let points = read_points(save(folder.path(), name, bytes), None).unwrap();
         assert_eq!(points.positions, [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]], "{name}");
         assert_eq!(points.values, Some(vec![7.0, 8.0]), "{name}");
     }
     let [text, binary, packed, _] = pcd_examples();
     let refuses = |name: &str, bytes: &[u8], part: &str| {
-        let error = read_points(&save(folder.path(), name, bytes), None).unwrap_err().told();
+        let error = read_points(save(folder.path(), name, bytes), None).unwrap_err().told();
         assert!(error.contains(part) && error.contains(name), "{part:?} is missing in: {error}");
     };
     let cut = |bytes: &[u8]| bytes[..bytes.len() - 5].to_vec();
@@ -294,7 +294,7 @@ fn vertices_of_meshes_are_points() {
         assert_eq!((points.weights, points.values), (None, None), "{name}");
     }
     let refuses = |name: &str, bytes: &[u8], part: &str| {
-        let error = read_points(&save(folder.path(), name, bytes), None).unwrap_err().told();
+        let error = read_points(save(folder.path(), name, bytes), None).unwrap_err().told();
         assert!(error.contains(part) && error.contains(name), "{part:?} is missing in: {error}");
     };
     refuses("a.off", format!("OFF\n4 9 0\n{}{faces}", lines("", "")).as_bytes(), "truncated");

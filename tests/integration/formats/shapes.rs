@@ -57,7 +57,7 @@ fn the_command_weighs_scattered_values() {
     save(folder.path(), "s.csv", &text);
     for weights in ["min-max", "barycentric", "barycentric-n"] {
         common::ok(folder.path(), &["points", "s.csv", "--weights", weights, "-o", "w.csv"]);
-        let weights = read_points(&folder.path().join("w.csv"), None).unwrap().weights.unwrap();
+        let weights = read_points(folder.path().join("w.csv"), None).unwrap().weights.unwrap();
         assert!(weights.iter().any(|&w| w > 0.0));
     }
     save(folder.path(), "bare.csv", text.replace("value", "other"));
@@ -231,7 +231,7 @@ fn the_report_says_where_a_solid_was_cut() {
     assert!(said.contains("cut apart at 0 edges, with 1 more vertices"), "{said}");
     let made = common::json(folder.path(), &args);
     assert_eq!(made["solid"], serde_json::json!({ "edges": 0, "vertices": 1, "midpoints": 0 }));
-    assert_eq!(read_points(&folder.path().join("two.ply"), None).unwrap().len(), 8);
+    assert_eq!(read_points(folder.path().join("two.ply"), None).unwrap().len(), 8);
     let (_, _, stderr) = common::run(folder.path(), &args);
     assert!(!stderr.contains("manifold"), "{stderr}");
 }

@@ -47,7 +47,7 @@ fn the_format_may_be_said() {
         assert_eq!(told["count"], 3, "{name}");
     }
     ok(f, &["points", "a.dat", "--input-format", ".XYZ", "-o", "b.csv"]);
-    let points = read_points(&f.join("b.csv"), None).unwrap();
+    let points = read_points(f.join("b.csv"), None).unwrap();
     assert_eq!(points.positions[2], [7.0, 8.0, 10.0]);
     // Each end has its own.
     let mut both = Command::new(env!("CARGO_BIN_EXE_walpha"));
@@ -184,7 +184,7 @@ fn arrays_of_places_alone() {
     let array = ndarray::arr2(&PLACES);
     let mut bytes = Vec::new();
     ndarray_npy::WriteNpyExt::write_npy(&array, &mut bytes).unwrap();
-    let points = read_points(&save(folder.path(), "p.npy", bytes), None).unwrap();
+    let points = read_points(save(folder.path(), "p.npy", bytes), None).unwrap();
     assert_eq!((points.positions.as_slice(), points.weights), (&PLACES[..], None));
 }
 
@@ -229,7 +229,7 @@ fn with_radii() -> Vec<(&'static str, Vec<u8>)> {
 fn a_radius_is_a_weight_its_square() {
     let folder = tempfile::tempdir().unwrap();
     for (name, bytes) in with_radii() {
-        let points = read_points(&save(folder.path(), name, bytes), None).unwrap();
+        let points = read_points(save(folder.path(), name, bytes), None).unwrap();
         assert_eq!(points.positions, [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]], "{name}");
         assert_eq!(points.weights, Some(vec![4.0, 9.0]), "{name}");
         assert!(points.of_radii && points.values.is_none(), "{name}");
@@ -265,7 +265,7 @@ fn weights_come_before_radii_and_bad_radii_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let f = folder.path();
     save(f, "both.csv", "x,y,z,radius,weight\n0,0,0,1,5\n1,0,0,1,6\n");
-    let points = read_points(&f.join("both.csv"), None).unwrap();
+    let points = read_points(f.join("both.csv"), None).unwrap();
     assert_eq!((points.weights, points.of_radii), (Some(vec![5.0, 6.0]), false));
     let told = json(f, &["info", "both.csv"]);
     names(told["warnings"][0].as_str().unwrap(), &["both.csv", "radii", "weights are taken"]);
@@ -287,7 +287,7 @@ fn coordinates_of_maps_are_x_y_z() {
         "x,y,altitude\n1,2,3\n4,5,6\n",
         "height,x,y,z\n9,1,2,3\n9,4,5,6\n",
     ] {
-        assert_eq!(read_points(&save(f, "m.csv", text), None).unwrap().positions, places, "{text}");
+        assert_eq!(read_points(save(f, "m.csv", text), None).unwrap().positions, places, "{text}");
     }
     save(f, "lon.csv", "lon,lat,height\n1,2,3\n4,5,6\n");
     fails(f, 1, "info lon.csv", &["which are angles and no lengths", "UTM"]);

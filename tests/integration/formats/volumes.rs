@@ -279,7 +279,7 @@ fn samples_of_every_type_and_their_place() {
     ];
     for (name, bytes, dtype) in cases {
         let volume =
-            read(&save(f, name, bytes), &ReadOptions::default()).unwrap_or_else(|e| panic!("{e}"));
+            read(save(f, name, bytes), &ReadOptions::default()).unwrap_or_else(|e| panic!("{e}"));
         assert_eq!((volume.as_slice(), volume.dtype()), (&wanted[..], dtype), "{name}");
         let frame = volume.frame();
         assert_eq!(
@@ -294,7 +294,7 @@ fn samples_of_every_type_and_their_place() {
         assert_eq!(frame.to_world([1.0, 1.5, 0.0]), [10.0, 19.5, 30.0], "{name}");
     }
     let unplaced =
-        read(&save(f, "n.mgh", mgh(3, 1, false, float)), &ReadOptions::default()).unwrap();
+        read(save(f, "n.mgh", mgh(3, 1, false, float)), &ReadOptions::default()).unwrap();
     assert_eq!(*unplaced.frame(), Frame::VOXEL);
     let part =
         Source::open(f.join("footer.mgh").to_str().unwrap(), &ReadOptions::default()).unwrap();

@@ -84,7 +84,7 @@ fn content_goes_before_names() {
         </DataArray></Points></Piece></PolyData></VTKFile>";
     let written = |name: &str| {
         let mut bytes = Vec::new();
-        PointWriter::of(name.as_ref()).unwrap().write(&points, &mut bytes).unwrap();
+        PointWriter::of(name).unwrap().write(&points, &mut bytes).unwrap();
         bytes
     };
     for bytes in [ply.into(), pcd.into(), vtp.into(), written("p.npy"), written("p.wvm")] {

@@ -19,7 +19,7 @@ fn the_command_makes_the_same_of_a_file() {
         Frame { origin: [3.0, -7.5, 0.1], spacing: [0.5, 0.5, 2.0], coordinates, ..Frame::VOXEL };
     let scan = walpha::Volume::new(samples, frame).unwrap();
     let mut bytes = Vec::new();
-    VolumeWriter::of("v.nrrd".as_ref()).unwrap().write(&scan, &mut bytes).unwrap();
+    VolumeWriter::of("v.nrrd").unwrap().write(&scan, &mut bytes).unwrap();
     fs::write(folder.path().join("v.nrrd"), bytes).unwrap();
     let run_it = |args: &str| ok(folder.path(), &args.split(' ').collect::<Vec<_>>());
     let read = |name: &str| fs::read(folder.path().join(name)).unwrap();

@@ -105,7 +105,7 @@ proptest! {
         let fields =
             [&[flags, 0, 0, 1][..], &lengths, &[side, side, 2], &numbers, &[0; 8]].concat();
         let folder = tempfile::tempdir().unwrap();
-        if let Ok(points) = read_points(&save(folder.path(), &forged(1, &fields, &layer)), None) {
+        if let Ok(points) = read_points(save(folder.path(), &forged(1, &fields, &layer)), None) {
             prop_assert_eq!(points.len(), usize::from(count));
             let mut places = points.positions.clone();
             places.dedup();

@@ -19,7 +19,7 @@ use crate::common::Told;
 
 fn written(points: &WeightedPoints, facts: &ModelMetadata, packing: Packing) -> Vec<u8> {
     let mut bytes = Vec::new();
-    let writer = PointWriter::of("m.wvm".as_ref()).unwrap();
+    let writer = PointWriter::of("m.wvm").unwrap();
     writer.write_model(points, facts, &packing, &mut bytes).unwrap();
     bytes
 }
@@ -34,14 +34,14 @@ fn save(folder: &Path, bytes: &[u8]) -> PathBuf {
 fn back(bytes: &[u8], level: u32) -> (WeightedPoints, ModelMetadata) {
     let folder = tempfile::tempdir().unwrap();
     let (points, facts) =
-        read_model(&save(folder.path(), bytes), &PointOptions::default().level(level)).unwrap();
+        read_model(save(folder.path(), bytes), &PointOptions::default().level(level)).unwrap();
     let weighted = WeightedPoints::new(points.positions, points.weights.unwrap()).unwrap();
     (weighted.with_values(points.values).unwrap(), facts)
 }
 
 fn refused(bytes: &[u8]) -> String {
     let folder = tempfile::tempdir().unwrap();
-    read_points(&save(folder.path(), bytes), None).unwrap_err().told()
+    read_points(save(folder.path(), bytes), None).unwrap_err().told()
 }
 
 /// Numbers that look like chance: those of which the kept files are made.
@@ -226,7 +226,7 @@ fn the_first_layers_are_the_most_important_points() {
     );
     assert_eq!(read_model(&path, &PointOptions::default().level(1)).unwrap().0.len(), count / 4);
     fs::write(folder.path().join("m.csv"), "x,y,z\n0,0,0\n").unwrap();
-    let error = read_model(&folder.path().join("m.csv"), &PointOptions::default().level(1))
+    let error = read_model(folder.path().join("m.csv"), &PointOptions::default().level(1))
         .unwrap_err()
         .told();
     assert!(error.contains("no layers") && error.contains("omit `level`"), "{error}");

@@ -1,0 +1,376 @@
+from __future__ import annotations
+
+import json
+from typing import Any, Literal, NamedTuple, TypeAlias
+
+from . import _alpha, _arrays, _walpha
+from ._shape import AlphaShape
+from ._typing import Arrays, Balls, Engine, Floats, Place, Progress, Rule, Samples
+from ._volume import Volume
+from ._work import task
+
+# The share of all voxels that the paper selects.
+_RATIO = 0.0609
+
+Decomposition: TypeAlias = Literal["nonstandard", "standard"]
+
+
+class Selected(NamedTuple):
+    """Points of a volume.
+
+    Attributes
+    ----------
+    points : ndarray of float64, (n, 3)
+        x, y, z, in the order of their voxels.
+    values : ndarray of float64, (n,)
+        The samples there.
+    differences : ndarray of float64, (n,)
+        L, of which weights are made.
+    """
+
+    points: Floats
+    values: Floats
+    differences: Floats
+
+
+def haar(
+    volume: Arrays | Volume,
+    *,
+    rms: float | None = None,
+    epsilon: float | None = None,
+    coefficients: int | None = None,
+    decomposition: Decomposition = "nonstandard",
+    progress: Progress = None,
+    threads: int | None = None,
+) -> tuple[Samples, dict[str, Any]]:
+    """Drop small coefficients of the orthonormal Haar basis.
+
+    Parameters
+    ----------
+    volume : array_like or Volume, (nz, ny, nx)
+        Taken as float32, in whatever unit its values have.
+    rms, epsilon, coefficients : float, float, int; optional
+        One of: the root mean square of the error, in the volume's values (1 by default); its L²
+        norm; how many coefficients stay.
+    decomposition : {"nonstandard", "standard"}
+        All axes at each level, or each axis fully.
+    progress, threads
+        As in :func:`alpha_shape`.
+
+    Returns
+    -------
+    smoothed : ndarray of float32, (nz, ny, nx)
+    truncation : dict
+        kept, total, epsilon and rms reached, and what was asked.
+
+    References
+    ----------
+    E. J. Stollnitz, T. D. DeRose and D. H. Salesin, Wavelets for computer graphics: a primer,
+    IEEE Computer Graphics and Applications 15 (1995), doi:10.1109/38.376616.
+
+    Examples
+    --------
+    >>> smoothed, truncation = walpha.haar(walpha.read("sample:phantom@32"), coefficients=100)
+    >>> truncation["kept"], truncation["total"]
+    (100, 32768)
+    """
+    tolerance = _tolerance(rms, epsilon, coefficients)
+    with task(progress, threads) as how:
+        samples, facts = _walpha.haar(_grid(volume)[0], tolerance, decomposition, how)
+    return samples, json.loads(facts)
+
+
+def difference(volume: Arrays | Volume) -> Floats:
+    """The difference L of each voxel.
+
+    A sixth of the sum of the absolute differences to its six neighbours; a missing neighbour adds 0.
+
+    Parameters
+    ----------
+    volume : array_like or Volume, (nz, ny, nx)
+        Taken as float32.
+
+    Returns
+    -------
+    ndarray of float64, (nz, ny, nx)
+
+    Examples
+    --------
+    >>> walpha.difference(np.arange(3.0).reshape(1, 1, 3))
+    array([[[0.16666667, 0.33333333, 0.16666667]]])
+    """
+    return _walpha.difference(_grid(volume)[0])
+
+
+def select(
+    volume: Arrays | Volume,
+    smoothed: Arrays | Volume | None = None,
+    *,
+    count: int | None = None,
+    ratio: float | None = None,
+    threshold: float | None = None,
+    gray_min: float | None = None,
+    spacing: Place | None = None,
+    origin: Place | None = None,
+) -> Selected:
+    """Select the voxels of the largest differences as points.
+
+    Parameters
+    ----------
+    volume : array_like or Volume, (nz, ny, nx)
+        Gives the values of the points.
+    smoothed : array_like, (nz, ny, nx), optional
+        The truncated volume, which differences and ``gray_min`` are judged on; by default the same.
+    count, ratio, threshold : int, float, float; optional
+        One of: so many voxels; this share of all (0.0609 by default, that of the paper, or all that take
+        part where these are fewer); all of at least this L.
+    gray_min : float, optional
+        Voxels of the smoothed volume below this take no part.
+    spacing : tuple of float, optional
+        Distances between samples along x, y and z. Without, coordinates are indices.
+    origin : tuple of float, optional
+        The place (x, y, z) of the first sample.
+
+    Returns
+    -------
+    Selected
+
+    Raises
+    ------
+    ValueError
+        Volumes of different shapes; options that contradict each other.
+
+    Examples
+    --------
+    >>> volume = np.zeros((3, 5, 7))
+    >>> volume[1, 2, 4] = 1
+    >>> walpha.select(volume, count=1).points
+    array([[4., 2., 1.]])
+    """
+    samples, _, frame = _grid(volume, spacing, origin)
+    judged = samples if smoothed is None else _grid(smoothed)[0]
+    rule = _rule(count, ratio, threshold)
+    return Selected(*_walpha.select(samples, judged, frame, rule, gray_min))
+
+
+def weigh(differences: Arrays, weighting: str = "min-max", *, alpha: float) -> Floats:
+    """Weights ω from differences L.
+
+    Parameters
+    ----------
+    differences : array_like, (n,)
+        L of each point.
+    weighting : str
+        "min-max": α (L − Lmin)/(Lmax − Lmin); "barycentric": α L/ΣL; "barycentric-n": n times that;
+        "common=C": C for all.
+    alpha : float
+        The α, a squared length, that weights are in proportion to.
+
+    Returns
+    -------
+    ndarray of float64, (n,)
+        Squared lengths.
+
+    Raises
+    ------
+    ValueError
+        Another kind of weights.
+
+    Examples
+    --------
+    >>> walpha.weigh([1, 2, 3], "min-max", alpha=10)
+    array([ 0.,  5., 10.])
+    """
+    given = _arrays.column("differences", differences)
+    return _walpha.weigh(given, weighting, _alpha.squared(alpha, None, ""))
+
+
+def pipeline(
+    volume: Arrays | Volume,
+    *,
+    spacing: Place | None = None,
+    origin: Place | None = None,
+    nan: float | None = None,
+    gray: tuple[float, float] | None = None,
+    rms: float | None = None,
+    epsilon: float | None = None,
+    coefficients: int | None = None,
+    decomposition: Decomposition = "nonstandard",
+    count: int | None = None,
+    ratio: float | None = None,
+    threshold: float | None = None,
+    gray_min: float | None = None,
+    value_min: float | None = None,
+    select: Literal["difference", "adaptive"] = "difference",
+    target_rmse: float | None = None,
+    max_error: float | None = None,
+    exchange: bool = False,
+    weighting: str = "common=0",
+    alpha: float | Rule | None = None,
+    alpha_radius: float | None = None,
+    engine: Engine = "auto",
+    balls: Balls = "power",
+    exterior: bool = False,
+    hidden: bool = False,
+    refit: Literal["whole", "shape"] | None = None,
+    progress: Progress = None,
+    threads: int | None = None,
+) -> AlphaShape:
+    """From a volume to its alpha shape: truncation, selection, weights, shape.
+
+    Parameters
+    ----------
+    volume : array_like or Volume, (nz, ny, nx)
+        ``[z, y, x]``, as scikit-image has it. Unsigned bytes are gray levels; anything else is
+        mapped to gray levels 0 to 255 from its minimum to its maximum, or from ``gray``.
+    spacing : tuple of float, optional
+        Distances between samples along x, y and z. Without, and for a :class:`Volume` without a
+        unit, coordinates are indices (voxels).
+    origin : tuple of float, optional
+        The place (x, y, z) of the first sample.
+    nan : float, optional
+        What replaces samples that are NaN or infinite, an error otherwise. NaN masks them: they become no points and
+        have no error.
+    gray : tuple of float, optional
+        The values that become gray 0 and 255: the window.
+    rms, epsilon, coefficients, decomposition
+        As in :func:`haar`, in gray levels.
+    count, ratio, threshold, gray_min
+        As in :func:`select`, in gray levels.
+    value_min : float, optional
+        Instead of ``gray_min``: voxels below this value of the volume take no part.
+    select : {"difference", "adaptive"}
+        Which voxels become points: those of the largest differences, or those where the interpolant
+        of the ones before is worst, on the whole triangulation, after Garland and Heckbert
+        (CMU-CS-95-181, 1995), with ``count`` or ``ratio``, the corners of the volume among them. The
+        parameters below are for these.
+    target_rmse : float, optional
+        End as soon as the root mean square of the error is so small, in gray levels.
+    max_error : float, optional
+        Choose by the largest error until no sample is off by more, in gray levels. Not with ``exchange``.
+    exchange : bool
+        Then exchange points whose loss costs little for voxels that lower the error of fitted values;
+        for use with ``refit``.
+    weighting : str
+        As in :func:`weigh`.
+    alpha : float, "auto" or "auto:connected", optional
+        A squared length; by default 10 h², h³ being the volume of a voxel. The rules are those of
+        :func:`alpha_shape`.
+    alpha_radius, engine, balls, exterior, hidden, progress, threads
+        As in :func:`alpha_shape`.
+    refit : {"whole", "shape"}, optional
+        Fit the values of the points to the volume by least squares: to all its samples, interpolated on
+        the whole triangulation of the points and the corners of the volume, or to those that the shape
+        covers.
+
+    Returns
+    -------
+    AlphaShape
+        Its points are (x, y, z), their values those of the volume, or fitted.
+
+    Raises
+    ------
+    ValueError
+        Samples that are not finite; options that contradict each other.
+    MemoryError
+        The system gives no more.
+
+    Examples
+    --------
+    >>> shape = walpha.pipeline(walpha.read("sample:phantom@32"), weighting="min-max")
+    >>> shape.betti.b0
+    1
+    """
+    samples, is_gray, frame = _grid(volume, spacing, origin)
+    tolerance = _tolerance(rms, epsilon, coefficients)
+    rule = _rule(count, ratio, threshold)
+    adaptive = _adaptive(samples.size, select, count, ratio, target_rmse, max_error, exchange)
+    if gray_min is not None and value_min is not None:
+        raise ValueError("gray_min and value_min are one bound in two units: give one")
+    if adaptive is not None and not threshold is gray_min is value_min is None:
+        raise ValueError(
+            "threshold, gray_min and value_min choose by levels, which select='adaptive' does not: give a count"
+        )
+    with task(progress, threads) as how:
+        shape = _walpha.pipeline(
+            samples,
+            is_gray,
+            nan,
+            None if gray is None else _window(gray),
+            frame,
+            (tolerance, decomposition),
+            rule,
+            (gray_min, value_min),
+            adaptive,
+            weighting,
+            _alpha.rule(alpha, alpha_radius),
+            (engine, balls, exterior, hidden),
+            refit,
+            how,
+        )
+    return AlphaShape._of(shape)
+
+
+def _window(gray: tuple[float, float]) -> tuple[float, float]:
+    low, high = map(float, gray)
+    return low, high
+
+
+def _adaptive(
+    samples: int,
+    select: str,
+    count: int | None,
+    ratio: float | None,
+    target_rmse: float | None,
+    max_error: float | None,
+    exchange: bool,
+) -> tuple[int, float, float | None, bool] | None:
+    """How many voxels at most, the errors that are good enough, and whether points are exchanged."""
+    if select == "difference":
+        if target_rmse is not None or max_error is not None or exchange:
+            raise ValueError("target_rmse, max_error and exchange belong to select='adaptive'")
+        return None
+    if select != "adaptive":
+        raise ValueError(f"select={select!r} is unknown: 'difference' and 'adaptive' are known")
+    if exchange and max_error is not None:
+        raise ValueError("exchange=True may raise the largest error: leave max_error out")
+    if count is None and ratio is None and (target_rmse is not None or max_error is not None):
+        count = samples
+    elif count is None:
+        count = round((_RATIO if ratio is None else ratio) * samples)
+    optional = None if max_error is None else float(max_error)
+    return int(count), float(target_rmse or 0), optional, bool(exchange)
+
+
+def _grid(
+    volume: Arrays | Volume, spacing: Place | None = None, origin: Place | None = None
+) -> tuple[Samples, bool, str | None]:
+    """Samples, whether they are gray levels, and the frame as the library reads it."""
+    if isinstance(volume, Volume):
+        if spacing is not None or origin is not None:
+            raise ValueError("this volume has its own spacing and origin: give volume.samples to say others")
+        return volume.samples, bool(volume.gray), volume._frame()
+    samples, gray = _arrays.samples(volume)
+    if spacing is None:
+        if origin is not None:
+            raise ValueError("origin is in units of length: give spacing, too")
+        return samples, gray, None
+    placed = Volume(samples, spacing, (0.0, 0.0, 0.0) if origin is None else origin)
+    return samples, gray, placed._frame()
+
+
+def _tolerance(
+    rms: float | None, epsilon: float | None, coefficients: int | None
+) -> tuple[str, float]:
+    return _one_of({"rms": rms, "epsilon": epsilon, "coefficients": coefficients}, ("rms", 1.0))
+
+
+def _rule(count: int | None, ratio: float | None, threshold: float | None) -> tuple[str, float]:
+    return _one_of({"count": count, "ratio": ratio, "threshold": threshold}, ("at_most", _RATIO))
+
+
+def _one_of(options: dict[str, float | None], default: tuple[str, float]) -> tuple[str, float]:
+    given = [(name, float(value)) for name, value in options.items() if value is not None]
+    if len(given) > 1:
+        raise ValueError(f"{' and '.join(name for name, _ in given)} contradict each other: give one")
+    return given[0] if given else default

@@ -1,0 +1,125 @@
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _arrays, _walpha
+from ._typing import Floats, Indices
+
+
+class Simplices:
+    """Every simplex of a filtration, and when it comes.
+
+    Simplices have *numbers*: vertices first, then edges, facets, cells, those of one dimension in
+    lexicographic order of their vertices. All arrays but those of vertices are by these numbers.
+
+    Attributes
+    ----------
+    vertices, edges, facets, cells : ndarray of int64, (m,) to (m, 4)
+        Input indices, ascending in each row.
+    values : ndarray of float64, (n,)
+        The α, squared lengths, from which on each is in the shape: the double nearest to the exact number.
+    ranks : ndarray of int64, (n,)
+        The place of the exact number among all that are different, from 0: equal for equal numbers
+        only, even where two different ones have one nearest double.
+    gabriel : ndarray of bool, (n,)
+        Whether its own smallest orthogonal sphere is empty; else it comes with a simplex it is a face of.
+    regular, interior : ndarray of float64, (n,)
+        From which α on it is a face of another simplex of the shape, and off the boundary.
+    order : ndarray of int64, (n,)
+        Numbers in the order in which simplices come: by exact value, dimension, vertices. Faces come
+        before what they are faces of.
+    component_pairs, void_pairs : ndarray of int64, (k, 2)
+        Persistence pairs of dimensions 0 and 2 as numbers: what makes a component or shuts a void in, and
+        what ends it. Those that last no time are there too.
+    lasting : tuple of ndarray of int64
+        What begins something that never ends, by dimension 0, 2 and 3; of a torus 1, 3 and 1.
+    """
+
+    vertices: Indices
+    edges: Indices
+    facets: Indices
+    cells: Indices
+    values: Floats
+    ranks: Indices
+    gabriel: NDArray[np.bool_]
+    regular: Floats
+    interior: Floats
+    order: Indices
+    component_pairs: Indices
+    void_pairs: Indices
+    lasting: tuple[Indices, Indices, Indices]
+
+    def __init__(self) -> None:
+        raise TypeError("Simplices are made by walpha.filtration(points).simplices()")
+
+    @classmethod
+    def _of(cls, given: _walpha.Simplices) -> Simplices:
+        made = cls.__new__(cls)
+        made.vertices = _arrays.kept(given.vertices[:, 0])
+        made.edges, made.facets = _arrays.kept(given.edges), _arrays.kept(given.facets)
+        made.cells = _arrays.kept(given.cells)
+        made.values, made.regular, made.interior = given.intervals.T
+        made.ranks, made.gabriel = _arrays.kept(given.ranks), given.gabriel
+        made.order = _arrays.kept(given.order)
+        made.component_pairs = _arrays.kept(given.component_pairs)
+        made.void_pairs = _arrays.kept(given.void_pairs)
+        components, voids, last = (np.array(numbers, np.int64) for numbers in given.lasting)
+        made.lasting = components, voids, last
+        return made
+
+    def __len__(self) -> int:
+        return len(self.values)
+
+    def __iter__(self) -> Iterator[tuple[tuple[int, ...], float]]:
+        """Pairs in order: a tuple of vertices, and the value."""
+        rows = [row for table in self._tables() for row in table.tolist()]
+        for number in self.order.tolist():
+            yield tuple(rows[number]), float(self.values[number])
+
+    def __repr__(self) -> str:
+        counts = ", ".join(str(len(table)) for table in self._tables())
+        return f"<walpha.Simplices {counts} vertices, edges, facets, cells>"
+
+    def persistence(self, dimension: Literal[0, 2]) -> Floats:
+        """Intervals of dimension 0 or 2 that last some time.
+
+        Parameters
+        ----------
+        dimension : {0, 2}
+            Components or voids. Loops take a reduction of matrices: see :meth:`Filtration.simplex_tree`.
+
+        Returns
+        -------
+        ndarray of float64, (k, 2)
+            Values of birth and death, in order of death for 0 and of birth for 2; what never ends is
+            last and has inf.
+
+        Raises
+        ------
+        ValueError
+            Another dimension.
+
+        Examples
+        --------
+        Two points meet where their balls do, at the square of half their distance:
+
+        >>> walpha.filtration([[0, 0, 0], [2, 0, 0], [9, 0, 0]]).simplices().persistence(0)
+        array([[ 0.  ,  1.  ],
+               [ 0.  , 12.25],
+               [ 0.  ,   inf]])
+        """
+        if dimension not in (0, 2):
+            raise ValueError(f"dimension={dimension}: pairs are known of 0 and 2; see simplex_tree()")
+        pairs = self.component_pairs if dimension == 0 else self.void_pairs
+        lasting = self.lasting[0 if dimension == 0 else 1]
+        pairs = pairs[self.ranks[pairs[:, 0]] != self.ranks[pairs[:, 1]]]
+        never = np.column_stack([self.values[lasting], np.full(len(lasting), np.inf)])
+        return np.vstack([self.values[pairs], never])
+
+    def _tables(self) -> tuple[Indices, Indices, Indices, Indices]:
+        """Rows of each dimension."""
+        return self.vertices[:, None], self.edges, self.facets, self.cells

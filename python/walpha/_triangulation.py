@@ -1,0 +1,158 @@
+from __future__ import annotations
+
+from typing import Any
+
+from . import _arrays, _walpha
+from ._typing import Arrays, Floats, Indices, Progress
+from ._work import task
+
+
+class Triangulation:
+    """The regular triangulation of weighted points, Delaunay's where weights are equal.
+
+    Made by :func:`triangulation`. Names and layout are those of ``scipy.spatial.Delaunay``. It does not change: its
+    arrays cannot be written to.
+
+    Notes
+    -----
+    Points on one sphere are triangulated as CGAL does, whatever their order. Cells are positively oriented: their
+    determinant is positive, exactly. A pickle holds points and weights, and loading it triangulates them again.
+
+    Examples
+    --------
+    >>> walpha.triangulation([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 1]])
+    <walpha.Triangulation of 5 points: 2 cells, 0 hidden, 0 duplicates>
+    """
+
+    _triangulation: _walpha.Triangulation
+
+    #: ndarray of float64, (n, 3): the points as given.
+    points: Floats
+    #: ndarray of float64, (n,): the weights ω, squared lengths.
+    weights: Floats
+    #: ndarray of int64, (m, 4): the cells, rows of input indices.
+    simplices: Indices
+    #: ndarray of int64, (m, 4): column k is the cell across the facet opposite vertex k; −1 where that is on the hull.
+    neighbors: Indices
+    #: ndarray of int64, (k, 3): the facets of the convex hull, counter-clockwise seen from outside.
+    convex_hull: Indices
+    #: ndarray of int64, (k,): points that heavier ones near them make redundant, which are on no cell.
+    hidden: Indices
+    #: ndarray of int64, (k, 2): a point that went, and the one at its place that stayed, the heaviest or first;
+    #: columns 0 and 2 of scipy's ``coplanar``.
+    duplicates: Indices
+
+    def __init__(self) -> None:
+        raise TypeError("a Triangulation is made by walpha.triangulation(points)")
+
+    @classmethod
+    def _of(cls, given: _walpha.Triangulation) -> Triangulation:
+        made = cls.__new__(cls)
+        made._triangulation = given
+        made.points, made.weights = given.points, given.weights
+        made.simplices, made.neighbors = given.simplices, given.neighbors
+        made.convex_hull = given.convex_hull
+        made.hidden, made.duplicates = given.hidden, given.duplicates
+        return made
+
+    def find_simplex(
+        self, xi: Arrays, *, progress: Progress = None, threads: int | None = None
+    ) -> Indices:
+        """The cells that hold places.
+
+        Parameters
+        ----------
+        xi : array_like, (..., 3)
+            x, y, z.
+        progress, threads
+            As in :func:`alpha_shape`.
+
+        Returns
+        -------
+        ndarray of int64, (...)
+            Numbers of rows of :attr:`simplices`, which are closed, decided exactly: of a place on a facet
+            one of the two. −1 outside the hull, and for NaN.
+
+        Notes
+        -----
+        A walk from cell to cell, along a Hilbert curve through the places. O(n) once for each call, so ask for many
+        places at a time.
+
+        Examples
+        --------
+        >>> corners = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
+        >>> walpha.triangulation(corners).find_simplex([[0.1, 0.1, 0.1], [1, 1, 1]])
+        array([ 0, -1])
+        """
+        places = _arrays.numbers("xi", xi)
+        if places.ndim < 1 or places.shape[-1] != 3:
+            raise ValueError(f"xi has shape {places.shape}, expected (..., 3): x, y, z of each place")
+        with task(progress, threads) as how:
+            found = self._triangulation.find(_arrays.points(places.reshape(-1, 3), "xi"), how)
+        return found.reshape(places.shape[:-1])
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return triangulation, (self.points, self.weights)
+
+    def __copy__(self) -> Triangulation:
+        return self
+
+    def __deepcopy__(self, memo: object) -> Triangulation:
+        return self
+
+    def __repr__(self) -> str:
+        return (
+            f"<walpha.Triangulation of {len(self.points)} points: {len(self.simplices)} cells, "
+            f"{len(self.hidden)} hidden, {len(self.duplicates)} duplicates>"
+        )
+
+
+def triangulation(
+    points: Arrays,
+    weights: Arrays | None = None,
+    *,
+    progress: Progress = None,
+    threads: int | None = None,
+) -> Triangulation:
+    """The regular triangulation of weighted points.
+
+    No point has a power below 0 to the orthogonal sphere of a cell. Every decision is exact.
+
+    Parameters
+    ----------
+    points : array_like, (n, 3)
+        As in :func:`alpha_shape`; they must span a volume.
+    weights : array_like, (n,), optional
+        ω, squared lengths. By default 0: the Delaunay triangulation.
+    progress, threads
+        As in :func:`alpha_shape`.
+
+    Returns
+    -------
+    Triangulation
+
+    Raises
+    ------
+    ValueError
+        Points that span no volume; numbers that are NaN, infinite or absurd.
+    MemoryError
+        The system gives no more.
+
+    References
+    ----------
+    F. Aurenhammer, Power diagrams: properties, algorithms and applications, SIAM Journal on Computing 16 (1987),
+    doi:10.1137/0216006.
+
+    Examples
+    --------
+    >>> made = walpha.triangulation([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 1]])
+    >>> made.simplices.shape, made.convex_hull.shape
+    ((2, 4), (6, 3))
+    >>> made.neighbors.max(axis=1)
+    array([1, 0])
+    """
+    with task(progress, threads) as how:
+        given = _walpha.Triangulation(
+            _arrays.points(points), _arrays.optional("weights", weights), how
+        )
+    return Triangulation._of(given)
