@@ -7,7 +7,7 @@ use std::sync::mpsc::{RecvTimeoutError, sync_channel};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use pyo3::exceptions::{PyMemoryError, PyOSError};
+use pyo3::exceptions::PyMemoryError;
 use pyo3::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use walpha::progress::Monitor;
@@ -47,11 +47,13 @@ where
     let threads = pool(&call, *threads)?;
     let (sender, mut receiver) = sync_channel(1);
     let mut starved = None;
-    thread::Builder::new().name("walpha".into()).spawn(move || {
+    let waiting = thread::Builder::new().name("walpha".into());
+    let started = waiting.spawn(move || {
         let outcome = catch_unwind(AssertUnwindSafe(|| threads.install(|| work(call.monitor()))));
         // Nobody waits after an interrupt.
         let _ = sender.send(outcome);
-    })?;
+    });
+    started.map_err(|_| no_threads())?;
     loop {
         // A receiver may be sent to where Python is not, but not lent.
         let (back, received) = py.detach(move || {
@@ -97,8 +99,7 @@ fn pool(call: &Arc<Call>, asked: Option<NonZeroUsize>) -> PyResult<ThreadPool> {
     let available = threads::available(threads::wanted(asked.map(NonZeroUsize::get)) + 1, STACK)
         .saturating_sub(1);
     if available == 0 {
-        let text = "no threads to work in: memory, or the number of processes, is limited too much";
-        return Err(PyMemoryError::new_err(text));
+        return Err(no_threads());
     }
     ThreadPoolBuilder::new()
         .num_threads(available)
@@ -106,7 +107,14 @@ fn pool(call: &Arc<Call>, asked: Option<NonZeroUsize>) -> PyResult<ThreadPool> {
         .stack_size(STACK)
         .start_handler(move |_| Arc::clone(&call).enter())
         .build()
-        .map_err(|error| PyOSError::new_err(format!("no threads to work in: {error}")))
+        .map_err(|_| no_threads())
+}
+
+/// What was free when threads were counted may be gone when they start.
+fn no_threads() -> PyErr {
+    PyMemoryError::new_err(
+        "no threads to work in: memory, or the number of processes, is limited too much",
+    )
 }
 
 /// Stops the work of a call when nobody waits for it any more.
