@@ -1,8 +1,6 @@
 //! From a volume to a mesh: `cargo run --release --example pipeline -- ct.nii.gz ct.ply`.
 
-use std::path::Path;
-
-use walpha::export::{ExportOptions, Format, Target};
+use walpha::export::Save;
 use walpha::volume::{ReadOptions, open};
 use walpha::{Alpha, Recipe, Weighting};
 
@@ -15,8 +13,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let model = recipe.run(volume)?;
 
     let shape = model.shape;
-    let exporter = Format::of(Path::new(&output))?.exporter(&ExportOptions::default());
-    Target::open(Path::new(&output))?.write(|out| exporter.write(&shape, out))?;
+    shape.save(&output)?;
     println!("{} points, {}", shape.points().len(), model.parameter);
     println!("{output}: {:?}, volume {}", shape.betti(), shape.measures().volume);
     Ok(())
