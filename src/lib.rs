@@ -34,7 +34,7 @@
 //! | `gmp` | yes | CGAL computes with GMP and MPFR where they are installed |
 //! | `formats` | yes | readers and writers of volumes beyond NPY, NPZ, raw samples, pictures and INRIMAGE |
 //! | `render` | yes | pictures, charts and the interactive page: the module `render` |
-//! | `paper` | yes | the paper's figures and its table: the module `reproduce` |
+//! | `paper` | yes | `walpha reproduce`: the paper's figures and its table |
 //! | `cli` | yes | the command `walpha`; libraries leave it out |
 //! | `dicom` | no | DICOM series |
 //! | `las` | no | LAS and LAZ |
@@ -59,6 +59,7 @@ pub mod pipeline;
 pub mod points;
 pub mod progress;
 #[cfg(feature = "paper")]
+#[doc(hidden)] // Of the command: not covered by semantic versioning.
 pub mod reproduce;
 mod select;
 pub mod shape;

@@ -60,7 +60,8 @@ pub use vtp::Vtp;
 pub(crate) use vtp::{Membership, write_surface};
 pub use vtu::Vtu;
 pub(crate) use vtu::{PointData, Provenance, write_grid};
-pub use walpha_files::{
-    Content, Filled, NewFolder, Scratch, Target, TargetError, put_all, sweep, write_all,
-};
+pub use walpha_files::{Target, TargetError};
+// For the command and for Python: not covered by semantic versioning.
+#[doc(hidden)]
+pub use walpha_files::{Content, Filled, NewFolder, Scratch, put_all, sweep, write_all};
 pub use wkt::Wkt;

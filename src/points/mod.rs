@@ -37,8 +37,10 @@ mod wvm;
 
 pub use crate::shape::{WeightSummary, WeightedPoints};
 pub use cell_count::CellCount;
-pub use difference::scattered_difference;
-pub use difference::{difference, difference_row};
+pub use difference::{difference, scattered_difference};
+// For the paper's Table 1: not covered by semantic versioning.
+#[doc(hidden)]
+pub use difference::difference_row;
 pub use error::PointsError;
 pub use focus::{Region, focus};
 pub use formats::{FORMATS, PointFormat, PointWriter};

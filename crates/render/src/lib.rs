@@ -1,5 +1,5 @@
 //! Pictures. A scene of triangles, balls and tubes becomes a [`Picture`]; pictures and
-//! vector [`Drawing`]s become a [`Figure`] with panels, labels and a colour bar.
+//! vector drawings become a [`Figure`] with panels, labels and a colour bar.
 //!
 //! Every picture is a function of its description alone: the same bytes on any number of threads
 //! and in each run. In the three-dimensional part nothing but + − × ÷ √ touches a pixel, which
@@ -41,16 +41,18 @@ mod view;
 pub use charts::{RateCurve, ladder_figure, rate_figure};
 pub use colour::{ColourMap, PALETTE, Rgb};
 pub use error::RenderError;
-pub use figure::{ColourBar, Content, Drawing, Figure, Panel, Pen, Step};
+pub use figure::Figure;
 pub use marching::Isosurface;
 pub use pixels::{Picture, Size};
 pub use scene::{Background, Ball, Camera, Colours, Mesh, Projection, Scene, Shading, Tube, View};
 pub use shape::{Colouring, ShapeStyle, class_colours, plain_colours};
 pub use view::{Detail, Differences, Original, Page, Subject};
 
-// For the report of walpha: not covered by semantic versioning.
+// For the figures and the report of walpha: not covered by semantic versioning.
 #[doc(hidden)]
 pub use base64::base64;
+#[doc(hidden)]
+pub use figure::{ColourBar, Content, Drawing, Panel, Pen, Step};
 
 /// The example in the README runs.
 #[cfg(doctest)]

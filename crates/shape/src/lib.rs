@@ -64,7 +64,6 @@ pub use sheets::Sheets;
 pub use solid::Cuts;
 pub use sums::{Component, Enclosed};
 pub use surface::Surface;
-pub use topology::direct_betti;
 pub use voids::Void;
 pub use walpha_base::{Cancelled, Coordinates, LengthUnit, Monitor, Space};
 pub use walpha_complex::{Alpha, AlphaError, ByClass, Class, Complex, Placed, Simplices};
@@ -81,6 +80,8 @@ pub use complement::between;
 pub use measure::{facet_area, six_volumes};
 #[doc(hidden)]
 pub use sums::{ComponentSums, SheetSums, components_of_sums};
+#[doc(hidden)]
+pub use topology::direct_betti;
 #[doc(hidden)]
 pub use voids::Hollow;
 #[doc(hidden)]
