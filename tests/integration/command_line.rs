@@ -419,8 +419,9 @@ fn presets_are_options() {
     fs::write(f.join("own.toml"), "threshold = 60\n").unwrap();
     let both = shape(&["--config", "own.toml", "--preset", "ct-bone"]);
     assert_eq!(both, shape(&["--preset", "ct-bone", "--threshold", "60"]));
-    let warned = run(f, &["points", "sample:ct"]).2;
+    let warned = run(f, &["points", "sample:ct", "-o", "of bone.csv"]).2;
     assert!(warned.contains("--gray 0..1000") && warned.contains("ct-bone"), "{warned}");
+    assert!(warned.contains("walpha points sample:ct -o 'of bone.csv' --gray"), "{warned}");
     let printed = ok(f, &["shape", "--preset", "paper", "--print-config"]);
     assert!(printed.contains("weights = \"min-max\"") && !printed.contains("preset"), "{printed}");
     let paper = json(f, &["points", "sample:phantom", "--preset", "paper"]);

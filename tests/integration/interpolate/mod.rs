@@ -4,7 +4,7 @@ mod command;
 
 use ndarray::Array3;
 use proptest::prelude::*;
-use walpha::interpolate::{Grid, Interpolant, InterpolateError};
+use walpha::interpolate::{Deviation, Grid, Interpolant, InterpolateError, fill};
 use walpha::points::{difference, select, weigh};
 use walpha::shape::ShapeOptions;
 use walpha::{
@@ -82,6 +82,47 @@ fn what_has_no_values_has_no_interpolant() {
     let points = points.with_values(None).unwrap();
     let error = Interpolant::new(&shape(points, 10.0)).unwrap_err();
     assert!(matches!(error, InterpolateError::NoValues), "{error}");
+}
+
+/// In a tilted frame the coordinates of samples are rounded: on the sides of the volume many are outside of the hull of
+/// its corners by that, and would have no value.
+#[test]
+fn samples_of_tilted_and_mirrored_volumes_are_located_by_index() {
+    for mirror in [1.0, -1.0] {
+        let frame = Frame {
+            origin: [-3.7, 14.1, 0.3],
+            spacing: [0.4883, 0.4883, 0.625],
+            direction: [[0.8, -0.6, 0.0], [0.6, 0.8, 0.0], [0.0, 0.0, mirror]],
+            coordinates: Coordinates::default(),
+        };
+        let volume = phantom(12).with_frame(frame);
+        let selection = Selection::default().rule(SelectionRule::Count(150));
+        let points = select(&volume, &volume, &difference(&volume), &selection, Units::World);
+        let alpha = Alpha::from_squared(1.0).unwrap();
+        let weighted = weigh(points.unwrap(), Weighting::Common(0.0), alpha).unwrap();
+        let shape = shape(weighted, 1.0);
+        let whole = fill(&shape, Some(&volume), Units::World).unwrap();
+        let interpolant = Interpolant::new(&whole).unwrap();
+        let grid = Grid::of(&volume, Units::World);
+        let resampled = interpolant.resample(&grid).unwrap();
+        assert_eq!(resampled.covered(), volume.dims().samples(), "mirrored: {mirror}");
+        assert_eq!(resampled.volume().frame(), &frame);
+        let mut alone = 0;
+        for (sample, &ours) in resampled.volume().as_slice().iter().enumerate() {
+            let place = grid.position([sample % 12, sample / 12 % 12, sample / 144]);
+            if let Some(value) = interpolant.value_at(place) {
+                assert!((value - f64::from(ours)).abs() < 1e-4, "{value}, {ours} at {place:?}");
+                alone += 1;
+            }
+        }
+        assert!((900..1728).contains(&alone), "{alone}");
+        // Finer grids, too, and the sums around the points.
+        let finer = Grid::over(&volume, Dims::new(23, 23, 23).unwrap(), Units::World);
+        assert_eq!(interpolant.resample(&finer).unwrap().covered(), 23 * 23 * 23);
+        let local = interpolant.local_deviations(&volume, &grid, &resampled);
+        let rmse = Deviation::of(&volume, &resampled).rmse.unwrap();
+        assert!(local.iter().any(|&difference| difference > rmse) && local[..150].contains(&0.0));
+    }
 }
 
 proptest! {

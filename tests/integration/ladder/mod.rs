@@ -174,6 +174,24 @@ proptest! {
             prop_assert_eq!(curve.solid_components[k], solid_components(&shape));
         }
     }
+
+    /// A coarse curve is part of it: the last simplex has entered, and what is said of each α holds.
+    #[test]
+    fn a_coarse_curve_is_true(points in lattice(), most in 2..9usize) {
+        let filtration = Filtration::new(points.clone()).unwrap();
+        let (all, some) = (filtration.curve(), filtration.coarse_curve(most));
+        prop_assert!((2..=most).contains(&some.len()) || all.len() < 2);
+        prop_assert_eq!(some.betti.last(), all.betti.last());
+        for (k, alpha) in some.alphas().enumerate() {
+            let shape = one_by_one(&points, self::alpha(alpha), true, Engine::Native);
+            prop_assert_eq!(Some(some.betti[k]), shape.betti());
+        }
+        let suggested = filtration.suggest(&some);
+        prop_assert!(suggested.all_points >= filtration.suggest(&all).all_points);
+        for alpha in filtration.stops(&some, 6) {
+            prop_assert!(some.alphas().any(|value| value == alpha.squared()));
+        }
+    }
 }
 
 /// Below α = 2 the square between them opens, and nothing else does, so that the larger is joined to the

@@ -1,8 +1,9 @@
 //! `--periodic` on the command line, and the exact checker on complexes of a torus.
 
+use walpha::AlphaShape;
 use walpha::check::schema::{ComplexFile, PlacedComplex};
 use walpha::check::{CertifyError, Finding, NotJudged};
-use walpha::export::{Exporter, Json, Npz};
+use walpha::export::{ExportOptions, Exporter, Format, Json, Npz, Save, SaveError};
 use walpha::shape::{Class, placed_complex};
 
 use super::{BCC, CUBIC, WeightedPoints, alpha_shape, crystal, dense, options, sets, shape};
@@ -127,6 +128,28 @@ fn what_is_wrong_on_a_torus_is_found() {
             Finding::LongEdge { .. } | Finding::MissingFace { .. }
         ))
     );
+}
+
+/// A format that has no torus gets the shape laid out in space, however it is written.
+#[test]
+fn files_of_other_formats_hold_the_shape_in_space() {
+    let (points, sides) = dense(1);
+    let shape = shape(&points, sides, 0.3).unwrap();
+    let off = Format::of("shape.off").unwrap().exporter(&ExportOptions::default());
+    let write = |shape: &AlphaShape| {
+        let mut bytes = Vec::new();
+        off.write(shape, &mut bytes).unwrap();
+        bytes
+    };
+    assert_eq!(write(&shape), write(&shape.unwrapped()));
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("shape.off");
+    shape.save(&path).unwrap();
+    assert_eq!(std::fs::read(&path).unwrap(), write(&shape));
+    let error = shape.save(folder.path().join("shape.offf")).unwrap_err();
+    assert!(matches!(error, SaveError::Format(_)), "{error}");
+    assert!(shape.save(folder.path().join("none").join("shape.off")).is_err());
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
 }
 
 #[test]
