@@ -208,11 +208,13 @@ fn examples_of_help_work() {
     let folder = tempfile::tempdir().expect("a folder");
     let folder = folder.path();
     reader_files(folder);
-    // What the text above the examples of `compare` says how to make.
-    let shape = ["shape", "sample:phantom@16", "--weights", "min-max", "-o"];
-    ok(folder, &[&shape[..], &["skull.json", "theirs.json"]].concat());
-    ok(folder, &[&shape[..], &["cgal.npz", "--engine", "cgal"]].concat());
     for command in COMMANDS {
+        if command == "compare" {
+            // What the text above its examples says how to make.
+            let shape = ["shape", "sample:phantom@16", "--weights", "min-max", "-o"];
+            ok(folder, &[&shape[..], &["skull.json", "theirs.json"]].concat());
+            ok(folder, &[&shape[..], &["cgal.npz", "--engine", "cgal"]].concat());
+        }
         let examples = examples(&ok(folder, &[command, "--help"]));
         assert!(!examples.is_empty(), "{command} has examples");
         for example in examples.iter().filter(|example| is_run_here(example)) {

@@ -40,18 +40,19 @@ fn noise(seed: u32, holes: bool) -> Volume {
     read(file.path(), &options).unwrap().with_frame(frame)
 }
 
-/// Σₛ φᵥ(s) (f(s) − F(s)) over the samples on a shape.
+/// Σₛ φᵥ(s) (f(s) − F(s)) over the samples on a shape, to the precision of `f32`. These are the samples that a grid finds: by
+/// their indices, and not by coordinates of the world that are rounded.
 fn gradient(shape: &AlphaShape, values: &[f64], volume: &Volume, units: Units, v: usize) -> f64 {
     let grid = Grid::of(volume, units);
-    let [nx, ny, _] = volume.dims().xyz();
     let mut hat = vec![0.0; values.len()];
     hat[v] = 1.0;
-    let f = Interpolant::with_values(shape, values).unwrap();
-    let hat = Interpolant::with_values(shape, &hat).unwrap();
+    let on_grid =
+        |values: &[f64]| Interpolant::with_values(shape, values).unwrap().resample(&grid).unwrap();
+    let (f, hat) = (on_grid(values), on_grid(&hat));
     let term = |i: usize| {
-        let place = grid.position([i % nx, i / nx % ny, i / (nx * ny)]);
-        let error = f64::from(volume.as_slice()[i]) - f.value_at(place)?;
-        (!volume.is_missing(i)).then_some(hat.value_at(place)? * error)
+        let error = f64::from(volume.as_slice()[i]) - f64::from(f.volume().as_slice()[i]);
+        let counts = f.is_inside(i) && !volume.is_missing(i);
+        counts.then(|| f64::from(hat.volume().as_slice()[i]) * error)
     };
     (0..volume.dims().samples()).filter_map(term).sum()
 }
@@ -82,7 +83,7 @@ proptest! {
         };
         let first = norm(&before);
         prop_assert!(first > 1.0 || !whole, "{first}");
-        prop_assert!(norm(&fitted.values) <= 2e-6 * first + 1e-9, "{} {first}", norm(&fitted.values));
+        prop_assert!(norm(&fitted.values) <= 2e-6 * first + 1e-3, "{} {first}", norm(&fitted.values));
     }
 }
 
