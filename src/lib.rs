@@ -59,7 +59,6 @@ pub mod pipeline;
 pub mod points;
 pub mod progress;
 #[cfg(feature = "paper")]
-#[doc(hidden)] // Of the command: not covered by semantic versioning.
 pub mod reproduce;
 mod select;
 pub mod shape;
