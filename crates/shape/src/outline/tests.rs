@@ -79,7 +79,7 @@ fn summary(outline: &Outline, places: &[Place]) -> Vec<(usize, f64)> {
 fn a_square_with_a_hole() {
     let places = lattice(6, |x, y| (2..4).contains(&x) && (2..4).contains(&y));
     let made = shape(flat(&places), 0.5);
-    let outline = made.outline().unwrap();
+    let outline = made.outline().cloned().unwrap();
     assert_eq!((outline.area, outline.perimeter), (18.0, 24.0 + 4.0 * 2f64.sqrt()));
     assert_eq!(summary(&outline, &places), [(1, 18.0)]);
     let Polygon { outer, holes } = &outline.polygons[0];
@@ -107,7 +107,7 @@ fn edges_and_points_beside_polygons() {
     for exterior in [false, true] {
         let points = WeightedPoints::unweighted(flat(&places));
         let made = alpha_shape(points, &options.exterior(exterior)).unwrap();
-        let outline = made.outline().unwrap();
+        let outline = made.outline().cloned().unwrap();
         assert_eq!(outline.polygons, [Polygon { outer: vec![0, 1, 2], holes: vec![] }]);
         assert_eq!(outline.edges, [[1, 3], [3, 5]]);
         assert_eq!(outline.points, [4]);
@@ -129,7 +129,7 @@ fn two_squares_that_touch_at_one_vertex() {
     let left = [[0.0, 0.0], [-1.0, 1.0], [-2.0, 0.0], [-1.0, -1.0], [-1.0, 0.0]];
     let right = left[1..].iter().map(|[x, y]| [-x, *y]);
     let places: Vec<Place> = left.into_iter().chain(right).collect();
-    let outline = shape(flat(&places), 0.5).outline().unwrap();
+    let outline = shape(flat(&places), 0.5).outline().cloned().unwrap();
     assert_eq!(summary(&outline, &places), [(0, 2.0), (0, 2.0)]);
     assert_eq!(outline.polygons[0].outer, [0, 1, 2, 3]);
     assert_eq!(outline.polygons[1].outer, [0, 7, 6, 5]);
@@ -151,7 +151,7 @@ fn islands_in_holes() {
     let distance = |x: i32, y: i32| x.min(y).min(13 - x).min(13 - y);
     // From the rim inwards: a band of two rows of points, and a row left out.
     let places = lattice(14, |x, y| distance(x, y) % 3 == 2);
-    let outline = shape(flat(&places), 0.5).outline().unwrap();
+    let outline = shape(flat(&places), 0.5).outline().cloned().unwrap();
     assert_eq!(summary(&outline, &places), [(1, 50.0), (1, 26.0), (0, 1.0)]);
     assert_eq!((outline.polygons.len(), outline.holes()), (3, 2));
     assert_eq!(outline.area, 77.0);
@@ -164,7 +164,7 @@ fn lattices_at_several_alphas() {
     for (alpha, polygons, area) in
         [(0.24, 0, 0.0), (0.25, 0, 0.0), (0.5, 1, 64.0), (f64::INFINITY, 1, 64.0)]
     {
-        let outline = shape(flat(&places), alpha).outline().unwrap();
+        let outline = shape(flat(&places), alpha).outline().cloned().unwrap();
         assert_eq!((outline.polygons.len(), outline.area), (polygons, area), "{alpha}");
         let lone = if alpha < 0.25 { 81 } else { 0 };
         let edges = if alpha == 0.25 { 2 * 9 * 8 } else { 0 };
@@ -179,7 +179,7 @@ fn tilted_planes() {
     let places = lattice(6, |x, y| (2..4).contains(&x) && (2..4).contains(&y));
     let [wanted, mirrored] = [1.0, -1.0].map(|sign| {
         let places: Vec<Place> = places.iter().map(|&[x, y]| [sign * x, y]).collect();
-        shape(flat(&places), 0.5).outline().unwrap().polygons
+        shape(flat(&places), 0.5).outline().cloned().unwrap().polygons
     });
     assert_ne!(wanted, mirrored);
     // Each turns the plane without stretching it, but for a factor.
@@ -197,7 +197,7 @@ fn tilted_planes() {
     for (turn, square, axes, same) in turns {
         let positions: Vec<_> = places.iter().map(|&[x, y]| turn(x, y)).collect();
         let outline = shape(positions, if square > 0.0 { 0.5 * square } else { f64::INFINITY });
-        let outline = outline.outline().unwrap();
+        let outline = outline.outline().cloned().unwrap();
         assert_eq!(outline.axes, axes);
         if square > 0.0 {
             assert_eq!(outline.polygons, if same { &wanted[..] } else { &mirrored[..] });
@@ -216,7 +216,7 @@ fn tilted_planes() {
 #[test]
 fn extreme_coordinates() {
     let places = lattice(6, |x, y| (2..4).contains(&x) && (2..4).contains(&y));
-    let wanted = shape(flat(&places), 0.5).outline().unwrap().polygons;
+    let wanted = shape(flat(&places), 0.5).outline().cloned().unwrap().polygons;
     for scale in [5e-324, 2f64.powi(-1000), 2f64.powi(-160), 2f64.powi(400)] {
         let scaled: Vec<_> = places.iter().map(|&[x, y]| [scale * x, scale * y]).collect();
         let outline = Outline::of(shape(flat(&places), 0.5).complex(), &flat(&scaled), 0.0);
