@@ -20,7 +20,7 @@ print(f"on a grid: {verdict.total} findings,", verdict.findings[0] if verdict.fi
 
 # GUDHI: its filtration values are α, squared lengths, too.
 alpha = 0.003
-tree = gudhi.AlphaComplex(points=points, precision="exact").create_simplex_tree()
+tree = gudhi.AlphaComplex(points=points.tolist(), precision="exact").create_simplex_tree()
 theirs = walpha.Complex.from_simplices(points, tree.get_filtration(), alpha=alpha)
 print("GUDHI's alpha complex is", "right" if walpha.check(theirs) else "wrong")
 print("and", "equal to ours" if walpha.compare(theirs, walpha.alpha_shape(points, alpha=alpha)) else "not ours")

@@ -8,7 +8,7 @@ head = walpha.read("sample:phantom")  # or "sample:skull", or walpha.read("ct.ni
 shape = walpha.pipeline(head, weighting="min-max", alpha=10)
 print(shape)
 
-plotter = pyvista.Plotter(off_screen=True, window_size=(800, 800))
+plotter = pyvista.Plotter(off_screen=True, window_size=[800, 800])
 plotter.add_mesh(shape.to_pyvista(), scalars="value", cmap="bone")
 plotter.camera_position = "xz"
 plotter.camera.azimuth = 30
