@@ -133,3 +133,18 @@ def test_indices_have_64_bits(cloud):
     others = (shape.hidden, shape.duplicates, shape.copies, shape.component_numbers, boundary.triangles, boundary.indices,
               simplices.ranks, simplices.order, simplices.component_pairs, *simplices.lasting, curve.b0, complex_.hidden)
     assert {rows.dtype for rows in others} == {np.dtype(np.int64)}
+
+
+def test_arrays_of_objects_cannot_be_written_to():
+    cloud = np.random.default_rng(3).random((40, 3))
+    weights, values = np.full(40, 0.01), np.arange(40.0)
+    weights[7] = 2
+    shape = walpha.alpha_shape(cloud, 0.1, weights=weights, values=values, hidden=True)
+    filtration = walpha.filtration(cloud, weights=weights)
+    objects = [shape, walpha.Complex.of(shape), filtration, filtration.simplices(), walpha.triangulation(cloud, weights)]
+    for made in objects:
+        names = [name for name in dir(made) if not name.startswith("_")]
+        arrays = {name: array for name in names if isinstance(array := getattr(made, name), np.ndarray)}
+        assert len(arrays) > 1
+        assert not [name for name, array in arrays.items() if array.flags.writeable], made
+    assert not any(array.flags.writeable for array in filtration.simplices().lasting)

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ._typing import Arrays, Floats, Indices, Samples
+
+_Number = TypeVar("_Number", bound=np.generic)
 
 
 def column(name: str, given: Arrays, what: str = "point") -> Floats:
@@ -91,11 +93,15 @@ def int64(rows: NDArray[Any]) -> Indices:
     return rows.astype(np.int64)
 
 
-def kept(rows: NDArray[Any]) -> Indices:
-    """The same of what is kept and given out again: nobody can write to it."""
-    array = int64(rows)
+def frozen(array: NDArray[_Number]) -> NDArray[_Number]:
+    """What an object keeps and gives out again: nobody can write to it."""
     array.flags.writeable = False
     return array
+
+
+def kept(rows: NDArray[Any]) -> Indices:
+    """Indices that an object keeps."""
+    return frozen(int64(rows))
 
 
 def numbers(name: str, given: Arrays) -> NDArray[Any]:

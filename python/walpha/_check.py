@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-import functools
 import json
 from collections.abc import Iterable, Sequence
 from typing import Any, Literal, NamedTuple
@@ -8,12 +7,13 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 
 from . import _alpha, _arrays, _walpha
+from ._classified import Classified
 from ._shape import AlphaShape
 from ._typing import Arrays, Classes, Floats, Indices, Progress
 from ._work import task
 
 
-class Complex:
+class Complex(Classified):
     """A complex that some program made, with its points, to be judged and compared.
 
     Rows and classes that are missing are filled in, and all are in canonical order; what is given
@@ -163,75 +163,25 @@ class Complex:
         return made
 
     @property
+    def _held(self) -> _walpha.Complex:
+        return self._complex
+
+    @property
     def points(self) -> Floats:
         """ndarray of float64, (n, 3)."""
         return self._complex.points
 
     @property
-    def weights(self) -> Floats:
-        """ndarray of float64, (n,): the weights ω, squared lengths."""
-        return self._complex.weights
-
-    @property
-    def alpha(self) -> float:
-        """float: α, a squared length."""
-        return self._complex.alpha
-
-    @functools.cached_property
-    def cells(self) -> Indices:
-        """ndarray of int64, (m, 4)."""
-        return _arrays.kept(self._complex.cells)
-
-    @functools.cached_property
-    def facets(self) -> Indices:
-        """ndarray of int64, (m, 3)."""
-        return _arrays.kept(self._complex.facets)
-
-    @functools.cached_property
-    def edges(self) -> Indices:
-        """ndarray of int64, (m, 2)."""
-        return _arrays.kept(self._complex.edges)
-
-    @functools.cached_property
-    def vertices(self) -> Indices:
-        """ndarray of int64, (m,)."""
-        return _arrays.kept(self._complex.vertices[:, 0])
-
-    @functools.cached_property
-    def _classes(self) -> list[Classes]:
-        return self._complex.classes()
-
-    @property
-    def cell_classes(self) -> Classes:
-        """ndarray of uint8, (m,): the :class:`Class` of each cell."""
-        return self._classes[0]
-
-    @property
-    def facet_classes(self) -> Classes:
-        """ndarray of uint8, (m,): the :class:`Class` of each facet."""
-        return self._classes[1]
-
-    @property
-    def edge_classes(self) -> Classes:
-        """ndarray of uint8, (m,): the :class:`Class` of each edge."""
-        return self._classes[2]
-
-    @property
-    def vertex_classes(self) -> Classes:
-        """ndarray of uint8, (m,): the :class:`Class` of each vertex."""
-        return self._classes[3]
-
-    @property
     def hidden(self) -> Indices | None:
         """ndarray of int64, (m,), or None where nobody said which points are hidden."""
         hidden = self._complex.hidden
-        return None if hidden is None else _arrays.int64(hidden)
+        return None if hidden is None else _arrays.kept(hidden)
 
     @property
     def duplicates(self) -> Indices | None:
         """ndarray of int64, (m, 2), or None where nobody said which points are equal."""
         duplicates = self._complex.duplicates
-        return None if duplicates is None else _arrays.int64(duplicates)
+        return None if duplicates is None else _arrays.kept(duplicates)
 
     @property
     def periodic(self) -> tuple[float, ...] | None:
@@ -243,12 +193,6 @@ class Complex:
         names = ("alpha", "weights", "cells", "facets", "edges", "vertices", "cell_classes", "facet_classes",
                  "edge_classes", "vertex_classes", "hidden", "duplicates", "periodic")
         return _again, (self.points, {name: getattr(self, name) for name in names})
-
-    def __copy__(self) -> Complex:
-        return self
-
-    def __deepcopy__(self, memo: object) -> Complex:
-        return self
 
     def __repr__(self) -> str:
         counts = ", ".join(f"{len(getattr(self, name))} {name}" for name in ("cells", "facets", "edges", "vertices"))

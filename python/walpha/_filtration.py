@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import _alpha, _arrays, _walpha
+from ._classified import Frozen
 from ._curves import BettiCurve, Level, Suggestions, TorusBettiCurve
 from ._meshes import wanted
 from ._parts import Void
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
     import gudhi
 
 
-class Filtration:
+class Filtration(Frozen):
     """All alpha shapes of a set of weighted points, from one triangulation.
 
     Parameters
@@ -81,12 +82,6 @@ class Filtration:
     def __reduce__(self) -> tuple[Any, ...]:
         return _again, (self.points, self.weights, self.periodic)
 
-    def __copy__(self) -> Filtration:
-        return self
-
-    def __deepcopy__(self, memo: object) -> Filtration:
-        return self
-
     def __repr__(self) -> str:
         box = "" if self.periodic is None else f" in a periodic box {self.periodic}"
         return f"<walpha.Filtration of {len(self.points)} points{box}>"
@@ -99,7 +94,7 @@ class Filtration:
     @property
     def weights(self) -> Floats:
         """ndarray of float64, (n,): the weights ω, squared lengths."""
-        return self._filtration.weights
+        return _arrays.frozen(self._filtration.weights)
 
     @property
     def periodic(self) -> tuple[float, ...] | None:

@@ -12,6 +12,7 @@ import numpy as np
 
 from . import _arrays, _meshes, _parts, _walpha
 from ._class import Class
+from ._classified import Classified
 from ._parts import Betti, Boundary, Component, Outline, TorusBetti, Void
 from ._typing import Arrays, Classes, Floats, Indices, Progress, Samples
 from ._work import task
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
     import trimesh
 
 
-class AlphaShape:
+class AlphaShape(Classified):
     """The alpha shape of weighted points, by input index.
 
     Made by :func:`alpha_shape`, :func:`pipeline` and :meth:`Filtration.shape`. It does not change:
@@ -65,11 +66,9 @@ class AlphaShape:
             return operator.methodcaller("unwrapped"), (self._wrapped,)
         return _restored, (self.points, self.weights, self.values, self._shape.state())
 
-    def __copy__(self) -> AlphaShape:
-        return self
-
-    def __deepcopy__(self, memo: object) -> AlphaShape:
-        return self
+    @property
+    def _held(self) -> _walpha.Shape:
+        return self._shape
 
     # What it was made of.
 
@@ -79,19 +78,10 @@ class AlphaShape:
         return self._shape.points
 
     @functools.cached_property
-    def weights(self) -> Floats:
-        """ndarray of float64, (n,): the weights ω, squared lengths."""
-        return self._shape.weights
-
-    @functools.cached_property
     def values(self) -> Floats | None:
         """ndarray of float64, (n,), or None: the values that :meth:`at` interpolates."""
-        return self._shape.values
-
-    @property
-    def alpha(self) -> float:
-        """float: α, a **squared** length, as in CGAL and GUDHI. See :attr:`alpha_radius`."""
-        return self._shape.alpha
+        values = self._shape.values
+        return None if values is None else _arrays.frozen(values)
 
     @property
     def alpha_radius(self) -> float:
@@ -112,52 +102,6 @@ class AlphaShape:
     def truncation(self) -> dict[str, Any] | None:
         """dict or None: what truncation kept of a volume: kept, total, epsilon, rms, asked."""
         return cast(dict[str, Any] | None, self._facts["truncation"])
-
-    # Simplices.
-
-    @functools.cached_property
-    def cells(self) -> Indices:
-        """ndarray of int64, (n, 4): tetrahedra, positively oriented."""
-        return _arrays.kept(self._shape.cells)
-
-    @functools.cached_property
-    def facets(self) -> Indices:
-        """ndarray of int64, (n, 3): triangles; regular ones turn outward."""
-        return _arrays.kept(self._shape.facets)
-
-    @functools.cached_property
-    def edges(self) -> Indices:
-        """ndarray of int64, (n, 2): edges."""
-        return _arrays.kept(self._shape.edges)
-
-    @functools.cached_property
-    def vertices(self) -> Indices:
-        """ndarray of int64, (n,): vertices."""
-        return _arrays.kept(self._shape.vertices[:, 0])
-
-    @functools.cached_property
-    def _classes(self) -> list[Classes]:
-        return self._shape.classes()
-
-    @property
-    def cell_classes(self) -> Classes:
-        """ndarray of uint8, (n,): the :class:`Class` of each cell."""
-        return self._classes[0]
-
-    @property
-    def facet_classes(self) -> Classes:
-        """ndarray of uint8, (n,): the :class:`Class` of each facet."""
-        return self._classes[1]
-
-    @property
-    def edge_classes(self) -> Classes:
-        """ndarray of uint8, (n,): the :class:`Class` of each edge."""
-        return self._classes[2]
-
-    @property
-    def vertex_classes(self) -> Classes:
-        """ndarray of uint8, (n,): the :class:`Class` of each vertex."""
-        return self._classes[3]
 
     @property
     def engine(self) -> Literal["cgal", "native"]:
@@ -209,7 +153,7 @@ class AlphaShape:
     @functools.cached_property
     def component_numbers(self) -> Indices:
         """ndarray of int64, (n,): for each point the number of its component; −1 outside."""
-        return self._shape.component_numbers()
+        return _arrays.frozen(self._shape.component_numbers())
 
     @functools.cached_property
     def voids(self) -> list[Void]:

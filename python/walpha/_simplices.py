@@ -62,12 +62,12 @@ class Simplices:
         made.vertices = _arrays.kept(given.vertices[:, 0])
         made.edges, made.facets = _arrays.kept(given.edges), _arrays.kept(given.facets)
         made.cells = _arrays.kept(given.cells)
-        made.values, made.regular, made.interior = given.intervals.T
-        made.ranks, made.gabriel = _arrays.kept(given.ranks), given.gabriel
+        made.values, made.regular, made.interior = _arrays.frozen(given.intervals).T
+        made.ranks, made.gabriel = _arrays.kept(given.ranks), _arrays.frozen(given.gabriel)
         made.order = _arrays.kept(given.order)
         made.component_pairs = _arrays.kept(given.component_pairs)
         made.void_pairs = _arrays.kept(given.void_pairs)
-        components, voids, last = (np.array(numbers, np.int64) for numbers in given.lasting)
+        components, voids, last = (_arrays.kept(np.array(numbers)) for numbers in given.lasting)
         made.lasting = components, voids, last
         return made
 

@@ -3,11 +3,12 @@ from __future__ import annotations
 from typing import Any
 
 from . import _arrays, _walpha
+from ._classified import Frozen
 from ._typing import Arrays, Floats, Indices, Progress
 from ._work import task
 
 
-class Triangulation:
+class Triangulation(Frozen):
     """The regular triangulation of weighted points, Delaunay's where weights are equal.
 
     Made by :func:`triangulation`. Names and layout are those of ``scipy.spatial.Delaunay``. It does not change: its
@@ -49,10 +50,10 @@ class Triangulation:
     def _of(cls, given: _walpha.Triangulation) -> Triangulation:
         made = cls.__new__(cls)
         made._triangulation = given
-        made.points, made.weights = given.points, given.weights
+        made.points, made.weights = given.points, _arrays.frozen(given.weights)
         made.simplices, made.neighbors = given.simplices, given.neighbors
         made.convex_hull = given.convex_hull
-        made.hidden, made.duplicates = given.hidden, given.duplicates
+        made.hidden, made.duplicates = _arrays.frozen(given.hidden), given.duplicates
         return made
 
     def find_simplex(
@@ -93,12 +94,6 @@ class Triangulation:
 
     def __reduce__(self) -> tuple[Any, ...]:
         return triangulation, (self.points, self.weights)
-
-    def __copy__(self) -> Triangulation:
-        return self
-
-    def __deepcopy__(self, memo: object) -> Triangulation:
-        return self
 
     def __repr__(self) -> str:
         return (
