@@ -34,47 +34,32 @@ pub fn fill_monitored(
     units: Units,
     monitor: &Monitor,
 ) -> Result<AlphaShape, InterpolateError> {
-    let points = shape.points();
-    let mut columns = Columns {
-        positions: points.positions().to_vec(),
-        weights: shape.power_weights().to_vec(),
-        values: points.values().map(<[f64]>::to_vec),
-    };
+    let (mut positions, _, mut values) = shape.points().clone().into_parts();
+    let mut weights = shape.power_weights().to_vec();
     if let Some(volume) = volume {
-        columns.add_corners(volume, units)?;
+        let values = values.as_mut().ok_or(InterpolateError::NoValues)?;
+        let missing = missing_corners(volume, units, &positions);
+        let lightest = weights.iter().copied().reduce(f64::min).unwrap_or(0.0);
+        weights.resize(weights.len() + missing.len(), lightest);
+        for (position, value) in missing {
+            positions.push(position);
+            values.push(value);
+        }
     }
+    let points = WeightedPoints::new(positions, weights)
+        .and_then(|points| points.with_values(values))
+        .expect("columns that grow together");
     let engine = shape.options().engine;
     let options = ShapeOptions::new(Alpha::INFINITE).engine(engine).hidden(true);
-    Ok(alpha_shape_monitored(columns.points(), &options, monitor)?)
+    Ok(alpha_shape_monitored(points, &options, monitor)?)
 }
 
-/// The columns of points, to append to.
-struct Columns {
-    positions: Vec<[f64; 3]>,
-    weights: Vec<f64>,
-    values: Option<Vec<f64>>,
-}
-
-impl Columns {
-    fn add_corners(&mut self, volume: &Volume, units: Units) -> Result<(), InterpolateError> {
-        let values = self.values.as_mut().ok_or(InterpolateError::NoValues)?;
-        let lightest = self.weights.iter().copied().reduce(f64::min).unwrap_or(0.0);
-        let position = |voxel| units.position(volume, voxel);
-        let mut missing = corners(volume);
-        missing.retain(|&voxel| !self.positions.contains(&position(voxel)));
-        for voxel in missing {
-            self.positions.push(position(voxel));
-            self.weights.push(lightest);
-            values.push(f64::from(volume.as_slice()[voxel as usize]));
-        }
-        Ok(())
-    }
-
-    fn points(self) -> WeightedPoints {
-        WeightedPoints::new(self.positions, self.weights)
-            .and_then(|points| points.with_values(self.values))
-            .expect("columns that grow together")
-    }
+/// The corner samples of a volume that are not among these positions, and their values.
+fn missing_corners(volume: &Volume, units: Units, positions: &[[f64; 3]]) -> Vec<([f64; 3], f64)> {
+    let value = |voxel: u32| f64::from(volume.as_slice()[voxel as usize]);
+    let corners = corners(volume).into_iter();
+    let corners = corners.map(|voxel| (units.position(volume, voxel), value(voxel)));
+    corners.filter(|(corner, _)| !positions.contains(corner)).collect()
 }
 
 /// The corner samples of a volume, ascending: 8, or fewer where an axis has one sample.

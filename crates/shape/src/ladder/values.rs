@@ -67,8 +67,10 @@ impl Filtration {
         let last = clusters.len() - 1;
         let mut ranks: Vec<usize> = (0..most).map(|k| k * last / (most - 1)).collect();
         ranks.dedup();
-        let above = |rank: usize| clusters[rank].iter().map(|(radius, _)| radius.high);
-        let above = |rank| Value::First(above(rank).fold(f64::NEG_INFINITY, f64::max));
+        let above = |rank: usize| {
+            let highs = clusters[rank].iter().map(|(radius, _)| radius.high);
+            Value::First(highs.fold(f64::NEG_INFINITY, f64::max))
+        };
         ranks.into_iter().map(above).collect()
     }
 
