@@ -28,6 +28,7 @@ pub fn fill(
 ///
 /// # Errors
 /// Those of [`fill`], and [`InterpolateError::Cancelled`].
+#[expect(clippy::missing_panics_doc, reason = "an invariant, never met")]
 pub fn fill_monitored(
     shape: &AlphaShape,
     volume: Option<&Volume>,
