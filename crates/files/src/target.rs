@@ -210,7 +210,7 @@ mod tests {
     fn a_place_that_cannot_be_is_known_at_once() {
         let folder = tempfile::tempdir().unwrap();
         let said = |name: &str| {
-            let error = Target::open(&folder.path().join(name)).unwrap_err();
+            let error = Target::open(folder.path().join(name)).unwrap_err();
             format!("{error}; {}", error.advice())
         };
         let text = said("no/a.ply");
@@ -226,7 +226,7 @@ mod tests {
     #[test]
     fn all_files_or_none() {
         let folder = tempfile::tempdir().unwrap();
-        let open = |name: &str| Target::open(&folder.path().join(name)).unwrap();
+        let open = |name: &str| Target::open(folder.path().join(name)).unwrap();
         let good = |out: &mut dyn Write| out.write_all(b"text");
         let bad = |_: &mut dyn Write| Err(ErrorKind::StorageFull.into());
         let files: Vec<(_, Content<'_>)> =
