@@ -25,8 +25,8 @@
 //! let interpolant = Interpolant::new(&shape)?;
 //! let points = shape.points();
 //! // At a point F is the point's value, bit for bit; outside the shape it has none.
-//! let value = interpolant.value_at(points.positions[0]);
-//! assert_eq!(value, Some(points.values.as_ref().unwrap()[0]));
+//! let value = interpolant.value_at(points.positions()[0]);
+//! assert_eq!(value, points.values().map(|values| values[0]));
 //! assert_eq!(interpolant.value_at([-5.0, 0.0, 0.0]), None);
 //!
 //! let grid = Grid::of(&volume, Units::Voxel);
