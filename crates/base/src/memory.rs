@@ -103,6 +103,20 @@ pub fn try_with_capacity<T>(
     Ok(items)
 }
 
+/// Makes room for `additional` more items in a vector that grows as it must, or returns an error that names `what`
+/// they are for.
+///
+/// # Errors
+/// [`NoMemory`].
+pub fn try_reserve<T>(
+    items: &mut Vec<T>,
+    additional: usize,
+    what: impl FnOnce() -> String,
+) -> Result<(), NoMemory> {
+    let bytes = (items.len() as u128 + additional as u128) * size_of::<T>() as u128;
+    asking(|| items.try_reserve(additional)).map_err(|_| NoMemory { what: what(), bytes })
+}
+
 /// Checks that `bytes` bytes are available at once, or returns an error that names `what` they are for, before
 /// work that takes them piece by piece. They are allocated and freed, and other threads may take them; so this
 /// detects what is impossible, but does not guarantee what is possible.

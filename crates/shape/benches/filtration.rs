@@ -15,8 +15,8 @@ use walpha_shape::ladder::Filtration;
 use walpha_shape::{Alpha, Engine, ShapeOptions, WeightedPoints, alpha_shape};
 
 /// What is timed: the shape of the whole triangulation alone, all of [`Filtration::new`], which begins with it, the
-/// order of its simplices, and their pairs.
-const STAGES: [&str; 4] = ["whole shape", "filtration", "order", "pairs"];
+/// order of its simplices, their pairs of dimensions 0 and 2, and those of dimension 1.
+const STAGES: [&str; 5] = ["whole shape", "filtration", "order", "pairs", "loops"];
 
 fn main() {
     let mut numbers = std::env::args().skip(1).filter_map(|argument| argument.parse().ok());
@@ -46,14 +46,15 @@ fn main() {
 }
 
 /// The seconds of each stage.
-fn stages(pool: &ThreadPool, points: &WeightedPoints) -> [f64; 4] {
+fn stages(pool: &ThreadPool, points: &WeightedPoints) -> [f64; 5] {
     pool.install(|| {
         let options = ShapeOptions::new(Alpha::INFINITE).engine(Engine::Native).exterior(true);
         let (_, whole) = timed(|| alpha_shape(points.clone(), &options).expect("a shape"));
         let (filtration, all) = timed(|| Filtration::new(points.clone()).expect("a filtration"));
         let (order, sorted) = timed(|| filtration.simplices().expect("an order"));
         let (_, paired) = timed(|| black_box(order.pairs().voids.len()));
-        [whole, all, sorted, paired]
+        let (_, looped) = timed(|| black_box(order.loops().expect("loops").pairs.len()));
+        [whole, all, sorted, paired, looped]
     })
 }
 

@@ -86,6 +86,7 @@ struct Results {
     order: Vec<u32>,
     components: Vec<[u32; 2]>,
     voids: Vec<[u32; 2]>,
+    loops: Vec<[u32; 2]>,
     lasting: [Vec<u32>; 2],
     last: Option<u32>,
 }
@@ -116,6 +117,7 @@ impl Results {
             order: ordered.order().to_vec(),
             components: pairs.components.clone(),
             voids: pairs.voids.clone(),
+            loops: ordered.loops().expect("loops").pairs.clone(),
             lasting: [pairs.lasting.clone(), pairs.lasting_voids.clone()],
             last: pairs.last,
         }

@@ -1,5 +1,7 @@
 //! All simplices of a filtration in the order in which they enter.
 
+mod intervals;
+mod loops;
 mod numbers;
 mod pairs;
 mod rank;
@@ -14,6 +16,8 @@ use super::levels::OwnLevels;
 use super::radii::{Radii, Radius};
 use super::{Filtration, Levels};
 use crate::{Alpha, Betti, ShapeError};
+pub use intervals::Interval;
+pub use loops::Loops;
 use numbers::Numbers;
 use rank::{NONE, Ranks};
 
@@ -40,6 +44,7 @@ pub struct Ordered<'a> {
     cell_rows: Vec<u32>,
     order: Vec<u32>,
     pairs: OnceLock<Pairs>,
+    loops: OnceLock<Loops>,
 }
 
 /// A simplex and when it enters.
@@ -120,6 +125,7 @@ impl Filtration {
             cell_rows,
             order: Vec::new(),
             pairs: OnceLock::new(),
+            loops: OnceLock::new(),
         };
         ordered.order =
             by_rank(numbers.all(), ordered.levels.len(), |simplex| ordered.rank(simplex));

@@ -10,8 +10,8 @@ use crate::ladder::incidence::Incidence;
 use crate::{Directions, Torus, United, WindingSets, between};
 
 impl Ordered<'_> {
-    /// Persistence pairs of dimensions 0 and 2. O(n α(n)). Those of dimension 1, between the edges and
-    /// facets that are in none of these, take a reduction of matrices. Computed once.
+    /// Persistence pairs of dimensions 0 and 2. O(n α(n)). Those of dimension 1 are [`loops`](Self::loops), between
+    /// the edges and facets that are in none of these. Computed once.
     pub fn pairs(&self) -> &Pairs {
         self.pairs.get_or_init(|| {
             let ((components, lasting), voids) =

@@ -1,0 +1,204 @@
+//! Persistence pairs of dimension 1, by reducing a matrix (Edelsbrunner, Letscher and Zomorodian 2002,
+//! doi:10.1007/s00454-002-2885-2).
+//!
+//! The pairs of dimensions 0 and 2, which are known, leave little of the matrix. Only facets that end a loop have a column
+//! (clearing, Chen and Kerber 2011), and only edges that begin one a row, as an edge that ends a component is never the
+//! last of a reduced column (compression, Bauer, Kerber and Reininghaus 2014, doi:10.1007/978-3-319-04099-8_7). So no column is reduced
+//! to nothing, and each is one pair. The column at work is a tree of bits, whose largest member is found in a few steps (Bauer,
+//! Kerber, Reininghaus and Wagner 2017, doi:10.1016/j.jsc.2016.03.008).
+
+use std::ops::Range;
+
+use walpha_base::Monitor;
+use walpha_base::memory::{self, NoMemory};
+
+use super::Ordered;
+use crate::ShapeError;
+
+/// Persistence pairs of loops, coefficients in Z/2, by the numbers of simplices.
+///
+/// Pairs of persistence 0, whose simplices have the same value, are included.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Loops {
+    /// An edge that closes a loop, and the facet that fills it; in the order of facets.
+    pub pairs: Vec<[u32; 2]>,
+    /// On a torus: the edges that create its three essential classes of dimension 1.
+    pub lasting: Vec<u32>,
+}
+
+/// Stands for a row whose edge no column ends with.
+const NONE: u32 = u32::MAX;
+
+impl Ordered<'_> {
+    /// Persistence pairs of dimension 1. Computed once.
+    ///
+    /// On one thread. No bound below O(n³) is known; on alpha filtrations it takes about as long as
+    /// [`Filtration::simplices`](crate::ladder::Filtration::simplices).
+    ///
+    /// # Errors
+    /// Out of memory.
+    pub fn loops(&self) -> Result<&Loops, ShapeError> {
+        self.loops_monitored(&Monitor::noop())
+    }
+
+    /// The same, which reports its progress and can be cancelled.
+    ///
+    /// # Errors
+    /// Those of [`loops`](Self::loops), and [`ShapeError::Cancelled`].
+    pub fn loops_monitored(&self, monitor: &Monitor) -> Result<&Loops, ShapeError> {
+        if let Some(loops) = self.loops.get() {
+            return Ok(loops);
+        }
+        let loops = self.reduce(monitor)?;
+        Ok(self.loops.get_or_init(|| loops))
+    }
+
+    fn reduce(&self, monitor: &Monitor) -> Result<Loops, ShapeError> {
+        let [_, of_edges, of_facets, of_cells] = self.numbers.first;
+        let pairs = self.pairs();
+        let mut is_paired = vec![false; self.len()];
+        for &number in pairs.components.iter().chain(&pairs.voids).flatten() {
+            is_paired[number as usize] = true;
+        }
+        pairs.lasting_voids.iter().for_each(|&facet| is_paired[facet as usize] = true);
+        let left = |from: u32, to: u32| {
+            let of_dimension = move |number: &&u32| (from..to).contains(*number);
+            self.order.iter().filter(of_dimension).copied().filter(|&n| !is_paired[n as usize])
+        };
+
+        // Rows are edges in order.
+        let edges: Vec<u32> = left(of_edges, of_facets).collect();
+        let mut rows = vec![NONE; self.numbers.count(1)];
+        edges.iter().zip(0..).for_each(|(&edge, row)| rows[(edge - of_edges) as usize] = row);
+        let facets: Vec<u32> = left(of_facets, of_cells).collect();
+        let work = monitor.units(facets.len() as u64);
+
+        let mut reduced = Columns::new(edges.len());
+        let mut column = BitTree::new(edges.len());
+        let mut found = Vec::with_capacity(facets.len());
+        for facet in facets {
+            work.add(1)?;
+            let boundary = self.filtration().incidence.facet_edges[(facet - of_facets) as usize];
+            boundary
+                .into_iter()
+                .map(|edge| rows[edge as usize])
+                .filter(|&row| row != NONE)
+                .for_each(|row| column.toggle(row));
+            let last = loop {
+                let last = column.last().expect("this facet ends a loop");
+                match reduced.ending_with(last) {
+                    None => break last,
+                    Some(members) => members.iter().for_each(|&row| column.toggle(row)),
+                }
+            };
+            found.push([edges[last as usize], facet]);
+            reduced.take(last, &mut column)?;
+        }
+        let lasting = (0..).zip(edges).filter(|&(row, _)| reduced.ending_with(row).is_none());
+        Ok(Loops { pairs: found, lasting: lasting.map(|(_, edge)| edge).collect() })
+    }
+}
+
+/// Reduced columns by their last rows.
+struct Columns {
+    /// By last row, the range of the column among the members; empty if there is none.
+    ranges: Vec<Range<usize>>,
+    /// The rows of all columns, those of each descending.
+    members: Vec<u32>,
+}
+
+impl Columns {
+    fn new(rows: usize) -> Self {
+        Self { ranges: vec![0..0; rows], members: Vec::new() }
+    }
+
+    /// The rows of the column with this last one.
+    fn ending_with(&self, last: u32) -> Option<&[u32]> {
+        let members = &self.members[self.ranges[last as usize].clone()];
+        (!members.is_empty()).then_some(members)
+    }
+
+    /// Moves a column here, which is empty afterwards.
+    fn take(&mut self, last: u32, column: &mut BitTree) -> Result<(), NoMemory> {
+        let from = self.members.len();
+        while let Some(row) = column.last() {
+            memory::try_reserve(&mut self.members, 1, || {
+                "the reduced boundaries of facets".into()
+            })?;
+            self.members.push(row);
+            column.toggle(row);
+        }
+        self.ranges[last as usize] = from..self.members.len();
+        Ok(())
+    }
+}
+
+/// A set of numbers. Each bit of a level says whether a word of the level below has bits.
+struct BitTree {
+    /// From the numbers up to a single word.
+    levels: Vec<Vec<u64>>,
+}
+
+impl BitTree {
+    /// An empty set of numbers below a bound.
+    fn new(bound: usize) -> Self {
+        let mut levels = vec![vec![0; bound.div_ceil(64).max(1)]];
+        while let Some(words) = levels.last().map(Vec::len).filter(|&words| words > 1) {
+            levels.push(vec![0; words.div_ceil(64)]);
+        }
+        Self { levels }
+    }
+
+    /// Adds a number, or removes it if it is there.
+    fn toggle(&mut self, number: u32) {
+        let mut at = number as usize;
+        for level in &mut self.levels {
+            let word = &mut level[at / 64];
+            let had = *word != 0;
+            *word ^= 1 << (at % 64);
+            if had && *word != 0 {
+                break;
+            }
+            at /= 64;
+        }
+    }
+
+    /// The largest number.
+    fn last(&self) -> Option<u32> {
+        let mut at = 0;
+        for level in self.levels.iter().rev() {
+            at = at * 64 + level[at].checked_ilog2()? as usize;
+        }
+        Some(at as u32)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use walpha_base::random::Random;
+
+    use super::*;
+
+    #[test]
+    fn a_tree_of_bits_is_a_set() {
+        let mut random = Random::new(3);
+        for bound in [1, 64, 65, 4096, 4097, 300_000] {
+            let (mut tree, mut set) = (BitTree::new(bound), BTreeSet::new());
+            for _ in 0..2000 {
+                // Near the last one as well, so that words become empty.
+                let number = match tree.last() {
+                    Some(last) if random.below(2) == 0 => last,
+                    _ => random.below(bound) as u32,
+                };
+                tree.toggle(number);
+                if !set.remove(&number) {
+                    set.insert(number);
+                }
+                assert_eq!(tree.last(), set.last().copied(), "below {bound}");
+            }
+        }
+    }
+}
