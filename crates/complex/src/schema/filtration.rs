@@ -31,15 +31,15 @@ use crate::Alpha;
 ///   shape, and off its boundary; `"inf"` if they never are. All three may be missing.
 /// - `pairs` are the persistence pairs, by these numbers, whose simplices have different values:
 ///   `components` (a vertex, and the edge that ends its component), `lasting` (vertices whose components never
-///   end), `voids` (a facet that closes a void, and the cell that fills it). For a torus also
-///   `lasting_voids`, the facets that close surfaces which are never filled, and `last`, the cell that
-///   completes the torus.
+///   end), `loops` (an edge that closes a loop, and the facet that fills it; may be missing), `voids` (a facet that
+///   closes a void, and the cell that fills it). For a torus also `lasting_loops` and `lasting_voids`, the edges and
+///   facets that close loops and surfaces which are never filled, and `last`, the cell that completes the torus.
 /// - `periodic` are the sides of a periodic box, as in a complex.
 /// - `hidden`, `duplicates` and `info` are as in a complex.
 ///
 /// In NPZ the same names are arrays; those with dimensions are `vertex_values`, `edge_values`,
 /// `facet_values`, `cell_values`, `vertex_gabriel` and so on, `component_pairs`, `lasting_components`,
-/// `void_pairs`, `lasting_voids` and `last_cell`.
+/// `loop_pairs`, `lasting_loops`, `void_pairs`, `lasting_voids` and `last_cell`.
 ///
 /// The fields are open, so that any program can fill them; with the others from `..FiltrationFile::default()`, as features add
 /// some.
@@ -125,6 +125,12 @@ pub struct PairsFile {
     pub components: Vec<[u32; 2]>,
     /// Vertices whose components never end.
     pub lasting: Vec<u32>,
+    /// An edge that closes a loop, and the facet that fills it; `None` if they were not computed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub loops: Option<Vec<[u32; 2]>>,
+    /// Of a torus: edges that close loops which are never filled.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub lasting_loops: Vec<u32>,
     /// A facet that closes a void, and the cell that fills it.
     pub voids: Vec<[u32; 2]>,
     /// Of a torus: facets that close surfaces which are never filled.

@@ -252,7 +252,7 @@ fn class(name: &'static str, value: f64) -> Result<Class, SchemaError> {
     })
 }
 
-const FILTRATION_ARRAYS: [(&str, Kind); 28] = [
+const FILTRATION_ARRAYS: [(&str, Kind); 30] = [
     ("points", Kind::Rows(3)),
     ("weights", Kind::Column("points")),
     ("vertices", Kind::Rows(1)),
@@ -275,6 +275,8 @@ const FILTRATION_ARRAYS: [(&str, Kind); 28] = [
     ("order", Kind::Rows(1)),
     ("component_pairs", Kind::Rows(2)),
     ("lasting_components", Kind::Rows(1)),
+    ("loop_pairs", Kind::Rows(2)),
+    ("lasting_loops", Kind::Rows(1)),
     ("void_pairs", Kind::Rows(2)),
     ("lasting_voids", Kind::Rows(1)),
     ("last_cell", Kind::Rows(1)),
@@ -302,6 +304,8 @@ impl FiltrationFile {
         file.check(&FILTRATION_ARRAYS)?;
         let components = file.rows("component_pairs", index)?;
         let lasting = file.list("lasting_components", index)?;
+        let loops = file.rows("loop_pairs", index)?;
+        let lasting_loops = file.list("lasting_loops", index)?.unwrap_or_default();
         let voids = file.rows("void_pairs", index)?;
         let pairs = components.zip(lasting).zip(voids);
         let lasting_voids = file.list("lasting_voids", index)?.unwrap_or_default();
@@ -309,6 +313,8 @@ impl FiltrationFile {
         let pairs = pairs.map(|((components, lasting), voids)| PairsFile {
             components,
             lasting,
+            loops,
+            lasting_loops,
             voids,
             lasting_voids,
             last,

@@ -56,7 +56,7 @@ pub enum FiltrationFinding {
     },
     /// A pair is listed that is not a persistence pair, or is listed twice; or a persistence pair is missing.
     Pair {
-        /// 0 for components, 2 for voids.
+        /// 0 for components, 1 for loops, 2 for voids.
         dimension: usize,
         /// Numbers of simplices: the one that creates it, and the one that ends it.
         pair: [u32; 2],

@@ -54,6 +54,8 @@ pub enum Unjudged {
     Intervals,
     /// Persistence pairs, as the file lists none.
     Pairs,
+    /// Persistence pairs of dimension 1, as the file lists none.
+    Loops,
 }
 
 impl std::fmt::Display for Unjudged {
@@ -65,6 +67,7 @@ impl std::fmt::Display for Unjudged {
                 "from which α on simplices are regular and interior (the file does not say)"
             }
             Self::Pairs => "persistence pairs (the file lists none)",
+            Self::Loops => "persistence pairs of dimension 1 (the file lists none)",
         })
     }
 }
@@ -111,7 +114,8 @@ impl CertifyFiltrationError {
 /// singular, regular and interior. Faces come before their cofaces where the order is right: no value
 /// is smaller than that of a face, and equal ones are ordered by dimension.
 ///
-/// Linear up to sorting, a few microseconds for each simplex.
+/// Linear up to sorting, a few microseconds for each simplex; but for pairs of dimension 1, which take a reduction of
+/// matrices.
 ///
 /// # Errors
 /// [`CertifyFiltrationError`]: fields of different lengths, numbers out of range; points of a torus.
@@ -153,6 +157,7 @@ pub fn certify_filtration_monitored(
         (file.gabriel.is_none(), Unjudged::Gabriel),
         (file.regular.is_none() || file.interior.is_none(), Unjudged::Intervals),
         (file.pairs.is_none(), Unjudged::Pairs),
+        (file.pairs.as_ref().is_some_and(|pairs| pairs.loops.is_none()), Unjudged::Loops),
     ];
     not_judged.extend(absent.into_iter().filter(|absent| absent.0).map(|absent| absent.1));
     let verdict = Verdict::of(findings.len(), findings.iter().filter(|f| f.is_tie()).count());

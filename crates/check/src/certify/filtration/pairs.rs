@@ -1,5 +1,6 @@
-//! Persistence pairs of dimensions 0 and 2 by the elder rule: which of two components of the shape, or of its
-//! complement, is the younger when a simplex joins them.
+//! Persistence pairs. Those of dimensions 0 and 2 by the elder rule: which of two components of the shape, or of its
+//! complement, is the younger when a simplex joins them. Those of dimension 1 by reducing coboundaries of edges, last
+//! edge first (de Silva, Morozov and Vejdemo-Johansson 2011, doi:10.1088/0266-5611/27/12/124003).
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -21,9 +22,13 @@ pub(super) fn judge(
     monitor: &Monitor,
 ) -> Result<Vec<FiltrationFinding>, Cancelled> {
     let pairing = Pairing { file, structure, rows, spans };
-    let (components, lasting) = pairing.components(&monitor.part(0, 1, 2))?;
-    let mut findings = differences(0, &given.components, &components);
-    findings.extend(differences(2, &given.voids, &pairing.voids(&monitor.part(1, 2, 2))?));
+    let Components { pairs, lasting, merging } = pairing.components(&monitor.part(0, 1, 4))?;
+    let mut findings = differences(0, &given.components, &pairs);
+    findings.extend(differences(2, &given.voids, &pairing.voids(&monitor.part(1, 2, 4))?));
+    if let Some(given) = &given.loops {
+        let loops = pairing.loops(&merging, &monitor.part(2, 4, 4))?;
+        findings.extend(differences(1, given, &loops));
+    }
     let listed: BTreeSet<u32> = given.lasting.iter().copied().collect();
     if listed != lasting || listed.len() != given.lasting.len() {
         let (given, expected) = (given.lasting.clone(), lasting.into_iter().collect());
@@ -55,18 +60,25 @@ struct Pairing<'a> {
     spans: &'a Spans,
 }
 
+/// Pairs of dimension 0.
+struct Components {
+    /// Those whose simplices have different values.
+    pairs: BTreeSet<[u32; 2]>,
+    /// Vertices whose components never end.
+    lasting: BTreeSet<u32>,
+    /// The numbers of all edges that end a component.
+    merging: BTreeSet<u32>,
+}
+
 impl Pairing<'_> {
     /// In order: a vertex creates a component, and an edge between two components ends the younger one.
-    fn components(
-        &self,
-        monitor: &Monitor,
-    ) -> Result<(BTreeSet<[u32; 2]>, BTreeSet<u32>), Cancelled> {
+    fn components(&self, monitor: &Monitor) -> Result<Components, Cancelled> {
         let work = monitor.units(self.file.order.len() as u64);
         let vertices = self.file.vertices.len() as u32;
         let edges = self.file.edges.len() as u32;
         let number: BTreeMap<u32, u32> = self.file.vertices.iter().copied().zip(0..).collect();
         let mut oldest = Oldest::default();
-        let mut pairs = BTreeSet::new();
+        let (mut pairs, mut merging) = (BTreeSet::new(), BTreeSet::new());
         for &simplex in &self.file.order {
             work.add(1)?;
             if simplex < vertices {
@@ -75,6 +87,7 @@ impl Pairing<'_> {
                 let edge = (simplex - vertices) as usize;
                 let ends = self.file.edges[edge].map(|v| number[&v]);
                 if let Some(younger) = oldest.join(ends) {
+                    merging.insert(simplex);
                     let from = self.spans.vertices[self.rows.vertices[younger as usize]].first;
                     if from != self.spans.edges[self.rows.edges[edge]].first {
                         pairs.insert([younger, simplex]);
@@ -82,7 +95,60 @@ impl Pairing<'_> {
                 }
             }
         }
-        Ok((pairs, oldest.remaining()))
+        Ok(Components { pairs, lasting: oldest.remaining(), merging })
+    }
+
+    /// In reverse order: an edge that ends no component closes a loop, which ends with the first facet of its coboundary, once
+    /// coboundaries of later edges with this first facet are added.
+    fn loops(
+        &self,
+        merging: &BTreeSet<u32>,
+        monitor: &Monitor,
+    ) -> Result<BTreeSet<[u32; 2]>, Cancelled> {
+        let work = monitor.units(self.file.order.len() as u64);
+        let first_edge = self.file.vertices.len() as u32;
+        let first_facet = first_edge + self.file.edges.len() as u32;
+        let sorted = |[a, b]: [u32; 2]| if a < b { [a, b] } else { [b, a] };
+        let edges: BTreeMap<[u32; 2], u32> =
+            self.file.edges.iter().map(|&edge| sorted(edge)).zip(first_edge..).collect();
+        // By number of the edge, places in the order.
+        let mut coboundaries = BTreeMap::<u32, Vec<usize>>::new();
+        for (place, &simplex) in self.file.order.iter().enumerate() {
+            let facet = simplex.checked_sub(first_facet);
+            let Some(&[a, b, c]) = facet.and_then(|row| self.file.facets.get(row as usize)) else {
+                continue;
+            };
+            for side in [[a, b], [a, c], [b, c]] {
+                coboundaries.entry(edges[&sorted(side)]).or_default().push(place);
+            }
+        }
+        let mut pairs = BTreeSet::new();
+        let mut reduced = BTreeMap::<usize, Vec<usize>>::new();
+        for &edge in self.file.order.iter().rev() {
+            work.add(1)?;
+            if !(first_edge..first_facet).contains(&edge) || merging.contains(&edge) {
+                continue;
+            }
+            let mut column: BTreeSet<usize> =
+                coboundaries.remove(&edge).into_iter().flatten().collect();
+            while let Some(other) = column.first().and_then(|first| reduced.get(first)) {
+                for place in other {
+                    if !column.remove(place) {
+                        column.insert(*place);
+                    }
+                }
+            }
+            let Some(&first) = column.first() else { continue };
+            let facet = self.file.order[first];
+            let row = |number: u32, from: u32| (number - from) as usize;
+            let from = self.spans.edges[self.rows.edges[row(edge, first_edge)]].first;
+            let until = self.spans.facets[self.rows.facets[row(facet, first_facet)]].first;
+            if from != until {
+                pairs.insert([edge, facet]);
+            }
+            reduced.insert(first, column.into_iter().collect());
+        }
+        Ok(pairs)
     }
 
     /// In reverse order: a cell creates a component of the complement, and a facet between two components ends the
