@@ -1,5 +1,7 @@
 //! Charts: ladders of α-shapes, and codecs by rate and distortion.
 
+use std::collections::BTreeSet;
+
 use walpha_shape::Alpha;
 use walpha_shape::ladder::{Curve, Ladder, Level, Suggestions};
 
@@ -143,6 +145,62 @@ impl<'a> Chart<'a> {
             points.iter().for_each(|&at| drawing.dot(at, 9.0, colour));
         }
         drawing
+    }
+}
+
+/// A persistence diagram: a dot for each interval, birth against death, both squared lengths, with a colour for components, loops and
+/// voids; what never ends is on the line above. Of dots that nearly cover each other one is drawn.
+#[expect(clippy::missing_panics_doc, reason = "an invariant")]
+pub fn persistence_figure(title: &str, intervals: [&[[f64; 2]]; 3]) -> Figure {
+    const SIDE: u32 = 1000;
+    /// Dots of one colour are at least this share of the chart apart.
+    const APART: f64 = 1.0 / 500.0;
+    let numbers = || intervals.iter().copied().flatten().flatten().filter(|x| x.is_finite());
+    let low = numbers().copied().fold(f64::INFINITY, f64::min);
+    let high = numbers().copied().fold(f64::NEG_INFINITY, f64::max);
+    // Without any interval, or with one value alone, there is no length to go by.
+    let (low, length) = match high - low {
+        length if length > 0.0 => (low, length),
+        _ if low.is_finite() => (low, low.abs().max(1.0)),
+        _ => (0.0, 1.0),
+    };
+    let never = low + 1.08 * length;
+    let bounds = [[low - 0.02 * length; 2], [low + 1.02 * length, low + 1.12 * length]];
+    let mut chart = Drawing::chart(bounds, "birth: α, squared length", "death");
+    chart.segment([[low; 2], [low + length; 2]], Pen::line(Rgb([150; 3]), 2.0));
+    let ends = [bounds[0][0], bounds[1][0]].map(|x| [x, never]);
+    chart.segment(ends, Pen::line(Rgb([150; 3]), 2.0).dashed());
+    // Voids are few, components many.
+    let colours = BETTI.map(|(_, colour)| colour);
+    for (of_dimension, colour) in intervals.iter().zip(colours) {
+        let mut drawn = BTreeSet::new();
+        for &[birth, death] in *of_dimension {
+            let at = [birth, if death.is_finite() { death } else { never }];
+            if drawn.insert(at.map(|x| ((x - low) / length / APART).round() as i64)) {
+                chart.dot(at, 5.0, colour);
+            }
+        }
+    }
+    let names = ["components", "loops", "voids"];
+    let legend = names.iter().zip(intervals).zip(colours);
+    Figure {
+        title: title.to_owned(),
+        columns: 1,
+        panel: Size::new(SIDE, SIDE).expect("a valid size"),
+        panels: vec![Panel {
+            title: String::new(),
+            content: Content::Drawing(chart),
+            captions: Vec::new(),
+        }],
+        colour_bar: None,
+        legend: legend
+            .map(|((name, of_dimension), colour)| (format!("{} {name}", of_dimension.len()), colour))
+            .collect(),
+        notes: vec![
+            "Each dot is a component, loop or void: the farther above the diagonal, the longer it lasts. On the \
+             dashed line are those that never end."
+                .into(),
+        ],
     }
 }
 

@@ -38,7 +38,7 @@ mod scene;
 mod shape;
 mod view;
 
-pub use charts::{RateCurve, ladder_figure, rate_figure};
+pub use charts::{RateCurve, ladder_figure, persistence_figure, rate_figure};
 pub use colour::{ColourMap, PALETTE, Rgb};
 pub use error::RenderError;
 pub use figure::Figure;
