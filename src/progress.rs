@@ -26,7 +26,7 @@ pub enum Stage {
     Curve,
     /// Sorts all simplices.
     Order,
-    /// Pairs the simplices that begin and end components and voids.
+    /// Pairs the simplices that begin and end components, loops and voids.
     Pairs,
     /// Extracts levels from a filtration.
     Ladder,

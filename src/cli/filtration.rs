@@ -13,6 +13,7 @@ use crate::export::{Content, FiltrationFormat, Target, write_all};
 use crate::ladder::Ordered;
 use crate::pipeline::{Parameter, Weighed};
 use crate::progress::Stage;
+use crate::shape::ShapeError;
 
 use super::args::{FrozenPipelineArgs, OutputArgs, PeriodicArgs};
 use super::formats::filtration_output;
@@ -28,12 +29,14 @@ use super::report::{MovedIntoBox, SCHEMA_VERSION, WeightsReport, ending};
 /// number; whether its own smallest sphere is empty (Gabriel; otherwise it enters with a simplex that
 /// it is a face of); and the α from which it is regular and interior. Simplices are ordered by exact
 /// value, then by dimension and vertices, so that faces come before the simplices that they bound.
-/// Persistence pairs of components and voids are in .npz, .json and the output of --json. Weights are
-/// frozen.
+/// Persistence pairs of components, loops and voids are in .npz, .json and the output of --json; .csv has
+/// them alone, as a table, and .svg and .png draw the persistence diagram. Weights are frozen.
 ///
 /// Examples:
 ///
 /// walpha filtration scan.xyz -o scan.npz
+///
+/// walpha filtration scan.xyz -o pairs.csv diagram.svg
 ///
 /// walpha filtration sample:skull --weights min-max -o skull.json skull.txt
 ///
@@ -83,12 +86,15 @@ struct Count {
     attached: usize,
 }
 
-/// Persistence intervals of components and voids, without empty ones.
+/// Persistence intervals of components, loops and voids, without empty ones.
 #[derive(Serialize)]
 struct Persistence {
     components: Vec<[f64; 2]>,
     /// Values at which the components begin that never end.
     lasting_components: Vec<f64>,
+    loops: Vec<[f64; 2]>,
+    /// Values at which the loops begin that never end: three in a periodic box, otherwise none.
+    lasting_loops: Vec<f64>,
     voids: Vec<[f64; 2]>,
     /// Values at which the voids begin that never end: three in a periodic box, otherwise none.
     lasting_voids: Vec<f64>,
@@ -113,6 +119,9 @@ impl Filtration {
             progress.watch(|monitor| pipeline::filtration(torus, &weighed, monitor))?;
         let monitor = progress.monitor();
         let ordered = progress.stage(Stage::Order, || filtration.simplices_monitored(&monitor))?;
+        if global.json || targets.iter().any(|(_, format)| format.pairs) {
+            progress.stage(Stage::Pairs, || ordered.loops_monitored(&monitor))?;
+        }
         progress.stage(Stage::Write, || {
             write_all(targets.into_iter().map(|(target, format)| {
                 let (ordered, monitor) = (&ordered, &monitor);
@@ -123,7 +132,7 @@ impl Filtration {
         })?;
         let mut facts = FiltrationSummary::new(&input.input, &weighed, &ordered);
         if global.json {
-            facts.persistence = Some(progress.stage(Stage::Pairs, || Persistence::of(&ordered)));
+            facts.persistence = Some(Persistence::of(&ordered)?);
         }
         facts.files = self.output.iter().map(|path| path.display().to_string()).collect();
         facts.seconds = progress.finish().into_iter().collect();
@@ -161,19 +170,18 @@ impl FiltrationSummary {
 }
 
 impl Persistence {
-    fn of(ordered: &Ordered<'_>) -> Self {
-        let pairs = ordered.pairs();
-        let value = |number: u32| ordered.simplex(number).value;
-        let lasting = |pairs: &[[u32; 2]]| {
-            let lasting = pairs.iter().filter(|&&pair| ordered.lasts(pair));
-            lasting.map(|pair| pair.map(value)).collect()
+    fn of(ordered: &Ordered<'_>) -> Result<Self, ShapeError> {
+        let split = |dimension| -> Result<(Vec<[f64; 2]>, Vec<f64>), ShapeError> {
+            let intervals = ordered.persistence(dimension)?;
+            let (ended, lasting): (Vec<_>, Vec<_>) =
+                intervals.into_iter().partition(|interval| interval.ends.is_some());
+            let ended = ended.into_iter().map(|interval| [interval.birth, interval.death]);
+            Ok((ended.collect(), lasting.into_iter().map(|interval| interval.birth).collect()))
         };
-        Self {
-            components: lasting(&pairs.components),
-            lasting_components: pairs.lasting.iter().map(|&number| value(number)).collect(),
-            voids: lasting(&pairs.voids),
-            lasting_voids: pairs.lasting_voids.iter().map(|&number| value(number)).collect(),
-        }
+        let (components, lasting_components) = split(0)?;
+        let (loops, lasting_loops) = split(1)?;
+        let (voids, lasting_voids) = split(2)?;
+        Ok(Self { components, lasting_components, loops, lasting_loops, voids, lasting_voids })
     }
 }
 
@@ -199,7 +207,7 @@ impl Display for FiltrationSummary {
         writeln!(f, "edges     {}", self.edges)?;
         writeln!(f, "vertices  {}", self.vertices)?;
         writeln!(f, "values    {} different numbers", self.values)?;
-        let stages = ["read", "haar", "points", "filtration", "order", "write", "total"];
+        let stages = ["read", "haar", "points", "filtration", "order", "pairs", "write", "total"];
         ending(f, &self.files, &stages, &self.seconds)
     }
 }

@@ -9,7 +9,7 @@ use zip::ZipWriter;
 
 use super::npz::Archive;
 use crate::check::schema::{Below, FiltrationFile, PairsFile, SchemaError, Values};
-use crate::ladder::{Entry, Ordered};
+use crate::ladder::{Entry, Interval, Loops, Ordered};
 use crate::shape::Alpha;
 use crate::volume::UnknownFormat;
 
@@ -22,29 +22,63 @@ pub struct FiltrationFormat {
     pub extension: &'static str,
     /// Its content.
     pub about: &'static str,
+    /// Whether it has persistence pairs, which are computed on writing unless they are known.
+    pub pairs: bool,
     write: fn(&Ordered<'_>, &mut dyn Write, &Monitor) -> io::Result<()>,
 }
 
 /// All formats. NPZ and JSON follow the [`schema`](crate::check::schema::FiltrationFile) that `walpha check` and
 /// `walpha compare` read.
-pub static FILTRATION_FORMATS: [FiltrationFormat; 3] = [
+pub static FILTRATION_FORMATS: &[FiltrationFormat] = &[
     FiltrationFormat {
         name: "NPZ",
         extension: "npz",
         about: "NumPy arrays, compressed: points, simplices, their values and order, pairs.",
+        pairs: true,
         write: write_npz,
     },
     FiltrationFormat {
         name: "JSON",
         extension: "json",
         about: "The same as text.",
+        pairs: true,
         write: write_json,
     },
     FiltrationFormat {
         name: "text",
         extension: "txt",
         about: "A line for each simplex, in order: value, Gabriel or not, intervals, vertices.",
+        pairs: false,
         write: write_text,
+    },
+    FiltrationFormat {
+        name: "CSV",
+        extension: "csv",
+        about: "The persistence diagram as a table: dimension, birth, death, and the simplices.",
+        pairs: true,
+        write: write_csv,
+    },
+    #[cfg(feature = "render")]
+    FiltrationFormat {
+        name: "SVG",
+        extension: "svg",
+        about: "The persistence diagram as a figure.",
+        pairs: true,
+        write: |ordered, out, monitor| {
+            let figure = diagram(ordered, monitor)?;
+            out.write_all(figure.to_svg().map_err(io::Error::other)?.as_bytes())
+        },
+    },
+    #[cfg(feature = "render")]
+    FiltrationFormat {
+        name: "PNG",
+        extension: "png",
+        about: "The same figure in pixels.",
+        pairs: true,
+        write: |ordered, out, monitor| {
+            let figure = diagram(ordered, monitor)?;
+            out.write_all(&figure.to_png().map_err(io::Error::other)?)
+        },
     },
 ];
 
@@ -98,6 +132,7 @@ fn lasting(ordered: &Ordered<'_>, pairs: &[[u32; 2]]) -> Vec<[u32; 2]> {
 const DIMENSIONS: [&str; 4] = ["vertex", "edge", "facet", "cell"];
 
 fn write_npz(ordered: &Ordered<'_>, out: &mut dyn Write, monitor: &Monitor) -> io::Result<()> {
+    let loops = ordered.loops_monitored(monitor).map_err(io::Error::other)?;
     let pairs = ordered.pairs();
     let mut archive = Archive::compressed(ZipWriter::new_stream(out));
     let whole = ordered.filtration().whole();
@@ -128,8 +163,10 @@ fn write_npz(ordered: &Ordered<'_>, out: &mut dyn Write, monitor: &Monitor) -> i
     archive.list("order", ordered.order())?;
     archive.rows("component_pairs", &lasting(ordered, &pairs.components))?;
     archive.list("lasting_components", &pairs.lasting)?;
+    archive.rows("loop_pairs", &lasting(ordered, &loops.pairs))?;
     archive.rows("void_pairs", &lasting(ordered, &pairs.voids))?;
     if let Some(torus) = ordered.filtration().torus() {
+        archive.list("lasting_loops", &loops.lasting)?;
         archive.list("lasting_voids", &pairs.lasting_voids)?;
         archive.list("last_cell", pairs.last.as_slice())?;
         archive.list("periodic", &torus.sides())?;
@@ -139,18 +176,19 @@ fn write_npz(ordered: &Ordered<'_>, out: &mut dyn Write, monitor: &Monitor) -> i
     archive.finish().map(drop)
 }
 
-fn write_json(ordered: &Ordered<'_>, out: &mut dyn Write, _: &Monitor) -> io::Result<()> {
+fn write_json(ordered: &Ordered<'_>, out: &mut dyn Write, monitor: &Monitor) -> io::Result<()> {
+    let loops = ordered.loops_monitored(monitor).map_err(io::Error::other)?;
     // Per simplex at most four vertices, three numbers, and its position in the order.
     let bytes = ordered.len() * (size_of::<[u32; 4]>() + size_of::<[f64; 3]>() + size_of::<u32>());
     memory::afford(bytes, || format!("the JSON of {} simplices", ordered.len()))
         .map_err(io::Error::other)?;
-    filtration_file(ordered).write_json(out).map_err(|error| match error {
+    filtration_file(ordered, loops).write_json(out).map_err(|error| match error {
         SchemaError::Io(error) => error,
         other => io::Error::other(other),
     })
 }
 
-fn filtration_file(ordered: &Ordered<'_>) -> FiltrationFile {
+fn filtration_file(ordered: &Ordered<'_>, loops: &Loops) -> FiltrationFile {
     let pairs = ordered.pairs();
     let whole = ordered.filtration().whole();
     let mut first = [0; 4];
@@ -190,6 +228,8 @@ fn filtration_file(ordered: &Ordered<'_>) -> FiltrationFile {
         pairs: Some(PairsFile {
             components: lasting(ordered, &pairs.components),
             lasting: pairs.lasting.clone(),
+            loops: Some(lasting(ordered, &loops.pairs)),
+            lasting_loops: loops.lasting.clone(),
             voids: lasting(ordered, &pairs.voids),
             lasting_voids: pairs.lasting_voids.clone(),
             last: pairs.last,
@@ -224,4 +264,45 @@ fn write_text(ordered: &Ordered<'_>, out: &mut dyn Write, monitor: &Monitor) -> 
         writeln!(out)?;
     }
     Ok(())
+}
+
+/// The persistence diagram in all dimensions.
+fn write_csv(ordered: &Ordered<'_>, out: &mut dyn Write, monitor: &Monitor) -> io::Result<()> {
+    writeln!(out, "dimension,birth,death,birth_simplex,death_simplex")?;
+    for (dimension, intervals) in persistence(ordered, monitor)?.into_iter().enumerate() {
+        for Interval { birth, death, begins, ends, .. } in intervals {
+            write!(out, "{dimension},{birth:?},{death:?},")?;
+            write_vertices(ordered, begins, out)?;
+            out.write_all(b",")?;
+            ends.map_or(Ok(()), |ends| write_vertices(ordered, ends, out))?;
+            writeln!(out)?;
+        }
+    }
+    Ok(())
+}
+
+/// The vertices of a simplex, between spaces.
+fn write_vertices(ordered: &Ordered<'_>, number: u32, out: &mut dyn Write) -> io::Result<()> {
+    let vertices = ordered.simplex(number).vertices;
+    vertices.iter().enumerate().try_for_each(|(at, v)| match at {
+        0 => write!(out, "{v}"),
+        _ => write!(out, " {v}"),
+    })
+}
+
+/// The intervals of each dimension: of points of space there are none of dimension 3.
+fn persistence(ordered: &Ordered<'_>, monitor: &Monitor) -> io::Result<[Vec<Interval>; 4]> {
+    ordered.loops_monitored(monitor).map_err(io::Error::other)?;
+    let mut all = [const { Vec::new() }; 4];
+    for (dimension, intervals) in all.iter_mut().enumerate() {
+        *intervals = ordered.persistence(dimension).map_err(io::Error::other)?;
+    }
+    Ok(all)
+}
+
+#[cfg(feature = "render")]
+fn diagram(ordered: &Ordered<'_>, monitor: &Monitor) -> io::Result<crate::render::Figure> {
+    let [components, loops, voids, _] = persistence(ordered, monitor)?
+        .map(|intervals| intervals.iter().map(|i| [i.birth, i.death]).collect::<Vec<_>>());
+    Ok(crate::render::persistence_figure("Persistence", [&components, &loops, &voids]))
 }

@@ -94,6 +94,9 @@ fn what_is_not_there_is_not_judged() {
     assert_eq!(unjudged(FiltrationFile { gabriel: None, ..whole.clone() }), [Unjudged::Gabriel]);
     assert_eq!(unjudged(FiltrationFile { regular: None, ..whole.clone() }), [Unjudged::Intervals]);
     assert_eq!(unjudged(FiltrationFile { interior: None, ..whole.clone() }), [Unjudged::Intervals]);
+    let mut without_loops = whole.clone();
+    without_loops.pairs.as_mut().unwrap().loops = None;
+    assert_eq!(unjudged(without_loops), [Unjudged::Loops]);
     assert_eq!(unjudged(FiltrationFile { pairs: None, ..whole }), [Unjudged::Pairs]);
 }
 
@@ -111,6 +114,7 @@ fn one_pair(damaged: &FiltrationFile, rule: &dyn Fn(&FiltrationFinding) -> bool)
 #[test]
 fn the_checker_finds_what_is_wrong() {
     let mut random = Random::new(5);
+    let mut missing_loops = 0;
     for points in sets(24, 30) {
         let filtration = Filtration::new(points).unwrap();
         let ordered = filtration.simplices().unwrap();
@@ -167,6 +171,20 @@ fn the_checker_finds_what_is_wrong() {
         if damage.pairs.as_mut().unwrap().voids.pop().is_some() {
             one_pair(&damage, &is_pair(2, false));
         }
+        let loops = |file: &mut FiltrationFile, to: &dyn Fn(&mut Vec<[u32; 2]>) -> bool| {
+            to(file.pairs.as_mut().unwrap().loops.as_mut().unwrap())
+        };
+        let mut damage = right.clone();
+        if loops(&mut damage, &|loops| loops.pop().is_some()) {
+            one_pair(&damage, &is_pair(1, false));
+            missing_loops += 1;
+        }
+        let mut damage = right.clone();
+        loops(&mut damage, &|loops| {
+            loops.push([0, 1]);
+            true
+        });
+        one_pair(&damage, &is_pair(1, true));
         let mut damage = right.clone();
         damage.pairs.as_mut().unwrap().voids.push([0, 1]);
         one_pair(&damage, &is_pair(2, true));
@@ -193,6 +211,7 @@ fn the_checker_finds_what_is_wrong() {
         damage.values.facets.pop();
         assert!(certify_filtration(&damage).is_err());
     }
+    assert!(missing_loops > 10, "{missing_loops}");
 }
 
 #[test]
@@ -200,9 +219,33 @@ fn the_command_writes_checks_and_compares() {
     let folder = tempfile::tempdir().unwrap();
     let f = folder.path();
     let make = ["filtration", "sample:phantom@12", "--weights", "min-max", "-o"];
-    let told = common::json(f, &[&make[..], &["a.json", "a.npz", "a.txt"]].concat());
-    assert_eq!(told["files"].as_array().unwrap().len(), 3);
-    assert!(told["persistence"]["components"].as_array().is_some());
+    let told = common::json(f, &[&make[..], &["a.json", "a.npz", "a.txt", "a.csv"]].concat());
+    assert_eq!(told["files"].as_array().unwrap().len(), 4);
+    let table = std::fs::read_to_string(f.join("a.csv")).unwrap();
+    let mut lines = table.lines();
+    assert_eq!(lines.next(), Some("dimension,birth,death,birth_simplex,death_simplex"));
+    for (dimension, name) in ["components", "loops", "voids"].into_iter().enumerate() {
+        let intervals = told["persistence"][name].as_array().unwrap();
+        assert!(!intervals.is_empty(), "{name}");
+        for interval in intervals {
+            let fields: Vec<&str> = lines.next().unwrap().split(',').collect();
+            assert_eq!(fields[0], dimension.to_string());
+            let numbers = [1, 2].map(|at| fields[at].parse::<f64>().unwrap());
+            assert_eq!(serde_json::json!(numbers), *interval);
+            let corners = [3, 4].map(|at| fields[at].split(' ').count());
+            assert_eq!(corners, [dimension + 1, dimension + 2]);
+        }
+        if dimension == 0 {
+            let [dimension, _, death, begins, ends] =
+                lines.next().unwrap().split(',').collect::<Vec<_>>()[..]
+            else {
+                panic!("five columns")
+            };
+            assert_eq!([dimension, death, ends], ["0", "inf", ""]);
+            assert!(begins.parse::<u32>().is_ok());
+        }
+    }
+    assert_eq!(lines.next(), None);
     let checked = common::ok(f, &["check", "a.npz"]);
     assert!(checked.contains("exact: no findings"), "{checked}");
     common::ok(f, &["compare", "a.json", "a.npz"]);

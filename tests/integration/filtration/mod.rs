@@ -316,16 +316,9 @@ fn pairs_are_those_of_a_matrix() {
         assert_eq!(sorted(&pairs.components), expected[0]);
         assert_eq!(sorted(&pairs.voids), expected[2]);
         assert_eq!(pairs.lasting, alone);
-        // What is in no pair of these is in one of dimension 1: edges that begin, facets that end.
-        let used: std::collections::HashSet<u32> =
-            pairs.components.iter().chain(&pairs.voids).flatten().copied().collect();
-        let free = |number: &u32| {
-            let dimension = ordered.simplex(*number).vertices.len() - 1;
-            (1..=2).contains(&dimension) && !used.contains(number)
-        };
-        let mut of_loops: Vec<u32> = expected[1].iter().flatten().copied().collect();
-        of_loops.sort_unstable();
-        assert_eq!((0..ordered.len() as u32).filter(free).collect::<Vec<_>>(), of_loops);
+        let loops = ordered.loops().unwrap();
+        assert_eq!(sorted(&loops.pairs), expected[1]);
+        assert!(loops.lasting.is_empty());
         for (count, pairs) in lasting.iter_mut().zip(&expected) {
             *count += pairs.iter().filter(|&&pair| ordered.lasts(pair)).count();
         }

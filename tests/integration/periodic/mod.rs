@@ -400,8 +400,9 @@ fn persistence_pairs_of_a_torus() {
         let (points, sides) = dense(seed);
         let filtration = Filtration::on(Some(Torus::new(sides).unwrap()), points).unwrap();
         let ordered = filtration.simplices().unwrap();
-        let pairs = ordered.pairs();
-        assert_eq!((pairs.lasting.len(), pairs.lasting_voids.len()), (1, 3));
+        let (pairs, loops) = (ordered.pairs(), ordered.loops().unwrap());
+        let lasting = [&pairs.lasting, &loops.lasting, &pairs.lasting_voids].map(Vec::len);
+        assert_eq!(lasting, [1, 3, 3]);
         assert_eq!(pairs.voids.len() + 1, ordered.count(3));
         // What is born and has not died is what the Betti numbers count.
         let rank = |number: u32| ordered.simplex(number).rank;
@@ -410,10 +411,13 @@ fn persistence_pairs_of_a_torus() {
             let come = |number: &u32| rank(*number) <= at as u32;
             let b0 = pairs.components.iter().filter(|pair| there(pair)).count()
                 + pairs.lasting.iter().filter(|v| come(v)).count();
+            let b1 = loops.pairs.iter().filter(|pair| there(pair)).count()
+                + loops.lasting.iter().filter(|edge| come(edge)).count();
             let b2 = pairs.voids.iter().filter(|pair| there(pair)).count()
                 + pairs.lasting_voids.iter().filter(|facet| come(facet)).count();
             let b3 = pairs.last.iter().filter(|cell| come(cell)).count();
-            assert_eq!([b0, b2, b3].map(|b| b as u64), [betti.b0, betti.b2, betti.b3.unwrap()]);
+            let expected = [betti.b0, betti.b1, betti.b2, betti.b3.unwrap()];
+            assert_eq!([b0, b1, b2, b3].map(|b| b as u64), expected);
         }
         // Faces never come after what they are faces of.
         let values: Vec<u32> = ordered.iter().map(|entry| entry.rank).collect();
