@@ -122,7 +122,10 @@ impl Filtration {
         let filtration = Arc::clone(&self.0);
         run(py, &task, move |monitor| {
             Stage::Order.begin(monitor)?;
-            Ok::<_, ShapeError>(Simplices::of(&filtration.simplices_monitored(monitor)?))
+            let ordered = filtration.simplices_monitored(monitor)?;
+            Stage::Pairs.begin(monitor)?;
+            let loops = ordered.loops_monitored(monitor)?;
+            Ok::<_, ShapeError>(Simplices::of(&ordered, loops))
         })
     }
 
@@ -160,10 +163,11 @@ pub struct Simplices {
     gabriel: Vec<bool>,
     order: Vec<u32>,
     pairs: ladder::Pairs,
+    loops: ladder::Loops,
 }
 
 impl Simplices {
-    fn of(ordered: &ladder::Ordered<'_>) -> Self {
+    fn of(ordered: &ladder::Ordered<'_>, loops: &ladder::Loops) -> Self {
         let mut simplices = Self {
             vertices: ordered.vertices().to_vec(),
             edges: ordered.edges().to_vec(),
@@ -174,6 +178,7 @@ impl Simplices {
             gabriel: Vec::with_capacity(ordered.len()),
             order: ordered.order().to_vec(),
             pairs: ordered.pairs().clone(),
+            loops: loops.clone(),
         };
         for number in 0..ordered.len() as u32 {
             let ladder::Entry { value, rank, gabriel, regular, interior, .. } =
@@ -240,15 +245,22 @@ impl Simplices {
     }
 
     #[getter]
+    fn loop_pairs<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray2<u32>>> {
+        // SAFETY: the simplices are frozen.
+        unsafe { lend(&slf.get().loops.pairs, slf.as_any()) }
+    }
+
+    #[getter]
     fn void_pairs<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray2<u32>>> {
         // SAFETY: the simplices are frozen.
         unsafe { lend(&slf.get().pairs.voids, slf.as_any()) }
     }
 
-    /// Simplices that begin something which never ends: of dimension 0, 2 and 3.
+    /// Simplices that begin something which never ends, by dimension.
     #[getter]
-    fn lasting(&self) -> (Vec<u32>, Vec<u32>, Vec<u32>) {
+    fn lasting(&self) -> [Vec<u32>; 4] {
         let ladder::Pairs { lasting, lasting_voids, last, .. } = &self.pairs;
-        (lasting.clone(), lasting_voids.clone(), last.iter().copied().collect())
+        let last = last.iter().copied().collect();
+        [lasting.clone(), self.loops.lasting.clone(), lasting_voids.clone(), last]
     }
 }

@@ -54,7 +54,7 @@ def test_a_filtration_of_a_torus():
         assert shape.betti == (curve.b0[k], curve.b1[k], curve.b2[k], curve.b3[k])
         assert np.array_equal(shape.cells, filtration.shape(curve.alpha[k]).cells)
     simplices = filtration.simplices()
-    assert [len(numbers) for numbers in simplices.lasting] == [1, 3, 1]
+    assert [len(numbers) for numbers in simplices.lasting] == [1, 3, 3, 1]
 
 
 def test_gudhi_finds_the_torus():

@@ -16,7 +16,7 @@ def test_diagrams_are_those_of_filtrations(clouds):
     assert diagrams.shape[0] == 3 and diagrams.shape[2] == 3 and np.isfinite(diagrams).all()
     for points, diagram in zip(clouds, diagrams):
         simplices = walpha.filtration(points).simplices()
-        for dimension in (0, 2):
+        for dimension in (0, 1, 2):
             wanted = simplices.persistence(dimension)
             wanted = wanted[np.isfinite(wanted[:, 1])]
             of = diagram[diagram[:, 2] == dimension, :2]
@@ -30,9 +30,10 @@ def test_gudhi_has_the_same(clouds):
     gudhi = pytest.importorskip("gudhi")
     tree = gudhi.AlphaComplex(points=clouds[1], precision="exact").create_simplex_tree()
     tree.compute_persistence()
-    (diagram,) = AlphaPersistence((2,), radius=True).fit_transform([clouds[1]])
-    theirs = np.sqrt(np.sort(tree.persistence_intervals_in_dimension(2), axis=0))
-    assert len(diagram) > 5 and np.allclose(np.sort(diagram[:, :2], axis=0), theirs)
+    for dimension in (1, 2):
+        (diagram,) = AlphaPersistence((dimension,), radius=True).fit_transform([clouds[1]])
+        theirs = np.sqrt(np.sort(tree.persistence_intervals_in_dimension(dimension), axis=0))
+        assert len(diagram) > 5 and np.allclose(np.sort(diagram[:, :2], axis=0), theirs)
 
 
 def test_options(clouds):
@@ -41,8 +42,8 @@ def test_options(clouds):
     assert len(whole) == len(reduced) + 1 == 60 and np.isinf(whole[:, 1]).sum() == 1
     assert AlphaPersistence((2,)).fit_transform(clouds[2:]).shape[1] <= 1
     assert AlphaPersistence().fit_transform(np.array(clouds[:1]))[0].shape[1] == 3
-    with pytest.raises(ValueError, match="simplex_tree"):
-        AlphaPersistence((0, 1)).fit(clouds)
+    with pytest.raises(ValueError, match="there are 0, 1 and 2"):
+        AlphaPersistence((0, 3)).fit(clouds)
     transformer = AlphaPersistence().set_params(radius=True)
     assert transformer.get_params()["radius"] is True
     with pytest.raises(ValueError, match="radios"):

@@ -32,11 +32,11 @@ class Simplices:
     order : ndarray of int64, (n,)
         Numbers in the order in which simplices come: by exact value, dimension, vertices. Faces come
         before what they are faces of.
-    component_pairs, void_pairs : ndarray of int64, (k, 2)
-        Persistence pairs of dimensions 0 and 2 as numbers: what makes a component or shuts a void in, and
-        what ends it. Those that last no time are there too.
+    component_pairs, loop_pairs, void_pairs : ndarray of int64, (k, 2)
+        Persistence pairs of dimensions 0, 1 and 2 as numbers: what makes a component, closes a loop or shuts a
+        void in, and what ends it. Those that last no time are there too.
     lasting : tuple of ndarray of int64
-        What begins something that never ends, by dimension 0, 2 and 3; of a torus 1, 3 and 1.
+        What begins something that never ends, by dimension from 0 to 3; of a torus 1, 3, 3 and 1.
     """
 
     vertices: Indices
@@ -50,8 +50,9 @@ class Simplices:
     interior: Floats
     order: Indices
     component_pairs: Indices
+    loop_pairs: Indices
     void_pairs: Indices
-    lasting: tuple[Indices, Indices, Indices]
+    lasting: tuple[Indices, Indices, Indices, Indices]
 
     def __init__(self) -> None:
         raise TypeError("Simplices are made by walpha.filtration(points).simplices()")
@@ -66,9 +67,10 @@ class Simplices:
         made.ranks, made.gabriel = _arrays.kept(given.ranks), _arrays.frozen(given.gabriel)
         made.order = _arrays.kept(given.order)
         made.component_pairs = _arrays.kept(given.component_pairs)
+        made.loop_pairs = _arrays.kept(given.loop_pairs)
         made.void_pairs = _arrays.kept(given.void_pairs)
-        components, voids, last = (_arrays.kept(np.array(numbers)) for numbers in given.lasting)
-        made.lasting = components, voids, last
+        components, loops, voids, last = (_arrays.kept(np.array(numbers)) for numbers in given.lasting)
+        made.lasting = components, loops, voids, last
         return made
 
     def __len__(self) -> int:
@@ -84,19 +86,20 @@ class Simplices:
         counts = ", ".join(str(len(table)) for table in self._tables())
         return f"<walpha.Simplices {counts} vertices, edges, facets, cells>"
 
-    def persistence(self, dimension: Literal[0, 2]) -> Floats:
-        """Intervals of dimension 0 or 2 that last some time.
+    def persistence(self, dimension: Literal[0, 1, 2]) -> Floats:
+        """Intervals of a dimension that last some time: a persistence diagram.
 
         Parameters
         ----------
-        dimension : {0, 2}
-            Components or voids. Loops take a reduction of matrices: see :meth:`Filtration.simplex_tree`.
+        dimension : {0, 1, 2}
+            Components, loops or voids; coefficients in Z/2.
 
         Returns
         -------
         ndarray of float64, (k, 2)
-            Values of birth and death, in order of death for 0 and of birth for 2; what never ends is
-            last and has inf.
+            Values of birth and death, in order of death for 0 and 1 and of birth for 2; what never ends is
+            last and has inf. As ``gudhi.SimplexTree.persistence_intervals_in_dimension`` has them, so
+            ``gudhi.representations`` makes landscapes and images of them.
 
         Raises
         ------
@@ -111,14 +114,40 @@ class Simplices:
         array([[ 0.  ,  1.  ],
                [ 0.  , 12.25],
                [ 0.  ,   inf]])
+
+        Four points on a square make a loop, until a disc covers it:
+
+        >>> walpha.filtration([[0, 0], [2, 0], [2, 2], [0, 2]]).simplices().persistence(1)
+        array([[1., 2.]])
         """
-        if dimension not in (0, 2):
-            raise ValueError(f"dimension={dimension}: pairs are known of 0 and 2; see simplex_tree()")
-        pairs = self.component_pairs if dimension == 0 else self.void_pairs
-        lasting = self.lasting[0 if dimension == 0 else 1]
+        if dimension not in (0, 1, 2):
+            raise ValueError(f"dimension={dimension}: there are 0, 1 and 2")
+        pairs = (self.component_pairs, self.loop_pairs, self.void_pairs)[dimension]
+        lasting = self.lasting[dimension]
         pairs = pairs[self.ranks[pairs[:, 0]] != self.ranks[pairs[:, 1]]]
         never = np.column_stack([self.values[lasting], np.full(len(lasting), np.inf)])
         return np.vstack([self.values[pairs], never])
+
+    def persistence_diagram(self) -> list[tuple[int, tuple[float, float]]]:
+        """The persistence diagrams of all dimensions in GUDHI's form.
+
+        Returns
+        -------
+        list of (int, (float, float))
+            Dimension, birth and death: what ``gudhi.SimplexTree.persistence`` returns, and
+            ``gudhi.plot_persistence_diagram`` draws.
+
+        Examples
+        --------
+        >>> walpha.filtration([[0, 0, 0], [2, 0, 0]]).simplices().persistence_diagram()
+        [(0, (0.0, 1.0)), (0, (0.0, inf))]
+        """
+        dimensions: tuple[Literal[0, 1, 2], ...] = (0, 1, 2)
+        return [
+            (dimension, (birth, death))
+            for dimension in dimensions
+            for birth, death in self.persistence(dimension).tolist()
+        ]
 
     def _tables(self) -> tuple[Indices, Indices, Indices, Indices]:
         """Rows of each dimension."""

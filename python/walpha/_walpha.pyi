@@ -85,8 +85,9 @@ class Simplices:
     gabriel: NDArray[np.bool_]
     order: _Rows
     component_pairs: _Rows
+    loop_pairs: _Rows
     void_pairs: _Rows
-    lasting: tuple[list[int], list[int], list[int]]
+    lasting: list[list[int]]
 
 @final
 class Triangulation:

@@ -6,7 +6,7 @@ scikit-learn is not needed: :class:`AlphaPersistence` has the methods that its p
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import Any
+from typing import Any, Literal, cast
 
 import numpy as np
 
@@ -22,8 +22,7 @@ class AlphaPersistence:
     Parameters
     ----------
     homology_dimensions : tuple of int
-        Of 0 (components) and 2 (voids), which follow from union-find. Loops, dimension 1, take a reduction of
-        matrices: see :meth:`walpha.Filtration.simplex_tree`.
+        Of 0 (components), 1 (loops) and 2 (voids).
     radius : bool
         Births and deaths are radii √α, as those of a Čech filtration, and not α itself, squared lengths.
     reduced_homology : bool
@@ -49,7 +48,7 @@ class AlphaPersistence:
 
     def __init__(
         self,
-        homology_dimensions: Sequence[int] = (0, 2),
+        homology_dimensions: Sequence[int] = (0, 1, 2),
         *,
         radius: bool = False,
         reduced_homology: bool = True,
@@ -109,10 +108,10 @@ class AlphaPersistence:
         AlphaPersistence
             Itself.
         """
-        wrong = [dimension for dimension in self.homology_dimensions if dimension not in (0, 2)]
+        wrong = [dimension for dimension in self.homology_dimensions if dimension not in (0, 1, 2)]
         if wrong:
             raise ValueError(
-                f"homology_dimensions={self.homology_dimensions}: there are 0 and 2; see Filtration.simplex_tree() for 1"
+                f"homology_dimensions={self.homology_dimensions}: there are 0, 1 and 2"
             )
         return self
 
@@ -135,7 +134,7 @@ class AlphaPersistence:
         Raises
         ------
         ValueError
-            Dimensions other than 0 and 2; what :func:`walpha.filtration` raises.
+            Dimensions other than 0, 1 and 2; what :func:`walpha.filtration` raises.
         """
         self.fit(X)
         diagrams = [self._diagram(points) for points in X]
@@ -167,7 +166,7 @@ class AlphaPersistence:
         simplices = filtration(points, threads=self.threads).simplices(threads=self.threads)
         diagram = []
         for dimension in self.homology_dimensions:
-            intervals = simplices.persistence(0 if dimension == 0 else 2)
+            intervals = simplices.persistence(cast(Literal[0, 1, 2], dimension))
             if dimension == 0 and self.reduced_homology:
                 intervals = intervals[np.isfinite(intervals[:, 1])]
             diagram.append(np.sqrt(intervals) if self.radius else intervals)
