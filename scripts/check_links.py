@@ -2,7 +2,7 @@
 """Checks the links of documents and of the built site: files and anchors that they name exist, and the DOIs that sources name are
 those of the bibliography. Standard library only; nothing is fetched.
 
-    python3 scripts/check_links.py              # README.md, ARCHITECTURE.md, docs/, crates/*/README.md, python/README.md
+    python3 scripts/check_links.py              # README.md and its neighbours, docs/, crates/*/README.md, python/README.md
     python3 scripts/check_links.py SITE         # the pages that mdBook made, too
 
 Exit code 1 where a link leads nowhere.
@@ -27,7 +27,7 @@ BIBLIOGRAPHY = ROOT / "docs/bibliography.md"
 
 def documents():
     """The documents of this repository."""
-    some = [ROOT / "README.md", ROOT / "ARCHITECTURE.md", ROOT / "python/README.md"]
+    some = [ROOT / name for name in ("README.md", "ARCHITECTURE.md", "CHANGELOG.md", "SECURITY.md", "python/README.md")]
     return some + sorted(ROOT.glob("crates/*/README.md")) + sorted((ROOT / "docs").rglob("*.md"))
 
 
