@@ -7,6 +7,9 @@
 #   scripts/release.sh wheels      wheels (manylinux_2_28) and the source distribution of the Python package
 #   scripts/release.sh rehearse    looks at the texts, then makes all of these, and the binary twice
 #
+# It needs Rust by rustup, Python 3.11 and libcgal-dev, and can use g++-mingw-w64-x86-64, wine, debootstrap, qemu-user-static, binfmt-support and
+# libc6-arm64-cross of Debian, and `cargo install --locked cargo-deb cargo-sbom`. What comes from PyPI it gets itself.
+#
 # Ends with a table. What this machine cannot do is in it as skipped, with the reason; what fails ends the script. To publish after a
 # rehearsal: fill in `repository` in Cargo.toml, commit, tag, `cargo publish --workspace`, `twine upload dist/wheels/*`, and add the other
 # files of dist/ to the release.
@@ -75,24 +78,19 @@ pages() {
   "$1" completions fish > "$2/walpha.fish"
 }
 
-# Runs a command as root in a fresh Debian, beside a file: suite, architecture, file, command.
-in_debian() {
-  local root=$PWD/target/roots/$1-$2
-  if [ "$(id -u)" != 0 ] || ! has debootstrap; then return 77; fi
-  if [ ! -e "$root/ready" ]; then
-    rm -rf -- "$root" && mkdir -p "$root"
-    debootstrap --variant=minbase --arch="$2" "$1" "$root" > "$root.log" 2>&1 && touch "$root/ready" || return 77
-  fi
-  cp -- "$3" "$root/root/" && chroot "$root" env DEBIAN_FRONTEND=noninteractive sh -euc "cd /root; apt-get update -qq; $4"
-}
+# Tries a file by a command in a fresh Debian, as root: suite, architecture, file, command.
 try_in_debian() {
-  local status=0
-  in_debian "$@" || status=$?
-  case $status in
-    0) made "$3" "Debian $1, $2" ;;
-    77) skip "$(basename "$3") in Debian $1, $2" "needs root, debootstrap and, for another processor, qemu-user with binfmt" ;;
-    *) exit "$status" ;;
-  esac
+  local root=$PWD/target/roots/$1-$2
+  if ! has debootstrap || ! debian_root "$root" "$1" "$2"; then
+    skip "$(basename "$3") in Debian $1, $2" "needs root, debootstrap and, for another processor, qemu-user-static and binfmt-support"
+    return
+  fi
+  cp -- "$3" "$root/root/"
+  chroot "$root" env DEBIAN_FRONTEND=noninteractive sh -euc "cd /root; apt-get update -qq; $4"
+  made "$3" "Debian $1, $2"
+}
+debian_root() {
+  [ -e "$1/ready" ] || { rm -rf -- "$1" && mkdir -p "$1" && debootstrap --variant=minbase --arch="$3" "$2" "$1" > "$1.log" 2>&1 && touch "$1/ready"; }
 }
 
 texts() {
@@ -160,10 +158,10 @@ binary() {
     if [ "$target" = "$host" ]; then
       try_program "$program"
       made "$dist/walpha-$version-$target.tgz" here "ok, $needs"
-    elif has qemu-aarch64 && [ -d /usr/aarch64-linux-gnu ]; then
-      try_program qemu-aarch64 -L /usr/aarch64-linux-gnu "$program"
-      made "$dist/walpha-$version-$target.tgz" qemu-user "ok, $needs"
-    else made "$dist/walpha-$version-$target.tgz" - "$needs; skipped: there are no qemu-user and libc6-arm64-cross"; fi
+    elif has qemu-aarch64-static && [ -d /usr/aarch64-linux-gnu ]; then
+      try_program qemu-aarch64-static -L /usr/aarch64-linux-gnu "$program"
+      made "$dist/walpha-$version-$target.tgz" "qemu-user-static" "ok, $needs"
+    else made "$dist/walpha-$version-$target.tgz" - "$needs; skipped: there are no qemu-user-static and libc6-arm64-cross"; fi
   done
   if has x86_64-w64-mingw32-g++ && with_target $windows && [ -d "$stage/pages" ]; then
     portably cargo build --release --locked --bin walpha --target $windows "${rust_alone[@]}"
@@ -199,6 +197,7 @@ deb() {
   notices -p walpha "${of_debian[@]}" > "$stage/deb/THIRD-PARTY.md"
   mkdir -p "$dist"
   cargo deb --no-build --output "$file"
+  made "$file" - made
   for suite in bookworm trixie; do
     try_in_debian "$suite" "$arch" "$file" "apt-get install -y -qq ./${file##*/}
       walpha shape sample:phantom@16 --alpha 4 -o x.ply && test -e /usr/share/man/man1/walpha-shape.1.gz"
@@ -229,19 +228,16 @@ wheels() {
   "$stage/venv/bin/pip" install -q numpy
   "$stage/venv/bin/pip" install -q --no-index --find-links "$dist/wheels" walpha
   echo 'import numpy; points = numpy.random.default_rng(1).random((1000, 3))' > "$stage/readme.py"
+  # shellcheck disable=SC2016
   sed -n '/^.``python$/,/^.``$/{/^.``/!p}' README.md >> "$stage/readme.py"
   (cd "$stage" && venv/bin/python readme.py)
   python3 -c 'import tomllib; print(*tomllib.load(open("python/pyproject.toml", "rb"))["project"]["optional-dependencies"]["test"], sep="\n")' > "$stage/test.txt"
   "$stage/venv/bin/pip" install -q -r "$stage/test.txt"
   "$stage/venv/bin/python" -m pytest -q -p no:cacheprovider python/tests
-  for file in "$dist"/wheels/*abi3*.whl; do
-    case $file in
-      *"${host%%-*}".whl) made "$file" "here, with its tests" ;;
-    esac
-    case $file in
-      *aarch64.whl) arch=arm64 ;;
-      *) arch=amd64 ;;
-    esac
+  for file in "$dist"/wheels/*.whl; do
+    if [[ $file == *abi3*"${host%%-*}".whl ]]; then made "$file" "here, with its tests"; else made "$file" - made; fi
+    if [[ $file != *abi3* ]]; then continue; fi
+    if [[ $file == *aarch64.whl ]]; then arch=arm64; else arch=amd64; fi
     for suite in bookworm trixie; do
       try_in_debian $suite $arch "$file" "apt-get install -y -qq python3-pip python3-numpy
         pip install -q --break-system-packages --no-index --no-deps ./${file##*/}
