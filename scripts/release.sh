@@ -82,12 +82,12 @@ pages() {
 try_in_debian() {
   local root=$PWD/target/roots/$1-$2
   if ! has debootstrap || ! debian_root "$root" "$1" "$2"; then
-    skip "$(basename "$3") in Debian $1, $2" "needs root, debootstrap and, for another processor, qemu-user-static and binfmt-support"
+    skip "  the same in Debian $1, $2" "needs root, debootstrap and, for another processor, qemu-user-static and binfmt-support"
     return
   fi
   cp -- "$3" "$root/root/"
   chroot "$root" env DEBIAN_FRONTEND=noninteractive sh -euc "cd /root; apt-get update -qq; $4"
-  made "$3" "Debian $1, $2"
+  row "  the same" - "Debian $1, $2" ok
 }
 debian_root() {
   [ -e "$1/ready" ] || { rm -rf -- "$1" && mkdir -p "$1" && debootstrap --variant=minbase --arch="$3" "$2" "$1" > "$1.log" 2>&1 && touch "$1/ready"; }
