@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""Checks the links of documents and of the built site: files and anchors that they name exist. Standard library only; nothing is fetched.
+"""Checks the links of documents and of the built site: files and anchors that they name exist, and the DOIs that sources name are
+those of the bibliography. Standard library only; nothing is fetched.
 
-    python3 scripts/check_links.py              # README.md, ARCHITECTURE.md, docs/, crates/*/README.md, python/README.md
+    python3 scripts/check_links.py              # README.md and its neighbours, docs/, crates/*/README.md, python/README.md
     python3 scripts/check_links.py SITE         # the pages that mdBook made, too
 
 Exit code 1 where a link leads nowhere.
@@ -19,11 +20,14 @@ CODE = re.compile(r"(`+).+?\1", re.DOTALL)
 LINK = re.compile(r"\[(?:[^\[\]]|\[[^\[\]]*\])*\]\(\s*([^()\s]+(?:\([^()\s]*\))?)\s*\)")
 REFERENCE = re.compile(r"^\[[^\]]+\]:\s*(\S+)", re.MULTILINE)
 HEADING = re.compile(r"^#+\s+(.+?)\s*#*$", re.MULTILINE)
+# With the pairs of brackets that old ones have, and without the text around them.
+DOI = re.compile(r"doi:(10\.\d+/(?:\([^\s()]*\)|[^\s()\[\],;])*[^\s()\[\],;.:])")
+BIBLIOGRAPHY = ROOT / "docs/bibliography.md"
 
 
 def documents():
     """The documents of this repository."""
-    some = [ROOT / "README.md", ROOT / "ARCHITECTURE.md", ROOT / "python/README.md"]
+    some = [ROOT / name for name in ("README.md", "ARCHITECTURE.md", "CHANGELOG.md", "SECURITY.md", "python/README.md")]
     return some + sorted(ROOT.glob("crates/*/README.md")) + sorted((ROOT / "docs").rglob("*.md"))
 
 
@@ -81,6 +85,24 @@ def problem(path, link, outside):
     return None
 
 
+def sources():
+    """What may name a paper."""
+    folders = ["benches", "crates", "docs", "examples", "python/walpha", "scripts", "src"]
+    files = [path for folder in folders for suffix in ("rs", "py", "md") for path in (ROOT / folder).rglob(f"*.{suffix}")]
+    return sorted(path for path in files if path != BIBLIOGRAPHY)
+
+
+def wrong_dois():
+    """DOIs that sources or the bibliography alone have."""
+    listed = set(DOI.findall(BIBLIOGRAPHY.read_text(encoding="utf-8")))
+    named = {}
+    for path in sources():
+        for doi in DOI.findall(path.read_text(encoding="utf-8")):
+            named.setdefault(doi, path)
+    wrong = [f"{path}: doi:{doi} is not in the bibliography" for doi, path in named.items() if doi not in listed]
+    return wrong + [f"{BIBLIOGRAPHY}: doi:{doi} is named by no source" for doi in sorted(listed - named.keys())]
+
+
 def main():
     pages = [(path, ROOT) for path in documents()]
     if len(sys.argv) > 1:
@@ -90,14 +112,16 @@ def main():
         if not made:
             sys.exit(f"{site}: no pages; build them with mdbook")
         pages += [(path, site) for path in made]
-    count, failures = 0, 0
+    wrong = wrong_dois()
+    print("".join(f"{what}\n" for what in wrong), end="")
+    count, failures = 0, len(wrong)
     for path, outside in pages:
         for link in read(path)[0]:
             count += 1
             if what := problem(path, link, outside):
                 failures += 1
                 print(f"{path}: {link} {what}")
-    print(f"{count} links in {len(pages)} documents, {failures} of them wrong")
+    print(f"{count} links in {len(pages)} documents; {failures} links or DOIs are wrong")
     sys.exit(1 if failures else 0)
 
 

@@ -87,7 +87,7 @@ impl Triangulation {
             return None;
         }
         // Across facets that separate the cell from the point: such a walk never returns to a cell of a regular
-        // triangulation (Edelsbrunner 1990, doi:10.1007/BF02122778).
+        // triangulation (Edelsbrunner 1990, doi:10.1007/BF02122779).
         let (mut from, mut face) = (NO_CELL, Vec::with_capacity(4));
         'walk: loop {
             let corners = self.cells()[cell as usize];

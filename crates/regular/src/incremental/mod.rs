@@ -166,7 +166,7 @@ impl Builder {
 
     /// The finite cell that contains a point, or an infinite cell whose facet of the hull has the point strictly
     /// beyond it. Found by a visibility walk: it crosses facets that separate the cell from the point. In a regular
-    /// triangulation such a walk never returns to a cell (Edelsbrunner 1990, doi:10.1007/BF02122778).
+    /// triangulation such a walk never returns to a cell (Edelsbrunner 1990, doi:10.1007/BF02122779).
     #[inline(never)]
     fn locate(&self, screen: &Screen<'_>, v: u32) -> u32 {
         let mut cell = self.hint;

@@ -2,7 +2,7 @@
 //!
 //! Components are counted upwards, adding the simplices that enter at each level. The complement is followed downwards:
 //! it only grows as α falls, so one union-find over cells serves all levels (Delfinado and Edelsbrunner 1995,
-//! doi:10.1016/0167-8396(94)00016-Y).
+//! doi:10.1016/0167-8396(95)00016-Y).
 
 use std::collections::BTreeMap;
 

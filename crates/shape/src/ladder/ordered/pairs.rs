@@ -1,6 +1,6 @@
 //! Persistence pairs of dimensions 0 and 2 by union-find (Edelsbrunner, Letscher and Zomorodian 2002,
 //! doi:10.1007/s00454-002-2885-2; dimension 2 by duality, after Delfinado and Edelsbrunner 1995,
-//! doi:10.1016/0167-8396(94)00016-Y).
+//! doi:10.1016/0167-8396(95)00016-Y).
 
 use walpha_base::UnionFind;
 

@@ -1,0 +1,264 @@
+#!/usr/bin/env bash
+# Makes what a release consists of in dist/, and tries each artefact where this machine can. Publishes nothing.
+#
+#   scripts/release.sh crates      the packages of Rust, built from what would be published
+#   scripts/release.sh binary      the command for Linux (glibc 2.28) and Windows, as archives
+#   scripts/release.sh deb         the command as a Debian package
+#   scripts/release.sh wheels      wheels (manylinux_2_28) and the source distribution of the Python package
+#   scripts/release.sh rehearse    looks at the texts, then makes all of these, and the binary twice
+#
+# It needs Rust by rustup, Python 3.11 and libcgal-dev, and can use g++-mingw-w64-x86-64, wine, debootstrap, qemu-user-static, binfmt-support and
+# libc6-arm64-cross of Debian, and `cargo install --locked cargo-deb cargo-sbom`. What comes from PyPI it gets itself.
+#
+# Ends with a table. What this machine cannot do is in it as skipped, with the reason; what fails ends the script. To publish after a
+# rehearsal: fill in `repository` in Cargo.toml, commit, tag, `cargo publish --workspace`, `twine upload dist/wheels/*`, and add the other
+# files of dist/ to the release.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+field() { sed -n "s/^$1 = \"\(.*\)\"\$/\1/p" Cargo.toml | head -n 1; }
+version=$(field version)
+host=$(rustc -vV | sed -n 's/^host: //p')
+dist=$PWD/dist stage=$PWD/target/stage tools=$PWD/target/tools/release
+# This machine's first: it makes the manual pages for all.
+linux=(x86_64-unknown-linux-gnu aarch64-unknown-linux-gnu)
+if [ "$host" = "${linux[1]}" ]; then linux=("${linux[1]}" "${linux[0]}"); fi
+windows=x86_64-pc-windows-gnu
+# Without GMP, CGAL needs no library that a system may lack. There is no CGAL for mingw: the native engine, without the paper.
+portable=(--no-default-features --features "cgal,cli,dicom,formats,las,paper,render,zarr")
+rust_alone=(--no-default-features --features "cli,dicom,formats,las,render,zarr")
+of_debian=(--features "dicom,las,zarr")
+SOURCE_DATE_EPOCH=$(git log -1 --format=%ct)
+export SOURCE_DATE_EPOCH TZ=UTC
+
+rows=()
+row() { rows+=("$(printf '%-52s %10s  %-28s %s' "$@")"); }
+made() { row "$(basename "$1")" "$(stat -c %s "$1")" "$2" "${3:-ok}"; }
+skip() { row "$1" - - "skipped: $2"; }
+say() { printf '\n== %s\n' "$*"; }
+has() { command -v "$1" > /dev/null; }
+finish() {
+  local status=$? sums
+  rm -f python/walpha/THIRD-PARTY.md
+  if [ -d "$dist" ]; then
+    sums=$(cd "$dist" && find . -type f ! -name SHA256SUMS -printf '%P\0' | sort -z | xargs -0r sha256sum)
+    printf '%s\n' "$sums" > "$dist/SHA256SUMS"
+  fi
+  say "artefacts of walpha $version"
+  printf '%-52s %10s  %-28s %s\n' artefact bytes "tried on" result
+  if [ ${#rows[@]} != 0 ]; then printf '%s\n' "${rows[@]}"; fi
+  if [ "$status" != 0 ]; then echo "failed, as said above: what follows was not made"; fi
+}
+
+# Programs from PyPI; fails where they cannot be had.
+from_pypi() {
+  { [ -x "$tools/bin/pip" ] || python3 -m venv "$tools"; } && "$tools/bin/pip" install -q "$@" && PATH="$tools/bin:$PATH"
+}
+with_target() { has rustup && rustup target add "$1" > /dev/null 2>&1; }
+notices() { python3 scripts/third_party.py "$@"; }
+
+# Builds as if in a folder of no name, for the archives to be the same wherever they are made. zig gets CGAL and Boost alone: beside them
+# in /usr/include lies the C library of this system.
+portably() {
+  mkdir -p "$stage/cgal/include"
+  ln -sfn /usr/include/CGAL /usr/include/boost "$stage/cgal/include/"
+  CGAL_DIR=$stage/cgal CFLAGS="-ffile-prefix-map=$PWD=walpha" CXXFLAGS="-ffile-prefix-map=$PWD=walpha" \
+    RUSTFLAGS="--remap-path-prefix=$PWD=walpha --remap-path-prefix=${CARGO_HOME:-$HOME/.cargo}=cargo" "$@"
+}
+
+# A program, given as its words, makes a mesh.
+try_program() { "$@" shape sample:phantom@16 --weights min-max --alpha 10 -o "$stage/tried.ply" && grep -q '^element face' "$stage/tried.ply"; }
+
+# Manual pages and completions, by a walpha that runs here.
+pages() {
+  mkdir -p "$2/man"
+  "$1" man --quiet --output "$2/man"
+  "$1" completions bash > "$2/walpha.bash"
+  "$1" completions zsh > "$2/_walpha"
+  "$1" completions fish > "$2/walpha.fish"
+}
+
+# Tries a file by a command in a fresh Debian, as root: suite, architecture, file, command.
+try_in_debian() {
+  local root=$PWD/target/roots/$1-$2
+  if ! has debootstrap || ! debian_root "$root" "$1" "$2"; then
+    skip "  the same in Debian $1, $2" "needs root, debootstrap and, for another processor, qemu-user-static and binfmt-support"
+    return
+  fi
+  cp -- "$3" "$root/root/"
+  chroot "$root" env DEBIAN_FRONTEND=noninteractive sh -euc "cd /root; apt-get update -qq; $4"
+  row "  the same" - "Debian $1, $2" ok
+}
+debian_root() {
+  [ -e "$1/ready" ] || { rm -rf -- "$1" && mkdir -p "$1" && debootstrap --variant=minbase --arch="$3" "$2" "$1" > "$1.log" 2>&1 && touch "$1/ready"; }
+}
+
+texts() {
+  say "texts"
+  python3 scripts/check_links.py
+  if ! grep -qx "version: $version" CITATION.cff || ! grep -q "\"version\": \"$version\"" codemeta.json || ! grep -q "^## \[$version\]" CHANGELOG.md; then
+    echo "CITATION.cff, codemeta.json and CHANGELOG.md are not all of version $version"
+    exit 1
+  fi
+  if from_pypi reuse cffconvert; then
+    reuse lint --quiet
+    cffconvert --validate
+    row "CITATION.cff, licences of files" - here ok
+  else skip "CITATION.cff, licences of files" "reuse and cffconvert cannot be had"; fi
+  if [ -z "$(field repository)" ]; then skip "the address of the sources" "repository in Cargo.toml is for whoever publishes to fill in"; fi
+}
+
+crates() {
+  say "crates"
+  local packages=(walpha) crate oldest
+  for crate in crates/*/; do packages+=("walpha-$(basename "$crate")"); done
+  # They are built from what is published of each other, not from what an earlier run left.
+  rm -rf -- "${CARGO_HOME:-$HOME/.cargo}"/registry/src/-*/walpha-* target/crates
+  cargo publish --dry-run --locked --target-dir target/crates "${packages[@]/#/-p}"
+  mkdir -p "$dist/crates"
+  for crate in "${packages[@]}"; do
+    cp "target/crates/package/$crate-$version.crate" "$dist/crates/"
+    made "$dist/crates/$crate-$version.crate" here
+  done
+  oldest=$(field rust-version)
+  if has rustup && rustup toolchain install --profile minimal "$oldest" > /dev/null 2>&1; then
+    DOCS_RS=1 cargo "+$oldest" check --locked --features dicom,las,zarr --target-dir target/oldest
+    row "rust-version $oldest" - "Rust $oldest" ok
+  else skip "rust-version $oldest" "its toolchain cannot be had"; fi
+}
+
+# Packs a program with what belongs beside it: target, program, features.
+archive() {
+  local name=walpha-$version-$1
+  rm -rf -- "${stage:?}/$name" && mkdir -p "$stage/$name" "$dist"
+  cp -r "$2" LICENSE README.md CHANGELOG.md "$stage/pages/." "$stage/$name/"
+  notices -p walpha --target "$1" "${@:3}" > "$stage/$name/THIRD-PARTY.md"
+  find "$stage/$name" -exec touch -d "@$SOURCE_DATE_EPOCH" {} +
+  if [ "$1" = $windows ]; then
+    (cd "$stage" && python3 -m zipfile -c "$dist/$name.zip" "$name")
+  else
+    tar -C "$stage" --sort=name --owner=0 --group=0 --numeric-owner -c "$name" | gzip -n9 > "$dist/$name.tgz"
+  fi
+}
+zigbuild() { portably cargo zigbuild --release --locked --bin walpha "${portable[@]}" --target "$1.2.28" "${@:2}"; }
+
+binary() {
+  say "binary"
+  local target program needs
+  for target in "${linux[@]}"; do
+    if ! with_target "$target" || ! from_pypi cargo-zigbuild ziglang; then
+      skip "walpha-$version-$target.tgz" "the target, cargo-zigbuild or ziglang cannot be had"
+      continue
+    fi
+    zigbuild "$target"
+    program=target/$target/release/walpha
+    if [ "$target" = "$host" ]; then pages "$program" "$stage/pages"; fi
+    archive "$target" "$program" "${portable[@]}"
+    needs="needs $(grep -aoE 'GLIBC_2\.[0-9]+' "$program" | sort -uV | tail -n 1)"
+    if [ "$target" = "$host" ]; then
+      try_program "$program"
+      made "$dist/walpha-$version-$target.tgz" here "ok, $needs"
+    elif has qemu-aarch64-static && [ -d /usr/aarch64-linux-gnu ]; then
+      try_program qemu-aarch64-static -L /usr/aarch64-linux-gnu "$program"
+      made "$dist/walpha-$version-$target.tgz" "qemu-user-static" "ok, $needs"
+    else made "$dist/walpha-$version-$target.tgz" - "$needs; skipped: there are no qemu-user-static and libc6-arm64-cross"; fi
+  done
+  if has x86_64-w64-mingw32-g++ && with_target $windows && [ -d "$stage/pages" ]; then
+    portably cargo build --release --locked --bin walpha --target $windows "${rust_alone[@]}"
+    archive $windows target/$windows/release/walpha.exe "${rust_alone[@]}"
+    if has wine; then
+      try_program wine target/$windows/release/walpha.exe
+      made "$dist/walpha-$version-$windows.zip" wine
+    else made "$dist/walpha-$version-$windows.zip" - "skipped: there is no wine"; fi
+  else skip "walpha-$version-$windows.zip" "the target or g++-mingw-w64-x86-64 cannot be had"; fi
+  skip "walpha for macOS" "needs a Mac"
+  if cargo sbom --version > /dev/null 2>&1; then
+    cargo sbom --cargo-package walpha > "$dist/walpha-$version.spdx.json"
+    made "$dist/walpha-$version.spdx.json" -
+  else skip "walpha-$version.spdx.json" "there is no cargo-sbom (cargo install cargo-sbom --locked)"; fi
+}
+
+again() {
+  say "the binary again"
+  if [ ! -e "target/$host/release/walpha" ] || ! has cargo-zigbuild; then return; fi
+  rm -rf target/again
+  zigbuild "$host" --target-dir target/again
+  if cmp "target/$host/release/walpha" "target/again/$host/release/walpha"; then row "the binary, built again" - here "the same bytes"
+  else row "the binary, built again" - here "differs, from the byte said above on"; fi
+}
+
+deb() {
+  say "deb"
+  local arch file suite
+  if ! cargo deb --version > /dev/null 2>&1; then skip "walpha.deb" "there is no cargo-deb (cargo install cargo-deb --locked)"; return; fi
+  arch=$(dpkg --print-architecture) file=$dist/walpha_${version}_$arch.deb
+  cargo build --release --locked --bin walpha "${of_debian[@]}"
+  pages target/release/walpha "$stage/deb"
+  notices -p walpha "${of_debian[@]}" > "$stage/deb/THIRD-PARTY.md"
+  mkdir -p "$dist"
+  cargo deb --no-build --output "$file"
+  made "$file" - made
+  for suite in bookworm trixie; do
+    try_in_debian "$suite" "$arch" "$file" "apt-get install -y -qq ./${file##*/}
+      walpha shape sample:phantom@16 --alpha 4 -o x.ply && test -e /usr/share/man/man1/walpha-shape.1.gz"
+  done
+}
+
+wheel() { portably maturin build --release --zig --compatibility manylinux_2_28 --manifest-path python/Cargo.toml --out "$dist/wheels" --target "$@"; }
+
+wheels() {
+  say "wheels"
+  local target file arch suite
+  if ! from_pypi maturin ziglang twine; then skip "wheels" "maturin, ziglang or twine cannot be had"; return; fi
+  rm -rf "$dist/wheels" && mkdir -p "$stage"
+  maturin sdist --manifest-path python/Cargo.toml --out "$dist/wheels"
+  made "$dist/wheels/walpha-$version.tar.gz" - made
+  for target in "${linux[@]}"; do
+    if ! with_target "$target"; then skip "wheel for $target" "the target cannot be had"; continue; fi
+    notices -p walpha-python --target "$target" > python/walpha/THIRD-PARTY.md
+    wheel "$target"
+    if has python3.14t; then wheel "$target" --interpreter python3.14t; else skip "free-threaded wheel for $target" "there is no python3.14t"; fi
+  done
+  skip "wheel for Windows" "python/Cargo.toml requires CGAL, and there is none for mingw"
+  skip "wheel for macOS" "needs a Mac"
+  twine check --strict "$dist"/wheels/*
+  for file in "$dist"/wheels/*.whl; do python3 -m zipfile -l "$file" | grep walpha/THIRD-PARTY.md > /dev/null; done
+  # As from an index that has these files: README's example with NumPy alone, then the tests.
+  python3 -m venv --clear "$stage/venv"
+  "$stage/venv/bin/pip" install -q numpy
+  "$stage/venv/bin/pip" install -q --no-index --find-links "$dist/wheels" walpha
+  echo 'import numpy; points = numpy.random.default_rng(1).random((1000, 3))' > "$stage/readme.py"
+  # shellcheck disable=SC2016
+  sed -n '/^.``python$/,/^.``$/{/^.``/!p}' README.md >> "$stage/readme.py"
+  (cd "$stage" && venv/bin/python readme.py)
+  python3 -c 'import tomllib; print(*tomllib.load(open("python/pyproject.toml", "rb"))["project"]["optional-dependencies"]["test"], sep="\n")' > "$stage/test.txt"
+  "$stage/venv/bin/pip" install -q -r "$stage/test.txt"
+  "$stage/venv/bin/python" -m pytest -q -p no:cacheprovider python/tests
+  for file in "$dist"/wheels/*.whl; do
+    if [[ $file == *abi3*"${host%%-*}".whl ]]; then made "$file" "here, with its tests"; else made "$file" - made; fi
+    if [[ $file != *abi3* ]]; then continue; fi
+    if [[ $file == *aarch64.whl ]]; then arch=arm64; else arch=amd64; fi
+    for suite in bookworm trixie; do
+      try_in_debian $suite $arch "$file" "apt-get install -y -qq python3-pip python3-numpy
+        pip install -q --break-system-packages --no-index --no-deps ./${file##*/}
+        python3 -c 'import numpy, walpha; assert walpha.alpha_shape(numpy.random.default_rng(1).random((1000, 3)), 0.01).volume > 0'"
+    done
+  done
+}
+
+rehearse() {
+  rm -rf -- "$dist"
+  texts
+  crates
+  binary
+  again
+  deb
+  wheels
+}
+
+case ${1:-} in
+  crates | binary | deb | wheels | rehearse) ;;
+  *) sed -n '4,8s/^# *//p' "$0" && exit 2 ;;
+esac
+trap finish EXIT
+"$1"
