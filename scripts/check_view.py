@@ -138,7 +138,7 @@ def picture(browser):
 
 
 COLOURS = """(async () => {
-  const image = await createImageBitmap(await (await fetch('data:image/png;base64,%s')).blob());
+  const image = await createImageBitmap(new Blob([Uint8Array.from(atob('%s'), (byte) => byte.charCodeAt(0))]));
   const canvas = new OffscreenCanvas(image.width, image.height);
   const context = canvas.getContext('2d');
   context.drawImage(image, 0, 0);
@@ -152,7 +152,7 @@ COLOURS = """(async () => {
 # The share of pixels that differ in two pictures by more than what a software renderer's threads leave undecided.
 DIFFERENT = """(async () => {
   const pixels = await Promise.all(%s.map(async (png) => {
-    const image = await createImageBitmap(await (await fetch('data:image/png;base64,' + png)).blob());
+    const image = await createImageBitmap(new Blob([Uint8Array.from(atob(png), (byte) => byte.charCodeAt(0))]));
     const context = new OffscreenCanvas(image.width, image.height).getContext('2d');
     context.drawImage(image, 0, 0);
     return context.getImageData(0, 0, image.width, image.height).data;
@@ -174,7 +174,7 @@ def same(browser, a, b):
 
 # The share of pixels with a green that only the colours of F have.
 INKED = """(async () => {
-  const image = await createImageBitmap(await (await fetch('data:image/png;base64,%s')).blob());
+  const image = await createImageBitmap(new Blob([Uint8Array.from(atob('%s'), (byte) => byte.charCodeAt(0))]));
   const canvas = new OffscreenCanvas(image.width, image.height);
   const context = canvas.getContext('2d');
   context.drawImage(image, 0, 0);
@@ -189,7 +189,7 @@ INKED = """(async () => {
 
 # The empty rows below and above what is drawn, the legend and the colour bar aside, as shares of the picture.
 EMPTY = """(async () => {
-  const image = await createImageBitmap(await (await fetch('data:image/png;base64,%s')).blob());
+  const image = await createImageBitmap(new Blob([Uint8Array.from(atob('%s'), (byte) => byte.charCodeAt(0))]));
   const context = new OffscreenCanvas(image.width, image.height).getContext('2d');
   context.drawImage(image, 0, 0);
   const { top, bottom } = (({ t, b, h }) => ({ top: t, bottom: t + h }))(document.getElementById('scene')._fullLayout._size);
@@ -404,8 +404,21 @@ def look(browser, checks, page, screen, out):
             number = {"points": 3, "isosurface": 6}[trace]
             browser.wait(f"document.getElementById('scene').dataset.shown.includes('{number}')")
             checks.say(f"{screen}: {trace} can be shown", not same(browser, picture(browser), before))
+    with tempfile.TemporaryDirectory() as folder:
+        browser.call("Page.setDownloadBehavior", behavior="allow", downloadPath=folder)
+        browser.evaluate("document.getElementById('save').click()")
+        ended = time.monotonic() + SOON
+        while not (saved := list(pathlib.Path(folder).glob("*.png"))) and time.monotonic() < ended:
+            time.sleep(0.2)
+        head = saved[0].read_bytes()[:8] if saved else b""
+        checks.say(f"{screen}: the picture can be saved", head == b"\x89PNG\r\n\x1a\n", "".join(path.name for path in saved))
     found = faults(browser.events)
     checks.say(f"{screen}: console and network are quiet", not found, "; ".join(found))
+    blocked = browser.evaluate(
+        "new Promise((say) => { addEventListener('securitypolicyviolation', (event) => say(event.effectiveDirective), { once: true });"
+        " fetch('data:,').catch(() => setTimeout(() => say('not'), 1000)) })"
+    )
+    checks.say(f"{screen}: nothing can be fetched", blocked == "connect-src", f"({blocked} blocked)")
 
 
 def main():

@@ -71,11 +71,15 @@ fn simplified(subject: &Subject<'_>, packed: &[Packed]) -> Option<String> {
 const STYLE: &str = include_str!("page.css");
 const SCRIPT: &str = include_str!("page.js");
 
+/// All is in the page: nothing is loaded, from wherever, whatever plotly.js is able to. Saved pictures are made as `data:` and `blob:`.
+const POLICY: &str = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: blob:";
+
 /// The page. Every string from outside is escaped, in markup and in data.
 fn page(subject: &Subject<'_>, packed: &[Packed], surface: Option<&Arrays>) -> String {
     let title = escape(subject.title);
     let mut html = format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+         <meta http-equiv=\"Content-Security-Policy\" content=\"{POLICY}\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
          <title>{title}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n<h1>{title}</h1>\n"
     );
