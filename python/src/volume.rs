@@ -109,6 +109,8 @@ pub fn select<'py>(
     let found = run(py, &Task::default(), move |monitor| {
         let _ = Stage::Points.begin(monitor);
         let (volume, smoothed) = (Volume::new(samples, frame)?, Volume::new(smoothed, frame)?);
+        // Arrays do not say what they hold.
+        let smoothed = smoothed.with_gray_levels();
         let differences = points::difference(&smoothed);
         points::select(&volume, &smoothed, &differences, &selection, units)
     })?;

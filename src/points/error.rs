@@ -35,6 +35,14 @@ pub enum PointsError {
         /// Voxels that take part.
         available: u64,
     },
+    /// A volume whose values have not become gray levels.
+    #[error("the values of the volume, {low} to {high}, are not gray levels 0 to 255")]
+    NotGray {
+        /// The least value.
+        low: f32,
+        /// The largest value.
+        high: f32,
+    },
     /// The mask leaves no voxel.
     #[error(
         "no voxel reaches the gray level {least}: after truncation gray levels end at {highest}"
@@ -110,6 +118,7 @@ impl PointsError {
             Self::Count { available, .. } => {
                 format!("give a count from 1 to {available}, the voxels that take part").into()
             }
+            Self::NotGray { .. } => "map them first, by Volume::into_gray".into(),
             Self::Masked { .. } => advice!["give less for ", Setting::GrayMin],
             Self::Empty { .. } => advice![
                 "lower ",

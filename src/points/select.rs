@@ -53,14 +53,14 @@ impl Default for SelectionRule {
     }
 }
 
-/// Units of the coordinates of points.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+/// Units of the coordinates of points. There is no default but that of a [`Recipe`](crate::pipeline::Recipe), which goes by what
+/// the file states.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 #[serde(rename_all = "lowercase")]
 #[non_exhaustive]
 pub enum Units {
     /// Indices of samples, as in the paper.
-    #[default]
     Voxel,
     /// World coordinates, by the spacing, origin and direction of the file's grid.
     World,
@@ -117,8 +117,8 @@ impl Units {
 /// [`difference`](super::difference)s. O(n), parallel, independent of the number of threads.
 ///
 /// # Errors
-/// A rule whose number is out of range, more voxels asked for than there are, no voxel left, or not enough
-/// memory.
+/// A truncated volume whose values are no gray levels ([`Volume::into_gray`] makes them), a rule whose number is out of range,
+/// more voxels asked for than there are, no voxel left, or not enough memory.
 ///
 /// # Panics
 /// If the three shapes differ.
@@ -131,6 +131,11 @@ pub fn select(
 ) -> Result<Points, PointsError> {
     assert_eq!(volume.dims(), smoothed.dims(), "one grid");
     assert_eq!(volume.dims().shape(), *differences.shape(), "one grid");
+    // Thresholds, errors and weights count in gray levels: Hounsfield units would be taken for them.
+    if !smoothed.has_gray_levels() {
+        let (low, high) = smoothed.value_range();
+        return Err(PointsError::NotGray { low, high });
+    }
     let n = volume.dims().samples();
     let standard = differences.as_standard_layout();
     let flat = standard.as_slice().expect("standard layout");
@@ -150,7 +155,10 @@ pub fn select(
         let available = masked.par_iter().filter(|l| !l.is_nan()).count() as u64;
         if available == 0 {
             let highest = f64::from(smoothed.value_range().1);
-            return Err(PointsError::Masked { least, highest });
+            return Err(match selection.gray_min {
+                Some(least) => PointsError::Masked { least, highest },
+                None => PointsError::Empty { voxels: n as u64 },
+            });
         }
         chosen(&masked, available, &selection.rule)?
     };

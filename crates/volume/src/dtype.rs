@@ -114,6 +114,33 @@ impl Dtype {
     }
 }
 
+/// A type of numbers that [`Volume::of_samples`](super::Volume::of_samples) takes: those of [`Dtype`].
+pub trait Sample: Copy + Send + Sync + sealed::Sealed {
+    /// Its name.
+    const DTYPE: Dtype;
+    /// The number, rounded as [`Dtype`] says.
+    fn to_f32(self) -> f32;
+}
+
+mod sealed {
+    pub trait Sealed {}
+}
+
+macro_rules! samples {
+    ($($number:ty: $dtype:ident),*) => {$(
+        impl sealed::Sealed for $number {}
+        impl Sample for $number {
+            const DTYPE: Dtype = Dtype::$dtype;
+            #[allow(clippy::cast_lossless, trivial_numeric_casts, reason = "from any number to f32")]
+            fn to_f32(self) -> f32 {
+                self as f32
+            }
+        }
+    )*};
+}
+
+samples! { u8: U8, i8: I8, u16: U16, i16: I16, u32: U32, i32: I32, u64: U64, i64: I64, f32: F32, f64: F64 }
+
 impl fmt::Display for Dtype {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.name())

@@ -31,7 +31,7 @@ mod volume;
 mod write;
 
 pub use crop::{Region, downsample};
-pub use dtype::{Dtype, Endian, UnknownName};
+pub use dtype::{Dtype, Endian, Sample, UnknownName};
 pub use error::VolumeError;
 pub use formats::{
     FORMATS, Keeps, UnknownFormat, VolumeFormat, VolumeWriter, data_files, files_of, format_name,

@@ -1,8 +1,9 @@
 use ndarray::{Array3, ArrayView3};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
+use walpha_base::memory;
 
-use super::{Dims, Dtype, Frame, Gray, GrayRange, VolumeError};
+use super::{Dims, Dtype, Frame, Gray, GrayRange, Sample, VolumeError};
 
 /// A grid of finite samples, stored `[z, y, x]` (x fastest) in standard layout.
 ///
@@ -48,6 +49,30 @@ impl Volume {
     /// ([`VolumeError::NotFinite`] names the first).
     pub fn new(samples: Array3<f32>, frame: Frame) -> Result<Self, VolumeError> {
         Self::of_file(samples, frame)?.resolve_nan(None)
+    }
+
+    /// A volume of samples of any type of numbers, `[z, y, x]`, in any layout; as [`Dtype`] says, they become `f32`, and unsigned
+    /// bytes are gray levels. They are copied.
+    ///
+    /// ```
+    /// use ndarray::Array3;
+    /// use walpha_volume::{Dtype, Frame, Volume};
+    ///
+    /// let scan = Array3::from_elem((2, 3, 4), -1000_i16);
+    /// let volume = Volume::of_samples(scan.view(), Frame::VOXEL)?;
+    /// assert_eq!((volume.dtype(), volume.value_range()), (Dtype::I16, (-1000.0, -1000.0)));
+    /// # Ok::<(), walpha_volume::VolumeError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`new`](Self::new), and out of memory.
+    pub fn of_samples<T: Sample>(
+        samples: ArrayView3<'_, T>,
+        frame: Frame,
+    ) -> Result<Self, VolumeError> {
+        memory::afford(samples.len() * size_of::<f32>(), || "a volume".into())?;
+        let samples = samples.as_standard_layout();
+        Ok(Self::new(samples.map(|&sample| sample.to_f32()), frame)?.with_dtype(T::DTYPE))
     }
 
     /// The same for readers: samples may be NaN or infinite until [`Volume::resolve_nan`].

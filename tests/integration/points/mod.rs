@@ -14,7 +14,7 @@ use walpha::volume::{Frame, Gray, Volume, VolumeError, sample};
 use crate::common::Told;
 
 fn volume(samples: Array3<f32>) -> Volume {
-    Volume::new(samples, Frame::VOXEL).unwrap()
+    Volume::new(samples, Frame::VOXEL).unwrap().with_gray_levels()
 }
 
 /// L by its definition.
@@ -130,11 +130,37 @@ fn the_skull_is_cut_where_it_should_be() {
 fn world_units_follow_the_frame() {
     let frame = Frame { origin: [10.0, 20.0, 30.0], spacing: [2.0, 3.0, 0.5], ..Frame::VOXEL };
     let f = Array3::from_shape_fn((2, 2, 2), |(z, y, x)| (x + 2 * y + 4 * z) as f32);
-    let v = Volume::new(f, frame).unwrap();
+    let v = Volume::new(f, frame).unwrap().with_gray_levels();
     let all = Selection::default().rule(SelectionRule::Ratio(1.0));
     let points = select(&v, &v, &difference(&v), &all, Units::World).unwrap();
     assert_eq!(points.positions[7], [12.0, 23.0, 30.5]);
     assert_eq!(points.positions[1], [12.0, 20.0, 30.0]);
+}
+
+/// Hounsfield units are not taken for gray levels.
+#[test]
+fn other_values_than_gray_levels_are_refused() {
+    let values = Array3::from_shape_fn((2, 2, 2), |(z, y, x)| (1000 * (x + y + z)) as f32);
+    let scan = Volume::new(values, Frame::VOXEL).unwrap();
+    let all = |volume: &Volume| {
+        let all = Selection::default().rule(SelectionRule::Ratio(1.0));
+        select(volume, volume, &difference(volume), &all, Units::Voxel)
+    };
+    let told = all(&scan).unwrap_err().told();
+    assert!(told.contains("0 to 3000") && told.contains("into_gray"), "{told}");
+    let (gray, range) = scan.into_gray(Gray::Automatic).unwrap();
+    assert_eq!((range.low, range.high), (0.0, 3000.0));
+    assert_eq!(
+        all(&gray).unwrap().values.unwrap(),
+        [0, 1, 1, 2, 1, 2, 2, 3].map(|n| 85.0 * f64::from(n))
+    );
+}
+
+#[test]
+fn a_volume_without_samples_says_so() {
+    let v = volume(Array3::zeros((2, 3, 4))).with_missing(Some(vec![true; 24]));
+    let told = select(&v, &v, &difference(&v), &Selection::default(), Units::Voxel);
+    assert!(told.unwrap_err().told().contains("none of 24 voxels"));
 }
 
 #[test]
