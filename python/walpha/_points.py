@@ -58,7 +58,8 @@ def read_points(
     ----------
     path : str or path-like
         CSV, XYZ, PTS, PLY, OFF, OBJ, STL, PCD, LAS, LAZ, VTU, VTP, VTK, NPY or WVM. Weights are a column
-        ``weight``, or else the squares of a column ``radius``.
+        ``weight``, or else the squares of a column ``radius``. Or ``hard:NAME``, a set on which programs fail: the
+        documentation lists them under cross-checking.
     level : int, optional
         For WVM in layers: how many of the last layers to leave out.
     columns : iterable of str, optional

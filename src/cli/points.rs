@@ -25,6 +25,8 @@ use super::report::Report;
 ///
 /// walpha points sample:skull --count 15956 --weights min-max -o skull.csv
 ///
+/// walpha points hard:voxels -o ties.csv
+///
 /// walpha points sample:skull --select adaptive --target-rmse 2 --value-error 3 -o skull.wvm
 #[derive(Args)]
 pub(super) struct Points {

@@ -3,7 +3,7 @@ use std::path::Path;
 use walpha_base::Monitor;
 
 use super::{PipelineError, Recipe};
-use crate::points::{ModelMetadata, Points, PointsError, Units, read_model_file};
+use crate::points::{ModelMetadata, Points, PointsError, Units, hard, read_model_file};
 use crate::volume::{self, GrayRange, OpenFile, Volume};
 
 /// The content of an input.
@@ -100,6 +100,9 @@ impl Recipe {
         if is_sample(input) || input.is_dir() {
             let volume = volume::open_monitored(input, &self.read, monitor);
             return Ok(Content::Volume(volume.map_err(PointsError::from)?));
+        }
+        if let Some(points) = hard(input)? {
+            return Ok(Content::Points(points, ModelMetadata::default()));
         }
         // Everything below reads this open file and does not open it again.
         let file = OpenFile::open(input).map_err(PointsError::from)?;

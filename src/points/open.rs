@@ -7,7 +7,7 @@ use walpha_base::setters;
 
 use super::formats::{FORMATS, PointFormat};
 use super::read::{COLUMNS, format};
-use super::{Columns, ModelMetadata, Points, PointsError};
+use super::{Columns, ModelMetadata, Points, PointsError, hard};
 use crate::volume::{OpenFile, Reason, begins_as_volume};
 
 /// What a user may state about a file of points.
@@ -42,6 +42,9 @@ impl PointOptions {
     /// As [`is_point_file`].
     pub fn is_point_file(&self, path: impl AsRef<Path>) -> Result<bool, PointsError> {
         let path = path.as_ref();
+        if hard(path)?.is_some() {
+            return Ok(true);
+        }
         // A pipe is recognised by name alone, as bytes read from it are gone.
         if path.is_file() {
             self.holds_points(&OpenFile::open(path)?)
@@ -111,7 +114,7 @@ pub fn read_points(
     Ok(read_model(path, &PointOptions::default().columns(columns.cloned()))?.0)
 }
 
-/// Reads points and their metadata, which is empty if the format stores none.
+/// Reads points and their metadata, which is empty if the format stores none; or makes those of a [`hard`] set, by its name.
 ///
 /// # Errors
 /// As [`read_points`]; a level that the file does not have; a stated format that contradicts the content.
@@ -120,6 +123,9 @@ pub fn read_model(
     options: &PointOptions,
 ) -> Result<(Points, ModelMetadata), PointsError> {
     let path = path.as_ref();
+    if let Some(points) = hard(path)? {
+        return Ok((points, ModelMetadata::default()));
+    }
     read_model_file(&OpenFile::open(path)?, options)
 }
 

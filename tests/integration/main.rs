@@ -18,6 +18,7 @@ mod filtration;
 mod flat;
 mod formats;
 mod haar;
+mod hard;
 mod interpolate;
 mod ladder;
 #[cfg(feature = "las")]
