@@ -170,6 +170,7 @@ pub fn persistence_figure(title: &str, intervals: [&[[f64; 2]]; 3]) -> Figure {
     chart.segment([[low; 2], [low + length; 2]], Pen::line(Rgb([150; 3]), 2.0));
     let ends = [bounds[0][0], bounds[1][0]].map(|x| [x, never]);
     chart.segment(ends, Pen::line(Rgb([150; 3]), 2.0).dashed());
+    chart.text([low + 0.96 * length, never + 0.025 * length], 22.0, "never", Rgb([110; 3]));
     // Voids are few, components many.
     let colours = BETTI.map(|(_, colour)| colour);
     for (of_dimension, colour) in intervals.iter().zip(colours) {
