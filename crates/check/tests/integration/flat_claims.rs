@@ -1,7 +1,7 @@
 //! Complexes and filtrations of points in one plane, on one line, or of one alone.
 
 use walpha_base::random::Random;
-use walpha_check::schema::{ComplexFile, FiltrationFile, PlacedComplex};
+use walpha_check::schema::{Below, ComplexFile, FiltrationFile, PlacedComplex};
 use walpha_check::{Alpha, Claim, Class, Extent, Finding, Verdict, certify_filtration, enumerate};
 
 use crate::base::findings;
@@ -204,6 +204,50 @@ fn filtrations_are_judged_in_their_plane() {
         }
     }
     assert!(damaged > 50, "{damaged}");
+}
+
+/// Nothing surrounds the points of a line or a point alone, at no value of α.
+#[test]
+fn nothing_on_a_line_is_interior() {
+    let value = |x: f64| Alpha::from_squared(x).unwrap();
+    let (zero, never) = (value(0.0), Alpha::INFINITE);
+    let mut line = FiltrationFile {
+        points: [0.0, 1.0, 3.0].map(|x| [x, 0.0, 0.0]).to_vec(),
+        vertices: vec![0, 1, 2],
+        edges: vec![[0, 1], [1, 2]],
+        order: vec![0, 1, 2, 3, 4],
+        ..FiltrationFile::default()
+    };
+    line.values.vertices = vec![zero; 3];
+    line.values.edges = vec![value(0.25), value(1.0)];
+    let mut point = FiltrationFile {
+        points: vec![[0.0; 3]],
+        vertices: vec![0],
+        order: vec![0],
+        ..FiltrationFile::default()
+    };
+    point.values.vertices = vec![zero];
+    for file in [line, point] {
+        let intervals = |interior| {
+            let mut file = file.clone();
+            file.regular = Some(Below {
+                vertices: match file.edges.len() {
+                    0 => vec![never],
+                    _ => vec![value(0.25), value(0.25), value(1.0)],
+                },
+                edges: vec![never; file.edges.len()],
+                facets: Vec::new(),
+            });
+            file.interior = Some(Below {
+                vertices: vec![interior; file.vertices.len()],
+                edges: vec![interior; file.edges.len()],
+                facets: Vec::new(),
+            });
+            certify_filtration(&file).unwrap().0
+        };
+        assert_eq!(intervals(never), []);
+        assert_eq!(intervals(zero).len(), file.order.len());
+    }
 }
 
 /// With nothing listed of the dimension that points span.

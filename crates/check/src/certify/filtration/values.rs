@@ -210,7 +210,11 @@ fn below<const M: usize>(
             *interior = span.interior.max(*interior);
         }
     }
-    own.iter().zip(ends).map(|(&own, (regular, interior))| span(own, regular, interior)).collect()
+    let of_face = |(&own, (regular, interior))| {
+        // Nothing surrounds what has no cofaces.
+        span(own, regular, if regular == NEVER { NEVER } else { interior })
+    };
+    own.iter().zip(ends).map(of_face).collect()
 }
 
 fn span(own: u32, regular: u32, interior: u32) -> Span {
