@@ -2,10 +2,11 @@
 //!
 //! Where more points lie on one empty sphere than a simplex has corners, their polytope may be cut in
 //! several ways. For a whole triangulation, hull and volume prove that it is cut in one of them. In a shape
-//! alone each polytope is judged by itself, as a whole triangulation of the points on its sphere; and
-//! on each of its flat faces, which the polytope beyond may cut, too, all facets must have cells on the same sides.
+//! alone each polytope is judged by itself, as a whole triangulation of the points on its sphere; on each of its
+//! flat faces, which the polytope beyond may cut, too, all facets must have cells on the same sides; and no vertex
+//! may lie within an edge, which other polytopes may cut, too.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use rayon::prelude::*;
 use walpha_base::{Cancelled, Monitor};
@@ -56,9 +57,7 @@ pub(super) fn singular(
     let on_spheres = monitor.unreported();
     for (on, rows) in &lines {
         // All edges between these points, as some may be faces of facets.
-        let pairs =
-            on.iter().enumerate().flat_map(|(i, &a)| on[i + 1..].iter().map(move |&b| [a, b]));
-        let listed = pairs.filter(|&pair| structure.edges.contains(pair));
+        let listed = edges_between(structure, on);
         let edges = listed.map(|pair| (local(pair, on), Class::Exterior)).collect();
         let first = complex.edges.rows()[rows[0] as usize];
         let edges = Complex { edges, ..Complex::default() };
@@ -74,7 +73,7 @@ pub(super) fn singular(
     Ok((circles, findings))
 }
 
-/// Judges cells with further points on their spheres, and the facets listed on the flat faces between them.
+/// Judges cells with further points on their spheres, and the facets and edges listed on the faces between them.
 pub(super) fn cells(
     structure: &Structure,
     points: Points,
@@ -113,6 +112,7 @@ pub(super) fn cells(
     // For each flat face with more than three corners, one facet and the sides on which it has cells.
     let mut faces = BTreeMap::<Vec<u32>, (u32, [bool; 2])>::new();
     let mut crossing = BTreeMap::<u32, u32>::new();
+    let mut cut = BTreeSet::new();
     let mut add = |face: Vec<u32>, facet: u32| {
         let sides = sides(structure, points, &face, facet);
         let (other, known) = *faces.entry(face).or_insert((facet, sides));
@@ -129,16 +129,52 @@ pub(super) fn cells(
                 if face.len() > 3 {
                     add(face, structure.cell_facets[row][k]);
                 }
+                cut.extend(cut_edges(structure, points, facet, on));
             }
         }
     }
     for (on, rows) in singular {
-        rows.iter().for_each(|&row| add(on.clone(), row));
+        for &row in rows {
+            add(on.clone(), row);
+            cut.extend(cut_edges(structure, points, facets[row as usize], on));
+        }
     }
+    let of_line = |[a, b]: [u32; 2]| {
+        let [p, q] = points.positions_of([a, b]);
+        let on_line = |&v: &u32| collinear(p, q, points.get(v).position);
+        let on: Vec<u32> = emptiness.on_sphere([a, b]).into_iter().filter(on_line).collect();
+        let listed = edges_between(structure, &on).count();
+        Finding::TiedSphere { simplex: [a, b].into(), points: on, listed }
+    };
+    findings.extend(cut.into_iter().map(of_line));
     let of = |row: u32| facets[row as usize].into();
     let crossing = crossing.into_iter();
     findings.extend(crossing.map(|(a, b)| Finding::TiedFacets { facet: of(a), other: of(b) }));
     Ok(findings)
+}
+
+/// The edges of a facet that have a vertex between their ends, of those `on` its sphere.
+fn cut_edges(
+    structure: &Structure,
+    points: Points,
+    [a, b, c]: [u32; 3],
+    on: &[u32],
+) -> impl Iterator<Item = [u32; 2]> {
+    [[a, b], [b, c], [a, c]].map(sorted).into_iter().filter(move |&edge| {
+        let [p, q] = points.positions_of(edge);
+        on.iter().any(|&v| {
+            let x = points.get(v).position;
+            // Comparing coordinates is cheap, and rules out nearly all.
+            let between = (0..3).all(|k| p[k].min(q[k]) <= x[k] && x[k] <= p[k].max(q[k]));
+            between && !edge.contains(&v) && structure.vertices.contains([v]) && collinear(p, q, x)
+        })
+    })
+}
+
+/// The edges listed between some points, which are ascending.
+fn edges_between(structure: &Structure, on: &[u32]) -> impl Iterator<Item = [u32; 2]> {
+    let pairs = on.iter().enumerate().flat_map(|(i, &a)| on[i + 1..].iter().map(move |&b| [a, b]));
+    pairs.filter(|&pair| structure.edges.contains(pair))
 }
 
 /// The sides of a flat face on which a facet of it has cells.

@@ -347,6 +347,42 @@ fn minus_zero_is_zero() {
     }
 }
 
+/// Two hulls that share an edge with a third point on it: one has the whole edge, the other both halves.
+#[test]
+fn an_edge_is_cut_once() {
+    let [a, b, m] = [0, 1, 2];
+    let case = Case {
+        positions: vec![
+            [-1.0, 0.0, 0.0],
+            [1.0, 0.0, 0.0],
+            [0.0; 3],
+            [0.0, 1.25, 0.5],
+            [0.0, 1.25, -0.5],
+            [0.0, -1.25, 0.5],
+            [0.0, -1.25, -0.5],
+        ],
+        weights: vec![0.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0],
+        alpha: 1.25,
+    };
+    let shape = |cells: &[[u32; 4]], facets: &[[u32; 3]]| {
+        let mut file = ComplexFile::of_points(case.positions.clone(), case.alpha());
+        file.weights = Some(case.weights.clone());
+        file.cells = Some(cells.to_vec());
+        file.facets = Some(facets.to_vec());
+        verdict(&case, &Answer::of(PlacedComplex::try_from(file).unwrap().complex), Extent::Shape)
+    };
+    let faces = |cells: &[[u32; 4]]| {
+        let rows = closed(cells).facets;
+        rows.rows().to_vec()
+    };
+    let (halves, other) = ([[a, m, 3, 4], [b, m, 3, 4]], [[a, b, 5, 6]]);
+    let other_halves = [[a, m, 5, 6], [b, m, 5, 6]];
+    let cells = [&halves[..], &other].concat();
+    assert_eq!(shape(&cells, &faces(&cells)), Verdict::Wrong);
+    let cells = [&halves[..], &other_halves].concat();
+    assert_ne!(shape(&cells, &faces(&cells)), Verdict::Wrong);
+}
+
 /// A cell that is missing is missing in a valid complex, too.
 #[test]
 fn a_valid_complex_without_a_cell_is_wrong() {
