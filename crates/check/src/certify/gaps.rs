@@ -84,6 +84,16 @@ fn judge(
     missing.then_some((cell, if fits { Class::Interior } else { Class::Exterior }))
 }
 
+/// Those of the missing cells of a shape alone that the rule for ties makes.
+pub(super) fn by_rule(
+    missing: &[([u32; 4], Class)],
+    emptiness: Option<&Emptiness>,
+) -> Vec<([u32; 4], Class)> {
+    let is_made =
+        |(cell, _): &&_| emptiness.is_some_and(|near| near.refuter_of_cell(*cell).is_none());
+    missing.iter().filter(is_made).copied().collect()
+}
+
 /// The complex with these cells.
 pub(super) fn filled(complex: &Complex, missing: &[([u32; 4], Class)]) -> Complex {
     let mut filled = complex.clone();

@@ -227,22 +227,26 @@ fn apply(
     let gaps = &monitor.part(linked, searched, 20);
     let missing = gaps::missing_cells(&listed.structure, points, alpha, judge.emptiness, gaps)?;
     let rest = monitor.part(searched, 20, 20);
-    if !missing.is_empty() {
+    // Cells that could be missing overlap where one holds points on its sphere, and parts of it could be missing, too.
+    // Those that the rule for ties makes do not.
+    let by_rule = gaps::by_rule(&missing, judge.emptiness);
+    let choices = [missing, by_rule].into_iter().filter(|missing| !missing.is_empty());
+    for (part, missing) in (0..).zip(choices) {
         let filled = gaps::filled(complex, &missing);
-        let filled = Linked::new(&filled, points, extent, &rest.part(0, 1, 3))?;
-        if filled.is_regular() {
-            report(gaps::findings(&missing, points))?;
-            // Classes around a gap may be right without its cell, or with it.
-            let wrong = classes::judge(&listed.structure, &judge, &rest.part(1, 2, 3))?;
-            let wrong: BTreeSet<_> = wrong.iter().filter_map(Finding::judged_class).collect();
-            let in_both = |finding: &Finding| {
-                finding.judged_class().is_none_or(|simplex| wrong.contains(simplex))
-            };
-            let mut lasting =
-                |findings: Vec<Finding>| report(findings.into_iter().filter(in_both).collect());
-            let rest = rest.part(2, 3, 3);
-            return apply_to(filled, claim, &judge, &kept, &mut lasting, &rest);
+        let filled = Linked::new(&filled, points, extent, &rest.part(part, part + 1, 6))?;
+        if !filled.is_regular() {
+            continue;
         }
+        report(gaps::findings(&missing, points))?;
+        // Classes around a gap may be right without its cell, or with it.
+        let wrong = classes::judge(&listed.structure, &judge, &rest.part(2, 4, 6))?;
+        let wrong: BTreeSet<_> = wrong.iter().filter_map(Finding::judged_class).collect();
+        let in_both = |finding: &Finding| {
+            finding.judged_class().is_none_or(|simplex| wrong.contains(simplex))
+        };
+        let mut lasting =
+            |findings: Vec<Finding>| report(findings.into_iter().filter(in_both).collect());
+        return apply_to(filled, claim, &judge, &kept, &mut lasting, &rest.part(4, 6, 6));
     }
     apply_to(listed, claim, &judge, &kept, report, &rest)
 }

@@ -383,6 +383,42 @@ fn an_edge_is_cut_once() {
     assert_ne!(shape(&cells, &faces(&cells)), Verdict::Wrong);
 }
 
+/// A tetrahedron cut around points in it that are on its sphere: a part that is missing is found although
+/// the whole of it could be missing, too.
+#[test]
+fn a_part_of_a_cell_that_could_be_one_is_missing() {
+    let positions: Vec<[f64; 3]> = [
+        [12, 12, 12],
+        [12, -12, -12],
+        [-12, 12, -12],
+        [-12, -12, 12],
+        [0, -2, 4],
+        [3, -7, -7],
+        [4, -4, 1],
+        [-2, -1, -5],
+        [-5, 1, -2],
+        [2, -3, -6],
+    ]
+    .iter()
+    .map(|p: &[i32; 3]| p.map(f64::from))
+    .collect();
+    // All points are on the sphere around the origin through the corners.
+    let weights = positions.iter().map(|p| p.iter().map(|x| x * x).sum::<f64>() - 432.0).collect();
+    let case = Case { positions, weights, alpha: 432.0 };
+    let around = [[0, 2, 4, 6], [0, 3, 4, 6], [2, 3, 4, 8]];
+    let own = definition(&case).unwrap().complex;
+    let listed = |cell: [u32; 4]| own.cells.rows().iter().any(|row| sorted(*row) == cell);
+    assert!(around.into_iter().chain([[0, 2, 3, 4]]).all(listed));
+    let mut file = ComplexFile::of_points(case.positions.clone(), case.alpha());
+    file.weights = Some(case.weights.clone());
+    file.cells = Some(around.to_vec());
+    let facets = closed(&around).facets;
+    file.facets = Some([facets.rows(), &[[0, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3]]].concat());
+    let found = PlacedComplex::try_from(file).unwrap().findings().unwrap().0;
+    let missing = |f: &Finding| matches!(f, Finding::MissingCell { cell, .. } if sorted::<4>(cell.vertices().try_into().unwrap()) == [0, 2, 3, 4]);
+    assert!(matches!(&found[..], [f] if missing(f)), "{found:?}");
+}
+
 /// A cell that is missing is missing in a valid complex, too.
 #[test]
 fn a_valid_complex_without_a_cell_is_wrong() {
