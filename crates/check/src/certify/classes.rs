@@ -11,6 +11,7 @@ use super::claim::Extent;
 use super::emptiness::Emptiness;
 use super::finding::Finding;
 use super::structure::{Half, Index, NONE, Points, Structure};
+use super::torus::Torus;
 use crate::exact::{Side, collinear, orientation, power_value, radius, radius_value, side};
 use crate::parallel::of_each;
 use crate::{Alpha, Class, Simplices};
@@ -73,6 +74,8 @@ pub(super) struct Judge<'a> {
     pub dimension: usize,
     /// Only in a shape alone.
     pub emptiness: Option<&'a Emptiness<'a>>,
+    /// Of which the complex has copies.
+    pub torus: Option<Torus>,
 }
 
 /// The class that a simplex has, and the point in its sphere that excludes it from the shape, or [`NONE`].

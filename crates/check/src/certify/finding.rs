@@ -341,8 +341,8 @@ impl Finding {
                 simplex.fold(count)
             }
             Self::TiedFacets { facet, other } => {
-                other.fold(count);
-                facet.fold(count)
+                let is_other_at_box = other.fold(count);
+                facet.fold(count) || is_other_at_box
             }
             Self::SpannedSphere { simplex, point } => {
                 point_at_box(point);

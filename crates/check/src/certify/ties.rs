@@ -109,17 +109,9 @@ pub(super) fn cells(
     let found: Vec<_> = spheres.par_iter().map(judge).collect::<Result<_, Cancelled>>()?;
     let mut findings: Vec<Finding> = found.into_iter().flatten().collect();
 
-    // For each flat face with more than three corners, one facet and the sides on which it has cells.
-    let mut faces = BTreeMap::<Vec<u32>, (u32, [bool; 2])>::new();
-    let mut crossing = BTreeMap::<u32, u32>::new();
+    // The facets listed on each flat face with more than three corners.
+    let mut faces = BTreeMap::<Vec<u32>, Vec<u32>>::new();
     let mut cut = BTreeSet::new();
-    let mut add = |face: Vec<u32>, facet: u32| {
-        let sides = sides(structure, points, &face, facet);
-        let (other, known) = *faces.entry(face).or_insert((facet, sides));
-        if known != sides {
-            crossing.entry(facet).or_insert(other);
-        }
-    };
     for (on, rows) in &spheres {
         for &row in rows {
             for (k, facet) in outward_facets(cells[row]).into_iter().enumerate() {
@@ -127,7 +119,7 @@ pub(super) fn cells(
                 let flat = |&&q: &&u32| orientation(a, b, c, points.get(q).position).is_eq();
                 let face: Vec<u32> = on.iter().filter(flat).copied().collect();
                 if face.len() > 3 {
-                    add(face, structure.cell_facets[row][k]);
+                    faces.entry(face).or_default().push(structure.cell_facets[row][k]);
                 }
                 cut.extend(cut_edges(structure, points, facet, on));
             }
@@ -135,7 +127,7 @@ pub(super) fn cells(
     }
     for (on, rows) in singular {
         for &row in rows {
-            add(on.clone(), row);
+            faces.entry(on.clone()).or_default().push(row);
             cut.extend(cut_edges(structure, points, facets[row as usize], on));
         }
     }
@@ -147,6 +139,15 @@ pub(super) fn cells(
         Finding::TiedSphere { simplex: [a, b].into(), points: on, listed }
     };
     findings.extend(cut.into_iter().map(of_line));
+    let mut crossing = BTreeMap::<u32, u32>::new();
+    for (face, rows) in &faces {
+        // Of copies on a torus, the one that names a point of the box, if any does.
+        let first = rows.iter().copied().min_by_key(|&row| facets[row as usize].into_iter().min());
+        let first = first.expect("a face has facets");
+        let known = sides(structure, points, face, first);
+        let crosses = |&&row: &&u32| sides(structure, points, face, row) != known;
+        crossing.extend(rows.iter().filter(crosses).map(|&row| (row, first)));
+    }
     let of = |row: u32| facets[row as usize].into();
     let crossing = crossing.into_iter();
     findings.extend(crossing.map(|(a, b)| Finding::TiedFacets { facet: of(a), other: of(b) }));

@@ -20,6 +20,13 @@ use crate::exact::Exact;
 use crate::schema::{PlacedComplex, moved, nearest_copy};
 use crate::{Alpha, Complex, Placed, Simplices};
 
+/// Of what torus a complex in space is the copies.
+#[derive(Clone, Copy)]
+pub(super) struct Torus {
+    /// The number of points in the box. They come before all copies.
+    pub points: u32,
+}
+
 /// All broken rules of a complex of a torus with these sides, and the certificate.
 ///
 /// # Errors
@@ -51,16 +58,11 @@ pub(super) fn findings(
         return Ok((broken, certificate));
     }
     let copies = Copies::of(placed, sides);
-    let claim = copies.claim();
-    let (all, mut certificate) = claim.findings_monitored(monitor)?;
     let count = placed.positions.len() as u32;
+    let torus = Torus { points: count };
+    let (all, mut certificate) = copies.claim().findings_on(Some(torus), monitor)?;
     let mut seen = BTreeSet::new();
-    // A sphere that reaches beyond the copied simplices lacks some of its own.
-    let is_copied = |finding: &Finding| match finding {
-        Finding::TiedSphere { points, .. } => points.iter().all(|&point| copies.is_copied(point)),
-        _ => true,
-    };
-    let near = all.into_iter().filter(is_copied).filter_map(|finding| finding.at_box(count));
+    let near = all.into_iter().filter_map(|finding| finding.at_box(count));
     let mut found: Vec<Finding> =
         near.filter(|finding| seen.insert(format!("{finding:?}"))).collect();
     let whole = Extent::of(&placed.complex, placed.alpha) == Extent::Whole;
@@ -107,8 +109,6 @@ struct Copies {
     complex: Complex,
     hidden: Option<Vec<u32>>,
     duplicates: Option<Vec<[u32; 2]>>,
-    /// The multiples of the sides by which each copy of the box is moved.
-    moves: Vec<[i32; 3]>,
 }
 
 impl Copies {
@@ -140,13 +140,7 @@ impl Copies {
             complex: copied,
             hidden: placed.hidden.as_deref().map(|hidden| layout.of_each(hidden)),
             duplicates: placed.duplicates.as_ref().map(pairs),
-            moves: layout.moves,
         }
-    }
-
-    /// Whether the simplices at this copy of a point are copied.
-    fn is_copied(&self, point: u32) -> bool {
-        is_neighbour(self.moves[point as usize / (self.positions.len() / self.moves.len())])
     }
 
     fn claim(&self) -> Claim<'_> {

@@ -14,6 +14,7 @@ use super::finding::Finding;
 use super::flat::Cone;
 use super::geometry::{self, Linked};
 use super::structure::{self, MAX_CELLS, Points, Structure};
+use super::torus::Torus;
 use super::{gaps, non_vertices, ties};
 use crate::exact::Exact;
 use crate::flat::auxiliary_positions;
@@ -57,12 +58,22 @@ impl Claim<'_> {
         &self,
         monitor: &Monitor,
     ) -> Result<(Vec<Finding>, Certificate), CertifyError> {
+        self.findings_on(None, monitor)
+    }
+
+    /// The same, of copies of a complex of a torus, if one is given: only what is found of simplices that touch its box
+    /// counts.
+    pub(super) fn findings_on(
+        &self,
+        torus: Option<Torus>,
+        monitor: &Monitor,
+    ) -> Result<(Vec<Finding>, Certificate), CertifyError> {
         let mut all = Vec::new();
         let visitor = &mut |finding| {
             all.push(finding);
             ControlFlow::Continue(())
         };
-        let certificate = self.visit_monitored(visitor, monitor)?;
+        let certificate = self.visit_on(torus, visitor, monitor)?;
         Ok((all, certificate))
     }
 
@@ -109,6 +120,15 @@ impl Claim<'_> {
         visitor: &mut dyn FnMut(Finding) -> ControlFlow<()>,
         monitor: &Monitor,
     ) -> Result<Certificate, CertifyError> {
+        self.visit_on(None, visitor, monitor)
+    }
+
+    fn visit_on(
+        &self,
+        torus: Option<Torus>,
+        visitor: &mut dyn FnMut(Finding) -> ControlFlow<()>,
+        monitor: &Monitor,
+    ) -> Result<Certificate, CertifyError> {
         self.check()?;
         let mut certificate = Certificate {
             verdict: Verdict::Exact,
@@ -124,14 +144,14 @@ impl Claim<'_> {
             certificate.not_judged.push(NotJudged::Duplicates);
         }
         let mut report = |findings: Vec<Finding>| {
-            findings.into_iter().try_for_each(|finding| {
+            near_box(torus, findings).into_iter().try_for_each(|finding| {
                 certificate.findings += 1;
                 certificate.ties += usize::from(finding.is_tie());
                 if visitor(finding).is_break() { Err(Stop::Enough) } else { Ok(()) }
             })
         };
         let mut volume = None;
-        let rules = apply(self, &mut report, &mut volume, &monitor.part(0, 99, 100));
+        let rules = apply(self, torus, &mut report, &mut volume, &monitor.part(0, 99, 100));
         let all_rules = match rules {
             Ok(()) => true,
             Err(Stop::Enough) => false,
@@ -188,9 +208,18 @@ impl From<Cancelled> for Stop {
 /// Takes the findings of a rule; stops when the visitor wants no more.
 type Report<'r> = dyn FnMut(Vec<Finding>) -> Result<(), Stop> + 'r;
 
+/// What is found of simplices that touch the box of a torus; in space, all.
+fn near_box(torus: Option<Torus>, mut findings: Vec<Finding>) -> Vec<Finding> {
+    if let Some(torus) = torus {
+        findings.retain(|finding| finding.clone().at_box(torus.points).is_some());
+    }
+    findings
+}
+
 /// Applies the rules in turn. The monitor's parts are shares of the time that each takes.
 fn apply(
     claim: &Claim,
+    torus: Option<Torus>,
     report: &mut Report,
     volume: &mut Option<Exact>,
     monitor: &Monitor,
@@ -222,7 +251,7 @@ fn apply(
     report(equal)?;
     let emptiness = (!whole).then(|| Emptiness::new(points, alpha, &kept));
     let extent = claim.extent;
-    let judge = Judge { points, alpha, extent, dimension: 3, emptiness: emptiness.as_ref() };
+    let judge = Judge { points, alpha, extent, dimension: 3, emptiness: emptiness.as_ref(), torus };
     let listed = Linked::new(complex, points, extent, &monitor.part(summed, linked, 20))?;
     let gaps = &monitor.part(linked, searched, 20);
     let missing = gaps::missing_cells(&listed.structure, points, alpha, judge.emptiness, gaps)?;
@@ -265,6 +294,7 @@ fn apply_to(
     let points = judge.points;
     let (wrong, tied) = (Cell::new(!regular), Cell::new(false));
     let mut report = |findings: Vec<Finding>| {
+        let findings = near_box(judge.torus, findings);
         wrong.set(wrong.get() || findings.iter().any(|finding| !finding.is_tie()));
         tied.set(tied.get() || findings.iter().any(Finding::is_tie));
         report(findings)
@@ -340,6 +370,7 @@ fn flat(claim: &Claim, cone: &Cone, report: &mut Report, monitor: &Monitor) -> R
         extent: Extent::Whole,
         dimension: cone.dimension,
         emptiness: None,
+        torus: None,
     };
     report(classes::judge(&structure, &judge, &monitor.part(6, 10, 10))?)?;
     if regular { Ok(()) } else { Err(Stop::Enough) }

@@ -1,7 +1,9 @@
 //! Complexes of a periodic box, by hand.
 
 use walpha_check::schema::{ComplexFile, PlacedComplex, SchemaError};
-use walpha_check::{Alpha, CertifyError, Finding};
+use walpha_check::{Alpha, Certificate, CertifyError, Class, Finding, Verdict};
+
+use crate::common::{Case, closed, definition, grid};
 
 /// What is found of an edge from the origin along x.
 fn findings(end: f64, side: f64) -> Result<Vec<Finding>, CertifyError> {
@@ -42,4 +44,104 @@ fn sides_are_positive_numbers() {
             "{side}: {refused}"
         );
     }
+}
+
+/// Points along each axis of a torus of unit cubes.
+const N: usize = 3;
+
+/// The cells of a unit cube that the rule makes, or those of its mirror image; the bits of a corner are x, y, z.
+fn cube(mirrored: bool) -> Vec<[u32; 4]> {
+    let case = Case { positions: grid(2), weights: vec![0.0; 8], alpha: f64::INFINITY };
+    let cells = definition(&case).unwrap().complex.cells;
+    let corner = |v: u32| if mirrored { v ^ 1 } else { v };
+    cells.rows().iter().map(|cell| cell.map(corner)).collect()
+}
+
+/// A corner of a cube of the torus: both are numbers of points.
+fn corner(cube: u32, corner: u32) -> u32 {
+    let n = N as u32;
+    let at = [cube % n, cube / n % n, cube / n / n];
+    let [x, y, z] = [0, 1, 2].map(|k| (at[k] + (corner >> k & 1)) % n);
+    (z * n + y) * n + x
+}
+
+/// The cells of the torus, each cube mirrored or not.
+fn cells(mirrored: impl Fn(u32) -> bool) -> Vec<[u32; 4]> {
+    let cubes = 0..(N * N * N) as u32;
+    let of_cube =
+        |at: u32| cube(mirrored(at)).into_iter().map(move |cell| cell.map(|v| corner(at, v)));
+    cubes.flat_map(of_cube).collect()
+}
+
+/// A file with the cells of the torus, which is whole or a shape alone.
+fn file(cells: Vec<[u32; 4]>, alpha: f64, class: Class) -> ComplexFile {
+    let mut file = ComplexFile::of_points(grid(N), Alpha::from_squared(alpha).unwrap());
+    file.periodic = Some([N as f64; 3]);
+    file.classes.cells = Some(vec![class; cells.len()]);
+    file.cells = Some(cells);
+    file
+}
+
+fn judged(file: ComplexFile) -> (Vec<Finding>, Certificate) {
+    PlacedComplex::try_from(file).unwrap().findings().unwrap()
+}
+
+fn verdict(file: ComplexFile) -> Verdict {
+    judged(file).1.verdict
+}
+
+/// One cube cut as its mirror image, and all others as by the rule: each is right by itself.
+#[test]
+fn cubes_of_a_torus_fit_together() {
+    for alpha in [0.75, f64::INFINITY] {
+        let cut =
+            |mirrored: &dyn Fn(u32) -> bool| verdict(file(cells(mirrored), alpha, Class::Interior));
+        assert_eq!(cut(&|_| false), Verdict::Exact, "{alpha}");
+        assert_eq!(cut(&|_| true), Verdict::Valid, "{alpha}");
+        assert_eq!(cut(&|at| at == 13), Verdict::Wrong, "{alpha}");
+    }
+}
+
+/// Squares in the shape by themselves, and a cube that is filled, across the sides of the box: of one square either diagonal will do, both
+/// or a half will not.
+#[test]
+fn a_square_of_a_torus_is_cut_once() {
+    let squares = closed(&cells(|_| false)).facets;
+    let squares: Vec<[u32; 3]> = (squares.rows().iter().copied())
+        .filter(|row| {
+            let across = row.map(|v| grid(N)[v as usize]);
+            (0..3).any(|k| across.iter().all(|p| p[k] == across[0][k]))
+        })
+        .collect();
+    assert_eq!(squares.len(), 2 * 3 * N * N * N);
+    let filled: Vec<u32> = (0..8).map(|v| corner(26, v)).collect();
+    let top = (N * N * N) as u32;
+    let inside = squares.iter().filter(|row| row.iter().all(|v| filled.contains(v)));
+    let cone: Vec<[u32; 4]> = inside.map(|&[a, b, c]| [a, b, c, top]).collect();
+    assert_eq!(cone.len(), 12);
+    // Seen from the point 1, 1, 1.
+    let square = [0, 1, 2, 3].map(|v| corner(13, v));
+    let [a, b, c, d] = square;
+    let halves = [[a, b, c], [b, c, d], [a, b, d], [a, c, d]].map(|mut row| {
+        row.sort_unstable();
+        row
+    });
+    let (own, other): (Vec<[u32; 3]>, Vec<_>) =
+        halves.into_iter().partition(|row| squares.contains(row));
+    assert_eq!([own.len(), other.len()], [2, 2]);
+    let with = |halves: &[[u32; 3]]| {
+        let mut file = file(cone.clone(), 0.6, Class::Interior);
+        file.points.push([2.5; 3]);
+        let mut facets = closed(&cone).facets.rows().to_vec();
+        facets.extend(squares.iter().filter(|row| !own.contains(row)));
+        facets.extend(halves);
+        facets.sort_unstable();
+        facets.dedup();
+        file.facets = Some(facets);
+        verdict(file)
+    };
+    assert_eq!(with(&own), Verdict::Exact);
+    assert_eq!(with(&other), Verdict::Valid);
+    assert_eq!(with(&halves), Verdict::Wrong);
+    assert_eq!(with(&own[..1]), Verdict::Wrong);
 }
