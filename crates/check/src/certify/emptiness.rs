@@ -10,22 +10,27 @@ use crate::exact::{RoundedSphere, Side, WeightedPoint, in_conflict, orientation,
 ///
 /// A point of weight ω inside a sphere of squared radius R² ≤ α is less than √(α + ω) away from
 /// its centre, and a vertex of weight ω at most as far. So it is enough to test the points within
-/// √(α + largest ω) of the centre; where doubles cannot locate the centre, those within twice
-/// that distance of a vertex.
+/// √(R² + largest ω) of the centre; where doubles cannot locate the centre, those within
+/// 2 √(α + largest ω) of a vertex.
+///
+/// On a torus a sphere that is not empty holds a point no further from a vertex than the diagonal of the box. Where half of
+/// that is less, it takes the place of √(α + largest ω).
 pub(super) struct Emptiness<'a> {
     points: Points<'a>,
     grid: Grid,
     heaviest: f64,
-    /// √(α + largest ω), rounded up; zero when nothing can be inside.
+    /// √(α + largest ω), or the bound on a torus, rounded up; zero when nothing can be inside.
     reach: f64,
 }
 
 impl<'a> Emptiness<'a> {
     /// For spheres of squared radius up to `alpha`; `kept` is, for each point, the one kept at its position.
-    pub(super) fn new(points: Points<'a>, alpha: Alpha, kept: &[u32]) -> Self {
+    /// If any point is inside a sphere, one within 2 `largest` of its simplex's first vertex must be, and otherwise all
+    /// points on it must be there; in space that is ∞.
+    pub(super) fn new(points: Points<'a>, alpha: Alpha, largest: f64, kept: &[u32]) -> Self {
         let heaviest = points.weights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let sites = (0..points.len() as u32).filter(|&i| kept[i as usize] == i).collect();
-        let reach = (alpha.squared() + heaviest).next_up().max(0.0).sqrt().next_up();
+        let reach = (alpha.squared() + heaviest).next_up().max(0.0).sqrt().next_up().min(largest);
         Self { points, grid: Grid::new(points.positions, sites), heaviest, reach }
     }
 
@@ -90,12 +95,10 @@ impl<'a> Emptiness<'a> {
         refutes: impl Fn(&WeightedPoint, u32) -> bool,
     ) -> Option<u32> {
         let corners = self.points.corners(simplex);
-        let sphere =
-            RoundedSphere::new(corners.each_ref()).filter(|sphere| sphere.error < self.reach);
-        let (center, radius) = match &sphere {
-            Some(sphere) => (sphere.center, self.reach + sphere.error),
-            None => (corners[0].position, 2.0 * self.reach),
-        };
+        let sphere = RoundedSphere::new(corners.each_ref());
+        let around = (corners[0].position, 2.0 * self.reach);
+        let near = sphere.as_ref().map(|sphere| (sphere.center, sphere.reach(self.heaviest)));
+        let (center, radius) = near.filter(|(_, radius)| *radius <= around.1).unwrap_or(around);
         self.grid.within(center, radius.next_up(), |index| {
             let q = self.points.get(index);
             let outside = sphere.as_ref().is_some_and(|sphere| sphere.surely_outside(&q));

@@ -25,6 +25,15 @@ use crate::{Alpha, Complex, Placed, Simplices};
 pub(super) struct Torus {
     /// The number of points in the box. They come before all copies.
     pub points: u32,
+    /// Half of the diagonal, rounded up: of empty spheres no centre is further from a vertex.
+    pub largest_empty: f64,
+}
+
+impl Torus {
+    fn new(points: usize, [x, y, z]: [f64; 3]) -> Self {
+        // A copy of the heaviest point is within half a diagonal of any centre.
+        Self { points: points as u32, largest_empty: 0.5001 * x.hypot(y).hypot(z) }
+    }
 }
 
 /// All broken rules of a complex of a torus with these sides, and the certificate.
@@ -58,8 +67,8 @@ pub(super) fn findings(
         return Ok((broken, certificate));
     }
     let copies = Copies::of(placed, sides);
-    let count = placed.positions.len() as u32;
-    let torus = Torus { points: count };
+    let torus = Torus::new(placed.positions.len(), sides);
+    let count = torus.points;
     let (all, mut certificate) = copies.claim().findings_on(Some(torus), monitor)?;
     let mut seen = BTreeSet::new();
     let near = all.into_iter().filter_map(|finding| finding.at_box(count));
@@ -114,12 +123,7 @@ struct Copies {
 impl Copies {
     fn of(placed: &PlacedComplex, sides: [f64; 3]) -> Self {
         let PlacedComplex { positions, weights, complex, .. } = placed;
-        let heaviest = weights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let diagonal: f64 = sides.iter().map(|side| side * side).sum();
-        // No empty sphere is larger: a copy of the heaviest point is within half a diagonal of its centre.
-        let alpha = placed.alpha.squared().min(diagonal * 0.2501 - heaviest);
-        let reach = 2.0 * (alpha + heaviest).max(0.0).sqrt();
-        let layout = Layout::new(positions, sides, reach);
+        let layout = Layout::new(positions, sides);
         let mut copied = Complex {
             cells: layout.copied(&complex.cells),
             facets: layout.copied(&complex.facets),
@@ -136,7 +140,7 @@ impl Copies {
                 .flat_map(|&by| positions.iter().map(move |&position| moved(sides, position, by)))
                 .collect(),
             weights: moves.iter().flat_map(|_| weights.iter().copied()).collect(),
-            alpha: Alpha::from_squared(alpha).expect("a number"),
+            alpha: placed.alpha,
             complex: copied,
             hidden: placed.hidden.as_deref().map(|hidden| layout.of_each(hidden)),
             duplicates: placed.duplicates.as_ref().map(pairs),
@@ -188,18 +192,10 @@ struct Layout<'a> {
 }
 
 impl<'a> Layout<'a> {
-    /// With the copies that contain all positions within `reach` of the box.
-    fn new(positions: &'a [[f64; 3]], sides: [f64; 3], reach: f64) -> Self {
-        let [x, y, z] = sides.map(|side| {
-            let around = (reach / side).ceil().max(1.0) as i32;
-            -around..=around
-        });
-        let mut moves = Vec::new();
-        for i in x {
-            for j in y.clone() {
-                moves.extend(z.clone().map(|k| [i, j, k]));
-            }
-        }
+    /// With the copies that touch the box.
+    fn new(positions: &'a [[f64; 3]], sides: [f64; 3]) -> Self {
+        let mut moves: Vec<[i32; 3]> =
+            (0..27).map(|i| [i / 9 - 1, i / 3 % 3 - 1, i % 3 - 1]).collect();
         moves.sort_by_key(|by| *by != [0; 3]);
         let numbers = moves.iter().copied().zip(0..).collect();
         Self { positions, sides, moves, numbers }
@@ -207,9 +203,8 @@ impl<'a> Layout<'a> {
 
     /// The copies of simplices whose vertices are all in the box or in a neighbouring copy.
     fn copied<const N: usize>(&self, simplices: &Simplices<N>) -> Simplices<N> {
-        let neighbours = || self.moves.iter().filter(|by| is_neighbour(**by));
         let copies = simplices.iter().flat_map(|(&row, class)| {
-            neighbours().filter_map(move |&by| Some((self.row(row, by)?, class)))
+            self.moves.iter().filter_map(move |&by| Some((self.row(row, by)?, class)))
         });
         copies.collect()
     }
@@ -219,7 +214,7 @@ impl<'a> Layout<'a> {
         for v in &mut row {
             let way = nearest_copy(self.sides, first, self.positions[*v as usize]);
             let by = [0, 1, 2].map(|k| by[k] + way[k]);
-            *v += is_neighbour(by).then(|| self.numbers[&by])? * self.positions.len() as u32;
+            *v += self.numbers.get(&by)? * self.positions.len() as u32;
         }
         Some(row)
     }
@@ -230,9 +225,4 @@ impl<'a> Layout<'a> {
         let copies = 0..self.moves.len() as u32;
         copies.flat_map(|copy| points.iter().map(move |v| copy * count + v)).collect()
     }
-}
-
-/// Whether a copy is the box itself or touches it.
-fn is_neighbour(by: [i32; 3]) -> bool {
-    by.iter().all(|n| n.abs() <= 1)
 }

@@ -249,7 +249,8 @@ fn apply(
 
     let (kept, equal) = non_vertices::kept_points(points, complex, claim.duplicates);
     report(equal)?;
-    let emptiness = (!whole).then(|| Emptiness::new(points, alpha, &kept));
+    let largest = torus.map_or(f64::INFINITY, |torus| torus.largest_empty);
+    let emptiness = (!whole).then(|| Emptiness::new(points, alpha, largest, &kept));
     let extent = claim.extent;
     let judge = Judge { points, alpha, extent, dimension: 3, emptiness: emptiness.as_ref(), torus };
     let listed = Linked::new(complex, points, extent, &monitor.part(summed, linked, 20))?;

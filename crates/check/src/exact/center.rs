@@ -9,8 +9,10 @@ pub(crate) struct RoundedSphere {
     pub center: [f64; 3],
     /// The largest possible distance from the true centre.
     pub error: f64,
-    /// A vertex of the simplex: its squared distance from `center`, and its weight.
-    vertex: (f64, f64),
+    /// A vertex of the simplex.
+    vertex: WeightedPoint,
+    /// Its squared distance from `center`.
+    near: f64,
 }
 
 impl RoundedSphere {
@@ -20,8 +22,22 @@ impl RoundedSphere {
     /// If there are no points or more than 4.
     pub(crate) fn new<const N: usize>(simplex: [&WeightedPoint; N]) -> Option<Self> {
         let (center, error) = rounded_center(simplex)?;
-        let vertex = (squared_distance(simplex[0].position, center), simplex[0].weight);
-        Some(Self { center, error, vertex })
+        let vertex = *simplex[0];
+        let near = squared_distance(vertex.position, center);
+        Some(Self { center, error, vertex, near })
+    }
+
+    /// A distance from `center` within which all points inside and on the sphere are whose weight is at most
+    /// `heaviest`, if no vertex is heavier.
+    ///
+    /// With c the true centre and v the vertex, such a point q has |q − c|² ≤ |v − c|² − `ω_v` + `ω_q`.
+    pub(crate) fn reach(&self, heaviest: f64) -> f64 {
+        let [x, y, z] = [0, 1, 2].map(|k| self.vertex.position[k] - self.center[k]);
+        // Not from the square, which may be too small for a double.
+        let near = x.hypot(y).hypot(z) + self.error;
+        let lighter = (heaviest - self.vertex.weight).next_up().max(0.0).sqrt();
+        // The factor covers roundings.
+        near.hypot(lighter) * (1.0 + 1e-12) + self.error
     }
 
     /// Whether `q` is certainly strictly outside.
@@ -31,7 +47,7 @@ impl RoundedSphere {
     /// 2 |q − v| e, and computing it here rounds by at most 8 · 2⁻⁵³ of what is added up.
     pub(crate) fn surely_outside(&self, q: &WeightedPoint) -> bool {
         let far = squared_distance(q.position, self.center);
-        let (near, weight) = self.vertex;
+        let (near, weight) = (self.near, self.vertex.weight);
         let power = (far - q.weight) - (near - weight);
         let added = far + near + q.weight.abs() + weight.abs();
         // |q − v| ≤ √far + √near ≤ √2 · √(far + near); the factor covers roundings.
@@ -126,6 +142,13 @@ mod tests {
             let d = draw(60);
             let is_outside = |power| sphere.surely_outside(&site(center, d, radius, power));
             assert!(!is_outside(-1) && !is_outside(0), "{center:?} {d:?} {simplex:?}");
+            let on = site(center, d, radius, 0);
+            let heaviest = simplex.iter().fold(on.weight, |most, corner| most.max(corner.weight));
+            let apart = squared_distance(on.position, sphere.center).sqrt();
+            let reach = sphere.reach(heaviest);
+            assert!(apart <= reach, "{apart} {reach} at {center:?} {d:?} {simplex:?}");
+            let true_reach = (radius as f64 + heaviest).sqrt();
+            assert!(reach < true_reach + 1e-4, "{reach} {true_reach} {center:?} {simplex:?}");
             assert!(is_outside(1), "{center:?} {d:?} {simplex:?}");
         }
         assert!(simplex.iter().all(|corner| !sphere.surely_outside(corner)));

@@ -145,3 +145,35 @@ fn a_square_of_a_torus_is_cut_once() {
     assert_eq!(with(&halves), Verdict::Wrong);
     assert_eq!(with(&own[..1]), Verdict::Wrong);
 }
+
+/// So heavy that doubles have no room for the box beside the weights.
+#[test]
+fn heavy_points_of_a_torus_are_judged() {
+    let heavy = |class: Class| {
+        let mut file = file(cells(|_| false), 0.0, class);
+        file.weights = Some(vec![1e20; N * N * N]);
+        file
+    };
+    assert_eq!(judged(heavy(Class::Interior)).0, []);
+    let mut less = heavy(Class::Exterior);
+    less.vertices = Some((0..(N * N * N) as u32).collect());
+    less.classes.vertices = Some(vec![Class::Singular; N * N * N]);
+    assert_eq!(verdict(less), Verdict::Wrong);
+}
+
+/// A flat cell whose sphere reaches around the box, and has its centre outside of all copies near it.
+#[test]
+fn large_spheres_of_a_torus_are_not_empty() {
+    for (alpha, weight) in [(1e4, 0.0), (f64::MAX, 0.0), (0.0, 1e20)] {
+        let mut file = ComplexFile::of_points(grid(N), Alpha::from_squared(alpha).unwrap());
+        file.points[4] = [1.125, 1.0, 0.0078125];
+        file.weights = Some(vec![weight; N * N * N]);
+        file.periodic = Some([N as f64; 3]);
+        file.cells = Some(vec![[0, 1, 3, 4]]);
+        let found = judged(file).0;
+        assert!(
+            found.iter().any(|f| matches!(f, Finding::NotRegular { .. }) && !f.is_tie()),
+            "{found:?}"
+        );
+    }
+}
