@@ -11,7 +11,7 @@ pub enum Verdict {
     /// The complex of the definition, with ties decided by the rule.
     Exact,
     /// Right, with another choice where the definition leaves one: among points on one empty sphere, or
-    /// with equal positions and weights. Each sphere is empty, and a whole triangulation fills its hull.
+    /// with equal positions and weights. Each sphere is empty, and a whole triangulation has no gaps.
     Valid,
     /// Neither exact nor valid.
     Wrong,
@@ -56,7 +56,7 @@ pub struct Certificate {
 }
 
 impl Certificate {
-    /// Whether the complex was judged as a whole triangulation, hull included.
+    /// Whether the complex was judged as a whole triangulation.
     fn is_of_whole(&self) -> bool {
         !self.not_judged.contains(&NotJudged::HiddenAndHull)
     }
@@ -81,10 +81,10 @@ pub(super) fn write_verdict(
     match verdict {
         Verdict::Exact => write!(f, "exact: no findings"),
         Verdict::Valid => {
-            let hull = if whole { ", and the hull is filled" } else { "" };
+            let gaps = if whole { ", and there are no gaps" } else { "" };
             write!(
                 f,
-                "valid: another choice at {ties} tie{}; every sphere is empty{hull}",
+                "valid: another choice at {ties} tie{}; every sphere is empty{gaps}",
                 plural(ties)
             )
         }

@@ -149,6 +149,11 @@ pub enum Finding {
         /// from it as the first facet.
         facet: Simplex,
     },
+    /// In a whole triangulation of a torus: a facet has a cell on one side only.
+    OpenFacet {
+        /// The facet, counter-clockwise seen from the other side.
+        facet: Simplex,
+    },
     /// The volumes of the cells do not add up to the volume that the hull encloses.
     Volume {
         /// Six times the cells' volume.
@@ -293,6 +298,7 @@ impl Finding {
             | Self::Orientation { cell: s, .. }
             | Self::LongEdge { edge: s }
             | Self::HullEdge { edge: s, .. }
+            | Self::OpenFacet { facet: s }
             | Self::MissingCell { cell: s, .. } => s.fold(count),
             Self::MissingFace { face, of } => {
                 of.fold(count);
@@ -373,6 +379,7 @@ impl Finding {
             | Self::Orientation { cell: simplex, .. }
             | Self::LongEdge { edge: simplex }
             | Self::HullEdge { edge: simplex, .. }
+            | Self::OpenFacet { facet: simplex }
             | Self::MissingCell { cell: simplex, .. }
             | Self::NotRegular { cell: simplex, .. }
             | Self::NotHidden { cell: simplex, .. }

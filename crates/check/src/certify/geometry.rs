@@ -4,7 +4,6 @@ use dashu_int::IBig;
 use rayon::prelude::*;
 use walpha_base::{Cancelled, Monitor};
 
-use super::claim::Extent;
 use super::finding::Finding;
 use super::non_vertices;
 use super::structure::{Half, Points, Structure};
@@ -12,12 +11,23 @@ use crate::Complex;
 use crate::exact::{Exact, Lattice, Star, in_conflict, orientation, power_value, six_volume};
 use crate::parallel::of_each;
 
+/// What the facets with one cell are.
+#[derive(Clone, Copy)]
+pub(super) enum Boundary {
+    /// Those of a whole triangulation in space: a convex surface.
+    Hull,
+    /// Those of a whole triangulation of a torus: none that has a vertex below this number.
+    NoneAt { box_points: u32 },
+    /// Those of a shape alone.
+    Any,
+}
+
 /// A complex with its simplices linked, and the rules of structure and geometry that it breaks.
 pub(super) struct Linked<'a> {
     pub structure: Structure<'a>,
     /// Broken rules on which the others depend.
     pub broken: Vec<Finding>,
-    /// Findings on neighbours and hull, which are judged if `broken` is empty.
+    /// Findings on neighbours and boundary, which are judged if `broken` is empty.
     pub irregular: Vec<Finding>,
 }
 
@@ -25,7 +35,7 @@ impl<'a> Linked<'a> {
     pub(super) fn new(
         complex: &'a Complex,
         points: Points,
-        extent: Extent,
+        boundary: Boundary,
         monitor: &Monitor,
     ) -> Result<Self, Cancelled> {
         let (structure, mut broken) = Structure::new(complex, points, &monitor.part(0, 4, 10))?;
@@ -34,15 +44,17 @@ impl<'a> Linked<'a> {
         let mut irregular = Vec::new();
         if broken.is_empty() {
             irregular.extend(neighbours(&structure, points, &monitor.part(5, 10, 10))?);
-            if extent == Extent::Whole {
-                irregular.extend(convexity(&structure, points));
-            }
+            irregular.extend(match boundary {
+                Boundary::Hull => convexity(&structure, points),
+                Boundary::NoneAt { box_points } => open_facets(&structure, box_points),
+                Boundary::Any => Vec::new(),
+            });
         }
         Ok(Self { structure, broken, irregular })
     }
 
-    /// Whether no vertex is inside the sphere of a neighbouring cell, and the hull of a whole triangulation is
-    /// convex: then it is regular, up to the choice among ties.
+    /// Whether no vertex is inside the sphere of a neighbouring cell, and the boundary of a whole triangulation is what
+    /// it must be: then it is regular, up to the choice among ties.
     pub(super) fn is_regular(&self) -> bool {
         self.broken.is_empty() && self.irregular.iter().all(Finding::is_tie)
     }
@@ -54,7 +66,7 @@ pub(super) fn triangulation_findings(
     points: Points,
     monitor: &Monitor,
 ) -> Result<Vec<Finding>, Cancelled> {
-    let linked = Linked::new(cells, points, Extent::Whole, monitor)?;
+    let linked = Linked::new(cells, points, Boundary::Hull, monitor)?;
     let regular = linked.is_regular();
     let mut found = linked.broken;
     found.extend(volume(&linked.structure, points, &monitor.unreported())?);
@@ -166,6 +178,12 @@ pub(super) fn convexity(structure: &Structure, points: Points) -> Vec<Finding> {
         findings = wraps(structure, &hull, points);
     }
     findings
+}
+
+/// Findings on facets with one cell and a vertex below a number.
+fn open_facets(structure: &Structure, box_points: u32) -> Vec<Finding> {
+    let open = structure.hull().into_iter().filter(|row| row.iter().any(|&v| v < box_points));
+    open.map(|facet| Finding::OpenFacet { facet: facet.into() }).collect()
 }
 
 fn edges(hull: &[[u32; 3]], points: Points) -> Vec<Finding> {

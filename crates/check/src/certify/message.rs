@@ -40,6 +40,10 @@ impl fmt::Display for Finding {
                 beyond(f, facet, six_volumes)
             }
             Self::HullWraps { first, facet } => wraps(f, first, facet),
+            Self::OpenFacet { facet } => write!(
+                f,
+                "{facet} has a cell on one side only, and a whole triangulation of a torus has no boundary"
+            ),
             Self::Volume { cells, hull } => volume(f, cells, hull),
             Self::Class { simplex, given, expected, radius_squared, refuted_by } => {
                 write!(f, "{simplex} is {expected}, not {given}")?;

@@ -1,5 +1,6 @@
 //! Rules on points that are not vertices: duplicates and hidden points.
 
+use std::cell::RefCell;
 use std::collections::BTreeMap;
 
 use rayon::prelude::*;
@@ -230,6 +231,48 @@ pub(super) fn hiddenness(
     })
 }
 
+/// The same of hidden points in cells that fill all of space around a box: by each cell, of the points in it.
+pub(super) fn hiddenness_in_cells(
+    structure: &Structure,
+    points: Points,
+    hidden: &[u32],
+    monitor: &Monitor,
+) -> Result<Vec<Finding>, Cancelled> {
+    if hidden.is_empty() {
+        return Ok(Vec::new());
+    }
+    let cells = structure.complex.cells.rows();
+    let grid = Grid::new(points.positions, hidden.to_vec());
+    of_each(cells.len(), monitor, |i| {
+        let cell = cells[i];
+        let corners = points.corners(cell);
+        let [first, others @ ..] = points.positions_of(cell);
+        let far = others.as_flattened().iter().zip(first.iter().cycle());
+        let reach = far.fold(0.0, |most, (x, first)| (x - first).abs().max(most));
+        let found = RefCell::new(Vec::new());
+        grid.within(first, reach.next_up(), |point| {
+            let q = points.get(point);
+            if holds(points, cell, q.position) && in_conflict(corners.each_ref(), &q) {
+                let power = power_value(corners.each_ref(), &q);
+                found.borrow_mut().push(Finding::NotHidden { point, cell: cell.into(), power });
+            }
+            None::<()>
+        });
+        found.take()
+    })
+}
+
+/// Whether a position is in a cell, its surface included.
+fn holds(points: Points, cell: [u32; 4], position: [f64; 3]) -> bool {
+    !outward_facets(cell).iter().any(|facet| beyond(points, *facet, position))
+}
+
+/// Whether a position is on the outer side of a facet.
+fn beyond(points: Points, facet: [u32; 3], position: [f64; 3]) -> bool {
+    let [a, b, c] = points.positions_of(facet);
+    orientation(a, b, c, position).is_gt()
+}
+
 /// The cell that contains a position, or a facet of the hull that it lies beyond.
 ///
 /// Among cells on one sphere a walk may cycle, as an arbitrary choice among ties need not be the
@@ -241,10 +284,7 @@ fn walk(
     position: [f64; 3],
 ) -> Result<usize, [u32; 3]> {
     let cells = structure.complex.cells.rows();
-    let beyond = |facet: &[u32; 3]| {
-        let [a, b, c] = points.positions_of(*facet);
-        orientation(a, b, c, position).is_gt()
-    };
+    let beyond = |facet: &[u32; 3]| beyond(points, *facet, position);
     let mut cell = start;
     for _ in 0..cells.len() {
         let facets = outward_facets(cells[cell]);
@@ -255,8 +295,7 @@ fn walk(
             None => return Err(facets[exit]),
         }
     }
-    let holds = |cell: &[u32; 4]| !outward_facets(*cell).iter().any(beyond);
-    match cells.iter().position(holds) {
+    match cells.iter().position(|&cell| holds(points, cell, position)) {
         Some(cell) => Ok(cell),
         None => Err(*structure.hull().iter().find(|facet| beyond(facet)).expect("a convex hull")),
     }

@@ -2,9 +2,9 @@
 //!
 //! No edge may span half of the box. Then all simplices around one that touches the box have their vertices in
 //! it or in a neighbouring copy, so among 27 copies of the complex the simplices that touch the middle one are judged
-//! as in space, by the rules for a shape alone. If the complex is whole (it lists exterior simplices, or α = ∞), then where no
-//! facet is between other than two cells, on its two sides, and the cells' volumes add up to that of the box,
-//! they cover it once.
+//! as in space. If the complex is whole (it lists exterior simplices, or α = ∞), the rules are those for a whole triangulation,
+//! with others for the boundary: there is none, so each facet is between two cells, and the cells' volumes add up
+//! to that of the box, so they cover it once. A shape alone is judged as one in space.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -67,14 +67,15 @@ pub(super) fn findings(
         return Ok((broken, certificate));
     }
     let copies = Copies::of(placed, sides);
+    let extent = Extent::of(&placed.complex, placed.alpha);
     let torus = Torus::new(placed.positions.len(), sides);
     let count = torus.points;
-    let (all, mut certificate) = copies.claim().findings_on(Some(torus), monitor)?;
+    let (all, mut certificate) = copies.claim(extent).findings_on(Some(torus), monitor)?;
     let mut seen = BTreeSet::new();
     let near = all.into_iter().filter_map(|finding| finding.at_box(count));
     let mut found: Vec<Finding> =
         near.filter(|finding| seen.insert(format!("{finding:?}"))).collect();
-    let whole = Extent::of(&placed.complex, placed.alpha) == Extent::Whole;
+    let whole = extent == Extent::Whole;
     let (volume, missing) = copies.volume(count, sides, &monitor.unreported())?;
     certificate.six_volumes = volume;
     // Cells that fill the box are all of the cells.
@@ -147,9 +148,9 @@ impl Copies {
         }
     }
 
-    fn claim(&self) -> Claim<'_> {
+    fn claim(&self, extent: Extent) -> Claim<'_> {
         let placed = Placed::new(&self.positions, &self.weights, self.alpha, &self.complex);
-        let claim = Claim::new(placed).with_extent(Extent::Shape);
+        let claim = Claim::new(placed).with_extent(extent);
         claim.with_hidden(self.hidden.as_deref()).with_duplicates(self.duplicates.as_deref())
     }
 

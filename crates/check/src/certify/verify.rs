@@ -12,7 +12,7 @@ use super::classes::{self, Judge};
 use super::emptiness::Emptiness;
 use super::finding::Finding;
 use super::flat::Cone;
-use super::geometry::{self, Linked};
+use super::geometry::{self, Boundary, Linked};
 use super::structure::{self, MAX_CELLS, Points, Structure};
 use super::torus::Torus;
 use super::{gaps, non_vertices, ties};
@@ -233,7 +233,7 @@ fn apply(
     if bad_rows {
         return Err(Stop::Enough);
     }
-    if whole && complex.cells.is_empty() {
+    if whole && torus.is_none() && complex.cells.is_empty() {
         let apexes = auxiliary_positions(points.positions.iter().copied()).unwrap_or_default();
         if let Some(cone) = Cone::over(complex, points, &apexes) {
             return flat(claim, &cone, report, monitor);
@@ -251,9 +251,20 @@ fn apply(
     report(equal)?;
     let largest = torus.map_or(f64::INFINITY, |torus| torus.largest_empty);
     let emptiness = (!whole).then(|| Emptiness::new(points, alpha, largest, &kept));
-    let extent = claim.extent;
-    let judge = Judge { points, alpha, extent, dimension: 3, emptiness: emptiness.as_ref(), torus };
-    let listed = Linked::new(complex, points, extent, &monitor.part(summed, linked, 20))?;
+    let boundary = match (claim.extent, torus) {
+        (Extent::Shape, _) => Boundary::Any,
+        (Extent::Whole, None) => Boundary::Hull,
+        (Extent::Whole, Some(torus)) => Boundary::NoneAt { box_points: torus.points },
+    };
+    let judge = Judge {
+        points,
+        alpha,
+        extent: claim.extent,
+        dimension: 3,
+        emptiness: emptiness.as_ref(),
+        torus,
+    };
+    let listed = Linked::new(complex, points, boundary, &monitor.part(summed, linked, 20))?;
     let gaps = &monitor.part(linked, searched, 20);
     let missing = gaps::missing_cells(&listed.structure, points, alpha, judge.emptiness, gaps)?;
     let rest = monitor.part(searched, 20, 20);
@@ -263,7 +274,7 @@ fn apply(
     let choices = [missing, by_rule].into_iter().filter(|missing| !missing.is_empty());
     for (part, missing) in (0..).zip(choices) {
         let filled = gaps::filled(complex, &missing);
-        let filled = Linked::new(&filled, points, extent, &rest.part(part, part + 1, 6))?;
+        let filled = Linked::new(&filled, points, boundary, &rest.part(part, part + 1, 6))?;
         if !filled.is_regular() {
             continue;
         }
@@ -301,7 +312,7 @@ fn apply_to(
         report(findings)
     };
     report(broken)?;
-    if claim.extent == Extent::Whole {
+    if claim.extent == Extent::Whole && judge.torus.is_none() {
         report(geometry::volume(&structure, points, &monitor.part(0, 3, 10))?)?;
     }
     report(irregular)?;
@@ -319,7 +330,11 @@ fn apply_to(
         if regular {
             let hidden = non_vertices::hidden(&structure, kept);
             let monitor = monitor.part(3, 4, 10);
-            report(non_vertices::hiddenness(&structure, points, &hidden, &monitor)?)?;
+            let judge = match judge.torus {
+                Some(_) => non_vertices::hiddenness_in_cells,
+                None => non_vertices::hiddenness,
+            };
+            report(judge(&structure, points, &hidden, &monitor)?)?;
         }
     }
     let judging =
@@ -343,7 +358,8 @@ fn flat(claim: &Claim, cone: &Cone, report: &mut Report, monitor: &Monitor) -> R
     let points = Points::of(claim.placed);
     let (kept, equal) = non_vertices::kept_points(points, complex, claim.duplicates);
     report(equal)?;
-    let linked = Linked::new(&cone.complex, cone.points(), Extent::Whole, &monitor.part(0, 4, 10))?;
+    let linked =
+        Linked::new(&cone.complex, cone.points(), Boundary::Hull, &monitor.part(0, 4, 10))?;
     let regular = linked.is_regular();
     let (structure, repeated) = Structure::new(complex, points, &monitor.part(4, 5, 10))?;
     let mut broken = cone.at_base(linked.broken);

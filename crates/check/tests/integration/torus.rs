@@ -1,7 +1,7 @@
 //! Complexes of a periodic box, by hand.
 
 use walpha_check::schema::{ComplexFile, PlacedComplex, SchemaError};
-use walpha_check::{Alpha, Certificate, CertifyError, Class, Finding, Verdict};
+use walpha_check::{Alpha, Certificate, CertifyError, Class, Finding, NotJudged, Verdict};
 
 use crate::common::{Case, closed, definition, grid};
 
@@ -144,6 +144,61 @@ fn a_square_of_a_torus_is_cut_once() {
     assert_eq!(with(&other), Verdict::Valid);
     assert_eq!(with(&halves), Verdict::Wrong);
     assert_eq!(with(&own[..1]), Verdict::Wrong);
+}
+
+/// Nothing of this is in the shape.
+fn exterior(cells: Vec<[u32; 4]>) -> ComplexFile {
+    file(cells, -1.0, Class::Exterior)
+}
+
+#[test]
+fn exterior_simplices_of_a_torus_are_judged() {
+    let right = cells(|_| false);
+    let (found, certificate) = judged(exterior(right.clone()));
+    assert_eq!((found, certificate.not_judged), (vec![], vec![NotJudged::Duplicates]));
+    // Another choice at each tie.
+    assert_eq!(verdict(exterior(cells(|_| true))), Verdict::Valid);
+    // An edge that is a face of nothing.
+    let complex = closed(&right);
+    let [a, b] = [corner(0, 1), corner(0, 2)];
+    let stray = if complex.edges.rows().contains(&[a, b]) { [0, corner(0, 3)] } else { [a, b] };
+    let mut edges = complex.edges.rows().to_vec();
+    assert!(!edges.contains(&stray));
+    edges.push(stray);
+    let mut more = exterior(right.clone());
+    more.classes.edges = Some(vec![Class::Exterior; edges.len()]);
+    more.edges = Some(edges);
+    assert_eq!(judged(more).0, [Finding::Stray { simplex: stray.into() }]);
+    // Another cell of the same volume, apart from the one that is missing.
+    let elsewhere = cube(true).into_iter().map(|cell| cell.map(|v| corner(13, v)));
+    let mut swaps = 0;
+    for cell in elsewhere {
+        let new = closed(&[cell]).facets;
+        if new.rows().iter().all(|facet| !complex.facets.rows().contains(facet)) {
+            let mut swapped = right.clone();
+            swapped[0] = cell;
+            assert_eq!(verdict(exterior(swapped)), Verdict::Wrong);
+            swaps += 1;
+        }
+    }
+    assert!(swaps > 0);
+}
+
+#[test]
+fn hidden_points_of_a_torus_are_judged() {
+    // In the middle of a cube, above the lower hull, on it and below.
+    let weights = [(-1.0, Verdict::Exact), (-0.75, Verdict::Valid), (-0.5, Verdict::Wrong)];
+    for (weight, expected) in weights {
+        for at in [[0.5; 3], [2.5; 3]] {
+            let mut file = exterior(cells(|_| false));
+            file.points.push(at);
+            file.weights = Some([&[0.0; N * N * N][..], &[weight]].concat());
+            let (found, certificate) = judged(file);
+            assert_eq!(certificate.verdict, expected, "{found:?}");
+            let is_named = |f: &Finding| matches!(f, Finding::NotHidden { point: 27, .. });
+            assert!(found.iter().all(is_named), "{found:?}");
+        }
+    }
 }
 
 /// So heavy that doubles have no room for the box beside the weights.
