@@ -6,22 +6,23 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use clap::{Args, Command, ValueEnum};
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 use walpha_base::shown::shown;
 
-use crate::Alpha;
-use crate::check::schema::{FiltrationFile, PlacedComplex};
+use crate::check::meshes::{Mesh, MeshFormat};
+use crate::check::schema::{AnyFile, FiltrationFile, PlacedComplex};
 use crate::check::{
-    Comparison, Extent, Verdict, certify_filtration_monitored, compare, enumerate_monitored,
+    Comparison, Extent, FiltrationFinding, Finding, Verdict, certify_filtration_monitored, compare,
+    count_by_rule, enumerate_monitored, keep_causes,
 };
 use crate::pipeline::AlphaRule;
-use crate::points::{self, CellCount};
+use crate::points::{self, CellCount, Weighting};
 use crate::progress::{Monitor, Stage};
 use crate::shape::placed_complex;
 
 use super::args::{PeriodicArgs, PipelineArgs, ShapeArgs};
-use super::compare::{self, CheckFile};
-use super::errors::{CommandError, fail, fail_usage};
+use super::compare;
+use super::errors::{CommandError, command_error, fail, fail_usage};
 use super::global::{DIFFERENT, Global};
 use super::output::{name, print_summary};
 use super::pipeline;
@@ -31,8 +32,10 @@ use super::report::SCHEMA_VERSION;
 /// Check a complex exactly: one computed here, or one that another program wrote.
 ///
 /// INPUT is a volume or points, from which an engine computes a shape; a complex or filtration
-/// (.json, .npz); or a mesh of tetrahedra (.vtu), whose cells are judged. The checker shares no
-/// code with the engines or CGAL.
+/// (.json, .npz); or a mesh of tetrahedra (.vtu, .vtk, Gmsh's .msh, TetGen's .node and .ele, Medit's
+/// .mesh), whose cells are judged. What states no α is judged as a triangulation, at α = ∞.
+/// Coordinates in text are decimal numbers, each taken to the nearest double. The checker shares
+/// no code with the engines or CGAL.
 ///
 /// The verdict is exact; or valid, if it differs from CGAL's answer only in how ties are broken (points
 /// on one empty sphere, or equal points); or wrong. Exit code 3 if it is wrong or, with --ties exact, not
@@ -47,9 +50,12 @@ use super::report::SCHEMA_VERSION;
 /// walpha check theirs.json --points skull.csv
 ///
 /// walpha check theirs.vtu --ties exact
+///
+/// walpha check theirs.msh
 #[derive(Args)]
 pub(super) struct Check {
-    /// Points of the complex or filtration, if its file lists none: .csv or .npy.
+    /// Points of the complex, filtration or mesh, if its file lists none or has rounded them, with their weights
+    /// if they have any: .csv or .npy.
     #[arg(long, value_name = "FILE")]
     points: Option<PathBuf>,
     /// Also build the complex from the definition, and compare (at most 200 points).
@@ -100,9 +106,14 @@ struct CheckSummary<F, C> {
     /// Whether the verdict counts as right: with --ties exact, whether it is exact.
     valid: bool,
     findings_total: usize,
+    /// How many there are by each rule.
+    #[serde(rename = "findings_by_rule", serialize_with = "as_map")]
+    by_rule: Vec<(&'static str, usize)>,
     /// The first findings.
     findings: Vec<F>,
     certificate: C,
+    /// What to know about the verdict: how numbers were read, and what was left out.
+    notes: Vec<String>,
     /// Rules and points that were not judged, in words.
     #[serde(skip)]
     not_judged: Vec<String>,
@@ -111,6 +122,11 @@ struct CheckSummary<F, C> {
     words: String,
     enumeration: Option<Comparison>,
     seconds: f64,
+}
+
+/// Writes pairs as an object, in their order.
+fn as_map<S: Serializer>(pairs: &[(&str, usize)], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_map(pairs.iter().copied())
 }
 
 impl Check {
@@ -129,39 +145,34 @@ impl Check {
         let file = self.pipeline.input.input.clone();
         let path = file.path();
         let mut progress = Progress::new(global);
-        if !compare::is_named(path) {
-            if self.pipeline.input.recipe().is_points(path)? {
-                let cells = points::cells_of(path, &self.pipeline.input.point_options())?;
-                if !cells.is_empty() {
-                    return self.mesh(global, input, &cells, progress);
+        if compare::is_named(path) {
+            return match progress.stage(Stage::Read, || compare::opened(path))? {
+                AnyFile::Complex(complex) => {
+                    let of =
+                        Source { input, kind: "the complex", why: "is a complex, made already" };
+                    self.given(global, of, complex.into(), progress)
                 }
-            }
-            let computed = self.compute(path, &mut progress)?;
-            let judged = format!("our own shape of {}", name(input));
-            return self.complex(global, Subject { input, judged }, &computed, &[], progress);
-        }
-        let read = || compare::read(path, self.points.as_deref());
-        match progress.stage(Stage::Read, read)? {
-            CheckFile::Complex(complex) => {
-                self.refuse_shape_options(
-                    &[],
-                    format!("{} is a complex, made already", name(input)),
-                )?;
-                let judged = format!("the complex of {}", name(input));
-                self.complex(global, Subject { input, judged }, &complex, &[], progress)
-            }
-            CheckFile::Filtration(filtration) => {
-                self.refuse_shape_options(
-                    &[],
-                    format!("{} is a filtration, made already", name(input)),
-                )?;
-                if self.enumerate {
-                    fail_usage!("--enumerate belongs to a complex, and {} is a filtration", name(input) => "omit it");
+                AnyFile::Filtration(filtration) => {
+                    self.given_filtration(global, input, filtration, progress)
                 }
-                let judged = format!("the filtration of {}", name(input));
-                self.filtration(global, Subject { input, judged }, &filtration, progress)
-            }
+            };
         }
+        if self.pipeline.input.recipe().is_points(path)? {
+            let cells = points::cells_of(path, &self.pipeline.input.point_options())?;
+            if !cells.is_empty() {
+                return self.mesh(global, input, &cells, progress);
+            }
+        } else if let Some(format) = mesh_format(path) {
+            let mesh = progress.stage(Stage::Read, || read_mesh(format, path))?;
+            let kind =
+                format!("the {} tetrahedra", mesh.complex.cells.as_ref().map_or(0, Vec::len));
+            let of = Source { input, kind: &kind, why: "lists tetrahedra, which are judged" };
+            return self.given(global, of, mesh, progress);
+        }
+        let computed = self.compute(path, &mut progress)?;
+        let judged = format!("our own shape of {}", name(input));
+        let subject = Subject { input, judged, notes: Vec::new(), is_cells_alone: false };
+        self.complex(global, subject, &computed, &[], progress)
     }
 
     /// Judges the cells that a file of points lists.
@@ -173,38 +184,81 @@ impl Check {
         mut progress: Progress,
     ) -> anyhow::Result<ExitCode> {
         let listed = cells.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
-        let why = format!("{} lists {listed}, which are judged", name(input));
-        self.refuse_shape_options(&["alpha", "alpha_radius"], why)?;
-        if self.points.is_some() {
-            fail_usage!("--points has no effect: {} has points of its own", name(input) => "omit it");
-        }
         let path = self.pipeline.input.input.path();
-        let read = || -> anyhow::Result<(PlacedComplex, bool)> {
-            let mut file = points::read_complex(path, &self.pipeline.input.point_options()).map_err(|error| {
+        let read = || {
+            points::read_complex(path, &self.pipeline.input.point_options()).map_err(|error| {
                 let CommandError { why, next, usage } = CommandError::from(error);
                 let csv = "write its points by `walpha points INPUT -o points.csv` to judge our own shape of them";
                 let next = next.map_or(csv.to_owned(), |next| format!("{next}, or {csv}"));
                 CommandError { why: format!("{} lists {listed}: {why}", name(input)), next: Some(next), usage }
-            })?;
-            let states_alpha = file.alpha != Alpha::INFINITE || file.classes.vertices.is_some();
-            if let AlphaRule::Given(alpha) = self.pipeline.weights.alpha() {
-                if states_alpha {
-                    fail_usage!("--alpha has no effect: {} states its α", name(input) => "omit it");
-                }
-                file.alpha = alpha;
-            }
-            Ok((PlacedComplex::try_from(file)?, states_alpha))
+            })
         };
-        let (complex, states_alpha) = progress.stage(Stage::Read, read)?;
-        let mut judged = format!("the {listed} of {}", name(input));
-        if !states_alpha && complex.alpha == Alpha::INFINITE {
-            judged += " as a triangulation (it states no α; --alpha gives one)";
+        let mesh = progress.stage(Stage::Read, read)?;
+        let (kind, why) = (format!("the {listed}"), format!("lists {listed}, which are judged"));
+        self.given(global, Source { input, kind: &kind, why: &why }, mesh, progress)
+    }
+
+    /// Judges a complex or mesh of a file, with what the options add.
+    fn given(
+        self,
+        global: Global,
+        Source { input, kind, why }: Source,
+        mesh: Mesh,
+        progress: Progress,
+    ) -> anyhow::Result<ExitCode> {
+        let Mesh { complex: mut file, attribute, notes, .. } = mesh;
+        let alpha = match self.pipeline.weights.alpha() {
+            AlphaRule::Given(alpha) => Some(alpha),
+            _ => None,
+        };
+        if alpha.is_some() && !file.states_no_alpha() {
+            fail_usage!("--alpha has no effect: {} states its α", name(input) => "omit it");
         }
+        let takes_column = self.pipeline.weights.weights == Some(Weighting::Column);
+        let mut used = vec!["alpha", "alpha_radius"];
+        if attribute.is_some() && takes_column {
+            file.weights = attribute;
+            used.push("weights");
+        }
+        self.refuse_shape_options(&used, format!("{} {why}", name(input)))?;
+        file.alpha = alpha.unwrap_or(file.alpha);
+        if let Some(points) = &self.points {
+            compare::replace_points(&mut file.points, &mut file.weights, points)?;
+        }
+        let mut judged = format!("{kind} of {}", name(input));
         let mut unjudged = Vec::new();
-        if complex.claim().extent == Extent::Shape {
+        if file.states_no_alpha() {
+            judged += " as a triangulation (α = ∞; --alpha makes it a shape)";
+        }
+        let is_cells_alone = file.is_cells_alone();
+        let path = self.pipeline.input.input.path();
+        let complex =
+            PlacedComplex::try_from(file).map_err(|error| compare::refusal(path, error))?;
+        if complex.claim().extent == Extent::Shape && !compare::is_named(path) {
             unjudged.push("points that the file leaves out".to_owned());
         }
-        self.complex(global, Subject { input, judged }, &complex, &unjudged, progress)
+        let subject = Subject { input, judged, notes, is_cells_alone };
+        self.complex(global, subject, &complex, &unjudged, progress)
+    }
+
+    /// Judges a filtration of a file.
+    fn given_filtration(
+        self,
+        global: Global,
+        input: &str,
+        mut file: FiltrationFile,
+        progress: Progress,
+    ) -> anyhow::Result<ExitCode> {
+        self.refuse_shape_options(&[], format!("{} is a filtration, made already", name(input)))?;
+        if self.enumerate {
+            fail_usage!("--enumerate belongs to a complex, and {} is a filtration", name(input) => "omit it");
+        }
+        if let Some(points) = &self.points {
+            compare::replace_points(&mut file.points, &mut file.weights, points)?;
+        }
+        let path = self.pipeline.input.input.path();
+        file.check().map_err(|error| compare::refusal(path, error))?;
+        self.filtration(global, input, &file, progress)
     }
 
     /// Refuses the options that control how a shape is computed, except `except`.
@@ -240,7 +294,7 @@ impl Check {
     fn complex(
         &self,
         global: Global,
-        Subject { input, judged: words }: Subject,
+        Subject { input, judged: words, notes, is_cells_alone }: Subject,
         judged: &PlacedComplex,
         unjudged: &[String],
         mut progress: Progress,
@@ -254,10 +308,13 @@ impl Check {
         }
         let (claim, complex) = (judged.claim(), &judged.complex);
         let started = Instant::now();
-        let (mut findings, certificate) = progress.watch(|monitor| {
+        let (mut findings, mut certificate) = progress.watch(|monitor| {
             Stage::Certify.begin(monitor)?;
             judged.findings_monitored(monitor)
         })?;
+        if is_cells_alone {
+            keep_causes(&mut findings, &mut certificate);
+        }
         findings.retain(|finding| self.ties == Ties::Exact || !finding.is_tie());
         let seconds = started.elapsed().as_secs_f64();
         let enumeration = if self.enumerate {
@@ -286,7 +343,9 @@ impl Check {
             verdict: certificate.verdict,
             valid: findings.is_empty() && enumeration.as_ref().is_none_or(is_excused),
             findings_total: findings.len(),
+            by_rule: count_by_rule(findings.iter().map(Finding::rule)),
             findings,
+            notes,
             not_judged: rules.chain(unjudged.iter().cloned()).collect(),
             words: certificate.to_string(),
             certificate,
@@ -300,7 +359,7 @@ impl Check {
     fn filtration(
         &self,
         global: Global,
-        Subject { input, judged }: Subject,
+        input: &str,
         file: &FiltrationFile,
         mut progress: Progress,
     ) -> anyhow::Result<ExitCode> {
@@ -317,14 +376,16 @@ impl Check {
         let facts = CheckSummary {
             schema_version: SCHEMA_VERSION,
             input: input.to_owned(),
-            judged,
+            judged: format!("the filtration of {}", name(input)),
             points: file.points.len(),
             simplices: [file.cells.len(), file.facets.len(), file.edges.len(), file.vertices.len()],
             extent: None,
             verdict: certificate.verdict,
             valid: findings.is_empty(),
             findings_total: findings.len(),
+            by_rule: count_by_rule(findings.iter().map(FiltrationFinding::rule)),
             findings,
+            notes: Vec::new(),
             not_judged: of_triangulation.chain(of_values).collect(),
             words: certificate.to_string(),
             certificate,
@@ -335,10 +396,34 @@ impl Check {
     }
 }
 
-/// The name of INPUT, and what of it is judged, in words.
+/// The name of INPUT, what of it is judged, and why it takes no options of a shape.
+struct Source<'a> {
+    input: &'a str,
+    kind: &'a str,
+    why: &'a str,
+}
+
+/// The name of INPUT, what of it is judged, in words, and what to know about the verdict.
 struct Subject<'a> {
     input: &'a str,
     judged: String,
+    notes: Vec<String>,
+    /// Whether it is a triangulation of which only the cells are listed.
+    is_cells_alone: bool,
+}
+
+/// The format of a file that holds nothing but a mesh. What VTK's files hold is told by their content: they may as
+/// well be points or volumes.
+pub(super) fn mesh_format(path: &Path) -> Option<&'static MeshFormat> {
+    MeshFormat::of(path).filter(|format| !format.extensions.contains(&"vtk"))
+}
+
+/// Reads a mesh.
+pub(super) fn read_mesh(format: &MeshFormat, path: &Path) -> Result<Mesh, CommandError> {
+    format.read(path).map_err(|error| {
+        let next = error.advice().map(Into::into);
+        CommandError { next, ..command_error!("{}: {error}", shown(path)) }
+    })
 }
 
 /// Compares a complex (A) with the one built from the definition (B).
@@ -366,8 +451,16 @@ impl<F: Display, C> Display for CheckSummary<F, C> {
             f,
             "          {cells} cells, {facets} facets, {edges} edges, {vertices} vertices"
         )?;
+        for note in &self.notes {
+            writeln!(f, "note      {note}")?;
+        }
         for rule in &self.not_judged {
             writeln!(f, "not judged: {rule}")?;
+        }
+        if self.findings_total > 1 {
+            let counts: Vec<String> =
+                self.by_rule.iter().map(|(rule, count)| format!("{count} {rule}")).collect();
+            writeln!(f, "by rule   {}", counts.join(", "))?;
         }
         for finding in self.findings.iter().take(MOST_PRINTED) {
             writeln!(f, "found     {finding}")?;

@@ -56,7 +56,7 @@ struct CompareSummary<C> {
 impl Compare {
     pub(super) fn run(self, global: Global) -> anyhow::Result<ExitCode> {
         let mut progress = Progress::new(global);
-        let mut read = |path: &Path| progress.stage(Stage::Read, || read(path, None));
+        let mut read = |path: &Path| progress.stage(Stage::Read, || read(path));
         match (read(&self.a)?, read(&self.b)?) {
             (CheckFile::Complex(a), CheckFile::Complex(b)) => {
                 if a.periodic.or(b.periodic).is_some() {
@@ -107,9 +107,9 @@ impl<C: Display> Display for CompareSummary<C> {
     }
 }
 
-/// A file to check or compare.
-#[expect(clippy::large_enum_variant, reason = "there are one or two, moved a few times")]
-pub(super) enum CheckFile {
+/// A file to compare.
+#[expect(clippy::large_enum_variant, reason = "there are two, moved a few times")]
+enum CheckFile {
     /// A complex whose fields are consistent.
     Complex(PlacedComplex),
     /// A filtration whose fields are consistent.
@@ -121,28 +121,33 @@ pub(super) fn is_named(path: &Path) -> bool {
     ComplexFile::is_named(path)
 }
 
-/// Reads a complex or filtration. If `points` is given, its points, and its weights if it has any, replace those
-/// of the file.
-pub(super) fn read(path: &Path, points: Option<&Path>) -> anyhow::Result<CheckFile> {
-    let mut file = opened(path)?;
-    if let Some(points) = points {
-        let points = read_points(points, None)?;
-        let (positions, weights) = match &mut file {
-            AnyFile::Complex(file) => (&mut file.points, &mut file.weights),
-            AnyFile::Filtration(file) => (&mut file.points, &mut file.weights),
-        };
-        *positions = points.positions;
-        *weights = points.weights.or(weights.take());
-    }
-    let judged = match file {
+/// Reads a complex or filtration.
+fn read(path: &Path) -> anyhow::Result<CheckFile> {
+    let judged = match opened(path)? {
         AnyFile::Complex(file) => PlacedComplex::try_from(file).map(CheckFile::Complex),
         AnyFile::Filtration(file) => file.check().map(|()| CheckFile::Filtration(file)),
     };
     judged.map_err(|error| refusal(path, error))
 }
 
+/// Puts the points of a file, and its weights if it has any, in place of those of a complex.
+pub(super) fn replace_points(
+    positions: &mut Vec<[f64; 3]>,
+    weights: &mut Option<Vec<f64>>,
+    path: &Path,
+) -> anyhow::Result<()> {
+    let points = read_points(path, None)?;
+    let (own, given) = (positions.len(), points.positions.len());
+    if own > 0 && own != given {
+        fail!("{} lists {given} points, and the file to check {own}", shown(path) => "give the same points, in the same order");
+    }
+    *positions = points.positions;
+    *weights = points.weights.or(weights.take());
+    Ok(())
+}
+
 /// Opens a file; the error says why it cannot be opened.
-fn opened(path: &Path) -> anyhow::Result<AnyFile> {
+pub(super) fn opened(path: &Path) -> anyhow::Result<AnyFile> {
     match AnyFile::open(path) {
         Ok(file) => Ok(file),
         Err(SchemaError::Extension) => {
@@ -159,7 +164,7 @@ fn opened(path: &Path) -> anyhow::Result<AnyFile> {
 }
 
 /// The error for a file whose fields are inconsistent.
-fn refusal(path: &Path, error: SchemaError) -> anyhow::Error {
+pub(super) fn refusal(path: &Path, error: SchemaError) -> anyhow::Error {
     match error {
         SchemaError::NoPoints => command_error!(
             "{}: the file lists no points", shown(path) =>

@@ -8,6 +8,7 @@ use serde_json::Value;
 use walpha_base::Monitor;
 use walpha_base::shown::number;
 
+use crate::check::meshes::Mesh;
 use crate::points::{Cell, CellCount, cells_of, read_model};
 use crate::progress::Stage;
 use crate::volume::{
@@ -16,6 +17,7 @@ use crate::volume::{
 use crate::{Alpha, Coordinates, Dims, Frame, LengthUnit, VolumeError};
 
 use super::args::InputArgs;
+use super::check::{mesh_format, read_mesh};
 use super::global::Global;
 use super::output::{name, print_summary};
 use super::pipeline;
@@ -83,6 +85,14 @@ enum Content {
         voxels: String,
         /// Null if only reading the samples would tell.
         dims: Option<[u64; 3]>,
+    },
+    /// A mesh of tetrahedra, which `walpha check` judges.
+    Mesh {
+        format: &'static str,
+        points: usize,
+        tetrahedra: usize,
+        /// How numbers were read, and what was left out.
+        notes: Vec<String>,
     },
     /// Several series in a folder, of which --series reads one.
     Series { series: Vec<Series> },
@@ -173,6 +183,15 @@ impl Info {
                 alpha: facts.alpha,
                 gray_range: facts.range.map(|range| [range.low, range.high]),
                 recipe: facts.recipe.map(|text| serde_json::from_str(&text).unwrap_or(text.into())),
+            });
+        }
+        if let Some(format) = mesh_format(input) {
+            let Mesh { complex, notes, .. } = read_mesh(format, input)?;
+            return Ok(Content::Mesh {
+                format: format.name,
+                points: complex.points.len(),
+                tetrahedra: complex.cells.map_or(0, |cells| cells.len()),
+                notes,
             });
         }
         let options = self.input.options();
@@ -384,6 +403,11 @@ impl std::fmt::Display for Content {
                     writeln!(f, "size      {x}×{y}×{z}")?;
                 }
                 writeln!(f, "samples   {voxels}; extract one first")
+            }
+            Self::Mesh { format, points, tetrahedra, notes } => {
+                writeln!(f, "format    {format}, a mesh that `walpha check` judges")?;
+                writeln!(f, "points    {points}\ncells     {tetrahedra} tetrahedra")?;
+                notes.iter().try_for_each(|note| writeln!(f, "note      {note}"))
             }
             Self::Series { series } => {
                 writeln!(f, "series    {} in the folder; --series N reads one", series.len())?;

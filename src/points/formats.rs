@@ -6,7 +6,7 @@ use std::io::{self, Write};
 use std::path::Path;
 
 use walpha_base::advice::Setting;
-use walpha_check::schema::ComplexFile;
+use walpha_check::meshes::Mesh;
 
 use super::model::MODEL;
 #[cfg(feature = "formats")]
@@ -36,7 +36,7 @@ type ReadClasses = fn(&OpenFile, &[u8]) -> Result<Points, PointsError>;
 type CountCells = fn(&OpenFile) -> Result<Vec<CellCount>, PointsError>;
 
 /// Reads the cells of a file as a complex.
-type ReadComplex = fn(&OpenFile) -> Result<ComplexFile, PointsError>;
+type ReadComplex = fn(&OpenFile) -> Result<Mesh, PointsError>;
 
 /// A format of points.
 pub struct PointFormat {
@@ -223,6 +223,7 @@ pub static FORMATS: [PointFormat; 15] = [
         holds_points: lists_points,
         read: built!("formats", |file, _| vtk::read_legacy(file)),
         cells: built!("formats", vtk::cells_of_legacy),
+        read_complex: built!("formats", vtk::read_legacy_complex),
         ..PLAIN
     },
     PointFormat {

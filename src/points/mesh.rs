@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use walpha_check::schema::ComplexFile;
+use walpha_check::meshes::Mesh;
 
 use super::read::format;
 use super::{CellCount, PointOptions, PointsError};
@@ -30,15 +30,13 @@ pub fn cells_of(
     Ok(cells.into_iter().filter(|cells| cells.count > 0).collect())
 }
 
-/// Reads the cells of a file as a complex for the checker. For VTU these are tetrahedra, triangles, edges and
-/// vertices with the point data `weight`, and α and classes if walpha wrote the file. Otherwise α is ∞.
+/// Reads the cells of a file as a complex for the checker. Of VTU and legacy VTK these are the tetrahedra, with the
+/// point data `weight`, and α is ∞. If the file states α, they are the simplices of all dimensions, with their classes.
+/// Formats whose files hold nothing but meshes are read by [`walpha_check::meshes`].
 ///
 /// # Errors
 /// A format whose cells are not read, cells that are not simplices, and the errors of [`super::read_points`].
-pub fn read_complex(
-    path: impl AsRef<Path>,
-    options: &PointOptions,
-) -> Result<ComplexFile, PointsError> {
+pub fn read_complex(path: impl AsRef<Path>, options: &PointOptions) -> Result<Mesh, PointsError> {
     let path = path.as_ref();
     let file = OpenFile::open(path)?;
     if let Some(read) = options.format_of(&file).and_then(|format| format.read_complex) {
@@ -46,7 +44,7 @@ pub fn read_complex(
     }
     let reason = Reason::unsupported(
         "its cells cannot be read as a complex",
-        "give a complex as .json, .npz or .vtu (docs/cross-checking.md)",
+        "give a complex as .json or .npz, or a mesh as .vtu or .vtk (docs/cross-checking.md)",
     );
     Err(format(path, reason))
 }

@@ -164,6 +164,55 @@ fn cells_of_a_mesh_are_judged() {
     assert_eq!(code, 2, "{stderr}");
 }
 
+/// Meshes of other programs are judged by the readers of walpha-check, with points and weights of their own if asked.
+#[test]
+fn meshes_of_other_programs_are_judged() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let write = |name: &str, text: &str| std::fs::write(folder.join(name), text).unwrap();
+    write(
+        "a.mesh",
+        "MeshVersionFormatted 2 Dimension 3 Vertices 5 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1 0 2 2 2 0 \
+         Triangles 1 1 2 3 0 Tetrahedra 2 1 2 3 4 0 2 3 4 5 0 End",
+    );
+    let facts = common::json(folder, &["check", "a.mesh"]);
+    assert_eq!((&facts["verdict"], &facts["extent"]), (&"exact".into(), &"whole".into()));
+    let notes = facts["notes"].to_string();
+    assert!(notes.contains("nearest double") && notes.contains("1 Triangles"), "{notes}");
+    let info = common::json(folder, &["info", "a.mesh"]);
+    assert_eq!((&info["kind"], &info["tetrahedra"]), (&"mesh".into(), &2.into()), "{info:#}");
+    let (code, stdout, stderr) = common::run(folder, &["check", "a.mesh", "--alpha", "0.5"]);
+    assert_eq!(code, 3, "{stdout}{stderr}");
+    assert!(stdout.contains("by rule   "), "{stdout}");
+
+    // The fifth point moved into the sphere of the first cell.
+    write("moved.csv", "x,y,z\n0,0,0\n1,0,0\n0,1,0\n0,0,1\n0.75,0.75,0.75\n");
+    let (code, stdout, _) = common::run(folder, &["check", "a.mesh", "--points", "moved.csv"]);
+    assert_eq!(code, 3, "{stdout}");
+    assert!(stdout.contains("is not regular"), "{stdout}");
+    write("few.csv", "x,y,z\n0,0,0\n1,0,0\n");
+    let (code, _, stderr) = common::run(folder, &["check", "a.mesh", "--points", "few.csv"]);
+    assert!(code == 1 && stderr.contains("lists 2 points"), "{stderr}");
+
+    // Hidden by its weight, the fourth attribute of its line.
+    write("w.node", "5 3 1 0\n0 0 0 0 0\n1 1 0 0 0\n2 0 1 0 0\n3 0 0 1 0\n4 .25 .25 .25 -9\n");
+    write("w.ele", "1 4 0\n0 0 1 2 3\n");
+    assert_eq!(common::run(folder, &["check", "w.ele"]).0, 3);
+    assert_eq!(common::run(folder, &["check", "w.node", "--weights", "column"]).0, 0);
+
+    write(
+        "a.vtk",
+        "# vtk DataFile Version 4.2\n\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 double\n\
+         0 0 0 1 0 0 0 1 0 0 0 1\nCELLS 2 9\n4 0 1 2 3\n3 0 1 2\nCELL_TYPES 2\n10\n5\n",
+    );
+    let (code, stdout, stderr) = common::run(folder, &["check", "a.vtk"]);
+    assert_eq!(code, 0, "{stdout}{stderr}");
+    assert!(stdout.contains("note      only tetrahedra are judged"), "{stdout}");
+    write("theirs.json", r#"{"p":[[0,0,0],[1,0,0],[0,1,0],[0,0,1]],"t":[[0,1,2,3]]}"#);
+    assert_eq!(common::run(folder, &["check", "theirs.json"]).0, 0);
+    assert_eq!(common::run(folder, &["check", "theirs.json", "--alpha", "0.5"]).0, 3);
+}
+
 /// Our own files hold α and classes.
 #[test]
 fn our_meshes_are_judged_as_the_shapes_they_are() {

@@ -82,6 +82,9 @@ fn reader_files(folder: &Path) {
     write("trees.csv", &table("x,y", 2));
     write("buckyball.csv", &buckyball());
     // What other programs would write.
+    let mesh = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n$EndNodes\n\
+                $Elements\n1\n1 4 0 1 2 3 4\n$EndElements";
+    write("theirs.msh", &[mesh.to_owned()]);
     ok(folder, &["points", "sample:phantom@16", "-o", "skull.csv"]);
     let theirs = ["shape", "skull.csv", "--weights", "common=0", "--alpha", "2", "-o"];
     ok(folder, &[&theirs[..], &["gudhi.json", "theirs.json", "theirs.vtu"]].concat());

@@ -3,7 +3,7 @@
 //! [`enumerate`] computes the complex of a few points from the definition; [`Claim`] judges complexes of any
 //! size, by rules that take linear time; [`compare()`] says how two complexes differ;
 //! [`certify_filtration`] and [`compare_filtrations`] do the same for all values of α at once;
-//! [`schema`] reads and writes the complexes of other programs. Every decision is exact on the input doubles.
+//! [`schema`] reads and writes complexes, [`meshes`] reads what other programs write. Every decision is exact on the input doubles.
 //!
 //! ```
 //! use walpha_check::{Alpha, Claim, Placed, Verdict, compare, enumerate};
@@ -32,7 +32,9 @@ mod compare;
 mod enumerate;
 mod exact;
 mod flat;
+pub mod meshes;
 mod parallel;
+mod rules;
 pub mod schema;
 
 pub use certify::{
@@ -47,6 +49,7 @@ pub use compare::{
 };
 pub use enumerate::{EnumerateError, Enumeration, enumerate, enumerate_monitored};
 pub use exact::Exact;
+pub use rules::{count_by_rule, keep_causes};
 /// Progress and cancelling of long work.
 pub use walpha_base::{Cancelled, Monitor};
 pub use walpha_complex::{

@@ -7,24 +7,39 @@ use std::process::ExitCode;
 
 use clap::{Parser, ValueEnum};
 use walpha_base::{standard_output, threads};
-use walpha_check::schema::{AnyFile, PlacedComplex, SchemaError};
-use walpha_check::{CertifyError, CertifyFiltrationError, Unjudged, certify_filtration};
+use walpha_check::meshes::{MeshError, MeshFormat, open_weights};
+use walpha_check::schema::{AnyFile, ComplexFile, PlacedComplex, SchemaError};
+use walpha_check::{
+    Alpha, CertifyError, CertifyFiltrationError, FiltrationFinding, Finding, Unjudged,
+    certify_filtration, count_by_rule, keep_causes,
+};
 
-/// Judge weighted alpha shapes exactly.
+/// Judge weighted alpha shapes and meshes of tetrahedra exactly.
 ///
 /// Each FILE is a complex in JSON or NPZ: points, power weights, α, simplices and, if known, their
-/// classes; or a filtration: every simplex, the α at which it enters, and the order. A file is exact; or valid:
-/// right, with another choice at ties, where more points lie on one empty sphere than a simplex has corners
-/// or points are equal; or wrong. Findings name the simplex and the rule that it breaks.
+/// classes; a filtration: every simplex, the α at which it enters, and the order; or a mesh of tetrahedra of TetGen
+/// (.node, .ele), Gmsh (.msh), Medit (.mesh) or VTK (.vtk). What states no α is judged as a triangulation of its
+/// points, at α = ∞. Coordinates in text are decimal numbers, each taken to the nearest double.
+///
+/// A file is exact; or valid: right, with another choice at ties, where more points lie on one empty sphere than a
+/// simplex has corners or points are equal; or wrong. Findings name the simplex and the rule that it breaks.
 ///
 /// Exit code: 0 if all files are exact or valid, 1 if a file cannot be judged, 2 for a wrong command line, 3
 /// if a file is wrong, 141 if standard output is closed by its reader.
 #[derive(Parser)]
 #[command(version)]
+#[expect(clippy::doc_markdown, reason = "the help would show backticks")]
 struct Arguments {
-    /// Complexes and filtrations: .json or .npz.
+    /// Complexes and filtrations: .json or .npz. Meshes: .node with .ele, .msh, .mesh or .vtk.
     #[arg(required = true, value_name = "FILE")]
     files: Vec<PathBuf>,
+    /// α, a squared length, of files that state none: their cells are then judged as a shape.
+    #[arg(long, value_name = "A", allow_negative_numbers = true)]
+    alpha: Option<Alpha>,
+    /// Weights, squared lengths, of files that have none: column for the first attribute of TetGen's points, or a
+    /// file with one for each point: .npy, or text with one on each line.
+    #[arg(long, value_name = "SOURCE")]
+    weights: Option<PathBuf>,
     /// Which choices at ties are accepted: any, or only that of the perturbation (exact), so that any other is
     /// a finding.
     #[arg(long, value_enum, default_value_t, value_name = "CHOICE")]
@@ -51,14 +66,14 @@ const UNREAD: u8 = 141;
 
 #[expect(clippy::unnecessary_debug_formatting, reason = "it escapes control characters")]
 fn main() -> ExitCode {
-    let Arguments { files, ties } = match Arguments::try_parse() {
+    let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
         Err(error) => return print_usage(&error),
     };
     start_threads();
     let (mut failed, mut found) = (false, false);
-    for path in &files {
-        match judge(path, ties) {
+    for path in &arguments.files {
+        match judge(path, &arguments) {
             Ok(right) => found |= !right,
             // Further output would be lost, too.
             Err(Failure::Output(error)) => return unprinted(&error),
@@ -119,6 +134,17 @@ enum Failure {
     #[error(transparent)]
     Schema(#[from] SchemaError),
     #[error(transparent)]
+    Mesh(#[from] MeshError),
+    #[error(
+        "complexes are read from .json and .npz, meshes from .node, .ele, .msh, .mesh and .vtk"
+    )]
+    Extension { vtu: bool },
+    /// An option that the file leaves no room for.
+    #[error("{option} has no effect: {why}")]
+    Option { option: &'static str, why: &'static str },
+    #[error("--weights column asks for the attributes of TetGen's points, and there are none")]
+    Attribute,
+    #[error(transparent)]
     Certify(#[from] CertifyError),
     #[error(transparent)]
     Filtration(#[from] CertifyFiltrationError),
@@ -127,9 +153,14 @@ enum Failure {
 }
 
 impl Failure {
-    fn advice(&self) -> Option<&'static str> {
+    fn advice(&self) -> Option<&str> {
         match self {
             Self::Schema(error) => error.advice(),
+            Self::Mesh(error) => error.advice(),
+            Self::Extension { vtu: true } => Some("use `walpha check`, which reads .vtu, too"),
+            Self::Extension { vtu: false } => Some("convert it to one of these"),
+            Self::Option { .. } => Some("omit it"),
+            Self::Attribute => Some("give a file with the weights"),
             Self::Certify(error) => error.advice(),
             Self::Filtration(error) => error.advice(),
             Self::Output(_) => None,
@@ -137,46 +168,146 @@ impl Failure {
     }
 }
 
-/// Judges a file, prints the findings, and returns whether it is right.
-fn judge(path: &Path, ties: Ties) -> Result<bool, Failure> {
-    match AnyFile::open(path)? {
+/// A file with what the options add, and what to know about the verdict.
+fn read(path: &Path, arguments: &Arguments) -> Result<(AnyFile, Vec<String>), Failure> {
+    let (mut file, mut attribute, mut notes) = match MeshFormat::of(path) {
+        Some(format) => {
+            let mesh = format.read(path)?;
+            (AnyFile::Complex(mesh.complex), mesh.attribute, mesh.notes)
+        }
+        None => match AnyFile::open(path) {
+            Err(SchemaError::Extension) => {
+                let vtu = path.extension().is_some_and(|own| own.eq_ignore_ascii_case("vtu"));
+                return Err(Failure::Extension { vtu });
+            }
+            file => (file?, None, Vec::new()),
+        },
+    };
+    match &mut file {
         AnyFile::Complex(file) => {
-            let (mut findings, certificate) = PlacedComplex::try_from(file)?.findings()?;
+            complete(file, &mut attribute, arguments)?;
+            if attribute.is_some() {
+                notes.push(
+                    "attributes of points are no weights; --weights column takes the first".into(),
+                );
+            }
+            if file.states_no_alpha() {
+                notes.push("judged as a triangulation (α = ∞); --alpha makes it a shape".into());
+            }
+        }
+        AnyFile::Filtration(_) => {
+            let why = "a filtration has all values of α, and its weights";
+            let given = [
+                ("--alpha", arguments.alpha.is_some()),
+                ("--weights", arguments.weights.is_some()),
+            ];
+            if let Some((option, _)) = given.into_iter().find(|(_, given)| *given) {
+                return Err(Failure::Option { option, why });
+            }
+        }
+    }
+    Ok((file, notes))
+}
+
+/// Gives a complex the α and the weights of the options.
+fn complete(
+    file: &mut ComplexFile,
+    attribute: &mut Option<Vec<f64>>,
+    arguments: &Arguments,
+) -> Result<(), Failure> {
+    if let Some(alpha) = arguments.alpha {
+        if !file.states_no_alpha() {
+            return Err(Failure::Option { option: "--alpha", why: "the file states its α" });
+        }
+        file.alpha = alpha;
+    }
+    if let Some(source) = &arguments.weights {
+        if file.weights.is_some() {
+            return Err(Failure::Option { option: "--weights", why: "the file has weights" });
+        }
+        file.weights = Some(if source.as_os_str() == "column" {
+            attribute.take().ok_or(Failure::Attribute)?
+        } else {
+            open_weights(source).map_err(|error| error.of_file(source))?
+        });
+    }
+    Ok(())
+}
+
+/// Judges a file, prints the findings, and returns whether it is right.
+fn judge(path: &Path, arguments: &Arguments) -> Result<bool, Failure> {
+    let (file, notes) = read(path, arguments)?;
+    let ties = arguments.ties;
+    match file {
+        AnyFile::Complex(file) => {
+            let is_cells_alone = file.is_cells_alone();
+            let (mut findings, mut certificate) = PlacedComplex::try_from(file)?.findings()?;
+            if is_cells_alone {
+                keep_causes(&mut findings, &mut certificate);
+            }
             findings.retain(|finding| ties == Ties::Exact || !finding.is_tie());
-            print(path, &certificate, &findings, &certificate.not_judged, &[])?;
+            let report = Report {
+                certificate: &certificate,
+                by_rule: count_by_rule(findings.iter().map(Finding::rule)),
+                findings: &findings,
+                rules: &certificate.not_judged,
+                parts: &[],
+                notes: &notes,
+            };
+            report.print(path)?;
             Ok(findings.is_empty())
         }
         AnyFile::Filtration(file) => {
             let (mut findings, certificate) = certify_filtration(&file)?;
             findings.retain(|finding| ties == Ties::Exact || !finding.is_tie());
-            let unjudged = &certificate.triangulation.not_judged;
-            print(path, &certificate, &findings, unjudged, &certificate.not_judged)?;
+            let report = Report {
+                certificate: &certificate,
+                by_rule: count_by_rule(findings.iter().map(FiltrationFinding::rule)),
+                findings: &findings,
+                rules: &certificate.triangulation.not_judged,
+                parts: &certificate.not_judged,
+                notes: &notes,
+            };
+            report.print(path)?;
             Ok(findings.is_empty())
         }
     }
 }
 
-/// Prints the verdict, the findings, and what was not judged.
-#[expect(clippy::unnecessary_debug_formatting, reason = "it escapes control characters")]
-fn print(
-    path: &Path,
-    certificate: &impl Display,
-    findings: &[impl Display],
-    rules: &[impl Display],
-    parts: &[Unjudged],
-) -> Result<(), Failure> {
-    standard_output::check()?;
-    let mut out = io::stdout().lock();
-    // As Debug prints a path, control characters in its name cannot reach the terminal.
-    writeln!(out, "{path:?}: {certificate}")?;
-    for finding in findings.iter().take(MOST_PRINTED) {
-        writeln!(out, "  {finding}")?;
+/// What is printed of a file.
+struct Report<'a, C, F, R> {
+    certificate: &'a C,
+    by_rule: Vec<(&'static str, usize)>,
+    findings: &'a [F],
+    /// Rules and parts that were not judged.
+    rules: &'a [R],
+    parts: &'a [Unjudged],
+    notes: &'a [String],
+}
+
+impl<C: Display, F: Display, R: Display> Report<'_, C, F, R> {
+    /// Prints the verdict, the findings, what was not judged, and what to know.
+    #[expect(clippy::unnecessary_debug_formatting, reason = "it escapes control characters")]
+    fn print(&self, path: &Path) -> io::Result<()> {
+        let Self { certificate, by_rule, findings, rules, parts, notes } = self;
+        standard_output::check()?;
+        let mut out = io::stdout().lock();
+        // As Debug prints a path, control characters in its name cannot reach the terminal.
+        writeln!(out, "{path:?}: {certificate}")?;
+        if findings.len() > 1 {
+            let counts: Vec<String> =
+                by_rule.iter().map(|(rule, count)| format!("{count} {rule}")).collect();
+            writeln!(out, "  by rule: {}", counts.join(", "))?;
+        }
+        for finding in findings.iter().take(MOST_PRINTED) {
+            writeln!(out, "  {finding}")?;
+        }
+        if findings.len() > MOST_PRINTED {
+            writeln!(out, "  and {} more", findings.len() - MOST_PRINTED)?;
+        }
+        rules.iter().try_for_each(|rule| writeln!(out, "  not judged: {rule}"))?;
+        parts.iter().try_for_each(|part| writeln!(out, "  not judged: {part}"))?;
+        notes.iter().try_for_each(|note| writeln!(out, "  note: {note}"))?;
+        out.flush()
     }
-    if findings.len() > MOST_PRINTED {
-        writeln!(out, "  and {} more", findings.len() - MOST_PRINTED)?;
-    }
-    rules.iter().try_for_each(|rule| writeln!(out, "  not judged: {rule}"))?;
-    parts.iter().try_for_each(|part| writeln!(out, "  not judged: {part}"))?;
-    out.flush()?;
-    Ok(())
 }

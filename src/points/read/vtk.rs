@@ -1,7 +1,7 @@
 use std::path::Path;
 
-use walpha_check::schema::ComplexFile;
-use walpha_complex::{Alpha, Class};
+use walpha_check::meshes::{Grid, Mesh, MeshError, MeshFormat};
+use walpha_complex::Alpha;
 
 use super::{CellCount, Points, PointsError, format, take_radii};
 use crate::volume::{OpenFile, Reason, VtkPoints, VtkXml};
@@ -107,15 +107,15 @@ pub(crate) fn cells(file: &OpenFile) -> Result<Vec<CellCount>, PointsError> {
         ];
         return Ok(kinds.into_iter().map(count).collect());
     }
-    let types = Grid::new(path, &file, piece)?.types()?;
+    let types = Cells::new(path, &file, piece)?.types()?;
     let mut counts: Vec<CellCount> = Vec::new();
-    for kind in types.iter().map(|&kind| kind_of(kind)) {
+    for kind in types.iter().map(|&kind| Grid::kind_of(kind)) {
         match counts.iter_mut().find(|cells| cells.kind == kind) {
             Some(cells) => cells.count += 1,
             None => counts.push(CellCount::new(kind, 1)),
         }
     }
-    let are_points = counts.iter().all(|cells| cells.kind == kind_of(VERTEX));
+    let are_points = counts.iter().all(|cells| cells.kind == Grid::kind_of(VERTEX));
     Ok(if are_points && stated_alpha(&file, dataset)?.is_none() { Vec::new() } else { counts })
 }
 
@@ -125,12 +125,12 @@ pub(crate) fn cells_of_legacy(file: &OpenFile) -> Result<Vec<CellCount>, PointsE
     Ok(cells.map(|(kind, count)| CellCount::new(kind, count as usize)).collect())
 }
 
-/// Reads the simplices of a VTU file with its points and weights, and the classes and α if walpha wrote it.
-/// Otherwise α is ∞, and all listed simplices are in the shape.
-pub(crate) fn read_complex(file: &OpenFile) -> Result<ComplexFile, PointsError> {
+/// Reads the simplices of a VTU file with its points and weights, and the classes and α if walpha wrote it. Of
+/// another grid only the tetrahedra are read, if it has some, and α is ∞.
+pub(crate) fn read_complex(file: &OpenFile) -> Result<Mesh, PointsError> {
     let path = file.path();
     let file = VtkXml::open(file)?;
-    let points = points(path, &file)?;
+    let Points { positions: points, weights, .. } = points(path, &file)?;
     let (dataset, piece) = file.piece()?;
     if file.kind() != "UnstructuredGrid" {
         let reason = Reason::unsupported(
@@ -139,98 +139,28 @@ pub(crate) fn read_complex(file: &OpenFile) -> Result<ComplexFile, PointsError> 
         );
         return Err(format(path, reason));
     }
-    let stated = stated_alpha(&file, dataset)?;
-    let grid = Grid::new(path, &file, piece)?;
-    let types = grid.types()?;
-    let ends = grid.array("offsets", grid.count)?;
-    let corners = grid.array("connectivity", ends.last().copied().unwrap_or(0.0) as u64)?;
-    let classes = stated.map(|_| grid.classes()).transpose()?.flatten();
-    let mut file = ComplexFile::of_points(points.positions, stated.unwrap_or(Alpha::INFINITE));
-    file.weights = points.weights;
-    let (mut cells, mut facets, mut edges, mut vertices) =
-        <(Vec<_>, Vec<_>, Vec<_>, Vec<_>)>::default();
-    let mut by_kind = <[Vec<Class>; 4]>::default();
-    let mut from = 0;
-    for (row, (&kind, &end)) in types.iter().zip(&ends).enumerate() {
-        let to = end as usize;
-        let bad = |what: String| format(path, Reason::damaged(what));
-        let found = corners.get(from..to).ok_or_else(|| {
-            bad(format!("has offsets of cells that do not ascend, at cell {row}: it is damaged"))
-        })?;
-        let wanted = match kind {
-            VERTEX => 1,
-            LINE => 2,
-            TRIANGLE => 3,
-            TETRA => 4,
-            _ => {
-                let reason = Reason::unsupported(
-                    format!("lists {}, which are not simplices", kind_of(kind)),
-                    "cut them into tetrahedra and triangles",
-                );
-                return Err(format(path, reason));
-            }
-        };
-        if found.len() != wanted {
-            let kind = kind_of(kind);
-            return Err(bad(format!(
-                "has {} corners in cell {row}, one of its {kind}",
-                found.len()
-            )));
-        }
-        let number = |i: usize| {
-            let corner = found[i];
-            let is_whole = corner >= 0.0 && corner < f64::from(u32::MAX) && corner.fract() == 0.0;
-            is_whole.then_some(corner as u32).ok_or_else(|| {
-                bad(format!("has corner {corner} in cell {row}, which is not the index of a point"))
-            })
-        };
-        match kind {
-            VERTEX => vertices.push(number(0)?),
-            LINE => edges.push([number(0)?, number(1)?]),
-            TRIANGLE => facets.push([number(0)?, number(1)?, number(2)?]),
-            _ => cells.push([number(0)?, number(1)?, number(2)?, number(3)?]),
-        }
-        if let Some(classes) = &classes {
-            by_kind[wanted - 1].push(classes[row]);
-        }
-        from = to;
-    }
-    // With classes, an empty list means that there are no such simplices; without, they are derived as faces.
-    fn listed<T>(rows: Vec<T>, all: bool) -> Option<Vec<T>> {
-        (all || !rows.is_empty()).then_some(rows)
-    }
-    let all = classes.is_some();
-    let [of_vertices, of_edges, of_facets, of_cells] = by_kind.map(|classes| listed(classes, all));
-    (file.cells, file.facets) = (listed(cells, all), listed(facets, all));
-    (file.edges, file.vertices) = (listed(edges, all), listed(vertices, all));
-    (file.classes.cells, file.classes.facets) = (of_cells, of_facets);
-    (file.classes.edges, file.classes.vertices) = (of_edges, of_vertices);
-    Ok(file)
+    let alpha = stated_alpha(&file, dataset)?;
+    let cells = Cells::new(path, &file, piece)?;
+    let (types, ends) = (cells.types()?, cells.array("offsets", cells.count)?);
+    let corners = cells.array("connectivity", ends.last().copied().unwrap_or(0.0) as u64)?;
+    let classes = alpha.map(|_| cells.classes()).transpose()?.flatten();
+    let grid = Grid { points, weights, types, ends, corners, alpha, classes };
+    grid.mesh().map_err(|error| mesh_error(path, &error))
 }
 
+/// Reads the simplices of a legacy VTK file in the same way.
+pub(crate) fn read_legacy_complex(file: &OpenFile) -> Result<Mesh, PointsError> {
+    let format = MeshFormat::named("vtk").expect("VTK is a format of meshes");
+    format.read(file.path()).map_err(|error| mesh_error(file.path(), &error))
+}
+
+fn mesh_error(path: &Path, error: &MeshError) -> PointsError {
+    let advice = error.advice().unwrap_or("write the file again").to_owned();
+    format(path, Reason::content(error.to_string(), advice))
+}
+
+/// VTK's type of single points.
 const VERTEX: u8 = 1;
-const LINE: u8 = 3;
-const TRIANGLE: u8 = 5;
-const TETRA: u8 = 10;
-
-/// The name of a cell type (VTK User's Guide, "Linear cell types in VTK").
-fn kind_of(kind: u8) -> &'static str {
-    match kind {
-        VERTEX => "vertices",
-        LINE => "edges",
-        TRIANGLE => "triangles",
-        TETRA => "tetrahedra",
-        2 => "sets of vertices",
-        4 => "polylines",
-        6 => "strips",
-        7 => "polygons",
-        8 | 9 => "quadrilaterals",
-        11 | 12 => "hexahedra",
-        13 => "wedges",
-        14 => "pyramids",
-        _ => "cells of higher order",
-    }
-}
 
 /// The α in the field data `alpha`, which walpha writes.
 fn stated_alpha(file: &VtkXml, dataset: usize) -> Result<Option<Alpha>, PointsError> {
@@ -242,14 +172,14 @@ fn stated_alpha(file: &VtkXml, dataset: usize) -> Result<Option<Alpha>, PointsEr
 }
 
 /// The cells of an unstructured grid.
-struct Grid<'a> {
+struct Cells<'a> {
     path: &'a Path,
     file: &'a VtkXml<'a>,
     piece: usize,
     count: u64,
 }
 
-impl<'a> Grid<'a> {
+impl<'a> Cells<'a> {
     fn new(path: &'a Path, file: &'a VtkXml<'a>, piece: usize) -> Result<Self, PointsError> {
         let count = file.attribute(piece, "NumberOfCells").and_then(|text| text.parse().ok());
         match count {
@@ -278,22 +208,11 @@ impl<'a> Grid<'a> {
     }
 
     /// The cell data `class`.
-    fn classes(&self) -> Result<Option<Vec<Class>>, PointsError> {
+    fn classes(&self) -> Result<Option<Vec<f64>>, PointsError> {
         let file = self.file;
         let data = file.children(self.piece, "CellData").next();
         let named = |&array: &usize| file.attribute(array, "Name") == Some("class");
-        let Some(array) = data.and_then(|data| file.children(data, "DataArray").find(named)) else {
-            return Ok(None);
-        };
-        let numbers: Vec<f64> = file.values(array, self.count)?;
-        let class = |number: f64| {
-            let class =
-                Class::from_number(number as u8).filter(|class| f64::from(*class as u8) == number);
-            class.ok_or_else(|| {
-                let reason = Reason::value(format!("has class {number}: classes are 0 to 3"));
-                format(self.path, reason)
-            })
-        };
-        numbers.into_iter().map(class).collect::<Result<_, _>>().map(Some)
+        let array = data.and_then(|data| file.children(data, "DataArray").find(named));
+        Ok(array.map(|array| file.values(array, self.count)).transpose()?)
     }
 }

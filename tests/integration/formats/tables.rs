@@ -59,6 +59,10 @@ fn tables() -> String {
             format.feature.unwrap_or("–"),
         );
     }
+    text += "\n| meshes, to be judged | read |\n|---|---|\n";
+    for format in &walpha::check::meshes::FORMATS {
+        text += &format!("| {} | {} |\n", format.name, dotted(format.extensions.iter().copied()));
+    }
     text += "\n| shapes | written | holds |\n|---|---|---|\n";
     for format in &export::FORMATS {
         let (name, extension, about) = (format.name, format.extension, format.about);

@@ -70,7 +70,7 @@ fn what_cannot_be_judged_comes_with_advice() {
             format!(r#"{filtration},"periodic":[4,4,4]"#),
             "next: judge its complexes at single values of α instead",
         ),
-        (format!(r#"{POINTS},"cells":[[0,1,2,9]]"#), ""),
+        (format!(r#"{POINTS},"cells":[[0,1,2,9]]"#), "next: number points from 0 in all rows"),
     ] {
         std::fs::write(folder.join("not.json"), format!("{{{fields}}}")).unwrap();
         let (code, stdout, stderr) = run(&folder, &["not.json"]);

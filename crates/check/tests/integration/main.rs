@@ -15,10 +15,14 @@ mod each_simplex;
 mod flat;
 mod flat_claims;
 mod geometry;
+#[cfg(feature = "cli")]
+mod meshes;
 mod monitor;
 mod mutations;
 #[cfg(all(feature = "json", feature = "npz"))]
 mod nonsense;
+#[cfg(feature = "json")]
+mod rules;
 #[cfg(feature = "json")]
 mod schema;
 mod ties;

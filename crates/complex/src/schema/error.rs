@@ -123,6 +123,10 @@ impl SchemaError {
         Some(match self {
             Self::Zip(_) => "write it with numpy.savez",
             Self::Memory { .. } => "reduce its size",
+            Self::Missing("alpha") => {
+                "add `alpha`: a squared length, or infinity for a triangulation"
+            }
+            Self::Index { .. } => "number points from 0 in all rows",
             Self::NoPoints => "add `points`",
             Self::NoSimplices => "give at least one of cells, facets, edges, vertices",
             _ => return None,

@@ -1,9 +1,12 @@
+use std::collections::BTreeMap;
 use std::io::{BufReader, Read, Write};
 
 use serde::Deserialize;
-use serde::de::IgnoredAny;
+use serde::de::{DeserializeOwned, IgnoredAny};
+use serde_json::Value;
 
 use super::{ComplexFile, FiltrationFile, SchemaError};
+use crate::Alpha;
 
 impl ComplexFile {
     /// Reads JSON.
@@ -49,6 +52,37 @@ impl FiltrationFile {
     pub fn write_json(&self, writer: impl Write) -> Result<(), SchemaError> {
         Ok(serde_json::to_writer(writer, self)?)
     }
+}
+
+/// The names of the fields in JSON; none if it cannot be read.
+#[expect(clippy::zero_sized_map_values, reason = "only the names are wanted")]
+pub(super) fn names(reader: impl Read) -> Vec<String> {
+    let fields = serde_json::from_reader::<_, BTreeMap<String, IgnoredAny>>(BufReader::new(reader));
+    fields.unwrap_or_default().into_keys().collect()
+}
+
+/// Reads a complex whose points and cells have these names.
+pub(super) fn read_named(
+    reader: impl Read,
+    [points, cells]: [&'static str; 2],
+) -> Result<ComplexFile, SchemaError> {
+    let mut fields: BTreeMap<String, Value> = serde_json::from_reader(BufReader::new(reader))?;
+    Ok(ComplexFile {
+        cells: field(&mut fields, cells)?,
+        weights: field(&mut fields, "weights")?,
+        ..ComplexFile::of_points(
+            field(&mut fields, points)?.unwrap_or_default(),
+            field(&mut fields, "alpha")?.unwrap_or(Alpha::INFINITE),
+        )
+    })
+}
+
+fn field<T: DeserializeOwned>(
+    fields: &mut BTreeMap<String, Value>,
+    name: &'static str,
+) -> Result<Option<T>, SchemaError> {
+    let value = fields.remove(name).map(serde_json::from_value).transpose();
+    value.map_err(|error| SchemaError::Json(format!("`{name}`: {error}").into()))
 }
 
 impl From<serde_json::Error> for SchemaError {

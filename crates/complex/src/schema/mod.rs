@@ -36,12 +36,17 @@
 //! `facet_classes`, `edge_classes` and `vertex_classes`, with 0 exterior, 1 interior, 2 regular,
 //! 3 singular.
 //!
+//! [`AnyFile`] reads triangulations under the names that others use, too: cells as `simplices`, `tetra` or `t`, points
+//! as `points`, `p` or `vertices`, perhaps `weights` and `alpha`, and passes over the rest. Without `alpha` they, and
+//! files of `points` and `cells` alone, have α = ∞.
+//!
 //! A [`FiltrationFile`] is a complex at all values of α; [`AnyFile`] opens either.
 
 mod error;
 mod filtration;
 #[cfg(feature = "json")]
 mod json;
+mod named;
 #[cfg(feature = "npz")]
 mod npz;
 mod open;
@@ -52,6 +57,8 @@ use crate::{Alpha, Class, Placed};
 
 pub use error::SchemaError;
 pub use filtration::{Below, FiltrationFile, PairsFile, Values};
+#[cfg(feature = "npz")]
+pub use npz::read_npy;
 pub use open::AnyFile;
 
 /// The contents of a file with a complex; see the [module](self) for the meaning of the fields.
@@ -140,6 +147,17 @@ impl ComplexFile {
             },
             ..Self::of_points(positions.to_vec(), alpha)
         }
+    }
+
+    /// Whether this may be a triangulation whose file states no α: α is ∞, and no simplex has a class.
+    pub fn states_no_alpha(&self) -> bool {
+        self.alpha == Alpha::INFINITE && self.classes.is_empty()
+    }
+
+    /// Whether this is a triangulation of which only the cells are listed.
+    pub fn is_cells_alone(&self) -> bool {
+        let faces = self.facets.is_some() || self.edges.is_some() || self.vertices.is_some();
+        self.states_no_alpha() && self.cells.is_some() && !faces
     }
 
     /// A file of points and α, without simplices.

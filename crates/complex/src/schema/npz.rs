@@ -49,6 +49,49 @@ impl ComplexFile {
     }
 }
 
+/// The names of the arrays in NPZ; none if it cannot be read.
+pub(super) fn names(reader: impl Read + Seek) -> Vec<String> {
+    let Ok(Npz { archive, .. }) = Npz::new(reader) else { return Vec::new() };
+    let name = |entry: &str| entry.strip_suffix(".npy").unwrap_or(entry).to_owned();
+    archive.file_names().map(name).collect()
+}
+
+/// Reads a complex whose points and cells have these names.
+pub(super) fn read_named(
+    reader: impl Read + Seek,
+    [points, cells]: [&'static str; 2],
+) -> Result<ComplexFile, SchemaError> {
+    let mut file = Npz::new(reader)?;
+    file.check(&[
+        (points, Kind::Rows(3)),
+        (cells, Kind::Rows(4)),
+        ("weights", Kind::Column(points)),
+        ("alpha", Kind::Scalar),
+    ])?;
+    let stated = file.numbers("alpha")?.map(|alpha| self::alpha("alpha", alpha[0])).transpose()?;
+    let positions = file.rows(points, |_, x| Ok(x))?.unwrap_or_default();
+    Ok(ComplexFile {
+        cells: file.rows(cells, index)?,
+        weights: file.numbers("weights")?,
+        ..ComplexFile::of_points(positions, stated.unwrap_or(Alpha::INFINITE))
+    })
+}
+
+/// Reads NPY with one axis; `name` is what it holds.
+///
+/// # Errors
+/// A damaged or truncated file, another shape, and elements that are not numbers.
+pub fn read_npy(name: &'static str, mut bytes: &[u8]) -> Result<Vec<f64>, SchemaError> {
+    let header =
+        Header::read(&mut bytes).map_err(|error| SchemaError::Npy { name, source: error })?;
+    if header.shape.len() != 1 {
+        let (got, expected) = (format!("shape {:?}", header.shape), "one dimension".into());
+        return Err(SchemaError::Array { name, got, expected });
+    }
+    let length = bytes.len() as u64;
+    decoded(name, &header, &mut bytes, length)
+}
+
 /// The shape that an array must have.
 #[derive(Clone, Copy)]
 enum Kind {

@@ -66,7 +66,9 @@ pub enum AnyFile {
 }
 
 impl AnyFile {
-    /// Reads a file, as JSON or NPZ by its extension. It is a filtration if it has a field `order`.
+    /// Reads a file, as JSON or NPZ by its extension. It is a filtration if it has a field `order`; and a complex at
+    /// α = ∞ if it states no α, and has nothing but points, cells and weights, or calls its cells `simplices`, `tetra`
+    /// or `t`, as others do, and its points `points`, `p` or `vertices`.
     ///
     /// # Errors
     /// As [`ComplexFile::open`] and [`FiltrationFile::open`].
@@ -77,18 +79,21 @@ impl AnyFile {
             Err(_) if FiltrationFile::is_in(path) => {
                 FiltrationFile::open(path).map(Self::Filtration)
             }
-            Err(error) => Err(error),
+            Err(error) => match ComplexFile::open_named(path)? {
+                Some(file) => Ok(Self::Complex(file)),
+                None => Err(error),
+            },
         }
     }
 }
 
 #[cfg(any(feature = "json", feature = "npz"))]
-fn open(path: &Path) -> Result<BufReader<File>, SchemaError> {
+pub(super) fn open(path: &Path) -> Result<BufReader<File>, SchemaError> {
     Ok(BufReader::new(File::open(path).map_err(SchemaError::Io)?))
 }
 
 /// The formats that can be read.
-enum Format {
+pub(super) enum Format {
     #[cfg(feature = "json")]
     Json,
     #[cfg(feature = "npz")]
@@ -100,7 +105,7 @@ impl Format {
         Self::of(path).ok_or(SchemaError::Extension)
     }
 
-    fn of(path: &Path) -> Option<Self> {
+    pub(super) fn of(path: &Path) -> Option<Self> {
         match path.extension().map(OsStr::to_ascii_lowercase)?.to_str()? {
             #[cfg(feature = "json")]
             "json" => Some(Self::Json),

@@ -1,0 +1,60 @@
+use std::io;
+use std::path::Path;
+
+use walpha_base::memory::NoMemory;
+
+/// Why a mesh cannot be read: where in the file, what is wrong, and what to do.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{place}{why}")]
+pub struct MeshError {
+    /// The file, if it is not the one that was named, and the line or byte; empty for the whole file.
+    place: String,
+    why: String,
+    next: Option<String>,
+}
+
+impl MeshError {
+    /// An error of a whole file.
+    pub(super) fn new(why: impl Into<String>) -> Self {
+        Self { place: String::new(), why: why.into(), next: None }
+    }
+
+    /// The same error at a place, such as `line 3`.
+    pub(super) fn at(self, place: &str) -> Self {
+        Self { place: format!("{place}: "), ..self }
+    }
+
+    /// The same error with what to do about it.
+    pub(super) fn with_advice(self, next: impl Into<String>) -> Self {
+        Self { next: Some(next.into()), ..self }
+    }
+
+    /// The same error in another file than the one that was named.
+    #[must_use]
+    pub fn of_file(self, path: &Path) -> Self {
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        let name = name.escape_debug();
+        let place = match &self.place[..] {
+            "" => format!("{name}: "),
+            place => format!("{name}, {place}"),
+        };
+        Self { place, ..self }
+    }
+
+    /// How to resolve the error, if there is a way.
+    pub fn advice(&self) -> Option<&str> {
+        self.next.as_deref()
+    }
+}
+
+impl From<io::Error> for MeshError {
+    fn from(error: io::Error) -> Self {
+        Self::new(format!("the mesh cannot be read: {error}"))
+    }
+}
+
+impl From<NoMemory> for MeshError {
+    fn from(error: NoMemory) -> Self {
+        Self::new(error.to_string()).with_advice("judge a part of it")
+    }
+}

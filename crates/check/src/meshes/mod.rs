@@ -1,0 +1,183 @@
+//! Meshes of tetrahedra as other programs write them, read to be judged.
+//!
+//! A [`Mesh`] is the points and the tetrahedra of a file, and is judged as the triangulation that it claims to be,
+//! at α = ∞ unless the file states an α. Each format is an entry of [`FORMATS`] and a module of its own. Text is
+//! read as what it is: decimal numbers, each taken to the nearest double.
+//!
+//! ```
+//! use walpha_check::meshes::Mesh;
+//! use walpha_check::schema::PlacedComplex;
+//!
+//! # let folder = std::env::temp_dir().join(format!("walpha-check-{}", std::process::id()));
+//! # std::fs::create_dir_all(&folder)?;
+//! let path = folder.join("one.mesh");
+//! let text = "MeshVersionFormatted 2 Dimension 3 Vertices 4 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1 0 \
+//!             Tetrahedra 1 1 2 3 4 0 End";
+//! std::fs::write(&path, text)?;
+//! let mesh = Mesh::open(&path)?;
+//! assert_eq!(mesh.notes[0], "coordinates are decimal numbers, each taken to the nearest double");
+//! let (findings, certificate) = PlacedComplex::try_from(mesh.complex)?.findings()?;
+//! assert_eq!(certificate.to_string(), "exact: no findings");
+//! # std::fs::remove_dir_all(&folder)?;
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod error;
+mod gmsh;
+mod grid;
+mod medit;
+mod scan;
+mod tetgen;
+mod vtk;
+mod weights;
+
+use std::ffi::OsStr;
+use std::path::Path;
+
+use crate::Alpha;
+use crate::schema::ComplexFile;
+
+pub use error::MeshError;
+pub use grid::Grid;
+pub use weights::open_weights;
+
+/// What a file of points and tetrahedra holds.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Mesh {
+    /// The points and the tetrahedra; of VTK also weights, and simplices of all dimensions if it states α.
+    pub complex: ComplexFile,
+    /// The first attribute of each point, where attributes have no names (`TetGen`). It is a weight only for those who
+    /// say so.
+    pub attribute: Option<Vec<f64>>,
+    /// What to know about the verdict: how numbers were read, and what was left out.
+    pub notes: Vec<String>,
+}
+
+/// A format of meshes.
+#[derive(Debug)]
+#[non_exhaustive]
+pub struct MeshFormat {
+    /// Its name, as users know it.
+    pub name: &'static str,
+    /// Extensions, without dots.
+    pub extensions: &'static [&'static str],
+    read: fn(&Path) -> Result<Mesh, MeshError>,
+}
+
+/// The formats that are read.
+pub static FORMATS: [MeshFormat; 4] = [
+    MeshFormat { name: "TetGen", extensions: &["node", "ele"], read: tetgen::read },
+    MeshFormat { name: "Gmsh", extensions: &["msh"], read: gmsh::read },
+    MeshFormat { name: "Medit", extensions: &["mesh"], read: medit::read },
+    MeshFormat { name: "legacy VTK", extensions: &["vtk"], read: vtk::read },
+];
+
+impl MeshFormat {
+    /// The format with this extension, in any letter case.
+    pub fn named(extension: &str) -> Option<&'static Self> {
+        // The reader of Medit says what is wrong with its binary files.
+        let is_binary = extension.eq_ignore_ascii_case("meshb");
+        let extension = if is_binary { "mesh" } else { extension };
+        let is_it = |own: &&str| own.eq_ignore_ascii_case(extension);
+        FORMATS.iter().find(|format| format.extensions.iter().any(is_it))
+    }
+
+    /// The format with the extension of a path. The file need not exist.
+    pub fn of(path: impl AsRef<Path>) -> Option<&'static Self> {
+        Self::named(path.as_ref().extension().and_then(OsStr::to_str)?)
+    }
+
+    /// Reads a file of this format.
+    ///
+    /// # Errors
+    /// A file that cannot be read, is damaged or truncated, or lists other cells than tetrahedra.
+    pub fn read(&self, path: impl AsRef<Path>) -> Result<Mesh, MeshError> {
+        (self.read)(path.as_ref())
+    }
+}
+
+impl Mesh {
+    /// Reads a file, in the format of its extension.
+    ///
+    /// # Errors
+    /// An extension that is not known, and the errors of [`MeshFormat::read`].
+    pub fn open(path: impl AsRef<Path>) -> Result<Self, MeshError> {
+        let format = MeshFormat::of(path.as_ref());
+        format.ok_or_else(|| MeshError::new("its extension is not that of a mesh"))?.read(path)
+    }
+
+    /// Points and cells that are judged as a triangulation.
+    fn of_cells(points: Vec<[f64; 3]>, cells: Vec<[u32; 4]>) -> Result<Self, MeshError> {
+        if points.is_empty() {
+            return Err(MeshError::new("the file lists no points").with_advice(scan::WRITE_AGAIN));
+        }
+        if cells.is_empty() {
+            let error = MeshError::new("the file lists no tetrahedra, which are what is judged");
+            return Err(error.with_advice("write the cells of the volume, too"));
+        }
+        let mut complex = ComplexFile::of_points(points, Alpha::INFINITE);
+        complex.cells = Some(cells);
+        Ok(complex.into())
+    }
+
+    fn with_note(mut self, note: impl Into<String>) -> Self {
+        self.notes.push(note.into());
+        self
+    }
+
+    /// Says how numbers in text were read.
+    fn with_decimal_note(self) -> Self {
+        self.with_note("coordinates are decimal numbers, each taken to the nearest double")
+    }
+
+    /// Says that findings number points from 0, where the file numbers them from another number.
+    fn with_numbering_note(self, first: u64) -> Self {
+        if first == 0 {
+            return self;
+        }
+        self.with_note(format!("points are numbered from 0 here, in the order of the file, which numbers them from {first}"))
+    }
+
+    /// Says what was left out: kinds, and how many of each.
+    fn with_ignored(self, ignored: &[(impl AsRef<str>, u64)]) -> Self {
+        let listed: Vec<String> = ignored
+            .iter()
+            .filter(|(_, count)| *count > 0)
+            .map(|(kind, count)| format!("{count} {}", kind.as_ref()))
+            .collect();
+        if listed.is_empty() {
+            return self;
+        }
+        self.with_note(format!("only tetrahedra are judged: {} are ignored", listed.join(", ")))
+    }
+}
+
+/// A complex, as it is.
+impl From<ComplexFile> for Mesh {
+    fn from(complex: ComplexFile) -> Self {
+        Self { complex, attribute: None, notes: Vec::new() }
+    }
+}
+
+/// The error for cells that are not tetrahedra.
+fn not_tetrahedra(what: &str) -> MeshError {
+    let why = format!("the file lists {what}, and only tetrahedra of 4 nodes are judged");
+    MeshError::new(why)
+        .with_advice("cut other cells into tetrahedra, and write them in first order")
+}
+
+/// The error for a corner that is no point.
+fn no_such_point(
+    scan: &scan::Scan,
+    corner: impl std::fmt::Display,
+    first: u64,
+    count: usize,
+) -> MeshError {
+    let numbers = match count as u64 {
+        0 => "there are none before the cells".to_owned(),
+        count => format!("they are {first} to {}", first + count - 1),
+    };
+    let why = format!("corner {corner} of a cell is not the number of a point: {numbers}");
+    scan.fault(why).with_advice("number the corners of cells as the points are numbered")
+}
