@@ -339,6 +339,18 @@ fn fmt_frame(
     Ok(())
 }
 
+/// The files that hold the samples of a volume, if they are not in the file that describes it.
+fn fmt_data_files(f: &mut std::fmt::Formatter<'_>, files: &[String]) -> std::fmt::Result {
+    match files {
+        [] => Ok(()),
+        [file] => writeln!(f, "samples   in {}", name(file)),
+        [first, .., last] => {
+            let ends = [first, last].map(|file| name(file)).join(" to ");
+            writeln!(f, "samples   in {} files, {ends}", files.len())
+        }
+    }
+}
+
 impl std::fmt::Display for Content {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
@@ -388,14 +400,7 @@ impl std::fmt::Display for Content {
                         "volumes   {volumes} in the file; --frame K reads one, and 0 is described here"
                     )?;
                 }
-                match &data_files[..] {
-                    [] => Ok(()),
-                    [file] => writeln!(f, "samples   in {}", name(file)),
-                    [first, .., last] => {
-                        let ends = [first, last].map(|file| name(file)).join(" to ");
-                        writeln!(f, "samples   in {} files, {ends}", data_files.len())
-                    }
-                }
+                fmt_data_files(f, data_files)
             }
             Self::Unread { format, voxels, dims } => {
                 writeln!(f, "volume    {format}")?;
