@@ -46,6 +46,7 @@ mod error;
 mod filtration;
 #[cfg(feature = "json")]
 mod json;
+#[cfg(any(feature = "json", feature = "npz"))]
 mod named;
 #[cfg(feature = "npz")]
 mod npz;

@@ -38,7 +38,6 @@ impl ComplexFile {
 }
 
 /// The names of points and cells among those of a file.
-#[cfg(any(feature = "json", feature = "npz"))]
 fn names_of(names: &[String]) -> Option<[&'static str; 2]> {
     let first_of = |known: &[&'static str]| {
         known.iter().copied().find(|known| names.iter().any(|name| name == known))

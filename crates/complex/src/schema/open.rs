@@ -79,10 +79,13 @@ impl AnyFile {
             Err(_) if FiltrationFile::is_in(path) => {
                 FiltrationFile::open(path).map(Self::Filtration)
             }
+            #[cfg(any(feature = "json", feature = "npz"))]
             Err(error) => match ComplexFile::open_named(path)? {
                 Some(file) => Ok(Self::Complex(file)),
                 None => Err(error),
             },
+            #[cfg(not(any(feature = "json", feature = "npz")))]
+            Err(error) => Err(error),
         }
     }
 }

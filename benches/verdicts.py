@@ -1,0 +1,211 @@
+"""What programs make of the hard sets, judged by `walpha check`: makes docs/verdicts.md.
+
+    pip install numpy scipy pyvista gudhi open3d gmsh        (and tetgen of Debian: apt-get install tetgen)
+    python3 benches/verdicts.py target/release/walpha > docs/verdicts.md
+
+Each program gets the same doubles and its most robust setting that does not move points, in a process of its own with a time limit. What cannot
+be imported or found is left out. Cells are handed to `walpha check` as a triangulation (α = ∞) of all points of the set.
+"""
+
+import datetime
+import importlib
+import json
+import pathlib
+import platform
+import shutil
+import subprocess
+import sys
+import tempfile
+
+import numpy as np
+
+SECONDS = 120
+# Of `voxels` under another name, for a box that no other program here has.
+LEFT_OUT = {"periodic"}
+
+
+def scipy(points, weights):
+    from scipy.spatial import Delaunay
+
+    return Delaunay(points).simplices
+
+
+def vtk(points, weights):
+    import pyvista
+
+    # No tolerance: 0 is the least that it takes, points nearer to each other than this share of the size are merged.
+    grid = pyvista.PolyData(points.copy()).delaunay_3d(alpha=0.0, tol=0.0)
+    return grid.cells_dict.get(pyvista.CellType.TETRA, np.empty((0, 4), int))
+
+
+def gudhi(precision):
+    def run(points, weights):
+        import gudhi
+
+        given = {} if weights is None else {"weights": weights}
+        complex_ = gudhi.AlphaComplex(points=points, precision=precision, **given)
+        # Kept, as iterating does not keep it.
+        tree = complex_.create_simplex_tree()
+        return [row for row, _ in tree.get_skeleton(3) if len(row) == 4]
+
+    return run
+
+
+def open3d(points, weights):
+    import open3d
+
+    cloud = open3d.geometry.PointCloud(open3d.utility.Vector3dVector(points))
+    mesh, numbers = open3d.geometry.TetraMesh.create_from_point_cloud(cloud)
+    return np.asarray(numbers)[np.asarray(mesh.tetras)]
+
+
+def gmsh(points, weights):
+    import gmsh
+
+    gmsh.initialize()
+    gmsh.option.setNumber("General.Terminal", 0)
+    cells, added = gmsh.algorithm.tetrahedralize(points.ravel())
+    assert len(added) == 0, "points were added"
+    return np.asarray(cells).reshape(-1, 4).astype(int) - 1
+
+
+def tetgen(points, weights):
+    with tempfile.TemporaryDirectory() as name:
+        path = pathlib.Path(name) / "set.node"
+        rows = [f"{k} " + " ".join(repr(float(x)) for x in row) for k, row in enumerate(points)]
+        # 17 digits at most: they read back as the same doubles.
+        if weights is not None:
+            rows = [f"{row} {float(weight)!r}" for row, weight in zip(rows, weights)]
+        path.write_text(f"{len(points)} 3 {int(weights is not None)} 0\n" + "\n".join(rows) + "\n")
+        subprocess.run(["tetgen", "-QJNF" + ("w" if weights is not None else ""), str(path)], check=True, stdout=subprocess.DEVNULL)
+        lines = (pathlib.Path(name) / "set.1.ele").read_text().splitlines()
+        return [list(map(int, line.split()[1:5])) for line in lines[1:] if not line.startswith("#")]
+
+
+def walpha(engine):
+    def run(points, weights):
+        with tempfile.TemporaryDirectory() as name:
+            table = np.column_stack([points, np.zeros(len(points)) if weights is None else weights])
+            np.savetxt(f"{name}/set.csv", table, delimiter=",", header="x,y,z,weight", comments="", fmt="%.17g")
+            command = [WALPHA, "shape", "set.csv", "--alpha", "inf", "--engine", engine, "-q", "-o", "set.npz"]
+            subprocess.run(command, cwd=name, check=True)
+            return np.load(f"{name}/set.npz")["cells"]
+
+    return run
+
+
+# Name, what runs it, whether it takes weights, what must be there, and where its authors say what it does with such input.
+PROGRAMS = {
+    "walpha, native": (walpha("native"), True, None, "[ties](ties.md)"),
+    "CGAL, by walpha": (walpha("cgal"), True, None, "[manual](https://doc.cgal.org/latest/Triangulation_3/index.html)"),
+    "GUDHI, exact": (gudhi("exact"), True, "gudhi", "[manual](https://gudhi.inria.fr/python/latest/alpha_complex_user.html)"),
+    "GUDHI, fast": (gudhi("fast"), True, "gudhi", "the same"),
+    "TetGen -J": (tetgen, True, "tetgen", "[manual](https://wias-berlin.de/software/tetgen/)"),
+    "SciPy (Qhull)": (scipy, False, "scipy", "[imprecision in Qhull](http://www.qhull.org/html/qh-impre.htm)"),
+    "VTK": (vtk, False, "pyvista", "[vtkDelaunay3D](https://vtk.org/doc/nightly/html/classvtkDelaunay3D.html)"),
+    "Open3D (Qhull)": (open3d, False, "open3d", "as Qhull"),
+    "Gmsh": (gmsh, False, "gmsh", "[manual](https://gmsh.info/doc/texinfo/gmsh.html)"),
+}
+
+
+def child(program, source, target):
+    file = np.load(source)
+    weights = file["weights"] if "weights" in file else None
+    cells = PROGRAMS[program][0](file["points"], weights)
+    np.save(target, np.asarray(cells, dtype=np.int64).reshape(-1, 4))
+
+
+def version(needed):
+    if needed is None:
+        run = subprocess.run([WALPHA, "--version"], capture_output=True, text=True, check=True)
+        return run.stdout.split()[1]
+    if needed == "tetgen":
+        return "of Debian" if shutil.which("tetgen") else None
+    try:
+        module = importlib.import_module(needed)
+    except ImportError:
+        return None
+    return getattr(module, "__version__", "")
+
+
+def verdict(folder, points, weights, cells):
+    """What `walpha check` says of cells, in a word or two."""
+    if len(cells) == 0:
+        return "no cells"
+    file = {"points": points.tolist(), "alpha": "inf", "cells": cells.tolist()}
+    if weights is not None:
+        file["weights"] = weights.tolist()
+    (folder / "judged.json").write_text(json.dumps(file))
+    run = subprocess.run([WALPHA, "check", "judged.json", "--json"], cwd=folder, capture_output=True, text=True)
+    if run.returncode not in (0, 3):
+        return "not judged"
+    facts = json.loads(run.stdout)
+    if facts["verdict"] != "wrong":
+        return f"**{facts['verdict']}**"
+    rules = facts.get("findings_by_rule") or {}
+    if isinstance(rules, dict):
+        rules = list(rules.items())
+    worst = ", ".join(f"{count} {rule.replace('_', ' ')}" for rule, count in rules[:2])
+    return f"wrong: {worst or facts['findings_total']}"
+
+
+def cell(folder, program, points, weights):
+    (folder / "cells.npy").unlink(missing_ok=True)
+    command = [sys.executable, __file__, WALPHA, "--child", program, folder / "set.npz", folder / "cells.npy"]
+    try:
+        run = subprocess.run(command, capture_output=True, text=True, timeout=SECONDS)
+    except subprocess.TimeoutExpired:
+        return f"more than {SECONDS} s"
+    if run.returncode < 0 or "died with" in run.stderr:
+        return "crash"
+    if run.returncode or not (folder / "cells.npy").exists():
+        return "error"
+    return verdict(folder, points, weights, np.load(folder / "cells.npy"))
+
+
+def main():
+    versions = {name: version(program[2]) for name, program in PROGRAMS.items()}
+    programs = [name for name in PROGRAMS if versions[name] is not None]
+    help_ = subprocess.run([WALPHA, "points", "hard:"], capture_output=True, text=True).stderr
+    sets = [name.strip() for name in help_.split("hard:")[2:]]
+    sets = [name.split(",")[0].split()[0] for name in sets]
+    sets = [name for name in dict.fromkeys(sets) if name not in LEFT_OUT]
+    print("# What programs make of hard inputs\n")
+    print(f"Made by `benches/verdicts.py` on {datetime.date.today()}, {platform.system()} on {platform.machine()}, one run. Each program triangulates")
+    print("the [hard sets](cross-checking.md#hard-inputs), with the same doubles and, of its settings, the most robust one that does not move points;")
+    print("`walpha check` judges the cells as a triangulation of all points, exactly. *Exact* has ties decided by [the rule](ties.md), which nobody else")
+    print("is obliged to; *valid* is as right. A dash: the program has no weights. Programs for meshes of bodies, as Gmsh and Open3D, may not promise what is asked here.\n")
+    print("| set | " + " | ".join(programs) + " |")
+    print("|---" * (1 + len(programs)) + "|")
+    right = dict.fromkeys(programs, 0)
+    tried = dict.fromkeys(programs, 0)
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        for one in sets:
+            subprocess.run([WALPHA, "points", f"hard:{one}", "-q", "-o", "set.npy"], cwd=folder, check=True)
+            table = np.load(folder / "set.npy")
+            points = np.ascontiguousarray(table[:, :3])
+            weights = np.ascontiguousarray(table[:, 3]) if table.shape[1] > 3 and table[:, 3].any() else None
+            np.savez(folder / "set.npz", points=points, **({} if weights is None else {"weights": weights}))
+            row = []
+            for program in programs:
+                if weights is not None and not PROGRAMS[program][1]:
+                    row.append("–")
+                    continue
+                row.append(cell(folder, program, points, weights))
+                tried[program] += 1
+                right[program] += row[-1].startswith("**")
+            print(f"| `{one}` | " + " | ".join(row) + " |", flush=True)
+    print("| right | " + " | ".join(f"{right[program]} of {tried[program]}" for program in programs) + " |\n")
+    print("`oblique-plane` and `line` have no cells: *no cells* and an error are both right there, and not counted as such.\n")
+    print("| program | version | what its authors say of such input |\n|---|---|---|")
+    for program in programs:
+        print(f"| {program} | {versions[program]} | {PROGRAMS[program][3]} |")
+
+
+if __name__ == "__main__":
+    WALPHA = str(pathlib.Path(sys.argv[1]).resolve())
+    if sys.argv[2:3] == ["--child"]:
+        child(*sys.argv[3:6])
+    else:
+        main()
