@@ -182,7 +182,7 @@ pub static HARD_SETS: &[HardSet] = &[
     },
     HardSet {
         name: "periodic",
-        about: "6×6×6 points of a lattice, for a box of side 6 (--periodic 6): every tie goes round it",
+        about: "6×6×6 points of a lattice, for a box of side 6 (--periodic 6,6,6): every tie goes round it",
         make: || Points::new(lattice([6; 3], [1.0; 3])),
     },
 ];

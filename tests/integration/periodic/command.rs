@@ -71,7 +71,9 @@ fn hidden_points_of_a_torus_are_judged() {
     );
     let (found, certificate) = right.findings().unwrap();
     assert_eq!(found, []);
-    assert_eq!(certificate.not_judged, []);
+    // At this α all is inside: no exterior simplex says that the complex is whole. So whether a point is rightly hidden
+    // is not judged, whether it is that alone is.
+    assert!(certificate.not_judged.contains(&NotJudged::HiddenAndHull));
     let mut vertex = right;
     vertex.hidden = Some(vec![13, 27]);
     let found = findings(&vertex);
