@@ -92,7 +92,7 @@ class Simplices:
         Parameters
         ----------
         dimension : {0, 1, 2}
-            Components, loops or voids; coefficients in Z/2.
+            Components, loops or voids; coefficients are rational.
 
         Returns
         -------

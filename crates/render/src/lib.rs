@@ -14,7 +14,7 @@
 //! let shape = alpha_shape(WeightedPoints::unweighted(corners), &options)?;
 //!
 //! let style = ShapeStyle::default();
-//! let scene = Scene::of_shape(&shape.points().positions, shape.complex(), &style)?;
+//! let scene = Scene::of_shape(shape.points().positions(), shape.complex(), &style)?;
 //! let size = Size::new(64, 48)?;
 //! let bounds = scene.bounds().expect("there is something to see");
 //! let camera = Camera::fit(bounds, View::ThreeQuarter, Projection::Perspective, size)?;

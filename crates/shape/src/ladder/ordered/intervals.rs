@@ -16,7 +16,7 @@ pub struct Interval {
 }
 
 impl Ordered<'_> {
-    /// The persistence diagram of a dimension, coefficients in Z/2: components (0), loops (1) and voids (2); of a torus
+    /// The persistence diagram of a dimension: components (0), loops (1) and voids (2); of a torus
     /// also its own class (3). Without what begins and ends at one value. In the order of deaths for dimensions 0 and 1, of births
     /// for 2; what never ends comes last.
     ///

@@ -4,7 +4,11 @@
 //! The pairs of dimensions 0 and 2, which are known, leave little of the matrix. Only facets that end a loop have a column
 //! (clearing, Chen and Kerber 2011), and only edges that begin one a row, as an edge that ends a component is never the
 //! last of a reduced column (compression, Bauer, Kerber and Reininghaus 2014, doi:10.1007/978-3-319-04099-8_7). So no column is reduced
-//! to nothing, and each is one pair. The column at work is a tree of bits, whose largest member is found in a few steps (Bauer,
+//! to nothing, and each is one pair.
+//!
+//! In space no field gives other pairs than another. On a torus Z/2 would: surfaces with one side lie in it, and voids are
+//! found by directions of whole numbers. So coefficients are in Z/p, p = 2³¹ − 1, which stands for rational numbers: no
+//! torsion of a set of points is of that order. The column at work has a tree of bits for what is not 0, whose largest member is found in a few steps (Bauer,
 //! Kerber, Reininghaus and Wagner 2017, doi:10.1016/j.jsc.2016.03.008).
 
 use std::ops::Range;
@@ -15,7 +19,8 @@ use walpha_base::memory::{self, NoMemory};
 use super::Ordered;
 use crate::ShapeError;
 
-/// Persistence pairs of loops, coefficients in Z/2, by the numbers of simplices.
+/// Persistence pairs of loops, by the numbers of simplices. Coefficients are rational; in space those of any other field
+/// give the same.
 ///
 /// Pairs of persistence 0, whose simplices have the same value, are included.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -75,21 +80,24 @@ impl Ordered<'_> {
         let work = monitor.units(facets.len() as u64);
 
         let mut reduced = Columns::new(edges.len());
-        let mut column = BitTree::new(edges.len());
+        let mut column = Column::new(edges.len());
         let mut found = Vec::with_capacity(facets.len());
         for facet in facets {
             work.add(1)?;
             let boundary = self.filtration().incidence.facet_edges[(facet - of_facets) as usize];
-            boundary
-                .into_iter()
-                .map(|edge| rows[edge as usize])
-                .filter(|&row| row != NONE)
-                .for_each(|row| column.toggle(row));
+            // Vertices ascend in facets and edges, so the boundary of abc is bc − ac + ab.
+            for (edge, sign) in boundary.into_iter().zip([1, PRIME - 1, 1]) {
+                match rows[edge as usize] {
+                    NONE => {}
+                    row => column.add(row, sign),
+                }
+            }
             let last = loop {
-                let last = column.last().expect("this facet ends a loop");
-                match reduced.ending_with(last) {
-                    None => break last,
-                    Some(members) => members.iter().for_each(|&row| column.toggle(row)),
+                let last = column.rows.last().expect("this facet ends a loop");
+                let Some(members) = reduced.ending_with(last) else { break last };
+                let factor = PRIME - column.values[last as usize];
+                for &(row, value) in members {
+                    column.add(row, times(factor, value));
                 }
             };
             found.push([edges[last as usize], facet]);
@@ -104,8 +112,8 @@ impl Ordered<'_> {
 struct Columns {
     /// By last row, the range of the column among the members; empty if there is none.
     ranges: Vec<Range<usize>>,
-    /// The rows of all columns, those of each descending.
-    members: Vec<u32>,
+    /// The rows of all columns with their coefficients: those of each descending, the first coefficient 1.
+    members: Vec<(u32, u32)>,
 }
 
 impl Columns {
@@ -114,23 +122,73 @@ impl Columns {
     }
 
     /// The rows of the column with this last one.
-    fn ending_with(&self, last: u32) -> Option<&[u32]> {
+    fn ending_with(&self, last: u32) -> Option<&[(u32, u32)]> {
         let members = &self.members[self.ranges[last as usize].clone()];
         (!members.is_empty()).then_some(members)
     }
 
     /// Moves a column here, which is empty afterwards.
-    fn take(&mut self, last: u32, column: &mut BitTree) -> Result<(), NoMemory> {
+    fn take(&mut self, last: u32, column: &mut Column) -> Result<(), NoMemory> {
         let from = self.members.len();
-        while let Some(row) = column.last() {
+        let scale = inverse(column.values[last as usize]);
+        while let Some(row) = column.rows.last() {
             memory::try_reserve(&mut self.members, 1, || {
                 "the reduced boundaries of facets".into()
             })?;
-            self.members.push(row);
-            column.toggle(row);
+            let value = column.values[row as usize];
+            self.members.push((row, times(scale, value)));
+            column.add(row, PRIME - value);
         }
         self.ranges[last as usize] = from..self.members.len();
         Ok(())
+    }
+}
+
+/// The order of the field of coefficients.
+const PRIME: u32 = (1 << 31) - 1;
+
+/// The product in the field.
+fn times(a: u32, b: u32) -> u32 {
+    (u64::from(a) * u64::from(b) % u64::from(PRIME)) as u32
+}
+
+/// The inverse in the field: a to the power of p − 2.
+fn inverse(a: u32) -> u32 {
+    // Nearly all are 1 or −1.
+    if a == 1 || a == PRIME - 1 {
+        return a;
+    }
+    let (mut power, mut product, mut exponent) = (a, 1, PRIME - 2);
+    while exponent > 0 {
+        if exponent % 2 == 1 {
+            product = times(product, power);
+        }
+        power = times(power, power);
+        exponent /= 2;
+    }
+    product
+}
+
+/// The column that is being reduced.
+struct Column {
+    /// The rows of what is not 0.
+    rows: BitTree,
+    /// The coefficient of each row.
+    values: Vec<u32>,
+}
+
+impl Column {
+    fn new(rows: usize) -> Self {
+        Self { rows: BitTree::new(rows), values: vec![0; rows] }
+    }
+
+    fn add(&mut self, row: u32, value: u32) {
+        let own = &mut self.values[row as usize];
+        let before = *own;
+        *own = ((u64::from(before) + u64::from(value)) % u64::from(PRIME)) as u32;
+        if (before == 0) != (*own == 0) {
+            self.rows.toggle(row);
+        }
     }
 }
 
@@ -181,6 +239,13 @@ mod tests {
     use walpha_base::random::Random;
 
     use super::*;
+
+    #[test]
+    fn inverses_multiply_to_one() {
+        for a in [1, 2, 3, 1 << 16, PRIME / 2, PRIME - 2, PRIME - 1] {
+            assert_eq!(times(a, inverse(a)), 1, "{a}");
+        }
+    }
 
     #[test]
     fn a_tree_of_bits_is_a_set() {
