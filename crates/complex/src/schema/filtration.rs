@@ -73,7 +73,7 @@ pub struct FiltrationFile {
     pub interior: Option<Below<Alpha>>,
     /// The numbers of all simplices, in order.
     pub order: Vec<u32>,
-    /// Persistence pairs of dimensions 0 and 2.
+    /// Persistence pairs.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pairs: Option<PairsFile>,
     /// Points that are not vertices.
