@@ -214,14 +214,7 @@ pub(super) fn hiddenness(
         let q = points.get(point);
         let start = grid.some_near(q.position).map_or(0, |v| cell_of[v as usize]);
         match walk(structure, points, start, q.position) {
-            Ok(cell) => {
-                let corners = points.corners(cells[cell]);
-                in_conflict(corners.each_ref(), &q).then(|| Finding::NotHidden {
-                    point,
-                    cell: cells[cell].into(),
-                    power: power_value(corners.each_ref(), &q),
-                })
-            }
+            Ok(cell) => not_hidden(points, cells[cell], point),
             Err(facet) => {
                 let [a, b, c] = points.corners(facet);
                 let six_volumes = six_volume([&a, &b, &c, &q]);
@@ -245,20 +238,27 @@ pub(super) fn hiddenness_in_cells(
     let grid = Grid::new(points.positions, hidden.to_vec());
     of_each(cells.len(), monitor, |i| {
         let cell = cells[i];
-        let corners = points.corners(cell);
         let [first, others @ ..] = points.positions_of(cell);
         let far = others.as_flattened().iter().zip(first.iter().cycle());
         let reach = far.fold(0.0, |most, (x, first)| (x - first).abs().max(most));
         let found = RefCell::new(Vec::new());
         grid.within(first, reach.next_up(), |point| {
-            let q = points.get(point);
-            if holds(points, cell, q.position) && in_conflict(corners.each_ref(), &q) {
-                let power = power_value(corners.each_ref(), &q);
-                found.borrow_mut().push(Finding::NotHidden { point, cell: cell.into(), power });
+            if holds(points, cell, points.get(point).position) {
+                found.borrow_mut().extend(not_hidden(points, cell, point));
             }
             None::<()>
         });
         found.take()
+    })
+}
+
+/// The finding on a point that refutes the cell it lies in.
+fn not_hidden(points: Points, cell: [u32; 4], point: u32) -> Option<Finding> {
+    let (corners, q) = (points.corners(cell), points.get(point));
+    in_conflict(corners.each_ref(), &q).then(|| Finding::NotHidden {
+        point,
+        cell: cell.into(),
+        power: power_value(corners.each_ref(), &q),
     })
 }
 
