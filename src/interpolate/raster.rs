@@ -57,7 +57,7 @@ const MARGIN: f64 = 1e-3;
 const FEW: usize = 24;
 
 /// Visits the samples in a simplex, and some beside it.
-pub(super) fn for_each_near(grid: &Grid, corners: &[[f64; 3]], mut visit: impl FnMut([usize; 3])) {
+fn for_each_near(grid: &Grid, corners: &[[f64; 3]], mut visit: impl FnMut([usize; 3])) {
     let mut indices = [[0.0; 3]; 4];
     let indices = &mut indices[..corners.len()];
     indices.iter_mut().zip(corners).for_each(|(index, &p)| *index = grid.index(p));

@@ -7,13 +7,13 @@ use std::sync::atomic::Ordering::Relaxed;
 use rayon::prelude::*;
 use walpha_base::Monitor;
 use walpha_complex::canonical::smallest_even;
-use walpha_regular::{BitRange, Cell, Growing};
+use walpha_regular::{Cell, Growing};
 
 use super::barycentric::coordinates;
 use super::grid::OUTSIDE;
 use super::interpolant::combine;
 use super::least_squares::{Normal, PiecewiseLinear, Solved};
-use super::raster::{CHUNK, for_each_inside, for_each_near};
+use super::raster::{CHUNK, for_each_inside};
 use super::{Deviation, Grid, InterpolateError};
 use crate::points::Units;
 use crate::shape::ShapeError;
@@ -23,12 +23,17 @@ use crate::volume::Volume;
 ///
 /// A sample belongs to the same cell, and F has the same bits there, as if
 /// [`Interpolant::resample`](super::Interpolant::resample) were asked for the triangulation of the
-/// points in the order in which they came. Only what new cells hold is computed anew.
+/// points in the order in which they came. Both locate samples by their indices, not by coordinates of the
+/// world, which are rounded in most frames; numbers made of indices are not, as a volume has fewer than 2³²
+/// samples. Only what new cells hold is computed anew.
 pub(super) struct Sampled<'a> {
     volume: &'a Volume,
     units: Units,
+    /// The samples at their indices.
     grid: Grid,
-    /// Whether no operation on places of samples rounds.
+    /// Whether a cell that turns positively in the world turns negatively in indices.
+    mirrored: bool,
+    /// Whether coordinates of the world are exact, so that every cell has a volume in indices, too.
     exact: bool,
     growing: Growing,
     /// The sample of each point, by its number in the triangulation; 0 for the ghost.
@@ -60,7 +65,8 @@ impl<'a> Sampled<'a> {
             volume,
             units,
             exact: grid.bit_range().is_exact(),
-            grid,
+            mirrored: grid.is_mirrored(),
+            grid: grid.by_index(),
             growing,
             voxels: vec![0; Growing::FIRST as usize],
             indices: vec![[0; 3]; Growing::FIRST as usize],
@@ -106,7 +112,7 @@ impl<'a> Sampled<'a> {
     /// # Errors
     /// No memory.
     pub(super) fn refit(&mut self, monitor: &Monitor) -> Result<(), InterpolateError> {
-        let cells = Cells::of(&self.growing, &self.values);
+        let cells = self.triangulation();
         let free = self.values.len();
         let normal = Normal::assemble(&cells, &self.owners, &self.grid, self.volume, free)?;
         let Solved { change, .. } = normal.solve(monitor)?;
@@ -171,50 +177,64 @@ impl<'a> Sampled<'a> {
         self.values.extend(voxels.iter().map(value));
     }
 
+    fn triangulation(&self) -> Cells<'_> {
+        let Self { growing, values, indices, mirrored, .. } = self;
+        Cells { growing, values, indices, mirrored: *mirrored }
+    }
+
     /// Finds the cells of the samples that new cells hold, and F there.
     fn follow(&mut self) {
         let fresh = self.growing.take_new_cells();
         let mut is_fresh = vec![false; self.cells()];
         fresh.iter().for_each(|&cell| is_fresh[cell as usize] = true);
-        let stays = |&&owner: &&u32| {
-            owner != OUTSIDE && !is_fresh[owner as usize] && self.growing.is_cell(owner)
-        };
-        let left = |owner: &u32| AtomicU32::new(*Some(owner).filter(stays).unwrap_or(&OUTSIDE));
-        let owners: Vec<AtomicU32> = self.owners.par_iter().map(left).collect();
         if self.exact {
-            self.draw_exactly(&fresh, &is_fresh, &owners);
+            let stays = |&&owner: &&u32| {
+                owner != OUTSIDE && !is_fresh[owner as usize] && self.growing.is_cell(owner)
+            };
+            let left = |owner: &u32| AtomicU32::new(*Some(owner).filter(stays).unwrap_or(&OUTSIDE));
+            let owners: Vec<AtomicU32> = self.owners.par_iter().map(left).collect();
+            self.draw(&fresh, &is_fresh, &owners);
             self.owners = owners.into_iter().map(AtomicU32::into_inner).collect();
             return;
         }
-        let cells = Cells::of(&self.growing, &self.values);
-        fresh.par_iter().with_min_len(CHUNK).for_each(|&cell| {
-            let row = cells.row(cell);
-            for_each_near(&self.grid, &cells.corners(row), |index| {
-                let place = self.grid.position(index);
-                if let Some(shares) = cells.coordinates(row, place) {
-                    let holds = |row| cells.coordinates(row, place).is_some();
-                    cells.claim(cell, &shares, holds, &owners[self.sample(index)]);
-                }
-            });
-        });
-        let owners = owners.into_iter().map(AtomicU32::into_inner).collect();
+        let owners = self.draw_all();
         let before = std::mem::replace(&mut self.owners, owners);
         let changed =
             |sample: usize, owner: u32| owner != before[sample] || is_fresh[owner as usize];
         self.evaluate(changed);
     }
 
-    /// The same where nothing rounds: shares are then those in the frame of indices, and F is the same
-    /// whichever of several cells a sample belongs to, and is written at once.
-    fn draw_exactly(&mut self, fresh: &[u32], is_fresh: &[bool], owners: &[AtomicU32]) {
+    /// The first cell of each sample, of all cells. Where the world rounds, four samples in one plane may be
+    /// a cell without volume in indices. It holds nothing, and of two cells on its sides, which have no
+    /// facet in common, either may come first.
+    fn draw_all(&self) -> Vec<u32> {
+        let cells = self.triangulation();
+        let none = |_| AtomicU32::new(OUTSIDE);
+        let owners: Vec<AtomicU32> = (0..self.owners.len()).into_par_iter().map(none).collect();
+        (0..self.cells() as u32).into_par_iter().with_min_len(CHUNK).for_each(|cell| {
+            if !self.growing.is_cell(cell) {
+                return;
+            }
+            let row = cells.row(cell);
+            for_each_inside(row.map(|v| self.indices[v as usize]), |index, _, _| {
+                let comes_first = |owner| owner == OUTSIDE || row < cells.row(owner);
+                let claim = |owner| comes_first(owner).then_some(cell);
+                _ = owners[self.sample(index)].fetch_update(Relaxed, Relaxed, claim);
+            });
+        });
+        owners.into_iter().map(AtomicU32::into_inner).collect()
+    }
+
+    /// Finds the samples in new cells where every cell has a volume: F is then the same whichever of several
+    /// cells a sample belongs to, and is written at once.
+    fn draw(&mut self, fresh: &[u32], is_fresh: &[bool], owners: &[AtomicU32]) {
         let f: Vec<AtomicU32> = self.f.par_iter().map(|f| AtomicU32::new(f.to_bits())).collect();
-        let cells = Cells::of(&self.growing, &self.values);
-        let [nx, ny, _] = self.grid.dims().xyz().map(|n| n as i64);
+        let cells = self.triangulation();
         fresh.par_iter().with_min_len(CHUNK).for_each(|&cell| {
             let row = cells.row(cell);
             let values = row.map(|v| self.values[v as usize]);
-            for_each_inside(row.map(|v| self.indices[v as usize]), |[x, y, z], volumes, whole| {
-                let sample = (x + nx * (y + ny * z)) as usize;
+            for_each_inside(row.map(|v| self.indices[v as usize]), |index, volumes, whole| {
+                let sample = self.sample(index);
                 let owner = &owners[sample];
                 // A new owner was found from a new cell, and once is enough; at vertices it may be another.
                 let found = is_fresh.get(owner.load(Relaxed) as usize).is_some_and(|&fresh| fresh);
@@ -222,24 +242,25 @@ impl<'a> Sampled<'a> {
                     return;
                 }
                 let shares = volumes.map(|volume| volume as f64 / whole as f64);
-                cells.claim(cell, &shares, |_| true, owner);
+                cells.claim(cell, &shares, owner);
                 f[sample].store((combine(&shares, values) as f32).to_bits(), Relaxed);
             });
         });
         self.f = f.into_iter().map(|f| f32::from_bits(f.into_inner())).collect();
     }
 
-    fn sample(&self, index: [usize; 3]) -> usize {
-        let [nx, ny, _] = self.grid.dims().xyz();
-        index[0] + nx * (index[1] + ny * index[2])
+    #[inline(always)]
+    fn sample(&self, [x, y, z]: [i64; 3]) -> usize {
+        let [nx, ny, _] = self.grid.dims().xyz().map(|n| n as i64);
+        (x + nx * (y + ny * z)) as usize
     }
 
     /// Computes F at some samples.
     fn evaluate(&mut self, wanted: impl Fn(usize, u32) -> bool + Sync) {
-        let cells = Cells::of(&self.growing, &self.values);
-        let (grid, owners) = (&self.grid, &self.owners);
+        let Self { growing, values, indices, mirrored, grid, owners, f, .. } = self;
+        let cells = Cells { growing, values, indices, mirrored: *mirrored };
         let [nx, ny, _] = grid.dims().xyz();
-        self.f.par_chunks_mut(nx).enumerate().for_each(|(y, f)| {
+        f.par_chunks_mut(nx).enumerate().for_each(|(y, f)| {
             for (x, f) in f.iter_mut().enumerate() {
                 let owner = owners[x + nx * y];
                 if owner == OUTSIDE || !wanted(x + nx * y, owner) {
@@ -258,52 +279,44 @@ fn positions(volume: &Volume, units: Units, voxels: &[u32]) -> Vec<[f64; 3]> {
     voxels.iter().map(|&voxel| units.position(volume, voxel)).collect()
 }
 
-/// The cells of a triangulation as an interpolant has them.
-pub(super) struct Cells<'a> {
+/// The cells of a triangulation as an interpolant has them, with corners at their indices.
+struct Cells<'a> {
     growing: &'a Growing,
     values: &'a [f64],
-    bit_range: BitRange,
+    indices: &'a [[i64; 3]],
+    mirrored: bool,
 }
 
-impl<'a> Cells<'a> {
-    pub(super) fn of(growing: &'a Growing, values: &'a [f64]) -> Self {
-        Self { growing, values, bit_range: BitRange::of(growing.positions()) }
-    }
-
+impl Cells<'_> {
     /// The corners of a cell in canonical order. Numbers of points are in the order of their indices.
-    pub(super) fn row(&self, cell: u32) -> [u32; 4] {
+    fn row(&self, cell: u32) -> [u32; 4] {
         smallest_even(self.growing.cells()[cell as usize].corners)
     }
 
-    pub(super) fn coordinates(&self, row: [u32; 4], place: [f64; 3]) -> Option<[f64; 4]> {
-        coordinates(&self.corners(row), place, self.bit_range.is_exact_with(place))
+    fn coordinates(&self, row: [u32; 4], place: [f64; 3]) -> Option<[f64; 4]> {
+        let mut corners = row.map(|v| self.indices[v as usize].map(|x| x as f64));
+        if !self.mirrored {
+            return coordinates(&corners, place, true);
+        }
+        corners.swap(0, 1);
+        let [b, a, c, d] = coordinates(&corners, place, true)?;
+        Some([a, b, c, d])
     }
 
-    pub(super) fn corners(&self, row: [u32; 4]) -> [[f64; 3]; 4] {
-        row.map(|v| self.growing.positions()[v as usize])
-    }
-
-    /// Gives a sample in a new cell to the first of the cells that hold it. Shares that are 0 may be so by
-    /// rounding; then `holds` says which of the cells beside hold the sample, too.
+    /// Gives a sample in a new cell to the first of the cells that hold it.
     #[inline(always)]
-    pub(super) fn claim(
-        &self,
-        cell: u32,
-        shares: &[f64; 4],
-        holds: impl Fn([u32; 4]) -> bool,
-        owner: &AtomicU32,
-    ) {
+    fn claim(&self, cell: u32, shares: &[f64; 4], owner: &AtomicU32) {
         match shares.iter().filter(|share| **share == 0.0).count() {
             0 => owner.store(cell, Relaxed),
-            1 => owner.store(self.first_across(cell, shares, holds), Relaxed),
-            2 => owner.store(self.first_at(cell, shares, holds), Relaxed),
+            1 => owner.store(self.first_across(cell, shares), Relaxed),
+            2 => owner.store(self.first_at(cell, shares), Relaxed),
             // At a vertex F is its value, whichever cell the sample belongs to.
             _ => drop(owner.fetch_min(cell, Relaxed)),
         }
     }
 
     /// The first in canonical order of a cell and the one beyond the facet that a place lies on.
-    fn first_across(&self, cell: u32, shares: &[f64; 4], holds: impl Fn([u32; 4]) -> bool) -> u32 {
+    fn first_across(&self, cell: u32, shares: &[f64; 4]) -> u32 {
         let row = self.row(cell);
         let apex = (0..4).find(|&k| shares[k] == 0.0).expect("a share is 0");
         let Cell { corners, neighbors } = self.growing.cells()[cell as usize];
@@ -312,14 +325,13 @@ impl<'a> Cells<'a> {
         if !self.growing.is_cell(next) {
             return cell;
         }
-        let across = self.row(next);
-        if across < row && holds(across) { next } else { cell }
+        if self.row(next) < row { next } else { cell }
     }
 
     /// The first in canonical order of the cells at the face that a place lies on within one of them. They
     /// are those with all vertices of the face, and from one to the next the way leads through facets
     /// that have all of them, too.
-    fn first_at(&self, cell: u32, shares: &[f64; 4], holds: impl Fn([u32; 4]) -> bool) -> u32 {
+    fn first_at(&self, cell: u32, shares: &[f64; 4]) -> u32 {
         let row = self.row(cell);
         let on = |v: u32| (0..4).any(|k| row[k] == v && shares[k] != 0.0);
         let mut seen = vec![cell];
@@ -333,11 +345,8 @@ impl<'a> Cells<'a> {
                 if on(corners[k]) || !self.growing.is_cell(next) || seen.contains(&next) {
                     continue;
                 }
-                let row = self.row(next);
-                if holds(row) {
-                    first = first.min((row, next));
-                    seen.push(next);
-                }
+                first = first.min((self.row(next), next));
+                seen.push(next);
             }
         }
         first.1
