@@ -3,9 +3,10 @@
 //!
 //! Each predicate is the sign of a polynomial. It is evaluated in doubles, and accepted if its magnitude exceeds a
 //! forward error bound, or if the arithmetic is exact because all numbers are small multiples of a power of two, as on
-//! voxel grids. Otherwise integers decide.
+//! voxel grids. Otherwise numbers with twice the digits decide, and in the end integers.
 
 mod centred;
+mod close;
 mod exact;
 mod formulas;
 mod nearest;
@@ -179,7 +180,8 @@ impl<'a> Predicates<'a> {
         if exact || (size.is_sane() && value.abs() > bound * ROUNDING) {
             value < 0.0
         } else {
-            exact::inside(sites, x)
+            let closely = if N == 1 { None } else { close::inside(&sites, x, size, bound) };
+            closely.map_or_else(|| exact::inside(sites, x), Ordering::is_lt)
         }
     }
 
@@ -232,7 +234,7 @@ impl<'a> Predicates<'a> {
         if self.holds(bound, 3) || (size.is_sane() && value.abs() > bound * ROUNDING) {
             sign(value)
         } else {
-            exact::orientation(sites)
+            close::orientation(&sites, size, bound).unwrap_or_else(|| exact::orientation(sites))
         }
     }
 
@@ -254,7 +256,8 @@ impl<'a> Predicates<'a> {
         if exact || (size.is_sane() && value.abs() > bound * ROUNDING) {
             sign(value)
         } else {
-            exact::power([sites[0], sites[1], sites[2], sites[3], t])
+            let sites = [sites[0], sites[1], sites[2], sites[3], t];
+            close::power(&sites, size, bound).unwrap_or_else(|| exact::power(sites))
         }
     }
 
@@ -278,7 +281,8 @@ impl<'a> Predicates<'a> {
         if (exact && self.holds(bound, 2 * N)) || (sane && value.abs() > bound * ROUNDING) {
             value <= 0.0
         } else {
-            exact::fits(sites, alpha)
+            let closely = if sane { close::radius(&sites, alpha, size, bound) } else { None };
+            closely.map_or_else(|| exact::fits(sites, alpha), Ordering::is_le)
         }
     }
 

@@ -3,7 +3,7 @@
 use super::formulas::{Ray, quotient};
 use super::size::{Size, View};
 use super::twofold::Twofold;
-use super::{Predicates, Ratio, Site, centred, exact};
+use super::{Predicates, Ratio, Site, centred, close, exact};
 use crate::number::{Number, dot};
 
 /// A squared radius on a lattice, exactly: numerator / (4 denominator) in squares of the step, less the weight.
@@ -56,7 +56,7 @@ impl Predicates<'_> {
             let denominator = Twofold { high: denominator, low: 0.0 };
             rounded(numerator, denominator, bounds.numerator, 0.0, weight)
         } else {
-            let (numerator, denominator) = quotient(&twofold_rays(sites)[1..]);
+            let (numerator, denominator) = quotient(&close::rays(sites[0], &sites)[1..]);
             rounded(numerator, denominator, bounds.numerator, bounds.denominator, weight)
         };
         rounded.unwrap_or_else(|| self.exact_radius(simplex).nearest())
@@ -149,15 +149,4 @@ fn lattice_rays<const N: usize>(sites: [Site; N], rays: [Ray<f64>; N]) -> [Ray<T
         *to = Ray { power: square.plus(&heavier), vector: ray.vector };
     }
     exact
-}
-
-/// Rays with twice the digits.
-#[inline(always)]
-fn twofold_rays<const N: usize>(sites: [Site; N]) -> [Ray<Twofold>; N] {
-    let p = sites[0];
-    sites.map(|q| {
-        let vector = [0, 1, 2].map(|k| Twofold::sum(q.position[k], -p.position[k]));
-        let heavier = Twofold::sum(p.weight, -q.weight);
-        Ray { power: dot(&vector, &vector).plus(&heavier), vector }
-    })
 }

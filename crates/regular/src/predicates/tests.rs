@@ -164,3 +164,78 @@ fn the_nearest_double_is_that_of_the_exact_radius() {
     // Slivers need more; all others are found.
     assert!(found > 8000, "{found}");
 }
+
+/// Five points of a small grid, along the axes or turned, with coordinates that no double holds.
+fn draw_on_grid(random: &mut Random) -> (Vec<[f64; 3]>, Vec<f64>) {
+    let turned = random.below(2) == 1;
+    let sizes = [[0.3, 0.3, 0.3], [0.4883, 0.4883, 0.625], [1.75, 1.1, 3.0]][random.below(3)];
+    let [c, s] = if turned { [0.96, 0.28] } else { [1.0, 0.0] };
+    let place = |index: [usize; 3]| {
+        let [x, y, z] = [0, 1, 2].map(|k| index[k] as f64 * sizes[k]);
+        [x - 111.1, c * y - s * z - 76.86, s * y + c * z + 33.3]
+    };
+    let positions = (0..5).map(|_| place([0; 3].map(|_| random.below(3)))).collect();
+    let weighted = random.below(4) == 0;
+    (positions, (0..5).map(|_| if weighted { random.below(3) as f64 / 3.0 } else { 0.0 }).collect())
+}
+
+/// On rounded grids, where doubles leave much open, against integers; and these have little left to do.
+#[test]
+fn rounded_grids_agree_with_integers() {
+    // Signs, zeros and what is left open, of orientation, power, points inside an edge and a facet, and radii.
+    let mut counts = [[0; 3]; 5];
+    let mut count = |row: usize, closely: Option<Ordering>| {
+        counts[row][match closely {
+            Some(Ordering::Equal) => 1,
+            Some(_) => 0,
+            None => 2,
+        }] += 1;
+        closely
+    };
+    let mut random = Random::new(11);
+    for _ in 0..40_000 {
+        let (positions, weights) = draw_on_grid(&mut random);
+        let predicates = Predicates::new(&positions, &weights);
+        let sites = [0, 1, 2, 3, 4].map(|v| predicates.site(v));
+        let [p, q, r, s, x] = sites;
+        let size = View::<5>::of(x, sites).size;
+        let length = size.length;
+        let truth = exact::orientation([p, q, r, s]);
+        let terms = 6.0 * length * length * length;
+        let closely = count(0, close::orientation(&[p, q, r, s], size, terms));
+        assert_eq!(closely.unwrap_or(truth), truth, "{positions:?}");
+        assert_eq!(predicates.orientation([0, 1, 2, 3]), truth);
+        if truth.is_ne() {
+            let truth = exact::power(sites);
+            let closely = count(1, close::power(&sites, size, 4.0 * terms * size.power));
+            assert_eq!(closely.unwrap_or(truth), truth, "{positions:?} {weights:?}");
+            assert_eq!(predicates.power([0, 1, 2, 3], 4), truth);
+        }
+        if p.position != q.position {
+            let truth = exact::inside([p, q], x);
+            let closely = count(2, close::inside(&[p, q], x, size, size.side_bound(2)));
+            assert_eq!(closely.map_or(truth, Ordering::is_lt), truth, "{positions:?} {weights:?}");
+            assert_eq!(predicates.inside([0, 1], 4), truth);
+        }
+        if !exact::collinear([p, q, r]) {
+            let truth = exact::inside([p, q, r], x);
+            let closely = count(3, close::inside(&[p, q, r], x, size, size.side_bound(3)));
+            assert_eq!(closely.map_or(truth, Ordering::is_lt), truth, "{positions:?} {weights:?}");
+            assert_eq!(predicates.inside([0, 1, 2], 4), truth);
+            let alpha = predicates.first_alpha([0, 1, 2]);
+            for alpha in [alpha, alpha.next_down()] {
+                let truth = exact::fits([p, q, r], alpha);
+                let bounds = size.bounds(3);
+                let ball = 4.0 * (alpha + p.weight).abs();
+                let terms = bounds.numerator + ball * bounds.denominator;
+                let closely = count(4, close::radius(&[p, q, r], alpha, size, terms));
+                assert_eq!(closely.map_or(truth, Ordering::is_le), truth, "{positions:?}");
+                assert_eq!(predicates.fits([0, 1, 2], alpha), truth);
+            }
+        }
+    }
+    for [signs, zeros, open] in counts {
+        assert!(open < (signs + zeros) / 5, "{counts:?}");
+    }
+    assert!(counts[..4].iter().all(|[signs, zeros, _]| signs.min(zeros) > &500), "{counts:?}");
+}

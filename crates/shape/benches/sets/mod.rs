@@ -9,7 +9,7 @@ pub(crate) type Set = Vec<([f64; 3], f64)>;
 pub(crate) type Make = fn(&mut Random, usize) -> Set;
 
 /// Sets of so many points, each with a squared α.
-pub(crate) const SETS: [(&str, f64, Make); 2] = [
+pub(crate) const SETS: [(&str, f64, Make); 4] = [
     // A point in each unit of volume.
     ("random", 1.0, |random, count| {
         let side = (count as f64).cbrt();
@@ -18,15 +18,30 @@ pub(crate) const SETS: [(&str, f64, Make); 2] = [
     }),
     // Samples of a grid on both sides of a surface, weighted as gray differences weigh them.
     ("grid", 10.0, |random, count| {
-        // About six layers of samples.
-        let size = (count as f64 / 6.0).sqrt().ceil() as usize;
-        let mut set = Vec::with_capacity(count);
-        for i in 0..count {
-            let (layer, at) = (i / (size * size), i % (size * size));
-            let (x, y) = ((at % size) as f64, (at / size) as f64);
-            let surface = 0.05 * size as f64 * ((x / 40.0).sin() + (y / 30.0).cos());
-            set.push(([x, y, surface.round() + layer as f64], f64::floor(10.0 * random.unit())));
-        }
-        set
+        samples(count).map(|place| (place, f64::floor(10.0 * random.unit()))).collect()
+    }),
+    // Without weights, in the millimetres of a scanner: coordinates are rounded.
+    ("millimetres", 1.0, |_, count| {
+        let place = |[x, y, z]: [f64; 3]| [0.4883 * x - 111.1, 0.4883 * y - 76.86, 0.625 * z];
+        samples(count).map(|index| (place(index), 0.0)).collect()
+    }),
+    // The same of a tilted scan.
+    ("tilted", 10.0, |_, count| {
+        let place = |[x, y, z]: [f64; 3]| {
+            let (y, z) = (1.75 * y, 3.0 * z);
+            [1.75 * x - 111.1, 0.96 * y - 0.28 * z - 76.86, 0.28 * y + 0.96 * z]
+        };
+        samples(count).map(|index| (place(index), 0.0)).collect()
     }),
 ];
+
+/// Indices of samples on both sides of a surface, in about six layers.
+fn samples(count: usize) -> impl Iterator<Item = [f64; 3]> {
+    let size = (count as f64 / 6.0).sqrt().ceil() as usize;
+    (0..count).map(move |i| {
+        let (layer, at) = (i / (size * size), i % (size * size));
+        let (x, y) = ((at % size) as f64, (at / size) as f64);
+        let surface = 0.05 * size as f64 * ((x / 40.0).sin() + (y / 30.0).cos());
+        [x, y, surface.round() + layer as f64]
+    })
+}
