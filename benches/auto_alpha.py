@@ -51,6 +51,16 @@ def ball(n):
     return sphere(n) * random.uniform(size=(n, 1)) ** (1 / 3)
 
 
+def tile(n, noise):
+    """First returns of an airborne scan of 60 m × 60 m: hilly ground, a flat roof, and a tree, seen from above."""
+    x, y = random.uniform(0, 60, (2, n))
+    z = 1.5 * np.sin(x / 9) + np.cos(y / 7)
+    z[(x > 12) & (x < 30) & (y > 15) & (y < 27)] = 8
+    in_tree = (x - 44) ** 2 + (y - 40) ** 2 < 36
+    z[in_tree] = 5 + np.sqrt(36 - (x - 44) ** 2 - (y - 40) ** 2, where=in_tree, out=np.zeros(n))[in_tree]
+    return np.stack([x, y, z + noise * random.normal(size=n)], 1)
+
+
 def strays(places, count, far):
     return np.concatenate([places, far * sphere(count)])
 
@@ -64,6 +74,8 @@ SETS = {
     "thin plate 1×1×0.05, 20 000 points": (box(20_000, (1, 1, 0.05)), box(200_000, (1, 1, 0.05))),
     "sphere of two densities, 12 000 points": (two_densities(12_000), sphere(200_000)),
     "solid ball, 20 000 points": (ball(20_000), sphere(200_000)),
+    "LiDAR tile of 60 m, 14 400 points": (tile(14_400, 0.03), tile(400_000, 0)),
+    "the same with 20 birds": (np.concatenate([tile(14_400, 0.03), random.uniform((0, 0, 20), (60, 60, 60), (20, 3))]), tile(400_000, 0)),
 }
 
 

@@ -36,7 +36,7 @@ type Result<T> = std::result::Result<T, Box<dyn std::error::Error + Send + Sync>
 
 const THREADS: usize = 2;
 
-const USAGE: &str = "usage: race shapes|triangulations|filtrations|alpha|scale [SET…], where SET is skull@N, random@N, \
+const USAGE: &str = "usage: race shapes|triangulations|filtrations|alpha|scale [SET…], where SET is skull@N, scan@N, random@N, \
      terrain@N or sphere@N, with :min-max, :barycentric or :common=C for weights";
 
 fn main() -> Result<()> {
@@ -49,7 +49,9 @@ fn main() -> Result<()> {
     match race.as_str() {
         // A process of its own.
         "run" => run(&arguments[1..]),
-        "shapes" => shapes(&sets(&["skull@256:min-max", "skull@256", "random@1000000"])?),
+        "shapes" => {
+            shapes(&sets(&["skull@256:min-max", "skull@256", "scan@256", "random@1000000"])?)
+        }
         "triangulations" => triangulations(&sets(&[
             "skull@256:min-max",
             "skull@256",

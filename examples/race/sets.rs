@@ -7,7 +7,7 @@ use std::str::FromStr;
 use ndarray_npy::write_npy;
 use walpha::ndarray::Array2;
 use walpha::points::{Points, Selection, Units, difference, select, weigh};
-use walpha::{Alpha, Gray, Volume, Weighting, volume};
+use walpha::{Alpha, Frame, Gray, Volume, Weighting, volume};
 use walpha_base::random::Random;
 
 use super::Result;
@@ -23,6 +23,8 @@ pub(super) struct Set {
 enum Kind {
     /// The points of the skull, upsampled to so many samples along each axis.
     Skull,
+    /// The same in the millimetres of a tilted scan, where coordinates are rounded.
+    Scan,
     /// So many random points in a cube, one in each unit of volume.
     Random,
     /// So many points of a hilly ground, as a laser scanner sees it from above.
@@ -31,8 +33,9 @@ enum Kind {
     Sphere,
 }
 
-const KINDS: [(&str, Kind); 4] = [
+const KINDS: [(&str, Kind); 5] = [
     ("skull", Kind::Skull),
+    ("scan", Kind::Scan),
     ("random", Kind::Random),
     ("terrain", Kind::Terrain),
     ("sphere", Kind::Sphere),
@@ -57,10 +60,11 @@ impl fmt::Display for Set {
 }
 
 impl Set {
-    /// α of its shapes: the paper's for the skull, and a few times the squared spacing of others.
+    /// α of its shapes: the paper's for the skull, in square voxels, and a few times the squared spacing of others.
     pub(super) fn alpha(&self) -> f64 {
         match self.kind {
             Kind::Skull => 10.0,
+            Kind::Scan => 10.0 * SCAN.spacing[0] * SCAN.spacing[0],
             Kind::Random | Kind::Terrain => 1.0,
             Kind::Sphere => 40.0 / self.size as f64,
         }
@@ -73,7 +77,8 @@ impl Set {
     fn points(&self) -> Result<Points> {
         let mut random = Random::new(1);
         let side = match self.kind {
-            Kind::Skull => return skull(self.size),
+            Kind::Skull => return skull(self.size, Frame::VOXEL),
+            Kind::Scan => return skull(self.size, SCAN),
             Kind::Random => (self.size as f64).cbrt(),
             Kind::Terrain => (self.size as f64).sqrt(),
             Kind::Sphere => 0.0,
@@ -81,7 +86,7 @@ impl Set {
         let point = |_| {
             let [x, y, z] = [(); 3].map(|()| random.unit());
             match self.kind {
-                Kind::Skull | Kind::Random => [x, y, z].map(|x| x * side),
+                Kind::Skull | Kind::Scan | Kind::Random => [x, y, z].map(|x| x * side),
                 Kind::Terrain => {
                     let [x, y] = [x * side, y * side];
                     [x, y, 40.0 * ((x / 90.0).sin() + (y / 70.0).cos()) + z]
@@ -108,15 +113,22 @@ pub(super) fn write(set: &Set, path: &Path) -> Result<usize> {
     Ok(count)
 }
 
-fn skull(size: usize) -> Result<Points> {
+const SCAN: Frame = Frame {
+    spacing: [0.4883, 0.4883, 0.625],
+    origin: [-62.5, -47.1, 1204.3],
+    direction: [[1.0, 0.0, 0.0], [0.0, 0.96, -0.28], [0.0, 0.28, 0.96]],
+    ..Frame::VOXEL
+};
+
+fn skull(size: usize, frame: Frame) -> Result<Points> {
     let (skull, _) = volume::sample("sample:skull")?.into_gray(Gray::Automatic)?;
-    let skull = upsampled(&skull, size)?;
+    let skull = upsampled(&skull, size, frame)?;
     let selection = Selection::default();
-    Ok(select(&skull, &skull, &difference(&skull), &selection, Units::Voxel)?)
+    Ok(select(&skull, &skull, &difference(&skull), &selection, Units::World)?)
 }
 
 /// Trilinear, the first and last samples of each axis staying where they are.
-fn upsampled(volume: &Volume, size: usize) -> Result<Volume> {
+fn upsampled(volume: &Volume, size: usize, frame: Frame) -> Result<Volume> {
     let samples = volume.samples();
     let place = |i: usize, n: usize| {
         let at = i as f64 * (n - 1) as f64 / (size - 1) as f64;
@@ -136,5 +148,5 @@ fn upsampled(volume: &Volume, size: usize) -> Result<Volume> {
         }
         sum as f32
     });
-    Ok(Volume::new(upsampled, *volume.frame())?.with_gray_levels())
+    Ok(Volume::new(upsampled, frame)?.with_gray_levels())
 }

@@ -15,6 +15,7 @@ use crate::check::{
     Comparison, Extent, FiltrationFinding, Finding, Verdict, certify_filtration_monitored, compare,
     count_by_rule, enumerate_monitored, keep_causes,
 };
+use crate::export::{Target, UnknownFormat, write_findings};
 use crate::pipeline::AlphaRule;
 use crate::points::{self, CellCount, Weighting};
 use crate::progress::{Monitor, Stage};
@@ -51,13 +52,17 @@ use super::report::SCHEMA_VERSION;
 ///
 /// walpha check theirs.vtu --ties exact
 ///
-/// walpha check theirs.msh
+/// walpha check theirs.msh -o findings.vtu
 #[derive(Args)]
 pub(super) struct Check {
     /// Points of the complex, filtration or mesh, if its file lists none or has rounded them, with their weights
     /// if they have any: .csv or .npy.
     #[arg(long, value_name = "FILE")]
     points: Option<PathBuf>,
+    /// Write the simplices and points that are wrong to FILE (.vtu), with the number of the finding and the rule of
+    /// each.
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
     /// Also build the complex from the definition, and compare (at most 200 points).
     #[arg(long)]
     enumerate: bool,
@@ -250,6 +255,9 @@ impl Check {
         progress: Progress,
     ) -> anyhow::Result<ExitCode> {
         self.refuse_shape_options(&[], format!("{} is a filtration, made already", name(input)))?;
+        if self.output.is_some() {
+            fail_usage!("--output is for findings on a complex or mesh, and {} is a filtration", name(input) => "omit it, or check a complex");
+        }
         if self.enumerate {
             fail_usage!("--enumerate belongs to a complex, and {} is a filtration", name(input) => "omit it");
         }
@@ -306,6 +314,7 @@ impl Check {
         if self.enumerate && n > MOST_ENUMERATED {
             fail!("--enumerate takes at most {MOST_ENUMERATED} points, and there are {n}" => "omit it");
         }
+        let target = self.output.as_deref().map(findings_target).transpose()?;
         let (claim, complex) = (judged.claim(), &judged.complex);
         let started = Instant::now();
         let (mut findings, mut certificate) = progress.watch(|monitor| {
@@ -317,6 +326,10 @@ impl Check {
         }
         findings.retain(|finding| self.ties == Ties::Exact || !finding.is_tie());
         let seconds = started.elapsed().as_secs_f64();
+        if let Some(target) = target {
+            let write = || target.write(|out| write_findings(&findings, &judged.positions, out));
+            progress.stage(Stage::Write, write)?;
+        }
         let enumeration = if self.enumerate {
             Some(progress.watch(|monitor| by_definition(judged, monitor))?)
         } else {
@@ -416,6 +429,14 @@ struct Subject<'a> {
 /// well be points or volumes.
 pub(super) fn mesh_format(path: &Path) -> Option<&'static MeshFormat> {
     MeshFormat::of(path).filter(|format| !format.extensions.contains(&"vtk"))
+}
+
+/// The file for findings.
+fn findings_target(path: &Path) -> anyhow::Result<Target> {
+    if !path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("vtu")) {
+        anyhow::bail!(UnknownFormat::new(path, "findings", ["vtu"]));
+    }
+    Ok(Target::open(path)?)
 }
 
 /// Reads a mesh.

@@ -26,6 +26,8 @@
 mod colour;
 mod exporter;
 mod filtration;
+#[cfg(feature = "cli")]
+mod findings;
 mod format;
 mod geojson;
 mod glb;
@@ -45,6 +47,8 @@ mod wkt;
 pub use crate::volume::UnknownFormat;
 pub use exporter::{ExportOptions, Exporter};
 pub use filtration::{FILTRATION_FORMATS, FiltrationFormat};
+#[cfg(feature = "cli")]
+pub(crate) use findings::write_findings;
 pub use format::{FORMATS, Format};
 pub use geojson::GeoJson;
 pub use glb::Glb;

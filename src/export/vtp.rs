@@ -74,10 +74,8 @@ pub(crate) fn write_surface(
     cells(&mut file, "Lines", 2, surface.edges.as_flattened())?;
     let facets: Vec<u32> = surface.facets().flatten().copied().collect();
     cells(&mut file, "Polys", 3, &facets)?;
-    write!(file.xml, "</Piece>\n</PolyData>\n<AppendedData encoding=\"raw\">\n_")?;
-    out.write_all(&file.xml)?;
-    out.write_all(&file.data)?;
-    write!(out, "\n</AppendedData>\n</VTKFile>\n")
+    write!(file.xml, "</Piece>\n</PolyData>\n")?;
+    file.end(out)
 }
 
 /// Writes class, component and sheets of each cell.

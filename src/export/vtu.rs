@@ -85,21 +85,15 @@ pub(crate) fn write_grid(
 ) -> io::Result<()> {
     let number = |v: u32| vertices.binary_search(&v).expect("all corners are there");
     let mut grid = Grid::of(complex);
-    grid.push(&complex.vertices, VTK_VERTEX, number);
-    grid.push(&complex.edges, VTK_LINE, number);
-    grid.push(&complex.facets, VTK_TRIANGLE, number);
-    grid.push(&complex.cells, VTK_TETRA, number);
+    grid.push(&complex.vertices, number);
+    grid.push(&complex.edges, number);
+    grid.push(&complex.facets, number);
+    grid.push(&complex.cells, number);
 
     let of =
         |per_point: &[f64]| bytes(vertices.iter().map(|&v| per_point[v as usize].to_le_bytes()));
     let mut file = Appended::default();
-    write!(
-        file.xml,
-        "<?xml version=\"1.0\"?>\n<!-- walpha: {} -->\n\
-         <VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n\
-         <UnstructuredGrid>\n",
-        made.alpha,
-    )?;
+    file.begin(&format!("<!-- walpha: {} -->\n", made.alpha))?;
     file.field_data(made, false)?;
     write!(
         file.xml,
@@ -114,26 +108,14 @@ pub(crate) fn write_grid(
     corners.write_ids(&mut file, vertices.iter().copied())?;
     write!(file.xml, "</PointData>\n<CellData>\n")?;
     file.array("UInt8", "class", 1, grid.classes)?;
-    write!(file.xml, "</CellData>\n<Points>\n")?;
-    let positions = vertices.iter().flat_map(|&v| corners.positions[v as usize]);
-    file.array("Float64", "Points", 3, bytes(positions.map(f64::to_le_bytes)))?;
-    write!(file.xml, "</Points>\n<Cells>\n")?;
-    file.ids("connectivity", grid.connectivity)?;
-    file.ids("offsets", grid.offsets)?;
-    file.array("UInt8", "types", 1, grid.types)?;
-    write!(
-        file.xml,
-        "</Cells>\n</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_"
-    )?;
-    out.write_all(&file.xml)?;
-    out.write_all(&file.data)?;
-    write!(out, "\n</AppendedData>\n</VTKFile>\n")
+    writeln!(file.xml, "</CellData>")?;
+    let positions = vertices.iter().map(|&v| corners.positions[v as usize]);
+    file.grid(positions, grid.connectivity, grid.offsets, grid.types)?;
+    file.end(out)
 }
 
-const VTK_VERTEX: u8 = 1;
-const VTK_LINE: u8 = 3;
-const VTK_TRIANGLE: u8 = 5;
-const VTK_TETRA: u8 = 10;
+/// VTK's numbers for a vertex, a line, a triangle and a tetrahedron: simplices by dimension.
+pub(super) const VTK_TYPES: [u8; 4] = [1, 3, 5, 10];
 
 struct Grid {
     connectivity: Ids,
@@ -153,17 +135,12 @@ impl Grid {
         Self { connectivity, offsets, types: Vec::new(), classes: Vec::new(), end: 0 }
     }
 
-    fn push<const N: usize>(
-        &mut self,
-        simplices: &Simplices<N>,
-        vtk_type: u8,
-        number: impl Fn(u32) -> usize,
-    ) {
+    fn push<const N: usize>(&mut self, simplices: &Simplices<N>, number: impl Fn(u32) -> usize) {
         for (row, class) in simplices.iter() {
             row.iter().for_each(|&v| self.connectivity.push(number(v)));
             self.end += N;
             self.offsets.push(self.end);
-            self.types.push(vtk_type);
+            self.types.push(VTK_TYPES[N - 1]);
             self.classes.push(class as u8);
         }
     }
@@ -201,6 +178,41 @@ pub(super) struct Appended {
 const LEGEND: &str = "0 exterior, 1 interior, 2 regular, 3 singular";
 
 impl Appended {
+    /// Begins an unstructured grid; `comment` is XML before it.
+    pub(super) fn begin(&mut self, comment: &str) -> io::Result<()> {
+        write!(
+            self.xml,
+            "<?xml version=\"1.0\"?>\n{comment}\
+             <VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n\
+             <UnstructuredGrid>\n",
+        )
+    }
+
+    /// Writes points and cells of the only piece of an unstructured grid, whose data came before.
+    pub(super) fn grid(
+        &mut self,
+        positions: impl Iterator<Item = [f64; 3]>,
+        connectivity: Ids,
+        offsets: Ids,
+        types: Vec<u8>,
+    ) -> io::Result<()> {
+        writeln!(self.xml, "<Points>")?;
+        self.array("Float64", "Points", 3, bytes(positions.flatten().map(f64::to_le_bytes)))?;
+        write!(self.xml, "</Points>\n<Cells>\n")?;
+        self.ids("connectivity", connectivity)?;
+        self.ids("offsets", offsets)?;
+        self.array("UInt8", "types", 1, types)?;
+        write!(self.xml, "</Cells>\n</Piece>\n</UnstructuredGrid>\n")
+    }
+
+    /// Writes the file.
+    pub(super) fn end(mut self, out: &mut dyn Write) -> io::Result<()> {
+        write!(self.xml, "<AppendedData encoding=\"raw\">\n_")?;
+        out.write_all(&self.xml)?;
+        out.write_all(&self.data)?;
+        write!(out, "\n</AppendedData>\n</VTKFile>\n")
+    }
+
     /// Writes how the shape was made, with texts as strings or as arrays of bytes.
     pub(super) fn field_data(&mut self, made: &Provenance<'_>, as_strings: bool) -> io::Result<()> {
         let alpha = made.alpha;
@@ -219,15 +231,20 @@ impl Appended {
         ];
         let texts = texts.into_iter().filter_map(|(name, text)| Some((name, text?)));
         for (name, text) in texts.chain(annotation::pairs(made.coordinates)) {
-            // A zero byte ends the string, so the text must not contain one.
-            let text = text.replace('\0', " ");
-            if as_strings {
-                self.field("Array", "String", name, 1, (text + "\0").as_bytes())?;
-            } else {
-                self.field("DataArray", "UInt8", name, text.len(), text.as_bytes())?;
-            }
+            self.text(name, text, as_strings)?;
         }
         writeln!(self.xml, "</FieldData>")
+    }
+
+    /// Writes a text of field data, as a string or as an array of bytes.
+    pub(super) fn text(&mut self, name: &str, text: &str, as_string: bool) -> io::Result<()> {
+        // A zero byte ends the string, so the text must not contain one.
+        let text = text.replace('\0', " ");
+        if as_string {
+            self.field("Array", "String", name, 1, (text + "\0").as_bytes())
+        } else {
+            self.field("DataArray", "UInt8", name, text.len(), text.as_bytes())
+        }
     }
 
     /// Writes an array of field data.

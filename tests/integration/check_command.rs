@@ -157,6 +157,25 @@ fn cells_of_a_mesh_are_judged() {
     let info = common::json(folder, &["info", "bad.vtu"]);
     assert_eq!(info["cells"], serde_json::json!([{ "kind": "tetrahedra", "count": 158 }]));
 
+    // What is wrong, as a mesh to look at.
+    assert_eq!(judge(&["bad.vtu", "-o", "findings.vtu"]).0, 3);
+    let parts = common::json(folder, &["info", "findings.vtu"])["cells"].clone();
+    let count = |kind: &str| {
+        let of_kind = |row: &&serde_json::Value| row["kind"] == kind;
+        parts
+            .as_array()
+            .unwrap()
+            .iter()
+            .find(of_kind)
+            .map_or(0, |row| row["count"].as_u64().unwrap())
+    };
+    // Each finding names a facet or an edge of a hole, some with a cell or a point.
+    let found = facts["findings_total"].as_u64().unwrap();
+    assert!(count("triangles") + count("lines") >= found && found > 0, "{parts} {found}");
+    assert_eq!(judge(&["cubes.vtu", "-o", "none.vtu"]).0, 0);
+    assert_eq!(common::json(folder, &["info", "none.vtu"])["points"]["count"], 64);
+    common::fails(folder, 1, "check bad.vtu -o findings.ply", &["findings.ply", ".vtu"]);
+
     // With an α, all that is listed is in the shape: of cubes of side 1, from 3/4 on.
     assert_eq!(judge(&["cubes.vtu", "--alpha", "0.75"]).0, 0);
     assert_eq!(judge(&["cubes.vtu", "--alpha", "0.74"]).0, 3);

@@ -1,6 +1,7 @@
 //! Findings: the rules that can be broken, each with the simplices and exact values that show it.
 
 use std::fmt;
+use std::slice::from_ref;
 
 use serde::Serialize;
 
@@ -282,6 +283,56 @@ pub enum Finding {
 }
 
 impl Finding {
+    /// The simplices and points that it is about, each by its vertices, the one at fault first. Indices may be none of
+    /// the points', if that is the finding.
+    pub fn parts(&self) -> Vec<&[u32]> {
+        fn with<'a>(simplex: &'a Simplex, point: &'a u32) -> Vec<&'a [u32]> {
+            vec![simplex.vertices(), from_ref(point)]
+        }
+        match self {
+            Self::Index { simplex: s, .. }
+            | Self::RepeatedVertex { simplex: s }
+            | Self::RepeatedSimplex { simplex: s }
+            | Self::Stray { simplex: s }
+            | Self::Orientation { cell: s, .. }
+            | Self::LongEdge { edge: s }
+            | Self::HullEdge { edge: s, .. }
+            | Self::OpenFacet { facet: s }
+            | Self::MissingCell { cell: s, .. } => vec![s.vertices()],
+            Self::MissingFace { face: s, of: t }
+            | Self::HullWraps { facet: s, first: t }
+            | Self::TiedFacets { facet: s, other: t } => vec![s.vertices(), t.vertices()],
+            Self::Crowded { facet, cells } => {
+                [facet].into_iter().chain(cells).map(Simplex::vertices).collect()
+            }
+            Self::Overlap { facet, cells: [a, b] } => {
+                vec![a.vertices(), b.vertices(), facet.vertices()]
+            }
+            Self::NotRegular { cell: s, point, .. }
+            | Self::HullBends { facet: s, point, .. }
+            | Self::Winding { facet: s, behind: point }
+            | Self::SpannedSphere { simplex: s, point } => with(s, point),
+            Self::Class { simplex, refuted_by: Some((point, _)), .. } => with(simplex, point),
+            Self::Class { simplex, refuted_by: None, .. } => vec![simplex.vertices()],
+            Self::NotHidden { point, cell: s, .. } | Self::OutsideHull { point, facet: s, .. } => {
+                vec![from_ref(point), s.vertices()]
+            }
+            Self::MissingVertex { point, .. }
+            | Self::Unaccounted { point }
+            | Self::NotOnlyHidden { point }
+            | Self::Duplicate { point, .. } => vec![from_ref(point)],
+            Self::EqualPoint { point, first: other }
+            | Self::DuplicateVertex { point, kept: other } => {
+                vec![from_ref(point), from_ref(other)]
+            }
+            Self::TiedSphere { simplex, points, .. } => {
+                let points = points.iter().map(from_ref);
+                [simplex.vertices()].into_iter().chain(points).collect()
+            }
+            Self::NoCells | Self::Volume { .. } => Vec::new(),
+        }
+    }
+
     /// A finding on copies, in terms of the `count` points of the box; `None` if it concerns copies outside
     /// the box only.
     pub(super) fn at_box(mut self, count: u32) -> Option<Self> {

@@ -26,8 +26,8 @@ pub struct Page {
 }
 
 impl Page {
-    /// More facets than this are drawn simplified: this many a phone rotates smoothly, and they take a few
-    /// megabytes.
+    /// A level of detail with more facets than this, those of all levels of α counted, is drawn simplified: as many take a
+    /// few megabytes, and a phone turns smoothly what of them one level shows.
     pub const MOST_FACETS: usize = 300_000;
     /// The most levels of a page, as levels are stored in bytes.
     pub const MOST_LEVELS: usize = 250;
