@@ -284,7 +284,7 @@ impl Check {
         let periodic = self.periodic.periodic;
         let mut recipe = self.pipeline.recipe_of(&self.shape, periodic)?;
         if self.points.is_some() {
-            fail_usage!("--points belongs to a complex (.json, .npz), and {} is none", shown(path) => "omit it");
+            fail_usage!("--points belongs to a complex or a mesh, and {} is neither", shown(path) => "omit it");
         }
         let given = &self.pipeline.input.typed;
         given.refuse(&["refit"], "values are not judged")?;

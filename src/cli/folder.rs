@@ -7,7 +7,7 @@ use walpha_base::shown::shown;
 
 use crate::export::{Filled, NewFolder, Target, put_all};
 
-use super::errors::{CommandError, command_error};
+use super::errors::{CommandError, command_error, fail_usage};
 
 /// An output folder, checked to be writable before the long work. At the end either all files appear in it,
 /// or none.
@@ -18,6 +18,9 @@ pub(super) struct Folder {
     /// The folder, if this command created it: it is removed on failure, after the files.
     new: Option<NewFolder>,
 }
+
+/// Extensions that a folder is given by mistake: those of files that commands write into theirs, and of meshes.
+const FILES: [&str; 8] = ["csv", "html", "json", "obj", "ply", "png", "stl", "svg"];
 
 /// Creates a folder if needed; `instead` tells the user how to choose another.
 pub(super) fn make(path: &Path, instead: &str) -> Result<Option<NewFolder>, CommandError> {
@@ -30,6 +33,12 @@ impl Folder {
     /// Creates the folder if needed. `option` is the option that it was given by, `names` are files that are
     /// certain to be written.
     pub(super) fn open(path: &Path, option: &str, names: &[&str]) -> anyhow::Result<Self> {
+        if let Some(extension) = path.extension().filter(|_| !path.is_dir())
+            && FILES.iter().any(|of_file| extension.eq_ignore_ascii_case(of_file))
+        {
+            let folder = path.with_extension("");
+            fail_usage!("{option} takes a folder, and {} is named as a file", shown(path) => "name a folder, as in {option} {}", shown(&folder));
+        }
         let new = make(path, &format!("with {option}"))?;
         let folder = Self { path: path.to_owned(), files: Vec::new(), written: Vec::new(), new };
         for name in names {
