@@ -171,7 +171,7 @@ fn cells_of_a_mesh_are_judged() {
     };
     // Each finding names a facet or an edge of a hole, some with a cell or a point.
     let found = facts["findings_total"].as_u64().unwrap();
-    assert!(count("triangles") + count("lines") >= found && found > 0, "{parts} {found}");
+    assert!(count("triangles") + count("edges") >= found && found > 0, "{parts} {found}");
     assert_eq!(judge(&["cubes.vtu", "-o", "none.vtu"]).0, 0);
     assert_eq!(common::json(folder, &["info", "none.vtu"])["points"]["count"], 64);
     common::fails(folder, 1, "check bad.vtu -o findings.ply", &["findings.ply", ".vtu"]);
