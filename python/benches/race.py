@@ -21,7 +21,7 @@ import walpha
 
 
 def lattice(n):
-    """The points of a volume: samples of a phantom head of the largest differences. Nothing but ties."""
+    """The points of a volume: samples of a phantom head of the largest differences, full of ties."""
     size = 64 if n <= 60_000 else 128 if n <= 500_000 else 256
     head = walpha.read(f"sample:phantom@{size}").samples
     chosen = walpha.select(walpha.haar(head)[0], count=n)
@@ -39,7 +39,7 @@ def contestants(points, weights, alpha):
     """Each with what it does."""
     for engine in ("native", "cgal"):
         yield f"`alpha_shape`, `engine=\"{engine}\"`", lambda engine=engine: walpha.alpha_shape(
-            points, weights, alpha, engine=engine
+            points, alpha, weights=weights, engine=engine
         ).cells
     yield "`filtration`", lambda: walpha.filtration(points, weights=weights)
     yield "`filtration`, `.simplices()`", lambda: walpha.filtration(points, weights=weights).simplices()
