@@ -12,12 +12,11 @@ if ! cargo public-api --version > /dev/null 2>&1 || ! cargo +nightly --version >
   exit 77
 fi
 listed=$(mktemp)
-trap 'rm -f "$listed"' EXIT
+trap 'rm -f "$listed" "$listed.log"' EXIT
 status=0
 for library in base check complex files regular render shape volume; do
   # Without derived and blanket implementations. The target is its own, so that lints and tests stay built.
   CARGO_TARGET_DIR=target/api cargo public-api -p "walpha-$library" -sss > "$listed" 2> "$listed.log" || { cat "$listed.log"; exit 1; }
-  rm "$listed.log"
   if [ "${1:-}" = write ]; then
     cp "$listed" "api/walpha-$library.txt"
   else

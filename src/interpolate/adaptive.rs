@@ -61,8 +61,8 @@ const FIRST_BATCH: usize = 32;
 /// Error is measured from `volume` itself, so give the original, not a truncated one. It is looked
 /// at between batches: when that ends the selection, the last batch may have overshot the target.
 /// Fewer voxels than asked for suffice where their interpolant is perfect. A batch costs its
-/// insertions, samples in the cells that these make, and one pass over all errors; memory, 16 bytes a
-/// sample. The result does not depend on the number of threads.
+/// insertions, samples in the cells that these make (in all cells, where doubles do not hold the frame), and one
+/// pass over all errors; memory, 16 bytes a sample. The result does not depend on the number of threads.
 ///
 /// # Errors
 /// A count below 8 or above the samples, a target or bound that is negative or NaN, missing samples, or

@@ -25,7 +25,7 @@ use crate::volume::Volume;
 /// [`Interpolant::resample`](super::Interpolant::resample) were asked for the triangulation of the
 /// points in the order in which they came. Both locate samples by their indices, not by coordinates of the
 /// world, which are rounded in most frames; numbers made of indices are not, as a volume has fewer than 2³²
-/// samples. Only what new cells hold is computed anew.
+/// samples. F is computed anew only in new cells and where a sample has another cell than before.
 pub(super) struct Sampled<'a> {
     volume: &'a Volume,
     units: Units,
@@ -257,8 +257,9 @@ impl<'a> Sampled<'a> {
 
     /// Computes F at some samples.
     fn evaluate(&mut self, wanted: impl Fn(usize, u32) -> bool + Sync) {
-        let Self { growing, values, indices, mirrored, grid, owners, f, .. } = self;
-        let cells = Cells { growing, values, indices, mirrored: *mirrored };
+        let mut f = std::mem::take(&mut self.f);
+        let cells = self.triangulation();
+        let (grid, owners) = (&self.grid, &self.owners);
         let [nx, ny, _] = grid.dims().xyz();
         f.par_chunks_mut(nx).enumerate().for_each(|(y, f)| {
             for (x, f) in f.iter_mut().enumerate() {
@@ -272,6 +273,7 @@ impl<'a> Sampled<'a> {
                 }
             }
         });
+        self.f = f;
     }
 }
 

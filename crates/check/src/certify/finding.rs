@@ -286,9 +286,6 @@ impl Finding {
     /// The simplices and points that it is about, each by its vertices, the one at fault first. Indices may be none of
     /// the points', if that is the finding.
     pub fn parts(&self) -> Vec<&[u32]> {
-        fn with<'a>(simplex: &'a Simplex, point: &'a u32) -> Vec<&'a [u32]> {
-            vec![simplex.vertices(), from_ref(point)]
-        }
         match self {
             Self::Index { simplex: s, .. }
             | Self::RepeatedVertex { simplex: s }
@@ -311,9 +308,11 @@ impl Finding {
             Self::NotRegular { cell: s, point, .. }
             | Self::HullBends { facet: s, point, .. }
             | Self::Winding { facet: s, behind: point }
-            | Self::SpannedSphere { simplex: s, point } => with(s, point),
-            Self::Class { simplex, refuted_by: Some((point, _)), .. } => with(simplex, point),
-            Self::Class { simplex, refuted_by: None, .. } => vec![simplex.vertices()],
+            | Self::SpannedSphere { simplex: s, point } => vec![s.vertices(), from_ref(point)],
+            Self::Class { simplex, refuted_by, .. } => {
+                let point = refuted_by.iter().map(|(point, _)| from_ref(point));
+                [simplex.vertices()].into_iter().chain(point).collect()
+            }
             Self::NotHidden { point, cell: s, .. } | Self::OutsideHull { point, facet: s, .. } => {
                 vec![from_ref(point), s.vertices()]
             }
