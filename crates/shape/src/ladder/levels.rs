@@ -276,6 +276,12 @@ impl Levels<'_> {
         edges.filter(|(_, span)| span.first < span.regular).collect()
     }
 
+    /// All cells of the triangulation, and the level from which on each is in the shape. O(n).
+    pub fn cells(&self) -> Vec<([u32; 4], u32)> {
+        let rows = self.filtration.whole.complex().cells.rows();
+        rows.iter().copied().zip(self.cells.iter().copied()).collect()
+    }
+
     /// All vertices of the triangulation. O(n).
     pub fn vertices(&self) -> Vec<(u32, Span)> {
         let rows = self.filtration.whole.complex().vertices.rows();

@@ -86,7 +86,12 @@ impl OpenFile {
     /// [`VolumeError::Io`].
     pub fn owned_reader(&self) -> Result<BufReader<File>, VolumeError> {
         self.reader()?;
-        Ok(BufReader::new(self.file.try_clone().map_err(io_error(&self.path))?))
+        // WASI has no second handle of an open file; what it reads lies in memory.
+        #[cfg(target_os = "wasi")]
+        let file = File::open(&self.path);
+        #[cfg(not(target_os = "wasi"))]
+        let file = self.file.try_clone();
+        Ok(BufReader::new(file.map_err(io_error(&self.path))?))
     }
 
     /// Reads from the first byte on, unpacked where the file is compressed with gzip; and what is known of the

@@ -1,0 +1,451 @@
+#!/usr/bin/env python3
+"""Opens walpha.html in a real headless Chromium and, where there is one, Firefox, and compares what it makes with the command.
+
+    scripts/check_web.py walpha.html target/release/walpha [--out DIR]
+
+Files of each kind are chosen as a user would; for each the page's counts, Betti numbers and saved files are those of the command that
+the page prints, byte for byte. Besides: no error on the console, no request to a network, what cannot be read is refused in the
+command's words, work can be cancelled, a cut and the persistence diagram, a large phantom, nothing wider than a phone. Leaves screenshots
+in DIR. Prints a line for each check; exits with 1 when one fails, and with 77 without Chromium.
+"""
+
+import argparse
+import base64
+import gzip
+import json
+import math
+import pathlib
+import shutil
+import socket
+import struct
+import subprocess
+import sys
+import tempfile
+import time
+
+from check_view import Browser, Checks, faults
+
+SIZE = 20
+SCREENS = {"desk": (1400, 950, False), "phone": (390, 844, True)}
+
+
+def values():
+    """A hollow ball in Hounsfield units, x fastest."""
+    samples = []
+    for z in range(SIZE):
+        for y in range(SIZE):
+            for x in range(SIZE):
+                radius = math.dist((x, y, z), (9.5, 9.2, 9.7))
+                samples.append(1000 if 5 <= radius < 8 else 40 if radius < 5 else -1000)
+    return samples
+
+
+def dicom(folder, samples):
+    """A series of slices: explicit VR, little endian."""
+
+    def element(group, number, kind, value):
+        value = value if isinstance(value, bytes) else str(value).encode()
+        value += (b"\0" if kind in ("UI", "OB") else b" ") * (len(value) % 2)
+        if kind in ("OB", "OW"):
+            return struct.pack("<HH2sHI", group, number, kind.encode(), 0, len(value)) + value
+        return struct.pack("<HH2sH", group, number, kind.encode(), len(value)) + value
+
+    def short(number):
+        return struct.pack("<H", number)
+
+    folder.mkdir()
+    for z in range(SIZE):
+        uid = f"1.2.3.4.{z + 1}"
+        meta = element(2, 1, "OB", b"\0\1") + element(2, 2, "UI", "1.2.840.10008.5.1.4.1.1.2") + element(2, 3, "UI", uid)
+        meta += element(2, 0x10, "UI", "1.2.840.10008.1.2.1") + element(2, 0x12, "UI", "1.2.3.4")
+        data = element(8, 0x16, "UI", "1.2.840.10008.5.1.4.1.1.2") + element(8, 0x18, "UI", uid) + element(8, 0x60, "CS", "CT")
+        data += element(0x20, 0xD, "UI", "1.2.3") + element(0x20, 0xE, "UI", "1.2.3.5") + element(0x20, 0x13, "IS", z + 1)
+        data += element(0x20, 0x32, "DS", f"-10\\-10\\{2 * z}") + element(0x20, 0x37, "DS", "1\\0\\0\\0\\1\\0")
+        data += element(0x28, 2, "US", short(1)) + element(0x28, 4, "CS", "MONOCHROME2") + element(0x28, 0x10, "US", short(SIZE))
+        data += element(0x28, 0x11, "US", short(SIZE)) + element(0x28, 0x30, "DS", "1\\1") + element(0x28, 0x100, "US", short(16))
+        data += element(0x28, 0x101, "US", short(16)) + element(0x28, 0x102, "US", short(15)) + element(0x28, 0x103, "US", short(1))
+        data += element(0x28, 0x1052, "DS", "0") + element(0x28, 0x1053, "DS", "1")
+        slice_ = samples[z * SIZE * SIZE:(z + 1) * SIZE * SIZE]
+        data += element(0x7FE0, 0x10, "OW", struct.pack(f"<{SIZE * SIZE}h", *slice_))
+        whole = b"\0" * 128 + b"DICM" + element(2, 0, "UL", struct.pack("<I", len(meta))) + meta + data
+        (folder / f"slice{z:03}.dcm").write_bytes(whole)
+
+
+def las(points):
+    """LAS 1.2, points of format 0, in millimetres."""
+    header = bytearray(227)
+    header[0:4] = b"LASF"
+    header[24:26] = bytes([1, 2])
+    struct.pack_into("<HIIBHI", header, 94, 227, 227, 0, 0, 20, len(points))
+    struct.pack_into("<6d", header, 131, 0.001, 0.001, 0.001, 0, 0, 0)
+    bounds = [f(p[k] for p in points) for k in range(3) for f in (max, min)]
+    struct.pack_into("<6d", header, 179, *bounds)
+    body = b"".join(struct.pack("<3iH4BH", *(round(1000 * x) for x in p), 7, 0, 2, 0, 0, 0) for p in points)
+    return bytes(header) + body
+
+
+def tiff(samples):
+    """A stack of pages of 16-bit samples, from 0 on."""
+    pages, offset, whole = [], 8, b""
+    for z in range(SIZE):
+        data = struct.pack(f"<{SIZE * SIZE}H", *(max(0, s + 1000) for s in samples[z * SIZE * SIZE:(z + 1) * SIZE * SIZE]))
+        tags = [(256, 3, SIZE), (257, 3, SIZE), (258, 3, 16), (259, 3, 1), (262, 3, 1), (273, 4, offset), (277, 3, 1), (278, 3, SIZE), (279, 4, len(data))]
+        after = offset + len(data) + 2 + 12 * len(tags) + 4
+        directory = struct.pack("<H", len(tags)) + b"".join(struct.pack("<HHII", tag, kind, 1, value) for tag, kind, value in tags)
+        pages.append(offset + len(data))
+        whole += data + directory + struct.pack("<I", after + len(data) if z + 1 < SIZE else 0)
+        offset = after
+    return struct.pack("<2sHI", b"II", 42, pages[0]) + whole
+
+
+def make_files(folder):
+    """One file of each kind, and what kind it is."""
+    samples = values()
+    raw = struct.pack(f"<{len(samples)}h", *samples)
+    header = bytearray(352)
+    struct.pack_into("<I", header, 0, 348)
+    struct.pack_into("<8h", header, 40, 3, SIZE, SIZE, SIZE, 1, 1, 1, 1)
+    struct.pack_into("<2h", header, 70, 4, 16)
+    struct.pack_into("<8f", header, 76, 1, 1, 1, 2, 0, 0, 0, 0)
+    struct.pack_into("<3f", header, 108, 352, 1, 0)
+    header[123] = 2
+    struct.pack_into("<h", header, 254, 1)
+    struct.pack_into("<12f", header, 280, 1, 0, 0, -10, 0, 1, 0, -10, 0, 0, 2, 0)
+    header[344:348] = b"n+1\0"
+    (folder / "ball.nii.gz").write_bytes(gzip.compress(bytes(header) + raw))
+    nrrd = f"NRRD0004\ntype: int16\ndimension: 3\nsizes: {SIZE} {SIZE} {SIZE}\nspacings: 1 1 2\nendian: little\nencoding: raw\n\n"
+    (folder / "ball.nrrd").write_bytes(nrrd.encode() + raw)
+    mha = f"ObjectType = Image\nNDims = 3\nDimSize = {SIZE} {SIZE} {SIZE}\nElementType = MET_SHORT\nElementByteOrderMSB = False\nElementSpacing = 1 1 2\n"
+    (folder / "ball.mha").write_bytes(mha.encode() + b"ElementDataFile = LOCAL\n" + raw)
+    (folder / "two.mhd").write_bytes(mha.encode() + b"ElementDataFile = two.raw\n")
+    (folder / "two.raw").write_bytes(raw)
+    description = f"{{'descr': '<i2', 'fortran_order': False, 'shape': ({SIZE}, {SIZE}, {SIZE}), }}".ljust(117) + "\n"
+    (folder / "ball.npy").write_bytes(b"\x93NUMPY\x01\x00" + struct.pack("<H", len(description)) + description.encode() + raw)
+    (folder / "ball.tif").write_bytes(tiff(samples))
+    dicom(folder / "series", samples)
+    points = []
+    for k in range(400):
+        z = 1 - 2 * (k + 0.5) / 400
+        turn, flat = 2.399963 * k, math.sqrt(1 - z * z)
+        points.append((round(flat * math.cos(turn), 3), round(flat * math.sin(turn), 3), round(z, 3)))
+    lines = [" ".join(map(str, p)) for p in points]
+    (folder / "ball.xyz").write_text("\n".join(lines) + "\n")
+    (folder / "it's a ball.csv").write_text("x,y,z,weight\n" + "\n".join(line.replace(" ", ",") + ",0.001" for line in lines) + "\n")
+    (folder / "ball.obj").write_text("".join(f"v {line}\n" for line in lines))
+    (folder / "cloud.ply").write_text(f"ply\nformat ascii 1.0\nelement vertex {len(points)}\nproperty double x\nproperty double y\nproperty double z\nend_header\n" + "\n".join(lines) + "\n")
+    facets = "".join(f"facet normal 0 0 0\nouter loop\nvertex {lines[k]}\nvertex {lines[k + 1]}\nvertex {lines[k + 2]}\nendloop\nendfacet\n" for k in range(0, 396, 3))
+    (folder / "ball.stl").write_text(f"solid ball\n{facets}endsolid ball\n")
+    (folder / "ball.las").write_bytes(las(points))
+    return [
+        "ball.nii.gz", "ball.nrrd", "ball.mha", "two.mhd", "ball.npy", "ball.tif", "series",
+        "ball.xyz", "it's a ball.csv", "ball.obj", "cloud.ply", "ball.stl", "ball.las",
+    ]
+
+
+class Firefox:
+    """Speaks the Marionette protocol: lengths and JSON over a socket."""
+
+    def __init__(self, program, profile):
+        with socket.socket() as free:
+            free.bind(("127.0.0.1", 0))
+            port = free.getsockname()[1]
+        preferences = {"marionette.port": port, "browser.shell.checkDefaultBrowser": False, "datareporting.policy.dataSubmissionEnabled": False, "webgl.force-enabled": True}
+        text = "".join(f'user_pref("{name}", {json.dumps(value)});\n' for name, value in preferences.items())
+        pathlib.Path(profile, "user.js").write_text(text)
+        command = [program, "--headless", "--marionette", "--no-remote", "--profile", profile]
+        self.process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        for _ in range(300):
+            try:
+                self.socket = socket.create_connection(("127.0.0.1", port))
+                break
+            except OSError:
+                time.sleep(0.1)
+        self.stream, self.last = self.socket.makefile("rb"), 0
+        self.message()
+        self.call("WebDriver:NewSession", capabilities={})
+        self.call("WebDriver:SetTimeouts", script=120000)
+
+    def message(self):
+        length = b""
+        while (byte := self.stream.read(1)) != b":":
+            length += byte
+        return json.loads(self.stream.read(int(length)))
+
+    def call(self, command, **parameters):
+        self.last += 1
+        text = json.dumps([0, self.last, command, parameters]).encode()
+        self.socket.sendall(str(len(text)).encode() + b":" + text)
+        _, _, error, result = self.message()
+        if error:
+            raise RuntimeError(f"{command}: {error['message']}")
+        return result
+
+    def evaluate(self, expression):
+        return self.call("WebDriver:ExecuteScript", script=f"return ({expression})", args=[])["value"]
+
+    wait = Browser.wait
+
+    def open(self, url):
+        self.call("WebDriver:Navigate", url=url)
+
+    def screenshot(self):
+        return base64.b64decode(self.call("WebDriver:TakeScreenshot", full=False)["value"])
+
+    def choose(self, control, paths):
+        element = self.call("WebDriver:FindElement", using="css selector", value=f"#{control}")["value"]
+        self.call("WebDriver:ElementSendKeys", id=next(iter(element.values())), text="\n".join(map(str, paths)))
+
+    def close(self):
+        try:
+            self.call("Marionette:Quit", flags=["eForceQuit"])
+        except (RuntimeError, OSError, ValueError):
+            pass
+        self.process.wait(timeout=20)
+
+
+class Chromium(Browser):
+    def open(self, url):
+        self.call("Page.navigate", url=url)
+
+    def screenshot(self):
+        return base64.b64decode(self.call("Page.captureScreenshot", format="png")["data"])
+
+    def choose(self, control, paths):
+        node = self.call("Runtime.evaluate", expression=f"document.getElementById('{control}')")["result"]["objectId"]
+        self.call("DOM.setFileInputFiles", files=[str(path) for path in paths], objectId=node)
+
+
+SETTLED = "['ready', 'failed', 'cancelled'].includes(document.body.dataset.state) && document.body.dataset.state !== 'busy'"
+MEASURED = "document.body.dataset.state === 'failed' || document.body.dataset.measured === document.body.dataset.alpha && document.body.dataset.alpha"
+
+
+class Page:
+    """The page in one of the browsers."""
+
+    def __init__(self, browser, folder, walpha):
+        self.browser, self.folder, self.walpha = browser, folder, walpha
+
+    def text(self, identifier):
+        return self.browser.evaluate(f"document.getElementById('{identifier}').textContent")
+
+    def forget(self):
+        self.browser.evaluate("(() => { for (const key of ['alpha', 'measured', 'saved']) delete document.body.dataset[key]; document.body.dataset.state = 'busy'; })()")
+
+    def example(self, name):
+        self.forget()
+        self.browser.evaluate(f"(() => {{ const e = document.getElementById('examples'); e.value = '{name}'; e.dispatchEvent(new Event('change')); }})()")
+
+    def choose(self, name):
+        self.forget()
+        path = self.folder / name
+        if path.is_dir():
+            self.browser.choose("folder", [path])
+        elif name == "two.mhd":
+            self.browser.choose("files", [path, self.folder / "two.raw"])
+        else:
+            self.browser.choose("files", [path])
+
+    def settled(self, seconds=40):
+        return self.browser.wait(SETTLED, seconds) and self.browser.wait(MEASURED, seconds)
+
+    def state(self):
+        return self.browser.evaluate("({...document.body.dataset})")
+
+    def run(self, command):
+        """The printed command, by this program."""
+        shell = command.replace("walpha ", f"'{self.walpha}' ", 1)
+        done = subprocess.run(shell, shell=True, cwd=self.folder, capture_output=True, text=True)
+        if done.returncode != 0:
+            raise RuntimeError(f"{command}: {done.stderr}")
+        return done.stdout
+
+
+def agrees(page, checks, name):
+    """What the page shows is what its command reports."""
+    if not page.settled() or page.state()["state"] != "ready":
+        checks.say(f"{name} is read", False, page.text("failure") or page.text("status"))
+        return False
+    report = json.loads(page.run(f"{page.text('command')} --json"))["shape"]
+    state = page.state()
+    theirs = (",".join(map(str, report["betti"])), str(report["cells"]["interior"]))
+    checks.say(f"{name}: Betti numbers and cells are the command's", (state["betti"], state["cells"]) == theirs, f"{state['betti']}, {state['cells']} cells; {theirs}")
+    return True
+
+
+def saved(page, checks, downloads, extension):
+    """A saved file is the command's, byte for byte."""
+    page.browser.evaluate("delete document.body.dataset.saved")
+    page.browser.evaluate(f"document.getElementById('save-{extension}').click()")
+    page.browser.wait("document.body.dataset.saved", 60)
+    name = page.state().get("saved")
+    path = downloads / name
+    for _ in range(100):
+        if path.exists():
+            break
+        time.sleep(0.1)
+    page.run(page.text("command"))
+    same = path.exists() and path.read_bytes() == (page.folder / name).read_bytes()
+    checks.say(f"{name}: the command writes the same bytes", same, f"{path.stat().st_size if path.exists() else 0} bytes")
+    for one in [path, page.folder / name]:
+        one.unlink(missing_ok=True)
+
+
+def look_at_all(browser, page, checks, files, downloads, out):
+    """All checks, in Chromium."""
+    for name in files:
+        page.choose(name)
+        if agrees(page, checks, name):
+            saved(page, checks, downloads, "ply")
+    page.choose("ball.nii.gz")
+    page.settled()
+    for extension in ["stl", "glb", "vtu", "npz", "csv", "wvm"]:
+        saved(page, checks, downloads, extension)
+    # The recipe, as a file, does the same.
+    browser.evaluate("document.getElementById('save-toml').click()")
+    toml = downloads / "recipe.toml"
+    for _ in range(50):
+        if toml.exists():
+            break
+        time.sleep(0.1)
+    shutil.copy(toml, page.folder)
+    command = toml.read_text().splitlines()[0].removeprefix("# ")
+    page.run(command)
+    by_file = (page.folder / "ball.ply").read_bytes()
+    browser.evaluate("document.getElementById('save-ply').click()")
+    browser.wait("document.body.dataset.saved === 'ball.ply'", 30)
+    time.sleep(0.5)
+    checks.say("the recipe as a file gives the same bytes", by_file == (downloads / "ball.ply").read_bytes())
+
+    # α: the slider moves among stops, a number is taken as it is.
+    for alpha in ["3.7", "0.3"]:
+        page.forget()
+        browser.evaluate(f"(() => {{ const e = document.getElementById('alpha-value'); e.value = {alpha}; document.body.dataset.state = 'ready'; e.dispatchEvent(new Event('change')); }})()")
+        agrees(page, checks, f"α = {alpha}")
+    for share in [0.2, 0.55, 0.9]:
+        page.forget()
+        browser.evaluate(f"(() => {{ const e = document.getElementById('alpha'); e.value = {share}; document.body.dataset.state = 'ready'; e.dispatchEvent(new Event('input')); }})()")
+        agrees(page, checks, f"slider at {share}")
+
+    # Weights are frozen at the α that they are proportional to: another α is one of a ladder.
+    browser.evaluate("(() => { document.getElementById('weights').value = 'min-max'; document.getElementById('options').requestSubmit(); delete document.body.dataset.measured; document.body.dataset.state = 'busy'; })()")
+    agrees(page, checks, "weights min-max")
+    page.forget()
+    browser.evaluate("(() => { const e = document.getElementById('alpha-value'); e.value = 1.5; document.body.dataset.state = 'ready'; e.dispatchEvent(new Event('change')); })()")
+    page.settled()
+    page.run(page.text("command"))
+    rows = (page.folder / "ladder" / "ladder.json")
+    level = json.loads(rows.read_text())["levels"][0]
+    state = page.state()
+    checks.say("another α with frozen weights is one of a ladder", state["betti"] == ",".join(map(str, level["betti"])) and state["cells"] == str(level["cells"]))
+
+    # The diagram pairs what the command pairs.
+    page.choose("ball.xyz")
+    page.settled()
+    browser.evaluate("document.getElementById('compute-diagram').click()")
+    browser.wait("document.body.dataset.pairs", 60)
+    page.run("walpha filtration ball.xyz -o pairs.csv")
+    theirs = [0, 0, 0]
+    for line in (page.folder / "pairs.csv").read_text().splitlines()[1:]:
+        theirs[int(line.split(",")[0])] += 1
+    checks.say("the diagram has the command's pairs", page.state()["pairs"] == ",".join(map(str, theirs)), f"{page.state()['pairs']}; {theirs}")
+
+    # What cannot be read is refused as the command refuses it.
+    (page.folder / "bad.nii").write_bytes(b"no volume")
+    page.choose("bad.nii")
+    browser.wait("document.body.dataset.state === 'failed'", 30)
+    words = subprocess.run([page.walpha, "info", "bad.nii"], cwd=page.folder, capture_output=True, text=True).stderr
+    why = next(line.split("why: ", 1)[1] for line in words.splitlines() if "why: " in line)
+    checks.say("what cannot be read is refused in the command's words", why[:40] in page.text("failure"), page.text("failure"))
+
+    (page.folder / "gone.xyz").write_text("0 0 0\n1 0 0\n0 1 0\n0 0 1\n")
+    browser.choose("files", [page.folder / "gone.xyz"])
+    page.settled()
+    # A file that has gone since it was chosen is an error, too.
+    node = browser.call("Runtime.evaluate", expression="document.getElementById('files')")["result"]["objectId"]
+    browser.evaluate("document.getElementById('files').addEventListener('change', (event) => event.stopImmediatePropagation(), { capture: true, once: true })")
+    browser.call("DOM.setFileInputFiles", files=[str(page.folder / "gone.xyz")], objectId=node)
+    (page.folder / "gone.xyz").unlink()
+    browser.evaluate("(() => { document.body.dataset.state = 'busy'; document.getElementById('files').dispatchEvent(new Event('change')); })()")
+    checks.say("a file that has gone is an error", browser.wait("document.body.dataset.state === 'failed'", 10), page.text("failure"))
+
+    # Cancelling ends the work, and the page goes on.
+    page.example("sample:phantom@128")
+    browser.wait("document.getElementById('status').textContent.startsWith('Computing all')", 60)
+    browser.evaluate("document.getElementById('cancel').click()")
+    checks.say("work can be cancelled", browser.wait("document.body.dataset.state === 'cancelled'", 5))
+    started = time.monotonic()
+    page.example("sample:phantom")
+    checks.say("and the page goes on", page.settled() and page.state()["state"] == "ready", f"the phantom takes {time.monotonic() - started:.1f} s")
+    agrees(page, checks, "phantom")
+
+    # A cut has a face, of the cells that it cuts.
+    browser.evaluate("(() => { const e = document.getElementById('cut'); e.value = '1'; e.dispatchEvent(new Event('change')); document.getElementById('colour').value = 'value'; document.getElementById('colour').dispatchEvent(new Event('change')); })()")
+    time.sleep(1.5)
+    (out / "web-cut.png").write_bytes(browser.screenshot())
+    for name, (width, height, mobile) in SCREENS.items():
+        browser.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=mobile)
+        scheme = "dark" if name == "phone" else "light"
+        browser.call("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": scheme}])
+        time.sleep(1)
+        wide = browser.evaluate("document.documentElement.scrollWidth - innerWidth")
+        checks.say(f"nothing is wider than the {name}", wide <= 0, f"{wide} pixels")
+        (out / f"web-{name}.png").write_bytes(browser.screenshot())
+    unnamed = browser.evaluate("[...document.querySelectorAll('input:not([hidden]), select, button, canvas')].filter((e) => !(e.labels?.length || e.getAttribute('aria-label') || e.textContent.trim()) && e.closest('#scene') === null).map((e) => e.id)")
+    checks.say("every control has a name", not unnamed, str(unnamed))
+    browser.call("Emulation.setDeviceMetricsOverride", width=1400, height=950, deviceScaleFactor=1, mobile=False)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("page")
+    parser.add_argument("walpha")
+    parser.add_argument("--out", default=".", type=pathlib.Path)
+    arguments = parser.parse_args()
+    chromium = shutil.which("chromium") or shutil.which("google-chrome")
+    if not chromium:
+        print("there is no Chromium")
+        return 77
+    url = pathlib.Path(arguments.page).resolve().as_uri()
+    walpha = str(pathlib.Path(arguments.walpha).resolve())
+    size = pathlib.Path(arguments.page).stat().st_size
+    checks = Checks()
+    checks.say("the page takes at most 6 MB", size <= 6e6, f"{size / 1e6:.2f} MB")
+    with tempfile.TemporaryDirectory() as place:
+        folder, downloads = pathlib.Path(place, "files"), pathlib.Path(place, "downloads")
+        folder.mkdir()
+        downloads.mkdir()
+        files = make_files(folder)
+        with tempfile.TemporaryDirectory() as profile:
+            browser = Chromium(chromium, profile)
+            try:
+                browser.attach()
+                browser.call("Browser.setDownloadBehavior", behavior="allow", downloadPath=str(downloads))
+                browser.call("Emulation.setDeviceMetricsOverride", width=1400, height=950, deviceScaleFactor=1, mobile=False)
+                browser.open(url)
+                checks.say("the page is ready", browser.wait("document.body?.dataset.state === 'ready'", 60))
+                look_at_all(browser, Page(browser, folder, walpha), checks, files, downloads, arguments.out)
+                wrong = faults(browser.events)
+                checks.say("no error on the console, no request to a network", not wrong, "; ".join(wrong))
+            finally:
+                browser.close()
+        firefox = shutil.which("firefox-esr") or shutil.which("firefox")
+        if not firefox:
+            print("skipped: there is no Firefox")
+        else:
+            with tempfile.TemporaryDirectory() as profile:
+                browser = Firefox(firefox, profile)
+                try:
+                    browser.open(url)
+                    checks.say("Firefox: the page is ready", browser.wait("document.body.dataset.state === 'ready'", 60), browser.evaluate("document.getElementById('failure').textContent"))
+                    page = Page(browser, folder, walpha)
+                    for name in ["ball.nii.gz", "two.mhd", "ball.las"]:
+                        page.choose(name)
+                        agrees(page, checks, f"Firefox: {name}")
+                    (arguments.out / "web-firefox.png").write_bytes(browser.screenshot())
+                finally:
+                    browser.close()
+    return 1 if checks.failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

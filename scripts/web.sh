@@ -1,0 +1,20 @@
+#!/usr/bin/env bash
+# Builds walpha.html, the page that computes: scripts/web.sh [OUTPUT, by default target/web/walpha.html]
+#
+# Needs Rust with its target wasm32-wasip1, Node and npm. Ends with 77 where these, or the packages that the page is bundled
+# from, cannot be had.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+output=${1:-target/web/walpha.html}
+cannot() { echo "the page is not built: $1" && exit 77; }
+
+{ command -v rustup && rustup target add wasm32-wasip1; } > /dev/null 2>&1 || cannot "the target wasm32-wasip1 cannot be had"
+command -v npm > /dev/null || cannot "there is no npm"
+(cd web/page && npm ci --ignore-scripts --silent) || cannot "the packages in web/page/package.json cannot be had"
+
+RUSTFLAGS="--remap-path-prefix=$PWD=walpha --remap-path-prefix=${CARGO_HOME:-$HOME/.cargo}=cargo" \
+  cargo build --locked --profile web --target wasm32-wasip1 -p walpha-web
+mkdir -p "$(dirname "$output")"
+node web/page/build.mjs "${CARGO_TARGET_DIR:-target}/wasm32-wasip1/web/walpha_web.wasm" "$output"
+ls -l "$output"

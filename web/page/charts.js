@@ -1,0 +1,259 @@
+// The histogram, the curve of Betti numbers and the persistence diagram, on canvases.
+
+// A canvas as wide as its place, drawn again when that changes.
+class Chart {
+  constructor(canvas) {
+    this.canvas = canvas;
+    this.height = Number(canvas.getAttribute("height"));
+    new ResizeObserver(() => this.draw()).observe(canvas);
+    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.draw());
+  }
+
+  begin() {
+    const width = this.canvas.clientWidth;
+    const ratio = devicePixelRatio || 1;
+    this.width = width;
+    this.canvas.width = width * ratio;
+    this.canvas.height = this.height * ratio;
+    this.canvas.style.height = `${this.height}px`;
+    const context = this.canvas.getContext("2d");
+    context.scale(ratio, ratio);
+    context.font = "11px system-ui, sans-serif";
+    const style = getComputedStyle(document.documentElement);
+    this.ink = (name) => getComputedStyle(this.canvas).getPropertyValue(name) || style.getPropertyValue(name);
+    // light-dark() is resolved by a property that has a colour.
+    this.text = getComputedStyle(this.canvas).color;
+    return width > 0 ? context : null;
+  }
+
+  at(event) {
+    const rectangle = this.canvas.getBoundingClientRect();
+    return [event.clientX - rectangle.left, event.clientY - rectangle.top];
+  }
+}
+
+const BLUE = "#0072b2";
+const RED = "#d55e00";
+const GREEN = "#009e73";
+
+// Bars of a volume's values, with the window and the lowest value selected as lines to drag.
+export class Histogram extends Chart {
+  constructor(canvas, changed) {
+    super(canvas);
+    this.changed = changed;
+    canvas.addEventListener("pointerdown", (event) => this.grab(event));
+    canvas.addEventListener("pointermove", (event) => this.drag(event));
+    canvas.addEventListener("pointerup", () => this.drop());
+  }
+
+  set(bars, low, high) {
+    Object.assign(this, { bars, low, high });
+    this.draw();
+  }
+
+  // The places of the lines; null where there is none.
+  lines(marks) {
+    this.marks = marks;
+    this.draw();
+  }
+
+  x(value) {
+    return (value - this.low) / (this.high - this.low || 1) * this.width;
+  }
+
+  draw() {
+    const context = this.bars && this.begin();
+    if (!context) return;
+    const most = Math.log1p(Math.max(...this.bars));
+    context.fillStyle = this.text;
+    context.globalAlpha = 0.45;
+    this.bars.forEach((count, k) => {
+      const height = Math.log1p(count) / most * (this.height - 16);
+      context.fillRect(k / this.bars.length * this.width, this.height - height, this.width / this.bars.length + 0.5, height);
+    });
+    context.globalAlpha = 1;
+    const line = (value, colour, label) => {
+      if (value === null || value === undefined || Number.isNaN(value)) return;
+      const x = Math.min(this.width - 1, Math.max(1, this.x(value)));
+      context.fillStyle = context.strokeStyle = colour;
+      context.lineWidth = 2;
+      context.beginPath();
+      context.moveTo(x, 14);
+      context.lineTo(x, this.height);
+      context.stroke();
+      context.textAlign = x > this.width / 2 ? "right" : "left";
+      context.fillText(label, x, 11);
+    };
+    line(this.marks?.low, BLUE, "0");
+    line(this.marks?.high, BLUE, "255");
+    line(this.marks?.least, RED, "lowest");
+  }
+
+  grab(event) {
+    const [x] = this.at(event);
+    const marks = Object.entries(this.marks ?? {}).filter(([, value]) => value !== null);
+    const near = marks.map(([name, value]) => [Math.abs(this.x(value) - x), name]).sort((a, b) => a[0] - b[0])[0];
+    if (!near || near[0] > 14) return;
+    this.held = near[1];
+    this.canvas.setPointerCapture(event.pointerId);
+  }
+
+  drag(event) {
+    if (!this.held) return;
+    const share = Math.min(1, Math.max(0, this.at(event)[0] / this.width));
+    this.changed(this.held, this.low + share * (this.high - this.low), false);
+  }
+
+  drop() {
+    if (this.held) this.changed(this.held, this.marks[this.held], true);
+    this.held = null;
+  }
+}
+
+// A scale of α: logarithmic in the squared radius of the largest balls, α + ω, from the first simplices to where topology
+// has changed for the last time.
+export class AlphaScale {
+  constructor({ alphas, b0, b1, b2, largestWeight, reference }) {
+    this.shift = largestWeight;
+    const size = (alpha) => alpha + largestWeight;
+    const same = (k) => [b0, b1, b2].every((counts) => counts[k] === counts[k - 1]);
+    let last = alphas.length - 1;
+    while (last > 0 && same(last)) last -= 1;
+    const first = alphas.findIndex((alpha) => size(alpha) > 0);
+    const high = 2 * Math.max(size(alphas[last] ?? 1), size(reference));
+    const low = first < 0 ? high / 4 : Math.max(size(alphas[first]), 1e-6 * high);
+    // A little below the first value nothing is in.
+    [this.low, this.high] = high > 0 ? [Math.log(low / 1.2), Math.log(high)] : [0, 1];
+  }
+
+  share(alpha) {
+    const size = alpha + this.shift;
+    return size > 0 ? Math.min(1, Math.max(0, (Math.log(size) - this.low) / (this.high - this.low))) : 0;
+  }
+
+  alpha(share) {
+    return Math.exp(this.low + share * (this.high - this.low)) - this.shift;
+  }
+}
+
+// Components, tunnels and voids over α.
+export class Curve extends Chart {
+  constructor(canvas, chosen) {
+    super(canvas);
+    const choose = (event) => this.scale && chosen(this.scale.alpha(Math.min(1, Math.max(0, (this.at(event)[0] - 4) / (this.width - 8)))));
+    canvas.addEventListener("pointerdown", choose);
+    canvas.addEventListener("pointermove", (event) => event.buttons && choose(event));
+  }
+
+  set(scale, data) {
+    Object.assign(this, { scale, data });
+    this.draw();
+  }
+
+  mark(alpha) {
+    this.alpha = alpha;
+    this.draw();
+  }
+
+  draw() {
+    const context = this.data && this.begin();
+    if (!context) return;
+    const { alphas, b0, b1, b2 } = this.data;
+    const most = Math.log1p(Math.max(1, ...b0, ...b1, ...b2));
+    const y = (count) => this.height - 4 - Math.log1p(count) / most * (this.height - 24);
+    const x = (alpha) => 4 + this.scale.share(alpha) * (this.width - 8);
+    const series = [["components", b0, BLUE], ["tunnels", b1, RED], ["voids", b2, GREEN]];
+    let left = 6;
+    for (const [name, counts, colour] of series) {
+      context.strokeStyle = context.fillStyle = colour;
+      context.lineWidth = 1.5;
+      context.beginPath();
+      let before = 0;
+      context.moveTo(4, y(0));
+      alphas.forEach((alpha, k) => {
+        context.lineTo(x(alpha), y(before));
+        context.lineTo(x(alpha), y(counts[k]));
+        before = counts[k];
+      });
+      context.lineTo(this.width - 4, y(before));
+      context.stroke();
+      context.fillText(name, left, 11);
+      left += context.measureText(name).width + 14;
+    }
+    context.strokeStyle = this.text;
+    context.lineWidth = 1;
+    context.beginPath();
+    context.moveTo(x(this.alpha), 16);
+    context.lineTo(x(this.alpha), this.height);
+    context.stroke();
+  }
+}
+
+// Births and deaths; what never ends is on the upper edge.
+export class Diagram extends Chart {
+  constructor(canvas, chosen) {
+    super(canvas);
+    canvas.addEventListener("click", (event) => this.choose(event, chosen));
+  }
+
+  set(scale, pairs) {
+    Object.assign(this, { scale, pairs });
+    this.draw();
+  }
+
+  mark(alpha) {
+    this.alpha = alpha;
+    this.draw();
+  }
+
+  place([birth, death]) {
+    const size = [this.width - 12, this.height - 24];
+    const up = Number.isFinite(death) ? this.scale.share(death) : 1;
+    return [6 + this.scale.share(birth) * size[0], this.height - 6 - up * size[1]];
+  }
+
+  draw() {
+    const context = this.pairs && this.begin();
+    if (!context) return;
+    context.strokeStyle = this.text;
+    context.globalAlpha = 0.4;
+    context.beginPath();
+    context.moveTo(6, this.height - 6);
+    context.lineTo(this.width - 6, 18);
+    const [x, y] = this.place([this.alpha, this.alpha]);
+    context.moveTo(x, this.height - 6);
+    context.lineTo(x, y);
+    context.lineTo(6, y);
+    context.stroke();
+    context.globalAlpha = 0.7;
+    const names = ["components", "tunnels", "voids"];
+    let left = 6;
+    [BLUE, RED, GREEN].forEach((colour, dimension) => {
+      context.fillStyle = colour;
+      for (const pair of this.pairs[dimension]) {
+        const [px, py] = this.place(pair);
+        context.beginPath();
+        context.arc(px, py, 2.5, 0, 2 * Math.PI);
+        context.fill();
+      }
+      context.fillText(names[dimension], left, 11);
+      left += context.measureText(names[dimension]).width + 14;
+    });
+    context.globalAlpha = 1;
+  }
+
+  // Between a birth and a death, in the middle of the scale, what they bound is there.
+  choose(event, chosen) {
+    const [x, y] = this.at(event);
+    let [near, least] = [null, 12];
+    for (const pair of this.pairs?.flat() ?? []) {
+      const [px, py] = this.place(pair);
+      const distance = Math.hypot(px - x, py - y);
+      if (distance < least) [near, least] = [pair, distance];
+    }
+    if (!near) return;
+    const [birth, death] = near;
+    const end = Number.isFinite(death) ? this.scale.share(death) : 1;
+    chosen(Math.max(birth, this.scale.alpha((this.scale.share(birth) + end) / 2)));
+  }
+}

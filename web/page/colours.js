@@ -1,0 +1,35 @@
+// Colours, as walpha's pictures have them: classes from a palette for all eyes (Okabe and Ito), values by viridis.
+
+export const CLASSES = ["exterior", "singular", "regular", "interior", "hidden"];
+export const OF_CLASS = ["#9aa3b2", "#d55e00", "#0072b2", "#009e73", "#cc79a7"];
+export const EDGES = "#e69f00";
+export const SELECTED = "#e69f00";
+
+const VIRIDIS = [
+  [68, 1, 84], [72, 26, 108], [71, 47, 125], [65, 68, 135], [57, 86, 140], [49, 104, 142], [42, 120, 142], [35, 136, 142],
+  [31, 152, 139], [34, 168, 132], [53, 183, 121], [84, 197, 104], [122, 209, 81], [165, 219, 54], [210, 226, 27], [253, 231, 37],
+].map((rgb) => rgb.map((c) => c / 255));
+
+// Red, green and blue, 0 to 1, of a share of the range.
+export function viridis(share) {
+  const at = Math.min(1, Math.max(0, share)) * (VIRIDIS.length - 1);
+  const low = Math.min(Math.floor(at), VIRIDIS.length - 2);
+  const [a, b] = [VIRIDIS[low], VIRIDIS[low + 1]];
+  return a.map((c, k) => c + (at - low) * (b[k] - c));
+}
+
+// The least and the largest of numbers.
+export function range(numbers) {
+  let [low, high] = [Infinity, -Infinity];
+  for (const number of numbers) {
+    if (number < low) low = number;
+    if (number > high) high = number;
+  }
+  return [low, high];
+}
+
+// A number with four significant digits at most.
+export function short(number) {
+  if (number === "inf" || number === Infinity) return "∞";
+  return Number(Number(number).toPrecision(4)).toLocaleString("en", { maximumSignificantDigits: 4, useGrouping: false });
+}

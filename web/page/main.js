@@ -1,0 +1,606 @@
+// The page: what the user does, what the worker answers, and what is seen of it.
+
+import { Box3, Vector3 } from "three";
+import ctBone from "../../presets/ct-bone.toml";
+import ctSkin from "../../presets/ct-skin.toml";
+import molecule from "../../presets/molecule.toml";
+import mri from "../../presets/mri.toml";
+import paper from "../../presets/paper.toml";
+import scattered from "../../presets/points.toml";
+import { AlphaScale, Curve, Diagram, Histogram } from "./charts.js";
+import { CLASSES, EDGES, OF_CLASS, short } from "./colours.js";
+import { Cancelled, Engine, Failure } from "./engine.js";
+import { EXAMPLES } from "./examples.js";
+import { ShapeScene } from "./scene.js";
+import { Slices } from "./slices.js";
+
+const byId = (id) => document.getElementById(id);
+const element = (name, properties = {}, ...children) => {
+  const made = Object.assign(document.createElement(name), properties);
+  made.append(...children);
+  return made;
+};
+
+// The presets of the command. A volume's have numbers, or a range of values.
+const PRESETS = Object.fromEntries(
+  Object.entries({ "ct-bone": ctBone, "ct-skin": ctSkin, mri, paper, points: scattered, molecule }).map(([name, toml]) => {
+    const lines = toml.split("\n").filter((line) => line.includes("=") && !line.startsWith("#"));
+    return [name, Object.fromEntries(lines.map((line) => line.split(" = ").map((word) => word.replaceAll('"', ""))))];
+  }),
+);
+const OF_VOLUMES = ["ct-bone", "ct-skin", "mri", "paper"];
+const OF_POINTS = ["points", "molecule"];
+// More samples than this are halved along each axis when they are read: a page has 4 GiB.
+const MOST_SAMPLES = 2 ** 26;
+const FORMATS = [
+  ["ply", "PLY"], ["stl", "STL, solid"], ["glb", "GLB"], ["vtu", "VTU"], ["npz", "NPZ"], ["csv", "points, CSV"], ["wvm", "points, WVM"], ["png", "picture, PNG"],
+];
+
+const state = { input: null, facts: null, made: null, alpha: null, grayMin: null, opened: null };
+let engine = null;
+let scene = null;
+
+// One thing is computed at a time: a request ends what the one before has not begun.
+function busy(text) {
+  byId("working").hidden = text === null;
+  document.body.dataset.state = text === null ? "ready" : "busy";
+  if (text !== null) byId("status").textContent = text;
+}
+
+function fail(error) {
+  busy(null);
+  if (error instanceof Cancelled) {
+    byId("status").textContent = "Cancelled.";
+    document.body.dataset.state = "cancelled";
+    state.opened = null;
+    return;
+  }
+  document.body.dataset.state = "failed";
+  byId("status").textContent = "";
+  const failure = byId("failure");
+  failure.replaceChildren(element("b", { textContent: error.message }));
+  if (error.next) failure.append(element("div", { textContent: `Next: ${error.next}.` }));
+  failure.hidden = false;
+  if (!(error instanceof Failure)) console.error(error);
+}
+
+const STAGES = {
+  read: "Reading", haar: "Wavelets", points: "Selecting points", alpha: "Finding α", filtration: "Computing all shapes", curve: "Counting what each α changes",
+  order: "Sorting simplices", pairs: "Pairing births and deaths", shape: "Computing the shape",
+};
+
+function progress({ stage, share }) {
+  const bar = byId("progress");
+  if (stage !== undefined) {
+    byId("status").textContent = `${STAGES[stage] ?? stage} …`;
+    bar.removeAttribute("value");
+  }
+  if (share !== undefined) bar.value = share;
+}
+
+function remark(text) {
+  byId("remarks").append(element("li", { textContent: text.trim() }));
+}
+
+// Runs a task; what goes wrong is shown in its place.
+async function task(text, work) {
+  byId("failure").hidden = true;
+  busy(text);
+  try {
+    await work();
+    busy(null);
+  } catch (error) {
+    fail(error);
+  }
+}
+
+// ---- Input
+
+function rows(table, facts) {
+  table.replaceChildren(...facts.map(([name, value]) =>
+    element("tr", {}, element("th", { textContent: name }), element("td", { textContent: value }))));
+}
+
+function factsOf(facts) {
+  if (facts.kind === "points") {
+    const corner = (at) => at.map(short).join(", ");
+    return [
+      ["input", state.input], ["points", facts.count], ["box", `${corner(facts.low)} to ${corner(facts.high)} ${facts.unit}`],
+      ["besides", [facts.weights && "weights", facts.values && "values"].filter(Boolean).join(", ") || "no weights, no values"],
+    ];
+  }
+  const list = [
+    ["input", state.input],
+    ["volume", `${facts.dims.join("×")} samples (x, y, z) of type ${facts.samples}`],
+    ["space", facts.coordinates.space],
+    ["spacing", `${facts.spacing.map(short).join(", ")} ${facts.unit}`],
+    ["origin", `${facts.origin.map(short).join(", ")} ${facts.unit}`],
+  ];
+  const straight = facts.direction.every((row, i) => row.every((x, j) => x === Number(i === j)));
+  if (!straight) list.push(["axes", facts.direction[0].map((_, k) => facts.direction.map((row) => short(row[k])).join(" ")).join(" / ")]);
+  list.push(["values", `${short(facts.low)} to ${short(facts.high)}`]);
+  if (facts.missing) list.push(["missing", `${facts.missing} samples`]);
+  if (facts.hounsfield) {
+    const percent = (share) => `${Math.round(100 * share)} %`;
+    list.push(["unit", `Hounsfield units: ${percent(facts.hounsfield.air)} air, ${percent(facts.hounsfield.softTissue)} soft tissue`]);
+  }
+  return list;
+}
+
+// A file, several, or a folder, or a sample by its name.
+function choose(input, files) {
+  return task("Reading …", async () => {
+    byId("remarks").replaceChildren();
+    for (const id of ["frame", "downsample", "columns", "series"]) byId(id).value = "";
+    byId("series").replaceChildren();
+    state.input = input;
+    await engine.put(files);
+    await open(true);
+    if (state.facts.kind !== "series") await compute();
+  });
+}
+
+function reading() {
+  const given = (id) => (byId(id).value === "" ? undefined : byId(id).value);
+  const number = (id) => (given(id) === undefined ? undefined : Number(given(id)));
+  return { frame: number("frame"), downsample: number("downsample"), columns: given("columns"), series: given("series") };
+}
+
+// Reads the input; the first time, its options get the values that suit it.
+async function open(first) {
+  const options = reading();
+  let facts = await engine.call({ do: "open", input: state.input, options });
+  const samples = (dims) => dims.reduce((a, b) => a * b);
+  if (facts.kind === "volume" && options.downsample === undefined && samples(facts.dims) > MOST_SAMPLES) {
+    options.downsample = Math.ceil(Math.cbrt(samples(facts.dims) / MOST_SAMPLES));
+    byId("downsample").value = options.downsample;
+    remark(`${facts.dims.join("×")} samples are too many for a page: ${options.downsample} along each axis become one`);
+    facts = await engine.call({ do: "open", input: state.input, options });
+  }
+  state.facts = facts;
+  state.opened = JSON.stringify(reading());
+  document.body.classList.remove("empty");
+  byId("options").hidden = false;
+  const isVolume = facts.kind === "volume";
+  byId("series-label").hidden = facts.kind !== "series" && byId("series").options.length === 0;
+  byId("of-volume").hidden = !isVolume;
+  byId("of-points").hidden = facts.kind !== "points";
+  byId("slices").hidden = !isVolume;
+  if (facts.kind === "series") {
+    rows(byId("facts"), [["input", state.input], ["series", `${facts.series.length}: choose one below`]]);
+    byId("series").replaceChildren(...facts.series.map((series, k) =>
+      element("option", { value: k + 1, textContent: `${k + 1}: ${Object.values(series).filter((x) => typeof x === "string").join(", ")}` })));
+    return;
+  }
+  rows(byId("facts"), factsOf(facts));
+  if (first) suit(facts);
+  if (isVolume) {
+    histogram.set(facts.histogram, facts.low, facts.high);
+    await slices.open(facts);
+    marks();
+  }
+}
+
+// The options that suit an input: a CT's bone, or the defaults.
+function suit(facts) {
+  const isVolume = facts.kind === "volume";
+  const names = isVolume ? ["", ...OF_VOLUMES] : ["", ...OF_POINTS];
+  byId("preset").replaceChildren(...names.map((name) => element("option", { value: name, textContent: name || "none" })));
+  // Points have presets, too; their control is moved beside their columns.
+  (isVolume ? byId("of-volume") : byId("of-points")).prepend(byId("preset").parentElement);
+  const weights = [["", isVolume || !facts.weights ? "none" : "of the file"], ["common=0", "none"], ["min-max", "min-max (4.1)"], ["barycentric", "barycentric (4.2)"], ["barycentric-n", "barycentric, times N"]];
+  const offered = isVolume || !facts.weights ? weights.filter(([name]) => name !== "common=0") : weights;
+  byId("weights").replaceChildren(...offered.map(([value, textContent]) => element("option", { value, textContent })));
+  apply(facts.hounsfield ? "ct-bone" : "");
+}
+
+// Fills the form with a preset.
+function apply(name) {
+  byId("preset").value = name;
+  const preset = PRESETS[name] ?? {};
+  const [low, high] = preset.gray?.split("..") ?? ["", ""];
+  [byId("gray-low").value, byId("gray-high").value] = [low, high];
+  state.grayMin = preset["gray-min"] ? Number(preset["gray-min"]) : null;
+  byId("value-min").value = state.grayMin === null ? "" : short(valueOf(state.grayMin));
+  const rule = ["threshold", "count", "ratio"].find((rule) => preset[rule] !== undefined);
+  byId("rule").value = rule ?? "ratio";
+  byId("rule-value").value = rule ? preset[rule] : "";
+  byId("rms").value = preset.rms ?? "";
+  const weights = preset.weights ?? "";
+  byId("weights").value = [...byId("weights").options].some((option) => option.value === weights) ? weights : "";
+  byId("alpha-ref").value = preset.alpha ?? "";
+  ruled();
+  marks();
+}
+
+function ruled() {
+  byId("rule-unit").textContent = { threshold: "gray levels", count: "samples", ratio: "of all" }[byId("rule").value];
+  byId("rule-value").placeholder = byId("rule").value === "ratio" ? "0.0609" : "";
+}
+
+const grayRange = () => {
+  const given = ["gray-low", "gray-high"].map((id) => (byId(id).value === "" ? null : Number(byId(id).value)));
+  if (!given.includes(null)) return given;
+  return state.facts?.grayLevels ? [0, 255] : [state.facts?.low ?? 0, state.facts?.high ?? 255];
+};
+const valueOf = (gray) => {
+  const [low, high] = grayRange();
+  return low + gray / 255 * (high - low);
+};
+const least = () => {
+  if (state.grayMin !== null) return valueOf(state.grayMin);
+  return byId("value-min").value === "" ? null : Number(byId("value-min").value);
+};
+
+// The window and the lowest value, in the histogram and the slices.
+function marks() {
+  if (state.facts?.kind !== "volume") return;
+  const [low, high] = grayRange();
+  histogram.lines({ low, high, least: least() ?? low });
+  slices.setWindow(low, high, least());
+}
+
+function optionsOfForm() {
+  const given = (id) => (byId(id).value.trim() === "" ? undefined : byId(id).value.trim());
+  const number = (id) => (given(id) === undefined ? undefined : Number(given(id)));
+  const options = { ...reading(), weights: given("weights"), alpha: given("alpha-ref") };
+  if (state.facts.kind === "points") return options;
+  const [low, high] = [number("gray-low"), number("gray-high")];
+  if (low !== undefined && high !== undefined) options.gray = [low, high];
+  if (state.grayMin !== null) options.grayMin = state.grayMin;
+  else options.valueMin = number("value-min");
+  options[byId("rule").value] = number("rule-value");
+  options.rms = number("rms");
+  return options;
+}
+
+// ---- Shape
+
+async function compute() {
+  if (state.opened !== JSON.stringify(reading())) await open(false);
+  if (state.facts.kind === "series") return;
+  const made = await engine.call({ do: "shape", options: optionsOfForm() });
+  state.made = made;
+  for (const id of ["shape", "numbers", "output"]) byId(id).hidden = false;
+  scene ??= shapeScene();
+  const box = new Box3();
+  box.setFromArray(made.positions);
+  if (box.isEmpty()) box.set(new Vector3(), new Vector3(1, 1, 1));
+  scene.resize();
+  scene.setPoints(made, box);
+  const colour = byId("colour");
+  [...colour.options].find((option) => option.value === "value").hidden = !made.values;
+  if (colour.value === "value" && !made.values) colour.value = "class";
+  cut();
+  state.scale = new AlphaScale(made);
+  curve.set(state.scale, made);
+  diagram.set(state.scale, null);
+  byId("diagram").hidden = true;
+  byId("compute-diagram").hidden = false;
+  byId("alpha-unit").textContent = `${made.unit}²`;
+  suggestions(made);
+  if (made.samples) slices.setPoints(made.samples);
+  const kept = made.truncation ? `; ${made.truncation.kept} of ${made.truncation.total} Haar coefficients kept` : "";
+  byId("status").textContent = `${made.points} points, ${made.cells} cells in all${kept}.`;
+  await setAlpha(made.reference);
+}
+
+// Marks of α that tell something.
+function suggestions({ reference, suggested, origin }) {
+  const named = [
+    [{ default: "default", given: "given", stored: "stored" }[origin.origin] ?? "auto", reference], ["all points by", suggested.all_points],
+    ["one region by", suggested.one_region], ["no void by", suggested.no_void], ["longest plateau from", suggested.plateau[0]],
+  ];
+  const finite = named.filter(([, alpha]) => Number.isFinite(alpha));
+  byId("marks").replaceChildren(...finite.map(([name, alpha]) =>
+    element("button", { type: "button", textContent: `${name} ${short(alpha)}`, onclick: () => setAlpha(alpha) })));
+}
+
+// The last of the stops up to an α: nothing needs to be computed for it.
+function stop(alpha) {
+  const { alphas } = state.made;
+  let [low, high] = [0, alphas.length];
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    if (alphas[middle] <= alpha) low = middle + 1;
+    else high = middle;
+  }
+  return alphas[Math.max(0, low - 1)];
+}
+
+// While a shape is being drawn, only the last α asked for waits.
+let [drawing, next] = [false, null];
+async function setAlpha(alpha) {
+  next = alpha;
+  state.alpha = alpha;
+  byId("alpha").value = state.scale.share(alpha);
+  if (document.activeElement !== byId("alpha-value")) byId("alpha-value").value = alpha;
+  curve.mark(alpha);
+  diagram.mark(alpha);
+  if (drawing) return;
+  drawing = true;
+  try {
+    while (next !== null) {
+      const wanted = next;
+      next = null;
+      const shape = await engine.call({ do: "at", alpha: wanted });
+      state.shape = shape;
+      scene.setShape(shape, wanted);
+      legend(shape);
+      document.body.dataset.alpha = wanted;
+      document.body.dataset.betti = shape.betti.join(",");
+      if (byId("cut").value !== "") await section(wanted);
+    }
+  } catch (error) {
+    fail(error);
+  } finally {
+    drawing = false;
+  }
+  later();
+}
+
+// Counts, measures, voids and the command, once α rests.
+let timer = null;
+function later() {
+  clearTimeout(timer);
+  timer = setTimeout(async () => {
+    try {
+      const alpha = state.alpha;
+      const measured = await engine.call({ do: "measure", alpha });
+      if (alpha !== state.alpha) return;
+      measures(measured);
+      await command();
+      document.body.dataset.measured = alpha;
+    } catch (error) {
+      fail(error);
+    }
+  }, 150);
+}
+
+function measures(level) {
+  const unit = state.made.unit;
+  const classes = (counts) => ["interior", "regular", "singular"].map((name) => `${counts[name]} ${name}`).join(", ");
+  const [b0, b1, b2] = level.betti;
+  const radius = level.alpha >= 0 ? ` (√α = ${short(Math.sqrt(level.alpha))} ${unit})` : "";
+  rows(byId("measures"), [
+    ["α", `${short(level.alpha)} ${unit}²${radius}`],
+    ["cells", level.cells], ["facets", classes(level.facets)], ["edges", classes(level.edges)], ["vertices", classes(level.vertices)],
+    ["topology", `${b0} components, ${b1} tunnels, ${b2} voids`],
+    ["volume", `${short(level.volume)} ${unit}³, ${(100 * level.coverage).toFixed(1)} % of the box`],
+    ["boundary", `${short(level.area)} ${unit}²`],
+  ]);
+  document.body.dataset.cells = level.cells;
+  const shift = state.made.centre;
+  const shown = level.voids.slice(0, 200).map((hole) => {
+    const [low, high] = [hole.low, hole.high].map((corner) => corner.map((x, k) => x - shift[k]));
+    const item = element("li", { tabIndex: 0, textContent: `${short(hole.volume)} ${unit}³, ${hole.cells} cells, filled at α = ${short(hole.filling_alpha)}` });
+    item.onpointerenter = item.onfocus = () => scene.light(low, high);
+    item.onpointerleave = item.onblur = () => scene.light();
+    return item;
+  });
+  byId("voids").replaceChildren(...(shown.length ? shown : [element("li", { textContent: "none" })]));
+}
+
+function legend(shape) {
+  const box = (colour) => element("i", { style: `background: ${colour}` });
+  const by = byId("colour").value;
+  if (by !== "class" && scene.scale) {
+    const [low, high] = scene.scale;
+    byId("legend").replaceChildren(element("span", {}, `${by === "value" ? "F" : "ω"}: ${short(low)} `, element("i", { className: "scale" }), ` ${short(high)}`));
+    return;
+  }
+  const parts = [[OF_CLASS[2], `${shape.regular.length / 3} regular facets`], [OF_CLASS[1], `${shape.singular.length / 3} singular facets`], [EDGES, `${shape.edges.length / 2} singular edges`]];
+  const shown = parts.filter(([, text]) => !text.startsWith("0 "));
+  byId("legend").replaceChildren(...shown.map(([colour, text]) => element("span", {}, box(colour), text)));
+  if (!shown.length) byId("legend").textContent = "Nothing but points is in the shape at this α.";
+}
+
+function shapeScene() {
+  const made = new ShapeScene(byId("scene"));
+  let down = null;
+  made.element.addEventListener("pointerdown", (event) => { down = [event.clientX, event.clientY]; });
+  made.element.addEventListener("pointerup", (event) => {
+    if (!down || Math.hypot(event.clientX - down[0], event.clientY - down[1]) > 4) return;
+    const v = made.pick(event);
+    byId("picked").textContent = v === null ? "" : wordsOf(v);
+  });
+  return made;
+}
+
+function wordsOf(v) {
+  const { positions, weights, values, centre, unit } = state.made;
+  const at = [0, 1, 2].map((k) => short(positions[3 * v + k] + centre[k])).join(", ");
+  const value = values ? `, F = ${short(values[v])}` : "";
+  return `point ${v} at (${at}) ${unit}${value}, ω = ${short(weights[v])}, ${CLASSES[state.shape.classes[v]]}`;
+}
+
+// The cut through the cells.
+async function section(alpha) {
+  const axis = Number(byId("cut").value);
+  const name = ["x", "y", "z"][axis];
+  const share = Number(byId("cut-place").value);
+  // Not exactly through the samples of a grid, where cells have their facets.
+  const place = scene.box.min[name] + (share + 1e-6) * (scene.box.max[name] - scene.box.min[name]);
+  scene.setCut(axis, place);
+  scene.setSection(await engine.call({ do: "section", alpha, axis, place: place + state.made.centre[axis] }));
+}
+
+async function cut() {
+  const on = byId("cut").value !== "";
+  byId("cut-place").disabled = !on;
+  if (!on) return scene.setCut(null);
+  if (state.alpha !== null && state.shape) await setAlpha(state.alpha);
+}
+
+// ---- Output
+
+// The name of a file to save: never that of the input, which the command would refuse to replace.
+function nameOf(extension) {
+  const stem = state.input.replace(/^.*[/:]/, "").replace(/(\.nii)?\.[^.]*$/, "").replace(/@.*/, "") || "shape";
+  const name = `${stem}.${extension}`;
+  return name === state.input ? `${stem}-shape.${extension}` : name;
+}
+
+async function command() {
+  const name = nameOf("ply");
+  const { command, toml } = await engine.call({ do: "command", name, alpha: state.alpha, solid: false });
+  byId("command").textContent = command;
+  state.toml = toml;
+}
+
+function download(bytes, name) {
+  const link = element("a", { href: URL.createObjectURL(new Blob([bytes])), download: name });
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 1000);
+  document.body.dataset.saved = name;
+}
+
+async function save(extension) {
+  const name = nameOf(extension);
+  if (extension === "png") return task("Drawing …", async () => download(await scene.png(), name));
+  return task(`Writing ${name} …`, async () => {
+    const solid = extension === "stl";
+    const { bytes } = await engine.call({ do: "save", name, alpha: state.alpha, solid });
+    download(bytes, name);
+    byId("command").textContent = (await engine.call({ do: "command", name, alpha: state.alpha, solid })).command;
+    byId("status").textContent = `${name}: ${(bytes.length / 1e6).toFixed(2)} MB.`;
+  });
+}
+
+// ---- What the user does
+
+const histogram = new Histogram(byId("histogram"), (mark, value, done) => {
+  const shown = short(value);
+  if (mark === "least") {
+    state.grayMin = null;
+    byId("value-min").value = shown;
+  } else {
+    // The lowest value stays where it is.
+    keepLeast();
+    const [low, high] = grayRange();
+    [byId("gray-low").value, byId("gray-high").value] = mark === "low" ? [shown, short(high)] : [short(low), shown];
+  }
+  byId("preset").value = "";
+  marks();
+  if (done) byId("options").requestSubmit();
+});
+const curve = new Curve(byId("curve"), (alpha) => setAlpha(stop(alpha)));
+const diagram = new Diagram(byId("diagram"), (alpha) => setAlpha(alpha));
+let slices = null;
+
+function keepLeast() {
+  if (state.grayMin === null) return;
+  byId("value-min").value = short(valueOf(state.grayMin));
+  state.grayMin = null;
+}
+
+function wire() {
+  byId("options").addEventListener("submit", (event) => {
+    event.preventDefault();
+    return task("Computing …", compute);
+  });
+  byId("cancel").addEventListener("click", () => engine.cancel());
+  byId("preset").addEventListener("change", () => apply(byId("preset").value));
+  byId("rule").addEventListener("change", ruled);
+  byId("value-min").addEventListener("input", () => { state.grayMin = null; marks(); });
+  for (const id of ["gray-low", "gray-high"]) byId(id).addEventListener("input", () => { keepLeast(); marks(); });
+  byId("series").addEventListener("change", () => task("Reading …", async () => { await open(true); await compute(); }));
+  byId("alpha").addEventListener("input", () => setAlpha(stop(state.scale.alpha(Number(byId("alpha").value)))));
+  byId("alpha-value").addEventListener("change", () => setAlpha(Number(byId("alpha-value").value)));
+  byId("colour").addEventListener("change", () => { scene.setColour(byId("colour").value); legend(state.shape); });
+  byId("show-singular").addEventListener("change", ({ target }) => { scene.show("singular", target.checked); scene.show("edges", target.checked); });
+  for (const name of ["points", "balls", "hidden"]) {
+    byId(`show-${name}`).addEventListener("change", ({ target }) => scene.show(name, target.checked));
+  }
+  byId("cut").addEventListener("change", cut);
+  byId("cut-place").addEventListener("input", cut);
+  byId("home").addEventListener("click", () => scene.home());
+  byId("compute-diagram").addEventListener("click", () => task("Sorting simplices …", async () => {
+    const { pairs0, pairs1, pairs2 } = await engine.call({ do: "diagram" });
+    const pairs = [pairs0, pairs1, pairs2].map((flat) => Array.from({ length: flat.length / 2 }, (_, k) => [flat[2 * k], flat[2 * k + 1]]));
+    byId("diagram").hidden = false;
+    byId("compute-diagram").hidden = true;
+    diagram.set(state.scale, pairs);
+    document.body.dataset.pairs = pairs.map((list) => list.length).join(",");
+  }));
+  byId("formats").replaceChildren(...FORMATS.map(([extension, name]) =>
+    element("button", { type: "button", id: `save-${extension}`, textContent: name, onclick: () => save(extension) })));
+  byId("save-toml").addEventListener("click", () => download(state.toml, "recipe.toml"));
+  byId("copy").addEventListener("click", () => navigator.clipboard?.writeText(byId("command").textContent));
+
+  const chosen = (list) => {
+    const files = [...list].filter((file) => !file.name.startsWith("."));
+    if (files.length === 0) return undefined;
+    const entries = files.map((file) => ({ path: file.webkitRelativePath || file.name, file }));
+    return offer(entries);
+  };
+  for (const [button, input] of [["choose", "files"], ["choose-folder", "folder"]]) {
+    byId(button).addEventListener("click", () => byId(input).click());
+    byId(input).addEventListener("change", () => { chosen(byId(input).files); byId(input).value = ""; });
+  }
+  addEventListener("dragover", (event) => { event.preventDefault(); byId("drop").classList.add("over"); });
+  addEventListener("dragleave", () => byId("drop").classList.remove("over"));
+  addEventListener("drop", async (event) => {
+    event.preventDefault();
+    byId("drop").classList.remove("over");
+    const entries = [...event.dataTransfer.items].map((item) => item.webkitGetAsEntry?.()).filter(Boolean);
+    if (entries.length === 0) return chosen(event.dataTransfer.files);
+    return offer((await Promise.all(entries.map(filesOf))).flat());
+  });
+  byId("examples").append(...EXAMPLES.map(({ input, name }) => element("option", { value: input, textContent: name })));
+  byId("examples").addEventListener("change", ({ target }) => {
+    const example = EXAMPLES.find(({ input }) => input === target.value);
+    target.value = "";
+    if (!example) return;
+    const files = example.make ? [{ path: example.input, file: new File([example.make()], example.input) }] : [];
+    choose(example.input, files);
+  });
+}
+
+// Files of a dropped folder, by their paths in it.
+async function filesOf(entry) {
+  if (entry.isFile) {
+    const file = await new Promise((resolve, reject) => entry.file(resolve, reject));
+    return file.name.startsWith(".") ? [] : [{ path: entry.fullPath.replace(/^\//, ""), file }];
+  }
+  const reader = entry.createReader();
+  const all = [];
+  // A reader gives a hundred entries at a time.
+  for (;;) {
+    const some = await new Promise((resolve, reject) => reader.readEntries(resolve, reject));
+    if (some.length === 0) break;
+    all.push(...some);
+  }
+  return (await Promise.all(all.map(filesOf))).flat();
+}
+
+// Headers whose samples may lie in a file beside them.
+const HEADERS = /\.(nhdr|mhd|hdr)$/i;
+// What is one input: a file, a header with the file beside it, or a folder of slices.
+function offer(files) {
+  const [first] = files;
+  const folder = first.path.includes("/") ? first.path.slice(0, first.path.indexOf("/")) : null;
+  if (folder !== null) return choose(folder, files);
+  const header = files.find(({ path }) => HEADERS.test(path));
+  if (files.length === 1 || header) return choose((header ?? first).path, files);
+  // Slices, chosen one by one.
+  return choose("slices", files.map(({ path, file }) => ({ path: `slices/${path}`, file })));
+}
+
+async function unpacked(id) {
+  const text = atob(byId(id).textContent.trim());
+  const bytes = Uint8Array.from(text, (c) => c.charCodeAt(0));
+  const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"));
+  return new Response(stream).arrayBuffer();
+}
+
+document.body.classList.add("empty");
+try {
+  const module = await WebAssembly.compile(await unpacked("wasm"));
+  engine = new Engine(module, byId("worker").textContent, { progress, remark });
+  slices = new Slices(byId("planes"), engine, fail);
+  wire();
+  document.body.dataset.state = "ready";
+} catch (error) {
+  fail(error);
+}

@@ -1,0 +1,103 @@
+// Three planes through the volume, with the window, the lowest value and the selected points.
+
+import { SELECTED } from "./colours.js";
+
+// Across which axis, what the plane is called, and whether its rows are drawn upwards.
+const PLANES = [[2, "across z", false], [1, "across y", true], [0, "across x", true]];
+
+export class Slices {
+  constructor(element, engine, failed) {
+    this.engine = engine;
+    this.failed = failed;
+    this.planes = PLANES.map(([axis, name, up]) => {
+      const figure = document.createElement("div");
+      figure.innerHTML = `<canvas role="img" aria-label="A plane ${name}"></canvas><input type="range" min="0" step="1" aria-label="Place ${name}"><div class="soft"></div>`;
+      const [canvas, slider, caption] = figure.children;
+      element.append(figure);
+      const plane = { axis, name, up, canvas, slider, caption, busy: false, again: false };
+      slider.addEventListener("input", () => this.load(plane));
+      return plane;
+    });
+  }
+
+  async open({ dims, spacing, unit }) {
+    this.dims = dims;
+    this.spacing = spacing;
+    this.unit = unit;
+    this.points = null;
+    for (const plane of this.planes) {
+      plane.slider.max = dims[plane.axis] - 1;
+      plane.slider.value = Math.floor(dims[plane.axis] / 2);
+      await this.load(plane);
+    }
+  }
+
+  // While one plane is read, only the last asked for waits.
+  async load(plane) {
+    if (plane.busy) {
+      plane.again = true;
+      return;
+    }
+    plane.busy = true;
+    try {
+      do {
+        plane.again = false;
+        const index = Number(plane.slider.value);
+        plane.data = { index, ...(await this.engine.call({ do: "plane", axis: plane.axis, index })) };
+        this.draw(plane);
+      } while (plane.again);
+    } catch (error) {
+      this.failed(error);
+    } finally {
+      plane.busy = false;
+    }
+  }
+
+  setWindow(low, high, least) {
+    this.window = { low, high, least };
+    this.planes.forEach((plane) => this.draw(plane));
+  }
+
+  // Samples (x, y, z) of the selected points, by plane.
+  setPoints(samples) {
+    this.points = samples;
+    this.planes.forEach((plane) => this.draw(plane));
+  }
+
+  draw(plane) {
+    if (!plane.data || !this.window) return;
+    const { canvas, axis, up, data: { columns, rows, values, index } } = plane;
+    const { low, high, least } = this.window;
+    const [across, along] = [0, 1, 2].filter((k) => k !== axis);
+    canvas.width = columns;
+    canvas.height = rows;
+    canvas.style.aspectRatio = `${columns * this.spacing[across]} / ${rows * this.spacing[along]}`;
+    canvas.style.imageRendering = columns < 200 ? "pixelated" : "auto";
+    const context = canvas.getContext("2d");
+    const image = context.createImageData(columns, rows);
+    for (let row = 0; row < rows; row++) {
+      for (let column = 0; column < columns; column++) {
+        const value = values[row * columns + column];
+        const gray = 255 * (value - low) / (high - low || 1);
+        const to = 4 * ((up ? rows - 1 - row : row) * columns + column);
+        const tinted = least !== null && value >= least;
+        image.data[to] = gray;
+        image.data[to + 1] = gray + (tinted ? 22 : 0);
+        image.data[to + 2] = gray + (tinted ? 60 : 0);
+        image.data[to + 3] = 255;
+      }
+    }
+    context.putImageData(image, 0, 0);
+    let count = 0;
+    if (this.points) {
+      context.fillStyle = SELECTED;
+      for (let at = 0; at < this.points.length; at += 3) {
+        if (this.points[at + axis] !== index) continue;
+        count += 1;
+        const row = this.points[at + along];
+        context.fillRect(this.points[at + across], up ? rows - 1 - row : row, 1, 1);
+      }
+    }
+    plane.caption.textContent = `${plane.name}, ${"xyz"[axis]} = ${index}${this.points ? `: ${count} points` : ""}`;
+  }
+}

@@ -1,0 +1,31 @@
+//! What the page asks for.
+
+use std::path::PathBuf;
+
+use serde::Deserialize;
+
+use crate::options::Options;
+
+/// A request; fields are named as in JavaScript.
+#[derive(Debug, Deserialize)]
+#[serde(tag = "do", rename_all = "camelCase", rename_all_fields = "camelCase")]
+pub(crate) enum Request {
+    /// Reads a file, a folder or a sample, and says what it is.
+    Open { input: PathBuf, options: Options },
+    /// The samples of a plane of the volume: across an axis (x, y, z), at an index.
+    Plane { axis: usize, index: usize },
+    /// Selects and weighs the points, and computes the filtration.
+    Shape { options: Options },
+    /// The simplices to draw at an α.
+    At { alpha: f64 },
+    /// Counts, measures and voids at an α.
+    Measure { alpha: f64 },
+    /// The cells at an α, cut open by a plane across an axis.
+    Section { alpha: f64, axis: usize, place: f64 },
+    /// The persistence diagram.
+    Diagram,
+    /// A file of the shape or of its points at an α, as the command writes it; its name says the format.
+    Save { name: PathBuf, alpha: f64, solid: bool },
+    /// The command and the configuration that make the same file.
+    Command { name: String, alpha: f64, solid: bool },
+}

@@ -1,0 +1,584 @@
+//! What has been opened and computed, and the answers to requests.
+
+use std::path::{Path, PathBuf};
+
+use serde_json::json;
+use walpha::export::{ExportOptions, Format};
+use walpha::ladder::{Curve, Filtration, Span};
+use walpha::pipeline::{Input, Parameter, ParameterOrigin, PipelineError, Values, Weighed};
+use walpha::points::{ModelMetadata, Packing, PointWriter, SampleGrid, read_model};
+use walpha::progress::{Listener, Monitor, Stage};
+use walpha::shape::Betti;
+use walpha::volume::{self, Hounsfield, SampleStats, Series};
+use walpha::{Alpha, Class, Points, PointsError, Recipe, Volume, VolumeError};
+
+use crate::answer::{Answer, Array};
+use crate::options::{Options, Setting, Written, quoted};
+use crate::request::Request;
+
+/// Bars of the histogram.
+const BARS: usize = 256;
+/// Number of critical values of α among which the page moves without computing: more than its slider has pixels.
+const STOPS: usize = 1024;
+
+/// What the page works on.
+pub(crate) struct Session {
+    input: PathBuf,
+    opened: Option<Opened>,
+    made: Option<Made>,
+}
+
+/// The content of the input, as it is.
+enum Opened {
+    Volume(Volume),
+    Points(Points, ModelMetadata),
+}
+
+/// Points, and all their shapes.
+struct Made {
+    options: Options,
+    recipe: Recipe,
+    weighed: Weighed,
+    metadata: ModelMetadata,
+    /// The α that weights are computed for, or else the suggested one.
+    reference: Parameter,
+    filtration: Filtration,
+    curve: Curve,
+    stops: Shown,
+    /// The volume that coverage is a share of.
+    domain: f64,
+    /// What is subtracted from coordinates that the page gets: in single precision, those of a map would be metres apart.
+    centre: [f64; 3],
+}
+
+/// The simplices that are drawn at some of these α, and all cells, with the levels at which they change.
+struct Shown {
+    alphas: Vec<Alpha>,
+    facets: Vec<([u32; 3], Span)>,
+    edges: Vec<([u32; 2], Span)>,
+    vertices: Vec<(u32, Span)>,
+    cells: Vec<([u32; 4], u32)>,
+    betti: Vec<Betti>,
+}
+
+impl Shown {
+    /// Decided exactly at each α.
+    fn at(filtration: &Filtration, alphas: &[Alpha]) -> Self {
+        let levels = filtration.levels(alphas);
+        Self {
+            facets: levels.facets(),
+            edges: levels.singular_edges(),
+            vertices: levels.vertices(),
+            cells: levels.cells(),
+            betti: levels.betti(),
+            alphas: levels.alphas().to_vec(),
+        }
+    }
+}
+
+/// Simplices of the stops, or of one α beside them.
+enum Lent<'a> {
+    Stop(&'a Shown),
+    Made(Shown),
+}
+
+impl std::ops::Deref for Lent<'_> {
+    type Target = Shown;
+
+    fn deref(&self) -> &Shown {
+        match self {
+            Self::Stop(shown) => shown,
+            Self::Made(shown) => shown,
+        }
+    }
+}
+
+/// What cannot be done: why, and what to do next.
+struct Failure {
+    why: String,
+    next: Option<String>,
+}
+
+impl From<String> for Failure {
+    fn from(why: String) -> Self {
+        Self { why, next: None }
+    }
+}
+
+/// Errors of the library, with their causes and their advice.
+macro_rules! failures {
+    ($($error:ty: $advice:expr),+ $(,)?) => { $(
+        impl From<$error> for Failure {
+            fn from(error: $error) -> Self {
+                let advice: Option<walpha::advice::Advice> = $advice(&error);
+                // The page's fields have the names of settings.
+                let next = advice.map(|advice| advice.with_names(|setting| format!("“{}”", setting.name())));
+                Self { why: with_causes(&error), next }
+            }
+        }
+    )+ };
+}
+
+failures! {
+    PipelineError: PipelineError::advice,
+    PointsError: PointsError::advice,
+    VolumeError: VolumeError::advice,
+    walpha::shape::ShapeError: walpha::shape::ShapeError::advice,
+    volume::UnknownFormat: |error: &volume::UnknownFormat| Some(error.advice()),
+}
+
+/// An error and its causes, where it does not already contain them.
+fn with_causes(error: &dyn std::error::Error) -> String {
+    let mut text = error.to_string();
+    let mut cause = error.source();
+    while let Some(error) = cause {
+        let more = error.to_string();
+        if !text.contains(&more) {
+            text = format!("{text}: {more}");
+        }
+        cause = error.source();
+    }
+    text
+}
+
+/// Passes progress on to the page.
+struct ToPage;
+
+#[cfg(target_family = "wasm")]
+mod page {
+    #[link(wasm_import_module = "page")]
+    unsafe extern "C" {
+        /// A stage begins: place and length of its name.
+        pub(super) safe fn stage(name: usize, length: usize);
+        /// This share of the stage is done.
+        pub(super) safe fn progress(share: f64);
+    }
+}
+
+impl Listener for ToPage {
+    fn stage(&self, name: &'static str) {
+        #[cfg(target_family = "wasm")]
+        page::stage(name.as_ptr() as usize, name.len());
+        let _ = name;
+    }
+
+    fn progress(&self, done: u64, total: u64) {
+        #[cfg(target_family = "wasm")]
+        page::progress(done as f64 / total.max(1) as f64);
+        let _ = (done, total);
+    }
+}
+
+impl Session {
+    pub(crate) const EMPTY: Self = Self { input: PathBuf::new(), opened: None, made: None };
+
+    /// Carries out a request.
+    pub(crate) fn answer(&mut self, request: Request) -> Answer {
+        match self.carry_out(request) {
+            Ok(answer) => answer,
+            Err(Failure { why, next }) => Answer::failed(&why, next),
+        }
+    }
+
+    fn carry_out(&mut self, request: Request) -> Result<Answer, Failure> {
+        match request {
+            Request::Open { input, options } => self.open(input, &options),
+            Request::Plane { axis, index } => self.plane(axis, index),
+            Request::Shape { options } => self.shape(options),
+            Request::At { alpha } => self.made()?.at(alpha),
+            Request::Measure { alpha } => self.made()?.measure(alpha),
+            Request::Section { alpha, axis, place } => self.made()?.section(alpha, axis, place),
+            Request::Diagram => self.made()?.diagram(),
+            Request::Save { name, alpha, solid } => {
+                self.made()?.save(&self.input, &name, alpha, solid)
+            }
+            Request::Command { name, alpha, solid } => {
+                Ok(self.made()?.command(&self.input, &name, alpha, solid))
+            }
+        }
+    }
+
+    fn made(&self) -> Result<&Made, Failure> {
+        self.made.as_ref().ok_or_else(|| "there is no shape yet".to_owned().into())
+    }
+
+    fn open(&mut self, input: PathBuf, options: &Options) -> Result<Answer, Failure> {
+        *self = Self { input, ..Self::EMPTY };
+        let input = &self.input;
+        let monitor = Monitor::new(ToPage);
+        Stage::Read.begin(&monitor).map_err(PipelineError::from)?;
+        let recipe = options.recipe()?;
+        let is_sample = input.to_str().is_some_and(|name| name.starts_with("sample:"));
+        if input.is_dir() && options.series.is_none() {
+            let series: Vec<Series> = volume::series(input)?;
+            if series.len() > 1 {
+                return Ok(Answer::of(json!({ "kind": "series", "series": series }), Vec::new()));
+            }
+        }
+        if !is_sample && recipe.is_points(input)? {
+            let of_points = walpha::points::PointOptions::default().columns(recipe.columns.clone());
+            let (points, metadata) = read_model(input, &of_points)?;
+            let answer = describe_points(&points, &metadata);
+            self.opened = Some(Opened::Points(points, metadata));
+            return Ok(answer);
+        }
+        let volume = volume::open_monitored(input, &recipe.read, &monitor)?;
+        let answer = describe_volume(&volume);
+        self.opened = Some(Opened::Volume(volume));
+        Ok(answer)
+    }
+
+    fn plane(&self, axis: usize, index: usize) -> Result<Answer, Failure> {
+        let Some(Opened::Volume(volume)) = &self.opened else {
+            return Err("points have no planes".to_owned().into());
+        };
+        let dims = volume.dims().xyz();
+        if axis > 2 || index >= dims[axis] {
+            return Err(format!("there is no plane {index} across axis {axis}").into());
+        }
+        // The array is [z, y, x].
+        let samples = volume.samples();
+        let plane = samples.index_axis(walpha::ndarray::Axis(2 - axis), index);
+        let (rows, columns) = plane.dim();
+        let values = plane.iter().copied().collect();
+        let head = json!({ "columns": columns, "rows": rows });
+        Ok(Answer::of(head, vec![Array::F32("values", values)]))
+    }
+
+    fn shape(&mut self, options: Options) -> Result<Answer, Failure> {
+        self.made = None;
+        let monitor = Monitor::new(ToPage);
+        let recipe = options.recipe()?;
+        let input = match self.opened.as_ref().ok_or("nothing has been opened".to_owned())? {
+            Opened::Points(points, metadata) => Input::Points(points.clone(), metadata.clone()),
+            Opened::Volume(volume) => Input::Volume(recipe.grays(volume.clone())?),
+        };
+        let (weighed, source) = recipe.weigh(input, Values::Written, &monitor)?;
+        let metadata = metadata(&weighed, source.as_ref());
+        let (low, high) = bounds(weighed.points.positions());
+        let domain = match &source {
+            Some(source) => {
+                let cells = source.volume.dims().xyz().map(|n| (n - 1) as f64);
+                cells.iter().product::<f64>() * source.units.voxel_volume(&source.volume)
+            }
+            None => [0, 1, 2].iter().map(|&k| high[k] - low[k]).product(),
+        };
+        drop(source);
+        Stage::Filtration.begin(&monitor).map_err(PipelineError::from)?;
+        let filtration = Filtration::monitored(None, weighed.points.clone(), &monitor)?;
+        let unit = weighed.origin.coordinates.unit;
+        let reference = weighed.parameter.unwrap_or_else(|| weighed.rule.on(&filtration, unit));
+        Stage::Curve.begin(&monitor).map_err(PipelineError::from)?;
+        let curve = filtration.coarse_curve(STOPS);
+        let critical = curve.alphas().map(Alpha::from_squared).collect::<Result<Vec<_>, _>>();
+        let mut alphas = critical.map_err(PipelineError::from)?;
+        alphas.push(reference.alpha);
+        let stops = Shown::at(&filtration, &alphas);
+        let made = Made {
+            options,
+            recipe,
+            metadata,
+            reference,
+            curve,
+            stops,
+            domain,
+            centre: [0, 1, 2].map(|k| f64::midpoint(low[k], high[k])),
+            weighed,
+            filtration,
+        };
+        let answer = made.described();
+        self.made = Some(made);
+        Ok(answer)
+    }
+}
+
+/// The metadata that a file of these points stores.
+fn metadata(weighed: &Weighed, source: Option<&walpha::pipeline::Source>) -> ModelMetadata {
+    let origin = weighed.origin;
+    ModelMetadata::default()
+        .grid(origin.grid)
+        .coordinates(origin.coordinates)
+        .alpha(weighed.parameter.map(|parameter| parameter.alpha))
+        .range(source.map(|source| source.written).or(origin.range))
+        .recipe(weighed.recipe.clone())
+}
+
+/// The corners of the box around some points.
+fn bounds(positions: &[[f64; 3]]) -> ([f64; 3], [f64; 3]) {
+    positions.iter().fold(([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]), |(low, high), p| {
+        ([0, 1, 2].map(|k| low[k].min(p[k])), [0, 1, 2].map(|k| high[k].max(p[k])))
+    })
+}
+
+fn describe_points(points: &Points, metadata: &ModelMetadata) -> Answer {
+    let (low, high) = bounds(&points.positions);
+    let head = json!({
+        "kind": "points",
+        "count": points.len(),
+        "low": low,
+        "high": high,
+        "weights": points.weights.is_some(),
+        "values": points.values.is_some(),
+        "coordinates": metadata.coordinates,
+        "unit": metadata.coordinates.unit.symbol(),
+    });
+    Answer::of(head, Vec::new())
+}
+
+fn describe_volume(volume: &Volume) -> Answer {
+    let SampleStats { missing, .. } = SampleStats::of_volume(volume);
+    let (low, high) = volume.value_range();
+    let hounsfield = Hounsfield::of_volume(volume);
+    let frame = volume.frame();
+    let mut bars = vec![0u32; BARS];
+    let scale = BARS as f32 / (high - low).max(f32::MIN_POSITIVE);
+    for value in volume.as_slice().iter().filter(|value| value.is_finite()) {
+        bars[(((value - low) * scale) as usize).min(BARS - 1)] += 1;
+    }
+    let head = json!({
+        "kind": "volume",
+        "dims": volume.dims().xyz(),
+        "samples": volume.dtype().name(),
+        "spacing": frame.spacing,
+        "origin": frame.origin,
+        "direction": frame.direction,
+        "coordinates": frame.coordinates,
+        "unit": frame.coordinates.unit.symbol(),
+        "low": low,
+        "high": high,
+        "missing": missing,
+        "grayLevels": volume.has_gray_levels(),
+        "hounsfield": hounsfield.map(|found| json!({ "air": found.air, "softTissue": found.soft_tissue })),
+    });
+    Answer::of(head, vec![Array::U32("histogram", bars)])
+}
+
+impl Made {
+    /// The points, the curve, and what is known besides.
+    fn described(&self) -> Answer {
+        let points = &self.weighed.points;
+        let flat = points.positions().iter().flat_map(|&p| self.seen(p)).collect();
+        let mut arrays = vec![
+            Array::F32("positions", flat),
+            Array::F32("weights", points.weights().iter().map(|&w| w as f32).collect()),
+        ];
+        if let Some(values) = points.values() {
+            arrays.push(Array::F32("values", values.iter().map(|&value| value as f32).collect()));
+        }
+        let samples = self.weighed.origin.grid.map(|grid| samples(&grid, points.positions()));
+        if let Some(samples) = samples {
+            arrays.push(Array::U32("samples", samples));
+        }
+        let betti =
+            |pick: fn(&Betti) -> u64| self.stops.betti.iter().map(|b| pick(b) as u32).collect();
+        let alphas = self.stops.alphas.iter().map(|alpha| alpha.squared()).collect();
+        arrays.push(Array::F64("alphas", alphas));
+        arrays.push(Array::U32("b0", betti(|betti| betti.b0)));
+        arrays.push(Array::U32("b1", betti(|betti| betti.b1)));
+        arrays.push(Array::U32("b2", betti(|betti| betti.b2)));
+        let suggested = self.filtration.suggest(&self.curve);
+        let truncation = self
+            .weighed
+            .origin
+            .truncation
+            .map(|t| json!({ "kept": t.kept, "total": t.total, "rms": t.rms }));
+        let head = json!({
+            "points": points.len(),
+            "cells": self.stops.cells.len(),
+            "reference": self.reference.alpha.squared(),
+            "origin": self.reference,
+            "suggested": suggested,
+            "weighted": self.weighed.origin.weighting.needs_differences(),
+            "unit": self.weighed.origin.coordinates.unit.symbol(),
+            "centre": self.centre,
+            "largestWeight": self.curve.largest_weight(),
+            "truncation": truncation,
+        });
+        Answer::of(head, arrays)
+    }
+
+    /// A position as the page sees it.
+    fn seen(&self, position: [f64; 3]) -> [f32; 3] {
+        [0, 1, 2].map(|k| (position[k] - self.centre[k]) as f32)
+    }
+
+    /// The simplices to draw at an α, and their level: of the stops, or else computed now.
+    fn shown(&self, alpha: f64) -> Result<(Lent<'_>, u32), Failure> {
+        let alpha = Alpha::from_squared(alpha).map_err(PipelineError::from)?;
+        Ok(match self.stops.alphas.binary_search(&alpha) {
+            Ok(level) => (Lent::Stop(&self.stops), level as u32),
+            Err(_) => (Lent::Made(Shown::at(&self.filtration, &[alpha])), 0),
+        })
+    }
+
+    fn at(&self, alpha: f64) -> Result<Answer, Failure> {
+        let (shown, level) = self.shown(alpha)?;
+        let of = |wanted: Class| -> Vec<u32> {
+            let rows = shown.facets.iter().filter(|(_, span)| span.class(level) == wanted);
+            rows.flat_map(|(row, _)| *row).collect()
+        };
+        let (regular, singular) = (of(Class::Regular), of(Class::Singular));
+        let edges = shown.edges.iter().filter(|(_, span)| span.class(level) == Class::Singular);
+        let edges: Vec<u32> = edges.flat_map(|(row, _)| *row).collect();
+        // Points that are no vertices are hidden.
+        let mut classes = vec![HIDDEN; self.weighed.points.len()];
+        for (v, span) in &shown.vertices {
+            classes[*v as usize] = match span.class(level) {
+                Class::Exterior => 0,
+                Class::Singular => 1,
+                Class::Regular => 2,
+                Class::Interior => 3,
+            };
+        }
+        let head = json!({ "betti": shown.betti[level as usize] });
+        let arrays = vec![
+            Array::U32("regular", regular),
+            Array::U32("singular", singular),
+            Array::U32("edges", edges),
+            Array::U8("classes", classes),
+        ];
+        Ok(Answer::of(head, arrays))
+    }
+
+    fn measure(&self, alpha: f64) -> Result<Answer, Failure> {
+        let alpha = Alpha::from_squared(alpha).map_err(PipelineError::from)?;
+        let ladder = self.filtration.ladder(&[alpha], self.domain);
+        let level = serde_json::to_value(&ladder.levels[0]).map_err(|error| error.to_string())?;
+        Ok(Answer::of(level, Vec::new()))
+    }
+
+    /// The section of the cells with a plane across an axis: triangles, and the value at each corner.
+    fn section(&self, alpha: f64, axis: usize, place: f64) -> Result<Answer, Failure> {
+        let (shown, level) = self.shown(alpha)?;
+        let points = &self.weighed.points;
+        let (positions, values) = (points.positions(), points.values());
+        let (mut corners, mut shades) = (Vec::new(), Vec::new());
+        for (cell, first) in &shown.cells {
+            if *first > level {
+                continue;
+            }
+            let side = cell.map(|v| positions[v as usize][axis] - place);
+            // A cell that only touches the plane is not cut.
+            let [below, above] = [false, true]
+                .map(|up| (0..4).filter(|&k| (side[k] > 0.0) == up).collect::<Vec<usize>>());
+            if below.is_empty() || above.is_empty() {
+                continue;
+            }
+            let cut = |&(a, b): &(usize, usize)| {
+                let t = side[a] / (side[a] - side[b]);
+                let [p, q] = [cell[a], cell[b]].map(|v| positions[v as usize]);
+                let at = self.seen([0, 1, 2].map(|k| p[k] + t * (q[k] - p[k])));
+                let value = values.map_or(0.0, |values| {
+                    let [f, g] = [cell[a], cell[b]].map(|v| values[v as usize]);
+                    (f + t * (g - f)) as f32
+                });
+                (at, value)
+            };
+            let ring: Vec<(usize, usize)> = match (&below[..], &above[..]) {
+                (&[a], &[b, c, d]) | (&[b, c, d], &[a]) => vec![(a, b), (a, c), (a, d)],
+                (&[a, b], &[c, d]) => vec![(a, c), (a, d), (b, d), (b, c)],
+                _ => unreachable!("four corners on two sides"),
+            };
+            let ring: Vec<([f32; 3], f32)> = ring.iter().map(cut).collect();
+            for k in 1..ring.len() - 1 {
+                for corner in [ring[0], ring[k], ring[k + 1]] {
+                    corners.extend(corner.0);
+                    shades.push(corner.1);
+                }
+            }
+        }
+        let arrays = vec![Array::F32("corners", corners), Array::F32("shades", shades)];
+        Ok(Answer::of(json!({}), arrays))
+    }
+
+    fn diagram(&self) -> Result<Answer, Failure> {
+        let monitor = Monitor::new(ToPage);
+        Stage::Order.begin(&monitor).map_err(PipelineError::from)?;
+        let simplices = self.filtration.simplices_monitored(&monitor)?;
+        Stage::Pairs.begin(&monitor).map_err(PipelineError::from)?;
+        simplices.loops_monitored(&monitor)?;
+        let mut arrays = Vec::new();
+        for (dimension, name) in ["pairs0", "pairs1", "pairs2"].into_iter().enumerate() {
+            let pairs = simplices.persistence(dimension)?;
+            let flat = pairs.iter().flat_map(|pair| [pair.birth, pair.death]).collect();
+            arrays.push(Array::F64(name, flat));
+        }
+        Ok(Answer::of(json!({}), arrays))
+    }
+
+    /// Whether the command `shape` makes this shape: weights that are proportional to α are frozen otherwise.
+    fn is_shape(&self, alpha: f64) -> bool {
+        let proportional = self.weighed.origin.weighting.needs_differences();
+        !proportional || alpha == self.reference.alpha.squared()
+    }
+
+    fn save(&self, input: &Path, name: &Path, alpha: f64, solid: bool) -> Result<Answer, Failure> {
+        let alpha = Alpha::from_squared(alpha).map_err(PipelineError::from)?;
+        let mut bytes = Vec::new();
+        let failed = |error: std::io::Error| error.to_string();
+        // A format of points that does not store how they were made is that of `walpha points`.
+        if let Ok(writer) = PointWriter::of(name)
+            && (writer.packs || writer.extension == "csv")
+        {
+            let mut metadata = self.metadata.clone().alpha(Some(alpha));
+            // The command's recipe has this α; that of a file stays as it is.
+            if metadata.recipe == Some(self.recipe.to_json()) {
+                metadata.recipe = Some(self.recipe.clone().alpha(alpha).to_json());
+            }
+            let points = &self.weighed.points;
+            writer
+                .write_model(points, &metadata, &Packing::default(), &mut bytes)
+                .map_err(failed)?;
+        } else {
+            let exporter = Format::of(name)?.exporter(
+                &ExportOptions::default().solid(solid).input(Some(input.display().to_string())),
+            );
+            let mut weighed = self.weighed.clone();
+            let mut parameter = self.reference;
+            (parameter.alpha, parameter.origin) = (alpha, ParameterOrigin::Given);
+            weighed.parameter = Some(parameter);
+            let model = self.recipe.finish(weighed, &Monitor::new(ToPage))?;
+            exporter.write(&model.shape, &mut bytes).map_err(failed)?;
+        }
+        Ok(Answer::of(json!({}), vec![Array::U8("bytes", bytes)]))
+    }
+
+    fn command(&self, input: &Path, name: &str, alpha: f64, solid: bool) -> Answer {
+        let mut settings = self.options.settings();
+        let input = quoted(&input.display().to_string());
+        let is_points = PointWriter::of(Path::new(name))
+            .is_ok_and(|writer| !writer.packs && writer.extension == "csv");
+        let (program, output) = if self.is_shape(alpha) {
+            settings.push(Setting { name: "alpha", value: Written::number(alpha) });
+            let program = if is_points { "points" } else { "shape" };
+            let solid = if solid { " --solid" } else { "" };
+            (program, format!("{solid} -o {}", quoted(name)))
+        } else {
+            let reference = Written::number(self.reference.alpha.squared());
+            settings.push(Setting { name: "alpha-ref", value: reference });
+            settings.push(Setting { name: "alphas", value: Written::Text(alpha.to_string()) });
+            let extension = Path::new(name).extension().unwrap_or_default().display().to_string();
+            ("ladder", format!(" --mesh={} -o ladder", quoted(&extension)))
+        };
+        let arguments: String =
+            settings.iter().map(|setting| format!(" {}", setting.argument())).collect();
+        let lines: String = settings.iter().map(|setting| setting.line() + "\n").collect();
+        let toml = format!(
+            "# walpha {program} {input} --config=recipe.toml{output}\n[{program}]\n{lines}"
+        );
+        let head = json!({
+            "command": format!("walpha {program} {input}{arguments}{output}"),
+            "toml": toml,
+        });
+        Answer::of(head, Vec::new())
+    }
+}
+
+/// The class of hidden points, after those of vertices.
+const HIDDEN: u8 = 4;
+
+/// The indices (x, y, z) of the samples that are points.
+fn samples(grid: &SampleGrid, positions: &[[f64; 3]]) -> Vec<u32> {
+    let sample = |position: &[f64; 3]| grid.sample_at(*position).unwrap_or([u32::MAX; 3]);
+    positions.iter().flat_map(sample).collect()
+}
