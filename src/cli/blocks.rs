@@ -24,8 +24,9 @@ use crate::outofcore::{
     Alone, BlocksError, BlockwiseFormat, Checked, CostEstimate, Cutting, Finding, Job, Merged,
     Plan, Team, estimate_cost, merge_monitored, run, run_all, whole,
 };
+use crate::pipeline::Opened;
 use crate::progress::Stage;
-use crate::volume::{Hounsfield, Source, files_of};
+use crate::volume::{Hounsfield, files_of};
 
 /// Compute a shape in blocks, on any number of machines that share a folder: plan, run each block, merge.
 ///
@@ -276,17 +277,17 @@ pub(super) fn job(args: &InputArgs, recipe: Recipe) -> anyhow::Result<Job> {
     if input.path().to_str().is_none() {
         fail_usage!("the plan of blocks is stored as text, and the name {input} is not UTF-8" => "give a link to it that has such a name");
     }
-    if recipe.is_points(input.path())? {
+    let Opened::Volume(volume) = recipe.opened(input.path()).map_err(pipeline::unread)? else {
         let name = shown(input.path());
         fail_usage!("{name} holds points, and blocks are cut from volumes" => "start one process, and write another format than .pvtu and .pvtp");
-    }
+    };
     args.typed.refuse(&["columns", "class", "thin"], format!("{input} holds a volume"))?;
     let alone = ["refit", "exchange", "max_error"];
     args.typed.refuse(&alone, "blocks look at a part of the volume each")?;
-    let found = || Hounsfield::of(&Source::open(input.path(), &recipe.read).ok()?).ok()?;
+    let source = volume.source(&recipe.read).map_err(pipeline::with_points)?;
+    let found = || Hounsfield::of(&source).ok()?;
     let recipe = preset::suited(args, &recipe, found).unwrap_or(recipe);
-    Job::new(input, recipe).map_err(|error| match error {
-        BlocksError::Volume(error) => pipeline::with_points(error),
+    Job::of_source(input, recipe, &source).map_err(|error| match error {
         error @ BlocksError::NotLocal { .. } => CommandError::usage_of(&error).into(),
         other => other.into(),
     })

@@ -9,6 +9,7 @@ use clap::{Args, Command, ValueEnum};
 use serde::{Serialize, Serializer};
 use walpha_base::shown::shown;
 
+use crate::Recipe;
 use crate::check::meshes::{Mesh, MeshFormat};
 use crate::check::schema::{AnyFile, FiltrationFile, PlacedComplex};
 use crate::check::{
@@ -16,10 +17,11 @@ use crate::check::{
     count_by_rule, enumerate_monitored, keep_causes,
 };
 use crate::export::{Target, UnknownFormat, write_findings};
-use crate::pipeline::AlphaRule;
-use crate::points::{self, CellCount, Weighting};
+use crate::pipeline::{AlphaRule, Opened, Values};
+use crate::points::{CellCount, Weighting, cells_of_file, read_complex_file};
 use crate::progress::{Monitor, Stage};
 use crate::shape::placed_complex;
+use crate::volume::{OpenFile, OpenVolume};
 
 use super::args::{PeriodicArgs, PipelineArgs, ShapeArgs};
 use super::compare;
@@ -162,19 +164,29 @@ impl Check {
                 }
             };
         }
-        if self.pipeline.input.recipe().is_points(path)? {
-            let cells = points::cells_of(path, &self.pipeline.input.point_options())?;
-            if !cells.is_empty() {
-                return self.mesh(global, input, &cells, progress);
+        let open = || self.pipeline.input.recipe().opened(path).map_err(pipeline::unread);
+        // What the options contradict is said even if there is no such file.
+        let opened =
+            progress.stage(Stage::Read, open).or_else(|error| self.recipe().and(Err(error)))?;
+        match &opened {
+            Opened::Points(file) => {
+                let cells = cells_of_file(file, &self.pipeline.input.point_options())?;
+                if !cells.is_empty() {
+                    return self.mesh(global, input, file, &cells, progress);
+                }
             }
-        } else if let Some(format) = mesh_format(path) {
-            let mesh = progress.stage(Stage::Read, || read_mesh(format, path))?;
-            let kind =
-                format!("the {} tetrahedra", mesh.complex.cells.as_ref().map_or(0, Vec::len));
-            let of = Source { input, kind: &kind, why: "lists tetrahedra, which are judged" };
-            return self.given(global, of, mesh, progress);
+            Opened::Volume(OpenVolume::File(file)) => {
+                if let Some(format) = mesh_format(path) {
+                    let mesh = progress.stage(Stage::Read, || read_mesh(format, file))?;
+                    let count = mesh.complex.cells.as_ref().map_or(0, Vec::len);
+                    let kind = format!("the {count} tetrahedra");
+                    let why = "lists tetrahedra, which are judged";
+                    return self.given(global, Source { input, kind: &kind, why }, mesh, progress);
+                }
+            }
+            Opened::Made(_) | Opened::Volume(OpenVolume::Named(_)) => {}
         }
-        let computed = self.compute(path, &mut progress)?;
+        let computed = self.compute(path, opened, &mut progress)?;
         let judged = format!("our own shape of {}", name(input));
         let subject = Subject { input, judged, notes: Vec::new(), is_cells_alone: false };
         self.complex(global, subject, &computed, &[], progress)
@@ -185,13 +197,13 @@ impl Check {
         self,
         global: Global,
         input: &str,
+        file: &OpenFile,
         cells: &[CellCount],
         mut progress: Progress,
     ) -> anyhow::Result<ExitCode> {
         let listed = cells.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
-        let path = self.pipeline.input.input.path();
         let read = || {
-            points::read_complex(path, &self.pipeline.input.point_options()).map_err(|error| {
+            read_complex_file(file, &self.pipeline.input.point_options()).map_err(|error| {
                 let CommandError { why, next, usage } = CommandError::from(error);
                 let csv = "write its points by `walpha points INPUT -o points.csv` to judge our own shape of them";
                 let next = next.map_or(csv.to_owned(), |next| format!("{next}, or {csv}"));
@@ -279,21 +291,31 @@ impl Check {
         self.pipeline.input.typed.refuse(&names, why)
     }
 
+    /// The recipe for the shape of INPUT.
+    fn recipe(&self) -> anyhow::Result<Recipe> {
+        Ok(self.pipeline.recipe_of(&self.shape, self.periodic.periodic)?)
+    }
+
     /// Computes the shape of INPUT.
-    fn compute(&self, path: &Path, progress: &mut Progress) -> anyhow::Result<PlacedComplex> {
-        let periodic = self.periodic.periodic;
-        let mut recipe = self.pipeline.recipe_of(&self.shape, periodic)?;
+    fn compute(
+        &self,
+        path: &Path,
+        opened: Opened,
+        progress: &mut Progress,
+    ) -> anyhow::Result<PlacedComplex> {
+        let mut recipe = self.recipe()?;
         if self.points.is_some() {
             fail_usage!("--points belongs to a complex or a mesh, and {} is neither", shown(path) => "omit it");
         }
-        let given = &self.pipeline.input.typed;
-        given.refuse(&["refit"], "values are not judged")?;
-        let (weighed, _) = pipeline::weighted_points(&self.pipeline.input, &recipe, progress)?;
+        let input = &self.pipeline.input;
+        input.typed.refuse(&["refit"], "values are not judged")?;
+        let read = pipeline::read_opened(opened, input, &mut recipe, progress)?;
+        let (weighed, _) = pipeline::weigh(read, input, &recipe, Values::Written, progress)?;
         // With the whole triangulation every rule can be judged. Shapes made in several blocks are judged as
         // they are; and on a torus the whole may have an edge that is too long where the shape has none.
         recipe.exterior |= recipe.blocks.is_none_or(|blocks| blocks.get() == 1)
             && recipe.memory.is_none()
-            && periodic.is_none();
+            && recipe.periodic.is_none();
         let model = pipeline::shape(weighed, &recipe, progress)?;
         Ok(placed_complex(&model.shape))
     }
@@ -440,10 +462,10 @@ fn findings_target(path: &Path) -> anyhow::Result<Target> {
 }
 
 /// Reads a mesh.
-pub(super) fn read_mesh(format: &MeshFormat, path: &Path) -> Result<Mesh, CommandError> {
-    format.read(path).map_err(|error| {
+pub(super) fn read_mesh(format: &MeshFormat, file: &OpenFile) -> Result<Mesh, CommandError> {
+    format.read_bytes(file.path(), &file.bytes()?).map_err(|error| {
         let next = error.advice().map(Into::into);
-        CommandError { next, ..command_error!("{}: {error}", shown(path)) }
+        CommandError { next, ..command_error!("{}: {error}", shown(file.path())) }
     })
 }
 

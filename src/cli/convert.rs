@@ -7,7 +7,7 @@ use serde::Serialize;
 use walpha_base::shown::shown;
 
 use crate::progress::Stage;
-use crate::volume::{Source, convert_monitored, open_monitored};
+use crate::volume::{OpenVolume, Source, convert_monitored};
 
 use super::args::InputArgs;
 use super::errors::fail_usage;
@@ -61,11 +61,12 @@ impl Convert {
         let monitor = progress.monitor();
         let options = self.input.options();
         let dims = with_file(&self.input, |input| {
-            let source = match Source::open(input, &options) {
+            let volume = OpenVolume::open(input)?;
+            let source = match volume.source(&options) {
                 Ok(source) => source,
                 Err(_) => Source::of_volume(
                     progress
-                        .stage(Stage::Read, || open_monitored(input, &options, &monitor))
+                        .stage(Stage::Read, || volume.read(&options, &monitor))
                         .map_err(with_points)?,
                 ),
             };

@@ -1,11 +1,13 @@
 //! The output folder of a command.
 
+use std::ffi::OsStr;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use walpha_base::shown::shown;
 
-use crate::export::{Filled, NewFolder, Target, put_all};
+use crate::export::{self, Filled, NewFolder, Target, put_all};
+use crate::points;
 
 use super::errors::{CommandError, command_error, fail_usage};
 
@@ -19,8 +21,16 @@ pub(super) struct Folder {
     new: Option<NewFolder>,
 }
 
-/// Extensions that a folder is given by mistake: those of files that commands write into theirs, and of meshes.
-const FILES: [&str; 8] = ["csv", "html", "json", "obj", "ply", "png", "stl", "svg"];
+/// Extensions of pages and pictures, which no table of formats lists.
+const PAGES_AND_PICTURES: [&str; 2] = ["html", "png"];
+
+/// Whether a folder has the extension of a file by mistake: of a shape, of points, or of what else commands write.
+fn is_of_file(extension: &OsStr) -> bool {
+    let of_shapes = export::FORMATS.iter().map(|format| format.extension);
+    let of_points = points::FORMATS.iter().flat_map(|format| format.extensions).copied();
+    let mut all = of_shapes.chain(of_points).chain(PAGES_AND_PICTURES);
+    all.any(|of_file| extension.eq_ignore_ascii_case(of_file))
+}
 
 /// Creates a folder if needed; `instead` tells the user how to choose another.
 pub(super) fn make(path: &Path, instead: &str) -> Result<Option<NewFolder>, CommandError> {
@@ -34,7 +44,7 @@ impl Folder {
     /// certain to be written.
     pub(super) fn open(path: &Path, option: &str, names: &[&str]) -> anyhow::Result<Self> {
         if let Some(extension) = path.extension().filter(|_| !path.is_dir())
-            && FILES.iter().any(|of_file| extension.eq_ignore_ascii_case(of_file))
+            && is_of_file(extension)
         {
             let folder = path.with_extension("");
             fail_usage!("{option} takes a folder, and {} is named as a file", shown(path) => "name a folder, as in {option} {}", shown(&folder));

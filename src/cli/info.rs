@@ -9,10 +9,11 @@ use walpha_base::Monitor;
 use walpha_base::shown::number;
 
 use crate::check::meshes::Mesh;
-use crate::points::{Cell, CellCount, cells_of, read_model};
+use crate::pipeline::Opened;
+use crate::points::{Cell, CellCount, ModelMetadata, Points, cells_of_file, read_model_file};
 use crate::progress::Stage;
 use crate::volume::{
-    self, Dtype, Nan, ReadOptions, Reason, SampleStats, Series, Source, open_monitored,
+    self, Dtype, Nan, OpenVolume, ReadOptions, Reason, SampleStats, Series, Source,
 };
 use crate::{Alpha, Coordinates, Dims, Frame, LengthUnit, VolumeError};
 
@@ -164,29 +165,28 @@ impl Info {
     }
 
     fn describe(&self, input: &Path, monitor: &Monitor) -> anyhow::Result<Content> {
-        if self.input.recipe().is_points(input)? {
-            let (points, facts) = read_model(input, &self.input.point_options())?;
-            let extreme = |pick: fn(f64, f64) -> f64, start: f64, axis: usize| {
-                points.positions.iter().fold(start, |so_far, p| pick(so_far, p[axis]))
-            };
-            return Ok(Content::Points {
-                count: points.len(),
-                low: [0, 1, 2].map(|i| extreme(f64::min, f64::INFINITY, i)),
-                high: [0, 1, 2].map(|i| extreme(f64::max, f64::NEG_INFINITY, i)),
-                weights: points.weights.is_some(),
-                of_radii: points.of_radii,
-                cell: facts.cell.map(Into::into),
-                values: points.values.is_some(),
-                cells: cells_of(input, &self.input.point_options())?,
-                grid: facts.grid.map(|grid| grid.dims.xyz()),
-                coordinates: facts.coordinates,
-                alpha: facts.alpha,
-                gray_range: facts.range.map(|range| [range.low, range.high]),
-                recipe: facts.recipe.map(|text| serde_json::from_str(&text).unwrap_or(text.into())),
-            });
+        match self.input.recipe().opened(input).map_err(pipeline::unread)? {
+            Opened::Made(points) => {
+                Ok(Content::of_points(&points, ModelMetadata::default(), Vec::new()))
+            }
+            Opened::Points(file) => {
+                let options = self.input.point_options();
+                let (points, metadata) = read_model_file(&file, &options)?;
+                Ok(Content::of_points(&points, metadata, cells_of_file(&file, &options)?))
+            }
+            Opened::Volume(volume) => self.describe_volume(input, &volume, monitor),
         }
-        if let Some(format) = mesh_format(input) {
-            let Mesh { complex, notes, .. } = read_mesh(format, input)?;
+    }
+
+    /// Describes a volume, or a file that holds nothing but a mesh.
+    fn describe_volume(
+        &self,
+        input: &Path,
+        volume: &OpenVolume,
+        monitor: &Monitor,
+    ) -> anyhow::Result<Content> {
+        if let (OpenVolume::File(file), Some(format)) = (volume, mesh_format(input)) {
+            let Mesh { complex, notes, .. } = read_mesh(format, file)?;
             return Ok(Content::Mesh {
                 format: format.name,
                 points: complex.points.len(),
@@ -201,30 +201,24 @@ impl Info {
                 return Ok(Content::Series { series });
             }
         }
-        let path = input;
-        let is_sample = input.to_str().is_some_and(|name| name.starts_with("sample:"));
-        let summary = match VolumeSummary::of(input, &options, monitor) {
+        let summary = match VolumeSummary::of(volume, &options, monitor) {
             Ok(summary) => summary,
             Err(error) => match error.reason() {
                 Some(Reason::NotScalar { what, dims }) => {
-                    let format = volume::format_name(path, &options)?;
+                    let format = volume.format_name(&options)?;
                     return Ok(Content::Unread { format, voxels: what.clone(), dims: *dims });
                 }
                 Some(&Reason::Several { count }) if options.frame.is_none() => {
                     let first = options.clone().frame(0);
                     VolumeSummary {
                         volumes: Some(count),
-                        ..VolumeSummary::of(input, &first, monitor)?
+                        ..VolumeSummary::of(volume, &first, monitor)?
                     }
                 }
                 _ => return Err(pipeline::with_points(error)),
             },
         };
-        let (format, data_files) = if is_sample {
-            ("sample".to_owned(), Vec::new())
-        } else {
-            (volume::format_name(path, &options)?, volume::data_files(path, &options)?)
-        };
+        let (format, data_files) = (volume.format_name(&options)?, volume.data_files(&options)?);
         let VolumeSummary { dims, frame, dtype, gray_levels, stats, volumes } = summary;
         Ok(Content::Volume {
             format,
@@ -257,20 +251,24 @@ struct VolumeSummary {
 
 impl VolumeSummary {
     /// Summarises a volume: part by part if its format allows that, otherwise at once.
-    fn of(input: &Path, options: &ReadOptions, monitor: &Monitor) -> Result<Self, VolumeError> {
-        let (source, stats) = if let Ok(source) = Source::open(input, options) {
+    fn of(
+        volume: &OpenVolume,
+        options: &ReadOptions,
+        monitor: &Monitor,
+    ) -> Result<Self, VolumeError> {
+        let (source, stats) = if let Ok(source) = volume.source(options) {
             let stats = SampleStats::of(&source, options.nan)?;
             (source, stats)
         } else {
             // Reading the whole volume also reports what is wrong with it.
-            let opened = |nan| open_monitored(input, &options.clone().nan(nan), monitor);
-            match opened(options.nan.or(Some(Nan::Mask))) {
+            let read = |nan| volume.read(&options.clone().nan(nan), monitor);
+            match read(options.nan.or(Some(Nan::Mask))) {
                 Ok(volume) => {
                     let stats = SampleStats::of_volume(&volume);
                     (Source::of_volume(volume), stats)
                 }
                 Err(error) if error.is_not_finite() => {
-                    let volume = opened(Some(Nan::Value(0.0)))?;
+                    let volume = read(Some(Nan::Value(0.0)))?;
                     let missing = volume.dims().samples() as u64;
                     (
                         Source::of_volume(volume),
@@ -293,6 +291,29 @@ impl std::fmt::Display for InfoSummary {
 }
 
 impl Content {
+    /// Describes points.
+    fn of_points(points: &Points, metadata: ModelMetadata, cells: Vec<CellCount>) -> Self {
+        let extreme = |pick: fn(f64, f64) -> f64, start: f64, axis: usize| {
+            points.positions.iter().fold(start, |so_far, p| pick(so_far, p[axis]))
+        };
+        let ModelMetadata { grid, coordinates, alpha, range, recipe, cell, .. } = metadata;
+        Self::Points {
+            count: points.len(),
+            low: [0, 1, 2].map(|i| extreme(f64::min, f64::INFINITY, i)),
+            high: [0, 1, 2].map(|i| extreme(f64::max, f64::NEG_INFINITY, i)),
+            weights: points.weights.is_some(),
+            of_radii: points.of_radii,
+            values: points.values.is_some(),
+            cells,
+            cell: cell.map(Into::into),
+            grid: grid.map(|grid| grid.dims.xyz()),
+            coordinates,
+            alpha,
+            gray_range: range.map(|range| [range.low, range.high]),
+            recipe: recipe.map(|text| serde_json::from_str(&text).unwrap_or(text.into())),
+        }
+    }
+
     /// How the points were made, and are meant to be used: recipe, α and gray range.
     fn fmt_usage(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let Self::Points { alpha, gray_range, coordinates, recipe, .. } = self else {

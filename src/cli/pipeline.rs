@@ -13,7 +13,7 @@ use super::progress::Progress;
 use crate::export::Scratch;
 use crate::interpolate::{InterpolateError, fill_monitored};
 use crate::ladder::{Curve, Filtration};
-use crate::pipeline::{Input, Model, PipelineError, Source, Values, Weighed};
+use crate::pipeline::{Input, Model, Opened, PipelineError, Source, Values, Weighed};
 use crate::points::ModelMetadata;
 use crate::progress::Stage;
 use crate::shape::{ShapeError, Torus};
@@ -151,20 +151,34 @@ pub(super) fn read_suited(
     read_with(args, progress, |input, monitor| recipe.open_suited(input, monitor, suited))
 }
 
+/// [`read_suited`] for INPUT that is open.
+pub(super) fn read_opened(
+    opened: Opened,
+    args: &InputArgs,
+    recipe: &mut Recipe,
+    progress: &mut Progress,
+) -> anyhow::Result<Input> {
+    let monitor = progress.monitor();
+    let suited = |recipe: &Recipe, volume: &Volume| preset::suited_to(args, recipe, volume);
+    let read = || recipe.read_suited(opened, &monitor, suited).map_err(unread);
+    progress.stage(Stage::Read, read)
+}
+
 fn read_with(
     args: &InputArgs,
     progress: &mut Progress,
     open: impl FnOnce(&Path, &Monitor) -> Result<Input, PipelineError>,
 ) -> anyhow::Result<Input> {
     let monitor = progress.monitor();
-    progress.stage(Stage::Read, || {
-        with_file(args, |input| {
-            open(input, &monitor).map_err(|error| match error {
-                PipelineError::Points(PointsError::File(error)) => with_points(error),
-                error => error.into(),
-            })
-        })
-    })
+    progress.stage(Stage::Read, || with_file(args, |input| open(input, &monitor).map_err(unread)))
+}
+
+/// The error for INPUT that cannot be opened or read.
+pub(super) fn unread(error: PipelineError) -> anyhow::Error {
+    match error {
+        PipelineError::Points(PointsError::File(error)) => with_points(error),
+        error => error.into(),
+    }
 }
 
 /// Adds the formats of points to the error about an unknown format.

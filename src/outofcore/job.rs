@@ -37,6 +37,14 @@ impl Job {
     /// The input cannot be read in parts; what is not local ([`Job::check`]).
     pub fn new(input: &str, recipe: Recipe) -> Result<Self, BlocksError> {
         let source = Source::open(input, &recipe.read)?;
+        Self::of_source(input, recipe, &source)
+    }
+
+    /// The same for a volume that is open.
+    ///
+    /// # Errors
+    /// What is not local ([`Job::check`]).
+    pub fn of_source(input: &str, recipe: Recipe, source: &Source) -> Result<Self, BlocksError> {
         let (frame, units) = recipe.place(*source.frame())?;
         let job = Self { input: input.to_owned(), recipe, dims: source.dims(), frame, units };
         job.check()?;

@@ -4,7 +4,7 @@ use walpha_base::Monitor;
 
 use super::{PipelineError, Recipe};
 use crate::points::{ModelMetadata, Points, PointsError, Units, hard, read_model_file};
-use crate::volume::{self, GrayRange, OpenFile, Volume};
+use crate::volume::{GrayRange, OpenFile, OpenVolume, Volume};
 
 /// The content of an input.
 #[derive(Debug)]
@@ -16,10 +16,15 @@ pub enum Input {
     Points(Points, ModelMetadata),
 }
 
-/// The content of an input, with the values of a volume as they are.
-enum Content {
-    Volume(Volume),
-    Points(Points, ModelMetadata),
+/// An input whose kind is known, and whose content has not been read. A file is open: whatever is asked of it comes from
+/// this open file.
+pub(crate) enum Opened {
+    /// A set of points that is made by its name.
+    Made(Points),
+    /// A file of points.
+    Points(OpenFile),
+    /// A volume.
+    Volume(OpenVolume),
 }
 
 /// A volume in gray levels, and the values that they stand for.
@@ -58,15 +63,6 @@ pub enum Values {
 }
 
 impl Recipe {
-    /// Whether this file or sample holds points rather than a volume.
-    ///
-    /// # Errors
-    /// The input cannot be read.
-    pub fn is_points(&self, input: &Path) -> Result<bool, PipelineError> {
-        let is_volume = is_sample(input) || self.read.raw.is_some();
-        Ok(!is_volume && self.of_points().is_point_file(input)?)
-    }
-
     /// Reads a file or a sample.
     ///
     /// # Errors
@@ -85,9 +81,41 @@ impl Recipe {
         monitor: &Monitor,
         suited: impl FnOnce(&Self, &Volume) -> Option<Self>,
     ) -> Result<Input, PipelineError> {
-        let volume = match self.content(input, monitor)? {
-            Content::Points(points, metadata) => return Ok(Input::Points(points, metadata)),
-            Content::Volume(volume) => volume,
+        let opened = self.opened(input)?;
+        self.read_suited(opened, monitor, suited)
+    }
+
+    /// Opens a file, or finds a sample or a set of points by its name.
+    pub(crate) fn opened(&self, input: &Path) -> Result<Opened, PipelineError> {
+        if let Some(points) = hard(input)? {
+            return Ok(Opened::Made(points));
+        }
+        Ok(match OpenVolume::open(input).map_err(PointsError::from)? {
+            OpenVolume::File(file)
+                if self.read.raw.is_none() && self.of_points().holds_points(&file)? =>
+            {
+                Opened::Points(file)
+            }
+            volume => Opened::Volume(volume),
+        })
+    }
+
+    /// [`open_suited`](Self::open_suited) for an input that is open.
+    pub(crate) fn read_suited(
+        &mut self,
+        opened: Opened,
+        monitor: &Monitor,
+        suited: impl FnOnce(&Self, &Volume) -> Option<Self>,
+    ) -> Result<Input, PipelineError> {
+        let volume = match opened {
+            Opened::Made(points) => return Ok(Input::Points(points, ModelMetadata::default())),
+            Opened::Points(file) => {
+                let (points, metadata) = self.read_points(&file)?;
+                return Ok(Input::Points(points, metadata));
+            }
+            Opened::Volume(volume) => {
+                volume.read(&self.read, monitor).map_err(PointsError::from)?
+            }
         };
         if let Some(suited) = suited(self, &volume) {
             *self = suited;
@@ -95,30 +123,17 @@ impl Recipe {
         Ok(Input::Volume(self.grays(volume)?))
     }
 
-    /// Reads a file or a sample, whose values stay as they are if it is a volume.
-    fn content(&self, input: &Path, monitor: &Monitor) -> Result<Content, PipelineError> {
-        if is_sample(input) || input.is_dir() {
-            let volume = volume::open_monitored(input, &self.read, monitor);
-            return Ok(Content::Volume(volume.map_err(PointsError::from)?));
-        }
-        if let Some(points) = hard(input)? {
-            return Ok(Content::Points(points, ModelMetadata::default()));
-        }
-        // Everything below reads this open file and does not open it again.
-        let file = OpenFile::open(input).map_err(PointsError::from)?;
-        if self.read.raw.is_none() && self.of_points().holds_points(&file)? {
-            let (mut points, mut metadata) = read_model_file(&file, &self.of_points())?;
-            if let Some(range) = &mut metadata.range {
-                let written = self.written(*range);
-                if written != *range {
-                    to_gray(&mut points, range);
-                    *range = written;
-                }
+    /// Reads points, with their values as they are to be written.
+    fn read_points(&self, file: &OpenFile) -> Result<(Points, ModelMetadata), PipelineError> {
+        let (mut points, mut metadata) = read_model_file(file, &self.of_points())?;
+        if let Some(range) = &mut metadata.range {
+            let written = self.written(*range);
+            if written != *range {
+                to_gray(&mut points, range);
+                *range = written;
             }
-            return Ok(Content::Points(points, metadata));
         }
-        let volume = volume::read_file(&file, &self.read, monitor).map_err(PointsError::from)?;
-        Ok(Content::Volume(volume))
+        Ok((points, metadata))
     }
 
     /// Maps a volume to gray levels. One that has gray levels is left unchanged, unless the recipe has a range.
@@ -139,10 +154,6 @@ impl Recipe {
         let (frame, units) = self.place(*volume.frame())?;
         Ok(Source { volume: volume.with_frame(frame), units, range, written })
     }
-}
-
-fn is_sample(input: &Path) -> bool {
-    input.to_str().is_some_and(|name| name.starts_with("sample:"))
 }
 
 /// Maps the values of points to gray levels, in single precision as in a volume.

@@ -11,6 +11,8 @@ mod weighed;
 
 pub use choice::{Choice, Goal};
 pub use error::PipelineError;
+#[cfg(feature = "cli")]
+pub(crate) use input::Opened;
 pub use input::{Grays, Input, Source, Values};
 pub use parameter::{AlphaRule, Parameter, ParameterOrigin};
 pub use recipe::Recipe;

@@ -22,12 +22,22 @@ pub fn cells_of(
     if !path.is_file() && named().is_none_or(|format| format.cells.is_none()) {
         return Ok(Vec::new());
     }
-    let file = OpenFile::open(path)?;
-    let cells = match options.format_of(&file).and_then(|format| format.cells) {
-        Some(cells) => cells(&file)?,
-        None => Vec::new(),
+    cells_of_file(&OpenFile::open(path)?, options)
+}
+
+/// [`cells_of`] an open file.
+pub(crate) fn cells_of_file(
+    file: &OpenFile,
+    options: &PointOptions,
+) -> Result<Vec<CellCount>, PointsError> {
+    let Some(count) = options.format_of(file).and_then(|format| format.cells) else {
+        return Ok(Vec::new());
     };
-    Ok(cells.into_iter().filter(|cells| cells.count > 0).collect())
+    if !file.is_ordinary() {
+        let what = "is not an ordinary file, and its cells are counted in a pass of their own";
+        return Err(format(file.path(), Reason::unsupported(what, "copy it into one")));
+    }
+    Ok(count(file)?.into_iter().filter(|cells| cells.count > 0).collect())
 }
 
 /// Reads the cells of a file as a complex for the checker. Of VTU and legacy VTK these are the tetrahedra, with the
@@ -37,14 +47,20 @@ pub fn cells_of(
 /// # Errors
 /// A format whose cells are not read, cells that are not simplices, and the errors of [`super::read_points`].
 pub fn read_complex(path: impl AsRef<Path>, options: &PointOptions) -> Result<Mesh, PointsError> {
-    let path = path.as_ref();
-    let file = OpenFile::open(path)?;
-    if let Some(read) = options.format_of(&file).and_then(|format| format.read_complex) {
-        return read(&file);
+    read_complex_file(&OpenFile::open(path.as_ref())?, options)
+}
+
+/// [`read_complex`] from an open file.
+pub(crate) fn read_complex_file(
+    file: &OpenFile,
+    options: &PointOptions,
+) -> Result<Mesh, PointsError> {
+    if let Some(read) = options.format_of(file).and_then(|format| format.read_complex) {
+        return read(file);
     }
     let reason = Reason::unsupported(
         "its cells cannot be read as a complex",
         "give a complex as .json or .npz, or a mesh as .vtu or .vtk (docs/cross-checking.md)",
     );
-    Err(format(path, reason))
+    Err(format(file.path(), reason))
 }

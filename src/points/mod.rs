@@ -47,6 +47,8 @@ pub use focus::{Region, focus};
 pub use formats::{FORMATS, PointFormat, PointWriter};
 pub use hard::{HARD_SETS, HardSet, hard};
 pub use mesh::{cells_of, read_complex};
+#[cfg(feature = "cli")]
+pub(crate) use mesh::{cells_of_file, read_complex_file};
 pub use model::{Cell, ModelMetadata, Packing, SampleGrid};
 pub(crate) use open::read_model_file;
 pub use open::{PointOptions, is_point_file, read_model, read_points};

@@ -55,7 +55,10 @@ impl PointOptions {
 
     /// [`is_point_file`](Self::is_point_file) for an open file.
     pub(crate) fn holds_points(&self, file: &OpenFile) -> Result<bool, PointsError> {
-        self.format_of(file).map_or(Ok(false), |format| format.holds_points(file))
+        match self.format_of(file) {
+            Some(format) if file.is_ordinary() => format.holds_points(file),
+            named => Ok(named.is_some()),
+        }
     }
 
     /// The format of a file, by its content, or else by its extension.

@@ -26,6 +26,8 @@ mod las;
 mod laws;
 #[cfg(feature = "mpi")]
 mod mpi;
+#[cfg(target_os = "linux")]
+mod opened_once;
 mod outline;
 mod outofcore;
 #[cfg(unix)]

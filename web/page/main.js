@@ -365,8 +365,8 @@ function measures(level) {
   rows(byId("measures"), [
     ["α", `${short(level.alpha)} ${unit}²${radius}`],
     ["cells", level.cells], ["facets", classes(level.facets)], ["edges", classes(level.edges)], ["vertices", classes(level.vertices)],
-    ["topology", `${b0} components, ${b1} tunnels, ${b2} voids`],
-    ["volume", `${short(level.volume)} ${unit}³, ${(100 * level.coverage).toFixed(1)} % of the box`],
+    ["components", b0], ["tunnels", b1], ["voids", b2],
+    ["volume", `${short(level.volume)} ${unit}³, ${(100 * level.coverage).toFixed(1)} % of ${state.facts.kind === "volume" ? "the volume" : "the box"}`],
     ["boundary", `${short(level.area)} ${unit}²`],
   ]);
   document.body.dataset.cells = level.cells;

@@ -198,13 +198,12 @@ export class ShapeScene {
     this.draw();
   }
 
-  // Cuts everything open: what lies beyond the place along the axis is not drawn.
+  // Cuts everything open: what lies on the viewer's side of the place along the axis is not drawn.
   setCut(axis, place) {
     const cut = axis === null ? [] : [this.plane];
     if (axis !== null) {
-      const normal = [0, 0, 0];
-      normal[axis] = -1;
-      this.plane.set(new Vector3(...normal), place);
+      const near = this.camera.position.getComponent(axis) > this.controls.target.getComponent(axis);
+      this.plane.set(new Vector3().setComponent(axis, near ? -1 : 1), near ? place : -place);
     }
     for (const part of Object.values(this.parts)) part.material.clippingPlanes = cut;
     if (axis === null) this.setSection({ corners: new Float32Array(), shades: new Float32Array() });

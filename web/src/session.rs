@@ -6,7 +6,7 @@ use serde_json::json;
 use walpha::export::{ExportOptions, Format};
 use walpha::ladder::{Curve, Filtration, Span};
 use walpha::pipeline::{Input, Parameter, ParameterOrigin, PipelineError, Values, Weighed};
-use walpha::points::{ModelMetadata, Packing, PointWriter, SampleGrid, read_model};
+use walpha::points::{ModelMetadata, Packing, PointWriter, SampleGrid};
 use walpha::progress::{Listener, Monitor, Stage};
 use walpha::shape::Betti;
 use walpha::volume::{self, Hounsfield, SampleStats, Series};
@@ -208,23 +208,31 @@ impl Session {
         let monitor = Monitor::new(ToPage);
         Stage::Read.begin(&monitor).map_err(PipelineError::from)?;
         let recipe = options.recipe()?;
-        let is_sample = input.to_str().is_some_and(|name| name.starts_with("sample:"));
         if input.is_dir() && options.series.is_none() {
             let series: Vec<Series> = volume::series(input)?;
             if series.len() > 1 {
                 return Ok(Answer::of(json!({ "kind": "series", "series": series }), Vec::new()));
             }
         }
-        if !is_sample && recipe.is_points(input)? {
-            let of_points = walpha::points::PointOptions::default().columns(recipe.columns.clone());
-            let (points, metadata) = read_model(input, &of_points)?;
-            let answer = describe_points(&points, &metadata);
-            self.opened = Some(Opened::Points(points, metadata));
-            return Ok(answer);
-        }
-        let volume = volume::open_monitored(input, &recipe.read, &monitor)?;
-        let answer = describe_volume(&volume);
-        self.opened = Some(Opened::Volume(volume));
+        // Values as they are: gray levels follow the window, which changes.
+        let mut volume = None;
+        let keep = |_: &Recipe, read: &Volume| {
+            volume = Some(read.clone());
+            None
+        };
+        let read = recipe.clone().open_suited(input, &monitor, keep)?;
+        let (opened, answer) = match (read, volume) {
+            (Input::Points(points, metadata), _) => {
+                let answer = describe_points(&points, &metadata);
+                (Opened::Points(points, metadata), answer)
+            }
+            (Input::Volume(_), Some(volume)) => {
+                let answer = describe_volume(&volume);
+                (Opened::Volume(volume), answer)
+            }
+            _ => return Err("this kind of input is unknown to the page".to_owned().into()),
+        };
+        self.opened = Some(opened);
         Ok(answer)
     }
 

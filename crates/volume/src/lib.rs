@@ -57,6 +57,8 @@ pub use error::io_error;
 pub use formats::{begins_as_volume, built, is_npy, is_vtk, is_vtk_xml, read_file};
 #[doc(hidden)]
 pub use grid::{any_size, inverse};
+#[doc(hidden)]
+pub use open::OpenVolume;
 #[cfg(feature = "formats")]
 #[doc(hidden)]
 pub use read::{Element, Lines, VtkPoints, VtkXml};

@@ -1,11 +1,12 @@
 //! Opening what a user names: a sample, or else a file or folder.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use walpha_base::Monitor;
 use walpha_base::advice::Setting;
 
 use crate::formats;
+use crate::read::OpenFile;
 use crate::sample::PhantomBoxes;
 use crate::{ReadOptions, Reason, Source, Volume, VolumeError, read_monitored, sample};
 
@@ -27,9 +28,85 @@ pub fn open_monitored(
     monitor: &Monitor,
 ) -> Result<Volume, VolumeError> {
     let input = input.as_ref();
-    match input.to_str() {
-        Some(name) if name.starts_with("sample:") => options.part(sample(name)?),
-        _ => read_monitored(input, options, monitor),
+    match sample_name(input) {
+        Some(name) => options.part(sample(name)?),
+        None => read_monitored(input, options, monitor),
+    }
+}
+
+/// The name of a sample, if this is one.
+fn sample_name(input: &Path) -> Option<&str> {
+    input.to_str().filter(|name| name.starts_with("sample:"))
+}
+
+/// What a user names, of which more than one thing is asked. A file is opened once, and all answers come from that open
+/// file; samples and folders go by their names.
+#[derive(Debug)]
+pub enum OpenVolume {
+    /// A sample or a folder.
+    Named(PathBuf),
+    /// A file.
+    File(OpenFile),
+}
+
+impl OpenVolume {
+    /// Opens a file, or keeps the name of a sample or folder.
+    ///
+    /// # Errors
+    /// [`VolumeError::Io`]: the file cannot be opened.
+    pub fn open(input: &Path) -> Result<Self, VolumeError> {
+        Ok(if sample_name(input).is_some() || input.is_dir() {
+            Self::Named(input.into())
+        } else {
+            Self::File(OpenFile::open(input)?)
+        })
+    }
+
+    /// Reads it.
+    ///
+    /// # Errors
+    /// As [`open_monitored`].
+    pub fn read(&self, options: &ReadOptions, monitor: &Monitor) -> Result<Volume, VolumeError> {
+        match self {
+            Self::Named(input) => open_monitored(input, options, monitor),
+            Self::File(file) => formats::read_file(file, options, monitor),
+        }
+    }
+
+    /// Prepares to read it part by part.
+    ///
+    /// # Errors
+    /// As [`Source::open`].
+    pub fn source(&self, options: &ReadOptions) -> Result<Source, VolumeError> {
+        match self {
+            Self::Named(input) => Source::open(input, options),
+            Self::File(file) => {
+                Source::of_part(file.path(), options, || formats::source_of(file, options))
+            }
+        }
+    }
+
+    /// What it is, as `NRRD` or `NIfTI, gzip`.
+    ///
+    /// # Errors
+    /// It is of no format known.
+    pub fn format_name(&self, options: &ReadOptions) -> Result<String, VolumeError> {
+        match self {
+            Self::Named(input) if sample_name(input).is_some() => Ok("sample".into()),
+            Self::Named(input) => formats::format_name(input, options),
+            Self::File(file) => formats::format_name_of(file, options),
+        }
+    }
+
+    /// The files that hold its samples, where its header is a file of its own.
+    ///
+    /// # Errors
+    /// The header cannot be read.
+    pub fn data_files(&self, options: &ReadOptions) -> Result<Vec<PathBuf>, VolumeError> {
+        match self {
+            Self::Named(_) => Ok(Vec::new()),
+            Self::File(file) => formats::data_files_of(file, options),
+        }
     }
 }
 
@@ -41,19 +118,30 @@ impl Source {
     /// As [`read()`](crate::read()), and [`VolumeError::Format`] for what cannot be read in parts.
     pub fn open(input: impl AsRef<Path>, options: &ReadOptions) -> Result<Self, VolumeError> {
         let path = input.as_ref();
-        let name = path.to_str().unwrap_or_default();
+        Self::of_part(path, options, || {
+            let name = path.to_str().unwrap_or_default();
+            match name.strip_prefix("sample:phantom@").map(str::parse) {
+                Some(Ok(size)) => PhantomBoxes::source(size),
+                _ if sample_name(path).is_some() => {
+                    Ok(Self::of_volume(open(path, &ReadOptions::default())?))
+                }
+                _ => formats::source(path, options),
+            }
+        })
+    }
+
+    /// The part that is asked for of what `open` opens.
+    fn of_part(
+        path: &Path,
+        options: &ReadOptions,
+        open: impl FnOnce() -> Result<Self, VolumeError>,
+    ) -> Result<Self, VolumeError> {
         if options.downsample.is_some() {
             let what = "cannot be made coarser while it is read in parts";
             let reason = Reason::needless(Setting::Downsample, what);
             return Err(VolumeError::Format { path: path.into(), reason });
         }
-        let source = match name.strip_prefix("sample:phantom@").map(str::parse) {
-            Some(Ok(size)) => PhantomBoxes::source(size)?,
-            _ if name.starts_with("sample:") => {
-                Self::of_volume(open(path, &ReadOptions::default())?)
-            }
-            _ => formats::source(path, options)?,
-        };
+        let source = open()?;
         match &options.region {
             Some(region) => source.part(region),
             None => Ok(source),

@@ -151,7 +151,7 @@ pub(crate) fn read_complex(file: &OpenFile) -> Result<Mesh, PointsError> {
 /// Reads the simplices of a legacy VTK file in the same way.
 pub(crate) fn read_legacy_complex(file: &OpenFile) -> Result<Mesh, PointsError> {
     let format = MeshFormat::named("vtk").expect("VTK is a format of meshes");
-    format.read(file.path()).map_err(|error| mesh_error(file.path(), &error))
+    format.read_bytes(file.path(), &file.bytes()?).map_err(|error| mesh_error(file.path(), &error))
 }
 
 fn mesh_error(path: &Path, error: &MeshError) -> PointsError {

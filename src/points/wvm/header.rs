@@ -9,19 +9,16 @@ use crate::volume::{Coordinates, Dims, Frame, GrayRange, Reason};
 
 /// The version without a recipe, written if there is none.
 const WITHOUT_RECIPE: u8 = 1;
-/// The version whose header ends with a recipe.
+/// The version whose header ends with a recipe, written if 16 bits hold the length of the header.
 const WITH_RECIPE: u8 = 2;
-/// Longest recipe that is stored, in bytes: the length of a header has 16 bits. Longer ones are dropped.
-const MAX_RECIPE: usize = 1 << 15;
+/// The version of longer headers, whose length has 64 bits. They end with a recipe, too: nothing else is that long.
+const WITH_LONG_RECIPE: u8 = 3;
 
 /// Maximum number of points per byte of a layer, so that a reader's memory is proportional to the file.
 pub(super) const POINTS_PER_BYTE: u64 = 64;
 
 /// Size of a checksum, in bytes.
 pub(super) const CHECKSUM: usize = 4;
-
-/// Size of the field with the length of the header, in bytes.
-const LENGTH: usize = 2;
 
 /// The header of a file.
 #[derive(Clone, Debug, PartialEq)]
@@ -116,12 +113,7 @@ impl Header {
             (RANGE, self.range.is_some()),
         ];
         let flags = flags.iter().filter(|(_, set)| *set).map(|(flag, _)| flag).sum();
-        let recipe = self.recipe.as_ref().filter(|recipe| recipe.len() <= MAX_RECIPE);
-        let mut out = FieldWriter(MODEL.to_vec());
-        out.0.push(if recipe.is_some() { WITH_RECIPE } else { WITHOUT_RECIPE });
-        let length = out.0.len();
-        out.0.extend([0; LENGTH]);
-        out.0.push(flags);
+        let mut out = FieldWriter(vec![flags]);
         out.coordinates(self.coordinates);
         out.0.push(self.layers.len() as u8);
         for Layer { count, bytes } in &self.layers {
@@ -146,32 +138,47 @@ impl Header {
         if let Some(range) = self.range {
             out.doubles(&[range.low, range.high]);
         }
-        if let Some(recipe) = recipe {
+        if let Some(recipe) = &self.recipe {
             out.0.extend(recipe.as_bytes());
         }
-        let whole =
-            u16::try_from(out.0.len() + CHECKSUM).expect("a few hundred bytes and a recipe");
-        out.0[length..][..LENGTH].copy_from_slice(&whole.to_le_bytes());
-        let checksum = crc32fast::hash(&out.0);
-        out.0.extend(checksum.to_le_bytes());
-        out.0
+        let FieldWriter(fields) = out;
+        // The length counts all of the header, itself included.
+        let whole = |of_length: usize| MODEL.len() + 1 + of_length + fields.len() + CHECKSUM;
+        let (version, length) = match u16::try_from(whole(size_of::<u16>())) {
+            Ok(short) => {
+                let version = if self.recipe.is_some() { WITH_RECIPE } else { WITHOUT_RECIPE };
+                (version, short.to_le_bytes().to_vec())
+            }
+            Err(_) => {
+                let long = whole(size_of::<u64>()) as u64;
+                (WITH_LONG_RECIPE, long.to_le_bytes().to_vec())
+            }
+        };
+        let mut header = [MODEL, &[version], &length, &fields].concat();
+        let checksum = crc32fast::hash(&header);
+        header.extend(checksum.to_le_bytes());
+        header
     }
 
-    /// Reads the header of a file, and returns it with its length. Allocates a few kilobytes, whatever the
-    /// header claims.
+    /// Reads the header of a file, and returns it with its length. Allocates a few kilobytes and the recipe, which is
+    /// in the file, whatever the header claims.
     pub(super) fn of_bytes(file: &[u8]) -> Result<(Self, usize), Reason> {
         let Some(rest) = file.strip_prefix(MODEL) else {
             return Err(Reason::other("is not a .wvm file: its signature is missing"));
         };
         let mut fields = FieldReader { rest };
         let version = fields.byte()?;
-        if ![WITHOUT_RECIPE, WITH_RECIPE].contains(&version) {
-            let what = format!(
-                "is of version {version} of the format: versions {WITHOUT_RECIPE} and {WITH_RECIPE} are read"
-            );
-            return Err(Reason::unsupported(what, "update walpha"));
-        }
-        let length = usize::from(u16::from_le_bytes(fields.bytes()?));
+        let length = match version {
+            WITHOUT_RECIPE | WITH_RECIPE => u64::from(u16::from_le_bytes(fields.bytes()?)),
+            WITH_LONG_RECIPE => u64::from_le_bytes(fields.bytes()?),
+            _ => {
+                let what = format!(
+                    "is of version {version} of the format: versions {WITHOUT_RECIPE} to {WITH_LONG_RECIPE} are read"
+                );
+                return Err(Reason::unsupported(what, "update walpha"));
+            }
+        };
+        let length = usize::try_from(length).unwrap_or(usize::MAX);
         let whole = file.get(..length).and_then(|head| head.split_last_chunk::<CHECKSUM>());
         let Some((head, checksum)) = whole else {
             return Err(Reason::truncated("is truncated: it ends within its header"));
@@ -182,7 +189,7 @@ impl Header {
         let mut fields =
             FieldReader { rest: head.get(file.len() - fields.rest.len()..).unwrap_or_default() };
         let mut header = Self::of_fields(&mut fields)?;
-        if version == WITH_RECIPE {
+        if version != WITHOUT_RECIPE {
             let recipe = String::from_utf8(fields.rest.to_vec());
             header.recipe = Some(recipe.map_err(|_| Reason::header("its recipe is not UTF-8"))?);
         } else if !fields.rest.is_empty() {

@@ -8,7 +8,7 @@ use walpha::points::{Columns, read_points};
 use walpha::{Recipe, pipeline::Input, progress::Monitor};
 
 use super::files::{save, *};
-use crate::common::Told;
+use crate::common::{Told, run};
 
 #[test]
 fn points_of_every_format_are_read() {
@@ -53,6 +53,43 @@ fn points_come_through_a_pipe_that_is_opened_once() {
         std::fs::write(&path, text).unwrap();
         let input = done.recv_timeout(Duration::from_secs(60)).expect(name).unwrap();
         assert!(matches!(input, Input::Points(points, _) if points.len() == 2), "{name}");
+    }
+}
+
+/// The same for commands that ask more of a file than its points: they read a pipe once, or say why they cannot.
+#[test]
+#[cfg(unix)]
+fn commands_open_a_pipe_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let xyz = "0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 1 1.5\n";
+    let off = "OFF\n2 0 0\n0 0 0\n1 0 0\n";
+    let mesh = "MeshVersionFormatted 2 Dimension 3 Vertices 4 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1 0 \
+                Tetrahedra 1 1 2 3 4 0 End";
+    let complex = r#"{"points":[[0,0,0]],"alpha":0,"vertices":[0]}"#;
+    let unnamed = r#"{"p":[[0,0,0],[1,0,0],[0,1,0],[0,0,1]],"t":[[0,1,2,3]]}"#;
+    for (command, name, text, code, part) in [
+        ("info", "p.xyz", xyz, 0, "points    5"),
+        ("check", "p.xyz", xyz, 0, "over 5 points"),
+        ("info", "t.mesh", mesh, 0, "1 tetrahedra"),
+        ("check", "t.mesh", mesh, 0, "over 4 points"),
+        ("check", "c.json", complex, 0, "over 1 points"),
+        ("info", "p.off", off, 1, "copy it"),
+        ("check", "p.off", off, 1, "copy it"),
+        ("check", "u.json", unnamed, 1, "Illegal seek"),
+        ("info", "v.nrrd", "NRRD0004\n", 1, "copy it"),
+    ] {
+        let path = folder.path().join(name);
+        assert!(Command::new("mkfifo").arg(&path).status().unwrap().success());
+        let (ended, done) = mpsc::channel();
+        let inside = folder.path().to_owned();
+        thread::spawn(move || drop(ended.send(run(&inside, &[command, name]))));
+        // Whoever refuses a pipe may have closed it before this is written.
+        drop(std::fs::write(&path, text));
+        let (exit, stdout, stderr) = done.recv_timeout(Duration::from_secs(60)).expect(name);
+        std::fs::remove_file(&path).unwrap();
+        let said = stdout + &stderr;
+        assert_eq!(exit, code, "{command} {name}: {said}");
+        assert!(said.contains(part), "{command} {name}: {said}");
     }
 }
 

@@ -2,15 +2,15 @@
 
 use std::fs;
 use std::io::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use flate2::Compression;
 use flate2::write::GzEncoder;
 use ndarray::Array3;
 use walpha::progress::Monitor;
 use walpha::volume::{
-    Coordinates, Dtype, Endian, FORMATS, Frame, OpenFile, RawLayout, ReadOptions, Source, Space,
-    Volume, VolumeWriter, read, read_file,
+    Coordinates, Dtype, Endian, FORMATS, Frame, OpenVolume, RawLayout, ReadOptions, Source, Space,
+    Volume, VolumeWriter, format_name, read,
 };
 
 use super::files::{save, *};
@@ -77,11 +77,22 @@ fn volumes_are_read_from_a_file_that_is_opened_once() {
     let folder = tempfile::tempdir().unwrap();
     for (name, bytes) in examples() {
         let path = save(folder.path(), name, bytes);
-        let file = OpenFile::open(&path).unwrap();
+        let options = ReadOptions::default();
+        let named = format_name(&path, &options).unwrap();
+        let in_parts = Source::open(&path, &options).is_ok();
+        let file = OpenVolume::open(&path).unwrap();
         fs::remove_file(&path).unwrap();
-        let volume = read_file(&file, &ReadOptions::default(), &Monitor::noop());
+        let volume = file.read(&options, &Monitor::noop());
         let volume = volume.unwrap_or_else(|error| panic!("{name}: {error}"));
         assert_eq!(volume.as_slice(), numbers(), "{name}");
+        assert_eq!(file.format_name(&options).unwrap(), named, "{name}");
+        assert_eq!(file.data_files(&options).unwrap(), [""; 0].map(PathBuf::from), "{name}");
+        let source = file.source(&options);
+        assert_eq!(source.is_ok(), in_parts, "{name}: {:?}", source.err());
+        if let Ok(source) = source {
+            let samples = source.read([0; 3], [3, 2, 2]).unwrap();
+            assert_eq!(samples, volume.as_slice(), "{name}");
+        }
     }
 }
 

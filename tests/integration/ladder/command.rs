@@ -159,6 +159,9 @@ fn bad_wishes_leave_nothing_behind() {
         (&["ladder", phantom, "-o", "out", "--alphas", "1,x"][..], 2, "--alphas"),
         (&["ladder", phantom, "-o", "out", "--mesh", "doc"], 2, "--mesh"),
         (&["ladder", phantom, "-o", "out.csv"], 2, "--output takes a folder"),
+        (&["ladder", phantom, "-o", "out.GLB"], 2, "--output takes a folder"),
+        (&["ladder", phantom, "-o", "out.laz"], 2, "--output takes a folder"),
+        (&["ladder", phantom, "-o", "out.png"], 2, "--output takes a folder"),
         (&["ladder", phantom, "-o", "out", "--focus", "1:2,1:2,1:2"], 2, "--counts"),
         (
             &["ladder", phantom, "-o", "out", "--counts", "9", "--focus", "2:1,1:2,1:2"],

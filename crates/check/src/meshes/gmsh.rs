@@ -3,14 +3,11 @@
 //! Nodes have tags in any order, by which elements name them. Points, lines and surfaces are elements, too, and are
 //! left out.
 
-use std::path::Path;
-
 use super::scan::{Form, Scan, shown};
 use super::{Mesh, MeshError, not_tetrahedra};
 
-pub(super) fn read(path: &Path) -> Result<Mesh, MeshError> {
-    let bytes = std::fs::read(path)?;
-    let mut scan = Scan::new(&bytes);
+pub(super) fn read(bytes: &[u8]) -> Result<Mesh, MeshError> {
+    let mut scan = Scan::new(bytes);
     let Some(b"$MeshFormat") = scan.word() else {
         let error = MeshError::new(
             "the file does not begin with $MeshFormat: it is no mesh of Gmsh from version 2 on",

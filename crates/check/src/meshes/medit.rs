@@ -1,8 +1,6 @@
 //! Medit's `.mesh` as text (INRIA RT-0253, "Medit: an interactive mesh visualization software"): keywords, each with
 //! the number of its entries and these. Points are numbered from 1.
 
-use std::path::Path;
-
 use super::scan::{Scan, shown};
 use super::{Mesh, MeshError, no_such_point, not_tetrahedra};
 
@@ -11,9 +9,8 @@ const OTHER_CELLS: [&str; 5] = ["Hexahedra", "Hexaedra", "Prisms", "Pyramids", "
 /// Keywords of simplices and surfaces of less than three dimensions.
 const IGNORED: [&str; 3] = ["Triangles", "Quadrilaterals", "Edges"];
 
-pub(super) fn read(path: &Path) -> Result<Mesh, MeshError> {
-    let bytes = std::fs::read(path)?;
-    let mut scan = Scan::with_comments(&bytes);
+pub(super) fn read(bytes: &[u8]) -> Result<Mesh, MeshError> {
+    let mut scan = Scan::with_comments(bytes);
     if scan.word() != Some(b"MeshVersionFormatted") {
         // Binary files begin with the number 1 in either byte order.
         if bytes.starts_with(&[1, 0, 0, 0]) || bytes.starts_with(&[0, 0, 0, 1]) {

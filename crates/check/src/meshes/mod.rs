@@ -62,15 +62,15 @@ pub struct MeshFormat {
     pub name: &'static str,
     /// Extensions, without dots.
     pub extensions: &'static [&'static str],
-    read: fn(&Path) -> Result<Mesh, MeshError>,
+    read: fn(&Path, &[u8]) -> Result<Mesh, MeshError>,
 }
 
 /// The formats that are read.
 pub static FORMATS: [MeshFormat; 4] = [
     MeshFormat { name: "TetGen", extensions: &["node", "ele"], read: tetgen::read },
-    MeshFormat { name: "Gmsh", extensions: &["msh"], read: gmsh::read },
-    MeshFormat { name: "Medit", extensions: &["mesh"], read: medit::read },
-    MeshFormat { name: "legacy VTK", extensions: &["vtk"], read: vtk::read },
+    MeshFormat { name: "Gmsh", extensions: &["msh"], read: |_, bytes| gmsh::read(bytes) },
+    MeshFormat { name: "Medit", extensions: &["mesh"], read: |_, bytes| medit::read(bytes) },
+    MeshFormat { name: "legacy VTK", extensions: &["vtk"], read: |_, bytes| vtk::read(bytes) },
 ];
 
 impl MeshFormat {
@@ -93,7 +93,17 @@ impl MeshFormat {
     /// # Errors
     /// A file that cannot be read, is damaged or truncated, or lists other cells than tetrahedra.
     pub fn read(&self, path: impl AsRef<Path>) -> Result<Mesh, MeshError> {
-        (self.read)(path.as_ref())
+        let path = path.as_ref();
+        self.read_bytes(path, &std::fs::read(path)?)
+    }
+
+    /// Reads the content of a file, for those who have opened it. Of `TetGen`'s two files, the other one is looked for
+    /// beside the path.
+    ///
+    /// # Errors
+    /// As [`MeshFormat::read`].
+    pub fn read_bytes(&self, path: impl AsRef<Path>, bytes: &[u8]) -> Result<Mesh, MeshError> {
+        (self.read)(path.as_ref(), bytes)
     }
 }
 

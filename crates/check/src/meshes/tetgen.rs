@@ -3,14 +3,15 @@
 //! Points are numbered from 0 or from 1, as the first of them is, and cells must be numbered alike. Files of
 //! neighbours (`.neigh`) are not read, as they follow from the cells.
 
+use std::borrow::Cow;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
 use super::scan::Scan;
 use super::{Mesh, MeshError, no_such_point, not_tetrahedra};
 
-/// Reads both files, of which either is named.
-pub(super) fn read(path: &Path) -> Result<Mesh, MeshError> {
+/// Reads both files. Either is named, and its content given.
+pub(super) fn read(path: &Path, named: &[u8]) -> Result<Mesh, MeshError> {
     let beside = |extension: &str| -> PathBuf {
         let is_it = path.extension().is_some_and(|own| own.eq_ignore_ascii_case(extension));
         if is_it { path.to_owned() } else { path.with_extension(extension) }
@@ -19,9 +20,12 @@ pub(super) fn read(path: &Path) -> Result<Mesh, MeshError> {
     let in_file = |file: &Path, error: MeshError| {
         if file == path { error } else { error.of_file(file) }
     };
-    let nodes = open(&of_nodes).and_then(|bytes| nodes(&bytes));
+    let content = |file: &Path| {
+        if file == path { Ok(Cow::Borrowed(named)) } else { open(file).map(Cow::Owned) }
+    };
+    let nodes = content(&of_nodes).and_then(|bytes| nodes(&bytes));
     let nodes = nodes.map_err(|error| in_file(&of_nodes, error))?;
-    let cells = open(&of_cells).and_then(|bytes| cells(&bytes, &nodes));
+    let cells = content(&of_cells).and_then(|bytes| cells(&bytes, &nodes));
     let cells = cells.map_err(|error| in_file(&of_cells, error))?;
 
     let Nodes { points, first, attribute } = nodes;

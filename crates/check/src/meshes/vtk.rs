@@ -4,7 +4,6 @@
 //! Of the data of points `weight`, or the square of `radius`, is a weight; `alpha` in the field data is α, and `class`
 //! of the cells their class.
 
-use std::path::Path;
 use std::str;
 
 use super::grid::Grid;
@@ -12,9 +11,8 @@ use super::scan::{Form, Scan, WRITE_AGAIN, shown};
 use super::{Mesh, MeshError};
 use crate::Alpha;
 
-pub(super) fn read(path: &Path) -> Result<Mesh, MeshError> {
-    let bytes = std::fs::read(path)?;
-    let mut scan = Scan::new(&bytes);
+pub(super) fn read(bytes: &[u8]) -> Result<Mesh, MeshError> {
+    let mut scan = Scan::new(bytes);
     let first = scan.line();
     if !first.starts_with(b"# vtk DataFile") {
         let error =

@@ -46,7 +46,6 @@ mod error;
 mod filtration;
 #[cfg(feature = "json")]
 mod json;
-#[cfg(any(feature = "json", feature = "npz"))]
 mod named;
 #[cfg(feature = "npz")]
 mod npz;

@@ -1,8 +1,13 @@
 use std::ffi::OsStr;
+use std::fs::File;
+use std::io::{BufReader, Read, Seek};
 use std::path::Path;
-#[cfg(any(feature = "json", feature = "npz"))]
-use std::{fs::File, io::BufReader};
 
+#[cfg(feature = "json")]
+use super::json;
+use super::named::{Names, names_of};
+#[cfg(feature = "npz")]
+use super::npz;
 use super::{ComplexFile, FiltrationFile, SchemaError};
 
 impl ComplexFile {
@@ -13,13 +18,8 @@ impl ComplexFile {
     /// [`SchemaError::Io`] if the file cannot be read; what [`read_json`](Self::read_json) and
     /// [`read_npz`](Self::read_npz) return.
     pub fn open(path: impl AsRef<Path>) -> Result<Self, SchemaError> {
-        let path = path.as_ref();
-        match Format::by_extension(path)? {
-            #[cfg(feature = "json")]
-            Format::Json => Self::read_json(open(path)?),
-            #[cfg(feature = "npz")]
-            Format::Npz => Self::read_npz(open(path)?),
-        }
+        let (format, file) = Format::open(path.as_ref())?;
+        format.complex(file)
     }
 
     /// Whether [`open`](Self::open) knows the extension of this name. The file need not exist.
@@ -34,24 +34,8 @@ impl FiltrationFile {
     /// # Errors
     /// As [`ComplexFile::open`].
     pub fn open(path: impl AsRef<Path>) -> Result<Self, SchemaError> {
-        let path = path.as_ref();
-        match Format::by_extension(path)? {
-            #[cfg(feature = "json")]
-            Format::Json => Self::read_json(open(path)?),
-            #[cfg(feature = "npz")]
-            Format::Npz => Self::read_npz(open(path)?),
-        }
-    }
-
-    /// Whether a file has a field `order`, which only filtrations have.
-    fn is_in(path: &Path) -> bool {
-        match Format::of(path) {
-            None => false,
-            #[cfg(feature = "json")]
-            Some(Format::Json) => open(path).is_ok_and(Self::is_json),
-            #[cfg(feature = "npz")]
-            Some(Format::Npz) => open(path).is_ok_and(Self::is_npz),
-        }
+        let (format, file) = Format::open(path.as_ref())?;
+        format.filtration(file)
     }
 }
 
@@ -70,51 +54,104 @@ impl AnyFile {
     /// α = ∞ if it states no α, and has nothing but points, cells and weights, or calls its cells `simplices`, `tetra`
     /// or `t`, as others do, and its points `points`, `p` or `vertices`.
     ///
+    /// The file is opened once, and what is no complex is read again from its first byte on: a pipe can bring only
+    /// complexes.
+    ///
     /// # Errors
     /// As [`ComplexFile::open`] and [`FiltrationFile::open`].
     pub fn open(path: impl AsRef<Path>) -> Result<Self, SchemaError> {
-        let path = path.as_ref();
-        match ComplexFile::open(path) {
-            Ok(file) => Ok(Self::Complex(file)),
-            Err(_) if FiltrationFile::is_in(path) => {
-                FiltrationFile::open(path).map(Self::Filtration)
-            }
-            #[cfg(any(feature = "json", feature = "npz"))]
-            Err(error) => match ComplexFile::open_named(path)? {
-                Some(file) => Ok(Self::Complex(file)),
-                None => Err(error),
-            },
-            #[cfg(not(any(feature = "json", feature = "npz")))]
-            Err(error) => Err(error),
+        let (format, mut file) = Format::open(path.as_ref())?;
+        let error = match format.complex(&mut file) {
+            Ok(file) => return Ok(Self::Complex(file)),
+            Err(error) => error,
+        };
+        file.rewind().map_err(SchemaError::Io)?;
+        if format.holds_filtration(&mut file) {
+            file.rewind().map_err(SchemaError::Io)?;
+            return format.filtration(file).map(Self::Filtration);
         }
+        file.rewind().map_err(SchemaError::Io)?;
+        let Some(names) = names_of(&format.names(&mut file)) else { return Err(error) };
+        file.rewind().map_err(SchemaError::Io)?;
+        format.named(file, names).map(Self::Complex)
     }
 }
 
-#[cfg(any(feature = "json", feature = "npz"))]
-pub(super) fn open(path: &Path) -> Result<BufReader<File>, SchemaError> {
-    Ok(BufReader::new(File::open(path).map_err(SchemaError::Io)?))
-}
-
 /// The formats that can be read.
-pub(super) enum Format {
+#[derive(Clone, Copy)]
+enum Format {
     #[cfg(feature = "json")]
     Json,
     #[cfg(feature = "npz")]
     Npz,
 }
 
+#[cfg_attr(
+    not(any(feature = "json", feature = "npz")),
+    expect(unused_variables, reason = "there is no format to read")
+)]
 impl Format {
-    fn by_extension(path: &Path) -> Result<Self, SchemaError> {
-        Self::of(path).ok_or(SchemaError::Extension)
-    }
-
-    pub(super) fn of(path: &Path) -> Option<Self> {
+    fn of(path: &Path) -> Option<Self> {
         match path.extension().map(OsStr::to_ascii_lowercase)?.to_str()? {
             #[cfg(feature = "json")]
             "json" => Some(Self::Json),
             #[cfg(feature = "npz")]
             "npz" => Some(Self::Npz),
             _ => None,
+        }
+    }
+
+    /// Opens a file whose format is that of its extension.
+    fn open(path: &Path) -> Result<(Self, BufReader<File>), SchemaError> {
+        let format = Self::of(path).ok_or(SchemaError::Extension)?;
+        Ok((format, BufReader::new(File::open(path).map_err(SchemaError::Io)?)))
+    }
+
+    fn complex(self, file: impl Read + Seek) -> Result<ComplexFile, SchemaError> {
+        match self {
+            #[cfg(feature = "json")]
+            Self::Json => ComplexFile::read_json(file),
+            #[cfg(feature = "npz")]
+            Self::Npz => ComplexFile::read_npz(file),
+        }
+    }
+
+    fn filtration(self, file: impl Read + Seek) -> Result<FiltrationFile, SchemaError> {
+        match self {
+            #[cfg(feature = "json")]
+            Self::Json => FiltrationFile::read_json(file),
+            #[cfg(feature = "npz")]
+            Self::Npz => FiltrationFile::read_npz(file),
+        }
+    }
+
+    /// Whether a file has a field `order`, which only filtrations have.
+    fn holds_filtration(self, file: impl Read + Seek) -> bool {
+        match self {
+            #[cfg(feature = "json")]
+            Self::Json => FiltrationFile::is_json(file),
+            #[cfg(feature = "npz")]
+            Self::Npz => FiltrationFile::is_npz(file),
+        }
+    }
+
+    /// The names of the fields of a file; none if it cannot be read.
+    fn names(self, file: impl Read + Seek) -> Vec<String> {
+        match self {
+            #[cfg(feature = "json")]
+            Self::Json => json::names(file),
+            #[cfg(feature = "npz")]
+            Self::Npz => npz::names(file),
+        }
+    }
+
+    /// Reads a complex whose points and cells have these names.
+    fn named(self, file: impl Read + Seek, names: Names) -> Result<ComplexFile, SchemaError> {
+        match self {
+            #[cfg(feature = "json")]
+            Self::Json => json::read_named(file, names),
+            #[cfg(feature = "npz")]
+            Self::Npz => npz::read_named(file, names),
         }
     }
 }

@@ -135,15 +135,19 @@ pub(crate) fn source(path: &Path, options: &ReadOptions) -> Result<Source, Volum
             None => Err(whole(format, path)),
         };
     }
-    let file = OpenFile::open(path)?;
+    source_of(&OpenFile::open(path)?, options)
+}
+
+/// The same for a file that is open.
+pub(crate) fn source_of(file: &OpenFile, options: &ReadOptions) -> Result<Source, VolumeError> {
     if let Some(layout) = &options.raw {
-        return Ok(raw::box_reader(&file, layout)?.source());
+        return Ok(raw::box_reader(file, layout)?.source());
     }
-    let Detected { format, gzip } = detect(&file, options)?;
-    accept(format, path, options)?;
+    let Detected { format, gzip } = detect(file, options)?;
+    accept(format, file.path(), options)?;
     match format.parts {
-        Some(parts) if !gzip => parts(&file, options),
-        _ => Err(whole(format, path)),
+        Some(parts) if !gzip => parts(file, options),
+        _ => Err(whole(format, file.path())),
     }
 }
 
@@ -169,13 +173,21 @@ fn is_folder(path: &Path, options: &ReadOptions) -> bool {
 /// The file cannot be read or is of no format known.
 pub fn format_name(path: impl AsRef<Path>, options: &ReadOptions) -> Result<String, VolumeError> {
     let path = path.as_ref();
+    if is_folder(path, options) {
+        return Ok(format_of_folder(path)?.folder_name.into());
+    }
+    format_name_of(&OpenFile::open(path)?, options)
+}
+
+/// The same for a file that is open.
+pub(crate) fn format_name_of(
+    file: &OpenFile,
+    options: &ReadOptions,
+) -> Result<String, VolumeError> {
     if options.raw.is_some() {
         return Ok("raw samples".into());
     }
-    if path.is_dir() {
-        return Ok(format_of_folder(path)?.folder_name.into());
-    }
-    let Detected { format, gzip } = detect(&OpenFile::open(path)?, options)?;
+    let Detected { format, gzip } = detect(file, options)?;
     Ok(if gzip { format!("{}, gzip", format.name) } else { format.name.into() })
 }
 
@@ -195,7 +207,11 @@ pub fn data_files(
     data_files_of(&OpenFile::open(path)?, options)
 }
 
-fn data_files_of(file: &OpenFile, options: &ReadOptions) -> Result<Vec<PathBuf>, VolumeError> {
+/// The same for a file that is open.
+pub(crate) fn data_files_of(
+    file: &OpenFile,
+    options: &ReadOptions,
+) -> Result<Vec<PathBuf>, VolumeError> {
     if options.raw.is_some() {
         return Ok(Vec::new());
     }

@@ -23,10 +23,10 @@ macro_rules! __built {
 }
 pub use __built as built;
 
-pub(crate) use detect::source;
 pub use detect::{
     begins_as_volume, data_files, files_of, format_name, read, read_file, read_monitored, series,
 };
+pub(crate) use detect::{data_files_of, format_name_of, source, source_of};
 pub(crate) use magic::is_gzip;
 #[cfg(feature = "formats")]
 pub(crate) use magic::{NIFTI_HEADERS, nifti_version};

@@ -57,7 +57,7 @@ pub(crate) fn box_reader(file: &OpenFile, frame: Option<u64>) -> Result<Uncompre
         return Err(format_error(path, Reason::Length { claim, needed, found, bound: "" }));
     }
     let offset = HEADER as u64 + frames.index * layout.each();
-    Ok(Uncompressed::new(path, dims, frame, dtype, endian, offset))
+    Uncompressed::new(file, dims, frame, dtype, endian, offset)
 }
 
 /// Reads a header.

@@ -58,27 +58,27 @@ pub(crate) fn read(
 pub(crate) fn box_reader(file: &OpenFile, frame: Option<u64>) -> Result<Uncompressed, VolumeError> {
     let (path, length) = (file.path(), file.length());
     let fail = |reason: Reason| VolumeError::Format { path: path.into(), reason };
-    let file = NpyFile::open(file)?;
-    let (beyond, axes) = file.shape.split_at(file.shape.len().saturating_sub(3));
-    let (&[z, y, x], false) = (axes, file.fortran || beyond.len() > 1) else {
+    let array = NpyFile::open(file)?;
+    let (beyond, axes) = array.shape.split_at(array.shape.len().saturating_sub(3));
+    let (&[z, y, x], false) = (axes, array.fortran || beyond.len() > 1) else {
         return Err(fail(Reason::unsupported(
-            format!("holds an array of shape {:?} that is not read part by part", file.shape),
+            format!("holds an array of shape {:?} that is not read part by part", array.shape),
             "save numpy.ascontiguousarray(a), of the axes [z, y, x]",
         )));
     };
     let dims = Dims::unbounded(x, y, z)?;
     let frames = FrameChoice::choose(path, beyond, frame)?;
-    let each = (dims.samples() * file.dtype.size()) as u64;
+    let each = (dims.samples() * array.dtype.size()) as u64;
     let all = each.saturating_mul(frames.count);
-    let Length::Exactly(found) = file.payload.length else { unreachable!("of a file") };
+    let Length::Exactly(found) = array.payload.length else { unreachable!("of a file") };
     if found != all {
-        let claim = format!("an array of shape {:?} and type {}", file.shape, file.dtype);
+        let claim = format!("an array of shape {:?} and type {}", array.shape, array.dtype);
         return Err(fail(Reason::Length { claim, needed: all, found, bound: "" }));
     }
     let offset = length - found + frames.index * each;
     // Booleans are bytes, and no gray levels.
-    let dtype = if file.boolean { Dtype::I8 } else { file.dtype };
-    Ok(Uncompressed::new(path, dims, Frame::VOXEL, dtype, file.endian, offset))
+    let dtype = if array.boolean { Dtype::I8 } else { array.dtype };
+    Uncompressed::new(file, dims, Frame::VOXEL, dtype, array.endian, offset)
 }
 
 /// The volume an array is.

@@ -15,6 +15,7 @@ use crate::formats::is_gzip;
 const START: u64 = 1024;
 
 /// An open file and its first bytes. Detection looks at these, and readers start at the first byte again.
+#[derive(Debug)]
 pub struct OpenFile {
     path: PathBuf,
     file: File,
@@ -70,6 +71,16 @@ impl OpenFile {
         if self.start.is_empty() { Ok(BufReader::new(&self.file)) } else { self.reader_at(0) }
     }
 
+    /// All its bytes.
+    ///
+    /// # Errors
+    /// [`VolumeError::Io`].
+    pub fn bytes(&self) -> Result<Vec<u8>, VolumeError> {
+        let mut bytes = Vec::new();
+        self.reader()?.read_to_end(&mut bytes).map_err(io_error(&self.path))?;
+        Ok(bytes)
+    }
+
     /// Reads from another byte on.
     ///
     /// # Errors
@@ -86,12 +97,17 @@ impl OpenFile {
     /// [`VolumeError::Io`].
     pub fn owned_reader(&self) -> Result<BufReader<File>, VolumeError> {
         self.reader()?;
-        // WASI has no second handle of an open file; what it reads lies in memory.
+        Ok(BufReader::new(self.handle()?))
+    }
+
+    /// Another handle of the same open file, at the same position.
+    pub(crate) fn handle(&self) -> Result<File, VolumeError> {
+        // WASI has no second handle of an open file: it is opened again, and begins at the first byte.
         #[cfg(target_os = "wasi")]
-        let file = File::open(&self.path);
+        let handle = File::open(&self.path);
         #[cfg(not(target_os = "wasi"))]
-        let file = self.file.try_clone();
-        Ok(BufReader::new(file.map_err(io_error(&self.path))?))
+        let handle = self.file.try_clone();
+        handle.map_err(io_error(&self.path))
     }
 
     /// Reads from the first byte on, unpacked where the file is compressed with gzip; and what is known of the

@@ -67,7 +67,7 @@ pub(crate) fn box_reader(file: &OpenFile, layout: &RawLayout) -> Result<Uncompre
         let reason = wrong_length(layout, needed, length);
         return Err(VolumeError::Format { path: path.into(), reason });
     }
-    Ok(Uncompressed::new(path, dims, Frame::VOXEL, dtype, endian, offset))
+    Uncompressed::new(file, dims, Frame::VOXEL, dtype, endian, offset)
 }
 
 fn wrong_length(layout: &RawLayout, needed: u64, length: u64) -> Reason {

@@ -1,8 +1,9 @@
 use std::fs::File;
-use std::io::{Read, Seek, SeekFrom};
-use std::path::{Path, PathBuf};
-
+use std::io;
 #[cfg(feature = "formats")]
+use std::path::Path;
+use std::path::PathBuf;
+
 use super::OpenFile;
 #[cfg(feature = "formats")]
 use super::layout::{Encoding, Layout};
@@ -21,6 +22,7 @@ use crate::{Dims, Dtype, Endian, Frame, VolumeError};
 /// alone.
 pub(crate) struct Uncompressed {
     path: PathBuf,
+    file: SharedFile,
     dims: Dims,
     frame: Frame,
     dtype: Dtype,
@@ -33,14 +35,16 @@ pub(crate) struct Uncompressed {
 
 impl Uncompressed {
     pub(crate) fn new(
-        path: &Path,
+        file: &OpenFile,
         dims: Dims,
         frame: Frame,
         dtype: Dtype,
         endian: Endian,
         offset: u64,
-    ) -> Self {
-        Self { path: path.into(), dims, frame, dtype, endian, offset, scaling: None }
+    ) -> Result<Self, VolumeError> {
+        let path = file.path().to_owned();
+        let file = SharedFile::new(file.handle()?);
+        Ok(Self { path, file, dims, frame, dtype, endian, offset, scaling: None })
     }
 
     /// Scales samples, in doubles. Scaled bytes are not gray levels.
@@ -58,7 +62,7 @@ impl Uncompressed {
         after: u64,
         skip: Option<u64>,
     ) -> Result<Self, VolumeError> {
-        Self::within(file.path(), file.path(), file.length(), layout, after, skip)
+        Self::within(file.path(), file, layout, after, skip)
     }
 
     /// Samples in a file of their own.
@@ -70,10 +74,7 @@ impl Uncompressed {
         skip: Option<u64>,
     ) -> Result<Self, VolumeError> {
         match files {
-            [file] => {
-                let length = std::fs::metadata(file).map_err(io_error(file))?.len();
-                Self::within(header, file, length, layout, 0, skip)
-            }
+            [file] => Self::within(header, &OpenFile::open(file)?, layout, 0, skip),
             _ => Err(format_error(
                 header,
                 Reason::unsupported(
@@ -90,8 +91,7 @@ impl Uncompressed {
     #[cfg(feature = "formats")]
     fn within(
         header: &Path,
-        file: &Path,
-        length: u64,
+        file: &OpenFile,
         layout: Layout,
         after: u64,
         skip: Option<u64>,
@@ -100,7 +100,7 @@ impl Uncompressed {
             let what = "is compressed, or text: it cannot be read in parts";
             return Err(format_error(header, Reason::unsupported(what, CONVERT)));
         }
-        let (needed, behind) = (layout.bytes(), length.saturating_sub(after));
+        let (needed, behind) = (layout.bytes(), file.length().saturating_sub(after));
         let skip = skip.unwrap_or(behind.saturating_sub(needed));
         let found = behind.saturating_sub(skip);
         let Layout { dims, dtype, endian, frame, frames, .. } = layout;
@@ -110,7 +110,7 @@ impl Uncompressed {
             return Err(format_error(header, reason));
         }
         let offset = after + skip + frames.index * layout.each();
-        Ok(Self::new(file, dims, frame, dtype, endian, offset))
+        Self::new(file, dims, frame, dtype, endian, offset)
     }
 
     /// The volume they are.
@@ -124,9 +124,7 @@ impl Uncompressed {
 
 impl BoxReader for Uncompressed {
     fn read(&self, first: [usize; 3], size: [usize; 3]) -> Result<Vec<f32>, VolumeError> {
-        let Self { path, dims, dtype, offset, .. } = self;
-        let failed = io_error(path);
-        let mut file = File::open(path).map_err(&failed)?;
+        let Self { path, file, dims, dtype, offset, .. } = self;
         let [nx, ny, _] = dims.xyz();
         // Whole rows lie side by side with the next ones.
         let whole = size[0] == nx;
@@ -137,8 +135,7 @@ impl BoxReader for Uncompressed {
         for z in first[2]..first[2] + size[2] {
             for y in first[1]..first[1] + runs {
                 let at = ((z * ny + y) * nx + first[0]) * dtype.size();
-                file.seek(SeekFrom::Start(offset + at as u64)).map_err(&failed)?;
-                file.read_exact(&mut bytes).map_err(&failed)?;
+                file.read_at(offset + at as u64, &mut bytes).map_err(io_error(path))?;
                 self.decode(&bytes, to.next().expect("as many runs as there are"));
             }
         }
@@ -158,5 +155,35 @@ impl Uncompressed {
         for (sample, value) in samples.iter_mut().zip(exact) {
             *sample = (value * slope + inter) as f32;
         }
+    }
+}
+
+/// An open file of which threads read different places side by side.
+struct SharedFile {
+    #[cfg(unix)]
+    file: File,
+    /// One thread at a time moves its position and reads.
+    #[cfg(not(unix))]
+    file: std::sync::Mutex<File>,
+}
+
+impl SharedFile {
+    fn new(file: File) -> Self {
+        #[cfg(not(unix))]
+        let file = file.into();
+        Self { file }
+    }
+
+    #[cfg(unix)]
+    fn read_at(&self, offset: u64, bytes: &mut [u8]) -> io::Result<()> {
+        std::os::unix::fs::FileExt::read_exact_at(&self.file, bytes, offset)
+    }
+
+    #[cfg(not(unix))]
+    fn read_at(&self, offset: u64, bytes: &mut [u8]) -> io::Result<()> {
+        use std::io::{Read, Seek, SeekFrom};
+        let mut file = self.file.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        file.seek(SeekFrom::Start(offset))?;
+        file.read_exact(bytes)
     }
 }

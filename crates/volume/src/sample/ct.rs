@@ -69,10 +69,15 @@ mod tests {
         };
         assert!((mean([2, 2, 2]) + 1000.0).abs() < 20.0, "air: {}", mean([2, 2, 2]));
         assert!((mean([62, 70, 45]) - 50.0).abs() < 30.0, "brain: {}", mean([62, 70, 45]));
+        assert!((mean([63, 21, 7]) - 840.0).abs() < 30.0, "chin: {}", mean([63, 21, 7]));
         let (low, high) = head.value_range();
         assert!(low < -1050.0 && high > 900.0, "{low} to {high}");
         let centre = head.frame().to_world([63.5, 63.5, 35.5]);
         assert!(centre.iter().all(|x| x.abs() < 1e-9), "{centre:?}");
+        // Slices lean forwards as they go up.
+        let first = head.frame().to_world([0.0; 3]);
+        let expected = [-111.125, -76.86, -133.355];
+        assert!((0..3).all(|k| (first[k] - expected[k]).abs() < 1e-9), "{first:?}");
         assert_eq!(head.dtype(), Dtype::I16);
     }
 
