@@ -4,11 +4,12 @@
 #   scripts/release.sh crates      the packages of Rust, built from what would be published
 #   scripts/release.sh binary      the command for Linux (glibc 2.28) and Windows, as archives
 #   scripts/release.sh deb         the command as a Debian package
+#   scripts/release.sh web         walpha.html, the page that computes
 #   scripts/release.sh wheels      wheels (manylinux_2_28) and the source distribution of the Python package
 #   scripts/release.sh rehearse    looks at the texts, then makes all of these, and the binary twice
 #
 # It needs Rust by rustup, Python 3.11 and libcgal-dev, and can use g++-mingw-w64-x86-64, wine, debootstrap, qemu-user-static, binfmt-support and
-# libc6-arm64-cross of Debian, and `cargo install --locked cargo-deb cargo-sbom`. What comes from PyPI it gets itself.
+# libc6-arm64-cross of Debian, and Node, `cargo install --locked cargo-deb cargo-sbom`. What comes from PyPI it gets itself.
 #
 # Ends with a table. What this machine cannot do is in it as skipped, with the reason; what fails ends the script. To publish after a
 # rehearsal: fill in `repository` in Cargo.toml, commit, tag, `cargo publish --workspace`, `twine upload dist/wheels/*`, and add the other
@@ -204,6 +205,22 @@ deb() {
   done
 }
 
+web() {
+  say "web"
+  local page=$dist/walpha-$version.html status=0
+  mkdir -p "$dist"
+  scripts/web.sh "$page" || status=$?
+  if [ "$status" = 77 ]; then skip "walpha-$version.html" "rustup, Node or their packages cannot be had"; return; fi
+  if [ "$status" != 0 ]; then return "$status"; fi
+  cargo build --release --locked --bin walpha "${of_debian[@]}"
+  python3 scripts/check_web.py "$page" target/release/walpha --out "$stage" || status=$?
+  case $status in
+    0) made "$page" "Chromium, Firefox" ;;
+    77) made "$page" - "skipped: there is no Chromium" ;;
+    *) return "$status" ;;
+  esac
+}
+
 wheel() { portably maturin build --release --zig --compatibility manylinux_2_28 --manifest-path python/Cargo.toml --out "$dist/wheels" --target "$@"; }
 
 wheels() {
@@ -253,12 +270,13 @@ rehearse() {
   binary
   again
   deb
+  web
   wheels
 }
 
 case ${1:-} in
-  crates | binary | deb | wheels | rehearse) ;;
-  *) sed -n '4,8s/^# *//p' "$0" && exit 2 ;;
+  crates | binary | deb | web | wheels | rehearse) ;;
+  *) sed -n '4,9s/^# *//p' "$0" && exit 2 ;;
 esac
 trap finish EXIT
 "$1"

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Builds walpha.html, the page that computes: scripts/web.sh [OUTPUT, by default target/web/walpha.html]
 #
-# Needs Rust with its target wasm32-wasip1, Node and npm. Ends with 77 where these, or the packages that the page is bundled
+# Needs Rust by rustup, Python, Node and npm. Ends with 77 where these, or the packages that the page is bundled
 # from, cannot be had.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -16,5 +16,8 @@ command -v npm > /dev/null || cannot "there is no npm"
 RUSTFLAGS="--remap-path-prefix=$PWD=walpha --remap-path-prefix=${CARGO_HOME:-$HOME/.cargo}=cargo" \
   cargo build --locked --profile web --target wasm32-wasip1 -p walpha-web
 mkdir -p "$(dirname "$output")"
-node web/page/build.mjs "${CARGO_TARGET_DIR:-target}/wasm32-wasip1/web/walpha_web.wasm" "$output"
+notices=$(mktemp)
+trap 'rm -f "$notices"' EXIT
+python3 scripts/third_party.py -p walpha-web --target wasm32-wasip1 > "$notices"
+node web/page/build.mjs "${CARGO_TARGET_DIR:-target}/wasm32-wasip1/web/walpha_web.wasm" "$notices" "$output"
 ls -l "$output"

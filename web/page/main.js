@@ -526,6 +526,11 @@ function wire() {
   byId("formats").replaceChildren(...FORMATS.map(([extension, name]) =>
     element("button", { type: "button", id: `save-${extension}`, textContent: name, onclick: () => save(extension) })));
   byId("save-toml").addEventListener("click", () => download(state.toml, "recipe.toml"));
+  byId("show-notices").addEventListener("click", async () => {
+    const text = byId("notices-text");
+    text.textContent ||= new TextDecoder().decode(await unpacked("notices"));
+    text.hidden = !text.hidden;
+  });
   byId("copy").addEventListener("click", () => navigator.clipboard?.writeText(byId("command").textContent));
 
   const chosen = (list) => {
