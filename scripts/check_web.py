@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 """Opens walpha.html in a real headless Chromium and, where there is one, Firefox, and compares what it makes with the command.
 
-    scripts/check_web.py walpha.html target/release/walpha [--out DIR]
+    scripts/check_web.py walpha.html target/release/walpha [--large] [--out DIR]
 
 Files of each kind are chosen as a user would; for each the page's counts, Betti numbers and saved files are those of the command that
 the page prints, byte for byte. Besides: no error on the console, no request to a network, what cannot be read is refused in the
-command's words, work can be cancelled, a cut and the persistence diagram, a large phantom, nothing wider than a phone. Leaves screenshots
+command's words, work can be cancelled, what is clicked, dropped and shown on request, a phantom in time, nothing wider than a phone. Leaves screenshots
 in DIR. Prints a line for each check; exits with 1 when one fails, and with 77 without Chromium.
 """
 
@@ -168,6 +168,8 @@ class Firefox:
     def message(self):
         length = b""
         while (byte := self.stream.read(1)) != b":":
+            if not byte:
+                raise RuntimeError("Firefox has gone")
             length += byte
         return json.loads(self.stream.read(int(length)))
 
@@ -204,6 +206,18 @@ class Firefox:
 
 
 class Chromium(Browser):
+    def hear_workers(self):
+        """From now on, events of the page's workers are heard, too."""
+        self.call("Target.setAutoAttach", autoAttach=True, waitForDebuggerOnStart=False, flatten=True)
+        self.evaluate("1")
+        page = self.session
+        for event in list(self.events):
+            if event.get("method") == "Target.attachedToTarget" and event["params"]["targetInfo"]["type"] == "worker":
+                self.session = event["params"]["sessionId"]
+                for domain in ["Runtime", "Network"]:
+                    self.call(f"{domain}.enable")
+        self.session = page
+
     def open(self, url):
         self.call("Page.navigate", url=url)
 
@@ -215,7 +229,9 @@ class Chromium(Browser):
         self.call("DOM.setFileInputFiles", files=[str(path) for path in paths], objectId=node)
 
 
-SETTLED = "['ready', 'failed', 'cancelled'].includes(document.body.dataset.state) && document.body.dataset.state !== 'busy'"
+SETTLED = "['ready', 'failed', 'cancelled'].includes(document.body.dataset.state)"
+# The picture of the shape alone, without what is around it.
+SCENE = "document.querySelector('#scene canvas').toDataURL()"
 MEASURED = "document.body.dataset.state === 'failed' || document.body.dataset.measured === document.body.dataset.alpha && document.body.dataset.alpha"
 
 
@@ -260,6 +276,11 @@ class Page:
         return done.stdout
 
 
+def click(browser, x, y):
+    for kind in ["mousePressed", "mouseReleased"]:
+        browser.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", clickCount=1)
+
+
 def agrees(page, checks, name):
     """What the page shows is what its command reports."""
     if not page.settled() or page.state()["state"] != "ready":
@@ -290,7 +311,7 @@ def saved(page, checks, downloads, extension):
         one.unlink(missing_ok=True)
 
 
-def look_at_all(browser, page, checks, files, downloads, out):
+def look_at_all(browser, page, checks, files, downloads, out, large):
     """All checks, in Chromium."""
     for name in files:
         page.choose(name)
@@ -301,6 +322,8 @@ def look_at_all(browser, page, checks, files, downloads, out):
     for extension in ["stl", "glb", "vtu", "npz", "csv", "wvm"]:
         saved(page, checks, downloads, extension)
     # The recipe, as a file, does the same.
+    browser.evaluate("document.getElementById('save-ply').click()")
+    browser.wait("document.body.dataset.saved === 'ball.ply'", 30)
     browser.evaluate("document.getElementById('save-toml').click()")
     toml = downloads / "recipe.toml"
     for _ in range(50):
@@ -308,13 +331,9 @@ def look_at_all(browser, page, checks, files, downloads, out):
             break
         time.sleep(0.1)
     shutil.copy(toml, page.folder)
-    command = toml.read_text().splitlines()[0].removeprefix("# ")
-    page.run(command)
-    by_file = (page.folder / "ball.ply").read_bytes()
-    browser.evaluate("document.getElementById('save-ply').click()")
-    browser.wait("document.body.dataset.saved === 'ball.ply'", 30)
-    time.sleep(0.5)
-    checks.say("the recipe as a file gives the same bytes", by_file == (downloads / "ball.ply").read_bytes())
+    page.run(toml.read_text().splitlines()[0].removeprefix("# "))
+    same = (page.folder / "ball.ply").read_bytes() == (downloads / "ball.ply").read_bytes()
+    checks.say("the recipe as a file gives the same bytes", same)
 
     # α: the slider moves among stops, a number is taken as it is.
     for alpha in ["3.7", "0.3"]:
@@ -325,6 +344,17 @@ def look_at_all(browser, page, checks, files, downloads, out):
         page.forget()
         browser.evaluate(f"(() => {{ const e = document.getElementById('alpha'); e.value = {share}; document.body.dataset.state = 'ready'; e.dispatchEvent(new Event('input')); }})()")
         agrees(page, checks, f"slider at {share}")
+
+    # Of a CT the command would select bone; with other options stated it does not.
+    browser.evaluate("(() => { const e = document.getElementById('preset'); e.value = ''; e.dispatchEvent(new Event('change')); document.getElementById('options').requestSubmit(); for (const key of ['alpha', 'measured']) delete document.body.dataset[key]; })()")
+    agrees(page, checks, "a CT without a preset")
+    # After an error, what was wrong is corrected.
+    page.forget()
+    browser.evaluate("(() => { document.getElementById('frame').value = 99; document.getElementById('options').requestSubmit(); })()")
+    checks.say("a volume that is not there is an error", browser.wait("document.body.dataset.state === 'failed'", 20), page.text("failure"))
+    page.forget()
+    browser.evaluate("(() => { document.getElementById('frame').value = ''; document.getElementById('options').requestSubmit(); })()")
+    agrees(page, checks, "after an error")
 
     # Weights are frozen at the α that they are proportional to: another α is one of a ladder.
     browser.evaluate("(() => { document.getElementById('weights').value = 'min-max'; document.getElementById('options').requestSubmit(); delete document.body.dataset.measured; document.body.dataset.state = 'busy'; })()")
@@ -341,6 +371,7 @@ def look_at_all(browser, page, checks, files, downloads, out):
     # The diagram pairs what the command pairs.
     page.choose("ball.xyz")
     page.settled()
+    opened = float(page.state()["alpha"])
     browser.evaluate("document.getElementById('compute-diagram').click()")
     browser.wait("document.body.dataset.pairs", 60)
     page.run("walpha filtration ball.xyz -o pairs.csv")
@@ -348,6 +379,61 @@ def look_at_all(browser, page, checks, files, downloads, out):
     for line in (page.folder / "pairs.csv").read_text().splitlines()[1:]:
         theirs[int(line.split(",")[0])] += 1
     checks.say("the diagram has the command's pairs", page.state()["pairs"] == ",".join(map(str, theirs)), f"{page.state()['pairs']}; {theirs}")
+
+    # A click on a pair sets α between its birth and its death.
+    voids = [line.split(",") for line in (page.folder / "pairs.csv").read_text().splitlines() if line.startswith("2,")]
+    browser.evaluate("document.getElementById('diagram').scrollIntoView()")
+    # There is one void, green as nothing else is.
+    spot = browser.evaluate("""(() => {
+      const canvas = document.getElementById('diagram');
+      const b = canvas.getBoundingClientRect();
+      const { data, width, height } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+      const scale = canvas.width / b.width;
+      for (let y = Math.round(20 * scale); y < height; y++) for (let x = 0; x < width; x++) {
+        const [r, g, blue] = data.subarray(4 * (y * width + x), 4 * (y * width + x) + 3);
+        if (r < 90 && g > 140 && blue < 160 && g > blue + 30) return [b.x + x / scale, b.y + y / scale + 1];
+      }
+      return [b.x, b.y];
+    })()""")
+    click(browser, *spot)
+    time.sleep(1)
+    alpha = float(page.state()["alpha"])
+    there = [float(birth) <= alpha < float(death) for _, birth, death, *_ in voids]
+    checks.say("a click on a pair sets α", there == [True] and alpha != opened, f"{alpha}; {voids}")
+
+    # Points, balls and hidden points are drawn on request, and a click on the surface names a point.
+    page.example("hard:hidden")
+    page.settled()
+    for name in ["points", "balls", "hidden"]:
+        without = browser.evaluate(SCENE)
+        browser.evaluate(f"document.getElementById('show-{name}').click()")
+        time.sleep(1)
+        checks.say(f"{name} are drawn", browser.evaluate(SCENE) != without)
+        if name == "balls":
+            (out / "web-balls.png").write_bytes(browser.screenshot())
+        browser.evaluate(f"document.getElementById('show-{name}').click()")
+        time.sleep(0.5)
+    spot = browser.evaluate("(() => { const e = document.getElementById('scene'); e.scrollIntoView(); const b = e.getBoundingClientRect(); return [b.x + b.width / 2, b.y + b.height / 2] })()")
+    click(browser, *spot)
+    checks.say("a click on the surface names a point", browser.wait("document.getElementById('picked').textContent.startsWith('point ')", 5), page.text("picked"))
+    seen = browser.evaluate(SCENE)
+    browser.evaluate("document.getElementById('scene').dispatchEvent(new KeyboardEvent('keydown', { key: 'ArrowLeft' }))")
+    time.sleep(0.5)
+    checks.say("arrow keys turn the shape", browser.evaluate(SCENE) != seen)
+
+    # Files and folders are dropped, too.
+    for name in ["ball.nrrd", "series"]:
+        page.forget()
+        spot = browser.evaluate("(() => { document.getElementById('drop').scrollIntoView(); const b = document.getElementById('drop').getBoundingClientRect(); return [b.x + 20, b.y + 20] })()")
+        for kind in ["dragEnter", "dragOver", "drop"]:
+            browser.call("Input.dispatchDragEvent", type=kind, x=spot[0], y=spot[1], data={"items": [], "files": [str(page.folder / name)], "dragOperationsMask": 1})
+        agrees(page, checks, f"{name}, dropped")
+    page.choose("ball.nii.gz")
+    page.settled()
+    lit = browser.evaluate(SCENE)
+    browser.evaluate("document.querySelector('#voids li').focus()")
+    time.sleep(0.7)
+    checks.say("a void lights up", browser.evaluate(SCENE) != lit)
 
     # What cannot be read is refused as the command refuses it.
     (page.folder / "bad.nii").write_bytes(b"no volume")
@@ -387,10 +473,18 @@ def look_at_all(browser, page, checks, files, downloads, out):
         scheme = "dark" if name == "phone" else "light"
         browser.call("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": scheme}])
         time.sleep(1)
-        wide = browser.evaluate("document.documentElement.scrollWidth - innerWidth")
+        wide = browser.evaluate("document.documentElement.scrollWidth") - width
         checks.say(f"nothing is wider than the {name}", wide <= 0, f"{wide} pixels")
         (out / f"web-{name}.png").write_bytes(browser.screenshot())
-    unnamed = browser.evaluate("[...document.querySelectorAll('input:not([hidden]), select, button, canvas')].filter((e) => !(e.labels?.length || e.getAttribute('aria-label') || e.textContent.trim()) && e.closest('#scene') === null).map((e) => e.id)")
+    for example, most in [("sample:phantom", 4), ("sample:phantom@256", 80)][:2 if large else 1]:
+        started = time.monotonic()
+        page.example(example)
+        browser.wait("document.body.dataset.alpha && document.body.dataset.frame", 200)
+        browser.evaluate("new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve)))")
+        took = time.monotonic() - started
+        checks.say(f"{example}, from the click to the picture, in {most} s", took < most, f"{took:.2f} s; {page.text('status')} a frame {page.state()['frame']} ms")
+        page.settled(200)
+    unnamed = browser.evaluate("[...document.querySelectorAll('input:not([hidden]), select, button, canvas')].filter((e) => !(e.labels?.length || e.getAttribute('aria-label') || e.tagName === 'BUTTON' && e.textContent.trim()) && e.closest('#scene') === null).map((e) => e.id)")
     checks.say("every control has a name", not unnamed, str(unnamed))
     browser.call("Emulation.setDeviceMetricsOverride", width=1400, height=950, deviceScaleFactor=1, mobile=False)
 
@@ -400,6 +494,7 @@ def main():
     parser.add_argument("page")
     parser.add_argument("walpha")
     parser.add_argument("--out", default=".", type=pathlib.Path)
+    parser.add_argument("--large", action="store_true", help="a phantom of 256³ samples, too")
     arguments = parser.parse_args()
     chromium = shutil.which("chromium") or shutil.which("google-chrome")
     if not chromium:
@@ -423,7 +518,8 @@ def main():
                 browser.call("Emulation.setDeviceMetricsOverride", width=1400, height=950, deviceScaleFactor=1, mobile=False)
                 browser.open(url)
                 checks.say("the page is ready", browser.wait("document.body?.dataset.state === 'ready'", 60))
-                look_at_all(browser, Page(browser, folder, walpha), checks, files, downloads, arguments.out)
+                browser.hear_workers()
+                look_at_all(browser, Page(browser, folder, walpha), checks, files, downloads, arguments.out, arguments.large)
                 wrong = faults(browser.events)
                 checks.say("no error on the console, no request to a network", not wrong, "; ".join(wrong))
             finally:

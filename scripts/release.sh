@@ -213,7 +213,7 @@ web() {
   if [ "$status" = 77 ]; then skip "walpha-$version.html" "rustup, Node or their packages cannot be had"; return; fi
   if [ "$status" != 0 ]; then return "$status"; fi
   cargo build --release --locked --bin walpha "${of_debian[@]}"
-  python3 scripts/check_web.py "$page" target/release/walpha --out "$stage" || status=$?
+  python3 scripts/check_web.py "$page" target/release/walpha --large --out "$stage" || status=$?
   case $status in
     0) made "$page" "Chromium, Firefox" ;;
     77) made "$page" - "skipped: there is no Chromium" ;;

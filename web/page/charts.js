@@ -44,6 +44,7 @@ export class Histogram extends Chart {
     canvas.addEventListener("pointerdown", (event) => this.grab(event));
     canvas.addEventListener("pointermove", (event) => this.drag(event));
     canvas.addEventListener("pointerup", () => this.drop());
+    canvas.addEventListener("pointercancel", () => this.drop());
   }
 
   set(bars, low, high) {
@@ -94,18 +95,19 @@ export class Histogram extends Chart {
     const marks = Object.entries(this.marks ?? {}).filter(([, value]) => value !== null);
     const near = marks.map(([name, value]) => [Math.abs(this.x(value) - x), name]).sort((a, b) => a[0] - b[0])[0];
     if (!near || near[0] > 14) return;
-    this.held = near[1];
+    [this.held, this.moved] = [near[1], false];
     this.canvas.setPointerCapture(event.pointerId);
   }
 
   drag(event) {
     if (!this.held) return;
     const share = Math.min(1, Math.max(0, this.at(event)[0] / this.width));
+    this.moved = true;
     this.changed(this.held, this.low + share * (this.high - this.low), false);
   }
 
   drop() {
-    if (this.held) this.changed(this.held, this.marks[this.held], true);
+    if (this.held && this.moved) this.changed(this.held, this.marks[this.held], true);
     this.held = null;
   }
 }
@@ -122,7 +124,7 @@ export class AlphaScale {
     const first = alphas.findIndex((alpha) => size(alpha) > 0);
     const high = 2 * Math.max(size(alphas[last] ?? 1), size(reference));
     const low = first < 0 ? high / 4 : Math.max(size(alphas[first]), 1e-6 * high);
-    // A little below the first value nothing is in.
+    // It begins a little below the first value.
     [this.low, this.high] = high > 0 ? [Math.log(low / 1.2), Math.log(high)] : [0, 1];
   }
 
@@ -197,13 +199,33 @@ export class Diagram extends Chart {
   }
 
   set(scale, pairs) {
-    Object.assign(this, { scale, pairs });
+    Object.assign(this, { scale, pairs, drawn: null });
     this.draw();
   }
 
   mark(alpha) {
     this.alpha = alpha;
     this.draw();
+  }
+
+  // There may be hundreds of thousands of pairs: they are drawn once for a size.
+  dots() {
+    const ratio = devicePixelRatio || 1;
+    if (this.drawn?.width === this.canvas.width && this.drawn?.height === this.canvas.height) return this.drawn;
+    this.drawn = new OffscreenCanvas(this.canvas.width, this.canvas.height);
+    const context = this.drawn.getContext("2d");
+    context.scale(ratio, ratio);
+    context.globalAlpha = 0.7;
+    [BLUE, RED, GREEN].forEach((colour, dimension) => {
+      context.fillStyle = colour;
+      for (const pair of this.pairs[dimension]) {
+        const [x, y] = this.place(pair);
+        context.beginPath();
+        context.arc(x, y, 2.5, 0, 2 * Math.PI);
+        context.fill();
+      }
+    });
+    return this.drawn;
   }
 
   place([birth, death]) {
@@ -225,21 +247,14 @@ export class Diagram extends Chart {
     context.lineTo(x, y);
     context.lineTo(6, y);
     context.stroke();
-    context.globalAlpha = 0.7;
-    const names = ["components", "tunnels", "voids"];
-    let left = 6;
-    [BLUE, RED, GREEN].forEach((colour, dimension) => {
-      context.fillStyle = colour;
-      for (const pair of this.pairs[dimension]) {
-        const [px, py] = this.place(pair);
-        context.beginPath();
-        context.arc(px, py, 2.5, 0, 2 * Math.PI);
-        context.fill();
-      }
-      context.fillText(names[dimension], left, 11);
-      left += context.measureText(names[dimension]).width + 14;
-    });
     context.globalAlpha = 1;
+    context.drawImage(this.dots(), 0, 0, this.width, this.height);
+    let left = 6;
+    [["components", BLUE], ["tunnels", RED], ["voids", GREEN]].forEach(([name, colour]) => {
+      context.fillStyle = colour;
+      context.fillText(name, left, 11);
+      left += context.measureText(name).width + 14;
+    });
   }
 
   // Between a birth and a death, in the middle of the scale, what they bound is there.

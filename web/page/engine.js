@@ -12,10 +12,11 @@ export class Failure extends Error {
 }
 
 export class Engine {
-  constructor(module, source, { progress, remark }) {
+  constructor(module, source, heard) {
     this.module = module;
     this.address = URL.createObjectURL(new Blob([source], { type: "text/javascript" }));
-    this.heard = { progress, remark };
+    // Listeners: `progress`, `remark`, and `restarted`, after which nothing is open.
+    this.heard = heard;
     this.files = [];
     this.last = 0;
     this.start();
@@ -27,8 +28,7 @@ export class Engine {
     this.worker.onmessage = ({ data }) => this.hear(data);
     this.worker.onerror = (event) => this.end(new Failure(event.message));
     this.worker.postMessage({ module: this.module });
-    // What was there before could be read then.
-    if (this.files.length) this.ask({ files: this.files }).catch(() => {});
+    this.given = false;
   }
 
   hear(data) {
@@ -50,16 +50,23 @@ export class Engine {
     this.worker.terminate();
     for (const { reject } of this.waiting.values()) reject(why);
     this.start();
+    this.heard.restarted();
   }
 
   cancel() {
     this.end(new Cancelled());
   }
 
-  // Files by their path, which take the place of those before.
+  // Files by their path, which take the place of those before. They are read when something is opened.
   put(files) {
     this.files = files;
-    return this.ask({ files });
+    this.given = false;
+  }
+
+  async open(request) {
+    if (!this.given) await this.ask({ files: this.files });
+    this.given = true;
+    return this.call({ do: "open", ...request });
   }
 
   call(request) {

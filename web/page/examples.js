@@ -31,5 +31,6 @@ export const EXAMPLES = [
   { input: "knot.csv", name: "points on a knotted tube", make: knot },
   { input: "hard:voxels", name: "a lattice, where every sphere has eight points" },
   { input: "hard:fcc", name: "a face-centred cubic lattice" },
+  { input: "hard:hidden", name: "a lattice with weights, which hide some points" },
   { input: "hard:integer-sphere", name: "integer points exactly on a sphere" },
 ];

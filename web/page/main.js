@@ -40,23 +40,32 @@ const state = { input: null, facts: null, made: null, alpha: null, grayMin: null
 let engine = null;
 let scene = null;
 
-// One thing is computed at a time: a request ends what the one before has not begun.
+// Shows what is being done, or that nothing is.
+let working = false;
 function busy(text) {
-  byId("working").hidden = text === null;
+  working = text !== null;
+  byId("working").hidden = !working;
+  // What is shown of a shape that is gone, or not there yet, does nothing.
+  for (const id of ["shape", "numbers", "output"]) byId(id).inert = working || !state.made;
+  byId("slices").inert = working || !state.opened;
   document.body.dataset.state = text === null ? "ready" : "busy";
   if (text !== null) byId("status").textContent = text;
 }
 
 function fail(error) {
   busy(null);
+  byId("options").hidden = state.input === null;
   if (error instanceof Cancelled) {
     byId("status").textContent = "Cancelled.";
     document.body.dataset.state = "cancelled";
-    state.opened = null;
     return;
   }
   document.body.dataset.state = "failed";
   byId("status").textContent = "";
+  show(error);
+}
+
+function show(error) {
   const failure = byId("failure");
   failure.replaceChildren(element("b", { textContent: error.message }));
   if (error.next) failure.append(element("div", { textContent: `Next: ${error.next}.` }));
@@ -79,38 +88,51 @@ function progress({ stage, share }) {
 }
 
 function remark(text) {
-  byId("remarks").append(element("li", { textContent: text.trim() }));
+  const known = [...byId("remarks").children].some((item) => item.textContent === text.trim());
+  if (!known) byId("remarks").append(element("li", { textContent: text.trim() }));
 }
 
-// Runs a task; what goes wrong is shown in its place.
+// Runs a task, which ends the one before; what goes wrong is shown in its place.
+let tasks = 0;
 async function task(text, work) {
+  const mine = ++tasks;
+  if (working) engine.cancel();
   byId("failure").hidden = true;
+  const before = byId("status").textContent;
   busy(text);
   try {
     await work();
+    if (mine !== tasks) return;
     busy(null);
+    // What has nothing to say leaves what was said.
+    if (byId("status").textContent.endsWith("…")) byId("status").textContent = before;
   } catch (error) {
-    fail(error);
+    if (mine === tasks) fail(error);
   }
+}
+
+// After the worker has been ended.
+function restarted() {
+  [state.opened, state.made] = [null, null];
 }
 
 // ---- Input
 
 function rows(table, facts) {
   table.replaceChildren(...facts.map(([name, value]) =>
-    element("tr", {}, element("th", { textContent: name }), element("td", { textContent: value }))));
+    element("tr", {}, element("th", { textContent: name }), element("td", {}, value))));
 }
 
 function factsOf(facts) {
   if (facts.kind === "points") {
     const corner = (at) => at.map(short).join(", ");
     return [
-      ["input", state.input], ["points", facts.count], ["box", `${corner(facts.low)} to ${corner(facts.high)} ${facts.unit}`],
-      ["besides", [facts.weights && "weights", facts.values && "values"].filter(Boolean).join(", ") || "no weights, no values"],
+      ["input", inputName()], ["points", facts.count], ["box", `${corner(facts.low)} to ${corner(facts.high)} ${facts.unit}`],
+      ["also", [facts.weights && "weights", facts.values && "values"].filter(Boolean).join(", ") || "no weights, no values"],
     ];
   }
   const list = [
-    ["input", state.input],
+    ["input", inputName()],
     ["volume", `${facts.dims.join("×")} samples (x, y, z) of type ${facts.samples}`],
     ["space", facts.coordinates.space],
     ["spacing", `${facts.spacing.map(short).join(", ")} ${facts.unit}`],
@@ -127,16 +149,24 @@ function factsOf(facts) {
   return list;
 }
 
+// The name of the input; what was made here can be saved.
+function inputName() {
+  if (!EXAMPLES.some(({ input, make }) => make && input === state.input)) return state.input;
+  const [{ file }] = engine.files;
+  const button = element("button", { type: "button", textContent: "Save", onclick: () => download(file, file.name) });
+  return element("span", {}, `${state.input} `, button);
+}
+
 // A file, several, or a folder, or a sample by its name.
 function choose(input, files) {
   return task("Reading …", async () => {
     byId("remarks").replaceChildren();
     for (const id of ["frame", "downsample", "columns", "series"]) byId(id).value = "";
     byId("series").replaceChildren();
-    state.input = input;
-    await engine.put(files);
-    await open(true);
-    if (state.facts.kind !== "series") await compute();
+    Object.assign(state, { input, facts: null, made: null, opened: null, suited: false });
+    busy("Reading …");
+    engine.put(files);
+    await compute();
   });
 }
 
@@ -147,15 +177,16 @@ function reading() {
 }
 
 // Reads the input; the first time, its options get the values that suit it.
-async function open(first) {
+async function open() {
+  [state.opened, state.made] = [null, null];
   const options = reading();
-  let facts = await engine.call({ do: "open", input: state.input, options });
+  let facts = await engine.open({ input: state.input, options });
   const samples = (dims) => dims.reduce((a, b) => a * b);
   if (facts.kind === "volume" && options.downsample === undefined && samples(facts.dims) > MOST_SAMPLES) {
     options.downsample = Math.ceil(Math.cbrt(samples(facts.dims) / MOST_SAMPLES));
     byId("downsample").value = options.downsample;
     remark(`${facts.dims.join("×")} samples are too many for a page: ${options.downsample} along each axis become one`);
-    facts = await engine.call({ do: "open", input: state.input, options });
+    facts = await engine.open({ input: state.input, options });
   }
   state.facts = facts;
   state.opened = JSON.stringify(reading());
@@ -168,12 +199,13 @@ async function open(first) {
   byId("slices").hidden = !isVolume;
   if (facts.kind === "series") {
     rows(byId("facts"), [["input", state.input], ["series", `${facts.series.length}: choose one below`]]);
-    byId("series").replaceChildren(...facts.series.map((series, k) =>
+    byId("series").replaceChildren(element("option", { value: "", textContent: "choose one" }), ...facts.series.map((series, k) =>
       element("option", { value: k + 1, textContent: `${k + 1}: ${Object.values(series).filter((x) => typeof x === "string").join(", ")}` })));
     return;
   }
   rows(byId("facts"), factsOf(facts));
-  if (first) suit(facts);
+  if (!state.suited) suit(facts);
+  state.suited = true;
   if (isVolume) {
     histogram.set(facts.histogram, facts.low, facts.high);
     await slices.open(facts);
@@ -207,21 +239,27 @@ function apply(name) {
   byId("rule-value").value = rule ? preset[rule] : "";
   byId("rms").value = preset.rms ?? "";
   const weights = preset.weights ?? "";
-  byId("weights").value = [...byId("weights").options].some((option) => option.value === weights) ? weights : "";
+  const offered = [...byId("weights").options].some((option) => option.value === weights);
+  byId("weights").value = offered ? weights : "";
+  // A column of weights is taken where there is one.
+  if (weights === "column" && !state.facts.weights) remark(`the preset ${name} takes weights from the file, which has none`);
   byId("alpha-ref").value = preset.alpha ?? "";
   ruled();
   marks();
 }
 
 function ruled() {
-  byId("rule-unit").textContent = { threshold: "gray levels", count: "samples", ratio: "of all" }[byId("rule").value];
+  const rule = byId("rule").value;
+  byId("rule-unit").textContent = { threshold: "gray levels", count: "samples", ratio: "of all" }[rule];
+  byId("rule-value").ariaLabel = { threshold: "Least difference in gray levels", count: "Number of samples", ratio: "Share of all samples" }[rule];
+  byId("rule-value").step = rule === "count" ? 1 : "any";
   byId("rule-value").placeholder = byId("rule").value === "ratio" ? "0.0609" : "";
 }
 
+// The window: what is not given is the volume's.
 const grayRange = () => {
-  const given = ["gray-low", "gray-high"].map((id) => (byId(id).value === "" ? null : Number(byId(id).value)));
-  if (!given.includes(null)) return given;
-  return state.facts?.grayLevels ? [0, 255] : [state.facts?.low ?? 0, state.facts?.high ?? 255];
+  const own = state.facts.grayLevels ? [0, 255] : [state.facts.low, state.facts.high];
+  return ["gray-low", "gray-high"].map((id, k) => (byId(id).value === "" ? own[k] : Number(byId(id).value)));
 };
 const valueOf = (gray) => {
   const [low, high] = grayRange();
@@ -236,7 +274,8 @@ const least = () => {
 function marks() {
   if (state.facts?.kind !== "volume") return;
   const [low, high] = grayRange();
-  histogram.lines({ low, high, least: least() ?? low });
+  // Where lines lie upon one another the first is dragged.
+  histogram.lines({ least: least() ?? low, low, high });
   slices.setWindow(low, high, least());
 }
 
@@ -245,20 +284,24 @@ function optionsOfForm() {
   const number = (id) => (given(id) === undefined ? undefined : Number(given(id)));
   const options = { ...reading(), weights: given("weights"), alpha: given("alpha-ref") };
   if (state.facts.kind === "points") return options;
-  const [low, high] = [number("gray-low"), number("gray-high")];
-  if (low !== undefined && high !== undefined) options.gray = [low, high];
+  if (given("gray-low") !== undefined || given("gray-high") !== undefined) options.gray = grayRange();
   if (state.grayMin !== null) options.grayMin = state.grayMin;
   else options.valueMin = number("value-min");
   options[byId("rule").value] = number("rule-value");
   options.rms = number("rms");
+  // Of a CT the command selects bone, unless something is stated.
+  const stated = ["gray", "grayMin", "valueMin", "threshold", "count", "ratio"].some((name) => options[name] !== undefined);
+  if (state.facts.hounsfield && !stated) options.gray = grayRange();
   return options;
 }
 
 // ---- Shape
 
 async function compute() {
-  if (state.opened !== JSON.stringify(reading())) await open(false);
+  byId("remarks").replaceChildren();
+  if (state.opened !== JSON.stringify(reading())) await open();
   if (state.facts.kind === "series") return;
+  state.made = null;
   const made = await engine.call({ do: "shape", options: optionsOfForm() });
   state.made = made;
   for (const id of ["shape", "numbers", "output"]) byId(id).hidden = false;
@@ -268,32 +311,42 @@ async function compute() {
   if (box.isEmpty()) box.set(new Vector3(), new Vector3(1, 1, 1));
   scene.resize();
   scene.setPoints(made, box);
+  [state.toml, state.alpha, state.shape] = [null, null, null];
+  byId("command").textContent = "";
   const colour = byId("colour");
   [...colour.options].find((option) => option.value === "value").hidden = !made.values;
   if (colour.value === "value" && !made.values) colour.value = "class";
-  cut();
+  scene.setColour(colour.value);
+  for (const name of ["points", "balls", "hidden"]) scene.show(name, byId(`show-${name}`).checked);
+  for (const name of ["singular", "edges"]) scene.show(name, byId("show-singular").checked);
   state.scale = new AlphaScale(made);
   curve.set(state.scale, made);
   diagram.set(state.scale, null);
   byId("diagram").hidden = true;
   byId("compute-diagram").hidden = false;
   byId("alpha-unit").textContent = `${made.unit}²`;
-  suggestions(made);
+  suggestions([]);
   if (made.samples) slices.setPoints(made.samples);
   const kept = made.truncation ? `; ${made.truncation.kept} of ${made.truncation.total} Haar coefficients kept` : "";
   byId("status").textContent = `${made.points} points, ${made.cells} cells in all${kept}.`;
   await setAlpha(made.reference);
+  if (innerWidth < 760) byId("shape").scrollIntoView();
+  // Nobody waits for these.
+  engine.call({ do: "suggest" }).then((found) => {
+    if (state.made !== made) return;
+    suggestions([
+      ["all points by", found.all_points], ["one region by", found.one_region], ["no void by", found.no_void], ["longest plateau from", found.plateau[0]],
+    ]);
+  }, quietly);
 }
 
-// Marks of α that tell something.
-function suggestions({ reference, suggested, origin }) {
-  const named = [
-    [{ default: "default", given: "given", stored: "stored" }[origin.origin] ?? "auto", reference], ["all points by", suggested.all_points],
-    ["one region by", suggested.one_region], ["no void by", suggested.no_void], ["longest plateau from", suggested.plateau[0]],
-  ];
-  const finite = named.filter(([, alpha]) => Number.isFinite(alpha));
-  byId("marks").replaceChildren(...finite.map(([name, alpha]) =>
-    element("button", { type: "button", textContent: `${name} ${short(alpha)}`, onclick: () => setAlpha(alpha) })));
+// Buttons for α: the one that the shape opens at, and others at which something happens.
+function suggestions(others) {
+  const { reference, origin } = state.made;
+  const name = { default: "default", given: "given", stored: "stored" }[origin.origin] ?? "auto";
+  const finite = [[name, reference], ...others].filter(([, alpha]) => Number.isFinite(alpha));
+  byId("marks").replaceChildren(...finite.map(([text, alpha]) =>
+    element("button", { type: "button", textContent: `${text} ${short(alpha)}`, onclick: () => moveTo(alpha) })));
 }
 
 // The last of the stops up to an α: nothing needs to be computed for it.
@@ -311,9 +364,11 @@ function stop(alpha) {
 // While a shape is being drawn, only the last α asked for waits.
 let [drawing, next] = [false, null];
 async function setAlpha(alpha) {
+  if (!state.made || !Number.isFinite(alpha)) return;
   next = alpha;
   state.alpha = alpha;
   byId("alpha").value = state.scale.share(alpha);
+  byId("alpha").ariaValueText = `${short(alpha)} ${state.made.unit}²`;
   if (document.activeElement !== byId("alpha-value")) byId("alpha-value").value = alpha;
   curve.mark(alpha);
   diagram.mark(alpha);
@@ -331,12 +386,18 @@ async function setAlpha(alpha) {
       document.body.dataset.betti = shape.betti.join(",");
       if (byId("cut").value !== "") await section(wanted);
     }
-  } catch (error) {
-    fail(error);
+    later();
   } finally {
     drawing = false;
   }
-  later();
+}
+
+// As a user asks for it.
+const moveTo = (alpha) => setAlpha(alpha).catch(quietly);
+
+// What ends with a task that was cancelled is no failure of its own.
+function quietly(error) {
+  if (!(error instanceof Cancelled)) show(error);
 }
 
 // Counts, measures, voids and the command, once α rests.
@@ -344,6 +405,7 @@ let timer = null;
 function later() {
   clearTimeout(timer);
   timer = setTimeout(async () => {
+    if (!state.made) return;
     try {
       const alpha = state.alpha;
       const measured = await engine.call({ do: "measure", alpha });
@@ -352,7 +414,7 @@ function later() {
       await command();
       document.body.dataset.measured = alpha;
     } catch (error) {
-      fail(error);
+      quietly(error);
     }
   }, 150);
 }
@@ -392,7 +454,7 @@ function legend(shape) {
   const parts = [[OF_CLASS[2], `${shape.regular.length / 3} regular facets`], [OF_CLASS[1], `${shape.singular.length / 3} singular facets`], [EDGES, `${shape.edges.length / 2} singular edges`]];
   const shown = parts.filter(([, text]) => !text.startsWith("0 "));
   byId("legend").replaceChildren(...shown.map(([colour, text]) => element("span", {}, box(colour), text)));
-  if (!shown.length) byId("legend").textContent = "Nothing but points is in the shape at this α.";
+  if (!shown.length) byId("legend").textContent = "Only points are in the shape at this α.";
 }
 
 function shapeScene() {
@@ -429,7 +491,7 @@ async function cut() {
   const on = byId("cut").value !== "";
   byId("cut-place").disabled = !on;
   if (!on) return scene.setCut(null);
-  if (state.alpha !== null && state.shape) await setAlpha(state.alpha);
+  if (state.alpha !== null) await moveTo(state.alpha);
 }
 
 // ---- Output
@@ -441,10 +503,10 @@ function nameOf(extension) {
   return name === state.input ? `${stem}-shape.${extension}` : name;
 }
 
-async function command() {
-  const name = nameOf("ply");
-  const { command, toml } = await engine.call({ do: "command", name, alpha: state.alpha, solid: false });
-  byId("command").textContent = command;
+// The command that makes a file of this name, and its recipe.
+async function command(name = nameOf("ply"), alpha = state.alpha, solid = false) {
+  const { command: text, toml } = await engine.call({ do: "command", name, alpha, solid });
+  byId("command").textContent = text;
   state.toml = toml;
 }
 
@@ -452,17 +514,18 @@ function download(bytes, name) {
   const link = element("a", { href: URL.createObjectURL(new Blob([bytes])), download: name });
   link.click();
   setTimeout(() => URL.revokeObjectURL(link.href), 1000);
-  document.body.dataset.saved = name;
 }
 
 async function save(extension) {
   const name = nameOf(extension);
   if (extension === "png") return task("Drawing …", async () => download(await scene.png(), name));
   return task(`Writing ${name} …`, async () => {
+    const { alpha } = state;
     const solid = extension === "stl";
-    const { bytes } = await engine.call({ do: "save", name, alpha: state.alpha, solid });
+    const { bytes } = await engine.call({ do: "save", name, alpha, solid });
     download(bytes, name);
-    byId("command").textContent = (await engine.call({ do: "command", name, alpha: state.alpha, solid })).command;
+    await command(name, alpha, solid);
+    document.body.dataset.saved = name;
     byId("status").textContent = `${name}: ${(bytes.length / 1e6).toFixed(2)} MB.`;
   });
 }
@@ -477,15 +540,14 @@ const histogram = new Histogram(byId("histogram"), (mark, value, done) => {
   } else {
     // The lowest value stays where it is.
     keepLeast();
-    const [low, high] = grayRange();
-    [byId("gray-low").value, byId("gray-high").value] = mark === "low" ? [shown, short(high)] : [short(low), shown];
+    byId(mark === "low" ? "gray-low" : "gray-high").value = shown;
   }
   byId("preset").value = "";
   marks();
   if (done) byId("options").requestSubmit();
 });
-const curve = new Curve(byId("curve"), (alpha) => setAlpha(stop(alpha)));
-const diagram = new Diagram(byId("diagram"), (alpha) => setAlpha(alpha));
+const curve = new Curve(byId("curve"), (alpha) => state.made && moveTo(stop(alpha)));
+const diagram = new Diagram(byId("diagram"), moveTo);
 let slices = null;
 
 function keepLeast() {
@@ -504,9 +566,21 @@ function wire() {
   byId("rule").addEventListener("change", ruled);
   byId("value-min").addEventListener("input", () => { state.grayMin = null; marks(); });
   for (const id of ["gray-low", "gray-high"]) byId(id).addEventListener("input", () => { keepLeast(); marks(); });
-  byId("series").addEventListener("change", () => task("Reading …", async () => { await open(true); await compute(); }));
-  byId("alpha").addEventListener("input", () => setAlpha(stop(state.scale.alpha(Number(byId("alpha").value)))));
-  byId("alpha-value").addEventListener("change", () => setAlpha(Number(byId("alpha-value").value)));
+  byId("series").addEventListener("change", () => {
+    state.suited = false;
+    return task("Reading …", compute);
+  });
+  byId("alpha").addEventListener("input", () => moveTo(stop(state.scale.alpha(Number(byId("alpha").value)))));
+  // By keys from stop to stop, however far these are apart.
+  byId("alpha").addEventListener("keydown", (event) => {
+    const step = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1, PageUp: 20, PageDown: -20 }[event.key];
+    if (!step) return;
+    event.preventDefault();
+    const { alphas } = state.made;
+    const at = alphas.indexOf(stop(state.alpha)) + step;
+    moveTo(alphas[Math.min(alphas.length - 1, Math.max(0, at))]);
+  });
+  byId("alpha-value").addEventListener("change", ({ target }) => target.value !== "" && moveTo(Number(target.value)));
   byId("colour").addEventListener("change", () => { scene.setColour(byId("colour").value); legend(state.shape); });
   byId("show-singular").addEventListener("change", ({ target }) => { scene.show("singular", target.checked); scene.show("edges", target.checked); });
   for (const name of ["points", "balls", "hidden"]) {
@@ -525,7 +599,7 @@ function wire() {
   }));
   byId("formats").replaceChildren(...FORMATS.map(([extension, name]) =>
     element("button", { type: "button", id: `save-${extension}`, textContent: name, onclick: () => save(extension) })));
-  byId("save-toml").addEventListener("click", () => download(state.toml, "recipe.toml"));
+  byId("save-toml").addEventListener("click", () => state.toml && download(state.toml, "recipe.toml"));
   byId("show-notices").addEventListener("click", async () => {
     const text = byId("notices-text");
     text.textContent ||= new TextDecoder().decode(await unpacked("notices"));
@@ -545,12 +619,15 @@ function wire() {
   }
   addEventListener("dragover", (event) => { event.preventDefault(); byId("drop").classList.add("over"); });
   addEventListener("dragleave", () => byId("drop").classList.remove("over"));
-  addEventListener("drop", async (event) => {
+  addEventListener("drop", (event) => {
     event.preventDefault();
     byId("drop").classList.remove("over");
-    const entries = [...event.dataTransfer.items].map((item) => item.webkitGetAsEntry?.()).filter(Boolean);
-    if (entries.length === 0) return chosen(event.dataTransfer.files);
-    return offer((await Promise.all(entries.map(filesOf))).flat());
+    // All that is asked of an item has to be asked at once.
+    const dropped = [...event.dataTransfer.items].filter((item) => item.kind === "file").map((item) => {
+      const entry = item.webkitGetAsEntry?.();
+      return entry?.isDirectory ? { entry, handle: item.getAsFileSystemHandle?.() } : { file: item.getAsFile() };
+    });
+    return Promise.all(dropped.map(filesOf)).then((files) => offer(files.flat())).catch(quietly);
   });
   byId("examples").append(...EXAMPLES.map(({ input, name }) => element("option", { value: input, textContent: name })));
   byId("examples").addEventListener("change", ({ target }) => {
@@ -562,33 +639,48 @@ function wire() {
   });
 }
 
-// Files of a dropped folder, by their paths in it.
-async function filesOf(entry) {
+// What was dropped, with paths: a file, or those of a folder. Chromium opens no entries of pages from disk, but has handles.
+async function filesOf({ file, entry, handle }) {
+  if (file) return file.name.startsWith(".") ? [] : [{ path: file.name, file }];
+  const folder = await handle;
+  return folder ? ofHandle(folder, "") : ofEntry(entry);
+}
+
+async function ofHandle(handle, parent) {
+  const path = parent + handle.name;
+  if (handle.kind === "file") return filesOf({ file: await handle.getFile() }).then((files) => files.map(({ file }) => ({ path, file })));
+  const all = [];
+  for await (const child of handle.values()) all.push(...await ofHandle(child, `${path}/`));
+  return all;
+}
+
+async function ofEntry(entry) {
+  const path = entry.fullPath.replace(/^\//, "");
   if (entry.isFile) {
     const file = await new Promise((resolve, reject) => entry.file(resolve, reject));
-    return file.name.startsWith(".") ? [] : [{ path: entry.fullPath.replace(/^\//, ""), file }];
+    return file.name.startsWith(".") ? [] : [{ path, file }];
   }
   const reader = entry.createReader();
   const all = [];
   // A reader gives a hundred entries at a time.
   for (;;) {
     const some = await new Promise((resolve, reject) => reader.readEntries(resolve, reject));
-    if (some.length === 0) break;
-    all.push(...some);
+    if (some.length === 0) return all;
+    all.push(...(await Promise.all(some.map(ofEntry))).flat());
   }
-  return (await Promise.all(all.map(filesOf))).flat();
 }
 
 // Headers whose samples may lie in a file beside them.
 const HEADERS = /\.(nhdr|mhd|hdr)$/i;
 // What is one input: a file, a header with the file beside it, or a folder of slices.
 function offer(files) {
+  if (files.length === 0) return undefined;
   const [first] = files;
   const folder = first.path.includes("/") ? first.path.slice(0, first.path.indexOf("/")) : null;
   if (folder !== null) return choose(folder, files);
   const header = files.find(({ path }) => HEADERS.test(path));
   if (files.length === 1 || header) return choose((header ?? first).path, files);
-  // Slices, chosen one by one.
+  // Slices, chosen one by one: for the command they have to lie in a folder.
   return choose("slices", files.map(({ path, file }) => ({ path: `slices/${path}`, file })));
 }
 
@@ -602,7 +694,7 @@ async function unpacked(id) {
 document.body.classList.add("empty");
 try {
   const module = await WebAssembly.compile(await unpacked("wasm"));
-  engine = new Engine(module, byId("worker").textContent, { progress, remark });
+  engine = new Engine(module, byId("worker").textContent, { progress, remark, restarted });
   slices = new Slices(byId("planes"), engine, fail);
   wire();
   document.body.dataset.state = "ready";

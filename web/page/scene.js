@@ -59,7 +59,7 @@ export class ShapeScene {
       element.append(this.renderer.domElement);
     } catch {
       this.renderer = null;
-      element.textContent = "This browser has no WebGL, so that the shape is not drawn. Numbers, slices and files are as always.";
+      element.textContent = "This browser has no WebGL, so the shape is not drawn. Numbers, slices and files work as usual.";
     }
     this.scene = new Scene();
     this.camera = new PerspectiveCamera(35, 1, 0.1, 1000);
@@ -86,6 +86,7 @@ export class ShapeScene {
     });
     this.group.clear();
     this.parts = {};
+    [this.classes, this.shades] = [null, null];
     this.box = box;
     this.data = { positions, weights, values };
     this.position = new BufferAttribute(positions, 3);
@@ -117,7 +118,6 @@ export class ShapeScene {
     this.lit = new Box3Helper(new Box3(), new Color("#d55e00"));
     this.lit.visible = false;
     this.group.add(this.section, this.lit);
-    this.setColour("class");
     this.home();
   }
 
@@ -200,11 +200,8 @@ export class ShapeScene {
 
   // Cuts everything open: what lies on the viewer's side of the place along the axis is not drawn.
   setCut(axis, place) {
-    const cut = axis === null ? [] : [this.plane];
-    if (axis !== null) {
-      const near = this.camera.position.getComponent(axis) > this.controls.target.getComponent(axis);
-      this.plane.set(new Vector3().setComponent(axis, near ? -1 : 1), near ? place : -place);
-    }
+    this.cut = axis === null ? null : { axis, place };
+    const cut = this.cut ? [this.plane] : [];
     for (const part of Object.values(this.parts)) part.material.clippingPlanes = cut;
     if (axis === null) this.setSection({ corners: new Float32Array(), shades: new Float32Array() });
     this.draw();
@@ -261,7 +258,9 @@ export class ShapeScene {
 
   // All of it, from the front and a little above.
   home() {
-    const { center, radius } = this.box.getBoundingSphere(new Sphere());
+    const { center, radius: own } = this.box.getBoundingSphere(new Sphere());
+    // Points may all be one.
+    const radius = own || 1;
     const narrow = Math.min(1, this.camera.aspect);
     const distance = 1.05 * radius / Math.sin(Math.PI / 360 * this.camera.fov) / narrow;
     this.controls.target.copy(center);
@@ -317,6 +316,11 @@ export class ShapeScene {
     if (!this.renderer) return;
     const started = performance.now();
     this.renderer.setClearColor(getComputedStyle(document.body).backgroundColor);
+    if (this.cut) {
+      const { axis, place } = this.cut;
+      const near = this.camera.position.getComponent(axis) > this.controls.target.getComponent(axis);
+      this.plane.set(new Vector3().setComponent(axis, near ? -1 : 1), near ? place : -place);
+    }
     // The lamp is over the viewer's left shoulder.
     const { position, quaternion } = this.camera;
     this.lamp.position.copy(position).add(new Vector3(-0.5, 0.6, 0.2).applyQuaternion(quaternion).multiplyScalar(position.length() + 1));
@@ -327,12 +331,13 @@ export class ShapeScene {
       if (part) part.material.uniforms.scale.value = pixels / 2 / Math.tan(Math.PI / 360 * this.camera.fov);
     }
     this.renderer.render(this.scene, this.camera);
-    this.milliseconds = performance.now() - started;
+    // As long as the browser lets it be known, which is not all that a frame takes.
+    document.body.dataset.frame = (performance.now() - started).toFixed(1);
   }
 
   async png() {
     this.drawNow();
-    if (!this.renderer) throw new Error("this browser has no WebGL, so that there is no picture");
+    if (!this.renderer) throw new Error("this browser has no WebGL, so there is no picture");
     return new Promise((resolve) => this.renderer.domElement.toBlob(resolve, "image/png"));
   }
 }

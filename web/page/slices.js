@@ -8,14 +8,13 @@ const PLANES = [[2, "across z", false], [1, "across y", true], [0, "across x", t
 export class Slices {
   constructor(element, engine, failed) {
     this.engine = engine;
-    this.failed = failed;
     this.planes = PLANES.map(([axis, name, up]) => {
       const figure = document.createElement("div");
       figure.innerHTML = `<canvas role="img" aria-label="A plane ${name}"></canvas><input type="range" min="0" step="1" aria-label="Place ${name}"><div class="soft"></div>`;
       const [canvas, slider, caption] = figure.children;
       element.append(figure);
       const plane = { axis, name, up, canvas, slider, caption, busy: false, again: false };
-      slider.addEventListener("input", () => this.load(plane));
+      slider.addEventListener("input", () => this.load(plane).catch(failed));
       return plane;
     });
   }
@@ -46,8 +45,6 @@ export class Slices {
         plane.data = { index, ...(await this.engine.call({ do: "plane", axis: plane.axis, index })) };
         this.draw(plane);
       } while (plane.again);
-    } catch (error) {
-      this.failed(error);
     } finally {
       plane.busy = false;
     }

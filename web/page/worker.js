@@ -3,6 +3,8 @@
 import { ConsoleStdout, Directory, File, OpenFile, PreopenDirectory, WASI } from "@bjorn3/browser_wasi_shim";
 
 let exports = null;
+// Why it could not be started.
+let unloaded = null;
 // Messages wait for the module and for their files.
 let ready = Promise.resolve();
 const root = new PreopenDirectory("/", new Map());
@@ -45,7 +47,7 @@ const text = (at, length) => new TextDecoder().decode(new Uint8Array(exports.mem
 
 function call(request) {
   const bytes = new TextEncoder().encode(JSON.stringify(request));
-  const at = exports.reserve(bytes.length);
+  const at = exports.reserve(bytes.length) >>> 0;
   new Uint8Array(exports.memory.buffer, at, bytes.length).set(bytes);
   const place = exports.call(at, bytes.length) >>> 0;
   const [start, length] = new Uint32Array(exports.memory.buffer, place, 2);
@@ -59,7 +61,8 @@ function call(request) {
 
 onmessage = ({ data: { id, module, files, request } }) => {
   ready = ready.then(async () => {
-    if (module) return load(module);
+    if (module) return load(module).catch((error) => { unloaded = error; });
+    if (unloaded) return postMessage({ id, failed: `the program cannot be started: ${unloaded.message}`, next: "load the page again" });
     if (files) {
       try {
         await put(files);
@@ -88,5 +91,5 @@ function explained(error) {
   if (/memory allocation|capacity overflow/.test(lines) || memory > 3.5) {
     return [`not enough memory: a page has 4 GiB, and ${memory.toFixed(1)} GiB are in use`, "downsample, or select fewer samples; the command walpha has no such limit"];
   }
-  return [`the program ended unexpectedly: ${lines || error.message}`, "this is a mistake of walpha's: please report it with the file"];
+  return [`the program ended unexpectedly: ${lines || error.message}`, "this is a bug in walpha: please report it, with the file if you can"];
 }

@@ -40,7 +40,7 @@ pub(crate) struct Options {
     /// The kind of weights, as the command names it.
     pub weights: Option<String>,
     /// The α that weights are proportional to, or the rule that finds it.
-    pub alpha: Option<AlphaRule>,
+    pub alpha: Option<String>,
 }
 
 impl Options {
@@ -68,6 +68,11 @@ impl Options {
         if rules.next().is_some() {
             return Err("a number of samples, a share and a threshold exclude each other".into());
         }
+        let alpha = self.alpha.as_deref().map(str::parse::<AlphaRule>).transpose();
+        let alpha = alpha.map_err(|error| error.to_string())?.unwrap_or_default();
+        if matches!(alpha, AlphaRule::Given(alpha) if alpha.squared().is_infinite()) {
+            return Err("α of the weights has to be finite here".into());
+        }
         let haar = match self.rms {
             Some(rms) => HaarOptions::default().tolerance(Tolerance::Rms(rms)),
             None => HaarOptions::default(),
@@ -80,7 +85,7 @@ impl Options {
             .choice(Choice::Difference(selection))
             .haar(haar)
             .weighting(weighting.map_err(|error| error.to_string())?)
-            .alpha(self.alpha.unwrap_or_default()))
+            .alpha(alpha))
     }
 
     /// The same options by their long names, as on the command line and in a file for `--config`; all but α.
@@ -128,7 +133,12 @@ impl Setting {
     /// As an argument of the command, quoted for a shell where needed.
     pub(crate) fn argument(&self) -> String {
         let (Written::Number(value) | Written::Text(value)) = &self.value;
-        format!("--{}={}", self.name, quoted(value))
+        // After the sign of equality nothing is an option.
+        let word = quoted(&format!("={value}"));
+        match word.strip_prefix("'=") {
+            Some(rest) => format!("--{}='{rest}", self.name),
+            None => format!("--{}{word}", self.name),
+        }
     }
 
     /// As a line of TOML.
@@ -143,8 +153,11 @@ impl Setting {
     }
 }
 
-/// A word for a shell.
+/// A word for a shell, which no command takes for an option.
 pub(crate) fn quoted(word: &str) -> String {
+    if word.starts_with('-') {
+        return quoted(&format!("./{word}"));
+    }
     let plain = |c: char| c.is_ascii_alphanumeric() || "_./:=,@%+-".contains(c);
     if !word.is_empty() && word.chars().all(plain) {
         word.to_owned()

@@ -22,6 +22,8 @@ pub(crate) enum Request {
     Measure { alpha: f64 },
     /// The cells at an α, cut open by a plane across an axis.
     Section { alpha: f64, axis: usize, place: f64 },
+    /// Values of α at which something happens.
+    Suggest,
     /// The persistence diagram.
     Diagram,
     /// A file of the shape or of its points at an α, as the command writes it; its name says the format.

@@ -4,9 +4,11 @@ use std::path::{Path, PathBuf};
 
 use serde_json::json;
 use walpha::export::{ExportOptions, Format};
-use walpha::ladder::{Curve, Filtration, Span};
+use walpha::ladder::{Filtration, Span};
 use walpha::pipeline::{Input, Parameter, ParameterOrigin, PipelineError, Values, Weighed};
-use walpha::points::{ModelMetadata, Packing, PointWriter, SampleGrid};
+use walpha::points::{
+    ModelMetadata, Packing, PointOptions, PointWriter, SampleGrid, is_point_file, read_model,
+};
 use walpha::progress::{Listener, Monitor, Stage};
 use walpha::shape::Betti;
 use walpha::volume::{self, Hounsfield, SampleStats, Series};
@@ -43,7 +45,6 @@ struct Made {
     /// The α that weights are computed for, or else the suggested one.
     reference: Parameter,
     filtration: Filtration,
-    curve: Curve,
     stops: Shown,
     /// The volume that coverage is a share of.
     domain: f64,
@@ -188,6 +189,7 @@ impl Session {
             Request::At { alpha } => self.made()?.at(alpha),
             Request::Measure { alpha } => self.made()?.measure(alpha),
             Request::Section { alpha, axis, place } => self.made()?.section(alpha, axis, place),
+            Request::Suggest => self.made()?.suggest(),
             Request::Diagram => self.made()?.diagram(),
             Request::Save { name, alpha, solid } => {
                 self.made()?.save(&self.input, &name, alpha, solid)
@@ -214,25 +216,18 @@ impl Session {
                 return Ok(Answer::of(json!({ "kind": "series", "series": series }), Vec::new()));
             }
         }
+        let is_sample = input.to_str().is_some_and(|name| name.starts_with("sample:"));
+        if !is_sample && is_point_file(input)? {
+            let of_points = PointOptions::default().columns(recipe.columns.clone());
+            let (points, metadata) = read_model(input, &of_points)?;
+            let answer = describe_points(&points, &metadata);
+            self.opened = Some(Opened::Points(points, metadata));
+            return Ok(answer);
+        }
         // Values as they are: gray levels follow the window, which changes.
-        let mut volume = None;
-        let keep = |_: &Recipe, read: &Volume| {
-            volume = Some(read.clone());
-            None
-        };
-        let read = recipe.clone().open_suited(input, &monitor, keep)?;
-        let (opened, answer) = match (read, volume) {
-            (Input::Points(points, metadata), _) => {
-                let answer = describe_points(&points, &metadata);
-                (Opened::Points(points, metadata), answer)
-            }
-            (Input::Volume(_), Some(volume)) => {
-                let answer = describe_volume(&volume);
-                (Opened::Volume(volume), answer)
-            }
-            _ => return Err("this kind of input is unknown to the page".to_owned().into()),
-        };
-        self.opened = Some(opened);
+        let volume = volume::open_monitored(input, &recipe.read, &monitor)?;
+        let answer = describe_volume(&volume);
+        self.opened = Some(Opened::Volume(volume));
         Ok(answer)
     }
 
@@ -277,9 +272,7 @@ impl Session {
         let unit = weighed.origin.coordinates.unit;
         let reference = weighed.parameter.unwrap_or_else(|| weighed.rule.on(&filtration, unit));
         Stage::Curve.begin(&monitor).map_err(PipelineError::from)?;
-        let curve = filtration.coarse_curve(STOPS);
-        let critical = curve.alphas().map(Alpha::from_squared).collect::<Result<Vec<_>, _>>();
-        let mut alphas = critical.map_err(PipelineError::from)?;
+        let mut alphas = filtration.coarse_alphas(STOPS);
         alphas.push(reference.alpha);
         let stops = Shown::at(&filtration, &alphas);
         let made = Made {
@@ -287,7 +280,6 @@ impl Session {
             recipe,
             metadata,
             reference,
-            curve,
             stops,
             domain,
             centre: [0, 1, 2].map(|k| f64::midpoint(low[k], high[k])),
@@ -384,7 +376,6 @@ impl Made {
         arrays.push(Array::U32("b0", betti(|betti| betti.b0)));
         arrays.push(Array::U32("b1", betti(|betti| betti.b1)));
         arrays.push(Array::U32("b2", betti(|betti| betti.b2)));
-        let suggested = self.filtration.suggest(&self.curve);
         let truncation = self
             .weighed
             .origin
@@ -395,11 +386,10 @@ impl Made {
             "cells": self.stops.cells.len(),
             "reference": self.reference.alpha.squared(),
             "origin": self.reference,
-            "suggested": suggested,
             "weighted": self.weighed.origin.weighting.needs_differences(),
             "unit": self.weighed.origin.coordinates.unit.symbol(),
             "centre": self.centre,
-            "largestWeight": self.curve.largest_weight(),
+            "largestWeight": points.weights().iter().copied().fold(f64::NEG_INFINITY, f64::max),
             "truncation": truncation,
         });
         Answer::of(head, arrays)
@@ -499,6 +489,13 @@ impl Made {
         Ok(Answer::of(json!({}), arrays))
     }
 
+    /// Values of α at which something happens, of the stops.
+    fn suggest(&self) -> Result<Answer, Failure> {
+        let suggested = self.filtration.suggest(&self.filtration.coarse_curve(STOPS));
+        let suggested = serde_json::to_value(suggested).map_err(|error| error.to_string())?;
+        Ok(Answer::of(suggested, Vec::new()))
+    }
+
     fn diagram(&self) -> Result<Answer, Failure> {
         let monitor = Monitor::new(ToPage);
         Stage::Order.begin(&monitor).map_err(PipelineError::from)?;
@@ -521,6 +518,7 @@ impl Made {
     }
 
     fn save(&self, input: &Path, name: &Path, alpha: f64, solid: bool) -> Result<Answer, Failure> {
+        let is_shape = self.is_shape(alpha);
         let alpha = Alpha::from_squared(alpha).map_err(PipelineError::from)?;
         let mut bytes = Vec::new();
         let failed = |error: std::io::Error| error.to_string();
@@ -528,6 +526,8 @@ impl Made {
         if let Ok(writer) = PointWriter::of(name)
             && (writer.packs || writer.extension == "csv")
         {
+            // Weights that are frozen belong to their own α.
+            let alpha = if is_shape { alpha } else { self.reference.alpha };
             let mut metadata = self.metadata.clone().alpha(Some(alpha));
             // The command's recipe has this α; that of a file stays as it is.
             if metadata.recipe == Some(self.recipe.to_json()) {
@@ -539,7 +539,9 @@ impl Made {
                 .map_err(failed)?;
         } else {
             let exporter = Format::of(name)?.exporter(
-                &ExportOptions::default().solid(solid).input(Some(input.display().to_string())),
+                &ExportOptions::default()
+                    .solid(solid && is_shape)
+                    .input(Some(input.display().to_string())),
             );
             let mut weighed = self.weighed.clone();
             let mut parameter = self.reference;
@@ -554,12 +556,15 @@ impl Made {
     fn command(&self, input: &Path, name: &str, alpha: f64, solid: bool) -> Answer {
         let mut settings = self.options.settings();
         let input = quoted(&input.display().to_string());
-        let is_points = PointWriter::of(Path::new(name))
-            .is_ok_and(|writer| !writer.packs && writer.extension == "csv");
-        let (program, output) = if self.is_shape(alpha) {
+        let points = PointWriter::of(Path::new(name)).ok();
+        let is_table = points.is_some_and(|writer| !writer.packs && writer.extension == "csv");
+        let is_shape = self.is_shape(alpha);
+        let (program, output) = if is_shape || points.is_some_and(|writer| writer.packs) || is_table
+        {
+            let alpha = if is_shape { alpha } else { self.reference.alpha.squared() };
             settings.push(Setting { name: "alpha", value: Written::number(alpha) });
-            let program = if is_points { "points" } else { "shape" };
             let solid = if solid { " --solid" } else { "" };
+            let program = if is_table { "points" } else { "shape" };
             (program, format!("{solid} -o {}", quoted(name)))
         } else {
             let reference = Written::number(self.reference.alpha.squared());

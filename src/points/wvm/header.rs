@@ -144,15 +144,12 @@ impl Header {
         let FieldWriter(fields) = out;
         // The length counts all of the header, itself included.
         let whole = |of_length: usize| MODEL.len() + 1 + of_length + fields.len() + CHECKSUM;
-        let (version, length) = match u16::try_from(whole(size_of::<u16>())) {
-            Ok(short) => {
-                let version = if self.recipe.is_some() { WITH_RECIPE } else { WITHOUT_RECIPE };
-                (version, short.to_le_bytes().to_vec())
-            }
-            Err(_) => {
-                let long = whole(size_of::<u64>()) as u64;
-                (WITH_LONG_RECIPE, long.to_le_bytes().to_vec())
-            }
+        let (version, length) = if let Ok(short) = u16::try_from(whole(size_of::<u16>())) {
+            let version = if self.recipe.is_some() { WITH_RECIPE } else { WITHOUT_RECIPE };
+            (version, short.to_le_bytes().to_vec())
+        } else {
+            let long = whole(size_of::<u64>()) as u64;
+            (WITH_LONG_RECIPE, long.to_le_bytes().to_vec())
         };
         let mut header = [MODEL, &[version], &length, &fields].concat();
         let checksum = crc32fast::hash(&header);

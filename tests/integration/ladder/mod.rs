@@ -182,9 +182,14 @@ proptest! {
         let (all, some) = (filtration.curve(), filtration.coarse_curve(most));
         prop_assert!((2..=most).contains(&some.len()) || all.len() < 2);
         prop_assert_eq!(some.betti.last(), all.betti.last());
-        for (k, alpha) in some.alphas().enumerate() {
-            let shape = one_by_one(&points, self::alpha(alpha), true, Engine::Native);
+        let alphas = filtration.coarse_alphas(most);
+        prop_assert_eq!(&alphas, &some.alphas().map(alpha).collect::<Vec<_>>());
+        let levels = filtration.levels(&alphas);
+        for (k, &alpha) in alphas.iter().enumerate() {
+            let shape = one_by_one(&points, alpha, true, Engine::Native);
             prop_assert_eq!(Some(some.betti[k]), shape.betti());
+            let entered = levels.cells().iter().filter(|(_, first)| *first <= k as u32).count();
+            prop_assert_eq!(entered, shape.complex().cells.counts()[Class::Interior]);
         }
         let suggested = filtration.suggest(&some);
         prop_assert!(suggested.all_points >= filtration.suggest(&all).all_points);

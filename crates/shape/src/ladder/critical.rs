@@ -65,6 +65,15 @@ impl Filtration {
         self.curve_of(self.some_values(most))
     }
 
+    /// The α of [`coarse_curve`](Self::coarse_curve) alone, ascending, for about half of its time. O(n log n).
+    ///
+    /// # Panics
+    /// When `most` is less than 2.
+    pub fn coarse_alphas(&self, most: usize) -> Vec<Alpha> {
+        assert!(most >= 2, "two ends are needed");
+        self.some_values(most).iter().map(alpha_above).collect()
+    }
+
     fn curve_of(&self, values: Vec<Value>) -> Curve {
         let levels = self.levels_of(&values);
         let (betti, solid_components) =
@@ -100,8 +109,7 @@ impl Filtration {
 
     /// A level for each critical value.
     fn levels_of(&self, values: &[Value]) -> Levels<'_> {
-        let alpha = |value: &Value| Alpha::from_squared(value.above()).expect("radii are numbers");
-        let levels = self.levels(&values.iter().map(alpha).collect::<Vec<_>>());
+        let levels = self.levels(&values.iter().map(alpha_above).collect::<Vec<_>>());
         assert_eq!(levels.len(), values.len(), "one level for each value");
         levels
     }
@@ -170,6 +178,11 @@ impl Filtration {
         chosen.dedup();
         chosen.par_iter().map(|&k| self.first_alpha(curve.values[k])).collect()
     }
+}
+
+/// An α at or just above a critical value.
+fn alpha_above(value: &Value) -> Alpha {
+    Alpha::from_squared(value.above()).expect("radii are numbers")
 }
 
 impl Curve {
