@@ -312,7 +312,7 @@ async function compute() {
   scene.resize();
   scene.setPoints(made, box);
   [state.toml, state.alpha, state.shape] = [null, null, null];
-  byId("command").textContent = "";
+  byId("command").textContent = byId("picked").textContent = "";
   const colour = byId("colour");
   [...colour.options].find((option) => option.value === "value").hidden = !made.values;
   if (colour.value === "value" && !made.values) colour.value = "class";

@@ -113,6 +113,9 @@ export class ShapeScene {
       add(name, Points, spheres());
       this.parts[name].visible = false;
     }
+    // Hidden points lie within the shape as a rule, and are to be seen all the same.
+    this.parts.hidden.material.depthTest = false;
+    this.parts.hidden.renderOrder = 1;
     this.section = new Mesh(new BufferGeometry(), new MeshBasicMaterial({ side: DoubleSide, vertexColors: true }));
     this.section.frustumCulled = false;
     this.lit = new Box3Helper(new Box3(), new Color("#d55e00"));
