@@ -11,9 +11,16 @@ cannot() { echo "the page is not built: $1" && exit 77; }
 
 { command -v rustup && rustup target add wasm32-wasip1; } > /dev/null 2>&1 || cannot "the target wasm32-wasip1 cannot be had"
 command -v npm > /dev/null || cannot "there is no npm"
-(cd web/page && npm ci --ignore-scripts --silent) || cannot "the packages in web/page/package.json cannot be had"
+command -v python3 > /dev/null || cannot "there is no Python"
+if ! (cd web/page && npm ci --ignore-scripts --silent); then
+  # Where packages can be had, something else is wrong.
+  if npm view three version > /dev/null 2>&1; then exit 1; fi
+  cannot "the packages in web/page/package.json cannot be had"
+fi
 
-RUSTFLAGS="--remap-path-prefix=$PWD=walpha --remap-path-prefix=${CARGO_HOME:-$HOME/.cargo}=cargo" \
+# The notices are of all that Cargo.lock names.
+cargo fetch --locked
+CARGO_ENCODED_RUSTFLAGS="--remap-path-prefix=$PWD=walpha"$'\x1f'"--remap-path-prefix=${CARGO_HOME:-$HOME/.cargo}=cargo" \
   cargo build --locked --profile web --target wasm32-wasip1 -p walpha-web
 mkdir -p "$(dirname "$output")"
 notices=$(mktemp)
