@@ -11,7 +11,7 @@ use crate::options::Options;
 #[serde(tag = "do", rename_all = "camelCase", rename_all_fields = "camelCase")]
 pub(crate) enum Request {
     /// Reads a file, a folder or a sample, and says what it is.
-    Open { input: PathBuf, options: Options },
+    Open { input: String, options: Options },
     /// The samples of a plane of the volume: across an axis (x, y, z), at an index.
     Plane { axis: usize, index: usize },
     /// Selects and weighs the points, and computes the filtration.

@@ -1,6 +1,6 @@
 //! What has been opened and computed, and the answers to requests.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use serde_json::json;
 use walpha::export::{ExportOptions, Format};
@@ -25,7 +25,7 @@ const STOPS: usize = 1024;
 
 /// What the page works on.
 pub(crate) struct Session {
-    input: PathBuf,
+    input: String,
     opened: Option<Opened>,
     made: Option<Made>,
 }
@@ -171,7 +171,7 @@ impl Listener for ToPage {
 }
 
 impl Session {
-    pub(crate) const EMPTY: Self = Self { input: PathBuf::new(), opened: None, made: None };
+    pub(crate) const EMPTY: Self = Self { input: String::new(), opened: None, made: None };
 
     /// Carries out a request.
     pub(crate) fn answer(&mut self, request: Request) -> Answer {
@@ -204,9 +204,9 @@ impl Session {
         self.made.as_ref().ok_or_else(|| "there is no shape yet".to_owned().into())
     }
 
-    fn open(&mut self, input: PathBuf, options: &Options) -> Result<Answer, Failure> {
+    fn open(&mut self, input: String, options: &Options) -> Result<Answer, Failure> {
         *self = Self { input, ..Self::EMPTY };
-        let input = &self.input;
+        let input = Path::new(&self.input);
         let monitor = Monitor::new(ToPage);
         Stage::Read.begin(&monitor).map_err(PipelineError::from)?;
         let recipe = options.recipe()?;
@@ -216,7 +216,7 @@ impl Session {
                 return Ok(Answer::of(json!({ "kind": "series", "series": series }), Vec::new()));
             }
         }
-        let is_sample = input.to_str().is_some_and(|name| name.starts_with("sample:"));
+        let is_sample = self.input.starts_with("sample:");
         if !is_sample && is_point_file(input)? {
             let of_points = PointOptions::default().columns(recipe.columns.clone());
             let (points, metadata) = read_model(input, &of_points)?;
@@ -517,7 +517,7 @@ impl Made {
         !proportional || alpha == self.reference.alpha.squared()
     }
 
-    fn save(&self, input: &Path, name: &Path, alpha: f64, solid: bool) -> Result<Answer, Failure> {
+    fn save(&self, input: &str, name: &Path, alpha: f64, solid: bool) -> Result<Answer, Failure> {
         let is_shape = self.is_shape(alpha);
         let alpha = Alpha::from_squared(alpha).map_err(PipelineError::from)?;
         let mut bytes = Vec::new();
@@ -539,9 +539,7 @@ impl Made {
                 .map_err(failed)?;
         } else {
             let exporter = Format::of(name)?.exporter(
-                &ExportOptions::default()
-                    .solid(solid && is_shape)
-                    .input(Some(input.display().to_string())),
+                &ExportOptions::default().solid(solid && is_shape).input(Some(input.to_owned())),
             );
             let mut weighed = self.weighed.clone();
             let mut parameter = self.reference;
@@ -553,9 +551,9 @@ impl Made {
         Ok(Answer::of(json!({}), vec![Array::U8("bytes", bytes)]))
     }
 
-    fn command(&self, input: &Path, name: &str, alpha: f64, solid: bool) -> Answer {
+    fn command(&self, input: &str, name: &str, alpha: f64, solid: bool) -> Answer {
         let mut settings = self.options.settings();
-        let input = quoted(&input.display().to_string());
+        let input = quoted(input);
         let points = PointWriter::of(Path::new(name)).ok();
         let is_table = points.is_some_and(|writer| !writer.packs && writer.extension == "csv");
         let is_shape = self.is_shape(alpha);
