@@ -402,7 +402,7 @@ def look_at_all(browser, page, checks, files, downloads, out, large):
     checks.say("a click on a pair sets α", there == [True] and alpha != opened, f"{alpha}; {voids}")
 
     # Points, balls and hidden points are drawn on request, and a click on the surface names a point.
-    page.example("hard:hidden")
+    page.example("hard:duplicates")
     page.settled()
     for name in ["points", "balls", "hidden"]:
         without = browser.evaluate(SCENE)

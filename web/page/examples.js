@@ -28,9 +28,10 @@ export const EXAMPLES = [
   { input: "sample:phantom", name: "a phantom of a head, 64³" },
   { input: "sample:ct", name: "a CT of the phantom, in Hounsfield units" },
   { input: "sample:phantom@128", name: "the phantom, 128³" },
+  { input: "sample:phantom@256", name: "the phantom, 256³: a million points" },
   { input: "knot.csv", name: "points on a knotted tube", make: knot },
   { input: "hard:voxels", name: "a lattice, where every sphere has eight points" },
   { input: "hard:fcc", name: "a face-centred cubic lattice" },
-  { input: "hard:hidden", name: "a lattice with weights, which hide some points" },
+  { input: "hard:duplicates", name: "a lattice three times, of which two are hidden" },
   { input: "hard:integer-sphere", name: "integer points exactly on a sphere" },
 ];
