@@ -261,7 +261,7 @@ class Page:
         else:
             self.browser.choose("files", [path])
 
-    def settled(self, seconds=40):
+    def settled(self, seconds=120):
         return self.browser.wait(SETTLED, seconds) and self.browser.wait(MEASURED, seconds)
 
     def state(self):
@@ -458,7 +458,7 @@ def look_at_all(browser, page, checks, files, downloads, out, large):
     page.example("sample:phantom@128")
     browser.wait("document.getElementById('status').textContent.startsWith('Computing all')", 60)
     browser.evaluate("document.getElementById('cancel').click()")
-    checks.say("work can be cancelled", browser.wait("document.body.dataset.state === 'cancelled'", 5))
+    checks.say("work can be cancelled", browser.wait("document.body.dataset.state === 'cancelled'", 20))
     started = time.monotonic()
     page.example("sample:phantom")
     checks.say("and the page goes on", page.settled() and page.state()["state"] == "ready", f"the phantom takes {time.monotonic() - started:.1f} s")
@@ -476,7 +476,7 @@ def look_at_all(browser, page, checks, files, downloads, out, large):
         wide = browser.evaluate("document.documentElement.scrollWidth") - width
         checks.say(f"nothing is wider than the {name}", wide <= 0, f"{wide} pixels")
         (out / f"web-{name}.png").write_bytes(browser.screenshot())
-    for example, most in [("sample:phantom", 4), ("sample:phantom@256", 80)][:2 if large else 1]:
+    for example, most in [("sample:phantom", 20), ("sample:phantom@256", 120)][:2 if large else 1]:
         started = time.monotonic()
         page.example(example)
         browser.wait("document.body.dataset.alpha && document.body.dataset.frame", 200)
