@@ -19,9 +19,6 @@ class Chart {
     const context = this.canvas.getContext("2d");
     context.scale(ratio, ratio);
     context.font = "11px system-ui, sans-serif";
-    const style = getComputedStyle(document.documentElement);
-    this.ink = (name) => getComputedStyle(this.canvas).getPropertyValue(name) || style.getPropertyValue(name);
-    // light-dark() is resolved by a property that has a colour.
     this.text = getComputedStyle(this.canvas).color;
     return width > 0 ? context : null;
   }

@@ -30,7 +30,7 @@ const PRESETS = Object.fromEntries(
 );
 const OF_VOLUMES = ["ct-bone", "ct-skin", "mri", "paper"];
 const OF_POINTS = ["points", "molecule"];
-// More samples than this are halved along each axis when they are read: a page has 4 GiB.
+// Volumes of more samples than this are made coarser: a page has 4 GiB.
 const MOST_SAMPLES = 2 ** 26;
 const FORMATS = [
   ["ply", "PLY"], ["stl", "STL, solid"], ["glb", "GLB"], ["vtu", "VTU"], ["npz", "NPZ"], ["csv", "points, CSV"], ["wvm", "points, WVM"], ["png", "picture, PNG"],
@@ -190,7 +190,6 @@ async function open() {
   }
   state.facts = facts;
   state.opened = JSON.stringify(reading());
-  document.body.classList.remove("empty");
   byId("options").hidden = false;
   const isVolume = facts.kind === "volume";
   byId("series-label").hidden = facts.kind !== "series" && byId("series").options.length === 0;
@@ -253,7 +252,7 @@ function ruled() {
   byId("rule-unit").textContent = { threshold: "gray levels", count: "samples", ratio: "of all" }[rule];
   byId("rule-value").ariaLabel = { threshold: "Least difference in gray levels", count: "Number of samples", ratio: "Share of all samples" }[rule];
   byId("rule-value").step = rule === "count" ? 1 : "any";
-  byId("rule-value").placeholder = byId("rule").value === "ratio" ? "0.0609" : "";
+  byId("rule-value").placeholder = rule === "ratio" ? "0.0609" : "";
 }
 
 // The window: what is not given is the volume's.
@@ -691,11 +690,10 @@ async function unpacked(id) {
   return new Response(stream).arrayBuffer();
 }
 
-document.body.classList.add("empty");
 try {
   const module = await WebAssembly.compile(await unpacked("wasm"));
   engine = new Engine(module, byId("worker").textContent, { progress, remark, restarted });
-  slices = new Slices(byId("planes"), engine, fail);
+  slices = new Slices(byId("planes"), engine, quietly);
   wire();
   document.body.dataset.state = "ready";
 } catch (error) {

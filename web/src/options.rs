@@ -15,8 +15,6 @@ use walpha::{GrayRange, HaarOptions, Recipe, Selection, SelectionRule, Weighting
 pub(crate) struct Options {
     /// The volume of a file of several.
     pub frame: Option<u64>,
-    /// The array of a file of several.
-    pub array: Option<String>,
     /// The series of a folder of several.
     pub series: Option<String>,
     /// How many samples along each axis become one.
@@ -48,7 +46,6 @@ impl Options {
     pub(crate) fn reading(&self) -> ReadOptions {
         ReadOptions::default()
             .frame(self.frame)
-            .array(self.array.clone())
             .series(self.series.clone())
             .downsample(self.downsample)
     }
@@ -95,7 +92,6 @@ impl Options {
             settings.extend(value.map(|value| Setting { name, value }));
         };
         add("frame", self.frame.map(Written::number));
-        add("array", self.array.clone().map(Written::Text));
         add("series", self.series.clone().map(Written::Text));
         add("downsample", self.downsample.map(Written::number));
         add("columns", self.columns.clone().map(Written::Text));

@@ -319,7 +319,6 @@ fn describe_points(points: &Points, metadata: &ModelMetadata) -> Answer {
         "high": high,
         "weights": points.weights.is_some(),
         "values": points.values.is_some(),
-        "coordinates": metadata.coordinates,
         "unit": metadata.coordinates.unit.symbol(),
     });
     Answer::of(head, Vec::new())
@@ -376,17 +375,13 @@ impl Made {
         arrays.push(Array::U32("b0", betti(|betti| betti.b0)));
         arrays.push(Array::U32("b1", betti(|betti| betti.b1)));
         arrays.push(Array::U32("b2", betti(|betti| betti.b2)));
-        let truncation = self
-            .weighed
-            .origin
-            .truncation
-            .map(|t| json!({ "kept": t.kept, "total": t.total, "rms": t.rms }));
+        let truncation =
+            self.weighed.origin.truncation.map(|t| json!({ "kept": t.kept, "total": t.total }));
         let head = json!({
             "points": points.len(),
             "cells": self.stops.cells.len(),
             "reference": self.reference.alpha.squared(),
             "origin": self.reference,
-            "weighted": self.weighed.origin.weighting.needs_differences(),
             "unit": self.weighed.origin.coordinates.unit.symbol(),
             "centre": self.centre,
             "largestWeight": points.weights().iter().copied().fold(f64::NEG_INFINITY, f64::max),
