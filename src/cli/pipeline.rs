@@ -14,7 +14,7 @@ use crate::export::Scratch;
 use crate::interpolate::{InterpolateError, fill_monitored};
 use crate::ladder::{Curve, Filtration};
 use crate::pipeline::{Input, Model, Opened, PipelineError, Source, Values, Weighed};
-use crate::points::ModelMetadata;
+use crate::points::corners;
 use crate::progress::Stage;
 use crate::shape::{ShapeError, Torus};
 use crate::volume::Reason;
@@ -35,7 +35,7 @@ pub(super) struct VolumeSummary {
 impl VolumeSummary {
     pub(super) fn of(source: &Source) -> Self {
         let Source { volume, units, range, written, .. } = source;
-        let extent = box_volume(volume, *units);
+        let extent = units.box_volume(volume);
         Self { dims: volume.dims().xyz(), extent, range: *range, written: *written }
     }
 }
@@ -72,20 +72,6 @@ pub(super) fn weigh(
 ) -> anyhow::Result<(Weighed, Option<Source>)> {
     accept(&read, args)?;
     Ok(progress.watch(|monitor| recipe.weigh(read, values, monitor))?)
-}
-
-/// Everything a model file stores besides its points, except their order.
-pub(super) fn model_facts(weighed: &Weighed, volume: Option<&VolumeSummary>) -> ModelMetadata {
-    let origin = weighed.origin;
-    ModelMetadata {
-        grid: origin.grid,
-        coordinates: origin.coordinates,
-        alpha: weighed.parameter.map(|parameter| parameter.alpha),
-        range: volume.map(|volume| volume.written).or(origin.range),
-        recipe: weighed.recipe.clone(),
-        order: None,
-        cell: None,
-    }
 }
 
 /// The shape of weighted points.
@@ -243,7 +229,7 @@ impl Domain {
     /// The box between the outermost samples of a grid.
     pub(super) fn of_grid(volume: &Volume, units: Units) -> Self {
         let unit = units.coordinates(volume).unit;
-        Self { volume: box_volume(volume, units), unit, of: "the box of the samples" }
+        Self { volume: units.box_volume(volume), unit, of: "the box of the samples" }
     }
 }
 
@@ -259,18 +245,9 @@ pub(super) fn domain(weighed: &Weighed, volume: Option<&VolumeSummary>) -> Domai
     if let Some(volume) = volume {
         return Domain { volume: volume.extent, unit, of: "the box of the samples" };
     }
-    let extent = |k: usize| {
-        let ends = (weighed.points.positions().iter())
-            .fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], p| [l.min(p[k]), h.max(p[k])]);
-        ends[1] - ends[0]
-    };
-    Domain { volume: extent(0) * extent(1) * extent(2), unit, of: "the box of the points" }
-}
-
-/// The volume of the box between the outermost samples.
-pub(super) fn box_volume(volume: &Volume, units: Units) -> f64 {
-    let steps: f64 = volume.dims().xyz().map(|n| (n - 1) as f64).iter().product();
-    steps * units.voxel_volume(volume)
+    let [low, high] = corners(weighed.points.positions());
+    let volume = [0, 1, 2].map(|k| high[k] - low[k]).iter().product();
+    Domain { volume, unit, of: "the box of the points" }
 }
 
 /// The shape of a volume's points, filled in, and the gray levels of all its points. Those of the first points are

@@ -71,7 +71,8 @@ impl Points {
             fail_usage!("--layers has no effect: the order of importance is known only of points selected from a volume" => "omit it");
         }
         if let Some((target, writer)) = target {
-            let facts = pipeline::model_facts(&weighed, volume.as_ref()).order(weighed.order());
+            let facts =
+                weighed.metadata(volume.map(|volume| volume.written)).order(weighed.order());
             let step = facts.range.filter(|_| volume.is_some()).map_or(1.0, |range| range.step());
             let packing = Packing { value_error: self.value_error * step, layers: self.layers };
             progress.stage(Stage::Write, || {

@@ -211,7 +211,7 @@ impl Shape {
         let volume = source.as_ref().map(VolumeSummary::of);
         drop(source);
         let mut report = Report::of_points(&input.input, &weighed, volume.as_ref());
-        let mut facts = pipeline::model_facts(&weighed, volume.as_ref());
+        let mut facts = weighed.metadata(volume.map(|volume| volume.written));
         let model = pipeline::shape(weighed, recipe, progress)?;
         facts.alpha = Some(model.parameter.alpha);
         progress.stage(Stage::Measure, || {

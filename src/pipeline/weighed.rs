@@ -5,7 +5,8 @@ use super::{AlphaRule, Parameter, PipelineError};
 use crate::haar::Truncation;
 use crate::interpolate::{Adaptive, Fit};
 use crate::points::{
-    Points, SampleGrid, WeightedPoints, Weighting, scattered_difference, weigh, weights,
+    ModelMetadata, Points, SampleGrid, WeightedPoints, Weighting, scattered_difference, weigh,
+    weights,
 };
 use crate::progress::Stage;
 use crate::shape::{Alpha, Torus};
@@ -102,6 +103,18 @@ impl Weighed {
             Importance::Differences(differences) => largest_first(differences),
             Importance::Order(order) => order.clone(),
         })
+    }
+
+    /// What a file of these points states besides them, except their order. `written` is the mapping of the volume
+    /// that they were selected from to written values ([`Source::written`](super::Source::written)).
+    pub fn metadata(&self, written: Option<GrayRange>) -> ModelMetadata {
+        let origin = self.origin;
+        ModelMetadata::default()
+            .grid(origin.grid)
+            .coordinates(origin.coordinates)
+            .alpha(self.parameter.map(|parameter| parameter.alpha))
+            .range(written.or(origin.range))
+            .recipe(self.recipe.clone())
     }
 
     /// α, found now if weights did not need it.

@@ -135,7 +135,10 @@ pub static HARD_SETS: &[HardSet] = &[
         about: "a lattice whose weights are multiples of 1/2: some points are hidden, others on the verge of it",
         make: || {
             let positions = lattice([8; 3], [1.0; 3]);
-            let weight = |[x, y, z]: [f64; 3]| 0.5 * ((3.0 * x + 5.0 * y + 7.0 * z) % 4.0);
+            // Of neighbours along an axis, multiples modulo 4 put points on the verge, modulo 5 they hide them.
+            let weight = |[x, y, z]: [f64; 3]| {
+                0.5 * ((3.0 * x + 4.0 * y + 7.0 * z) % if x < 4.0 { 4.0 } else { 5.0 })
+            };
             let weights = positions.iter().copied().map(weight).collect();
             weighted(positions, weights)
         },

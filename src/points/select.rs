@@ -80,12 +80,13 @@ impl Units {
         }
     }
 
-    /// The volume of a voxel in these units.
-    pub fn voxel_volume(self, volume: &Volume) -> f64 {
-        self.cell(volume.frame())
+    /// The volume, in these units, of the box between the outermost samples.
+    pub fn box_volume(self, volume: &Volume) -> f64 {
+        let steps: f64 = volume.dims().xyz().map(|n| (n - 1) as f64).iter().product();
+        steps * self.cell(volume.frame())
     }
 
-    /// [`voxel_volume`](Self::voxel_volume) for a grid.
+    /// The volume of a voxel in these units.
     pub fn cell(self, frame: &Frame) -> f64 {
         match self {
             Self::Voxel => 1.0,

@@ -80,3 +80,12 @@ fn commands_take_hard_sets_by_name() {
     let betti = &common::json(f, &periodic)["shape"]["betti"];
     assert_eq!(*betti, serde_json::json!([1, 3, 3, 1]));
 }
+
+#[test]
+fn a_set_hides_points_where_it_says_so() {
+    let set = HARD_SETS.iter().find(|set| set.name == "hidden").unwrap();
+    let shape =
+        alpha_shape(weighted(set), &ShapeOptions::new(Alpha::INFINITE).hidden(true)).unwrap();
+    let hidden = shape.hidden().unwrap().len();
+    assert!((1..set.points().len() / 2).contains(&hidden), "{hidden}");
+}

@@ -7,7 +7,8 @@ use walpha::export::{ExportOptions, Format};
 use walpha::ladder::{Filtration, Span};
 use walpha::pipeline::{Input, Parameter, ParameterOrigin, PipelineError, Values, Weighed};
 use walpha::points::{
-    ModelMetadata, Packing, PointOptions, PointWriter, SampleGrid, is_point_file, read_model,
+    ModelMetadata, Packing, PointOptions, PointWriter, SampleGrid, corners, is_point_file,
+    read_model,
 };
 use walpha::progress::{Listener, Monitor, Stage};
 use walpha::shape::Betti;
@@ -257,13 +258,10 @@ impl Session {
             Opened::Volume(volume) => Input::Volume(recipe.grays(volume.clone())?),
         };
         let (weighed, source) = recipe.weigh(input, Values::Written, &monitor)?;
-        let metadata = metadata(&weighed, source.as_ref());
-        let (low, high) = bounds(weighed.points.positions());
+        let metadata = weighed.metadata(source.as_ref().map(|source| source.written));
+        let [low, high] = corners(weighed.points.positions());
         let domain = match &source {
-            Some(source) => {
-                let cells = source.volume.dims().xyz().map(|n| (n - 1) as f64);
-                cells.iter().product::<f64>() * source.units.voxel_volume(&source.volume)
-            }
+            Some(source) => source.units.box_volume(&source.volume),
             None => [0, 1, 2].iter().map(|&k| high[k] - low[k]).product(),
         };
         drop(source);
@@ -292,26 +290,8 @@ impl Session {
     }
 }
 
-/// The metadata that a file of these points stores.
-fn metadata(weighed: &Weighed, source: Option<&walpha::pipeline::Source>) -> ModelMetadata {
-    let origin = weighed.origin;
-    ModelMetadata::default()
-        .grid(origin.grid)
-        .coordinates(origin.coordinates)
-        .alpha(weighed.parameter.map(|parameter| parameter.alpha))
-        .range(source.map(|source| source.written).or(origin.range))
-        .recipe(weighed.recipe.clone())
-}
-
-/// The corners of the box around some points.
-fn bounds(positions: &[[f64; 3]]) -> ([f64; 3], [f64; 3]) {
-    positions.iter().fold(([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]), |(low, high), p| {
-        ([0, 1, 2].map(|k| low[k].min(p[k])), [0, 1, 2].map(|k| high[k].max(p[k])))
-    })
-}
-
 fn describe_points(points: &Points, metadata: &ModelMetadata) -> Answer {
-    let (low, high) = bounds(&points.positions);
+    let [low, high] = corners(&points.positions);
     let head = json!({
         "kind": "points",
         "count": points.len(),

@@ -218,6 +218,7 @@ impl fmt::Display for Reason {
             }
             Self::Within { part, reason } => write!(f, "{part} {reason}"),
             Self::NotScalar { what, .. } => write!(f, "has {what}"),
+            Self::Several { count: 1 } => write!(f, "holds 1 volume"),
             Self::Several { count } => write!(f, "holds {count} volumes"),
             Self::Without { what, .. } => {
                 write!(f, "is {what}, which this walpha was built without")
