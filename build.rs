@@ -67,7 +67,17 @@ mod bridge {
             build.define("CGAL_DISABLE_GMP", "1");
         }
         build.flag_if_supported("-Wall").flag_if_supported("-Wextra");
+        println!("cargo::rerun-if-env-changed=WALPHA_SANITIZE");
+        let sanitized = env::var_os("WALPHA_SANITIZE").is_some();
+        if sanitized {
+            build.flag("-fsanitize=address,undefined").flag("-fno-sanitize-recover=undefined");
+            build.flag("-fno-omit-frame-pointer");
+        }
         build.compile("walpha_cgal");
+        if sanitized {
+            println!("cargo::rustc-link-lib=asan");
+            println!("cargo::rustc-link-lib=ubsan");
+        }
 
         let prefix = cgal.include.as_ref().and_then(|include| include.parent());
         if let Some(lib) = prefix.map(|prefix| prefix.join("lib")).filter(|lib| lib.is_dir()) {
