@@ -236,7 +236,10 @@ wheels() {
     wheel "$target"
     if has python3.14t; then wheel "$target" --interpreter python3.14t; else skip "free-threaded wheel for $target" "there is no python3.14t"; fi
   done
-  skip "wheel for Windows" "python/Cargo.toml requires CGAL, and there is none for mingw"
+  if has x86_64-w64-mingw32-g++ && with_target $windows; then
+    notices -p walpha-python --target $windows --no-default-features > python/walpha/THIRD-PARTY.md
+    portably maturin build --release --manifest-path python/Cargo.toml --out "$dist/wheels" --target $windows --no-default-features
+  else skip "wheel for Windows" "the target or g++-mingw-w64-x86-64 cannot be had"; fi
   skip "wheel for macOS" "needs a Mac"
   twine check --strict "$dist"/wheels/*
   for file in "$dist"/wheels/*.whl; do python3 -m zipfile -l "$file" | grep walpha/THIRD-PARTY.md > /dev/null; done
