@@ -229,7 +229,6 @@ wheels() {
   if ! from_pypi maturin ziglang twine; then skip "wheels" "maturin, ziglang or twine cannot be had"; return; fi
   rm -rf "$dist/wheels" && mkdir -p "$stage"
   maturin sdist --manifest-path python/Cargo.toml --out "$dist/wheels"
-  made "$dist/wheels/walpha-$version.tar.gz" - made
   for target in "${linux[@]}"; do
     if ! with_target "$target"; then skip "wheel for $target" "the target cannot be had"; continue; fi
     notices -p walpha-python --target "$target" > python/walpha/THIRD-PARTY.md
@@ -254,9 +253,15 @@ wheels() {
   python3 -c 'import tomllib; print(*tomllib.load(open("python/pyproject.toml", "rb"))["project"]["optional-dependencies"]["test"], sep="\n")' > "$stage/test.txt"
   "$stage/venv/bin/pip" install -q -r "$stage/test.txt"
   "$stage/venv/bin/python" -m pytest -q -p no:cacheprovider python/tests
+  "$stage/venv/bin/pip" wheel -q --no-deps --wheel-dir "$stage/from-sources" "$dist/wheels/walpha-$version.tar.gz"
+  made "$dist/wheels/walpha-$version.tar.gz" "here, to a wheel"
   for file in "$dist"/wheels/*.whl; do
-    if [[ $file == *abi3*"${host%%-*}".whl ]]; then made "$file" "here, with its tests"; else made "$file" - made; fi
-    if [[ $file != *abi3* ]]; then continue; fi
+    case $file in
+      *abi3*"${host%%-*}".whl) made "$file" "here, with its tests" ;;
+      *win*) made "$file" - "skipped: there is no Python for wine" ;;
+      *) made "$file" - made ;;
+    esac
+    if [[ $file != *abi3*linux* ]]; then continue; fi
     if [[ $file == *aarch64.whl ]]; then arch=arm64; else arch=amd64; fi
     for suite in bookworm trixie; do
       try_in_debian $suite $arch "$file" "apt-get install -y -qq python3-pip python3-numpy
