@@ -290,6 +290,11 @@ impl Session {
     }
 }
 
+/// The writer of points for a file, if it is not one of shapes.
+fn point_writer(name: &Path) -> Option<&'static PointWriter> {
+    PointWriter::of(name).ok().filter(|writer| writer.packs || writer.extension == "csv")
+}
+
 fn describe_points(points: &Points, metadata: &ModelMetadata) -> Answer {
     let [low, high] = corners(&points.positions);
     let head = json!({
@@ -497,10 +502,7 @@ impl Made {
         let alpha = Alpha::from_squared(alpha).map_err(PipelineError::from)?;
         let mut bytes = Vec::new();
         let failed = |error: std::io::Error| error.to_string();
-        // A format of points that does not store how they were made is that of `walpha points`.
-        if let Ok(writer) = PointWriter::of(name)
-            && (writer.packs || writer.extension == "csv")
-        {
+        if let Some(writer) = point_writer(name) {
             // Weights that are frozen belong to their own α.
             let alpha = if is_shape { alpha } else { self.reference.alpha };
             let mut metadata = self.metadata.clone().alpha(Some(alpha));
@@ -529,14 +531,14 @@ impl Made {
     fn command(&self, input: &str, name: &str, alpha: f64, solid: bool) -> Answer {
         let mut settings = self.options.settings();
         let input = quoted(input);
-        let points = PointWriter::of(Path::new(name)).ok();
-        let is_table = points.is_some_and(|writer| !writer.packs && writer.extension == "csv");
+        let points = point_writer(Path::new(name));
         let is_shape = self.is_shape(alpha);
-        let (program, output) = if is_shape || points.is_some_and(|writer| writer.packs) || is_table
-        {
+        let (program, output) = if is_shape || points.is_some() {
             let alpha = if is_shape { alpha } else { self.reference.alpha.squared() };
             settings.push(Setting { name: "alpha", value: Written::number(alpha) });
             let solid = if solid { " --solid" } else { "" };
+            // A format that does not store how the points were made is that of `walpha points`.
+            let is_table = points.is_some_and(|writer| !writer.packs);
             let program = if is_table { "points" } else { "shape" };
             (program, format!("{solid} -o {}", quoted(name)))
         } else {
