@@ -61,9 +61,13 @@ notices() { python3 scripts/third_party.py "$@"; }
 # Builds as if in a folder of no name, for the archives to be the same wherever they are made. zig gets CGAL and Boost alone: beside them
 # in /usr/include lies the C library of this system.
 portably() {
-  mkdir -p "$stage/cgal/include"
+  mkdir -p "$stage/cgal/include" "$stage/glibc/sys"
   ln -sfn /usr/include/CGAL /usr/include/boost "$stage/cgal/include/"
-  CGAL_DIR=$stage/cgal CFLAGS="-ffile-prefix-map=$PWD=walpha" CXXFLAGS="-ffile-prefix-map=$PWD=walpha" \
+  # CGAL asks whether there is this header. zig has it, and refuses it for a glibc that did not.
+  echo 'static constexpr char __libc_single_threaded = 0;' > "$stage/glibc/sys/single_threaded.h"
+  # Boost of Debian 12 asks zig's C++17 library for what C++17 removed, unless told so.
+  CGAL_DIR=$stage/cgal CFLAGS="-ffile-prefix-map=$PWD=walpha" \
+    CXXFLAGS="-ffile-prefix-map=$PWD=walpha -I$stage/glibc -DBOOST_NO_CXX98_FUNCTION_BASE" \
     RUSTFLAGS="--remap-path-prefix=$PWD=walpha --remap-path-prefix=${CARGO_HOME:-$HOME/.cargo}=cargo" "$@"
 }
 
