@@ -71,6 +71,9 @@ portably() {
     RUSTFLAGS="--remap-path-prefix=$PWD=walpha --remap-path-prefix=${CARGO_HOME:-$HOME/.cargo}=cargo" "$@"
 }
 
+# The same for Windows, where there is no C++ library beside a program but the one within it.
+for_windows() { CXXSTDLIB=static:-bundle=stdc++ portably "$@" --target $windows; }
+
 # A program, given as its words, makes a mesh.
 try_program() { "$@" shape sample:phantom@16 --weights min-max --alpha 10 -o "$stage/tried.ply" && grep -q '^element face' "$stage/tried.ply"; }
 
@@ -169,7 +172,7 @@ binary() {
     else made "$dist/walpha-$version-$target.tgz" - "$needs; skipped: there are no qemu-user-static and libc6-arm64-cross"; fi
   done
   if has x86_64-w64-mingw32-g++ && with_target $windows && [ -d "$stage/pages" ]; then
-    portably cargo build --release --locked --bin walpha --target $windows "${rust_alone[@]}"
+    for_windows cargo build --release --locked --bin walpha "${rust_alone[@]}"
     archive $windows target/$windows/release/walpha.exe "${rust_alone[@]}"
     if has wine; then
       try_program wine target/$windows/release/walpha.exe
@@ -241,7 +244,7 @@ wheels() {
   done
   if has x86_64-w64-mingw32-g++ && with_target $windows; then
     notices -p walpha-python --target $windows --no-default-features > python/walpha/THIRD-PARTY.md
-    portably maturin build --release --manifest-path python/Cargo.toml --out "$dist/wheels" --target $windows --no-default-features
+    for_windows maturin build --release --manifest-path python/Cargo.toml --out "$dist/wheels" --no-default-features
   else skip "wheel for Windows" "the target or g++-mingw-w64-x86-64 cannot be had"; fi
   skip "wheel for macOS" "needs a Mac"
   twine check --strict "$dist"/wheels/*
