@@ -8,6 +8,7 @@ use clap::{Args, ValueEnum};
 
 use crate::AlphaShape;
 use crate::export::Exporter;
+use crate::points::bounding_box;
 use crate::render::{
     Background, Camera, ColourMap, Colouring, Projection, RenderError, Scene, ShapeStyle, Size,
     View,
@@ -94,7 +95,7 @@ impl PictureArgs {
             (ColourArg::Class, _) => Colouring::Classes,
             _ => Colouring::Plain,
         };
-        let bounds = bounds(positions);
+        let bounds = bounding_box(positions);
         let diagonal = (0..3).map(|k| (bounds[1][k] - bounds[0][k]).powi(2)).sum::<f64>().sqrt();
         // Thin compared with the shape, in any unit: 0.12 for 64³ voxels, as in the figures.
         let edge_radius = diagonal * 0.0011;
@@ -118,18 +119,6 @@ impl Exporter for PictureArgs {
         }
         out.write_all(&self.draw(shape).map_err(io::Error::other)?)
     }
-}
-
-/// The box of the points.
-fn bounds(positions: &[[f64; 3]]) -> [[f64; 3]; 2] {
-    let mut bounds = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
-    for p in positions {
-        for k in 0..3 {
-            bounds[0][k] = bounds[0][k].min(p[k]);
-            bounds[1][k] = bounds[1][k].max(p[k]);
-        }
-    }
-    bounds
 }
 
 fn camera(text: &str) -> anyhow::Result<Camera> {

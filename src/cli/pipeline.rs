@@ -14,7 +14,7 @@ use crate::export::Scratch;
 use crate::interpolate::{InterpolateError, fill_monitored};
 use crate::ladder::{Curve, Filtration};
 use crate::pipeline::{Input, Model, Opened, PipelineError, Source, Values, Weighed};
-use crate::points::corners;
+use crate::points::bounding_box;
 use crate::progress::Stage;
 use crate::shape::{ShapeError, Torus};
 use crate::volume::Reason;
@@ -245,7 +245,7 @@ pub(super) fn domain(weighed: &Weighed, volume: Option<&VolumeSummary>) -> Domai
     if let Some(volume) = volume {
         return Domain { volume: volume.extent, unit, of: "the box of the samples" };
     }
-    let [low, high] = corners(weighed.points.positions());
+    let [low, high] = bounding_box(weighed.points.positions());
     let volume = [0, 1, 2].map(|k| high[k] - low[k]).iter().product();
     Domain { volume, unit, of: "the box of the points" }
 }

@@ -55,7 +55,7 @@ pub use open::{PointOptions, is_point_file, read_model, read_points};
 pub use read::{Columns, UnknownColumns};
 pub(crate) use select::{Asked, check_least};
 pub use select::{Selection, SelectionRule, Units, points_at, select};
-pub use sets::{Points, corners};
+pub use sets::{Points, bounding_box};
 pub use weigh::{weigh, weights};
 pub(crate) use weighting::{Differences, Shares};
 pub use weighting::{UnknownWeighting, Weighting};

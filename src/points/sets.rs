@@ -63,7 +63,7 @@ impl Points {
     /// Keeps the first point in each cube of a grid of this side, in the order of the points. The grid starts at the
     /// least coordinates. O(n).
     pub fn thin(&mut self, side: f64) {
-        let [least, _] = corners(&self.positions);
+        let [least, _] = bounding_box(&self.positions);
         // Floats, as a side may be so small that the number of a cube fits no integer.
         let cube = |place: &[f64; 3]| {
             [0, 1, 2].map(|axis| ((place[axis] - least[axis]) / side).floor().to_bits())
@@ -97,8 +97,8 @@ fn column(name: &'static str, column: Vec<f64>, points: usize) -> Result<Vec<f64
     Ok(column)
 }
 
-/// The least and the greatest corner of the box around some points, infinite without any.
-pub fn corners(positions: &[[f64; 3]]) -> [[f64; 3]; 2] {
+/// The least and the greatest corner of the box around some points, infinite without any. O(n).
+pub fn bounding_box(positions: &[[f64; 3]]) -> [[f64; 3]; 2] {
     let none = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
     positions.iter().fold(none, |[least, greatest], place| {
         [

@@ -7,7 +7,7 @@ use walpha::export::{ExportOptions, Format};
 use walpha::ladder::{Filtration, Span};
 use walpha::pipeline::{Input, Parameter, ParameterOrigin, PipelineError, Values, Weighed};
 use walpha::points::{
-    ModelMetadata, Packing, PointOptions, PointWriter, SampleGrid, corners, is_point_file,
+    ModelMetadata, Packing, PointOptions, PointWriter, SampleGrid, bounding_box, is_point_file,
     read_model,
 };
 use walpha::progress::{Listener, Monitor, Stage};
@@ -259,7 +259,7 @@ impl Session {
         };
         let (weighed, source) = recipe.weigh(input, Values::Written, &monitor)?;
         let metadata = weighed.metadata(source.as_ref().map(|source| source.written));
-        let [low, high] = corners(weighed.points.positions());
+        let [low, high] = bounding_box(weighed.points.positions());
         let domain = match &source {
             Some(source) => source.units.box_volume(&source.volume),
             None => [0, 1, 2].iter().map(|&k| high[k] - low[k]).product(),
@@ -296,7 +296,7 @@ fn point_writer(name: &Path) -> Option<&'static PointWriter> {
 }
 
 fn describe_points(points: &Points, metadata: &ModelMetadata) -> Answer {
-    let [low, high] = corners(&points.positions);
+    let [low, high] = bounding_box(&points.positions);
     let head = json!({
         "kind": "points",
         "count": points.len(),
