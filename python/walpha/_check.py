@@ -54,7 +54,7 @@ class Complex(Classified):
     --------
     >>> corners = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
     >>> walpha.Complex(corners, alpha=1, cells=[[3, 1, 2, 0]])
-    <walpha.Complex α=1: 4 points, 1 cells, 4 facets, 6 edges, 4 vertices>
+    <walpha.Complex alpha=1: 4 points, 1 cells, 4 facets, 6 edges, 4 vertices>
     """
 
     _complex: _walpha.Complex
@@ -127,7 +127,7 @@ class Complex(Classified):
         Examples
         --------
         >>> walpha.Complex.from_simplices([[0, 0, 0], [2, 0, 0]], [([0], 0), ([1], 0), ([0, 1], 1)], alpha=0.5)
-        <walpha.Complex α=0.5: 2 points, 0 cells, 0 facets, 0 edges, 2 vertices>
+        <walpha.Complex alpha=0.5: 2 points, 0 cells, 0 facets, 0 edges, 2 vertices>
         """
         most = _alpha.squared(alpha, alpha_radius, "; it says what the complex should be")
         rows: tuple[list[Any], ...] = ([], [], [], [])
@@ -196,7 +196,7 @@ class Complex(Classified):
 
     def __repr__(self) -> str:
         counts = ", ".join(f"{len(getattr(self, name))} {name}" for name in ("cells", "facets", "edges", "vertices"))
-        return f"<walpha.Complex α={self.alpha:g}: {len(self.points)} points, {counts}>"
+        return f"<walpha.Complex alpha={self.alpha:g}: {len(self.points)} points, {counts}>"
 
 
 def _again(points: Arrays, given: dict[str, Any]) -> Complex:

@@ -45,7 +45,7 @@ class AlphaShape(Classified):
     >>> shape.cells
     array([[0, 1, 2, 3]])
     >>> shape
-    <walpha.AlphaShape α=1 (√α=1): 4 points, 1 cells, volume 0.166667, betti (1, 0, 0)>
+    <walpha.AlphaShape alpha=1 (radius 1): 4 points, 1 cells, volume 0.166667, betti (1, 0, 0)>
     """
 
     _shape: _walpha.Shape
@@ -485,7 +485,7 @@ class AlphaShape(Classified):
 
     def __repr__(self) -> str:
         return (
-            f"<walpha.AlphaShape α={self.alpha:g} (√α={self.alpha_radius:g}): {len(self.points)} points, "
+            f"<walpha.AlphaShape alpha={self.alpha:g} (radius {self.alpha_radius:g}): {len(self.points)} points, "
             f"{len(self.cells)} cells, volume {self.volume:g}, betti {tuple(self.betti)}>"
         )
 
