@@ -93,7 +93,7 @@ impl<'a> Sampled<'a> {
     /// Registers samples as points that are not inserted yet; returns their numbers.
     pub(super) fn name(&mut self, voxels: &[u32]) -> Range<u32> {
         self.describe(voxels);
-        self.growing.register(&positions(self.volume, self.units, voxels))
+        self.growing.register(&positions(self.volume, self.units, voxels), &vec![0.0; voxels.len()])
     }
 
     /// Removes points and inserts others, by their numbers.

@@ -48,7 +48,7 @@ mod triangulation;
 use rayon::prelude::*;
 use walpha_base::memory::asking;
 
-pub use dynamic::DynamicDelaunay;
+pub use dynamic::DynamicTriangulation;
 pub use error::{SitesError, TriangulationError};
 pub use locate::Location;
 pub use sites::{MAX_COORDINATE, MAX_WEIGHT};

@@ -1,4 +1,4 @@
-//! A Delaunay triangulation with insertion and removal of points.
+//! A regular triangulation with insertion and removal of points.
 
 use std::collections::HashSet;
 use std::ops::Range;
@@ -9,12 +9,13 @@ use crate::order::{position_bits, rounds};
 use crate::predicates::{Predicates, Screen};
 use crate::{Cell, DELETED, Sites, TriangulationError, order};
 
-/// The Delaunay triangulation of a set of points that grows by batches, and from which points may be removed.
+/// The regular triangulation of a set of points that grows by batches, and from which points may be removed.
 ///
 /// Ties are broken as in [`Triangulation`](crate::Triangulation), so the cells depend on the points in the
 /// triangulation alone, and not on the order of insertions and removals. Points are numbered from
 /// [`Growing::FIRST`] on in the order in which they are registered; a registered point need not be a vertex. The
-/// ghost is vertex 0.
+/// ghost is vertex 0. Without weights, or where all are equal, every point that is inserted becomes a vertex and stays
+/// one; otherwise [`Growing::settle`] finds out which ones are.
 #[derive(Debug)]
 pub struct Growing {
     positions: Vec<[f64; 3]>,
@@ -57,34 +58,57 @@ impl Growing {
     /// # Errors
     /// Points that are no [`Sites`] or span no volume; out of memory.
     pub fn new(positions: &[[f64; 3]]) -> Result<Self, TriangulationError> {
-        Sites::new(positions, &vec![0.0; positions.len()])?;
-        let builder = Builder::with_capacity(positions.len(), positions.len() + 1, GHOST)?;
-        let (occupied, cell_at, new_cells) = (HashSet::new(), vec![NO_CELL], Vec::new());
-        let mut growing = Self {
-            // The ghost has the position of a point, so that it widens no bound.
-            positions: vec![positions[0]],
-            weights: vec![0.0],
-            state: State { builder, occupied, cell_at, new_cells },
-        };
-        let all = growing.register(positions);
-        let Self { positions, weights, state } = &mut growing;
-        let predicates = Predicates::new(positions, weights);
-        let screen = Screen::with_ghost(&predicates, GHOST)?;
-        state.builder.start(&screen, all.clone())?;
-        (0..state.builder.mesh.cells.len() as u32).for_each(|cell| state.record_cell(cell));
-        for v in state.builder.first_cell {
-            state.occupied.insert(position_bits(positions[v as usize]));
-        }
-        state.insert_all(positions, &screen, &all.collect::<Vec<_>>())?;
+        let weights = vec![0.0; positions.len()];
+        Sites::new(positions, &weights)?;
+        let mut growing = Self::empty(positions, &weights)?;
+        let all: Vec<u32> = (Self::FIRST..growing.positions.len() as u32).collect();
+        growing.start_again(&all)?;
         Ok(growing)
     }
 
+    /// Points, of which there is at least one, that are registered and not yet inserted: [`Growing::start_again`] comes
+    /// before all else.
+    ///
+    /// # Errors
+    /// Out of memory.
+    pub fn empty(positions: &[[f64; 3]], weights: &[f64]) -> Result<Self, TriangulationError> {
+        let builder = Builder::with_capacity(positions.len(), positions.len() + 1, GHOST)?;
+        let (occupied, cell_at, new_cells) = (HashSet::new(), vec![NO_CELL], Vec::new());
+        let mut growing = Self {
+            // The ghost is like one of the points, so that it widens no bound.
+            positions: vec![positions[0]],
+            weights: vec![weights[0]],
+            state: State { builder, occupied, cell_at, new_cells },
+        };
+        growing.register(positions, weights);
+        Ok(growing)
+    }
+
+    /// Triangulates these registered points alone.
+    ///
+    /// # Errors
+    /// Points that span no volume: nothing has changed then. Too many cells; out of memory.
+    pub fn start_again(&mut self, points: &[u32]) -> Result<(), TriangulationError> {
+        let Self { positions, weights, state } = self;
+        let predicates = Predicates::new(positions, weights);
+        let screen = Screen::with_ghost(&predicates, GHOST)?;
+        state.builder.start(&screen, points.iter().copied())?;
+        state.cell_at.fill(NO_CELL);
+        state.new_cells.clear();
+        (0..state.builder.mesh.cells.len() as u32).for_each(|cell| state.record_cell(cell));
+        state.occupied.clear();
+        for v in state.builder.first_cell {
+            state.occupied.insert(position_bits(positions[v as usize]));
+        }
+        state.insert_all(positions, &screen, points)
+    }
+
     /// Gives points numbers, without inserting them.
-    pub fn register(&mut self, positions: &[[f64; 3]]) -> Range<u32> {
+    pub fn register(&mut self, positions: &[[f64; 3]], weights: &[f64]) -> Range<u32> {
         let first = self.positions.len() as u32;
         self.positions.extend_from_slice(positions);
+        self.weights.extend_from_slice(weights);
         let count = self.positions.len();
-        self.weights.resize(count, 0.0);
         self.state.cell_at.resize(count, NO_CELL);
         self.state.builder.cavity.grow(count);
         first..count as u32
@@ -119,6 +143,22 @@ impl Growing {
         }
         state.mark_deleted();
         Ok(removed)
+    }
+
+    /// Finds out which points are vertices, after an insertion that may have hidden some. Hidden points can be inserted
+    /// again.
+    pub fn settle(&mut self) {
+        let Self { positions, state, .. } = self;
+        state.cell_at.fill(NO_CELL);
+        state.new_cells.clear();
+        for (number, cell) in (0..).zip(&state.builder.mesh.cells) {
+            if cell.corners[0] != DELETED {
+                cell.corners.iter().for_each(|&v| state.cell_at[v as usize] = number);
+            }
+        }
+        let vertices = positions.iter().zip(&state.cell_at).skip(Self::FIRST as usize);
+        let vertices = vertices.filter(|&(_, &cell)| cell != NO_CELL);
+        state.occupied = vertices.map(|(&place, _)| position_bits(place)).collect();
     }
 
     /// Predicates of all registered points, for [`Self::screen`].
@@ -203,6 +243,11 @@ impl Growing {
     /// The positions of registered points, by number; the first one is that of the ghost, and of no use.
     pub fn positions(&self) -> &[[f64; 3]] {
         &self.positions
+    }
+
+    /// The weights of registered points, as their positions.
+    pub fn weights(&self) -> &[f64] {
+        &self.weights
     }
 }
 

@@ -1,4 +1,4 @@
-//! Removal of a vertex: its star is replaced by cells of the Delaunay triangulation of its neighbours.
+//! Removal of a vertex: its star is replaced by cells of the regular triangulation of its neighbours.
 
 use super::Builder;
 use super::growing::{GHOST, NO_CELL, State};
@@ -116,7 +116,7 @@ impl Workspace {
 impl State {
     /// The star of a vertex and what would replace it; `None` if all other vertices span no volume.
     ///
-    /// The sphere of a cell that replaces part of the star contains no other point, in particular no neighbour of
+    /// The orthogonal sphere of a cell that replaces part of the star is in conflict with no other vertex, in particular no neighbour of
     /// the vertex. So it is a cell of the triangulation of the neighbours, of which the part within the boundary
     /// of the star is taken.
     pub(super) fn hole(

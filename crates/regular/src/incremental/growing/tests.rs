@@ -51,7 +51,7 @@ proptest! {
     ) {
         let mut growing = Growing::new(&points[..cut]).unwrap();
         agree(&growing, "of the first");
-        let rest: Vec<u32> = growing.register(&points[cut..]).collect();
+        let rest: Vec<u32> = growing.register(&points[cut..], &vec![0.0; points.len() - cut]).collect();
         growing.insert(&rest).unwrap();
         agree(&growing, "with more");
         let inner = points.len() - 8;
@@ -69,7 +69,7 @@ proptest! {
     #[test]
     fn insertions_and_holes_are_foreseen(points in in_a_box(), pick in any::<prop::sample::Index>()) {
         let mut growing = Growing::new(&points[..points.len() - 1]).unwrap();
-        let [v] = growing.register(&points[points.len() - 1..]).collect::<Vec<_>>()[..] else {
+        let [v] = growing.register(&points[points.len() - 1..], &[0.0]).collect::<Vec<_>>()[..] else {
             panic!("one point");
         };
         growing.take_new_cells();
