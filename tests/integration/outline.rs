@@ -127,7 +127,7 @@ fn text_reports_say_that_points_are_in_a_plane() {
     let f = folder.path();
     table(f, "points.csv", Some(2.0));
     let text = ok(f, &["shape", "points.csv", "--alpha", ALPHA]);
-    names(&text, &["plane     ", "36 interior         0 regular", "1 polygons with 1 holes"]);
+    names(&text, &["plane     ", "36 interior         0 regular", "1 polygon with 1 hole"]);
     names(&text, &["area      2.000000 unit², perimeter 9.885618 unit\n"]);
     assert!(!text.contains("volume") && !text.contains("cells"), "{text}");
 }

@@ -19,6 +19,11 @@ pub fn number(value: f64) -> String {
     }
 }
 
+/// A number of things: "1 void", "2 voids".
+pub fn counted(number: u64, noun: &str) -> String {
+    format!("{number} {noun}{}", if number == 1 { "" } else { "s" })
+}
+
 /// A number rounded to six significant digits.
 pub fn six_digits(number: f64) -> f64 {
     format!("{number:.5e}").parse().unwrap_or(number)
@@ -46,6 +51,11 @@ mod tests {
         let texts =
             [0.0, -2.5, 0.000_000_000_000_217_145_52, 1e-4, 3e300, f64::INFINITY].map(number);
         assert_eq!(texts, ["0", "-2.5", "2.1714552e-13", "0.0001", "3e300", "inf"]);
+    }
+
+    #[test]
+    fn one_thing_is_no_things() {
+        assert_eq!([0, 1, 2].map(|n| counted(n, "void")), ["0 voids", "1 void", "2 voids"]);
     }
 
     #[test]

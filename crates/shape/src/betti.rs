@@ -1,3 +1,5 @@
+use std::fmt;
+
 use serde::{Deserialize, Serialize};
 
 /// The Betti numbers of a shape: components, tunnels, voids. Written `[b0, b1, b2]`, of a torus
@@ -15,6 +17,19 @@ pub struct Betti {
     pub b2: u64,
     /// On a torus: 1 for the whole of it, else 0. `None` in space, where it is always 0.
     pub b3: Option<u64>,
+}
+
+/// In words in space, by letters on a torus.
+impl fmt::Display for Betti {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { b0, b1, b2, b3 } = *self;
+        if let Some(b3) = b3 {
+            return write!(f, "b0 = {b0}, b1 = {b1}, b2 = {b2}, b3 = {b3} on the torus");
+        }
+        let (components, tunnels, voids) =
+            (counted(b0, "component"), counted(b1, "tunnel"), counted(b2, "void"));
+        write!(f, "{components}, {tunnels}, {voids}")
+    }
 }
 
 impl Betti {

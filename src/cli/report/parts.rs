@@ -260,14 +260,8 @@ impl ShapeReport {
             Some(plane) => plane.print_classes(f)?,
             None => self.print_classes(f)?,
         }
-        match self.betti {
-            None => {}
-            Some(Betti { b0, b1, b2, b3: None }) => {
-                writeln!(f, "topology  {b0} components, {b1} tunnels, {b2} voids")?;
-            }
-            Some(Betti { b0, b1, b2, b3: Some(b3) }) => {
-                writeln!(f, "topology  b0 = {b0}, b1 = {b1}, b2 = {b2}, b3 = {b3} on the torus")?;
-            }
+        if let Some(betti) = self.betti {
+            writeln!(f, "topology  {betti}")?;
         }
         if let Some(plane) = &self.plane {
             return plane.print_sizes(f, unit);

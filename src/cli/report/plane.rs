@@ -3,6 +3,7 @@
 use std::fmt;
 
 use serde::Serialize;
+use walpha_base::shown::counted;
 
 use super::parts::Line;
 use crate::AlphaShape;
@@ -51,7 +52,9 @@ impl PlaneReport {
     /// Prints the sizes, with lengths in `unit`.
     pub(super) fn print_sizes(&self, f: &mut fmt::Formatter<'_>, unit: &str) -> fmt::Result {
         let Self { polygons, holes, area, perimeter, .. } = self;
-        writeln!(f, "outline   {polygons} polygons with {holes} holes")?;
+        let (polygons, holes) =
+            (counted(*polygons as u64, "polygon"), counted(*holes as u64, "hole"));
+        writeln!(f, "outline   {polygons} with {holes}")?;
         writeln!(f, "area      {area:.6} {unit}², perimeter {perimeter:.6} {unit}")
     }
 }

@@ -202,7 +202,6 @@ fn library() -> String {
 
 /// The rows of a level on the page.
 fn level(level: &Level) -> serde_json::Value {
-    let [b0, b1, b2] = level.betti.into();
     let by_class = |c: walpha_shape::ByClass<usize>| {
         format!("{} interior, {} regular, {} singular", c.interior, c.regular, c.singular)
     };
@@ -220,7 +219,7 @@ fn level(level: &Level) -> serde_json::Value {
             ["facets", by_class(level.facets)],
             ["edges", by_class(level.edges)],
             ["vertices", by_class(level.vertices)],
-            ["topology", format!("{b0} components, {b1} tunnels, {b2} voids")],
+            ["topology", level.betti.to_string()],
             ["volume", format!("{}, coverage {:.2} %", significant(level.measures.volume), 100.0 * level.coverage)],
             ["voids", format!("{} in all", significant(level.void_volume()))],
         ],
