@@ -70,6 +70,17 @@ pub(super) fn text(name: &str) -> Option<&'static str> {
     PRESETS.iter().find(|(known, _)| *known == name).map(|(_, text)| *text)
 }
 
+/// A preset as a recipe, and as arguments.
+fn recipe_of(name: &str) -> (Recipe, Vec<String>) {
+    let command = PipelineArgs::<WeightArgs>::augment_args(Command::new("walpha"));
+    let settings = config::settings_as_arguments(&command, text(name).expect("a preset"));
+    let all = ["walpha", "-"].into_iter().map(str::to_owned).chain(settings.iter().cloned());
+    let matches = command.try_get_matches_from(all).expect("presets are options");
+    let args =
+        PipelineArgs::<WeightArgs>::from_arg_matches(&matches).expect("they have all fields");
+    (args.recipe().expect("presets do not contradict themselves"), settings)
+}
+
 /// The recipe for a CT whose selection nobody stated: that of bone, with a warning that says how to state it. `None` for
 /// other volumes.
 pub(super) fn suited(
@@ -81,8 +92,7 @@ pub(super) fn suited(
         return None;
     }
     let Hounsfield { air, soft_tissue, .. } = found()?;
-    let command = PipelineArgs::<WeightArgs>::augment_args(Command::new(OF_CT));
-    let settings = config::settings_as_arguments(&command, text(OF_CT)?);
+    let (bone, settings) = recipe_of(OF_CT);
     let explicit = settings.join(" ").replace('=', " ");
     // For a shell; no argument holds a zero byte.
     let typed: Vec<String> = std::env::args_os()
@@ -96,11 +106,6 @@ pub(super) fn suited(
         100.0 * soft_tissue,
         typed.join(" "),
     );
-    let all = [OF_CT.to_owned(), "-".to_owned()].into_iter().chain(settings);
-    let matches = command.try_get_matches_from(all).expect("presets are options");
-    let bone =
-        PipelineArgs::<WeightArgs>::from_arg_matches(&matches).expect("they have all fields");
-    let bone = bone.recipe().expect("presets do not contradict themselves");
     let haar = if recipe.haar == HaarOptions::default() { bone.haar } else { recipe.haar };
     Some(recipe.clone().gray(bone.gray).choice(bone.choice).haar(haar))
 }
@@ -108,4 +113,14 @@ pub(super) fn suited(
 /// [`suited`] for a volume in memory.
 pub(super) fn suited_to(args: &InputArgs, recipe: &Recipe, volume: &Volume) -> Option<Recipe> {
     suited(args, recipe, || Hounsfield::of_volume(volume))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_paper_of_the_command_is_that_of_the_library() {
+        assert_eq!(recipe_of("paper").0, Recipe::paper());
+    }
 }

@@ -16,6 +16,8 @@ pub(crate) use input::Opened;
 pub use input::{Grays, Input, Source, Values};
 pub use parameter::{AlphaRule, Parameter, ParameterOrigin};
 pub use recipe::Recipe;
+#[cfg(feature = "paper")]
+pub(crate) use recipe::paper;
 pub use weighed::{Origin, Weighed};
 
 use choice::Chosen;

@@ -7,9 +7,19 @@ use walpha_base::setters;
 use super::{AlphaRule, Choice, Parameter, PipelineError};
 use crate::haar::HaarOptions;
 use crate::interpolate::Refit;
-use crate::points::{Columns, PointOptions, Points, Selection, Units, Weighting};
+use crate::points::{Columns, PointOptions, Points, Selection, SelectionRule, Units, Weighting};
 use crate::shape::{Alpha, Balls, Engine, ShapeError, ShapeOptions, Torus};
 use crate::volume::{Coordinates, Frame, Gray, GrayRange, LengthUnit, ReadOptions, Space};
+
+/// The numbers of the paper's experiment.
+pub(crate) mod paper {
+    /// Points selected.
+    pub(crate) const POINTS: usize = 15956;
+    /// Samples of its volume: 64³.
+    pub(crate) const SAMPLES: usize = 262_144;
+    /// α of all figures of the skull, in squared voxels.
+    pub(crate) const ALPHA: f64 = 10.0;
+}
 
 /// The options of all stages, from an input to its shape. The defaults are those of the paper, without weights.
 ///
@@ -79,9 +89,20 @@ pub struct Recipe {
 }
 
 impl Recipe {
-    /// The paper's options.
+    /// The defaults.
     pub fn new() -> Self {
         Self::default()
+    }
+
+    /// The paper's experiment on any volume: its share of the samples, lengths in voxels, weights by its equation 4.1, and its α.
+    /// The command calls this `--preset paper`, and `reproduce` starts from it.
+    pub fn paper() -> Self {
+        let share = SelectionRule::Ratio(paper::POINTS as f64 / paper::SAMPLES as f64);
+        Self::new()
+            .choice(Choice::Difference(Selection::default().rule(share)))
+            .units(Units::Voxel)
+            .weighting(Weighting::MinMax)
+            .alpha(Alpha::from_squared(paper::ALPHA).expect("a number"))
     }
 
     setters! {

@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 
-use super::study::PAPER_SAMPLES;
 use super::{ReproduceError, Subject};
+use crate::pipeline::paper::SAMPLES;
 use crate::volume::{SKULL_SHA256, skull_sha256};
 
 /// Where the volume comes from, and whether it can be the paper's.
@@ -53,7 +53,7 @@ impl Origin {
 
     fn other(subject: &Subject<'_>) -> Self {
         let samples = subject.volume.dims().samples();
-        let size = if samples == PAPER_SAMPLES {
+        let size = if samples == SAMPLES {
             "It has as many samples as the paper's"
         } else {
             "It does not have the paper's 64 × 64 × 64 samples, so it is another volume"

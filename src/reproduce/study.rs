@@ -8,16 +8,16 @@ use rayon::prelude::*;
 use walpha_base::{Cancelled, Monitor};
 
 use super::{Input, ItemName, Origin, ReproduceError, ShapeNumbers, text};
-use crate::haar::{HaarOptions, Truncation, smooth_monitored};
-use crate::points::{
-    Points, Selection, SelectionRule, Units, Weighting, difference, select, weigh,
-};
+use crate::haar::{Truncation, smooth_monitored};
+use crate::pipeline::paper::ALPHA;
+use crate::pipeline::{Choice, Recipe};
+use crate::points::{Points, Units, Weighting, difference, select, weigh};
 use crate::render::{
     Background, Camera, Colouring, Content, Panel, Picture, Projection, Scene, ShapeStyle, Size,
     View,
 };
 use crate::shape::{Alpha, AlphaShape, Balls, Engine, ShapeOptions, alpha_shape};
-use crate::volume::{Dims, GrayRange, LengthUnit, Volume};
+use crate::volume::{Dims, GrayRange, Volume};
 
 /// The volume on which the paper is reproduced.
 #[derive(Clone, Debug)]
@@ -40,12 +40,6 @@ impl Subject<'_> {
     }
 }
 
-/// The paper's points.
-pub(super) const PAPER_POINTS: usize = 15956;
-/// The paper's samples: 64³.
-pub(super) const PAPER_SAMPLES: usize = 262_144;
-/// The paper's α for all figures of the skull.
-pub(super) const ALPHA: f64 = 10.0;
 /// The paper's common factor of Figure 7.
 pub(super) const COMMON: f64 = 10.0;
 
@@ -55,28 +49,21 @@ pub(super) struct Study<'a> {
     pub smoothed: Volume,
     pub truncation: Truncation,
     pub points: Points,
-    /// The options of `walpha` that select the same points.
-    select: String,
     pub cameras: Cameras,
 }
 
 impl<'a> Study<'a> {
     pub(super) fn new(subject: &'a Subject<'a>, monitor: &Monitor) -> Result<Self, ReproduceError> {
         let volume = subject.volume;
-        let (smoothed, truncation) = smooth_monitored(volume, &HaarOptions::default(), monitor)?;
-        let (rule, select_option) = if volume.dims().samples() == PAPER_SAMPLES {
-            (SelectionRule::Count(PAPER_POINTS as u64), format!("--count {PAPER_POINTS}"))
-        } else {
-            let SelectionRule::AtMost(ratio) = SelectionRule::default() else {
-                unreachable!("the default is a ratio")
-            };
-            (SelectionRule::Ratio(ratio), format!("--ratio {ratio}"))
+        let recipe = Recipe::paper();
+        let Choice::Difference(selection) = recipe.choice else {
+            unreachable!("the paper selects by difference")
         };
-        let selection = Selection { rule, gray_min: None };
+        let (smoothed, truncation) = smooth_monitored(volume, &recipe.haar, monitor)?;
         let differences = difference(&smoothed);
         let points = select(volume, &smoothed, &differences, &selection, Units::Voxel)?;
         let cameras = Cameras::of(volume.dims());
-        Ok(Self { subject, smoothed, truncation, points, select: select_option, cameras })
+        Ok(Self { subject, smoothed, truncation, points, cameras })
     }
 
     pub(super) fn input(&self, origin: Origin) -> Input {
@@ -98,14 +85,9 @@ impl<'a> Study<'a> {
         100.0 * self.points.len() as f64 / self.subject.volume.dims().samples() as f64
     }
 
-    /// `walpha COMMAND INPUT` with the options that select our points.
+    /// `walpha COMMAND INPUT` with the options that select our points, and the paper's weights.
     pub(super) fn command(&self, command: &str) -> String {
-        let (input, select) = (text::shell(self.subject.name), &self.select);
-        // The paper's lengths are voxels, whatever the file says.
-        match self.subject.volume.frame().coordinates.unit {
-            LengthUnit::Voxel => format!("walpha {command} {input} {select}"),
-            _ => format!("walpha {command} {input} --units voxel {select}"),
-        }
+        format!("walpha {command} {} --preset paper", text::shell(self.subject.name))
     }
 
     /// The shape with these weights at this α, with its exterior simplices.

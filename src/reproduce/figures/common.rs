@@ -1,6 +1,7 @@
 use super::bench::{Bench, figure};
 use super::bench::{Claim, judge};
-use crate::reproduce::study::{ALPHA, COMMON, Shapes, Shared};
+use crate::pipeline::paper::ALPHA;
+use crate::reproduce::study::{COMMON, Shapes, Shared};
 use crate::reproduce::{Item, ReproduceError, ShapeNumbers, Verdict, text};
 use crate::shape::Complex;
 

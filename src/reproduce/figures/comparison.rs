@@ -1,7 +1,8 @@
 use super::bench::{Bench, figure};
 use super::bench::{Claim, judge};
+use crate::pipeline::paper::ALPHA;
 use crate::reproduce::compare::{Difference, PixelDifference, same_set};
-use crate::reproduce::study::{ALPHA, Eye, Shared};
+use crate::reproduce::study::{Eye, Shared};
 use crate::reproduce::{Fact, Item, ReproduceError, ShapeNumbers, Table, Verdict, text};
 
 /// Four shapes, and how much the paper's two differ: without weights, left, and with barycentric

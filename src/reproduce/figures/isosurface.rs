@@ -1,9 +1,10 @@
 use super::bench::{Bench, VIEWS, figure};
 use super::bench::{Claim, judge};
+use crate::pipeline::paper;
 use crate::points::difference;
 use crate::render::{Figure, Isosurface, Scene};
 use crate::reproduce::study::{Eye, panel};
-use crate::reproduce::study::{PAPER_POINTS, PAPER_SAMPLES, Shared, Study};
+use crate::reproduce::study::{Shared, Study};
 use crate::reproduce::{Fact, Item, ReproduceError, Table, Verdict};
 use crate::volume::Volume;
 
@@ -12,7 +13,7 @@ const THRESHOLD: f64 = 50.0;
 /// The data reduction rate the paper prints, in percent.
 const PRINTED_PERCENT: &str = "6.07";
 /// The rate that follows from its own numbers.
-const COMPUTED_PERCENT: f64 = 100.0 * PAPER_POINTS as f64 / PAPER_SAMPLES as f64;
+const COMPUTED_PERCENT: f64 = 100.0 * paper::POINTS as f64 / paper::SAMPLES as f64;
 
 /// What the isosurface and the shape are made from.
 struct Evidence {
@@ -101,8 +102,9 @@ const CLAIMS: [Claim<Evidence>; 3] = [
         decide: |_| {
             let rounded = format!("{COMPUTED_PERCENT:.2}");
             let reason = format!(
-                "{PAPER_POINTS}/{PAPER_SAMPLES} is {COMPUTED_PERCENT:.3} %, which rounds to \
-                 {rounded} %"
+                "{}/{} is {COMPUTED_PERCENT:.3} %, which rounds to {rounded} %",
+                paper::POINTS,
+                paper::SAMPLES
             );
             (Verdict::of(rounded == PRINTED_PERCENT), reason)
         },
