@@ -92,7 +92,7 @@ def test_files(tmp_path, cloud):
     with pytest.raises(ValueError, match="bad.nrrd"):
         walpha.read(tmp_path / "bad.nrrd")
     shape = walpha.alpha_shape(cloud, alpha=0.01)
-    with pytest.raises(OSError, match="nothing/here.ply"):
+    with pytest.raises(OSError, match="there is no folder .*nothing;"):
         shape.save(tmp_path / "nothing/here.ply")
     with pytest.raises(ValueError, match="did you mean .ply"):
         shape.save(tmp_path / "here.plyy")
@@ -117,6 +117,7 @@ except MemoryError as error:
 """
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="needs RLIMIT_AS")
 def test_memory():
     ran = subprocess.run([sys.executable, "-c", GREEDY], capture_output=True, text=True)
     assert "not enough memory: " in ran.stdout, ran.stderr

@@ -23,7 +23,8 @@ def test_every_example_is_listed():
 def test_an_example_runs(name, tmp_path):
     for package in NEEDS[name]:
         pytest.importorskip(package)
-    ran = subprocess.run([sys.executable, FOLDER / name], cwd=tmp_path, capture_output=True, text=True, timeout=300)
+    command = [sys.executable, "-X", "utf8", FOLDER / name]
+    ran = subprocess.run(command, cwd=tmp_path, capture_output=True, encoding="utf8", timeout=300)
     assert ran.returncode == 0, ran.stderr
     assert ran.stdout
     if name == "picture.py":

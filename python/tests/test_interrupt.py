@@ -23,6 +23,7 @@ except KeyboardInterrupt:
 """
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows sends no SIGINT to a process")
 @pytest.mark.parametrize("engine", ["native", "cgal"])
 def test_ctrl_c_returns_at_once(engine):
     with subprocess.Popen([sys.executable, "-c", LONG, engine], stdout=subprocess.PIPE, text=True) as process:
