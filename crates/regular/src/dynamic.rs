@@ -138,10 +138,9 @@ impl DynamicTriangulation {
         if !self.duplicates.is_empty() {
             let free = |v: &u32| !self.at.contains_key(&place(*v));
             next = self.duplicates.iter().copied().filter(free).collect();
-            let weight = |v: u32| self.growing.weights()[v as usize];
-            next.sort_by(|&a, &b| {
-                weight(a).partial_cmp(&weight(b)).expect("finite").then(b.cmp(&a))
-            });
+            // −0 is 0.
+            let weight = |v: u32| self.growing.weights()[v as usize] + 0.0;
+            next.sort_by(|&a, &b| weight(a).total_cmp(&weight(b)).then(b.cmp(&a)));
             self.at.extend(next.iter().map(|&v| (place(v), v)));
             next.retain(|v| self.at[&place(*v)] == *v);
             next.iter().for_each(|v| {
@@ -271,7 +270,7 @@ mod tests {
         let mut random = Random::new(4);
         let (mut stayed, mut removed, mut hidden) = (0, 0, 0);
         for case in 0..600 {
-            let (side, heaviest) = (2 + case % 4, [1, 3, 12][case as usize / 4 % 3]);
+            let (side, heaviest) = (2 + case % 4, [1, 3, 12][case / 4 % 3]);
             let mut some = |count| -> Vec<Place> {
                 (0..count).map(|_| [0; 3].map(|_| random.below(side) as i64)).collect()
             };
@@ -343,7 +342,7 @@ mod tests {
         let points: Vec<[f64; 3]> = base.chain([[1.0, 1.0, 5.0]]).collect();
         let mut dynamic = DynamicTriangulation::new(&points, None).unwrap();
         assert_eq!(dynamic.remove(&[18]).unwrap(), 1);
-        agree(&dynamic, &Vec::from_iter(0..18));
+        agree(&dynamic, &(0..18).collect::<Vec<_>>());
         // Without any of these the rest is flat.
         let mut tetrahedron = DynamicTriangulation::new(
             &[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],

@@ -1,6 +1,7 @@
 use std::fmt;
 
 use serde::{Deserialize, Serialize};
+use walpha_base::shown::counted;
 
 /// The Betti numbers of a shape: components, tunnels, voids. Written `[b0, b1, b2]`, of a torus
 /// `[b0, b1, b2, b3]`. Open: there are no more.
