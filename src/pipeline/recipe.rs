@@ -94,7 +94,7 @@ impl Recipe {
         Self::default()
     }
 
-    /// The paper's experiment on any volume: its share of the samples, lengths in voxels, weights by its equation 4.1, and its α.
+    /// The paper's experiment on any volume: its share of the samples, lengths in voxels, weights by its equation 4.1, and α = 10, which is the default for voxels.
     /// The command calls this `--preset paper`, and `reproduce` starts from it.
     pub fn paper() -> Self {
         let share = SelectionRule::Ratio(paper::POINTS as f64 / paper::SAMPLES as f64);
@@ -102,7 +102,6 @@ impl Recipe {
             .choice(Choice::Difference(Selection::default().rule(share)))
             .units(Units::Voxel)
             .weighting(Weighting::MinMax)
-            .alpha(Alpha::from_squared(paper::ALPHA).expect("a number"))
     }
 
     setters! {
