@@ -46,7 +46,8 @@ function busy(text) {
   working = text !== null;
   byId("working").hidden = !working;
   // What is shown of a shape that is gone, or not there yet, does nothing.
-  for (const id of ["shape", "numbers", "output"]) byId(id).inert = working || !state.made;
+  byId("shape").inert = !state.made;
+  for (const id of ["alpha-row", "marks", "numbers", "output"]) byId(id).inert = working || !state.made?.alphas;
   byId("slices").inert = working || !state.opened;
   document.body.dataset.state = text === null ? "ready" : "busy";
   if (text !== null) byId("status").textContent = text;
@@ -303,14 +304,14 @@ async function compute() {
   state.made = null;
   const made = await engine.call({ do: "shape", options: optionsOfForm() });
   state.made = made;
-  for (const id of ["shape", "numbers", "output"]) byId(id).hidden = false;
+  byId("shape").hidden = false;
   scene ??= shapeScene();
   const box = new Box3();
   box.setFromArray(made.positions);
   if (box.isEmpty()) box.set(new Vector3(), new Vector3(1, 1, 1));
   scene.resize();
   scene.setPoints(made, box);
-  [state.toml, state.alpha, state.shape] = [null, null, null];
+  [state.toml, state.alpha, state.shape] = [null, null, made];
   byId("command").textContent = byId("picked").textContent = "";
   const colour = byId("colour");
   [...colour.options].find((option) => option.value === "value").hidden = !made.values;
@@ -318,18 +319,28 @@ async function compute() {
   scene.setColour(colour.value);
   for (const name of ["points", "balls", "hidden"]) scene.show(name, byId(`show-${name}`).checked);
   for (const name of ["singular", "edges"]) scene.show(name, byId("show-singular").checked);
+  // The first look, while the shapes at all other α are computed.
+  scene.setShape(made, made.reference);
+  legend(made);
+  byId("alpha-unit").textContent = `${made.unit}²`;
+  byId("alpha-value").value = made.reference;
+  suggestions([]);
+  if (made.samples) slices.setPoints(made.samples);
+  if (innerWidth < 760) byId("shape").scrollIntoView();
+  document.body.dataset.looked = made.points;
+  busy(`${STAGES.filtration} …`);
+  const all = await engine.call({ do: "filtration" });
+  if (state.made !== made) return;
+  Object.assign(made, all);
+  for (const id of ["numbers", "output"]) byId(id).hidden = false;
   state.scale = new AlphaScale(made);
   curve.set(state.scale, made);
   diagram.set(state.scale, null);
   byId("diagram").hidden = true;
   byId("compute-diagram").hidden = false;
-  byId("alpha-unit").textContent = `${made.unit}²`;
-  suggestions([]);
-  if (made.samples) slices.setPoints(made.samples);
   const kept = made.truncation ? `; ${made.truncation.kept} of ${made.truncation.total} Haar coefficients kept` : "";
   byId("status").textContent = `${made.points} points, ${made.cells} cells in all${kept}.`;
   await setAlpha(made.reference);
-  if (innerWidth < 760) byId("shape").scrollIntoView();
   // Nobody waits for these.
   engine.call({ do: "suggest" }).then((found) => {
     if (state.made !== made) return;

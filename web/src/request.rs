@@ -14,8 +14,10 @@ pub(crate) enum Request {
     Open { input: String, options: Options },
     /// The samples of a plane of the volume: across an axis (x, y, z), at an index.
     Plane { axis: usize, index: usize },
-    /// Selects and weighs the points, and computes the filtration.
+    /// Selects and weighs the points, and computes the shape to look at first.
     Shape { options: Options },
+    /// Computes the shapes at all other α, which the requests below need.
+    Filtration,
     /// The simplices to draw at an α.
     At { alpha: f64 },
     /// Counts, measures and voids at an α.

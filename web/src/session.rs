@@ -13,7 +13,7 @@ use walpha::points::{
 use walpha::progress::{Listener, Monitor, Stage};
 use walpha::shape::Betti;
 use walpha::volume::{self, Hounsfield, SampleStats, Series};
-use walpha::{Alpha, Class, Points, PointsError, Recipe, Volume, VolumeError};
+use walpha::{Alpha, AlphaShape, Class, Points, PointsError, Recipe, Volume, VolumeError};
 
 use crate::answer::{Answer, Array};
 use crate::options::{Options, Setting, Written, quoted};
@@ -37,7 +37,7 @@ enum Opened {
     Points(Points, ModelMetadata),
 }
 
-/// Points, and all their shapes.
+/// Points, and their shapes.
 struct Made {
     options: Options,
     recipe: Recipe,
@@ -45,12 +45,18 @@ struct Made {
     metadata: ModelMetadata,
     /// The α that weights are computed for, or else the suggested one.
     reference: Parameter,
-    filtration: Filtration,
-    stops: Shown,
+    /// All shapes, once they have been asked for.
+    all: Option<All>,
     /// The volume that coverage is a share of.
     domain: f64,
     /// What is subtracted from coordinates that the page gets: in single precision, those of a map would be metres apart.
     centre: [f64; 3],
+}
+
+/// The shapes at all α.
+struct All {
+    filtration: Filtration,
+    stops: Shown,
 }
 
 /// The simplices that are drawn at some of these α, and all cells, with the levels at which they change.
@@ -187,6 +193,7 @@ impl Session {
             Request::Open { input, options } => self.open(input, &options),
             Request::Plane { axis, index } => self.plane(axis, index),
             Request::Shape { options } => self.shape(options),
+            Request::Filtration => self.filtration(),
             Request::At { alpha } => self.made()?.at(alpha),
             Request::Measure { alpha } => self.made()?.measure(alpha),
             Request::Section { alpha, axis, place } => self.made()?.section(alpha, axis, place),
@@ -257,7 +264,7 @@ impl Session {
             Opened::Points(points, metadata) => Input::Points(points.clone(), metadata.clone()),
             Opened::Volume(volume) => Input::Volume(recipe.grays(volume.clone())?),
         };
-        let (weighed, source) = recipe.weigh(input, Values::Written, &monitor)?;
+        let (mut weighed, source) = recipe.weigh(input, Values::Written, &monitor)?;
         let metadata = weighed.metadata(source.as_ref().map(|source| source.written));
         let [low, high] = bounding_box(weighed.points.positions());
         let domain = match &source {
@@ -265,28 +272,33 @@ impl Session {
             None => [0, 1, 2].iter().map(|&k| high[k] - low[k]).product(),
         };
         drop(source);
-        Stage::Filtration.begin(&monitor).map_err(PipelineError::from)?;
-        let filtration = Filtration::monitored(None, weighed.points.clone(), &monitor)?;
-        let unit = weighed.origin.coordinates.unit;
-        let reference = weighed.parameter.unwrap_or_else(|| weighed.rule.on(&filtration, unit));
-        Stage::Curve.begin(&monitor).map_err(PipelineError::from)?;
-        let mut alphas = filtration.coarse_alphas(STOPS);
-        alphas.push(reference.alpha);
-        let stops = Shown::at(&filtration, &alphas);
+        let reference = weighed.find_parameter(&monitor)?;
+        let shape = recipe.finish(weighed.clone(), &monitor)?.shape;
         let made = Made {
             options,
             recipe,
             metadata,
             reference,
-            stops,
+            all: None,
             domain,
             centre: [0, 1, 2].map(|k| f64::midpoint(low[k], high[k])),
             weighed,
-            filtration,
         };
-        let answer = made.described();
+        let answer = made.described(&shape);
         self.made = Some(made);
         Ok(answer)
+    }
+
+    fn filtration(&mut self) -> Result<Answer, Failure> {
+        let made = self.made.as_mut().ok_or("there is no shape yet".to_owned())?;
+        let monitor = Monitor::new(ToPage);
+        Stage::Filtration.begin(&monitor).map_err(PipelineError::from)?;
+        let filtration = Filtration::monitored(None, made.weighed.points.clone(), &monitor)?;
+        Stage::Curve.begin(&monitor).map_err(PipelineError::from)?;
+        let mut alphas = filtration.coarse_alphas(STOPS);
+        alphas.push(made.reference.alpha);
+        let stops = Shown::at(&filtration, &alphas);
+        Ok(made.all.insert(All { filtration, stops }).described())
     }
 }
 
@@ -338,8 +350,14 @@ fn describe_volume(volume: &Volume) -> Answer {
 }
 
 impl Made {
-    /// The points, the curve, and what is known besides.
-    fn described(&self) -> Answer {
+    fn all(&self) -> Result<&All, Failure> {
+        self.all
+            .as_ref()
+            .ok_or_else(|| "the shapes at other α are not computed yet".to_owned().into())
+    }
+
+    /// The points, the shape to look at first, and what is known besides.
+    fn described(&self, shape: &AlphaShape) -> Answer {
         let points = &self.weighed.points;
         let flat = points.positions().iter().flat_map(|&p| self.seen(p)).collect();
         let mut arrays = vec![
@@ -353,18 +371,20 @@ impl Made {
         if let Some(samples) = samples {
             arrays.push(Array::U32("samples", samples));
         }
-        let betti =
-            |pick: fn(&Betti) -> u64| self.stops.betti.iter().map(|b| pick(b) as u32).collect();
-        let alphas = self.stops.alphas.iter().map(|alpha| alpha.squared()).collect();
-        arrays.push(Array::F64("alphas", alphas));
-        arrays.push(Array::U32("b0", betti(|betti| betti.b0)));
-        arrays.push(Array::U32("b1", betti(|betti| betti.b1)));
-        arrays.push(Array::U32("b2", betti(|betti| betti.b2)));
+        let complex = shape.complex();
+        let of = |class| complex.facets.of(class).flatten().copied().collect();
+        arrays.push(Array::U32("regular", of(Class::Regular)));
+        arrays.push(Array::U32("singular", of(Class::Singular)));
+        let edges = complex.edges.of(Class::Singular).flatten().copied().collect();
+        arrays.push(Array::U32("edges", edges));
+        // Which of the others are hidden is not known yet.
+        let mut classes = vec![number(Class::Exterior); points.len()];
+        complex.vertices.iter().for_each(|(row, class)| classes[row[0] as usize] = number(class));
+        arrays.push(Array::U8("classes", classes));
         let truncation =
             self.weighed.origin.truncation.map(|t| json!({ "kept": t.kept, "total": t.total }));
         let head = json!({
             "points": points.len(),
-            "cells": self.stops.cells.len(),
             "reference": self.reference.alpha.squared(),
             "origin": self.reference,
             "unit": self.weighed.origin.coordinates.unit.symbol(),
@@ -383,9 +403,10 @@ impl Made {
     /// The simplices to draw at an α, and their level: of the stops, or else computed now.
     fn shown(&self, alpha: f64) -> Result<(Lent<'_>, u32), Failure> {
         let alpha = Alpha::from_squared(alpha).map_err(PipelineError::from)?;
-        Ok(match self.stops.alphas.binary_search(&alpha) {
-            Ok(level) => (Lent::Stop(&self.stops), level as u32),
-            Err(_) => (Lent::Made(Shown::at(&self.filtration, &[alpha])), 0),
+        let All { filtration, stops } = self.all()?;
+        Ok(match stops.alphas.binary_search(&alpha) {
+            Ok(level) => (Lent::Stop(stops), level as u32),
+            Err(_) => (Lent::Made(Shown::at(filtration, &[alpha])), 0),
         })
     }
 
@@ -401,12 +422,7 @@ impl Made {
         // Points that are no vertices are hidden.
         let mut classes = vec![HIDDEN; self.weighed.points.len()];
         for (v, span) in &shown.vertices {
-            classes[*v as usize] = match span.class(level) {
-                Class::Exterior => 0,
-                Class::Singular => 1,
-                Class::Regular => 2,
-                Class::Interior => 3,
-            };
+            classes[*v as usize] = number(span.class(level));
         }
         let head = json!({ "betti": shown.betti[level as usize] });
         let arrays = vec![
@@ -420,7 +436,7 @@ impl Made {
 
     fn measure(&self, alpha: f64) -> Result<Answer, Failure> {
         let alpha = Alpha::from_squared(alpha).map_err(PipelineError::from)?;
-        let ladder = self.filtration.ladder(&[alpha], self.domain);
+        let ladder = self.all()?.filtration.ladder(&[alpha], self.domain);
         let level = serde_json::to_value(&ladder.levels[0]).map_err(|error| error.to_string())?;
         Ok(Answer::of(level, Vec::new()))
     }
@@ -471,7 +487,8 @@ impl Made {
 
     /// Values of α at which something happens, of the stops.
     fn suggest(&self) -> Result<Answer, Failure> {
-        let suggested = self.filtration.suggest(&self.filtration.coarse_curve(STOPS));
+        let All { filtration, .. } = self.all()?;
+        let suggested = filtration.suggest(&filtration.coarse_curve(STOPS));
         let suggested = serde_json::to_value(suggested).map_err(|error| error.to_string())?;
         Ok(Answer::of(suggested, Vec::new()))
     }
@@ -479,7 +496,7 @@ impl Made {
     fn diagram(&self) -> Result<Answer, Failure> {
         let monitor = Monitor::new(ToPage);
         Stage::Order.begin(&monitor).map_err(PipelineError::from)?;
-        let simplices = self.filtration.simplices_monitored(&monitor)?;
+        let simplices = self.all()?.filtration.simplices_monitored(&monitor)?;
         Stage::Pairs.begin(&monitor).map_err(PipelineError::from)?;
         simplices.loops_monitored(&monitor)?;
         let mut arrays = Vec::new();
@@ -562,8 +579,33 @@ impl Made {
     }
 }
 
+impl All {
+    /// The curve, and what is known besides.
+    fn described(&self) -> Answer {
+        let Shown { alphas, betti, cells, .. } = &self.stops;
+        let of = |pick: fn(&Betti) -> u64| betti.iter().map(|b| pick(b) as u32).collect();
+        let arrays = vec![
+            Array::F64("alphas", alphas.iter().map(|alpha| alpha.squared()).collect()),
+            Array::U32("b0", of(|betti| betti.b0)),
+            Array::U32("b1", of(|betti| betti.b1)),
+            Array::U32("b2", of(|betti| betti.b2)),
+        ];
+        Answer::of(json!({ "cells": cells.len() }), arrays)
+    }
+}
+
 /// The class of hidden points, after those of vertices.
 const HIDDEN: u8 = 4;
+
+/// The class of a vertex, as the page has it.
+fn number(class: Class) -> u8 {
+    match class {
+        Class::Exterior => 0,
+        Class::Singular => 1,
+        Class::Regular => 2,
+        Class::Interior => 3,
+    }
+}
 
 /// The indices (x, y, z) of the samples that are points.
 fn samples(grid: &SampleGrid, positions: &[[f64; 3]]) -> Vec<u32> {
