@@ -8,8 +8,9 @@
 #   scripts/release.sh wheels      wheels (manylinux_2_28) and the source distribution of the Python package
 #   scripts/release.sh rehearse    looks at the texts, then makes all of these, and the binary twice
 #
-# It needs Rust by rustup, Python 3.11 and libcgal-dev, and can use g++-mingw-w64-x86-64, wine, debootstrap, qemu-user-static, binfmt-support and
-# libc6-arm64-cross of Debian, and Node, `cargo install --locked cargo-deb cargo-sbom`. What comes from PyPI it gets itself.
+# It needs Rust by rustup, Python 3.11 and libcgal-dev, and can use a free-threaded Python; g++-mingw-w64-x86-64, wine, debootstrap,
+# qemu-user-static, binfmt-support and libc6-arm64-cross of Debian; Node; `cargo install --locked cargo-deb cargo-sbom`. What comes from
+# PyPI it gets itself.
 #
 # Ends with a table. What this machine cannot do is in it as skipped, with the reason; what fails ends the script. To publish after a
 # rehearsal: fill in `repository` in Cargo.toml, commit, tag, `cargo publish --workspace`, `twine upload dist/wheels/*`, and add the other
@@ -254,15 +255,16 @@ wheel() { portably maturin build --release --zig --compatibility manylinux_2_28 
 
 wheels() {
   say "wheels"
-  local target file arch suite tests
+  local target file arch suite tests threaded
   if ! from_pypi maturin ziglang twine; then skip "wheels" "maturin, ziglang or twine cannot be had"; return; fi
   rm -rf "$dist/wheels" && mkdir -p "$stage"
+  threaded=$(command -v python3.14t python3.13t | head -n 1 || true)
   maturin sdist --manifest-path python/Cargo.toml --out "$dist/wheels"
   for target in "${linux[@]}"; do
     if ! with_target "$target"; then skip "wheel for $target" "the target cannot be had"; continue; fi
     notices -p walpha-python --target "$target" > python/walpha/THIRD-PARTY.md
     wheel "$target"
-    if has python3.14t; then wheel "$target" --interpreter python3.14t; else skip "free-threaded wheel for $target" "there is no python3.14t"; fi
+    if [ -n "$threaded" ]; then wheel "$target" --interpreter "$threaded"; else skip "free-threaded wheel for $target" "there is no python3.14t"; fi
   done
   if has x86_64-w64-mingw32-g++ && with_target $windows; then
     notices -p walpha-python --target $windows --no-default-features > python/walpha/THIRD-PARTY.md
@@ -284,9 +286,17 @@ wheels() {
   "$stage/venv/bin/python" -m pytest -q -p no:cacheprovider python/tests
   "$stage/venv/bin/pip" wheel -q --no-deps --wheel-dir "$stage/from-sources" "$dist/wheels/walpha-$version.tar.gz"
   made "$dist/wheels/walpha-$version.tar.gz" "here, to a wheel"
+  if [ -n "$threaded" ]; then
+    "$threaded" -m venv --clear "$stage/threaded"
+    "$stage/threaded/bin/pip" install -q numpy pytest
+    "$stage/threaded/bin/pip" install -q --no-index --find-links "$dist/wheels" walpha
+    # It fails where the module brings the lock back.
+    "$stage/threaded/bin/python" -W error -c 'import sys, walpha; assert not sys._is_gil_enabled()'
+    "$stage/threaded/bin/python" -m pytest -q -p no:cacheprovider python/tests
+  fi
   for file in "$dist"/wheels/*.whl; do
     case $file in
-      *abi3*"${host%%-*}".whl) made "$file" "here, with its tests" ;;
+      *cp31?t*"${host%%-*}".whl | *abi3*"${host%%-*}".whl) made "$file" "here, with its tests" ;;
       *win*) try_wheel_in_wine "$file" ;;
       *) made "$file" - made ;;
     esac
