@@ -17,8 +17,6 @@ pub(crate) mod paper {
     pub(crate) const POINTS: usize = 15956;
     /// Samples of its volume: 64³.
     pub(crate) const SAMPLES: usize = 262_144;
-    /// α of all figures of the skull, in squared voxels.
-    pub(crate) const ALPHA: f64 = 10.0;
 }
 
 /// The options of all stages, from an input to its shape. The defaults are those of the paper, without weights.

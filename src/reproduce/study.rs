@@ -9,7 +9,6 @@ use walpha_base::{Cancelled, Monitor};
 
 use super::{Input, ItemName, Origin, ReproduceError, ShapeNumbers, text};
 use crate::haar::{Truncation, smooth_monitored};
-use crate::pipeline::paper::ALPHA;
 use crate::pipeline::{Choice, Recipe};
 use crate::points::{Points, Units, Weighting, difference, select, weigh};
 use crate::render::{
@@ -40,6 +39,8 @@ impl Subject<'_> {
     }
 }
 
+/// The paper's α for all figures of the skull.
+pub(super) const ALPHA: f64 = 10.0;
 /// The paper's common factor of Figure 7.
 pub(super) const COMMON: f64 = 10.0;
 

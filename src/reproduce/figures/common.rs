@@ -1,7 +1,6 @@
 use super::bench::{Bench, figure};
 use super::bench::{Claim, judge};
-use crate::pipeline::paper::ALPHA;
-use crate::reproduce::study::{COMMON, Shapes, Shared};
+use crate::reproduce::study::{ALPHA, COMMON, Shapes, Shared};
 use crate::reproduce::{Item, ReproduceError, ShapeNumbers, Verdict, text};
 use crate::shape::Complex;
 

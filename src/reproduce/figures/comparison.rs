@@ -1,7 +1,7 @@
 use super::bench::{Bench, figure};
 use super::bench::{Claim, judge};
-use crate::pipeline::paper::ALPHA;
 use crate::reproduce::compare::{Difference, PixelDifference, same_set};
+use crate::reproduce::study::ALPHA;
 use crate::reproduce::study::{Eye, Shared};
 use crate::reproduce::{Fact, Item, ReproduceError, ShapeNumbers, Table, Verdict, text};
 

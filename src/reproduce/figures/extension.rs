@@ -2,8 +2,8 @@ use super::bench::Bench;
 use crate::interpolate::{
     CurveOptions, CurvePoint, Method, error_curve, error_figure, write_curve_csv,
 };
-use crate::pipeline::paper::ALPHA;
 use crate::points::{Units, Weighting};
+use crate::reproduce::study::ALPHA;
 use crate::reproduce::{Fact, Item, ReproduceError, Table, text};
 use crate::shape::Alpha;
 

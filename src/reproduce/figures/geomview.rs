@@ -1,10 +1,10 @@
 use super::bench::{Bench, figure};
 use super::bench::{Claim, judge};
 use crate::export::{ExportOptions, Exporter, Off};
-use crate::pipeline::paper::ALPHA;
 use crate::render::{Figure, Panel, Picture};
 use crate::reproduce::compare::{PixelDifference, same_set};
 use crate::reproduce::off::OffMesh;
+use crate::reproduce::study::ALPHA;
 use crate::reproduce::study::{Eye, panel};
 use crate::reproduce::study::{Shaped, Shared};
 use crate::reproduce::{Fact, Item, ReproduceError, Verdict};

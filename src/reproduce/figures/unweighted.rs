@@ -3,8 +3,7 @@
 use walpha_base::vector::{cross, dot, sub};
 
 use super::bench::{Bench, Claim, figure, judge};
-use crate::pipeline::paper::ALPHA;
-use crate::reproduce::study::{Shapes, Shared};
+use crate::reproduce::study::{ALPHA, Shapes, Shared};
 use crate::reproduce::{Fact, Item, ReproduceError, ShapeNumbers, Table, Verdict, text};
 use crate::shape::{AlphaShape, Class};
 
