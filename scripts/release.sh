@@ -258,7 +258,7 @@ wheels() {
   local target file arch suite tests threaded
   if ! from_pypi maturin ziglang twine; then skip "wheels" "maturin, ziglang or twine cannot be had"; return; fi
   rm -rf "$dist/wheels" && mkdir -p "$stage"
-  threaded=$(command -v python3.14t python3.13t | head -n 1 || true)
+  threaded=$(command -v python3.14t || true)
   maturin sdist --manifest-path python/Cargo.toml --out "$dist/wheels"
   for target in "${linux[@]}"; do
     if ! with_target "$target"; then skip "wheel for $target" "the target cannot be had"; continue; fi
