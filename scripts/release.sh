@@ -95,7 +95,8 @@ try_in_debian() {
     return
   fi
   cp -r -- "${@:4}" "$root/root/"
-  chroot "$root" env DEBIAN_FRONTEND=noninteractive sh -euc "cd /root; apt-get update -qq; $3"
+  chroot "$root" env DEBIAN_FRONTEND=noninteractive sh -euc "mount -t proc proc /proc; trap 'umount /proc' EXIT
+    cd /root; apt-get update -qq; $3"
   row "  the same" - "Debian $1, $2" ok
 }
 debian_root() {

@@ -30,10 +30,10 @@ def test_any_layout(cloud, weights):
 
 
 def test_input_is_left_alone(cloud):
-    before = cloud.copy()
-    cloud.flags.writeable = False
-    walpha.alpha_shape(cloud, alpha=0.01)
-    assert np.array_equal(cloud, before)
+    given = cloud.copy()
+    given.flags.writeable = False
+    walpha.alpha_shape(given, alpha=0.01)
+    assert np.array_equal(given, cloud)
 
 
 @pytest.mark.parametrize("shape", [(5, 1), (5, 4), (5,), (2, 5, 3)])

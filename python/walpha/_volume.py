@@ -95,7 +95,8 @@ class Volume:
         return affine
 
     def __array__(self, dtype: DTypeLike | None = None, copy: bool | None = None) -> NDArray[Any]:
-        return np.array(self.samples, dtype, copy=True if copy else None)
+        # NumPy 1 does not know a copy of None, which is one where it is needed.
+        return np.asarray(self.samples, dtype) if copy is None else np.array(self.samples, dtype, copy=copy)
 
     def __repr__(self) -> str:
         sizes = "×".join(map(str, self.samples.shape))
@@ -181,8 +182,8 @@ def read(
     <walpha.Volume of 16×32×32 samples [z, y, x], spacing (1.0, 1.0, 1.0) voxel>
 
     >>> np.arange(24, dtype="<u2").tofile("bare.raw")
-    >>> walpha.read("bare.raw", shape=(2, 3, 4), dtype="<u2").samples[1, 2, 3]
-    np.float32(23.0)
+    >>> float(walpha.read("bare.raw", shape=(2, 3, 4), dtype="<u2").samples[1, 2, 3])
+    23.0
     """
     options = {
         "raw": _raw(shape, dtype, offset),
