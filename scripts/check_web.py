@@ -476,7 +476,7 @@ def look_at_all(browser, page, checks, files, downloads, out, large):
         wide = browser.evaluate("document.documentElement.scrollWidth") - width
         checks.say(f"nothing is wider than the {name}", wide <= 0, f"{wide} pixels")
         (out / f"web-{name}.png").write_bytes(browser.screenshot())
-    for example, first, all_of_them in [("sample:phantom", 10, 20), ("sample:phantom@256", 60, 150)][:2 if large else 1]:
+    for example, first, all_of_them in [("sample:phantom", 10, 20), ("sample:phantom@256", 60, 120)][:2 if large else 1]:
         started = time.monotonic()
         page.example(example)
         browser.wait("document.body.dataset.looked", 200)

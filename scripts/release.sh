@@ -114,7 +114,7 @@ runs_here() {
 # A folder in which wine runs programs of ours: wine of Debian 12 lacks a library that Rust asks for random numbers.
 of_wine() {
   mkdir -p "$1"
-  x86_64-w64-mingw32-gcc -shared -O1 -o "$1/bcryptprimitives.dll" -ladvapi32 -xc - -ladvapi32 << 'END'
+  x86_64-w64-mingw32-gcc -shared -O1 -o "$1/bcryptprimitives.dll" -xc - -ladvapi32 << 'END'
 #include <windows.h>
 #include <ntsecapi.h>
 __declspec(dllexport) BOOL WINAPI ProcessPrng(PBYTE bytes, SIZE_T count) { return RtlGenRandom(bytes, (ULONG)count); }

@@ -23,6 +23,7 @@ def again(given):
         {"alpha": 0.004},
         {"alpha": np.inf, "engine": "native"},
         {"alpha": 0.004, "exterior": True},
+        {"alpha": 0.004, "hidden": True},
         {"alpha": 0.004, "hidden": True, "engine": "native"},
         {"alpha": 0.2, "balls": "radius"},
         {"alpha": 0.003, "periodic": (1, 1, 1.25)},

@@ -96,12 +96,11 @@ def test_duplicates_and_hidden_points():
 @pytest.mark.parametrize("engine", ["cgal", "native"])
 def test_hidden_points_and_the_engine_that_ran(engine):
     points, weights = np.concatenate([CUBE, [[0.5, 0.5, 0.5]]]), np.array([0.0] * 8 + [-5.0])
-    assert walpha.alpha_shape(points, 1.0, weights=weights, engine=engine).hidden is None
-    shape = walpha.alpha_shape(points, 1.0, weights=weights, engine=engine, hidden=True)
-    assert shape.hidden.tolist() == [8] and shape.engine == engine
     # Few points go to CGAL, where there is one; a torus has no other engine than ours.
-    if engine == "cgal":
-        assert walpha.alpha_shape(points, 1.0).engine == "cgal"
+    for asked in {"cgal": ("auto", "cgal"), "native": ("native",)}[engine]:
+        assert walpha.alpha_shape(points, 1.0, weights=weights, engine=asked).hidden is None
+        shape = walpha.alpha_shape(points, 1.0, weights=weights, engine=asked, hidden=True)
+        assert shape.hidden.tolist() == [8] and shape.engine == engine
     assert walpha.alpha_shape(CUBE + 0.25, alpha=0.1, periodic=4).engine == "native"
 
 

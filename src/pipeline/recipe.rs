@@ -92,8 +92,8 @@ impl Recipe {
         Self::default()
     }
 
-    /// The paper's experiment on any volume: its share of the samples, lengths in voxels, weights by its equation 4.1, and α = 10, which is the default for voxels.
-    /// The command calls this `--preset paper`, and `reproduce` starts from it.
+    /// The paper's experiment on any volume: its share of the samples, lengths in voxels, weights by its equation 4.1, and
+    /// α = 10, which is the default for voxels. The command calls this `--preset paper`, and `reproduce` starts from it.
     pub fn paper() -> Self {
         let share = SelectionRule::Ratio(paper::POINTS as f64 / paper::SAMPLES as f64);
         Self::new()

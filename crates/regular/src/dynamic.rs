@@ -152,7 +152,7 @@ impl DynamicTriangulation {
 
     /// Takes points out of the triangulation, and inserts others, and the hidden ones that may come back. Returns how many of
     /// the former stay, because all others span no volume.
-    fn change(&mut self, leave: &[u32], enter: Vec<u32>) -> Result<usize, TriangulationError> {
+    fn change(&mut self, leave: &[u32], mut enter: Vec<u32>) -> Result<usize, TriangulationError> {
         let vertices = |growing: &Growing| -> Vec<u32> {
             leave.iter().copied().filter(|&v| growing.is_vertex(v)).collect()
         };
@@ -175,7 +175,6 @@ impl DynamicTriangulation {
             self.settle();
         }
         let place = |v: &u32| position_bits(self.growing.positions()[*v as usize]);
-        let mut enter = enter;
         if self.is_weighted && !leave.is_empty() {
             enter = self.at.values().copied().collect();
             enter.sort_unstable();

@@ -1,8 +1,7 @@
 use super::bench::{Bench, figure};
 use super::bench::{Claim, judge};
 use crate::reproduce::compare::{Difference, same_set};
-use crate::reproduce::study::ALPHA;
-use crate::reproduce::study::{Shapes, Shared};
+use crate::reproduce::study::{ALPHA, Shapes, Shared};
 use crate::reproduce::{Fact, Item, ReproduceError, ShapeNumbers, Verdict, text};
 
 /// The shapes with barycentric weights, and the one without weights.

@@ -1,8 +1,7 @@
 use super::bench::{Bench, figure};
 use super::bench::{Claim, judge};
 use crate::reproduce::compare::{Difference, PixelDifference, same_set};
-use crate::reproduce::study::ALPHA;
-use crate::reproduce::study::{Eye, Shared};
+use crate::reproduce::study::{ALPHA, Eye, Shared};
 use crate::reproduce::{Fact, Item, ReproduceError, ShapeNumbers, Table, Verdict, text};
 
 /// Four shapes, and how much the paper's two differ: without weights, left, and with barycentric
