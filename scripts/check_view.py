@@ -3,9 +3,10 @@
 
     scripts/check_view.py page.html [--chromium /usr/bin/chromium] [--out DIR]
 
-From a file: URL, at the width of a desk and of a phone: no error on the console, no request to a network,
-the first picture comes soon, the scene is not blank and fills its place, the legend names what is drawn in its colours, moving the slider, changing the colour and the level of detail change the picture, pointing at the
-shape tells index, weight and class, points and isosurface can be shown, and nothing is wider than the screen. Leaves two screenshots.
+From a file: URL, at the width of a desk and of a phone: no error on the console, no request to a network, the first picture comes soon, the
+scene is not blank and fills its place, the legend names what is drawn in its colours, moving the slider, changing the colour and the level
+of detail change the picture, a click on the shape tells index, weight and class, a cut, points, balls and isosurface can be shown, voids light up,
+and nothing is wider than the screen. Leaves two screenshots.
 Prints a line for each check; exits with 1 when one fails, and with 77 without Chromium.
 """
 
@@ -187,110 +188,124 @@ INKED = """(async () => {
 })()"""
 
 
-# The empty rows below and above what is drawn, the legend and the colour bar aside, as shares of the picture.
+# The empty rows below and above what is drawn, as shares of the picture.
 EMPTY = """(async () => {
   const image = await createImageBitmap(new Blob([Uint8Array.from(atob('%s'), (byte) => byte.charCodeAt(0))]));
   const context = new OffscreenCanvas(image.width, image.height).getContext('2d');
   context.drawImage(image, 0, 0);
-  const { top, bottom } = (({ t, b, h }) => ({ top: t, bottom: t + h }))(document.getElementById('scene')._fullLayout._size);
   const inked = [];
-  for (let row = Math.ceil(top); row < Math.floor(bottom); row++) {
-    const pixels = new Uint32Array(context.getImageData(0, row, image.width, 1).data.buffer);
+  // Its corners are round.
+  for (let row = 0; row < image.height; row++) {
+    const pixels = new Uint32Array(context.getImageData(8, row, image.width - 16, 1).data.buffer);
     inked.push(pixels.some((pixel) => pixel !== 0xffffffff));
   }
   return [inked.reverse().indexOf(true), inked.reverse().indexOf(true)].map((rows) => rows / image.height);
 })()"""
 
 
-# For each trace that can be seen: its name, its colour in the legend, whether it has an entry there, and how many of it there are.
-LEGEND = """(() => {
-  const scene = document.getElementById('scene');
-  const entries = new Map([...scene.querySelectorAll('.legend .traces')].map((entry) => {
-    const icon = entry.querySelector('.legendpoints path, .legendlines path, .legend3dandfriends');
-    const style = icon && getComputedStyle(icon);
-    return [entry.querySelector('.legendtext').textContent, style && (style.fill !== 'none' ? style.fill : style.stroke)];
-  }));
-  const traces = scene.data.map((trace) => ({
-    name: trace.name, colour: trace.color ?? trace.marker?.color ?? trace.line?.color,
-    drawn: trace.visible !== false && trace.x.length > 0,
-  }));
-  return { entries: [...entries], traces };
-})()"""
-
-
-def rgb(colour):
-    """Red, green and blue of `#rrggbb` or `rgb(r, g, b)`."""
-    if colour.startswith("#"):
-        return [int(colour[k:k + 2], 16) for k in (1, 3, 5)]
-    return [int(float(number)) for number in colour[colour.index("(") + 1:-1].split(",")[:3]]
-
-
-def legend_faults(browser):
-    """What the legend has too much, too little, or in another colour than is drawn."""
-    told = browser.evaluate(LEGEND)
-    entries = dict(told["entries"])
-    drawn = {trace["name"]: trace["colour"] for trace in told["traces"] if trace["drawn"]}
-    found = [f"{name} is not there" for name in entries.keys() - drawn.keys()]
-    found += [f"{name} is not listed" for name in drawn.keys() - entries.keys()]
-    if browser.evaluate("document.getElementById('colour').value") == "class":
-        for name in entries.keys() & drawn.keys():
-            if rgb(entries[name]) != rgb(drawn[name]):
-                found.append(f"{name} is {drawn[name]} and listed as {entries[name]}")
-    return found
-
-
-# The numbers of a level that the page tells: name of a trace to how many there are.
-TOLD = """Object.fromEntries([...document.querySelectorAll('#numbers tr')].flatMap((row) => {
+# The entries of the legend: what, how many, in which colour.
+LEGEND = """[...document.querySelectorAll('#legend span')].map((entry) => {
+  const [, count, name] = /^(\\d+) (.*)$/.exec(entry.textContent) ?? [null, null, entry.textContent];
+  return [name, Number(count), getComputedStyle(entry.querySelector('i')).backgroundColor];
+})"""
+# How a class is drawn: red, green and blue of the facets and edges.
+COLOUR_OF = {
+    "regular facets": (0, 114, 178), "singular facets": (213, 94, 0), "singular edges": (230, 159, 0),
+    "interior points": (0, 158, 115), "regular points": (0, 114, 178), "singular points": (213, 94, 0),
+}
+# Counts of a level as the page's table has them, by the names of the legend.
+TOLD = """Object.fromEntries([...document.querySelectorAll('#measures tr')].flatMap((row) => {
   const [kind, text] = [row.children[0].textContent, row.children[1].textContent];
   if (!['facets', 'edges', 'vertices'].includes(kind)) return [];
   return text.split(', ').map((part) => [part.split(' ')[1] + ' ' + kind.replace('vertices', 'points'), Number(part.split(' ')[0])]);
 }))"""
+# The share of pixels whose hue is that of a colour.
+HUED = """(async () => {
+  const image = await createImageBitmap(new Blob([Uint8Array.from(atob('%s'), (byte) => byte.charCodeAt(0))]));
+  const context = new OffscreenCanvas(image.width, image.height).getContext('2d');
+  context.drawImage(image, 0, 0);
+  const { data } = context.getImageData(0, 0, image.width, image.height);
+  const hue = (r, g, b) => Math.atan2(Math.sqrt(3) * (g - b), 2 * r - g - b);
+  const wanted = hue(...%s);
+  let found = 0;
+  for (let i = 0; i < data.length; i += 4) {
+    const [r, g, b] = data.subarray(i, i + 3);
+    if (Math.max(r, g, b) - Math.min(r, g, b) > 60 && Math.abs(hue(r, g, b) - wanted) < 0.15) found += 1;
+  }
+  return 4 * found / data.length;
+})()"""
+# The numbers are those of the α that is shown.
+RESTED = "document.body.dataset.measured !== undefined && document.body.dataset.measured === document.body.dataset.alpha"
 
 
-def choose(browser, colour):
+def legend_faults(browser, exact):
+    """What the legend has too much, too little, in another colour or number than is drawn."""
+    entries = {name: (count, colour) for name, count, colour in browser.evaluate(LEGEND)}
+    told = browser.evaluate(TOLD)
+    image = picture(browser)
+    # Points are listed where they are drawn.
+    kinds = [kind for kind in COLOUR_OF if kind.split()[1] != "points" or browser.evaluate("document.getElementById('show-points').checked")]
+    wrong = [f"{name} is no class" for name in entries if name not in kinds]
+    for kind in kinds:
+        count, colour = entries.get(kind, (0, None))
+        # What is simplified may lose some of a class.
+        if exact and count != told[kind]:
+            wrong.append(f"{count} {kind}, and {told[kind]} in the table")
+        if colour and rgb(colour) != COLOUR_OF[kind]:
+            wrong.append(f"{kind} are listed as {colour}")
+        if colour and kind == "regular facets" and browser.evaluate(HUED % (image, list(COLOUR_OF[kind]))) < 0.02:
+            wrong.append(f"no pixel has the colour of {kind}")
+    return wrong
+
+
+def rgb(colour):
+    """Red, green and blue of `rgb(r, g, b)`."""
+    return tuple(int(float(number)) for number in colour[colour.index("(") + 1:-1].split(",")[:3])
+
+
+def settle(browser):
+    """Waits until nothing is left to draw."""
+    browser.wait(RESTED)
+    browser.evaluate("new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(() => resolve(true))))")
+
+
+def change(browser, identifier, value, event="change"):
+    """Sets a control as a user does."""
     browser.evaluate(
-        "(() => { const c = document.getElementById('colour'); c.value = '%s';"
-        " c.dispatchEvent(new Event('change')) })()" % colour
+        "(() => { const e = document.getElementById('%s'); e.value = %s; e.dispatchEvent(new Event('%s')); })()"
+        % (identifier, json.dumps(value), event)
     )
-    browser.wait(f"document.getElementById('scene').dataset.colour === '{colour}'")
+    settle(browser)
 
 
-def detail(browser, level):
-    browser.evaluate(
-        "(() => { const d = document.getElementById('detail'); d.value = '%d';"
-        " d.dispatchEvent(new Event('change')) })()" % level
-    )
-    browser.wait(f"document.getElementById('scene').dataset.detail === '{level}'")
+def press(browser, identifier):
+    browser.evaluate(f"document.getElementById('{identifier}').click()")
+    settle(browser)
 
 
-def drawn(level):
-    return f"document.getElementById('scene').dataset.level === '{level}'"
+def move(browser, share):
+    """Moves the slider."""
+    browser.evaluate("delete document.body.dataset.measured")
+    change(browser, "alpha", share, "input")
+    return browser.evaluate("document.body.dataset.alpha")
 
 
-def move(browser, level):
-    browser.evaluate(
-        "(() => { const s = document.getElementById('level'); delete document.getElementById('scene')"
-        f".dataset.level; s.value = {level}; s.dispatchEvent(new Event('input')) }})()"
-    )
-    return browser.wait(drawn(level))
-
-
-def hover(browser):
-    """What is said about the first place near the middle where something is said."""
-    box = browser.evaluate(
+def click(browser):
+    """What is said of the first place near the middle where something is said."""
+    browser.evaluate("document.getElementById('scene').scrollIntoView({ block: 'center' })")
+    x, y = browser.evaluate(
         "(() => { const b = document.getElementById('scene').getBoundingClientRect();"
         " return [b.x + b.width / 2, b.y + b.height / 2] })()"
     )
+    said = ""
     for step in range(12):
-        place = {"x": box[0] + 9 * step - 50, "y": box[1] + 7 * step - 40}
-        browser.call("Input.dispatchMouseEvent", type="mouseMoved", **place)
-        time.sleep(0.4)
-        said = browser.evaluate(
-            "[...document.querySelectorAll('.hovertext')].map((t) => t.textContent).join(' ')"
-        )
+        for kind in ["mousePressed", "mouseReleased"]:
+            browser.call("Input.dispatchMouseEvent", type=kind, x=x + 9 * step - 50, y=y + 7 * step - 40, button="left", clickCount=1)
+        said = browser.evaluate("document.getElementById('picked').textContent")
         if said:
-            return said
-    return ""
+            break
+    browser.evaluate("scrollTo(0, 0)")
+    return said
 
 
 def look(browser, checks, page, screen, out):
@@ -302,12 +317,13 @@ def look(browser, checks, page, screen, out):
     browser.events.clear()
     started = time.monotonic()
     browser.call("Page.navigate", url=pathlib.Path(page).resolve().as_uri())
-    there = browser.wait("document.getElementById('scene')?.dataset.level !== undefined")
+    there = browser.wait("document.body?.dataset.frame !== undefined && document.body.dataset.looked !== undefined")
     seconds = time.monotonic() - started
     checks.say(f"{screen}: opens soon", there and seconds < SOON, f"in {seconds:.2f} s")
-    if not there:
+    if not there or not browser.wait(f"document.body.dataset.state === 'ready' && {RESTED}"):
         checks.say(f"{screen}: console", False, str(faults(browser.events)))
         return
+    settle(browser)
     wide = browser.evaluate("document.documentElement.scrollWidth")
     checks.say(f"{screen}: fits the width", wide <= width, f"{wide} of {width} pixels")
     first = picture(browser)
@@ -318,95 +334,89 @@ def look(browser, checks, page, screen, out):
     )
     below, above = browser.evaluate(EMPTY % first)
     checks.say(
-        f"{screen}: nothing is empty above and below the shape", max(below, above) < 0.13,
+        f"{screen}: nothing is empty above and below the shape", max(below, above) < 0.08,
         f"{100 * below:.0f} % of the scene below, {100 * above:.0f} % above",
     )
     whole = browser.call("Page.captureScreenshot", format="png")["data"]
     (out / f"{screen}.png").write_bytes(base64.b64decode(whole))
-    last = int(browser.evaluate("document.getElementById('level').max"))
-    start = int(browser.evaluate("document.getElementById('level').value"))
-    other = last // 2 if start != last // 2 else last
-    moved = move(browser, other)
+    start = browser.evaluate("document.getElementById('alpha').value")
+    opened = browser.evaluate("document.body.dataset.alpha")
+    moved = move(browser, 0.5 if abs(float(start) - 0.5) > 0.1 else 1)
     second = picture(browser)
-    checks.say(f"{screen}: the slider changes the picture", moved and not same(browser, second, first))
-    checks.say(f"{screen}: and back", move(browser, start) and same(browser, picture(browser), first))
-    valued = browser.evaluate("document.querySelector('#colour option[value=value]') !== null")
-    choose(browser, "class")
-    checks.say(f"{screen}: only F and classes are two pictures", same(browser, picture(browser), first) != valued)
-    inked = browser.evaluate(INKED % picture(browser))
+    checks.say(f"{screen}: the slider changes the picture", moved != opened and not same(browser, second, first), f"{opened} to {moved}")
+    checks.say(f"{screen}: and back", move(browser, start) == opened and same(browser, picture(browser), first))
+    inked = browser.evaluate(INKED % first)
     checks.say(f"{screen}: by class nothing has a colour of F", inked < 0.002, f"{100 * inked:.2f} % of the pixels")
-    wrong = legend_faults(browser)
-    told = browser.evaluate(TOLD)
-    listed = dict(browser.evaluate(LEGEND)["entries"])
-    kinds = ["regular facets", "singular facets", "singular edges", "interior points", "regular points", "singular points"]
-    # What is simplified may lose all of a class.
-    if browser.evaluate("document.getElementById('simplified') === null"):
-        wrong += [f"{told[kind]} {kind}" for kind in kinds if (kind in listed) != (told[kind] > 0)]
-    checks.say(f"{screen}: the legend is of the classes as drawn", not wrong, "; ".join(wrong) or ", ".join(listed))
-    if valued:
-        choose(browser, "value")
-        wrong = legend_faults(browser)
-        checks.say(f"{screen}: and of the colours of F", not wrong, "; ".join(wrong))
-        checks.say(f"{screen}: and F is back as it was", same(browser, picture(browser), first))
-        choose(browser, "class")
-    if browser.evaluate("document.querySelector('#colour option[value=difference]') !== null"):
-        by_class = picture(browser)
-        choose(browser, "difference")
+    # Of a simplified picture the page says so.
+    exact = not browser.evaluate("document.getElementById('remarks').textContent.includes('simplified')")
+    wrong = legend_faults(browser, exact)
+    checks.say(f"{screen}: the legend is of the classes as drawn", not wrong, "; ".join(wrong) or str(browser.evaluate(LEGEND)))
+    for by, name in [("value", "F ("), ("difference", "difference"), ("weight", "ω")]:
+        if browser.evaluate(f"document.querySelector('#colour option[value={by}]').hidden"):
+            continue
+        change(browser, "colour", by)
         inked = browser.evaluate(INKED % picture(browser))
-        bar = browser.evaluate("document.getElementById('scene').data[0].colorbar.title.text")
-        checks.say(
-            f"{screen}: the difference to the original is a colour",
-            inked > 0.002 and not same(browser, picture(browser), by_class) and bar.startswith("difference"),
-            f"{100 * inked:.2f} % of the pixels, {bar!r}",
-        )
-        choose(browser, "class")
-    if browser.evaluate("document.getElementById('detail') !== null"):
-        detailed, shown = picture(browser), browser.evaluate("document.getElementById('detail').value")
+        title = browser.evaluate("document.getElementById('legend').textContent")
+        # Weights may all be one, and values few.
+        right = (inked > 0.002 or by != "difference") and not same(browser, picture(browser), first) and title.startswith(name)
+        checks.say(f"{screen}: {by} is a colour", right, f"{100 * inked:.2f} % of the pixels, {title!r}")
+        change(browser, "colour", "class")
+        checks.say(f"{screen}: and classes are back as they were", same(browser, picture(browser), first))
+    if not browser.evaluate("document.getElementById('detail-label').hidden"):
+        shown = browser.evaluate("document.getElementById('detail').value")
         names, coarse = [], True
         for k in range(int(browser.evaluate("document.getElementById('detail').options.length"))):
-            detail(browser, k)
-            first_row = "document.querySelector('#numbers td').textContent"
-            names.append(int(browser.evaluate(first_row)))
-            coarse = coarse and same(browser, picture(browser), detailed) == (k == int(shown))
+            browser.evaluate("delete document.body.dataset.measured")
+            change(browser, "detail", str(k))
+            names.append(int(browser.evaluate("[...document.querySelectorAll('#measures tr')].find((row) => row.children[0].textContent === 'points').children[1].textContent")))
+            coarse = coarse and same(browser, picture(browser), first) == (k == int(shown))
         checks.say(
             f"{screen}: levels of detail are pictures of their own",
             coarse and names == sorted(names), f"of {names} points",
         )
-    browser.evaluate("document.getElementById('level').value = document.getElementById('level').max - 1")
+    move(browser, 0.8)
     browser.evaluate("document.getElementById('play').click()")
-    end = browser.wait("document.getElementById('scene').dataset.level === document.getElementById('level').max")
+    end = browser.wait("document.getElementById('play').textContent === 'Play' && document.getElementById('alpha').value === '1'")
     checks.say(f"{screen}: play goes to the end", end)
     move(browser, start)
-    before = picture(browser)
-    browser.evaluate("Plotly.relayout('scene', { 'scene.camera.eye': { x: 2, y: 2, z: 0 } }).then(() => true)")
-    time.sleep(2)
+    for key in ["ArrowLeft", "ArrowLeft", "+"]:
+        browser.evaluate(f"document.getElementById('scene').dispatchEvent(new KeyboardEvent('keydown', {{ key: '{key}' }}))")
+    settle(browser)
     turned = picture(browser)
-    browser.evaluate("document.getElementById('reset').click()")
-    eye = "(({ x, y, z }) => [x, y, z])(document.getElementById('scene')._fullLayout.scene.camera.eye)"
-    time.sleep(2)
+    press(browser, "home")
     checks.say(
-        f"{screen}: the view can be reset", not same(browser, turned, before) and same(browser, picture(browser), before),
-        str(browser.evaluate(eye)),
+        f"{screen}: the view can be reset", not same(browser, turned, first) and same(browser, picture(browser), first),
     )
-    if not mobile:
-        said = hover(browser)
-        right = said.startswith("point ") and "ω = " in said
-        checks.say(f"{screen}: pointing tells of a point", right, repr(said))
-    for trace in ["points", "isosurface"]:
-        before = picture(browser)
-        shown = browser.evaluate(
-            "(async () => { const s = document.getElementById('scene');"
-            f" const k = s.data.findIndex((t) => t.name.includes('{trace}') && t.visible !== false);"
-            " if (k < 0) return -1; await Plotly.restyle(s, { visible: true }, [k]); return k })()"
-        )
-        if shown >= 0:
-            # Filled only now.
-            number = {"points": 3, "isosurface": 6}[trace]
-            browser.wait(f"document.getElementById('scene').dataset.shown.includes('{number}')")
-            checks.say(f"{screen}: {trace} can be shown", not same(browser, picture(browser), before))
+    said = click(browser)
+    checks.say(f"{screen}: a click tells of a point", said.startswith("point ") and "ω = " in said, repr(said))
+    for name in ["points", "balls", "original", "box", "singular"]:
+        if browser.evaluate(f"document.getElementById('show-{name}').parentElement.hidden"):
+            continue
+        press(browser, f"show-{name}")
+        there = not same(browser, picture(browser), first)
+        if name == "singular":
+            there = there or all(count == 0 for kind, count in browser.evaluate(TOLD).items() if kind in ("singular facets", "singular edges"))
+        if name == "points":
+            wrong = legend_faults(browser, exact)
+            checks.say(f"{screen}: the legend names points", not wrong, "; ".join(wrong))
+        if name == "box":
+            said = browser.evaluate("[...document.querySelectorAll('.labels span')].map((e) => e.textContent)")
+            there = there and [text[:2] for text in said] == ["x:", "y:", "z:"]
+        press(browser, f"show-{name}")
+        checks.say(f"{screen}: {name} can be shown or hidden", there and same(browser, picture(browser), first))
+    change(browser, "cut", "1")
+    checks.say(f"{screen}: a plane cuts the shape open", not same(browser, picture(browser), first))
+    change(browser, "cut", "")
+    checks.say(f"{screen}: and it is whole again", same(browser, picture(browser), first))
+    if browser.evaluate("document.querySelector('#voids li').textContent !== 'none'"):
+        browser.evaluate("document.querySelector('#voids li').focus()")
+        settle(browser)
+        lit = picture(browser)
+        browser.evaluate("document.querySelector('#voids li').blur()")
+        checks.say(f"{screen}: a void lights up", not same(browser, lit, first))
     with tempfile.TemporaryDirectory() as folder:
         browser.call("Page.setDownloadBehavior", behavior="allow", downloadPath=folder)
-        browser.evaluate("document.getElementById('save').click()")
+        browser.evaluate("document.getElementById('save-png').click()")
         ended = time.monotonic() + SOON
         while not (saved := list(pathlib.Path(folder).glob("*.png"))) and time.monotonic() < ended:
             time.sleep(0.2)

@@ -31,13 +31,11 @@ INSIDE = {
     ],
     "libz-sys": [("zlib", "Zlib", "Jean-loup Gailly and Mark Adler", "src/zlib/LICENSE")],
     "lz4-sys": [("LZ4", "BSD-2-Clause", "Yann Collet", "liblz4/lib/LICENSE")],
-    "plotly": [
-        ("plotly.js, in pages too", "MIT", "Plotly, Inc.", None),
-        ("MathJax, not in pages", "Apache-2.0", "The MathJax Consortium", None),
-    ],
     "snappy_src": [("Snappy", "BSD-3-Clause", "Google Inc.", "snappy/COPYING")],
     "zstd-sys": [("Zstandard", "BSD-3-Clause", "Meta Platforms, Inc. and affiliates", "zstd/LICENSE")],
 }
+# The page of `walpha view`, with the scripts of others and the texts of their licences: a part of walpha-render.
+PAGE = ROOT / "crates/render/src/view/page.html"
 # Texts that walpha has, for packages without one.
 OURS = {"Apache-2.0": "crates/base/LICENSE-APACHE", "GPL-3.0-or-later": "LICENSE"}
 TEXT = re.compile(r"(licen[cs]e|copying|copyright|notice|unlicense)([-_.].*)?", re.IGNORECASE)
@@ -51,12 +49,12 @@ def run(*command):
 
 
 def packages(arguments):
-    """What is built into the packages that the arguments select, without those of this workspace."""
+    """What is built into the packages that the arguments select, without those of this workspace; and whether the page is."""
     tree = run("tree", "--edges", "normal,no-proc-macro", "--prefix", "none", "--format", "{p}", *arguments)
     built = {tuple(line.split()[:2]) for line in tree.splitlines() if line}
     known = json.loads(run("metadata", "--format-version", "1", "--all-features"))["packages"]
     theirs = [package for package in known if package["source"] and (package["name"], f"v{package['version']}") in built]
-    return sorted(theirs, key=lambda package: (package["name"], package["version"]))
+    return sorted(theirs, key=lambda package: (package["name"], package["version"])), any(name == "walpha-render" for name, _ in built)
 
 
 def texts(package):
@@ -69,8 +67,14 @@ def texts(package):
     return files + inside
 
 
+def of_page():
+    """The names of what is in the page, and the text of each licence."""
+    notices = re.search(r'<pre id="notices-text"[^>]*>(.*?)</pre>', PAGE.read_text(encoding="utf-8"), re.DOTALL)
+    return [section.strip().split("\n", 1) for section in notices[1].split("## ")[1:]]
+
+
 def main():
-    found = packages(sys.argv[1:])
+    found, has_page = packages(sys.argv[1:])
     rows, by_text, without = [], {}, []
     for package in found:
         name = f"{package['name']} {package['version']}"
@@ -83,6 +87,9 @@ def main():
             text = path.read_text(encoding="utf-8", errors="replace").strip()
             key = " ".join(text.split())
             by_text.setdefault(key, (text, []))[1].append(name)
+    for name, text in of_page() if has_page else []:
+        rows.append((f"in pages: {name}", "MIT", "its authors"))
+        by_text[" ".join(text.split())] = (text.strip(), [name])
     print("# Third-party notices\n\nWhat is built into this artefact of walpha and was written by others. walpha itself is under its LICENSE.\n")
     print("| what | licence | where it is from |\n|---|---|---|")
     print("".join(f"| {' | '.join(row)} |\n" for row in rows))

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
 # Builds walpha.html, the page that computes: scripts/web.sh [OUTPUT, by default target/web/walpha.html]
+# Before, it sees that the page of `walpha view`, which is kept in the repository, is what its sources make.
 #
 # Needs Rust by rustup, Python, Node and npm. Ends with 77 where these, or the packages that the page is bundled
 # from, cannot be had.
@@ -18,13 +19,18 @@ if ! (cd web/page && npm ci --ignore-scripts --silent); then
   cannot "the packages in web/page/package.json cannot be had"
 fi
 
+kept=crates/render/src/view/page.html
+made=$(mktemp)
+notices=$(mktemp)
+trap 'rm -f "$made" "$notices"' EXIT
+node web/page/build.mjs view "$made"
+cmp "$made" $kept || { echo "$kept is not what web/page makes: node web/page/build.mjs view $kept" && exit 1; }
+
 # The notices are of all that Cargo.lock names.
 cargo fetch --locked
 CARGO_ENCODED_RUSTFLAGS="--remap-path-prefix=$PWD=walpha"$'\x1f'"--remap-path-prefix=${CARGO_HOME:-$HOME/.cargo}=cargo" \
   cargo build --locked --profile web --target wasm32-wasip1 -p walpha-web
 mkdir -p "$(dirname "$output")"
-notices=$(mktemp)
-trap 'rm -f "$notices"' EXIT
 python3 scripts/third_party.py -p walpha-web --target wasm32-wasip1 > "$notices"
-node web/page/build.mjs "${CARGO_TARGET_DIR:-target}/wasm32-wasip1/web/walpha_web.wasm" "$notices" "$output"
+node web/page/build.mjs computes "$output" "${CARGO_TARGET_DIR:-target}/wasm32-wasip1/web/walpha_web.wasm" "$notices"
 ls -l "$output"

@@ -29,9 +29,9 @@ use crate::{Alpha, Frame, GrayRange, Recipe, Units};
 
 /// Write an interactive page for the browser: self-contained, no network needed.
 ///
-/// A slider moves through α with the weights frozen. The boundary is coloured by F, by class, or by how
-/// far the interpolant is from the volume there. Singular facets and edges, points sized by weight and
-/// an isosurface of the volume can be shown or hidden.
+/// A slider moves through α with the weights frozen. Colours show classes, F, weights, or how far the
+/// interpolant is from the volume there. Singular facets and edges, points sized by weight, their balls
+/// and an isosurface of the volume can be shown or hidden, and a plane cuts the shape open.
 ///
 /// Examples:
 ///

@@ -1,8 +1,11 @@
 //! The page of `walpha view`: self-contained, whole, and safe whatever its input is called. What it
 //! looks like in a browser, `scripts/check_view.py` checks.
 
+use std::collections::BTreeMap;
 use std::fs;
+use std::io::Read;
 
+use flate2::read::GzDecoder;
 use serde_json::Value;
 
 use crate::common::{json, ok, run};
@@ -14,11 +17,10 @@ fn element<'a>(html: &'a str, id: &str) -> &'a str {
     &html[start..start + html[start..].find("</script>").expect("a script")]
 }
 
-fn bytes(array: &Value) -> Vec<u8> {
+fn base64(text: &str) -> Vec<u8> {
     const LETTERS: &[u8] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    let text = array["base64"].as_str().unwrap().trim_end_matches('=');
     let (mut bits, mut count, mut bytes) = (0u32, 0, Vec::new());
-    for letter in text.bytes() {
+    for letter in text.trim_end_matches('=').bytes() {
         let value = LETTERS.iter().position(|&l| l == letter).expect("base64") as u32;
         (bits, count) = (bits << 6 | value, count + 6);
         if count >= 8 {
@@ -27,6 +29,54 @@ fn bytes(array: &Value) -> Vec<u8> {
         }
     }
     bytes
+}
+
+/// What an element holds: an object, and the bytes of its arrays.
+#[derive(Debug, PartialEq)]
+struct Unpacked {
+    content: Value,
+    arrays: BTreeMap<String, Vec<u8>>,
+}
+
+impl Unpacked {
+    fn of(html: &str, id: &str) -> Self {
+        let mut bytes = Vec::new();
+        GzDecoder::new(&base64(element(html, id))[..]).read_to_end(&mut bytes).expect("gzip");
+        let (length, rest) = bytes.split_first_chunk::<4>().expect("a length");
+        let length = u32::from_le_bytes(*length) as usize;
+        let mut content: Value = serde_json::from_slice(&rest[..length]).expect("an object");
+        let start = (4 + length).next_multiple_of(8);
+        let places = content.as_object_mut().unwrap().remove("arrays").expect("places");
+        let array = |(name, place): (&String, &Value)| {
+            let width = match place["kind"].as_str().unwrap() {
+                "Uint8Array" => 1,
+                "Uint32Array" | "Float32Array" => 4,
+                "Float64Array" => 8,
+                kind => panic!("{kind}"),
+            };
+            let [at, length] = ["at", "length"].map(|key| place[key].as_u64().unwrap() as usize);
+            assert_eq!(at % 8, 0, "{name} is aligned");
+            (name.clone(), bytes[start + at..][..width * length].to_vec())
+        };
+        let arrays = places.as_object().unwrap().iter().map(array).collect();
+        Self { content, arrays }
+    }
+
+    fn f32(&self, name: &str) -> Vec<f32> {
+        let (numbers, rest) = self.arrays[name].as_chunks::<4>();
+        assert!(rest.is_empty());
+        numbers.iter().map(|&number| f32::from_le_bytes(number)).collect()
+    }
+
+    fn alphas(&self) -> Vec<f64> {
+        let (numbers, rest) = self.arrays["alphas"].as_chunks::<8>();
+        assert!(rest.is_empty());
+        numbers.iter().map(|&number| f64::from_le_bytes(number)).collect()
+    }
+
+    fn levels(&self) -> &[Value] {
+        self.content["levels"].as_array().unwrap()
+    }
 }
 
 /// How many rows of three levels have this class at a level: 2 regular, 3 singular.
@@ -59,43 +109,32 @@ fn the_page_holds_every_level() {
     assert_eq!(made["bytes"], html.len());
     let [detail] = &made["details"].as_array().unwrap()[..] else { panic!("{made}") };
     assert_eq!((&detail["levels"], &made["simplified"]), (&Value::from(5), &Value::Null));
-    assert!(!html.contains("id=\"detail\""), "there is one level of detail");
     assert!(html.contains("width=device-width"));
     // Plain scripts, no address to load anything from.
-    for tag in ["<script src", "<link", "<img", "@import", "cdn.plot.ly/plotly"] {
+    for tag in ["<script src", "<link", "<img", "@import", "wasm-unsafe-eval"] {
         assert!(!html.contains(tag), "{tag}");
     }
-    let data: Value = serde_json::from_str(element(&html, "data")).unwrap();
-    let plot: Value = serde_json::from_str(element(&html, "plot")).unwrap();
-    let names =
-        plot["data"].as_array().unwrap().iter().map(|trace| trace["name"].as_str().unwrap());
-    let classes = ["interior points", "regular points", "singular points"];
-    let facets = ["regular facets", "singular facets", "singular edges"];
-    let expected = [&facets[..], &classes, &["isosurface at 50"]].concat();
-    assert_eq!(names.collect::<Vec<_>>(), expected, "the script counts on this order");
-    let [page] = &data["details"].as_array().unwrap()[..] else { panic!("one level of detail") };
-    assert_eq!(page["levels"].as_array().unwrap().len(), 5);
-    let arrays = &page["arrays"];
+    let whole = Unpacked::of(&html, "page");
     let points = detail["points"].as_u64().unwrap() as usize;
-    assert_eq!(bytes(&arrays["x"]).len(), 4 * points);
-    assert_eq!(bytes(&arrays["weights"]).len(), 4 * points);
-    let differences = bytes(&arrays["differences"]);
-    assert_eq!(differences.len(), 4 * points);
-    let (numbers, _) = differences.as_chunks::<4>();
-    assert!(numbers.iter().any(|&number| f32::from_le_bytes(number) > 1.0));
-    assert!(html.contains("<option value=\"difference\">"));
-    let facets = bytes(&arrays["facetSpans"]);
-    assert_eq!(bytes(&arrays["facets"]).len(), 4 * facets.len());
-    for (k, alpha) in ["1", "2", "5", "10", "inf"].iter().enumerate() {
+    assert_eq!(whole.content["points"], Value::from(vec![points]), "there is one level of detail");
+    assert_eq!(whole.content["isovalue"], 50.0);
+    assert!(whole.arrays["triangles"].len() > 100 * 12 && !html.contains("id=\"detail-1\""));
+    let page = Unpacked::of(&html, "detail-0");
+    assert_eq!(page.levels().len(), 5);
+    assert_eq!(page.alphas(), [1.0, 2.0, 5.0, 10.0, f64::INFINITY]);
+    assert_eq!(page.f32("positions").len(), 3 * points);
+    assert_eq!(page.f32("weights").len(), points);
+    let differences = page.f32("differences");
+    assert_eq!(differences.len(), points);
+    assert!(differences.iter().any(|&number| number > 1.0));
+    let facets = &page.arrays["facetSpans"];
+    assert_eq!(page.arrays["facets"].len(), 4 * facets.len());
+    for (k, level) in page.levels().iter().enumerate() {
         // The same as the shapes that the ladder measures, which other tests hold against `shape`.
-        let rows = page["levels"][k]["rows"].as_array().unwrap();
-        let told = rows.iter().find(|row| row[0] == "facets").unwrap()[1].as_str().unwrap();
-        let [regular, singular] = [2, 3].map(|class| count(&facets, k as u8, class));
-        assert!(
-            told.ends_with(&format!(" {regular} regular, {singular} singular")),
-            "α = {alpha}: {told}"
-        );
-        assert!(regular > 0);
+        for (class, name) in [(2, "regular"), (3, "singular")] {
+            assert_eq!(level["facets"][name], count(facets, k as u8, class), "{name}: {level}");
+        }
+        assert!(count(facets, k as u8, 2) > 0);
     }
 }
 
@@ -126,9 +165,11 @@ fn names_cannot_break_out_of_the_page() {
     assert!(stderr.contains("page.html takes "), "its size is told: {stderr}");
     let html = fs::read_to_string(folder.path().join("page.html")).unwrap();
     assert!(!html.contains("<script>alert"));
-    assert!(html.contains("&lt;script&gt;alert(1)"));
-    assert!(!element(&html, "plot").contains('<') && !element(&html, "data").contains('<'));
-    assert!(!html.contains("<option value=\"difference\">"), "points have no original");
+    assert_eq!(html.matches("&lt;script&gt;alert(1)").count(), 2, "a title and a heading");
+    let said = Unpacked::of(&html, "page").content["facts"][0].to_string();
+    assert!(said.contains("<script>alert(1)"), "the script shows it as text: {said}");
+    let page = Unpacked::of(&html, "detail-0");
+    assert!(!page.arrays.contains_key("differences"), "points have no original");
 }
 
 #[test]
@@ -180,14 +221,12 @@ fn stops_show_something_else_each() {
         }
         ok(f, &args);
         let html = fs::read_to_string(f.join("page.html")).unwrap();
-        let data: Value = serde_json::from_str(element(&html, "data")).unwrap();
-        let page = &data["details"][0];
-        let levels = page["levels"].as_array().unwrap();
+        let page = Unpacked::of(&html, "detail-0");
+        let levels = page.levels();
         assert!((12..=40).contains(&levels.len()), "{input}: {}", levels.len());
-        let facets = bytes(&page["arrays"]["facetSpans"]);
-        let edges = bytes(&page["arrays"]["edgeSpans"]);
+        let (facets, edges) = (&page.arrays["facetSpans"], &page.arrays["edgeSpans"]);
         for k in 0..levels.len() as u8 {
-            let seen = count(&facets, k, 2) + count(&facets, k, 3) + count(&edges, k, 3);
+            let seen = count(facets, k, 2) + count(facets, k, 3) + count(edges, k, 3);
             assert!(seen > 0, "{input}: nothing at level {k}");
             let state = |span: &[u8], k: u8| span.iter().filter(|&&level| level <= k).count();
             let other = |spans: &[u8], states: usize| {
@@ -196,21 +235,26 @@ fn stops_show_something_else_each() {
             };
             // A facet turns from singular to regular to interior; of an edge one sees the first.
             assert!(
-                k == 0 || other(&facets, 3) + other(&edges, 2) > 0,
+                k == 0 || other(facets, 3) + other(edges, 2) > 0,
                 "{input}: level {k} is that before"
             );
         }
         // Where it opens.
-        let at = page["first"].as_u64().unwrap() as usize;
-        let name = levels[at]["name"].as_str().unwrap().trim_start_matches("α = ");
-        assert!(name.chars().filter(char::is_ascii_digit).count() <= 7, "{name}");
-        let told: f64 = name.parse().unwrap();
-        assert!((told - alpha).abs() <= 5e-4 * alpha, "{input} opens at {told}, not {alpha}");
+        let at = page.content["first"].as_u64().unwrap() as usize;
+        let told = page.alphas()[at];
+        assert!(
+            told <= alpha && alpha - told <= 5e-4 * alpha,
+            "{input} opens at {told}, not {alpha}"
+        );
         assert!(at > 0 && at + 1 < levels.len(), "{input} opens at {at}");
     }
     ok(f, &["view", "balls.xyz", "-o", "page.html", "-q", "--alpha", "0.5", "--alphas", "0.1,1,2"]);
     let html = fs::read_to_string(f.join("page.html")).unwrap();
-    assert!(html.contains("\"name\":\"α = 0.5\"") && html.contains("\"first\":1"));
+    let page = Unpacked::of(&html, "detail-0");
+    assert_eq!(
+        (page.alphas(), &page.content["first"]),
+        (vec![0.1, 0.5, 1.0, 2.0], &Value::from(1))
+    );
 }
 
 /// A level of detail is the page of so many points, but for what is the same at all levels.
@@ -221,27 +265,39 @@ fn levels_of_detail_are_pages_of_fewer_points() {
     let args = |count: &'static str| {
         ["view", "sample:phantom@20", "--weights", "min-max", "--count", count, "-o", "page.html"]
     };
-    let page = |args: &[&str]| -> (Value, Value, String) {
+    let page = |args: &[&str]| -> (Value, String) {
         let made = json(f, &[args, &["-q"]].concat());
-        let html = fs::read_to_string(f.join("page.html")).unwrap();
-        let data = serde_json::from_str(element(&html, "data")).unwrap();
-        (made, data, html)
+        (made, fs::read_to_string(f.join("page.html")).unwrap())
     };
-    let (made, all, html) = page(&[&args("600")[..], &["--counts", "300,100,300"]].concat());
+    let (made, all) = page(&[&args("600")[..], &["--counts", "300,100,300"]].concat());
     let points = |made: &Value| -> Vec<u64> {
         let details = made["details"].as_array().unwrap();
         details.iter().map(|detail| detail["points"].as_u64().unwrap()).collect()
     };
     assert_eq!(points(&made), [100, 300, 600]);
-    assert!(html.contains("<option value=\"2\" selected>600 points</option>"));
+    assert_eq!(Unpacked::of(&all, "page").content["points"], Value::from(vec![100, 300, 600]));
     let rmse = |k: usize| made["details"][k]["rmse_filled"].as_f64().unwrap();
     assert!(rmse(0) > rmse(1) && rmse(1) > rmse(2) && rmse(2) > 0.0, "{made}");
     for (k, count) in ["100", "300", "600"].into_iter().enumerate() {
-        let (alone, one, _) = page(&args(count));
+        let (alone, one) = page(&args(count));
         assert_eq!(alone["details"][0], made["details"][k]);
-        assert!(one["details"][0] == all["details"][k], "{count} points");
-        assert!(one["isosurface"] == all["isosurface"] && !one["isosurface"].is_null());
+        // Positions are as seen from a centre, which is that of all levels of detail.
+        let mut places = Vec::new();
+        let details = [(&one, 0), (&all, k)].map(|(html, k)| {
+            let mut detail = Unpacked::of(html, &format!("detail-{k}"));
+            let centre = &Unpacked::of(html, "page").content["centre"];
+            let at = |(k, x): (usize, f32)| f64::from(x) + centre[k % 3].as_f64().unwrap();
+            let seen = detail.f32("positions").into_iter().enumerate();
+            places.push(seen.map(at).collect::<Vec<_>>());
+            detail.arrays.remove("positions");
+            detail
+        });
+        assert!(details[0] == details[1] && places[0] == places[1], "{count} points");
     }
+    let whole = Unpacked::of(&all, "page");
+    let (_, one) = page(&args("600"));
+    assert_eq!(Unpacked::of(&one, "page").arrays["triangles"], whole.arrays["triangles"]);
+    assert!(!whole.arrays["triangles"].is_empty());
     fs::write(f.join("points.xyz"), "0 0 0\n1 0 0\n0 1 0\n0 0 1\n").unwrap();
     let (code, _, stderr) = run(f, &["view", "points.xyz", "--counts", "3", "-o", "page.html"]);
     assert!(code == 2 && stderr.contains("--counts"), "{stderr}");
@@ -252,8 +308,10 @@ fn the_page_explains_itself() {
     let folder = tempfile::tempdir().unwrap();
     ok(folder.path(), &["view", "sample:phantom@12", "-o", "page.html", "-q"]);
     let html = fs::read_to_string(folder.path().join("page.html")).unwrap();
-    assert!(element(&html, "data").contains("F: value of the original volume, in gray levels"));
-    for id in ["play", "reset", "save", "scene", "level", "colour"] {
+    let whole = Unpacked::of(&html, "page").content;
+    assert_eq!(whole["titles"]["value"], "F (value of the original volume, in gray levels)");
+    assert!(whole["titles"]["difference"].as_str().unwrap().contains("gray levels"));
+    for id in ["play", "home", "save-png", "scene", "alpha", "colour", "detail"] {
         assert!(html.contains(&format!("id=\"{id}\"")), "{id}");
     }
 }

@@ -1,10 +1,13 @@
-// Bundles the page into one file: node build.mjs walpha.wasm notices.md walpha.html
+// Bundles a page into one file:
+//
+//   node build.mjs computes walpha.html walpha.wasm notices.md   the page that computes
+//   node build.mjs view page.html                                the page of `walpha view`, without its title and its data
 
 import { readdirSync, readFileSync, writeFileSync } from "node:fs";
 import { gzipSync } from "node:zlib";
 import { build } from "esbuild";
 
-const [wasm, notices, output] = process.argv.slice(2);
+const [kind, output, wasm, notices] = process.argv.slice(2);
 const here = new URL(".", import.meta.url).pathname;
 
 // Top-level await needs a module; the page wraps it in an async function instead.
@@ -18,26 +21,33 @@ async function bundle(entry, wrap) {
   return wrap ? `(async () => {${inert}})();` : inert;
 }
 
-// The notices of what is in the page: Rust's, and the packages that the scripts are bundled from.
-function licences() {
+// The licences of packages that scripts are bundled from.
+function licences(packages) {
   const { dependencies } = JSON.parse(readFileSync(here + "package.json", "utf8"));
-  const texts = Object.entries(dependencies).map(([name, version]) => {
+  return packages.map((name) => {
     const folder = `${here}node_modules/${name}/`;
     const file = readdirSync(folder).find((file) => /^licen[cs]e(-mit)?(\..*)?$/i.test(file));
-    return `## ${name} ${version}\n\n${readFileSync(folder + file, "utf8")}`;
+    return `## ${name} ${dependencies[name]}\n\n${readFileSync(folder + file, "utf8")}`;
   });
-  return [readFileSync(notices, "utf8"), ...texts].join("\n");
 }
 
+// What is packed differs from one version of zlib to the next, so it is only in what is not kept in the repository.
 const packed = (bytes) => gzipSync(bytes, { level: 9 }).toString("base64");
-const parts = {
-  style: readFileSync(here + "page.css", "utf8"),
-  worker: await bundle("worker.js", false),
-  script: await bundle("main.js", true),
-  wasm: packed(readFileSync(wasm)),
-  notices: packed(licences()),
-};
+const parts = { style: readFileSync(here + "page.css", "utf8").trimEnd() };
+if (kind === "view") {
+  parts.script = await bundle("view.js", true);
+  parts.notices = licences(["three"]).join("\n");
+} else {
+  parts.worker = await bundle("worker.js", false);
+  parts.script = await bundle("main.js", true);
+  parts.wasm = packed(readFileSync(wasm));
+  parts.notices = packed([readFileSync(notices, "utf8"), ...licences(["@bjorn3/browser_wasi_shim", "three"])].join("\n"));
+}
+// Sections of the other page go, and comments around those of this one.
+const other = kind === "view" ? "computes" : "view";
 const page = readFileSync(here + "index.html", "utf8")
+  .replace(new RegExp(`<!--${other}-->\n.*?<!--/${other}-->\n`, "gs"), "")
+  .replace(/<!--\/?(view|computes)-->\n/g, "")
   .replace("/*{style}*/", () => parts.style)
   .replace(/\{(wasm|notices|worker|script)\}/g, (_, name) => parts[name]);
 writeFileSync(output, page);

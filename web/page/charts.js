@@ -121,6 +121,8 @@ export class AlphaScale {
     const first = alphas.findIndex((alpha) => size(alpha) > 0);
     const high = 2 * Math.max(size(alphas[last] ?? 1), size(reference));
     const low = first < 0 ? high / 4 : Math.max(size(alphas[first]), 1e-6 * high);
+    // How far it is from one picture to the next, when it is played.
+    this.step = 1 / 40;
     // It begins a little below the first value.
     [this.low, this.high] = high > 0 ? [Math.log(low / 1.2), Math.log(high)] : [0, 1];
   }
@@ -132,6 +134,24 @@ export class AlphaScale {
 
   alpha(share) {
     return Math.exp(this.low + share * (this.high - this.low)) - this.shift;
+  }
+}
+
+// A scale of a few stops, all as far from each other.
+export class StopScale {
+  constructor(alphas) {
+    this.alphas = alphas;
+    this.step = 1 / Math.max(1, alphas.length - 1);
+  }
+
+  // Of the last stop up to an α.
+  share(alpha) {
+    const above = this.alphas.findIndex((stop) => stop > alpha);
+    return Math.max(0, (above < 0 ? this.alphas.length : above) - 1) * this.step;
+  }
+
+  alpha(share) {
+    return this.alphas[Math.round(share / this.step)];
   }
 }
 

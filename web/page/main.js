@@ -1,25 +1,18 @@
 // The page: what the user does, what the worker answers, and what is seen of it.
 
-import { Box3, Vector3 } from "three";
 import ctBone from "../../presets/ct-bone.toml";
 import ctSkin from "../../presets/ct-skin.toml";
 import molecule from "../../presets/molecule.toml";
 import mri from "../../presets/mri.toml";
 import paper from "../../presets/paper.toml";
 import scattered from "../../presets/points.toml";
-import { AlphaScale, Curve, Diagram, Histogram } from "./charts.js";
-import { CLASSES, EDGES, OF_CLASS, short } from "./colours.js";
+import { AlphaScale, Diagram, Histogram } from "./charts.js";
+import { short } from "./colours.js";
+import { byId, download, element, remark, rows, showNotices, unpacked } from "./dom.js";
 import { Cancelled, Engine, Failure } from "./engine.js";
 import { EXAMPLES } from "./examples.js";
-import { ShapeScene } from "./scene.js";
+import { ShapePanel } from "./shape.js";
 import { Slices } from "./slices.js";
-
-const byId = (id) => document.getElementById(id);
-const element = (name, properties = {}, ...children) => {
-  const made = Object.assign(document.createElement(name), properties);
-  made.append(...children);
-  return made;
-};
 
 // The presets of the command. A volume's have numbers, or a range of values.
 const PRESETS = Object.fromEntries(
@@ -33,12 +26,16 @@ const OF_POINTS = ["points", "molecule"];
 // Volumes of more samples than this are made coarser: a page has 4 GiB.
 const MOST_SAMPLES = 2 ** 26;
 const FORMATS = [
-  ["ply", "PLY"], ["stl", "STL, solid"], ["glb", "GLB"], ["vtu", "VTU"], ["npz", "NPZ"], ["csv", "points, CSV"], ["wvm", "points, WVM"], ["png", "picture, PNG"],
+  ["ply", "PLY"], ["stl", "STL, solid"], ["glb", "GLB"], ["vtu", "VTU"], ["npz", "NPZ"], ["csv", "points, CSV"], ["wvm", "points, WVM"],
 ];
 
-const state = { input: null, facts: null, made: null, alpha: null, grayMin: null, opened: null };
+const state = { input: null, facts: null, grayMin: null, opened: null };
 let engine = null;
-let scene = null;
+const panel = new ShapePanel({
+  at: (alpha) => engine.call({ do: "at", alpha }),
+  measure: (alpha) => engine.call({ do: "measure", alpha }),
+  section: (alpha, axis, place) => engine.call({ do: "section", alpha, axis, place }),
+}, { failed: quietly, moved: (alpha) => diagram.mark(alpha), rested: () => command() });
 
 // Shows what is being done, or that nothing is.
 let working = false;
@@ -46,8 +43,8 @@ function busy(text) {
   working = text !== null;
   byId("working").hidden = !working;
   // What is shown of a shape that is gone, or not there yet, does nothing.
-  byId("shape").inert = !state.made;
-  for (const id of ["alpha-row", "marks", "numbers", "output"]) byId(id).inert = working || !state.made?.alphas;
+  byId("shape").inert = !panel.made;
+  for (const id of ["alpha-row", "marks", "numbers", "output"]) byId(id).inert = working || !panel.made?.alphas;
   byId("slices").inert = working || !state.opened;
   document.body.dataset.state = text === null ? "ready" : "busy";
   if (text !== null) byId("status").textContent = text;
@@ -88,11 +85,6 @@ function progress({ stage, share }) {
   if (share !== undefined) bar.value = share;
 }
 
-function remark(text) {
-  const known = [...byId("remarks").children].some((item) => item.textContent === text.trim());
-  if (!known) byId("remarks").append(element("li", { textContent: text.trim() }));
-}
-
 // Runs a task, which ends the one before; what goes wrong is shown in its place.
 let tasks = 0;
 async function task(text, work) {
@@ -114,15 +106,11 @@ async function task(text, work) {
 
 // After the worker has been ended.
 function restarted() {
-  [state.opened, state.made] = [null, null];
+  state.opened = null;
+  panel.clear();
 }
 
 // ---- Input
-
-function rows(table, facts) {
-  table.replaceChildren(...facts.map(([name, value]) =>
-    element("tr", {}, element("th", { textContent: name }), element("td", {}, value))));
-}
 
 function factsOf(facts) {
   if (facts.kind === "points") {
@@ -164,7 +152,8 @@ function choose(input, files) {
     byId("remarks").replaceChildren();
     for (const id of ["frame", "downsample", "columns", "series"]) byId(id).value = "";
     byId("series").replaceChildren();
-    Object.assign(state, { input, facts: null, made: null, opened: null, suited: false });
+    Object.assign(state, { input, facts: null, opened: null, suited: false });
+    panel.clear();
     busy("Reading …");
     engine.put(files);
     await compute();
@@ -179,7 +168,8 @@ function reading() {
 
 // Reads the input; the first time, its options get the values that suit it.
 async function open() {
-  [state.opened, state.made] = [null, null];
+  state.opened = null;
+  panel.clear();
   const options = reading();
   let facts = await engine.open({ input: state.input, options });
   const samples = (dims) => dims.reduce((a, b) => a * b);
@@ -301,49 +291,29 @@ async function compute() {
   byId("remarks").replaceChildren();
   if (state.opened !== JSON.stringify(reading())) await open();
   if (state.facts.kind === "series") return;
-  state.made = null;
+  panel.clear();
   const made = await engine.call({ do: "shape", options: optionsOfForm() });
-  state.made = made;
-  byId("shape").hidden = false;
-  scene ??= shapeScene();
-  const box = new Box3();
-  box.setFromArray(made.positions);
-  if (box.isEmpty()) box.set(new Vector3(), new Vector3(1, 1, 1));
-  scene.resize();
-  scene.setPoints(made, box);
-  [state.toml, state.alpha, state.shape] = [null, null, made];
-  byId("command").textContent = byId("picked").textContent = "";
-  const colour = byId("colour");
-  [...colour.options].find((option) => option.value === "value").hidden = !made.values;
-  if (colour.value === "value" && !made.values) colour.value = "class";
-  scene.setColour(colour.value);
-  for (const name of ["points", "balls", "hidden"]) scene.show(name, byId(`show-${name}`).checked);
-  for (const name of ["singular", "edges"]) scene.show(name, byId("show-singular").checked);
+  made.domain = state.facts.kind === "volume" ? "the volume" : "the box";
+  state.toml = null;
+  byId("command").textContent = "";
   // The first look, while the shapes at all other α are computed.
-  scene.setShape(made, made.reference);
-  legend(made);
-  byId("alpha-unit").textContent = `${made.unit}²`;
-  byId("alpha-value").value = made.reference;
+  panel.look(made);
   suggestions([]);
   if (made.samples) slices.setPoints(made.samples);
   if (innerWidth < 760) byId("shape").scrollIntoView();
-  document.body.dataset.looked = made.points;
   busy(`${STAGES.filtration} …`);
   const all = await engine.call({ do: "filtration" });
-  if (state.made !== made) return;
-  Object.assign(made, all);
-  for (const id of ["numbers", "output"]) byId(id).hidden = false;
-  state.scale = new AlphaScale(made);
-  curve.set(state.scale, made);
-  diagram.set(state.scale, null);
+  if (panel.made !== made) return;
+  byId("output").hidden = false;
+  diagram.set(new AlphaScale({ ...made, ...all }), null);
   byId("diagram").hidden = true;
   byId("compute-diagram").hidden = false;
   const kept = made.truncation ? `; ${made.truncation.kept} of ${made.truncation.total} Haar coefficients kept` : "";
-  byId("status").textContent = `${made.points} points, ${made.cells} cells in all${kept}.`;
-  await setAlpha(made.reference);
+  byId("status").textContent = `${made.points} points, ${all.cells} cells in all${kept}.`;
+  await panel.open(all, diagram.scale);
   // Nobody waits for these.
   engine.call({ do: "suggest" }).then((found) => {
-    if (state.made !== made) return;
+    if (panel.made !== made) return;
     suggestions([
       ["all points by", found.all_points], ["one region by", found.one_region], ["no void by", found.no_void], ["longest plateau from", found.plateau[0]],
     ]);
@@ -352,156 +322,16 @@ async function compute() {
 
 // Buttons for α: the one that the shape opens at, and others at which something happens.
 function suggestions(others) {
-  const { reference, origin } = state.made;
+  const { reference, origin } = panel.made;
   const name = { default: "default", given: "given", stored: "stored" }[origin.origin] ?? "auto";
   const finite = [[name, reference], ...others].filter(([, alpha]) => Number.isFinite(alpha));
   byId("marks").replaceChildren(...finite.map(([text, alpha]) =>
-    element("button", { type: "button", textContent: `${text} ${short(alpha)}`, onclick: () => moveTo(alpha) })));
+    element("button", { type: "button", textContent: `${text} ${short(alpha)}`, onclick: () => panel.moveTo(alpha) })));
 }
-
-// The last of the stops up to an α: nothing needs to be computed for it.
-function stop(alpha) {
-  const { alphas } = state.made;
-  let [low, high] = [0, alphas.length];
-  while (low < high) {
-    const middle = (low + high) >> 1;
-    if (alphas[middle] <= alpha) low = middle + 1;
-    else high = middle;
-  }
-  return alphas[Math.max(0, low - 1)];
-}
-
-// While a shape is being drawn, only the last α asked for waits.
-let [drawing, next] = [false, null];
-async function setAlpha(alpha) {
-  if (!state.made || !Number.isFinite(alpha)) return;
-  next = alpha;
-  state.alpha = alpha;
-  byId("alpha").value = state.scale.share(alpha);
-  byId("alpha").ariaValueText = `${short(alpha)} ${state.made.unit}²`;
-  if (document.activeElement !== byId("alpha-value")) byId("alpha-value").value = alpha;
-  curve.mark(alpha);
-  diagram.mark(alpha);
-  if (drawing) return;
-  drawing = true;
-  try {
-    while (next !== null) {
-      const wanted = next;
-      next = null;
-      const shape = await engine.call({ do: "at", alpha: wanted });
-      state.shape = shape;
-      scene.setShape(shape, wanted);
-      legend(shape);
-      document.body.dataset.alpha = wanted;
-      document.body.dataset.betti = shape.betti.join(",");
-      if (byId("cut").value !== "") await section(wanted);
-    }
-    later();
-  } finally {
-    drawing = false;
-  }
-}
-
-// As a user asks for it.
-const moveTo = (alpha) => setAlpha(alpha).catch(quietly);
 
 // What ends with a task that was cancelled is no failure of its own.
 function quietly(error) {
   if (!(error instanceof Cancelled)) show(error);
-}
-
-// Counts, measures, voids and the command, once α rests.
-let timer = null;
-function later() {
-  clearTimeout(timer);
-  timer = setTimeout(async () => {
-    if (!state.made) return;
-    try {
-      const alpha = state.alpha;
-      const measured = await engine.call({ do: "measure", alpha });
-      if (alpha !== state.alpha) return;
-      measures(measured);
-      await command();
-      document.body.dataset.measured = alpha;
-    } catch (error) {
-      quietly(error);
-    }
-  }, 150);
-}
-
-function measures(level) {
-  const unit = state.made.unit;
-  const classes = (counts) => ["interior", "regular", "singular"].map((name) => `${counts[name]} ${name}`).join(", ");
-  const [b0, b1, b2] = level.betti;
-  const radius = level.alpha >= 0 ? ` (√α = ${short(Math.sqrt(level.alpha))} ${unit})` : "";
-  rows(byId("measures"), [
-    ["α", `${short(level.alpha)} ${unit}²${radius}`],
-    ["cells", level.cells], ["facets", classes(level.facets)], ["edges", classes(level.edges)], ["vertices", classes(level.vertices)],
-    ["components", b0], ["tunnels", b1], ["voids", b2],
-    ["volume", `${short(level.volume)} ${unit}³, ${(100 * level.coverage).toFixed(1)} % of ${state.facts.kind === "volume" ? "the volume" : "the box"}`],
-    ["boundary", `${short(level.area)} ${unit}²`],
-  ]);
-  document.body.dataset.cells = level.cells;
-  const shift = state.made.centre;
-  const shown = level.voids.slice(0, 200).map((hole) => {
-    const [low, high] = [hole.low, hole.high].map((corner) => corner.map((x, k) => x - shift[k]));
-    const item = element("li", { tabIndex: 0, textContent: `${short(hole.volume)} ${unit}³, ${hole.cells} cells, filled at α = ${short(hole.filling_alpha)}` });
-    item.onpointerenter = item.onfocus = () => scene.light(low, high);
-    item.onpointerleave = item.onblur = () => scene.light();
-    return item;
-  });
-  byId("voids").replaceChildren(...(shown.length ? shown : [element("li", { textContent: "none" })]));
-}
-
-function legend(shape) {
-  const box = (colour) => element("i", { style: `background: ${colour}` });
-  const by = byId("colour").value;
-  if (by !== "class" && scene.scale) {
-    const [low, high] = scene.scale;
-    byId("legend").replaceChildren(element("span", {}, `${by === "value" ? "F" : "ω"}: ${short(low)} `, element("i", { className: "scale" }), ` ${short(high)}`));
-    return;
-  }
-  const parts = [[OF_CLASS[2], `${shape.regular.length / 3} regular facets`], [OF_CLASS[1], `${shape.singular.length / 3} singular facets`], [EDGES, `${shape.edges.length / 2} singular edges`]];
-  const shown = parts.filter(([, text]) => !text.startsWith("0 "));
-  byId("legend").replaceChildren(...shown.map(([colour, text]) => element("span", {}, box(colour), text)));
-  if (!shown.length) byId("legend").textContent = "Only points are in the shape at this α.";
-}
-
-function shapeScene() {
-  const made = new ShapeScene(byId("scene"));
-  let down = null;
-  made.element.addEventListener("pointerdown", (event) => { down = [event.clientX, event.clientY]; });
-  made.element.addEventListener("pointerup", (event) => {
-    if (!down || Math.hypot(event.clientX - down[0], event.clientY - down[1]) > 4) return;
-    const v = made.pick(event);
-    byId("picked").textContent = v === null ? "" : wordsOf(v);
-  });
-  return made;
-}
-
-function wordsOf(v) {
-  const { positions, weights, values, centre, unit } = state.made;
-  const at = [0, 1, 2].map((k) => short(positions[3 * v + k] + centre[k])).join(", ");
-  const value = values ? `, F = ${short(values[v])}` : "";
-  return `point ${v} at (${at}) ${unit}${value}, ω = ${short(weights[v])}, ${CLASSES[state.shape.classes[v]]}`;
-}
-
-// The cut through the cells.
-async function section(alpha) {
-  const axis = Number(byId("cut").value);
-  const name = ["x", "y", "z"][axis];
-  const share = Number(byId("cut-place").value);
-  // Not exactly through the samples of a grid, where cells have their facets.
-  const place = scene.box.min[name] + (share + 1e-6) * (scene.box.max[name] - scene.box.min[name]);
-  scene.setCut(axis, place);
-  scene.setSection(await engine.call({ do: "section", alpha, axis, place: place + state.made.centre[axis] }));
-}
-
-async function cut() {
-  const on = byId("cut").value !== "";
-  byId("cut-place").disabled = !on;
-  if (!on) return scene.setCut(null);
-  if (state.alpha !== null) await moveTo(state.alpha);
 }
 
 // ---- Output
@@ -514,23 +344,16 @@ function nameOf(extension) {
 }
 
 // The command that makes a file of this name, and its recipe.
-async function command(name = nameOf("ply"), alpha = state.alpha, solid = false) {
+async function command(name = nameOf("ply"), alpha = panel.alpha, solid = false) {
   const { command: text, toml } = await engine.call({ do: "command", name, alpha, solid });
   byId("command").textContent = text;
   state.toml = toml;
 }
 
-function download(bytes, name) {
-  const link = element("a", { href: URL.createObjectURL(new Blob([bytes])), download: name });
-  link.click();
-  setTimeout(() => URL.revokeObjectURL(link.href), 1000);
-}
-
 async function save(extension) {
   const name = nameOf(extension);
-  if (extension === "png") return task("Drawing …", async () => download(await scene.png(), name));
   return task(`Writing ${name} …`, async () => {
-    const { alpha } = state;
+    const { alpha } = panel;
     const solid = extension === "stl";
     const { bytes } = await engine.call({ do: "save", name, alpha, solid });
     download(bytes, name);
@@ -556,8 +379,7 @@ const histogram = new Histogram(byId("histogram"), (mark, value, done) => {
   marks();
   if (done) byId("options").requestSubmit();
 });
-const curve = new Curve(byId("curve"), (alpha) => state.made && moveTo(stop(alpha)));
-const diagram = new Diagram(byId("diagram"), moveTo);
+const diagram = new Diagram(byId("diagram"), (alpha) => panel.moveTo(alpha));
 let slices = null;
 
 function keepLeast() {
@@ -580,41 +402,20 @@ function wire() {
     state.suited = false;
     return task("Reading …", compute);
   });
-  byId("alpha").addEventListener("input", () => moveTo(stop(state.scale.alpha(Number(byId("alpha").value)))));
-  // By keys from stop to stop, however far these are apart.
-  byId("alpha").addEventListener("keydown", (event) => {
-    const step = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1, PageUp: 20, PageDown: -20 }[event.key];
-    if (!step) return;
-    event.preventDefault();
-    const { alphas } = state.made;
-    const at = alphas.indexOf(stop(state.alpha)) + step;
-    moveTo(alphas[Math.min(alphas.length - 1, Math.max(0, at))]);
-  });
-  byId("alpha-value").addEventListener("change", ({ target }) => target.value !== "" && moveTo(Number(target.value)));
-  byId("colour").addEventListener("change", () => { scene.setColour(byId("colour").value); legend(state.shape); });
-  byId("show-singular").addEventListener("change", ({ target }) => { scene.show("singular", target.checked); scene.show("edges", target.checked); });
-  for (const name of ["points", "balls", "hidden"]) {
-    byId(`show-${name}`).addEventListener("change", ({ target }) => scene.show(name, target.checked));
-  }
-  byId("cut").addEventListener("change", cut);
-  byId("cut-place").addEventListener("input", cut);
-  byId("home").addEventListener("click", () => scene.home());
+  byId("alpha-value").addEventListener("change", ({ target }) => target.value !== "" && panel.moveTo(Number(target.value)));
+  byId("save-png").addEventListener("click", () => panel.savePicture(nameOf("png")));
   byId("compute-diagram").addEventListener("click", () => task("Sorting simplices …", async () => {
     const { pairs0, pairs1, pairs2 } = await engine.call({ do: "diagram" });
     const pairs = [pairs0, pairs1, pairs2].map((flat) => Array.from({ length: flat.length / 2 }, (_, k) => [flat[2 * k], flat[2 * k + 1]]));
     byId("diagram").hidden = false;
     byId("compute-diagram").hidden = true;
-    diagram.set(state.scale, pairs);
+    diagram.set(diagram.scale, pairs);
     document.body.dataset.pairs = pairs.map((list) => list.length).join(",");
   }));
   byId("formats").replaceChildren(...FORMATS.map(([extension, name]) =>
     element("button", { type: "button", id: `save-${extension}`, textContent: name, onclick: () => save(extension) })));
   byId("save-toml").addEventListener("click", () => state.toml && download(state.toml, "recipe.toml"));
-  byId("show-notices").addEventListener("click", async () => {
-    const text = byId("notices-text");
-    text.textContent ||= new TextDecoder().decode(await unpacked("notices"));
-    text.hidden = !text.hidden;
-  });
+  showNotices();
   byId("copy").addEventListener("click", () => navigator.clipboard?.writeText(byId("command").textContent));
 
   const chosen = (list) => {
@@ -692,13 +493,6 @@ function offer(files) {
   if (files.length === 1 || header) return choose((header ?? first).path, files);
   // Slices, chosen one by one: for the command they have to lie in a folder.
   return choose("slices", files.map(({ path, file }) => ({ path: `slices/${path}`, file })));
-}
-
-async function unpacked(id) {
-  const text = atob(byId(id).textContent.trim());
-  const bytes = Uint8Array.from(text, (c) => c.charCodeAt(0));
-  const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"));
-  return new Response(stream).arrayBuffer();
 }
 
 try {

@@ -6,16 +6,24 @@ import {
   Sphere, Vector2, Vector3, WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
-import { EDGES, OF_CLASS, range, viridis } from "./colours.js";
+import { EDGES, OF_CLASS, range, short, viridis } from "./colours.js";
+import { element as make } from "./dom.js";
 
 const [EXTERIOR, SINGULAR, REGULAR, INTERIOR, HIDDEN] = [0, 1, 2, 3, 4];
+const SPHERES = ["points", "balls", "hidden"];
+// From where the shape is seen at first.
+const HOME = new Vector3(-0.55, -0.75, 0.4);
+// Pixels that the picture is high at least.
+const LEAST_HEIGHT = 160;
+// Points by which the picture is fitted, at most.
+const FITTED = 10000;
 
-// Points and balls are squares that face the viewer, on which the fragment shader draws a sphere: of the ball's own radius, or
-// of a radius on the screen.
+// Points and balls are squares that face the viewer, on which the fragment shader draws a sphere. The radius of a ball is a length,
+// that of a point is in pixels.
 const VERTEX = `
 attribute float radius;
 attribute vec3 tint;
-uniform float pixels;
+uniform bool pixels;
 uniform float scale;
 varying vec3 colour;
 varying vec4 centre;
@@ -23,7 +31,7 @@ varying float size;
 #include <clipping_planes_pars_vertex>
 void main() {
   vec4 mvPosition = modelViewMatrix * vec4(position, 1.0);
-  size = pixels > 0.0 ? pixels * -mvPosition.z / scale : radius;
+  size = pixels ? radius * -mvPosition.z / scale : radius;
   colour = tint;
   centre = mvPosition;
   gl_Position = projectionMatrix * mvPosition;
@@ -61,6 +69,8 @@ export class ShapeScene {
       this.renderer = null;
       element.textContent = "This browser has no WebGL, so the shape is not drawn. Numbers, slices and files work as usual.";
     }
+    this.labels = make("div", { className: "labels" });
+    element.append(this.labels);
     this.scene = new Scene();
     this.camera = new PerspectiveCamera(35, 1, 0.1, 1000);
     this.camera.up.set(0, 0, 1);
@@ -78,8 +88,8 @@ export class ShapeScene {
     this.waiting = false;
   }
 
-  // Other points: what was drawn goes.
-  setPoints({ positions, weights, values }, box) {
+  // Other points: what was drawn goes. The camera stays where it is to be kept.
+  setPoints({ positions, weights, values, differences, original, centre, unit }, box, keep = false) {
     this.group.traverse((object) => {
       object.geometry?.dispose();
       object.material?.dispose();
@@ -88,7 +98,7 @@ export class ShapeScene {
     this.parts = {};
     [this.classes, this.shades] = [null, null];
     this.box = box;
-    this.data = { positions, weights, values };
+    this.data = { positions, weights, values, differences };
     this.position = new BufferAttribute(positions, 3);
     this.colour = new BufferAttribute(new Float32Array(positions.length), 3);
     const surface = (colour) => new MeshLambertMaterial({ color: colour, flatShading: true, side: DoubleSide });
@@ -106,12 +116,13 @@ export class ShapeScene {
     add("singular", Mesh, surface(OF_CLASS[SINGULAR]));
     add("edges", LineSegments, new LineBasicMaterial({ color: EDGES }));
     const spheres = () => new ShaderMaterial({
-      uniforms: { pixels: { value: 0 }, scale: { value: 1 }, projection: { value: this.camera.projectionMatrix } },
+      uniforms: { pixels: { value: false }, scale: { value: 1 }, projection: { value: this.camera.projectionMatrix } },
       vertexShader: VERTEX, fragmentShader: FRAGMENT, clipping: true,
     });
-    for (const name of ["points", "balls", "hidden"]) {
+    for (const name of SPHERES) {
       add(name, Points, spheres());
       this.parts[name].visible = false;
+      this.parts[name].material.uniforms.pixels.value = name !== "balls";
     }
     // Hidden points lie within the shape as a rule, and are to be seen all the same.
     this.parts.hidden.material.depthTest = false;
@@ -120,8 +131,21 @@ export class ShapeScene {
     this.section.frustumCulled = false;
     this.lit = new Box3Helper(new Box3(), new Color("#d55e00"));
     this.lit.visible = false;
-    this.group.add(this.section, this.lit);
-    this.home();
+    // A surface to compare with, the same at every α.
+    add("original", Mesh, new MeshLambertMaterial({ color: "#bebebe", flatShading: true, side: DoubleSide, transparent: true, opacity: 0.5, depthWrite: false }),
+      { position: new BufferAttribute(original?.positions ?? new Float32Array(), 3) });
+    this.parts.original.geometry.setIndex(new BufferAttribute(original?.triangles ?? new Uint32Array(), 1));
+    this.parts.original.visible = false;
+    this.parts.box = new Box3Helper(box, new Color("#888888"));
+    this.parts.box.visible = false;
+    this.labels.replaceChildren(...["x", "y", "z"].map((axis, k) => {
+      const [low, high] = [box.min, box.max].map((corner) => short(corner[axis] + centre[k]));
+      return make("span", { textContent: `${axis}: ${low} to ${high} ${unit}` });
+    }));
+    this.group.add(this.section, this.lit, this.parts.box);
+    if (keep) return;
+    this.settled = null;
+    this.resize();
   }
 
   // The simplices at an α.
@@ -132,7 +156,7 @@ export class ShapeScene {
     index("edges", edges);
     this.classes = classes;
     this.alpha = alpha;
-    this.stale = new Set(["points", "balls", "hidden"]);
+    this.stale = new Set(SPHERES);
     this.refill();
     this.draw();
   }
@@ -142,9 +166,12 @@ export class ShapeScene {
     const { positions, weights } = this.data;
     const chosen = {
       points: (v) => this.classes[v] !== HIDDEN && this.classes[v] !== EXTERIOR,
-      balls: (v) => this.alpha + weights[v] > 0,
+      balls: (v) => this.alpha + weights[v] > 0 && this.alpha < Infinity,
       hidden: (v) => this.classes[v] === HIDDEN,
     };
+    const [least, most] = range(weights);
+    // In pixels, with the weight as the area: diameters from 2 to 9.
+    const dot = (weight) => (most > least ? 1 + 3.5 * Math.sqrt((weight - least) / (most - least)) : 2.5);
     for (const name of this.stale) {
       const part = this.parts[name];
       if (!part.visible) continue;
@@ -155,7 +182,7 @@ export class ShapeScene {
       const colours = OF_CLASS.map((colour) => new Color(colour));
       rows.forEach((v, k) => {
         at.set(positions.subarray(3 * v, 3 * v + 3), 3 * k);
-        radius[k] = Math.sqrt(Math.max(0, this.alpha + weights[v]));
+        radius[k] = name === "balls" ? Math.sqrt(this.alpha + weights[v]) : dot(weights[v]);
         if (this.scale) tint.set(this.colour.array.subarray(3 * v, 3 * v + 3), 3 * k);
         else colours[this.classes[v]].toArray(tint, 3 * k);
       });
@@ -163,13 +190,13 @@ export class ShapeScene {
       part.geometry.setAttribute("radius", new BufferAttribute(radius, 1));
       part.geometry.setAttribute("tint", new BufferAttribute(tint, 3));
       part.geometry.deleteAttribute("color");
-      part.material.uniforms.pixels.value = name === "balls" ? 0 : 2.5;
     }
   }
 
-  // Colours by class, or by values or weights; returns the range of the scale.
+  // Colours by class, or by numbers of the points.
   setColour(by) {
-    const scale = { value: this.data.values, weight: this.data.weights }[by];
+    const { values, weights, differences } = this.data;
+    const scale = { value: values, weight: weights, difference: differences }[by];
     this.scale = scale && range(scale);
     if (scale) {
       const [low, high] = this.scale;
@@ -188,11 +215,10 @@ export class ShapeScene {
     }
     this.paintSection();
     if (this.classes) {
-      this.stale = new Set(["points", "balls", "hidden"]);
+      this.stale = new Set(SPHERES);
       this.refill();
     }
     this.draw();
-    return this.scale;
   }
 
   show(name, visible) {
@@ -205,7 +231,7 @@ export class ShapeScene {
   setCut(axis, place) {
     this.cut = axis === null ? null : { axis, place };
     const cut = this.cut ? [this.plane] : [];
-    for (const part of Object.values(this.parts)) part.material.clippingPlanes = cut;
+    for (const [name, part] of Object.entries(this.parts)) if (name !== "box") part.material.clippingPlanes = cut;
     if (axis === null) this.setSection({ corners: new Float32Array(), shades: new Float32Array() });
     this.draw();
   }
@@ -242,9 +268,28 @@ export class ShapeScene {
     this.draw();
   }
 
-  // The point of the shape at a place on the screen, if there is one.
+  // The point of the shape at a place on the screen, if there is one: the dot there, where points are drawn, or the nearest corner.
   pick(event) {
     const rectangle = this.element.getBoundingClientRect();
+    return this.dotAt(event.clientX - rectangle.left, event.clientY - rectangle.top) ?? this.cornerAt(event, rectangle);
+  }
+
+  // Of the dots within five pixels the one in front.
+  dotAt(x, y) {
+    if (!this.parts.points.visible) return null;
+    const { clientWidth: width, clientHeight: height } = this.element;
+    const at = new Vector3();
+    let [found, depth] = [null, 1];
+    for (let v = 0; v < this.position.count; v++) {
+      if (this.classes[v] === HIDDEN || this.classes[v] === EXTERIOR) continue;
+      at.fromBufferAttribute(this.position, v).project(this.camera);
+      const distance = Math.hypot((1 + at.x) / 2 * width - x, (1 - at.y) / 2 * height - y);
+      if (distance < 5 && at.z < depth) [found, depth] = [v, at.z];
+    }
+    return found;
+  }
+
+  cornerAt(event, rectangle) {
     const at = new Vector2(
       2 * (event.clientX - rectangle.left) / rectangle.width - 1,
       1 - 2 * (event.clientY - rectangle.top) / rectangle.height,
@@ -259,20 +304,79 @@ export class ShapeScene {
     return [hit.face.a, hit.face.b, hit.face.c].reduce((near, v) => (distance(v) < distance(near) ? v : near));
   }
 
+  // Writes what the box measures beside three of its edges that the viewer sees, within the picture.
+  label() {
+    this.labels.hidden = !this.parts?.box.visible;
+    if (this.labels.hidden) return;
+    const { min, max } = this.box;
+    const { position } = this.camera;
+    const middle = this.box.getCenter(new Vector3());
+    const near = (axis) => (position[axis] > middle[axis] ? max : min)[axis];
+    const far = (axis) => (position[axis] > middle[axis] ? min : max)[axis];
+    const places = [[middle.x, near("y"), min.z], [near("x"), middle.y, min.z], [near("x"), far("y"), middle.z]];
+    places.forEach((place, k) => {
+      const at = new Vector3(...place).project(this.camera);
+      Object.assign(this.labels.children[k].style, { left: `clamp(5rem, ${50 + 50 * at.x}%, 100% - 5rem)`, top: `clamp(1rem, ${50 - 50 * at.y}%, 100% - 1rem)` });
+    });
+  }
+
+  // From how far all of it is just seen, as the height of the picture allows and as its width does, and the place to look at: for
+  // a few thousand of the points.
+  fit(width, height) {
+    const { positions } = this.data;
+    const middle = this.box.getCenter(new Vector3());
+    const towards = HOME.clone().normalize();
+    const right = new Vector3(0, 0, 1).cross(towards).normalize();
+    const up = towards.clone().cross(right);
+    const tangent = Math.tan(Math.PI / 360 * this.camera.fov) / 1.06;
+    // Where d is the distance, o the place to look at and z the depth, |x - o| is at most (d - z) times the tangent.
+    const axes = [{ axis: up, tangent }, { axis: right, tangent: tangent * width / height }];
+    const place = new Vector3();
+    const step = Math.ceil(positions.length / 3 / FITTED);
+    for (const one of axes) {
+      let [least, most] = [Infinity, -Infinity];
+      for (let v = 0; v < positions.length / 3; v += step) {
+        place.fromArray(positions, 3 * v).sub(middle);
+        const [along, depth] = [place.dot(one.axis), one.tangent * place.dot(towards)];
+        least = Math.min(least, along - depth);
+        most = Math.max(most, along + depth);
+      }
+      one.distance = (most - least) / 2 / one.tangent;
+      middle.addScaledVector(one.axis, (most + least) / 2);
+    }
+    return { upright: axes[0].distance, across: axes[1].distance, middle };
+  }
+
   // All of it, from the front and a little above.
   home() {
-    const { center, radius: own } = this.box.getBoundingSphere(new Sphere());
-    // Points may all be one.
-    const radius = own || 1;
-    const narrow = Math.min(1, this.camera.aspect);
-    const distance = 1.05 * radius / Math.sin(Math.PI / 360 * this.camera.fov) / narrow;
+    const { clientWidth: width, clientHeight: height } = this.element;
+    // Points may all be one, or lie behind each other, and there may be none.
+    const radius = this.box.getBoundingSphere(new Sphere()).radius || 1;
+    let [distance, center] = [3 * radius, this.box.getCenter(new Vector3())];
+    if (this.position.count > 0) {
+      const { upright, across, middle } = this.fit(width || 1, height || 1);
+      [distance, center] = [Math.max(upright, across, 1.2 * radius), middle];
+    }
     this.controls.target.copy(center);
-    this.camera.position.copy(center).add(new Vector3(-0.55, -0.75, 0.4).setLength(distance));
+    this.camera.position.copy(center).add(HOME.clone().setLength(distance));
     this.camera.near = distance / 500;
     this.camera.far = distance + 50 * radius;
     this.camera.updateProjectionMatrix();
     this.controls.update();
     this.draw();
+  }
+
+  // Where the width decides how large the shape is, the picture is no higher than that.
+  settle() {
+    this.element.style.height = "";
+    const { clientWidth: width, clientHeight: most } = this.element;
+    if (this.position.count === 0 || width === 0) return;
+    let height = most;
+    for (; height > LEAST_HEIGHT; height -= 8) {
+      const { upright, across } = this.fit(width, height);
+      if (across <= upright) break;
+    }
+    if (height < most) this.element.style.height = `${height}px`;
   }
 
   key(event) {
@@ -296,13 +400,17 @@ export class ShapeScene {
   }
 
   resize() {
+    const settled = this.box && this.element.clientWidth === this.settled;
+    if (this.box && !settled) {
+      this.settled = this.element.clientWidth;
+      this.settle();
+    }
     const { clientWidth: width, clientHeight: height } = this.element;
     if (width === 0 || height === 0) return;
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
     this.renderer?.setSize(width, height);
-    if (this.box && !this.sized) this.home();
-    this.sized = this.box !== undefined;
+    if (this.box && !settled) this.home();
     this.draw();
   }
 
@@ -329,11 +437,12 @@ export class ShapeScene {
     this.lamp.position.copy(position).add(new Vector3(-0.5, 0.6, 0.2).applyQuaternion(quaternion).multiplyScalar(position.length() + 1));
     this.lamp.target.position.copy(this.controls.target);
     const pixels = this.renderer.getDrawingBufferSize(new Vector2()).y;
-    for (const name of ["points", "balls", "hidden"]) {
+    for (const name of SPHERES) {
       const part = this.parts?.[name];
       if (part) part.material.uniforms.scale.value = pixels / 2 / Math.tan(Math.PI / 360 * this.camera.fov);
     }
     this.renderer.render(this.scene, this.camera);
+    this.label();
     // As long as the browser lets it be known, which is not all that a frame takes.
     document.body.dataset.frame = (performance.now() - started).toFixed(1);
   }

@@ -1,7 +1,10 @@
 use std::collections::{BTreeMap, HashSet};
+use std::io::Write;
 
+use flate2::Compression;
+use flate2::write::GzEncoder;
 use ndarray::s;
-use serde::Serialize;
+use serde_json::{Map, Value, json};
 use walpha_shape::ladder::Span;
 
 use super::subject::{Detail, Original};
@@ -9,8 +12,68 @@ use crate::base64::base64;
 use crate::error::RenderError;
 use crate::marching::Isosurface;
 
-/// Arrays as base64 of little-endian numbers, by name.
-pub(super) type Arrays = BTreeMap<&'static str, Array>;
+/// Bytes between whose multiples numbers begin, as typed arrays of JavaScript ask.
+const ALIGNMENT: usize = 8;
+
+/// Named arrays of little-endian numbers, one after the other.
+#[derive(Default)]
+pub(super) struct Arrays {
+    /// The JavaScript type of each, its place and its length.
+    places: Map<String, Value>,
+    bytes: Vec<u8>,
+}
+
+impl Arrays {
+    fn put<const N: usize>(
+        &mut self,
+        name: &str,
+        kind: &str,
+        numbers: impl Iterator<Item = [u8; N]>,
+    ) {
+        let at = self.bytes.len();
+        self.bytes.extend(numbers.flatten());
+        let length = (self.bytes.len() - at) / N;
+        self.bytes.resize(self.bytes.len().next_multiple_of(ALIGNMENT), 0);
+        self.places.insert(name.into(), json!({ "kind": kind, "at": at, "length": length }));
+    }
+
+    fn u8(&mut self, name: &str, bytes: impl Iterator<Item = u8>) {
+        self.put(name, "Uint8Array", bytes.map(|byte| [byte]));
+    }
+
+    fn u32(&mut self, name: &str, numbers: impl Iterator<Item = u32>) {
+        self.put(name, "Uint32Array", numbers.map(u32::to_le_bytes));
+    }
+
+    fn f32(&mut self, name: &str, numbers: impl Iterator<Item = f64>) {
+        self.put(name, "Float32Array", numbers.map(|number| (number as f32).to_le_bytes()));
+    }
+
+    fn f64(&mut self, name: &str, numbers: impl Iterator<Item = f64>) {
+        self.put(name, "Float64Array", numbers.map(f64::to_le_bytes));
+    }
+
+    /// Positions as seen from a centre: in single precision, those of a map would be metres apart.
+    fn positions<'a>(&mut self, positions: impl Iterator<Item = &'a [f64; 3]>, centre: [f64; 3]) {
+        self.f32("positions", positions.flat_map(|p| [0, 1, 2].map(|k| p[k] - centre[k])));
+    }
+
+    /// The text of an element of the page: gzip, as base64, of the length of an object in JSON, this object with the
+    /// places of the arrays, and these.
+    pub(super) fn packed(self, mut content: Value) -> String {
+        content["arrays"] = self.places.into();
+        let content = content.to_string();
+        let mut bytes = (content.len() as u32).to_le_bytes().to_vec();
+        bytes.extend(content.as_bytes());
+        bytes.resize(bytes.len().next_multiple_of(ALIGNMENT), 0);
+        bytes.extend(self.bytes);
+        let mut gzip = GzEncoder::new(Vec::new(), Compression::default());
+        gzip.write_all(&bytes)
+            .and_then(|()| gzip.finish())
+            .map(|packed| base64(&packed))
+            .expect("memory takes all bytes")
+    }
+}
 
 /// The arrays of a level of detail: each simplex once for all α.
 pub(super) struct Packed {
@@ -18,71 +81,49 @@ pub(super) struct Packed {
     pub simplified: Option<String>,
 }
 
-/// Numbers of one type.
-#[derive(Serialize)]
-pub(super) struct Array {
-    /// The JavaScript type that holds them.
-    kind: &'static str,
-    base64: String,
-}
-
-impl Array {
-    fn u8(bytes: &[u8]) -> Self {
-        Self { kind: "Uint8Array", base64: base64(bytes) }
-    }
-
-    fn u32(numbers: &[u32]) -> Self {
-        let bytes: Vec<u8> = numbers.iter().flat_map(|n| n.to_le_bytes()).collect();
-        Self { kind: "Uint32Array", base64: base64(&bytes) }
-    }
-
-    fn f32(numbers: impl Iterator<Item = f64>) -> Self {
-        let bytes: Vec<u8> = numbers.flat_map(|n| (n as f32).to_le_bytes()).collect();
-        Self { kind: "Float32Array", base64: base64(&bytes) }
-    }
-}
+/// The first level of points that are in no shape whatever α, as the page has it: they are hidden.
+const NEVER: u32 = 255;
 
 /// The most samples along an axis for the surface to compare.
 const ISOSURFACE_SAMPLES: usize = 64;
 
 impl Packed {
-    pub(super) fn of(detail: &Detail<'_>, most_facets: usize) -> Self {
+    pub(super) fn of(detail: &Detail<'_>, centre: [f64; 3], most_facets: usize) -> Self {
         let points = detail.levels.points();
         let mut facets = detail.levels.facets();
         let mut edges = detail.levels.singular_edges();
         let simplified = simplify(points.positions(), &mut facets, &mut edges, most_facets);
-        let axis = |k: usize| Array::f32(points.positions().iter().map(move |p| p[k]));
-        let mut arrays = Arrays::from([("x", axis(0)), ("y", axis(1)), ("z", axis(2))]);
-        arrays.insert("weights", Array::f32(points.weights().iter().copied()));
+        let mut arrays = Arrays::default();
+        arrays.positions(points.positions().iter(), centre);
+        arrays.f32("weights", points.weights().iter().copied());
         if let Some(values) = points.values() {
-            arrays.insert("values", Array::f32(values.iter().copied()));
+            arrays.f32("values", values.iter().copied());
         }
         if let Some(differences) = detail.differences {
-            arrays.insert("differences", Array::f32(differences.local.iter().copied()));
+            arrays.f32("differences", differences.local.iter().copied());
         }
-        // Hidden points never enter.
-        let never = detail.levels.len() as u32;
-        let mut spans = vec![Span { first: never, regular: never, interior: never }; points.len()];
+        let mut spans = vec![Span { first: NEVER, regular: NEVER, interior: NEVER }; points.len()];
         for (v, span) in detail.levels.vertices() {
             spans[v as usize] = span;
         }
-        arrays.insert("pointSpans", Array::u8(&bytes(spans.iter())));
-        let flat: Vec<u32> = facets.iter().flat_map(|facet| facet.0).collect();
-        arrays.insert("facets", Array::u32(&flat));
-        arrays.insert("facetSpans", Array::u8(&bytes(facets.iter().map(|facet| &facet.1))));
-        let flat: Vec<u32> = edges.iter().flat_map(|edge| edge.0).collect();
-        arrays.insert("edges", Array::u32(&flat));
-        arrays.insert("edgeSpans", Array::u8(&bytes(edges.iter().map(|edge| &edge.1))));
+        arrays.u8("pointSpans", bytes(spans.iter()));
+        let levels = detail.levels.alphas().iter().map(|alpha| alpha.squared());
+        arrays.f64("alphas", levels);
+        arrays.u32("facets", facets.iter().flat_map(|facet| facet.0));
+        arrays.u8("facetSpans", bytes(facets.iter().map(|facet| &facet.1)));
+        arrays.u32("edges", edges.iter().flat_map(|edge| edge.0));
+        arrays.u8("edgeSpans", bytes(edges.iter().map(|edge| &edge.1)));
         Self { arrays, simplified }
     }
 }
 
-/// The arrays of the surface to compare.
-pub(super) fn surface(original: &Original<'_>) -> Result<Arrays, RenderError> {
+/// The surface to compare.
+pub(super) fn surface(original: &Original<'_>, centre: [f64; 3]) -> Result<Arrays, RenderError> {
     let surface = isosurface(original)?;
-    let axis = |k: usize| Array::f32(surface.positions.iter().map(move |p| p[k]));
-    let facets = Array::u32(surface.triangles.as_flattened());
-    Ok(Arrays::from([("x", axis(0)), ("y", axis(1)), ("z", axis(2)), ("facets", facets)]))
+    let mut arrays = Arrays::default();
+    arrays.positions(surface.positions.iter(), centre);
+    arrays.u32("triangles", surface.triangles.as_flattened().iter().copied());
+    Ok(arrays)
 }
 
 /// The surface to compare, in the coordinates of the points.
@@ -99,8 +140,8 @@ fn isosurface(original: &Original<'_>) -> Result<Isosurface, RenderError> {
 }
 
 /// Three levels per span, a byte each.
-fn bytes<'a>(spans: impl Iterator<Item = &'a Span>) -> Vec<u8> {
-    spans.flat_map(|span| [span.first, span.regular, span.interior].map(|k| k as u8)).collect()
+fn bytes<'a>(spans: impl Iterator<Item = &'a Span>) -> impl Iterator<Item = u8> {
+    spans.flat_map(|span| [span.first, span.regular, span.interior].map(|k| k as u8))
 }
 
 /// Merges the points in each box of a grid into the first one, with boxes as small as the number of facets

@@ -42,18 +42,6 @@ pub struct Differences {
     pub rmse: f64,
 }
 
-impl Subject<'_> {
-    /// Whether points have values: at every level of detail, or at none.
-    pub(super) fn is_valued(&self) -> bool {
-        self.details.iter().all(|detail| detail.levels.points().values().is_some())
-    }
-
-    /// Whether points have differences to the original at every level of detail.
-    pub(super) fn is_compared(&self) -> bool {
-        self.details.iter().all(|detail| detail.differences.is_some())
-    }
-}
-
 /// A volume that is shown by its isosurface, downsampled if it is large.
 #[derive(Clone, Copy)]
 pub struct Original<'a> {
