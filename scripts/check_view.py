@@ -265,7 +265,7 @@ def rgb(colour):
 
 def settle(browser):
     """Waits until nothing is left to draw."""
-    browser.wait(RESTED)
+    browser.wait(f"document.body.dataset.moving === undefined && {RESTED}")
     browser.evaluate("new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(() => resolve(true))))")
 
 
@@ -379,9 +379,18 @@ def look(browser, checks, page, screen, out):
     end = browser.wait("document.getElementById('play').textContent === 'Play' && document.getElementById('alpha').value === '1'")
     checks.say(f"{screen}: play goes to the end", end)
     move(browser, start)
+    drawn = []
     for key in ["ArrowLeft", "ArrowLeft", "+"]:
         browser.evaluate(f"document.getElementById('scene').dispatchEvent(new KeyboardEvent('keydown', {{ key: '{key}' }}))")
+        browser.evaluate("new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(() => resolve(true))))")
+        drawn.append(browser.evaluate("document.body.dataset.drawn"))
     settle(browser)
+    drawn.append(browser.evaluate("document.body.dataset.drawn"))
+    # Most browsers without a graphics card are slow.
+    if sum(count for name, count, _ in browser.evaluate(LEGEND) if name.endswith("facets")) > 50000:
+        slow = browser.evaluate("document.body.dataset.slow") == "true"
+        right = ("coarse" in drawn[:3]) == slow and drawn[3] == "whole"
+        checks.say(f"{screen}: many triangles are turned coarsely where that is slow, and drawn whole at rest", right, f"slow: {slow}, {drawn}")
     turned = picture(browser)
     press(browser, "home")
     checks.say(

@@ -17,6 +17,12 @@ const HOME = new Vector3(-0.55, -0.75, 0.4);
 const LEAST_HEIGHT = 160;
 // Points by which the picture is fitted, at most.
 const FITTED = 10000;
+// What takes longer than these milliseconds to draw is drawn coarsely while it moves, if it has more triangles than these.
+const [SLOW, MANY] = [30, 50000];
+// Boxes along the longest side, the points in which become one in a coarse picture.
+const COARSE = 64;
+// Milliseconds after which it has come to rest.
+const REST = 200;
 
 // Points and balls are squares that face the viewer, on which the fragment shader draws a sphere. The radius of a ball is a length,
 // that of a point is in pixels.
@@ -75,7 +81,7 @@ export class ShapeScene {
     this.camera = new PerspectiveCamera(35, 1, 0.1, 1000);
     this.camera.up.set(0, 0, 1);
     this.controls = new OrbitControls(this.camera, this.renderer?.domElement ?? element);
-    this.controls.addEventListener("change", () => this.draw());
+    this.controls.addEventListener("change", () => this.moved());
     this.scene.add(new AmbientLight(0xffffff, 1.3));
     this.lamp = new DirectionalLight(0xffffff, 2.2);
     this.scene.add(this.lamp, this.lamp.target);
@@ -85,7 +91,7 @@ export class ShapeScene {
     new ResizeObserver(() => this.resize()).observe(element);
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.draw());
     element.addEventListener("keydown", (event) => this.key(event));
-    this.waiting = false;
+    [this.waiting, this.moving, this.slow] = [false, false, false];
   }
 
   // Other points: what was drawn goes. The camera stays where it is to be kept.
@@ -96,7 +102,7 @@ export class ShapeScene {
     });
     this.group.clear();
     this.parts = {};
-    [this.classes, this.shades] = [null, null];
+    [this.classes, this.shades, this.standsFor] = [null, null, null];
     this.box = box;
     this.data = { positions, weights, values, differences };
     this.position = new BufferAttribute(positions, 3);
@@ -150,10 +156,13 @@ export class ShapeScene {
 
   // The simplices at an α.
   setShape({ regular, singular, edges, classes }, alpha) {
-    const index = (name, rows) => this.parts[name].geometry.setIndex(new BufferAttribute(rows, 1));
-    index("regular", regular);
-    index("singular", singular);
-    index("edges", edges);
+    for (const [name, rows] of Object.entries({ regular, singular, edges })) {
+      const part = this.parts[name];
+      part.geometry.setIndex(part.whole = new BufferAttribute(rows, 1));
+      part.coarse = null;
+    }
+    // Whether it is slow is found out by drawing it a second time: at first, programs and arrays go to the graphics card.
+    this.slow = regular.length + singular.length > 3 * MANY ? "at first" : false;
     this.classes = classes;
     this.alpha = alpha;
     this.stale = new Set(SPHERES);
@@ -414,6 +423,42 @@ export class ShapeScene {
     this.draw();
   }
 
+  // The view has changed, and may go on to.
+  moved() {
+    this.moving = true;
+    document.body.dataset.moving = "";
+    clearTimeout(this.timer);
+    this.timer = setTimeout(() => this.rest(), REST);
+    this.draw();
+  }
+
+  rest() {
+    clearTimeout(this.timer);
+    this.moving = false;
+    delete document.body.dataset.moving;
+    this.draw();
+  }
+
+  // Triangles between the first points in each of a grid of boxes, without those that have collapsed.
+  coarse(rows) {
+    const { positions } = this.data;
+    const { min, max } = this.box;
+    const side = Math.max(max.x - min.x, max.y - min.y, max.z - min.z) / COARSE || 1;
+    const first = new Map();
+    this.standsFor ??= Uint32Array.from({ length: positions.length / 3 }, (_, v) => {
+      const [x, y, z] = [0, 1, 2].map((k) => Math.floor((positions[3 * v + k] - min.getComponent(k)) / side));
+      const box = (z * (COARSE + 1) + y) * (COARSE + 1) + x;
+      if (!first.has(box)) first.set(box, v);
+      return first.get(box);
+    });
+    const kept = [];
+    for (let row = 0; row < rows.length; row += 3) {
+      const [a, b, c] = [this.standsFor[rows[row]], this.standsFor[rows[row + 1]], this.standsFor[rows[row + 2]]];
+      if (a !== b && b !== c && c !== a) kept.push(a, b, c);
+    }
+    return new Uint32Array(kept);
+  }
+
   draw() {
     if (this.waiting) return;
     this.waiting = true;
@@ -441,13 +486,33 @@ export class ShapeScene {
       const part = this.parts?.[name];
       if (part) part.material.uniforms.scale.value = pixels / 2 / Math.tan(Math.PI / 360 * this.camera.fov);
     }
+    const isCoarse = this.slow === true && this.moving;
+    if (typeof this.slow === "boolean") {
+      for (const name of ["regular", "singular"]) {
+        const part = this.parts?.[name];
+        if (!part?.whole) continue;
+        if (isCoarse) part.coarse ??= new BufferAttribute(this.coarse(part.whole.array), 1);
+        part.geometry.setIndex(isCoarse ? part.coarse : part.whole);
+      }
+    }
     this.renderer.render(this.scene, this.camera);
+    if (this.slow === "at first") {
+      this.slow = "once more";
+    } else if (this.slow === "once more") {
+      // Only the pixels say when it is drawn.
+      const context = this.renderer.getContext();
+      context.readPixels(0, 0, 1, 1, context.RGBA, context.UNSIGNED_BYTE, new Uint8Array(4));
+      this.slow = performance.now() - started > SLOW;
+      document.body.dataset.slow = this.slow;
+    }
     this.label();
+    document.body.dataset.drawn = isCoarse ? "coarse" : "whole";
     // As long as the browser lets it be known, which is not all that a frame takes.
     document.body.dataset.frame = (performance.now() - started).toFixed(1);
   }
 
   async png() {
+    this.rest();
     this.drawNow();
     if (!this.renderer) throw new Error("this browser has no WebGL, so there is no picture");
     return new Promise((resolve) => this.renderer.domElement.toBlob(resolve, "image/png"));
