@@ -142,6 +142,17 @@ def make_files(folder):
     ]
 
 
+def large_file(path, size=420):
+    """A ball in more samples than a page works on."""
+    with path.open("wb") as out:
+        out.write(f"NRRD0004\ntype: uint8\ndimension: 3\nsizes: {size} {size} {size}\nencoding: raw\n\n".encode())
+        for z in range(size):
+            for y in range(size):
+                square = (0.4 * size) ** 2 - (z - size / 2) ** 2 - (y - size / 2) ** 2
+                width = 2 * round(math.sqrt(max(0, square)))
+                out.write((b"\xc8" * width).center(size, b"\0"))
+
+
 class Firefox:
     """Speaks the Marionette protocol: lengths and JSON over a socket."""
 
@@ -487,6 +498,12 @@ def look_at_all(browser, page, checks, files, downloads, out, large):
         took = time.monotonic() - started
         checks.say(f"{example}, all α, in {all_of_them} s", took < all_of_them, f"{took:.2f} s; {page.text('status')}")
         page.settled(200)
+    if large:
+        large_file(page.folder / "large.nrrd")
+        page.choose("large.nrrd")
+        agrees(page, checks, "large.nrrd")
+        told = page.text("remarks")
+        checks.say("a volume that is too large is made coarser, and said to be", "420×420×420 samples are too many" in told, told)
     unnamed = browser.evaluate("[...document.querySelectorAll('input:not([hidden]), select, button, canvas')].filter((e) => !(e.labels?.length || e.getAttribute('aria-label') || e.tagName === 'BUTTON' && e.textContent.trim()) && e.closest('#scene') === null).map((e) => e.id)")
     checks.say("every control has a name", not unnamed, str(unnamed))
     browser.call("Emulation.setDeviceMetricsOverride", width=1400, height=950, deviceScaleFactor=1, mobile=False)

@@ -23,8 +23,6 @@ const PRESETS = Object.fromEntries(
 );
 const OF_VOLUMES = ["ct-bone", "ct-skin", "mri", "paper"];
 const OF_POINTS = ["points", "molecule"];
-// Volumes of more samples than this are made coarser: a page has 4 GiB.
-const MOST_SAMPLES = 2 ** 26;
 const FORMATS = [
   ["ply", "PLY"], ["stl", "STL, solid"], ["glb", "GLB"], ["vtu", "VTU"], ["npz", "NPZ"], ["csv", "points, CSV"], ["wvm", "points, WVM"],
 ];
@@ -172,10 +170,8 @@ async function open() {
   panel.clear();
   const options = reading();
   let facts = await engine.open({ input: state.input, options });
-  const samples = (dims) => dims.reduce((a, b) => a * b);
-  if (facts.kind === "volume" && options.downsample === undefined && samples(facts.dims) > MOST_SAMPLES) {
-    options.downsample = Math.ceil(Math.cbrt(samples(facts.dims) / MOST_SAMPLES));
-    byId("downsample").value = options.downsample;
+  if (facts.kind === "large") {
+    options.downsample = byId("downsample").value = facts.downsample;
     remark(`${facts.dims.join("×")} samples are too many for a page: ${options.downsample} along each axis become one`);
     facts = await engine.open({ input: state.input, options });
   }

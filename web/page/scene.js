@@ -75,7 +75,7 @@ export class ShapeScene {
       this.renderer = null;
       element.textContent = "This browser has no WebGL, so the shape is not drawn. Numbers, slices and files work as usual.";
     }
-    this.labels = make("div", { className: "labels" });
+    this.labels = make("div", { className: "labels", hidden: true });
     element.append(this.labels);
     this.scene = new Scene();
     this.camera = new PerspectiveCamera(35, 1, 0.1, 1000);

@@ -12,8 +12,8 @@ use walpha::points::{
 };
 use walpha::progress::{Listener, Monitor, Stage};
 use walpha::shape::Betti;
-use walpha::volume::{self, Hounsfield, SampleStats, Series};
-use walpha::{Alpha, AlphaShape, Class, Points, PointsError, Recipe, Volume, VolumeError};
+use walpha::volume::{self, Hounsfield, SampleStats, Series, Source};
+use walpha::{Alpha, AlphaShape, Class, Dims, Points, PointsError, Recipe, Volume, VolumeError};
 
 use crate::answer::{Answer, Array};
 use crate::options::{Options, Setting, Written, quoted};
@@ -23,6 +23,9 @@ use crate::request::Request;
 const BARS: usize = 256;
 /// Number of critical values of α among which the page moves without computing: more than its slider has pixels.
 const STOPS: usize = 1024;
+
+/// Volumes of more samples than this are made coarser: a page has 4 GiB.
+const MOST_SAMPLES: f64 = (1u64 << 26) as f64;
 
 /// What the page works on.
 pub(crate) struct Session {
@@ -232,8 +235,20 @@ impl Session {
             self.opened = Some(Opened::Points(points, metadata));
             return Ok(answer);
         }
+        // Before it is read, where the format says how large it is.
+        if recipe.read.downsample.is_none()
+            && let Ok(source) = Source::open(input, &recipe.read)
+            && let Some(answer) = too_large(source.dims())
+        {
+            return Ok(answer);
+        }
         // Values as they are: gray levels follow the window, which changes.
         let volume = volume::open_monitored(input, &recipe.read, &monitor)?;
+        if recipe.read.downsample.is_none()
+            && let Some(answer) = too_large(volume.dims())
+        {
+            return Ok(answer);
+        }
         let answer = describe_volume(&volume);
         self.opened = Some(Opened::Volume(volume));
         Ok(answer)
@@ -300,6 +315,14 @@ impl Session {
         let stops = Shown::at(&filtration, &alphas);
         Ok(made.all.insert(All { filtration, stops }).described())
     }
+}
+
+/// What to say of a volume of more samples than a page works on: how many samples along each axis should become one.
+fn too_large(dims: Dims) -> Option<Answer> {
+    let samples: f64 = dims.xyz().map(|n| n as f64).iter().product();
+    let downsample = (samples / MOST_SAMPLES).cbrt().ceil();
+    let head = json!({ "kind": "large", "dims": dims.xyz(), "downsample": downsample });
+    (downsample > 1.0).then(|| Answer::of(head, Vec::new()))
 }
 
 /// The writer of points for a file, if it is not one of shapes.

@@ -7,7 +7,9 @@ use ndarray::{Array3, s};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use super::{Volume, VolumeError};
+use walpha_base::Monitor;
+
+use super::{Dims, Frame, Nan, Source, Volume, VolumeError};
 
 /// Samples from one index up to, and without, another along each axis (x, y, z); a missing
 /// end is that of the volume.
@@ -48,34 +50,141 @@ impl Region {
 /// mean.
 #[expect(clippy::missing_panics_doc, reason = "an invariant, never met")]
 pub fn downsample(volume: Volume, n: NonZeroUsize) -> Volume {
-    let step = volume.dims().xyz().map(|size| n.get().min(size));
-    let [nx, ny, nz] = [0, 1, 2].map(|k| volume.dims().xyz()[k] / step[k]);
-    let [sx, sy, _] = volume.dims().xyz();
+    let blocks = Blocks::of(volume.dims(), n);
     let samples = volume.as_slice();
-    let mean = |voxel: usize| {
-        let block = [voxel % nx, voxel / nx % ny, voxel / (nx * ny)];
-        let [x, y, z] = [0, 1, 2].map(|k| block[k] * step[k]..(block[k] + 1) * step[k]);
-        let rows = z.flat_map(|z| y.clone().map(move |y| (z * sy + y) * sx));
-        let all = rows.flat_map(|row| x.clone().map(move |x| row + x));
-        let there = all.filter(|&i| !volume.is_missing(i));
-        let (count, sum) =
-            there.fold((0u32, 0.0), |(n, sum), i| (n + 1, sum + f64::from(samples[i])));
-        if count == 0 { None } else { Some((sum / f64::from(count)) as f32) }
-    };
-    let means: Vec<Option<f32>> = (0..nx * ny * nz).into_par_iter().map(mean).collect();
+    let means = blocks.means(samples, |sample| volume.is_missing(sample));
     let least = samples.iter().copied().fold(f32::INFINITY, f32::min);
-    let middle = step.map(|n| (n - 1) as f64 / 2.0);
-    let frame = volume.frame().part(middle, step.map(|n| n as f64));
-    let missing = volume.has_missing().then(|| means.iter().map(Option::is_none).collect());
-    let values = means.into_iter().map(|mean| mean.unwrap_or(least)).collect();
-    let coarse = Array3::from_shape_vec((nz, ny, nx), values).expect("one for each block");
-    volume.like(coarse, frame).expect("no axis is longer").with_missing(missing)
+    let (samples, missing) = blocks.filled(means, least, volume.has_missing());
+    let frame = blocks.frame(volume.frame());
+    volume.like(samples, frame).expect("no axis is longer").with_missing(missing)
+}
+
+/// The same of a volume that is read in parts, so that its memory does not grow with what is read; `nan` is the rule for
+/// samples that are not finite.
+///
+/// # Errors
+/// The file cannot be read or is damaged, [`VolumeError::NotFinite`], and [`VolumeError::Cancelled`].
+pub(crate) fn downsample_source(
+    source: &Source,
+    n: NonZeroUsize,
+    nan: Option<Nan>,
+    monitor: &Monitor,
+) -> Result<Volume, VolumeError> {
+    downsample_slabs(source, n, nan, AT_ONCE, monitor)
+}
+
+fn downsample_slabs(
+    source: &Source,
+    n: NonZeroUsize,
+    nan: Option<Nan>,
+    at_once: usize,
+    monitor: &Monitor,
+) -> Result<Volume, VolumeError> {
+    let blocks = Blocks::of(source.dims(), n);
+    let [sx, sy, sz] = source.dims().xyz();
+    // Whole blocks of planes, as many as are read at once.
+    let step = blocks.step[2];
+    let planes = (at_once / (sx * sy) / step * step).max(step);
+    let mut means = Vec::with_capacity(blocks.count.iter().product());
+    let (mut least, mut is_any_missing) = (f32::INFINITY, false);
+    for z in (0..sz).step_by(planes) {
+        let mut samples = source.read([0, 0, z], [sx, sy, planes.min(sz - z)])?;
+        let missing = samples.par_iter().any(|value| !value.is_finite());
+        let mut is_missing = Vec::new();
+        match nan {
+            Some(Nan::Mask) if missing => {
+                is_missing = samples.par_iter().map(|value| !value.is_finite()).collect();
+                is_any_missing = true;
+            }
+            Some(Nan::Value(value)) if missing => {
+                samples.par_iter_mut().filter(|v| !v.is_finite()).for_each(|v| *v = value);
+            }
+            _ => {}
+        }
+        if is_missing.is_empty()
+            && let Some(index) = samples.par_iter().position_first(|value| !value.is_finite())
+        {
+            let at = [index % sx, index / sx % sy, z + index / (sx * sy)];
+            return Err(VolumeError::NotFinite { value: samples[index], at });
+        }
+        let is_missing = |sample: usize| is_missing.get(sample).is_some_and(|&missing| missing);
+        let there = samples.iter().enumerate().filter(|&(sample, _)| !is_missing(sample));
+        least = there.fold(least, |least, (_, &value)| least.min(value));
+        means.extend(blocks.means(&samples, is_missing));
+        monitor.report((z + planes).min(sz) as u64, sz as u64)?;
+    }
+    // None is finite.
+    if least == f32::INFINITY {
+        return Err(VolumeError::NotFinite { value: least, at: [0; 3] });
+    }
+    let (samples, missing) = blocks.filled(means, least, is_any_missing);
+    let volume = Volume::new(samples, blocks.frame(source.frame()))?.with_missing(missing);
+    let volume = volume.with_dtype(source.dtype());
+    Ok(if source.has_gray_levels() { volume.with_gray_levels() } else { volume })
+}
+
+/// Samples read at a time at most, if they are more than a block of planes: 64 MiB.
+const AT_ONCE: usize = 1 << 24;
+
+/// The blocks of samples that become one each.
+struct Blocks {
+    /// Samples of the volume along x and y.
+    row: [usize; 2],
+    /// Samples of a block along x, y and z.
+    step: [usize; 3],
+    /// Blocks along x, y and z.
+    count: [usize; 3],
+}
+
+impl Blocks {
+    fn of(dims: Dims, n: NonZeroUsize) -> Self {
+        let sizes = dims.xyz();
+        let step = sizes.map(|size| n.get().min(size));
+        Self { row: [sizes[0], sizes[1]], step, count: [0, 1, 2].map(|k| sizes[k] / step[k]) }
+    }
+
+    /// The mean of each block among planes that begin with one, x fastest; `None` where all samples are missing.
+    fn means(
+        &self,
+        samples: &[f32],
+        is_missing: impl Fn(usize) -> bool + Sync,
+    ) -> Vec<Option<f32>> {
+        let Self { row: [sx, sy], step, count: [nx, ny, _] } = *self;
+        let mean = |voxel: usize| {
+            let block = [voxel % nx, voxel / nx % ny, voxel / (nx * ny)];
+            let [x, y, z] = [0, 1, 2].map(|k| block[k] * step[k]..(block[k] + 1) * step[k]);
+            let rows = z.flat_map(|z| y.clone().map(move |y| (z * sy + y) * sx));
+            let all = rows.flat_map(|row| x.clone().map(move |x| row + x));
+            let there = all.filter(|&i| !is_missing(i));
+            let (count, sum) =
+                there.fold((0u32, 0.0), |(n, sum), i| (n + 1, sum + f64::from(samples[i])));
+            if count == 0 { None } else { Some((sum / f64::from(count)) as f32) }
+        };
+        let layers = samples.len() / (sx * sy) / step[2];
+        (0..nx * ny * layers).into_par_iter().map(mean).collect()
+    }
+
+    /// The coarse samples, of which missing ones are the least of all, and which are missing, if any sample is.
+    fn filled(
+        &self,
+        means: Vec<Option<f32>>,
+        least: f32,
+        is_any_missing: bool,
+    ) -> (Array3<f32>, Option<Vec<bool>>) {
+        let [nx, ny, nz] = self.count;
+        let missing = is_any_missing.then(|| means.iter().map(Option::is_none).collect());
+        let values = means.into_iter().map(|mean| mean.unwrap_or(least)).collect();
+        (Array3::from_shape_vec((nz, ny, nx), values).expect("one for each block"), missing)
+    }
+
+    fn frame(&self, frame: &Frame) -> Frame {
+        frame.part(self.step.map(|n| (n - 1) as f64 / 2.0), self.step.map(|n| n as f64))
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Frame, Nan};
 
     fn numbered() -> Volume {
         let samples = Array3::from_shape_fn((3, 4, 5), |(z, y, x)| (100 * z + 10 * y + x) as f32);
@@ -123,5 +232,30 @@ mod tests {
         assert!(coarse.is_missing(1) && !coarse.is_missing(0));
         let part = Region { first: [2, 0, 0], end: [None; 3] }.of(&volume).unwrap();
         assert!(part.is_missing(0) && !part.is_missing(2));
+    }
+    /// Whatever is missing, and where planes are left over.
+    #[test]
+    fn read_in_parts_it_is_the_same() {
+        let mut samples = Array3::from_shape_fn((7, 5, 4), |(z, y, x)| (z * y * y + x) as f32);
+        let whole = Volume::of_file(samples.clone(), Frame::VOXEL).unwrap();
+        samples.slice_mut(s![0..2, .., ..]).fill(f32::NAN);
+        samples[[6, 0, 3]] = f32::NEG_INFINITY;
+        let torn = Volume::of_file(samples.clone(), Frame::VOXEL).unwrap();
+        let none = Volume::of_file(samples.mapv(|_| f32::NAN), Frame::VOXEL).unwrap();
+        for volume in [whole, torn, none] {
+            for nan in [None, Some(Nan::Mask), Some(Nan::Value(-3.0)), Some(Nan::Value(f32::NAN))] {
+                for n in [1, 2, 3, 9].map(|n| NonZeroUsize::new(n).unwrap()) {
+                    let at_once =
+                        volume.clone().resolve_nan(nan).map(|volume| downsample(volume, n));
+                    let source = Source::of_volume(volume.clone());
+                    let in_parts = downsample_slabs(&source, n, nan, 1, &Monitor::noop());
+                    match (at_once, in_parts) {
+                        (Ok(at_once), Ok(in_parts)) => assert_eq!(at_once, in_parts, "{nan:?} {n}"),
+                        (Err(one), Err(other)) => assert_eq!(one.to_string(), other.to_string()),
+                        (one, other) => panic!("{nan:?} {n}: {one:?}, {other:?}"),
+                    }
+                }
+            }
+        }
     }
 }

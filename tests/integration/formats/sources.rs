@@ -2,11 +2,12 @@
 
 use std::fs::{self, File};
 use std::io::{Seek, SeekFrom, Write};
+use std::num::NonZeroUsize;
 use std::path::Path;
 
 use ndarray::Array3;
 use walpha::volume::{
-    Dtype, Endian, Nan, RawLayout, ReadOptions, Region, Source, VolumeWriter, open,
+    Dtype, Endian, Nan, RawLayout, ReadOptions, Region, Source, VolumeWriter, downsample, open,
 };
 use walpha::{Dims, Frame, Volume};
 
@@ -16,7 +17,7 @@ fn numbered() -> Volume {
     Volume::new(samples, frame.with_coordinates(walpha::Coordinates::PATIENT)).unwrap()
 }
 
-/// Boxes of a source are those of the volume.
+/// Boxes of a source are those of the volume, and what is made coarser while it is read is the volume made coarser.
 fn same(path: &Path, options: &ReadOptions) {
     let (input, whole) = (path.to_str().unwrap(), options);
     let whole = open(input, whole).unwrap();
@@ -37,6 +38,9 @@ fn same(path: &Path, options: &ReadOptions) {
         let expected = whole.samples().slice_move(ndarray::s![z, y, x]).to_owned();
         assert_eq!(read, expected.into_iter().collect::<Vec<f32>>(), "{input} {first:?} {size:?}");
     }
+    let two = NonZeroUsize::new(2).unwrap();
+    let coarse = open(input, &options.clone().downsample(two)).unwrap();
+    assert_eq!(coarse, downsample(whole, two), "{input}");
 }
 
 #[test]

@@ -10,6 +10,7 @@ use walpha_base::near::nearest;
 use super::magic::{is_dicom, is_gzip};
 use super::table::{FORMATS, VolumeFormat};
 
+use crate::crop::downsample_source;
 use crate::error::{format_error, io_error};
 #[cfg(feature = "formats")]
 use crate::read::naming;
@@ -73,7 +74,7 @@ pub fn read_monitored(
     finish(path, options, volume, |error| error)
 }
 
-/// The same for a file that is open.
+/// The same for a file that is open. What is made coarser is read in parts, where its format allows that.
 ///
 /// # Errors
 /// Those of [`read_monitored`].
@@ -82,6 +83,13 @@ pub fn read_file(
     options: &ReadOptions,
     monitor: &Monitor,
 ) -> Result<Volume, VolumeError> {
+    if let Some(n) = options.downsample
+        && options.region.is_none()
+        && let Ok(source) = source_of(file, options)
+    {
+        return downsample_source(&source, n, options.nan, monitor)
+            .map_err(|error| in_file(file.path(), naming_data_files(file, options, error)));
+    }
     let volume = match &options.raw {
         Some(layout) => raw::read(file, layout, monitor),
         None => detect(file, options).and_then(|Detected { format, .. }| {
@@ -104,13 +112,18 @@ fn finish(
         let finite = volume.resolve_nan(options.nan).map_err(name)?;
         options.part(finite)
     });
-    volume.map_err(|error| match error {
+    volume.map_err(|error| in_file(path, error))
+}
+
+/// An error that says which file it is about.
+fn in_file(path: &Path, error: VolumeError) -> VolumeError {
+    match error {
         VolumeError::Io { .. }
         | VolumeError::Format { .. }
         | VolumeError::InFile { .. }
         | VolumeError::Cancelled(_) => error,
         other => VolumeError::InFile { path: path.into(), source: Box::new(other) },
-    })
+    }
 }
 
 /// An error about samples, with the names of the files that hold them where those are not the header's.
