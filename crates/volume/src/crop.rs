@@ -237,12 +237,14 @@ mod tests {
     #[test]
     fn read_in_parts_it_is_the_same() {
         let mut samples = Array3::from_shape_fn((7, 5, 4), |(z, y, x)| (z * y * y + x) as f32);
+        samples[[6, 1, 1]] = -50.0;
         let whole = Volume::of_file(samples.clone(), Frame::VOXEL).unwrap();
-        samples.slice_mut(s![0..2, .., ..]).fill(f32::NAN);
         samples[[6, 0, 3]] = f32::NEG_INFINITY;
+        let late = Volume::of_file(samples.clone(), Frame::VOXEL).unwrap();
+        samples.slice_mut(s![0..2, .., ..]).fill(f32::NAN);
         let torn = Volume::of_file(samples.clone(), Frame::VOXEL).unwrap();
         let none = Volume::of_file(samples.mapv(|_| f32::NAN), Frame::VOXEL).unwrap();
-        for volume in [whole, torn, none] {
+        for volume in [whole, late, torn, none] {
             for nan in [None, Some(Nan::Mask), Some(Nan::Value(-3.0)), Some(Nan::Value(f32::NAN))] {
                 for n in [1, 2, 3, 9].map(|n| NonZeroUsize::new(n).unwrap()) {
                     let at_once =
