@@ -113,10 +113,7 @@ fn downsample_slabs(
         means.extend(blocks.means(&samples, is_missing));
         monitor.report((z + planes).min(sz) as u64, sz as u64)?;
     }
-    // None is finite.
-    if least == f32::INFINITY {
-        return Err(VolumeError::NotFinite { value: least, at: [0; 3] });
-    }
+    // Where none is finite the least is not either, which is refused.
     let (samples, missing) = blocks.filled(means, least, is_any_missing);
     let volume = Volume::new(samples, blocks.frame(source.frame()))?.with_missing(missing);
     let volume = volume.with_dtype(source.dtype());
