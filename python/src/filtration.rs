@@ -129,6 +129,30 @@ impl Filtration {
         })
     }
 
+    /// How the squared radii of simplices, whose points are one after the other, change with each of these: x, y, z and weight.
+    fn derivatives<'py>(
+        &self,
+        py: Python<'py>,
+        vertices: PyReadonlyArray1<'_, u32>,
+        corners: usize,
+        task: Task<'_>,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let vertices = numbers(&vertices)?;
+        let filtration = Arc::clone(&self.0);
+        let found = run(py, &task, move |_| {
+            let mut found = Vec::with_capacity(4 * vertices.len());
+            for simplex in vertices.chunks_exact(corners) {
+                for ladder::Derivative { position: [x, y, z], weight, .. } in
+                    filtration.derivatives(simplex)
+                {
+                    found.extend([x, y, z, weight]);
+                }
+            }
+            Ok::<_, ShapeError>(found)
+        })?;
+        Ok(found.into_pyarray(py))
+    }
+
     /// Values of α to try, as JSON.
     fn suggestions(&self, py: Python<'_>, task: Task<'_>) -> PyResult<String> {
         let filtration = Arc::clone(&self.0);
@@ -161,6 +185,7 @@ pub struct Simplices {
     intervals: Vec<[f64; 3]>,
     ranks: Vec<u32>,
     gabriel: Vec<bool>,
+    gabriel_simplices: Vec<u32>,
     order: Vec<u32>,
     pairs: ladder::Pairs,
     loops: ladder::Loops,
@@ -176,6 +201,7 @@ impl Simplices {
             intervals: Vec::with_capacity(ordered.len()),
             ranks: Vec::with_capacity(ordered.len()),
             gabriel: Vec::with_capacity(ordered.len()),
+            gabriel_simplices: ordered.gabriel_simplices(),
             order: ordered.order().to_vec(),
             pairs: ordered.pairs().clone(),
             loops: loops.clone(),
@@ -231,6 +257,11 @@ impl Simplices {
     #[getter]
     fn gabriel<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<bool>>> {
         column(py, self.gabriel.iter().copied())
+    }
+
+    #[getter]
+    fn gabriel_simplices<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<u32>>> {
+        column(py, self.gabriel_simplices.iter().copied())
     }
 
     #[getter]

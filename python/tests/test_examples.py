@@ -1,5 +1,6 @@
 import importlib.util
 import pathlib
+import re
 import subprocess
 import sys
 
@@ -12,6 +13,7 @@ NEEDS = {
     "own_weights.py": [],
     "napari_surface.py": [],
     "choose_alpha.py": [],
+    "optimise_persistence.py": ["torch"],
 }
 
 
@@ -29,5 +31,8 @@ def test_an_example_runs(name, tmp_path):
     assert ran.stdout
     if name == "picture.py":
         assert (tmp_path / "phantom.png").stat().st_size > 10_000
+    if name == "optimise_persistence.py":
+        first, last = (float(number) for number in re.findall(r"0\.\d+", ran.stdout))
+        assert last > 2 * first
     if name == "napari_surface.py" and importlib.util.find_spec("napari") is None:
         assert "pip install napari" in ran.stdout

@@ -143,3 +143,48 @@ def test_points_of_a_plane(cloud):
     assert np.array_equal(filtration.shape(np.inf).facets, flat.facets)
     some = filtration.shape(filtration.optimal_alpha())
     assert 0 < len(some.facets) <= len(flat.facets) and walpha.check(some).verdict == "exact"
+
+
+def test_derivatives_are_limits_of_differences(cloud, weights):
+    """Of all values, by a position and a weight."""
+    cloud, weights, step = cloud[:40], weights[:40], 1e-7
+
+    def values(moved):
+        simplices = walpha.filtration(moved[:, :3], weights=moved[:, 3]).simplices()
+        return {row: value for row, value in simplices}
+
+    given = np.column_stack([cloud, weights])
+    filtration = walpha.filtration(cloud, weights=weights)
+    simplices = filtration.simplices()
+    rows = [tuple(row) for table in simplices._tables() for row in table.tolist()]
+    assert (simplices.gabriel_simplices == np.arange(len(rows)))[simplices.gabriel].all()
+    assert (simplices.gabriel_simplices != np.arange(len(rows)))[~simplices.gabriel].all() and not simplices.gabriel.all()
+    assert (simplices.ranks[simplices.gabriel_simplices] == simplices.ranks).all()
+    for axis in range(4):
+        low, high = given.copy(), given.copy()
+        low[3, axis] -= step
+        high[3, axis] += step
+        low, high = values(low), values(high)
+        compared = 0
+        for number, row in enumerate(rows):
+            source = rows[simplices.gabriel_simplices[number]]
+            if row not in low or row not in high or 3 not in source or simplices.values[number] > 1:
+                continue
+            positions, of_weights = filtration.derivatives([source])
+            assert positions.shape == (1, len(source), 3) and of_weights.shape == (1, len(source))
+            found = np.append(positions[0, source.index(3)], of_weights[0, source.index(3)])[axis]
+            assert found == pytest.approx((high[row] - low[row]) / (2 * step), rel=1e-3, abs=1e-3)
+            compared += 1
+        assert compared > 10
+
+
+@pytest.mark.parametrize("simplices", [[0, 1], [[0, 1, 2, 3, 4]], [[0, 9]], [[-1, 0]], [[0.0, 1.0]]])
+def test_derivatives_of_what_is_no_simplex(simplices):
+    with pytest.raises(ValueError, match="simplices has"):
+        walpha.filtration([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]).derivatives(simplices)
+
+
+def test_derivatives_of_nothing():
+    filtration = walpha.filtration([[0, 0, 0], [1, 0, 0]])
+    positions, weights = filtration.derivatives(np.empty((0, 3), dtype=int))
+    assert positions.shape == (0, 3, 3) and weights.shape == (0, 3)

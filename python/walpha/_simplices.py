@@ -27,6 +27,9 @@ class Simplices:
         only, even where two different ones have one nearest double.
     gabriel : ndarray of bool, (n,)
         Whether its own smallest orthogonal sphere is empty; else it comes with a simplex it is a face of.
+    gabriel_simplices : ndarray of int64, (n,)
+        The number of the Gabriel simplex whose sphere gives the value: its own, or that of the one it comes with. How
+        values change with the points, :meth:`Filtration.derivatives` tells of these.
     regular, interior : ndarray of float64, (n,)
         From which α on it is a face of another simplex of the shape, and off the boundary.
     order : ndarray of int64, (n,)
@@ -46,6 +49,7 @@ class Simplices:
     values: Floats
     ranks: Indices
     gabriel: NDArray[np.bool_]
+    gabriel_simplices: Indices
     regular: Floats
     interior: Floats
     order: Indices
@@ -65,6 +69,7 @@ class Simplices:
         made.cells = _arrays.kept(given.cells)
         made.values, made.regular, made.interior = _arrays.frozen(given.intervals).T
         made.ranks, made.gabriel = _arrays.kept(given.ranks), _arrays.frozen(given.gabriel)
+        made.gabriel_simplices = _arrays.kept(given.gabriel_simplices)
         made.order = _arrays.kept(given.order)
         made.component_pairs = _arrays.kept(given.component_pairs)
         made.loop_pairs = _arrays.kept(given.loop_pairs)

@@ -39,5 +39,5 @@ mod values;
 pub use critical::{Curve, Suggestions};
 pub use filtration::Filtration;
 pub use levels::{Levels, Span};
-pub use ordered::{Entry, Interval, Loops, Ordered, Pairs};
+pub use ordered::{Derivative, Entry, Interval, Loops, Ordered, Pairs};
 pub use table::{Ladder, Level};

@@ -1,5 +1,6 @@
 //! All simplices of a filtration in the order in which they enter.
 
+mod gradient;
 mod intervals;
 mod loops;
 mod numbers;
@@ -16,6 +17,7 @@ use super::levels::OwnLevels;
 use super::radii::{Radii, Radius};
 use super::{Filtration, Levels};
 use crate::{Alpha, Betti, ShapeError};
+pub use gradient::Derivative;
 pub use intervals::Interval;
 pub use loops::Loops;
 use numbers::Numbers;
