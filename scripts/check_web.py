@@ -153,6 +153,17 @@ def large_file(path, size=420):
                 out.write((b"\xc8" * width).center(size, b"\0"))
 
 
+def huge_file(path, size=1024):
+    """Zeros, a megabyte when compressed, that take more memory than a page has."""
+    header = struct.pack("<I36x8h", 348, 3, size, size, size, 1, 1, 1, 1) + struct.pack("<14x2h2x8f", 2, 8, 1, 1, 1, 1, 0, 0, 0, 0)
+    header = header.ljust(108, b"\0") + struct.pack("<f", 352)
+    header = header.ljust(344, b"\0") + b"n+1\0\0\0\0\0"
+    with gzip.open(path, "wb", compresslevel=1) as out:
+        out.write(header)
+        for _ in range(size):
+            out.write(bytes(size * size))
+
+
 class Firefox:
     """Speaks the Marionette protocol: lengths and JSON over a socket."""
 
@@ -453,6 +464,14 @@ def look_at_all(browser, page, checks, files, downloads, out, large):
     words = subprocess.run([page.walpha, "info", "bad.nii"], cwd=page.folder, capture_output=True, text=True).stderr
     why = next(line.split("why: ", 1)[1] for line in words.splitlines() if "why: " in line)
     checks.say("what cannot be read is refused in the command's words", why[:40] in page.text("failure"), page.text("failure"))
+
+    huge_file(page.folder / "huge.nii.gz")
+    page.choose("huge.nii.gz")
+    browser.wait("document.body.dataset.state === 'failed'", 60)
+    said = page.text("failure")
+    checks.say("what does not fit into memory is an error that says so", "of memory, more than is available" in said and "Next: crop" in said, said)
+    page.choose("ball.xyz")
+    agrees(page, checks, "after too large a file")
 
     (page.folder / "gone.xyz").write_text("0 0 0\n1 0 0\n0 1 0\n0 0 1\n")
     browser.choose("files", [page.folder / "gone.xyz"])
