@@ -23,8 +23,8 @@ pub struct Page {
 }
 
 impl Page {
-    /// A level of detail with more facets than this, those of all levels of α counted, is drawn simplified: as many take a
-    /// few megabytes, and a phone turns smoothly what of them one level shows.
+    /// A level of detail with more facets than this, those of all levels of α counted, is drawn simplified: as many take
+    /// about ten megabytes.
     pub const MOST_FACETS: usize = 1_000_000;
     /// The most levels of a page, as levels are stored in bytes.
     pub const MOST_LEVELS: usize = 250;
