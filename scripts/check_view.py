@@ -290,8 +290,8 @@ def move(browser, share):
     return browser.evaluate("document.body.dataset.alpha")
 
 
-def click(browser):
-    """What is said of the first place near the middle where something is said."""
+def point_at(browser, how):
+    """What is said of the first place near the middle where something is said, when it is clicked or pointed at."""
     browser.evaluate("document.getElementById('scene').scrollIntoView({ block: 'center' })")
     x, y = browser.evaluate(
         "(() => { const b = document.getElementById('scene').getBoundingClientRect();"
@@ -299,12 +299,17 @@ def click(browser):
     )
     said = ""
     for step in range(12):
-        for kind in ["mousePressed", "mouseReleased"]:
-            browser.call("Input.dispatchMouseEvent", type=kind, x=x + 9 * step - 50, y=y + 7 * step - 40, button="left", clickCount=1)
+        place = {"x": x + 9 * step - 50, "y": y + 7 * step - 40}
+        if how == "a click":
+            for kind in ["mousePressed", "mouseReleased"]:
+                browser.call("Input.dispatchMouseEvent", type=kind, button="left", clickCount=1, **place)
+        else:
+            browser.call("Input.dispatchMouseEvent", type="mouseMoved", **place)
+            time.sleep(0.4)
         said = browser.evaluate("document.getElementById('picked').textContent")
         if said:
             break
-    browser.evaluate("scrollTo(0, 0)")
+    browser.evaluate("scrollTo(0, 0); document.getElementById('picked').textContent = ''")
     return said
 
 
@@ -379,29 +384,27 @@ def look(browser, checks, page, screen, out):
     end = browser.wait("document.getElementById('play').textContent === 'Play' && document.getElementById('alpha').value === '1'")
     checks.say(f"{screen}: play goes to the end", end)
     move(browser, start)
-    drawn = []
     many = sum(count for name, count, _ in browser.evaluate(LEGEND) if name.endswith("facets")) > 50000
     for key in ["ArrowLeft", "ArrowLeft", "+"]:
         browser.evaluate(f"document.getElementById('scene').dispatchEvent(new KeyboardEvent('keydown', {{ key: '{key}' }}))")
         browser.evaluate("new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(() => resolve(true))))")
-        drawn.append(browser.evaluate("document.body.dataset.drawn"))
         # It is measured with the first of these.
         if many:
             browser.wait("document.body.dataset.slow !== undefined", 10)
     settle(browser)
-    drawn.append(browser.evaluate("document.body.dataset.drawn"))
     # Most browsers without a graphics card are slow.
     if many:
         slow = browser.evaluate("document.body.dataset.slow") == "true"
-        right = ("coarse" in drawn[:3]) == slow and drawn[3] == "whole"
-        checks.say(f"{screen}: many triangles are turned coarsely where that is slow, and drawn whole at rest", right, f"slow: {slow}, {drawn}")
+        coarse, last = browser.evaluate("[document.body.dataset.coarse !== undefined, document.body.dataset.drawn]")
+        checks.say(f"{screen}: many triangles are turned coarsely where that is slow, and drawn whole at rest", coarse == slow and last == "whole", f"slow: {slow}, coarse: {coarse}, then {last}")
     turned = picture(browser)
     press(browser, "home")
     checks.say(
         f"{screen}: the view can be reset", not same(browser, turned, first) and same(browser, picture(browser), first),
     )
-    said = click(browser)
-    checks.say(f"{screen}: a click tells of a point", said.startswith("point ") and "ω = " in said, repr(said))
+    for how in ["a click"] if mobile else ["pointing", "a click"]:
+        said = point_at(browser, how)
+        checks.say(f"{screen}: {how} tells of a point", said.startswith("point ") and "ω = " in said, repr(said))
     for name in ["points", "balls", "original", "box", "singular"]:
         if browser.evaluate(f"document.getElementById('show-{name}').parentElement.hidden"):
             continue

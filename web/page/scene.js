@@ -507,6 +507,7 @@ export class ShapeScene {
       this.timer = setTimeout(() => this.rest(), REST);
     }
     document.body.dataset.drawn = isCoarse ? "coarse" : "whole";
+    if (isCoarse) document.body.dataset.coarse = "";
     // As long as the browser lets it be known, which is not all that a frame takes.
     document.body.dataset.frame = (performance.now() - started).toFixed(1);
   }

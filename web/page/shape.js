@@ -192,6 +192,13 @@ export class ShapePanel {
     return `point ${v} at (${at}) ${unit}${value}${difference}, ω = ${short(weights[v])}, ${CLASSES[this.shape.classes[v]]}`;
   }
 
+  // Says what is known of the point at a place on the screen.
+  tell(event) {
+    if (!this.shape) return;
+    const v = this.scene.pick(event);
+    byId("picked").textContent = v === null ? "" : this.wordsOf(v);
+  }
+
   // The cut, with the cells that it goes through where these are known.
   async section(alpha) {
     const axis = Number(byId("cut").value);
@@ -269,9 +276,15 @@ export class ShapePanel {
     byId("scene").addEventListener("pointerdown", (event) => { down = [event.clientX, event.clientY]; });
     byId("scene").addEventListener("pointerup", (event) => {
       if (!down || Math.hypot(event.clientX - down[0], event.clientY - down[1]) > 4) return;
-      const v = this.scene.pick(event);
-      byId("picked").textContent = v === null ? "" : this.wordsOf(v);
+      this.tell(event);
     });
+    // A mouse need not click: it is enough that it rests.
+    let resting = null;
+    byId("scene").addEventListener("pointermove", (event) => {
+      clearTimeout(resting);
+      if (event.pointerType === "mouse" && event.buttons === 0) resting = setTimeout(() => this.tell(event), 150);
+    });
+    byId("scene").addEventListener("pointerleave", () => clearTimeout(resting));
   }
 
   async savePicture(name) {
