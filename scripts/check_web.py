@@ -154,7 +154,7 @@ def large_file(path, size=420):
 
 
 def huge_file(path, size=1024):
-    """Zeros, a megabyte when compressed, that take more memory than a page has."""
+    """Zeros, a few megabytes when compressed, that take more memory than a page has."""
     header = struct.pack("<I36x8h", 348, 3, size, size, size, 1, 1, 1, 1) + struct.pack("<14x2h2x8f", 2, 8, 1, 1, 1, 1, 0, 0, 0, 0)
     header = header.ljust(108, b"\0") + struct.pack("<f", 352)
     header = header.ljust(344, b"\0") + b"n+1\0\0\0\0\0"

@@ -1,5 +1,7 @@
 // Colours, as walpha's pictures have them: classes from a palette for all eyes (Okabe and Ito), values by viridis.
 
+// The numbers of classes, as the library gives them.
+export const [EXTERIOR, SINGULAR, REGULAR, INTERIOR, HIDDEN] = [0, 1, 2, 3, 4];
 export const CLASSES = ["exterior", "singular", "regular", "interior", "hidden"];
 export const OF_CLASS = ["#9aa3b2", "#d55e00", "#0072b2", "#009e73", "#cc79a7"];
 export const EDGES = "#e69f00";

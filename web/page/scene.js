@@ -6,10 +6,9 @@ import {
   Sphere, Vector2, Vector3, WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
-import { EDGES, OF_CLASS, range, short, viridis } from "./colours.js";
+import { EDGES, EXTERIOR, HIDDEN, INTERIOR, OF_CLASS, range, REGULAR, short, SINGULAR, viridis } from "./colours.js";
 import { element as make } from "./dom.js";
 
-const [EXTERIOR, SINGULAR, REGULAR, INTERIOR, HIDDEN] = [0, 1, 2, 3, 4];
 const SPHERES = ["points", "balls", "hidden"];
 // From where the shape is seen at first.
 const HOME = new Vector3(-0.55, -0.75, 0.4);
@@ -105,6 +104,7 @@ export class ShapeScene {
     [this.classes, this.shades, this.standsFor] = [null, null, null];
     this.box = box;
     this.data = { positions, weights, values, differences };
+    this.weightRange = range(weights);
     this.position = new BufferAttribute(positions, 3);
     this.colour = new BufferAttribute(new Float32Array(positions.length), 3);
     const surface = (colour) => new MeshLambertMaterial({ color: colour, flatShading: true, side: DoubleSide });
@@ -178,7 +178,7 @@ export class ShapeScene {
       balls: (v) => this.alpha + weights[v] > 0 && this.alpha < Infinity,
       hidden: (v) => this.classes[v] === HIDDEN,
     };
-    const [least, most] = range(weights);
+    const [least, most] = this.weightRange;
     // In pixels, with the weight as the area: diameters from 2 to 9.
     const dot = (weight) => (most > least ? 1 + 3.5 * Math.sqrt((weight - least) / (most - least)) : 2.5);
     for (const name of this.stale) {

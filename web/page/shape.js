@@ -2,7 +2,7 @@
 
 import { Box3, Vector3 } from "three";
 import { Curve } from "./charts.js";
-import { CLASSES, EDGES, OF_CLASS, short } from "./colours.js";
+import { CLASSES, EDGES, INTERIOR, OF_CLASS, REGULAR, short, SINGULAR } from "./colours.js";
 import { byId, download, element, rows } from "./dom.js";
 import { ShapeScene } from "./scene.js";
 
@@ -52,12 +52,12 @@ export class ShapePanel {
   }
 
   // What there is at all α: stops with their Betti numbers.
-  open(all, scale, alpha = this.made.reference) {
+  open(all, scale) {
     Object.assign(this.made, all);
     this.scale = scale;
     byId("numbers").hidden = false;
     this.curve.set(scale, this.made);
-    return this.setAlpha(alpha);
+    return this.setAlpha(this.made.reference);
   }
 
   // The last of the stops up to an α: nothing needs to be computed for it.
@@ -165,14 +165,14 @@ export class ShapePanel {
       return;
     }
     const { regular, singular, edges, classes } = this.shape;
-    const parts = [[OF_CLASS[2], regular.length / 3, "regular facets"]];
+    const parts = [[OF_CLASS[REGULAR], regular.length / 3, "regular facets"]];
     if (byId("show-singular").checked) {
-      parts.push([OF_CLASS[1], singular.length / 3, "singular facets"], [EDGES, edges.length / 2, "singular edges"]);
+      parts.push([OF_CLASS[SINGULAR], singular.length / 3, "singular facets"], [EDGES, edges.length / 2, "singular edges"]);
     }
     if (byId("show-points").checked) {
       const counts = CLASSES.map(() => 0);
       for (const kind of classes) counts[kind] += 1;
-      for (const kind of [3, 2, 1]) parts.push([OF_CLASS[kind], counts[kind], `${CLASSES[kind]} points`]);
+      for (const kind of [INTERIOR, REGULAR, SINGULAR]) parts.push([OF_CLASS[kind], counts[kind], `${CLASSES[kind]} points`]);
     }
     const shown = parts.filter(([, count]) => count > 0);
     byId("legend").replaceChildren(...shown.map(([colour, count, name]) => element("span", {}, box(colour), `${count} ${name}`)));

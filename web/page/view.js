@@ -1,10 +1,10 @@
 // The page that `walpha view` writes: shapes at several α, with their numbers, are in it.
 
 import { StopScale } from "./charts.js";
+import { EXTERIOR, HIDDEN, INTERIOR, REGULAR, SINGULAR } from "./colours.js";
 import { byId, element, remark, rows, showNotices, unpacked } from "./dom.js";
 import { ShapePanel } from "./shape.js";
 
-const [EXTERIOR, SINGULAR, REGULAR, INTERIOR, HIDDEN] = [0, 1, 2, 3, 4];
 // The first level of what is in no shape, whatever α: the point is hidden.
 const NEVER = 255;
 

@@ -12,7 +12,7 @@ use walpha::points::{
 };
 use walpha::progress::{Listener, Monitor, Stage};
 use walpha::shape::Betti;
-use walpha::volume::{self, Hounsfield, SampleStats, Series, Source};
+use walpha::volume::{self, Hounsfield, OpenVolume, ReadOptions, SampleStats, Series};
 use walpha::{Alpha, AlphaShape, Class, Dims, Points, PointsError, Recipe, Volume, VolumeError};
 
 use crate::answer::{Answer, Array};
@@ -235,18 +235,17 @@ impl Session {
             self.opened = Some(Opened::Points(points, metadata));
             return Ok(answer);
         }
-        // Before it is read, where the format says how large it is.
-        if recipe.read.downsample.is_none()
-            && let Ok(source) = Source::open(input, &recipe.read)
-            && let Some(answer) = too_large(source.dims())
+        let file = OpenVolume::open(input)?;
+        // Before it is read, where the format says how large it is; samples are small.
+        if !is_sample
+            && let Ok(source) = file.source(&recipe.read)
+            && let Some(answer) = too_large(source.dims(), &recipe.read)
         {
             return Ok(answer);
         }
         // Values as they are: gray levels follow the window, which changes.
-        let volume = volume::open_monitored(input, &recipe.read, &monitor)?;
-        if recipe.read.downsample.is_none()
-            && let Some(answer) = too_large(volume.dims())
-        {
+        let volume = file.read(&recipe.read, &monitor)?;
+        if let Some(answer) = too_large(volume.dims(), &recipe.read) {
             return Ok(answer);
         }
         let answer = describe_volume(&volume);
@@ -317,12 +316,13 @@ impl Session {
     }
 }
 
-/// What to say of a volume of more samples than a page works on: how many samples along each axis should become one.
-fn too_large(dims: Dims) -> Option<Answer> {
+/// What to say of a volume of more samples than a page works on, if nothing is said of making it coarser: how many samples along
+/// each axis should become one.
+fn too_large(dims: Dims, options: &ReadOptions) -> Option<Answer> {
     let samples: f64 = dims.xyz().map(|n| n as f64).iter().product();
     let downsample = (samples / MOST_SAMPLES).cbrt().ceil();
     let head = json!({ "kind": "large", "dims": dims.xyz(), "downsample": downsample });
-    (downsample > 1.0).then(|| Answer::of(head, Vec::new()))
+    (downsample > 1.0 && options.downsample.is_none()).then(|| Answer::of(head, Vec::new()))
 }
 
 /// The writer of points for a file, if it is not one of shapes.

@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use walpha_base::Monitor;
 
+use super::source::AT_ONCE;
 use super::{Dims, Frame, Nan, Source, Volume, VolumeError};
 
 /// Samples from one index up to, and without, another along each axis (x, y, z); a missing
@@ -119,9 +120,6 @@ fn downsample_slabs(
     let volume = volume.with_dtype(source.dtype());
     Ok(if source.has_gray_levels() { volume.with_gray_levels() } else { volume })
 }
-
-/// Samples read at a time at most, if they are more than a block of planes: 64 MiB.
-const AT_ONCE: usize = 1 << 24;
 
 /// The blocks of samples that become one each.
 struct Blocks {

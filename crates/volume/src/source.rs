@@ -154,7 +154,7 @@ pub(super) fn whole_only(path: &Path, name: &str) -> VolumeError {
 }
 
 /// Samples read at a time at most, where the format allows it: 64 MiB.
-const AT_ONCE: usize = 1 << 24;
+pub(crate) const AT_ONCE: usize = 1 << 24;
 
 /// Range of a volume's samples, and the number of missing ones.
 #[derive(Clone, Copy, Debug, PartialEq)]

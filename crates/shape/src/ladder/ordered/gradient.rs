@@ -43,16 +43,6 @@ impl Ordered<'_> {
         }
         found
     }
-
-    fn is_gabriel(&self, number: u32) -> bool {
-        let radii = &self.filtration().radii;
-        match self.numbers.row(number) {
-            (0, row) => radii.vertices[row].known().is_some(),
-            (1, row) => radii.edges[row].known().is_some(),
-            (2, row) => radii.facets[row].known().is_some(),
-            _ => true,
-        }
-    }
 }
 
 impl Filtration {

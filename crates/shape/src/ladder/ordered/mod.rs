@@ -246,25 +246,13 @@ impl Ordered<'_> {
     /// # Panics
     /// If there is no such number.
     pub fn simplex(&self, number: u32) -> Entry<'_> {
-        let filtration = self.filtration();
         let value = |rank: u32| {
             self.values().get(rank as usize).map_or(f64::INFINITY, |value| value.squared())
         };
-        let (vertices, span, gabriel) = match self.numbers.row(number) {
-            (0, row) => {
-                let gabriel = filtration.radii.vertices[row].known().is_some();
-                (&self.vertices()[row][..], self.levels.vertices[row], gabriel)
-            }
-            (1, row) => (
-                &self.edges()[row][..],
-                self.levels.edges[row],
-                filtration.radii.edges[row].known().is_some(),
-            ),
-            (2, row) => (
-                &self.facets()[row][..],
-                self.levels.facets[row],
-                filtration.radii.facets[row].known().is_some(),
-            ),
+        let (vertices, span) = match self.numbers.row(number) {
+            (0, row) => (&self.vertices()[row][..], self.levels.vertices[row]),
+            (1, row) => (&self.edges()[row][..], self.levels.edges[row]),
+            (2, row) => (&self.facets()[row][..], self.levels.facets[row]),
             (_, row) => {
                 let first = self.levels.cells[self.cell_rows[row] as usize];
                 let (value, vertices) = (value(first), &self.cells[row]);
@@ -273,6 +261,7 @@ impl Ordered<'_> {
             }
         };
         let [value, regular, interior] = [span.first, span.regular, span.interior].map(value);
+        let gabriel = self.is_gabriel(number);
         Entry { vertices, value, rank: span.first, gabriel, regular, interior }
     }
 
@@ -284,6 +273,16 @@ impl Ordered<'_> {
     /// The Betti numbers from each value on, by rank. O(n α(n)).
     pub fn betti_curve(&self) -> Vec<Betti> {
         self.levels.betti()
+    }
+
+    fn is_gabriel(&self, number: u32) -> bool {
+        let radii = &self.filtration().radii;
+        match self.numbers.row(number) {
+            (0, row) => radii.vertices[row].known().is_some(),
+            (1, row) => radii.edges[row].known().is_some(),
+            (2, row) => radii.facets[row].known().is_some(),
+            _ => true,
+        }
     }
 
     /// The rank of a simplex's value.
