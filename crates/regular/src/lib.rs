@@ -40,6 +40,7 @@ mod merging;
 #[doc(hidden)]
 pub mod number;
 mod order;
+mod power_diagram;
 mod predicates;
 mod sites;
 mod torus;
@@ -51,6 +52,7 @@ use walpha_base::memory::asking;
 pub use dynamic::DynamicTriangulation;
 pub use error::{SitesError, TriangulationError};
 pub use locate::Location;
+pub use power_diagram::PowerDiagram;
 pub use sites::{MAX_COORDINATE, MAX_WEIGHT};
 pub use torus::{Torus, TorusError};
 pub use triangulation::{Triangulation, triangulate, triangulate_monitored};

@@ -5,7 +5,7 @@ use std::cmp::Ordering;
 
 use dashu_int::IBig;
 
-use super::formulas::{Ray, determinant, power_determinant, quotient, side};
+use super::formulas::{Centre, Ray, centre, determinant, power_determinant, quotient, side};
 use super::{Ratio, Site};
 use crate::number::{Integer, cross, dot, highest_bit, lowest_bit};
 
@@ -78,6 +78,19 @@ pub(super) fn squared_radius<const N: usize>(sites: [Site; N]) -> Ratio {
     let denominator = d << (units.finer + 2);
     let numerator = four_d_c2 - height * &denominator;
     Ratio::new(numerator, denominator, units.square())
+}
+
+/// The centre of the orthogonal sphere of a positively oriented cell: each coordinate the nearest double.
+pub(super) fn centre_of(sites: [Site; 4]) -> [f64; 3] {
+    let units = Units::of(&sites, 0.0);
+    let [_, b, c, d] = sites.map(|q| units.ray::<IBig>(sites[0], q));
+    let Centre { twice, det, .. } = centre([&b, &c, &d]);
+    [0, 1, 2].map(|k| {
+        let first = <IBig as Integer>::of(sites[0].position[k], units.coordinate) * &det;
+        let numerator = &twice[k] + (first << (units.finer + 1));
+        let exponent = units.coordinate - units.finer as i32;
+        Ratio::new(numerator, &det << 1, exponent).nearest()
+    })
 }
 
 /// Whether `x` lies strictly inside the smallest orthogonal sphere of a vertex, an edge or a facet.

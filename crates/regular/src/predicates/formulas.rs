@@ -64,18 +64,34 @@ pub(super) fn quotient<T: Scale<V>, V: Number>(rays: &[Ray<T, V>]) -> (T, V) {
             (u.times(&a.power).plus(&v.times(&b.power)), d)
         }
         [a, b, c] => {
-            let normal = |u: &Ray<T, V>, v: &Ray<T, V>| cross(&u.vector, &v.vector);
-            let normals = [normal(b, c), normal(c, a), normal(a, b)];
-            let component = |k: usize| {
-                let [x, y, z] = [0, 1, 2].map(|i| rays[i].power.scaled(&normals[i][k]));
-                x.plus(&y).plus(&z)
-            };
-            let twice = [component(0), component(1), component(2)];
-            let det = dot(&a.vector, &normals[0]);
+            let Centre { twice, det, .. } = centre([a, b, c]);
             (dot(&twice, &twice), det.times(&det))
         }
         _ => unreachable!("a simplex has one to three rays"),
     }
+}
+
+/// The centre p + c of the orthogonal sphere of a cell.
+pub(super) struct Centre<T, V> {
+    /// 2 det·c.
+    pub twice: [T; 3],
+    /// The determinant of the three rays.
+    pub det: V,
+    /// Of the facets at p, each opposite one of the other corners: the products of their two rays.
+    normals: [[V; 3]; 3],
+}
+
+/// The centre of a cell, by Cramer's rule.
+#[inline(always)]
+pub(super) fn centre<T: Scale<V>, V: Number>(rays: [&Ray<T, V>; 3]) -> Centre<T, V> {
+    let [a, b, c] = rays.map(|ray| &ray.vector);
+    let normals = [cross(b, c), cross(c, a), cross(a, b)];
+    let component = |k: usize| {
+        let [x, y, z] = [0, 1, 2].map(|i| rays[i].power.scaled(&normals[i][k]));
+        x.plus(&y).plus(&z)
+    };
+    let twice = [component(0), component(1), component(2)];
+    Centre { twice, det: dot(a, &normals[0]), normals }
 }
 
 /// A positive multiple of s − 2c·e for the point at `e` of power s: negative inside the smallest orthogonal sphere
@@ -114,14 +130,7 @@ pub(super) fn barycentric(rays: &[Ray<f64>], to: &mut [f64]) {
             to[0] = 2.0 * d - (u + v);
         }
         [a, b, c] => {
-            let normal = |u: &Ray<f64>, v: &Ray<f64>| cross(&u.vector, &v.vector);
-            let normals = [normal(b, c), normal(c, a), normal(a, b)];
-            let component = |k: usize| {
-                let [x, y, z] = [0, 1, 2].map(|i| rays[i].power * normals[i][k]);
-                x + y + z
-            };
-            let twice = [component(0), component(1), component(2)];
-            let det = dot(&a.vector, &normals[0]);
+            let Centre { twice, det, normals } = centre([a, b, c]);
             let others = normals.map(|normal| dot(&twice, &normal));
             to[1..].copy_from_slice(&others);
             to[0] = 2.0 * det * det - (others[0] + others[1] + others[2]);

@@ -17,7 +17,7 @@ mod twofold;
 
 use std::cmp::Ordering;
 
-use formulas::{barycentric, determinant, power_determinant, quotient, side};
+use formulas::{Centre, barycentric, centre, determinant, power_determinant, quotient, side};
 pub use nearest::SmallRadius;
 pub use ratio::Ratio;
 pub use screen::Screen;
@@ -258,6 +258,22 @@ impl<'a> Predicates<'a> {
         } else {
             let sites = [sites[0], sites[1], sites[2], sites[3], t];
             close::power(&sites, size, bound).unwrap_or_else(|| exact::power(sites))
+        }
+    }
+
+    /// The centre of the orthogonal sphere of a positively oriented cell, to 2⁻³⁰ of the cell's size and of the distance between the
+    /// centre and its first corner; where doubles do not give that, the nearest doubles.
+    pub fn centre(&self, cell: [u32; 4]) -> [f64; 3] {
+        /// How many times the error bound of its terms a determinant must be, for a quotient by it to be right to 2⁻³⁰.
+        const WELL_ABOVE: f64 = (1u64 << 32) as f64;
+        let sites = self.sites(cell);
+        let View { rays: [_, b, c, d], size } = View::of(sites[0], sites);
+        let Centre { twice, det, .. } = centre([&b, &c, &d]);
+        let bound = 6.0 * size.length * size.length * size.length;
+        if size.is_sane() && det > bound * ROUNDING * WELL_ABOVE {
+            [0, 1, 2].map(|k| sites[0].position[k] + twice[k] / (2.0 * det))
+        } else {
+            exact::centre_of(sites)
         }
     }
 

@@ -1,0 +1,275 @@
+//! The power diagram, dual to the regular triangulation.
+
+use rayon::prelude::*;
+use walpha_base::vector::{cross, dot, length, sub};
+use walpha_base::{Monitor, UnionFind};
+
+use crate::predicates::Predicates;
+use crate::sites::check;
+use crate::{CellArrays, Triangulation, TriangulationError, facets, filled, with_capacity};
+
+/// The power diagram of weighted points: its vertices, the volumes of its cells, the areas of the facets between them.
+///
+/// The power cell of a point is where no other point has a smaller power distance; without weights it is the Voronoi cell. Cells of
+/// points on the convex hull are unbounded, and hidden points and duplicates have none.
+///
+/// What there is, is decided exactly: cells of the triangulation with one orthogonal sphere are one vertex, however ties
+/// were broken, and a facet that degenerates to a point or a segment is not listed. Hence a point of a cubic lattice has six facets, and
+/// one of a face-centred lattice twelve. Coordinates, areas and volumes are rounded.
+///
+/// ```
+/// use walpha_regular::{PowerDiagram, triangulate};
+///
+/// // Of 3³ points of a lattice, the one in the middle has a bounded cell, a unit cube.
+/// let points: Vec<[f64; 3]> = (0..27).map(|i| [i % 3, i / 3 % 3, i / 9].map(f64::from)).collect();
+/// let voronoi = PowerDiagram::of(&triangulate(&points, None)?, None)?;
+/// assert_eq!(voronoi.vertices().len(), 8);
+/// assert_eq!(voronoi.volumes()[13], 1.0);
+/// assert_eq!(voronoi.facets().iter().filter(|facet| facet.contains(&13)).count(), 6);
+/// # Ok::<(), walpha_regular::TriangulationError>(())
+/// ```
+///
+/// F. Aurenhammer, Power diagrams: properties, algorithms and applications, SIAM Journal on Computing 16 (1987),
+/// doi:10.1137/0216006.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PowerDiagram {
+    vertices: Vec<[f64; 3]>,
+    same_sphere: Vec<u32>,
+    volumes: Vec<f64>,
+    facets: Vec<[u32; 2]>,
+    areas: Vec<f64>,
+}
+
+impl PowerDiagram {
+    /// The power diagram dual to a triangulation, whose weights these are.
+    ///
+    /// O(cells), by all threads of the current rayon pool; the result does not depend on their number.
+    ///
+    /// # Errors
+    /// Other numbers of weights than of points; a weight that is not finite or is too large. Out of memory.
+    pub fn of(
+        triangulation: &Triangulation,
+        weights: Option<&[f64]>,
+    ) -> Result<Self, TriangulationError> {
+        Self::of_monitored(triangulation, weights, &Monitor::noop())
+    }
+
+    /// The same, which reports how many cells are done, and can be cancelled.
+    ///
+    /// # Errors
+    /// Those of [`PowerDiagram::of`], and [`TriangulationError::Cancelled`].
+    pub fn of_monitored(
+        triangulation: &Triangulation,
+        weights: Option<&[f64]>,
+        monitor: &Monitor,
+    ) -> Result<Self, TriangulationError> {
+        let positions = triangulation.positions();
+        let zeros = if weights.is_none() { filled(positions.len(), 0.0)? } else { Vec::new() };
+        let weights = weights.unwrap_or(&zeros);
+        check(positions, weights)?;
+        let arrays = &triangulation.arrays;
+        // What threads allocate piece by piece.
+        with_capacity::<u8>(arrays.cells.len() * BYTES_OF_A_CELL)?;
+        let predicates = Predicates::new(positions, weights);
+        let spheres = Spheres::of(arrays, &predicates, &monitor.part(0, 1, 3))?;
+        let centre = |&cell: &u32| predicates.centre(arrays.cells[cell as usize]);
+        let vertices: Vec<_> = spheres.first.par_iter().map(centre).collect();
+        let dual = Dual { arrays, positions, spheres: &spheres, vertices: &vertices };
+        let facets = dual.facets(&monitor.part(1, 3, 3))?;
+
+        let mut volumes: Vec<f64> = filled(positions.len(), 0.0)?;
+        for v in triangulation.hull_facets().flatten() {
+            volumes[v as usize] = f64::INFINITY;
+        }
+        for &([p, q], area) in facets.iter().filter(|(_, area)| area.is_finite()) {
+            let away = sub(positions[q as usize], positions[p as usize]);
+            let [p, q] = [p, q].map(|v| v as usize);
+            // Of a pyramid with this base, from a point to the plane between both.
+            let pyramid = |square: f64| area * square / (6.0 * length(away));
+            let (square, heavier) = (dot(away, away), weights[p] - weights[q]);
+            volumes[p] += pyramid(square + heavier);
+            volumes[q] += pyramid(square - heavier);
+        }
+        let same_sphere = triangulation.finite_cells().map(|(cell, _)| spheres.of[cell as usize]);
+        let same_sphere = same_sphere.collect();
+        let (facets, areas) = facets.into_iter().unzip();
+        Ok(Self { vertices, same_sphere, volumes, facets, areas })
+    }
+
+    /// The centre of each orthogonal sphere, in the order of the first cell that has it.
+    pub fn vertices(&self) -> &[[f64; 3]] {
+        &self.vertices
+    }
+
+    /// The vertex dual to each finite cell, in the order of [`Triangulation::finite_cells`]. Cells with the same number have the same
+    /// orthogonal sphere, exactly: together they are a polytope, which ties divide.
+    pub fn same_sphere(&self) -> &[u32] {
+        &self.same_sphere
+    }
+
+    /// The volume of the power cell of each point: ∞ if it is unbounded, 0 for points that have none.
+    pub fn volumes(&self) -> &[f64] {
+        &self.volumes
+    }
+
+    /// The two points of each facet, ascending: those whose power cells share it.
+    pub fn facets(&self) -> &[[u32; 2]] {
+        &self.facets
+    }
+
+    /// The area of each facet; ∞ if it is unbounded.
+    pub fn areas(&self) -> &[f64] {
+        &self.areas
+    }
+}
+
+/// Memory for a cell: its sphere, its part of about 1.2 edges, and what collecting both takes.
+const BYTES_OF_A_CELL: usize = 96;
+/// So many cells are looked at by one thread in one piece.
+const CHUNK: usize = 1 << 12;
+
+/// Which cells have the same orthogonal sphere. Infinite cells have the same if their facets of the hull lie in one plane.
+struct Spheres {
+    /// The number of the sphere of each cell; those of finite cells come first.
+    of: Vec<u32>,
+    /// The first cell of each sphere of finite cells.
+    first: Vec<u32>,
+}
+
+impl Spheres {
+    /// Cells that share a sphere are a convex polytope, so that one gets from any to any other across facets between two of them.
+    fn of(
+        arrays: &CellArrays,
+        predicates: &Predicates,
+        monitor: &Monitor,
+    ) -> Result<Self, TriangulationError> {
+        let is_finite = |corners: &[u32; 4]| !corners.contains(&arrays.ghost);
+        let sets = UnionFind::new(arrays.cells.len());
+        let done = monitor.units(arrays.cells.len() as u64);
+        arrays.cells.par_chunks(CHUNK).enumerate().try_for_each(|(chunk, cells)| {
+            for (cell, corners) in ((chunk * CHUNK) as u32..).zip(cells) {
+                for side in
+                    arrays.adjacency[cell as usize].into_iter().filter(|side| cell < side / 4)
+                {
+                    let next = arrays.cells[side as usize / 4];
+                    let across = next[side as usize % 4];
+                    let same = match [is_finite(corners), is_finite(&next)] {
+                        [true, true] => predicates.power(*corners, across).is_eq(),
+                        [false, false] => {
+                            let beyond = corners.iter().position(|&v| v == arrays.ghost);
+                            let [a, b, c] = facets(*corners)[beyond.unwrap_or_default()];
+                            predicates.orientation([a, b, c, across]).is_eq()
+                        }
+                        _ => false,
+                    };
+                    if same {
+                        sets.unite(cell, side / 4);
+                    }
+                }
+            }
+            done.add(cells.len() as u64)
+        })?;
+        let mut of = filled(arrays.cells.len(), 0)?;
+        let mut first = Vec::new();
+        let mut count = 0;
+        for finite in [true, false] {
+            for (cell, corners) in (0..).zip(&arrays.cells) {
+                if is_finite(corners) != finite {
+                    continue;
+                }
+                // The root is the smallest of its set, so it has a number.
+                let root = sets.find(cell);
+                of[cell as usize] = if root == cell { count } else { of[root as usize] };
+                if root == cell {
+                    count += 1;
+                    if finite {
+                        first.push(cell);
+                    }
+                }
+            }
+        }
+        Ok(Self { of, first })
+    }
+}
+
+/// The edges of a cell by their corners, each with the other two.
+const EDGES: [[usize; 4]; 6] =
+    [[0, 1, 2, 3], [0, 2, 1, 3], [0, 3, 1, 2], [1, 2, 0, 3], [1, 3, 0, 2], [2, 3, 0, 1]];
+
+struct Dual<'a> {
+    arrays: &'a CellArrays,
+    positions: &'a [[f64; 3]],
+    spheres: &'a Spheres,
+    vertices: &'a [[f64; 3]],
+}
+
+impl Dual<'_> {
+    /// The facets by their two points, with their areas.
+    fn facets(&self, monitor: &Monitor) -> Result<Vec<([u32; 2], f64)>, TriangulationError> {
+        let cells = &self.arrays.cells;
+        let done = monitor.units(cells.len() as u64);
+        let chunks = cells.par_chunks(CHUNK).enumerate().map(|(chunk, cells)| {
+            let (mut found, mut around) = (Vec::new(), Vec::new());
+            for (cell, corners) in ((chunk * CHUNK) as u32..).zip(cells) {
+                for [p, q, r, s] in EDGES {
+                    let [p, q] = [corners[p].min(corners[q]), corners[p].max(corners[q])];
+                    if q == self.arrays.ghost || !self.is_first_around(cell, [r, s], &mut around) {
+                        continue;
+                    }
+                    found.extend(self.area([p, q], &mut around).map(|area| ([p, q], area)));
+                }
+            }
+            done.add(cells.len() as u64)?;
+            Ok(found)
+        });
+        let mut facets = chunks.collect::<Result<Vec<_>, TriangulationError>>()?.concat();
+        facets.par_sort_unstable_by_key(|&(edge, _)| edge);
+        Ok(facets)
+    }
+
+    /// Lists the spheres of the cells around the edge that a cell has besides these two corners, in order. Whether no cell with a smaller
+    /// number is among them, or else the list is not complete.
+    fn is_first_around(&self, first: u32, [r, s]: [usize; 2], spheres: &mut Vec<u32>) -> bool {
+        let CellArrays { cells, adjacency, .. } = self.arrays;
+        spheres.clear();
+        let (mut cell, mut away, mut kept) = (first, r, cells[first as usize][s]);
+        loop {
+            spheres.push(self.spheres.of[cell as usize]);
+            let side = adjacency[cell as usize][away];
+            cell = side / 4;
+            if cell <= first {
+                return cell == first;
+            }
+            let corners = cells[cell as usize];
+            away = corners.iter().position(|&v| v == kept).unwrap_or_default();
+            kept = corners[side as usize % 4];
+        }
+    }
+
+    /// The area of the facet between two points, by the spheres around their edge; `None` if it is no more than a segment.
+    fn area(&self, [p, q]: [u32; 2], spheres: &mut Vec<u32>) -> Option<f64> {
+        spheres.dedup();
+        if spheres.len() > 1 && spheres.first() == spheres.last() {
+            spheres.pop();
+        }
+        if spheres.len() < 3 {
+            return None;
+        }
+        let Some(corners) = spheres
+            .iter()
+            .map(|&sphere| self.vertices.get(sphere as usize))
+            .collect::<Option<Vec<_>>>()
+        else {
+            return Some(f64::INFINITY);
+        };
+        let normal = sub(self.positions[q as usize], self.positions[p as usize]);
+        let twice: f64 = corners[1..]
+            .windows(2)
+            .map(|side| dot(normal, cross(sub(*side[0], *corners[0]), sub(*side[1], *corners[0]))))
+            .sum();
+        Some(twice.abs() / (2.0 * length(normal)))
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,237 @@
+use walpha_base::random::Random;
+
+use super::*;
+use crate::locate::tests::{Place, doubles};
+use crate::triangulate;
+use crate::triangulation::tests::set;
+
+/// Sets of a few dozen points, which have cells with one sphere, hidden points and duplicates.
+fn sets() -> impl Iterator<Item = (Vec<Place>, Vec<f64>, Triangulation)> {
+    let mut random = Random::new(11);
+    (0..300).filter_map(move |case| {
+        let (points, weights) = set(&mut random, case);
+        let made = triangulate(&doubles(&points), Some(&weights)).ok()?;
+        Some((points, weights, made))
+    })
+}
+
+/// The centre of the orthogonal sphere as numerators and their denominator, by integers.
+fn centre([a, b, c, d]: [(Place, f64); 4]) -> ([i128; 3], i128) {
+    let ray = |(q, weight): (Place, f64)| {
+        let vector = [0, 1, 2].map(|k| i128::from(q[k] - a.0[k]));
+        let power = vector.iter().map(|x| x * x).sum::<i128>() + (a.1 - weight) as i128;
+        (vector, power)
+    };
+    let rays = [b, c, d].map(ray);
+    let determinant = |column: &dyn Fn(usize) -> [i128; 3]| {
+        let [x, y, z] = [0, 1, 2].map(column);
+        x[0] * (y[1] * z[2] - y[2] * z[1]) - x[1] * (y[0] * z[2] - y[2] * z[0])
+            + x[2] * (y[0] * z[1] - y[1] * z[0])
+    };
+    let vectors = |k: usize| rays.map(|(vector, _)| vector[k]);
+    let twice = 2 * determinant(&vectors);
+    // Cramer's rule: powers in place of one column.
+    let replaced = |at: usize| {
+        determinant(&|k: usize| if k == at { rays.map(|(_, power)| power) } else { vectors(k) })
+    };
+    ([0, 1, 2].map(|k| i128::from(a.0[k]) * twice + replaced(k)), twice)
+}
+
+#[test]
+fn cells_with_one_centre_have_one_number() {
+    let (mut shared, mut cells) = (0, 0);
+    for (points, weights, made) in sets() {
+        let diagram = PowerDiagram::of(&made, Some(&weights)).unwrap();
+        let site = |v: u32| (points[v as usize], weights[v as usize]);
+        let centres: Vec<_> =
+            made.finite_cells().map(|(_, corners)| centre(corners.map(site))).collect();
+        let numbers = diagram.same_sphere();
+        assert_eq!(numbers.len(), centres.len());
+        for (i, (numerators, denominator)) in centres.iter().enumerate() {
+            for (j, (others, other)) in centres[..i].iter().enumerate() {
+                let equal = (0..3).all(|k| numerators[k] * other == others[k] * denominator);
+                assert_eq!(equal, numbers[i] == numbers[j], "cells {i} and {j}");
+            }
+            // Numbers count up in the order of cells.
+            assert!(numbers[i] <= numbers[..i].iter().max().map_or(0, |most| most + 1));
+            for (found, &numerator) in
+                diagram.vertices()[numbers[i] as usize].into_iter().zip(numerators)
+            {
+                let exact = numerator as f64 / *denominator as f64;
+                assert!((found - exact).abs() < 1e-6 * (1.0 + exact.abs()), "{found} {exact}");
+            }
+        }
+        shared += numbers.len() - diagram.vertices().len();
+        cells += numbers.len();
+    }
+    assert!(shared > 1000 && shared < cells - 1000, "{shared} of {cells}");
+}
+
+/// Each cell is divided into simplices whose corners are the weighted circumcentres of a vertex, an edge, a facet and a tetrahedron,
+/// each a face of the next. They have a sign, as centres may lie outside of their faces (Mullen, Memari, de Goes and Desbrun
+/// 2011, doi:10.1145/1964921.1964998).
+fn by_centres(made: &Triangulation, weights: &[f64]) -> Vec<f64> {
+    let bounded = |v: u32| made.star(v).into_iter().all(|cell| made.is_finite(cell));
+    let none = |v: u32| if !made.is_vertex(v) || bounded(v) { 0.0 } else { f64::INFINITY };
+    let mut volumes: Vec<f64> = (0..made.ghost()).map(none).collect();
+    for (_, corners) in made.finite_cells() {
+        for order in orders(corners) {
+            let site = |v: u32| (made.positions()[v as usize], weights[v as usize]);
+            volumes[order[0] as usize] += signed_volume(order.map(site));
+        }
+    }
+    volumes
+}
+
+/// The 24 orders of four corners.
+fn orders([a, b, c, d]: [u32; 4]) -> impl Iterator<Item = [u32; 4]> {
+    let first = [[a, b, c, d], [b, a, c, d], [c, a, b, d], [d, a, b, c]];
+    first.into_iter().flat_map(|[p, q, r, s]| {
+        [[p, q, r, s], [p, q, s, r], [p, r, q, s], [p, r, s, q], [p, s, q, r], [p, s, r, q]]
+    })
+}
+
+/// The volume of the simplex of the centres of the first point, the first two, three and four; negative where the way from
+/// centre to centre goes away from the next point an odd number of times.
+fn signed_volume([(p, weight), rest @ ..]: [([f64; 3], f64); 4]) -> f64 {
+    // The centre, seen from p, and orthogonal directions: Gram and Schmidt. A step along a direction does not change the
+    // powers of the points before, and is as long as makes that of the next point equal to theirs.
+    let (mut centre, mut volume) = ([0.0; 3], 1.0 / 6.0);
+    let mut directions: Vec<[f64; 3]> = Vec::new();
+    for (q, other) in rest {
+        let way = sub(q, p);
+        let mut direction = way;
+        for d in &directions {
+            let share = dot(way, *d) / dot(*d, *d);
+            direction = [0, 1, 2].map(|k| direction[k] - share * d[k]);
+        }
+        let square = dot(direction, direction);
+        let step = ((dot(way, way) + weight - other) / 2.0 - dot(centre, way)) / square;
+        centre = [0, 1, 2].map(|k| centre[k] + step * direction[k]);
+        volume *= step * square.sqrt();
+        directions.push(direction);
+    }
+    volume
+}
+
+#[test]
+fn volumes_are_sums_over_simplices_of_centres() {
+    let (mut bounded, mut none) = (0, 0);
+    for (_, weights, made) in sets() {
+        let diagram = PowerDiagram::of(&made, Some(&weights)).unwrap();
+        for (v, expected) in (0..).zip(by_centres(&made, &weights)) {
+            let found = diagram.volumes()[v as usize];
+            assert!(
+                found == expected || (found - expected).abs() < 1e-6 * (1.0 + expected.abs()),
+                "of {v}: {found}, not {expected}"
+            );
+            bounded += usize::from(found > 0.0 && found.is_finite());
+            none += usize::from(!made.is_vertex(v) && found == 0.0);
+        }
+    }
+    assert!(bounded > 500 && none > 500, "{bounded} {none}");
+}
+
+/// A bounded cell is a closed polyhedron: its facets, each times its normal, add up to nothing.
+#[test]
+fn facets_close_cells() {
+    let mut closed = 0;
+    for (_, weights, made) in sets() {
+        let diagram = PowerDiagram::of(&made, Some(&weights)).unwrap();
+        assert!(diagram.facets().is_sorted_by(|a, b| a < b));
+        let mut sums = vec![[0.0; 3]; weights.len()];
+        let mut surfaces = vec![0.0; weights.len()];
+        for (&[p, q], &area) in diagram.facets().iter().zip(diagram.areas()) {
+            assert!(p < q && area > 0.0);
+            let way = sub(made.positions()[q as usize], made.positions()[p as usize]);
+            for (v, sign) in [(p as usize, 1.0), (q as usize, -1.0)] {
+                surfaces[v] += area;
+                sums[v] = [0, 1, 2].map(|k| sums[v][k] + sign * area * way[k] / length(way));
+            }
+        }
+        for (v, &volume) in diagram.volumes().iter().enumerate() {
+            if volume > 0.0 && volume.is_finite() {
+                assert!(length(sums[v]) < 1e-6 * surfaces[v], "of {v}: {:?}", sums[v]);
+                closed += 1;
+            } else {
+                assert!(volume == 0.0 || surfaces[v] == f64::INFINITY);
+            }
+        }
+    }
+    assert!(closed > 500, "{closed}");
+}
+
+/// Facets of a point in the middle of a lattice, with the area of each, and the volume of its cell.
+fn of_middle(points: &[Place]) -> (Vec<f64>, f64) {
+    let middle = points.iter().position(|&p| p == [0; 3]).unwrap() as u32;
+    let diagram = PowerDiagram::of(&triangulate(&doubles(points), None).unwrap(), None).unwrap();
+    let facets = diagram.facets().iter().zip(diagram.areas());
+    let mut areas: Vec<f64> =
+        facets.filter(|(facet, _)| facet.contains(&middle)).map(|(_, &area)| area).collect();
+    areas.sort_by(f64::total_cmp);
+    (areas, diagram.volumes()[middle as usize])
+}
+
+#[test]
+fn lattices_have_the_cells_of_textbooks() {
+    let box_of = |kept: fn(Place) -> bool| -> Vec<Place> {
+        (0..343).map(|i| [i % 7 - 3, i / 7 % 7 - 3, i / 49 - 3]).filter(|&p| kept(p)).collect()
+    };
+    let near = |found: f64, expected: f64| (found - expected).abs() < 1e-12 * expected;
+    let (cube, volume) = of_middle(&box_of(|_| true));
+    assert!(cube.len() == 6 && cube.iter().all(|&area| near(area, 1.0)) && near(volume, 1.0));
+    let (rhombic, volume) = of_middle(&box_of(|p| p.iter().sum::<i64>() % 2 == 0));
+    assert!(rhombic.len() == 12 && rhombic.iter().all(|&area| near(area, 0.5f64.sqrt())));
+    assert!(near(volume, 2.0));
+    // A truncated octahedron: six squares, and eight hexagons with edges of the same length √(1/2).
+    let (truncated, volume) = of_middle(&box_of(|[x, y, z]| (x - y) % 2 == 0 && (y - z) % 2 == 0));
+    assert_eq!(truncated.len(), 14);
+    assert!(truncated[..6].iter().all(|&area| near(area, 0.5)));
+    assert!(truncated[6..].iter().all(|&area| near(area, 0.75 * 3f64.sqrt())));
+    assert!(near(volume, 4.0));
+}
+
+/// Facets of cells on the hull: also there, those that degenerate are not listed.
+#[test]
+fn a_lattice_has_facets_between_neighbours_alone() {
+    let points: Vec<Place> = (0..64).map(|i| [i % 4, i / 4 % 4, i / 16]).collect();
+    let diagram = PowerDiagram::of(&triangulate(&doubles(&points), None).unwrap(), None).unwrap();
+    assert_eq!((diagram.vertices().len(), diagram.facets().len()), (27, 3 * 4 * 4 * 3));
+    let finite = diagram.areas().iter().filter(|area| area.is_finite()).count();
+    assert_eq!(finite, 3 * 2 * 2 * 3);
+}
+
+/// The corners of a tetrahedron, one of them a last bit away from the next.
+#[test]
+fn thin_cells_have_centres_to_the_last_bit() {
+    let up = 1f64.next_up();
+    let corners = [[0.0, 0.0, 1.0], [0.0, 0.0, up], [1.0, 0.0, 1.0], [0.0, 1.0, 1.0]];
+    let made = triangulate(&corners, None).unwrap();
+    let diagram = PowerDiagram::of(&made, None).unwrap();
+    assert_eq!(diagram.vertices(), [[0.5, 0.5, 1.0]]);
+}
+
+#[test]
+fn the_same_on_any_number_of_threads_and_errors() {
+    let mut random = Random::new(3);
+    let points: Vec<[f64; 3]> = (0..20_000).map(|_| [0; 3].map(|_| random.whole(0, 60))).collect();
+    let made = triangulate(&points, None).unwrap();
+    let on = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| PowerDiagram::of(&made, None).unwrap())
+    };
+    assert!(made.cells().len() > 10 * CHUNK);
+    assert!(on(1) == on(3));
+
+    use crate::SitesError::{Lengths, Value};
+    let of = |weights: &[f64]| PowerDiagram::of(&made, Some(weights)).err();
+    assert!(matches!(of(&[0.0]), Some(TriangulationError::Sites(Lengths { .. }))));
+    assert!(matches!(
+        of(&vec![f64::NAN; 20_000]),
+        Some(TriangulationError::Sites(Value { index: 0, .. }))
+    ));
+    let cancelled = Monitor::new(|_, _| ());
+    cancelled.cancel();
+    let stopped = PowerDiagram::of_monitored(&made, None, &cancelled);
+    assert!(matches!(stopped, Err(TriangulationError::Cancelled(_))));
+}
