@@ -35,7 +35,7 @@ mod _walpha {
     #[pymodule_export]
     use super::shape::{Shape, alpha_shape, restored};
     #[pymodule_export]
-    use super::triangulation::Triangulation;
+    use super::triangulation::{PowerDiagram, Triangulation};
     #[pymodule_export]
     use super::volume::{difference, haar, pipeline, read, select, weigh};
 

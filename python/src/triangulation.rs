@@ -103,6 +103,50 @@ impl Triangulation {
         let found = run(py, &task, move |monitor| arrays.find(&places, monitor))?;
         column(py, found.into_iter())
     }
+
+    fn power_diagram(&self, py: Python<'_>, task: Task<'_>) -> PyResult<PowerDiagram> {
+        let arrays = Arc::clone(&self.0);
+        let made = run(py, &task, move |monitor| {
+            monitor.stage("power diagram")?;
+            let weights = Some(arrays.weights.as_slice());
+            triangulation::PowerDiagram::of_monitored(&arrays.made, weights, monitor)
+        })?;
+        Ok(PowerDiagram(made))
+    }
+}
+
+/// The power diagram dual to a triangulation. Points have their input indices, as there.
+#[pyclass(frozen, module = "walpha._walpha")]
+pub struct PowerDiagram(triangulation::PowerDiagram);
+
+#[pymethods]
+impl PowerDiagram {
+    #[getter]
+    fn vertices<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        // SAFETY: the diagram is frozen.
+        unsafe { lend(slf.get().0.vertices(), slf.as_any()) }
+    }
+
+    #[getter]
+    fn same_sphere<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<i64>>> {
+        column(py, self.0.same_sphere().iter().map(|&vertex| i64::from(vertex)))
+    }
+
+    #[getter]
+    fn volumes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        column(py, self.0.volumes().iter().copied())
+    }
+
+    #[getter]
+    fn facets<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray2<u32>>> {
+        // SAFETY: the diagram is frozen.
+        unsafe { lend(slf.get().0.facets(), slf.as_any()) }
+    }
+
+    #[getter]
+    fn areas<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        column(py, self.0.areas().iter().copied())
+    }
 }
 
 impl Arrays {

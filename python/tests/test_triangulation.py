@@ -116,3 +116,59 @@ def test_what_makes_no_triangulation():
         walpha.triangulation(CUBE, [1, 2, 3])
     with pytest.raises(ValueError, match="read-only"):
         walpha.triangulation(CUBE).simplices[0] = 0
+
+
+def test_scipy_has_the_same_voronoi_cells(cloud):
+    spatial = pytest.importorskip("scipy.spatial")
+    made = walpha.triangulation(cloud)
+    ours, theirs = made.power_diagram(), spatial.Voronoi(cloud)
+    assert len(ours.vertices) == len(theirs.vertices) == len(made.simplices)
+    assert np.allclose(np.linalg.norm(ours.vertices[ours.same_sphere] - cloud[made.simplices[:, 2]], axis=1) ** 2,
+                       np.linalg.norm(ours.vertices[ours.same_sphere] - cloud[made.simplices[:, 1]], axis=1) ** 2)
+    assert set(map(tuple, ours.facets.tolist())) == rows(theirs.ridge_points) and len(ours.facets) == len(theirs.ridge_points)
+    bounded = 0
+    for v, region in enumerate(theirs.point_region):
+        corners = theirs.regions[region]
+        if -1 in corners:
+            assert ours.volumes[v] == np.inf
+        else:
+            hull = spatial.ConvexHull(theirs.vertices[corners])
+            assert ours.volumes[v] == pytest.approx(hull.volume, rel=1e-9)
+            assert ours.areas[(ours.facets == v).any(axis=1)].sum() == pytest.approx(hull.area, rel=1e-9)
+            bounded += 1
+    assert bounded > 300
+    unbounded = {tuple(sorted(pair)) for pair, ridge in zip(theirs.ridge_points.tolist(), theirs.ridge_vertices) if -1 in ridge}
+    assert {tuple(pair) for pair in ours.facets[np.isinf(ours.areas)].tolist()} == unbounded
+
+
+def test_power_cells_are_intersections_of_half_spaces(cloud, weights):
+    spatial = pytest.importorskip("scipy.spatial")
+    made = walpha.triangulation(cloud, weights)
+    diagram = made.power_diagram(threads=1)
+    assert len(made.hidden) > 0 and (diagram.volumes[made.hidden] == 0).all()
+    bounded = np.flatnonzero((diagram.volumes > 0) & np.isfinite(diagram.volumes))
+    assert len(bounded) > 50
+    for v in bounded[:50]:
+        others = np.delete(np.arange(len(cloud)), v)
+        # Nearer to v than to q in power: 2 (q - v)·x <= |q|² - w(q) - |v|² + w(v).
+        normals = 2 * (cloud[others] - cloud[v])
+        offsets = (cloud[others] ** 2).sum(axis=1) - weights[others] - (cloud[v] ** 2).sum() + weights[v]
+        corners = diagram.vertices[diagram.same_sphere[(made.simplices == v).any(axis=1)]]
+        cell = spatial.HalfspaceIntersection(np.column_stack([normals, -offsets]), corners.mean(axis=0))
+        hull = spatial.ConvexHull(cell.intersections)
+        assert diagram.volumes[v] == pytest.approx(hull.volume, rel=1e-6)
+        assert diagram.areas[(diagram.facets == v).any(axis=1)].sum() == pytest.approx(hull.area, rel=1e-6)
+
+
+def test_a_lattice_has_cubes():
+    points = np.array(list(itertools.product(range(5), repeat=3)), float)
+    made = walpha.triangulation(points)
+    stages = set()
+    diagram = made.power_diagram(progress=lambda stage, done, total: stages.add(stage))
+    assert stages == {"power diagram"}
+    assert diagram.same_sphere.shape == (len(made.simplices),) and len(diagram.vertices) == 64
+    # Each of the cubes is 5 or 6 tetrahedra, all of the volume of the cube together.
+    assert np.allclose(np.bincount(diagram.same_sphere, oriented(points, made.simplices) / 6), 1)
+    assert sorted(set(diagram.volumes.tolist())) == [1, np.inf] and len(diagram.facets) == 3 * 4 * 25
+    with pytest.raises(ValueError, match="read-only"):
+        diagram.volumes[0] = 0

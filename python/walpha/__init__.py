@@ -34,7 +34,7 @@ from ._pipeline import Selected, difference, haar, pipeline, select, weigh
 from ._points import PointFile, read_points, write_points
 from ._shape import AlphaShape
 from ._simplices import Simplices
-from ._triangulation import Triangulation, triangulation
+from ._triangulation import PowerDiagram, Triangulation, triangulation
 from ._volume import Volume, read
 
 __version__ = _walpha.__version__
@@ -54,6 +54,7 @@ __all__ = [
     "Outline",
     "PointFile",
     "Polygon",
+    "PowerDiagram",
     "Selected",
     "Simplices",
     "Suggestions",

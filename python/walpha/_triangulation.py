@@ -1,11 +1,40 @@
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 from . import _arrays, _walpha
 from ._classified import Frozen
 from ._typing import Arrays, Floats, Indices, Progress
 from ._work import task
+
+
+class PowerDiagram(NamedTuple):
+    """The power diagram of weighted points, Voronoi's where weights are equal: the dual of a :class:`Triangulation`.
+
+    The power cell of a point is where no other point has a smaller power distance. What there is, is decided exactly: cells of
+    the triangulation with one orthogonal sphere are one vertex, however ties were broken, and a facet that
+    degenerates to a point or a segment is not listed. Coordinates, volumes and areas are rounded.
+
+    Attributes
+    ----------
+    vertices : ndarray of float64, (k, 3)
+        The centres of the orthogonal spheres, each once.
+    same_sphere : ndarray of int64, (m,)
+        For each of the triangulation's ``simplices`` its row of ``vertices``. Simplices with the same number have the
+        same orthogonal sphere, and are together a polytope (Delaunay's, without weights).
+    volumes : ndarray of float64, (n,)
+        Of the power cell of each point: infinite for points on the hull, 0 for hidden points and duplicates, which have none.
+    facets : ndarray of int64, (f, 2)
+        The two points whose cells share a facet, ascending.
+    areas : ndarray of float64, (f,)
+        Of each facet; infinite if it is unbounded.
+    """
+
+    vertices: Floats
+    same_sphere: Indices
+    volumes: Floats
+    facets: Indices
+    areas: Floats
 
 
 class Triangulation(Frozen):
@@ -91,6 +120,41 @@ class Triangulation(Frozen):
         with task(progress, threads) as how:
             found = self._triangulation.find(_arrays.points(places.reshape(-1, 3), "xi"), how)
         return found.reshape(places.shape[:-1])
+
+    def power_diagram(self, *, progress: Progress = None, threads: int | None = None) -> PowerDiagram:
+        """The power diagram of the points: volumes of cells, areas of facets, and which simplices share a sphere.
+
+        Parameters
+        ----------
+        progress, threads
+            As in :func:`alpha_shape`.
+
+        Returns
+        -------
+        PowerDiagram
+
+        Notes
+        -----
+        O(m). It is computed anew at each call.
+
+        Examples
+        --------
+        Of a lattice of 3³ points, the one in the middle has a bounded cell, a cube with six facets.
+
+        >>> lattice = [[x, y, z] for x in range(3) for y in range(3) for z in range(3)]
+        >>> diagram = walpha.triangulation(lattice).power_diagram()
+        >>> float(diagram.volumes[13]), int((diagram.facets == 13).any(axis=1).sum()), len(diagram.vertices)
+        (1.0, 6, 8)
+        """
+        with task(progress, threads) as how:
+            made = self._triangulation.power_diagram(how)
+        return PowerDiagram(
+            made.vertices,
+            _arrays.frozen(made.same_sphere),
+            _arrays.frozen(made.volumes),
+            _arrays.kept(made.facets),
+            _arrays.frozen(made.areas),
+        )
 
     def __reduce__(self) -> tuple[Any, ...]:
         return triangulation, (self.points, self.weights)

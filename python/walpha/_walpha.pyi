@@ -102,6 +102,15 @@ class Triangulation:
     duplicates: Indices
     def __init__(self, points: Floats, weights: Floats | None, task: _Task) -> None: ...
     def find(self, places: Floats, task: _Task) -> Indices: ...
+    def power_diagram(self, task: _Task) -> PowerDiagram: ...
+
+@final
+class PowerDiagram:
+    vertices: Floats
+    same_sphere: Indices
+    volumes: Floats
+    facets: _Rows
+    areas: Floats
 
 @final
 class Complex:
