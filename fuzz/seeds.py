@@ -391,6 +391,53 @@ def filtrations():
     return [json.dumps(whole).encode(), json.dumps(periodic).encode(), out.getvalue()]
 
 
+CORNERS = ((0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1))
+
+
+def gmsh():
+    """A tetrahedron with one of its points as an element, in versions 2.2 and 4.1, as text and in binary."""
+    rows = "\n".join(f"{k} {x} {y} {z}" for k, (x, y, z) in enumerate(CORNERS, 1))
+    places = "\n".join(f"{x} {y} {z}" for x, y, z in CORNERS)
+    two = f"$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n{rows}\n$EndNodes\n$Elements\n2\n1 15 2 0 1 1\n2 4 2 0 1 1 2 3 4\n$EndElements\n"
+    four = (f"$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Nodes\n1 4 1 4\n3 1 0 4\n1\n2\n3\n4\n{places}\n$EndNodes\n"
+            "$Elements\n2 2 1 2\n0 1 15 1\n1 1\n3 1 4 1\n2 1 2 3 4\n$EndElements\n")
+    head = "$MeshFormat\n{} 1 8\n".encode()
+    one, end = struct.pack("<i", 1), b"\n$EndMeshFormat\n"
+    numbers = b"".join(struct.pack("<i3d", k, *row) for k, row in enumerate(CORNERS, 1))
+    cells = struct.pack("<3i", 4, 1, 2) + struct.pack("<7i", 1, 0, 1, 1, 2, 3, 4)
+    binary_two = head.replace(b"{}", b"2.2") + one + end + b"$Nodes\n4\n" + numbers + b"\n$EndNodes\n$Elements\n1\n" + cells + b"\n$EndElements\n"
+    nodes = struct.pack("<4Q3iQ4Q", 1, 4, 1, 4, 3, 1, 0, 4, 1, 2, 3, 4) + struct.pack("<12d", *sum(CORNERS, ()))
+    cells = struct.pack("<4Q3iQ5Q", 1, 1, 1, 1, 3, 1, 4, 1, 1, 1, 2, 3, 4)
+    binary_four = head.replace(b"{}", b"4.1") + one + end + b"$Nodes\n" + nodes + b"\n$EndNodes\n$Elements\n" + cells + b"\n$EndElements\n"
+    return [two.encode(), four.encode(), binary_two, binary_four]
+
+
+def medit():
+    places = "\n".join(f"{x} {y} {z} 0" for x, y, z in CORNERS)
+    return [f"MeshVersionFormatted 2\nDimension 3\n# a comment\nVertices 4\n{places}\nTriangles 1\n1 2 3 0\nTetrahedra 1\n1 2 3 4 0\nEnd\n".encode()]
+
+
+def tetgen():
+    """Points with an attribute, from 1, and without, from 0; then the cells."""
+    rows = [f"{k} {x} {y} {z}" for k, (x, y, z) in enumerate(CORNERS)]
+    attributes = [f"{k} {x} {y} {z} 0.5" for k, (x, y, z) in enumerate(CORNERS, 1)]
+    return [("4 3 0 0\n" + "\n".join(rows) + "\n\0 1 4 0\n0 0 1 2 3\n").encode(),
+            ("# made\n4 3 1 0\n" + "\n".join(attributes) + "\n\0" + "1 4 0\n1 1 2 3 4\n").encode()]
+
+
+def vtk_mesh():
+    places = "\n".join(f"{x} {y} {z}" for x, y, z in CORNERS)
+    head = f"# vtk DataFile Version 3.0\ntitle\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 double\n{places}\n"
+    cells = "CELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n10\n"
+    binary = head[: head.index("POINTS")].replace("ASCII", "BINARY").encode() + b"POINTS 4 double\n" + struct.pack(">12d", *sum(CORNERS, ()))
+    binary += b"\nCELLS 1 5\n" + struct.pack(">5i", 4, 0, 1, 2, 3) + b"\nCELL_TYPES 1\n" + struct.pack(">i", 10) + b"\n"
+    return [(head + cells).encode(), (head + cells + "POINT_DATA 4\nSCALARS weight double 1\nLOOKUP_TABLE default\n0 0 0 1\n").encode(), binary]
+
+
+def weights():
+    return [b"weight\n0\n1.5\n-2e3\n", npy("<f8", (4,), F64[:32])]
+
+
 def zarr():
     two = {"zarr_format": 2, "shape": [2, 3, 2], "chunks": [2, 3, 2], "dtype": "|u1", "compressor": None,
            "fill_value": 0, "order": "C", "filters": None}
@@ -430,7 +477,7 @@ TARGETS = {
     "inrimage": inrimage, "mgh": mgh, "npy": npys, "npz": npz, "nrrd": nrrd, "metaimage": metaimage, "nifti": nifti,
     "nifti_gzip": lambda: [gzip.compress(file) for file in nifti()], "vtk_legacy": vtk_legacy, "vti": vti,
     "tiff": tiffs, "table": table, "xyz": xyz, "pwn": pwn, "npy_points": npy_points, "ply": ply, "vtk_geometry": vtk_geometry,
-    "off": off, "obj": obj, "stl": stl,
+    "off": off, "obj": obj, "stl": stl, "gmsh": gmsh, "medit": medit, "tetgen": tetgen, "vtk_mesh": vtk_mesh, "weights": weights,
     "pcd": pcd, "las": las, "wvm": wvm, "dicom": dicom, "zarr": zarr, "slices": slices, "complex": complexes, "check_json": check_json, "check_npz": check_npz, "filtration": filtrations,
     "plan": plan_files("plan.json"), "block": plan_files("block-00000.walpha", "block-00001.walpha"),
     "sums": plan_files("sums.f64"), "truncated": plan_files("truncated.f32"),

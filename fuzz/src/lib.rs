@@ -2,10 +2,11 @@
 //! out is right, as long as it comes out.
 
 use std::io::Cursor;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
 use walpha::check::certify_filtration;
+use walpha::check::meshes::{Mesh, open_weights};
 use walpha::check::schema::{ComplexFile, FiltrationFile, PlacedComplex, SchemaError};
 use walpha::outofcore::{Cutting, Job, Pieces, Plan, merge, run, whole};
 use walpha::points::{PointOptions, cells_of, is_point_file, read_complex, read_points};
@@ -54,6 +55,33 @@ pub fn check_json(bytes: &[u8]) {
 /// Reads bytes as a complex in NPZ and judges it.
 pub fn check_npz(bytes: &[u8]) {
     judge(ComplexFile::read_npz(Cursor::new(bytes)));
+}
+
+/// Reads bytes as a mesh of this name, and judges it.
+pub fn mesh(name: &str, bytes: &[u8]) {
+    let (_folder, path) = file(name, bytes);
+    judge_mesh(&path);
+}
+
+/// Reads bytes as the points and, after the first byte that is 0, the cells of TetGen.
+pub fn tetgen(bytes: &[u8]) {
+    let mut parts = bytes.splitn(2, |&byte| byte == 0);
+    let (folder, path) = file("m.node", parts.next().unwrap_or_default());
+    let cells = parts.next().unwrap_or_default();
+    std::fs::write(folder.path().join("m.ele"), cells).expect("room for a small file");
+    judge_mesh(&path);
+}
+
+fn judge_mesh(path: &Path) {
+    if let Ok(mesh) = Mesh::open(path) {
+        judge(Ok(mesh.complex));
+    }
+}
+
+/// Reads bytes as weights.
+pub fn weights(bytes: &[u8]) {
+    let (_folder, path) = file("w.txt", bytes);
+    let _ = open_weights(&path);
 }
 
 fn judge(file: Result<ComplexFile, SchemaError>) {
@@ -122,7 +150,7 @@ fn merged(plan: &Plan) {
 }
 
 /// The folder of a small plan with its blocks, made once: by the same options as the seeds.
-fn planned(decomposition: Decomposition) -> &'static std::path::Path {
+fn planned(decomposition: Decomposition) -> &'static Path {
     static FOLDER: OnceLock<PathBuf> = OnceLock::new();
     FOLDER.get_or_init(|| {
         let folder = tempfile::tempdir().expect("a folder for temporary files").keep();
