@@ -2,8 +2,8 @@
 // simplex that copies input indices and classes. The baseline of examples/race, which compiles it
 // with -O3 -DNDEBUG, and once more with CGAL_LINKED_WITH_TBB: then the triangulation is CGAL's parallel one.
 //
-//   plain_cgal POINTS ALPHA THREADS           POINTS: x, y, z, ω of each point as little-endian doubles
-//   plain_cgal POINTS triangulation THREADS   the triangulation alone
+//   plain_cgal POINTS ALPHA THREADS                   POINTS: x, y, z, ω of each point as little-endian doubles
+//   plain_cgal POINTS triangulation THREADS [CELLS]   the triangulation alone; CELLS gets the corners of each cell, of 32 bits
 //
 // Prints seconds, peak KiB of the process, and the simplices of the shape by dimension and class:
 // cells, then interior, regular, singular facets, edges, vertices.
@@ -57,7 +57,7 @@ struct Simplices {
   }
 };
 
-int main(int, char **arguments) {
+int main(int count, char **arguments) {
   std::vector<std::pair<Triangulation::Weighted_point, unsigned>> points;
   std::FILE *file = std::fopen(arguments[1], "rb");
   double q[4];
@@ -102,6 +102,13 @@ int main(int, char **arguments) {
     }
   }
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+  if (count > 4) {
+    std::FILE *to = std::fopen(arguments[4], "wb");
+    for (auto c = triangulation.finite_cells_begin(); to && c != triangulation.finite_cells_end(); ++c) {
+      for (int i = 0; i < 4; ++i) std::fwrite(&c->vertex(i)->info(), sizeof(unsigned), 1, to);
+    }
+    if (!to || std::fclose(to) != 0) return 1;
+  }
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   std::printf("%.4f %ld %zu", seconds.count(), usage.ru_maxrss, cells.classes.size());

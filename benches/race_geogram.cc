@@ -1,9 +1,9 @@
 // Geogram's regular triangulation, for examples/race: sequential on one thread, its parallel one on several.
 //
-//   race_geogram POINTS THREADS     POINTS: x, y, z, ω of each point as little-endian doubles
+//   race_geogram POINTS THREADS [CELLS]     POINTS: x, y, z, ω of each point as little-endian doubles
 //
 // Weights are handed over as a fourth coordinate, √(max ω − ω), which Geogram squares again: rounded.
-// Prints seconds, peak KiB of the process, and no counts: ties are broken otherwise.
+// Prints seconds, peak KiB of the process, and no counts: ties are broken otherwise. CELLS gets the corners of each cell, of 32 bits.
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -22,7 +22,7 @@
 #include <geogram/delaunay/delaunay_3d.h>
 #include <geogram/delaunay/parallel_delaunay_3d.h>
 
-int main(int, char **arguments) {
+int main(int given, char **arguments) {
   GEO::initialize();
   GEO::CmdLine::import_arg_group("standard");
   GEO::CmdLine::import_arg_group("algo");
@@ -60,6 +60,16 @@ int main(int, char **arguments) {
   delaunay->set_vertices(GEO::index_t(count), points.data());
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
   if (delaunay->nb_cells() == 0) return 1;
+  if (given > 3) {
+    std::FILE *to = std::fopen(arguments[3], "wb");
+    for (GEO::index_t cell = 0; to && cell < delaunay->nb_cells(); ++cell) {
+      for (GEO::index_t i = 0; i < 4; ++i) {
+        const unsigned corner = unsigned(delaunay->cell_vertex(cell, i));
+        std::fwrite(&corner, sizeof corner, 1, to);
+      }
+    }
+    if (!to || std::fclose(to) != 0) return 1;
+  }
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   std::printf("%.4f %ld\n", seconds.count(), usage.ru_maxrss);

@@ -1,6 +1,7 @@
 """What programs make of the hard sets, judged by `walpha check`: makes docs/verdicts.md.
 
-    pip install numpy scipy pyvista gudhi open3d gmsh        (and tetgen of Debian: apt-get install tetgen)
+    pip install numpy scipy pyvista gudhi open3d gmsh diode geogram alphashape     (diode is compiled, with CGAL and Boost)
+    apt-get install tetgen libcgal-dev libtbb-dev
     python3 benches/verdicts.py target/release/walpha > docs/verdicts.md
 
 Each program gets the same doubles and its most robust setting that does not move points, in a process of its own with a time limit. What cannot
@@ -9,8 +10,12 @@ be imported or found is left out. Cells are handed to `walpha check` as a triang
 
 import datetime
 import importlib
+import importlib.metadata
+import importlib.util
 import json
+import os
 import pathlib
+import re
 import platform
 import shutil
 import subprocess
@@ -84,6 +89,58 @@ def tetgen(points, weights):
         return [list(map(int, line.split()[1:5])) for line in lines[1:] if not line.startswith("#")]
 
 
+def diode(points, weights):
+    import diode
+
+    fill = diode.fill_alpha_shapes if weights is None else diode.fill_weighted_alpha_shapes
+    table = points if weights is None else np.column_stack([points, weights])
+    return [row for row, _ in fill(table, exact=True) if len(row) == 4]
+
+
+def alphashape(points, weights):
+    import alphashape
+
+    return [row for row, _ in alphashape.alphasimplices(points)]
+
+
+def compiled(program, *arguments):
+    """A program of this folder, which reads x, y, z, ω of each point and writes the corners of each cell."""
+
+    def run(points, weights):
+        with tempfile.TemporaryDirectory() as name:
+            np.column_stack([points, np.zeros(len(points)) if weights is None else weights]).tofile(f"{name}/set.bin")
+            path = pathlib.Path(os.environ["COMPILED"]) / program
+            subprocess.run([path, "set.bin", *arguments, "cells.bin"], cwd=name, check=True, stdout=subprocess.DEVNULL)
+            return np.fromfile(f"{name}/cells.bin", np.uint32).reshape(-1, 4)
+
+    return run
+
+
+def compile_cgal(program):
+    """The version of CGAL, and the flags for its parallel triangulation."""
+    flags = ["-DNDEBUG", "-frounding-math", "-DCGAL_LINKED_WITH_TBB", "-lmpfr", "-lgmp", "-ltbb", "-ltbbmalloc"]
+    compile_with("plain_cgal.cc", program, flags)
+    asked = subprocess.run(["c++", "-E", "-dM", "-include", "CGAL/version.h", "-x", "c++", "/dev/null"], capture_output=True, text=True, check=True)
+    return re.search(r"#define CGAL_VERSION ([\d.]+)", asked.stdout)[1]
+
+
+def compile_geogram(program):
+    """The version of Geogram, whose wheel has headers and a static library."""
+    wheel = pathlib.Path(importlib.util.find_spec("geogram").origin).parents[1]
+    libraries = wheel / "geogram.libs"
+    flags = ["-fopenmp", "-DGEOGRAM_WITH_PDEL", f"-I{wheel / 'include/geogram1'}", wheel / "lib64/libgeogram.a", *libraries.glob("libtbb-*")]
+    compile_with("race_geogram.cc", program, [*flags, f"-Wl,-rpath,{libraries}", "-ldl"])
+    return importlib.metadata.version("geogram")
+
+
+def compile_with(source, program, flags):
+    source = pathlib.Path(__file__).with_name(source)
+    subprocess.run(["c++", "-std=c++17", "-O3", "-pthread", "-o", program, source, *flags], check=True, capture_output=True)
+
+
+COMPILED = {"cgal_with_tbb": compile_cgal, "geogram": compile_geogram}
+
+
 def walpha(engine):
     def run(points, weights):
         with tempfile.TemporaryDirectory() as name:
@@ -100,10 +157,14 @@ def walpha(engine):
 PROGRAMS = {
     "walpha, native": (walpha("native"), True, None, "[ties](ties.md)"),
     "CGAL, by walpha": (walpha("cgal"), True, None, "[manual](https://doc.cgal.org/latest/Triangulation_3/index.html)"),
+    "CGAL with TBB": (compiled("cgal_with_tbb", "triangulation", "2"), True, "cgal_with_tbb", "the same"),
     "GUDHI, exact": (gudhi("exact"), True, "gudhi", "[manual](https://gudhi.inria.fr/python/latest/alpha_complex_user.html)"),
     "GUDHI, fast": (gudhi("fast"), True, "gudhi", "the same"),
+    "diode, exact": (diode, True, "diode", "[README](https://github.com/mrzv/diode)"),
+    "Geogram": (compiled("geogram", "1"), True, "geogram", "[RegularWeightedDelaunay3d](https://github.com/BrunoLevy/geogram/wiki/Delaunay3D)"),
     "TetGen -J": (tetgen, True, "tetgen", "[manual](https://wias-berlin.de/software/tetgen/)"),
     "SciPy (Qhull)": (scipy, False, "scipy", "[imprecision in Qhull](http://www.qhull.org/html/qh-impre.htm)"),
+    "alphashape (Qhull)": (alphashape, False, "alphashape", "as SciPy"),
     "VTK": (vtk, False, "vtk", "[vtkDelaunay3D](https://vtk.org/doc/nightly/html/classvtkDelaunay3D.html)"),
     "Open3D (Qhull)": (open3d, False, "open3d", "as Qhull"),
     "Gmsh": (gmsh, False, "gmsh", "[manual](https://gmsh.info/doc/texinfo/gmsh.html)"),
@@ -128,10 +189,13 @@ def version(needed):
         said = subprocess.run(["dpkg-query", "-W", "-f", "${Version}", "tetgen"], capture_output=True, text=True)
         return said.stdout or "unknown"
     try:
+        if needed in COMPILED:
+            return COMPILED[needed](pathlib.Path(os.environ["COMPILED"]) / needed)
         module = importlib.import_module(needed)
-    except ImportError:
+        return getattr(module, "__version__", None) or importlib.metadata.version(needed)
+    except (ImportError, AttributeError, OSError, subprocess.CalledProcessError) as error:
+        print(f"{needed} is left out: {error}", file=sys.stderr)
         return None
-    return getattr(module, "__version__", "")
 
 
 def verdict(folder, points, weights, cells):
@@ -170,6 +234,12 @@ def cell(folder, program, points, weights):
 
 
 def main():
+    with tempfile.TemporaryDirectory() as name:
+        os.environ["COMPILED"] = name
+        judge()
+
+
+def judge():
     versions = {name: version(program[2]) for name, program in PROGRAMS.items()}
     programs = [name for name in PROGRAMS if versions[name] is not None]
     help_ = subprocess.run([WALPHA, "points", "hard:"], capture_output=True, text=True).stderr
