@@ -35,7 +35,7 @@ use super::report::SCHEMA_VERSION;
 /// Check a complex exactly: one computed here, or one that another program wrote.
 ///
 /// INPUT is a volume or points, from which an engine computes a shape; a complex or filtration
-/// (.json, .npz); or a mesh of tetrahedra (.vtu, .vtk, .msh of Gmsh, .node and .ele of tetgen, .mesh of
+/// (.json, .npz); or a mesh of tetrahedra (.vtu, .vtk, .ply, .msh of Gmsh, .node and .ele of tetgen, .mesh of
 /// Medit), whose cells are judged. What states no α is judged as a triangulation, at α = ∞.
 /// Coordinates in text are decimal numbers, each taken to the nearest double. The checker shares
 /// no code with the engines or CGAL.

@@ -170,6 +170,7 @@ pub static FORMATS: [PointFormat; 15] = [
         begins: |start| start.starts_with(b"ply\n") || start.starts_with(b"ply\r"),
         read: built!("formats", |file, _| ply::read(file)),
         cells: built!("formats", ply::cells),
+        read_complex: built!("formats", ply::read_complex),
         ..PLAIN
     },
     PointFormat {

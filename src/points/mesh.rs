@@ -4,7 +4,7 @@ use std::path::Path;
 
 use walpha_check::meshes::Mesh;
 
-use super::read::format;
+use super::read::{format, no_complex};
 use super::{CellCount, PointOptions, PointsError};
 use crate::volume::{OpenFile, Reason};
 
@@ -40,8 +40,8 @@ pub(crate) fn cells_of_file(
     Ok(count(file)?.into_iter().filter(|cells| cells.count > 0).collect())
 }
 
-/// Reads the cells of a file as a complex for the checker. Of VTU and legacy VTK these are the tetrahedra, with the
-/// point data `weight`, and α is ∞. If the file states α, they are the simplices of all dimensions, with their classes.
+/// Reads the cells of a file as a complex for the checker. Of VTU, legacy VTK and PLY these are the tetrahedra, with the
+/// point data `weight`, and α is ∞. If a file of VTK states α, they are the simplices of all dimensions, with their classes.
 /// Formats whose files hold nothing but meshes are read by [`walpha_check::meshes`].
 ///
 /// # Errors
@@ -58,9 +58,5 @@ pub(crate) fn read_complex_file(
     if let Some(read) = options.format_of(file).and_then(|format| format.read_complex) {
         return read(file);
     }
-    let reason = Reason::unsupported(
-        "its cells cannot be read as a complex",
-        "give a complex as .json or .npz, or a mesh as .vtu or .vtk (docs/cross-checking.md)",
-    );
-    Err(format(file.path(), reason))
+    Err(no_complex(file.path()))
 }

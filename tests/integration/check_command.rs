@@ -263,6 +263,66 @@ fn our_meshes_are_judged_as_the_shapes_they_are() {
     assert_eq!(code, 2, "{stderr}");
 }
 
+/// PLY as `VCGlib` lists tetrahedra, in text and in binary, beside a face.
+#[test]
+fn tetrahedra_of_ply_are_judged() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let (points, cells) = cubes(3);
+    let head = |format: &str, count: usize| {
+        format!(
+            "ply\nformat {format} 1.0\nelement vertex {}\nproperty double x\nproperty double y\n\
+             property double z\nproperty float weight\nelement face 1\nproperty list uchar int vertex_indices\n\
+             element tetra {count}\nproperty float quality\nproperty list uchar int vertex_indices\nend_header\n",
+            points.len()
+        )
+    };
+    let write = |name: &str, cells: &[Vec<usize>]| {
+        let words = |row: &[usize]| row.iter().map(usize::to_string).collect::<Vec<_>>().join(" ");
+        let mut text = head("ascii", cells.len());
+        points.iter().for_each(|[x, y, z]| text += &format!("{x} {y} {z} 0.5\n"));
+        text += "3 0 1 2\n";
+        cells.iter().for_each(|row| text += &format!("0.25 {} {}\n", row.len(), words(row)));
+        std::fs::write(folder.join(format!("{name}.ply")), text).unwrap();
+        let mut bytes = head("binary_big_endian", cells.len()).into_bytes();
+        for point in &points {
+            point.iter().for_each(|x| bytes.extend(x.to_be_bytes()));
+            bytes.extend(0.5f32.to_be_bytes());
+        }
+        let list = |bytes: &mut Vec<u8>, row: &[usize]| {
+            bytes.push(row.len() as u8);
+            row.iter().for_each(|&v| bytes.extend((v as i32).to_be_bytes()));
+        };
+        list(&mut bytes, &[0, 1, 2]);
+        for row in cells {
+            bytes.extend(0.25f32.to_be_bytes());
+            list(&mut bytes, row);
+        }
+        std::fs::write(folder.join(format!("{name}-binary.ply")), bytes).unwrap();
+    };
+    write("right", &cells);
+    write("wrong", &cells[1..]);
+    write("short", &[vec![0, 1, 2]]);
+    for (name, decimal) in [("right", true), ("right-binary", false)] {
+        let stdout = common::ok(folder, &["check", &format!("{name}.ply"), "--json"]);
+        let facts: serde_json::Value = serde_json::from_str(&stdout).unwrap();
+        assert_eq!(
+            (facts["verdict"].as_str(), &facts["simplices"][0]),
+            (Some("valid"), &cells.len().into())
+        );
+        let notes = facts["notes"].to_string();
+        assert_eq!(notes.contains("nearest double"), decimal, "{notes}");
+        assert!(notes.contains("only tetrahedra are judged: 1 faces are ignored"), "{notes}");
+        // Weights are read: without them no cell is in a shape below α = 3/4.
+        let weighted = common::run(folder, &["check", &format!("{name}.ply"), "--alpha", "0.3"]);
+        assert_eq!(weighted.0, 0, "{}", weighted.1);
+    }
+    for name in ["wrong", "wrong-binary"] {
+        assert_eq!(common::run(folder, &["check", &format!("{name}.ply")]).0, 3);
+    }
+    common::fails(folder, 1, "check short.ply", &["3 corners"]);
+}
+
 /// What lists cells that are not judged is refused, not judged by its points; a cloud of points is judged by
 /// our own shape of it.
 #[test]

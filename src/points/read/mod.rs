@@ -34,6 +34,8 @@ use std::path::Path;
 
 #[cfg(feature = "formats")]
 use walpha_base::shown::shown;
+#[cfg(feature = "formats")]
+use walpha_check::meshes::MeshError;
 
 #[cfg(feature = "formats")]
 use super::CellCount;
@@ -43,6 +45,22 @@ use crate::volume::Reason;
 /// The error for a file of points.
 pub(super) fn format(path: &Path, reason: Reason) -> PointsError {
     PointsError::Format { path: path.into(), reason }
+}
+
+/// The error for a mesh that the checker's reader refuses.
+#[cfg(feature = "formats")]
+fn mesh_error(path: &Path, error: &MeshError) -> PointsError {
+    let advice = error.advice().unwrap_or("write the file again").to_owned();
+    format(path, Reason::content(error.to_string(), advice))
+}
+
+/// The error for a file whose cells are no simplices that the checker judges.
+pub(super) fn no_complex(path: &Path) -> PointsError {
+    let reason = Reason::unsupported(
+        "its cells cannot be read as a complex",
+        "give a complex as .json or .npz, or a mesh of tetrahedra as .vtu, .vtk or .ply (docs/cross-checking.md)",
+    );
+    format(path, reason)
 }
 
 /// Sets the weights to the squares of radii, unless the file has weights.

@@ -1,12 +1,51 @@
 use std::io::{BufRead, Read};
 use std::path::Path;
 
-use super::{COLUMNS, CellCount, Points, PointsError, RADIUS, format, take_radii};
+use walpha_check::meshes::{Grid, Mesh};
+
+use super::{
+    COLUMNS, CellCount, Points, PointsError, RADIUS, format, mesh_error, no_complex, take_radii,
+};
 use crate::volume::{Dtype, Element as _, Endian, Lines, OpenFile, Reason, io_error};
 
 /// Reads the vertices of a PLY file, text or binary of either byte order: properties x, y and z,
 /// optionally weight or radius, and value. All other elements must be as the header declares.
 pub(crate) fn read(file: &OpenFile) -> Result<Points, PointsError> {
+    Ok(content(file)?.0)
+}
+
+/// Reads the vertices and the tetrahedra: of elements of one of [these names](TETRAHEDRA), the corners are the first list.
+pub(crate) fn read_complex(file: &OpenFile) -> Result<Mesh, PointsError> {
+    let (points, corners, is_text) = content(file)?;
+    if corners.ends.is_empty() {
+        return Err(no_complex(file.path()));
+    }
+    let others = cells(file)?.into_iter().filter(|cells| cells.kind != Grid::kind_of(Grid::TETRA));
+    let ignored: Vec<_> = others.map(|cells| (cells.kind, cells.count as u64)).collect();
+    let grid = Grid {
+        points: points.positions,
+        weights: points.weights,
+        types: vec![Grid::TETRA; corners.ends.len()],
+        ends: corners.ends,
+        corners: corners.numbers,
+        ..Grid::default()
+    };
+    let mesh = grid.mesh().map_err(|error| mesh_error(file.path(), &error))?.with_ignored(&ignored);
+    Ok(if is_text { mesh.with_decimal_note() } else { mesh })
+}
+
+/// The corners of all tetrahedra, and where those of each end.
+#[derive(Default)]
+struct Corners {
+    numbers: Vec<f64>,
+    ends: Vec<f64>,
+}
+
+/// Names of elements that are tetrahedra: `tetra` is that of `VCGlib`.
+const TETRAHEDRA: [&str; 5] = ["tetra", "tet", "tetrahedra", "tetrahedron", "cell"];
+
+/// Points and tetrahedra, and whether numbers are text.
+fn content(file: &OpenFile) -> Result<(Points, Corners, bool), PointsError> {
     let path = file.path();
     let fail = |reason: Reason| format(path, reason);
     let mut lines = Lines::new(file.reader()?);
@@ -20,11 +59,13 @@ pub(crate) fn read(file: &OpenFile) -> Result<Points, PointsError> {
         reader.read_to_string(&mut text).map_err(io_error(path))?;
         Numbers::Text { text, at: 0 }
     };
-    let mut points = None;
+    let (mut points, mut corners) = (None, Corners::default());
     for element in &header.elements {
         element.fits(header.endian.is_some(), left).map_err(fail)?;
         if element.name == "vertex" && points.is_none() {
             points = Some(vertices(path, element, &mut numbers)?);
+        } else if TETRAHEDRA.contains(&element.name.as_str()) {
+            corners.read(element, &mut numbers).map_err(fail)?;
         } else {
             element.skip(&mut numbers).map_err(fail)?;
         }
@@ -34,9 +75,32 @@ pub(crate) fn read(file: &OpenFile) -> Result<Points, PointsError> {
             "continues after its last element: it is too long or mislabelled",
         )));
     }
-    points.ok_or_else(|| {
+    let points = points.ok_or_else(|| {
         fail(Reason::content("has no element vertex, and so no points", "name another file"))
-    })
+    })?;
+    Ok((points, corners, header.endian.is_none()))
+}
+
+impl Corners {
+    /// Reads an element of tetrahedra.
+    fn read(&mut self, element: &Element, numbers: &mut Numbers<impl Read>) -> Result<(), Reason> {
+        let is_list = |property: &Property| matches!(property, Property::List(..));
+        let Some(list) = element.properties.iter().position(is_list) else {
+            return element.skip(numbers);
+        };
+        for _ in 0..element.count {
+            for (place, property) in element.properties.iter().enumerate() {
+                let mut keep = |number| {
+                    if place == list {
+                        self.numbers.push(number);
+                    }
+                };
+                property.read(numbers, &mut keep)?;
+            }
+            self.ends.push(self.numbers.len() as f64);
+        }
+        Ok(())
+    }
 }
 
 /// The numbers of faces, edges and so on that the header declares.
@@ -47,7 +111,7 @@ pub(crate) fn cells(file: &OpenFile) -> Result<Vec<CellCount>, PointsError> {
             "face" => "faces",
             "tristrips" => "triangle strips",
             "edge" => "edges",
-            "cell" | "tetra" | "tet" => "tetrahedra",
+            name if TETRAHEDRA.contains(&name) => "tetrahedra",
             _ => return None,
         };
         Some(CellCount::new(kind, usize::try_from(element.count).unwrap_or(usize::MAX)))
@@ -83,7 +147,7 @@ fn vertices(
     for _ in 0..element.count {
         let mut position = [0.0; 3];
         for (property, column) in element.properties.iter().zip(&columns) {
-            let number = property.read(numbers).map_err(fail)?;
+            let number = property.read(numbers, &mut |_| ()).map_err(fail)?;
             match *column {
                 Some(3) => points.weights.get_or_insert_default().push(number),
                 Some(4) => points.values.get_or_insert_default().push(number),
@@ -189,7 +253,7 @@ impl Element {
         let rows = if self.properties.is_empty() { 0 } else { self.count };
         for _ in 0..rows {
             for property in &self.properties {
-                property.read(numbers)?;
+                property.read(numbers, &mut |_| ())?;
             }
         }
         Ok(())
@@ -197,8 +261,12 @@ impl Element {
 }
 
 impl Property {
-    /// Reads a number, or skips a list and returns its length.
-    fn read(&self, numbers: &mut Numbers<impl Read>) -> Result<f64, Reason> {
+    /// Reads a number, or the length of a list, whose items are passed on.
+    fn read(
+        &self,
+        numbers: &mut Numbers<impl Read>,
+        item_of_list: &mut impl FnMut(f64),
+    ) -> Result<f64, Reason> {
         match *self {
             Self::Scalar(_, dtype) => numbers.next(dtype),
             Self::List(count, item) => {
@@ -208,7 +276,7 @@ impl Property {
                         "has a list of {count} items: it is damaged"
                     )));
                 }
-                (0..count as u64).try_for_each(|_| numbers.next(item).map(drop))?;
+                (0..count as u64).try_for_each(|_| numbers.next(item).map(&mut *item_of_list))?;
                 Ok(count)
             }
         }

@@ -1,9 +1,9 @@
 use std::path::Path;
 
-use walpha_check::meshes::{Grid, Mesh, MeshError, MeshFormat};
+use walpha_check::meshes::{Grid, Mesh, MeshFormat};
 use walpha_complex::Alpha;
 
-use super::{CellCount, Points, PointsError, format, take_radii};
+use super::{CellCount, Points, PointsError, format, mesh_error, take_radii};
 use crate::volume::{OpenFile, Reason, VtkPoints, VtkXml};
 
 /// Names of arrays that are not read as values, even if they are the active scalars.
@@ -152,11 +152,6 @@ pub(crate) fn read_complex(file: &OpenFile) -> Result<Mesh, PointsError> {
 pub(crate) fn read_legacy_complex(file: &OpenFile) -> Result<Mesh, PointsError> {
     let format = MeshFormat::named("vtk").expect("VTK is a format of meshes");
     format.read_bytes(file.path(), &file.bytes()?).map_err(|error| mesh_error(file.path(), &error))
-}
-
-fn mesh_error(path: &Path, error: &MeshError) -> PointsError {
-    let advice = error.advice().unwrap_or("write the file again").to_owned();
-    format(path, Reason::content(error.to_string(), advice))
 }
 
 /// VTK's type of single points.

@@ -30,16 +30,18 @@ pub struct Grid {
 const VERTEX: u8 = 1;
 const LINE: u8 = 3;
 const TRIANGLE: u8 = 5;
-const TETRA: u8 = 10;
 
 impl Grid {
+    /// VTK's type of tetrahedra.
+    pub const TETRA: u8 = 10;
+
     /// The name of a type of cells, in the plural (VTK User's Guide, "Linear cell types in VTK").
     pub fn kind_of(cell_type: u8) -> &'static str {
         match cell_type {
             VERTEX => "vertices",
             LINE => "edges",
             TRIANGLE => "triangles",
-            TETRA => "tetrahedra",
+            Self::TETRA => "tetrahedra",
             2 => "sets of vertices",
             4 => "polylines",
             6 => "strips",
@@ -64,7 +66,7 @@ impl Grid {
             return Err(error.with_advice(WRITE_AGAIN));
         }
         let classes = classes.filter(|_| alpha.is_some());
-        let only_cells = alpha.is_none() && types.contains(&TETRA);
+        let only_cells = alpha.is_none() && types.contains(&Self::TETRA);
         let mut rows = Rows::default();
         let mut ignored: Vec<(&str, u64)> = Vec::new();
         let mut from = 0;
@@ -90,7 +92,7 @@ impl Grid {
                 VERTEX => 1,
                 LINE => 2,
                 TRIANGLE => 3,
-                TETRA => 4,
+                Self::TETRA => 4,
                 _ => return Err(not_tetrahedra(Self::kind_of(kind)).at(&format!("cell {row}"))),
             };
             if found.len() != size {

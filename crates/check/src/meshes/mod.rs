@@ -136,8 +136,9 @@ impl Mesh {
         self
     }
 
-    /// Says how numbers in text were read.
-    fn with_decimal_note(self) -> Self {
+    /// The mesh with a note that says how numbers in text were read.
+    #[must_use]
+    pub fn with_decimal_note(self) -> Self {
         self.with_note("coordinates are decimal numbers, each taken to the nearest double")
     }
 
@@ -149,8 +150,9 @@ impl Mesh {
         self.with_note(format!("points are numbered from 0 here, in the order of the file, which numbers them from {first}"))
     }
 
-    /// Says what was left out: kinds, and how many of each.
-    fn with_ignored(self, ignored: &[(impl AsRef<str>, u64)]) -> Self {
+    /// The mesh with a note of what was left out: kinds, and how many of each.
+    #[must_use]
+    pub fn with_ignored(self, ignored: &[(impl AsRef<str>, u64)]) -> Self {
         let listed: Vec<String> = ignored
             .iter()
             .filter(|(_, count)| *count > 0)
