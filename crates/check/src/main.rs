@@ -1,17 +1,18 @@
 //! `walpha-check`: judges complexes in files.
 
 use std::fmt::Display;
-use std::io::{self, ErrorKind, Write};
+use std::io::{self, ErrorKind, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::time::{Duration, Instant};
 
 use clap::{Parser, ValueEnum};
 use walpha_base::{standard_output, threads};
 use walpha_check::meshes::{MeshError, MeshFormat, open_weights};
 use walpha_check::schema::{AnyFile, ComplexFile, PlacedComplex, SchemaError};
 use walpha_check::{
-    Alpha, CertifyError, CertifyFiltrationError, FiltrationFinding, Finding, Unjudged,
-    certify_filtration, count_by_rule, keep_causes,
+    Alpha, CertifyError, CertifyFiltrationError, FiltrationFinding, Finding, Monitor, Unjudged,
+    certify_filtration_monitored, count_by_rule, keep_causes,
 };
 
 /// Judge weighted alpha shapes and meshes of tetrahedra exactly.
@@ -241,7 +242,9 @@ fn judge(path: &Path, arguments: &Arguments) -> Result<bool, Failure> {
     match file {
         AnyFile::Complex(file) => {
             let is_cells_alone = file.is_cells_alone();
-            let (mut findings, mut certificate) = PlacedComplex::try_from(file)?.findings()?;
+            let complex = PlacedComplex::try_from(file)?;
+            let (mut findings, mut certificate) =
+                watched(|monitor| complex.findings_monitored(monitor))?;
             if is_cells_alone {
                 keep_causes(&mut findings, &mut certificate);
             }
@@ -258,7 +261,8 @@ fn judge(path: &Path, arguments: &Arguments) -> Result<bool, Failure> {
             Ok(findings.is_empty())
         }
         AnyFile::Filtration(file) => {
-            let (mut findings, certificate) = certify_filtration(&file)?;
+            let (mut findings, certificate) =
+                watched(|monitor| certify_filtration_monitored(&file, monitor))?;
             findings.retain(|finding| ties == Ties::Exact || !finding.is_tie());
             let report = Report {
                 certificate: &certificate,
@@ -272,6 +276,26 @@ fn judge(path: &Path, arguments: &Arguments) -> Result<bool, Failure> {
             Ok(findings.is_empty())
         }
     }
+}
+
+/// Does long work, and shows on a terminal how far it is.
+fn watched<T>(work: impl FnOnce(&Monitor) -> T) -> T {
+    /// What takes no longer shows nothing.
+    const QUICK: Duration = Duration::from_secs(1);
+    if !io::stderr().is_terminal() {
+        return work(&Monitor::noop());
+    }
+    let started = Instant::now();
+    let monitor = Monitor::new(move |done: u64, total: u64| {
+        if started.elapsed() > QUICK {
+            let _ = write!(io::stderr().lock(), "\rjudging {:3} %", 100 * done / total.max(1));
+        }
+    });
+    let made = work(&monitor);
+    if started.elapsed() > QUICK {
+        let _ = write!(io::stderr().lock(), "\r{:13}\r", "");
+    }
+    made
 }
 
 /// What is printed of a file.
