@@ -32,6 +32,7 @@ mod compare;
 mod enumerate;
 mod exact;
 mod flat;
+mod index;
 pub mod meshes;
 mod parallel;
 mod rules;

@@ -6,6 +6,27 @@ use walpha_base::{Cancelled, Monitor};
 /// Items between two checks of the monitor.
 const BATCH: usize = 1 << 8;
 
+/// The result of `work` for each index below `count`. Until it is known, `unknown` stands in its place.
+///
+/// # Errors
+/// The work was cancelled.
+pub(crate) fn one_for_each<T: Copy + Send + Sync>(
+    count: usize,
+    unknown: T,
+    monitor: &Monitor,
+    work: impl Fn(usize) -> T + Sync,
+) -> Result<Vec<T>, Cancelled> {
+    let units = monitor.units(count as u64);
+    let mut results = vec![unknown; count];
+    results.par_chunks_mut(BATCH).enumerate().try_for_each(|(batch, results)| {
+        for (i, result) in (batch * BATCH..).zip(&mut *results) {
+            *result = work(i);
+        }
+        units.add(results.len() as u64)
+    })?;
+    Ok(results)
+}
+
 /// What `work` yields for each index below `count`, in the order of the indices.
 ///
 /// # Errors

@@ -2,11 +2,11 @@
 
 pub use walpha_complex::schema::*;
 
-use std::collections::{BTreeMap, BTreeSet};
-
+use rayon::prelude::*;
 use walpha_complex::canonical::{outward_facets, smallest_even, sort, sorted};
 
 use crate::exact::orientation;
+use crate::index::Index;
 use crate::{Alpha, Class, Complex, Placed, Simplices};
 
 /// A complex with its points, in canonical order, ready to be judged.
@@ -101,12 +101,11 @@ impl TryFrom<ComplexFile> for PlacedComplex {
             n,
         )?;
 
-        let cells = complete(cells, |_| Vec::new(), &Simplices::<4>::default());
-        let of_cell = |cell: &[u32; 4]| outward_facets(*cell).to_vec();
-        let facets = complete(facets, of_cell, &cells);
-        let of_facet = |&[a, b, c]: &[u32; 3]| vec![[a, b], [b, c], [a, c]];
+        let cells = of_cells(cells);
+        let facets = complete(facets, |&cell| outward_facets(cell), &cells);
+        let of_facet = |&[a, b, c]: &[u32; 3]| [[a, b], [b, c], [a, c]];
         let edges = complete(edges, of_facet, &facets);
-        let vertices = complete(vertices, |&[a, b]: &[u32; 2]| vec![[a], [b]], &edges);
+        let vertices = complete(vertices, |&[a, b]: &[u32; 2]| [[a], [b]], &edges);
         let mut complex = Complex { cells, facets, edges, vertices };
         orient(&mut complex, &file.points, file.periodic);
         sort(&mut complex);
@@ -145,6 +144,17 @@ fn given_simplices<const N: usize>(
     Ok(Given { rows, classes })
 }
 
+/// The cells of the file; in the shape without classes.
+fn of_cells(given: Given<4>) -> Simplices<4> {
+    let rows = given.rows.unwrap_or_default();
+    let classes = given.classes.unwrap_or_else(|| vec![Class::Interior; rows.len()]);
+    with_classes(rows, classes)
+}
+
+fn with_classes<const N: usize>(rows: Vec<[u32; N]>, classes: Vec<Class>) -> Simplices<N> {
+    Simplices::new(rows, classes).expect("as many classes as rows")
+}
+
 /// The cofaces of a simplex, one dimension up.
 #[derive(Clone, Copy)]
 struct Cofaces {
@@ -154,43 +164,55 @@ struct Cofaces {
 }
 
 /// Rows and classes of a dimension: those of the file where it has them, else derived from the dimension above.
-fn complete<const N: usize, const M: usize>(
+fn complete<const N: usize, const M: usize, const F: usize>(
     given: Given<M>,
-    faces: impl Fn(&[u32; N]) -> Vec<[u32; M]>,
+    faces: impl Fn(&[u32; N]) -> [[u32; M]; F] + Sync,
     higher: &Simplices<N>,
 ) -> Simplices<M> {
-    let mut cofaces = BTreeMap::<[u32; M], Cofaces>::new();
-    for (row, class) in higher.iter() {
-        for face in faces(row) {
-            let none = Cofaces { count: 0, in_shape: false, all_interior: true };
-            let cofaces = cofaces.entry(sorted(face)).or_insert(none);
-            cofaces.count += 1;
-            cofaces.in_shape |= class != Class::Exterior;
-            cofaces.all_interior &= class == Class::Interior;
+    let (rows, classes) = match given {
+        Given { rows: Some(rows), classes: Some(classes) } => {
+            return with_classes(rows, classes);
         }
-    }
-    let derived = given.rows.is_none();
-    let rows = given
-        .rows
-        .unwrap_or_else(|| cofaces.keys().copied().collect::<BTreeSet<_>>().into_iter().collect());
-    let implied = |row: &[u32; M]| match cofaces.get(&sorted(*row)) {
-        // A cell has no cofaces.
-        _ if M == 4 => Class::Interior,
-        // A facet has two sides; of an edge or vertex all cofaces must be interior.
-        Some(cofaces) if cofaces.in_shape => {
-            let closed = cofaces.all_interior && (M < 3 || cofaces.count == 2);
-            if closed { Class::Interior } else { Class::Regular }
-        }
-        _ if derived => Class::Exterior,
-        _ => Class::Singular,
+        Given { rows, classes } => (rows, classes),
     };
-    let classes = given.classes.unwrap_or_else(|| rows.iter().map(implied).collect());
-    rows.into_iter().zip(classes).collect()
+    let of_rows = higher.rows().par_iter().zip(higher.classes());
+    let mut faces: Vec<([u32; M], Class)> = of_rows
+        .flat_map_iter(|(row, &class)| faces(row).map(|face| (sorted(face), class)))
+        .collect();
+    faces.par_sort_unstable();
+    let cofaces: Vec<([u32; M], Cofaces)> = faces
+        .chunk_by(|(face, _), (next, _)| face == next)
+        .map(|of_face| {
+            let cofaces = Cofaces {
+                count: of_face.len(),
+                in_shape: of_face.iter().any(|&(_, class)| class != Class::Exterior),
+                all_interior: of_face.iter().all(|&(_, class)| class == Class::Interior),
+            };
+            (of_face[0].0, cofaces)
+        })
+        .collect();
+    drop(faces);
+    let derived = rows.is_none();
+    let rows = rows.unwrap_or_else(|| cofaces.iter().map(|&(face, _)| face).collect());
+    let implied = |row: &[u32; M]| {
+        let at = cofaces.binary_search_by_key(&sorted(*row), |&(face, _)| face);
+        match at.map(|at| cofaces[at].1) {
+            // A facet has two sides; of an edge or vertex all cofaces must be interior.
+            Ok(cofaces) if cofaces.in_shape => {
+                let closed = cofaces.all_interior && (M < 3 || cofaces.count == 2);
+                if closed { Class::Interior } else { Class::Regular }
+            }
+            _ if derived => Class::Exterior,
+            _ => Class::Singular,
+        }
+    };
+    let classes = classes.unwrap_or_else(|| rows.par_iter().map(implied).collect());
+    with_classes(rows, classes)
 }
 
 /// Orients cells positively and regular facets outward, and sorts the vertices of other rows.
 pub(crate) fn orient(complex: &mut Complex, points: &[[f64; 3]], periodic: Option<[f64; 3]>) {
-    for cell in complex.cells.rows_mut() {
+    complex.cells.rows_mut().par_iter_mut().for_each(|cell| {
         let mut corners = cell.map(|v| points[v as usize]);
         if let Some(sides) = periodic {
             let first = corners[0];
@@ -202,19 +224,29 @@ pub(crate) fn orient(complex: &mut Complex, points: &[[f64; 3]], periodic: Optio
             cell.swap(2, 3);
         }
         *cell = smallest_even(*cell);
-    }
-    let mut outward = BTreeMap::new();
-    for cell in complex.cells.of(Class::Interior) {
-        outward.extend(outward_facets(*cell).map(|facet| (sorted(facet), smallest_even(facet))));
-    }
-    let facets = std::mem::take(&mut complex.facets).into_iter();
-    let oriented = facets.map(|(facet, class)| {
-        let key = sorted(facet);
-        let regular = class == Class::Regular;
-        (outward.get(&key).copied().filter(|_| regular).unwrap_or(key), class)
     });
-    complex.facets = oriented.collect();
-    complex.edges.rows_mut().iter_mut().for_each(|edge| *edge = sorted(*edge));
+    complex.facets.rows_mut().par_iter_mut().for_each(|facet| *facet = sorted(*facet));
+    complex.edges.rows_mut().par_iter_mut().for_each(|edge| *edge = sorted(*edge));
+    let regular: Vec<[u32; 3]> = complex.facets.of(Class::Regular).copied().collect();
+    let index = Index::new(&regular, points.len());
+    let cells = complex.cells.rows().par_iter().zip(complex.cells.classes());
+    let outward =
+        cells.filter(|(_, class)| **class == Class::Interior).flat_map_iter(|(cell, _)| {
+            let facets = outward_facets(*cell).into_iter();
+            facets.filter(|facet| index.contains(*facet)).map(smallest_even)
+        });
+    // A facet that is listed several times, or that has two such cells: as in the last of them.
+    let mut outward: Vec<[u32; 3]> = outward.collect();
+    outward.par_sort_by_key(|facet| sorted(*facet));
+    drop(index);
+    let (facets, classes) = complex.facets.rows_mut_with_classes();
+    facets.par_iter_mut().zip(classes).filter(|(_, class)| **class == Class::Regular).for_each(
+        |(facet, _)| {
+            let after = outward.partition_point(|other| sorted(*other) <= *facet);
+            let last = after.checked_sub(1).map(|at| outward[at]);
+            *facet = last.filter(|other| sorted(*other) == *facet).unwrap_or(*facet);
+        },
+    );
 }
 
 /// Whether coordinates are finite. The checker reports those that are not.

@@ -33,6 +33,9 @@ pub fn sort(complex: &mut Complex) {
 }
 
 fn sort_rows<const N: usize>(simplices: &mut Simplices<N>) {
+    if simplices.rows().is_sorted_by(|row, next| row < next) {
+        return;
+    }
     let mut rows: Vec<_> = std::mem::take(simplices).into_iter().collect();
     rows.sort_unstable();
     *simplices = rows.into_iter().collect();

@@ -75,6 +75,11 @@ impl<const N: usize> Simplices<N> {
         &mut self.classes
     }
 
+    /// The rows, to change in place, with their classes.
+    pub fn rows_mut_with_classes(&mut self) -> (&mut [[u32; N]], &[Class]) {
+        (&mut self.rows, &self.classes)
+    }
+
     /// Each simplex with its class.
     pub fn iter(&self) -> impl ExactSizeIterator<Item = (&[u32; N], Class)> + '_ {
         self.rows.iter().zip(self.classes.iter().copied())

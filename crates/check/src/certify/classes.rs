@@ -13,7 +13,7 @@ use super::finding::Finding;
 use super::structure::{Half, Index, NONE, Points, Structure};
 use super::torus::Torus;
 use crate::exact::{Side, collinear, orientation, power_value, radius, radius_value, side};
-use crate::parallel::of_each;
+use crate::parallel::{of_each, one_for_each};
 use crate::{Alpha, Class, Simplices};
 
 /// Judges the classes of all simplices, that faces are listed, and that regular facets turn
@@ -86,6 +86,9 @@ pub(super) struct Verdict {
 }
 
 impl Verdict {
+    /// What stands in the place of a verdict until it is known.
+    const UNKNOWN: Self = Self { class: Class::Exterior, refuted_by: NONE };
+
     pub(super) fn of(class: Class) -> Self {
         Self { class, refuted_by: NONE }
     }
@@ -108,19 +111,20 @@ impl Judge<'_> {
             let inside = !self.flat(cell) && self.fits(cell);
             let class = if inside { Class::Interior } else { Class::Exterior };
             let refuter = self.emptiness.filter(|_| inside);
-            let finding = refuter.and_then(|near| near.refuter_of_cell(cell)).map(|point| {
-                let corners = self.points.corners(cell);
-                let power = power_value(corners.each_ref(), &self.points.get(point));
-                Finding::NotRegular { cell: cell.into(), point, power }
-            });
-            Some((class, finding))
+            let refuted_by = refuter.and_then(|near| near.refuter_of_cell(cell)).unwrap_or(NONE);
+            Verdict { class, refuted_by }
         };
-        let mut findings = Vec::new();
-        let verdicts = of_each(cells.len(), monitor, verdict)?.into_iter().map(|(class, found)| {
-            findings.extend(found);
-            Verdict::of(class)
-        });
-        let verdicts = verdicts.collect();
+        let mut verdicts = one_for_each(cells.len(), Verdict::UNKNOWN, monitor, verdict)?;
+        let refuted = cells.rows().iter().zip(&verdicts);
+        let finding = |(&cell, verdict): (&[u32; 4], &Verdict)| {
+            let corners = self.points.corners(cell);
+            let power = power_value(corners.each_ref(), &self.points.get(verdict.refuted_by));
+            Finding::NotRegular { cell: cell.into(), point: verdict.refuted_by, power }
+        };
+        let findings = refuted.filter(|(_, verdict)| verdict.refuted_by != NONE).map(finding);
+        let findings = findings.collect();
+        // It refutes the cell, not its class.
+        verdicts.par_iter_mut().for_each(|verdict| verdict.refuted_by = NONE);
         Ok((verdicts, findings))
     }
 
@@ -146,7 +150,7 @@ impl Judge<'_> {
             let neighbours = structure.halves(i).map(|half| structure.apex(half));
             self.alone(facet, neighbours.filter(inside).min())
         };
-        of_each(rows.len(), monitor, |i| Some(verdict(i)))
+        one_for_each(rows.len(), Verdict::UNKNOWN, monitor, verdict)
     }
 
     /// The verdict on a simplex whose sphere fits α and that has no coface in the shape.
@@ -226,7 +230,7 @@ pub(super) struct Faces<'a, const N: usize, const M: usize> {
     /// The corners of each face; the i-th is opposite to corner i.
     pub(super) corners: [[usize; M]; N],
     pub(super) lower: &'a Simplices<M>,
-    pub(super) index: &'a Index<M>,
+    pub(super) index: &'a Index<'a, M>,
 }
 
 /// What is known of a simplex from its cofaces, which are visited in parallel.
@@ -278,19 +282,21 @@ impl<const N: usize, const M: usize> Faces<'_, N, M> {
     ) -> Result<(Vec<Verdict>, Vec<Finding>), Cancelled> {
         let (cofaces, mut findings) = self.cofaces(&monitor.part(0, 4, 10))?;
         let rows = self.lower.rows();
-        let states = of_each(rows.len(), &monitor.part(4, 6, 10), |i| {
-            Some(state(rows[i], &cofaces[i], judge))
+        let states = one_for_each(rows.len(), State::Outside, &monitor.part(4, 6, 10), |i| {
+            state(rows[i], &cofaces[i], judge)
         })?;
         let refuters = self.neighbours_inside(&states, judge, &monitor.part(6, 9, 10))?;
-        let verdicts = of_each(rows.len(), &monitor.part(9, 10, 10), |i| {
+        let verdict = |i: usize| {
             let refuter = Some(refuters[i].load(Ordering::Relaxed)).filter(|&point| point != NONE);
-            Some(match states[i] {
+            match states[i] {
                 State::Closed => Verdict::of(Class::Interior),
                 State::Open => Verdict::of(Class::Regular),
                 State::Outside => Verdict::of(Class::Exterior),
                 State::Candidate => judge.alone(rows[i], refuter),
-            })
-        })?;
+            }
+        };
+        let monitor = &monitor.part(9, 10, 10);
+        let verdicts = one_for_each(rows.len(), Verdict::UNKNOWN, monitor, verdict)?;
         if judge.has_strays::<M>() {
             let strays = self.lower.rows().iter().zip(&cofaces);
             let strays = strays.filter(|(_, cofaces)| !cofaces.has(Cofaces::SEEN));

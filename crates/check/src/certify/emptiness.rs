@@ -2,6 +2,8 @@
 
 use std::cell::RefCell;
 
+use rayon::prelude::*;
+
 use super::structure::Points;
 use crate::Alpha;
 use crate::exact::{RoundedSphere, Side, WeightedPoint, in_conflict, orientation, side};
@@ -18,6 +20,8 @@ use crate::exact::{RoundedSphere, Side, WeightedPoint, in_conflict, orientation,
 pub(super) struct Emptiness<'a> {
     points: Points<'a>,
     grid: Grid,
+    /// The points in the order of the grid, so that those of a box are beside each other.
+    sites: Vec<WeightedPoint>,
     heaviest: f64,
     /// √(α + largest ω), or the bound on a torus, rounded up; zero when nothing can be inside.
     reach: f64,
@@ -31,7 +35,9 @@ impl<'a> Emptiness<'a> {
         let heaviest = points.weights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let sites = (0..points.len() as u32).filter(|&i| kept[i as usize] == i).collect();
         let reach = (alpha.squared() + heaviest).next_up().max(0.0).sqrt().next_up().min(largest);
-        Self { points, grid: Grid::new(points.positions, sites), heaviest, reach }
+        let grid = Grid::new(points.positions, sites);
+        let sites = grid.points.par_iter().map(|&i| points.get(i)).collect();
+        Self { points, grid, sites, heaviest, reach }
     }
 
     /// A point that refutes a cell whose squared radius is at most α: one strictly inside its sphere, or
@@ -82,8 +88,8 @@ impl<'a> Emptiness<'a> {
         let site = self.points.get(point);
         // |q − p|² ≤ ω of q − ω of p, whatever α is.
         let reach = (self.heaviest - site.weight).next_up().max(0.0).sqrt().next_up();
-        let near = |index: u32| {
-            let within = index != point && side([&site], &self.points.get(index)) != Side::Outside;
+        let near = |slot: usize, index: u32| {
+            let within = index != point && side([&site], &self.sites[slot]) != Side::Outside;
             within.then_some(())
         };
         self.grid.within(site.position, reach, near).is_none()
@@ -99,10 +105,10 @@ impl<'a> Emptiness<'a> {
         let around = (corners[0].position, 2.0 * self.reach);
         let near = sphere.as_ref().map(|sphere| (sphere.center, sphere.reach(self.heaviest)));
         let (center, radius) = near.filter(|(_, radius)| *radius <= around.1).unwrap_or(around);
-        self.grid.within(center, radius.next_up(), |index| {
-            let q = self.points.get(index);
-            let outside = sphere.as_ref().is_some_and(|sphere| sphere.surely_outside(&q));
-            (!outside && !simplex.contains(&index) && refutes(&q, index)).then_some(index)
+        self.grid.within(center, radius.next_up(), |slot, index| {
+            let q = &self.sites[slot];
+            let outside = sphere.as_ref().is_some_and(|sphere| sphere.surely_outside(q));
+            (!outside && !simplex.contains(&index) && refutes(q, index)).then_some(index)
         })
     }
 }
@@ -165,12 +171,12 @@ impl Grid {
     }
 
     /// Calls `visit` with every point within `radius` of `center`, and some beyond, until it
-    /// returns a value.
+    /// returns a value: with its place in the order of the grid, and its number.
     pub(super) fn within<T>(
         &self,
         center: [f64; 3],
         radius: f64,
-        visit: impl Fn(u32) -> Option<T>,
+        visit: impl Fn(usize, u32) -> Option<T>,
     ) -> Option<T> {
         // Rounding is monotonic, so a point between two positions is in a box between theirs.
         let from = self.at(center.map(|x| (x - radius).next_down()));
@@ -180,7 +186,8 @@ impl Grid {
                 let first = self.number([from[0], y, z]);
                 let last = self.number([to[0], y, z]);
                 let row = self.starts[first] as usize..self.starts[last + 1] as usize;
-                if let Some(found) = self.points[row].iter().find_map(|&i| visit(i)) {
+                if let Some(found) = row.into_iter().find_map(|slot| visit(slot, self.points[slot]))
+                {
                     return Some(found);
                 }
             }

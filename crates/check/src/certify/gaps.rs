@@ -8,6 +8,7 @@ use super::emptiness::Emptiness;
 use super::finding::Finding;
 use super::structure::{NONE, Points, Structure};
 use crate::exact::{Side, orientation, radius, radius_value, side};
+use crate::index::{of_bucket, starts};
 use crate::parallel::of_each;
 use crate::{Alpha, Class, Complex};
 
@@ -34,7 +35,9 @@ pub(super) fn missing_cells(
     };
     let mut around: Vec<([u32; 2], u32)> = open_rows.par_iter().flat_map_iter(edges).collect();
     around.par_sort_unstable();
+    let starts = starts(around.iter().map(|(edge, _)| edge[0]), points.len());
     let apexes = |edge: [u32; 2]| {
+        let around = &around[of_bucket(&starts, edge[0])];
         let from = around.partition_point(|other| other.0 < edge);
         &around[from..][..around[from..].partition_point(|other| other.0 == edge)]
     };

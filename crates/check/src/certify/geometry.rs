@@ -69,7 +69,9 @@ pub(super) fn triangulation_findings(
     let linked = Linked::new(cells, points, Boundary::Hull, monitor)?;
     let regular = linked.is_regular();
     let mut found = linked.broken;
-    found.extend(volume(&linked.structure, points, &monitor.unreported())?);
+    let monitor_of_volume = monitor.unreported();
+    let cells_together = six_volumes(cells.cells.rows(), points, &monitor_of_volume)?;
+    found.extend(volume(&linked.structure, points, cells_together, &monitor_of_volume)?);
     found.extend(linked.irregular);
     if regular {
         let own: Vec<u32> = (0..points.len() as u32).collect();
@@ -142,14 +144,13 @@ pub(super) fn six_volumes(
     Ok((sum, 3 * i64::from(lattice.exponent())))
 }
 
-/// Judges that the cells fill the volume that the hull encloses.
+/// Judges that the cells, of which six times the volume is given, fill the volume that the hull encloses.
 pub(super) fn volume(
     structure: &Structure,
     points: Points,
+    (cells, exponent): (IBig, i64),
     monitor: &Monitor,
 ) -> Result<Vec<Finding>, Cancelled> {
-    let rows = structure.complex.cells.rows();
-    let (cells, exponent) = six_volumes(rows, points, &monitor.part(0, 9, 10))?;
     let hull = structure.hull();
     let top = points.positions[0];
     let lattice = Lattice::through(points.positions);
@@ -157,7 +158,7 @@ pub(super) fn volume(
         let [a, b, c] = points.positions_of(hull[i]);
         [top, a, b, c]
     };
-    let enclosed = lattice.six_volumes(hull.len(), &monitor.part(9, 10, 10), cone)?;
+    let enclosed = lattice.six_volumes(hull.len(), monitor, cone)?;
     if cells == enclosed {
         return Ok(Vec::new());
     }

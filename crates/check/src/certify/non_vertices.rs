@@ -242,7 +242,7 @@ pub(super) fn hiddenness_in_cells(
         let far = others.as_flattened().iter().zip(first.iter().cycle());
         let reach = far.fold(0.0, |most, (x, first)| (x - first).abs().max(most));
         let found = RefCell::new(Vec::new());
-        grid.within(first, reach.next_up(), |point| {
+        grid.within(first, reach.next_up(), |_, point| {
             if holds(points, cell, points.get(point).position) {
                 found.borrow_mut().extend(not_hidden(points, cell, point));
             }

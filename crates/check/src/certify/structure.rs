@@ -4,11 +4,12 @@ use std::collections::BTreeSet;
 
 use rayon::prelude::*;
 use walpha_base::{Cancelled, Monitor};
-use walpha_complex::canonical::{outward_facets, sorted};
+use walpha_complex::canonical::outward_facets;
 
 use super::finding::{Finding, Simplex};
 use crate::exact::WeightedPoint;
-use crate::parallel::of_each;
+pub(super) use crate::index::{Index, NONE};
+use crate::parallel::one_for_each;
 use crate::{Complex, Placed};
 
 /// The input points.
@@ -49,10 +50,10 @@ pub(super) const MAX_CELLS: usize = (u32::MAX / 4) as usize;
 /// The listed simplices, linked: cells to facets and back, and each found by its vertices.
 pub(super) struct Structure<'a> {
     pub complex: &'a Complex,
-    pub cells: Index<4>,
-    pub facets: Index<3>,
-    pub edges: Index<2>,
-    pub vertices: Index<1>,
+    pub cells: Index<'a, 4>,
+    pub facets: Index<'a, 3>,
+    pub edges: Index<'a, 2>,
+    pub vertices: Index<'a, 1>,
     /// For each facet, its sides in cells as 4 · cell + the corner opposite to it,
     /// ascending; [`NONE`] for a missing one. Of a crowded facet the first two.
     pub sides: Vec<[u32; 2]>,
@@ -71,12 +72,11 @@ pub(super) struct Half {
 impl<'a> Structure<'a> {
     /// Bytes needed to link a complex, besides the complex itself.
     pub(super) fn bytes(complex: &Complex) -> usize {
-        let cell = size_of::<([u32; 4], u32)>() + size_of::<[u32; 4]>();
-        let facet = size_of::<([u32; 3], u32)>() + size_of::<[u32; 2]>();
+        let row = size_of::<u32>();
+        let (cell, facet) = (row + size_of::<[u32; 4]>(), row + size_of::<[u32; 2]>());
         cell * complex.cells.len()
             + facet * complex.facets.len()
-            + size_of::<([u32; 2], u32)>() * complex.edges.len()
-            + size_of::<([u32; 1], u32)>() * complex.vertices.len()
+            + row * (complex.edges.len() + complex.vertices.len())
     }
 
     /// Links cells by their facets. Vertices of all rows must be valid.
@@ -86,20 +86,21 @@ impl<'a> Structure<'a> {
         monitor: &Monitor,
     ) -> Result<(Self, Vec<Finding>), Cancelled> {
         let n = points.len();
-        let (cell_index, mut findings) = Index::new(complex.cells.rows(), n);
+        let cell_index = Index::new(complex.cells.rows(), n);
         monitor.report(2, 10)?;
-        let (facets, found) = Index::new(complex.facets.rows(), n);
-        findings.extend(found);
+        let facets = Index::new(complex.facets.rows(), n);
         monitor.report(5, 10)?;
-        let (edges, found) = Index::new(complex.edges.rows(), n);
-        findings.extend(found);
-        let (vertices, found) = Index::new(complex.vertices.rows(), n);
-        findings.extend(found);
+        let edges = Index::new(complex.edges.rows(), n);
+        let vertices = Index::new(complex.vertices.rows(), n);
+        let mut findings = repeated(&cell_index);
+        findings.extend(repeated(&facets));
+        findings.extend(repeated(&edges));
+        findings.extend(repeated(&vertices));
         monitor.report(7, 10)?;
 
         let cells = complex.cells.rows();
-        let cell_facets: Vec<[u32; 4]> = of_each(cells.len(), &monitor.part(7, 10, 10), |i| {
-            Some(outward_facets(cells[i]).map(|facet| facets.row(facet)))
+        let cell_facets = one_for_each(cells.len(), [NONE; 4], &monitor.part(7, 10, 10), |i| {
+            outward_facets(cells[i]).map(|facet| facets.row(facet))
         })?;
         let mut crowded = BTreeSet::new();
         let mut sides = vec![[NONE; 2]; complex.facets.len()];
@@ -154,6 +155,11 @@ impl<'a> Structure<'a> {
     }
 }
 
+/// Findings on simplices that are listed more than once.
+fn repeated<const N: usize>(index: &Index<N>) -> Vec<Finding> {
+    index.repeated().map(|row| Finding::RepeatedSimplex { simplex: row.into() }).collect()
+}
+
 fn cells_with(cells: &[[u32; 4]], facets: &[[u32; 4]], row: u32) -> Vec<Simplex> {
     let has = |(_, rows): &(&[u32; 4], &[u32; 4])| rows.contains(&row);
     cells.iter().zip(facets).filter(has).map(|(cell, _)| (*cell).into()).collect()
@@ -182,59 +188,12 @@ fn row_findings<const N: usize>(rows: &[[u32; N]], points: usize) -> Vec<Finding
     rows.par_iter().filter_map(judge).collect()
 }
 
-/// No simplex, or no cell.
-pub(super) const NONE: u32 = u32::MAX;
-
-/// Finds listed simplices by their vertices, in any order.
-pub(super) struct Index<const N: usize> {
-    /// Sorted vertices and row number, in lexicographic order.
-    entries: Vec<([u32; N], u32)>,
-    /// Where the entries of each first vertex start.
-    starts: Vec<u32>,
-}
-
-impl<const N: usize> Index<N> {
-    /// Indexes rows of valid vertices, with findings on those that are listed twice.
-    pub(super) fn new(rows: &[[u32; N]], points: usize) -> (Self, Vec<Finding>) {
-        let mut entries: Vec<_> =
-            rows.par_iter().enumerate().map(|(i, row)| (sorted(*row), i as u32)).collect();
-        entries.par_sort_unstable();
-        let twice = entries.windows(2).filter(|pair| pair[0].0 == pair[1].0);
-        let findings =
-            twice.map(|pair| Finding::RepeatedSimplex { simplex: pair[0].0.into() }).collect();
-        let mut starts = vec![0; points + 1];
-        for (row, _) in &entries {
-            starts[row[0] as usize + 1] += 1;
-        }
-        for i in 0..points {
-            starts[i + 1] += starts[i];
-        }
-        (Self { entries, starts }, findings)
-    }
-
-    /// Whether a simplex is listed.
-    pub(super) fn contains(&self, simplex: [u32; N]) -> bool {
-        self.row(simplex) != NONE
-    }
-
-    /// The row of a simplex, or [`NONE`].
-    pub(super) fn row(&self, simplex: [u32; N]) -> u32 {
-        let key = sorted(simplex);
-        let first = key[0] as usize;
-        let bucket = &self.entries[self.starts[first] as usize..self.starts[first + 1] as usize];
-        match bucket.binary_search_by(|(row, _)| row.cmp(&key)) {
-            Ok(at) => bucket[at].1,
-            Err(_) => NONE,
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::Class;
 
-    /// A vertex takes 4 bytes, and so does the number of a row; a facet takes 8 for its two sides.
+    /// A row takes 4 bytes in its index, a cell 16 for its facets, and a facet 8 for its two sides.
     #[test]
     fn bytes_are_those_of_all_rows() {
         let complex = Complex {
@@ -243,6 +202,6 @@ mod tests {
             edges: [[0, 1], [0, 2], [0, 3]].map(|row| (row, Class::Regular)).into_iter().collect(),
             vertices: [0, 1, 2, 3, 4].map(|v| ([v], Class::Regular)).into_iter().collect(),
         };
-        assert_eq!(Structure::bytes(&complex), (20 + 16) + 2 * (16 + 8) + 3 * 12 + 5 * 8);
+        assert_eq!(Structure::bytes(&complex), (4 + 16) + 2 * (4 + 8) + 3 * 4 + 5 * 4);
     }
 }

@@ -4,6 +4,7 @@ use std::cell::Cell;
 use std::collections::BTreeSet;
 use std::ops::ControlFlow;
 
+use dashu_int::IBig;
 use walpha_base::{Cancelled, Monitor};
 
 use super::certificate::{Certificate, CertifyError, NotJudged, Verdict};
@@ -244,8 +245,8 @@ fn apply(
     // Ends of parts, of 20: volume, links and neighbours, gaps.
     let [summed, linked, searched] = if whole { [3, 10, 11] } else { [1, 5, 12] };
     let cells = complex.cells.rows();
-    let (sum, exponent) = geometry::six_volumes(cells, points, &monitor.part(0, summed, 20))?;
-    *volume = Some(Exact::integer(sum, exponent));
+    let of_cells = geometry::six_volumes(cells, points, &monitor.part(0, summed, 20))?;
+    *volume = Some(Exact::integer(of_cells.0.clone(), of_cells.1));
 
     let (kept, equal) = non_vertices::kept_points(points, complex, claim.duplicates);
     report(equal)?;
@@ -287,14 +288,18 @@ fn apply(
         };
         let mut lasting =
             |findings: Vec<Finding>| report(findings.into_iter().filter(in_both).collect());
-        return apply_to(filled, claim, &judge, &kept, &mut lasting, &rest.part(4, 6, 6));
+        let cells = filled.structure.complex.cells.rows();
+        let of_cells = geometry::six_volumes(cells, points, &rest.unreported())?;
+        let monitor = rest.part(4, 6, 6);
+        return apply_to(filled, of_cells, claim, &judge, &kept, &mut lasting, &monitor);
     }
-    apply_to(listed, claim, &judge, &kept, report, &rest)
+    apply_to(listed, of_cells, claim, &judge, &kept, report, &rest)
 }
 
-/// Applies the rules after those on rows.
+/// Applies the rules after those on rows. Of the cells, six times the volume is given.
 fn apply_to(
     linked: Linked,
+    of_cells: (IBig, i64),
     claim: &Claim,
     judge: &Judge,
     kept: &[u32],
@@ -313,7 +318,7 @@ fn apply_to(
     };
     report(broken)?;
     if claim.extent == Extent::Whole && judge.torus.is_none() {
-        report(geometry::volume(&structure, points, &monitor.part(0, 3, 10))?)?;
+        report(geometry::volume(&structure, points, of_cells, &monitor.part(0, 1, 10))?)?;
     }
     report(irregular)?;
     report(non_vertices::duplicates(&structure, kept, claim.duplicates))?;
@@ -329,7 +334,7 @@ fn apply_to(
         report(non_vertices::of_whole(&structure, kept, claim))?;
         if regular {
             let hidden = non_vertices::hidden(&structure, kept);
-            let monitor = monitor.part(3, 4, 10);
+            let monitor = monitor.part(1, 3, 10);
             let judge = match judge.torus {
                 Some(_) => non_vertices::hiddenness_in_cells,
                 None => non_vertices::hiddenness,
@@ -338,7 +343,7 @@ fn apply_to(
         }
     }
     let judging =
-        if judge.emptiness.is_none() { monitor.part(4, 10, 10) } else { monitor.part(1, 6, 10) };
+        if judge.emptiness.is_none() { monitor.part(3, 10, 10) } else { monitor.part(1, 6, 10) };
     report(classes::judge(&structure, judge, &judging)?)?;
     if let (Some(emptiness), false) = (judge.emptiness, wrong.get()) {
         let (singular, mut found) =
@@ -363,11 +368,10 @@ fn flat(claim: &Claim, cone: &Cone, report: &mut Report, monitor: &Monitor) -> R
     let regular = linked.is_regular();
     let (structure, repeated) = Structure::new(complex, points, &monitor.part(4, 5, 10))?;
     let mut broken = cone.at_base(linked.broken);
-    broken.extend(cone.at_base(geometry::volume(
-        &linked.structure,
-        cone.points(),
-        &monitor.unreported(),
-    )?));
+    let unreported = monitor.unreported();
+    let of_cells = geometry::six_volumes(cone.complex.cells.rows(), cone.points(), &unreported)?;
+    let volume = geometry::volume(&linked.structure, cone.points(), of_cells, &unreported)?;
+    broken.extend(cone.at_base(volume));
     broken.extend(cone.at_base(linked.irregular));
     let repeated = repeated.into_iter().filter(|finding| !broken.contains(finding)).collect();
     report(broken)?;

@@ -9,7 +9,8 @@ use rayon::prelude::*;
 use walpha_base::{Cancelled, Monitor};
 
 use super::frame::{WeightedPoint, cross, dot};
-use super::number::{Binary, Number, Range, sign};
+use super::number::{Binary, Bits, Number, Range, sign};
+use super::wide::Wide;
 
 /// The integer grid that holds a set of positions: coordinates in units of a power of two.
 #[derive(Clone, Copy, Debug)]
@@ -18,7 +19,7 @@ pub(crate) struct Lattice {
     bits: u32,
 }
 
-/// Tetrahedra summed at once, small enough for an `i128` to hold the sum if it holds each.
+/// Tetrahedra summed at once, few enough for the sum to have no more than twelve bits more than each.
 const CHUNK: usize = 1 << 12;
 
 impl Lattice {
@@ -52,15 +53,19 @@ impl Lattice {
         F: Fn(usize) -> [[f64; 3]; 4] + Sync,
     {
         // A difference has one digit more than a coordinate, a 3×3 determinant three more still.
-        let fits = 3 * (self.bits + 1) + 3 + CHUNK.ilog2() <= 127;
+        let bits = 3 * (self.bits + 1) + 3 + CHUNK.ilog2();
         let chunks = (0..count).into_par_iter().step_by(CHUNK);
         let range = |start: usize| start..(start + CHUNK).min(count);
         let units = monitor.units(count as u64);
         let sums = chunks.map(|start| {
             units.add(range(start).len() as u64)?;
-            Ok(if fits {
+            Ok(if bits <= Bits::I128 {
                 let det = |i| det4(tetrahedron(i).map(|p| self.small(p)));
                 IBig::from(range(start).map(det).sum::<i128>())
+            } else if bits <= Wide::BITS {
+                let wide = |p| self.small(p).map(Wide::from);
+                let det = |i| det4(tetrahedron(i).map(wide));
+                range(start).map(det).fold(Wide::ZERO, |sum, det| sum.plus(&det)).value()
             } else {
                 let det = |i| det4(tetrahedron(i).map(|p| self.big(p)));
                 range(start).map(det).fold(IBig::ZERO, Add::add)
@@ -197,16 +202,16 @@ impl Lift {
 mod tests {
     use super::*;
 
-    /// The largest tetrahedra of a lattice, so many that their sum exceeds an `i128`.
+    /// The largest tetrahedra of a lattice, so many that their sum exceeds an `i128`, and 256 bits.
     #[test]
     fn volumes_do_not_overflow() {
         let noop = Monitor::noop();
-        for bits in 34..42 {
-            let m = f64::from(2).powi(bits) - 1.0;
+        for bits in (34..42).chain(76..84) {
+            let m = f64::from(2).powi(bits) - if bits < 53 { 1.0 } else { 0.0 };
             let cell = [[m, m, m], [m, -m, -m], [-m, -m, m], [-m, m, -m]];
-            let lattice = Lattice::through(&cell);
+            let lattice = Lattice::through(&[cell.as_slice(), &[[1.0; 3]]].concat());
             let one = lattice.six_volumes(1, &noop, |_| cell).unwrap();
-            let side = IBig::from(2 * (1i128 << bits) - 2);
+            let side = IBig::from(2 * m as i128);
             assert_eq!(one, IBig::from(2) * &side * &side * &side);
             for count in [CHUNK, if bits == 36 { 64 * CHUNK + 5 } else { CHUNK + 5 }] {
                 let sum = lattice.six_volumes(count, &noop, |_| cell).unwrap();

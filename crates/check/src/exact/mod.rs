@@ -13,6 +13,7 @@ mod lattice;
 mod number;
 mod predicates;
 mod value;
+mod wide;
 
 pub(crate) use center::RoundedSphere;
 pub(crate) use frame::WeightedPoint;

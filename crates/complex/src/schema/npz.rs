@@ -89,7 +89,7 @@ pub fn read_npy(name: &'static str, mut bytes: &[u8]) -> Result<Vec<f64>, Schema
         return Err(SchemaError::Array { name, got, expected });
     }
     let length = bytes.len() as u64;
-    decoded(name, &header, &mut bytes, length)
+    decoded(name, &header, &mut bytes, length, |_, x| Ok(x))
 }
 
 /// The shape that an array must have.
@@ -119,7 +119,7 @@ const COMPLEX_ARRAYS: [(&str, Kind); 14] = [
     ("vertex_classes", Kind::Column("vertices")),
 ];
 
-/// The arrays of a file, read as doubles, which represent every index and class exactly.
+/// The arrays of a file, whose elements are read as doubles, which represent every index and class exactly.
 struct Npz<R> {
     archive: ZipArchive<R>,
     /// Size of the file in bytes.
@@ -198,6 +198,15 @@ impl<R: Read + Seek> Npz<R> {
 
     /// All numbers of an array, row by row.
     fn numbers(&mut self, name: &'static str) -> Result<Option<Vec<f64>>, SchemaError> {
+        self.list(name, |_, x| Ok(x))
+    }
+
+    /// All elements of an array, row by row, converted from numbers.
+    fn list<T: Copy>(
+        &mut self,
+        name: &'static str,
+        convert: impl Fn(&'static str, f64) -> Result<T, SchemaError>,
+    ) -> Result<Option<Vec<T>>, SchemaError> {
         let Some(member) = self.member(name)? else { return Ok(None) };
         let Array { header, mut member } = Array::open(name, member)?;
         let columns = match header.shape[..] {
@@ -207,11 +216,11 @@ impl<R: Read + Seek> Npz<R> {
             _ => None,
         };
         let bytes = member.size().saturating_sub(header.length);
-        let numbers = decoded(name, &header, &mut member, bytes)?;
+        let elements = decoded(name, &header, &mut member, bytes, convert)?;
         Ok(Some(match columns {
-            None => numbers,
+            None => elements,
             Some((rows, columns)) => {
-                let at = |i: usize| numbers[i % columns * rows + i / columns];
+                let at = |i: usize| elements[i % columns * rows + i / columns];
                 (0..rows * columns).map(at).collect()
             }
         }))
@@ -228,30 +237,13 @@ impl<R: Read + Seek> Npz<R> {
         })
     }
 
-    fn list<T>(
-        &mut self,
-        name: &'static str,
-        convert: impl Fn(&'static str, f64) -> Result<T, SchemaError>,
-    ) -> Result<Option<Vec<T>>, SchemaError> {
-        let Some(numbers) = self.numbers(name)? else { return Ok(None) };
-        numbers.into_iter().map(|x| convert(name, x)).collect::<Result<_, _>>().map(Some)
-    }
-
-    fn rows<T: Copy + Default, const N: usize>(
+    fn rows<T: Copy, const N: usize>(
         &mut self,
         name: &'static str,
         convert: impl Fn(&'static str, f64) -> Result<T, SchemaError>,
     ) -> Result<Option<Vec<[T; N]>>, SchemaError> {
-        let Some(numbers) = self.numbers(name)? else { return Ok(None) };
-        let (rows, _) = numbers.as_chunks::<N>();
-        let row = |row: &[f64; N]| {
-            let mut out = [T::default(); N];
-            for (slot, &x) in out.iter_mut().zip(row) {
-                *slot = convert(name, x)?;
-            }
-            Ok(out)
-        };
-        rows.iter().map(row).collect::<Result<_, _>>().map(Some)
+        let elements = self.list(name, convert)?;
+        Ok(elements.map(|elements| elements.as_chunks::<N>().0.to_vec()))
     }
 }
 
@@ -270,8 +262,10 @@ impl<'a, R: Read> Array<'a, R> {
 }
 
 fn index(name: &'static str, value: f64) -> Result<u32, SchemaError> {
-    if value.fract() == 0.0 && (0.0..=f64::from(u32::MAX)).contains(&value) {
-        Ok(value as u32)
+    // The conversion saturates, and takes NaN to 0.
+    let number = value as u32;
+    if f64::from(number) == value {
+        Ok(number)
     } else {
         let value = value.to_string();
         Err(SchemaError::Value { name, value, expected: "a point number" })
@@ -404,7 +398,7 @@ impl FiltrationFile {
 type Convert<T> = fn(&'static str, f64) -> Result<T, SchemaError>;
 
 /// Three arrays; `None` if the first is missing, and an error if only others are.
-fn below<R: Read + Seek, T>(
+fn below<R: Read + Seek, T: Copy>(
     file: &mut Npz<R>,
     ArrayNames([vertices, edges, facets]): ArrayNames,
     convert: Convert<T>,
@@ -414,7 +408,7 @@ fn below<R: Read + Seek, T>(
     Ok(Some(Below { vertices: of_vertices, edges, facets }))
 }
 
-fn required<R: Read + Seek, T>(
+fn required<R: Read + Seek, T: Copy>(
     file: &mut Npz<R>,
     name: &'static str,
     convert: Convert<T>,
@@ -433,14 +427,15 @@ fn truth(name: &'static str, value: f64) -> Result<bool, SchemaError> {
 /// Bytes decoded at a time, so that the array and its numbers are never both completely in memory.
 const CHUNK_BYTES: usize = 8 << 20;
 
-/// All elements of an array in the order of the file. The reader is positioned after the header;
+/// All elements of an array in the order of the file, converted from numbers. The reader is positioned after the header;
 /// `bytes` more follow, which must be exactly as many as the header claims.
-fn decoded(
+fn decoded<T>(
     name: &'static str,
     header: &Header,
     reader: &mut impl Read,
     bytes: u64,
-) -> Result<Vec<f64>, SchemaError> {
+    convert: impl Fn(&'static str, f64) -> Result<T, SchemaError>,
+) -> Result<Vec<T>, SchemaError> {
     let wrong = |got: String, expected: String| SchemaError::Array { name, got, expected };
     let Some((size, decode)) = element(&header.descr) else {
         let got = format!("elements of type {}", header.descr);
@@ -453,9 +448,9 @@ fn decoded(
     if bytes != needed {
         return Err(wrong(format!("{bytes} bytes of elements"), claim()));
     }
-    let mut numbers = Vec::<f64>::new();
-    numbers.try_reserve_exact(usize::try_from(count).unwrap_or(usize::MAX)).map_err(|_| {
-        let bytes = u128::from(count) * size_of::<f64>() as u128;
+    let mut elements = Vec::<T>::new();
+    elements.try_reserve_exact(usize::try_from(count).unwrap_or(usize::MAX)).map_err(|_| {
+        let bytes = u128::from(count) * size_of::<T>() as u128;
         SchemaError::Memory { name, bytes }
     })?;
     let damaged = |error| SchemaError::Zip(format!("{name}: {error}"));
@@ -464,12 +459,14 @@ fn decoded(
     while left > 0 {
         let chunk = &mut chunk[..left.min(CHUNK_BYTES as u64) as usize];
         reader.read_exact(chunk).map_err(damaged)?;
-        numbers.extend(chunk.chunks_exact(size).map(decode));
+        for element in chunk.chunks_exact(size) {
+            elements.push(convert(name, decode(element))?);
+        }
         left -= chunk.len() as u64;
     }
     // The archive verifies its checksum when a member is read to its end.
     match reader.read(&mut [0]).map_err(damaged)? {
-        0 => Ok(numbers),
+        0 => Ok(elements),
         _ => Err(wrong("more bytes than its archive claims".into(), claim())),
     }
 }

@@ -1,0 +1,67 @@
+//! An index of rows by their vertices.
+
+use std::ops::Range;
+
+use rayon::prelude::*;
+use walpha_complex::canonical::sorted;
+
+/// No row.
+pub(crate) const NONE: u32 = u32::MAX;
+
+/// Where the entries of each vertex start, and the last ones end, among entries that are sorted by a vertex below `points`.
+pub(crate) fn starts(vertices: impl Iterator<Item = u32>, points: usize) -> Vec<u32> {
+    let mut starts = vec![0; points + 1];
+    vertices.for_each(|v| starts[v as usize + 1] += 1);
+    for i in 0..points {
+        starts[i + 1] += starts[i];
+    }
+    starts
+}
+
+/// The entries of a vertex.
+pub(crate) fn of_bucket(starts: &[u32], vertex: u32) -> Range<usize> {
+    starts[vertex as usize] as usize..starts[vertex as usize + 1] as usize
+}
+
+/// Finds rows by their vertices, in any order.
+pub(crate) struct Index<'a, const N: usize> {
+    rows: &'a [[u32; N]],
+    /// The numbers of the rows, in the lexicographic order of their sorted vertices.
+    order: Vec<u32>,
+    /// Where the rows with each smallest vertex start in that order.
+    starts: Vec<u32>,
+}
+
+impl<'a, const N: usize> Index<'a, N> {
+    /// Indexes rows of vertices below `points`. O(n) for rows in canonical order, but for windings, else O(n log n).
+    pub(crate) fn new(rows: &'a [[u32; N]], points: usize) -> Self {
+        let key = |&row: &u32| sorted(rows[row as usize]);
+        let starts = starts(rows.iter().map(|row| sorted(*row)[0]), points);
+        let mut order: Vec<u32> = (0..rows.len() as u32).collect();
+        if !order.par_windows(2).all(|pair| key(&pair[0]) <= key(&pair[1])) {
+            order.par_sort_by_key(key);
+        }
+        Self { rows, order, starts }
+    }
+
+    /// The vertices of rows that have the same as the row before them; ascending.
+    pub(crate) fn repeated(&self) -> impl Iterator<Item = [u32; N]> + '_ {
+        let keys = self.order.iter().map(|&row| sorted(self.rows[row as usize]));
+        keys.clone().zip(keys.skip(1)).filter(|(row, next)| row == next).map(|(row, _)| row)
+    }
+
+    /// Whether there is a row of these vertices.
+    pub(crate) fn contains(&self, vertices: [u32; N]) -> bool {
+        self.row(vertices) != NONE
+    }
+
+    /// The row of these vertices, one of several that have them, or [`NONE`].
+    pub(crate) fn row(&self, vertices: [u32; N]) -> u32 {
+        let key = sorted(vertices);
+        let bucket = &self.order[of_bucket(&self.starts, key[0])];
+        match bucket.binary_search_by_key(&key, |&row| sorted(self.rows[row as usize])) {
+            Ok(at) => bucket[at],
+            Err(_) => NONE,
+        }
+    }
+}
