@@ -130,7 +130,8 @@ def compile_geogram(program):
     libraries = wheel / "geogram.libs"
     flags = ["-fopenmp", "-DGEOGRAM_WITH_PDEL", f"-I{wheel / 'include/geogram1'}", wheel / "lib64/libgeogram.a", *libraries.glob("libtbb-*")]
     compile_with("race_geogram.cc", program, [*flags, f"-Wl,-rpath,{libraries}", "-ldl"])
-    return importlib.metadata.version("geogram")
+    said = next((wheel / "lib64/pkgconfig").glob("*.pc")).read_text()
+    return re.search(r"Version: (\S+)", said)[1]
 
 
 def compile_with(source, program, flags):
@@ -193,7 +194,7 @@ def version(needed):
             return COMPILED[needed](pathlib.Path(os.environ["COMPILED"]) / needed)
         module = importlib.import_module(needed)
         return getattr(module, "__version__", None) or importlib.metadata.version(needed)
-    except (ImportError, AttributeError, OSError, subprocess.CalledProcessError) as error:
+    except (ImportError, AttributeError, OSError, StopIteration, subprocess.CalledProcessError) as error:
         print(f"{needed} is left out: {error}", file=sys.stderr)
         return None
 
@@ -276,6 +277,8 @@ def judge():
     print("| right | " + " | ".join(f"{right[program]} of {tried[program]}" for program in programs) + " |\n")
     print("`oblique-plane` and `line` span no volume: *no cells* and an error are both right there, and they are not counted.\n")
     print("What is wrong is counted by rule, as `walpha check` prints it: *orientation* is a flat cell, *hull bends* a hull that is not convex, *not regular* a point inside a cell's sphere.\n")
+    if "Geogram" in programs:
+        print("Geogram gets weights as it takes them, as a fourth coordinate √(max ω − ω), which is rounded.\n")
     print("| program | version | what its authors say of such input |\n|---|---|---|")
     for program in programs:
         print(f"| {program} | {versions[program]} | {PROGRAMS[program][3]} |")
