@@ -12,7 +12,9 @@ import pytest
 import walpha
 
 LONG = """
-import numpy as np, sys, walpha
+import numpy as np, signal, sys, walpha
+# Shells ignore it for what they start in the background.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 points = np.random.default_rng(0).random((1_500_000, 3))
 print("begun", flush=True)
 try:
