@@ -15,8 +15,8 @@ import importlib.util
 import json
 import os
 import pathlib
-import re
 import platform
+import re
 import shutil
 import subprocess
 import sys
@@ -109,7 +109,7 @@ def compiled(program, *arguments):
     def run(points, weights):
         with tempfile.TemporaryDirectory() as name:
             np.column_stack([points, np.zeros(len(points)) if weights is None else weights]).tofile(f"{name}/set.bin")
-            path = pathlib.Path(os.environ["COMPILED"]) / program
+            path = pathlib.Path(os.environ["WALPHA_PEERS"]) / program
             subprocess.run([path, "set.bin", *arguments, "cells.bin"], cwd=name, check=True, stdout=subprocess.DEVNULL)
             return np.fromfile(f"{name}/cells.bin", np.uint32).reshape(-1, 4)
 
@@ -139,7 +139,7 @@ def compile_with(source, program, flags):
     subprocess.run(["c++", "-std=c++17", "-O3", "-pthread", "-o", program, source, *flags], check=True, capture_output=True)
 
 
-COMPILED = {"cgal_with_tbb": compile_cgal, "geogram": compile_geogram}
+COMPILERS = {"cgal_with_tbb": compile_cgal, "geogram": compile_geogram}
 
 
 def walpha(engine):
@@ -190,11 +190,12 @@ def version(needed):
         said = subprocess.run(["dpkg-query", "-W", "-f", "${Version}", "tetgen"], capture_output=True, text=True)
         return said.stdout or "unknown"
     try:
-        if needed in COMPILED:
-            return COMPILED[needed](pathlib.Path(os.environ["COMPILED"]) / needed)
+        if needed in COMPILERS:
+            return COMPILERS[needed](pathlib.Path(os.environ["WALPHA_PEERS"]) / needed)
         module = importlib.import_module(needed)
-        return getattr(module, "__version__", None) or importlib.metadata.version(needed)
-    except (ImportError, AttributeError, OSError, StopIteration, subprocess.CalledProcessError) as error:
+        distribution = importlib.metadata.packages_distributions().get(needed, [needed])[0]
+        return getattr(module, "__version__", None) or importlib.metadata.version(distribution)
+    except (ImportError, AttributeError, OSError, StopIteration, TypeError, subprocess.CalledProcessError) as error:
         print(f"{needed} is left out: {error}", file=sys.stderr)
         return None
 
@@ -236,7 +237,7 @@ def cell(folder, program, points, weights):
 
 def main():
     with tempfile.TemporaryDirectory() as name:
-        os.environ["COMPILED"] = name
+        os.environ["WALPHA_PEERS"] = name
         judge()
 
 

@@ -1,7 +1,7 @@
 //! All alpha shapes of a set of points, in Python.
 
 use std::num::NonZeroU64;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
@@ -117,15 +117,13 @@ impl Filtration {
         self.0.torus().map(|torus| torus.sides())
     }
 
-    /// All simplices, their values and order, and the persistence pairs.
+    /// All simplices, their values and order, and the persistence pairs of dimensions 0 and 2.
     fn simplices(&self, py: Python<'_>, task: Task<'_>) -> PyResult<Simplices> {
         let filtration = Arc::clone(&self.0);
         run(py, &task, move |monitor| {
             Stage::Order.begin(monitor)?;
             let ordered = filtration.simplices_monitored(monitor)?;
-            Stage::Pairs.begin(monitor)?;
-            let loops = ordered.loops_monitored(monitor)?;
-            Ok::<_, ShapeError>(Simplices::of(&ordered, loops))
+            Ok::<_, ShapeError>(Simplices::of(&ordered, Arc::clone(&filtration)))
         })
     }
 
@@ -188,11 +186,13 @@ pub struct Simplices {
     gabriel_simplices: Vec<u32>,
     order: Vec<u32>,
     pairs: ladder::Pairs,
-    loops: ladder::Loops,
+    /// Found when they are asked for, from what they are simplices of.
+    loops: OnceLock<ladder::Loops>,
+    filtration: Arc<ladder::Filtration>,
 }
 
 impl Simplices {
-    fn of(ordered: &ladder::Ordered<'_>, loops: &ladder::Loops) -> Self {
+    fn of(ordered: &ladder::Ordered<'_>, filtration: Arc<ladder::Filtration>) -> Self {
         let mut simplices = Self {
             vertices: ordered.vertices().to_vec(),
             edges: ordered.edges().to_vec(),
@@ -204,7 +204,8 @@ impl Simplices {
             gabriel_simplices: ordered.gabriel_simplices(),
             order: ordered.order().to_vec(),
             pairs: ordered.pairs().clone(),
-            loops: loops.clone(),
+            loops: OnceLock::new(),
+            filtration,
         };
         for number in 0..ordered.len() as u32 {
             let ladder::Entry { value, rank, gabriel, regular, interior, .. } =
@@ -214,6 +215,20 @@ impl Simplices {
             simplices.gabriel.push(gabriel);
         }
         simplices
+    }
+
+    /// The persistence pairs of dimension 1.
+    fn loops(&self, py: Python<'_>) -> PyResult<&ladder::Loops> {
+        if let Some(loops) = self.loops.get() {
+            return Ok(loops);
+        }
+        let filtration = Arc::clone(&self.filtration);
+        let loops = run(py, &Task::default(), move |monitor| {
+            Stage::Pairs.begin(monitor)?;
+            let ordered = filtration.simplices_monitored(&monitor.part(0, 1, 2))?;
+            ordered.loops_monitored(&monitor.part(1, 2, 2)).cloned()
+        })?;
+        Ok(self.loops.get_or_init(|| loops))
     }
 }
 
@@ -277,8 +292,8 @@ impl Simplices {
 
     #[getter]
     fn loop_pairs<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray2<u32>>> {
-        // SAFETY: the simplices are frozen.
-        unsafe { lend(&slf.get().loops.pairs, slf.as_any()) }
+        // SAFETY: the simplices are frozen, and what was found once stays.
+        unsafe { lend(&slf.get().loops(slf.py())?.pairs, slf.as_any()) }
     }
 
     #[getter]
@@ -287,11 +302,15 @@ impl Simplices {
         unsafe { lend(&slf.get().pairs.voids, slf.as_any()) }
     }
 
-    /// Simplices that begin something which never ends, by dimension.
-    #[getter]
-    fn lasting(&self) -> [Vec<u32>; 4] {
+    /// Simplices that begin something of this dimension, from 0 to 3, which never ends.
+    fn lasting<'py>(&self, py: Python<'py>, dimension: u32) -> PyResult<Bound<'py, PyArray1<u32>>> {
         let ladder::Pairs { lasting, lasting_voids, last, .. } = &self.pairs;
-        let last = last.iter().copied().collect();
-        [lasting.clone(), self.loops.lasting.clone(), lasting_voids.clone(), last]
+        let numbers = match dimension {
+            0 => lasting,
+            1 => &self.loops(py)?.lasting,
+            2 => lasting_voids,
+            _ => last.as_slice(),
+        };
+        column(py, numbers.iter().copied())
     }
 }

@@ -1,7 +1,8 @@
 from __future__ import annotations
 
+import functools
 from collections.abc import Iterator
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,49 +15,11 @@ class Simplices:
     """Every simplex of a filtration, and when it comes.
 
     Simplices have *numbers*: vertices first, then edges, facets, cells, those of one dimension in
-    lexicographic order of their vertices. All arrays but those of vertices are by these numbers.
-
-    Attributes
-    ----------
-    vertices, edges, facets, cells : ndarray of int64, (m,) to (m, 4)
-        Input indices, ascending in each row.
-    values : ndarray of float64, (n,)
-        The α, squared lengths, from which on each is in the shape: the double nearest to the exact number.
-    ranks : ndarray of int64, (n,)
-        The place of the exact number among all that are different, from 0: equal for equal numbers
-        only, even where two different ones have one nearest double.
-    gabriel : ndarray of bool, (n,)
-        Whether its own smallest orthogonal sphere is empty; else it comes with a simplex it is a face of.
-    gabriel_simplices : ndarray of int64, (n,)
-        The number of the Gabriel simplex whose sphere gives the value: its own, or that of the one it comes with. How
-        values change with the points, :meth:`Filtration.derivatives` tells of these.
-    regular, interior : ndarray of float64, (n,)
-        From which α on it is a face of another simplex of the shape, and off the boundary.
-    order : ndarray of int64, (n,)
-        Numbers in the order in which simplices come: by exact value, dimension, vertices. Faces come
-        before what they are faces of.
-    component_pairs, loop_pairs, void_pairs : ndarray of int64, (k, 2)
-        Persistence pairs of dimensions 0, 1 and 2 as numbers: what makes a component, closes a loop or shuts a
-        void in, and what ends it. Those that last no time are there too.
-    lasting : tuple of ndarray of int64
-        What begins something that never ends, by dimension from 0 to 3; of a torus 1, 3, 3 and 1.
+    lexicographic order of their vertices. All arrays but those of vertices are by these numbers. They are made when they are
+    first asked for; the pairs of loops are found then, which takes about as long as the order.
     """
 
-    vertices: Indices
-    edges: Indices
-    facets: Indices
-    cells: Indices
-    values: Floats
-    ranks: Indices
-    gabriel: NDArray[np.bool_]
-    gabriel_simplices: Indices
-    regular: Floats
-    interior: Floats
-    order: Indices
-    component_pairs: Indices
-    loop_pairs: Indices
-    void_pairs: Indices
-    lasting: tuple[Indices, Indices, Indices, Indices]
+    _simplices: _walpha.Simplices
 
     def __init__(self) -> None:
         raise TypeError("Simplices are made by walpha.filtration(points).simplices()")
@@ -64,19 +27,114 @@ class Simplices:
     @classmethod
     def _of(cls, given: _walpha.Simplices) -> Simplices:
         made = cls.__new__(cls)
-        made.vertices = _arrays.kept(given.vertices[:, 0])
-        made.edges, made.facets = _arrays.kept(given.edges), _arrays.kept(given.facets)
-        made.cells = _arrays.kept(given.cells)
-        made.values, made.regular, made.interior = _arrays.frozen(given.intervals).T
-        made.ranks, made.gabriel = _arrays.kept(given.ranks), _arrays.frozen(given.gabriel)
-        made.gabriel_simplices = _arrays.kept(given.gabriel_simplices)
-        made.order = _arrays.kept(given.order)
-        made.component_pairs = _arrays.kept(given.component_pairs)
-        made.loop_pairs = _arrays.kept(given.loop_pairs)
-        made.void_pairs = _arrays.kept(given.void_pairs)
-        components, loops, voids, last = (_arrays.kept(np.array(numbers)) for numbers in given.lasting)
-        made.lasting = components, loops, voids, last
+        made._simplices = given
         return made
+
+    @functools.cached_property
+    def vertices(self) -> Indices:
+        """ndarray of int64, (m,): input indices."""
+        return _arrays.kept(self._simplices.vertices[:, 0])
+
+    @functools.cached_property
+    def edges(self) -> Indices:
+        """ndarray of int64, (m, 2): input indices, ascending in each row."""
+        return _arrays.kept(self._simplices.edges)
+
+    @functools.cached_property
+    def facets(self) -> Indices:
+        """ndarray of int64, (m, 3): triangles."""
+        return _arrays.kept(self._simplices.facets)
+
+    @functools.cached_property
+    def cells(self) -> Indices:
+        """ndarray of int64, (m, 4): tetrahedra."""
+        return _arrays.kept(self._simplices.cells)
+
+    @functools.cached_property
+    def values(self) -> Floats:
+        """ndarray of float64, (n,): the α, squared lengths, from which on each is in the shape: the double nearest to the exact number."""
+        return _arrays.frozen(self._simplices.intervals)[:, 0]
+
+    @functools.cached_property
+    def regular(self) -> Floats:
+        """ndarray of float64, (n,): from which α on each is a face of another simplex of the shape."""
+        return _arrays.frozen(self._simplices.intervals)[:, 1]
+
+    @functools.cached_property
+    def interior(self) -> Floats:
+        """ndarray of float64, (n,): from which α on each is off the boundary."""
+        return _arrays.frozen(self._simplices.intervals)[:, 2]
+
+    @functools.cached_property
+    def ranks(self) -> Indices:
+        """ndarray of int64, (n,): the place of the exact value among all that are different, from 0.
+
+        It is equal for equal numbers only, even where two different ones have one nearest double.
+        """
+        return _arrays.kept(self._simplices.ranks)
+
+    @functools.cached_property
+    def gabriel(self) -> NDArray[np.bool_]:
+        """ndarray of bool, (n,): whether the smallest orthogonal sphere of each is empty; else it comes with a simplex it is a face of."""
+        return _arrays.frozen(self._simplices.gabriel)
+
+    @functools.cached_property
+    def gabriel_simplices(self) -> Indices:
+        """ndarray of int64, (n,): the number of the Gabriel simplex whose sphere gives the value: its own, or that of the one it comes with.
+
+        How values change with the points, :meth:`Filtration.derivatives` tells of these.
+        """
+        return _arrays.kept(self._simplices.gabriel_simplices)
+
+    @functools.cached_property
+    def order(self) -> Indices:
+        """ndarray of int64, (n,): numbers in the order in which simplices come: by exact value, dimension, vertices.
+
+        Faces come before what they are faces of.
+        """
+        return _arrays.kept(self._simplices.order)
+
+    @functools.cached_property
+    def component_pairs(self) -> Indices:
+        """ndarray of int64, (k, 2): persistence pairs of dimension 0, as numbers: what makes a component, and what ends it.
+
+        Pairs that last no time are there too, in each dimension.
+        """
+        return _arrays.kept(self._simplices.component_pairs)
+
+    @functools.cached_property
+    def loop_pairs(self) -> Indices:
+        """ndarray of int64, (k, 2): persistence pairs of dimension 1: what closes a loop, and what fills it."""
+        return _arrays.kept(self._simplices.loop_pairs)
+
+    @functools.cached_property
+    def void_pairs(self) -> Indices:
+        """ndarray of int64, (k, 2): persistence pairs of dimension 2: what shuts a void in, and what fills it."""
+        return _arrays.kept(self._simplices.void_pairs)
+
+    @property
+    def lasting(self) -> tuple[Indices, Indices, Indices, Indices]:
+        """tuple of ndarray of int64: what begins something that never ends, by dimension from 0 to 3; of a torus 1, 3, 3 and 1."""
+        return self._lasting_components, self._lasting_loops, self._lasting_voids, self._last_cells
+
+    @functools.cached_property
+    def _lasting_components(self) -> Indices:
+        return _arrays.kept(self._simplices.lasting(0))
+
+    @functools.cached_property
+    def _lasting_loops(self) -> Indices:
+        return _arrays.kept(self._simplices.lasting(1))
+
+    @functools.cached_property
+    def _lasting_voids(self) -> Indices:
+        return _arrays.kept(self._simplices.lasting(2))
+
+    @functools.cached_property
+    def _last_cells(self) -> Indices:
+        return _arrays.kept(self._simplices.lasting(3))
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {name: getattr(self, name) for name in _ARRAYS}
 
     def __len__(self) -> int:
         return len(self.values)
@@ -127,8 +185,13 @@ class Simplices:
         """
         if dimension not in (0, 1, 2):
             raise ValueError(f"dimension={dimension}: there are 0, 1 and 2")
-        pairs = (self.component_pairs, self.loop_pairs, self.void_pairs)[dimension]
-        lasting = self.lasting[dimension]
+        # Loops are found only for those who ask for them.
+        if dimension == 0:
+            pairs, lasting = self.component_pairs, self._lasting_components
+        elif dimension == 1:
+            pairs, lasting = self.loop_pairs, self._lasting_loops
+        else:
+            pairs, lasting = self.void_pairs, self._lasting_voids
         pairs = pairs[self.ranks[pairs[:, 0]] != self.ranks[pairs[:, 1]]]
         never = np.column_stack([self.values[lasting], np.full(len(lasting), np.inf)])
         return np.vstack([self.values[pairs], never])
@@ -157,3 +220,6 @@ class Simplices:
     def _tables(self) -> tuple[Indices, Indices, Indices, Indices]:
         """Rows of each dimension."""
         return self.vertices[:, None], self.edges, self.facets, self.cells
+
+
+_ARRAYS = [name for name, made in vars(Simplices).items() if isinstance(made, functools.cached_property)]

@@ -11,9 +11,9 @@ from ._work import task
 class PowerDiagram(NamedTuple):
     """The power diagram of weighted points, Voronoi's where weights are equal: the dual of a :class:`Triangulation`.
 
-    The power cell of a point is where no other point has a smaller power distance. What there is, is decided exactly: cells of
-    the triangulation with one orthogonal sphere are one vertex, however ties were broken, and a facet that
-    degenerates to a point or a segment is not listed. Coordinates, volumes and areas are rounded.
+    The power cell of a point is where no other point has a smaller power distance. Which vertices and facets there are is decided
+    exactly: cells of the triangulation with one orthogonal sphere are one vertex, however ties were broken, and a facet that
+    degenerates to a point, a segment or a ray is not listed. Coordinates, volumes and areas are rounded.
 
     Attributes
     ----------

@@ -89,7 +89,7 @@ class Simplices:
     component_pairs: _Rows
     loop_pairs: _Rows
     void_pairs: _Rows
-    lasting: list[list[int]]
+    def lasting(self, dimension: int) -> _Rows: ...
 
 @final
 class Triangulation:

@@ -8,7 +8,7 @@ use walpha_complex::canonical::sorted;
 /// No row.
 pub(crate) const NONE: u32 = u32::MAX;
 
-/// Where the entries of each vertex start, and the last ones end, among entries that are sorted by a vertex below `points`.
+/// For entries sorted by a vertex below `points`: where those of each vertex start, and where the last ones end.
 pub(crate) fn starts(vertices: impl Iterator<Item = u32>, points: usize) -> Vec<u32> {
     let mut starts = vec![0; points + 1];
     vertices.for_each(|v| starts[v as usize + 1] += 1);
@@ -33,18 +33,18 @@ pub(crate) struct Index<'a, const N: usize> {
 }
 
 impl<'a, const N: usize> Index<'a, N> {
-    /// Indexes rows of vertices below `points`. O(n) for rows in canonical order, but for windings, else O(n log n).
+    /// Indexes rows of vertices below `points`. O(n) if rows are in canonical order up to windings, otherwise O(n log n).
     pub(crate) fn new(rows: &'a [[u32; N]], points: usize) -> Self {
         let key = |&row: &u32| sorted(rows[row as usize]);
         let starts = starts(rows.iter().map(|row| sorted(*row)[0]), points);
         let mut order: Vec<u32> = (0..rows.len() as u32).collect();
         if !order.par_windows(2).all(|pair| key(&pair[0]) <= key(&pair[1])) {
-            order.par_sort_by_key(key);
+            order.par_sort_unstable_by_key(|row| (key(row), *row));
         }
         Self { rows, order, starts }
     }
 
-    /// The vertices of rows that have the same as the row before them; ascending.
+    /// The vertices that more than one row has, once for each repetition; ascending.
     pub(crate) fn repeated(&self) -> impl Iterator<Item = [u32; N]> + '_ {
         let keys = self.order.iter().map(|&row| sorted(self.rows[row as usize]));
         keys.clone().zip(keys.skip(1)).filter(|(row, next)| row == next).map(|(row, _)| row)

@@ -141,6 +141,8 @@ fn given_simplices<const N: usize>(
     if let Some(classes) = &classes {
         SchemaError::paired(of_classes, classes.len(), name, rows.as_ref().map_or(0, Vec::len))?;
     }
+    // An empty list of classes says nothing of rows that are derived.
+    let classes = classes.filter(|_| rows.is_some());
     Ok(Given { rows, classes })
 }
 

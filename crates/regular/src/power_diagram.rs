@@ -1,7 +1,7 @@
 //! The power diagram, dual to the regular triangulation.
 
 use rayon::prelude::*;
-use walpha_base::vector::{cross, dot, length, sub};
+use walpha_base::vector::{add, cross, dot, length, sub, unit};
 use walpha_base::{Monitor, UnionFind};
 
 use crate::predicates::Predicates;
@@ -13,9 +13,10 @@ use crate::{CellArrays, Triangulation, TriangulationError, facets, filled, with_
 /// The power cell of a point is where no other point has a smaller power distance; without weights it is the Voronoi cell. Cells of
 /// points on the convex hull are unbounded, and hidden points and duplicates have none.
 ///
-/// What there is, is decided exactly: cells of the triangulation with one orthogonal sphere are one vertex, however ties
-/// were broken, and a facet that degenerates to a point or a segment is not listed. Hence a point of a cubic lattice has six facets, and
-/// one of a face-centred lattice twelve. Coordinates, areas and volumes are rounded.
+/// Which vertices and facets there are is decided exactly: cells of the triangulation with one orthogonal sphere are one vertex, however
+/// ties were broken, and a facet that degenerates to a point, a segment or a ray is not listed. Hence a point of a cubic lattice has six
+/// facets, and one of a face-centred lattice twelve. Coordinates, areas and volumes are rounded, areas and volumes of distances
+/// from points nearby; they may overflow or vanish where lengths are above 10¹⁰⁰ or below 10⁻¹⁰⁰.
 ///
 /// ```
 /// use walpha_regular::{PowerDiagram, triangulate};
@@ -41,9 +42,9 @@ pub struct PowerDiagram {
 }
 
 impl PowerDiagram {
-    /// The power diagram dual to a triangulation, whose weights these are.
+    /// The power diagram dual to a triangulation, whose weights these are; with others it means nothing.
     ///
-    /// O(cells), by all threads of the current rayon pool; the result does not depend on their number.
+    /// O(cells) and about 96 bytes each, by all threads of the current rayon pool; the result does not depend on their number.
     ///
     /// # Errors
     /// Other numbers of weights than of points; a weight that is not finite or is too large. Out of memory.
@@ -72,9 +73,12 @@ impl PowerDiagram {
         with_capacity::<u8>(arrays.cells.len() * BYTES_OF_A_CELL)?;
         let predicates = Predicates::new(positions, weights);
         let spheres = Spheres::of(arrays, &predicates, &monitor.part(0, 1, 3))?;
-        let centre = |&cell: &u32| predicates.centre(arrays.cells[cell as usize]);
-        let vertices: Vec<_> = spheres.first.par_iter().map(centre).collect();
-        let dual = Dual { arrays, positions, spheres: &spheres, vertices: &vertices };
+        let centre = |&cell: &u32| {
+            let corners = arrays.cells[cell as usize];
+            Centre { near: corners[0], offset: predicates.centre(corners) }
+        };
+        let centres: Vec<Centre> = spheres.first.par_iter().map(centre).collect();
+        let dual = Dual { arrays, positions, spheres: &spheres, centres: &centres };
         let facets = dual.facets(&monitor.part(1, 3, 3))?;
 
         let mut volumes: Vec<f64> = filled(positions.len(), 0.0)?;
@@ -82,14 +86,18 @@ impl PowerDiagram {
             volumes[v as usize] = f64::INFINITY;
         }
         for &([p, q], area) in facets.iter().filter(|(_, area)| area.is_finite()) {
-            let away = sub(positions[q as usize], positions[p as usize]);
             let [p, q] = [p, q].map(|v| v as usize);
-            // Of a pyramid with this base, from a point to the plane between both.
-            let pyramid = |square: f64| area * square / (6.0 * length(away));
-            let (square, heavier) = (dot(away, away), weights[p] - weights[q]);
-            volumes[p] += pyramid(square + heavier);
-            volumes[q] += pyramid(square - heavier);
+            let distance = length(sub(positions[q], positions[p]));
+            // Six times the pyramids with this base and the one or the other point as apex: twice the height is the distance, and
+            // more for the heavier point.
+            let more = (weights[p] - weights[q]) / distance;
+            volumes[p] += area * (distance + more);
+            volumes[q] += area * (distance - more);
         }
+        volumes.iter_mut().for_each(|volume| *volume /= 6.0);
+        let vertices =
+            centres.iter().map(|centre| add(positions[centre.near as usize], centre.offset));
+        let vertices = vertices.collect();
         let same_sphere = triangulation.finite_cells().map(|(cell, _)| spheres.of[cell as usize]);
         let same_sphere = same_sphere.collect();
         let (facets, areas) = facets.into_iter().unzip();
@@ -107,7 +115,8 @@ impl PowerDiagram {
         &self.same_sphere
     }
 
-    /// The volume of the power cell of each point: ∞ if it is unbounded, 0 for points that have none.
+    /// The volume of the power cell of each point: ∞ if it is unbounded, 0 for points that have none. Where weights make a cell tiny,
+    /// rounding may leave 0 or less.
     pub fn volumes(&self) -> &[f64] {
         &self.volumes
     }
@@ -196,11 +205,17 @@ impl Spheres {
 const EDGES: [[usize; 4]; 6] =
     [[0, 1, 2, 3], [0, 2, 1, 3], [0, 3, 1, 2], [1, 2, 0, 3], [1, 3, 0, 2], [2, 3, 0, 1]];
 
+/// The centre of a sphere, by its offset from a corner of one of its cells.
+struct Centre {
+    near: u32,
+    offset: [f64; 3],
+}
+
 struct Dual<'a> {
     arrays: &'a CellArrays,
     positions: &'a [[f64; 3]],
     spheres: &'a Spheres,
-    vertices: &'a [[f64; 3]],
+    centres: &'a [Centre],
 }
 
 impl Dual<'_> {
@@ -246,7 +261,7 @@ impl Dual<'_> {
         }
     }
 
-    /// The area of the facet between two points, by the spheres around their edge; `None` if it is no more than a segment.
+    /// The area of the facet between two points, by the spheres around their edge; `None` if it degenerates.
     fn area(&self, [p, q]: [u32; 2], spheres: &mut Vec<u32>) -> Option<f64> {
         spheres.dedup();
         if spheres.len() > 1 && spheres.first() == spheres.last() {
@@ -255,19 +270,20 @@ impl Dual<'_> {
         if spheres.len() < 3 {
             return None;
         }
-        let Some(corners) = spheres
-            .iter()
-            .map(|&sphere| self.vertices.get(sphere as usize))
-            .collect::<Option<Vec<_>>>()
-        else {
+        let position = |v: u32| self.positions[v as usize];
+        let from_p = |&sphere: &u32| {
+            let centre = self.centres.get(sphere as usize)?;
+            Some(add(sub(position(centre.near), position(p)), centre.offset))
+        };
+        let Some(corners) = spheres.iter().map(from_p).collect::<Option<Vec<_>>>() else {
             return Some(f64::INFINITY);
         };
-        let normal = sub(self.positions[q as usize], self.positions[p as usize]);
-        let twice: f64 = corners[1..]
-            .windows(2)
-            .map(|side| dot(normal, cross(sub(*side[0], *corners[0]), sub(*side[1], *corners[0]))))
-            .sum();
-        Some(twice.abs() / (2.0 * length(normal)))
+        let normal = unit(sub(position(q), position(p)))?;
+        let triangle = |side: &[[f64; 3]]| {
+            let [a, b] = [side[0], side[1]].map(|corner| sub(corner, corners[0]));
+            dot(normal, cross(a, b))
+        };
+        Some(corners[1..].windows(2).map(triangle).sum::<f64>().abs() / 2.0)
     }
 }
 

@@ -11,15 +11,17 @@ use crate::volume::{Dtype, Element as _, Endian, Lines, OpenFile, Reason, io_err
 /// Reads the vertices of a PLY file, text or binary of either byte order: properties x, y and z,
 /// optionally weight or radius, and value. All other elements must be as the header declares.
 pub(crate) fn read(file: &OpenFile) -> Result<Points, PointsError> {
-    Ok(content(file)?.0)
+    Ok(content(file, &mut None)?.0)
 }
 
-/// Reads the vertices and the tetrahedra: of elements of one of [these names](TETRAHEDRA), the corners are the first list.
+/// Reads the vertices and the tetrahedra: of elements of one of [these names](TETRAHEDRA), the corners are the list
+/// `vertex_indices` or `vertex_index`, or else the first one.
 pub(crate) fn read_complex(file: &OpenFile) -> Result<Mesh, PointsError> {
-    let (points, corners, is_text) = content(file)?;
-    if corners.ends.is_empty() {
+    let mut corners = Some(Corners::default());
+    let (points, is_text) = content(file, &mut corners)?;
+    let Some(corners) = corners.filter(|corners| !corners.ends.is_empty()) else {
         return Err(no_complex(file.path()));
-    }
+    };
     let others = cells(file)?.into_iter().filter(|cells| cells.kind != Grid::kind_of(Grid::TETRA));
     let ignored: Vec<_> = others.map(|cells| (cells.kind, cells.count as u64)).collect();
     let grid = Grid {
@@ -44,8 +46,8 @@ struct Corners {
 /// Names of elements that are tetrahedra: `tetra` is that of `VCGlib`.
 const TETRAHEDRA: [&str; 5] = ["tetra", "tet", "tetrahedra", "tetrahedron", "cell"];
 
-/// Points and tetrahedra, and whether numbers are text.
-fn content(file: &OpenFile) -> Result<(Points, Corners, bool), PointsError> {
+/// Reads the points and, where they are asked for, the tetrahedra; and whether numbers are text.
+fn content(file: &OpenFile, corners: &mut Option<Corners>) -> Result<(Points, bool), PointsError> {
     let path = file.path();
     let fail = |reason: Reason| format(path, reason);
     let mut lines = Lines::new(file.reader()?);
@@ -59,12 +61,14 @@ fn content(file: &OpenFile) -> Result<(Points, Corners, bool), PointsError> {
         reader.read_to_string(&mut text).map_err(io_error(path))?;
         Numbers::Text { text, at: 0 }
     };
-    let (mut points, mut corners) = (None, Corners::default());
+    let mut points = None;
     for element in &header.elements {
         element.fits(header.endian.is_some(), left).map_err(fail)?;
         if element.name == "vertex" && points.is_none() {
             points = Some(vertices(path, element, &mut numbers)?);
-        } else if TETRAHEDRA.contains(&element.name.as_str()) {
+        } else if let Some(corners) = corners
+            && TETRAHEDRA.contains(&element.name.as_str())
+        {
             corners.read(element, &mut numbers).map_err(fail)?;
         } else {
             element.skip(&mut numbers).map_err(fail)?;
@@ -78,16 +82,20 @@ fn content(file: &OpenFile) -> Result<(Points, Corners, bool), PointsError> {
     let points = points.ok_or_else(|| {
         fail(Reason::content("has no element vertex, and so no points", "name another file"))
     })?;
-    Ok((points, corners, header.endian.is_none()))
+    Ok((points, header.endian.is_none()))
 }
 
 impl Corners {
     /// Reads an element of tetrahedra.
     fn read(&mut self, element: &Element, numbers: &mut Numbers<impl Read>) -> Result<(), Reason> {
         let is_list = |property: &Property| matches!(property, Property::List(..));
-        let Some(list) = element.properties.iter().position(is_list) else {
-            return element.skip(numbers);
+        let is_named = |property: &Property| match property {
+            Property::List(name, ..) => name == "vertex_indices" || name == "vertex_index",
+            Property::Scalar(..) => false,
         };
+        let lists = &element.properties;
+        let list = lists.iter().position(is_named).or_else(|| lists.iter().position(is_list));
+        let Some(list) = list else { return element.skip(numbers) };
         for _ in 0..element.count {
             for (place, property) in element.properties.iter().enumerate() {
                 let mut keep = |number| {
@@ -177,8 +185,8 @@ struct Element {
 enum Property {
     /// A number, by its name and type.
     Scalar(String, Dtype),
-    /// A list, by the types of its length and of its items.
-    List(Dtype, Dtype),
+    /// A list, by its name and the types of its length and of its items.
+    List(String, Dtype, Dtype),
 }
 
 impl Header {
@@ -212,7 +220,8 @@ impl Header {
                 }),
                 ["property", ref property @ ..] => {
                     let property = match *property {
-                        ["list", count, item] | ["list", count, item, _] => Property::List(
+                        ["list", count, item, ref name @ ..] if name.len() < 2 => Property::List(
+                            name.concat(),
                             scalar_type(count).ok_or_else(damaged)?,
                             scalar_type(item).ok_or_else(damaged)?,
                         ),
@@ -234,7 +243,7 @@ impl Element {
     /// Refuses more of this element than the bytes after the header can hold.
     fn fits(&self, binary: bool, left: u64) -> Result<(), Reason> {
         let least = |property: &Property| match (binary, property) {
-            (true, Property::Scalar(_, dtype) | Property::List(dtype, _)) => dtype.size() as u64,
+            (true, Property::Scalar(_, dtype) | Property::List(_, dtype, _)) => dtype.size() as u64,
             (false, _) => 1,
         };
         let row: u64 = self.properties.iter().map(least).sum();
@@ -269,7 +278,7 @@ impl Property {
     ) -> Result<f64, Reason> {
         match *self {
             Self::Scalar(_, dtype) => numbers.next(dtype),
-            Self::List(count, item) => {
+            Self::List(_, count, item) => {
                 let count = numbers.next(count)?;
                 if !(count >= 0.0 && count.fract() == 0.0) {
                     return Err(Reason::damaged(format!(

@@ -69,9 +69,9 @@ pub(super) fn triangulation_findings(
     let linked = Linked::new(cells, points, Boundary::Hull, monitor)?;
     let regular = linked.is_regular();
     let mut found = linked.broken;
-    let monitor_of_volume = monitor.unreported();
-    let cells_together = six_volumes(cells.cells.rows(), points, &monitor_of_volume)?;
-    found.extend(volume(&linked.structure, points, cells_together, &monitor_of_volume)?);
+    let unreported = monitor.unreported();
+    let cells_together = six_volumes(cells.cells.rows(), points, &unreported)?;
+    found.extend(volume(&linked.structure, points, cells_together, &unreported)?);
     found.extend(linked.irregular);
     if regular {
         let own: Vec<u32> = (0..points.len() as u32).collect();
@@ -144,7 +144,7 @@ pub(super) fn six_volumes(
     Ok((sum, 3 * i64::from(lattice.exponent())))
 }
 
-/// Judges that the cells, of which six times the volume is given, fill the volume that the hull encloses.
+/// Judges that the cells, of which [six times the volume](six_volumes) is given, fill the volume that the hull encloses.
 pub(super) fn volume(
     structure: &Structure,
     points: Points,

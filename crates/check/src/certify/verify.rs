@@ -17,7 +17,7 @@ use super::geometry::{self, Boundary, Linked};
 use super::structure::{self, MAX_CELLS, Points, Structure};
 use super::torus::Torus;
 use super::{gaps, non_vertices, ties};
-use crate::exact::Exact;
+use crate::exact::{Exact, WeightedPoint};
 use crate::flat::auxiliary_positions;
 use crate::{Complex, Placed};
 
@@ -180,15 +180,15 @@ impl Claim<'_> {
         let finite = |i: &usize| positions[*i].iter().chain([&weights[*i]]).all(|x| x.is_finite());
         match (0..positions.len()).find(|i| !finite(i)) {
             Some(index) => Err(CertifyError::NotFinite(index)),
-            None => afford(complex),
+            None => afford(complex, if self.extent == Extent::Shape { positions.len() } else { 0 }),
         }
     }
 }
 
-/// Checks that the memory which the judgement takes piece by piece is available: it is better to fail now
-/// than halfway.
-fn afford(complex: &Complex) -> Result<(), CertifyError> {
-    let bytes = Structure::bytes(complex);
+/// Checks that the memory which the judgement takes piece by piece is available, that for points sorted by place included: it is
+/// better to fail now than halfway.
+fn afford(complex: &Complex, sorted: usize) -> Result<(), CertifyError> {
+    let bytes = Structure::bytes(complex) + sorted * size_of::<WeightedPoint>();
     let cells = complex.cells.len();
     Vec::<u8>::new().try_reserve_exact(bytes).map_err(|_| CertifyError::Memory { cells, bytes })
 }
@@ -288,8 +288,13 @@ fn apply(
         };
         let mut lasting =
             |findings: Vec<Finding>| report(findings.into_iter().filter(in_both).collect());
-        let cells = filled.structure.complex.cells.rows();
-        let of_cells = geometry::six_volumes(cells, points, &rest.unreported())?;
+        // Only of a whole triangulation are volumes judged.
+        let of_cells = if whole {
+            let cells = filled.structure.complex.cells.rows();
+            geometry::six_volumes(cells, points, &rest.unreported())?
+        } else {
+            of_cells
+        };
         let monitor = rest.part(4, 6, 6);
         return apply_to(filled, of_cells, claim, &judge, &kept, &mut lasting, &monitor);
     }

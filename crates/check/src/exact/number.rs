@@ -4,8 +4,8 @@ use std::cmp::Ordering;
 
 use dashu_int::{IBig, Sign};
 
-/// A number type of predicates. One formula serves four of them: [`Approx`] decides
-/// the easy cases, [`Bits`] proves that `i128` holds the rest, and [`IBig`] holds anything.
+/// A number type of predicates. One formula serves all of them: [`Approx`] decides the easy cases, [`Bits`] proves that `i128`
+/// holds the rest, and [`IBig`] holds anything; [`Wide`](super::wide::Wide) is for sums.
 pub(super) trait Number: Clone {
     fn plus(&self, other: &Self) -> Self;
     fn minus(&self, other: &Self) -> Self;

@@ -137,6 +137,7 @@ impl Mesh {
     }
 
     /// The mesh with a note that says how numbers in text were read.
+    #[doc(hidden)]
     #[must_use]
     pub fn with_decimal_note(self) -> Self {
         self.with_note("coordinates are decimal numbers, each taken to the nearest double")
@@ -150,7 +151,8 @@ impl Mesh {
         self.with_note(format!("points are numbered from 0 here, in the order of the file, which numbers them from {first}"))
     }
 
-    /// The mesh with a note of what was left out: kinds, and how many of each.
+    /// The mesh with a note that only its tetrahedra are judged, and of what else there is: kinds, and how many of each.
+    #[doc(hidden)]
     #[must_use]
     pub fn with_ignored(self, ignored: &[(impl AsRef<str>, u64)]) -> Self {
         let listed: Vec<String> = ignored

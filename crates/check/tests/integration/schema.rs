@@ -98,3 +98,21 @@ fn errors_name_the_field() {
         assert!(message.contains(part), "{json}: {message}");
     }
 }
+
+/// Of rows that are derived an empty list of classes says nothing, and another one is refused.
+#[test]
+fn classes_of_rows_that_are_not_listed() {
+    let cell = |classes: &str| {
+        let points = "[[0,0,0],[1,0,0],[0,1,0],[0,0,1]]";
+        parse(&format!(
+            r#"{{ "points": {points}, "alpha": 1, "cells": [[0,1,2,3]], "classes": {{{classes}}} }}"#
+        ))
+        .unwrap()
+    };
+    let expected = PlacedComplex::try_from(cell("")).unwrap();
+    assert_eq!(expected.complex.facets.len(), 4);
+    let empty = cell(r#""facets": [], "edges": [], "vertices": []"#);
+    assert_eq!(PlacedComplex::try_from(empty).unwrap(), expected);
+    let one = PlacedComplex::try_from(cell(r#""edges": ["regular"]"#)).unwrap_err();
+    assert!(one.to_string().contains("`classes.edges`"), "{one}");
+}

@@ -456,17 +456,25 @@ fn decoded<T>(
     let damaged = |error| SchemaError::Zip(format!("{name}: {error}"));
     let mut chunk = vec![0; needed.min(CHUNK_BYTES as u64) as usize];
     let mut left = needed;
+    // Whether the archive is damaged is known at the end, and comes first.
+    let mut unexpected = None;
     while left > 0 {
         let chunk = &mut chunk[..left.min(CHUNK_BYTES as u64) as usize];
         reader.read_exact(chunk).map_err(damaged)?;
         for element in chunk.chunks_exact(size) {
-            elements.push(convert(name, decode(element))?);
+            if unexpected.is_some() {
+                break;
+            }
+            match convert(name, decode(element)) {
+                Ok(element) => elements.push(element),
+                Err(error) => unexpected = Some(error),
+            }
         }
         left -= chunk.len() as u64;
     }
     // The archive verifies its checksum when a member is read to its end.
     match reader.read(&mut [0]).map_err(damaged)? {
-        0 => Ok(elements),
+        0 => unexpected.map_or(Ok(elements), Err),
         _ => Err(wrong("more bytes than its archive claims".into(), claim())),
     }
 }

@@ -201,6 +201,36 @@ fn a_lattice_has_facets_between_neighbours_alone() {
     assert_eq!(finite, 3 * 2 * 2 * 3);
 }
 
+/// Lengths scale by powers of two alone, so that they are the same but for these; also far from the origin.
+#[test]
+fn tiny_huge_and_distant_cells_are_as_precise() {
+    let mut random = Random::new(7);
+    let points: Vec<[f64; 3]> = (0..300).map(|_| [0; 3].map(|_| random.whole(0, 4000))).collect();
+    let of =
+        |points: &[[f64; 3]]| PowerDiagram::of(&triangulate(points, None).unwrap(), None).unwrap();
+    let made = of(&points);
+    // Faces have about 4·10⁵ square units, cells 2·10⁸ cubic ones.
+    let near = |a: f64, b: f64, tolerance: f64| a == b || (a - b).abs() <= tolerance;
+    assert!(made.volumes().iter().filter(|volume| volume.is_finite()).count() > 100);
+    for power in [-330, 300] {
+        let scale = 2f64.powi(power);
+        let scaled: Vec<_> = points.iter().map(|p| p.map(|x| x * scale)).collect();
+        let other = of(&scaled);
+        assert_eq!(made.facets(), other.facets());
+        for (area, theirs) in made.areas().iter().zip(other.areas()) {
+            assert!(near(area * scale * scale, *theirs, 1e-3 * scale * scale));
+        }
+        for (volume, theirs) in made.volumes().iter().zip(other.volumes()) {
+            assert!(near(volume * scale * scale * scale, *theirs, scale * scale * scale));
+        }
+    }
+    let moved: Vec<_> = points.iter().map(|p| p.map(|x| x + 2f64.powi(40))).collect();
+    let other = of(&moved);
+    for (volume, theirs) in made.volumes().iter().zip(other.volumes()) {
+        assert!(near(*volume, *theirs, 1.0));
+    }
+}
+
 /// The corners of a tetrahedron, one of them a last bit away from the next.
 #[test]
 fn thin_cells_have_centres_to_the_last_bit() {

@@ -80,17 +80,13 @@ pub(super) fn squared_radius<const N: usize>(sites: [Site; N]) -> Ratio {
     Ratio::new(numerator, denominator, units.square())
 }
 
-/// The centre of the orthogonal sphere of a positively oriented cell: each coordinate the nearest double.
+/// The centre of the orthogonal sphere of a positively oriented cell, seen from its first corner: each coordinate the nearest double.
 pub(super) fn centre_of(sites: [Site; 4]) -> [f64; 3] {
     let units = Units::of(&sites, 0.0);
     let [_, b, c, d] = sites.map(|q| units.ray::<IBig>(sites[0], q));
     let Centre { twice, det, .. } = centre([&b, &c, &d]);
-    [0, 1, 2].map(|k| {
-        let first = <IBig as Integer>::of(sites[0].position[k], units.coordinate) * &det;
-        let numerator = &twice[k] + (first << (units.finer + 1));
-        let exponent = units.coordinate - units.finer as i32;
-        Ratio::new(numerator, &det << 1, exponent).nearest()
-    })
+    let exponent = units.coordinate - units.finer as i32;
+    twice.map(|twice| Ratio::new(twice, &det << 1, exponent).nearest())
 }
 
 /// Whether `x` lies strictly inside the smallest orthogonal sphere of a vertex, an edge or a facet.

@@ -261,8 +261,8 @@ impl<'a> Predicates<'a> {
         }
     }
 
-    /// The centre of the orthogonal sphere of a positively oriented cell, to 2⁻³⁰ of the cell's size and of the distance between the
-    /// centre and its first corner; where doubles do not give that, the nearest doubles.
+    /// The centre of the orthogonal sphere of a positively oriented cell, seen from its first corner: each coordinate to 2⁻³⁰ of the
+    /// cell's largest difference of coordinates and of the distance; where doubles do not give that, the nearest double.
     pub fn centre(&self, cell: [u32; 4]) -> [f64; 3] {
         /// How many times the error bound of its terms a determinant must be, for a quotient by it to be right to 2⁻³⁰.
         const WELL_ABOVE: f64 = (1u64 << 32) as f64;
@@ -271,7 +271,7 @@ impl<'a> Predicates<'a> {
         let Centre { twice, det, .. } = centre([&b, &c, &d]);
         let bound = 6.0 * size.length * size.length * size.length;
         if size.is_sane() && det > bound * ROUNDING * WELL_ABOVE {
-            [0, 1, 2].map(|k| sites[0].position[k] + twice[k] / (2.0 * det))
+            twice.map(|twice| twice / (2.0 * det))
         } else {
             exact::centre_of(sites)
         }

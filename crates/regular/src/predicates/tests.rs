@@ -239,3 +239,37 @@ fn rounded_grids_agree_with_integers() {
     }
     assert!(counts[..4].iter().all(|[signs, zeros, _]| signs.min(zeros) > &500), "{counts:?}");
 }
+
+/// The centre in doubles is as near to the exact one as it says, and where it cannot be, it is that one.
+#[test]
+fn centres_are_near() {
+    let mut random = Random::new(21);
+    let (mut rounded, mut exact_ones) = (0, 0);
+    for case in 0..40_000 {
+        let (mut positions, weights) = draw(&mut random, case % 2 == 1);
+        if case % 4 == 0 {
+            positions.iter_mut().flatten().for_each(|x| *x = *x * 0.1 + 1e6);
+        }
+        let predicates = Predicates::new(&positions, &weights);
+        let cell = match predicates.orientation([0, 1, 2, 3]) {
+            Ordering::Greater => [0, 1, 2, 3],
+            Ordering::Less => [0, 1, 3, 2],
+            Ordering::Equal => continue,
+        };
+        let truth = exact::centre_of(cell.map(|v| predicates.site(v)));
+        let found = predicates.centre(cell);
+        if found == truth {
+            exact_ones += 1;
+            continue;
+        }
+        let differences =
+            positions[..4].iter().flat_map(|p| [0, 1, 2].map(|k| p[k] - positions[0][k]));
+        let scale = differences.chain(truth).fold(0f64, |most, x| most.max(x.abs()));
+        for k in 0..3 {
+            let error = (found[k] - truth[k]).abs();
+            assert!(error <= scale / f64::from(1 << 30), "{found:?} {truth:?} {scale}");
+        }
+        rounded += 1;
+    }
+    assert!(rounded > 2000 && exact_ones > 2000, "{rounded} {exact_ones}");
+}
