@@ -77,8 +77,8 @@ fn the_documentation_has_the_tables() {
     assert!(page.contains(&tables), "docs/formats.md lacks these tables:\n\n{tables}");
 }
 
-/// Every format that is read has a target, and every target is one of a format, of complexes, or of the files of
-/// plans.
+/// Every format that is read has a target, and every target is one of a format, of weights, of complexes, or of the files
+/// of plans.
 #[test]
 fn every_reader_is_fuzzed() {
     let manifest: toml::Table = file("fuzz/Cargo.toml").parse().unwrap();
@@ -88,10 +88,12 @@ fn every_reader_is_fuzzed() {
     bins.for_each(|path| assert!(file(&path).contains("fuzz_target!"), "{path}"));
     let of_volumes = volume::FORMATS.iter().flat_map(|format| format.fuzzed_by).copied();
     let of_points = points::FORMATS.iter().map(|format| format.fuzzed_by);
-    let complexes = ["complex", "check_json", "check_npz", "filtration"];
+    let of_meshes = walpha::check::meshes::FORMATS.iter().map(|format| format.fuzzed_by);
+    let complexes = ["weights", "complex", "check_json", "check_npz", "filtration"];
     let plans = ["plan", "block", "sums", "truncated"];
     let others = complexes.into_iter().chain(plans);
-    let wanted: BTreeSet<&str> = of_volumes.chain(of_points).chain(others).collect();
+    let wanted: BTreeSet<&str> =
+        of_volumes.chain(of_points).chain(of_meshes).chain(others).collect();
     assert_eq!(targets, wanted);
     // A file without a header is for its user to describe.
     for format in volume::FORMATS.iter().filter(|format| format.keeps.dtype) {

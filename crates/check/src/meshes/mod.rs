@@ -62,15 +62,37 @@ pub struct MeshFormat {
     pub name: &'static str,
     /// Extensions, without dots.
     pub extensions: &'static [&'static str],
+    /// Its fuzz target.
+    pub fuzzed_by: &'static str,
     read: fn(&Path, &[u8]) -> Result<Mesh, MeshError>,
 }
 
 /// The formats that are read.
 pub static FORMATS: [MeshFormat; 4] = [
-    MeshFormat { name: "TetGen", extensions: &["node", "ele"], read: tetgen::read },
-    MeshFormat { name: "Gmsh", extensions: &["msh"], read: |_, bytes| gmsh::read(bytes) },
-    MeshFormat { name: "Medit", extensions: &["mesh"], read: |_, bytes| medit::read(bytes) },
-    MeshFormat { name: "legacy VTK", extensions: &["vtk"], read: |_, bytes| vtk::read(bytes) },
+    MeshFormat {
+        name: "TetGen",
+        fuzzed_by: "tetgen",
+        extensions: &["node", "ele"],
+        read: tetgen::read,
+    },
+    MeshFormat {
+        name: "Gmsh",
+        fuzzed_by: "gmsh",
+        extensions: &["msh"],
+        read: |_, bytes| gmsh::read(bytes),
+    },
+    MeshFormat {
+        name: "Medit",
+        fuzzed_by: "medit",
+        extensions: &["mesh"],
+        read: |_, bytes| medit::read(bytes),
+    },
+    MeshFormat {
+        name: "legacy VTK",
+        fuzzed_by: "vtk_mesh",
+        extensions: &["vtk"],
+        read: |_, bytes| vtk::read(bytes),
+    },
 ];
 
 impl MeshFormat {
