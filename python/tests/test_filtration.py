@@ -188,3 +188,12 @@ def test_derivatives_of_nothing():
     filtration = walpha.filtration([[0, 0, 0], [1, 0, 0]])
     positions, weights = filtration.derivatives(np.empty((0, 3), dtype=int))
     assert positions.shape == (0, 3, 3) and weights.shape == (0, 3)
+
+
+def test_loops_are_found_for_those_who_ask(cloud):
+    stages = set()
+    simplices = walpha.filtration(cloud).simplices(progress=lambda stage, done, total: stages.add(stage))
+    assert stages == {"order"}
+    assert len(simplices.persistence(0)) > 0 and len(simplices.persistence(2)) > 0
+    assert not {"loop_pairs", "_lasting_loops"} & set(vars(simplices))
+    assert len(simplices.persistence(1)) > 0 and "loop_pairs" in vars(simplices)
