@@ -5,6 +5,7 @@ use std::sync::{Arc, OnceLock};
 
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
+use rayon::prelude::*;
 use walpha::progress::Stage;
 use walpha::shape::ShapeError;
 use walpha::{Alpha, WeightedPoints, ladder};
@@ -193,28 +194,27 @@ pub struct Simplices {
 
 impl Simplices {
     fn of(ordered: &ladder::Ordered<'_>, filtration: Arc<ladder::Filtration>) -> Self {
-        let mut simplices = Self {
+        let entry = |number: u32| {
+            let ladder::Entry { value, rank, gabriel, regular, interior, .. } =
+                ordered.simplex(number);
+            ([value, regular, interior], (rank, gabriel))
+        };
+        let entries = (0..ordered.len() as u32).into_par_iter().map(entry);
+        let (intervals, (ranks, gabriel)) = entries.unzip();
+        Self {
             vertices: ordered.vertices().to_vec(),
             edges: ordered.edges().to_vec(),
             facets: ordered.facets().to_vec(),
             cells: ordered.cells().to_vec(),
-            intervals: Vec::with_capacity(ordered.len()),
-            ranks: Vec::with_capacity(ordered.len()),
-            gabriel: Vec::with_capacity(ordered.len()),
+            intervals,
+            ranks,
+            gabriel,
             gabriel_simplices: ordered.gabriel_simplices(),
             order: ordered.order().to_vec(),
             pairs: ordered.pairs().clone(),
             loops: OnceLock::new(),
             filtration,
-        };
-        for number in 0..ordered.len() as u32 {
-            let ladder::Entry { value, rank, gabriel, regular, interior, .. } =
-                ordered.simplex(number);
-            simplices.intervals.push([value, regular, interior]);
-            simplices.ranks.push(rank);
-            simplices.gabriel.push(gabriel);
         }
-        simplices
     }
 
     /// The persistence pairs of dimension 1.
