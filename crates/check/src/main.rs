@@ -1,5 +1,6 @@
 //! `walpha-check`: judges complexes in files.
 
+use std::ffi::OsStr;
 use std::fmt::Display;
 use std::io::{self, ErrorKind, IsTerminal, Write};
 use std::path::{Path, PathBuf};
@@ -139,7 +140,10 @@ enum Failure {
     #[error(
         "complexes are read from .json and .npz, meshes from .node, .ele, .msh, .mesh and .vtk"
     )]
-    Extension { vtu: bool },
+    Extension {
+        /// Whether `walpha check` reads it.
+        by_walpha: bool,
+    },
     /// An option that the file leaves no room for.
     #[error("{option} has no effect: {why}")]
     Option { option: &'static str, why: &'static str },
@@ -158,8 +162,10 @@ impl Failure {
         match self {
             Self::Schema(error) => error.advice(),
             Self::Mesh(error) => error.advice(),
-            Self::Extension { vtu: true } => Some("use `walpha check`, which reads .vtu, too"),
-            Self::Extension { vtu: false } => Some("convert it to one of these"),
+            Self::Extension { by_walpha: true } => {
+                Some("use `walpha check`, which reads .vtu and .ply, too")
+            }
+            Self::Extension { by_walpha: false } => Some("convert it to one of these"),
             Self::Option { .. } => Some("omit it"),
             Self::Attribute => Some("give a file with the weights"),
             Self::Certify(error) => error.advice(),
@@ -178,8 +184,10 @@ fn read(path: &Path, arguments: &Arguments) -> Result<(AnyFile, Vec<String>), Fa
         }
         None => match AnyFile::open(path) {
             Err(SchemaError::Extension) => {
-                let vtu = path.extension().is_some_and(|own| own.eq_ignore_ascii_case("vtu"));
-                return Err(Failure::Extension { vtu });
+                let is_one = |own: &OsStr| {
+                    ["vtu", "ply"].iter().any(|known| own.eq_ignore_ascii_case(known))
+                };
+                return Err(Failure::Extension { by_walpha: path.extension().is_some_and(is_one) });
             }
             file => (file?, None, Vec::new()),
         },
