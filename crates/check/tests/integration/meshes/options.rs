@@ -126,10 +126,16 @@ fn what_is_not_read_is_refused_by_name() {
     let folder = folder("refused");
     write(
         &folder,
-        &[("a.vtu", b"<VTKFile/>".to_vec()), ("a.stl", Vec::new()), ("a.meshb", vec![1, 0, 0, 0])],
+        &[
+            ("a.vtu", b"<VTKFile/>".to_vec()),
+            ("a.PLY", b"ply\n".to_vec()),
+            ("a.stl", Vec::new()),
+            ("a.meshb", vec![1, 0, 0, 0]),
+        ],
     );
     for (file, next) in [
-        ("a.vtu", "next: use `walpha check`, which reads .vtu, too"),
+        ("a.vtu", "next: use `walpha check`, which reads .vtu and .ply, too"),
+        ("a.PLY", "next: use `walpha check`, which reads .vtu and .ply, too"),
         ("a.stl", "next: convert it to one of these"),
         ("a.meshb", "next: write it as text (.mesh)"),
     ] {
