@@ -117,7 +117,7 @@ def compiled(program, *arguments):
 
 
 def compile_cgal(program):
-    """The version of CGAL, and the flags for its parallel triangulation."""
+    """Compiles CGAL's parallel triangulation, and returns its version."""
     flags = ["-DNDEBUG", "-frounding-math", "-DCGAL_LINKED_WITH_TBB", "-lmpfr", "-lgmp", "-ltbb", "-ltbbmalloc"]
     compile_with("plain_cgal.cc", program, flags)
     asked = subprocess.run(["c++", "-E", "-dM", "-include", "CGAL/version.h", "-x", "c++", "/dev/null"], capture_output=True, text=True, check=True)
@@ -125,7 +125,7 @@ def compile_cgal(program):
 
 
 def compile_geogram(program):
-    """The version of Geogram, whose wheel has headers and a static library."""
+    """Compiles Geogram's triangulation, of the headers and the static library in its wheel, and returns its version."""
     wheel = pathlib.Path(importlib.util.find_spec("geogram").origin).parents[1]
     libraries = wheel / "geogram.libs"
     flags = ["-fopenmp", "-DGEOGRAM_WITH_PDEL", f"-I{wheel / 'include/geogram1'}", wheel / "lib64/libgeogram.a", *libraries.glob("libtbb-*")]

@@ -8,19 +8,19 @@ use walpha_complex::canonical::sorted;
 /// No row.
 pub(crate) const NONE: u32 = u32::MAX;
 
-/// For entries sorted by a vertex below `points`: where those of each vertex start, and where the last ones end.
-pub(crate) fn starts(vertices: impl Iterator<Item = u32>, points: usize) -> Vec<u32> {
-    let mut starts = vec![0; points + 1];
-    vertices.for_each(|v| starts[v as usize + 1] += 1);
-    for i in 0..points {
+/// For entries sorted by a number below `count`, such as a vertex: where those of each number start, and where the last ones end.
+pub(crate) fn starts(numbers: impl Iterator<Item = u32>, count: usize) -> Vec<u32> {
+    let mut starts = vec![0; count + 1];
+    numbers.for_each(|number| starts[number as usize + 1] += 1);
+    for i in 0..count {
         starts[i + 1] += starts[i];
     }
     starts
 }
 
-/// The entries of a vertex.
-pub(crate) fn of_bucket(starts: &[u32], vertex: u32) -> Range<usize> {
-    starts[vertex as usize] as usize..starts[vertex as usize + 1] as usize
+/// The entries of a number.
+pub(crate) fn of_bucket(starts: &[u32], number: u32) -> Range<usize> {
+    starts[number as usize] as usize..starts[number as usize + 1] as usize
 }
 
 /// Finds rows by their vertices, in any order.

@@ -18,11 +18,12 @@ pub(crate) fn read(file: &OpenFile) -> Result<Points, PointsError> {
 /// `vertex_indices` or `vertex_index`, or else the first one.
 pub(crate) fn read_complex(file: &OpenFile) -> Result<Mesh, PointsError> {
     let mut corners = Some(Corners::default());
-    let (points, is_text) = content(file, &mut corners)?;
+    let (points, header) = content(file, &mut corners)?;
     let Some(corners) = corners.filter(|corners| !corners.ends.is_empty()) else {
         return Err(no_complex(file.path()));
     };
-    let others = cells(file)?.into_iter().filter(|cells| cells.kind != Grid::kind_of(Grid::TETRA));
+    let others =
+        header.cells().into_iter().filter(|cells| cells.kind != Grid::kind_of(Grid::TETRA));
     let ignored: Vec<_> = others.map(|cells| (cells.kind, cells.count as u64)).collect();
     let grid = Grid {
         points: points.positions,
@@ -33,7 +34,7 @@ pub(crate) fn read_complex(file: &OpenFile) -> Result<Mesh, PointsError> {
         ..Grid::default()
     };
     let mesh = grid.mesh().map_err(|error| mesh_error(file.path(), &error))?.with_ignored(&ignored);
-    Ok(if is_text { mesh.with_decimal_note() } else { mesh })
+    Ok(if header.endian.is_none() { mesh.with_decimal_note() } else { mesh })
 }
 
 /// The corners of all tetrahedra, and where those of each end.
@@ -46,8 +47,11 @@ struct Corners {
 /// Names of elements that are tetrahedra: `tetra` is that of `VCGlib`.
 const TETRAHEDRA: [&str; 5] = ["tetra", "tet", "tetrahedra", "tetrahedron", "cell"];
 
-/// Reads the points and, where they are asked for, the tetrahedra; and whether numbers are text.
-fn content(file: &OpenFile, corners: &mut Option<Corners>) -> Result<(Points, bool), PointsError> {
+/// Reads the points and, where they are asked for, the tetrahedra; and the header.
+fn content(
+    file: &OpenFile,
+    corners: &mut Option<Corners>,
+) -> Result<(Points, Header), PointsError> {
     let path = file.path();
     let fail = |reason: Reason| format(path, reason);
     let mut lines = Lines::new(file.reader()?);
@@ -82,7 +86,7 @@ fn content(file: &OpenFile, corners: &mut Option<Corners>) -> Result<(Points, bo
     let points = points.ok_or_else(|| {
         fail(Reason::content("has no element vertex, and so no points", "name another file"))
     })?;
-    Ok((points, header.endian.is_none()))
+    Ok((points, header))
 }
 
 impl Corners {
@@ -113,18 +117,7 @@ impl Corners {
 
 /// The numbers of faces, edges and so on that the header declares.
 pub(crate) fn cells(file: &OpenFile) -> Result<Vec<CellCount>, PointsError> {
-    let header = Header::read(file.path(), &mut Lines::new(file.reader()?))?;
-    let count = |element: &Element| {
-        let kind = match element.name.as_str() {
-            "face" => "faces",
-            "tristrips" => "triangle strips",
-            "edge" => "edges",
-            name if TETRAHEDRA.contains(&name) => "tetrahedra",
-            _ => return None,
-        };
-        Some(CellCount::new(kind, usize::try_from(element.count).unwrap_or(usize::MAX)))
-    };
-    Ok(header.elements.iter().filter_map(count).collect())
+    Ok(Header::read(file.path(), &mut Lines::new(file.reader()?))?.cells())
 }
 
 fn vertices(
@@ -190,6 +183,21 @@ enum Property {
 }
 
 impl Header {
+    /// The numbers of faces, edges and so on.
+    fn cells(&self) -> Vec<CellCount> {
+        let count = |element: &Element| {
+            let kind = match element.name.as_str() {
+                "face" => "faces",
+                "tristrips" => "triangle strips",
+                "edge" => "edges",
+                name if TETRAHEDRA.contains(&name) => "tetrahedra",
+                _ => return None,
+            };
+            Some(CellCount::new(kind, usize::try_from(element.count).unwrap_or(usize::MAX)))
+        };
+        self.elements.iter().filter_map(count).collect()
+    }
+
     fn read(path: &Path, lines: &mut Lines<impl BufRead>) -> Result<Self, PointsError> {
         let fail = |reason: Reason| format(path, reason);
         let mut line = || lines.read_line().map_err(io_error(path));

@@ -7,6 +7,7 @@ use rayon::prelude::*;
 use super::structure::Points;
 use crate::Alpha;
 use crate::exact::{RoundedSphere, Side, WeightedPoint, in_conflict, orientation, side};
+use crate::index::starts;
 
 /// Answers whether a sphere is empty by testing all points nearby.
 ///
@@ -152,17 +153,12 @@ impl Grid {
         }
         let mut grid = Self { low, step, counts, starts: Vec::new(), points: Vec::new() };
         let boxes = counts.iter().product::<usize>();
-        let mut starts = vec![0; boxes + 1];
-        for &i in &points {
-            starts[grid.number(grid.at(positions[i as usize])) + 1] += 1;
-        }
-        for i in 0..boxes {
-            starts[i + 1] += starts[i];
-        }
+        let number = |&i: &u32| grid.number(grid.at(positions[i as usize])) as u32;
+        let starts = starts(points.iter().map(number), boxes);
         let mut next = starts.clone();
         let mut sorted = vec![0; points.len()];
         for &i in &points {
-            let slot = &mut next[grid.number(grid.at(positions[i as usize]))];
+            let slot = &mut next[number(&i) as usize];
             sorted[*slot as usize] = i;
             *slot += 1;
         }
