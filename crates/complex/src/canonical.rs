@@ -3,8 +3,15 @@
 use crate::{Complex, Simplices};
 
 /// The vertices in ascending order.
+#[inline]
 pub fn sorted<const N: usize>(mut row: [u32; N]) -> [u32; N] {
-    row.sort_unstable();
+    // Without branches, for rows of two to four.
+    for end in (1..N).rev() {
+        for i in 0..end {
+            let (one, other) = (row[i], row[i + 1]);
+            (row[i], row[i + 1]) = (one.min(other), one.max(other));
+        }
+    }
     row
 }
 
@@ -44,6 +51,19 @@ fn sort_rows<const N: usize>(simplices: &mut Simplices<N>) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn vertices_are_sorted() {
+        for (row, ascending) in [
+            ([3, 1, 2, 0], [0, 1, 2, 3]),
+            ([2, 3, 0, 1], [0, 1, 2, 3]),
+            ([9, 9, 4, 4], [4, 4, 9, 9]),
+            ([u32::MAX, 0, 1, u32::MAX - 1], [0, 1, u32::MAX - 1, u32::MAX]),
+        ] {
+            assert_eq!(sorted(row), ascending);
+        }
+        assert_eq!((sorted([2, 1, 0]), sorted([1, 0]), sorted([5])), ([0, 1, 2], [0, 1], [5]));
+    }
 
     #[test]
     fn permutations_keep_their_parity() {

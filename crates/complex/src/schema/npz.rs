@@ -2,6 +2,7 @@
 
 use std::io::{Read, Seek, SeekFrom};
 
+use rayon::prelude::*;
 use walpha_base::npy::Header;
 use zip::ZipArchive;
 use zip::read::ZipFile;
@@ -89,7 +90,7 @@ pub fn read_npy(name: &'static str, mut bytes: &[u8]) -> Result<Vec<f64>, Schema
         return Err(SchemaError::Array { name, got, expected });
     }
     let length = bytes.len() as u64;
-    decoded(name, &header, &mut bytes, length, |_, x| Ok(x))
+    decoded(name, &header, &mut bytes, length, |[x]: [f64; 1]| Ok(x))
 }
 
 /// The shape that an array must have.
@@ -202,27 +203,21 @@ impl<R: Read + Seek> Npz<R> {
     }
 
     /// All elements of an array, row by row, converted from numbers.
-    fn list<T: Copy>(
+    fn list<T: Copy + Send>(
         &mut self,
         name: &'static str,
-        convert: impl Fn(&'static str, f64) -> Result<T, SchemaError>,
+        convert: impl Fn(&'static str, f64) -> Result<T, SchemaError> + Sync,
     ) -> Result<Option<Vec<T>>, SchemaError> {
         let Some(member) = self.member(name)? else { return Ok(None) };
-        let Array { header, mut member } = Array::open(name, member)?;
-        let columns = match header.shape[..] {
-            [rows, columns] if header.fortran && rows > 0 => {
-                Some((rows as usize, columns as usize))
-            }
-            _ => None,
-        };
-        let bytes = member.size().saturating_sub(header.length);
-        let elements = decoded(name, &header, &mut member, bytes, convert)?;
-        Ok(Some(match columns {
-            None => elements,
-            Some((rows, columns)) => {
+        let mut array = Array::open(name, member)?;
+        let elements = array.rows(name, |[x]: [f64; 1]| convert(name, x))?;
+        Ok(Some(match array.header.shape[..] {
+            [rows, columns] if array.header.fortran => {
+                let (rows, columns) = (rows as usize, columns as usize);
                 let at = |i: usize| elements[i % columns * rows + i / columns];
                 (0..rows * columns).map(at).collect()
             }
+            _ => elements,
         }))
     }
 
@@ -237,13 +232,26 @@ impl<R: Read + Seek> Npz<R> {
         })
     }
 
-    fn rows<T: Copy, const N: usize>(
+    fn rows<T: Copy + Send, const N: usize>(
         &mut self,
         name: &'static str,
-        convert: impl Fn(&'static str, f64) -> Result<T, SchemaError>,
+        convert: impl Fn(&'static str, f64) -> Result<T, SchemaError> + Sync,
     ) -> Result<Option<Vec<[T; N]>>, SchemaError> {
-        let elements = self.list(name, convert)?;
-        Ok(elements.map(|elements| elements.as_chunks::<N>().0.to_vec()))
+        let Some(member) = self.member(name)? else { return Ok(None) };
+        let mut array = Array::open(name, member)?;
+        if array.header.fortran {
+            drop(array);
+            let elements = self.list(name, convert)?;
+            return Ok(elements.map(|elements| elements.as_chunks::<N>().0.to_vec()));
+        }
+        let row = |numbers: [f64; N]| {
+            let mut row = [convert(name, numbers[0])?; N];
+            for (element, number) in row.iter_mut().zip(numbers).skip(1) {
+                *element = convert(name, number)?;
+            }
+            Ok(row)
+        };
+        array.rows(name, row).map(Some)
     }
 }
 
@@ -259,34 +267,43 @@ impl<'a, R: Read> Array<'a, R> {
             Header::read(&mut member).map_err(|error| SchemaError::Npy { name, source: error })?;
         Ok(Self { header, member })
     }
+
+    /// All rows of `N` elements in the order of the file, converted from numbers.
+    fn rows<T: Send, const N: usize>(
+        &mut self,
+        name: &'static str,
+        convert: impl Fn([f64; N]) -> Result<T, SchemaError> + Sync,
+    ) -> Result<Vec<T>, SchemaError> {
+        let bytes = self.member.size().saturating_sub(self.header.length);
+        decoded(name, &self.header, &mut self.member, bytes, convert)
+    }
 }
 
+#[inline]
 fn index(name: &'static str, value: f64) -> Result<u32, SchemaError> {
     // The conversion saturates, and takes NaN to 0.
     let number = value as u32;
     if f64::from(number) == value {
         Ok(number)
     } else {
-        let value = value.to_string();
-        Err(SchemaError::Value { name, value, expected: "a point number" })
+        Err(unexpected(name, value, "a point number"))
     }
 }
 
-fn alpha(name: &'static str, value: f64) -> Result<Alpha, SchemaError> {
-    Alpha::from_squared(value).map_err(|_| SchemaError::Value {
-        name,
-        value: value.to_string(),
-        expected: "a squared length",
-    })
+#[cold]
+fn unexpected(name: &'static str, value: f64, expected: &'static str) -> SchemaError {
+    SchemaError::Value { name, value: value.to_string(), expected }
 }
 
+fn alpha(name: &'static str, value: f64) -> Result<Alpha, SchemaError> {
+    Alpha::from_squared(value).map_err(|_| unexpected(name, value, "a squared length"))
+}
+
+#[inline]
 fn class(name: &'static str, value: f64) -> Result<Class, SchemaError> {
-    let number = index(name, value)?;
-    u8::try_from(number).ok().and_then(Class::from_number).ok_or_else(|| SchemaError::Value {
-        name,
-        value: number.to_string(),
-        expected: "a class (0 exterior, 1 interior, 2 regular, 3 singular)",
-    })
+    let class = Class::from_number(value as u8).filter(|_| f64::from(value as u8) == value);
+    let expected = "a class (0 exterior, 1 interior, 2 regular, 3 singular)";
+    class.ok_or_else(|| unexpected(name, value, expected))
 }
 
 const FILTRATION_ARRAYS: [(&str, Kind); 30] = [
@@ -398,7 +415,7 @@ impl FiltrationFile {
 type Convert<T> = fn(&'static str, f64) -> Result<T, SchemaError>;
 
 /// Three arrays; `None` if the first is missing, and an error if only others are.
-fn below<R: Read + Seek, T: Copy>(
+fn below<R: Read + Seek, T: Copy + Send>(
     file: &mut Npz<R>,
     ArrayNames([vertices, edges, facets]): ArrayNames,
     convert: Convert<T>,
@@ -408,7 +425,7 @@ fn below<R: Read + Seek, T: Copy>(
     Ok(Some(Below { vertices: of_vertices, edges, facets }))
 }
 
-fn required<R: Read + Seek, T: Copy>(
+fn required<R: Read + Seek, T: Copy + Send>(
     file: &mut Npz<R>,
     name: &'static str,
     convert: Convert<T>,
@@ -420,21 +437,23 @@ fn truth(name: &'static str, value: f64) -> Result<bool, SchemaError> {
     match value {
         0.0 => Ok(false),
         1.0 => Ok(true),
-        _ => Err(SchemaError::Value { name, value: value.to_string(), expected: "0 or 1" }),
+        _ => Err(unexpected(name, value, "0 or 1")),
     }
 }
 
-/// Bytes decoded at a time, so that the array and its numbers are never both completely in memory.
-const CHUNK_BYTES: usize = 8 << 20;
+/// Bytes read at a time, so that the array and its numbers are never both completely in memory. Whole rows of any type.
+const CHUNK_BYTES: usize = 24 << 18;
+/// Rows that one thread decodes at a time.
+const BATCH: usize = 1 << 12;
 
-/// All elements of an array in the order of the file, converted from numbers. The reader is positioned after the header;
+/// All rows of `N` elements of an array in the order of the file, converted from numbers. The reader is positioned after the header;
 /// `bytes` more follow, which must be exactly as many as the header claims.
-fn decoded<T>(
+fn decoded<T: Send, const N: usize>(
     name: &'static str,
     header: &Header,
     reader: &mut impl Read,
     bytes: u64,
-    convert: impl Fn(&'static str, f64) -> Result<T, SchemaError>,
+    convert: impl Fn([f64; N]) -> Result<T, SchemaError> + Sync,
 ) -> Result<Vec<T>, SchemaError> {
     let wrong = |got: String, expected: String| SchemaError::Array { name, got, expected };
     let Some((size, decode)) = element(&header.descr) else {
@@ -448,48 +467,66 @@ fn decoded<T>(
     if bytes != needed {
         return Err(wrong(format!("{bytes} bytes of elements"), claim()));
     }
-    let mut elements = Vec::<T>::new();
-    elements.try_reserve_exact(usize::try_from(count).unwrap_or(usize::MAX)).map_err(|_| {
+    let mut rows = Vec::<T>::new();
+    let count = count / N as u64;
+    rows.try_reserve_exact(usize::try_from(count).unwrap_or(usize::MAX)).map_err(|_| {
         let bytes = u128::from(count) * size_of::<T>() as u128;
         SchemaError::Memory { name, bytes }
     })?;
+    let batch = |bytes: &[u8]| -> Result<Vec<T>, SchemaError> {
+        let mut numbers = Vec::with_capacity(bytes.len() / size);
+        decode(bytes, &mut numbers);
+        let mut rows = Vec::with_capacity(numbers.len() / N);
+        for row in numbers.as_chunks::<N>().0 {
+            rows.push(convert(*row)?);
+        }
+        Ok(rows)
+    };
+    let rows_of =
+        |chunk: &[u8]| -> Vec<_> { chunk.par_chunks(N * size * BATCH).map(batch).collect() };
     let damaged = |error| SchemaError::Zip(format!("{name}: {error}"));
-    let mut chunk = vec![0; needed.min(CHUNK_BYTES as u64) as usize];
     let mut left = needed;
+    let mut read = |into: &mut Vec<u8>| {
+        into.resize(left.min(CHUNK_BYTES as u64) as usize, 0);
+        left -= into.len() as u64;
+        reader.read_exact(into).map_err(damaged)
+    };
+    let (mut chunk, mut next) = (Vec::new(), Vec::new());
+    read(&mut chunk)?;
     // Whether the archive is damaged is known at the end, and comes first.
     let mut unexpected = None;
-    while left > 0 {
-        let chunk = &mut chunk[..left.min(CHUNK_BYTES as u64) as usize];
-        reader.read_exact(chunk).map_err(damaged)?;
-        for element in chunk.chunks_exact(size) {
-            if unexpected.is_some() {
-                break;
+    while !chunk.is_empty() {
+        let mut batches = Vec::new();
+        // Decoded while the next chunk is read.
+        rayon::in_place_scope(|scope| {
+            if unexpected.is_none() {
+                scope.spawn(|_| batches = rows_of(&chunk));
             }
-            match convert(name, decode(element)) {
-                Ok(element) => elements.push(element),
-                Err(error) => unexpected = Some(error),
-            }
-        }
-        left -= chunk.len() as u64;
+            read(&mut next)
+        })?;
+        unexpected =
+            unexpected.or(batches.into_iter().try_for_each(|batch| Ok(rows.extend(batch?))).err());
+        std::mem::swap(&mut chunk, &mut next);
     }
     // The archive verifies its checksum when a member is read to its end.
     match reader.read(&mut [0]).map_err(damaged)? {
-        0 => unexpected.map_or(Ok(elements), Err),
+        0 => unexpected.map_or(Ok(rows), Err),
         _ => Err(wrong("more bytes than its archive claims".into(), claim())),
     }
 }
 
-/// Converts the bytes of one element to a double.
-type Decode = fn(&[u8]) -> f64;
+/// Converts the bytes of elements to doubles, which it appends.
+type Decode = fn(&[u8], &mut Vec<f64>);
 
-/// The size of an element in bytes and its conversion to a double, for a `NumPy` type such as `<f4`.
+/// The size of an element in bytes and the conversion to doubles, for a `NumPy` type such as `<f4`.
 /// Integers beyond 2⁵³ are rounded; no point number is that large.
 #[expect(clippy::cast_lossless, reason = "one rule for all types, of which two are lossy")]
 fn element(descr: &str) -> Option<(usize, Decode)> {
     macro_rules! number {
         ($kind:ty, $from:ident) => {
-            Some((size_of::<$kind>(), |bytes| {
-                <$kind>::$from(bytes.try_into().expect("the bytes of one element")) as f64
+            Some((size_of::<$kind>(), |bytes, numbers| {
+                let elements = bytes.as_chunks::<{ size_of::<$kind>() }>().0;
+                numbers.extend(elements.iter().map(|&element| <$kind>::$from(element) as f64));
             }))
         };
     }

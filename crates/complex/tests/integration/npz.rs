@@ -115,3 +115,27 @@ fn an_array_that_only_repeats_itself() {
     assert!(matches!(error, SchemaError::Array { name: "points", .. }), "{error}");
     assert!(error.to_string().contains("does not repeat itself"), "{error}");
 }
+
+/// More than is read at a time. The first number that is no point's is named, wherever it is.
+#[test]
+fn long_arrays_are_read_whole() {
+    const ROWS: usize = 600_000;
+    let alpha = ("alpha", npy("<f8", "()", &1f64.to_le_bytes()));
+    let number = |i: usize| (i as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 40;
+    let read = |numbers: &[u64]| {
+        let bytes: Vec<u8> = numbers.iter().flat_map(|n| n.to_le_bytes()).collect();
+        let cells = ("cells", npy("<u8", &format!("({ROWS}, 4)"), &bytes));
+        let bytes = archive(&[alpha.clone(), cells], CompressionMethod::Stored);
+        ComplexFile::read_npz(Cursor::new(bytes))
+    };
+    let mut numbers: Vec<u64> = (0..4 * ROWS).map(number).collect();
+    let cells = read(&numbers).unwrap().cells.unwrap();
+    assert_eq!(cells.len(), ROWS);
+    assert!(
+        cells.as_flattened().iter().zip(&numbers).all(|(&read, &number)| u64::from(read) == number)
+    );
+    numbers[2_000_000] = 1 << 40;
+    numbers[2_300_000] = 1 << 41;
+    let error = read(&numbers).unwrap_err().to_string();
+    assert!(error.contains("`cells` holds 1099511627776"), "{error}");
+}
