@@ -22,18 +22,20 @@ use crate::{Alpha, Class, Simplices};
 /// point strictly inside.
 ///
 /// In a whole triangulation that was found regular, a sphere that contains any point contains a
-/// neighbour of its simplex, so only neighbours are tested; in a shape alone, all points nearby are.
+/// neighbour of its simplex, so only neighbours are tested; in a shape alone, all points nearby are. `regular` is whether no cell is
+/// refuted by a neighbour, not even in a tie.
 pub(super) fn judge(
     structure: &Structure,
     judge: &Judge,
+    regular: bool,
     monitor: &Monitor,
 ) -> Result<Vec<Finding>, Cancelled> {
     let complex = structure.complex;
-    let (cells, mut findings) = judge.cells(&complex.cells, &monitor.part(0, 2, 10))?;
-    findings.extend(judge.compare(&complex.cells, &cells));
-
-    let facets = judge.facets(structure, &cells, &monitor.part(2, 5, 10))?;
-    findings.extend(judge.compare(&complex.facets, &facets));
+    let mut findings = Vec::new();
+    let cells = judge.cells(structure, regular, &mut findings, &monitor.part(0, 2, 10))?;
+    let facets = &|i: usize| judge.facet(structure, &cells, i);
+    let of_facets = &monitor.part(2, 5, 10);
+    let facets = judge.classes(&complex.facets, facets, &mut findings, of_facets)?;
     findings.extend(windings(structure, &cells, &facets, &monitor.part(5, 6, 10))?);
     if judge.has_strays::<3>() {
         let strays = (0..complex.facets.len()).filter(|&i| structure.halves(i).next().is_none());
@@ -43,25 +45,21 @@ pub(super) fn judge(
 
     let of_facets = Faces {
         higher: &complex.facets,
-        verdicts: &facets,
+        classes: &facets,
         corners: [[1, 2], [0, 2], [0, 1]],
         lower: &complex.edges,
         index: &structure.edges,
     };
-    let (edges, found) = of_facets.judge(judge, &monitor.part(6, 9, 10))?;
-    findings.extend(found);
-    findings.extend(judge.compare(&complex.edges, &edges));
+    let edges = of_facets.judge(judge, &mut findings, &monitor.part(6, 9, 10))?;
 
     let of_edges = Faces {
         higher: &complex.edges,
-        verdicts: &edges,
+        classes: &edges,
         corners: [[1], [0]],
         lower: &complex.vertices,
         index: &structure.vertices,
     };
-    let (vertices, found) = of_edges.judge(judge, &monitor.part(9, 10, 10))?;
-    findings.extend(found);
-    findings.extend(judge.compare(&complex.vertices, &vertices));
+    of_edges.judge(judge, &mut findings, &monitor.part(9, 10, 10))?;
     Ok(findings)
 }
 
@@ -86,9 +84,6 @@ pub(super) struct Verdict {
 }
 
 impl Verdict {
-    /// What stands in the place of a verdict until it is known.
-    const UNKNOWN: Self = Self { class: Class::Exterior, refuted_by: NONE };
-
     pub(super) fn of(class: Class) -> Self {
         Self { class, refuted_by: NONE }
     }
@@ -103,54 +98,75 @@ impl Judge<'_> {
 
     fn cells(
         &self,
-        cells: &Simplices<4>,
+        structure: &Structure,
+        regular: bool,
+        findings: &mut Vec<Finding>,
         monitor: &Monitor,
-    ) -> Result<(Vec<Verdict>, Vec<Finding>), Cancelled> {
-        let verdict = |i: usize| {
+    ) -> Result<Vec<Class>, Cancelled> {
+        let cells = &structure.complex.cells;
+        let class = |i: usize| {
             let cell = cells.rows()[i];
             let inside = !self.flat(cell) && self.fits(cell);
-            let class = if inside { Class::Interior } else { Class::Exterior };
-            let refuter = self.emptiness.filter(|_| inside);
-            let refuted_by = refuter.and_then(|near| near.refuter_of_cell(cell)).unwrap_or(NONE);
-            Verdict { class, refuted_by }
+            Verdict::of(if inside { Class::Interior } else { Class::Exterior })
         };
-        let mut verdicts = one_for_each(cells.len(), Verdict::UNKNOWN, monitor, verdict)?;
-        let refuted = cells.rows().iter().zip(&verdicts);
-        let finding = |(&cell, verdict): (&[u32; 4], &Verdict)| {
-            let corners = self.points.corners(cell);
-            let power = power_value(corners.each_ref(), &self.points.get(verdict.refuted_by));
-            Finding::NotRegular { cell: cell.into(), point: verdict.refuted_by, power }
-        };
-        let findings = refuted.filter(|(_, verdict)| verdict.refuted_by != NONE).map(finding);
-        let findings = findings.collect();
-        // It refutes the cell, not its class.
-        verdicts.par_iter_mut().for_each(|verdict| verdict.refuted_by = NONE);
-        Ok((verdicts, findings))
+        let mut differing = Vec::new();
+        let classes = self.classes(cells, &class, &mut differing, &monitor.part(0, 1, 4))?;
+        findings.extend(self.refuted(structure, &classes, regular, &monitor.part(1, 4, 4))?);
+        findings.extend(differing);
+        Ok(classes)
     }
 
-    fn facets(
+    /// Findings on cells that a point refutes, in a shape alone.
+    ///
+    /// If no neighbour refutes another, a cell with neighbours on all sides is tested only with points that have no cells all
+    /// around. Why: from a refuted cell walk straight to the point that refutes it, through cells that it refutes, too. The walk
+    /// ends in an outermost cell, which is tested with all points, or in a cell around a point that has cells of its own around it.
+    /// But outermost cells that pass are of the regular triangulation, and cells do not overlap behind those (Lemma 8
+    /// in docs/certifying.md).
+    fn refuted(
         &self,
         structure: &Structure,
-        cells: &[Verdict],
+        classes: &[Class],
+        regular: bool,
         monitor: &Monitor,
-    ) -> Result<Vec<Verdict>, Cancelled> {
-        let rows = structure.complex.facets.rows();
-        let verdict = |i: usize| {
-            let facet = rows[i];
-            let inside =
-                structure.halves(i).filter(|h| cells[h.cell].class == Class::Interior).count();
-            if inside > 0 {
-                return Verdict::of(if inside == 2 { Class::Interior } else { Class::Regular });
-            }
-            if self.flat(facet) || !self.fits(facet) {
-                return Verdict::of(Class::Exterior);
-            }
-            let corners = self.points.corners(facet);
-            let inside = |&q: &u32| side(corners.each_ref(), &self.points.get(q)) == Side::Inside;
-            let neighbours = structure.halves(i).map(|half| structure.apex(half));
-            self.alone(facet, neighbours.filter(inside).min())
+    ) -> Result<Vec<Finding>, Cancelled> {
+        let Some(all) = self.emptiness else { return Ok(Vec::new()) };
+        let cells = structure.complex.cells.rows();
+        let finding = |i: usize, near: &Emptiness| {
+            let fits = classes[i] == Class::Interior;
+            let point = fits.then(|| near.refuter_of_cell(cells[i])).flatten()?;
+            let corners = self.points.corners(cells[i]);
+            let power = power_value(corners.each_ref(), &self.points.get(point));
+            Some(Finding::NotRegular { cell: cells[i].into(), point, power })
         };
-        one_for_each(rows.len(), Verdict::UNKNOWN, monitor, verdict)
+        let fit = || classes.par_iter().all(|&class| class == Class::Interior);
+        if regular && self.torus.is_none() && fit() {
+            let surrounded = structure.surrounded(self.points.len());
+            let exposed = all.tested().filter(|&point| !surrounded[point as usize]).collect();
+            let exposed = Emptiness::new(self.points, self.alpha, f64::INFINITY, exposed);
+            let near = |i: usize| if structure.is_outermost(i) { all } else { &exposed };
+            let monitor = &monitor.part(0, 1, 2);
+            let found = of_each(cells.len(), monitor, |i| finding(i, near(i)))?;
+            if found.is_empty() {
+                return Ok(found);
+            }
+        }
+        of_each(cells.len(), &monitor.part(1, 2, 2), |i| finding(i, all))
+    }
+
+    fn facet(&self, structure: &Structure, cells: &[Class], i: usize) -> Verdict {
+        let facet = structure.complex.facets.rows()[i];
+        let inside = structure.halves(i).filter(|half| cells[half.cell] == Class::Interior).count();
+        if inside > 0 {
+            return Verdict::of(if inside == 2 { Class::Interior } else { Class::Regular });
+        }
+        if self.flat(facet) || !self.fits(facet) {
+            return Verdict::of(Class::Exterior);
+        }
+        let corners = self.points.corners(facet);
+        let inside = |&q: &u32| side(corners.each_ref(), &self.points.get(q)) == Side::Inside;
+        let neighbours = structure.halves(i).map(|half| structure.apex(half));
+        self.alone(facet, neighbours.filter(inside).min())
     }
 
     /// The verdict on a simplex whose sphere fits α and that has no coface in the shape.
@@ -166,24 +182,32 @@ impl Judge<'_> {
         }
     }
 
-    /// Findings where given classes differ from the verdicts.
-    fn compare<const N: usize>(&self, given: &Simplices<N>, verdicts: &[Verdict]) -> Vec<Finding> {
-        let rows = given.rows().par_iter().zip(given.classes()).zip(verdicts);
-        rows.filter(|((_, given), verdict)| **given != verdict.class)
-            .map(|((&row, &given), verdict)| {
-                let corners = self.points.corners(row);
-                let corners = corners.each_ref();
-                let refuted_by = Some(verdict.refuted_by).filter(|&point| point != NONE);
-                Finding::Class {
-                    simplex: row.into(),
-                    given,
-                    expected: verdict.class,
-                    radius_squared: (!self.flat(row)).then(|| radius_value(corners)),
-                    refuted_by: refuted_by
-                        .map(|point| (point, power_value(corners, &self.points.get(point)))),
-                }
-            })
-            .collect()
+    /// The classes of some simplices by their verdicts; and findings where the given ones differ.
+    fn classes<const N: usize>(
+        &self,
+        given: &Simplices<N>,
+        verdict: &(impl Fn(usize) -> Verdict + Sync),
+        findings: &mut Vec<Finding>,
+        monitor: &Monitor,
+    ) -> Result<Vec<Class>, Cancelled> {
+        let classes = one_for_each(given.len(), Class::Exterior, monitor, |i| verdict(i).class)?;
+        let differs = |i: &usize| given.classes()[*i] != classes[*i];
+        let differing = (0..given.len()).into_par_iter().filter(differs).map(|i| {
+            let (row, Verdict { class, refuted_by }) = (given.rows()[i], verdict(i));
+            let corners = self.points.corners(row);
+            let corners = corners.each_ref();
+            let refuted_by = Some(refuted_by).filter(|&point| point != NONE);
+            Finding::Class {
+                simplex: row.into(),
+                given: given.classes()[i],
+                expected: class,
+                radius_squared: (!self.flat(row)).then(|| radius_value(corners)),
+                refuted_by: refuted_by
+                    .map(|point| (point, power_value(corners, &self.points.get(point)))),
+            }
+        });
+        findings.par_extend(differing);
+        Ok(classes)
     }
 
     pub(super) fn fits<const N: usize>(&self, row: [u32; N]) -> bool {
@@ -207,26 +231,26 @@ impl Judge<'_> {
 
 fn windings(
     structure: &Structure,
-    cells: &[Verdict],
-    facets: &[Verdict],
+    cells: &[Class],
+    facets: &[Class],
     monitor: &Monitor,
 ) -> Result<Vec<Finding>, Cancelled> {
     let rows = structure.complex.facets.rows();
     of_each(rows.len(), monitor, |i| {
         let facet = rows[i];
-        let inside = |half: &Half| cells[half.cell].class == Class::Interior;
+        let inside = |half: &Half| cells[half.cell] == Class::Interior;
         let half = structure.halves(i).find(inside)?;
         let outward = smallest_even(structure.outward(half)) == smallest_even(facet);
         let behind = structure.apex(half);
-        (facets[i].class == Class::Regular && !outward)
+        (facets[i] == Class::Regular && !outward)
             .then(|| Finding::Winding { facet: facet.into(), behind })
     })
 }
 
-/// Simplices, their verdicts, and the dimension below, whose simplices are their faces.
+/// Simplices, their classes, and the dimension below, whose simplices are their faces.
 pub(super) struct Faces<'a, const N: usize, const M: usize> {
     pub(super) higher: &'a Simplices<N>,
-    pub(super) verdicts: &'a [Verdict],
+    pub(super) classes: &'a [Class],
     /// The corners of each face; the i-th is opposite to corner i.
     pub(super) corners: [[usize; M]; N],
     pub(super) lower: &'a Simplices<M>,
@@ -273,49 +297,50 @@ enum State {
 }
 
 impl<const N: usize, const M: usize> Faces<'_, N, M> {
-    /// The verdict on each lower simplex, and findings on those that are missing and, in a whole triangulation,
+    /// The class of each lower simplex; findings where given ones differ, on simplices that are missing and, in a whole triangulation,
     /// on those that are no faces.
     pub(super) fn judge(
         &self,
         judge: &Judge,
+        findings: &mut Vec<Finding>,
         monitor: &Monitor,
-    ) -> Result<(Vec<Verdict>, Vec<Finding>), Cancelled> {
-        let (cofaces, mut findings) = self.cofaces(&monitor.part(0, 4, 10))?;
+    ) -> Result<Vec<Class>, Cancelled> {
+        let (cofaces, missing) = self.cofaces(&monitor.part(0, 4, 10))?;
+        findings.extend(missing);
         let rows = self.lower.rows();
         let states = one_for_each(rows.len(), State::Outside, &monitor.part(4, 6, 10), |i| {
             state(rows[i], &cofaces[i], judge)
         })?;
         let refuters = self.neighbours_inside(&states, judge, &monitor.part(6, 9, 10))?;
-        let verdict = |i: usize| {
-            let refuter = Some(refuters[i].load(Ordering::Relaxed)).filter(|&point| point != NONE);
-            match states[i] {
-                State::Closed => Verdict::of(Class::Interior),
-                State::Open => Verdict::of(Class::Regular),
-                State::Outside => Verdict::of(Class::Exterior),
-                State::Candidate => judge.alone(rows[i], refuter),
-            }
-        };
-        let monitor = &monitor.part(9, 10, 10);
-        let verdicts = one_for_each(rows.len(), Verdict::UNKNOWN, monitor, verdict)?;
         if judge.has_strays::<M>() {
             let strays = self.lower.rows().iter().zip(&cofaces);
             let strays = strays.filter(|(_, cofaces)| !cofaces.has(Cofaces::SEEN));
             findings.extend(strays.map(|(row, _)| Finding::Stray { simplex: (*row).into() }));
         }
-        Ok((verdicts, findings))
+        drop(cofaces);
+        let verdict = |i: usize| match states[i] {
+            State::Closed => Verdict::of(Class::Interior),
+            State::Open => Verdict::of(Class::Regular),
+            State::Outside => Verdict::of(Class::Exterior),
+            State::Candidate => {
+                let refuter = refuters[i].load(Ordering::Relaxed);
+                judge.alone(rows[i], Some(refuter).filter(|&point| point != NONE))
+            }
+        };
+        judge.classes(self.lower, &verdict, findings, &monitor.part(9, 10, 10))
     }
 
     /// What each lower simplex has for cofaces, and which faces are not listed.
     fn cofaces(&self, monitor: &Monitor) -> Result<(Vec<Cofaces>, Vec<Finding>), Cancelled> {
         let cofaces: Vec<Cofaces> = self.lower.rows().iter().map(|_| Cofaces::default()).collect();
         let missing = of_each(self.higher.len(), monitor, |i| {
-            let (row, verdict) = (self.higher.rows()[i], self.verdicts[i]);
+            let (row, class) = (self.higher.rows()[i], self.classes[i]);
             let cofaces = &cofaces;
             self.corners.iter().filter_map(move |corners| {
                 let face = corners.map(|k| row[k]);
                 match cofaces.get(self.index.row(face) as usize) {
                     Some(cofaces) => {
-                        cofaces.add(verdict.class);
+                        cofaces.add(class);
                         None
                     }
                     None => Some((face, row)),
@@ -332,20 +357,20 @@ impl<const N: usize, const M: usize> Faces<'_, N, M> {
     }
 
     /// For each candidate the smallest corner opposite to it, in an exterior higher simplex, that
-    /// is inside its sphere; else [`NONE`].
+    /// is inside its sphere; else [`NONE`]. Nothing if there are no candidates.
     fn neighbours_inside(
         &self,
         states: &[State],
         judge: &Judge,
         monitor: &Monitor,
     ) -> Result<Vec<AtomicU32>, Cancelled> {
-        let refuters: Vec<AtomicU32> = states.iter().map(|_| AtomicU32::new(NONE)).collect();
         if !states.par_iter().any(|&state| state == State::Candidate) {
-            return Ok(refuters);
+            return Ok(Vec::new());
         }
+        let refuters: Vec<AtomicU32> = states.iter().map(|_| AtomicU32::new(NONE)).collect();
         of_each(self.higher.len(), monitor, |i| {
             let row = self.higher.rows()[i];
-            let exterior = self.verdicts[i].class == Class::Exterior;
+            let exterior = self.classes[i] == Class::Exterior;
             for (corners, &opposite) in self.corners.iter().zip(&row).filter(|_| exterior) {
                 let face = corners.map(|k| row[k]);
                 let at = self.index.row(face) as usize;
@@ -365,5 +390,98 @@ fn state<const M: usize>(row: [u32; M], cofaces: &Cofaces, judge: &Judge) -> Sta
         (true, true) => State::Open,
         (false, _) if !judge.flat(row) && judge.fits(row) => State::Candidate,
         (false, _) => State::Outside,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use walpha_base::random::Random;
+
+    use super::*;
+    use crate::certify::flat::closed;
+    use crate::certify::geometry::{Boundary, Linked};
+    use crate::enumerate;
+    use crate::exact::WeightedPoint;
+
+    /// Cells of two triangulations of different points, one of them within the other or across it: those that a point refutes are found
+    /// where most of them are tested with few points, too. Some cells are left out.
+    #[test]
+    fn surrounded_points_need_no_test() {
+        let mut random = Random::new(6);
+        let alpha = Alpha::from_squared(1e9).unwrap();
+        let (mut empty, mut refuted_outermost, mut refuted_within) = (0, 0, 0);
+        for round in 0..1500 {
+            let unit = random.pick(&[1, 7]);
+            let mut jitter = |x: i64, by: i64| unit as f64 * random.whole(x - by, x + by);
+            let corner = |i: usize, size: i64| {
+                [i & 1, i >> 1 & 1, i >> 2 & 1].map(|side| (2 * side as i64 - 1) * size)
+            };
+            // A cube in a cube, and a few points in the middle, or anywhere.
+            let outer: Vec<[f64; 3]> = (0..16)
+                .map(|i| corner(i, if i < 8 { 40 } else { 12 }).map(|x| jitter(x, 2)))
+                .collect();
+            let spread = if round % 2 == 0 { 2 } else { 30 };
+            let inner: Vec<[f64; 3]> = (0..5).map(|_| [0; 3].map(|x| jitter(x, spread))).collect();
+            let positions = [outer, inner].concat();
+            let site =
+                |&position: &[f64; 3]| WeightedPoint { position, weight: random.whole(0, 1) };
+            let sites: Vec<_> = positions.iter().map(site).collect();
+            // Apart, or together.
+            let parts = if round % 3 == 0 { vec![0..21] } else { vec![0..16, 16..21] };
+            let mut cells = Vec::new();
+            for part in parts {
+                let weights: Vec<_> = sites[part.clone()].iter().map(|site| site.weight).collect();
+                let Ok(made) = enumerate(&positions[part.clone()], &weights, alpha) else {
+                    continue;
+                };
+                let sparse = random.below(3) == 0;
+                let own = made.complex.cells.rows();
+                let own = own.iter().filter(|_| !sparse || random.below(8) > 0);
+                cells.extend(own.map(|cell| cell.map(|v| part.start as u32 + v)));
+            }
+            if cells.is_empty() {
+                continue;
+            }
+            let (complex, points) = (closed(&cells), Points { sites: &sites });
+            let noop = Monitor::noop();
+            let linked = Linked::new(&complex, points, Boundary::Any, &noop).unwrap();
+            assert!(linked.broken.is_empty());
+            if !linked.irregular.is_empty() {
+                continue;
+            }
+            // Of points at one place one is kept; here, none is.
+            let distinct = |&i: &u32| {
+                let at = |site: &&WeightedPoint| site.position == points.position(i);
+                sites.iter().filter(at).count() == 1
+            };
+            let tested = (0..points.len() as u32).filter(distinct).collect();
+            let emptiness = Emptiness::new(points, alpha, f64::INFINITY, tested);
+            let judge = Judge {
+                points,
+                alpha,
+                extent: Extent::Shape,
+                dimension: 3,
+                emptiness: Some(&emptiness),
+                torus: None,
+            };
+            let classes = vec![Class::Interior; complex.cells.len()];
+            let structure = &linked.structure;
+            let all = judge.refuted(structure, &classes, false, &noop).unwrap();
+            assert_eq!(judge.refuted(structure, &classes, true, &noop).unwrap(), all);
+            let outermost = |finding: &Finding| {
+                let Finding::NotRegular { cell, .. } = finding else { panic!("{finding:?}") };
+                let row = cell.vertices().try_into().unwrap();
+                structure.is_outermost(structure.cells.row(row) as usize)
+            };
+            if all.is_empty() {
+                empty += 1;
+            } else if all.iter().any(outermost) {
+                refuted_outermost += 1;
+            } else {
+                refuted_within += 1;
+            }
+        }
+        let counts = [empty, refuted_outermost, refuted_within];
+        assert!(counts.iter().all(|&count| count > 20), "{counts:?}");
     }
 }

@@ -2,43 +2,60 @@
 
 use std::cell::RefCell;
 
-use rayon::prelude::*;
-
+use super::grid::Grid;
 use super::structure::Points;
 use crate::Alpha;
 use crate::exact::{RoundedSphere, Side, WeightedPoint, in_conflict, orientation, side};
-use crate::index::starts;
 
 /// Answers whether a sphere is empty by testing all points nearby.
 ///
 /// A point of weight ω inside a sphere of squared radius R² ≤ α is less than √(α + ω) away from
 /// its centre, and a vertex of weight ω at most as far. So it is enough to test the points within
-/// √(R² + largest ω) of the centre; where doubles cannot locate the centre, those within
-/// 2 √(α + largest ω) of a vertex.
+/// √(R² + ω) of the centre; where doubles cannot locate the centre, those within
+/// √(α + ω) + √(α + largest ω) of a vertex.
 ///
-/// On a torus a sphere that is not empty holds a point no further from a vertex than the diagonal of the box. Where half of
-/// that is less, it takes the place of √(α + largest ω).
+/// On a torus a sphere that is not empty holds a point no further from a vertex than the diagonal of the box. Where
+/// that is less, it takes the place of the latter sum.
 pub(super) struct Emptiness<'a> {
     points: Points<'a>,
+    /// Few points are much heavier than the others, and one such would make all points far around a sphere be tested.
+    layers: Vec<Layer>,
+}
+
+/// Points of similar weight.
+struct Layer {
     grid: Grid,
     /// The points in the order of the grid, so that those of a box are beside each other.
     sites: Vec<WeightedPoint>,
     heaviest: f64,
-    /// √(α + largest ω), or the bound on a torus, rounded up; zero when nothing can be inside.
-    reach: f64,
+    /// How far from a vertex all points inside are, rounded up.
+    around: f64,
 }
 
 impl<'a> Emptiness<'a> {
-    /// For spheres of squared radius up to `alpha`; `kept` is, for each point, the one kept at its position.
+    /// For spheres of squared radius up to `alpha`, and these of the points.
     /// If any point is inside a sphere, one within 2 `largest` of its simplex's first vertex must be, and otherwise all
     /// points on it must be there; in space that is ∞.
-    pub(super) fn new(points: Points<'a>, alpha: Alpha, largest: f64, kept: &[u32]) -> Self {
-        let heaviest = points.weights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let sites = (0..points.len() as u32).filter(|&i| kept[i as usize] == i).collect();
-        let reach = (alpha.squared() + heaviest).next_up().max(0.0).sqrt().next_up().min(largest);
-        let grid = Grid::new(points.positions, sites);
-        let sites = grid.points.par_iter().map(|&i| points.get(i)).collect();
-        Self { points, grid, sites, heaviest, reach }
+    pub(super) fn new(points: Points<'a>, alpha: Alpha, largest: f64, tested: Vec<u32>) -> Self {
+        let heaviest = |numbers: &mut dyn Iterator<Item = u32>| {
+            numbers.map(|i| points.weight(i)).fold(f64::NEG_INFINITY, f64::max)
+        };
+        let reach =
+            |heaviest: f64| (alpha.squared() + heaviest).next_up().max(0.0).sqrt().next_up();
+        let of_vertices = reach(heaviest(&mut (0..points.len() as u32)));
+        let layer = |tested: Vec<u32>| {
+            let heaviest = heaviest(&mut tested.iter().copied());
+            let grid = Grid::new(points, tested);
+            let sites = points.of(grid.points());
+            let around = (reach(heaviest) + of_vertices).next_up().min(2.0 * largest);
+            Layer { grid, sites, heaviest, around }
+        };
+        Self { points, layers: layers(points, tested).into_iter().map(layer).collect() }
+    }
+
+    /// The points that are tested.
+    pub(super) fn tested(&self) -> impl Iterator<Item = u32> {
+        self.layers.iter().flat_map(|layer| layer.grid.points()).copied()
     }
 
     /// A point that refutes a cell whose squared radius is at most α: one strictly inside its sphere, or
@@ -87,13 +104,15 @@ impl<'a> Emptiness<'a> {
     /// Whether no other point is inside or on the sphere of a point alone.
     pub(super) fn alone(&self, point: u32) -> bool {
         let site = self.points.get(point);
-        // |q − p|² ≤ ω of q − ω of p, whatever α is.
-        let reach = (self.heaviest - site.weight).next_up().max(0.0).sqrt().next_up();
-        let near = |slot: usize, index: u32| {
-            let within = index != point && side([&site], &self.sites[slot]) != Side::Outside;
-            within.then_some(())
-        };
-        self.grid.within(site.position, reach, near).is_none()
+        self.layers.iter().all(|layer| {
+            // |q − p|² ≤ ω of q − ω of p, whatever α is.
+            let reach = (layer.heaviest - site.weight).next_up().max(0.0).sqrt().next_up();
+            let near = |slot: usize, index: u32| {
+                let within = index != point && side([&site], &layer.sites[slot]) != Side::Outside;
+                within.then_some(())
+            };
+            layer.grid.within(site.position, reach, near).is_none()
+        })
     }
 
     fn find<const N: usize>(
@@ -103,122 +122,123 @@ impl<'a> Emptiness<'a> {
     ) -> Option<u32> {
         let corners = self.points.corners(simplex);
         let sphere = RoundedSphere::new(corners.each_ref());
-        let around = (corners[0].position, 2.0 * self.reach);
-        let near = sphere.as_ref().map(|sphere| (sphere.center, sphere.reach(self.heaviest)));
-        let (center, radius) = near.filter(|(_, radius)| *radius <= around.1).unwrap_or(around);
-        self.grid.within(center, radius.next_up(), |slot, index| {
-            let q = &self.sites[slot];
-            let outside = sphere.as_ref().is_some_and(|sphere| sphere.surely_outside(q));
-            (!outside && !simplex.contains(&index) && refutes(q, index)).then_some(index)
-        })
-    }
-}
-
-/// Points sorted into the boxes of a uniform grid.
-pub(super) struct Grid {
-    low: [f64; 3],
-    step: f64,
-    counts: [usize; 3],
-    /// Where the points of each box start; x varies fastest.
-    starts: Vec<u32>,
-    points: Vec<u32>,
-}
-
-impl Grid {
-    /// Sorts points into about as many boxes as there are points.
-    pub(super) fn new(positions: &[[f64; 3]], points: Vec<u32>) -> Self {
-        let mut low = [f64::INFINITY; 3];
-        let mut high = [f64::NEG_INFINITY; 3];
-        for &i in &points {
-            for k in 0..3 {
-                low[k] = low[k].min(positions[i as usize][k]);
-                high[k] = high[k].max(positions[i as usize][k]);
-            }
-        }
-        let extent: [f64; 3] = std::array::from_fn(|k| high[k] - low[k]);
-        let longest = extent.iter().copied().fold(0.0, f64::max);
-        let boxes = |step: f64| extent.map(|e| (e / step) as usize + 1);
-        let (mut step, mut counts) = (f64::INFINITY, [1; 3]);
-        if longest > 0.0 && longest.is_finite() {
-            // Halving the step until the boxes outnumber the points; flat sets have flat grids.
-            step = longest;
-            counts = boxes(step);
-            while step > f64::MIN_POSITIVE {
-                let finer = boxes(step / 2.0);
-                if finer.iter().product::<usize>() > 2 * points.len() {
-                    break;
-                }
-                (step, counts) = (step / 2.0, finer);
-            }
-        }
-        let mut grid = Self { low, step, counts, starts: Vec::new(), points: Vec::new() };
-        let boxes = counts.iter().product::<usize>();
-        let number = |&i: &u32| grid.number(grid.at(positions[i as usize])) as u32;
-        let starts = starts(points.iter().map(number), boxes);
-        let mut next = starts.clone();
-        let mut sorted = vec![0; points.len()];
-        for &i in &points {
-            let slot = &mut next[number(&i) as usize];
-            sorted[*slot as usize] = i;
-            *slot += 1;
-        }
-        (grid.starts, grid.points) = (starts, sorted);
-        grid
-    }
-
-    /// Calls `visit` with every point within `radius` of `center`, and some beyond, until it
-    /// returns a value: with its place in the order of the grid, and its number.
-    pub(super) fn within<T>(
-        &self,
-        center: [f64; 3],
-        radius: f64,
-        visit: impl Fn(usize, u32) -> Option<T>,
-    ) -> Option<T> {
-        // Rounding is monotonic, so a point between two positions is in a box between theirs.
-        let from = self.at(center.map(|x| (x - radius).next_down()));
-        let to = self.at(center.map(|x| (x + radius).next_up()));
-        for z in from[2]..=to[2] {
-            for y in from[1]..=to[1] {
-                let first = self.number([from[0], y, z]);
-                let last = self.number([to[0], y, z]);
-                let row = self.starts[first] as usize..self.starts[last + 1] as usize;
-                if let Some(found) = row.into_iter().find_map(|slot| visit(slot, self.points[slot]))
-                {
-                    return Some(found);
-                }
-            }
-        }
-        None
-    }
-
-    /// Some point near a position, if there are points.
-    pub(super) fn some_near(&self, position: [f64; 3]) -> Option<u32> {
-        let center = self.at(position);
-        let reach = *self.counts.iter().max().expect("three axes");
-        (0..reach).find_map(|ring| {
-            let from: [usize; 3] = std::array::from_fn(|k| center[k].saturating_sub(ring));
-            let to: [usize; 3] =
-                std::array::from_fn(|k| (center[k] + ring).min(self.counts[k] - 1));
-            (from[2]..=to[2]).find_map(|z| {
-                (from[1]..=to[1]).find_map(|y| {
-                    let first = self.number([from[0], y, z]);
-                    let last = self.number([to[0], y, z]);
-                    self.points[self.starts[first] as usize..self.starts[last + 1] as usize]
-                        .first()
-                        .copied()
-                })
+        self.layers.iter().find_map(|layer| {
+            let around = (corners[0].position, layer.around);
+            let near = sphere.as_ref().map(|sphere| (sphere.center, sphere.reach(layer.heaviest)));
+            let (center, radius) = near.filter(|(_, radius)| *radius <= around.1).unwrap_or(around);
+            layer.grid.within(center, radius.next_up(), |slot, index| {
+                let q = &layer.sites[slot];
+                let outside = sphere.as_ref().is_some_and(|sphere| sphere.surely_outside(q));
+                (!outside && !simplex.contains(&index) && refutes(q, index)).then_some(index)
             })
         })
     }
+}
 
-    fn at(&self, position: [f64; 3]) -> [usize; 3] {
-        std::array::from_fn(|k| {
-            // The cast turns negative numbers, and the NaN of an infinite box, into 0.
-            (((position[k] - self.low[k]) / self.step) as usize).min(self.counts[k] - 1)
-        })
+/// Layers are split where the heaviest of this many points is.
+const HEAVY: usize = 64;
+
+/// Points in layers of similar weight: apart are the heaviest few, as long as their weights span more than those of the others.
+fn layers(points: Points, mut sites: Vec<u32>) -> Vec<Vec<u32>> {
+    let weight = |&i: &u32| points.weight(i);
+    let mut layers = Vec::new();
+    loop {
+        let mut weights: Vec<f64> = sites.iter().map(weight).collect();
+        let lightest = weights.iter().copied().fold(f64::INFINITY, f64::min);
+        let heaviest = weights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let few = weights.len() / HEAVY;
+        let most = weights.len() - few;
+        let split = (few > 0).then(|| *weights.select_nth_unstable_by(most, f64::total_cmp).1);
+        let Some(split) = split.filter(|split| heaviest - split > split - lightest) else { break };
+        let (heavy, light) = sites.into_iter().partition(|i| weight(i) > split);
+        layers.push(light);
+        sites = heavy;
+    }
+    layers.push(sites);
+    layers
+}
+
+#[cfg(test)]
+mod tests {
+    use walpha_base::random::Random;
+
+    use super::*;
+    use crate::exact::radius;
+
+    /// Points with weights of which few are large, and some very large.
+    fn points(random: &mut Random) -> Vec<WeightedPoint> {
+        let draw = |_| WeightedPoint {
+            position: [0; 3].map(|_| random.whole(0, 30)),
+            weight: match random.below(200) {
+                0 => random.whole(200, 300),
+                1..3 => random.whole(20, 40),
+                _ => random.whole(-1, 2),
+            },
+        };
+        (0..700).map(draw).collect()
     }
 
-    fn number(&self, [x, y, z]: [usize; 3]) -> usize {
-        (z * self.counts[1] + y) * self.counts[0] + x
+    #[test]
+    fn heavy_points_are_in_layers_of_their_own() {
+        let sites = points(&mut Random::new(1));
+        let points = Points { sites: &sites };
+        let layers = layers(points, (0..700).collect());
+        assert!(layers.len() > 1, "{}", layers.len());
+        let mut all = layers.concat();
+        all.sort_unstable();
+        assert_eq!(all, (0..700).collect::<Vec<u32>>());
+        let heaviest = |layer: &[u32]| layer.iter().map(|&i| points.weight(i)).fold(-1.0, f64::max);
+        let lightest = |layer: &[u32]| layer.iter().map(|&i| points.weight(i)).fold(1e9, f64::min);
+        for pair in layers.windows(2) {
+            assert!(heaviest(&pair[0]) < lightest(&pair[1]));
+        }
+        let alike: Vec<_> =
+            sites.iter().map(|site| WeightedPoint { weight: 5.0, ..*site }).collect();
+        assert_eq!(super::layers(Points { sites: &alike }, (0..700).collect()).len(), 1);
+    }
+
+    /// Whether any point is inside a sphere, and which are on it, as when all are looked at.
+    #[test]
+    fn spheres_are_searched_to_the_last_point() {
+        let mut random = Random::new(2);
+        let (mut empty, mut full, mut further) = (0, 0, 0);
+        for _ in 0..20 {
+            let sites = points(&mut random);
+            let points = Points { sites: &sites };
+            let alpha = Alpha::from_squared(random.whole(0, 40)).unwrap();
+            let emptiness = Emptiness::new(points, alpha, f64::INFINITY, (0..700).collect());
+            for _ in 0..2000 {
+                let mut simplex = [0u32; 3].map(|_| random.below(700) as u32);
+                // Points near each other, for there to be small spheres.
+                let near = |v: &u32| {
+                    let [p, q] = [simplex[0], *v].map(|v| points.position(v));
+                    (0..3).map(|k| (p[k] - q[k]).abs()).fold(0.0, f64::max)
+                };
+                let mut all: Vec<u32> = (0..700).collect();
+                all.sort_by(|a, b| near(a).total_cmp(&near(b)));
+                (simplex[1], simplex[2]) = (all[1 + random.below(3)], all[4 + random.below(3)]);
+                let corners = points.corners(simplex);
+                let [a, b, c] = corners.each_ref();
+                if crate::exact::collinear(a.position, b.position, c.position)
+                    || radius([a, b, c], alpha).is_gt()
+                {
+                    continue;
+                }
+                let at = |which: Side| -> Vec<u32> {
+                    (0..700).filter(|&q| side([a, b, c], &points.get(q)) == which).collect()
+                };
+                let inside = at(Side::Inside);
+                match emptiness.refuter(simplex) {
+                    Some(refuter) => assert!(inside.contains(&refuter)),
+                    None => assert_eq!(inside, [0; 0], "{simplex:?}"),
+                }
+                let on = at(Side::On);
+                assert_eq!(emptiness.on_sphere(simplex), on);
+                empty += usize::from(inside.is_empty());
+                full += usize::from(!inside.is_empty());
+                further += usize::from(on.len() > 3);
+            }
+        }
+        assert!(empty > 200 && full > 200 && further > 20, "{empty} {full} {further}");
     }
 }

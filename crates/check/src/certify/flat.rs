@@ -7,7 +7,7 @@ use walpha_complex::canonical::{outward_facets, smallest_even, sort, sorted};
 
 use super::finding::Finding;
 use super::structure::Points;
-use crate::exact::orientation;
+use crate::exact::{WeightedPoint, orientation};
 use crate::{Class, Complex, Simplices};
 
 /// A cone over a flat triangulation: cells over its largest simplices, with auxiliary apexes outside its plane
@@ -20,8 +20,7 @@ pub(super) struct Cone {
     pub complex: Complex,
     /// The dimension of the base, 0 to 2.
     pub dimension: usize,
-    positions: Vec<[f64; 3]>,
-    weights: Vec<f64>,
+    sites: Vec<WeightedPoint>,
     /// The index of the first apex.
     first: u32,
 }
@@ -31,7 +30,9 @@ impl Cone {
     /// dimension that the points span.
     pub(super) fn over(complex: &Complex, points: Points, apexes: &[[f64; 3]]) -> Option<Self> {
         let first = points.len() as u32;
-        let positions = [points.positions, apexes].concat();
+        let apexes_as_points =
+            apexes.iter().map(|&position| WeightedPoint { position, weight: 0.0 });
+        let sites: Vec<_> = points.sites.iter().copied().chain(apexes_as_points).collect();
         let at = |k: u32| first + k;
         let cells: Vec<[u32; 4]> = match apexes.len() {
             1 => complex.facets.rows().iter().map(|&[a, b, c]| [a, b, c, at(0)]).collect(),
@@ -43,17 +44,16 @@ impl Cone {
             return None;
         }
         let positive = |[a, b, c, d]: [u32; 4]| {
-            let [p, q, r, s] = [a, b, c, d].map(|v| positions[v as usize]);
+            let [p, q, r, s] = [a, b, c, d].map(|v| sites[v as usize].position);
             if orientation(p, q, r, s) == Ordering::Less { [b, a, c, d] } else { [a, b, c, d] }
         };
         let cells: Vec<_> = cells.into_iter().map(positive).collect();
-        let weights = [points.weights, &[0.0; 3][..apexes.len()]].concat();
         let dimension = 3 - apexes.len();
-        Some(Self { complex: closed(&cells), dimension, positions, weights, first })
+        Some(Self { complex: closed(&cells), dimension, sites, first })
     }
 
     pub(super) fn points(&self) -> Points<'_> {
-        Points { positions: &self.positions, weights: &self.weights }
+        Points { sites: &self.sites }
     }
 
     /// Findings on the cone in terms of its base, each once.

@@ -139,7 +139,7 @@ pub(super) fn six_volumes(
     points: Points,
     monitor: &Monitor,
 ) -> Result<(IBig, i64), Cancelled> {
-    let lattice = Lattice::through(points.positions);
+    let lattice = Lattice::through(points.positions());
     let sum = lattice.six_volumes(cells.len(), monitor, |i| points.positions_of(cells[i]))?;
     Ok((sum, 3 * i64::from(lattice.exponent())))
 }
@@ -152,8 +152,8 @@ pub(super) fn volume(
     monitor: &Monitor,
 ) -> Result<Vec<Finding>, Cancelled> {
     let hull = structure.hull();
-    let top = points.positions[0];
-    let lattice = Lattice::through(points.positions);
+    let top = points.position(0);
+    let lattice = Lattice::through(points.positions());
     let cone = |i: usize| {
         let [a, b, c] = points.positions_of(hull[i]);
         [top, a, b, c]
@@ -216,7 +216,7 @@ fn bend(facet: [u32; 3], point: u32, points: Points) -> Option<Finding> {
 }
 
 fn wraps(structure: &Structure, hull: &[[u32; 3]], points: Points) -> Vec<Finding> {
-    let lattice = Lattice::through(points.positions);
+    let lattice = Lattice::through(points.positions());
     let star = Star::new(lattice, points.positions_of(structure.complex.cells.rows()[0]));
     let first = points.positions_of(hull[0]);
     let judge = |(i, facet): (usize, &[u32; 3])| {

@@ -8,8 +8,9 @@ use walpha_base::{Cancelled, Monitor};
 use walpha_complex::canonical::outward_facets;
 
 use super::claim::Claim;
-use super::emptiness::{Emptiness, Grid};
+use super::emptiness::Emptiness;
 use super::finding::Finding;
+use super::grid::Grid;
 use super::structure::{Half, Points, Structure};
 use crate::Complex;
 use crate::exact::{in_conflict, orientation, power_value, radius, radius_value, six_volume};
@@ -17,20 +18,31 @@ use crate::parallel::of_each;
 
 /// For each point, the one kept at its position by the rule: the heaviest, of equal weights the first.
 fn by_rule(points: Points) -> Vec<u32> {
-    let position = |i: u32| points.positions[i as usize];
-    let mut order: Vec<u32> = (0..points.len() as u32).collect();
-    let by_position =
-        |a: u32, b: u32| position(a).partial_cmp(&position(b)).expect("no coordinate is NaN");
-    let weight = |i: u32| points.weights[i as usize];
-    order.par_sort_unstable_by(|&a, &b| {
-        // Not `total_cmp`, to which −0 is less than 0.
-        let heavier = weight(b).partial_cmp(&weight(a)).expect("no weight is NaN");
-        by_position(a, b).then(heavier).then(a.cmp(&b))
-    });
-    let mut kept = vec![0; order.len()];
-    for coincident in order.chunk_by(|&a, &b| position(a) == position(b)) {
-        for &i in coincident {
-            kept[i as usize] = coincident[0];
+    let position = |i: u32| points.position(i);
+    let weight = |i: u32| points.weight(i);
+    // Equal positions have equal keys, and others hardly ever.
+    let key = |i: u32| {
+        // −0 + 0 is 0.
+        let digits = position(i).map(|x| (x + 0.0).to_bits());
+        digits.into_iter().fold(0u64, |key, digits| {
+            (key.rotate_left(23) ^ digits).wrapping_mul(0x9e37_79b9_7f4a_7c15)
+        })
+    };
+    let mut order: Vec<(u64, u32)> =
+        (0..points.len() as u32).into_par_iter().map(|i| (key(i), i)).collect();
+    order.par_sort_unstable();
+    let mut kept: Vec<u32> = (0..points.len() as u32).collect();
+    for alike in order.chunk_by_mut(|one, other| one.0 == other.0).filter(|alike| alike.len() > 1) {
+        alike.sort_unstable_by(|&(_, a), &(_, b)| {
+            let by_position = position(a).partial_cmp(&position(b)).expect("no coordinate is NaN");
+            // Not `total_cmp`, to which −0 is less than 0.
+            let heavier = weight(b).partial_cmp(&weight(a)).expect("no weight is NaN");
+            by_position.then(heavier).then(a.cmp(&b))
+        });
+        for coincident in alike.chunk_by(|one, other| position(one.1) == position(other.1)) {
+            for &(_, i) in coincident {
+                kept[i as usize] = coincident[0].1;
+            }
         }
     }
     kept
@@ -46,7 +58,7 @@ pub(super) fn kept_points(
     listed: Option<&[[u32; 2]]>,
 ) -> (Vec<u32>, Vec<Finding>) {
     let by_rule = by_rule(points);
-    let weight = |i: u32| points.weights[i as usize];
+    let weight = |i: u32| points.weight(i);
     let mut is_vertex = vec![false; by_rule.len()];
     complex.vertices.rows().iter().for_each(|[v]| is_vertex[*v as usize] = true);
     let vertices = complex.vertices.rows().iter().map(|&[v]| v);
@@ -61,6 +73,11 @@ pub(super) fn kept_points(
     let kept = by_rule.into_iter().map(|first| *instead.get(&first).unwrap_or(&first)).collect();
     let equal = |(first, point)| Finding::EqualPoint { point, first };
     (kept, instead.into_iter().map(equal).collect())
+}
+
+/// The points that are kept at their positions.
+pub(super) fn distinct(kept: &[u32]) -> impl Iterator<Item = u32> {
+    (0..).zip(kept).filter(|(i, kept)| *i == **kept).map(|(i, _)| i)
 }
 
 /// Judges that duplicates are not vertices, and that their list, if there is one, is right.
@@ -164,12 +181,12 @@ pub(super) fn of_whole(structure: &Structure, kept: &[u32], claim: &Claim) -> Ve
 /// once it is lifted, so it is a vertex of the regular triangulation; a tie may hide it.
 pub(super) fn of_shape(
     structure: &Structure,
+    points: Points,
     emptiness: &Emptiness,
     kept: &[u32],
     claim: &Claim,
     monitor: &Monitor,
 ) -> Result<Vec<Finding>, Cancelled> {
-    let points = Points::of(claim.placed);
     let mut statuses = statuses(structure, kept);
     let mut findings = of_each(points.len(), monitor, |i| {
         let point = i as u32;
@@ -208,7 +225,7 @@ pub(super) fn hiddenness(
         }
     }
     let vertices = (0..points.len() as u32).filter(|&i| is_vertex[i as usize]).collect();
-    let grid = Grid::new(points.positions, vertices);
+    let grid = Grid::new(points, vertices);
     of_each(hidden.len(), monitor, |i| {
         let point = hidden[i];
         let q = points.get(point);
@@ -235,12 +252,13 @@ pub(super) fn hiddenness_in_cells(
         return Ok(Vec::new());
     }
     let cells = structure.complex.cells.rows();
-    let grid = Grid::new(points.positions, hidden.to_vec());
+    let grid = Grid::new(points, hidden.to_vec());
     of_each(cells.len(), monitor, |i| {
         let cell = cells[i];
         let [first, others @ ..] = points.positions_of(cell);
-        let far = others.as_flattened().iter().zip(first.iter().cycle());
-        let reach = far.fold(0.0, |most, (x, first)| (x - first).abs().max(most));
+        let far = others.map(|[x, y, z]| (x - first[0]).hypot(y - first[1]).hypot(z - first[2]));
+        // The factor covers roundings.
+        let reach = far.into_iter().fold(0.0, f64::max) * (1.0 + 1e-12);
         let found = RefCell::new(Vec::new());
         grid.within(first, reach.next_up(), |_, point| {
             if holds(points, cell, points.get(point).position) {

@@ -7,30 +7,48 @@ use walpha_base::{Cancelled, Monitor};
 use walpha_complex::canonical::outward_facets;
 
 use super::finding::{Finding, Simplex};
+use crate::Complex;
 use crate::exact::WeightedPoint;
 pub(super) use crate::index::{Index, NONE};
 use crate::parallel::one_for_each;
-use crate::{Complex, Placed};
+
+/// Points with their positions and weights side by side.
+pub(super) fn sites(positions: &[[f64; 3]], weights: &[f64]) -> Vec<WeightedPoint> {
+    let sites = positions.iter().zip(weights);
+    sites.map(|(&position, &weight)| WeightedPoint { position, weight }).collect()
+}
 
 /// The input points.
 #[derive(Clone, Copy)]
 pub(super) struct Points<'a> {
-    pub positions: &'a [[f64; 3]],
-    pub weights: &'a [f64],
+    pub sites: &'a [WeightedPoint],
 }
 
 impl<'a> Points<'a> {
-    /// The points of a complex.
-    pub(super) fn of(placed: Placed<'a>) -> Self {
-        Self { positions: placed.positions, weights: placed.weights }
-    }
-
     pub(super) fn len(self) -> usize {
-        self.positions.len()
+        self.sites.len()
     }
 
     pub(super) fn get(self, i: u32) -> WeightedPoint {
-        WeightedPoint { position: self.positions[i as usize], weight: self.weights[i as usize] }
+        self.sites[i as usize]
+    }
+
+    pub(super) fn position(self, i: u32) -> [f64; 3] {
+        self.get(i).position
+    }
+
+    pub(super) fn weight(self, i: u32) -> f64 {
+        self.get(i).weight
+    }
+
+    /// Some of the points.
+    pub(super) fn of(self, numbers: &[u32]) -> Vec<WeightedPoint> {
+        numbers.iter().map(|&i| self.get(i)).collect()
+    }
+
+    /// All positions.
+    pub(super) fn positions(self) -> impl Iterator<Item = [f64; 3]> + Clone + 'a {
+        self.sites.iter().map(|site| site.position)
     }
 
     /// The corners of a row.
@@ -40,7 +58,7 @@ impl<'a> Points<'a> {
 
     /// Their positions.
     pub(super) fn positions_of<const N: usize>(self, row: [u32; N]) -> [[f64; 3]; N] {
-        row.map(|i| self.positions[i as usize])
+        row.map(|i| self.position(i))
     }
 }
 
@@ -70,7 +88,7 @@ pub(super) struct Half {
 }
 
 impl<'a> Structure<'a> {
-    /// Bytes needed to link a complex, besides the complex itself.
+    /// Bytes that linking a complex takes at most, besides the complex itself.
     pub(super) fn bytes(complex: &Complex) -> usize {
         let row = size_of::<u32>();
         let (cell, facet) = (row + size_of::<[u32; 4]>(), row + size_of::<[u32; 2]>());
@@ -102,28 +120,40 @@ impl<'a> Structure<'a> {
         let cell_facets = one_for_each(cells.len(), [NONE; 4], &monitor.part(7, 10, 10), |i| {
             outward_facets(cells[i]).map(|facet| facets.row(facet))
         })?;
-        let mut crowded = BTreeSet::new();
-        let mut sides = vec![[NONE; 2]; complex.facets.len()];
-        for (cell, rows) in cell_facets.iter().enumerate() {
-            for (opposite, &row) in rows.iter().enumerate() {
-                let half = 4 * cell as u32 + opposite as u32;
-                match sides.get_mut(row as usize) {
-                    Some([first, _]) if *first == NONE => *first = half,
-                    Some([_, second]) if *second == NONE => *second = half,
-                    Some(_) => _ = crowded.insert(row),
-                    None => findings.push(Finding::MissingFace {
-                        face: outward_facets(cells[cell])[opposite].into(),
-                        of: cells[cell].into(),
-                    }),
-                }
-            }
-        }
+        let missing = cell_facets.par_iter().zip(cells).flat_map_iter(|(rows, cell)| {
+            let facets = outward_facets(*cell).into_iter().zip(rows);
+            facets.filter(|(_, row)| **row == NONE).map(|(facet, _)| (facet, *cell))
+        });
+        findings.par_extend(
+            missing
+                .map(|(facet, cell)| Finding::MissingFace { face: facet.into(), of: cell.into() }),
+        );
+        let (sides, crowded) = sides(complex.facets.len(), cell_facets.as_flattened());
         findings.extend(crowded.into_iter().map(|row| Finding::Crowded {
             facet: complex.facets.rows()[row as usize].into(),
             cells: cells_with(cells, &cell_facets, row),
         }));
         let cells = cell_index;
         Ok((Self { complex, cells, facets, edges, vertices, sides, cell_facets }, findings))
+    }
+
+    /// Whether a cell is the only one on one of its facets.
+    pub(super) fn is_outermost(&self, cell: usize) -> bool {
+        self.cell_facets[cell].iter().any(|&facet| self.sides[facet as usize][1] == NONE)
+    }
+
+    /// For each point, whether there are cells all around it: it is a vertex of some, and none of its facets has only one.
+    pub(super) fn surrounded(&self, points: usize) -> Vec<bool> {
+        let mut surrounded = vec![false; points];
+        for &v in self.complex.cells.rows().as_flattened() {
+            surrounded[v as usize] = true;
+        }
+        for (facet, sides) in self.complex.facets.rows().iter().zip(&self.sides) {
+            if sides[0] != NONE && sides[1] == NONE {
+                facet.iter().for_each(|&v| surrounded[v as usize] = false);
+            }
+        }
+        surrounded
     }
 
     /// The half-facets of a facet, at most two.
@@ -155,9 +185,35 @@ impl<'a> Structure<'a> {
     }
 }
 
+/// The first two sides of each facet, and the facets that have more, given the facet at each side of the cells.
+fn sides(facets: usize, facet_at: &[u32]) -> (Vec<[u32; 2]>, BTreeSet<u32>) {
+    let mut sides = vec![[NONE; 2]; facets];
+    // Each thread goes through all cells, and writes down what it finds of some of the facets.
+    let share = facets.div_ceil(rayon::current_num_threads()).max(1);
+    let parts = sides.par_chunks_mut(share).enumerate().map(|(part, sides)| {
+        let start = (part * share) as u32;
+        let mut crowded = BTreeSet::new();
+        for (half, row) in (0..).zip(facet_at) {
+            match sides.get_mut(row.wrapping_sub(start) as usize) {
+                Some([first, _]) if *first == NONE => *first = half,
+                Some([_, second]) if *second == NONE => *second = half,
+                Some(_) => _ = crowded.insert(*row),
+                None => {}
+            }
+        }
+        crowded
+    });
+    let crowded = parts.flatten_iter().collect();
+    (sides, crowded)
+}
+
 /// Findings on simplices that are listed more than once.
 fn repeated<const N: usize>(index: &Index<N>) -> Vec<Finding> {
-    index.repeated().map(|row| Finding::RepeatedSimplex { simplex: row.into() }).collect()
+    index
+        .repeated()
+        .into_iter()
+        .map(|row| Finding::RepeatedSimplex { simplex: row.into() })
+        .collect()
 }
 
 fn cells_with(cells: &[[u32; 4]], facets: &[[u32; 4]], row: u32) -> Vec<Simplex> {

@@ -96,8 +96,8 @@ pub(super) fn cells(
     let judged = rest.units(spheres.len() as u64);
     let judge = |(on, rows): &(Vec<u32>, Vec<usize>)| -> Result<Option<Finding>, Cancelled> {
         let own: Vec<_> = rows.iter().map(|&row| local(cells[row], on)).collect();
-        let (positions, weights) = placed(on, points);
-        let of_sphere = Points { positions: &positions, weights: &weights };
+        let sites = points.of(on);
+        let of_sphere = Points { sites: &sites };
         let wrong = triangulation_findings(&closed(&own), of_sphere, &on_spheres)?;
         judged.add(1)?;
         Ok(wrong.iter().any(|finding| !finding.is_tie()).then(|| Finding::TiedSphere {
@@ -223,9 +223,9 @@ fn flat_findings(
     monitor: &Monitor,
 ) -> Result<Vec<Finding>, Cancelled> {
     let listed = complex.facets.len() + complex.edges.len();
-    let (positions, weights) = placed(on, points);
-    let of_sphere = Points { positions: &positions, weights: &weights };
-    let apexes = auxiliary_positions(positions.iter().copied()).unwrap_or_default();
+    let sites = points.of(on);
+    let of_sphere = Points { sites: &sites };
+    let apexes = auxiliary_positions(of_sphere.positions()).unwrap_or_default();
     let found = match Cone::over(complex, of_sphere, &apexes) {
         Some(cone) => {
             let found = triangulation_findings(&cone.complex, cone.points(), monitor)?;
@@ -244,9 +244,4 @@ fn flat_findings(
 /// A row as indices into an ascending list of points that contains all of its vertices.
 fn local<const N: usize>(row: [u32; N], on: &[u32]) -> [u32; N] {
     row.map(|v| on.binary_search(&v).expect("corners are on their sphere") as u32)
-}
-
-/// Positions and weights of some points.
-fn placed(on: &[u32], points: Points) -> (Vec<[f64; 3]>, Vec<f64>) {
-    on.iter().map(|&v| (points.positions[v as usize], points.weights[v as usize])).unzip()
 }

@@ -51,10 +51,9 @@ pub(super) fn findings(
     {
         return bad(index);
     }
-    let points = Points { positions: &placed.positions, weights: &placed.weights };
-    let mut broken = structure::rows(&placed.complex, points.len());
+    let mut broken = structure::rows(&placed.complex, placed.positions.len());
     if broken.is_empty() {
-        broken.extend(long_edges(&placed.complex, points, sides));
+        broken.extend(long_edges(placed, sides));
     }
     if !broken.is_empty() {
         let certificate = Certificate {
@@ -99,15 +98,15 @@ fn has_exact_copies(position: &[f64; 3], sides: [f64; 3]) -> bool {
     })
 }
 
-fn long_edges(complex: &Complex, points: Points, sides: [f64; 3]) -> Vec<Finding> {
+fn long_edges(placed: &PlacedComplex, sides: [f64; 3]) -> Vec<Finding> {
     let is_long = |&&[a, b]: &&[u32; 2]| {
-        let [p, q] = [a, b].map(|v| points.positions[v as usize]);
+        let [p, q] = [a, b].map(|v| placed.positions[v as usize]);
         (0..3).any(|k| {
             let apart = (p[k] - q[k]).abs();
             2.0 * apart.min(sides[k] - apart) >= sides[k]
         })
     };
-    let long = complex.edges.rows().iter().filter(is_long);
+    let long = placed.complex.edges.rows().iter().filter(is_long);
     long.map(|&edge| Finding::LongEdge { edge: edge.into() }).collect()
 }
 
@@ -165,10 +164,12 @@ impl Copies {
         let of_box =
             |cell: &&[u32; 4]| cell.iter().min_by_key(|&&v| v % count).is_some_and(|&v| v < count);
         let cells: Vec<_> = self.complex.cells.rows().iter().filter(of_box).copied().collect();
-        let points = Points { positions: &self.positions, weights: &self.weights };
+        let sites = structure::sites(&self.positions, &self.weights);
+        let points = Points { sites: &sites };
         let corner = |i: u32| [0, 1, 2].map(|k| f64::from(i >> k & 1) * sides[k]);
         let corners: Vec<[f64; 3]> = (0..8).map(corner).collect();
-        let corners = Points { positions: &corners, weights: &[0.0; 8] };
+        let corners = structure::sites(&corners, &[0.0; 8]);
+        let corners = Points { sites: &corners };
         let volume = |cells: &[[u32; 4]], points: Points| {
             let (sum, exponent) = geometry::six_volumes(cells, points, monitor)?;
             Ok(Exact::integer(sum, exponent))

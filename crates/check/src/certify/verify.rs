@@ -13,6 +13,7 @@ use super::classes::{self, Judge};
 use super::emptiness::Emptiness;
 use super::finding::Finding;
 use super::flat::Cone;
+use super::gathered::gathered;
 use super::geometry::{self, Boundary, Linked};
 use super::structure::{self, MAX_CELLS, Points, Structure};
 use super::torus::Torus;
@@ -131,6 +132,29 @@ impl Claim<'_> {
         monitor: &Monitor,
     ) -> Result<Certificate, CertifyError> {
         self.check()?;
+        let mut rest = monitor.part(0, 10, 10);
+        if torus.is_none()
+            && let Some(gathered) = gathered(self)
+        {
+            let claim = gathered.claim().with_extent(self.extent);
+            let certificate =
+                claim.judged(None, &mut |_| ControlFlow::Break(()), &monitor.part(0, 9, 10))?;
+            if certificate.findings == 0 {
+                monitor.report(10, 10)?;
+                return Ok(certificate);
+            }
+            rest = monitor.part(9, 10, 10);
+        }
+        self.judged(torus, visitor, &rest)
+    }
+
+    /// Judges the complex with its points in the order in which they are.
+    fn judged(
+        &self,
+        torus: Option<Torus>,
+        visitor: &mut dyn FnMut(Finding) -> ControlFlow<()>,
+        monitor: &Monitor,
+    ) -> Result<Certificate, CertifyError> {
         let mut certificate = Certificate {
             verdict: Verdict::Exact,
             findings: 0,
@@ -226,7 +250,8 @@ fn apply(
     monitor: &Monitor,
 ) -> Result<(), Stop> {
     let (complex, alpha) = (claim.placed.complex, claim.placed.alpha);
-    let points = Points::of(claim.placed);
+    let sites = structure::sites(claim.placed.positions, claim.placed.weights);
+    let points = Points { sites: &sites };
     let whole = claim.extent == Extent::Whole;
     let rows = structure::rows(complex, points.len());
     let bad_rows = !rows.is_empty();
@@ -235,9 +260,9 @@ fn apply(
         return Err(Stop::Enough);
     }
     if whole && torus.is_none() && complex.cells.is_empty() {
-        let apexes = auxiliary_positions(points.positions.iter().copied()).unwrap_or_default();
+        let apexes = auxiliary_positions(points.positions()).unwrap_or_default();
         if let Some(cone) = Cone::over(complex, points, &apexes) {
-            return flat(claim, &cone, report, monitor);
+            return flat(claim, points, &cone, report, monitor);
         }
         report(vec![Finding::NoCells])?;
         return Err(Stop::Enough);
@@ -251,7 +276,8 @@ fn apply(
     let (kept, equal) = non_vertices::kept_points(points, complex, claim.duplicates);
     report(equal)?;
     let largest = torus.map_or(f64::INFINITY, |torus| torus.largest_empty);
-    let emptiness = (!whole).then(|| Emptiness::new(points, alpha, largest, &kept));
+    let near = |points_to_test| Emptiness::new(points, alpha, largest, points_to_test);
+    let emptiness = (!whole).then(|| near(non_vertices::distinct(&kept).collect()));
     let boundary = match (claim.extent, torus) {
         (Extent::Shape, _) => Boundary::Any,
         (Extent::Whole, None) => Boundary::Hull,
@@ -281,7 +307,7 @@ fn apply(
         }
         report(gaps::findings(&missing, points))?;
         // Classes around a gap may be right without its cell, or with it.
-        let wrong = classes::judge(&listed.structure, &judge, &rest.part(2, 4, 6))?;
+        let wrong = classes::judge(&listed.structure, &judge, false, &rest.part(2, 4, 6))?;
         let wrong: BTreeSet<_> = wrong.iter().filter_map(Finding::judged_class).collect();
         let in_both = |finding: &Finding| {
             finding.judged_class().is_none_or(|simplex| wrong.contains(simplex))
@@ -313,6 +339,7 @@ fn apply_to(
 ) -> Result<(), Stop> {
     let regular = linked.is_regular();
     let Linked { structure, broken, irregular } = linked;
+    let untied = broken.is_empty() && irregular.is_empty();
     let points = judge.points;
     let (wrong, tied) = (Cell::new(!regular), Cell::new(false));
     let mut report = |findings: Vec<Finding>| {
@@ -330,6 +357,7 @@ fn apply_to(
     if let Some(emptiness) = judge.emptiness {
         report(non_vertices::of_shape(
             &structure,
+            points,
             emptiness,
             kept,
             claim,
@@ -349,7 +377,7 @@ fn apply_to(
     }
     let judging =
         if judge.emptiness.is_none() { monitor.part(3, 10, 10) } else { monitor.part(1, 6, 10) };
-    report(classes::judge(&structure, judge, &judging)?)?;
+    report(classes::judge(&structure, judge, untied, &judging)?)?;
     if let (Some(emptiness), false) = (judge.emptiness, wrong.get()) {
         let (singular, mut found) =
             ties::singular(&structure, points, emptiness, &monitor.part(6, 8, 10))?;
@@ -363,9 +391,14 @@ fn apply_to(
 }
 
 /// Applies the rules to a whole triangulation of points that span no volume: those on cells to a cone over it.
-fn flat(claim: &Claim, cone: &Cone, report: &mut Report, monitor: &Monitor) -> Result<(), Stop> {
+fn flat(
+    claim: &Claim,
+    points: Points,
+    cone: &Cone,
+    report: &mut Report,
+    monitor: &Monitor,
+) -> Result<(), Stop> {
     let complex = claim.placed.complex;
-    let points = Points::of(claim.placed);
     let (kept, equal) = non_vertices::kept_points(points, complex, claim.duplicates);
     report(equal)?;
     let linked =
@@ -398,6 +431,6 @@ fn flat(claim: &Claim, cone: &Cone, report: &mut Report, monitor: &Monitor) -> R
         emptiness: None,
         torus: None,
     };
-    report(classes::judge(&structure, &judge, &monitor.part(6, 10, 10))?)?;
+    report(classes::judge(&structure, &judge, regular, &monitor.part(6, 10, 10))?)?;
     if regular { Ok(()) } else { Err(Stop::Enough) }
 }

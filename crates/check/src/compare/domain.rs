@@ -88,7 +88,7 @@ pub(super) fn compare(
     if in_a == in_b {
         return Ok(Domain::SameCells);
     }
-    let lattice = Lattice::through(&common.positions);
+    let lattice = Lattice::through(common.positions.iter().copied());
     let six_volumes = |cells: &BTreeSet<[u32; 4]>, from: u64| {
         let cells: Vec<_> = cells.iter().map(|cell| at(common, *cell)).collect();
         let monitor = monitor.part(from, from + 1, 16);
@@ -181,7 +181,7 @@ fn tied(a: Side, b: Side, common: &CommonPositions, monitor: &Monitor) -> Result
             spheres.entry(plane).or_default()[which].insert(*cell);
         }
     }
-    let lattice = Lattice::through(&common.positions);
+    let lattice = Lattice::through(common.positions.iter().copied());
     let volume = |cells: &BTreeSet<[u32; 4]>| {
         let cells: Vec<_> = cells.iter().map(|cell| at(common, *cell)).collect();
         lattice.six_volumes(cells.len(), monitor, |i| cells[i])

@@ -11,9 +11,17 @@ pub(crate) struct RoundedSphere {
     pub error: f64,
     /// A vertex of the simplex.
     vertex: WeightedPoint,
-    /// Its squared distance from `center`.
+    /// Its distance from `center`, and the square.
+    distance: f64,
     near: f64,
+    /// A point q is certainly outside if its power is above slope · (far + near) + base, far being its squared distance from
+    /// `center`, up to its own weight's rounding.
+    slope: f64,
+    base: f64,
 }
+
+/// More than what the roundings of a power are of the numbers that it is the sum of.
+const ROUNDED: f64 = 4e-15;
 
 impl RoundedSphere {
     /// The sphere of 1 to 4 affinely independent points; `None` if doubles cannot decide.
@@ -24,38 +32,45 @@ impl RoundedSphere {
         let (center, error) = rounded_center(simplex)?;
         let vertex = *simplex[0];
         let near = squared_distance(vertex.position, center);
-        Some(Self { center, error, vertex, near })
+        let [x, y, z] = [0, 1, 2].map(|k| vertex.position[k] - center[k]);
+        // The square may be too small or too large for a double.
+        let distance = if near.is_normal() { near.sqrt() } else { x.hypot(y).hypot(z) };
+        // By the means of any k and what is under the root, √(2 (far + near)) ≤ ((far + near) / k) + k / 2; where far = near, this k
+        // is the root.
+        let k = (2.0 * near.sqrt()).max(error.sqrt());
+        let slope = 2.0 * error / k * (1.0 + 1e-12) + ROUNDED;
+        let base = error * k * (1.0 + 1e-12) + ROUNDED * vertex.weight.abs() + f64::MIN_POSITIVE;
+        Some(Self { center, error, vertex, distance, near, slope, base })
     }
 
     /// A distance from `center` within which all points inside and on the sphere are whose weight is at most
-    /// `heaviest`, if no vertex is heavier.
+    /// `heaviest`.
     ///
     /// With c the true centre and v the vertex, such a point q has |q − c|² ≤ |v − c|² − `ω_v` + `ω_q`.
     pub(crate) fn reach(&self, heaviest: f64) -> f64 {
-        let [x, y, z] = [0, 1, 2].map(|k| self.vertex.position[k] - self.center[k]);
-        // Not from the square, which may be too small for a double.
-        let near = x.hypot(y).hypot(z) + self.error;
-        let lighter = (heaviest - self.vertex.weight).next_up().max(0.0).sqrt();
+        let lighter = (heaviest - self.vertex.weight).next_up().max(0.0);
+        let near = self.distance + self.error;
+        let squared = near * near + lighter;
+        let root = if squared.is_normal() { squared.sqrt() } else { near.hypot(lighter.sqrt()) };
         // The factor covers roundings.
-        near.hypot(lighter) * (1.0 + 1e-12) + self.error
+        root * (1.0 + 1e-12) + self.error
     }
 
     /// Whether `q` is certainly strictly outside.
     ///
     /// With v the vertex, f(c) = |q − c|² − `ω_q` − |v − c|² + `ω_v` is q's power with respect to the
     /// sphere about c. It is linear in c, so moving the centre by e changes it by at most
-    /// 2 |q − v| e, and computing it here rounds by at most 8 · 2⁻⁵³ of what is added up.
+    /// 2 |q − v| e, and computing it here rounds by at most 8 · 2⁻⁵³ of what is added up. |q − v| is at most √far + √near ≤
+    /// √(2 (far + near)), which [`new`](Self::new) replaces by a linear bound.
+    #[inline]
     pub(crate) fn surely_outside(&self, q: &WeightedPoint) -> bool {
         let far = squared_distance(q.position, self.center);
-        let (near, weight) = (self.near, self.vertex.weight);
-        let power = (far - q.weight) - (near - weight);
-        let added = far + near + q.weight.abs() + weight.abs();
-        // |q − v| ≤ √far + √near ≤ √2 · √(far + near); the factor covers roundings.
-        let moved = 2.0 * (2.0 * (far + near)).sqrt() * self.error * (1.0 + 1e-12);
-        power > moved + 4e-15 * added + f64::MIN_POSITIVE
+        let power = (far - q.weight) - (self.near - self.vertex.weight);
+        power > self.slope * (far + self.near) + ROUNDED * q.weight.abs() + self.base
     }
 }
 
+#[inline]
 fn squared_distance(p: [f64; 3], q: [f64; 3]) -> f64 {
     (p[0] - q[0]).powi(2) + (p[1] - q[1]).powi(2) + (p[2] - q[2]).powi(2)
 }

@@ -11,6 +11,7 @@ use super::number::Number;
 pub(super) struct Volume;
 
 impl Formula<3> for Volume {
+    #[inline(always)]
     fn value<T: Number>(&self, frame: &Frame<T, 3>) -> T {
         let [a, b, c] = &frame.offsets;
         dot(&cross(a, b), c)
@@ -22,6 +23,7 @@ impl Formula<3> for Volume {
 pub(super) struct Power4;
 
 impl Formula<4> for Power4 {
+    #[inline(always)]
     fn value<T: Number>(&self, frame: &Frame<T, 4>) -> T {
         let [a, b, c, q] = &frame.offsets;
         let [ha, hb, hc, hq] = &frame.heights;
@@ -36,6 +38,7 @@ impl Formula<4> for Power4 {
 pub(super) struct Power3;
 
 impl Formula<3> for Power3 {
+    #[inline(always)]
     fn value<T: Number>(&self, frame: &Frame<T, 3>) -> T {
         let [a, b, q] = &frame.offsets;
         let [ha, hb, hq] = &frame.heights;
@@ -50,6 +53,7 @@ impl Formula<3> for Power3 {
 pub(super) struct Power2;
 
 impl Formula<2> for Power2 {
+    #[inline(always)]
     fn value<T: Number>(&self, frame: &Frame<T, 2>) -> T {
         let ([a, q], [ha, hq]) = (&frame.offsets, &frame.heights);
         hq.times(&dot(a, a)).minus(&ha.times(&dot(a, q)))
@@ -60,6 +64,7 @@ impl Formula<2> for Power2 {
 pub(super) struct Power1;
 
 impl Formula<1> for Power1 {
+    #[inline(always)]
     fn value<T: Number>(&self, frame: &Frame<T, 1>) -> T {
         frame.heights[0].clone()
     }
@@ -69,6 +74,7 @@ impl Formula<1> for Power1 {
 pub(super) struct Radius4;
 
 impl Formula<3> for Radius4 {
+    #[inline(always)]
     fn value<T: Number>(&self, frame: &Frame<T, 3>) -> T {
         let ([a, b, c], [ha, hb, hc]) = (&frame.offsets, &frame.heights);
         let (center, det) = center4([a, b, c], [ha, hb, hc]);
@@ -77,6 +83,7 @@ impl Formula<3> for Radius4 {
 }
 
 /// 2 det · c and det for a tetrahedron.
+#[inline(always)]
 pub(super) fn center4<T: Number>([a, b, c]: [&[T; 3]; 3], [ha, hb, hc]: [&T; 3]) -> ([T; 3], T) {
     let (bc, ca, ab) = (cross(b, c), cross(c, a), cross(a, b));
     let center =
@@ -85,6 +92,7 @@ pub(super) fn center4<T: Number>([a, b, c]: [&[T; 3]; 3], [ha, hb, hc]: [&T; 3])
 }
 
 /// 2 det G · c and det G for a triangle.
+#[inline(always)]
 pub(super) fn center3<T: Number>([a, b]: [&[T; 3]; 2], [ha, hb]: [&T; 2]) -> ([T; 3], T) {
     let gram = Gram::of(a, b);
     let [la, lb] = gram.adjugate_times(ha, hb);
@@ -96,6 +104,7 @@ pub(super) fn center3<T: Number>([a, b]: [&[T; 3]; 2], [ha, hb]: [&T; 2]) -> ([T
 pub(super) struct Radius3;
 
 impl Formula<2> for Radius3 {
+    #[inline(always)]
     fn value<T: Number>(&self, frame: &Frame<T, 2>) -> T {
         let ([a, b], [ha, hb]) = (&frame.offsets, &frame.heights);
         let gram = Gram::of(a, b);
@@ -108,6 +117,7 @@ impl Formula<2> for Radius3 {
 pub(super) struct Radius2;
 
 impl Formula<1> for Radius2 {
+    #[inline(always)]
     fn value<T: Number>(&self, frame: &Frame<T, 1>) -> T {
         let ([a], [h]) = (&frame.offsets, &frame.heights);
         excess(h.times(h), dot(a, a), frame)
@@ -115,6 +125,7 @@ impl Formula<1> for Radius2 {
 }
 
 /// 4 det · (|c|² − (α + w₀)), given 4 det · |c|² in heights squared per coordinate unit squared.
+#[inline(always)]
 fn excess<T: Number, const N: usize>(four_det_c2: T, det: T, frame: &Frame<T, N>) -> T {
     let twice = det.plus(&det);
     let four = twice.plus(&twice);
@@ -129,14 +140,17 @@ struct Gram<T> {
 }
 
 impl<T: Number> Gram<T> {
+    #[inline(always)]
     fn of(a: &[T; 3], b: &[T; 3]) -> Self {
         Self { aa: dot(a, a), ab: dot(a, b), bb: dot(b, b) }
     }
 
+    #[inline(always)]
     fn determinant(&self) -> T {
         self.aa.times(&self.bb).minus(&self.ab.times(&self.ab))
     }
 
+    #[inline(always)]
     fn adjugate_times(&self, u: &T, v: &T) -> [T; 2] {
         [self.bb.times(u).minus(&self.ab.times(v)), self.aa.times(v).minus(&self.ab.times(u))]
     }
@@ -146,6 +160,7 @@ impl<T: Number> Gram<T> {
 pub(super) struct Area;
 
 impl Formula<2> for Area {
+    #[inline(always)]
     fn value<T: Number>(&self, frame: &Frame<T, 2>) -> T {
         let [a, b] = &frame.offsets;
         let normal = cross(a, b);

@@ -8,6 +8,8 @@ use super::number::{Approx, Binary, Bits, Number, Range, sign};
 
 /// A point with a power weight; all four numbers finite.
 #[derive(Clone, Copy, Debug, PartialEq)]
+// Never on two cache lines: in random order, each point is a miss.
+#[repr(align(32))]
 pub(crate) struct WeightedPoint {
     /// x, y, z.
     pub position: [f64; 3],
@@ -45,6 +47,7 @@ pub(super) trait Formula<const N: usize> {
 }
 
 /// The exact sign of a formula over finite doubles.
+#[inline]
 pub(super) fn sign_of<const N: usize>(
     formula: &impl Formula<N>,
     origin: &WeightedPoint,
@@ -58,6 +61,7 @@ pub(super) fn sign_of<const N: usize>(
 }
 
 /// The frame in doubles with error bounds; its unit is 1.
+#[inline(always)]
 pub(super) fn approx<const N: usize>(
     origin: &WeightedPoint,
     others: [&WeightedPoint; N],
@@ -67,6 +71,8 @@ pub(super) fn approx<const N: usize>(
     frame(point(origin), others.map(point), Approx::exact(alpha), Approx::exact(1.0))
 }
 
+#[cold]
+#[inline(never)]
 fn exact_sign_of<const N: usize>(
     formula: &impl Formula<N>,
     origin: &WeightedPoint,
@@ -141,6 +147,7 @@ impl<const N: usize> Digits<N> {
     }
 }
 
+#[inline(always)]
 fn frame<T: Number, const N: usize>(
     (origin, weight): ([T; 3], T),
     others: [([T; 3], T); N],
@@ -157,11 +164,13 @@ fn frame<T: Number, const N: usize>(
 }
 
 /// u · v.
+#[inline(always)]
 pub(super) fn dot<T: Number>(u: &[T; 3], v: &[T; 3]) -> T {
     u[0].times(&v[0]).plus(&u[1].times(&v[1])).plus(&u[2].times(&v[2]))
 }
 
 /// u × v.
+#[inline(always)]
 pub(super) fn cross<T: Number>(u: &[T; 3], v: &[T; 3]) -> [T; 3] {
     let minor = |i: usize, j: usize| u[i].times(&v[j]).minus(&u[j].times(&v[i]));
     [minor(1, 2), minor(2, 0), minor(0, 1)]

@@ -24,11 +24,9 @@ const CHUNK: usize = 1 << 12;
 
 impl Lattice {
     /// The coarsest lattice through all positions, which are finite.
-    pub(crate) fn through(positions: &[[f64; 3]]) -> Self {
-        let mut range = Range::EMPTY;
-        for &x in positions.as_flattened() {
-            range = range.with(Binary::new(x));
-        }
+    pub(crate) fn through(positions: impl IntoIterator<Item = [f64; 3]>) -> Self {
+        let coordinates = positions.into_iter().flatten();
+        let range = coordinates.fold(Range::EMPTY, |range, x| range.with(Binary::new(x)));
         let exponent = range.unit().unwrap_or(0);
         Self { exponent, bits: range.bits(exponent) }
     }
@@ -209,7 +207,7 @@ mod tests {
         for bits in (34..42).chain(76..84) {
             let m = f64::from(2).powi(bits) - if bits < 53 { 1.0 } else { 0.0 };
             let cell = [[m, m, m], [m, -m, -m], [-m, -m, m], [-m, m, -m]];
-            let lattice = Lattice::through(&[cell.as_slice(), &[[1.0; 3]]].concat());
+            let lattice = Lattice::through(cell.into_iter().chain([[1.0; 3]]));
             let one = lattice.six_volumes(1, &noop, |_| cell).unwrap();
             let side = IBig::from(2 * m as i128);
             assert_eq!(one, IBig::from(2) * &side * &side * &side);
@@ -224,7 +222,7 @@ mod tests {
     fn triangles_of_a_plane_have_one_plane() {
         let at = |x: i32, y: i32| [x, y, 3 - 2 * x + y].map(|k| 0.5 * f64::from(k));
         let positions = [at(0, 0), at(1, 0), at(0, 1), at(4, -6), at(-3, 8), at(2, 2)];
-        let lattice = Lattice::through(&positions);
+        let lattice = Lattice::through(positions);
         assert_eq!(lattice.exponent(), -1);
         let one = lattice.plane([positions[0], positions[1], positions[2]]);
         assert_eq!(one, lattice.plane([positions[2], positions[1], positions[0]]));

@@ -15,7 +15,7 @@ use walpha_base::{Cancelled, Monitor};
 
 use crate::Alpha;
 use crate::certify::certificate::{Certificate, CertifyError, Verdict, write_verdict};
-use crate::certify::structure::{Points, Structure};
+use crate::certify::structure::{self, Points, Structure};
 use crate::schema::{Below, ComplexFile, FiltrationFile, PlacedComplex, SchemaError};
 
 /// The verdict on a filtration, and what was not judged.
@@ -145,7 +145,8 @@ pub fn certify_filtration_monitored(
     if triangulation.verdict == Verdict::Wrong {
         not_judged.push(Unjudged::AfterFindings);
     } else {
-        let points = Points { positions: &placed.positions, weights: &placed.weights };
+        let sites = structure::sites(&placed.positions, &placed.weights);
+        let points = Points { sites: &sites };
         let (structure, _) = Structure::new(&placed.complex, points, &monitor.part(40, 50, 100))?;
         let ranks = Ranks::of(&structure, points, &monitor.part(50, 80, 100))?;
         let spans = Spans::of(&structure, &ranks);
