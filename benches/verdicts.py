@@ -1,4 +1,4 @@
-"""What programs make of the hard sets, judged by `walpha check`: makes docs/verdicts.md.
+"""What programs make of hard and real sets, judged by `walpha check`: makes docs/verdicts.md.
 
     pip install numpy scipy pyvista gudhi open3d gmsh diode geogram alphashape     (diode is compiled, with CGAL and Boost)
     apt-get install tetgen libcgal-dev libtbb-dev
@@ -247,23 +247,68 @@ def judge():
     help_ = subprocess.run([WALPHA, "points", "hard:"], capture_output=True, text=True).stderr
     sets = [name.strip() for name in help_.split("hard:")[2:]]
     sets = [name.split(",")[0].split()[0] for name in sets]
-    sets = [name for name in dict.fromkeys(sets) if name not in LEFT_OUT]
     print("# What programs make of hard inputs\n")
     print(f"Made by `benches/verdicts.py` on {datetime.date.today()}, {platform.system()} on {platform.machine()}, one run. Each program triangulates")
     print("the [hard sets](cross-checking.md#hard-inputs), with the same doubles and, of its settings, the most robust one that does not move points;")
     print("`walpha check` judges the cells as a triangulation of all points, exactly. *Exact* has ties decided by [the rule](ties.md), which nobody else")
     print("is obliged to; *valid* is as right. A dash: the program has no weights. Programs for meshes of bodies, as Gmsh and Open3D, may not promise what is asked here.\n")
+    table(programs, {name: [f"hard:{name}"] for name in sets if name not in LEFT_OUT})
+    print("`oblique-plane` and `line` span no volume: *no cells* and an error are both right there, and they are not counted.\n")
+    print("What is wrong is counted by rule, as `walpha check` prints it: *orientation* is a flat cell, *hull bends* a hull that is not convex, *not regular* a point inside a cell's sphere.\n")
+    if "Geogram" in programs:
+        print("Geogram gets weights as it takes them, as a fourth coordinate √(max ω − ω), which is rounded.\n")
+    print("## Real sets\n")
+    print("The same programs and rules. Points of volumes are those that `walpha points` keeps, by voxel or in the units of the file:\n")
+    real = real_sets()
+    for name in real:
+        print(f"- `{name}`: {REAL[name]}")
+    print()
+    table(programs, real)
+    print("| program | version | what its authors say of such input |\n|---|---|---|")
+    for program in programs:
+        print(f"| {program} | {versions[program]} | {PROGRAMS[program][3]} |")
+
+
+REAL = {
+    "head": "5000 points of a CT of a head at 64³, the skull of CGAL's demos, with min-max weights",
+    "head-unweighted": "the same points without weights",
+    "frog": "5000 points of the segmented tissues of a frog, 1 × 1 × 1.5, from PyVista",
+    "channels": "5000 points of the pores of a material, from PyVista",
+    "airplane": "1335 vertices of a model, single precision, from PyVista",
+    "ant": "486 vertices of a model, single precision, from PyVista",
+}
+
+
+def real_sets():
+    """What `walpha points` makes each real set of, if it is there."""
+    spec = importlib.util.find_spec("pyvista")
+    examples = pathlib.Path(spec.origin).with_name("examples") if spec else pathlib.Path("missing")
+    skull = subprocess.run([WALPHA, "info", "sample:skull"], capture_output=True).returncode == 0
+    volume = ["--count", "5000"]
+    sets = {
+        "head": skull and ["sample:skull", *volume, "--weights", "min-max"],
+        "head-unweighted": skull and ["sample:skull", *volume],
+        "frog": [examples / "frog_tissues.vti", *volume],
+        "channels": [examples / "channels.vti", *volume],
+        "airplane": [examples / "airplane.ply"],
+        "ant": [examples / "ant.ply"],
+    }
+    return {name: where for name, where in sets.items() if where and (isinstance(where[0], str) or where[0].exists())}
+
+
+def table(programs, sets):
+    """Prints the verdict on what each program makes of each set, which `walpha points` makes with these arguments."""
     print("| set | " + " | ".join(programs) + " |")
     print("|---" * (1 + len(programs)) + "|")
     right = dict.fromkeys(programs, 0)
     tried = dict.fromkeys(programs, 0)
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
-        for one in sets:
-            subprocess.run([WALPHA, "points", f"hard:{one}", "-q", "-o", "set.npy"], cwd=folder, check=True)
-            table = np.load(folder / "set.npy")
-            points = np.ascontiguousarray(table[:, :3])
-            weights = np.ascontiguousarray(table[:, 3]) if table.shape[1] > 3 and table[:, 3].any() else None
+        for one, arguments in sets.items():
+            subprocess.run([WALPHA, "points", *arguments, "-q", "-o", "set.npy"], cwd=folder, check=True)
+            rows = np.load(folder / "set.npy")
+            points = np.ascontiguousarray(rows[:, :3])
+            weights = np.ascontiguousarray(rows[:, 3]) if rows.shape[1] > 3 and rows[:, 3].any() else None
             np.savez(folder / "set.npz", points=points, **({} if weights is None else {"weights": weights}))
             row = []
             for program in programs:
@@ -276,13 +321,6 @@ def judge():
                     right[program] += row[-1].startswith("**")
             print(f"| `{one}` | " + " | ".join(row) + " |", flush=True)
     print("| right | " + " | ".join(f"{right[program]} of {tried[program]}" for program in programs) + " |\n")
-    print("`oblique-plane` and `line` span no volume: *no cells* and an error are both right there, and they are not counted.\n")
-    print("What is wrong is counted by rule, as `walpha check` prints it: *orientation* is a flat cell, *hull bends* a hull that is not convex, *not regular* a point inside a cell's sphere.\n")
-    if "Geogram" in programs:
-        print("Geogram gets weights as it takes them, as a fourth coordinate √(max ω − ω), which is rounded.\n")
-    print("| program | version | what its authors say of such input |\n|---|---|---|")
-    for program in programs:
-        print(f"| {program} | {versions[program]} | {PROGRAMS[program][3]} |")
 
 
 if __name__ == "__main__":
