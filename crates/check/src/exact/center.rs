@@ -192,4 +192,40 @@ mod tests {
         }
         assert!(judged > 1000, "{judged}");
     }
+
+    /// Centres that no double holds are rounded, and so are powers of points far away.
+    #[test]
+    fn points_on_a_sphere_with_a_rounded_center_are_not_outside() {
+        let mut draw = draws(6);
+        let mut judged = 0;
+        for _ in 0..4000 {
+            // The centre is a third of this. With positions that are multiples of three, powers are integers:
+            // |3d − c/3|² is 9|d|² − 2 d·c, up to a number that is the same for all.
+            let center = draw(10_000_000);
+            let base = center.map(|x| x / 9);
+            let site = |d: [i64; 3], power: i64| {
+                let d = plus(base, d, 1);
+                let dot = |u: [i64; 3], v: [i64; 3]| (0..3).map(|k| u[k] * v[k]).sum::<i64>();
+                let weight = 9 * dot(d, d) - 2 * dot(d, center) - power;
+                let lift = 9 * dot(base, base) - 2 * dot(base, center);
+                WeightedPoint {
+                    position: d.map(|x| 3.0 * x as f64),
+                    weight: (weight - lift) as f64,
+                }
+            };
+            let corners = [0; 4].map(|_| draw(9)).map(|d| site(d, 0));
+            let [a, b, c, d] = corners.map(|corner| corner.position);
+            if orientation(a, b, c, d).is_eq() {
+                continue;
+            }
+            let Some(sphere) = RoundedSphere::new(corners.each_ref()) else { continue };
+            for times in [1, 30, 1000] {
+                let d = draw(9).map(|x| times * x);
+                let is_outside = |power: i64| sphere.surely_outside(&site(d, power));
+                assert!(!is_outside(0) && !is_outside(-1), "{center:?} {corners:?} {d:?}");
+                judged += usize::from(is_outside(1 << 30));
+            }
+        }
+        assert!(judged > 9000, "{judged}");
+    }
 }
