@@ -50,7 +50,7 @@ pub(crate) fn for_each_bucket<T: Send>(
     }
 }
 
-/// Finds rows of up to four vertices by these, in any order.
+/// Finds rows by their vertices (up to four), given in any order.
 pub(crate) struct Index<'a, const N: usize> {
     rows: &'a [[u32; N]],
     /// The numbers of the rows, in the lexicographic order of their sorted vertices; nothing where the rows are in that order.

@@ -22,17 +22,17 @@ use crate::{Alpha, Class, Simplices};
 /// point strictly inside.
 ///
 /// In a whole triangulation that was found regular, a sphere that contains any point contains a
-/// neighbour of its simplex, so only neighbours are tested; in a shape alone, all points nearby are. `regular` is whether no cell is
-/// refuted by a neighbour, not even in a tie.
+/// neighbour of its simplex, so only neighbours are tested; in a shape alone, all points nearby are. `untied` is whether cells are linked as they must be, and none
+/// is refuted by a neighbour, not even in a tie.
 pub(super) fn judge(
     structure: &Structure,
     judge: &Judge,
-    regular: bool,
+    untied: bool,
     monitor: &Monitor,
 ) -> Result<Vec<Finding>, Cancelled> {
     let complex = structure.complex;
     let mut findings = Vec::new();
-    let cells = judge.cells(structure, regular, &mut findings, &monitor.part(0, 2, 10))?;
+    let cells = judge.cells(structure, untied, &mut findings, &monitor.part(0, 2, 10))?;
     let facets = &|i: usize| judge.facet(structure, &cells, i);
     let of_facets = &monitor.part(2, 5, 10);
     let facets = judge.classes(&complex.facets, facets, &mut findings, of_facets)?;
@@ -99,7 +99,7 @@ impl Judge<'_> {
     fn cells(
         &self,
         structure: &Structure,
-        regular: bool,
+        untied: bool,
         findings: &mut Vec<Finding>,
         monitor: &Monitor,
     ) -> Result<Vec<Class>, Cancelled> {
@@ -111,23 +111,23 @@ impl Judge<'_> {
         };
         let mut differing = Vec::new();
         let classes = self.classes(cells, &class, &mut differing, &monitor.part(0, 1, 4))?;
-        findings.extend(self.refuted(structure, &classes, regular, &monitor.part(1, 4, 4))?);
+        findings.extend(self.refuted(structure, &classes, untied, &monitor.part(1, 4, 4))?);
         findings.extend(differing);
         Ok(classes)
     }
 
     /// Findings on cells that a point refutes, in a shape alone.
     ///
-    /// If no neighbour refutes another, a cell with neighbours on all sides is tested only with points that have no cells all
-    /// around. Why: from a refuted cell walk straight to the point that refutes it, through cells that it refutes, too. The walk
-    /// ends in an outermost cell, which is tested with all points, or in a cell around a point that has cells of its own around it.
-    /// But outermost cells that pass are of the regular triangulation, and cells do not overlap behind those (Lemma 8
-    /// in docs/certifying.md).
+    /// If no neighbour refutes another, a cell with neighbours on all sides is tested only with points that are not surrounded by
+    /// cells. Why: suppose that a point refutes a cell, and walk straight from the cell to the point; each cell on the way is
+    /// refuted, too. The walk ends in an outermost cell, which is tested with all points, or in a cell that contains the point
+    /// although others surround it. But outermost cells that pass belong to the regular triangulation, and behind these no cells
+    /// overlap (Lemma 8 in docs/certifying.md).
     fn refuted(
         &self,
         structure: &Structure,
         classes: &[Class],
-        regular: bool,
+        untied: bool,
         monitor: &Monitor,
     ) -> Result<Vec<Finding>, Cancelled> {
         let Some(all) = self.emptiness else { return Ok(Vec::new()) };
@@ -140,7 +140,7 @@ impl Judge<'_> {
             Some(Finding::NotRegular { cell: cells[i].into(), point, power })
         };
         let fit = || classes.par_iter().all(|&class| class == Class::Interior);
-        if regular && self.torus.is_none() && fit() {
+        if untied && self.torus.is_none() && fit() {
             let surrounded = structure.surrounded(self.points.len());
             let exposed = all.tested().filter(|&point| !surrounded[point as usize]).collect();
             let exposed = Emptiness::new(self.points, self.alpha, f64::INFINITY, exposed);
@@ -357,7 +357,7 @@ impl<const N: usize, const M: usize> Faces<'_, N, M> {
     }
 
     /// For each candidate the smallest corner opposite to it, in an exterior higher simplex, that
-    /// is inside its sphere; else [`NONE`]. Nothing if there are no candidates.
+    /// is inside its sphere; else [`NONE`]. Empty if there are no candidates.
     fn neighbours_inside(
         &self,
         states: &[State],
@@ -400,6 +400,7 @@ mod tests {
     use super::*;
     use crate::certify::flat::closed;
     use crate::certify::geometry::{Boundary, Linked};
+    use crate::certify::non_vertices::{distinct, kept_points};
     use crate::enumerate;
     use crate::exact::WeightedPoint;
 
@@ -449,12 +450,7 @@ mod tests {
             if !linked.irregular.is_empty() {
                 continue;
             }
-            // Of points at one place one is kept; here, none is.
-            let distinct = |&i: &u32| {
-                let at = |site: &&WeightedPoint| site.position == points.position(i);
-                sites.iter().filter(at).count() == 1
-            };
-            let tested = (0..points.len() as u32).filter(distinct).collect();
+            let tested = distinct(&kept_points(points, &complex, None).0).collect();
             let emptiness = Emptiness::new(points, alpha, f64::INFINITY, tested);
             let judge = Judge {
                 points,

@@ -10,9 +10,9 @@ use crate::exact::{RoundedSphere, Side, WeightedPoint, in_conflict, orientation,
 /// Answers whether a sphere is empty by testing all points nearby.
 ///
 /// A point of weight ω inside a sphere of squared radius R² ≤ α is less than √(α + ω) away from
-/// its centre, and a vertex of weight ω at most as far. So it is enough to test the points within
-/// √(R² + ω) of the centre; where doubles cannot locate the centre, those within
-/// √(α + ω) + √(α + largest ω) of a vertex.
+/// its centre, and a vertex of weight ω at most as far. So in a layer of points, of which the heaviest has ω, it is enough to test
+/// those within √(R² + ω) of the centre; where doubles cannot locate the centre, those within √(α + ω) + √(α + largest ω) of a
+/// vertex.
 ///
 /// On a torus a sphere that is not empty holds a point no further from a vertex than the diagonal of the box. Where
 /// that is less, it takes the place of the latter sum.
@@ -33,7 +33,7 @@ struct Layer {
 }
 
 impl<'a> Emptiness<'a> {
-    /// For spheres of squared radius up to `alpha`, and these of the points.
+    /// For spheres of squared radius up to `alpha`; only the points `tested` are looked for.
     /// If any point is inside a sphere, one within 2 `largest` of its simplex's first vertex must be, and otherwise all
     /// points on it must be there; in space that is ∞.
     pub(super) fn new(points: Points<'a>, alpha: Alpha, largest: f64, tested: Vec<u32>) -> Self {
@@ -135,10 +135,11 @@ impl<'a> Emptiness<'a> {
     }
 }
 
-/// Layers are split where the heaviest of this many points is.
+/// At most one point in this many goes into a heavier layer.
 const HEAVY: usize = 64;
 
-/// Points in layers of similar weight: apart are the heaviest few, as long as their weights span more than those of the others.
+/// Points in layers of similar weight. The heaviest few form a layer of their own as long as their weights span more than those of
+/// the others.
 fn layers(points: Points, mut sites: Vec<u32>) -> Vec<Vec<u32>> {
     let weight = |&i: &u32| points.weight(i);
     let mut layers = Vec::new();

@@ -8,20 +8,21 @@ use super::grid::Grid;
 use super::structure::{Points, Structure, sites};
 use crate::index::{for_each_bucket, starts};
 use crate::schema::PlacedComplex;
-use crate::{Complex, Placed, Simplices};
+use crate::{Class, Complex, Placed, Simplices};
 
-/// Points of fewer fit into a cache, in whatever order they are.
+/// Fewer points than this fit into a cache, in whatever order they are.
 const FEW: usize = 1 << 16;
 /// Cells whose spread is looked at.
 const SAMPLE: usize = 1 << 10;
 
 /// The claim with its points numbered box by box, if that is worth a copy: where points are in random order, everything that is
-/// looked up of a cell is a cache miss. What is found of one claim is found of the other, up to the numbers of the points.
+/// looked up of a cell is a cache miss. Nothing is found of one claim if and only if nothing is found of the other; but of several
+/// points that refute a simplex another may be named.
 pub(super) fn gathered(claim: &Claim) -> Option<PlacedComplex> {
     let Placed { positions, complex, .. } = claim.placed;
-    let bytes = Structure::bytes(complex) + bytes_of(complex);
     let pays = is_scattered(complex.cells.rows(), positions.len());
-    (pays && Vec::<u8>::new().try_reserve_exact(bytes).is_ok()).then(|| in_boxes(claim)).flatten()
+    let fits = || Vec::<u8>::new().try_reserve_exact(bytes(complex, positions.len())).is_ok();
+    (pays && fits()).then(|| in_boxes(claim)).flatten()
 }
 
 /// The claim with its points numbered box by box; `None` if it names points that do not exist.
@@ -72,12 +73,21 @@ fn is_scattered(cells: &[[u32; 4]], points: usize) -> bool {
     points >= FEW && 2 * far > sample.count()
 }
 
-fn bytes_of(complex: &Complex) -> usize {
-    17 * complex.cells.len()
-        + 13 * complex.facets.len()
-        + 9 * complex.edges.len()
-        + 5 * complex.vertices.len()
+/// Bytes that the copy takes while it is made, or later with what is linked to it, whichever is more.
+fn bytes(complex: &Complex, points: usize) -> usize {
+    fn row<const N: usize>(simplices: &Simplices<N>) -> [usize; 2] {
+        let kept = size_of::<([u32; N], Class)>();
+        [simplices.len() * (2 * size_of::<Numbered<N>>() + kept), simplices.len() * kept]
+    }
+    let Complex { cells, facets, edges, vertices } = complex;
+    let rows = [row(cells), row(facets), row(edges), row(vertices)];
+    let [made, kept] = [0, 1].map(|k| rows.iter().map(|bytes| bytes[k]).sum::<usize>());
+    // Points with their weights twice, four boxes each, and numbers.
+    made.max(kept + Structure::bytes(complex)) + 100 * points
 }
+
+/// A row with its vertices sorted, whether its winding is theirs, and its class.
+type Numbered<const N: usize> = ([u32; N], bool, Class);
 
 /// The rows with new numbers, sorted up to their windings; `None` if one has a vertex that does not exist.
 fn renumbered<const N: usize>(simplices: &Simplices<N>, new: &[u32]) -> Option<Simplices<N>> {
@@ -85,12 +95,12 @@ fn renumbered<const N: usize>(simplices: &Simplices<N>, new: &[u32]) -> Option<S
         return None;
     }
     let rows = simplices.rows().par_iter().zip(simplices.classes());
-    // Their windings apart, so that the vertices are compared as they are.
+    // Windings are kept apart, so that rows compare by their sorted vertices.
     let renumbered = rows.map(|(row, &class)| {
         let row = row.map(|v| new[v as usize]);
         (sorted(row), smallest_even(row) == sorted(row), class)
     });
-    let renumbered: Vec<_> = renumbered.collect();
+    let renumbered: Vec<Numbered<N>> = renumbered.collect();
     let starts = starts(renumbered.iter().map(|(row, ..)| row[0]), new.len());
     let (mut next, mut rows) = (starts.clone(), renumbered.clone());
     for row in renumbered {
@@ -113,7 +123,7 @@ mod tests {
     use walpha_base::random::Random;
 
     use super::*;
-    use crate::{Alpha, Class, enumerate};
+    use crate::{Alpha, enumerate};
 
     #[test]
     fn points_in_random_order_are_scattered() {

@@ -90,8 +90,8 @@ impl Grid {
         None
     }
 
-    /// A distance that a coordinate has at least from all points of a slice of boxes. NaN if there is one infinite box, which is
-    /// then visited.
+    /// A lower bound on the distance, along an axis, between `x` and the points of a slice of boxes. NaN if there is one infinite
+    /// box, which is then visited.
     fn apart(&self, axis: usize, slice: usize, x: f64) -> f64 {
         let low = self.low[axis] + slice as f64 * self.step;
         let high = self.low[axis] + (slice + 1) as f64 * self.step;
@@ -107,7 +107,7 @@ impl Grid {
         &self.points
     }
 
-    /// The same.
+    /// The points in the order of the grid, without the grid.
     pub(super) fn into_points(self) -> Vec<u32> {
         self.points
     }

@@ -142,7 +142,7 @@ impl<'a> Structure<'a> {
         self.cell_facets[cell].iter().any(|&facet| self.sides[facet as usize][1] == NONE)
     }
 
-    /// For each point, whether there are cells all around it: it is a vertex of some, and none of its facets has only one.
+    /// For each point, whether there are cells all around it: it is a vertex of some, and no facet at it has only one cell.
     pub(super) fn surrounded(&self, points: usize) -> Vec<bool> {
         let mut surrounded = vec![false; points];
         for &v in self.complex.cells.rows().as_flattened() {

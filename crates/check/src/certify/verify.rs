@@ -204,15 +204,19 @@ impl Claim<'_> {
         let finite = |i: &usize| positions[*i].iter().chain([&weights[*i]]).all(|x| x.is_finite());
         match (0..positions.len()).find(|i| !finite(i)) {
             Some(index) => Err(CertifyError::NotFinite(index)),
-            None => afford(complex, if self.extent == Extent::Shape { positions.len() } else { 0 }),
+            None => {
+                // Of a shape alone there are also those of the grids that are searched for points nearby.
+                let copies = if self.extent == Extent::Shape { 3 } else { 1 };
+                afford(complex, copies * positions.len())
+            }
         }
     }
 }
 
-/// Checks that the memory which the judgement takes piece by piece is available, that for points sorted by place included: it is
+/// Checks that the memory which the judgement takes piece by piece is available, that for copies of points included: it is
 /// better to fail now than halfway.
-fn afford(complex: &Complex, sorted: usize) -> Result<(), CertifyError> {
-    let bytes = Structure::bytes(complex) + sorted * size_of::<WeightedPoint>();
+fn afford(complex: &Complex, copies: usize) -> Result<(), CertifyError> {
+    let bytes = Structure::bytes(complex) + copies * size_of::<WeightedPoint>();
     let cells = complex.cells.len();
     Vec::<u8>::new().try_reserve_exact(bytes).map_err(|_| CertifyError::Memory { cells, bytes })
 }
@@ -276,8 +280,8 @@ fn apply(
     let (kept, equal) = non_vertices::kept_points(points, complex, claim.duplicates);
     report(equal)?;
     let largest = torus.map_or(f64::INFINITY, |torus| torus.largest_empty);
-    let near = |points_to_test| Emptiness::new(points, alpha, largest, points_to_test);
-    let emptiness = (!whole).then(|| near(non_vertices::distinct(&kept).collect()));
+    let distinct = || non_vertices::distinct(&kept).collect();
+    let emptiness = (!whole).then(|| Emptiness::new(points, alpha, largest, distinct()));
     let boundary = match (claim.extent, torus) {
         (Extent::Shape, _) => Boundary::Any,
         (Extent::Whole, None) => Boundary::Hull,
@@ -431,6 +435,6 @@ fn flat(
         emptiness: None,
         torus: None,
     };
-    report(classes::judge(&structure, &judge, regular, &monitor.part(6, 10, 10))?)?;
+    report(classes::judge(&structure, &judge, false, &monitor.part(6, 10, 10))?)?;
     if regular { Ok(()) } else { Err(Stop::Enough) }
 }

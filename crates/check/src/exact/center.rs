@@ -14,13 +14,13 @@ pub(crate) struct RoundedSphere {
     /// Its distance from `center`, and the square.
     distance: f64,
     near: f64,
-    /// A point q is certainly outside if its power is above slope · (far + near) + base, far being its squared distance from
-    /// `center`, up to its own weight's rounding.
+    /// A point q is certainly outside if its power is above slope · (far + near) + base + [`ROUNDED`] · |`ω_q`|, where far is its
+    /// squared distance from `center`.
     slope: f64,
     base: f64,
 }
 
-/// More than what the roundings of a power are of the numbers that it is the sum of.
+/// Bounds the rounding error of a power, relative to the sum of the magnitudes it is made of.
 const ROUNDED: f64 = 4e-15;
 
 impl RoundedSphere {
@@ -35,8 +35,8 @@ impl RoundedSphere {
         let [x, y, z] = [0, 1, 2].map(|k| vertex.position[k] - center[k]);
         // The square may be too small or too large for a double.
         let distance = if near.is_normal() { near.sqrt() } else { x.hypot(y).hypot(z) };
-        // By the means of any k and what is under the root, √(2 (far + near)) ≤ ((far + near) / k) + k / 2; where far = near, this k
-        // is the root.
+        // For any k > 0, √S ≤ S / (2 k) + k / 2. With S = 2 (far + near) this is (far + near) / k + k / 2, with equality if
+        // k = √S, as here where far = near.
         let k = (2.0 * near.sqrt()).max(error.sqrt());
         let slope = 2.0 * error / k * (1.0 + 1e-12) + ROUNDED;
         let base = error * k * (1.0 + 1e-12) + ROUNDED * vertex.weight.abs() + f64::MIN_POSITIVE;

@@ -2,8 +2,8 @@
 //!
 //! Every finite double is an integer times a power of two. A predicate brings its arguments to
 //! common powers of two (one for coordinates, one for squared lengths) and evaluates a polynomial
-//! without any rounding or division; only its sign is used. A running error bound in doubles
-//! decides the cases that are far from a tie; `i128` decides the others where the number of digits
+//! without any rounding or division; only its sign is used. Doubles decide the cases that are far
+//! from a tie, by a bound that counts roundings; `i128` decides the others where the number of digits
 //! proves that it can; big integers decide the rest.
 
 mod center;

@@ -60,12 +60,13 @@ impl Number for Bits {
 
 /// A double and a bound on its distance from the true value, by the number of roundings on the way to it.
 ///
-/// With u = 2⁻⁵³, a value that took r roundings is off by at most 2 r u m. Here m, computed along with it, is at least the magnitude
-/// of the value: what that would be if nothing cancelled. A rounding adds at most u m, so 2 u m leaves as much again for the roundings of m itself
-/// and for products of two errors, which are below u for fewer than 2²⁰ roundings. What underflows in a product is at most
-/// u times [`f64::MIN_POSITIVE`], which is therefore added to m. An overflow makes the bound infinite or NaN, and then nothing is decided.
+/// With u = 2⁻⁵³, a value that took r roundings is off by at most 2 r u m. Here m, computed along with the value, is at least its
+/// magnitude: the sum of magnitudes, as if nothing cancelled. A rounding adds at most u m, so 2 u m leaves as much again for the
+/// roundings of m itself and for products of two errors, which are below u m for fewer than 2²⁰ roundings. What underflows in a
+/// product is at most u times [`f64::MIN_POSITIVE`], which is therefore added to m. An overflow makes the bound infinite or NaN,
+/// and then nothing is decided.
 ///
-/// Formulas have no branches. So compilers know each r, and what is computed is two numbers in the place of one.
+/// Formulas have no branches, so compilers know each r, and only two numbers are computed.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Approx {
     value: f64,
@@ -82,7 +83,7 @@ impl Approx {
         Self { value, most: value.abs(), roundings: 0 }
     }
 
-    /// A sum of two numbers, or their difference, of this value.
+    /// The sum or difference of two numbers, whose rounded value is given.
     #[inline(always)]
     fn sum(self, other: Self, value: f64) -> Self {
         let roundings = self.roundings.max(other.roundings) + 1;

@@ -441,7 +441,8 @@ fn truth(name: &'static str, value: f64) -> Result<bool, SchemaError> {
     }
 }
 
-/// Bytes read at a time, so that the array and its numbers are never both completely in memory. Whole rows of any type.
+/// Bytes read at a time, so that the array and its numbers are never both completely in memory. A multiple of the size of a
+/// row of up to four elements of any type.
 const CHUNK_BYTES: usize = 24 << 18;
 /// Rows that one thread decodes at a time.
 const BATCH: usize = 1 << 12;
