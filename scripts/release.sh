@@ -329,7 +329,7 @@ try_wheel_in_wine() {
   rm "$python/cp313/_wmi.pyd"
   "$tools/bin/pip" install -q --target "$python/cp313" --platform win_amd64 --python-version 3.13 --only-binary :all: \
     "numpy<2.2" pytest colorama "$1"
-  WINEDEBUG=-all wine "$python/cp313/python.exe" -X utf8 -m pytest -q -p no:cacheprovider python/tests < /dev/null | cat
+  WINEDEBUG=-all wine "$python/cp313/python.exe" -X utf8 -m pytest -q -p no:cacheprovider python/tests < /dev/null 2>&1 | cat
   made "$1" "wine, with its tests"
 }
 
