@@ -8,7 +8,7 @@ use std::sync::OnceLock;
 use walpha::check::certify_filtration;
 use walpha::check::meshes::{Mesh, open_weights};
 use walpha::check::schema::{ComplexFile, FiltrationFile, PlacedComplex, SchemaError};
-use walpha::outofcore::{Cutting, Job, Pieces, Plan, merge, run, whole};
+use walpha::outofcore::{BlockwiseFormat, Cutting, Job, Plan, merge, run, whole};
 use walpha::points::{PointOptions, cells_of, is_point_file, read_complex, read_points};
 use walpha::volume::{ReadOptions, read};
 use walpha::{Decomposition, HaarOptions, Recipe, Tolerance};
@@ -26,7 +26,7 @@ pub fn points(name: &str, bytes: &[u8]) {
     let _ = read_points(&path, None);
     let options = PointOptions::default();
     if cells_of(&path, &options).is_ok_and(|cells| !cells.is_empty()) {
-        let _ = read_complex(&path, &options).map(PlacedComplex::try_from);
+        let _ = read_complex(&path, &options).map(|mesh| PlacedComplex::try_from(mesh.complex));
     }
 }
 
@@ -145,8 +145,8 @@ fn merged(plan: &Plan) {
     let Ok(all) = merge(plan) else { return };
     let _ = whole(plan, &all);
     let folder = tempfile::tempdir().expect("a folder for temporary files");
-    let _ = Pieces::Grid.write(plan, &all, &folder.path().join("a.pvtu"));
-    let _ = Pieces::Surface.write(plan, &all, &folder.path().join("a.pvtp"));
+    let _ = BlockwiseFormat::Grid.write(plan, &all, &folder.path().join("a.pvtu"));
+    let _ = BlockwiseFormat::Surface.write(plan, &all, &folder.path().join("a.pvtp"));
 }
 
 /// The folder of a small plan with its blocks, made once: by the same options as the seeds.
