@@ -79,7 +79,7 @@ impl<'a, const N: usize> Index<'a, N> {
             // Windings change the order of rows with one smallest vertex only.
             let mut order = numbers();
             for_each_bucket(&mut order, &starts, &|bucket| {
-                bucket.sort_unstable_by_key(by_vertices)
+                bucket.sort_unstable_by_key(by_vertices);
             });
             order
         } else {

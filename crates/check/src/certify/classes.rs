@@ -412,8 +412,8 @@ mod tests {
         let alpha = Alpha::from_squared(1e9).unwrap();
         let (mut empty, mut refuted_outermost, mut refuted_within) = (0, 0, 0);
         for round in 0..1500 {
-            let unit = random.pick(&[1, 7]);
-            let mut jitter = |x: i64, by: i64| unit as f64 * random.whole(x - by, x + by);
+            let unit = random.pick(&[1.0, 7.0]);
+            let mut jitter = |x: i64, by: i64| unit * random.whole(x - by, x + by);
             let corner = |i: usize, size: i64| {
                 [i & 1, i >> 1 & 1, i >> 2 & 1].map(|side| (2 * side as i64 - 1) * size)
             };
@@ -428,9 +428,9 @@ mod tests {
                 |&position: &[f64; 3]| WeightedPoint { position, weight: random.whole(0, 1) };
             let sites: Vec<_> = positions.iter().map(site).collect();
             // Apart, or together.
-            let parts = if round % 3 == 0 { vec![0..21] } else { vec![0..16, 16..21] };
+            let ends: &[usize] = if round % 3 == 0 { &[0, 21] } else { &[0, 16, 21] };
             let mut cells = Vec::new();
-            for part in parts {
+            for part in ends.windows(2).map(|ends| ends[0]..ends[1]) {
                 let weights: Vec<_> = sites[part.clone()].iter().map(|site| site.weight).collect();
                 let Ok(made) = enumerate(&positions[part.clone()], &weights, alpha) else {
                     continue;

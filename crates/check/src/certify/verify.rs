@@ -202,14 +202,12 @@ impl Claim<'_> {
             return Err(CertifyError::TooMany(most));
         }
         let finite = |i: &usize| positions[*i].iter().chain([&weights[*i]]).all(|x| x.is_finite());
-        match (0..positions.len()).find(|i| !finite(i)) {
-            Some(index) => Err(CertifyError::NotFinite(index)),
-            None => {
-                // Of a shape alone there are also those of the grids that are searched for points nearby.
-                let copies = if self.extent == Extent::Shape { 3 } else { 1 };
-                afford(complex, copies * positions.len())
-            }
+        if let Some(index) = (0..positions.len()).find(|i| !finite(i)) {
+            return Err(CertifyError::NotFinite(index));
         }
+        // Of a shape alone there are also those of the grids that are searched for points nearby.
+        let copies = if self.extent == Extent::Shape { 3 } else { 1 };
+        afford(complex, copies * positions.len())
     }
 }
 

@@ -505,8 +505,13 @@ fn decoded<T: Send, const N: usize>(
             }
             read(&mut next)
         })?;
-        unexpected =
-            unexpected.or(batches.into_iter().try_for_each(|batch| Ok(rows.extend(batch?))).err());
+        for batch in batches {
+            match batch {
+                Ok(batch) if unexpected.is_none() => rows.extend(batch),
+                Ok(_) => {}
+                Err(error) => unexpected = unexpected.or(Some(error)),
+            }
+        }
         std::mem::swap(&mut chunk, &mut next);
     }
     // The archive verifies its checksum when a member is read to its end.
