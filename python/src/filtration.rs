@@ -6,9 +6,11 @@ use std::sync::{Arc, OnceLock};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use rayon::prelude::*;
-use walpha::progress::Stage;
+use self_cell::self_cell;
+use walpha::ladder::{self, Ordered};
+use walpha::progress::{Monitor, Stage};
 use walpha::shape::ShapeError;
-use walpha::{Alpha, WeightedPoints, ladder};
+use walpha::{Alpha, WeightedPoints};
 
 use crate::arrays::{column, lend, numbers};
 use crate::errors::{Told, wrong};
@@ -118,13 +120,13 @@ impl Filtration {
         self.0.torus().map(|torus| torus.sides())
     }
 
-    /// All simplices, their values and order, and the persistence pairs of dimensions 0 and 2.
+    /// All simplices in order.
     fn simplices(&self, py: Python<'_>, task: Task<'_>) -> PyResult<Simplices> {
         let filtration = Arc::clone(&self.0);
         run(py, &task, move |monitor| {
             Stage::Order.begin(monitor)?;
-            let ordered = filtration.simplices_monitored(monitor)?;
-            Ok::<_, ShapeError>(Simplices::of(&ordered, Arc::clone(&filtration)))
+            let ordered = Owned::try_new(filtration, |own| own.simplices_monitored(monitor))?;
+            Ok::<_, ShapeError>(Simplices { ordered: Arc::new(ordered), entries: OnceLock::new() })
         })
     }
 
@@ -173,27 +175,32 @@ impl Filtration {
     }
 }
 
-/// All simplices of a filtration by their numbers, which never change.
+self_cell! {
+    /// A filtration with its simplices in order.
+    struct Owned {
+        owner: Arc<ladder::Filtration>,
+        #[covariant]
+        dependent: Ordered,
+    }
+}
+
+/// All simplices of a filtration by their numbers, which never change. What takes time is found when it is asked for.
 #[pyclass(frozen, module = "walpha._walpha")]
 pub struct Simplices {
-    vertices: Vec<[u32; 1]>,
-    edges: Vec<[u32; 2]>,
-    facets: Vec<[u32; 3]>,
-    cells: Vec<[u32; 4]>,
+    ordered: Arc<Owned>,
+    entries: OnceLock<Entries>,
+}
+
+/// When each simplex enters.
+struct Entries {
     /// From which α on each is there, on the boundary of another, inside: a row each.
     intervals: Vec<[f64; 3]>,
     ranks: Vec<u32>,
     gabriel: Vec<bool>,
-    gabriel_simplices: Vec<u32>,
-    order: Vec<u32>,
-    pairs: ladder::Pairs,
-    /// Found when they are asked for, from what they are simplices of.
-    loops: OnceLock<ladder::Loops>,
-    filtration: Arc<ladder::Filtration>,
 }
 
-impl Simplices {
-    fn of(ordered: &ladder::Ordered<'_>, filtration: Arc<ladder::Filtration>) -> Self {
+impl Entries {
+    fn of(ordered: &Ordered<'_>) -> Self {
         let entry = |number: u32| {
             let ladder::Entry { value, rank, gabriel, regular, interior, .. } =
                 ordered.simplex(number);
@@ -201,34 +208,50 @@ impl Simplices {
         };
         let entries = (0..ordered.len() as u32).into_par_iter().map(entry);
         let (intervals, (ranks, gabriel)) = entries.unzip();
-        Self {
-            vertices: ordered.vertices().to_vec(),
-            edges: ordered.edges().to_vec(),
-            facets: ordered.facets().to_vec(),
-            cells: ordered.cells().to_vec(),
-            intervals,
-            ranks,
-            gabriel,
-            gabriel_simplices: ordered.gabriel_simplices(),
-            order: ordered.order().to_vec(),
-            pairs: ordered.pairs().clone(),
-            loops: OnceLock::new(),
-            filtration,
-        }
+        Self { intervals, ranks, gabriel }
+    }
+}
+
+impl Simplices {
+    fn ordered(&self) -> &Ordered<'_> {
+        self.ordered.borrow_dependent()
     }
 
-    /// The persistence pairs of dimension 1.
-    fn loops(&self, py: Python<'_>) -> PyResult<&ladder::Loops> {
-        if let Some(loops) = self.loops.get() {
-            return Ok(loops);
+    fn entries(&self, py: Python<'_>) -> PyResult<&Entries> {
+        if let Some(entries) = self.entries.get() {
+            return Ok(entries);
         }
-        let filtration = Arc::clone(&self.filtration);
-        let loops = run(py, &Task::default(), move |monitor| {
-            Stage::Pairs.begin(monitor)?;
-            let ordered = filtration.simplices_monitored(&monitor.part(0, 1, 2))?;
-            ordered.loops_monitored(&monitor.part(1, 2, 2)).cloned()
+        let entries = self.work(py, |ordered, _| Ok(Entries::of(ordered)))?;
+        Ok(self.entries.get_or_init(|| entries))
+    }
+
+    /// The persistence pairs of dimensions 0 and 2.
+    fn pairs(&self, py: Python<'_>) -> PyResult<&ladder::Pairs> {
+        // Found once, by the first who asks.
+        self.work(py, |ordered, _| {
+            ordered.pairs();
+            Ok(())
         })?;
-        Ok(self.loops.get_or_init(|| loops))
+        Ok(self.ordered().pairs())
+    }
+
+    /// Those of dimension 1.
+    fn loops(&self, py: Python<'_>) -> PyResult<&ladder::Loops> {
+        self.work(py, |ordered, monitor| ordered.loops_monitored(monitor).map(|_| ()))?;
+        self.ordered().loops().map_err(Told::told)
+    }
+
+    /// Does long work on the simplices.
+    fn work<T: Send + 'static>(
+        &self,
+        py: Python<'_>,
+        work: impl FnOnce(&Ordered<'_>, &Monitor) -> Result<T, ShapeError> + Send + 'static,
+    ) -> PyResult<T> {
+        let ordered = Arc::clone(&self.ordered);
+        run(py, &Task::default(), move |monitor| {
+            Stage::Pairs.begin(monitor)?;
+            work(ordered.borrow_dependent(), monitor)
+        })
     }
 }
 
@@ -237,57 +260,57 @@ impl Simplices {
     #[getter]
     fn vertices<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray2<u32>>> {
         // SAFETY: the simplices are frozen.
-        unsafe { lend(&slf.get().vertices, slf.as_any()) }
+        unsafe { lend(slf.get().ordered().vertices(), slf.as_any()) }
     }
 
     #[getter]
     fn edges<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray2<u32>>> {
         // SAFETY: the simplices are frozen.
-        unsafe { lend(&slf.get().edges, slf.as_any()) }
+        unsafe { lend(slf.get().ordered().edges(), slf.as_any()) }
     }
 
     #[getter]
     fn facets<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray2<u32>>> {
         // SAFETY: the simplices are frozen.
-        unsafe { lend(&slf.get().facets, slf.as_any()) }
+        unsafe { lend(slf.get().ordered().facets(), slf.as_any()) }
     }
 
     #[getter]
     fn cells<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray2<u32>>> {
         // SAFETY: the simplices are frozen.
-        unsafe { lend(&slf.get().cells, slf.as_any()) }
+        unsafe { lend(slf.get().ordered().cells(), slf.as_any()) }
     }
 
     #[getter]
     fn intervals<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        // SAFETY: the simplices are frozen.
-        unsafe { lend(&slf.get().intervals, slf.as_any()) }
+        // SAFETY: the simplices are frozen, and what was found once stays.
+        unsafe { lend(&slf.get().entries(slf.py())?.intervals, slf.as_any()) }
     }
 
     #[getter]
     fn ranks<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<u32>>> {
-        column(py, self.ranks.iter().copied())
+        column(py, self.entries(py)?.ranks.iter().copied())
     }
 
     #[getter]
     fn gabriel<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<bool>>> {
-        column(py, self.gabriel.iter().copied())
+        column(py, self.entries(py)?.gabriel.iter().copied())
     }
 
     #[getter]
     fn gabriel_simplices<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<u32>>> {
-        column(py, self.gabriel_simplices.iter().copied())
+        Ok(self.work(py, |ordered, _| Ok(ordered.gabriel_simplices()))?.into_pyarray(py))
     }
 
     #[getter]
     fn order<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<u32>>> {
-        column(py, self.order.iter().copied())
+        column(py, self.ordered().order().iter().copied())
     }
 
     #[getter]
     fn component_pairs<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray2<u32>>> {
-        // SAFETY: the simplices are frozen.
-        unsafe { lend(&slf.get().pairs.components, slf.as_any()) }
+        // SAFETY: the simplices are frozen, and what was found once stays.
+        unsafe { lend(&slf.get().pairs(slf.py())?.components, slf.as_any()) }
     }
 
     #[getter]
@@ -298,13 +321,13 @@ impl Simplices {
 
     #[getter]
     fn void_pairs<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray2<u32>>> {
-        // SAFETY: the simplices are frozen.
-        unsafe { lend(&slf.get().pairs.voids, slf.as_any()) }
+        // SAFETY: the simplices are frozen, and what was found once stays.
+        unsafe { lend(&slf.get().pairs(slf.py())?.voids, slf.as_any()) }
     }
 
     /// Simplices that begin something of this dimension, from 0 to 3, which never ends.
     fn lasting<'py>(&self, py: Python<'py>, dimension: u32) -> PyResult<Bound<'py, PyArray1<u32>>> {
-        let ladder::Pairs { lasting, lasting_voids, last, .. } = &self.pairs;
+        let ladder::Pairs { lasting, lasting_voids, last, .. } = self.pairs(py)?;
         let numbers = match dimension {
             0 => lasting,
             1 => &self.loops(py)?.lasting,

@@ -16,7 +16,7 @@ class Simplices:
 
     Simplices have *numbers*: vertices first, then edges, facets, cells, those of one dimension in
     lexicographic order of their vertices. All arrays but those of vertices are by these numbers. They are made when they are
-    first asked for; the pairs of loops are found then, which takes about as long as the order.
+    first asked for, and pairs are found then: those of loops take longer than the order, the others less.
     """
 
     _simplices: _walpha.Simplices
