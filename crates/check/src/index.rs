@@ -24,6 +24,21 @@ pub(crate) fn of_bucket(starts: &[u32], number: u32) -> Range<usize> {
     starts[number as usize] as usize..starts[number as usize + 1] as usize
 }
 
+/// The entries in the order of their numbers, given where those of each [start](starts); entries of one number stay in their order.
+pub(crate) fn in_buckets<T: Copy>(
+    entries: &[T],
+    starts: &[u32],
+    number: impl Fn(&T) -> u32,
+) -> Vec<T> {
+    let (mut next, mut sorted) = (starts.to_vec(), entries.to_vec());
+    for entry in entries {
+        let place = &mut next[number(entry) as usize];
+        sorted[*place as usize] = *entry;
+        *place += 1;
+    }
+    sorted
+}
+
 /// Buckets that one thread goes through at a time.
 const BUCKETS: usize = 1 << 12;
 

@@ -22,8 +22,9 @@ use crate::{Alpha, Class, Simplices};
 /// point strictly inside.
 ///
 /// In a whole triangulation that was found regular, a sphere that contains any point contains a
-/// neighbour of its simplex, so only neighbours are tested; in a shape alone, all points nearby are. `untied` is whether cells are linked as they must be, and none
-/// is refuted by a neighbour, not even in a tie.
+/// neighbour of its simplex, so only neighbours are tested; in a shape alone, all points nearby are.
+/// `untied` is whether cells are linked as they must be, and none is refuted by a neighbour, not even
+/// in a tie.
 pub(super) fn judge(
     structure: &Structure,
     judge: &Judge,

@@ -6,7 +6,7 @@ use walpha_complex::canonical::{smallest_even, sorted};
 use super::claim::Claim;
 use super::grid::Grid;
 use super::structure::{Points, Structure, sites};
-use crate::index::{for_each_bucket, starts};
+use crate::index::{for_each_bucket, in_buckets, starts};
 use crate::schema::PlacedComplex;
 use crate::{Class, Complex, Placed, Simplices};
 
@@ -101,13 +101,10 @@ fn renumbered<const N: usize>(simplices: &Simplices<N>, new: &[u32]) -> Option<S
         (sorted(row), smallest_even(row) == sorted(row), class)
     });
     let renumbered: Vec<Numbered<N>> = renumbered.collect();
-    let starts = starts(renumbered.iter().map(|(row, ..)| row[0]), new.len());
-    let (mut next, mut rows) = (starts.clone(), renumbered.clone());
-    for row in renumbered {
-        let place = &mut next[row.0[0] as usize];
-        rows[*place as usize] = row;
-        *place += 1;
-    }
+    let first = |(row, ..): &Numbered<N>| row[0];
+    let starts = starts(renumbered.iter().map(first), new.len());
+    let mut rows = in_buckets(&renumbered, &starts, first);
+    drop(renumbered);
     for_each_bucket(&mut rows, &starts, &|bucket| bucket.sort_unstable_by_key(|(row, ..)| *row));
     let wound = rows.into_iter().map(|(mut row, even, class)| {
         if !even {

@@ -1,7 +1,7 @@
 //! Points sorted into boxes, to find those near a position.
 
 use super::structure::Points;
-use crate::index::starts;
+use crate::index::{in_buckets, starts};
 
 /// Points sorted into the boxes of a uniform grid.
 pub(super) struct Grid {
@@ -48,13 +48,7 @@ impl Grid {
         let boxes = counts.iter().product::<usize>();
         let number = |&i: &u32| grid.number(grid.at(of.position(i))) as u32;
         let starts = starts(points.iter().map(number), boxes);
-        let mut next = starts.clone();
-        let mut sorted = vec![0; points.len()];
-        for &i in &points {
-            let slot = &mut next[number(&i) as usize];
-            sorted[*slot as usize] = i;
-            *slot += 1;
-        }
+        let sorted = in_buckets(&points, &starts, number);
         (grid.starts, grid.points) = (starts, sorted);
         grid
     }

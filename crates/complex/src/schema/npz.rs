@@ -505,13 +505,11 @@ fn decoded<T: Send, const N: usize>(
             }
             read(&mut next)
         })?;
-        for batch in batches {
-            match batch {
-                Ok(batch) if unexpected.is_none() => rows.extend(batch),
-                Ok(_) => {}
-                Err(error) => unexpected = unexpected.or(Some(error)),
-            }
-        }
+        let kept = batches.into_iter().try_for_each(|batch| {
+            rows.extend(batch?);
+            Ok(())
+        });
+        unexpected = unexpected.or(kept.err());
         std::mem::swap(&mut chunk, &mut next);
     }
     // The archive verifies its checksum when a member is read to its end.
