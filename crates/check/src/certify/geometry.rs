@@ -144,6 +144,38 @@ pub(super) fn six_volumes(
     Ok((sum, 3 * i64::from(lattice.exponent())))
 }
 
+/// Six times the volume of all cells once they are linked: that which their outer facets enclose, if they are on different sides of
+/// each facet, as inner facets cancel. These are few.
+pub(super) fn six_volumes_linked(
+    linked: &Linked,
+    points: Points,
+    monitor: &Monitor,
+) -> Result<(IBig, i64), Cancelled> {
+    let overlaps =
+        linked.irregular.iter().any(|finding| matches!(finding, Finding::Overlap { .. }));
+    if linked.broken.is_empty() && !overlaps {
+        six_volumes_enclosed(&linked.structure, points, monitor)
+    } else {
+        six_volumes(linked.structure.complex.cells.rows(), points, monitor)
+    }
+}
+
+/// Six times the volume that the facets with one cell enclose.
+fn six_volumes_enclosed(
+    structure: &Structure,
+    points: Points,
+    monitor: &Monitor,
+) -> Result<(IBig, i64), Cancelled> {
+    let hull = structure.hull();
+    let lattice = Lattice::through(points.positions());
+    let cone = |i: usize| {
+        let [a, b, c] = points.positions_of(hull[i]);
+        [points.position(hull[0][0]), a, b, c]
+    };
+    let sum = lattice.six_volumes(hull.len(), monitor, cone)?;
+    Ok((sum, 3 * i64::from(lattice.exponent())))
+}
+
 /// Judges that the cells, of which [six times the volume](six_volumes) is given, fill the volume that the hull encloses.
 pub(super) fn volume(
     structure: &Structure,
@@ -151,14 +183,7 @@ pub(super) fn volume(
     (cells, exponent): (IBig, i64),
     monitor: &Monitor,
 ) -> Result<Vec<Finding>, Cancelled> {
-    let hull = structure.hull();
-    let top = points.position(0);
-    let lattice = Lattice::through(points.positions());
-    let cone = |i: usize| {
-        let [a, b, c] = points.positions_of(hull[i]);
-        [top, a, b, c]
-    };
-    let enclosed = lattice.six_volumes(hull.len(), monitor, cone)?;
+    let (enclosed, _) = six_volumes_enclosed(structure, points, monitor)?;
     if cells == enclosed {
         return Ok(Vec::new());
     }
@@ -225,4 +250,47 @@ fn wraps(structure: &Structure, hull: &[[u32; 3]], points: Points) -> Vec<Findin
         wrong.then(|| Finding::HullWraps { first: hull[0].into(), facet: (*facet).into() })
     };
     hull.par_iter().enumerate().filter_map(judge).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use walpha_base::random::Random;
+
+    use super::*;
+    use crate::certify::flat::closed;
+    use crate::exact::WeightedPoint;
+    use crate::{Alpha, enumerate};
+
+    /// Cells with gaps, apart, or on one side of a facet.
+    #[test]
+    fn volumes_of_linked_cells_are_those_of_all() {
+        let mut random = Random::new(12);
+        let (mut apart, mut overlapping) = (0, 0);
+        for round in 0..500 {
+            let positions: Vec<[f64; 3]> =
+                (0..9).map(|_| [0; 3].map(|_| random.whole(-3, 3))).collect();
+            let Ok(made) = enumerate(&positions, &[0.0; 9], Alpha::INFINITE) else { continue };
+            let all = made.complex.cells.rows();
+            let mut cells: Vec<_> = all.iter().filter(|_| random.below(3) > 0).copied().collect();
+            let position = |v: u32| positions[v as usize];
+            for _ in 0..round % 2 {
+                let [a, b, c, _] = random.pick(all);
+                let e = random.below(9) as u32;
+                let order = orientation(position(a), position(b), position(c), position(e));
+                cells.extend(order.is_gt().then_some([a, b, c, e]));
+            }
+            let sites: Vec<_> = (positions.iter())
+                .map(|&position| WeightedPoint { position, weight: 0.0 })
+                .collect();
+            let (complex, points) = (closed(&cells), Points { sites: &sites });
+            let noop = Monitor::noop();
+            let linked = Linked::new(&complex, points, Boundary::Any, &noop).unwrap();
+            let overlap = |finding: &Finding| matches!(finding, Finding::Overlap { .. });
+            overlapping += usize::from(linked.irregular.iter().any(overlap));
+            apart += usize::from(linked.irregular.is_empty() && cells.len() < all.len());
+            let sum = six_volumes(complex.cells.rows(), points, &noop).unwrap();
+            assert_eq!(six_volumes_linked(&linked, points, &noop).unwrap(), sum, "{cells:?}");
+        }
+        assert!(apart > 100 && overlapping > 20, "{apart} {overlapping}");
+    }
 }

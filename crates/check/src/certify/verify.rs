@@ -205,7 +205,7 @@ impl Claim<'_> {
         if let Some(index) = (0..positions.len()).find(|i| !finite(i)) {
             return Err(CertifyError::NotFinite(index));
         }
-        // Of a shape alone there are also those of the grids that are searched for points nearby.
+        // Of a shape alone there are also two grids, each with about as many bytes.
         let copies = if self.extent == Extent::Shape { 3 } else { 1 };
         afford(complex, copies * positions.len())
     }
@@ -269,14 +269,7 @@ fn apply(
         report(vec![Finding::NoCells])?;
         return Err(Stop::Enough);
     }
-    // Ends of parts, of 20: volume, links and neighbours, gaps.
-    let [summed, linked, searched] = if whole { [3, 10, 11] } else { [1, 5, 12] };
-    let cells = complex.cells.rows();
-    let of_cells = geometry::six_volumes(cells, points, &monitor.part(0, summed, 20))?;
-    *volume = Some(Exact::integer(of_cells.0.clone(), of_cells.1));
-
     let (kept, equal) = non_vertices::kept_points(points, complex, claim.duplicates);
-    report(equal)?;
     let largest = torus.map_or(f64::INFINITY, |torus| torus.largest_empty);
     let distinct = || non_vertices::distinct(&kept).collect();
     let emptiness = (!whole).then(|| Emptiness::new(points, alpha, largest, distinct()));
@@ -293,8 +286,19 @@ fn apply(
         emptiness: emptiness.as_ref(),
         torus,
     };
-    let listed = Linked::new(complex, points, boundary, &monitor.part(summed, linked, 20))?;
-    let gaps = &monitor.part(linked, searched, 20);
+    // Ends of parts, of 20: links and neighbours, volume, gaps.
+    let [linked, summed, searched] = if whole { [7, 10, 11] } else { [4, 5, 12] };
+    let listed = Linked::new(complex, points, boundary, &monitor.part(0, linked, 20))?;
+    let summing = monitor.part(linked, summed, 20);
+    // Of a whole triangulation the sum of all cells is a second witness that they fit together.
+    let of_cells = if whole {
+        geometry::six_volumes(complex.cells.rows(), points, &summing)?
+    } else {
+        geometry::six_volumes_linked(&listed, points, &summing)?
+    };
+    *volume = Some(Exact::integer(of_cells.0.clone(), of_cells.1));
+    report(equal)?;
+    let gaps = &monitor.part(summed, searched, 20);
     let missing = gaps::missing_cells(&listed.structure, points, alpha, judge.emptiness, gaps)?;
     let rest = monitor.part(searched, 20, 20);
     // Cells that could be missing overlap where one holds points on its sphere, and parts of it could be missing, too.
