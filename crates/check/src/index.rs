@@ -10,7 +10,7 @@ use walpha_complex::canonical::sorted;
 pub(crate) const NONE: u32 = u32::MAX;
 
 /// For entries sorted by a number below `count`, such as a vertex: where those of each number start, and where the last ones end.
-pub(crate) fn starts(numbers: impl Iterator<Item = u32>, count: usize) -> Vec<u32> {
+fn starts(numbers: impl Iterator<Item = u32>, count: usize) -> Vec<u32> {
     let mut starts = vec![0; count + 1];
     numbers.for_each(|number| starts[number as usize + 1] += 1);
     for i in 0..count {
@@ -24,19 +24,46 @@ pub(crate) fn of_bucket(starts: &[u32], number: u32) -> Range<usize> {
     starts[number as usize] as usize..starts[number as usize + 1] as usize
 }
 
-/// The entries in the order of their numbers, given where those of each [start](starts); entries of one number stay in their order.
-pub(crate) fn in_buckets<T: Copy>(
-    entries: &[T],
+/// Where the entries of each number below `count` [start](starts), and all entries, given with their numbers, in that order; those of one
+/// number stay in their order. Each thread goes through all entries, and keeps those of its share of the numbers.
+pub(crate) fn in_buckets<T: Copy + Send, I: Iterator<Item = (u32, T)>>(
+    count: usize,
+    entries: &(impl Fn() -> I + Sync),
+) -> (Vec<u32>, Vec<T>) {
+    let starts = starts(entries().map(|(number, _)| number), count);
+    let Some((_, any)) = entries().next() else { return (starts, Vec::new()) };
+    let mut sorted = vec![any; starts[count] as usize];
+    fill(&mut sorted, &starts, 0, entries, rayon::current_num_threads());
+    (starts, sorted)
+}
+
+/// Copies the entries of successive numbers, from `first` on, to where these start.
+fn fill<T: Copy + Send, I: Iterator<Item = (u32, T)>>(
+    sorted: &mut [T],
     starts: &[u32],
-    number: impl Fn(&T) -> u32,
-) -> Vec<T> {
-    let (mut next, mut sorted) = (starts.to_vec(), entries.to_vec());
-    for entry in entries {
-        let place = &mut next[number(entry) as usize];
-        sorted[*place as usize] = *entry;
-        *place += 1;
+    first: u32,
+    entries: &(impl Fn() -> I + Sync),
+    threads: usize,
+) {
+    let count = starts.len() - 1;
+    if threads > 1 && count > 1 {
+        let share = starts[0] + (sorted.len() / threads * (threads / 2)) as u32;
+        let middle = starts.partition_point(|&start| start < share).clamp(1, count - 1);
+        let (left, right) = sorted.split_at_mut((starts[middle] - starts[0]) as usize);
+        let (before, after) = (&starts[..=middle], &starts[middle..]);
+        rayon::join(
+            || fill(left, before, first, entries, threads / 2),
+            || fill(right, after, first + middle as u32, entries, threads.div_ceil(2)),
+        );
+        return;
     }
-    sorted
+    let mut next: Vec<u32> = starts[..count].iter().map(|start| start - starts[0]).collect();
+    for (number, entry) in entries() {
+        if let Some(place) = next.get_mut(number.wrapping_sub(first) as usize) {
+            sorted[*place as usize] = entry;
+            *place += 1;
+        }
+    }
 }
 
 /// Buckets that one thread goes through at a time.

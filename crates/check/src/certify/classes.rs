@@ -10,9 +10,13 @@ use walpha_complex::canonical::smallest_even;
 use super::claim::Extent;
 use super::emptiness::Emptiness;
 use super::finding::Finding;
+use super::grid::Grid;
+use super::non_vertices::in_cell;
 use super::structure::{Half, Index, NONE, Points, Structure};
 use super::torus::Torus;
-use crate::exact::{Side, collinear, orientation, power_value, radius, radius_value, side};
+use crate::exact::{
+    Side, collinear, in_conflict, orientation, power_value, radius, radius_value, side,
+};
 use crate::parallel::{of_each, one_for_each};
 use crate::{Alpha, Class, Simplices};
 
@@ -119,9 +123,9 @@ impl Judge<'_> {
 
     /// Findings on cells that a point refutes, in a shape alone.
     ///
-    /// If no neighbour refutes another, a cell with neighbours on all sides is tested only with points that are not surrounded by
-    /// cells. Why: suppose that a point refutes a cell, and walk straight from the cell to the point; each cell on the way is
-    /// refuted, too. The walk ends in an outermost cell, which is tested with all points, or in a cell that contains the point
+    /// If no neighbour refutes another, a cell with neighbours on all sides is tested only with points that lie in it and are not
+    /// surrounded by cells. Why: suppose that a point refutes a cell, and walk straight from the cell to the point; each cell on the way
+    /// is refuted, too. The walk ends in an outermost cell, which is tested with all points, or in a cell that contains the point
     /// although others surround it. But outermost cells that pass belong to the regular triangulation, and behind these no cells
     /// overlap (Lemma 8 in docs/certifying.md).
     fn refuted(
@@ -131,28 +135,40 @@ impl Judge<'_> {
         untied: bool,
         monitor: &Monitor,
     ) -> Result<Vec<Finding>, Cancelled> {
-        let Some(all) = self.emptiness else { return Ok(Vec::new()) };
+        let Some(near) = self.emptiness else { return Ok(Vec::new()) };
         let cells = structure.complex.cells.rows();
-        let finding = |i: usize, near: &Emptiness| {
+        let refuter = |i: usize| {
             let fits = classes[i] == Class::Interior;
-            let point = fits.then(|| near.refuter_of_cell(cells[i])).flatten()?;
-            let corners = self.points.corners(cells[i]);
-            let power = power_value(corners.each_ref(), &self.points.get(point));
-            Some(Finding::NotRegular { cell: cells[i].into(), point, power })
+            fits.then(|| near.refuter_of_cell(cells[i])).flatten()
         };
         let fit = || classes.par_iter().all(|&class| class == Class::Interior);
         if untied && self.torus.is_none() && fit() {
             let surrounded = structure.surrounded(self.points.len());
-            let exposed = all.tested().filter(|&point| !surrounded[point as usize]).collect();
-            let exposed = Emptiness::new(self.points, self.alpha, f64::INFINITY, exposed);
-            let near = |i: usize| if structure.is_outermost(i) { all } else { &exposed };
+            let exposed = near.tested().filter(|&point| !surrounded[point as usize]).collect();
+            let exposed = Grid::new(self.points, exposed);
+            let refutes = |cell: [u32; 4], point: u32| {
+                in_conflict(self.points.corners(cell).each_ref(), &self.points.get(point))
+            };
+            let is_refuted = |i: usize| {
+                if structure.is_outermost(i) {
+                    refuter(i).is_some()
+                } else {
+                    let cell = cells[i];
+                    let test = |point: u32| refutes(cell, point).then_some(());
+                    in_cell(&exposed, self.points, cell, test).is_some()
+                }
+            };
             let monitor = &monitor.part(0, 1, 2);
-            let found = of_each(cells.len(), monitor, |i| finding(i, near(i)))?;
-            if found.is_empty() {
-                return Ok(found);
+            if of_each(cells.len(), monitor, |i| is_refuted(i).then_some(()))?.is_empty() {
+                return Ok(Vec::new());
             }
         }
-        of_each(cells.len(), &monitor.part(1, 2, 2), |i| finding(i, all))
+        of_each(cells.len(), &monitor.part(1, 2, 2), |i| {
+            let point = refuter(i)?;
+            let corners = self.points.corners(cells[i]);
+            let power = power_value(corners.each_ref(), &self.points.get(point));
+            Some(Finding::NotRegular { cell: cells[i].into(), point, power })
+        })
     }
 
     fn facet(&self, structure: &Structure, cells: &[Class], i: usize) -> Verdict {

@@ -25,8 +25,6 @@ pub(super) struct Emptiness<'a> {
 /// Points of similar weight.
 struct Layer {
     grid: Grid,
-    /// The points in the order of the grid, so that those of a box are beside each other.
-    sites: Vec<WeightedPoint>,
     heaviest: f64,
     /// How far from a vertex all points inside are, rounded up.
     around: f64,
@@ -46,9 +44,8 @@ impl<'a> Emptiness<'a> {
         let layer = |tested: Vec<u32>| {
             let heaviest = heaviest(&mut tested.iter().copied());
             let grid = Grid::new(points, tested);
-            let sites = points.of(grid.points());
             let around = (reach(heaviest) + of_vertices).next_up().min(2.0 * largest);
-            Layer { grid, sites, heaviest, around }
+            Layer { grid, heaviest, around }
         };
         Self { points, layers: layers(points, tested).into_iter().map(layer).collect() }
     }
@@ -107,8 +104,9 @@ impl<'a> Emptiness<'a> {
         self.layers.iter().all(|layer| {
             // |q − p|² ≤ ω of q − ω of p, whatever α is.
             let reach = (layer.heaviest - site.weight).next_up().max(0.0).sqrt().next_up();
-            let near = |slot: usize, index: u32| {
-                let within = index != point && side([&site], &layer.sites[slot]) != Side::Outside;
+            let near = |index: u32| {
+                let within =
+                    index != point && side([&site], &self.points.get(index)) != Side::Outside;
                 within.then_some(())
             };
             layer.grid.within(site.position, reach, near).is_none()
@@ -126,8 +124,8 @@ impl<'a> Emptiness<'a> {
             let around = (corners[0].position, layer.around);
             let near = sphere.as_ref().map(|sphere| (sphere.center, sphere.reach(layer.heaviest)));
             let (center, radius) = near.filter(|(_, radius)| *radius <= around.1).unwrap_or(around);
-            layer.grid.within(center, radius.next_up(), |slot, index| {
-                let q = &layer.sites[slot];
+            layer.grid.within(center, radius.next_up(), |index| {
+                let q = &self.points.get(index);
                 let outside = sphere.as_ref().is_some_and(|sphere| sphere.surely_outside(q));
                 (!outside && !simplex.contains(&index) && refutes(q, index)).then_some(index)
             })

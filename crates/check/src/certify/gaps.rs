@@ -8,7 +8,7 @@ use super::emptiness::Emptiness;
 use super::finding::Finding;
 use super::structure::{NONE, Points, Structure};
 use crate::exact::{Side, orientation, radius, radius_value, side};
-use crate::index::{of_bucket, starts};
+use crate::index::{for_each_bucket, in_buckets, of_bucket};
 use crate::parallel::of_each;
 use crate::{Alpha, Class, Complex};
 
@@ -28,26 +28,26 @@ pub(super) fn missing_cells(
     let open = |facet: u32| facet != NONE && structure.sides[facet as usize][1] == NONE;
     let open_rows: Vec<u32> =
         (0..facets.len() as u32).into_par_iter().filter(|&facet| open(facet)).collect();
-    // The open facets around each edge, by the vertex opposite.
-    let edges = |&facet: &u32| {
-        let [a, b, c] = sorted(facets[facet as usize]);
-        [([a, b], c), ([a, c], b), ([b, c], a)]
+    // The open facets by their two smaller vertices, as each gap is found from the facet without its largest vertex.
+    let entries = || {
+        open_rows.iter().map(|&facet| {
+            let [a, b, c] = sorted(facets[facet as usize]);
+            (a, [b, c])
+        })
     };
-    let mut around: Vec<([u32; 2], u32)> = open_rows.par_iter().flat_map_iter(edges).collect();
-    around.par_sort_unstable();
-    let starts = starts(around.iter().map(|(edge, _)| edge[0]), points.len());
-    let apexes = |edge: [u32; 2]| {
-        let around = &around[of_bucket(&starts, edge[0])];
-        let from = around.partition_point(|other| other.0 < edge);
-        &around[from..][..around[from..].partition_point(|other| other.0 == edge)]
+    let (starts, mut around) = in_buckets(points.len(), &entries);
+    for_each_bucket(&mut around, &starts, &|bucket| bucket.sort_unstable());
+    let apexes = |[a, b]: [u32; 2]| {
+        let around = &around[of_bucket(&starts, a)];
+        let from = around.partition_point(|[other, _]| *other < b);
+        &around[from..][..around[from..].partition_point(|[other, _]| *other == b)]
     };
     let gaps = |i: usize| {
         let facet = open_rows[i];
         let [a, b, c] = sorted(facets[facet as usize]);
         let sides = [[a, b], [a, c], [b, c]].map(apexes);
         let fewest = sides.into_iter().min_by_key(|apexes| apexes.len()).expect("three edges");
-        // Each gap is seen from the facet without its largest vertex.
-        fewest.iter().filter(move |(_, d)| *d > c).filter_map(move |&(_, d)| {
+        fewest.iter().filter(move |[_, d]| *d > c).filter_map(move |&[_, d]| {
             let others = [[a, b, d], [a, c, d], [b, c, d]].map(|facet| structure.facets.row(facet));
             let gap = others.into_iter().all(open) && structure.cells.row([a, b, c, d]) == NONE;
             let rows = [facet, others[0], others[1], others[2]];

@@ -6,7 +6,7 @@ use walpha_complex::canonical::{smallest_even, sorted};
 use super::claim::Claim;
 use super::grid::Grid;
 use super::structure::{Points, Structure, sites};
-use crate::index::{for_each_bucket, in_buckets, starts};
+use crate::index::{for_each_bucket, in_buckets};
 use crate::schema::PlacedComplex;
 use crate::{Class, Complex, Placed, Simplices};
 
@@ -47,15 +47,17 @@ fn in_boxes(claim: &Claim) -> Option<PlacedComplex> {
         return None;
     }
     let Complex { cells, facets, edges, vertices } = complex;
-    let ((cells, facets), (edges, vertices)) = rayon::join(
-        || (renumbered(cells, &new), renumbered(facets, &new)),
-        || (renumbered(edges, &new), renumbered(vertices, &new)),
-    );
+    let complex = Complex {
+        cells: renumbered(cells, &new)?,
+        facets: renumbered(facets, &new)?,
+        edges: renumbered(edges, &new)?,
+        vertices: renumbered(vertices, &new)?,
+    };
     Some(PlacedComplex {
         positions: old.iter().map(|&v| positions[v as usize]).collect(),
         weights: old.iter().map(|&v| weights[v as usize]).collect(),
         alpha,
-        complex: Complex { cells: cells?, facets: facets?, edges: edges?, vertices: vertices? },
+        complex,
         hidden: hidden.flatten(),
         duplicates: duplicates.flatten(),
         periodic: None,
@@ -76,14 +78,15 @@ fn is_scattered(cells: &[[u32; 4]], points: usize) -> bool {
 /// Bytes that the copy takes while it is made, or later with what is linked to it, whichever is more.
 fn bytes(complex: &Complex, points: usize) -> usize {
     fn row<const N: usize>(simplices: &Simplices<N>) -> [usize; 2] {
-        let kept = size_of::<([u32; N], Class)>();
-        [simplices.len() * (2 * size_of::<Numbered<N>>() + kept), simplices.len() * kept]
+        let sorted = 2 * size_of::<Numbered<N>>();
+        [sorted, size_of::<([u32; N], Class)>()].map(|bytes| bytes * simplices.len())
     }
     let Complex { cells, facets, edges, vertices } = complex;
     let rows = [row(cells), row(facets), row(edges), row(vertices)];
-    let [made, kept] = [0, 1].map(|k| rows.iter().map(|bytes| bytes[k]).sum::<usize>());
+    let sorted = rows.iter().map(|[sorted, _]| *sorted).max().expect("four dimensions");
+    let kept = rows.iter().map(|[_, kept]| kept).sum::<usize>();
     // Points with their weights twice, four boxes each, and numbers.
-    made.max(kept + Structure::bytes(complex)) + 100 * points
+    kept + sorted.max(Structure::bytes(complex)) + 100 * points
 }
 
 /// A row with its vertices sorted, whether its winding is theirs, and its class.
@@ -91,7 +94,7 @@ type Numbered<const N: usize> = ([u32; N], bool, Class);
 
 /// The rows with new numbers, sorted up to their windings; `None` if one has a vertex that does not exist.
 fn renumbered<const N: usize>(simplices: &Simplices<N>, new: &[u32]) -> Option<Simplices<N>> {
-    if simplices.rows().par_iter().flatten().any(|&v| v as usize >= new.len()) {
+    if simplices.rows().as_flattened().par_iter().any(|&v| v as usize >= new.len()) {
         return None;
     }
     let rows = simplices.rows().par_iter().zip(simplices.classes());
@@ -101,18 +104,18 @@ fn renumbered<const N: usize>(simplices: &Simplices<N>, new: &[u32]) -> Option<S
         (sorted(row), smallest_even(row) == sorted(row), class)
     });
     let renumbered: Vec<Numbered<N>> = renumbered.collect();
-    let first = |(row, ..): &Numbered<N>| row[0];
-    let starts = starts(renumbered.iter().map(first), new.len());
-    let mut rows = in_buckets(&renumbered, &starts, first);
+    let entries = || renumbered.iter().map(|entry| (entry.0[0], *entry));
+    let (starts, mut rows) = in_buckets(new.len(), &entries);
     drop(renumbered);
     for_each_bucket(&mut rows, &starts, &|bucket| bucket.sort_unstable_by_key(|(row, ..)| *row));
-    let wound = rows.into_iter().map(|(mut row, even, class)| {
+    let wound = rows.par_iter().map(|&(mut row, even, _)| {
         if !even {
             row.swap(N - 2, N - 1);
         }
-        (row, class)
+        row
     });
-    Some(wound.collect())
+    let classes = rows.par_iter().map(|&(.., class)| class);
+    Some(Simplices::new(wound.collect(), classes.collect()).expect("as many classes as rows"))
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! Points sorted into boxes, to find those near a position.
 
 use super::structure::Points;
-use crate::index::{in_buckets, starts};
+use crate::index::in_buckets;
 
 /// Points sorted into the boxes of a uniform grid.
 pub(super) struct Grid {
@@ -46,20 +46,18 @@ impl Grid {
         let mut grid =
             Self { low, step, scale: step.recip(), counts, starts: Vec::new(), points: Vec::new() };
         let boxes = counts.iter().product::<usize>();
-        let number = |&i: &u32| grid.number(grid.at(of.position(i))) as u32;
-        let starts = starts(points.iter().map(number), boxes);
-        let sorted = in_buckets(&points, &starts, number);
-        (grid.starts, grid.points) = (starts, sorted);
+        let entries = || points.iter().map(|&i| (grid.number(grid.at(of.position(i))) as u32, i));
+        (grid.starts, grid.points) = in_buckets(boxes, &entries);
         grid
     }
 
     /// Calls `visit` with every point within `radius` of `center`, and some beyond, until it
-    /// returns a value: with its place in the order of the grid, and its number.
+    /// returns a value.
     pub(super) fn within<T>(
         &self,
         center: [f64; 3],
         radius: f64,
-        visit: impl Fn(usize, u32) -> Option<T>,
+        visit: impl Fn(u32) -> Option<T>,
     ) -> Option<T> {
         // Rounding is monotonic, so a point between two positions is in a box between theirs.
         let from = self.at(center.map(|x| (x - radius).next_down()));
@@ -72,16 +70,32 @@ impl Grid {
                 if flat * flat + steep * steep > 1.0 + 4e-15 {
                     continue;
                 }
-                let first = self.number([from[0], y, z]);
-                let last = self.number([to[0], y, z]);
-                let row = self.starts[first] as usize..self.starts[last + 1] as usize;
-                if let Some(found) = row.into_iter().find_map(|slot| visit(slot, self.points[slot]))
-                {
-                    return Some(found);
+                let found = self.row([from[0], to[0]], y, z).iter().find_map(|&point| visit(point));
+                if found.is_some() {
+                    return found;
                 }
             }
         }
         None
+    }
+
+    /// Calls `visit` with every point between two corners of an axis-parallel box, and some beyond, until it returns a value.
+    pub(super) fn between<T>(
+        &self,
+        low: [f64; 3],
+        high: [f64; 3],
+        visit: impl Fn(u32) -> Option<T>,
+    ) -> Option<T> {
+        let (from, to) = (self.at(low), self.at(high));
+        let row = |y: usize, z: usize| self.row([from[0], to[0]], y, z).iter();
+        (from[2]..=to[2])
+            .find_map(|z| (from[1]..=to[1]).find_map(|y| row(y, z).find_map(|&point| visit(point))))
+    }
+
+    /// The points in a row of boxes.
+    fn row(&self, [first, last]: [usize; 2], y: usize, z: usize) -> &[u32] {
+        let (first, last) = (self.number([first, y, z]), self.number([last, y, z]));
+        &self.points[self.starts[first] as usize..self.starts[last + 1] as usize]
     }
 
     /// A lower bound on the distance, along an axis, between `x` and the points of a slice of boxes. NaN if there is one infinite
@@ -115,13 +129,7 @@ impl Grid {
             let to: [usize; 3] =
                 std::array::from_fn(|k| (center[k] + ring).min(self.counts[k] - 1));
             (from[2]..=to[2]).find_map(|z| {
-                (from[1]..=to[1]).find_map(|y| {
-                    let first = self.number([from[0], y, z]);
-                    let last = self.number([to[0], y, z]);
-                    self.points[self.starts[first] as usize..self.starts[last + 1] as usize]
-                        .first()
-                        .copied()
-                })
+                (from[1]..=to[1]).find_map(|y| self.row([from[0], to[0]], y, z).first().copied())
             })
         })
     }
@@ -168,8 +176,7 @@ mod tests {
                 let center = draw(3);
                 let radius = draw(0)[0].max(1.0) / 4.0;
                 let visited = RefCell::new(Vec::new());
-                let found = grid.within(center.map(|x| x * unit), radius * unit, |slot, number| {
-                    assert_eq!(grid.points()[slot], number);
+                let found = grid.within(center.map(|x| x * unit), radius * unit, |number| {
                     visited.borrow_mut().push(number);
                     None::<()>
                 });

@@ -254,19 +254,31 @@ pub(super) fn hiddenness_in_cells(
     let cells = structure.complex.cells.rows();
     let grid = Grid::new(points, hidden.to_vec());
     of_each(cells.len(), monitor, |i| {
-        let cell = cells[i];
-        let [first, others @ ..] = points.positions_of(cell);
-        let far = others.map(|[x, y, z]| (x - first[0]).hypot(y - first[1]).hypot(z - first[2]));
-        // The factor covers roundings.
-        let reach = far.into_iter().fold(0.0, f64::max) * (1.0 + 1e-12);
         let found = RefCell::new(Vec::new());
-        grid.within(first, reach.next_up(), |_, point| {
-            if holds(points, cell, points.get(point).position) {
-                found.borrow_mut().extend(not_hidden(points, cell, point));
-            }
+        in_cell(&grid, points, cells[i], |point| {
+            found.borrow_mut().extend(not_hidden(points, cells[i], point));
             None::<()>
         });
         found.take()
+    })
+}
+
+/// Calls `visit` with every point of the grid that lies in a cell, its surface included, and is no corner of it, until it returns a
+/// value.
+pub(super) fn in_cell<T>(
+    grid: &Grid,
+    points: Points,
+    cell: [u32; 4],
+    visit: impl Fn(u32) -> Option<T>,
+) -> Option<T> {
+    let corners = points.positions_of(cell);
+    let low = [0, 1, 2].map(|k| corners.iter().fold(f64::INFINITY, |low, p| low.min(p[k])));
+    let high = [0, 1, 2].map(|k| corners.iter().fold(f64::NEG_INFINITY, |high, p| high.max(p[k])));
+    grid.between(low, high, |point| {
+        let position = points.position(point);
+        let near = (0..3).all(|k| low[k] <= position[k] && position[k] <= high[k]);
+        let held = near && !cell.contains(&point) && holds(points, cell, position);
+        if held { visit(point) } else { None }
     })
 }
 
