@@ -26,8 +26,8 @@ pub(super) fn run(arguments: &[String]) -> Result<()> {
     let shape = ShapeOptions::new(alpha).engine(Engine::Native);
     let started = Instant::now();
     let counts = match what.as_str() {
-        "native" => counts(&alpha_shape(points, &shape)?),
-        "whole" => counts(&alpha_shape(points, &shape.exterior(true))?),
+        "native" => measured(&alpha_shape(points, &shape)?),
+        "whole" => measured(&alpha_shape(points, &shape.exterior(true))?),
         "filtration" => counts(Filtration::new(points)?.whole()),
         "order" => {
             let filtration = Filtration::new(points)?;
@@ -44,6 +44,12 @@ pub(super) fn run(arguments: &[String]) -> Result<()> {
     };
     println!("{} {} {counts}", started.elapsed().as_secs_f64(), peak());
     Ok(())
+}
+
+/// The counts of a shape whose sizes are known, too.
+fn measured(shape: &AlphaShape) -> String {
+    assert!(shape.measures().volume > 0.0);
+    counts(shape)
 }
 
 fn counts(shape: &AlphaShape) -> String {

@@ -170,7 +170,7 @@ impl Union {
             vertices: totals.vertices,
             betti: Betti::in_space(b0, b1, b2),
             measures,
-            components: components_of_sums(components, Some(with_facets.collect())),
+            components: components_of_sums(&components, Some(with_facets.collect())),
             halo: totals.halo,
             numbers,
             sheets: count,

@@ -57,7 +57,6 @@ pub fn whole(plan: &Plan, merged: &Merged) -> Result<AlphaShape, BlocksError> {
         hidden: None,
         betti: merged.betti,
         sheets,
-        measures: merged.measures,
     };
     Ok(AlphaShape::assembled(assembled)?)
 }

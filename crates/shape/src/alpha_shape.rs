@@ -5,8 +5,8 @@ use super::derived::Derived;
 use super::measure::together;
 use super::solid::Cuts;
 use super::{
-    Alpha, Betti, Complex, Measures, Outline, OutlineError, ShapeError, ShapeOptions, Sheets,
-    Surface, WeightedPoints,
+    Alpha, Betti, Complex, ComponentSums, Measures, Outline, OutlineError, ShapeError,
+    ShapeOptions, Sheets, Surface, WeightedPoints,
 };
 
 /// The weighted alpha shape of a set of points: a classified subcomplex of their regular
@@ -25,7 +25,7 @@ pub struct AlphaShape {
     pub(super) hidden: Option<Vec<u32>>,
     pub(super) betti: Option<Betti>,
     pub(super) sheets: Option<Sheets>,
-    pub(super) measures: Measures,
+    pub(super) sums: Derived<Vec<ComponentSums>>,
     pub(super) solid: Derived<(Surface, Cuts)>,
     pub(super) outline: Derived<Result<Outline, OutlineError>>,
 }
@@ -41,7 +41,6 @@ pub struct Assembled {
     pub hidden: Option<Vec<u32>>,
     pub betti: Betti,
     pub sheets: Sheets,
-    pub measures: Measures,
 }
 
 impl AlphaShape {
@@ -64,7 +63,7 @@ impl AlphaShape {
             hidden,
             betti: Some(parts.betti),
             sheets: Some(parts.sheets),
-            measures: parts.measures,
+            sums: Derived::default(),
             solid: Derived::default(),
             outline: Derived::default(),
         })
@@ -73,7 +72,6 @@ impl AlphaShape {
     /// The shape of the same points with the same power weights at another α, which the caller has
     /// found within this one's triangulation.
     pub(crate) fn at(&self, alpha: Alpha, exterior: bool, complex: Complex, betti: Betti) -> Self {
-        let measures = Measures::of(&complex, &self.points.positions, self.options.periodic);
         Self {
             points: self.points.clone(),
             coordinates: self.coordinates,
@@ -85,7 +83,7 @@ impl AlphaShape {
             hidden: self.hidden.clone(),
             betti: Some(betti),
             sheets: None,
-            measures,
+            sums: Derived::default(),
             solid: Derived::default(),
             outline: Derived::default(),
         }
@@ -166,9 +164,9 @@ impl AlphaShape {
         self.sheets.as_ref()
     }
 
-    /// Volume and areas.
-    pub fn measures(&self) -> &Measures {
-        &self.measures
+    /// Volume and areas, summed exactly and rounded once. O(n) for the first call; the shape keeps the sums.
+    pub fn measures(&self) -> Measures {
+        ComponentSums::measures(self.component_sums().iter())
     }
 
     /// Number of points that are vertices of the shape.

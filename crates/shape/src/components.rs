@@ -1,10 +1,10 @@
 //! The components of a shape.
 
+use rayon::prelude::*;
 use walpha_regular::Torus;
 
 use super::sums::{ByNumber, ComponentSums, SheetSums, by_number, components_of_sums};
 use super::topology::{connected, connected_on_torus};
-use super::winding::WindingSets;
 use super::{AlphaShape, Class, Component, Sheets};
 
 /// Stands in [`AlphaShape::component_numbers`] for points that are no vertices of the shape.
@@ -37,9 +37,13 @@ impl AlphaShape {
         numbers
     }
 
-    /// The components of the shape by their numbers, as many as b0. Sums are exact, and rounded once. O(n).
-    pub fn components(&self) -> Vec<Component> {
-        let numbers = self.component_numbers();
+    /// The sums over each component.
+    pub(crate) fn component_sums(&self) -> &[ComponentSums] {
+        self.sums.get(|| self.summed(&self.component_numbers()))
+    }
+
+    /// The sums over each component, given the component of each point.
+    fn summed(&self, numbers: &[u32]) -> Vec<ComponentSums> {
         let positions = &self.points().positions;
         let torus = self.options().periodic;
         let mut windings =
@@ -75,24 +79,27 @@ impl AlphaShape {
         for (number, sums) in of_cells.iter().chain(&of_facets).flatten() {
             components[*number as usize].join(sums);
         }
+        components
+    }
+
+    /// The components of the shape by their numbers, as many as b0. Sums are exact, and rounded once. O(n).
+    pub fn components(&self) -> Vec<Component> {
+        let numbers = self.component_numbers();
+        let sums = self.sums.get(|| self.summed(&numbers));
+        let torus = self.options().periodic;
         // On a torus, a sheet need not enclose anything.
         let sheets = self.sheets().filter(|_| torus.is_none());
         let sheets = sheets.map(|sheets| self.sheet_sums(sheets, &numbers));
-        let mut components = components_of_sums(components, sheets);
-        if let Some((torus, windings)) = windings {
-            self.set_rounds(&mut components, &numbers, torus, windings);
+        let mut components = components_of_sums(sums, sheets);
+        if let Some(torus) = torus {
+            self.set_rounds(&mut components, &numbers, torus);
         }
         components
     }
 
     /// Sets `rounds` and the boxes of components that wind round a torus.
-    fn set_rounds(
-        &self,
-        components: &mut [Component],
-        numbers: &[u32],
-        torus: Torus,
-        mut windings: WindingSets,
-    ) {
+    fn set_rounds(&self, components: &mut [Component], numbers: &[u32], torus: Torus) {
+        let mut windings = connected_on_torus(self.complex(), &self.points().positions, torus);
         components.iter_mut().for_each(|component| component.rounds = Some(0));
         for &[v] in self.complex().vertices.rows() {
             let (root, _) = windings.find(v);
@@ -108,37 +115,31 @@ impl AlphaShape {
     /// Each sheet with facets: its number, its component, and its sums.
     fn sheet_sums(&self, sheets: &Sheets, numbers: &[u32]) -> Vec<(u32, usize, SheetSums)> {
         let positions = &self.points().positions;
-        let complex = self.complex();
-        // Sides of regular facets, then both of singular ones.
-        let regular: Vec<[u32; 3]> = complex.facets.of(Class::Regular).copied().collect();
-        let singular: Vec<[u32; 3]> = complex.facets.of(Class::Singular).copied().collect();
-        let add = |sums: &mut ByNumber<SheetSums>, sheet: u32, side: [u32; 3]| {
+        let facets = &self.complex().facets;
+        let regular = sheets.regular.iter().copied().zip(facets.of(Class::Regular).copied());
+        let singular = sheets.singular.iter().zip(facets.of(Class::Singular));
+        let both = singular.flat_map(|(&[clockwise, counter], &[a, b, c])| {
+            [(clockwise, [a, c, b]), (counter, [a, b, c])]
+        });
+        // Sheet by sheet, so that sums change hands as seldom as there are sheets.
+        let mut sides: Vec<(u32, [u32; 3])> = regular.chain(both).collect();
+        sides.par_sort_unstable_by_key(|&(sheet, _)| sheet);
+        let sums = by_number(sides.len(), |row, sums: &mut ByNumber<SheetSums>| {
+            let (sheet, side) = sides[row];
             sums.of(sheet).add(positions[0], side.map(|v| positions[v as usize]));
-        };
-        let of_regular = by_number(regular.len(), |row, sums| {
-            add(sums, sheets.regular[row], regular[row]);
         });
-        let of_singular = by_number(singular.len(), |row, sums| {
-            let ([clockwise, counter], [a, b, c]) = (sheets.singular[row], singular[row]);
-            add(sums, clockwise, [a, c, b]);
-            add(sums, counter, [a, b, c]);
-        });
-        let mut found: Vec<Option<(usize, SheetSums)>> = vec![None; sheets.count as usize];
-        let of_row = |row: [u32; 3]| numbers[row[0] as usize] as usize;
-        let component = |sheet: u32, row: [u32; 3]| (sheet as usize, of_row(row));
-        let rows = sheets.regular.iter().zip(&regular).map(|(&sheet, &row)| component(sheet, row));
-        let others = sheets.singular.iter().zip(&singular);
-        let others = others.flat_map(|(sheets, &row)| sheets.map(|sheet| component(sheet, row)));
-        for (sheet, component) in rows.chain(others) {
-            found[sheet].get_or_insert_with(|| (component, SheetSums::default()));
+        let of_one = sides.chunk_by(|(sheet, _), (next, _)| sheet == next);
+        let mut found: Vec<(u32, usize, SheetSums)> = of_one
+            .map(|sides| {
+                let (sheet, [v, ..]) = sides[0];
+                (sheet, numbers[v as usize] as usize, SheetSums::default())
+            })
+            .collect();
+        for (sheet, sums) in sums.iter().flatten() {
+            let of_sheet = found.binary_search_by_key(sheet, |(sheet, ..)| *sheet);
+            found[of_sheet.expect("a sheet of a side")].2.join(sums);
         }
-        for (sheet, sums) in of_regular.iter().chain(&of_singular).flatten() {
-            if let Some((_, all)) = &mut found[*sheet as usize] {
-                all.join(sums);
-            }
-        }
-        let numbered = (0..).zip(found);
-        numbered.filter_map(|(sheet, found)| found.map(|(c, sums)| (sheet, c, sums))).collect()
+        found
     }
 }
 
@@ -149,7 +150,7 @@ mod tests {
 
     use super::*;
     use crate::measure::{facet_area, six_volumes};
-    use crate::{Alpha, ShapeOptions, WeightedPoints, alpha_shape};
+    use crate::{Alpha, Measures, ShapeOptions, WeightedPoints, alpha_shape};
 
     /// Sums over ranges of rows, joined, against one sum over all rows, for components within a range and across them.
     #[test]
@@ -167,6 +168,17 @@ mod tests {
             .unwrap();
             let (numbers, positions) = (shape.component_numbers(), &shape.points().positions);
             let complex = shape.complex();
+            let of_all = |terms: &mut dyn Iterator<Item = f64>| terms.collect::<Sum>().value();
+            let corners = |facet: &[u32; 3]| facet.map(|v| positions[v as usize]);
+            let areas = [Class::Regular, Class::Singular].map(|class| {
+                of_all(&mut complex.facets.of(class).map(|facet| facet_area(corners(facet))))
+            });
+            let cells = complex.cells.of(Class::Interior);
+            let mut volumes = cells.map(|cell| six_volumes(cell.map(|v| positions[v as usize])));
+            let volume = of_all(&mut volumes) / 6.0;
+            let [area, singular_area] = areas;
+            assert_eq!(shape.measures(), Measures { volume, area, singular_area });
+
             let components = shape.components();
             assert!(!components.is_empty());
             let mut expected: Vec<_> = components

@@ -9,8 +9,8 @@ use super::derived::Derived;
 use super::flat::{self, flat};
 use super::topology::{components, connected_on_torus, sheet_betti, torus_betti};
 use super::{
-    AlphaShape, Betti, CgalError, Complex, Engine, Measures, ShapeError, ShapeOptions, Sheets,
-    Simplices, WeightedPoints,
+    AlphaShape, Betti, CgalError, Complex, Engine, ShapeError, ShapeOptions, Sheets, Simplices,
+    WeightedPoints,
 };
 
 /// The alpha shape of weighted points.
@@ -112,19 +112,13 @@ fn shape_by(
         complex.retain_shape();
     }
     let hidden = hidden.filter(|_| options.exterior || options.hidden);
-    let (counted, measures) = rayon::join(
-        || {
-            let (b0, sheets, windings) = boundary.as_ref()?;
-            Some(match options.periodic {
-                None => sheet_betti(&complex, *b0, sheets),
-                Some(torus) => {
-                    let wound = connected_on_torus(&complex, &points.positions, torus);
-                    torus_betti(&complex, wound.directions().rank(), sheets, *windings)
-                }
-            })
-        },
-        || Measures::of(&complex, &points.positions, options.periodic),
-    );
+    let counted = boundary.as_ref().map(|(b0, sheets, windings)| match options.periodic {
+        None => sheet_betti(&complex, *b0, sheets),
+        Some(torus) => {
+            let wound = connected_on_torus(&complex, &points.positions, torus);
+            torus_betti(&complex, wound.directions().rank(), sheets, *windings)
+        }
+    });
     Ok(AlphaShape {
         points,
         coordinates: Coordinates::default(),
@@ -136,7 +130,7 @@ fn shape_by(
         hidden,
         betti: betti.or(counted),
         sheets: boundary.map(|(_, sheets, _)| sheets),
-        measures,
+        sums: Derived::default(),
         solid: Derived::default(),
         outline: Derived::default(),
     })

@@ -123,8 +123,8 @@ impl ComponentSums {
         }
     }
 
-    fn component(self) -> Component {
-        let Self { vertices, cells, low, high, .. } = self;
+    fn component(&self) -> Component {
+        let &Self { vertices, cells, low, high, .. } = self;
         Component {
             vertices,
             cells,
@@ -224,11 +224,10 @@ impl SheetSums {
 /// Components from their sums, with the voids that their sheets enclose. Each sheet is given with its number, its
 /// component and its sums, in ascending order.
 pub fn components_of_sums(
-    components: Vec<ComponentSums>,
+    components: &[ComponentSums],
     sheets: Option<Vec<(u32, usize, SheetSums)>>,
 ) -> Vec<Component> {
-    let mut components: Vec<Component> =
-        components.into_iter().map(ComponentSums::component).collect();
+    let mut components: Vec<Component> = components.iter().map(ComponentSums::component).collect();
     let Some(sheets) = sheets else { return components };
     components.iter_mut().for_each(|component| component.voids = Some(Vec::new()));
     let enclosed =

@@ -1,5 +1,6 @@
 //! Betti numbers of a shape.
 
+use rayon::prelude::*;
 use walpha_base::UnionFind;
 use walpha_regular::Torus;
 
@@ -87,10 +88,10 @@ pub(super) fn connected_on_torus(
 pub(super) fn connected(complex: &Complex) -> UnionFind {
     let points = complex.vertices.rows().last().map_or(0, |&[v]| v as usize + 1);
     let sets = UnionFind::new(points);
-    for (&[a, b], class) in complex.edges.iter() {
-        if class != Class::Exterior {
+    complex.edges.rows().par_iter().zip(complex.edges.classes()).for_each(|(&[a, b], class)| {
+        if *class != Class::Exterior {
             sets.unite(a, b);
         }
-    }
+    });
     sets
 }

@@ -73,6 +73,7 @@ impl AlphaShape {
         let mut unwrapped = self.clone();
         unwrapped.complex = complex;
         unwrapped.options.periodic = None;
+        (unwrapped.sums, unwrapped.solid, unwrapped.outline) = Default::default();
         for (v, way) in copied {
             let place = torus.moved(self.points.positions[v as usize], way);
             unwrapped.push_copy(v, place);

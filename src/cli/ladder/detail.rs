@@ -238,7 +238,7 @@ impl Row {
             cells: shape.complex().cells.len(),
             boundary_facets: Surface::of(shape).facets().count(),
             betti: shape.betti(),
-            measures: *shape.measures(),
+            measures: shape.measures(),
             coverage: if domain.volume > 0.0 {
                 shape.measures().volume / domain.volume
             } else {

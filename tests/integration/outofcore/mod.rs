@@ -66,7 +66,7 @@ fn compare(job: &Job, cuts: &[usize]) -> Model {
         assert_eq!(shape.sheets(), expected.sheets(), "{what}");
         assert_eq!(shape.coordinates(), expected.coordinates(), "{what}");
         assert_eq!(Some(merged.betti), expected.betti(), "{what}");
-        assert_eq!(merged.measures, *expected.measures(), "{what}");
+        assert_eq!(merged.measures, expected.measures(), "{what}");
         assert_eq!(merged.weights, expected.points().summary(), "{what}");
         assert_eq!(merged.facets.regular, expected.complex().facets.counts().regular, "{what}");
         let components: Vec<Component> = expected.components();

@@ -6,7 +6,7 @@ mod command;
 mod oracle;
 
 use walpha::ladder::Filtration;
-use walpha::shape::{Betti, Engine, Measures, ShapeError, ShapeOptions, Torus, Void};
+use walpha::shape::{Betti, Engine, ShapeError, ShapeOptions, Torus, Void};
 use walpha::{Alpha, AlphaShape, WeightedPoints, alpha_shape};
 use walpha_base::random::Random;
 
@@ -343,8 +343,7 @@ fn a_laid_out_shape_has_the_sizes_of_the_torus() {
         let flat = shape.unwrapped();
         assert_eq!(flat.complex().cells.len(), shape.complex().cells.len());
         assert_eq!(flat.points().len(), shape.points().len() + flat.copies().len());
-        let [here, there] = [&shape, &flat]
-            .map(|s| Measures::of(s.complex(), s.points().positions(), s.options().periodic));
+        let (here, there) = (shape.measures(), flat.measures());
         assert!((here.volume - there.volume).abs() < 1e-9 && (here.area - there.area).abs() < 1e-9);
         let numbers = flat.component_numbers();
         assert_eq!(&numbers[..shape.points().len()], shape.component_numbers());
