@@ -221,4 +221,33 @@ mod tests {
         }
         assert_eq!(across, 1, "one shape has rows in several ranges");
     }
+
+    /// The voids that the sheets of a single component enclose are those of the complement, between regular and singular facets.
+    #[test]
+    fn sheets_enclose_the_voids() {
+        let mut random = Random::new(3);
+        let (mut voids, mut between_singular) = (0, 0);
+        for _ in 0..60 {
+            let positions = (0..80).map(|_| [0; 3].map(|_| random.unit())).collect();
+            let points = WeightedPoints::unweighted(positions);
+            for alpha in [0.02, 0.03, 0.05] {
+                let options = ShapeOptions::new(Alpha::from_squared(alpha).unwrap());
+                let shape = alpha_shape(points.clone(), &options).unwrap();
+                let components = shape.components();
+                let [component] = &components[..] else { continue };
+                let whole = alpha_shape(points.clone(), &options.exterior(true)).unwrap();
+                let expected = whole.voids().unwrap();
+                let found = component.voids.as_ref().unwrap();
+                assert_eq!(found.len(), expected.len());
+                for (found, expected) in found.iter().zip(&expected) {
+                    assert!((found.volume - expected.volume).abs() < 1e-12);
+                    assert_eq!((found.low, found.high), (expected.low, expected.high));
+                }
+                voids += found.len();
+                let sides = &shape.sheets().unwrap().singular;
+                between_singular += usize::from(!found.is_empty() && !sides.is_empty());
+            }
+        }
+        assert!(voids > 30 && between_singular > 10, "{voids} {between_singular}");
+    }
 }
