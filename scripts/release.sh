@@ -252,7 +252,7 @@ web() {
   esac
 }
 
-wheel() { portably maturin build --release --zig --compatibility manylinux_2_28 --manifest-path python/Cargo.toml --out "$dist/wheels" --target "$@"; }
+wheel() { portably maturin build --release --locked --zig --compatibility manylinux_2_28 --manifest-path python/Cargo.toml --out "$dist/wheels" --target "$@"; }
 
 wheels() {
   say "wheels"
@@ -269,7 +269,7 @@ wheels() {
   done
   if has x86_64-w64-mingw32-g++ && with_target $windows; then
     notices -p walpha-python --target $windows --no-default-features > python/walpha/THIRD-PARTY.md
-    for_windows maturin build --release --manifest-path python/Cargo.toml --out "$dist/wheels" --no-default-features
+    for_windows maturin build --release --locked --manifest-path python/Cargo.toml --out "$dist/wheels" --no-default-features
   else skip "wheel for Windows" "the target or g++-mingw-w64-x86-64 cannot be had"; fi
   skip "wheel for macOS" "needs a Mac"
   twine check --strict "$dist"/wheels/*
