@@ -1,4 +1,4 @@
-//! What follows from a shape and is computed when it is first asked for.
+//! What follows from a shape, or from a filtration, and is computed when it is first asked for.
 
 use std::sync::{Arc, OnceLock};
 
@@ -8,9 +8,16 @@ use std::sync::{Arc, OnceLock};
 pub(crate) struct Derived<T>(OnceLock<Arc<T>>);
 
 impl<T> Derived<T> {
-    /// The value, computed at the first call.
+    /// The value, computed at the first call; of calls at once each may compute it. No lock is held meanwhile: a thread that waits for
+    /// its share of parallel work takes up other work, and that may ask for the same value.
     pub(crate) fn get(&self, compute: impl FnOnce() -> T) -> &T {
-        self.0.get_or_init(|| Arc::new(compute()))
+        match self.0.get() {
+            Some(value) => value,
+            None => {
+                let value = Arc::new(compute());
+                self.0.get_or_init(|| value)
+            }
+        }
     }
 }
 
@@ -23,5 +30,35 @@ impl<T> Default for Derived<T> {
 impl<T> PartialEq for Derived<T> {
     fn eq(&self, _: &Self) -> bool {
         true
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::mpsc::channel;
+    use std::thread;
+    use std::time::Duration;
+
+    use rayon::prelude::*;
+
+    use super::*;
+
+    /// While one thread computes, both take up more work that asks for the value.
+    #[test]
+    fn values_may_be_computed_in_parallel_by_parallel_work() {
+        let (done, wait) = channel();
+        thread::spawn(move || {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().expect("two threads");
+            let value = Derived::default();
+            let nap = |millis| thread::sleep(Duration::from_millis(millis));
+            let compute = || rayon::join(|| nap(1), || nap(20));
+            pool.install(|| (0..64).into_par_iter().for_each(|_| _ = value.get(compute)));
+            done.send(()).expect("the test waits");
+        });
+        assert_eq!(
+            wait.recv_timeout(Duration::from_secs(60)),
+            Ok(()),
+            "threads wait for themselves"
+        );
     }
 }

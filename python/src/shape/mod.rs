@@ -175,8 +175,9 @@ impl Shape {
 
     /// Volume, area of regular facets, area of singular ones.
     #[getter]
-    fn measures(&self) -> (f64, f64, f64) {
-        let measures = self.shape.measures();
+    fn measures(&self, py: Python<'_>) -> (f64, f64, f64) {
+        // The first call goes over all simplices.
+        let measures = py.detach(|| self.shape.measures());
         (measures.volume, measures.area, measures.singular_area)
     }
 

@@ -16,6 +16,7 @@ use walpha_regular::TriangulationError;
 use super::levels::OwnLevels;
 use super::radii::{Radii, Radius};
 use super::{Filtration, Levels};
+use crate::derived::Derived;
 use crate::{Alpha, Betti, ShapeError};
 pub use gradient::Derivative;
 pub use intervals::Interval;
@@ -45,7 +46,7 @@ pub struct Ordered<'a> {
     /// The row of each of them in the triangulation.
     cell_rows: Vec<u32>,
     order: Vec<u32>,
-    pairs: OnceLock<Pairs>,
+    pairs: Derived<Pairs>,
     loops: OnceLock<Loops>,
 }
 
@@ -126,7 +127,7 @@ impl Filtration {
             cells,
             cell_rows,
             order: Vec::new(),
-            pairs: OnceLock::new(),
+            pairs: Derived::default(),
             loops: OnceLock::new(),
         };
         ordered.order =

@@ -13,7 +13,7 @@ impl Ordered<'_> {
     /// Persistence pairs of dimensions 0 and 2. O(n α(n)). Those of dimension 1 are [`loops`](Self::loops), between
     /// the edges and facets that are in none of these. Computed once.
     pub fn pairs(&self) -> &Pairs {
-        self.pairs.get_or_init(|| {
+        self.pairs.get(|| {
             let ((components, lasting), voids) =
                 rayon::join(|| self.component_pairs(), || self.void_pairs());
             Pairs { components, lasting, ..voids }
