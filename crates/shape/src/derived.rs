@@ -11,13 +11,11 @@ impl<T> Derived<T> {
     /// The value, computed at the first call; of calls at once each may compute it. No lock is held meanwhile: a thread that waits for
     /// its share of parallel work takes up other work, and that may ask for the same value.
     pub(crate) fn get(&self, compute: impl FnOnce() -> T) -> &T {
-        match self.0.get() {
-            Some(value) => value,
-            None => {
-                let value = Arc::new(compute());
-                self.0.get_or_init(|| value)
-            }
+        if let Some(value) = self.0.get() {
+            return value;
         }
+        let value = Arc::new(compute());
+        self.0.get_or_init(|| value)
     }
 }
 
@@ -39,26 +37,25 @@ mod tests {
     use std::thread;
     use std::time::Duration;
 
-    use rayon::prelude::*;
-
     use super::*;
 
-    /// While one thread computes, both take up more work that asks for the value.
+    /// The first of three threads waits for the second, which computes a part of the value; meanwhile the third asks for the value
+    /// twice, and the first takes up one of these.
     #[test]
     fn values_may_be_computed_in_parallel_by_parallel_work() {
         let (done, wait) = channel();
         thread::spawn(move || {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().expect("two threads");
+            let three = rayon::ThreadPoolBuilder::new().num_threads(3).build();
             let value = Derived::default();
             let nap = |millis| thread::sleep(Duration::from_millis(millis));
-            let compute = || rayon::join(|| nap(1), || nap(20));
-            pool.install(|| (0..64).into_par_iter().for_each(|_| _ = value.get(compute)));
+            let ask = || _ = value.get(|| _ = rayon::join(|| nap(5), || nap(100)));
+            let ask_twice = || {
+                nap(30);
+                rayon::join(ask, ask);
+            };
+            three.expect("three threads").install(|| rayon::join(ask, ask_twice));
             done.send(()).expect("the test waits");
         });
-        assert_eq!(
-            wait.recv_timeout(Duration::from_secs(60)),
-            Ok(()),
-            "threads wait for themselves"
-        );
+        assert_eq!(wait.recv_timeout(Duration::from_secs(30)), Ok(()), "a thread waits for itself");
     }
 }
