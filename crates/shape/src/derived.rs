@@ -48,7 +48,11 @@ mod tests {
             let three = rayon::ThreadPoolBuilder::new().num_threads(3).build();
             let value = Derived::default();
             let nap = |millis| thread::sleep(Duration::from_millis(millis));
-            let ask = || _ = value.get(|| _ = rayon::join(|| nap(5), || nap(100)));
+            let compute = || {
+                rayon::join(|| nap(5), || nap(100));
+                1
+            };
+            let ask = || assert_eq!(*value.get(compute), 1);
             let ask_twice = || {
                 nap(30);
                 rayon::join(ask, ask);
