@@ -25,7 +25,8 @@ pub struct AlphaShape {
     pub(super) hidden: Option<Vec<u32>>,
     pub(super) betti: Option<Betti>,
     pub(super) sheets: Option<Sheets>,
-    pub(super) sums: Derived<Vec<ComponentSums>>,
+    /// The sums over each component, and those over all.
+    pub(super) sums: Derived<(Vec<ComponentSums>, Measures)>,
     pub(super) solid: Derived<(Surface, Cuts)>,
     pub(super) outline: Derived<Result<Outline, OutlineError>>,
 }
@@ -164,9 +165,9 @@ impl AlphaShape {
         self.sheets.as_ref()
     }
 
-    /// Volume and areas, summed exactly and rounded once. O(n) for the first call; the shape keeps the sums.
+    /// Volume and areas, summed exactly and rounded once. O(n) for the first call; the shape keeps them.
     pub fn measures(&self) -> Measures {
-        ComponentSums::measures(self.component_sums().iter())
+        self.sums.get(|| self.summed(&self.component_numbers())).1
     }
 
     /// Number of points that are vertices of the shape.

@@ -5,7 +5,7 @@ use walpha_regular::Torus;
 
 use super::sums::{ByNumber, ComponentSums, SheetSums, by_number, components_of_sums};
 use super::topology::{connected, connected_on_torus};
-use super::{AlphaShape, Class, Component, Sheets};
+use super::{AlphaShape, Class, Component, Measures, Sheets};
 
 /// Stands in [`AlphaShape::component_numbers`] for points that are no vertices of the shape.
 pub const NO_COMPONENT: u32 = u32::MAX;
@@ -37,13 +37,8 @@ impl AlphaShape {
         numbers
     }
 
-    /// The sums over each component.
-    pub(crate) fn component_sums(&self) -> &[ComponentSums] {
-        self.sums.get(|| self.summed(&self.component_numbers()))
-    }
-
-    /// The sums over each component, given the component of each point.
-    fn summed(&self, numbers: &[u32]) -> Vec<ComponentSums> {
+    /// The sums over each component, and those over all, given the component of each point.
+    pub(crate) fn summed(&self, numbers: &[u32]) -> (Vec<ComponentSums>, Measures) {
         let positions = &self.points().positions;
         let torus = self.options().periodic;
         let mut windings =
@@ -79,13 +74,14 @@ impl AlphaShape {
         for (number, sums) in of_cells.iter().chain(&of_facets).flatten() {
             components[*number as usize].join(sums);
         }
-        components
+        let measures = ComponentSums::measures(components.iter());
+        (components, measures)
     }
 
     /// The components of the shape by their numbers, as many as b0. Sums are exact, and rounded once. O(n).
     pub fn components(&self) -> Vec<Component> {
         let numbers = self.component_numbers();
-        let sums = self.sums.get(|| self.summed(&numbers));
+        let (sums, _) = self.sums.get(|| self.summed(&numbers));
         let torus = self.options().periodic;
         // On a torus, a sheet need not enclose anything.
         let sheets = self.sheets().filter(|_| torus.is_none());
@@ -150,7 +146,7 @@ mod tests {
 
     use super::*;
     use crate::measure::{facet_area, six_volumes};
-    use crate::{Alpha, Measures, ShapeOptions, WeightedPoints, alpha_shape};
+    use crate::{Alpha, ShapeOptions, WeightedPoints, alpha_shape};
 
     /// Sums over ranges of rows, joined, against one sum over all rows, for components within a range and across them.
     #[test]
