@@ -111,7 +111,8 @@ impl Judge<'_> {
         let cells = &structure.complex.cells;
         let class = |i: usize| {
             let cell = cells.rows()[i];
-            let inside = !self.flat(cell) && self.fits(cell);
+            // Cells that are linked as they must be are not flat.
+            let inside = (untied || !self.flat(cell)) && self.fits(cell);
             Verdict::of(if inside { Class::Interior } else { Class::Exterior })
         };
         let mut differing = Vec::new();

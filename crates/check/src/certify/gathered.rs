@@ -4,8 +4,7 @@ use rayon::prelude::*;
 use walpha_complex::canonical::{smallest_even, sorted};
 
 use super::claim::Claim;
-use super::grid::Grid;
-use super::structure::{Points, Structure, sites};
+use super::structure::Structure;
 use crate::index::{for_each_bucket, in_buckets};
 use crate::schema::PlacedComplex;
 use crate::{Class, Complex, Placed, Simplices};
@@ -14,26 +13,23 @@ use crate::{Class, Complex, Placed, Simplices};
 const FEW: usize = 1 << 16;
 /// Cells whose spread is looked at.
 const SAMPLE: usize = 1 << 10;
+/// Parts that rows are sorted in, each of which fits into a cache, of a million points or so.
+const PARTS: usize = 1 << 8;
 
-/// The claim with its points numbered box by box, if that is worth a copy: where points are in random order, everything that is
+/// The claim with its points numbered along a curve, if that is worth a copy: where points are in random order, everything that is
 /// looked up of a cell is a cache miss. Nothing is found of one claim if and only if nothing is found of the other; but of several
 /// points that refute a simplex another may be named.
 pub(super) fn gathered(claim: &Claim) -> Option<PlacedComplex> {
     let Placed { positions, complex, .. } = claim.placed;
     let pays = is_scattered(complex.cells.rows(), positions.len());
     let fits = || Vec::<u8>::new().try_reserve_exact(bytes(complex, positions.len())).is_ok();
-    (pays && fits()).then(|| in_boxes(claim)).flatten()
+    (pays && fits()).then(|| renumbered(claim)).flatten()
 }
 
-/// The claim with its points numbered box by box; `None` if it names points that do not exist.
-fn in_boxes(claim: &Claim) -> Option<PlacedComplex> {
+/// The claim with its points numbered along a curve; `None` if it names points that do not exist.
+fn renumbered(claim: &Claim) -> Option<PlacedComplex> {
     let Placed { positions, weights, alpha, complex } = claim.placed;
-    let old = {
-        let sites = sites(positions, weights);
-        let all = (0..positions.len() as u32).collect();
-        // In each box as they were, so that of equal points the first stays the first.
-        Grid::new(Points { sites: &sites }, all).into_points()
-    };
+    let old = along_curve(positions);
     let mut new = vec![0; old.len()];
     (0..).zip(&old).for_each(|(new_number, &old)| new[old as usize] = new_number);
     let list = |numbers: &[u32]| numbers.iter().map(|&v| new.get(v as usize).copied()).collect();
@@ -48,10 +44,10 @@ fn in_boxes(claim: &Claim) -> Option<PlacedComplex> {
     }
     let Complex { cells, facets, edges, vertices } = complex;
     let complex = Complex {
-        cells: renumbered(cells, &new)?,
-        facets: renumbered(facets, &new)?,
-        edges: renumbered(edges, &new)?,
-        vertices: renumbered(vertices, &new)?,
+        cells: sorted_anew(cells, &new)?,
+        facets: sorted_anew(facets, &new)?,
+        edges: sorted_anew(edges, &new)?,
+        vertices: sorted_anew(vertices, &new)?,
     };
     Some(PlacedComplex {
         positions: old.iter().map(|&v| positions[v as usize]).collect(),
@@ -62,6 +58,31 @@ fn in_boxes(claim: &Claim) -> Option<PlacedComplex> {
         duplicates: duplicates.flatten(),
         periodic: None,
     })
+}
+
+/// The points along a Z-order curve through boxes, 1024 along the longest axis. In each box they are as they were, so that of equal
+/// points the first stays the first.
+fn along_curve(positions: &[[f64; 3]]) -> Vec<u32> {
+    let ends = |k: usize| {
+        let coordinates = positions.iter().map(|position| position[k]);
+        let low = coordinates.clone().fold(f64::INFINITY, f64::min);
+        (low, coordinates.fold(f64::NEG_INFINITY, f64::max))
+    };
+    let ends = [0, 1, 2].map(ends);
+    let longest = ends.iter().map(|(low, high)| high - low).fold(0.0, f64::max);
+    let place = |position: &[f64; 3]| {
+        let bits = |k: usize| {
+            // Points of no extent, or of more than a double can hold, share a box: the conversion takes NaN to 0.
+            let number = ((position[k] - ends[k].0) / longest * 1023.0) as u64;
+            (0..10).fold(0, |bits, i| bits | (number >> i & 1) << (3 * i + k))
+        };
+        bits(0) | bits(1) | bits(2)
+    };
+    let numbered = positions.par_iter().enumerate();
+    let mut places: Vec<u64> =
+        numbered.map(|(number, position)| place(position) << 32 | number as u64).collect();
+    places.par_sort_unstable();
+    places.into_iter().map(|place| place as u32).collect()
 }
 
 /// Whether the numbers of a cell's vertices usually differ by more than an eighth of all points.
@@ -78,44 +99,74 @@ fn is_scattered(cells: &[[u32; 4]], points: usize) -> bool {
 /// Bytes that the copy takes while it is made, or later with what is linked to it, whichever is more.
 fn bytes(complex: &Complex, points: usize) -> usize {
     fn row<const N: usize>(simplices: &Simplices<N>) -> [usize; 2] {
-        let sorted = 2 * size_of::<Numbered<N>>();
-        [sorted, size_of::<([u32; N], Class)>()].map(|bytes| bytes * simplices.len())
+        // In parts, with room for uneven ones.
+        let in_parts = size_of::<Numbered<N>>() * 5 / 4;
+        [in_parts, size_of::<([u32; N], Class)>()].map(|bytes| bytes * simplices.len())
     }
     let Complex { cells, facets, edges, vertices } = complex;
     let rows = [row(cells), row(facets), row(edges), row(vertices)];
-    let sorted = rows.iter().map(|[sorted, _]| *sorted).max().expect("four dimensions");
+    let in_parts = rows.iter().map(|[in_parts, _]| *in_parts).max().expect("four dimensions");
     let kept = rows.iter().map(|[_, kept]| kept).sum::<usize>();
-    // Points with their weights twice, four boxes each, and numbers.
-    kept + sorted.max(Structure::bytes(complex)) + 100 * points
+    // Points with their weights, places on the curve, and numbers.
+    kept + in_parts.max(Structure::bytes(complex)) + 60 * points
 }
 
 /// A row with its vertices sorted, whether its winding is theirs, and its class.
 type Numbered<const N: usize> = ([u32; N], bool, Class);
 
 /// The rows with new numbers, sorted up to their windings; `None` if one has a vertex that does not exist.
-fn renumbered<const N: usize>(simplices: &Simplices<N>, new: &[u32]) -> Option<Simplices<N>> {
-    if simplices.rows().as_flattened().par_iter().any(|&v| v as usize >= new.len()) {
+///
+/// They are written down by parts of the numbers first, and then sorted part by part: a row that is put in its place among all would
+/// be a cache miss.
+fn sorted_anew<const N: usize>(simplices: &Simplices<N>, new: &[u32]) -> Option<Simplices<N>> {
+    let (rows, classes) = (simplices.rows(), simplices.classes());
+    if rows.as_flattened().par_iter().any(|&v| v as usize >= new.len()) {
         return None;
     }
-    let rows = simplices.rows().par_iter().zip(simplices.classes());
+    let shift = new.len().div_ceil(PARTS).next_power_of_two().trailing_zeros();
+    let range = rows.len().div_ceil(rayon::current_num_threads()).max(1);
     // Windings are kept apart, so that rows compare by their sorted vertices.
-    let renumbered = rows.map(|(row, &class)| {
-        let row = row.map(|v| new[v as usize]);
-        (sorted(row), smallest_even(row) == sorted(row), class)
-    });
-    let renumbered: Vec<Numbered<N>> = renumbered.collect();
-    let entries = || renumbered.iter().map(|entry| (entry.0[0], *entry));
-    let (starts, mut rows) = in_buckets(new.len(), &entries);
-    drop(renumbered);
-    for_each_bucket(&mut rows, &starts, &|bucket| bucket.sort_unstable_by_key(|(row, ..)| *row));
-    let wound = rows.par_iter().map(|&(mut row, even, _)| {
-        if !even {
-            row.swap(N - 2, N - 1);
+    let in_parts = |(rows, classes): (&[[u32; N]], &[Class])| {
+        let likely = rows.len() / new.len().div_ceil(1 << shift) * 5 / 4;
+        let mut parts: Vec<Vec<Numbered<N>>> =
+            (0..PARTS).map(|_| Vec::with_capacity(likely)).collect();
+        for (row, &class) in rows.iter().zip(classes) {
+            let row = row.map(|v| new[v as usize]);
+            let entry = (sorted(row), smallest_even(row) == sorted(row), class);
+            parts[(entry.0[0] >> shift) as usize].push(entry);
         }
-        row
+        parts
+    };
+    let ranges = rows.par_chunks(range).zip(classes.par_chunks(range));
+    let ranges: Vec<_> = ranges.map(in_parts).collect();
+
+    let mut rows = vec![[0; N]; rows.len()];
+    let mut classes = vec![Class::Exterior; rows.len()];
+    let (mut rows_left, mut classes_left) = (&mut rows[..], &mut classes[..]);
+    let mut parts = Vec::with_capacity(PARTS);
+    for part in 0..PARTS {
+        let length = ranges.iter().map(|parts| parts[part].len()).sum();
+        let (of_rows, of_classes);
+        (of_rows, rows_left) = rows_left.split_at_mut(length);
+        (of_classes, classes_left) = classes_left.split_at_mut(length);
+        parts.push((part, of_rows, of_classes));
+    }
+    parts.into_par_iter().for_each(|(part, rows, classes)| {
+        let entries = ranges.iter().flat_map(|parts| &parts[part]);
+        let first = (part as u32) << shift;
+        let entries = || entries.clone().map(|entry| (entry.0[0] - first, *entry));
+        let (starts, mut entries) = in_buckets(1 << shift, &entries);
+        for_each_bucket(&mut entries, &starts, &|bucket| {
+            bucket.sort_unstable_by_key(|(row, ..)| *row);
+        });
+        for ((row, class), (sorted, even, given)) in rows.iter_mut().zip(classes).zip(entries) {
+            (*row, *class) = (sorted, given);
+            if !even {
+                row.swap(N - 2, N - 1);
+            }
+        }
     });
-    let classes = rows.par_iter().map(|&(.., class)| class);
-    Some(Simplices::new(wound.collect(), classes.collect()).expect("as many classes as rows"))
+    Some(Simplices::new(rows, classes).expect("as many classes as rows"))
 }
 
 #[cfg(test)]
@@ -135,6 +186,65 @@ mod tests {
         assert!(!is_scattered(&near, FEW));
         assert!(!is_scattered(&far, FEW - 1));
         assert!(!is_scattered(&[], FEW));
+    }
+
+    /// Each point once, and equal ones in their order; the curve goes through one half after the other.
+    #[test]
+    fn a_curve_takes_each_point_once() {
+        let mut random = Random::new(10);
+        let side = f64::from(1 << 10);
+        let positions: Vec<[f64; 3]> =
+            (0..3000).map(|_| [0; 3].map(|_| side * random.whole(0, 9))).collect();
+        let curve = along_curve(&positions);
+        let mut all = curve.clone();
+        all.sort_unstable();
+        assert_eq!(all, (0..3000).collect::<Vec<_>>());
+        let of_curve = || curve.iter().map(|&v| (positions[v as usize], v));
+        let mut last = std::collections::HashMap::new();
+        for (position, v) in of_curve() {
+            let before = last.insert(position.map(f64::to_bits), v);
+            assert!(before.is_none_or(|before| before < v));
+        }
+        assert!(last.len() < 2000, "{}", last.len());
+        let upper = of_curve().map(|(position, _)| position[2] > 4.5 * side);
+        assert!(upper.is_sorted());
+        for positions in [[[1.0; 3]; 4], [[f64::MIN; 3], [f64::MAX; 3], [0.0; 3], [1.0; 3]]] {
+            assert_eq!(along_curve(&positions), [0, 1, 2, 3]);
+        }
+    }
+
+    /// Rows are sorted as by one sort of all, with their windings and classes.
+    #[test]
+    fn rows_are_sorted_anew() {
+        let mut random = Random::new(11);
+        for points in [4, PARTS, 20 * PARTS + 7] {
+            let mut new: Vec<u32> = (0..points as u32).collect();
+            random.shuffle(&mut new);
+            let mut rows: Vec<([u32; 4], Class)> = Vec::new();
+            while rows.len() < 20_000 {
+                let row = [0; 4].map(|_| random.below(points) as u32);
+                let class = random.pick(&[Class::Interior, Class::Regular, Class::Singular]);
+                if (1..4).all(|i| !row[..i].contains(&row[i])) {
+                    rows.push((row, class));
+                }
+            }
+            let given: Simplices<4> = rows.iter().copied().collect();
+            let mut expected: Vec<([u32; 4], Class)> =
+                rows.iter().map(|&(row, class)| (row.map(|v| new[v as usize]), class)).collect();
+            for (row, _) in &mut expected {
+                *row = smallest_even(*row);
+            }
+            let key = |&(row, class): &([u32; 4], Class)| (sorted(row), row, class as u8);
+            expected.sort_unstable_by_key(key);
+            let mut found: Vec<([u32; 4], Class)> =
+                sorted_anew(&given, &new).unwrap().into_iter().collect();
+            assert!(found.is_sorted_by_key(|(row, _)| sorted(*row)));
+            // Rows that are repeated are in any order.
+            found.sort_unstable_by_key(key);
+            assert_eq!(found, expected, "{points}");
+            rows[0].0[3] = points as u32;
+            assert_eq!(sorted_anew(&rows.into_iter().collect::<Simplices<4>>(), &new), None);
+        }
     }
 
     /// The verdict is that of the claim as it is: where it is right, and where a class, a list or a simplex is wrong.
@@ -166,7 +276,7 @@ mod tests {
                 .with_hidden(&hidden[..])
                 .with_duplicates(&duplicates[..]);
             let (findings, certificate) = claim.findings().unwrap();
-            let gathered = in_boxes(&claim).expect("all points exist");
+            let gathered = renumbered(&claim).expect("all points exist");
             let (others, other) = gathered.claim().with_extent(claim.extent).findings().unwrap();
             assert_eq!(other.verdict, certificate.verdict, "{findings:?} {others:?}");
             if findings.is_empty() {

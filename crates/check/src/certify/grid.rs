@@ -115,11 +115,6 @@ impl Grid {
         &self.points
     }
 
-    /// The points in the order of the grid, without the grid.
-    pub(super) fn into_points(self) -> Vec<u32> {
-        self.points
-    }
-
     /// Some point near a position, if there are points.
     pub(super) fn some_near(&self, position: [f64; 3]) -> Option<u32> {
         let center = self.at(position);
