@@ -13,7 +13,7 @@ use crate::{Class, Complex, Placed, Simplices};
 const FEW: usize = 1 << 16;
 /// Cells whose spread is looked at.
 const SAMPLE: usize = 1 << 10;
-/// Parts that rows are sorted in, each of which fits into a cache, of a million points or so.
+/// Parts that rows are sorted in: of a million points, each fits into a cache.
 const PARTS: usize = 1 << 8;
 
 /// The claim with its points numbered along a curve, if that is worth a copy: where points are in random order, everything that is
