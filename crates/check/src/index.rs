@@ -25,15 +25,16 @@ pub(crate) fn of_bucket(starts: &[u32], number: u32) -> Range<usize> {
 }
 
 /// Where the entries of each number below `count` [start](starts), and all entries, given with their numbers, in that order; those of one
-/// number stay in their order. Each thread goes through all entries, and keeps those of its share of the numbers.
+/// number stay in their order. Each of so many threads goes through all entries, and keeps those of its share of the numbers.
 pub(crate) fn in_buckets<T: Copy + Send, I: Iterator<Item = (u32, T)>>(
     count: usize,
+    threads: usize,
     entries: &(impl Fn() -> I + Sync),
 ) -> (Vec<u32>, Vec<T>) {
     let starts = starts(entries().map(|(number, _)| number), count);
     let Some((_, any)) = entries().next() else { return (starts, Vec::new()) };
     let mut sorted = vec![any; starts[count] as usize];
-    fill(&mut sorted, &starts, 0, entries, rayon::current_num_threads());
+    fill(&mut sorted, &starts, 0, entries, threads);
     (starts, sorted)
 }
 

@@ -35,7 +35,7 @@ pub(super) fn missing_cells(
             (a, [b, c])
         })
     };
-    let (starts, mut around) = in_buckets(points.len(), &entries);
+    let (starts, mut around) = in_buckets(points.len(), rayon::current_num_threads(), &entries);
     for_each_bucket(&mut around, &starts, &|bucket| bucket.sort_unstable());
     let apexes = |[a, b]: [u32; 2]| {
         let around = &around[of_bucket(&starts, a)];

@@ -5,7 +5,7 @@ use walpha_complex::canonical::{smallest_even, sorted};
 
 use super::claim::Claim;
 use super::structure::Structure;
-use crate::index::{for_each_bucket, in_buckets};
+use crate::index::{for_each_bucket, in_buckets, of_bucket};
 use crate::schema::PlacedComplex;
 use crate::{Class, Complex, Placed, Simplices};
 
@@ -99,9 +99,8 @@ fn is_scattered(cells: &[[u32; 4]], points: usize) -> bool {
 /// Bytes that the copy takes while it is made, or later with what is linked to it, whichever is more.
 fn bytes(complex: &Complex, points: usize) -> usize {
     fn row<const N: usize>(simplices: &Simplices<N>) -> [usize; 2] {
-        // In parts, with room for uneven ones.
-        let in_parts = size_of::<Numbered<N>>() * 5 / 4;
-        [in_parts, size_of::<([u32; N], Class)>()].map(|bytes| bytes * simplices.len())
+        [size_of::<Numbered<N>>(), size_of::<([u32; N], Class)>()]
+            .map(|bytes| bytes * simplices.len())
     }
     let Complex { cells, facets, edges, vertices } = complex;
     let rows = [row(cells), row(facets), row(edges), row(vertices)];
@@ -127,35 +126,35 @@ fn sorted_anew<const N: usize>(simplices: &Simplices<N>, new: &[u32]) -> Option<
     let range = rows.len().div_ceil(rayon::current_num_threads()).max(1);
     // Windings are kept apart, so that rows compare by their sorted vertices.
     let in_parts = |(rows, classes): (&[[u32; N]], &[Class])| {
-        let likely = rows.len() / new.len().div_ceil(1 << shift) * 5 / 4;
-        let mut parts: Vec<Vec<Numbered<N>>> =
-            (0..PARTS).map(|_| Vec::with_capacity(likely)).collect();
-        for (row, &class) in rows.iter().zip(classes) {
-            let row = row.map(|v| new[v as usize]);
-            let entry = (sorted(row), smallest_even(row) == sorted(row), class);
-            parts[(entry.0[0] >> shift) as usize].push(entry);
-        }
-        parts
+        let entries = || {
+            rows.iter().zip(classes).map(|(row, &class)| {
+                let row = row.map(|v| new[v as usize]);
+                let sorted = sorted(row);
+                (sorted[0] >> shift, (sorted, smallest_even(row) == sorted, class))
+            })
+        };
+        in_buckets(PARTS, 1, &entries)
     };
     let ranges = rows.par_chunks(range).zip(classes.par_chunks(range));
-    let ranges: Vec<_> = ranges.map(in_parts).collect();
+    let ranges: Vec<(Vec<u32>, Vec<Numbered<N>>)> = ranges.map(in_parts).collect();
+    let of_part =
+        |part: u32| ranges.iter().map(move |(starts, entries)| &entries[of_bucket(starts, part)]);
 
     let mut rows = vec![[0; N]; rows.len()];
     let mut classes = vec![Class::Exterior; rows.len()];
     let (mut rows_left, mut classes_left) = (&mut rows[..], &mut classes[..]);
     let mut parts = Vec::with_capacity(PARTS);
-    for part in 0..PARTS {
-        let length = ranges.iter().map(|parts| parts[part].len()).sum();
+    for part in 0..PARTS as u32 {
+        let length = of_part(part).map(<[_]>::len).sum();
         let (of_rows, of_classes);
         (of_rows, rows_left) = rows_left.split_at_mut(length);
         (of_classes, classes_left) = classes_left.split_at_mut(length);
         parts.push((part, of_rows, of_classes));
     }
     parts.into_par_iter().for_each(|(part, rows, classes)| {
-        let entries = ranges.iter().flat_map(|parts| &parts[part]);
-        let first = (part as u32) << shift;
-        let entries = || entries.clone().map(|entry| (entry.0[0] - first, *entry));
-        let (starts, mut entries) = in_buckets(1 << shift, &entries);
+        let first = part << shift;
+        let entries = || of_part(part).flatten().map(|entry| (entry.0[0] - first, *entry));
+        let (starts, mut entries) = in_buckets(1 << shift, 1, &entries);
         for_each_bucket(&mut entries, &starts, &|bucket| {
             bucket.sort_unstable_by_key(|(row, ..)| *row);
         });

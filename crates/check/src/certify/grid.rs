@@ -47,7 +47,7 @@ impl Grid {
             Self { low, step, scale: step.recip(), counts, starts: Vec::new(), points: Vec::new() };
         let boxes = counts.iter().product::<usize>();
         let entries = || points.iter().map(|&i| (grid.number(grid.at(of.position(i))) as u32, i));
-        (grid.starts, grid.points) = in_buckets(boxes, &entries);
+        (grid.starts, grid.points) = in_buckets(boxes, rayon::current_num_threads(), &entries);
         grid
     }
 
