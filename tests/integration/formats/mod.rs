@@ -2,6 +2,7 @@
 
 mod damaged;
 mod described;
+mod fields;
 mod files;
 mod parts;
 mod places;
