@@ -120,6 +120,11 @@ impl Reason {
         Self::Truncated { what: what.into() }
     }
 
+    /// What is claimed is more than there is: it ends too early, or the claim is wrong.
+    pub fn claims_more(what: impl Into<String>) -> Self {
+        Self::content(what, "copy it again, or correct its header")
+    }
+
     /// [`Reason::Header`].
     pub fn header(what: impl Into<String>) -> Self {
         Self::Header { what: what.into() }
@@ -175,9 +180,15 @@ impl Reason {
                 ]
             }
             Self::Other { .. } => "check its name and what is in it".into(),
-            Self::Truncated { .. } | Self::Damaged { .. } => "copy it again".into(),
-            Self::Length { .. } | Self::Header { .. } => {
+            Self::Truncated { .. } => "copy it again".into(),
+            Self::Damaged { .. } => {
+                "it was damaged or written wrongly: write it anew with the program that made it".into()
+            }
+            Self::Length { needed, found, .. } if found < needed => {
                 "copy it again, or correct its header".into()
+            }
+            Self::Length { .. } | Self::Header { .. } => {
+                "correct its header, or write it anew with the program that made it".into()
             }
             Self::Value { .. } => "correct it".into(),
             Self::Without { feature, .. } => format!(

@@ -1,6 +1,6 @@
 //! Which format a file or folder is of, and reading it.
 
-use std::io::{self, Read};
+use std::io;
 use std::path::{Path, PathBuf};
 
 use walpha_base::Monitor;
@@ -8,6 +8,7 @@ use walpha_base::advice::Setting;
 use walpha_base::near::nearest;
 
 use super::magic::{is_dicom, is_gzip};
+use super::others::{other_kind, partner};
 use super::table::{FORMATS, VolumeFormat};
 
 use crate::crop::downsample_source;
@@ -21,19 +22,6 @@ use crate::{ReadOptions, Reason, Series, Source, Volume, VolumeError};
 
 /// Bytes of what is unpacked that are looked at.
 const BYTES: u64 = 1024;
-
-/// Formats that are known and not read as volumes: what they begin with, what they are, and what to
-/// do.
-const REFUSED: [(&[u8], &str, &str); 8] = [
-    (b"\x89PNG", "a PNG image, one slice", "give the folder of all slices"),
-    (b"\xff\xd8\xff", "a JPEG image, one slice", "give the folder of all slices"),
-    (b"\x89HDF\r\n", "HDF5 (or MINC2, NetCDF-4), which is not read", "convert it to NRRD or NIfTI"),
-    (b"CDF", "NetCDF (or MINC1), which is not read", "convert it to NRRD or NIfTI"),
-    (b"BZh", "compressed with bzip2", "unpack it first"),
-    (b"\xfd7zXZ", "compressed with xz", "unpack it first"),
-    (b"\x28\xb5\x2f\xfd", "compressed with Zstandard", "unpack it first"),
-    (b"%PDF", "a PDF document", "name a file with a volume in it"),
-];
 
 /// Reads a volume from a file: raw samples if a layout is given, else by what the file begins with,
 /// and where that says nothing by its extension. Folders are read as the first format that they look
@@ -379,8 +367,8 @@ fn detect_as(file: &OpenFile, asked: Option<&str>) -> Result<Detected, VolumeErr
     if let Some(format) = by_content(start) {
         return Ok(Detected { format, gzip: false });
     }
-    if let Some((_, what, advice)) = REFUSED.iter().find(|(magic, ..)| start.starts_with(magic)) {
-        return Err(format_error(path, Reason::unsupported(format!("is {what}"), *advice)));
+    if let Some(reason) = other_kind(start) {
+        return Err(format_error(path, reason));
     }
     if is_gzip(start) {
         return unpacked(file, asked);
@@ -390,7 +378,9 @@ fn detect_as(file: &OpenFile, asked: Option<&str>) -> Result<Detected, VolumeErr
         let what = "is not compressed with gzip, whatever its name says";
         return Err(format_error(path, Reason::content(what, "rename it")));
     }
-    let format = by_extension(path, asked).ok_or_else(|| unknown(path))?;
+    let unknown =
+        || partner(path).map_or_else(|| unknown(path), |reason| format_error(path, reason));
+    let format = by_extension(path, asked).ok_or_else(unknown)?;
     Ok(Detected { format, gzip: false })
 }
 
@@ -414,9 +404,8 @@ fn name(path: &Path, asked: Option<&str>) -> String {
 /// What a gzip stream holds.
 fn unpacked(file: &OpenFile, asked: Option<&str>) -> Result<Detected, VolumeError> {
     let path = file.path();
-    let mut start = Vec::new();
     // What cannot be unpacked is left to the reader, which says why.
-    let unpacked = file.unpacked()?.0.take(BYTES).read_to_end(&mut start);
+    let (start, failed) = file.start_unpacked(BYTES)?;
     let packed = FORMATS.iter().filter(|format| format.gzip);
     let names: Vec<&str> = packed.clone().map(|format| format.name).collect();
     let names = names.join(", ");
@@ -429,15 +418,29 @@ fn unpacked(file: &OpenFile, asked: Option<&str>) -> Result<Detected, VolumeErro
             Err(format_error(path, Reason::unsupported(what, "unpack it first")))
         }
         (None, Some(format)) => Ok(Detected { format, gzip: true }),
-        (None, None) => {
-            let what = match unpacked {
-                Ok(_) => format!(
-                    "is compressed with gzip, but holds no format known by content: {names} \
-                         are read so"
+        (None, None) => Err(format_error(
+            path,
+            match (failed, other_kind(&start)) {
+                (Some(error), _) if error.kind() == io::ErrorKind::UnexpectedEof => {
+                    Reason::truncated(
+                        "is compressed with gzip, and ends inside its stream: it is truncated",
+                    )
+                }
+                (Some(error), _) => {
+                    Reason::damaged(format!("is compressed with gzip, and damaged ({error})"))
+                }
+                (None, Some(other)) => Reason::unsupported(
+                    format!("is compressed with gzip, and what it holds {other}"),
+                    other.advice(),
                 ),
-                Err(error) => format!("is compressed with gzip, and damaged ({error})"),
-            };
-            Err(format_error(path, Reason::content(what, "unpack it first")))
-        }
+                (None, None) => Reason::content(
+                    format!(
+                        "is compressed with gzip, but holds no format known by content: {names} \
+                         are read so"
+                    ),
+                    "unpack it first",
+                ),
+            },
+        )),
     }
 }

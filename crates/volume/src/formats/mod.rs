@@ -3,6 +3,7 @@
 
 mod detect;
 mod magic;
+mod others;
 mod table;
 mod unknown;
 
@@ -31,5 +32,6 @@ pub(crate) use magic::is_gzip;
 #[cfg(feature = "formats")]
 pub(crate) use magic::{NIFTI_HEADERS, nifti_version};
 pub use magic::{is_npy, is_vtk, is_vtk_xml};
+pub use others::other_kind;
 pub use table::{FORMATS, Keeps, VolumeFormat, VolumeWriter};
 pub use unknown::UnknownFormat;

@@ -17,10 +17,11 @@ pub(super) fn data_paths(header: &Path, names: &[String]) -> Vec<PathBuf> {
 }
 
 /// The files of a numbered sequence; `None` if the words do not describe one.
-pub(super) fn numbered(words: &[&str]) -> Option<Result<Vec<String>, Reason>> {
+pub(super) fn numbered(words: &[impl AsRef<str>]) -> Option<Result<Vec<String>, Reason>> {
     /// A row has a file a slice, at most.
     const MAX_FILES: i64 = 1 << 20;
-    let &[pattern, first, last, step, ..] = words else { return None };
+    let words: Vec<&str> = words.iter().map(AsRef::as_ref).collect();
+    let &[pattern, first, last, step, ..] = &words[..] else { return None };
     let (before, rest) = pattern.split_once('%')?;
     let (width, after) = rest.split_once('d')?;
     let zeros = width.starts_with('0');

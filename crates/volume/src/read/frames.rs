@@ -46,11 +46,8 @@ impl FrameChoice {
         let (skip, all) = (self.index.saturating_mul(each), self.count.saturating_mul(each));
         let left = match length {
             Length::Exactly(bytes) if self.count > 1 && bytes != all => {
-                let reason = Reason::truncated(format!(
-                    "its header claims {} volumes, {all} bytes, but {bytes} follow it: the \
-                         file is truncated or mislabelled",
-                    self.count
-                ));
+                let claim = format!("{} volumes", self.count);
+                let reason = Reason::Length { claim, needed: all, found: bytes, bound: "" };
                 return Err(format_error(path, reason));
             }
             Length::Exactly(_) if self.count > 1 => Length::Exactly(each),

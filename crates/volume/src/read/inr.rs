@@ -3,6 +3,7 @@ use std::path::Path;
 
 use ndarray::Array3;
 use walpha_base::Monitor;
+use walpha_base::shown::shown;
 
 use super::OpenFile;
 use super::payload::payload_error;
@@ -27,8 +28,8 @@ pub(crate) fn open(file: &OpenFile, monitor: &Monitor) -> Result<Volume, VolumeE
 /// `KEY=VALUE` up to a line `##}`, then the samples, x fastest. Headers should be padded to a multiple
 /// of 256 bytes; like CGAL's reader, this one takes any length.
 ///
-/// `SCALE`, `XO`, `YO` and `ZO` have no bearing on where a sample lies and are passed over, as by
-/// CGAL; images with several values a voxel (`VDIM`) or rotated axes (`RX`…) are refused.
+/// `SCALE`, `XO`, `YO` and `ZO` are passed over, as by CGAL; where they say something, that is
+/// said. Images with several values a voxel (`VDIM`) or rotated axes (`RX`…) are refused.
 pub(crate) fn read(
     path: &Path,
     mut reader: impl Read,
@@ -38,6 +39,7 @@ pub(crate) fn read(
     let text = header(path, &mut reader)?;
     let Header { dims, dtype, endian, frame } =
         parse(&text).map_err(|error| error.located(path))?;
+    Fields(&String::from_utf8_lossy(&text)).say_what_is_passed_over(path);
     let payload = Payload { reader, length: length.minus(text.len() as u64) };
     let samples = payload
         .samples(dtype, endian, dims.samples() as u64, monitor)
@@ -79,9 +81,7 @@ fn header(path: &Path, reader: &mut impl Read) -> Result<Vec<u8>, VolumeError> {
     }
     while !text.ends_with(END) {
         if text.len() == MAX_HEADER {
-            return Err(format(Reason::damaged(
-                "has no end of header (a line ##}) in 16 kB: it is damaged",
-            )));
+            return Err(format(Reason::header("has no end of header (a line ##}) in 16 kB")));
         }
         let mut byte = [0];
         reader.read_exact(&mut byte).map_err(|error| match error.kind() {
@@ -129,10 +129,23 @@ impl<'a> Fields<'a> {
             .find_map(|(name, value)| (name.trim() == key).then(|| value.trim()))
     }
 
+    fn say_what_is_passed_over(&self, path: &Path) {
+        if let Some(scale) =
+            self.value("SCALE").filter(|scale| !matches!(*scale, "2**0" | "1" | "1.0"))
+        {
+            tracing::warn!("{}: SCALE={scale} is passed over: values are as stored", shown(path));
+        }
+        for key in ["XO", "YO", "ZO"] {
+            if let Some(place) = self.value(key).filter(|place| place.parse() != Ok(0.0)) {
+                tracing::warn!("{}: {key}={place} is passed over", shown(path));
+            }
+        }
+    }
+
     fn needed(&self, key: &str) -> Result<&'a str, HeaderError> {
         self.value(key).ok_or_else(|| {
-            let what = format!("its INRIMAGE header has no {key}: it is damaged");
-            HeaderError::Format(Reason::damaged(what))
+            let what = format!("its INRIMAGE header has no {key}");
+            HeaderError::Format(Reason::header(what))
         })
     }
 

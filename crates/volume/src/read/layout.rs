@@ -4,15 +4,17 @@ use std::io::{BufReader, Read};
 use std::path::Path;
 
 use bzip2::read::MultiBzDecoder;
-use flate2::read::{MultiGzDecoder, ZlibDecoder};
+use flate2::read::ZlibDecoder;
 use ndarray::Array3;
 use walpha_base::Monitor;
+use walpha_base::shown::shown;
 
 use super::frames::FrameChoice;
+use super::gunzip::Gunzip;
 use super::payload::{Length, Payload, payload_error};
 use super::text;
 use crate::error::format_error;
-use crate::{Coordinates, Dims, Dtype, Endian, Frame, Reason, Volume, VolumeError};
+use crate::{Coordinates, Dims, Dtype, Endian, Frame, LengthUnit, Reason, Volume, VolumeError};
 
 /// A volume as the header of a file describes it, x fastest.
 #[derive(Clone, Debug)]
@@ -64,7 +66,7 @@ impl Layout {
         match self.encoding {
             Encoding::Raw => self.decode(path, compressed, Length::Exactly(bytes), monitor),
             Encoding::Gzip => {
-                self.decode(path, MultiGzDecoder::new(compressed), Length::of_gzip(bytes), monitor)
+                self.decode(path, Gunzip::new(path, compressed), Length::of_gzip(bytes), monitor)
             }
             Encoding::Zlib => {
                 self.decode(path, ZlibDecoder::new(compressed), Length::of_gzip(bytes), monitor)
@@ -128,4 +130,39 @@ pub(super) fn frame(
 pub(super) fn diagonal(spacing: [f64; 3]) -> [[f64; 3]; 3] {
     let [x, y, z] = spacing;
     [[x, 0.0, 0.0], [0.0, y, 0.0], [0.0, 0.0, z]]
+}
+
+/// The unit that a file names. One that is not known is said, and lengths are in no unit then.
+pub(super) fn unit_named(path: &Path, name: &str) -> LengthUnit {
+    let unit = LengthUnit::named(name);
+    let said = name.trim().trim_matches('"');
+    if unit == LengthUnit::Unstated && !matches!(said, "" | "?" | "???" | "unit" | "unknown") {
+        tracing::warn!("{}: the unit {said:?} is not known, and passed over", shown(path));
+    }
+    unit
+}
+
+/// The unit of the first axis that has one, and what lengths along each axis are multiplied by to be in it.
+/// `None` is an axis of which no unit is said.
+pub(super) fn one_unit(
+    path: &Path,
+    units: [Option<LengthUnit>; 3],
+) -> Result<(LengthUnit, [f64; 3]), VolumeError> {
+    let first = units.into_iter().flatten().next().unwrap_or_default();
+    let mut factors = [1.0; 3];
+    for (factor, unit) in factors.iter_mut().zip(units) {
+        let unit = unit.unwrap_or(first);
+        if unit == first {
+            continue;
+        }
+        if !unit.is_known() || !first.is_known() {
+            let [first, other] = [first, unit].map(|unit| format!("{:?}", unit.symbol()));
+            let what =
+                format!("has axes in the units {first} and {other}, of which one is no length");
+            return Err(format_error(path, Reason::header(what)));
+        }
+        let [from, to] = [unit, first].map(|unit| Coordinates { unit, ..Coordinates::default() });
+        *factor = from.to(to).length(1.0);
+    }
+    Ok((first, factors))
 }

@@ -10,17 +10,20 @@ use super::uncompressed::Uncompressed;
 use crate::error::{format_error, io_error};
 use crate::{Coordinates, Dims, Dtype, Endian, Frame, LengthUnit, Reason, Volume, VolumeError};
 use walpha_base::Monitor;
+use walpha_base::shown::shown;
 
-/// Keys that place the grid, each with its synonyms.
+/// Keys that place the grid, each before those of its synonyms that it goes before in `MetaIO` 5.4.
 const SPACING: [&str; 2] = ["ElementSpacing", "ElementSize"];
-const ORIGIN: [&str; 3] = ["Offset", "Origin", "Position"];
+const ORIGIN: [&str; 4] = ["ImagePosition", "Origin", "Offset", "Position"];
 const MATRIX: [&str; 3] = ["TransformMatrix", "Rotation", "Orientation"];
+const BYTE_ORDER: [&str; 2] = ["BinaryDataByteOrderMSB", "ElementByteOrderMSB"];
 
 /// Reads `MetaImage`, the format of ITK's `MetaIO`, with its samples after the header (`.mha`) or in
 /// other files (`.mhd`: one, a `LIST`, or a numbered row), raw, zlib-compressed or text.
 ///
-/// `ElementSpacing`, `Offset` and `TransformMatrix`, whose rows are the grid's axes, give the frame.
-/// A fourth axis counts volumes, of which `frame` is read; several channels are refused.
+/// `ElementSpacing`, `Offset` and `TransformMatrix`, whose rows are the grid's axes, give the frame. Synonyms
+/// and flags are taken as `MetaIO` takes them. A fourth axis counts volumes, of which `frame` is read; several
+/// channels are refused.
 pub(crate) fn read(
     file: &OpenFile,
     frame: Option<u64>,
@@ -30,12 +33,13 @@ pub(crate) fn read(
     let mut lines = Lines::new(file.reader()?);
     let header = Header::read(path, &mut lines)?;
     let layout = header.layout(path, frame)?;
+    header.say_what_is_passed_over(path);
+    let skip = header.skip(path)?;
     let Some(names) = header.names(path, &mut lines)? else {
-        let bytes = file.length() - lines.bytes();
-        return layout.read(path, lines.into_inner(), bytes, monitor);
+        let start = header.start_of_local(path, file.length(), lines.bytes(), &layout)?;
+        return layout.read(path, file.reader_at(start)?, file.length() - start, monitor);
     };
     let each = layout.bytes() / names.len() as u64;
-    let skip = header.skip(path)?;
     let skip = |length: u64| skip.unwrap_or(length.saturating_sub(each));
     detached::read(path, layout, &data_paths(path, &names), skip, monitor)
 }
@@ -47,7 +51,10 @@ pub(crate) fn box_reader(file: &OpenFile, frame: Option<u64>) -> Result<Uncompre
     let header = Header::read(path, &mut lines)?;
     let layout = header.layout(path, frame)?;
     match header.names(path, &mut lines)? {
-        None => Uncompressed::after_header(file, layout, lines.bytes(), Some(0)),
+        None => {
+            let start = header.start_of_local(path, file.length(), lines.bytes(), &layout)?;
+            Uncompressed::after_header(file, layout, start, Some(0))
+        }
         Some(names) => {
             Uncompressed::in_data_file(path, layout, &data_paths(path, &names), header.skip(path)?)
         }
@@ -87,8 +94,8 @@ impl Header {
             }
             fields.push((key, value));
         }
-        let reason =
-            Reason::truncated("ends before ElementDataFile: it is truncated, or no MetaImage file");
+        let what = "ends before ElementDataFile: it is truncated, or no MetaImage file";
+        let reason = Reason::claims_more(what);
         Err(format_error(path, reason))
     }
 
@@ -111,28 +118,89 @@ impl Header {
             }
             names
         } else {
-            match numbered(&words) {
+            match numbered(&self.numbering(&words)) {
                 Some(names) => names.map_err(|reason| format_error(path, reason))?,
                 None => vec![self.data.clone()],
             }
         };
         if names.iter().all(String::is_empty) {
-            return Err(format_error(
-                path,
-                Reason::damaged("names no data file: its header is damaged"),
-            ));
+            let what = "names no data file (ElementDataFile)";
+            return Err(format_error(path, Reason::header(what)));
         }
         Ok(Some(names))
     }
 
-    /// The value of the first of these keys that is there.
-    fn field(&self, keys: &[&str]) -> Option<&str> {
-        let of_key = |(key, _): &&(String, String)| keys.contains(&key.as_str());
-        self.fields.iter().find(of_key).map(|(_, value)| value.as_str())
+    /// The words of a numbered row, whose first and last number and step may be left out.
+    fn numbering<'a>(&self, words: &[&'a str]) -> Vec<std::borrow::Cow<'a, str>> {
+        let mut full: Vec<std::borrow::Cow<'a, str>> =
+            words.iter().map(|&word| word.into()).collect();
+        let whole = |text: Option<&str>| text.and_then(|text| text.parse::<i64>().ok());
+        let files =
+            whole(self.field(&["DimSize"]).and_then(|sizes| sizes.split_whitespace().last()));
+        let (Some(files), true) = (files, words.first().is_some_and(|word| word.contains('%')))
+        else {
+            return full;
+        };
+        if full.len() == 1 {
+            full.push("1".into());
+        }
+        if let (2, Some(first)) = (full.len(), whole(full.get(1).map(AsRef::as_ref))) {
+            full.push(first.saturating_add(files - 1).to_string().into());
+        }
+        if let (3, Some(first), Some(last)) =
+            (full.len(), whole(Some(&full[1])), whole(Some(&full[2])))
+        {
+            full.push((last.saturating_sub(first) / (files - 1).max(1)).max(1).to_string().into());
+        }
+        full
     }
 
+    /// The value of the first of these keys that is there. Of a key that is there twice the last value counts.
+    fn field(&self, keys: &[&str]) -> Option<&str> {
+        let of_key = |wanted: &&str| {
+            let field = self.fields.iter().rev().find(|(key, _)| key == wanted);
+            field.map(|(_, value)| value.as_str())
+        };
+        keys.iter().find_map(of_key)
+    }
+
+    /// Whether a flag is set: whatever begins with T, t or 1 sets it.
     fn flag(&self, keys: &[&str]) -> bool {
-        self.field(keys).is_some_and(|value| value.eq_ignore_ascii_case("true"))
+        self.field(keys).is_some_and(|value| value.starts_with(['T', 't', '1']))
+    }
+
+    /// Says which of the things that the header states are not taken.
+    fn say_what_is_passed_over(&self, path: &Path) {
+        let path = shown(path);
+        for keys in [&SPACING[..], &ORIGIN, &MATRIX, &BYTE_ORDER] {
+            let mut given = keys.iter().filter_map(|key| Some((key, self.field(&[key])?)));
+            let Some((taken, value)) = given.next() else { continue };
+            if let Some((other, _)) = given.find(|(_, other)| *other != value) {
+                tracing::warn!(
+                    "{path}: {taken} = {value} is taken, and {other}, which says otherwise, is not"
+                );
+            }
+        }
+        let number = |key: &str| self.field(&[key]).and_then(|text| text.parse::<f64>().ok());
+        let scaling = ["ElementToIntensityFunctionSlope", "ElementToIntensityFunctionOffset"];
+        if scaling.iter().zip([1.0, 0.0]).any(|(key, none)| number(key).is_some_and(|n| n != none))
+        {
+            tracing::warn!(
+                "{path}: {} and …Offset are passed over, as ITK does: values are as stored",
+                scaling[0]
+            );
+        }
+        let centre = self.field(&["CenterOfRotation"]).unwrap_or_default();
+        if centre.split_whitespace().any(|number| number.parse() != Ok(0.0)) {
+            tracing::warn!("{path}: CenterOfRotation = {centre} is passed over, as ITK does");
+        }
+        let letters = self.field(&["AnatomicalOrientation"]).unwrap_or("RAI").to_uppercase();
+        if self.field(&MATRIX).is_none() && !letters.contains(['?', ' ']) && letters != "RAI" {
+            tracing::warn!(
+                "{path}: AnatomicalOrientation = {letters} is passed over: without TransformMatrix axes run as \
+                 RAI says"
+            );
+        }
     }
 
     /// As many numbers as the key should have; where it is missing, `default`.
@@ -168,8 +236,8 @@ impl Header {
             "3" => 3,
             "4" => 4,
             other => {
-                let what = format!("has NDims = {other}: a volume has 3 axes");
-                return Err(fail(Reason::header(what)));
+                let what = format!("has NDims = {other}: images of 2 to 4 axes are read");
+                return Err(fail(Reason::unsupported(what, "save it with 3 axes")));
             }
         };
         let sizes = self.needed(path, "DimSize")?;
@@ -186,7 +254,7 @@ impl Header {
         };
         let frames = FrameChoice::choose(path, &[volumes], frame)?;
         let dtype = self.dtype(path)?;
-        let big = self.flag(&["BinaryDataByteOrderMSB", "ElementByteOrderMSB"]);
+        let big = self.flag(&BYTE_ORDER);
         let endian = if big { Endian::Big } else { Endian::Little };
         let encoding = if self.field(&["BinaryData"]).is_some() && !self.flag(&["BinaryData"]) {
             Encoding::Text
@@ -201,8 +269,8 @@ impl Header {
 
     fn needed(&self, path: &Path, key: &str) -> Result<&str, VolumeError> {
         self.field(&[key]).ok_or_else(|| {
-            let what = format!("its MetaImage header has no {key}: it is damaged");
-            format_error(path, Reason::damaged(what))
+            let what = format!("its MetaImage header has no {key}");
+            format_error(path, Reason::header(what))
         })
     }
 
@@ -267,6 +335,30 @@ impl Header {
                 path,
                 Reason::header(format!("HeaderSize = {text} is not a number of bytes")),
             )),
+        }
+    }
+}
+
+impl Header {
+    /// Where the samples begin in the file of the header itself, of which `lines` bytes are the header's:
+    /// `HeaderSize` counts from the first byte.
+    fn start_of_local(
+        &self,
+        path: &Path,
+        length: u64,
+        lines: u64,
+        layout: &Layout,
+    ) -> Result<u64, VolumeError> {
+        match self.skip(path)? {
+            Some(0) => Ok(lines),
+            Some(skip) if (lines..=length).contains(&skip) => Ok(skip),
+            Some(skip) => {
+                let what = format!(
+                    "has samples at byte {skip} (HeaderSize), where its header or nothing is"
+                );
+                Err(format_error(path, Reason::header(what)))
+            }
+            None => Ok(length.saturating_sub(layout.bytes()).max(lines)),
         }
     }
 }

@@ -79,8 +79,8 @@ fn layout(path: &Path, reader: &mut dyn Read, asked: Option<u64>) -> Result<Layo
     }
     let sizes = [4, 8, 12, 16].map(whole);
     if sizes.iter().any(|&size| size < 1) {
-        let what = format!("has axes of {sizes:?} samples: its header is damaged");
-        return Err(format_error(path, Reason::damaged(what)));
+        let what = format!("has axes of {sizes:?} samples");
+        return Err(format_error(path, Reason::header(what)));
     }
     let [x, y, z, count] = sizes.map(|size| size as u64);
     let dtype = match whole(20) {

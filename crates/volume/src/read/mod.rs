@@ -5,6 +5,7 @@ mod detached;
 #[cfg(feature = "dicom")]
 pub(super) mod dicom;
 mod frames;
+mod gunzip;
 pub(super) mod inr;
 #[cfg(feature = "formats")]
 mod layout;

@@ -14,6 +14,7 @@ use super::payload::{Length, Payload, payload_error};
 use super::uncompressed::Uncompressed;
 use crate::error::{format_error, io_error};
 use crate::formats::{NIFTI_HEADERS, nifti_version};
+use crate::source::whole_only;
 use crate::{
     Coordinates, Dims, Dtype, Endian, Frame, LengthUnit, Reason, Space, Volume, VolumeError,
 };
@@ -34,11 +35,13 @@ pub(crate) fn read(
     let layout = header.layout(path, frame)?;
     let (slope, inter) = header.scaling();
     if header.is_pair(path)? {
-        let image = path.with_extension("img");
+        let image = image(path);
         let data = OpenFile::open(&image)?;
-        let offset = header.vox_offset().clamp(0.0, data.length() as f64) as u64;
-        let left = Length::Exactly(data.length() - offset);
-        return samples(path, layout, slope, inter, data.reader_at(offset)?, left, monitor)
+        let (mut reader, length) = data.unpacked()?;
+        let offset = header.vox_offset().max(0.0) as u64;
+        std::io::copy(&mut (&mut reader).take(offset), &mut std::io::sink())
+            .map_err(io_error(&image))?;
+        return samples(path, layout, slope, inter, reader, length.minus(offset), monitor)
             .map_err(naming(path, &[image]));
     }
     let offset = header.offset(path)?;
@@ -47,7 +50,7 @@ pub(crate) fn read(
     if skipped.map_err(io_error(path))? < skip {
         return Err(format_error(
             path,
-            Reason::truncated(format!("ends before its samples at byte {offset}")),
+            Reason::claims_more(format!("ends before its samples at byte {offset} (vox_offset)")),
         ));
     }
     samples(path, layout, slope, inter, reader, length.minus(offset), monitor)
@@ -60,8 +63,11 @@ pub(crate) fn box_reader(file: &OpenFile, frame: Option<u64>) -> Result<Uncompre
     let layout = header.layout(path, frame)?;
     let scaling = header.scaling();
     let samples = if header.is_pair(path)? {
+        if image(path).extension().is_some_and(|own| own.eq_ignore_ascii_case("gz")) {
+            return Err(whole_only(path, "NIfTI"));
+        }
         let offset = header.vox_offset().max(0.0) as u64;
-        Uncompressed::in_data_file(path, layout, &[path.with_extension("img")], Some(offset))?
+        Uncompressed::in_data_file(path, layout, &[image(path)], Some(offset))?
     } else {
         Uncompressed::after_header(file, layout, header.offset(path)?, Some(0))?
     };
@@ -73,7 +79,15 @@ pub(crate) fn data_files(file: &OpenFile) -> Result<Vec<PathBuf>, VolumeError> {
     let path = file.path();
     let Some((version, endian)) = nifti_version(file.start()) else { return Ok(Vec::new()) };
     let header = Header { bytes: file.start().to_vec(), version, endian };
-    Ok(if header.is_pair(path)? { vec![path.with_extension("img")] } else { Vec::new() })
+    Ok(if header.is_pair(path)? { vec![image(path)] } else { Vec::new() })
+}
+
+/// The partner of a header: `v.img` of `v.hdr` or `v.hdr.gz`, or `v.img.gz` where only that is there.
+fn image(header: &Path) -> PathBuf {
+    let is_packed = header.extension().is_some_and(|own| own.eq_ignore_ascii_case("gz"));
+    let header = if is_packed { header.with_extension("") } else { header.to_owned() };
+    let (plain, packed) = (header.with_extension("img"), header.with_extension("img.gz"));
+    if !plain.exists() && packed.exists() { packed } else { plain }
 }
 
 /// Reads samples and scales them, in doubles where `f32` does not hold the numbers of the file.
@@ -238,9 +252,7 @@ impl Header {
         let size = |axis: usize| if axis as i64 <= axes { self.dim(axis) } else { 1 };
         let sizes = [1, 2, 3, 4, 5, 6, 7].map(size);
         if sizes.iter().any(|&size| size < 0) {
-            return Err(fail(Reason::damaged(format!(
-                "has axes of {sizes:?} samples: its header is damaged"
-            ))));
+            return Err(fail(Reason::header(format!("has axes of {sizes:?} samples (dim)"))));
         }
         let sizes = sizes.map(|size| size as u64);
         let frames = FrameChoice::choose(path, &sizes[3..], frame)?;

@@ -92,10 +92,11 @@ pub(super) fn volume<R: Read>(
             path: path.into(),
             reason: Reason::unsupported(
                 format!(
-                    "holds an array of {} axes: a volume has three, [z, y, x]",
-                    file.shape.len()
+                    "holds an array of shape {:?}{}: a volume has three axes, [z, y, x]",
+                    file.shape,
+                    if file.fortran { " in Fortran order" } else { "" }
                 ),
-                "save a.reshape(z, y, x)",
+                "save a.reshape(z, y, x) of one volume",
             ),
         });
     };
@@ -141,9 +142,10 @@ impl<R: Read> NpyFile<R> {
         })?;
         let Header { descr, fortran, shape, .. } = header;
         let (dtype, endian, boolean) = element(&descr).ok_or_else(|| {
-            fail(Reason::unsupported(format!(
-                "holds elements of type {descr}: only bool, integers of 8 to 64 bits, f4 and f8 \
-                 are read"), "save a.astype('f4')"))
+            let what = format!(
+                "holds elements of type {descr}: only bool, integers of 8 to 64 bits, f4 and f8 are read"
+            );
+            fail(Reason::unsupported(what, instead(&descr)))
         })?;
         let length = Length::Exactly(length).minus(header.length);
         let payload = Payload { reader, length };
@@ -160,6 +162,17 @@ impl<R: Read> NpyFile<R> {
         self.payload
             .samples(self.dtype, self.endian, count, monitor)
             .map_err(|error| payload_error_of(path, &claim, error))
+    }
+}
+
+/// What to save instead of an array of a type that is not read.
+fn instead(descr: &str) -> &'static str {
+    let kind = descr.trim_start_matches(['<', '>', '|', '=']).chars().next();
+    match kind {
+        Some('[') => "save one of its fields, as in a['value']",
+        Some('c') => "save its real part or magnitude, a.real or abs(a)",
+        Some('O' | 'U' | 'S' | 'V' | 'M' | 'm') => "save numbers, as in a.astype('f8')",
+        _ => "save a.astype('f4')",
     }
 }
 

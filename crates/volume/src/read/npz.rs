@@ -3,6 +3,7 @@ use std::path::Path;
 
 use walpha_base::Monitor;
 use walpha_base::advice::{Setting, advice};
+use walpha_base::shown::shown;
 use zip::ZipArchive;
 use zip::result::ZipError;
 
@@ -21,12 +22,35 @@ pub(crate) fn read(
 ) -> Result<Volume, VolumeError> {
     let (path, length) = (file.path(), file.length());
     let mut archive = ZipArchive::new(file.reader()?).map_err(damaged(path))?;
+    let files: Vec<String> = archive.file_names().map(|name| shown(Path::new(name))).collect();
+    if !files.is_empty() && !files.iter().any(|name| name.ends_with(".npy")) {
+        let others = if files.len() > 1 {
+            format!(" and {} others", files.len() - 1)
+        } else {
+            String::new()
+        };
+        let what = format!("is a zip archive of {}{others}, and of no array (.npy)", files[0]);
+        return Err(format_error(
+            path,
+            Reason::unsupported(what, "unpack it, and name the file in it"),
+        ));
+    }
     let mut found: Vec<(usize, String)> = Vec::new();
     for i in 0..archive.len() {
-        let (name, array) = member(path, &mut archive, i, length)?;
-        let named = |wanted: &str| name.strip_suffix(".npy").unwrap_or(&name) == wanted;
-        if array.shape.len() == 3 && wanted.is_none_or(named) {
-            found.push((i, name));
+        let is_wanted =
+            |name: &str| wanted.is_none_or(|wanted| name.strip_suffix(".npy") == Some(wanted));
+        let is_array =
+            archive.name_for_index(i).is_some_and(|name| name.ends_with(".npy") && is_wanted(name));
+        if !is_array {
+            continue;
+        }
+        match member(path, &mut archive, i, length) {
+            Ok((name, array)) if array.shape.len() == 3 => found.push((i, name)),
+            // An array of texts or objects beside the volume.
+            Err(VolumeError::Format { reason: Reason::Unsupported { .. }, .. })
+                if wanted.is_none() => {}
+            Ok(_) => {}
+            Err(error) => return Err(error),
         }
     }
     match found.as_slice() {
@@ -71,8 +95,7 @@ fn member<'a>(
     let most = member.compressed_size().min(length).saturating_mul(MOST_EXPANSION);
     if member.size() > most.saturating_add(MOST_EXPANSION) {
         let reason = Reason::damaged(format!(
-            "claims {} bytes for its array {name}, more than {length} bytes can hold: it is \
-                 damaged",
+            "claims {} bytes for its array {name}, more than {length} bytes can hold",
             member.size()
         ));
         return Err(format_error(path, reason));
@@ -84,6 +107,16 @@ fn member<'a>(
 fn damaged(path: &Path) -> impl Fn(ZipError) -> VolumeError {
     move |error| match error {
         ZipError::Io(error) => io_error(path)(error),
+        ZipError::UnsupportedArchive(what) => {
+            let what = format!("is a zip archive of a kind that is not read: {what}");
+            format_error(path, Reason::unsupported(what, "save it anew by numpy.savez"))
+        }
+        ZipError::InvalidArchive(what) => {
+            let what = format!(
+                "begins as a zip archive, and cannot be read as one ({what}): it may be truncated"
+            );
+            format_error(path, Reason::claims_more(what))
+        }
         other => format_error(
             path,
             Reason::other(format!("is no NPZ archive that can be read: {other}")),

@@ -5,11 +5,12 @@ use std::io::BufRead;
 use std::path::{Path, PathBuf};
 
 use walpha_base::Monitor;
+use walpha_base::shown::shown;
 
 use super::OpenFile;
 use super::detached::{self, data_paths, numbered};
 use super::frames::FrameChoice;
-use super::layout::{Encoding, Layout, diagonal, frame};
+use super::layout::{Encoding, Layout, diagonal, frame, one_unit, unit_named};
 use super::text::Lines;
 use super::uncompressed::Uncompressed;
 use crate::error::{format_error, io_error};
@@ -20,11 +21,54 @@ use crate::{
 /// The first bytes of each NRRD file, before the digit of its version.
 const MAGIC: &[u8] = b"NRRD000";
 
+/// The fields that there are.
+const FIELDS: [&str; 38] = [
+    "axis maxs",
+    "axis mins",
+    "axismaxs",
+    "axismins",
+    "block size",
+    "blocksize",
+    "byte skip",
+    "byteskip",
+    "centerings",
+    "centers",
+    "content",
+    "dimension",
+    "encoding",
+    "endian",
+    "kinds",
+    "labels",
+    "line skip",
+    "lineskip",
+    "max",
+    "measurement frame",
+    "min",
+    "number",
+    "old max",
+    "old min",
+    "oldmax",
+    "oldmin",
+    "sample units",
+    "sampleunits",
+    "sizes",
+    "space",
+    "space dimension",
+    "space directions",
+    "space origin",
+    "space units",
+    "spacings",
+    "thicknesses",
+    "type",
+    "units",
+];
+
 /// Reads NRRD ("nearly raw raster data", teem.sourceforge.net/nrrd/format.html) with its samples
 /// behind the header (`.nrrd`) or in other files (`.nhdr`: one, a `LIST`, or a numbered row).
 ///
 /// Encodings raw, gzip, bzip2 and text; every scalar type. `space directions` and `space origin`, or
-/// `spacings` and `axis mins`, give the frame, in the space the file names. Axes beyond the third count
+/// `spacings` and `axis mins`, give the frame, in the space the file names. An axis whose direction is `none`, or
+/// whose kind is one of time, is none of space. Axes beyond the third and behind those of space count
 /// volumes, of which `frame` is read; axes of colours or vectors, `hex` and `line skip` are refused.
 pub(crate) fn read(
     file: &OpenFile,
@@ -36,6 +80,7 @@ pub(crate) fn read(
     let mut lines = Lines::new(file.reader()?);
     let header = Header::read(path, &mut lines)?;
     let layout = header.layout(path, frame)?;
+    header.say_what_is_passed_over(path);
     let skip = header.skip(path, &layout)?;
     match &header.files {
         None => {
@@ -49,7 +94,7 @@ pub(crate) fn read(
         }
         Some(names) => {
             if names.is_empty() {
-                return Err(fail(Reason::damaged("names no data file: its header is damaged")));
+                return Err(fail(Reason::header("names no data file")));
             }
             let each = layout.bytes() / names.len() as u64;
             let skip = |length: u64| skip.unwrap_or(length.saturating_sub(each));
@@ -127,33 +172,97 @@ impl Header {
     }
 
     fn needed(&self, path: &Path, name: &str) -> Result<&str, VolumeError> {
-        let missing = || {
-            format_error(
-                path,
-                Reason::damaged(format!("its NRRD header has no {name}: it is damaged")),
-            )
-        };
+        let missing =
+            || format_error(path, Reason::header(format!("its NRRD header has no {name}")));
         self.field(name).ok_or_else(missing)
     }
 
     fn layout(&self, path: &Path, frame: Option<u64>) -> Result<Layout, VolumeError> {
         let sizes = self.sizes(path)?;
         self.check_scalar(path, &sizes)?;
-        let mut axes: Vec<(usize, u64)> = sizes.iter().copied().enumerate().collect();
-        while axes.len() > 3 {
-            let Some(single) = axes.iter().position(|&(_, size)| size == 1) else { break };
-            axes.remove(single);
-        }
-        let beyond: Vec<u64> = axes.iter().skip(3).map(|&(_, size)| size).collect();
-        axes.truncate(3);
-        let size = |axis: usize| axes.get(axis).map_or(1, |&(_, size)| size);
+        let kept = self.axes_of_space(path, &sizes)?;
+        let beyond: Vec<u64> =
+            (0..sizes.len()).filter(|axis| !kept.contains(axis)).map(|axis| sizes[axis]).collect();
+        let size = |axis: usize| kept.get(axis).map_or(1, |&axis| sizes[axis]);
         let dims = Dims::unbounded(size(0), size(1), size(2))?;
-        let kept: Vec<usize> = axes.iter().map(|&(axis, _)| axis).collect();
         let (dtype, encoding) = (self.dtype(path)?, self.encoding(path)?);
         let endian = self.endian(path, dtype, encoding)?;
         let frames = FrameChoice::choose(path, &beyond, frame)?;
         let frame = self.frame(path, sizes.len(), &kept, dims.xyz())?;
         Ok(Layout { dims, dtype, endian, frame, encoding, frames })
+    }
+
+    /// The axes that are x, y and z; those of more than one sample among the others must be behind them, where
+    /// they count volumes.
+    fn axes_of_space(&self, path: &Path, sizes: &[u64]) -> Result<Vec<usize>, VolumeError> {
+        let directions = self.directions(path, sizes.len())?;
+        let kinds = self.kinds();
+        let is_of_space = |axis: usize| match &directions {
+            Some(directions) => directions[axis].is_some(),
+            None => kinds.get(axis) != Some(&"time"),
+        };
+        let mut kept: Vec<usize> = (0..sizes.len()).filter(|&axis| is_of_space(axis)).collect();
+        while kept.len() > 3 {
+            let single = kept.iter().position(|&axis| sizes[axis] == 1);
+            kept.remove(single.unwrap_or(3));
+        }
+        let last = kept.last().copied().unwrap_or(0);
+        let between = (0..last).find(|axis| sizes[*axis] > 1 && !kept.contains(axis));
+        if let Some(axis) = between {
+            let size = sizes[axis];
+            let what = format!("{size} values a voxel (axis {axis} is none of space)");
+            let dims = <[usize; 3]>::try_from(kept).ok().map(|kept| kept.map(|axis| sizes[axis]));
+            return Err(format_error(path, Reason::not_scalar(what, dims)));
+        }
+        Ok(kept)
+    }
+
+    /// The direction of each axis, where the header has them; `None` for an axis that is none of space. Of four
+    /// components the last is time.
+    fn directions(
+        &self,
+        path: &Path,
+        all: usize,
+    ) -> Result<Option<Vec<Option<[f64; 3]>>>, VolumeError> {
+        let Some(text) = self.field("space directions") else { return Ok(None) };
+        let rows = vectors(text).filter(|rows| rows.len() == all).ok_or_else(|| {
+            let what = format!("space directions: {text} are not {all} vectors of numbers");
+            format_error(path, Reason::header(what))
+        })?;
+        let of_space = |row: Option<[f64; 4]>| {
+            row.filter(|[x, y, z, t]| *t == 0.0 || [x, y, z] != [&0.0; 3])
+                .map(|[x, y, z, _]| [x, y, z])
+        };
+        Ok(Some(rows.into_iter().map(of_space).collect()))
+    }
+
+    /// The kind of each axis.
+    fn kinds(&self) -> Vec<&str> {
+        self.field("kinds").map(|kinds| kinds.split_whitespace().collect()).unwrap_or_default()
+    }
+
+    /// Says which of the things that the header states are not taken.
+    fn say_what_is_passed_over(&self, path: &Path) {
+        let path = shown(path);
+        let mut unknown: Vec<&str> =
+            self.fields.keys().map(String::as_str).filter(|name| !FIELDS.contains(name)).collect();
+        unknown.sort_unstable();
+        for name in unknown {
+            tracing::warn!("{path}: the field {name:?} is none of NRRD's, and passed over");
+        }
+        let quantised = ["old min", "oldmin", "old max", "oldmax"];
+        if quantised
+            .iter()
+            .any(|name| self.field(name).is_some_and(|text| !text.eq_ignore_ascii_case("nan")))
+        {
+            tracing::warn!("{path}: old min and old max are passed over: values are as stored");
+        }
+        let space = self.field("space").unwrap_or_default().to_lowercase();
+        if !space.is_empty() && !self.space().is_known() {
+            tracing::warn!(
+                "{path}: the space {space} says nothing of a patient's directions, and is passed over"
+            );
+        }
     }
 
     /// Samples along each axis, the fastest first.
@@ -172,8 +281,7 @@ impl Header {
 
     /// Refuses axes along which a voxel has several values.
     fn check_scalar(&self, path: &Path, sizes: &[u64]) -> Result<(), VolumeError> {
-        let kinds: Vec<&str> =
-            self.field("kinds").map(|kinds| kinds.split_whitespace().collect()).unwrap_or_default();
+        let kinds = self.kinds();
         for (axis, &size) in sizes.iter().enumerate() {
             let kind = kinds.get(axis).copied().unwrap_or("none");
             let scalar = ["domain", "space", "time", "none", "???", "scalar", "stub"];
@@ -219,8 +327,8 @@ impl Header {
             None if dtype.size() == 1 || encoding == Encoding::Text => Ok(Endian::Little),
             other => {
                 let given = other.unwrap_or("(missing)");
-                let what = format!("endian: {given} is not a byte order");
-                Err(format_error(path, Reason::unsupported(what, "give little or big")))
+                let what = format!("endian: {given} is not a byte order, little or big");
+                Err(format_error(path, Reason::header(what)))
             }
         }
     }
@@ -316,12 +424,7 @@ impl Header {
         let fail = |reason: Reason| format_error(path, reason);
         let mut steps = diagonal([1.0; 3]);
         let mut origin = [0.0; 3];
-        if let Some(text) = self.field("space directions") {
-            let directions = vectors(text).filter(|rows| rows.len() == all).ok_or_else(|| {
-                fail(Reason::header(format!(
-                    "space directions: {text} are not {all} vectors of numbers"
-                )))
-            })?;
+        if let Some(directions) = self.directions(path, all)? {
             for (step, &axis) in steps.iter_mut().zip(kept) {
                 if let Some(direction) = directions[axis] {
                     *step = direction;
@@ -350,7 +453,7 @@ impl Header {
         }
         if let Some(text) = self.field("space origin") {
             origin = match vectors(text).as_deref() {
-                Some([Some(origin)]) => *origin,
+                Some([Some([x, y, z, _])]) => [*x, *y, *z],
                 _ => {
                     return Err(fail(Reason::header(format!(
                         "space origin: {text} is not a vector of numbers"
@@ -358,31 +461,54 @@ impl Header {
                 }
             };
         }
-        frame(path, origin, steps, self.coordinates(kept))
+        // Units are those of the axes of the world, or of the grid where these run along them.
+        let (coordinates, factors) = self.coordinates(path, kept)?;
+        for vector in steps.iter_mut().chain([&mut origin]) {
+            vector.iter_mut().zip(factors).for_each(|(component, factor)| *component *= factor);
+        }
+        frame(path, origin, steps, coordinates)
     }
 
-    /// The space the file names, and its unit: of `space units`, or else of `units`. A patient is
+    /// The space that the file names, where it says which way a patient lies.
+    fn space(&self) -> Space {
+        match self.field("space").unwrap_or_default().to_lowercase().as_str() {
+            "left-posterior-superior" | "lps" | "left-posterior-superior-time" | "lpst" => {
+                Space::Lps
+            }
+            "right-anterior-superior" | "ras" | "right-anterior-superior-time" | "rast" => {
+                Space::Ras
+            }
+            "left-anterior-superior" | "las" | "left-anterior-superior-time" | "last" => Space::Las,
+            _ => Space::Unknown,
+        }
+    }
+
+    /// The space and its unit, and what lengths along each axis are multiplied by to be in it. The unit is that of
+    /// `space units`, or else of `units`. A patient is
     /// measured in millimetres where neither is there, as ITK and Slicer take it.
-    fn coordinates(&self, kept: &[usize]) -> Coordinates {
+    fn coordinates(
+        &self,
+        path: &Path,
+        kept: &[usize],
+    ) -> Result<(Coordinates, [f64; 3]), VolumeError> {
         let places = ["space directions", "space origin", "spacings", "axis mins", "axismins"];
         if places.iter().all(|name| self.field(name).is_none()) {
-            return Coordinates::VOXEL;
+            return Ok((Coordinates::VOXEL, [1.0; 3]));
         }
-        let space = match self.field("space").unwrap_or_default().to_lowercase().as_str() {
-            "left-posterior-superior" | "lps" => Space::Lps,
-            "right-anterior-superior" | "ras" => Space::Ras,
-            "left-anterior-superior" | "las" => Space::Las,
-            _ => Space::Unknown,
+        let space = self.space();
+        let stated = |text: Option<&str>, axis: usize| {
+            let name = quoted(text?).nth(axis).filter(|name| !name.trim().is_empty());
+            name.map(|name| unit_named(path, name))
         };
-        let of_axes = || self.field("units").map(|text| (text, kept.first().copied().unwrap_or(0)));
-        let named = self.field("space units").map(|text| (text, 0)).or_else(of_axes);
-        let named = named.and_then(|(text, axis)| quoted(text).nth(axis));
-        let unit = match named.map(LengthUnit::named) {
-            Some(unit) if unit != LengthUnit::Unstated => unit,
-            _ if space.is_known() => LengthUnit::Millimetre,
-            _ => LengthUnit::Unstated,
+        let of_space = [0, 1, 2].map(|axis| stated(self.field("space units"), axis));
+        let of_axes = [0, 1, 2].map(|c| stated(self.field("units"), *kept.get(c)?));
+        let units = if of_space == [None; 3] { of_axes } else { of_space };
+        let (unit, factors) = one_unit(path, units)?;
+        let unit = match unit {
+            LengthUnit::Unstated if space.is_known() => LengthUnit::Millimetre,
+            unit => unit,
         };
-        Coordinates { space, unit }
+        Ok((Coordinates { space, unit }, factors))
     }
 
     /// A number for each axis; `None` if the field is absent or NaN, which means
@@ -412,8 +538,8 @@ fn quoted(text: &str) -> impl Iterator<Item = &str> {
     text.split('"').skip(1).step_by(2)
 }
 
-/// Vectors such as `(1,0,0) none (0,0,2)`, of up to three components.
-fn vectors(text: &str) -> Option<Vec<Option<[f64; 3]>>> {
+/// Vectors such as `(1,0,0) none (0,0,2)`, of up to four components.
+fn vectors(text: &str) -> Option<Vec<Option<[f64; 4]>>> {
     let mut rest = text.trim();
     let mut rows = Vec::new();
     while !rest.is_empty() {
@@ -425,9 +551,10 @@ fn vectors(text: &str) -> Option<Vec<Option<[f64; 3]>>> {
         let (row, after) = rest.strip_prefix('(')?.split_once(')')?;
         let numbers: Vec<f64> =
             row.split(',').map(|number| number.trim().parse().ok()).collect::<Option<_>>()?;
-        let mut vector = [0.0; 3];
+        let mut vector = [0.0; 4];
         vector.get_mut(..numbers.len())?.copy_from_slice(&numbers);
-        rows.push(Some(vector));
+        // NaN stands for what is not known.
+        rows.push((!numbers.iter().all(|number| number.is_nan())).then_some(vector));
         rest = after.trim_start();
     }
     Some(rows)

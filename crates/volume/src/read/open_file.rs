@@ -1,11 +1,10 @@
 //! A file that is read: opened once, from the look at its first bytes to its samples.
 
 use std::fs::File;
-use std::io::{BufReader, Read, Seek, SeekFrom};
+use std::io::{self, BufReader, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
-use flate2::read::MultiGzDecoder;
-
+use super::gunzip::Gunzip;
 use super::payload::Length;
 use crate::VolumeError;
 use crate::error::io_error;
@@ -115,9 +114,18 @@ impl OpenFile {
     pub(crate) fn unpacked(&self) -> Result<(Box<dyn Read + '_>, Length), VolumeError> {
         let reader = self.reader()?;
         Ok(if is_gzip(&self.start) {
-            (Box::new(MultiGzDecoder::new(reader)), Length::of_gzip(self.length))
+            (Box::new(Gunzip::new(&self.path, reader)), Length::of_gzip(self.length))
         } else {
             (Box::new(reader), Length::Exactly(self.length))
         })
+    }
+    /// The first bytes of what a gzip stream holds, up to `count`, and the error that ended it.
+    pub(crate) fn start_unpacked(
+        &self,
+        count: u64,
+    ) -> Result<(Vec<u8>, Option<io::Error>), VolumeError> {
+        let mut start = Vec::new();
+        let read = Gunzip::quiet(self.reader()?).take(count).read_to_end(&mut start);
+        Ok((start, read.err()))
     }
 }

@@ -86,7 +86,7 @@ pub(super) fn numbers<T: Element + FromStr + Into<f64>>(
 ) -> Result<Vec<T>, Reason> {
     // A digit each, and a space between.
     if bytes.saturating_add(1) / 2 < count {
-        return Err(Reason::truncated(format!(
+        return Err(Reason::claims_more(format!(
             "claims {count} numbers, which {bytes} bytes of text cannot hold: it is \
                  truncated or mislabelled"
         )));
@@ -119,8 +119,8 @@ pub(super) fn numbers<T: Element + FromStr + Into<f64>>(
         }
     }
     if (values.len() as u64) < count {
-        return Err(Reason::truncated(format!(
-            "claims {count} numbers, but has {}: it is truncated",
+        return Err(Reason::claims_more(format!(
+            "claims {count} numbers, but has {}: it is truncated or mislabelled",
             values.len()
         )));
     }

@@ -1,5 +1,6 @@
 //! VTI, VTK's image data in XML.
 
+use super::ghosts;
 use super::legacy::{choice, to_centres};
 use super::xml::VtkXml;
 use crate::error::format_error;
@@ -21,9 +22,10 @@ pub(crate) fn read(
     let file = VtkXml::open(file)?.monitored(monitor);
     if file.kind() != "ImageData" {
         let kind = file.kind();
-        return Err(fail(Reason::header(format!(
-            "holds {kind}: a volume is ImageData (.vti) in one file"
-        ))));
+        return Err(fail(Reason::unsupported(
+            format!("holds {kind}: a volume is ImageData (.vti) in one file"),
+            "save it as ImageData",
+        )));
     }
     let (image, piece) = file.piece()?;
     let origin = file.numbers(image, "Origin", Some([0.0; 3]))?;
@@ -63,9 +65,20 @@ pub(crate) fn read(
     let dims = Dims::new(dims[0], dims[1], dims[2])?;
     let (frame, dtype) =
         (frame(path, corner, axes, coordinates(&file, image)?)?, file.dtype(array)?);
-    let samples = file.values(array, dims.samples() as u64)?;
+    let mut samples = file.values(array, dims.samples() as u64)?;
+    let siblings =
+        file.elements[array].parent.into_iter().flat_map(|data| file.children(data, "DataArray"));
+    let ghosts = siblings.into_iter().find(|&other| file.name(other) == ghosts::NAME);
+    let hidden = match ghosts {
+        Some(ghosts) => {
+            let bytes: Vec<f32> = file.values(ghosts, dims.samples() as u64)?;
+            ghosts::hide(path, &mut samples, &bytes, cells)?
+        }
+        None => None,
+    };
     let (endian, encoding, frames) = (Endian::Little, Encoding::Raw, FrameChoice::ONE);
-    Layout { dims, dtype, endian, frame, encoding, frames }.volume(samples)
+    let volume = Layout { dims, dtype, endian, frame, encoding, frames }.volume(samples)?;
+    Ok(volume.with_missing(hidden))
 }
 
 /// The array to read, and whether it is one of cells. Those of points come first; which one was taken is
@@ -76,7 +89,8 @@ fn choose(file: &VtkXml, piece: usize, wanted: Option<&str>) -> Result<(usize, b
     for (data, cells) in [("PointData", false), ("CellData", true)] {
         let Some(data) = file.children(piece, data).next() else { continue };
         let active = file.attribute(data, "Scalars");
-        let mut here: Vec<usize> = file.children(data, "DataArray").collect();
+        let is_sample = |&array: &usize| name(array) != ghosts::NAME;
+        let mut here: Vec<usize> = file.children(data, "DataArray").filter(is_sample).collect();
         // The sort keeps the order of the others.
         here.sort_by_key(|&array| active != Some(name(array)));
         arrays.extend(here.into_iter().map(|array| (array, cells)));

@@ -6,6 +6,7 @@ use std::path::Path;
 use walpha_base::Monitor;
 use walpha_base::advice::{Setting, advice};
 
+use super::ghosts;
 use super::legacy_arrays::{self as arrays, Array};
 use crate::error::{format_error, io_error};
 use crate::formats::is_vtk;
@@ -23,10 +24,12 @@ pub(crate) fn read(
     wanted: Option<&str>,
     monitor: &Monitor,
 ) -> Result<Volume, VolumeError> {
-    let (path, length) = (file.path(), file.length());
+    let path = file.path();
     let fail = |reason: Reason| format_error(path, reason);
     let mut lines = Lines::new(file.reader()?);
-    let (grid, mut arrays) = header(path, &mut lines)?;
+    let (grid, arrays) = header(path, &mut lines)?;
+    let (ghosts, mut arrays): (Vec<Array>, Vec<Array>) =
+        arrays.into_iter().partition(|array| array.name == ghosts::NAME);
     // Without a name only scalars come in question, where there are any, and those of points first.
     if wanted.is_none() && arrays.iter().any(|array| array.components == 1) {
         arrays.retain(|array| array.components == 1);
@@ -35,18 +38,33 @@ pub(crate) fn read(
     let names: Vec<(&str, bool)> =
         arrays.iter().map(|array| (array.name.as_str(), array.cells)).collect();
     let array = arrays.swap_remove(choice(&names, wanted).map_err(fail)?);
-    let layout = grid.layout(path, &array)?;
+    let volume = read_array(file, &grid, &array, monitor)?;
+    let Some(ghosts) = ghosts.iter().find(|ghosts| ghosts.cells == array.cells) else {
+        return Ok(volume);
+    };
+    let ghosts = read_array(file, &grid, ghosts, monitor)?;
+    let mut samples = volume.as_slice().to_vec();
+    let hidden = ghosts::hide(path, &mut samples, ghosts.as_slice(), array.cells)?;
+    Ok(grid.layout(path, &array)?.volume(samples)?.with_missing(hidden))
+}
+
+fn read_array(
+    file: &OpenFile,
+    grid: &Grid,
+    array: &Array,
+    monitor: &Monitor,
+) -> Result<Volume, VolumeError> {
+    let (path, length) = (file.path(), file.length());
+    let layout = grid.layout(path, array)?;
     if array.values != layout.dims.samples() as u64 {
-        let (values, dims) = (array.values, layout.dims);
-        return Err(fail(Reason::truncated(format!(
-            "has {values} values for {dims} samples: it is truncated or mislabelled"
-        ))));
+        let what = format!("has {} values for {} samples", array.values, layout.dims);
+        return Err(format_error(path, Reason::header(what)));
     }
     let reader = file.reader_at(array.start)?;
     let left = array.end.unwrap_or(length).saturating_sub(array.start);
     match layout.encoding {
-        Encoding::Text => read_text(path, layout, &array, reader.take(left), monitor),
-        _ => read_binary(path, layout, &array, reader, length - array.start, monitor),
+        Encoding::Text => read_text(path, layout, array, reader.take(left), monitor),
+        _ => read_binary(path, layout, array, reader, length - array.start, monitor),
     }
 }
 
@@ -171,13 +189,13 @@ fn header(path: &Path, lines: &mut Lines<impl BufRead>) -> Result<(Grid, Vec<Arr
                 return Ok((grid, arrays::find(path, lines, &line, text)?));
             }
             other => {
-                return Err(fail(Reason::damaged(format!(
-                    "has {other:?} where POINT_DATA or CELL_DATA are expected: it is damaged"
+                return Err(fail(Reason::header(format!(
+                    "has {other:?} where POINT_DATA or CELL_DATA are expected"
                 ))));
             }
         }
     }
-    Err(fail(Reason::truncated("ends before any SCALARS: it is truncated, or holds no samples")))
+    Err(fail(Reason::claims_more(arrays::NO_SCALARS)))
 }
 
 struct Grid {

@@ -25,6 +25,9 @@ pub(super) const KEYWORDS: [&str; 14] = [
     "CELL_DATA",
 ];
 
+/// What is wrong with a file of a grid alone.
+pub(super) const NO_SCALARS: &str = "ends before any SCALARS: it is truncated, or holds no samples";
+
 /// The name of the array of places.
 pub(super) const POINTS: &str = "POINTS";
 
@@ -119,8 +122,7 @@ impl<'a, R: BufRead> Scanner<'a, R> {
             };
         }
         if scanner.found.is_empty() {
-            let reason =
-                Reason::truncated("ends before any SCALARS: it is truncated, or holds no samples");
+            let reason = Reason::claims_more(NO_SCALARS);
             return Err(format_error(path, reason));
         }
         Ok(())
@@ -142,8 +144,7 @@ impl<'a, R: BufRead> Scanner<'a, R> {
                 let table =
                     self.lines.read_line().map_err(io_error(self.path))?.unwrap_or_default();
                 if !table.starts_with("LOOKUP_TABLE") {
-                    let reason =
-                        Reason::damaged("has no LOOKUP_TABLE line below SCALARS: it is damaged");
+                    let reason = Reason::header("has no LOOKUP_TABLE line below SCALARS");
                     return Err(format_error(self.path, reason));
                 }
                 self.array(word(1), word(2), components, self.count, true)?;
@@ -219,8 +220,8 @@ impl<'a, R: BufRead> Scanner<'a, R> {
             }
             let words: Vec<&str> = line.split_whitespace().collect();
             let &[name, components, count, kind] = words.as_slice() else {
-                let reason =
-                    Reason::damaged(format!("has a FIELD with a line {line:?}: it is damaged"));
+                let what = format!("has a FIELD with a line {line:?}, which is no array");
+                let reason = Reason::header(what);
                 return Err(format_error(self.path, reason));
             };
             let [components, count] = [components, count].map(|n| n.parse().unwrap_or(0));
@@ -285,10 +286,11 @@ pub(super) fn scalar(path: &Path, name: &str, components: u64) -> Result<Dtype, 
         "unsigned_short" => Dtype::U16,
         "short" => Dtype::I16,
         "unsigned_int" => Dtype::U32,
-        "int" => Dtype::I32,
+        // VTK writes its indices as int.
+        "int" | "vtkIdType" => Dtype::I32,
         // As on all systems but Windows; there VTK writes vtktypeint64.
         "unsigned_long" | "vtktypeuint64" => Dtype::U64,
-        "long" | "vtktypeint64" | "vtkIdType" => Dtype::I64,
+        "long" | "vtktypeint64" => Dtype::I64,
         "float" => Dtype::F32,
         "double" => Dtype::F64,
         _ => {

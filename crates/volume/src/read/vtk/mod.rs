@@ -1,5 +1,6 @@
 //! VTK's formats: the legacy ones, and those of XML.
 
+mod ghosts;
 mod image;
 mod legacy;
 mod legacy_arrays;

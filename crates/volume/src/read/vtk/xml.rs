@@ -165,8 +165,8 @@ impl<'a> VtkXml<'a> {
         let mut attributes = HashMap::new();
         for attribute in start.attributes() {
             let damaged = |error: &dyn std::fmt::Display| {
-                self.fail(Reason::damaged(format!(
-                    "has a damaged attribute before byte {position}: {error}"
+                self.fail(Reason::header(format!(
+                    "has an attribute that is not XML before byte {position}: {error}"
                 )))
             };
             let attribute = attribute.map_err(|error| damaged(&error))?;
@@ -197,9 +197,7 @@ impl<'a> VtkXml<'a> {
             .read_until(b'_', &mut before)
             .map_err(io_error(self.file.path()))?;
         if before.pop() != Some(b'_') || !before.trim_ascii().is_empty() {
-            return Err(self.fail(Reason::damaged(
-                "has no underscore before its appended data: it is damaged",
-            )));
+            return Err(self.fail(Reason::header("has no underscore before its appended data")));
         }
         Ok(Appended { start: element.text + before.len() as u64 + 1, base64 })
     }
@@ -307,7 +305,7 @@ impl VtkXml<'_> {
     pub fn piece(&self) -> Result<(usize, usize), VolumeError> {
         let kind = self.kind();
         let dataset = self.children(0, kind).next().ok_or_else(|| {
-            self.fail(Reason::damaged(format!("has no element {kind}: it is damaged")))
+            self.fail(Reason::header(format!("has no element {kind}, which is its type")))
         })?;
         let pieces: Vec<usize> = self.children(dataset, "Piece").collect();
         match pieces[..] {

@@ -113,7 +113,7 @@ impl VtkXml<'_> {
         let first = self.word(&mut data).map_err(cut)?;
         let Some(compressor) = self.compressor else {
             if first > most {
-                return Err(self.fail(Reason::truncated(format!(
+                return Err(self.fail(Reason::claims_more(format!(
                     "claims {first} bytes for its array {}, but at most {most} follow: it is \
                      truncated",
                     self.name(array)
@@ -144,7 +144,7 @@ impl VtkXml<'_> {
         let sizes = sizes.map_err(cut)?;
         let packed = sizes.iter().fold(0u64, |sum, &size| sum.saturating_add(size));
         if packed > most {
-            return Err(self.fail(Reason::truncated(format!(
+            return Err(self.fail(Reason::claims_more(format!(
                 "claims {packed} compressed bytes for its array {}, but at most {most} follow: it is \
                  truncated",
                 self.name(array)

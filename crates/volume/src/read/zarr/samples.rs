@@ -5,7 +5,6 @@ use std::io::{self, ErrorKind, Read, Seek, SeekFrom};
 use std::num::NonZeroU64;
 use std::path::{Path, PathBuf};
 
-use rayon::prelude::*;
 use serde_json::Value;
 use walpha_base::Monitor;
 use walpha_base::advice::{Setting, advice};
@@ -14,14 +13,16 @@ use zarrs::array::{Array, DataType, ElementOwned};
 use zarrs::array_subset::ArraySubset;
 use zarrs::filesystem::FilesystemStore;
 
+use super::axes::Axes;
 use crate::error::format_error;
 use crate::source::BoxReader;
 use crate::{Dims, Dtype, Reason, VolumeError};
 
-/// Calls a method with what turns samples of this type into `f32`.
+/// Calls a method with what turns samples of the type of an array into `f32`.
 macro_rules! by_type {
-    ($dtype:expr, $object:ident.$read:ident $(, $argument:expr)*) => {
+    ($array:expr, $dtype:expr, $object:ident.$read:ident $(, $argument:expr)*) => {
         match $dtype {
+            _ if *$array.data_type() == DataType::Bool => $object.$read($($argument,)* |v: bool| v.into()),
             Dtype::U8 => $object.$read($($argument,)* |v: u8| v.into()),
             Dtype::I8 => $object.$read($($argument,)* |v: i8| v.into()),
             Dtype::U16 => $object.$read($($argument,)* |v: u16| v.into()),
@@ -39,13 +40,12 @@ macro_rules! by_type {
 pub(super) fn samples(
     path: &Path,
     array: &Array<FilesystemStore>,
-    dims: Dims,
-    leading: &[u64],
+    axes: &Axes,
     monitor: &Monitor,
 ) -> Result<(Dtype, Vec<f32>), VolumeError> {
     let dtype = dtype(path, array.data_type())?;
-    let read = ArrayReader { path, array, dims, leading, monitor };
-    Ok((dtype, by_type!(dtype, read.all)?))
+    let read = ArrayReader { path, array, axes, monitor };
+    Ok((dtype, by_type!(array, dtype, read.all)?))
 }
 
 /// The type of samples.
@@ -61,10 +61,12 @@ pub(super) fn dtype(path: &Path, stored: &DataType) -> Result<Dtype, VolumeError
         DataType::Int64 => Dtype::I64,
         DataType::Float32 => Dtype::F32,
         DataType::Float64 => Dtype::F64,
+        // Bytes of 0 and 1, and no gray levels.
+        DataType::Bool => Dtype::I8,
         other => {
             let reason = Reason::unsupported(
                 format!(
-                    "holds samples of type {other}: integers of 8 to 64 bits, float32 and \
+                    "holds samples of type {other}: bool, integers of 8 to 64 bits, float32 and \
                          float64 are read"
                 ),
                 "convert it first",
@@ -86,11 +88,8 @@ pub(super) fn check_chunk(
 ) -> Result<(), VolumeError> {
     let in_chunk = chunk.iter().fold(1u64, |product, size| product.saturating_mul(size.get()));
     if in_chunk > MOST_IN_CHUNK.max(8 * dims.samples() as u64) {
-        let what = format!(
-            "has chunks of {in_chunk} samples, far more than the array: it is damaged, or store it \
-             in smaller chunks"
-        );
-        return Err(format_error(path, Reason::damaged(what)));
+        let what = format!("has chunks of {in_chunk} samples, far more than the array");
+        return Err(format_error(path, Reason::unsupported(what, "store it in smaller chunks")));
     }
     Ok(())
 }
@@ -99,17 +98,16 @@ pub(super) fn check_chunk(
 pub(super) struct ZarrBoxes {
     pub path: PathBuf,
     pub array: Array<FilesystemStore>,
-    /// Indices along the axes before the last three.
-    pub leading: Vec<u64>,
+    pub axes: Axes,
 }
 
 impl BoxReader for ZarrBoxes {
     fn read(&self, first: [usize; 3], size: [usize; 3]) -> Result<Vec<f32>, VolumeError> {
         let dtype = dtype(&self.path, self.array.data_type())?;
-        let mut ranges: Vec<_> = self.leading.iter().map(|&i| i..i + 1).collect();
-        ranges.extend([2, 1, 0].map(|k| first[k] as u64..(first[k] + size[k]) as u64));
-        let part = ArraySubset::new_with_ranges(&ranges);
-        by_type!(dtype, self.part, &part)
+        let ranges = [2, 1, 0].map(|k| first[k] as u64..(first[k] + size[k]) as u64);
+        let part = self.axes.subset(ranges);
+        let [x, y, z] = size;
+        by_type!(self.array, dtype, self.part, &part, [z, y, x])
     }
 }
 
@@ -117,21 +115,22 @@ impl ZarrBoxes {
     fn part<T: ElementOwned + Copy>(
         &self,
         part: &ArraySubset,
+        sizes: [usize; 3],
         convert: impl Fn(T) -> f32,
     ) -> Result<Vec<f32>, VolumeError> {
         check_shards(&self.array, part).map_err(|error| damaged(&self.path, &error))?;
         let read = self.array.retrieve_array_subset_elements::<T>(part);
-        let samples = read.map_err(|error| damaged(&self.path, &error))?;
-        Ok(samples.into_iter().map(convert).collect())
+        let part = read.map_err(|error| damaged(&self.path, &error))?;
+        let mut samples = Vec::with_capacity(part.len());
+        self.axes.rows(&part, sizes, |_, row| samples.extend(row.map(&convert)));
+        Ok(samples)
     }
 }
 
 struct ArrayReader<'a> {
     path: &'a Path,
     array: &'a Array<FilesystemStore>,
-    dims: Dims,
-    /// Along the axes before the last three.
-    leading: &'a [u64],
+    axes: &'a Axes,
     monitor: &'a Monitor,
 }
 
@@ -162,7 +161,7 @@ fn stored(folder: &Path, enough: u64) -> u64 {
 impl ArrayReader<'_> {
     /// Refuses an array that claims far more than what is stored can hold, before memory is asked for.
     fn check_stored(&self) -> Result<(), VolumeError> {
-        let Self { path, dims, .. } = self;
+        let Self { path, axes: Axes { dims, .. }, .. } = self;
         let needed = (dims.samples() as u64).saturating_mul(size_of::<f32>() as u64);
         if needed <= MOST_UNSTORED {
             return Ok(());
@@ -172,29 +171,31 @@ impl ArrayReader<'_> {
         if found < enough {
             return Err(format_error(
                 path,
-                Reason::truncated(format!(
-                    "claims {dims} samples and holds {found} bytes: nearly all its chunks are missing"
-                )),
+                Reason::content(
+                    format!(
+                        "claims {dims} samples and holds {found} bytes: nearly all its chunks are missing"
+                    ),
+                    "copy the whole store, or correct its shape",
+                ),
             ));
         }
         Ok(())
     }
 
     /// All samples, by as many slices at once as a chunk is thick, and as many rows as fit a piece.
-    fn all<T: ElementOwned + Copy + Send + Sync>(
+    fn all<T: ElementOwned + Copy>(
         &self,
-        convert: impl Fn(T) -> f32 + Send + Sync,
+        convert: impl Fn(T) -> f32,
     ) -> Result<Vec<f32>, VolumeError> {
-        let Self { path, array, dims, leading, monitor } = self;
+        let Self { path, array, axes, monitor } = self;
         let fail = |reason: Reason| format_error(path, reason);
-        let axes = array.dimensionality();
-        let damaged = |error: &dyn std::fmt::Display| {
-            fail(Reason::damaged(format!("is a Zarr array that cannot be read ({error})")))
-        };
-        let chunk = array.chunk_shape(&vec![0; axes]).map_err(|error| damaged(&error))?;
-        check_chunk(path, &chunk, *dims)?;
+        let dims = axes.dims;
+        let damaged = |error: &dyn std::fmt::Display| damaged(path, error);
+        let chunk =
+            array.chunk_shape(&vec![0; array.dimensionality()]).map_err(|error| damaged(&error))?;
+        check_chunk(path, &chunk, dims)?;
         self.check_stored()?;
-        let [thick, high] = [3, 2].map(|axis| chunk[axes - axis].get());
+        let [thick, high, _] = axes.sizes(&chunk);
         let mut samples = Vec::new();
         asking(|| samples.try_reserve_exact(dims.samples())).map_err(|_| {
             let bytes = dims.samples() * size_of::<f32>();
@@ -216,27 +217,34 @@ impl ArrayReader<'_> {
         for (slices, rows) in steps(z, thick)
             .flat_map(|slices| steps(y, high).map(move |rows| (slices.clone(), rows)))
         {
-            let mut ranges: Vec<_> = leading.iter().map(|&i| i..i + 1).collect();
-            ranges.extend([slices.clone(), rows.clone(), 0..x]);
-            let part = ArraySubset::new_with_ranges(&ranges);
+            let part = axes.subset([slices.clone(), rows.clone(), 0..x]);
             check_shards(array, &part).map_err(|error| damaged(&error))?;
             let part: Vec<T> =
                 array.retrieve_array_subset_elements(&part).map_err(|error| damaged(&error))?;
-            let in_slice = ((rows.end - rows.start) * x) as usize;
-            for (slice, part) in slices.clone().zip(part.chunks(in_slice)) {
-                let at = ((slice * y + rows.start) * x) as usize;
-                let samples = &mut samples[at..at + in_slice];
-                samples.par_iter_mut().zip(part).for_each(|(sample, &v)| *sample = convert(v));
-            }
+            let [slices_here, rows_here] =
+                [&slices, &rows].map(|range| (range.end - range.start) as usize);
+            let row_length = x as usize;
+            axes.rows(&part, [slices_here, rows_here, row_length], |i, row| {
+                let (slice, y_of_row) =
+                    (slices.start as usize + i / rows_here, rows.start as usize + i % rows_here);
+                let at = (slice * y as usize + y_of_row) * row_length;
+                let samples = &mut samples[at..at + row_length];
+                samples
+                    .iter_mut()
+                    .zip(row)
+                    .for_each(|(sample, element)| *sample = convert(element));
+            });
             monitor.report(slices.start * y + rows.end * (slices.end - slices.start), z * y)?;
         }
         Ok(samples)
     }
 }
 
+/// The error for a chunk or a shard.
 pub(super) fn damaged(path: &Path, error: &dyn std::fmt::Display) -> VolumeError {
-    let what = format!("is a Zarr store that cannot be read ({error})");
-    format_error(path, Reason::damaged(what))
+    let what = format!("is a Zarr store with a chunk that cannot be read ({error})");
+    let advice = "copy the whole store again, or write it anew with the program that made it";
+    format_error(path, Reason::content(what, advice))
 }
 
 // Shards: chunks that hold chunks, and an index of where these are. The index is looked at before it is believed: the

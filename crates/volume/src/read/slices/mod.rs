@@ -1,26 +1,34 @@
+mod numbers;
+
 use std::cmp::Ordering;
 use std::path::{Path, PathBuf};
 
 use image::{DynamicImage, ImageDecoder, ImageError, ImageReader};
 
-use super::frames::FrameChoice;
-use super::layout::{Encoding, Layout};
-use super::payload::MOST_EXPANSION;
-use super::tiff::{self, Page};
 use crate::error::{format_error, io_error};
+use crate::read::OpenFile;
+use crate::read::frames::FrameChoice;
+use crate::read::layout::{Encoding, Layout};
+use crate::read::payload::MOST_EXPANSION;
+use crate::read::tiff::{self, Page};
 use crate::{Dims, Dtype, Endian, Frame, Reason, Volume, VolumeError};
 
 /// What slices are called.
 const EXTENSIONS: [[&str; 2]; 3] = [["png", "png"], ["jpg", "jpeg"], ["tif", "tiff"]];
 
+/// Pictures that are none.
+const OTHER_PICTURES: [&str; 7] = ["bmp", "dcm", "gif", "jp2", "pgm", "ppm", "webp"];
+
 /// Reads a folder of gray PNG, JPEG or TIFF slices, all of one kind and size, in the natural order
-/// of their names: `slice9` before `slice10`. Other files and hidden ones are passed over.
+/// of their names: `slice9` before `slice10`. Their numbers must be a row without gaps. Other files and hidden
+/// ones are passed over.
 pub(crate) fn read(folder: &Path) -> Result<Volume, VolumeError> {
     let paths = slices(folder)?;
+    numbers::check(folder, &paths)?;
     let mut stack = Vec::new();
     let mut first: Option<([u64; 2], Dtype)> = None;
     for path in &paths {
-        let Page { size, dtype, samples } = page(path)?;
+        let Page { size, dtype, samples } = page(path, first.is_none())?;
         let expected = *first.get_or_insert((size, dtype));
         if (size, dtype) != expected {
             let (sizes, other) = expected;
@@ -37,15 +45,27 @@ pub(crate) fn read(folder: &Path) -> Result<Volume, VolumeError> {
         stack.extend(samples);
     }
     let Some((size, dtype)) = first else {
-        let reason = Reason::content(
-            "holds no PNG, JPEG or TIFF slices",
-            "name a file in it, or a folder of slices",
-        );
-        return Err(format_error(folder, reason));
+        return Err(format_error(folder, no_slices(folder)));
     };
     let dims = Dims::new(size[0], size[1], paths.len() as u64)?;
     let (endian, frame, encoding) = (Endian::Little, Frame::VOXEL, Encoding::Raw);
     Layout { dims, dtype, endian, frame, encoding, frames: FrameChoice::ONE }.volume(stack)
+}
+
+/// Why a folder is not read that holds no slices.
+fn no_slices(folder: &Path) -> Reason {
+    let entries =
+        || std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
+    let kind = |path: &Path| Some(path.extension()?.to_str()?.to_ascii_lowercase());
+    let picture =
+        entries().filter_map(|path| kind(&path)).find(|own| OTHER_PICTURES.contains(&own.as_str()));
+    if let Some(kind) = picture {
+        let what = format!(
+            "holds no PNG, JPEG or TIFF slices, but files called .{kind}, which are not read as slices"
+        );
+        return Reason::unsupported(what, "save them as PNG or TIFF");
+    }
+    Reason::content("holds no PNG, JPEG or TIFF slices", "name a file in it, or a folder of slices")
 }
 
 /// The slices of a folder, in order.
@@ -70,50 +90,104 @@ pub(crate) fn slices(folder: &Path) -> Result<Vec<PathBuf>, VolumeError> {
     Ok(paths)
 }
 
-fn page(path: &Path) -> Result<Page, VolumeError> {
+fn page(path: &Path, is_first: bool) -> Result<Page, VolumeError> {
     let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
     if EXTENSIONS[2].iter().any(|&name| extension == name) {
-        return tiff::read_page(path);
+        return tiff::read_page(path, is_first);
     }
-    let damaged = |error| match error {
-        ImageError::IoError(error) if error.kind() != std::io::ErrorKind::UnexpectedEof => {
-            io_error(path)(error)
+    let unreadable = |error| match error {
+        ImageError::IoError(error) if error.kind() == std::io::ErrorKind::UnexpectedEof => {
+            format_error(path, Reason::truncated("ends inside its image: it is truncated"))
         }
+        ImageError::IoError(error) => io_error(path)(error),
+        ImageError::Unsupported(error) => format_error(
+            path,
+            Reason::unsupported(
+                format!("is an image that is not read: {error}"),
+                "save it as a gray PNG",
+            ),
+        ),
         other => format_error(
             path,
             Reason::damaged(format!("is not an image that can be read: {other}")),
         ),
     };
-    let length = std::fs::metadata(path).map_err(io_error(path))?.len();
-    let decoder = ImageReader::open(path)
-        .and_then(ImageReader::with_guessed_format)
+    let file = OpenFile::open(path)?;
+    let length = file.length();
+    let png = Png::of(file.start());
+    if png == Some(Png::Palette) {
+        let what = "has a palette of colours: only gray is read";
+        return Err(format_error(path, Reason::unsupported(what, "save it as gray")));
+    }
+    let decoder = ImageReader::new(file.reader()?)
+        .with_guessed_format()
         .map_err(io_error(path))?
         .into_decoder()
-        .map_err(damaged)?;
+        .map_err(unreadable)?;
     let (width, height) = decoder.dimensions();
     let size = [width, height].map(u64::from);
     // PNG may have eight samples in a byte; JPEG has 64 in two bits at best.
     let most = length.saturating_mul(8 * MOST_EXPANSION);
     if size[0] * size[1] > most {
-        let reason = Reason::truncated(format!(
+        let reason = Reason::claims_more(format!(
             "claims {width}×{height} pixels, which {length} bytes cannot hold: it is \
                  truncated or damaged"
         ));
         return Err(format_error(path, reason));
     }
-    let image = DynamicImage::from_decoder(decoder).map_err(damaged)?;
+    let image = DynamicImage::from_decoder(decoder).map_err(unreadable)?;
     match image {
         DynamicImage::ImageLuma8(image) => {
-            let samples = image.into_raw().into_iter().map(f32::from).collect();
+            // The decoder spreads levels of fewer bits over a byte.
+            let step = png.map_or(1, Png::step);
+            let samples =
+                image.into_raw().into_iter().map(|level| f32::from(level / step)).collect();
             Ok(Page { size, dtype: Dtype::U8, samples })
         }
         DynamicImage::ImageLuma16(image) => {
             let samples = image.into_raw().into_iter().map(f32::from).collect();
             Ok(Page { size, dtype: Dtype::U16, samples })
         }
+        DynamicImage::ImageLumaA8(_) | DynamicImage::ImageLumaA16(_) => {
+            let what = "gray values with transparency: only gray is read";
+            Err(format_error(
+                path,
+                Reason::unsupported(format!("has {what}"), "save it without transparency"),
+            ))
+        }
         other => {
             let what = format!("pixels of {:?}: only gray is read", other.color());
             Err(format_error(path, Reason::NotScalar { what, dims: None }))
+        }
+    }
+}
+
+/// What the header of a PNG says of its pixels.
+#[derive(Clone, Copy, PartialEq)]
+enum Png {
+    Palette,
+    /// Gray levels of so many bits.
+    Gray(u8),
+    Other,
+}
+
+impl Png {
+    fn of(start: &[u8]) -> Option<Self> {
+        start.starts_with(b"\x89PNG").then_some(())?;
+        Some(match (start.get(25)?, start.get(24)?) {
+            (3, _) => Self::Palette,
+            (0, &bits) => Self::Gray(bits),
+            _ => Self::Other,
+        })
+    }
+
+    /// How far apart levels are once they are spread over a byte.
+    fn step(self) -> u8 {
+        match self {
+            Self::Gray(1) => 255,
+            Self::Gray(2) => 85,
+            Self::Gray(4) => 17,
+            _ => 1,
         }
     }
 }

@@ -1,0 +1,257 @@
+//! Kinds of files that are known by how they begin and read neither as volumes nor as points.
+
+use std::path::Path;
+
+use walpha_base::advice::advice;
+use walpha_base::shown::shown;
+
+use crate::Reason;
+
+/// A kind of files: what it is, after "is ", and what to do about it.
+struct Kind {
+    begins: fn(&[u8]) -> bool,
+    what: &'static str,
+    advice: &'static str,
+}
+
+/// A kind by its first bytes.
+macro_rules! kind {
+    ($($start:literal)|+, $what:literal, $advice:expr) => {
+        Kind {
+            begins: |start| [$(&$start[..]),+].iter().any(|magic| start.starts_with(magic)),
+            what: $what,
+            advice: $advice,
+        }
+    };
+}
+
+const SLICES: &str = "give the folder of all slices, as PNG, JPEG or TIFF";
+const CONVERT: &str = "convert it to NRRD, NIfTI or TIFF";
+const UNPACK: &str = "unpack it, and name the file in it";
+const TABLE: &str = "save the places of its atoms as a table, x,y,z in each line (.csv or .xyz)";
+const SAVE_TABLE: &str = "save it as CSV";
+const DOWNLOAD: &str = "download the file itself: this is what a server said instead";
+
+/// The kinds, in the order in which they are looked for.
+static KINDS: [Kind; 43] = [
+    kind!(b"\x89PNG", "a PNG picture, one slice", SLICES),
+    kind!(b"\xff\xd8\xff", "a JPEG picture, one slice", SLICES),
+    kind!(b"GIF8", "a GIF picture", SLICES),
+    Kind { begins: is_bmp, what: "a BMP picture", advice: SLICES },
+    Kind {
+        begins: |start| start.starts_with(b"RIFF") && start.get(8..12) == Some(b"WEBP"),
+        what: "a WebP picture",
+        advice: SLICES,
+    },
+    kind!(b"8BPS", "a Photoshop picture", SLICES),
+    kind!(
+        b"MATLAB 7.3 MAT-file",
+        "a MATLAB file (.mat, which is HDF5), which is not read",
+        "save the array as NRRD or NPY"
+    ),
+    kind!(
+        b"MATLAB 5.0 MAT-file",
+        "a MATLAB file (.mat), which is not read",
+        "save the array as NRRD, or load it by scipy.io.loadmat and save it by numpy.save"
+    ),
+    kind!(b"\x89HDF\r\n", "HDF5 (or MINC2, NetCDF-4), which is not read", CONVERT),
+    kind!(b"CDF\x01" | b"CDF\x02" | b"CDF\x05", "NetCDF (or MINC1), which is not read", CONVERT),
+    kind!(b"SIMPLE  =", "FITS, which is not read", CONVERT),
+    kind!(b"ZISRAWFILE", "a CZI file of ZEISS, which is not read", "export it as OME-TIFF"),
+    kind!(b"\xda\xce\xbe\x0a", "an ND2 file of Nikon, which is not read", "export it as OME-TIFF"),
+    Kind {
+        begins: |start| start.get(208..212) == Some(b"MAP "),
+        what: "an MRC or CCP4 map, which is not read",
+        advice: CONVERT,
+    },
+    kind!(b"BZh", "compressed with bzip2", UNPACK),
+    kind!(b"\xfd7zXZ", "compressed with xz", UNPACK),
+    kind!(b"\x28\xb5\x2f\xfd", "compressed with Zstandard", UNPACK),
+    kind!(b"\x04\x22\x4d\x18", "compressed with LZ4", UNPACK),
+    kind!(b"\x1f\x9d", "compressed with compress (.Z)", UNPACK),
+    kind!(b"7z\xbc\xaf\x27\x1c", "a 7z archive", UNPACK),
+    kind!(b"Rar!\x1a\x07", "a RAR archive", UNPACK),
+    kind!(b"PK\x03\x04" | b"PK\x05\x06", "a zip archive", UNPACK),
+    Kind {
+        begins: |start| start.get(257..262) == Some(b"ustar"),
+        what: "a tar archive",
+        advice: UNPACK,
+    },
+    Kind {
+        begins: |start| matches!(start, [0x80, 2..=5, ..]),
+        what: "a pickle of Python, which may run programs and is not read",
+        advice: "save the array by numpy.save",
+    },
+    kind!(b"PAR1", "a Parquet table, which is not read", SAVE_TABLE),
+    kind!(b"ARROW1" | b"FEA1", "an Arrow table, which is not read", SAVE_TABLE),
+    kind!(
+        b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1",
+        "a document of an older Office program, which is not read",
+        SAVE_TABLE
+    ),
+    kind!(b"SQLite format 3", "an SQLite database, which is not read", SAVE_TABLE),
+    kind!(b"glTF", "a glTF mesh, which is not read", "save it as PLY"),
+    kind!(b"ASTM-E57", "an E57 scan, which is not read", "convert it to LAS or PLY"),
+    kind!(b"%PDF", "a PDF document", "name a file with samples or points in it"),
+    kind!(b"%!PS", "a PostScript document", "name a file with samples or points in it"),
+    kind!(
+        b"version https://git-lfs",
+        "a pointer of Git LFS and not the file itself",
+        "fetch the file: `git lfs pull`"
+    ),
+    kind!(
+        b"/annex/objects/",
+        "a pointer of git-annex and not the file itself",
+        "fetch the file: `git annex get`"
+    ),
+    Kind { begins: is_html, what: "an HTML page", advice: DOWNLOAD },
+    Kind {
+        begins: |start| {
+            text(start).starts_with(b"{\"message\"") || text(start).starts_with(b"{\"error\"")
+        },
+        what: "an error message of a server (JSON)",
+        advice: DOWNLOAD,
+    },
+    Kind {
+        begins: is_other_xml,
+        what: "XML, and no file of VTK",
+        advice: "name a file with samples or points in it",
+    },
+    Kind {
+        begins: is_pdb,
+        what: "a PDB (or PQR) file of a molecule, which is not read",
+        advice: TABLE,
+    },
+    Kind {
+        begins: is_cif,
+        what: "a CIF file of a molecule or crystal, which is not read",
+        advice: TABLE,
+    },
+    kind!(b"ITEM: TIMESTEP" | b"ITEM: UNITS", "a LAMMPS dump, which is not read", TABLE),
+    kind!(
+        b"\x7fELF" | b"MZ\x90\0" | b"\xcf\xfa\xed\xfe",
+        "a program",
+        "name a file with samples or points in it"
+    ),
+    kind!(b"-----BEGIN ", "a key or certificate", "name a file with samples or points in it"),
+    kind!(b"{\\rtf", "an RTF document", "save it as plain text"),
+];
+
+/// Why a file that begins so is not read, if it is of a kind that is known.
+pub fn other_kind(start: &[u8]) -> Option<Reason> {
+    let kind = KINDS.iter().find(|kind| (kind.begins)(start))?;
+    Some(Reason::unsupported(format!("is {}", kind.what), kind.advice))
+}
+
+/// Why a file is not read that holds the samples of a header beside it, or is called so.
+pub(super) fn partner(path: &Path) -> Option<Reason> {
+    const HEADERS: [&str; 3] = ["hdr", "mhd", "nhdr"];
+    let beside = HEADERS.map(|extension| path.with_extension(extension));
+    if let Some(header) = beside.iter().find(|header| header.is_file()) {
+        let header = shown(header);
+        let what = format!(
+            "is of no format known by content; {header} is beside it, a header that may describe it"
+        );
+        return Some(Reason::content(what, format!("name {header}")));
+    }
+    let is_image = path.extension().is_some_and(|own| own.eq_ignore_ascii_case("img"));
+    is_image.then(|| {
+        let header = shown(&beside[0]);
+        let what =
+            format!("is called as the samples of a NIfTI pair, whose header {header} is not there");
+        use walpha_base::advice::Setting::{Dims, Dtype};
+        Reason::content(
+            what,
+            advice![
+                "copy that, too, and name it; for raw samples give ",
+                Dims,
+                " X,Y,Z and ",
+                Dtype
+            ],
+        )
+    })
+}
+
+/// Text without a mark of its encoding and white space.
+fn text(start: &[u8]) -> &[u8] {
+    start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(start).trim_ascii_start()
+}
+
+fn is_html(start: &[u8]) -> bool {
+    let start = text(start);
+    let begins =
+        |tag: &[u8]| start.get(..tag.len()).is_some_and(|own| own.eq_ignore_ascii_case(tag));
+    begins(b"<!doctype html") || begins(b"<html") || begins(b"<head")
+}
+
+/// Text of XML. A file of VTK may begin with a comment that hides its first element from us.
+fn is_other_xml(start: &[u8]) -> bool {
+    let start = text(start);
+    start.starts_with(b"<svg")
+        || start.starts_with(b"<?xml") && !start.windows(4).any(|window| window == b"<!--")
+}
+
+/// Words that the first lines of CIF have.
+fn is_cif(start: &[u8]) -> bool {
+    const WORDS: [&[u8]; 4] = [b"_entry", b"_audit", b"_cell", b"_atom_site"];
+    let start = text(start);
+    let has = |word: &&[u8]| start.windows(word.len()).any(|window| window == *word);
+    start.starts_with(b"data_") && WORDS.iter().any(has)
+}
+
+/// A header of 14 bytes and one of a length that there is.
+fn is_bmp(start: &[u8]) -> bool {
+    start.starts_with(b"BM")
+        && matches!(start.get(14..18), Some([12 | 40 | 52 | 56 | 64 | 108 | 124, 0, 0, 0]))
+}
+
+/// Records of six characters, the first of which there are not many.
+fn is_pdb(start: &[u8]) -> bool {
+    const RECORDS: [&[u8]; 9] = [
+        b"HEADER  ",
+        b"ATOM   ",
+        b"HETATM ",
+        b"REMARK ",
+        b"CRYST1 ",
+        b"COMPND ",
+        b"TITLE  ",
+        b"MODEL  ",
+        b"EXPDTA ",
+    ];
+    RECORDS.iter().any(|record| start.starts_with(record))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn kinds_are_told_from_text_and_from_each_other() {
+        let told = |start: &[u8]| other_kind(start).map(|reason| reason.to_string());
+        for (start, word) in [
+            (&b"\xef\xbb\xbf \n<!DOCTYPE HTML><html>"[..], "HTML"),
+            (b"<?xml version=\"1.0\"?><gpx/>", "XML"),
+            (b"version https://git-lfs.github.com/spec/v1\noid", "Git LFS"),
+            (b"ATOM      1  N   MET A   1", "PDB"),
+            (b"data_1ABC\n#\n_entry.id 1ABC\n", "CIF"),
+            (b"\x80\x04\x95", "pickle"),
+            (b"BM\x00\x00\x00\x00\x00\x00\x00\x00\x36\x00\x00\x00\x28\x00\x00\x00", "BMP"),
+        ] {
+            assert!(
+                told(start).is_some_and(|text| text.contains(word)),
+                "{word}: {:?}",
+                told(start)
+            );
+        }
+        for start in [
+            &b"1 2 3\n"[..],
+            b"x,y,z\n",
+            b"",
+            b"data_x,data_y\n1,2\n",
+            b"BMI,age\n1,2\n",
+            b"TITLE,x",
+        ] {
+            assert_eq!(told(start), None);
+        }
+    }
+}

@@ -1,0 +1,264 @@
+//! The directories of a TIFF file: what each page says of itself, before one is decoded.
+
+use std::io::{self, BufReader, Read, Seek, SeekFrom};
+use std::ops::Range;
+use std::path::Path;
+
+use crate::error::{format_error, io_error};
+use crate::read::OpenFile;
+use crate::{Reason, VolumeError};
+
+/// A page, by its directory.
+pub(super) struct Directory {
+    /// Where its values are: tag, type, count, and the place of the value or of where it is.
+    entries: Vec<Entry>,
+}
+
+/// A field of a directory.
+struct Entry {
+    tag: u16,
+    /// 1 bytes, 2 text, 3 and 4 whole numbers, 5 pairs of them, 16 whole numbers of 64 bits.
+    kind: u16,
+    count: u64,
+    /// Of its bytes in the file.
+    at: u64,
+}
+
+/// Tags that are looked at here; the decoder has those of pixels.
+pub(super) mod tag {
+    pub(crate) const NEW_SUBFILE_TYPE: u16 = 254;
+    pub(crate) const SUBFILE_TYPE: u16 = 255;
+    pub(crate) const BITS_PER_SAMPLE: u16 = 258;
+    pub(crate) const PHOTOMETRIC: u16 = 262;
+    pub(crate) const FILL_ORDER: u16 = 266;
+    pub(crate) const IMAGE_DESCRIPTION: u16 = 270;
+    pub(crate) const ORIENTATION: u16 = 274;
+    pub(crate) const SAMPLES_PER_PIXEL: u16 = 277;
+    pub(crate) const X_RESOLUTION: u16 = 282;
+    pub(crate) const Y_RESOLUTION: u16 = 283;
+    pub(crate) const RESOLUTION_UNIT: u16 = 296;
+    pub(crate) const SAMPLE_FORMAT: u16 = 339;
+    pub(crate) const IMAGE_DEPTH: u16 = 32997;
+    pub(crate) const MODEL_PIXEL_SCALE: u16 = 33550;
+    pub(crate) const GDAL_NODATA: u16 = 42113;
+}
+
+/// The tags above, all others are passed over.
+const LOOKED_AT: [u16; 15] = [
+    tag::NEW_SUBFILE_TYPE,
+    tag::SUBFILE_TYPE,
+    tag::BITS_PER_SAMPLE,
+    tag::PHOTOMETRIC,
+    tag::FILL_ORDER,
+    tag::IMAGE_DESCRIPTION,
+    tag::ORIENTATION,
+    tag::SAMPLES_PER_PIXEL,
+    tag::X_RESOLUTION,
+    tag::Y_RESOLUTION,
+    tag::RESOLUTION_UNIT,
+    tag::SAMPLE_FORMAT,
+    tag::IMAGE_DEPTH,
+    tag::MODEL_PIXEL_SCALE,
+    tag::GDAL_NODATA,
+];
+
+/// Tags have 16 bits.
+const MOST_ENTRIES: u64 = 1 << 16;
+/// Photometric interpretation 0.
+const WHITE_IS_ZERO: u64 = 0;
+
+/// The directories of a file, one for each page, and the file to read their values from.
+pub(super) struct Directories<'a> {
+    path: &'a Path,
+    file: &'a OpenFile,
+    big_endian: bool,
+    pub(super) pages: Vec<Directory>,
+}
+
+impl<'a> Directories<'a> {
+    /// Goes from directory to directory, each of which begins in another place.
+    pub(super) fn read(file: &'a OpenFile) -> Result<Self, VolumeError> {
+        let path = file.path();
+        let failed = |error: io::Error| match error.kind() {
+            io::ErrorKind::UnexpectedEof => {
+                format_error(path, Reason::truncated("ends inside its TIFF pages: it is truncated"))
+            }
+            _ => io_error(path)(error),
+        };
+        let mut reader = file.reader()?;
+        let mut start = [0; 8];
+        reader.read_exact(&mut start).map_err(failed)?;
+        let big_endian = start.starts_with(b"MM");
+        let number = |bytes: &[u8]| number(bytes, big_endian);
+        let big = number(&start[2..4]) == 43;
+        // Bytes of a count of entries, of an entry, and of a place.
+        let (count_size, entry_size, place_size) = if big { (8, 20, 8) } else { (2, 12, 4) };
+        let mut next = number(&start[4..]);
+        if big {
+            let mut place = [0; 8];
+            reader.read_exact(&mut place).map_err(failed)?;
+            next = number(&place);
+        }
+        let mut pages: Vec<Directory> = Vec::new();
+        let mut seen = std::collections::HashSet::new();
+        while next != 0 {
+            if !seen.insert(next) {
+                let what = format!("has pages that lead back to byte {next}: it never ends");
+                return Err(format_error(path, Reason::damaged(what)));
+            }
+            let mut read = |at: u64, size: u64| -> io::Result<Vec<u8>> {
+                reader.seek(SeekFrom::Start(at))?;
+                let mut bytes = Vec::new();
+                (&mut reader).take(size).read_to_end(&mut bytes)?;
+                if (bytes.len() as u64) < size {
+                    Err(io::ErrorKind::UnexpectedEof.into())
+                } else {
+                    Ok(bytes)
+                }
+            };
+            let count = number(&read(next, count_size).map_err(failed)?);
+            if count > MOST_ENTRIES {
+                let what =
+                    format!("has a directory of {count} entries at byte {next}, which is none");
+                return Err(format_error(path, Reason::damaged(what)));
+            }
+            let size = count.saturating_mul(entry_size);
+            let first = next.saturating_add(count_size);
+            let bytes = read(first, size.saturating_add(place_size)).map_err(failed)?;
+            let (entries, rest) = bytes.split_at(size as usize);
+            let entries = entries.chunks(entry_size as usize).zip(0..).filter_map(|(entry, i)| {
+                let tag = number(&entry[..2]) as u16;
+                LOOKED_AT.contains(&tag).then(|| {
+                    let kind = number(&entry[2..4]) as u16;
+                    let (count, value) = entry[4..].split_at(place_size as usize);
+                    let count = number(count);
+                    let inline = count.saturating_mul(size_of_kind(kind)) <= place_size;
+                    let at = first + i * entry_size + 4 + place_size;
+                    Entry { tag, kind, count, at: if inline { at } else { number(value) } }
+                })
+            });
+            pages.push(Directory { entries: entries.collect() });
+            next = number(rest);
+        }
+        Ok(Self { path, file, big_endian, pages })
+    }
+
+    /// The bytes of a value, up to those that there are.
+    fn bytes(&self, page: usize, tag: u16) -> Result<Option<(&Entry, Vec<u8>)>, VolumeError> {
+        let entry = self.pages.get(page).and_then(|page| page.entry(tag));
+        let Some(entry) = entry else { return Ok(None) };
+        let mut bytes = Vec::new();
+        let size = entry.count.saturating_mul(size_of_kind(entry.kind)).min(self.file.length());
+        let read = self.file.reader_at(entry.at)?.take(size).read_to_end(&mut bytes);
+        read.map_err(io_error(self.path))?;
+        Ok(Some((entry, bytes)))
+    }
+
+    /// The first number of a value.
+    pub(super) fn number(&self, page: usize, tag: u16) -> Result<Option<u64>, VolumeError> {
+        let found = self.bytes(page, tag)?;
+        Ok(found.and_then(|(entry, bytes)| {
+            let size = size_of_kind(entry.kind) as usize;
+            bytes.get(..size).map(|first| number(first, self.big_endian))
+        }))
+    }
+
+    /// A value that is a ratio.
+    pub(super) fn ratio(&self, page: usize, tag: u16) -> Result<Option<f64>, VolumeError> {
+        let found = self.bytes(page, tag)?.filter(|(entry, _)| entry.kind == 5);
+        Ok(found.and_then(|(_, bytes)| {
+            let [n, d] =
+                [bytes.get(..4)?, bytes.get(4..8)?].map(|part| number(part, self.big_endian));
+            (n > 0 && d > 0).then(|| n as f64 / d as f64)
+        }))
+    }
+
+    /// A text, up to its first 0: in UTF-8, or else in Latin-1.
+    pub(super) fn text(&self, page: usize, tag: u16) -> Result<Option<String>, VolumeError> {
+        let found = self.bytes(page, tag)?;
+        Ok(found.map(|(_, bytes)| {
+            let text = bytes.split(|&byte| byte == 0).next().unwrap_or_default();
+            match std::str::from_utf8(text) {
+                Ok(text) => text.to_owned(),
+                Err(_) => text.iter().copied().map(char::from).collect(),
+            }
+        }))
+    }
+
+    /// Whether a page is a smaller copy of another one (a thumbnail, a level of a pyramid) or a mask.
+    pub(super) fn is_copy(&self, page: usize) -> Result<bool, VolumeError> {
+        let flags = self.number(page, tag::NEW_SUBFILE_TYPE)?.unwrap_or(0);
+        let old = self.number(page, tag::SUBFILE_TYPE)?.unwrap_or(1);
+        Ok(flags & 0b101 != 0 || old == 2)
+    }
+
+    /// Whether a page says that 0 is white.
+    pub(super) fn is_white_zero(&self, page: usize) -> Result<bool, VolumeError> {
+        Ok(self.number(page, tag::PHOTOMETRIC)? == Some(WHITE_IS_ZERO))
+    }
+
+    /// The file, for a decoder that would turn white and black round: every page says that 0 is black.
+    pub(super) fn as_stored(&self) -> Result<AsStored<'a>, VolumeError> {
+        let mut ones = Vec::new();
+        for page in 0..self.pages.len() {
+            if self.is_white_zero(page)?
+                && let Some(entry) = self.pages[page].entry(tag::PHOTOMETRIC)
+            {
+                let last = if self.big_endian { size_of_kind(entry.kind) - 1 } else { 0 };
+                ones.push(entry.at + last);
+            }
+        }
+        ones.sort_unstable();
+        Ok(AsStored { reader: self.file.reader()?, at: 0, ones })
+    }
+}
+
+impl Directory {
+    fn entry(&self, tag: u16) -> Option<&Entry> {
+        self.entries.iter().find(|entry| entry.tag == tag)
+    }
+}
+
+/// Bytes of a value of a type. What is of no type known has none.
+fn size_of_kind(kind: u16) -> u64 {
+    match kind {
+        1 | 2 | 6 | 7 => 1,
+        3 | 8 => 2,
+        4 | 9 | 11 | 13 => 4,
+        5 | 10 | 12 | 16 | 17 | 18 => 8,
+        _ => 0,
+    }
+}
+
+/// A whole number of up to 8 bytes.
+fn number(bytes: &[u8], big_endian: bool) -> u64 {
+    let add = |sum: u64, &byte: &u8| sum << 8 | u64::from(byte);
+    if big_endian { bytes.iter().fold(0, add) } else { bytes.iter().rev().fold(0, add) }
+}
+
+/// A file in which some bytes read as 1.
+pub(super) struct AsStored<'a> {
+    reader: BufReader<&'a std::fs::File>,
+    at: u64,
+    ones: Vec<u64>,
+}
+
+impl Read for AsStored<'_> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let found = self.reader.read(buffer)?;
+        let Range { start, end } = self.at..self.at + found as u64;
+        let first = self.ones.partition_point(|&one| one < start);
+        for one in self.ones[first..].iter().take_while(|&&one| one < end) {
+            buffer[(one - start) as usize] = 1;
+        }
+        self.at = end;
+        Ok(found)
+    }
+}
+
+impl Seek for AsStored<'_> {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        self.at = self.reader.seek(to)?;
+        Ok(self.at)
+    }
+}

@@ -1,0 +1,355 @@
+//! TIFF stacks: pages as slices.
+
+mod directories;
+mod stack;
+
+use std::io::Read;
+use std::path::Path;
+
+use tiff::decoder::{Decoder, DecodingResult, Limits};
+use tiff::tags::{ByteOrder, Tag};
+use tiff::{ColorType, TiffError};
+use walpha_base::Monitor;
+use walpha_base::shown::shown;
+
+use super::OpenFile;
+use super::frames::FrameChoice;
+use crate::error::{format_error, io_error};
+use crate::{Dims, Dtype, Endian, Reason, Volume, VolumeError};
+use directories::{AsStored, Directories, tag};
+use stack::{PageRange, StackInfo};
+
+/// The most a compression that TIFF knows expands by: LZW writes up to 4096 bytes for a code of 12
+/// bits.
+const MOST_EXPANSION: u64 = 2731;
+
+/// Reads TIFF and `BigTIFF`: the pages are the slices, those aside that are smaller copies of others. Values are as
+/// stored, whatever they look like. Spacing is what `ImageJ` or OME-XML say of it in
+/// the description of the first page; resolutions of other programs are those of prints.
+///
+/// Large stacks that `ImageJ` writes after a single page are read too. Of a stack with several channels or
+/// times, `frame` chooses one volume, channels counted first. Colours, palettes and samples of fewer
+/// than 8 bits are refused.
+pub(crate) fn read(
+    file: &OpenFile,
+    frame: Option<u64>,
+    monitor: &Monitor,
+) -> Result<Volume, VolumeError> {
+    let path = file.path();
+    let mut pages = Pages::open(file)?;
+    pages.say_what_is_passed_over()?;
+    let info = StackInfo::of(path, &pages.directories)?;
+    let count = pages.slices.len() as u64;
+    if let (Some(images @ 2..), 1) = (info.images, count) {
+        let wanted = info.wanted(path, images, frame)?;
+        let first = pages.page(0)?;
+        let (size, dtype) = (first.size, first.dtype);
+        return behind_one_page(file, pages, &info, wanted, size, dtype, monitor);
+    }
+    let wanted = info.wanted(path, count, frame)?;
+    let first = pages.page(wanted.first)?;
+    let mut stack = first.samples;
+    for slice in 1..wanted.count {
+        let place = wanted.first + slice * wanted.step;
+        pages.reserve(place, stack.len(), first.dtype)?;
+        let page = pages.page(place)?;
+        if (page.size, page.dtype) != (first.size, first.dtype) {
+            return Err(format_error(
+                path,
+                Reason::content(
+                    format!(
+                        "has {:?} samples of {} in page {}, but {:?} of {} in the first: \
+                             slices must be alike",
+                        page.size,
+                        page.dtype,
+                        place + 1,
+                        first.size,
+                        first.dtype
+                    ),
+                    "save them as one stack",
+                ),
+            ));
+        }
+        stack.extend(page.samples);
+        monitor.report(slice + 1, wanted.count)?;
+    }
+    let dims = Dims::new(first.size[0], first.size[1], wanted.count)?;
+    info.layout(path, dims, first.dtype, Endian::Little, FrameChoice::ONE)?.volume(stack)
+}
+
+/// Reads one page alone, as a slice of a folder; of the first one is said what is passed over.
+pub(super) fn read_page(path: &Path, is_first: bool) -> Result<Page, VolumeError> {
+    let file = OpenFile::open(path)?;
+    let mut pages = Pages::open(&file)?;
+    if is_first {
+        pages.say_what_is_passed_over()?;
+        let info = StackInfo::of(path, &pages.directories)?;
+        if info.has_spacing() {
+            tracing::warn!(
+                "{}: its spacing is passed over: slices of a folder have none",
+                shown(path)
+            );
+        }
+    }
+    if pages.slices.len() > 1 {
+        let reason = Reason::content(
+            "holds several pages: it is a stack of its own, and no slice of the folder",
+            "name the file itself",
+        );
+        return Err(format_error(path, reason));
+    }
+    pages.page(0)
+}
+
+/// A decoded page.
+pub(super) struct Page {
+    /// Samples along x and y.
+    pub size: [u64; 2],
+    pub dtype: Dtype,
+    pub samples: Vec<f32>,
+}
+
+struct Pages<'a> {
+    path: &'a Path,
+    decoder: Decoder<AsStored<'a>>,
+    directories: Directories<'a>,
+    /// The pages that are slices, and the one where the decoder is.
+    slices: Vec<usize>,
+    at: usize,
+    /// The most bytes all samples can have.
+    most: u64,
+}
+
+impl<'a> Pages<'a> {
+    fn open(file: &'a OpenFile) -> Result<Self, VolumeError> {
+        let (path, length) = (file.path(), file.length());
+        let most = length.saturating_mul(MOST_EXPANSION);
+        // The decoder's own limits are those of photographs; the length of the file is a better one.
+        let mut limits = Limits::default();
+        limits.decoding_buffer_size = usize::try_from(most).unwrap_or(usize::MAX);
+        limits.intermediate_buffer_size = limits.decoding_buffer_size;
+        limits.ifd_value_size = usize::try_from(length).unwrap_or(usize::MAX);
+        let directories = Directories::read(file)?;
+        let mut slices = Vec::new();
+        for page in 0..directories.pages.len() {
+            if !directories.is_copy(page)? {
+                slices.push(page);
+            }
+        }
+        if slices.is_empty() {
+            let reason = Reason::content("has no page of samples", "name another file");
+            return Err(format_error(path, reason));
+        }
+        let decoder = Decoder::new(directories.as_stored()?).map_err(damaged(path))?;
+        let decoder = decoder.with_limits(limits);
+        Ok(Self { path, decoder, directories, slices, at: 0, most })
+    }
+
+    /// Says which of the things that the first page states are not taken.
+    fn say_what_is_passed_over(&self) -> Result<(), VolumeError> {
+        let path = shown(self.path);
+        let first = self.slices[0];
+        let copies = self.directories.pages.len() - self.slices.len();
+        if copies > 0 {
+            tracing::warn!(
+                "{path}: {copies} pages are smaller copies or masks of others, and passed over"
+            );
+        }
+        if self.directories.is_white_zero(first)? {
+            tracing::warn!(
+                "{path}: 0 is white (photometric interpretation 0); values are as stored"
+            );
+        }
+        match self.directories.number(first, tag::ORIENTATION)? {
+            None | Some(1) => {}
+            Some(way) => tracing::warn!(
+                "{path}: Orientation {way} is passed over: rows and columns are as stored"
+            ),
+        }
+        if let Some(value) = self.directories.text(first, tag::GDAL_NODATA)? {
+            tracing::warn!("{path}: the value {value:?} of no data (GDAL) is passed over");
+        }
+        if self.directories.number(first, tag::MODEL_PIXEL_SCALE)?.is_some() {
+            tracing::warn!("{path}: the place on Earth that GeoTIFF states is passed over");
+        }
+        Ok(())
+    }
+
+    /// Goes to a slice, not before the one where the decoder is.
+    fn go_to(&mut self, slice: u64) -> Result<usize, VolumeError> {
+        let page = self.slices[slice as usize];
+        while self.at < page {
+            self.decoder.next_image().map_err(damaged(self.path))?;
+            self.at += 1;
+        }
+        Ok(page)
+    }
+
+    /// Refuses another page where the file cannot hold so many samples.
+    fn reserve(&mut self, slice: u64, samples: usize, dtype: Dtype) -> Result<(), VolumeError> {
+        self.go_to(slice)?;
+        let (x, y) = self.decoder.dimensions().map_err(damaged(self.path))?;
+        let samples = u64::from(x) * u64::from(y) + samples as u64;
+        if samples > Dims::MAX_SAMPLES || samples.saturating_mul(dtype.size() as u64) > self.most {
+            let reason =
+                Reason::header(format!("claims more than {samples} samples, which it cannot hold"));
+            return Err(format_error(self.path, reason));
+        }
+        Ok(())
+    }
+
+    /// Refuses what is no row of gray values.
+    fn check_gray(&self, page: usize) -> Result<(), VolumeError> {
+        let fail = |reason: Reason| Err(format_error(self.path, reason));
+        let number = |tag, default| {
+            Ok::<u64, VolumeError>(self.directories.number(page, tag)?.unwrap_or(default))
+        };
+        match number(tag::PHOTOMETRIC, 1)? {
+            0 | 1 => {}
+            3 => {
+                let what =
+                    "has a palette of colours (photometric interpretation 3): only gray is read";
+                return fail(Reason::unsupported(what, "save it as gray"));
+            }
+            4 => return fail(Reason::unsupported("is a mask of transparency", "save it as gray")),
+            _ => return Ok(()),
+        }
+        let (channels, bits) =
+            (number(tag::SAMPLES_PER_PIXEL, 1)?, number(tag::BITS_PER_SAMPLE, 1)?);
+        if channels > 1 {
+            let what = format!("{channels} values in each pixel");
+            return fail(Reason::not_scalar(what, None));
+        }
+        if number(tag::FILL_ORDER, 1)? == 2 {
+            let what = "has the bits of its bytes in reverse (FillOrder 2), which is not read";
+            return fail(Reason::unsupported(what, "save it anew"));
+        }
+        match number(tag::SAMPLE_FORMAT, 1)? {
+            1..=3 => {}
+            5 | 6 => {
+                let what = "holds complex numbers (SampleFormat), which are not read";
+                return fail(Reason::unsupported(what, "save their real part or magnitude"));
+            }
+            other => {
+                let what = format!("does not say what its samples are (SampleFormat {other})");
+                return fail(Reason::unsupported(what, "save them as whole numbers or floats"));
+            }
+        }
+        match bits {
+            8 | 16 | 32 | 64 => Ok(()),
+            _ => fail(Reason::unsupported(
+                format!("has samples of {bits} bits"),
+                "convert it to 8 or 16",
+            )),
+        }
+    }
+
+    fn page(&mut self, slice: u64) -> Result<Page, VolumeError> {
+        let path = self.path;
+        let fail = |reason: Reason| format_error(path, reason);
+        let page = self.go_to(slice)?;
+        self.check_gray(page)?;
+        let (x, y) = self.decoder.dimensions().map_err(damaged(path))?;
+        match self.decoder.colortype().map_err(damaged(path))? {
+            ColorType::Gray(_) => {}
+            other => {
+                let what = format!("colours ({other:?}): only gray is read");
+                return Err(fail(Reason::NotScalar { what, dims: None }));
+            }
+        }
+        if self.directories.number(page, tag::IMAGE_DEPTH)?.is_some_and(|depth| depth > 1) {
+            return Err(fail(Reason::content(
+                "is a volume in one page (ImageDepth)",
+                "save its slices as pages",
+            )));
+        }
+        self.reserve(slice, 0, Dtype::U8)?;
+        let (samples, dtype) = match self.decoder.read_image().map_err(damaged(path))? {
+            DecodingResult::U8(v) => (v.into_iter().map(f32::from).collect(), Dtype::U8),
+            DecodingResult::I8(v) => (v.into_iter().map(f32::from).collect(), Dtype::I8),
+            DecodingResult::U16(v) => (v.into_iter().map(f32::from).collect(), Dtype::U16),
+            DecodingResult::I16(v) => (v.into_iter().map(f32::from).collect(), Dtype::I16),
+            DecodingResult::U32(v) => (v.into_iter().map(|v| v as f32).collect(), Dtype::U32),
+            DecodingResult::I32(v) => (v.into_iter().map(|v| v as f32).collect(), Dtype::I32),
+            DecodingResult::U64(v) => (v.into_iter().map(|v| v as f32).collect(), Dtype::U64),
+            DecodingResult::I64(v) => (v.into_iter().map(|v| v as f32).collect(), Dtype::I64),
+            DecodingResult::F32(v) => (v, Dtype::F32),
+            DecodingResult::F64(v) => (v.into_iter().map(|v| v as f32).collect(), Dtype::F64),
+            DecodingResult::F16(_) => {
+                return Err(fail(Reason::unsupported(
+                    "has floats of 16 bits, which are not read",
+                    "save 32",
+                )));
+            }
+        };
+        let samples: Vec<f32> = samples;
+        let size = [x.into(), y.into()];
+        if samples.len() as u64 != size[0] * size[1] {
+            let found = samples.len();
+            let what = format!("has {found} samples in a page of {size:?}");
+            return Err(fail(Reason::damaged(what)));
+        }
+        Ok(Page { size, dtype, samples })
+    }
+}
+
+/// Reads a stack that `ImageJ` wrote uncompressed after its only page.
+fn behind_one_page(
+    file: &OpenFile,
+    mut pages: Pages,
+    info: &StackInfo,
+    wanted: PageRange,
+    size: [u64; 2],
+    dtype: Dtype,
+    monitor: &Monitor,
+) -> Result<Volume, VolumeError> {
+    let path = file.path();
+    let slices = wanted.count;
+    if wanted.step > 1 {
+        let reason = Reason::unsupported(
+            "interleaves its channels behind one page",
+            "save it with a page for each image, or one channel alone",
+        );
+        return Err(format_error(path, reason));
+    }
+    let compression: Option<u64> =
+        pages.decoder.find_tag_unsigned(Tag::Compression).map_err(damaged(path))?;
+    let offsets: Option<Vec<u64>> =
+        pages.decoder.find_tag_unsigned_vec(Tag::StripOffsets).map_err(damaged(path))?;
+    let (None | Some(1), Some(&offset)) = (compression, offsets.as_ref().and_then(|o| o.first()))
+    else {
+        return Err(format_error(
+            path,
+            Reason::header(format!("claims {slices} images, but has one page")),
+        ));
+    };
+    let endian = match pages.decoder.byte_order() {
+        ByteOrder::LittleEndian => Endian::Little,
+        ByteOrder::BigEndian => Endian::Big,
+    };
+    let dims = Dims::new(size[0], size[1], slices)?;
+    let layout = info.layout(path, dims, dtype, endian, wanted.frames)?;
+    // Tags may follow the samples.
+    let bytes = layout.bytes().min(file.length().saturating_sub(offset));
+    layout.read(path, file.reader_at(offset)?.take(bytes), bytes, monitor)
+}
+
+fn damaged(path: &Path) -> impl Fn(TiffError) -> VolumeError {
+    move |error| match error {
+        TiffError::IoError(error) if error.kind() == std::io::ErrorKind::UnexpectedEof => {
+            format_error(path, Reason::truncated("ends inside its TIFF pages: it is truncated"))
+        }
+        TiffError::IoError(error) => io_error(path)(error),
+        TiffError::UnsupportedError(what) => {
+            let what = format!("is a TIFF file of a kind that is not read: {what}");
+            format_error(
+                path,
+                Reason::unsupported(what, "save it without compression, or with LZW or Deflate"),
+            )
+        }
+        other => format_error(
+            path,
+            Reason::damaged(format!("is a TIFF file that cannot be read: {other}")),
+        ),
+    }
+}
