@@ -9,7 +9,7 @@ use proptest::prelude::*;
 use walpha::points::read_points;
 
 use super::files::*;
-use crate::common::{alone, largest};
+use crate::common::{Told, alone, largest};
 
 #[test]
 fn a_damaged_nrrd_says_what_is_wrong() {
@@ -74,7 +74,7 @@ fn a_damaged_vtk_says_what_is_wrong() {
     refuses("v.vtk", v("s short", "s string"), &["type string"]);
     refuses("v.vtk", v("SCALARS", "VECTORS"), &["only scalar"]);
     refuses("v.vtk", v("LOOKUP_TABLE default", "0 0"), &["LOOKUP_TABLE"]);
-    refuses("v.vtk", v("3 2 2", "3 2 3"), &["12 values for 3×2×3", "truncated"]);
+    refuses("v.vtk", v("3 2 2", "3 2 3"), &["12 values for 3×2×3"]);
     refuses("v.vtk", v("3 2 2", "3 1 2"), &["12 values for 3×1×2"]);
     refuses("v.vtk", v("3 2 2", "3 2"), &["not 3 numbers"]);
     refuses("v.vtk", v("ASCII", "BINARY"), &["bytes behind the 24"]);
@@ -131,7 +131,11 @@ fn a_damaged_nifti_says_what_is_wrong() {
     refuses("v.nii", with(70, &128i16.to_le_bytes()), &["colours"]);
     refuses("v.nii", with(70, &32i16.to_le_bytes()), &["complex"]);
     refuses("v.nii", with(40, &9i16.to_le_bytes()), &["dim[0] = 9"]);
-    refuses("v.nii", with(42, &(-3i16).to_le_bytes()), &["damaged"]);
+    refuses(
+        "v.nii",
+        with(42, &(-3i16).to_le_bytes()),
+        &["axes of [-3, 2, 2, 1, 1, 1, 1] samples (dim)"],
+    );
     refuses("v.nii", with(40, &[4, 0, 3, 0, 2, 0, 2, 0, 2, 0]), &["2 volumes", "`frame`"]);
     refuses("v.nii", with(108, &1e9f32.to_le_bytes()), &["ends before its samples"]);
     refuses("v.nii.gz", gzip(&nifti[..300]), &["truncated"]);
@@ -142,8 +146,8 @@ fn a_damaged_tiff_says_what_is_wrong() {
     let pages = tiff(2, None);
     refuses("v.tif", &pages[..pages.len() - 9], &["v.tif"]);
     refuses("v.tif", &pages[..9], &["truncated"]);
-    let hyper = "ImageJ=1.53\nimages=2\nslices=2\nframes=2\n";
-    refuses("v.tif", tiff(2, Some(hyper)), &["2 volumes", "`frame`"]);
+    let hyper = "ImageJ=1.53\nimages=4\nslices=2\nframes=2\n";
+    refuses("v.tif", tiff(4, Some(hyper)), &["2 volumes", "`frame`"]);
     refuses("v.tif", tiff(2, Some("<OME><Pixels SizeZ=\"x\"/></OME>")), &["OME-XML"]);
     let many = "ImageJ=1.53\nimages=1000\nslices=1000\n";
     refuses("v.tif", tiff(1, Some(many)), &["12000 bytes"]);
@@ -154,11 +158,32 @@ fn a_damaged_npz_says_what_is_wrong() {
     let array = Array3::zeros((1, 1, 1));
     refuses("v.npz", npz(&[]), &["no array of three axes"]);
     refuses("v.npz", npz(&[("a", &array), ("b", &array)]), &["a.npy, b.npy"]);
-    refuses("v.npz", &npz(&[("a", &array)])[..40], &["no NPZ archive"]);
+    refuses("v.npz", &npz(&[("a", &array)])[..40], &["begins as a zip archive"]);
 }
 
 #[test]
 fn files_of_no_known_format_are_refused() {
+    for (start, what, next) in [
+        (&b"GIF89a"[..], "is a GIF picture", "the folder of all slices"),
+        (b"7z\xbc\xaf\x27\x1c", "is a 7z archive", "unpack it"),
+        (b"<!DOCTYPE html>", "is an HTML page", "download the file itself"),
+        (b"version https://git-lfs.github.com/spec/v1", "a pointer of Git LFS", "git lfs pull"),
+        (b"MATLAB 5.0 MAT-file", "is a MATLAB file", "numpy.save"),
+        (b"HEADER    HYDROLASE", "is a PDB (or PQR) file of a molecule", "x,y,z"),
+        (b"ITEM: TIMESTEP\n0\n", "is a LAMMPS dump", "x,y,z"),
+        (b"ASTM-E57", "is an E57 scan", "LAS or PLY"),
+        (b"\x80\x04\x95", "is a pickle of Python", "numpy.save"),
+        (b"<?xml version=\"1.0\"?><gpx/>", "is XML, and no file of VTK", "name a file"),
+        (b"\xfd7zXZ", "compressed with xz", "unpack it"),
+    ] {
+        // Whatever the name says.
+        for name in ["v.bin", "v.nii", "v.nrrd"] {
+            refuses(name, start, &[what, next]);
+        }
+        refuses("v.gz", gzip(start), &["compressed with gzip", what, next]);
+    }
+    refuses("v.img", [0; 100], &["header", "v.hdr is not there"]);
+    refuses("v.nii", "", &["is empty"]);
     refuses("v.bin", b"\x89HDF\r\n\x1a\n rest", &["HDF5"]);
     refuses("v.png", b"\x89PNG\r\n\x1a\n rest", &["folder of all slices"]);
     refuses("v.gz", gzip(b"something else"), &["holds no format known"]);
@@ -215,4 +240,31 @@ fn no_damage_does_harm() {
     alone(|| {
         damage_does_no_harm();
     });
+}
+
+/// A file is to be copied again only where it is shorter than it says.
+#[test]
+fn advice_follows_from_the_cause() {
+    let n = |from: &'static str, to: &'static str| nrrd(move |h| h.replace(from, to), &shorts());
+    let again = "copy it again";
+    refuses("v.nrrd", nrrd(|h| h, &shorts()[1..]), &[again, "or correct its header"]);
+    refuses("v.nii.gz", gzip(&[0; 100])[..20].to_vec(), &[again]);
+    for (name, bytes) in [
+        ("v.nrrd", nrrd(|h| h, &[&shorts()[..], b"x"].concat())),
+        ("v.nrrd", n("sizes: 3 2 2", "sizes: 3 2")),
+        ("v.nrrd", n("raw", "gzip")),
+        ("v.nrrd", n("type: short\n", "")),
+        (
+            "v.mha",
+            [MHA.replace("NDims = 3\n", "").as_bytes(), b"ElementDataFile = LOCAL\n", &shorts()]
+                .concat(),
+        ),
+        ("v.vtk", (VTK.replace("LOOKUP_TABLE default", "0 0") + "0 1").into()),
+        ("v.npy", b"\x93NUMPY\x01\0\x04\0{}  ".to_vec()),
+    ] {
+        let folder = tempfile::tempdir().unwrap();
+        let error = open(&save(folder.path(), name, bytes)).unwrap_err();
+        let told = error.told();
+        assert!(!told.contains(again) && told.contains("write it anew"), "{told}");
+    }
 }

@@ -215,7 +215,7 @@ fn frames_are_kept() {
 fn folders_of_slices_are_read_in_natural_order() {
     let folder = tempfile::tempdir().unwrap();
     let f = folder.path();
-    for i in [1u8, 2, 9, 10, 11] {
+    for i in [7u8, 8, 9, 10, 11] {
         image::GrayImage::from_pixel(3, 2, image::Luma([i]))
             .save(f.join(format!("s{i}.png")))
             .unwrap();
@@ -224,7 +224,7 @@ fn folders_of_slices_are_read_in_natural_order() {
     let volume = open(f).unwrap();
     assert_eq!(volume.dims().xyz(), [3, 2, 5]);
     let along: Vec<f32> = volume.samples().slice(ndarray::s![.., 0, 0]).to_vec();
-    assert_eq!(along, [1.0, 2.0, 9.0, 10.0, 11.0]);
+    assert_eq!(along, [7.0, 8.0, 9.0, 10.0, 11.0]);
     assert!(volume.has_gray_levels());
     image::GrayImage::new(2, 2).save(f.join("s12.png")).unwrap();
     assert!(open(f).unwrap_err().told().contains("must be alike"));

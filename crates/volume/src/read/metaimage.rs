@@ -33,7 +33,6 @@ pub(crate) fn read(
     let mut lines = Lines::new(file.reader()?);
     let header = Header::read(path, &mut lines)?;
     let layout = header.layout(path, frame)?;
-    header.say_what_is_passed_over(path);
     let skip = header.skip(path)?;
     let Some(names) = header.names(path, &mut lines)? else {
         let start = header.start_of_local(path, file.length(), lines.bytes(), &layout)?;
@@ -264,6 +263,7 @@ impl Header {
             Encoding::Raw
         };
         let frame = self.frame(path, count)?;
+        self.say_what_is_passed_over(path);
         Ok(Layout { dims, dtype, endian, frame, encoding, frames })
     }
 

@@ -80,7 +80,6 @@ pub(crate) fn read(
     let mut lines = Lines::new(file.reader()?);
     let header = Header::read(path, &mut lines)?;
     let layout = header.layout(path, frame)?;
-    header.say_what_is_passed_over(path);
     let skip = header.skip(path, &layout)?;
     match &header.files {
         None => {
@@ -189,6 +188,7 @@ impl Header {
         let endian = self.endian(path, dtype, encoding)?;
         let frames = FrameChoice::choose(path, &beyond, frame)?;
         let frame = self.frame(path, sizes.len(), &kept, dims.xyz())?;
+        self.say_what_is_passed_over(path);
         Ok(Layout { dims, dtype, endian, frame, encoding, frames })
     }
 

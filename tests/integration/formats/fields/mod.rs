@@ -1,5 +1,18 @@
 //! Every row of the tables of fields in docs/formats.md, tried with a file that states that field.
 
+mod inr;
+mod metaimage;
+mod mgh;
+mod nifti;
+mod nrrd;
+mod numpy;
+mod slices;
+mod tiff;
+mod volumes;
+mod vtk;
+#[cfg(feature = "zarr")]
+mod zarr;
+
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 

@@ -10,7 +10,7 @@ use tiff::decoder::{Decoder, DecodingResult, Limits};
 use tiff::tags::{ByteOrder, Tag};
 use tiff::{ColorType, TiffError};
 use walpha_base::Monitor;
-use walpha_base::shown::shown;
+use walpha_base::shown::{counted, shown};
 
 use super::OpenFile;
 use super::frames::FrameChoice;
@@ -38,7 +38,7 @@ pub(crate) fn read(
     let path = file.path();
     let mut pages = Pages::open(file)?;
     pages.say_what_is_passed_over()?;
-    let info = StackInfo::of(path, &pages.directories)?;
+    let info = StackInfo::of(path, &pages.directories, pages.slices[0])?;
     let count = pages.slices.len() as u64;
     if let (Some(images @ 2..), 1) = (info.images, count) {
         let wanted = info.wanted(path, images, frame)?;
@@ -83,7 +83,7 @@ pub(super) fn read_page(path: &Path, is_first: bool) -> Result<Page, VolumeError
     let mut pages = Pages::open(&file)?;
     if is_first {
         pages.say_what_is_passed_over()?;
-        let info = StackInfo::of(path, &pages.directories)?;
+        let info = StackInfo::of(path, &pages.directories, pages.slices[0])?;
         if info.has_spacing() {
             tracing::warn!(
                 "{}: its spacing is passed over: slices of a folder have none",
@@ -278,7 +278,7 @@ impl<'a> Pages<'a> {
             DecodingResult::F16(_) => {
                 return Err(fail(Reason::unsupported(
                     "has floats of 16 bits, which are not read",
-                    "save 32",
+                    "save floats of 32 bits",
                 )));
             }
         };

@@ -58,16 +58,21 @@ impl StackInfo {
     };
 
     /// Looks at the description of the first page.
-    pub(super) fn of(path: &Path, directories: &Directories) -> Result<Self, VolumeError> {
-        let text = directories.text(0, tag::IMAGE_DESCRIPTION)?.unwrap_or_default();
+    pub(super) fn of(
+        path: &Path,
+        directories: &Directories,
+        first: usize,
+    ) -> Result<Self, VolumeError> {
+        let text = directories.text(first, tag::IMAGE_DESCRIPTION)?.unwrap_or_default();
         if text.starts_with("ImageJ=") {
-            return Self::of_imagej(path, directories, &text);
+            return Self::of_imagej(path, directories, first, &text);
         }
         if text.contains("<OME") {
             return Self::of_ome(path, &text);
         }
-        let [x, y] = [tag::X_RESOLUTION, tag::Y_RESOLUTION].map(|tag| directories.ratio(0, tag));
-        let unit = match directories.number(0, tag::RESOLUTION_UNIT)?.unwrap_or(2) {
+        let [x, y] =
+            [tag::X_RESOLUTION, tag::Y_RESOLUTION].map(|tag| directories.ratio(first, tag));
+        let unit = match directories.number(first, tag::RESOLUTION_UNIT)?.unwrap_or(2) {
             2 => "inch",
             3 => "centimetre",
             _ => "unit",
@@ -89,7 +94,12 @@ impl StackInfo {
         self.unit != LengthUnit::Voxel
     }
 
-    fn of_imagej(path: &Path, directories: &Directories, text: &str) -> Result<Self, VolumeError> {
+    fn of_imagej(
+        path: &Path,
+        directories: &Directories,
+        first: usize,
+        text: &str,
+    ) -> Result<Self, VolumeError> {
         let value = |key: &str| {
             text.lines().find_map(|line| line.strip_prefix(key)?.strip_prefix('=')).map(str::trim)
         };
@@ -99,11 +109,13 @@ impl StackInfo {
         let axes = axes.map(|(axis, key)| (axis, count(key).unwrap_or(1)));
         // Pixels a unit.
         let along = |tag| {
-            Ok::<f64, VolumeError>(directories.ratio(0, tag)?.map_or(1.0, |pixels| 1.0 / pixels))
+            Ok::<f64, VolumeError>(
+                directories.ratio(first, tag)?.map_or(1.0, |pixels| 1.0 / pixels),
+            )
         };
         let slices = real("spacing").filter(|&length| length != 0.0).map_or(1.0, f64::abs);
         let mut spacing = [along(tag::X_RESOLUTION)?, along(tag::Y_RESOLUTION)?, slices];
-        let by_tag = match directories.number(0, tag::RESOLUTION_UNIT)? {
+        let by_tag = match directories.number(first, tag::RESOLUTION_UNIT)? {
             Some(2) => Some("inch"),
             Some(3) => Some("cm"),
             _ => None,

@@ -1,0 +1,296 @@
+//! Zarr, of version 2 and 3, written by hand: one chunk, not compressed.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use serde_json::{Value, json};
+use walpha::volume::{LengthUnit, ReadOptions, read};
+
+use super::volumes::{frame, same, same_without_a_word, volume};
+use super::{Fate, Field, walk};
+use crate::formats::files::*;
+
+fn put(folder: &Path, name: &str, value: &Value) {
+    fs::create_dir_all(folder).unwrap();
+    fs::write(folder.join(name), value.to_string()).unwrap();
+}
+
+/// The metadata of an array of version 2, changed.
+fn array(folder: &Path, shape: &[u64], changes: &[(&str, Value)], chunk: &[u8]) -> PathBuf {
+    let mut metadata = json!({
+        "zarr_format": 2, "shape": shape, "chunks": shape, "dtype": "<i2", "compressor": null, "fill_value": 0,
+        "order": "C", "filters": null
+    });
+    changes.iter().for_each(|(name, value)| metadata[*name] = value.clone());
+    put(folder, ".zarray", &metadata);
+    let separator = metadata["dimension_separator"].as_str().unwrap_or(".");
+    let key = folder.join(vec!["0"; shape.len()].join(separator));
+    fs::create_dir_all(key.parent().unwrap()).unwrap();
+    fs::write(key, chunk).unwrap();
+    folder.to_owned()
+}
+
+fn with(folder: &Path, changes: &[(&str, Value)]) -> PathBuf {
+    array(folder, &[2, 2, 3], changes, &shorts())
+}
+
+/// A pyramid of one level, with these axes and transformations.
+fn pyramid(folder: &Path, shape: &[u64], axes: Value, inner: Value, outer: Value) -> PathBuf {
+    put(folder, ".zgroup", &json!({"zarr_format": 2}));
+    let datasets = json!([{"path": "0", "coordinateTransformations": inner}]);
+    let multiscales =
+        json!([{"axes": axes, "datasets": datasets, "coordinateTransformations": outer}]);
+    put(folder, ".zattrs", &json!({"multiscales": multiscales}));
+    array(&folder.join("0"), shape, &[], &shorts());
+    folder.to_owned()
+}
+
+fn space(name: &str, unit: &str) -> Value {
+    json!({"name": name, "type": "space", "unit": unit})
+}
+
+/// The samples of `numbers` in the order in which an array of axes x, y, z has them, or in the order F.
+fn turned() -> Vec<u8> {
+    let at = |x: usize, y: usize, z: usize| 2 * (x + 3 * y + 6 * z);
+    let all =
+        (0..3).flat_map(|x| (0..2).flat_map(move |y| (0..2).map(move |z| at(x, y, z) as i16)));
+    all.flat_map(i16::to_le_bytes).collect()
+}
+
+#[test]
+fn each_field_of_the_table() {
+    walk(
+        "Zarr",
+        &[
+            Field {
+                name: "`shape`, `chunks`",
+                file: |f| with(f, &[]),
+                fate: Fate::Read(same_without_a_word),
+            },
+            Field {
+                name: "`dtype`, byte order",
+                file: |f| {
+                    let big: Vec<u8> =
+                        shorts().chunks(2).flat_map(|pair| [pair[1], pair[0]]).collect();
+                    array(f, &[2, 2, 3], &[("dtype", json!(">i2"))], &big)
+                },
+                fate: Fate::Read(same),
+            },
+            Field {
+                name: "`dtype` bool",
+                file: |f| {
+                    let changes = [("dtype", json!("|b1")), ("fill_value", json!(false))];
+                    array(f, &[2, 2, 3], &changes, &[0, 1, 1, 0, 0, 0, 1, 1, 1, 0, 0, 1])
+                },
+                fate: Fate::Read(|path| {
+                    let volume = volume(path);
+                    assert_eq!(
+                        (volume.as_slice()[..3].to_vec(), volume.has_gray_levels()),
+                        (vec![0.0, 1.0, 1.0], false)
+                    );
+                }),
+            },
+            Field {
+                name: "`dtype` of 16-bit floats, complex numbers, texts",
+                file: |f| with(f, &[("dtype", json!("<f2"))]),
+                fate: Fate::Refused(&["samples of type float16"]),
+            },
+            Field {
+                name: "`order`",
+                // The first axis is the fastest.
+                file: |f| array(f, &[2, 2, 3], &[("order", json!("F"))], &turned()),
+                fate: Fate::Read(same),
+            },
+            Field {
+                name: "`fill_value`, also `null`",
+                file: |f| {
+                    let path = with(f, &[("fill_value", Value::Null)]);
+                    fs::remove_file(path.join("0.0.0")).unwrap();
+                    path
+                },
+                fate: Fate::Read(|path| assert_eq!(volume(path).as_slice(), [0.0; 12])),
+            },
+            Field {
+                name: "`dimension_separator`",
+                file: |f| with(f, &[("dimension_separator", json!("/"))]),
+                fate: Fate::Read(same),
+            },
+            Field {
+                name: "`compressor`: blosc, zstd, gzip, zlib; `filters`: shuffle, fixed scale and offset",
+                file: |f| {
+                    let changes = [("compressor", json!({"id": "zlib", "level": 5}))];
+                    array(f, &[2, 2, 3], &changes, &zlib(&shorts()))
+                },
+                fate: Fate::Read(same),
+            },
+            Field {
+                name: "other `compressor` or `filters`",
+                file: |f| with(f, &[("filters", json!([{"id": "delta", "dtype": "<i2"}]))]),
+                fate: Fate::Refused(&["of a kind that is not read (codec delta", "store it anew"]),
+            },
+            Field {
+                name: "`axes` of OME-Zarr: x, y, z in any order",
+                file: |f| {
+                    let axes = json!([
+                        space("x", "micrometer"),
+                        space("y", "micrometer"),
+                        space("z", "micrometer")
+                    ]);
+                    let path = pyramid(
+                        f,
+                        &[3, 2, 2],
+                        axes,
+                        json!([{"type": "scale", "scale": [1, 2, 5]}]),
+                        json!([]),
+                    );
+                    fs::write(f.join("0/0.0.0"), turned()).unwrap();
+                    path
+                },
+                fate: Fate::Read(|path| {
+                    same(path);
+                    let frame = *volume(path).frame();
+                    assert_eq!(
+                        (frame.spacing, frame.coordinates.unit),
+                        ([1.0, 2.0, 5.0], LengthUnit::Micrometre)
+                    );
+                    // A level alone has its axes from the pyramid.
+                    same(&path.join("0"));
+                }),
+            },
+            Field {
+                name: "`axes` of time and channels",
+                file: |f| {
+                    let axes = json!([{"name": "t", "type": "time"}, "y", "x", {"name": "c", "type": "channel"}]);
+                    pyramid(f, &[2, 1, 3, 2], axes, json!([]), json!([]))
+                },
+                fate: Fate::Read(|path| {
+                    // Of each time the second channel.
+                    assert_eq!(frame(path, 3).as_slice(), [14.0, 18.0, 22.0]);
+                }),
+            },
+            Field {
+                name: "`dimension_names`, `_ARRAY_DIMENSIONS`",
+                file: |f| {
+                    let path = array(f, &[3, 2, 2], &[], &turned());
+                    put(f, ".zattrs", &json!({"_ARRAY_DIMENSIONS": ["x", "y", "z"]}));
+                    path
+                },
+                fate: Fate::Read(same),
+            },
+            Field {
+                name: "names of axes that are none of x, y, z, time, channel",
+                file: |f| {
+                    let path = with(f, &[]);
+                    put(f, ".zattrs", &json!({"_ARRAY_DIMENSIONS": ["depth", "row", "column"]}));
+                    path
+                },
+                fate: Fate::PassedOver(&["depth", "is taken for z", "in the order z, y, x"]),
+            },
+            Field {
+                name: "names of more or fewer axes than there are",
+                file: |f| {
+                    let path = with(f, &[]);
+                    put(f, ".zattrs", &json!({"_ARRAY_DIMENSIONS": ["y", "x"]}));
+                    path
+                },
+                fate: Fate::Refused(&["names 2 axes of an array of 3"]),
+            },
+            Field {
+                name: "`coordinateTransformations`: scale, translation",
+                file: |f| {
+                    let axes = json!([space("z", "um"), space("y", "um"), space("x", "um")]);
+                    let inner = json!([{"type": "scale", "scale": [5, 2, 1]}, {"type": "translation", "translation": [50, 20, 10]}]);
+                    let outer = json!([{"type": "scale", "scale": [10, 10, 10]}, {"type": "translation", "translation": [1, 2, 3]}]);
+                    pyramid(f, &[2, 2, 3], axes, inner, outer)
+                },
+                fate: Fate::Read(|path| {
+                    let frame = *volume(path).frame();
+                    assert_eq!(
+                        (frame.spacing, frame.origin),
+                        ([10.0, 20.0, 50.0], [103.0, 202.0, 501.0])
+                    );
+                }),
+            },
+            Field {
+                name: "other `coordinateTransformations`",
+                file: |f| {
+                    let axes = json!(["z", "y", "x"]);
+                    pyramid(
+                        f,
+                        &[2, 2, 3],
+                        axes,
+                        json!([{"type": "rotation", "rotation": [1]}]),
+                        json!([]),
+                    )
+                },
+                fate: Fate::Refused(&["rotation", "only scale and translation"]),
+            },
+            Field {
+                name: "`unit`",
+                file: |f| {
+                    let axes = json!([
+                        space("z", "nanometer"),
+                        space("y", "micrometer"),
+                        space("x", "micrometer")
+                    ]);
+                    pyramid(
+                        f,
+                        &[2, 2, 3],
+                        axes,
+                        json!([{"type": "scale", "scale": [500, 1, 1]}]),
+                        json!([]),
+                    )
+                },
+                fate: Fate::Read(|path| {
+                    let frame = *volume(path).frame();
+                    assert_eq!(
+                        (frame.spacing, frame.coordinates.unit),
+                        ([1.0, 1.0, 0.5], LengthUnit::Micrometre)
+                    );
+                }),
+            },
+            Field {
+                name: "a `unit` that is no length",
+                file: |f| {
+                    let axes = json!([
+                        space("z", "furlong"),
+                        space("y", "furlong"),
+                        space("x", "furlong")
+                    ]);
+                    pyramid(f, &[2, 2, 3], axes, json!([]), json!([]))
+                },
+                fate: Fate::PassedOver(&["furlong"]),
+            },
+            Field {
+                name: "`datasets` (levels)",
+                file: |f| pyramid(f, &[2, 2, 3], json!(["z", "y", "x"]), json!([]), json!([])),
+                fate: Fate::Read(|path| {
+                    let error =
+                        read(path, &ReadOptions::default().level(1u32)).unwrap_err().to_string();
+                    assert!(error.contains("no level 1, there are 1"), "{error}");
+                }),
+            },
+            Field {
+                name: "groups without levels",
+                file: |f| {
+                    put(f, ".zgroup", &json!({"zarr_format": 2}));
+                    with(&f.join("a"), &[]);
+                    f.to_owned()
+                },
+                fate: Fate::Refused(&[
+                    "a Zarr group without the levels of OME-Zarr",
+                    "name one of these",
+                ]),
+            },
+            Field {
+                name: "`omero` and other attributes",
+                file: |f| {
+                    let path = with(f, &[]);
+                    put(f, ".zattrs", &json!({"omero": {"channels": []}, "title": "a head"}));
+                    path
+                },
+                fate: Fate::Read(same_without_a_word),
+            },
+        ],
+    );
+}
