@@ -305,6 +305,8 @@ impl Header {
     }
 }
 
+/// Rounding makes the square of a quaternion longer than 1 by no more than this.
+const LONGER: f64 = 1e-5;
 /// `sform` and `qform` disagree if they place a sample further apart than this share of the shortest spacing.
 const APART: f64 = 0.01;
 
@@ -313,6 +315,13 @@ impl Header {
     fn frame(&self, path: &Path, dims: Dims) -> Result<Frame, VolumeError> {
         let taken = if self.code(254, 348) > 0 { self.sform(path)? } else { self.qform(path)? };
         let unit = taken.coordinates.unit;
+        if self.length_unit() > 3 {
+            tracing::warn!(
+                "{}: its unit (xyzt_units {}) is none, and passed over",
+                shown(path),
+                self.length_unit()
+            );
+        }
         if matches!(unit, LengthUnit::Metre | LengthUnit::Micrometre) {
             tracing::warn!(
                 "{}: lengths are in {}, as the file states; programs that use ITK scale them to mm",
@@ -352,6 +361,9 @@ impl Header {
         // 0 stands for "unknown" in some files.
         let length = |i: usize| if pixdim(i) == 0.0 { 1.0 } else { pixdim(i).abs() };
         let spacing = [1, 2, 3].map(length);
+        if [1, 2, 3].map(pixdim).iter().any(|&length| length < 0.0) {
+            tracing::warn!("{}: its pixdim is negative, and taken without the sign", shown(path));
+        }
         if self.code(252, 344) <= 0 {
             let coordinates = self.coordinates(Space::Unknown);
             let is_placed = spacing != [1.0; 3] || coordinates.unit.is_known();
@@ -360,6 +372,12 @@ impl Header {
         }
         let mut imaginary = [0, 1, 2].map(|i| self.real(256, 352, i));
         let square: f64 = imaginary.iter().map(|v| v * v).sum();
+        if square > 1.0 + LONGER {
+            tracing::warn!(
+                "{}: its quaternion (quatern_b…) is longer than 1, and shortened",
+                shown(path)
+            );
+        }
         // A turn of almost 180°: rounding would speak for the real part, as in NIfTI's own library.
         let half_turn = 1.0 - square < 1e-7;
         if half_turn && square > 0.0 {
@@ -380,13 +398,18 @@ impl Header {
         frame(path, origin, [axis(0), axis(1), axis(2)], self.coordinates(Space::Ras))
     }
 
-    /// The unit of `xyzt_units`; a patient is measured in millimetres where it names none.
-    fn coordinates(&self, space: Space) -> Coordinates {
+    /// The code of the unit of lengths in `xyzt_units`.
+    fn length_unit(&self) -> u8 {
         let code = match self.version {
             1 => self.at::<1>(123, 0)[0],
             _ => self.at::<4>(0, 500)[0],
         };
-        let unit = match code & 7 {
+        code & 7
+    }
+
+    /// The unit of `xyzt_units`; a patient is measured in millimetres where it names none.
+    fn coordinates(&self, space: Space) -> Coordinates {
+        let unit = match self.length_unit() {
             1 => LengthUnit::Metre,
             2 => LengthUnit::Millimetre,
             3 => LengthUnit::Micrometre,

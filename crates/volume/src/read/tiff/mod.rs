@@ -151,9 +151,8 @@ impl<'a> Pages<'a> {
         let first = self.slices[0];
         let copies = self.directories.pages.len() - self.slices.len();
         if copies > 0 {
-            tracing::warn!(
-                "{path}: {copies} pages are smaller copies or masks of others, and passed over"
-            );
+            let copies = counted(copies as u64, "page");
+            tracing::warn!("{path}: {copies} passed over: smaller copies or masks of others");
         }
         if self.directories.is_white_zero(first)? {
             tracing::warn!(
