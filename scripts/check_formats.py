@@ -193,6 +193,20 @@ def read_itk(check):
         pathlib.Path(check.path("list.mhd")).write_text(head + tail + "\n")
         theirs = sitk.GetArrayFromImage(sitk.ReadImage(check.path("list.mhd")))
         check.volume(f"MetaImage {tail.split()[0]}", check.path("list.mhd"), theirs)
+    head = "ObjectType = Image\nNDims = 3\nDimSize = 5 4 3\nElementType = MET_USHORT\n"
+    matrices = {"TransformMatrix": "0 1 0 1 0 0 0 0 -1", "Rotation": "0 0 1 0 1 0 -1 0 0", "Orientation": "1 0 0 0 0 1 0 1 0"}
+    places = {"ImagePosition": "1 2 3", "Origin": "4 5 6", "Offset": "7 8 9", "Position": "3 2 1"}
+    spacings = {"ElementSpacing": "0.5 0.6 2.5", "ElementSize": "1 2 3"}
+    flags = {"BinaryDataByteOrderMSB": "tomato", "ElementByteOrderMSB": "False"}
+    for synonyms in [matrices, places, spacings, flags]:
+        for pair in itertools.permutations(synonyms.items(), 2):
+            lines = "".join(f"{key} = {value}\n" for key, value in pair)
+            file = check.path("synonyms.mha")
+            pathlib.Path(file).write_bytes((head + lines + "ElementDataFile = LOCAL\n").encode() + data.tobytes())
+            image = sitk.ReadImage(file)
+            axes = np.reshape(image.GetDirection(), (3, 3))
+            name = f"MetaImage {pair[0][0]}, {pair[1][0]}"
+            check.volume(name, file, sitk.GetArrayFromImage(image), image.GetOrigin(), axes, image.GetSpacing())
     rgb = sitk.GetImageFromArray(np.zeros((3, 4, 5, 3), "u1"), isVector=True)
     sitk.WriteImage(rgb, check.path("rgb.mha"))
     check.described("ITK colours", check.path("rgb.mha"), "3 values a voxel", "only scalar")
@@ -332,6 +346,22 @@ def read_zarr(check):
     array = zarr.create_array(file, shape=(6, 8, 4), shards=(4, 4, 4), chunks=(2, 2, 2), dtype="i2")
     array[:] = samples("i2", (6, 8, 4))
     check.volume("Zarr sharded", file, samples("i2", (6, 8, 4)))
+    data = samples("i2")
+    for version, named in itertools.product([2, 3], ["xyz", "yzx", "zyx", "xzy"]):
+        file = check.path(f"{named}{version}.zarr")
+        turned = data.transpose(["zyx".index(name) for name in named])
+        names = {"dimension_names": list(named)} if version == 3 else {}
+        array = zarr.create_array(file, shape=turned.shape, chunks=(2, 3, 2), dtype="i2", zarr_format=version, **names)
+        array[:] = turned
+        if version == 2:
+            array.attrs["_ARRAY_DIMENSIONS"] = list(named)
+        check.volume(f"Zarr {version} axes {named}", file, data)
+    for name, options in [("order F", {"order": "F"}), ("separator /", {"dimension_separator": "/"}), ("no fill", {"fill_value": None})]:
+        file = check.path(f"{name.replace(' ', '').replace('/', 's')}.zarr")
+        zarr.create(store=file, shape=data.shape, chunks=(2, 3, 2), dtype="i2", zarr_format=2, **options)[...] = data
+        check.volume(f"Zarr 2 {name}", file, data)
+    zarr.create(store=check.path("bool.zarr"), shape=data.shape, dtype="bool", zarr_format=2)[...] = data % 3 == 0
+    check.volume("Zarr 2 bool", check.path("bool.zarr"), data % 3 == 0)
     for version, wrap in [(2, lambda m: {"multiscales": m}), (3, lambda m: {"ome": {"version": "0.5", "multiscales": m}})]:
         file = check.path(f"ome{version}.zarr")
         group = zarr.open_group(file, mode="w", zarr_format=version)
@@ -457,6 +487,22 @@ def read_tiff(check):
         metadata = {"axes": "ZYX", "PhysicalSizeX": 0.5, "PhysicalSizeY": 0.75, "PhysicalSizeZ": 2.0}
         tifffile.imwrite(check.path("o.ome.tif"), data, metadata=metadata)
         check.volume(f"OME {dtype}", check.path("o.ome.tif"), data, spacing=SPACING)
+    for dtype, options in itertools.product(["u1", "u2", "i2", "f4", "f8"], [{}, {"bigtiff": True, "byteorder": ">"}]):
+        data = samples(dtype)
+        tifffile.imwrite(check.path("w.tif"), data, photometric="miniswhite", **options)
+        theirs = tifffile.imread(check.path("w.tif"))
+        check.volume(f"tifffile 0 is white {dtype} {options}", check.path("w.tif"), theirs)
+    latin = b"ImageJ=1.53\nimages=3\nslices=3\nunit=\xb5m\nspacing=2.0\n"
+    options = {"metadata": None, "photometric": "minisblack", "resolution": (1 / 0.5, 1 / 0.75), "resolutionunit": 1}
+    tifffile.imwrite(check.path("l.tif"), samples("u2"), description=latin, **options)
+    check.volume("ImageJ in Latin-1", check.path("l.tif"), samples("u2"), spacing=SPACING, unit="µm")
+    with tifffile.TiffWriter(check.path("thumb.tif")) as writer:
+        for page in samples("u2"):
+            writer.write(page, contiguous=False)
+        writer.write(samples("u2")[0, :2, :2], subfiletype=1)
+    check.volume("tifffile with a thumbnail", check.path("thumb.tif"), samples("u2"))
+    tifffile.imwrite(check.path("p.tif"), samples("u1")[0], photometric="palette", colormap=np.zeros((3, 256), "u2"))
+    check.refused("tifffile palette", check.path("p.tif"), "palette of colours")
     one_page_imagej(check)
     tifffile.imwrite(check.path("rgb.tif"), np.zeros((3, 4, 5, 3), "u1"), photometric="rgb")
     check.described("tifffile colours", check.path("rgb.tif"), "colours", "only gray")
