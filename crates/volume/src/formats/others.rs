@@ -33,7 +33,7 @@ const SAVE_TABLE: &str = "save it as CSV";
 const DOWNLOAD: &str = "download the file itself: this is what a server said instead";
 
 /// The kinds, in the order in which they are looked for.
-static KINDS: [Kind; 43] = [
+static KINDS: [Kind; 46] = [
     kind!(b"\x89PNG", "a PNG picture, one slice", SLICES),
     kind!(b"\xff\xd8\xff", "a JPEG picture, one slice", SLICES),
     kind!(b"GIF8", "a GIF picture", SLICES),
@@ -42,6 +42,16 @@ static KINDS: [Kind; 43] = [
         begins: |start| start.starts_with(b"RIFF") && start.get(8..12) == Some(b"WEBP"),
         what: "a WebP picture",
         advice: SLICES,
+    },
+    kind!(b"\0\0\0\x0cjP  ", "a JPEG 2000 picture", SLICES),
+    Kind { begins: is_pnm, what: "a PGM or PPM picture", advice: SLICES },
+    Kind {
+        begins: |start| {
+            start.get(4..8) == Some(b"ftyp")
+                || start.starts_with(b"RIFF") && start.get(8..12) == Some(b"AVI ")
+        },
+        what: "a video",
+        advice: "save its pictures as PNG, and give their folder",
     },
     kind!(b"8BPS", "a Photoshop picture", SLICES),
     kind!(
@@ -199,6 +209,11 @@ fn is_cif(start: &[u8]) -> bool {
     start.starts_with(b"data_") && WORDS.iter().any(has)
 }
 
+/// A letter, a digit, white space, and a number or a comment.
+fn is_pnm(start: &[u8]) -> bool {
+    matches!(start, [b'P', b'1'..=b'6', b' ' | b'\n' | b'\r' | b'\t', b'0'..=b'9' | b'#', ..])
+}
+
 /// A header of 14 bytes and one of a length that there is.
 fn is_bmp(start: &[u8]) -> bool {
     start.starts_with(b"BM")
@@ -235,6 +250,8 @@ mod tests {
             (b"ATOM      1  N   MET A   1", "PDB"),
             (b"data_1ABC\n#\n_entry.id 1ABC\n", "CIF"),
             (b"\x80\x04\x95", "pickle"),
+            (b"P5\n# a remark\n3 2\n255\n", "PGM"),
+            (b"\0\0\0\x20ftypisom", "video"),
             (b"BM\x00\x00\x00\x00\x00\x00\x00\x00\x36\x00\x00\x00\x28\x00\x00\x00", "BMP"),
         ] {
             assert!(

@@ -1,8 +1,8 @@
 use std::io::{self, Read};
 use std::path::Path;
 
-use super::payload::Length;
-use crate::error::{format_error, io_error};
+use super::payload::{Length, unreadable};
+use crate::error::format_error;
 use crate::{Reason, VolumeError};
 
 /// Which of the volumes of a file is read: those along a fourth axis (and further axes), one after the
@@ -53,7 +53,7 @@ impl FrameChoice {
             Length::Exactly(_) if self.count > 1 => Length::Exactly(each),
             other => other.minus(skip),
         };
-        io::copy(&mut (&mut reader).take(skip), &mut io::sink()).map_err(io_error(path))?;
+        io::copy(&mut (&mut reader).take(skip), &mut io::sink()).map_err(unreadable(path))?;
         // A single volume must be all there is.
         let most = if self.count > 1 { each } else { u64::MAX };
         Ok((reader.take(most), left))

@@ -6,9 +6,7 @@ use walpha_base::Monitor;
 use walpha_base::shown::shown;
 
 use super::OpenFile;
-use super::payload::payload_error;
-use super::payload::{Length, Payload};
-use crate::error::io_error;
+use super::payload::{Length, Payload, payload_error, unreadable};
 use crate::{Coordinates, Dims, Dtype, Endian, Frame, Reason, Volume, VolumeError};
 
 /// The first bytes of each INRIMAGE-4 file.
@@ -73,7 +71,7 @@ impl HeaderError {
 fn header(path: &Path, reader: &mut impl Read) -> Result<Vec<u8>, VolumeError> {
     let format = |reason: Reason| VolumeError::Format { path: path.into(), reason };
     let mut text = Vec::new();
-    reader.take(MAGIC.len() as u64).read_to_end(&mut text).map_err(io_error(path))?;
+    reader.take(MAGIC.len() as u64).read_to_end(&mut text).map_err(unreadable(path))?;
     if text != MAGIC {
         return Err(format(Reason::other(
             "is not an INRIMAGE-4 file: it does not begin with #INRIMAGE-4#{",
@@ -88,7 +86,7 @@ fn header(path: &Path, reader: &mut impl Read) -> Result<Vec<u8>, VolumeError> {
             ErrorKind::UnexpectedEof => {
                 format(Reason::truncated("ends inside its INRIMAGE header: it is truncated"))
             }
-            _ => io_error(path)(error),
+            _ => unreadable(path)(error),
         })?;
         text.extend(byte);
     }

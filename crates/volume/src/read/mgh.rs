@@ -6,10 +6,9 @@ use std::path::Path;
 use super::OpenFile;
 use super::frames::FrameChoice;
 use super::layout::{Encoding, Layout, frame};
-use super::payload::payload_error;
-use super::payload::{Length, Payload};
+use super::payload::{Length, Payload, payload_error, unreadable};
 use super::uncompressed::Uncompressed;
-use crate::error::{format_error, io_error};
+use crate::error::format_error;
 use crate::{
     Coordinates, Dims, Dtype, Endian, Frame, LengthUnit, Reason, Space, Volume, VolumeError,
 };
@@ -63,7 +62,7 @@ pub(crate) fn box_reader(file: &OpenFile, frame: Option<u64>) -> Result<Uncompre
 /// Reads a header.
 fn layout(path: &Path, reader: &mut dyn Read, asked: Option<u64>) -> Result<Layout, VolumeError> {
     let mut bytes = Vec::new();
-    reader.take(HEADER as u64).read_to_end(&mut bytes).map_err(io_error(path))?;
+    reader.take(HEADER as u64).read_to_end(&mut bytes).map_err(unreadable(path))?;
     let Ok(bytes) = <[u8; HEADER]>::try_from(bytes) else {
         let what = "ends inside its MGH header: it is truncated";
         return Err(format_error(path, Reason::truncated(what)));

@@ -10,7 +10,7 @@ use super::OpenFile;
 use super::detached::naming;
 use super::frames::FrameChoice;
 use super::layout::{Encoding, Layout, diagonal, frame};
-use super::payload::{Length, Payload, payload_error};
+use super::payload::{Length, Payload, payload_error, unreadable};
 use super::uncompressed::Uncompressed;
 use crate::error::{format_error, io_error};
 use crate::formats::{NIFTI_HEADERS, nifti_version};
@@ -47,7 +47,7 @@ pub(crate) fn read(
     let offset = header.offset(path)?;
     let skip = offset - header.bytes.len() as u64;
     let skipped = std::io::copy(&mut (&mut reader).take(skip), &mut std::io::sink());
-    if skipped.map_err(io_error(path))? < skip {
+    if skipped.map_err(unreadable(path))? < skip {
         return Err(format_error(
             path,
             Reason::claims_more(format!("ends before its samples at byte {offset} (vox_offset)")),
@@ -136,7 +136,7 @@ impl Header {
         let mut bytes = Vec::new();
         let mut fill = |size: usize, bytes: &mut Vec<u8>| -> Result<(), VolumeError> {
             let left = (size - bytes.len()) as u64;
-            reader.take(left).read_to_end(bytes).map_err(io_error(path))?;
+            reader.take(left).read_to_end(bytes).map_err(unreadable(path))?;
             if bytes.len() < size {
                 return Err(format_error(
                     path,

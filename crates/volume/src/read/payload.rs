@@ -125,6 +125,11 @@ pub(super) fn payload_error(
     move |error| payload_error_of(path, &claim, error)
 }
 
+/// The error for what comes before the samples and cannot be read.
+pub(super) fn unreadable(path: &Path) -> impl Fn(io::Error) -> VolumeError {
+    move |error| payload_error_of(path, "what comes before its samples", PayloadError::Io(error))
+}
+
 /// The error for a file whose header claims something that is not there.
 pub(super) fn payload_error_of(path: &Path, claim: &str, error: PayloadError) -> VolumeError {
     let reason = match error {

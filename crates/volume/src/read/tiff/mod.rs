@@ -38,6 +38,7 @@ pub(crate) fn read(
     let path = file.path();
     let mut pages = Pages::open(file)?;
     pages.say_what_is_passed_over()?;
+    pages.check_gray(pages.slices[0])?;
     let info = StackInfo::of(path, &pages.directories, pages.slices[0])?;
     let count = pages.slices.len() as u64;
     if let (Some(images @ 2..), 1) = (info.images, count) {
@@ -211,7 +212,11 @@ impl<'a> Pages<'a> {
                 return fail(Reason::unsupported(what, "save it as gray"));
             }
             4 => return fail(Reason::unsupported("is a mask of transparency", "save it as gray")),
-            _ => return Ok(()),
+            other => {
+                let what =
+                    format!("colours (photometric interpretation {other}): only gray is read");
+                return fail(Reason::NotScalar { what, dims: None });
+            }
         }
         let (channels, bits) =
             (number(tag::SAMPLES_PER_PIXEL, 1)?, number(tag::BITS_PER_SAMPLE, 1)?);

@@ -154,6 +154,7 @@ impl StackInfo {
         let mut reader = Reader::from_str(text);
         let mut info: Option<Self> = None;
         let mut files: Vec<String> = Vec::new();
+        let mut is_in_order = true;
         loop {
             let event = reader.read_event().map_err(|error| damaged(&error))?;
             let element = match &event {
@@ -180,15 +181,9 @@ impl StackInfo {
                 "UUID" => files.extend(text("FileName")?.filter(|name| !files.contains(name))),
                 "TiffData" => {
                     if let (Some(info), Some(page)) = (&info, number("IFD")?) {
-                        let firsts = ["FirstZ", "FirstC", "FirstT"].map(&number);
-                        let [z, c, t] = firsts;
-                        let expected =
-                            info.page_of([z?, c?, t?].map(|first| first.unwrap_or(0.0) as u64));
-                        if !info.others && files.len() < 2 && expected as f64 != page {
-                            let what = "has its pages in another order than its OME-XML names (DimensionOrder)";
-                            let reason = Reason::unsupported(what, "save it anew, in that order");
-                            return Err(format_error(path, reason));
-                        }
+                        let [z, c, t] = ["FirstZ", "FirstC", "FirstT"].map(&number);
+                        let first = [z?, c?, t?].map(|first| first.unwrap_or(0.0) as u64);
+                        is_in_order &= info.others || info.page_of(first) as f64 == page;
                     }
                 }
                 _ => {}
@@ -197,6 +192,11 @@ impl StackInfo {
         if files.len() > 1 {
             let what = format!("is one of the {} files of a volume, by its OME-XML", files.len());
             return Err(format_error(path, Reason::unsupported(what, "save it as one file")));
+        }
+        if !is_in_order {
+            let what = "has its pages in another order than its OME-XML names (DimensionOrder)";
+            let reason = Reason::unsupported(what, "save it anew, in that order");
+            return Err(format_error(path, reason));
         }
         info.ok_or_else(|| damaged(&"it has no element Pixels"))
     }
@@ -271,11 +271,10 @@ impl StackInfo {
         if self.others && stated < pages {
             tracing::warn!("{}: of its images the first is read", shown(path));
         } else if stated > 1 && stated != pages {
-            let what = format!("has {pages} pages, but its description counts {stated}");
-            if stated > pages && self.axes.iter().filter(|(_, size)| *size > 1).count() > 1 {
-                return Err(format_error(path, Reason::header(what)));
-            }
-            tracing::warn!("{}: {what}", shown(path));
+            tracing::warn!(
+                "{}: has {pages} pages, but its description counts {stated}",
+                shown(path)
+            );
         }
         let mut long = self.axes.iter().filter(|(_, size)| *size > 1);
         let (longest, several) = (long.next(), long.next().is_some());
@@ -295,6 +294,11 @@ impl StackInfo {
         let (channel, time) = (frames.index % channels.max(1), frames.index / channels.max(1));
         let first =
             (channel.saturating_mul(by_channel)).saturating_add(time.saturating_mul(by_time));
+        let last = first.saturating_add(slices.saturating_sub(1).saturating_mul(along));
+        if last >= pages {
+            let what = "has fewer pages than its description counts: this volume is not whole";
+            return Err(format_error(path, Reason::header(what)));
+        }
         Ok(PageRange { first, step: along.max(1), count: slices, frames })
     }
 

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use ndarray::ArrayView3;
+use ndarray::{ArrayView1, ArrayView3};
 use serde_json::Value;
 use walpha_base::shown::shown;
 use zarrs::array_subset::ArraySubset;
@@ -110,7 +110,7 @@ impl Axes {
         &self,
         part: &[T],
         sizes: [usize; 3],
-        mut give: impl FnMut(usize, &mut dyn Iterator<Item = T>),
+        mut give: impl FnMut(usize, ArrayView1<T>),
     ) {
         // From the order of the array to that of z, y and x; axes that are not there come first.
         let mut order = [0, 1, 2];
@@ -121,7 +121,7 @@ impl Axes {
         let view = ArrayView3::from_shape(stored, part).expect("a part has its size");
         let rows = view.permuted_axes(back);
         for (i, row) in rows.rows().into_iter().enumerate() {
-            give(i, &mut row.iter().copied());
+            give(i, row);
         }
     }
 
@@ -206,7 +206,9 @@ mod tests {
         assert_eq!(axes.dims.xyz(), [2, 4, 3]);
         let part: Vec<u32> = (0..24).collect();
         let mut given = Vec::new();
-        axes.rows(&part, axes.dims.shape(), |i, row| given.extend(row.map(|element| (i, element))));
+        axes.rows(&part, axes.dims.shape(), |i, row| {
+            given.extend(row.iter().map(|&element| (i, element)))
+        });
         // Element (x, z, y) of the array is at 12 x + 4 z + y.
         let expected = (0..24).map(|i| (i as usize / 2, 12 * (i % 2) + 4 * (i / 8) + i / 2 % 4));
         assert_eq!(given, expected.collect::<Vec<(usize, u32)>>());

@@ -122,7 +122,9 @@ impl ZarrBoxes {
         let read = self.array.retrieve_array_subset_elements::<T>(part);
         let part = read.map_err(|error| damaged(&self.path, &error))?;
         let mut samples = Vec::with_capacity(part.len());
-        self.axes.rows(&part, sizes, |_, row| samples.extend(row.map(&convert)));
+        self.axes.rows(&part, sizes, |_, row| {
+            samples.extend(row.iter().map(|&element| convert(element)))
+        });
         Ok(samples)
     }
 }
@@ -232,7 +234,7 @@ impl ArrayReader<'_> {
                 samples
                     .iter_mut()
                     .zip(row)
-                    .for_each(|(sample, element)| *sample = convert(element));
+                    .for_each(|(sample, &element)| *sample = convert(element));
             });
             monitor.report(slices.start * y + rows.end * (slices.end - slices.start), z * y)?;
         }
