@@ -1,6 +1,6 @@
 //! The numbers in the names of slices: one of them counts the slices, without a gap.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use walpha_base::shown::shown;
@@ -12,9 +12,12 @@ use crate::{Reason, VolumeError};
 struct Name {
     /// The text around the numbers.
     around: Vec<String>,
-    /// Runs of digits. What has more than 38 of them is no number that counts.
-    numbers: Vec<Option<u128>>,
+    /// The numbers in it.
+    numbers: Vec<Number>,
 }
+
+/// A run of digits without zeros in front, behind their number: the longer one is the larger one.
+type Number = (usize, String);
 
 impl Name {
     fn of(path: &Path) -> Self {
@@ -25,7 +28,8 @@ impl Name {
             let (before, digits) = rest.split_at(first);
             let end = digits.find(|c: char| !c.is_ascii_digit()).unwrap_or(digits.len());
             around.last_mut().expect("there is one").push_str(before);
-            numbers.push(digits[..end].parse().ok());
+            let significant = digits[..end].trim_start_matches('0');
+            numbers.push((significant.len(), significant.to_owned()));
             around.push(String::new());
             rest = &digits[end..];
         }
@@ -55,7 +59,7 @@ pub(super) fn check(folder: &Path, paths: &[PathBuf]) -> Result<(), VolumeError>
 
 /// What is wrong with names that differ in their numbers alone.
 fn check_row(paths: &[PathBuf], names: &[Name]) -> Option<Reason> {
-    let column = |i: usize| names.iter().map(move |name| name.numbers[i]);
+    let column = |i: usize| names.iter().map(move |name| &name.numbers[i]);
     let distinct = |i: usize| column(i).collect::<BTreeSet<_>>().len();
     let varying: Vec<usize> = (0..names[0].numbers.len()).filter(|&i| distinct(i) > 1).collect();
     let is_row = |i: &&usize| distinct(**i) == names.len() && column(**i).is_sorted();
@@ -63,10 +67,9 @@ fn check_row(paths: &[PathBuf], names: &[Name]) -> Option<Reason> {
     if rows.is_empty() {
         // Two slices of one number, which the first of several numbers tells apart.
         let last = *varying.last().unwrap_or(&0);
-        let (a, b) = (0..names.len())
-            .flat_map(|a| (a + 1..names.len()).map(move |b| (a, b)))
-            .find(|&(a, b)| names[a].numbers[last] == names[b].numbers[last])
-            .unwrap_or((0, 1));
+        let mut first = BTreeMap::new();
+        let again = |i: usize| first.insert(&names[i].numbers[last], i).map(|earlier| (earlier, i));
+        let (a, b) = (0..names.len()).find_map(again).unwrap_or((0, 1));
         return Some(groups(&paths[a], &paths[b]));
     }
     let gaps: Option<Vec<Reason>> = rows.iter().map(|&i| gap(paths, column(i))).collect();
@@ -74,8 +77,11 @@ fn check_row(paths: &[PathBuf], names: &[Name]) -> Option<Reason> {
 }
 
 /// The first gap in a row of numbers.
-fn gap(paths: &[PathBuf], numbers: impl Iterator<Item = Option<u128>>) -> Option<Reason> {
-    let numbers: Vec<u128> = numbers.collect::<Option<_>>()?;
+fn gap<'a>(paths: &[PathBuf], numbers: impl Iterator<Item = &'a Number>) -> Option<Reason> {
+    // Numbers of more than 38 digits are no counts.
+    let value =
+        |(_, digits): &Number| if digits.is_empty() { Some(0) } else { digits.parse().ok() };
+    let numbers: Vec<u128> = numbers.map(value).collect::<Option<_>>()?;
     let steps = || numbers.windows(2).map(|pair| pair[1] - pair[0]);
     let step = steps().min()?;
     let place = steps().position(|other| other != step)?;
