@@ -23,7 +23,7 @@ pub(crate) fn read(
     let (path, length) = (file.path(), file.length());
     let mut archive = ZipArchive::new(file.reader()?).map_err(damaged(path))?;
     let files: Vec<String> = archive.file_names().map(|name| shown(Path::new(name))).collect();
-    if !files.is_empty() && !files.iter().any(|name| name.ends_with(".npy")) {
+    if !files.is_empty() && !files.iter().any(|name| is_array(name)) {
         let others = if files.len() > 1 {
             format!(" and {} others", files.len() - 1)
         } else {
@@ -39,9 +39,9 @@ pub(crate) fn read(
     for i in 0..archive.len() {
         let is_wanted =
             |name: &str| wanted.is_none_or(|wanted| name.strip_suffix(".npy") == Some(wanted));
-        let is_array =
-            archive.name_for_index(i).is_some_and(|name| name.ends_with(".npy") && is_wanted(name));
-        if !is_array {
+        let is_candidate =
+            archive.name_for_index(i).is_some_and(|name| is_array(name) && is_wanted(name));
+        if !is_candidate {
             continue;
         }
         match member(path, &mut archive, i, length) {
@@ -81,6 +81,12 @@ pub(crate) fn read(
             ))
         }
     }
+}
+
+/// Whether a file of the archive is an array, by its name.
+#[expect(clippy::case_sensitive_file_extension_comparisons, reason = "NumPy writes no other")]
+fn is_array(name: &str) -> bool {
+    name.ends_with(".npy")
 }
 
 /// An array of the archive, at its first element.

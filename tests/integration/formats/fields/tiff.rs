@@ -205,7 +205,7 @@ fn each_field_of_the_table() {
             },
             Field {
                 name: "more `slices`, `channels`, `frames` than pages",
-                file: |f| described(f, b"ImageJ=1.53\nimages=4\nslices=2\nchannels=2\n\0"),
+                file: |f| described(f, b"ImageJ=1.53\nimages=4\nslices=2\nframes=2\n\0"),
                 fate: Fate::PassedOver(&["has 2 pages, but its description counts 4"]),
             },
             Field {

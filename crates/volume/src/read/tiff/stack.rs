@@ -1,4 +1,4 @@
-//! What ImageJ and OME-XML say of a stack in the description of its first page.
+//! What `ImageJ` and OME-XML say of a stack in the description of its first page.
 
 use std::path::Path;
 

@@ -207,7 +207,7 @@ mod tests {
         let part: Vec<u32> = (0..24).collect();
         let mut given = Vec::new();
         axes.rows(&part, axes.dims.shape(), |i, row| {
-            given.extend(row.iter().map(|&element| (i, element)))
+            given.extend(row.iter().map(|&element| (i, element)));
         });
         // Element (x, z, y) of the array is at 12 x + 4 z + y.
         let expected = (0..24).map(|i| (i as usize / 2, 12 * (i % 2) + 4 * (i / 8) + i / 2 % 4));

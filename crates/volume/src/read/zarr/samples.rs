@@ -52,7 +52,8 @@ pub(super) fn samples(
 pub(super) fn dtype(path: &Path, stored: &DataType) -> Result<Dtype, VolumeError> {
     Ok(match stored {
         DataType::UInt8 => Dtype::U8,
-        DataType::Int8 => Dtype::I8,
+        // Booleans are bytes of 0 and 1, and no gray levels.
+        DataType::Int8 | DataType::Bool => Dtype::I8,
         DataType::UInt16 => Dtype::U16,
         DataType::Int16 => Dtype::I16,
         DataType::UInt32 => Dtype::U32,
@@ -61,8 +62,6 @@ pub(super) fn dtype(path: &Path, stored: &DataType) -> Result<Dtype, VolumeError
         DataType::Int64 => Dtype::I64,
         DataType::Float32 => Dtype::F32,
         DataType::Float64 => Dtype::F64,
-        // Bytes of 0 and 1, and no gray levels.
-        DataType::Bool => Dtype::I8,
         other => {
             let reason = Reason::unsupported(
                 format!(
@@ -123,7 +122,7 @@ impl ZarrBoxes {
         let part = read.map_err(|error| damaged(&self.path, &error))?;
         let mut samples = Vec::with_capacity(part.len());
         self.axes.rows(&part, sizes, |_, row| {
-            samples.extend(row.iter().map(|&element| convert(element)))
+            samples.extend(row.iter().map(|&element| convert(element)));
         });
         Ok(samples)
     }
