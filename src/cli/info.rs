@@ -111,6 +111,9 @@ enum Content {
         /// The cell in which the points repeat; absent if the file states none.
         #[serde(skip_serializing_if = "Option::is_none")]
         cell: Option<CellSummary>,
+        /// What the file says of some of its points: how many are synthetic, say.
+        #[serde(skip_serializing_if = "Vec::is_empty")]
+        notes: Vec<String>,
         /// Samples along x, y and z of their grid; null where the file states none.
         grid: Option<[usize; 3]>,
         coordinates: Coordinates,
@@ -296,7 +299,7 @@ impl Content {
         let extreme = |pick: fn(f64, f64) -> f64, start: f64, axis: usize| {
             points.positions.iter().fold(start, |so_far, p| pick(so_far, p[axis]))
         };
-        let ModelMetadata { grid, coordinates, alpha, range, recipe, cell, .. } = metadata;
+        let ModelMetadata { grid, coordinates, alpha, range, recipe, cell, notes, .. } = metadata;
         Self::Points {
             count: points.len(),
             low: [0, 1, 2].map(|i| extreme(f64::min, f64::INFINITY, i)),
@@ -306,6 +309,7 @@ impl Content {
             values: points.values.is_some(),
             cells,
             cell: cell.map(Into::into),
+            notes,
             grid: grid.map(|grid| grid.dims.xyz()),
             coordinates,
             alpha,
@@ -448,6 +452,7 @@ impl std::fmt::Display for Content {
                 values,
                 cells,
                 cell,
+                notes,
                 grid,
                 coordinates,
                 ..
@@ -465,6 +470,12 @@ impl std::fmt::Display for Content {
                 writeln!(f, "weights   {}{squares}\nvalues    {}", has(*weights), has(*values))?;
                 if let Some(CellSummary { sides_text, .. }) = cell {
                     writeln!(f, "cell      {sides_text}")?;
+                }
+                if !notes.is_empty() {
+                    writeln!(f, "of these  {}", notes.join(", "))?;
+                }
+                if grid.is_none() && coordinates.unit.is_known() {
+                    writeln!(f, "unit      {}", coordinates.unit.symbol())?;
                 }
                 if let Some([x, y, z]) = grid {
                     writeln!(f, "grid      {x}×{y}×{z} samples, coordinates in {coordinates}")?;
