@@ -1,5 +1,14 @@
 //! Every row of the tables of fields in docs/formats.md, tried with a file that states that field.
 
+mod clouds;
+mod grids;
+#[cfg(feature = "las")]
+mod las;
+mod meshes;
+mod points;
+mod text;
+mod wvm;
+
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
