@@ -252,9 +252,13 @@ fn is_numeric(word: &str) -> bool {
     word.contains(|c: char| c.is_ascii_digit()) && word.chars().all(is_part)
 }
 
-/// Whether the comma of a number can mark its decimals.
+/// Whether the comma of a number, between digits, can mark its decimals.
 fn is_decimal(word: &str) -> bool {
-    !word.contains('.') && word.matches(',').count() == 1 && number(word, true).is_some()
+    let Some((whole, decimals)) = word.split_once(',') else { return false };
+    whole.ends_with(|c: char| c.is_ascii_digit())
+        && decimals.starts_with(|c: char| c.is_ascii_digit())
+        && !word.contains('.')
+        && number(word, true).is_some()
 }
 
 /// Whether this mark can group the thousands of a number: up to three digits without a leading zero, and then three each.
@@ -331,6 +335,7 @@ mod tests {
             ("1,234;5,678;9,012", vec![1.234, 5.678, 9.012]),
             ("8.56;23.68;80.13", vec![8.56, 23.68, 80.13]),
             ("1,2,3\n4, 5 ,6", vec![1.0, 2.0, 3.0, 4.0, 5.0, 6.0]),
+            ("1 2, 3\n4 5 6", vec![1.0, 2.0, 3.0, 4.0, 5.0, 6.0]),
             ("1,2,3\n4 5 6", vec![1.0, 2.0, 3.0, 4.0, 5.0, 6.0]),
             ("1.5,2.5, 3.5", vec![1.5, 2.5, 3.5]),
             // One number of four digits, or a leading zero, is no group of thousands.

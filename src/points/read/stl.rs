@@ -100,19 +100,16 @@ fn keyword(line: &str) -> String {
 fn in_text(file: &OpenFile) -> Result<Points, PointsError> {
     let (path, text) = (file.path(), text(file)?);
     let mut corners = Corners::default();
-    let (mut found, mut is_open) = (0, false);
+    let mut is_open = false;
     for (number, line) in Numbered::new(&text) {
         match keyword(line).as_str() {
-            "vertex" => {
-                corners.add(position(path, number, line.split_whitespace().skip(1))?);
-                found += 1;
-            }
+            "vertex" => corners.add(position(path, number, line.split_whitespace().skip(1))?),
             "solid" => is_open = true,
             "endsolid" => is_open = false,
             _ => {}
         }
     }
-    if is_open || found % 3 != 0 {
+    if is_open {
         return Err(format(path, Reason::truncated("ends before endsolid: it is truncated")));
     }
     Ok(corners.points)

@@ -39,7 +39,7 @@ fn each_field_of_tables() {
                 "quotes",
                 "a.csv",
                 "\"x\",\"y\",\"z\"\n\"1,0\",\"2\",3\n4,5,\"6\"\n",
-                Fate::Read(without_a_word)
+                Fate::Read(places)
             ),
             row!(
                 "decimal commas",
