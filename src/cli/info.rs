@@ -318,11 +318,17 @@ impl Content {
         }
     }
 
-    /// How the points were made, and are meant to be used: recipe, α and gray range.
+    /// What the file says of its points, how they were made, and are meant to be used: notes, unit, recipe, α and gray range.
     fn fmt_usage(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self::Points { alpha, gray_range, coordinates, recipe, .. } = self else {
+        let Self::Points { alpha, gray_range, grid, coordinates, recipe, notes, .. } = self else {
             return Ok(());
         };
+        if !notes.is_empty() {
+            writeln!(f, "of these  {}", notes.join(", "))?;
+        }
+        if grid.is_none() && coordinates.unit.is_known() {
+            writeln!(f, "unit      {}", coordinates.unit.symbol())?;
+        }
         if let Some(recipe) = recipe {
             writeln!(f, "recipe    {recipe}")?;
         }
@@ -452,7 +458,6 @@ impl std::fmt::Display for Content {
                 values,
                 cells,
                 cell,
-                notes,
                 grid,
                 coordinates,
                 ..
@@ -470,12 +475,6 @@ impl std::fmt::Display for Content {
                 writeln!(f, "weights   {}{squares}\nvalues    {}", has(*weights), has(*values))?;
                 if let Some(CellSummary { sides_text, .. }) = cell {
                     writeln!(f, "cell      {sides_text}")?;
-                }
-                if !notes.is_empty() {
-                    writeln!(f, "of these  {}", notes.join(", "))?;
-                }
-                if grid.is_none() && coordinates.unit.is_known() {
-                    writeln!(f, "unit      {}", coordinates.unit.symbol())?;
                 }
                 if let Some([x, y, z]) = grid {
                     writeln!(f, "grid      {x}×{y}×{z} samples, coordinates in {coordinates}")?;

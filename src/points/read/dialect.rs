@@ -125,7 +125,7 @@ impl Dialect {
     }
 
     /// The fields of a line, without quotes and the blanks around them.
-    pub(super) fn fields<'a>(self, line: &'a str) -> Vec<&'a str> {
+    pub(super) fn fields(self, line: &str) -> Vec<&str> {
         match self.separator {
             Separator::Blanks if self.decimal_comma => line.split_whitespace().collect(),
             Separator::Blanks => {

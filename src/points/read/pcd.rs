@@ -47,7 +47,7 @@ pub(crate) fn read(file: &OpenFile) -> Result<Points, PointsError> {
             "convert it first",
         )),
     };
-    header.points(path, &rows.map_err(fail)?)
+    points_of(path, &rows.map_err(fail)?)
 }
 
 #[derive(Default)]
@@ -252,35 +252,32 @@ impl Header {
         };
         (0..points).map(row).collect()
     }
+}
 
-    fn points(&self, path: &Path, rows: &[[Option<f64>; 6]]) -> Result<Points, PointsError> {
-        let placed =
-            |row: &&[Option<f64>; 6]| row[..3].iter().all(|c| c.is_some_and(|c| !c.is_nan()));
-        let kept: Vec<_> = rows.iter().filter(placed).collect();
-        let left_out = rows.len() - kept.len();
-        if kept.is_empty() && left_out > 0 {
-            let what = format!("holds {left_out} points, none of which has a position (NaN)");
-            return Err(format(path, Reason::content(what, "name another file")));
-        }
-        if left_out > 0 {
-            tracing::warn!(
-                "{left_out} of {} points have no position (NaN) and are left out",
-                rows.len()
-            );
-        }
-        let column = |k: usize| kept.iter().map(|row| row[k]).collect();
-        let mut points = Points {
-            positions: kept
-                .iter()
-                .map(|row| [0, 1, 2].map(|k| row[k].unwrap_or(f64::NAN)))
-                .collect(),
-            weights: column(3),
-            values: column(4),
-            ..Points::default()
-        };
-        take_radii(path, &mut points, column(RADIUS))?;
-        Ok(points)
+/// The points that have a position.
+fn points_of(path: &Path, rows: &[[Option<f64>; 6]]) -> Result<Points, PointsError> {
+    let placed = |row: &&[Option<f64>; 6]| row[..3].iter().all(|c| c.is_some_and(|c| !c.is_nan()));
+    let kept: Vec<_> = rows.iter().filter(placed).collect();
+    let left_out = rows.len() - kept.len();
+    if kept.is_empty() && left_out > 0 {
+        let what = format!("holds {left_out} points, none of which has a position (NaN)");
+        return Err(format(path, Reason::content(what, "name another file")));
     }
+    if left_out > 0 {
+        tracing::warn!(
+            "{left_out} of {} points have no position (NaN) and are left out",
+            rows.len()
+        );
+    }
+    let column = |k: usize| kept.iter().map(|row| row[k]).collect();
+    let mut points = Points {
+        positions: kept.iter().map(|row| [0, 1, 2].map(|k| row[k].unwrap_or(f64::NAN))).collect(),
+        weights: column(3),
+        values: column(4),
+        ..Points::default()
+    };
+    take_radii(path, &mut points, column(RADIUS))?;
+    Ok(points)
 }
 
 /// A little-endian number.

@@ -305,6 +305,9 @@ impl Property {
     }
 }
 
+/// More bytes behind the last element are no padding.
+const MOST_PADDING: u64 = 1 << 16;
+
 /// The numbers after a header.
 enum Numbers<R> {
     Text { text: String, at: usize },
@@ -346,10 +349,13 @@ impl<R: Read> Numbers<R> {
         match self {
             Self::Text { text, at } => text[*at..].trim().is_empty(),
             // Some writers end binary files with a line end, or fill blocks with zeros.
-            Self::Binary(reader, _) => reader
-                .bytes()
-                .map_while(Result::ok)
-                .all(|byte| byte == 0 || byte.is_ascii_whitespace()),
+            Self::Binary(reader, _) => {
+                let mut rest = Vec::new();
+                let whole = reader.take(MOST_PADDING).read_to_end(&mut rest);
+                let is_padding = |byte: &u8| *byte == 0 || byte.is_ascii_whitespace();
+                whole.is_ok_and(|found| (found as u64) < MOST_PADDING)
+                    && rest.iter().all(is_padding)
+            }
         }
     }
 }

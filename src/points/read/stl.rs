@@ -81,13 +81,11 @@ fn begins_solid(head: &[u8]) -> bool {
 /// The number of facets.
 pub(crate) fn cells(file: &OpenFile) -> Result<Vec<CellCount>, PointsError> {
     let Content { mut reader, length } = Content::of(file)?;
-    let count = match binary_facets(file.path(), &mut reader, length)? {
-        Some(count) => count as usize,
-        None => {
-            let text = text(file)?;
-            Numbered::new(&text).filter(|(_, line)| keyword(line) == "facet").count()
-        }
-    };
+    if let Some(count) = binary_facets(file.path(), &mut reader, length)? {
+        return Ok(vec![CellCount::new("facets", count as usize)]);
+    }
+    let text = text(file)?;
+    let count = Numbered::new(&text).filter(|(_, line)| keyword(line) == "facet").count();
     Ok(vec![CellCount::new("facets", count)])
 }
 

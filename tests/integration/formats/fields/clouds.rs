@@ -34,6 +34,7 @@ fn floats(numbers: &[f32]) -> Vec<u8> {
 }
 
 #[test]
+#[expect(clippy::too_many_lines, reason = "a row for each field")]
 fn each_field_of_pcd() {
     const FIVE: [&str; 4] =
         ["FIELDS x y z intensity _", "SIZE 4 4 4 4 1", "TYPE F F F F U", "COUNT 1 1 1 1 4"];
@@ -194,6 +195,7 @@ fn npy(descr: &str, order: &str, shape: &str, data: &[u8]) -> Vec<u8> {
 }
 
 #[test]
+#[expect(clippy::too_many_lines, reason = "a row for each field")]
 fn each_field_of_npy() {
     const F4: &str = "'<f4'";
     walk(

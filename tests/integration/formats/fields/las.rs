@@ -38,6 +38,7 @@ fn las(classes: [u8; 2], changes: &[(usize, &[u8])], behind: &[u8]) -> Vec<u8> {
 const WITHHELD: u8 = 0x80;
 
 #[test]
+#[expect(clippy::too_many_lines, reason = "a row for each field")]
 fn each_field_of_the_table() {
     walk(
         "LAS, LAZ",

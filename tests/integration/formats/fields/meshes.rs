@@ -21,6 +21,7 @@ const ALL: [f32; 6] = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0];
 const ROWS: &[u8] = b"1 2 3\n4 5 6\n";
 
 #[test]
+#[expect(clippy::too_many_lines, reason = "a row for each field")]
 fn each_field_of_ply() {
     walk(
         "PLY",
