@@ -307,8 +307,8 @@ def table(programs, sets):
         for one, arguments in sets.items():
             subprocess.run([WALPHA, "points", *arguments, "-q", "-o", "set.npy"], cwd=folder, check=True)
             rows = np.load(folder / "set.npy")
-            points = np.ascontiguousarray(rows[:, :3])
-            weights = np.ascontiguousarray(rows[:, 3]) if rows.shape[1] > 3 and rows[:, 3].any() else None
+            points = np.column_stack([rows[axis] for axis in "xyz"])
+            weights = np.ascontiguousarray(rows["weight"]) if rows["weight"].any() else None
             np.savez(folder / "set.npz", points=points, **({} if weights is None else {"weights": weights}))
             row = []
             for program in programs:

@@ -40,7 +40,7 @@ def inrimage():
 
 
 def npy(descr, shape, data, fortran=False):
-    head = f"{{'descr': '{descr}', 'fortran_order': {fortran}, 'shape': {shape}, }}"
+    head = f"{{'descr': {descr!r}, 'fortran_order': {fortran}, 'shape': {shape}, }}"
     head += " " * (63 - (10 + len(head)) % 64) + "\n"
     return b"\x93NUMPY\x01\x00" + struct.pack("<H", len(head)) + head.encode() + data
 
@@ -197,11 +197,13 @@ def tiffs():
 
 
 def table():
-    return [b"x,y,z,weight,value\n0,0,0,1,2\n1,0,0,1,3\n0,1e3,-2.5,0,4\n", b"x\ty\tz\n1\t2\t3\n", b'"x","y","z"\r\n1,2,3\r\n']
+    return [b"x,y,z,weight,value\n0,0,0,1,2\n1,0,0,1,3\n0,1e3,-2.5,0,4\n", b"x\ty\tz\n1\t2\t3\n", b'"x","y","z"\r\n1,2,3\r\n',
+            "sep=;\nx [m];y [m];z [m]\n1,5;2;3\n".encode("utf-16"), b"//X;Y;Z\n2\n1;2;3\r4;5;6\r", b"x,y,z\nmm,mm,mm\n1,2,3,\n"]
 
 
 def xyz():
-    return [b"0 0 0\n1 0 0\n", b"x y z value\n1 2 3 4\n", b"2\nwater\nH 0 0 0\nO 1 0 0\n", b"# a comment\n1 2 3 4\n"]
+    return [b"0 0 0\n1 0 0\n", b"x y z value\n1 2 3 4\n", b"2\nwater\nH 0 0 0\nO 1 0 0\n", b"# a comment\n1 2 3 4\n",
+            b"1\nstep\nC 1 2 3\n1\n2\nC 1 2 3\n", b"2\n1,5 2,5 3,5\n4 5 6,0D+00\n", b"1\nProperties=pos:R:3:radius:R:1 Lattice=\"1 0 0 0 1 0 0 0 1\"\n1 2 3 4\n"]
 
 
 def pwn():
@@ -209,7 +211,8 @@ def pwn():
 
 
 def npy_points():
-    return [npy("<f8", (3, 4), F64), npy("<f8", (3, 4), F64, True)]
+    fields = npy([("xyz", "<f4", (3,)), ("weight", "<f4")], (2,), struct.pack("<8f", *range(8)))
+    return [npy("<f8", (3, 4), F64), npy("<f8", (3, 4), F64, True), fields]
 
 
 def ply():

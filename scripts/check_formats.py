@@ -10,6 +10,7 @@ with walpha and reads them with these. Prints a line for each; exits with 1 when
 """
 
 import argparse
+import gzip
 import itertools
 import json
 import os
@@ -84,10 +85,11 @@ class Checker:
         if read.returncode:
             return self.judge(name, read.stderr.strip())
         found = np.load(out)
-        for what, column, expected in [("places", found[:, :3], positions), ("weights", found[:, 3], weights)]:
+        places = np.column_stack([found[axis] for axis in "xyz"])
+        for what, column, expected in [("places", places, positions), ("weights", found["weight"], weights)]:
             if expected is not None and not np.allclose(column, expected, rtol=1e-6):
                 return self.judge(name, f"{what} differ: {column[:4]}, not {expected[:4]}")
-        if values is not None and (found.shape[1] < 5 or not np.allclose(found[:, 4], values, rtol=1e-6)):
+        if values is not None and ("value" not in found.dtype.names or not np.allclose(found["value"], values, rtol=1e-6)):
             return self.judge(name, f"values differ: {found[:4]}, not {values[:4]}")
         self.judge(name, None)
 
@@ -732,6 +734,71 @@ def read_points(check):
         check.points(f"numpy {name}", check.path(name), positions, weights, values)
     np.savetxt(check.path("p.xyz"), np.column_stack([positions, values]))
     check.points("numpy p.xyz", check.path("p.xyz"), positions, values=values)
+    read_point_arrays(check)
+    read_point_texts(check)
+    read_meshes(check)
+
+
+def read_point_arrays(check):
+    positions, weights, values = cloud()
+    for name, order in [("c.npy", "C"), ("f.npy", "F")]:
+        np.save(check.path(name), np.asarray(np.column_stack([positions, values]), order=order))
+        check.points(f"numpy n×4 in order {order}", check.path(name), positions, values=values)
+    fields = np.rec.fromarrays([values, *positions.T, weights], names="intensity,x,y,z,weight")
+    np.save(check.path("fields.npy"), fields)
+    check.points("numpy fields", check.path("fields.npy"), positions, weights, values)
+
+
+def read_point_texts(check):
+    """Numbers and encodings as programs of other locales write them."""
+    positions, _, values = cloud()
+    rows = np.column_stack([np.round(positions, 4), values])
+
+    def text(separator, comma):
+        return "".join(separator.join(map(str, row)) + "\n" for row in rows.tolist()).replace(".", "," if comma else ".")
+
+    for name, content in [
+        ("comma.xyz", text(" ", True).encode()),
+        ("comma.tsv", text("\t", True).encode()),
+        ("semicolon.csv", ("x;y;z;value\n" + text(";", True)).encode("utf-16")),
+        ("cc.txt", f"//X;Y;Z;Intensity\n{len(rows)}\n{text(';', False)}".encode("latin-1")),
+        ("cr.xyz", text(" ", False).replace("\n", "\r").encode()),
+        ("p.xyz.gz", gzip.compress(text(" ", False).encode())),
+    ]:
+        pathlib.Path(check.path(name)).write_bytes(content)
+        check.points(name, check.path(name), rows[:, :3], values=values)
+
+
+def read_meshes(check):
+    mesh = trimesh.creation.icosphere(2)
+    for extension in ["off", "obj"]:
+        mesh.export(check.path("m." + extension))
+        check.points(f"trimesh {extension}", check.path("m." + extension), mesh.vertices)
+    corners = mesh.triangles.reshape(-1, 3).astype("f4").astype("f8")
+    first = np.sort(np.unique(corners, axis=0, return_index=True)[1])
+    for kind in ["stl", "stl_ascii"]:
+        mesh.export(check.path("m.stl"), file_type=kind)
+        check.points(f"trimesh {kind}", check.path("m.stl"), corners[first])
+
+
+def read_las(check):
+    positions, _, _ = cloud()
+    for version, record, extension in itertools.product(["1.2", "1.4"], [3, 6], ["las", "laz"]):
+        if version == "1.2" and record == 6:
+            continue
+        las = laspy.create(file_version=version, point_format=record)
+        las.header.scales = [1e-6] * 3
+        las.xyz = positions
+        las.intensity = np.arange(len(positions))
+        las.withheld = np.arange(len(positions)) % 7 == 3
+        file = check.path(f"p.{extension}")
+        las.write(file)
+        if check.lacks("LAS", file):
+            return
+        kept = laspy.read(file)
+        kept = kept.points[kept.withheld == 0]
+        places = np.column_stack([kept.x, kept.y, kept.z])
+        check.points(f"laspy {version}, {record}, {extension}", file, places, values=np.asarray(kept.intensity))
 
 
 def scattered(check):
@@ -745,7 +812,7 @@ def scattered(check):
     around = [neighbours[starts[i] : starts[i + 1]] for i in range(50)]
     mean = np.array([np.abs(values[i] - values[n]).mean() for i, n in enumerate(around)])
     weights = 10 * (mean - mean.min()) / (mean.max() - mean.min())
-    check.equal("scattered values against SciPy", np.load(check.path("s.npy"))[:, 3], weights)
+    check.equal("scattered values against SciPy", np.load(check.path("s.npy"))["weight"], weights)
 
 
 def write_shapes(check):
@@ -817,11 +884,12 @@ def main():
 
 
 PARTS = [read_nrrd, read_itk, read_nifti, read_vtk, read_tiff, read_slices, read_numpy, write_volumes, keep_places, part_of_several]
-PARTS += [read_points, scattered, write_shapes, read_dicom, read_zarr]
+PARTS += [read_points, read_las, scattered, write_shapes, read_dicom, read_zarr]
 
 if "--inside" in sys.argv:
     try:
         import check_exports
+        import laspy
         import nibabel as nib
         import nrrd
         import numpy as np

@@ -23,19 +23,27 @@ type Read<'py> = (
     String,
 );
 
-/// A file of points: without so many of its last layers, with these columns of a table, of these classes, and thinned to
-/// one point in each cube of this side.
+/// A file of points: without so many of its last layers, with these columns of a table, one frame of several, of these
+/// classes, with those that are withheld, and thinned to one point in each cube of this side.
 #[pyfunction]
 pub fn read_points<'py>(
     py: Python<'py>,
     path: PathBuf,
     level: Option<u32>,
     columns: Option<&str>,
+    frame: Option<u64>,
     classes: Option<Vec<u8>>,
+    withheld: bool,
     thin: Option<f64>,
 ) -> PyResult<Read<'py>> {
     let columns = columns.map(str::parse::<Columns>).transpose().map_err(Told::told)?;
-    let options = PointOptions::default().level(level).columns(columns).classes(classes).thin(thin);
+    let options = PointOptions::default()
+        .level(level)
+        .columns(columns)
+        .frame(frame)
+        .classes(classes)
+        .withheld(withheld)
+        .thin(thin);
     let (points, facts) = run(py, &Task::default(), move |monitor| {
         let _ = Stage::Read.begin(monitor);
         read_model(&path, &options)

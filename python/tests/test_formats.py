@@ -103,6 +103,34 @@ def test_las(tmp_path):
             walpha.read_points(tmp_path / "tile.las", **how)
 
 
+def test_withheld_points_of_las(tmp_path):
+    points = [[0, 0, 0], [1.25, 0, 0], [0, 2.5, 0]]
+    las(tmp_path / "tile.las", points, [2, 2 | 0x80, 6])
+    assert walpha.read_points(tmp_path / "tile.las").points.tolist() == [points[0], points[2]]
+    assert walpha.read_points(tmp_path / "tile.las", withheld=True).points.tolist() == points
+
+
+def test_frames_of_a_text(tmp_path):
+    (tmp_path / "scans.pts").write_text("1\n0 0 0\n2\n1 2 3\n4 5 6\n")
+    assert walpha.read_points(tmp_path / "scans.pts", frame=1).points.tolist() == [[1, 2, 3], [4, 5, 6]]
+    with pytest.raises(ValueError, match="holds 2 frames"):
+        walpha.read_points(tmp_path / "scans.pts")
+
+
+def test_arrays_of_points(tmp_path):
+    """A fourth column has values, unless it is named; what is written has fields with names."""
+    rows = np.array([[1.0, 2.0, 3.0, 7.0], [4.0, 5.0, 6.0, 8.0]])
+    np.save(tmp_path / "rows.npy", rows)
+    read = walpha.read_points(tmp_path / "rows.npy")
+    assert read.weights is None and read.values.tolist() == [7, 8]
+    read = walpha.read_points(tmp_path / "rows.npy", columns=["x", "y", "z", "weight"])
+    assert read.weights.tolist() == [7, 8] and read.values is None
+    walpha.write_points(tmp_path / "fields.npy", rows[:, :3], weights=[7, 8], values=[1, 2])
+    assert np.load(tmp_path / "fields.npy").dtype.names == ("x", "y", "z", "weight", "value")
+    read = walpha.read_points(tmp_path / "fields.npy")
+    assert read.points.tolist() == rows[:, :3].tolist() and read.weights.tolist() == [7, 8] and read.values.tolist() == [1, 2]
+
+
 def test_columns_of_a_table(tmp_path):
     (tmp_path / "table.csv").write_text("1,2,3,4\n5,6,7,8\n")
     read = walpha.read_points(tmp_path / "table.csv", columns=["value", "z", "y", "x"])

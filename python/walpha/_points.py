@@ -49,7 +49,9 @@ def read_points(
     *,
     level: int | None = None,
     columns: Iterable[str] | None = None,
+    frame: int | None = None,
     classes: Iterable[int | Ground] | None = None,
+    withheld: bool = False,
     thin: float | None = None,
 ) -> PointFile:
     """Read points.
@@ -57,16 +59,22 @@ def read_points(
     Parameters
     ----------
     path : str or path-like
-        CSV, XYZ, PTS, PLY, OFF, OBJ, STL, PCD, LAS, LAZ, VTU, VTP, VTK, NPY or WVM. Weights are a column
-        ``weight``, or else the squares of a column ``radius``. Or ``hard:NAME``, a set on which programs fail: the
+        CSV, XYZ, PTS, PLY, OFF, OBJ, STL, PCD, LAS, LAZ, VTU, VTP, VTK, NPY or WVM; text, PLY, OFF, OBJ, STL and PCD also
+        compressed with gzip, or alone in a ZIP archive. Weights are a column ``weight``, or else the squares of a column
+        ``radius``; a fourth column without a name has values. Or ``hard:NAME``, a set on which programs fail: the
         documentation lists them under cross-checking.
     level : int, optional
         For WVM in layers: how many of the last layers to leave out.
     columns : iterable of str, optional
-        Names of the columns of a table (CSV, XYZ): x, y, z, perhaps weight and value, others under any name.
+        Names of the columns of a table (CSV, XYZ, PTS, NPY): x, y, z, perhaps weight (or radius) and value, others under
+        any name.
+    frame : int, optional
+        For text with several scans (PTS) or steps of a trajectory (XYZ): which to read, counted from 0.
     classes : iterable of int or str, optional
         For LAS and LAZ: the classes to read, by their codes or as "ground", "vegetation", "building", "water",
         "unclassified".
+    withheld : bool
+        For LAS and LAZ: also take the points that are flagged as withheld, which are not to be processed.
     thin : float, optional
         Keep the first point in each cube of this side, in the unit of the points.
 
@@ -93,7 +101,7 @@ def read_points(
         raise ValueError(f"thin={thin} is not the side of a cube: give a length above 0")
     named = None if columns is None else ",".join([columns] if isinstance(columns, str) else columns)
     points, weights, values, sizes, alpha, coordinates = _walpha.read_points(
-        os.fspath(path), level, named, None if classes is None else _codes(classes), thin
+        os.fspath(path), level, named, frame, None if classes is None else _codes(classes), withheld, thin
     )
     grid = None if sizes is None else (sizes[2], sizes[1], sizes[0])
     return PointFile(points, weights, values, grid, alpha, json.loads(coordinates)["unit"])
@@ -124,8 +132,8 @@ def write_points(
     Parameters
     ----------
     path : str or path-like
-        Its extension says the format: ``.csv``, ``.npy``, or ``.wvm``, which is small where points lie at
-        whole numbers.
+        Its extension says the format: ``.csv``, ``.npy`` (a structured array with fields of the names of columns), or
+        ``.wvm``, which is small where points lie at whole numbers.
     points : array_like, (n, 3)
         x, y, z.
     weights, values : array_like, (n,), optional

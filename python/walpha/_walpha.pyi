@@ -163,7 +163,9 @@ def read_points(
     path: str,
     level: int | None,
     columns: str | None,
+    frame: int | None,
     classes: list[int] | None,
+    withheld: bool,
     thin: float | None,
 ) -> tuple[Floats, Floats | None, Floats | None, list[int] | None, float | None, str]: ...
 def write_points(

@@ -281,7 +281,8 @@ pub(super) fn job(args: &InputArgs, recipe: Recipe) -> anyhow::Result<Job> {
         let name = shown(input.path());
         fail_usage!("{name} holds points, and blocks are cut from volumes" => "start one process, and write another format than .pvtu and .pvtp");
     };
-    args.typed.refuse(&["columns", "class", "thin"], format!("{input} holds a volume"))?;
+    args.typed
+        .refuse(&["columns", "class", "withheld", "thin"], format!("{input} holds a volume"))?;
     let alone = ["refit", "exchange", "max_error"];
     args.typed.refuse(&alone, "blocks look at a part of the volume each")?;
     let source = volume.source(&recipe.read).map_err(pipeline::with_points)?;

@@ -111,6 +111,9 @@ enum Content {
         /// The cell in which the points repeat; absent if the file states none.
         #[serde(skip_serializing_if = "Option::is_none")]
         cell: Option<CellSummary>,
+        /// What the file says of some of its points: how many are synthetic, say.
+        #[serde(skip_serializing_if = "Vec::is_empty")]
+        notes: Vec<String>,
         /// Samples along x, y and z of their grid; null where the file states none.
         grid: Option<[usize; 3]>,
         coordinates: Coordinates,
@@ -296,7 +299,7 @@ impl Content {
         let extreme = |pick: fn(f64, f64) -> f64, start: f64, axis: usize| {
             points.positions.iter().fold(start, |so_far, p| pick(so_far, p[axis]))
         };
-        let ModelMetadata { grid, coordinates, alpha, range, recipe, cell, .. } = metadata;
+        let ModelMetadata { grid, coordinates, alpha, range, recipe, cell, notes, .. } = metadata;
         Self::Points {
             count: points.len(),
             low: [0, 1, 2].map(|i| extreme(f64::min, f64::INFINITY, i)),
@@ -306,6 +309,7 @@ impl Content {
             values: points.values.is_some(),
             cells,
             cell: cell.map(Into::into),
+            notes,
             grid: grid.map(|grid| grid.dims.xyz()),
             coordinates,
             alpha,
@@ -314,11 +318,17 @@ impl Content {
         }
     }
 
-    /// How the points were made, and are meant to be used: recipe, α and gray range.
+    /// What the file says of its points, how they were made, and are meant to be used: notes, unit, recipe, α and gray range.
     fn fmt_usage(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self::Points { alpha, gray_range, coordinates, recipe, .. } = self else {
+        let Self::Points { alpha, gray_range, grid, coordinates, recipe, notes, .. } = self else {
             return Ok(());
         };
+        if !notes.is_empty() {
+            writeln!(f, "of these  {}", notes.join(", "))?;
+        }
+        if grid.is_none() && coordinates.unit.is_known() {
+            writeln!(f, "unit      {}", coordinates.unit.symbol())?;
+        }
         if let Some(recipe) = recipe {
             writeln!(f, "recipe    {recipe}")?;
         }

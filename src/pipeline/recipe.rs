@@ -43,6 +43,8 @@ pub struct Recipe {
     pub columns: Option<Columns>,
     /// The classes of points to read from LAS and LAZ ([`PointOptions::classes`]).
     pub classes: Option<Vec<u8>>,
+    /// Whether points of LAS and LAZ that are withheld are read ([`PointOptions::withheld`]).
+    pub withheld: bool,
     /// Keeps the first point in each cube of this side ([`PointOptions::thin`]).
     pub thin: Option<f64>,
     /// The values that become gray 0 and 255; `None` leaves unsigned bytes unchanged, and otherwise takes the
@@ -106,6 +108,7 @@ impl Recipe {
         read: ReadOptions,
         columns: Option<Columns>,
         classes: Option<Vec<u8>>,
+        withheld: bool,
         thin: Option<f64>,
         gray_out: bool,
         haar: HaarOptions,
@@ -174,7 +177,10 @@ impl Recipe {
             .columns(self.columns.clone())
             .level(self.read.level)
             .format(self.read.format.clone())
+            .frame(self.read.frame)
             .classes(self.classes.clone())
+            .withheld(self.withheld)
+            .weights(self.weighting == Some(Weighting::Column))
             .thin(self.thin)
     }
 

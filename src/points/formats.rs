@@ -13,24 +13,17 @@ use super::model::MODEL;
 use super::read::xyz::{self, TextLayout};
 use super::read::{format, npy};
 #[cfg(feature = "formats")]
-use super::read::{obj, off, pcd, ply, stl, table, vtk};
+use super::read::{obj, off, pcd, ply, stl, vtk};
 use super::write;
 #[cfg(feature = "formats")]
 use super::wvm;
-use super::{CellCount, Columns, ModelMetadata, Packing, Points, PointsError, WeightedPoints};
+use super::{CellCount, ModelMetadata, Packing, PointOptions, Points, PointsError, WeightedPoints};
 #[cfg(feature = "formats")]
 use crate::volume::VtkPoints;
-use crate::volume::{NpyFile, OpenFile, Reason, UnknownFormat, built, is_npy, is_vtk, is_vtk_xml};
+use crate::volume::{OpenFile, Reason, UnknownFormat, built, is_npy, is_vtk, is_vtk_xml};
 
-/// Reads the points of a file; the user may name its columns.
-type Read = fn(&OpenFile, Option<&Columns>) -> Result<Points, PointsError>;
-
-/// Reads the points of a file, without its last layers if a level is given, and their metadata.
-type ReadModel =
-    fn(&OpenFile, Option<&Columns>, u32) -> Result<(Points, ModelMetadata), PointsError>;
-
-/// Reads the points of these classes.
-type ReadClasses = fn(&OpenFile, &[u8]) -> Result<Points, PointsError>;
+/// Reads the points of a file and their metadata, which is empty where the format has none.
+type Read = fn(&OpenFile, &PointOptions) -> Result<(Points, ModelMetadata), PointsError>;
 
 /// Counts the cells of a file.
 type CountCells = fn(&OpenFile) -> Result<Vec<CellCount>, PointsError>;
@@ -44,8 +37,8 @@ pub struct PointFormat {
     pub name: &'static str,
     /// Extensions, without dots.
     pub extensions: &'static [&'static str],
-    /// Whether a user may name its columns.
-    pub takes_columns: bool,
+    /// The settings that it has a use for, of those that only some formats have.
+    pub chooses: &'static [Setting],
     /// The Cargo feature that its reader needs, if any.
     pub feature: Option<&'static str>,
     /// Its fuzz target.
@@ -56,14 +49,10 @@ pub struct PointFormat {
     begins: fn(&[u8]) -> bool,
     /// Whether a file holds points, for formats that may hold something else.
     holds_points: fn(&OpenFile) -> Result<bool, PointsError>,
-    /// Whether its files may hold several levels.
-    has_levels: bool,
-    /// Reader of a format without metadata.
+    /// Whether its files are also read compressed with gzip, or alone in a ZIP archive.
+    pub(super) is_packed: bool,
+    /// Its reader, unless it was left out of the build.
     read: Option<Read>,
-    /// Reader of a format with metadata or levels. If both are `None`, the format was left out of the build.
-    read_model: Option<ReadModel>,
-    /// Reads the points of some classes alone, if the format has classes.
-    read_classes: Option<ReadClasses>,
     /// Counts its cells, if the format has any.
     pub(super) cells: Option<CountCells>,
     /// Reads its cells as a complex, if the format can hold one.
@@ -87,16 +76,14 @@ type WriteAll = fn(&WeightedPoints, &ModelMetadata, &Packing, &mut dyn Write) ->
 const PLAIN: PointFormat = PointFormat {
     name: "",
     extensions: &[],
-    takes_columns: false,
+    chooses: &[],
     feature: Some("formats"),
     fuzzed_by: "",
     begins: |_| false,
     holds_points: |_| Ok(true),
     writers: &[],
-    has_levels: false,
+    is_packed: false,
     read: None,
-    read_model: None,
-    read_classes: None,
     cells: None,
     read_complex: None,
 };
@@ -107,9 +94,10 @@ pub static FORMATS: [PointFormat; 15] = [
     PointFormat {
         name: "CSV, TSV",
         extensions: &["csv", "tsv"],
-        takes_columns: true,
+        chooses: &[Setting::Columns, Setting::Frame],
         fuzzed_by: "table",
-        read: built!("formats", table::read),
+        is_packed: true,
+        read: built!("formats", |file, options| xyz::read(file, options, TextLayout::Table)),
         writers: &[PointWriter {
             extension: "csv",
             packs: false,
@@ -120,55 +108,52 @@ pub static FORMATS: [PointFormat; 15] = [
     PointFormat {
         name: "XYZ",
         extensions: &["xyz", "txt", "asc"],
-        takes_columns: true,
+        chooses: &[Setting::Columns, Setting::Frame],
         fuzzed_by: "xyz",
-        read_model: built!("formats", |file, columns, _| xyz::read(
-            file,
-            columns,
-            TextLayout::Atoms
-        )),
+        is_packed: true,
+        read: built!("formats", |file, options| xyz::read(file, options, TextLayout::Atoms)),
         ..PLAIN
     },
     PointFormat {
         name: "XYZ with normals or colours",
         extensions: &["xyzn", "xyzrgb"],
-        takes_columns: true,
+        chooses: &[Setting::Columns, Setting::Frame],
         fuzzed_by: "xyz",
-        read_model: built!("formats", |file, columns, _| xyz::read(
-            file,
-            columns,
-            TextLayout::Vectors
-        )),
+        is_packed: true,
+        read: built!("formats", |file, options| xyz::read(file, options, TextLayout::Vectors)),
         ..PLAIN
     },
     PointFormat {
         name: "PTS",
         extensions: &["pts"],
-        takes_columns: true,
+        chooses: &[Setting::Columns, Setting::Frame],
         fuzzed_by: "xyz",
-        read_model: built!("formats", |file, columns, _| xyz::read(
-            file,
-            columns,
-            TextLayout::Scan
-        )),
+        is_packed: true,
+        read: built!("formats", |file, options| xyz::read(file, options, TextLayout::Scan)),
         ..PLAIN
     },
     PointFormat {
         name: "PWN",
         extensions: &["pwn"],
-        takes_columns: true,
+        chooses: &[Setting::Columns],
         fuzzed_by: "pwn",
-        read_model: built!("formats", |file, columns, _| {
-            xyz::read(file, columns, TextLayout::PointsThenNormals)
-        }),
+        is_packed: true,
+        read: built!("formats", |file, options| xyz::read(
+            file,
+            options,
+            TextLayout::PointsThenNormals
+        )),
         ..PLAIN
     },
     PointFormat {
         name: "PLY",
         extensions: &["ply"],
         fuzzed_by: "ply",
-        begins: |start| start.starts_with(b"ply\n") || start.starts_with(b"ply\r"),
-        read: built!("formats", |file, _| ply::read(file)),
+        begins: |start| {
+            start.starts_with(b"ply") && start.get(3).is_some_and(u8::is_ascii_whitespace)
+        },
+        is_packed: true,
+        read: built!("formats", |file, _| plain(ply::read(file))),
         cells: built!("formats", ply::cells),
         read_complex: built!("formats", ply::read_complex),
         ..PLAIN
@@ -177,7 +162,8 @@ pub static FORMATS: [PointFormat; 15] = [
         name: "OFF",
         extensions: &["off"],
         fuzzed_by: "off",
-        read: built!("formats", |file, _| off::read(file)),
+        is_packed: true,
+        read: built!("formats", |file, _| plain(off::read(file))),
         cells: built!("formats", off::cells),
         ..PLAIN
     },
@@ -185,7 +171,8 @@ pub static FORMATS: [PointFormat; 15] = [
         name: "OBJ",
         extensions: &["obj"],
         fuzzed_by: "obj",
-        read: built!("formats", |file, _| obj::read(file)),
+        is_packed: true,
+        read: built!("formats", |file, _| plain(obj::read(file))),
         cells: built!("formats", obj::cells),
         ..PLAIN
     },
@@ -193,7 +180,8 @@ pub static FORMATS: [PointFormat; 15] = [
         name: "STL",
         extensions: &["stl"],
         fuzzed_by: "stl",
-        read: built!("formats", |file, _| stl::read(file)),
+        is_packed: true,
+        read: built!("formats", |file, _| plain(stl::read(file))),
         cells: built!("formats", stl::cells),
         ..PLAIN
     },
@@ -202,7 +190,8 @@ pub static FORMATS: [PointFormat; 15] = [
         extensions: &["pcd"],
         fuzzed_by: "pcd",
         begins: |start| start.starts_with(b"# .PCD"),
-        read: built!("formats", |file, _| pcd::read(file)),
+        is_packed: true,
+        read: built!("formats", |file, _| plain(pcd::read(file))),
         ..PLAIN
     },
     PointFormat {
@@ -211,7 +200,7 @@ pub static FORMATS: [PointFormat; 15] = [
         fuzzed_by: "vtk_geometry",
         begins: is_vtk_xml,
         holds_points: is_geometry,
-        read: built!("formats", |file, _| vtk::read(file)),
+        read: built!("formats", |file, _| plain(vtk::read(file))),
         cells: built!("formats", vtk::cells),
         read_complex: built!("formats", vtk::read_complex),
         ..PLAIN
@@ -222,7 +211,7 @@ pub static FORMATS: [PointFormat; 15] = [
         fuzzed_by: "vtk_geometry",
         begins: is_vtk,
         holds_points: lists_points,
-        read: built!("formats", |file, _| vtk::read_legacy(file)),
+        read: built!("formats", |file, _| plain(vtk::read_legacy(file))),
         cells: built!("formats", vtk::cells_of_legacy),
         read_complex: built!("formats", vtk::read_legacy_complex),
         ..PLAIN
@@ -233,8 +222,9 @@ pub static FORMATS: [PointFormat; 15] = [
         feature: None,
         fuzzed_by: "npy_points",
         begins: is_npy,
-        holds_points: |file| Ok(is_npy(file.start()) && NpyFile::open(file)?.shape.len() == 2),
-        read: Some(|file, _| npy::read(file)),
+        chooses: &[Setting::Columns],
+        holds_points: |file| Ok(is_npy(file.start()) && npy::holds_points(file)?),
+        read: Some(|file, options| plain(npy::read(file, options.columns.as_ref()))),
         writers: &[PointWriter {
             extension: "npy",
             packs: false,
@@ -248,8 +238,8 @@ pub static FORMATS: [PointFormat; 15] = [
         feature: Some("las"),
         fuzzed_by: "las",
         begins: |start| start.starts_with(b"LASF"),
-        read: built!("las", |file, _| super::read::las::read(file, None)),
-        read_classes: built!("las", |file, classes| super::read::las::read(file, Some(classes))),
+        chooses: &[Setting::Class, Setting::Withheld],
+        read: built!("las", super::read::las::read),
         ..PLAIN
     },
     PointFormat {
@@ -257,8 +247,8 @@ pub static FORMATS: [PointFormat; 15] = [
         extensions: &["wvm"],
         fuzzed_by: "wvm",
         begins: |start| start.starts_with(MODEL),
-        has_levels: true,
-        read_model: built!("formats", |file, _, level| wvm::read(file, level)),
+        chooses: &[Setting::Level],
+        read: built!("formats", |file, options| wvm::read(file, options.level.unwrap_or_default())),
         writers: MODEL_WRITERS,
         ..PLAIN
     },
@@ -269,6 +259,11 @@ const MODEL_WRITERS: &[PointWriter] = &[
     #[cfg(feature = "formats")]
     PointWriter { extension: "wvm", packs: true, write: wvm::write },
 ];
+
+/// Points of a format without metadata.
+fn plain(points: Result<Points, PointsError>) -> Result<(Points, ModelMetadata), PointsError> {
+    Ok((points?, ModelMetadata::default()))
+}
 
 /// Whether a VTK XML file holds points.
 #[cfg_attr(
@@ -300,7 +295,7 @@ fn lists_points(file: &OpenFile) -> Result<bool, PointsError> {
 impl PointFormat {
     /// Whether its reader is part of this build.
     pub fn is_built_in(&self) -> bool {
-        self.read.is_some() || self.read_model.is_some()
+        self.read.is_some()
     }
 
     /// Whether this is one of its extensions, in any letter case.
@@ -318,42 +313,16 @@ impl PointFormat {
         (self.holds_points)(file)
     }
 
-    /// Whether its files may hold several levels.
-    pub fn has_levels(&self) -> bool {
-        self.has_levels
-    }
-
-    /// Reads the points of these classes.
-    pub(super) fn read_classes(
-        &self,
-        file: &OpenFile,
-        classes: &[u8],
-    ) -> Result<Points, PointsError> {
-        match self.read_classes {
-            Some(read) => read(file, classes),
-            // Without its reader, the format says so itself.
-            None if !self.is_built_in() => Ok(self.read(file, None, 0)?.0),
-            None => {
-                let reason = Reason::needless(Setting::Class, "has no classes of points");
-                Err(format(file.path(), reason))
-            }
-        }
-    }
-
     pub(super) fn read(
         &self,
         file: &OpenFile,
-        columns: Option<&Columns>,
-        level: u32,
+        options: &PointOptions,
     ) -> Result<(Points, ModelMetadata), PointsError> {
-        match (self.read_model, self.read) {
-            (Some(read_model), _) => read_model(file, columns, level),
-            (None, Some(read)) => Ok((read(file, columns)?, ModelMetadata::default())),
-            (None, None) => {
-                let (what, feature) = (self.name, self.feature.unwrap_or_default());
-                Err(format(file.path(), Reason::Without { what, feature }))
-            }
-        }
+        let Some(read) = self.read else {
+            let (what, feature) = (self.name, self.feature.unwrap_or_default());
+            return Err(format(file.path(), Reason::Without { what, feature }));
+        };
+        read(file, options)
     }
 }
 

@@ -56,8 +56,8 @@ impl fmt::Display for Cell {
     }
 }
 
-/// Metadata of weighted points. A `.wvm` stores all of it but the cell, which comes from extended XYZ; other
-/// formats of points store none.
+/// Metadata of weighted points. A `.wvm` stores all of it but the cell, which comes from extended XYZ, and the notes; of
+/// other formats, text may state a unit.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct ModelMetadata {
@@ -75,6 +75,8 @@ pub struct ModelMetadata {
     pub order: Option<Vec<u32>>,
     /// The unit cell of periodic points.
     pub cell: Option<Cell>,
+    /// What a file says of some of its points, for people: how many are synthetic, or noise.
+    pub notes: Vec<String>,
 }
 
 /// How a `.wvm` is packed.
@@ -98,6 +100,7 @@ impl ModelMetadata {
         recipe: Option<String>,
         order: Option<Vec<u32>>,
         cell: Option<Cell>,
+        notes: Vec<String>,
     }
 }
 

@@ -4,11 +4,14 @@ use std::path::Path;
 
 use walpha_base::advice::Setting;
 use walpha_base::setters;
+use walpha_base::shown::shown;
 
 use super::formats::{FORMATS, PointFormat};
+#[cfg(feature = "formats")]
+use super::read::content::Packed;
 use super::read::{COLUMNS, format};
 use super::{Columns, ModelMetadata, Points, PointsError, hard};
-use crate::volume::{OpenFile, Reason, begins_as_volume};
+use crate::volume::{OpenFile, Reason, begins_as_volume, other_kind};
 
 /// What a user may state about a file of points.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -21,8 +24,14 @@ pub struct PointOptions {
     pub level: Option<u32>,
     /// The extension of the file's format, in place of its own extension; the content takes precedence.
     pub format: Option<String>,
+    /// The frame to read from a text with several: a scan of PTS, a step of a trajectory. Counted from 0.
+    pub frame: Option<u64>,
     /// The classes of points to read from LAS and LAZ, by their ASPRS codes; `None` reads all.
     pub classes: Option<Vec<u8>>,
+    /// Whether points of LAS and LAZ are read that are flagged *withheld*, which are not to be processed.
+    pub withheld: bool,
+    /// Whether a column that is no weight by its name is one where the file has no other: the values.
+    pub weights: bool,
     /// Keeps the first point in each cube of this side, in the unit of the points; `None` keeps all.
     pub thin: Option<f64>,
 }
@@ -32,7 +41,10 @@ impl PointOptions {
         columns: Option<Columns>,
         level: Option<u32>,
         format: Option<String>,
+        frame: Option<u64>,
         classes: Option<Vec<u8>>,
+        withheld: bool,
+        weights: bool,
         thin: Option<f64>,
     }
 
@@ -61,13 +73,21 @@ impl PointOptions {
         }
     }
 
-    /// The format of a file, by its content, or else by its extension.
+    /// The format of a file, by its content, or else by its extension. Of one that is compressed, what it holds decides.
     pub(super) fn format_of(&self, file: &OpenFile) -> Option<&'static PointFormat> {
-        let of_content = FORMATS.iter().find(|format| format.begins(file.start()));
-        if of_content.is_some() || begins_as_volume(file.start()) {
+        #[cfg(feature = "formats")]
+        if let Some(Packed { name, start }) = Packed::of(file) {
+            return self.format_that_is(&start, &name).filter(|format| format.is_packed);
+        }
+        self.format_that_is(file.start(), file.path())
+    }
+
+    fn format_that_is(&self, start: &[u8], path: &Path) -> Option<&'static PointFormat> {
+        let of_content = FORMATS.iter().find(|format| format.begins(start));
+        if of_content.is_some() || begins_as_volume(start) {
             return of_content;
         }
-        self.format_named(file.path())
+        self.format_named(path)
     }
 
     /// The format of the given extension, or else of the path's.
@@ -90,21 +110,20 @@ pub fn is_point_file(path: &Path) -> Result<bool, PointsError> {
 
 /// Reads points, with weights and values if the file has such columns. Points are counted from 0.
 ///
-/// - CSV, TSV (fields separated by commas, semicolons or tabs) and XYZ (by white space): the first line
-///   may name the columns: x, y, z, optionally weight (or radius, whose square is the weight) and value, in
-///   any order and case; others are skipped. Without names, `columns` gives them; without both, x y z are
-///   read, followed by a value, or by a normal or a colour, which are skipped. XYZ may also hold atoms, as
-///   in chemistry, with the columns and the cell that extended XYZ states.
-/// - PTS: as XYZ, optionally after a line with the number of points; the intensity is the value.
+/// - Text (CSV, TSV, XYZ, PTS): fields are separated by commas, semicolons, tabs or blanks. The first line may name the
+///   columns: x, y, z, optionally weight (or radius, whose square is the weight) and value (or intensity), in any order
+///   and case; others are skipped. Without names, `columns` gives them; without both, x y z are read, followed by a value,
+///   or by a normal or a colour, which are skipped. XYZ may also hold atoms, as in chemistry, with the columns and the
+///   cell that extended XYZ states. Counts of points may come first; of several frames, one is read.
 /// - PWN: as XYZ; or the number of points, the points, and as many normals.
 /// - OFF, OBJ, STL: the vertices; for STL each position once.
-/// - PCD: the fields x, y, z, optionally weight or radius, and value or else intensity.
-/// - LAS and LAZ: coordinates, and the intensity as value.
-/// - PLY (text, or binary of either byte order), VTU, VTP and legacy VTK: the vertices, with their properties
-///   or point data `weight` or `radius`, and `value`; VTK's active scalars are the values if no array has
-///   that name.
-/// - NPY: an array n×3 (x, y, z), n×4 (…, weight) or n×5 (…, value).
+/// - PCD, PLY (text, or binary of either byte order), VTU, VTP and legacy VTK: the points, with their properties, fields or
+///   point data of these names; VTK's active scalars are the values if no array is named so.
+/// - LAS and LAZ: coordinates, and the intensity as value, without the points that are withheld.
+/// - NPY: an array n×3 (x, y, z) or n×4 (…, value), or what `columns` say; of a structured array the fields of these names.
 /// - WVM: all layers ([`read_model`] can leave some out).
+///
+/// Text, OFF, OBJ, STL, PCD and PLY may be compressed with gzip, or be alone in a ZIP archive.
 ///
 /// # Errors
 /// The file cannot be read, is truncated or longer than it claims, a column is missing or named twice,
@@ -139,25 +158,16 @@ pub(crate) fn read_model_file(
 ) -> Result<(Points, ModelMetadata), PointsError> {
     let path = file.path();
     let known = options.format_of(file).unwrap_or(&FORMATS[0]);
-    let PointOptions { columns, level, format: named, classes, thin } = options;
-    let (columns, level) = (columns.as_ref(), *level);
-    if named.as_ref().is_some_and(|named| !known.is_named(named)) {
+    if options.format.as_ref().is_some_and(|named| !known.is_named(named)) {
         let what = format!("begins like a file of the format {}", known.name);
         return Err(format(path, Reason::needless(Setting::Format, what)));
     }
-    if columns.is_some() && !known.takes_columns {
-        let reason = Reason::needless(Setting::Columns, "defines its own columns");
+    accept(known, path, options)?;
+    if let Some(reason) = of_another_kind(known, file) {
         return Err(format(path, reason));
     }
-    if level.is_some() && !known.has_levels() {
-        let reason = Reason::needless(Setting::Level, "has no layers of points");
-        return Err(format(path, reason));
-    }
-    let (mut points, metadata) = match classes {
-        Some(classes) => (known.read_classes(file, classes)?, ModelMetadata::default()),
-        None => known.read(file, columns, level.unwrap_or_default())?,
-    };
-    if points.is_empty() && classes.is_some() {
+    let (mut points, metadata) = known.read(file, options)?;
+    if points.is_empty() && options.classes.is_some() {
         let what = "holds no point of these classes";
         return Err(format(path, Reason::content(what, "see which classes it has, or read all")));
     }
@@ -165,10 +175,43 @@ pub(crate) fn read_model_file(
         return Err(format(path, Reason::content("holds no points", "name another file")));
     }
     finite(path, &points)?;
-    if let Some(side) = *thin {
+    if options.weights && points.weights.is_none() && points.values.is_some() {
+        tracing::warn!(
+            "{} has no column weight or radius: its values are taken for weights, as is asked for",
+            shown(path)
+        );
+        points.weights = points.values.take();
+    }
+    if let Some(side) = options.thin {
         points.thin(side);
     }
     Ok((points, metadata))
+}
+
+/// Why a file is not read that has the name of a format, and begins as one of another kind does.
+fn of_another_kind(known: &PointFormat, file: &OpenFile) -> Option<Reason> {
+    #[cfg(feature = "formats")]
+    if let Some(Packed { start, .. }) = Packed::of(file) {
+        return if known.begins(&start) { None } else { other_kind(&start) };
+    }
+    if known.begins(file.start()) { None } else { other_kind(file.start()) }
+}
+
+/// Refuses settings that the format has no use for.
+fn accept(format: &PointFormat, path: &Path, options: &PointOptions) -> Result<(), PointsError> {
+    for (setting, given, what) in [
+        (Setting::Columns, options.columns.is_some(), "defines its own columns"),
+        (Setting::Level, options.level.is_some(), "has no layers of points"),
+        (Setting::Frame, options.frame.is_some(), "is of a format of one frame"),
+        (Setting::Class, options.classes.is_some(), "has no classes of points"),
+        (Setting::Withheld, options.withheld, "has no points that can be withheld"),
+    ] {
+        // Without its reader, the format says so itself.
+        if given && format.is_built_in() && !format.chooses.contains(&setting) {
+            return Err(super::read::format(path, Reason::needless(setting, what)));
+        }
+    }
+    Ok(())
 }
 
 /// Refuses NaN and infinities.

@@ -71,6 +71,11 @@ impl Points {
         let mut taken = HashSet::new();
         let kept: Vec<bool> =
             self.positions.iter().map(|place| taken.insert(cube(place))).collect();
+        self.keep(&kept);
+    }
+
+    /// Keeps the points that are marked.
+    pub(super) fn keep(&mut self, kept: &[bool]) {
         let mut columns = [&mut self.values, &mut self.differences, &mut self.weights];
         for column in columns.iter_mut().filter_map(|column| column.as_mut()) {
             let mut kept = kept.iter();

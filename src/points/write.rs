@@ -1,7 +1,6 @@
 use std::io::{self, Write};
 
-use ndarray::Array2;
-use ndarray_npy::{WriteNpyError, WriteNpyExt};
+use walpha_base::npy::MAGIC;
 
 use super::WeightedPoints;
 
@@ -23,20 +22,32 @@ pub(super) fn csv(points: &WeightedPoints, writer: &mut dyn Write) -> io::Result
     writer.flush()
 }
 
-/// Writes points as an NPY array of doubles, n×4 (x, y, z, weight) or, if values are known, n×5.
+/// Writes points as a structured NPY array with the fields x, y, z, weight and, if known, value, all doubles.
 ///
 /// # Errors
 /// Errors of the writer.
-pub(super) fn npy(points: &WeightedPoints, mut writer: &mut dyn Write) -> io::Result<()> {
-    let columns = if points.values().is_some() { 5 } else { 4 };
-    let rows = Array2::from_shape_fn((points.len(), columns), |(i, column)| match column {
-        3 => points.weights()[i],
-        4 => points.values().map_or(0.0, |values| values[i]),
-        axis => points.positions()[i][axis],
-    });
-    rows.write_npy(&mut writer).map_err(|error| match error {
-        WriteNpyError::Io(error) => error,
-        other => io::Error::other(other),
-    })?;
+pub(super) fn npy(points: &WeightedPoints, writer: &mut dyn Write) -> io::Result<()> {
+    /// Bytes before the text of the header: the magic string, the version, and the length of the text.
+    const BEFORE: usize = 10;
+    let value = if points.values().is_some() { ", ('value', '<f8')" } else { "" };
+    let mut header = format!(
+        "{{'descr': [('x', '<f8'), ('y', '<f8'), ('z', '<f8'), ('weight', '<f8'){value}], \
+         'fortran_order': False, 'shape': ({},), }}",
+        points.len()
+    );
+    // NumPy aligns the elements to 64 bytes; a line end comes last.
+    let length = BEFORE + header.len() + 1;
+    header += &" ".repeat(length.next_multiple_of(64) - length);
+    header.push('\n');
+    writer.write_all(MAGIC)?;
+    writer.write_all(&[1, 0])?;
+    writer.write_all(&(header.len() as u16).to_le_bytes())?;
+    writer.write_all(header.as_bytes())?;
+    for (i, (place, weight)) in points.positions().iter().zip(points.weights()).enumerate() {
+        let value = points.values().map(|values| values[i]);
+        for number in place.iter().chain([weight]).chain(value.as_ref()) {
+            writer.write_all(&number.to_le_bytes())?;
+        }
+    }
     writer.flush()
 }

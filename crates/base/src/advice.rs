@@ -59,6 +59,8 @@ pub enum Setting {
     Solid,
     Space,
     Threshold,
+    /// Whether points that are withheld are read.
+    Withheld,
 }
 
 impl Setting {
@@ -94,6 +96,7 @@ impl Setting {
             Self::Solid => "solid",
             Self::Space => "space",
             Self::Threshold => "threshold",
+            Self::Withheld => "withheld",
         }
     }
 }

@@ -59,11 +59,11 @@ pub use formats::{begins_as_volume, built, is_npy, is_vtk, is_vtk_xml, other_kin
 pub use grid::{any_size, inverse};
 #[doc(hidden)]
 pub use open::OpenVolume;
+#[doc(hidden)]
+pub use read::{Element, Gunzip, NpyFile, OpenFile, npy_element};
 #[cfg(feature = "formats")]
 #[doc(hidden)]
-pub use read::{Element, Lines, VtkPoints, VtkXml};
-#[doc(hidden)]
-pub use read::{NpyFile, OpenFile};
+pub use read::{Lines, VtkPoints, VtkXml};
 
 /// The example in the README runs.
 #[cfg(doctest)]

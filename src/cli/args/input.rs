@@ -40,15 +40,18 @@ pub(crate) struct InputArgs {
     /// Write gray levels 0..255 instead of the values of INPUT.
     #[arg(long, help_heading = "Input")]
     gray_out: bool,
-    /// Columns of a table of points (CSV, XYZ): x, y, z, optionally weight and value, others under any
-    /// name, as in x,y,z,nx,ny,nz; without z and others, points lie in the plane z = 0 [default: from
-    /// its header, otherwise from its numbers].
+    /// Columns of a table of points (CSV, XYZ, PTS, NPY): x, y, z, optionally weight (or radius) and value, others
+    /// under any name, as in x,y,z,nx,ny,nz; without z and others, points lie in the plane z = 0 [default: from
+    /// its header, otherwise from its numbers, of which a fourth is a value].
     #[arg(long, value_name = "NAME,NAME,…", help_heading = "Input")]
     columns: Option<Columns>,
     /// Classes of points to read from LAS and LAZ: ground, vegetation, building, water, unclassified, or
     /// their numbers, as in 2,9 [default: all].
     #[arg(long, value_name = "CLASS,…", value_delimiter = ',', value_parser = class, help_heading = "Input")]
     class: Vec<Vec<u8>>,
+    /// Also take points of LAS and LAZ that are flagged as withheld, which are not to be processed.
+    #[arg(long, help_heading = "Input")]
+    withheld: bool,
     /// Keep the first point in each cube of this side, in the unit of the points.
     #[arg(long, value_name = "SIDE", value_parser = positive, help_heading = "Input")]
     thin: Option<f64>,
@@ -85,6 +88,7 @@ impl InputArgs {
             .read(self.options())
             .columns(self.columns.clone())
             .classes((!self.class.is_empty()).then(|| self.class.concat()))
+            .withheld(self.withheld)
             .thin(self.thin)
             .gray(self.gray)
             .gray_out(self.gray_out)
@@ -116,7 +120,7 @@ pub(super) struct PartArgs {
     /// Array to read from a file with several (VTK, NPZ) [default for VTK: the first point array].
     #[arg(long, value_name = "NAME", conflicts_with = "dims")]
     array: Option<String>,
-    /// Volume to read from a file with several (a fourth axis), counted from 0.
+    /// Volume to read from a file with several (a fourth axis), or scan or step of points (PTS, XYZ), counted from 0.
     #[arg(long, value_name = "K", conflicts_with = "dims")]
     frame: Option<u64>,
     /// Series to read from a folder with several (DICOM): its number in walpha info, or the end of its

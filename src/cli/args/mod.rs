@@ -78,5 +78,8 @@ pub(super) fn volume_options() -> Vec<String> {
     let points = SelectArgs::augment_args(HaarArgs::augment_args(part));
     let all = RefitArgs::augment_args(points);
     let names = all.get_arguments().map(|arg| arg.get_id().to_string());
-    names.filter(|name| name != "level").chain(["gray".to_owned()]).collect()
+    names
+        .filter(|name| !["frame", "level"].contains(&name.as_str()))
+        .chain(["gray".to_owned()])
+        .collect()
 }

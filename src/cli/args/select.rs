@@ -246,7 +246,8 @@ const WEIGHTS: &str = "Weights ω: common=C, min-max, barycentric, barycentric-n
 /// The help of `--weights`.
 fn weights_help() -> String {
     format!(
-        "Weights ω (squared lengths): {} [default: column where the input has weights, else common=0]",
+        "Weights ω (squared lengths): {} [default: column where the input has weights, else common=0]; where \
+         column is asked for and no column is called weight or radius, its values are taken",
         Weighting::known()
     )
 }

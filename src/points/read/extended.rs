@@ -23,6 +23,9 @@ impl Comment {
         for (key, value) in pairs(line) {
             match key.to_ascii_lowercase().as_str() {
                 "properties" => comment.columns = Some(columns(path, value)?),
+                "lattice" if comment.cell.is_some() => {
+                    return Err(format(path, Reason::content("has Lattice twice", "remove one")));
+                }
                 "lattice" => comment.cell = Some(cell(path, value)?),
                 "pbc" => repeats = directions(value).unwrap_or(repeats),
                 _ => {}
@@ -62,7 +65,7 @@ fn pairs(line: &str) -> Vec<(&str, &str)> {
 fn columns(path: &Path, text: &str) -> Result<Columns, PointsError> {
     let wrong = |what: &str| {
         let what = format!("has Properties={text}, {what}");
-        Err(format(path, Reason::header(what)))
+        Err(format(path, Reason::content(what, "correct its second line")))
     };
     let words: Vec<&str> = text.split(':').collect();
     let (properties, []) = words.as_chunks::<3>() else {
@@ -96,7 +99,7 @@ fn cell(path: &Path, text: &str) -> Result<Cell, PointsError> {
         }
         _ => {
             let what = format!("has Lattice=\"{text}\", which is not nine numbers");
-            Err(format(path, Reason::header(what)))
+            Err(format(path, Reason::content(what, "correct its second line")))
         }
     }
 }

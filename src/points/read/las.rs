@@ -1,32 +1,50 @@
 //! LAS and LAZ, the formats of laser scanners.
 
-use std::io::{Read, Seek, SeekFrom};
+use std::io::{self, Read, Seek, SeekFrom};
 use std::path::Path;
 
-use super::{Points, PointsError, format};
+use walpha_base::advice::{Setting, advice};
+use walpha_base::shown::shown;
+
+use super::{COLUMNS, Points, PointsError, format};
+use crate::points::{ModelMetadata, PointOptions};
 use crate::volume::{OpenFile, Reason};
 
 /// Bytes of points read at once: a header may claim records of up to 64 KiB, and more than the file has.
 const BATCH: u64 = 1 << 22;
 
-/// Reads the positions of the points, of these classes (ASPRS codes) or of all, and their intensities as values.
-/// Coordinates are doubles, computed with the file's scales and offsets.
-pub(crate) fn read(file: &OpenFile, classes: Option<&[u8]>) -> Result<Points, PointsError> {
+/// Reads the positions of the points, of some classes (ASPRS codes) or of all, and their intensities as values. Points
+/// that are withheld are left out unless they are asked for. Coordinates are doubles, computed with the file's scales and
+/// offsets.
+pub(crate) fn read(
+    file: &OpenFile,
+    options: &PointOptions,
+) -> Result<(Points, ModelMetadata), PointsError> {
     let path = file.path();
     check(file)?;
-    let fail = |error| unreadable(path, &error);
+    let fail = |error| unreadable(path, error);
     let mut reader = las::Reader::new(file.owned_reader()?).map_err(fail)?;
+    refuse_angles(path, reader.header())?;
     let mut points = Points { values: Some(Vec::new()), ..Points::default() };
     let record = u64::from(reader.header().point_format().len()).max(1);
     let at_once = (BATCH / record).max(1);
     let mut batch = las::PointDataBuilder::new().for_header(reader.header()).build();
-    let mut found = 0;
+    let is_extended = reader.header().point_format().is_extended;
+    let (mut found, mut withheld, mut kinds) = (0, 0, Kinds::default());
     while reader.fill_points(at_once, &mut batch).map_err(fail)? > 0 {
         let places = batch.x().zip(batch.y()).zip(batch.z()).map(|((x, y), z)| [x, y, z]);
-        let rows = places.zip(batch.intensity()).zip(batch.classification());
-        for ((place, intensity), class) in rows {
+        let records = batch.raw_bytes().chunks_exact(batch.record_len());
+        let rows = places.zip(batch.intensity()).zip(batch.classification()).zip(records);
+        for (((place, intensity), class), record) in rows {
             found += 1;
-            if classes.is_none_or(|classes| classes.contains(&class)) {
+            // Formats 0 to 5 have the flags above the class, and the others in a byte before it (LAS 1.4 R15, tables 8 and 16).
+            let flags = if is_extended { record[15] & 15 } else { record[15] >> 5 };
+            if options.classes.as_ref().is_some_and(|classes| !classes.contains(&class)) {
+                continue;
+            }
+            withheld += u64::from(flags & WITHHELD != 0);
+            if flags & WITHHELD == 0 || options.withheld {
+                kinds.count(flags, class);
                 points.positions.push(place);
                 points.values.get_or_insert_default().push(f64::from(intensity));
             }
@@ -38,21 +56,139 @@ pub(crate) fn read(file: &OpenFile, classes: Option<&[u8]>) -> Result<Points, Po
             Reason::truncated(format!("claims {claimed} points, but has {found}: it is truncated"));
         return Err(format(path, reason));
     }
-    Ok(points)
+    if withheld > 0 && !options.withheld {
+        if points.is_empty() {
+            let reason = Reason::choice(
+                Setting::Withheld,
+                format!("holds {withheld} points, all of them withheld"),
+                advice!["give ", Setting::Withheld, " to take them"],
+            );
+            return Err(format(path, reason));
+        }
+        tracing::warn!(
+            "{}: {withheld} points are flagged as withheld, which are not to be processed: they are left out \
+             unless `withheld` asks for them",
+            shown(path)
+        );
+    }
+    if reader.header().point_format().has_waveform {
+        tracing::warn!("{}: waveforms of its points are passed over", shown(path));
+    }
+    Ok((points, ModelMetadata::default().notes(kinds.notes())))
 }
 
-/// Refuses claims that the library would trust: more bytes of points than 64 bits can count, and an extended
-/// record longer than the file, for which it would allocate memory.
+/// The flag of points that are not to be processed.
+const WITHHELD: u8 = 4;
+/// The other flags, and the classes of points that others may leave out, with their names.
+const FLAGS: [(u8, &str); 3] =
+    [(1, "synthetic"), (2, "key points"), (8, "in an overlap of swaths")];
+const CLASSES: [(u8, &str); 3] =
+    [(7, "noise (class 7)"), (12, "in an overlap (class 12)"), (18, "high noise (class 18)")];
+
+/// How many points there are of each kind that a user may want to leave out.
+#[derive(Default)]
+struct Kinds {
+    flags: [u64; FLAGS.len()],
+    classes: [u64; CLASSES.len()],
+}
+
+impl Kinds {
+    fn count(&mut self, flags: u8, class: u8) {
+        for (count, (flag, _)) in self.flags.iter_mut().zip(FLAGS) {
+            *count += u64::from(flags & flag != 0);
+        }
+        for (count, (known, _)) in self.classes.iter_mut().zip(CLASSES) {
+            *count += u64::from(class == known);
+        }
+    }
+
+    fn notes(&self) -> Vec<String> {
+        let names = FLAGS.iter().chain(&CLASSES).map(|(_, name)| name);
+        let counts = self.flags.iter().chain(&self.classes).zip(names);
+        counts
+            .filter(|(count, _)| **count > 0)
+            .map(|(count, name)| format!("{count} {name}"))
+            .collect()
+    }
+}
+
+/// Refuses coordinates that are longitude and latitude by the file's reference system: `GeoTIFF`'s model type 2, or a text
+/// that begins with a geographic system.
+fn refuse_angles(path: &Path, header: &las::Header) -> Result<(), PointsError> {
+    const DIRECTORY: u16 = 34735;
+    const TEXT: u16 = 2112;
+    const MODEL: u16 = 1024;
+    const GEOGRAPHIC: u16 = 2;
+    let is_geographic = |record: &las::Vlr| match record.record_id {
+        DIRECTORY => {
+            let (pairs, _) = record.data.as_chunks::<2>();
+            let numbers: Vec<u16> = pairs.iter().map(|&pair| u16::from_le_bytes(pair)).collect();
+            let (keys, _) = numbers.as_chunks::<4>();
+            keys.iter().skip(1).any(|&[key, .., value]| (key, value) == (MODEL, GEOGRAPHIC))
+        }
+        TEXT => [&b"GEOGCS"[..], b"GEOGCRS", b"GEODCRS"]
+            .iter()
+            .any(|name| record.data.starts_with(name)),
+        _ => false,
+    };
+    let mut records = header.vlrs().iter().chain(header.evlrs());
+    if records.any(|record| record.user_id == "LASF_Projection" && is_geographic(record)) {
+        let what = "states longitude and latitude, which are angles and no lengths";
+        let advice = "project them to a plane first, as UTM does";
+        return Err(format(path, Reason::unsupported(what, advice)));
+    }
+    Ok(())
+}
+
+/// Refuses a file that has fewer points than it claims, or that claims none and has some; scales that are no numbers, or 0;
+/// and claims that the library would trust: more bytes of points than 64 bits can count, and an extended record longer than
+/// the file, for which it would allocate memory.
 fn check(file: &OpenFile) -> Result<(), PointsError> {
     let (path, length) = (file.path(), file.length());
     let mut reader = file.reader()?;
     let header =
-        las::raw::Header::read_from(&mut reader).map_err(|error| unreadable(path, &error))?;
-    let count = header.large_file.map_or(0, |large| large.number_of_point_records);
-    let bytes = count.checked_mul(header.point_data_record_length.into());
+        las::raw::Header::read_from(&mut reader).map_err(|error| unreadable(path, error))?;
+    let scales = [header.x_scale_factor, header.y_scale_factor, header.z_scale_factor];
+    let offsets = [header.x_offset, header.y_offset, header.z_offset];
+    for (name, scale, offset) in [0, 1, 2].map(|k| (COLUMNS[k], scales[k], offsets[k])) {
+        if !scale.is_finite() || scale == 0.0 || !offset.is_finite() {
+            let what =
+                format!("has scale {scale} and offset {offset} for {name}, which place nothing");
+            return Err(format(
+                path,
+                Reason::content(what, "correct its header, or write it again"),
+            ));
+        }
+    }
+    let record = u64::from(header.point_data_record_length).max(1);
+    let large = header.large_file.map_or(0, |large| large.number_of_point_records);
+    let count = if large > 0 { large } else { header.number_of_point_records.into() };
+    let bytes = count.checked_mul(record);
     if bytes.and_then(|bytes| bytes.checked_add(header.offset_to_point_data.into())).is_none() {
-        let what = "claims more bytes of points than a number can count: its header is damaged";
-        return Err(format(path, Reason::damaged(what)));
+        let what = "claims more bytes of points than a number can count";
+        return Err(format(path, Reason::content(what, "correct its header, or write it again")));
+    }
+    let compressed = header.point_data_record_format & 0xc0 != 0;
+    // Some writers say where such records would begin, and that there are none.
+    let behind = header.evlr.filter(|records| records.number_of_evlrs > 0);
+    let behind = behind.map(|records| records.start_of_first_evlr);
+    let waves = header.start_of_waveform_data_packet_record.filter(|&start| start > 0);
+    let end = behind.into_iter().chain(waves).fold(length, u64::min);
+    let stored = end.saturating_sub(header.offset_to_point_data.into()) / record;
+    if !compressed && stored < count {
+        let what = format!("claims {count} points, but has {stored}: it is truncated");
+        return Err(format(path, Reason::truncated(what)));
+    }
+    if !compressed && stored > count {
+        let claim = format!("counts {count} points in its header, but has {stored}");
+        if count == 0 {
+            let what = format!("{claim}: the writer was not closed");
+            return Err(format(
+                path,
+                Reason::content(what, "write it again, with the right count"),
+            ));
+        }
+        tracing::warn!("{}: {claim}; those behind are passed over", shown(path));
     }
     let Some(records) = header.evlr else { return Ok(()) };
     // The length follows 2 reserved bytes, a user id of 16 and a record id of 2. If it is missing, the library
@@ -65,12 +201,22 @@ fn check(file: &OpenFile) -> Result<(), PointsError> {
     let claimed = u64::from_le_bytes(claimed);
     if claimed > length {
         let what =
-            format!("claims a record of {claimed} bytes in a file of {length}: it is damaged");
-        return Err(format(path, Reason::damaged(what)));
+            format!("claims a record of {claimed} bytes in a file of {length}: it is truncated");
+        return Err(format(path, Reason::truncated(what)));
     }
     Ok(())
 }
 
-fn unreadable(path: &Path, error: &las::Error) -> PointsError {
-    format(path, Reason::other(format!("is not a readable LAS file: {error}")))
+fn unreadable(path: &Path, error: las::Error) -> PointsError {
+    let cut = |error: &io::Error| error.kind() == io::ErrorKind::UnexpectedEof;
+    let what = format!("is not a readable LAS file: {error}");
+    format(
+        path,
+        match error {
+            las::Error::Io(error) if cut(&error) => {
+                Reason::truncated("ends inside its records: it is truncated")
+            }
+            _ => Reason::other(what),
+        },
+    )
 }

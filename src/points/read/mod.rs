@@ -2,9 +2,17 @@
 
 mod columns;
 #[cfg(feature = "formats")]
+pub(super) mod content;
+#[cfg(feature = "formats")]
+mod dialect;
+#[cfg(feature = "formats")]
 mod extended;
+#[cfg(feature = "formats")]
+mod header;
 #[cfg(feature = "las")]
 pub(super) mod las;
+#[cfg(feature = "formats")]
+mod lines;
 pub(super) mod npy;
 #[cfg(feature = "formats")]
 pub(super) mod obj;
@@ -19,20 +27,18 @@ mod rows;
 #[cfg(feature = "formats")]
 pub(super) mod stl;
 #[cfg(feature = "formats")]
-pub(super) mod table;
+mod text;
 #[cfg(feature = "formats")]
 pub(super) mod vtk;
 #[cfg(feature = "formats")]
 pub(super) mod xyz;
 
 pub(super) use columns::COLUMNS;
-#[cfg(feature = "formats")]
 use columns::RADIUS;
 pub use columns::{Columns, UnknownColumns};
 
 use std::path::Path;
 
-#[cfg(feature = "formats")]
 use walpha_base::shown::shown;
 #[cfg(feature = "formats")]
 use walpha_check::meshes::MeshError;
@@ -64,7 +70,6 @@ pub(super) fn no_complex(path: &Path) -> PointsError {
 }
 
 /// Sets the weights to the squares of radii, unless the file has weights.
-#[cfg(feature = "formats")]
 fn take_radii(
     path: &Path,
     points: &mut Points,

@@ -1,19 +1,24 @@
 use std::io::Read;
 use std::path::Path;
 
-use super::{Points, PointsError, RADIUS, format, take_radii};
-use crate::volume::{Lines, OpenFile, Reason, io_error};
+use walpha_base::shown::shown;
+
+use super::columns::places;
+use super::content::{Content, HeaderLines};
+use super::{COLUMNS, Points, PointsError, RADIUS, format, take_radii};
+use crate::volume::{OpenFile, Reason, io_error};
 
 /// Reads PCD, the Point Cloud Library's format: text, binary or compressed, with the fields x, y and z,
 /// optionally weight or radius, and value or else intensity. Points without a position (NaN, as scanners write them)
-/// are left out.
+/// are left out. Without a number of points there are width times height of them.
 pub(crate) fn read(file: &OpenFile) -> Result<Points, PointsError> {
     let path = file.path();
     let fail = |reason: Reason| format(path, reason);
-    let mut lines = Lines::new(file.reader()?);
+    let Content { reader, length } = Content::of(file)?;
+    let mut lines = HeaderLines::new(reader);
     let mut header = Header::default();
     let data = loop {
-        let line = lines.read_line().map_err(io_error(path))?;
+        let line = lines.read().map_err(io_error(path))?;
         let line = line.ok_or_else(|| {
             fail(Reason::truncated("ends inside its PCD header: it is truncated"))
         })?;
@@ -22,19 +27,27 @@ pub(crate) fn read(file: &OpenFile) -> Result<Points, PointsError> {
         }
         header.parse_line(&line).map_err(fail)?;
     };
-    header.check(file.length()).map_err(fail)?;
+    let points = header.check(length).map_err(fail)?;
+    if let Some(viewpoint) = &header.viewpoint {
+        tracing::warn!(
+            "{}: the sensor stood at VIEWPOINT {viewpoint}, which is passed over: coordinates are as stored",
+            shown(path)
+        );
+    }
     let mut bytes = Vec::new();
     lines.into_inner().read_to_end(&mut bytes).map_err(io_error(path))?;
     let rows = match data.as_str() {
-        "ascii" => header.text(&String::from_utf8_lossy(&bytes)),
-        "binary" => header.binary(&bytes, false),
-        "binary_compressed" => unpacked(&bytes).and_then(|bytes| header.binary(&bytes, true)),
+        "ascii" => header.text(&String::from_utf8_lossy(&bytes), points),
+        "binary" => header.binary(&bytes, points, false),
+        "binary_compressed" => {
+            unpacked(&bytes).and_then(|bytes| header.binary(&bytes, points, true))
+        }
         other => Err(Reason::unsupported(
             format!("has DATA {other}: ascii, binary and binary_compressed are read"),
             "convert it first",
         )),
     };
-    header.points(path, &rows.map_err(fail)?)
+    points_of(path, &rows.map_err(fail)?)
 }
 
 #[derive(Default)]
@@ -44,7 +57,11 @@ struct Header {
     types: Vec<String>,
     /// How many numbers each field has.
     counts: Vec<usize>,
-    points: usize,
+    width: Option<usize>,
+    height: Option<usize>,
+    points: Option<usize>,
+    /// The sensor's place and direction, unless they are the origin and none.
+    viewpoint: Option<String>,
 }
 
 /// A column to read: its index in the lists of the header, and its offset within a point, in numbers or bytes.
@@ -53,96 +70,127 @@ struct Field {
     offset: usize,
 }
 
+/// What to do about a header that contradicts itself or the data.
+const HEADER: &str = "correct its header, or write it again";
+
 impl Header {
     fn parse_line(&mut self, line: &str) -> Result<(), Reason> {
-        let damaged =
-            || Reason::header(format!("has a header line {line:?}, which is not understood"));
+        let damaged = || {
+            let what = format!("has a header line {line:?}, which is not understood");
+            Reason::content(what, HEADER)
+        };
         let mut words = line.split_whitespace();
         let key = words.next().unwrap_or("#");
         let numbers = || words.clone().map(str::parse).collect::<Result<Vec<usize>, _>>();
+        let number = || words.clone().next().and_then(|n| n.parse().ok()).ok_or_else(damaged);
         match key {
-            "FIELDS" => self.names = words.map(str::to_ascii_lowercase).collect(),
-            "TYPE" => self.types = words.map(str::to_owned).collect(),
+            // COLUMNS is what version 0.5 calls them.
+            "FIELDS" | "COLUMNS" => self.names = words.map(str::to_ascii_lowercase).collect(),
+            "TYPE" => self.types = words.map(str::to_ascii_uppercase).collect(),
             "SIZE" => self.sizes = numbers().map_err(|_| damaged())?,
             "COUNT" => self.counts = numbers().map_err(|_| damaged())?,
-            "POINTS" => {
-                self.points = words.next().and_then(|n| n.parse().ok()).ok_or_else(damaged)?;
+            "WIDTH" => self.width = Some(number()?),
+            "HEIGHT" => self.height = Some(number()?),
+            "POINTS" => self.points = Some(number()?),
+            "VIEWPOINT" => {
+                let place: Option<Vec<f64>> = words.clone().map(|word| word.parse().ok()).collect();
+                let place = place.ok_or_else(damaged)?;
+                let text = words.collect::<Vec<_>>().join(" ");
+                let is_identity = place == [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0];
+                self.viewpoint = (!is_identity).then_some(text);
             }
             _ => {}
         }
         Ok(())
     }
 
-    /// Refuses lists of different lengths, empty or huge fields, and more points than the file can hold.
-    fn check(&mut self, length: u64) -> Result<(), Reason> {
+    /// The number of points. Refuses lists of different lengths, huge fields, and more points than the file can hold.
+    fn check(&mut self, length: u64) -> Result<usize, Reason> {
         let fields = self.names.len();
         if self.counts.is_empty() {
             self.counts = vec![1; fields];
         }
-        if [self.sizes.len(), self.types.len(), self.counts.len()] != [fields; 3] || fields == 0 {
-            return Err(Reason::damaged(
-                "has FIELDS, SIZE, TYPE and COUNT of different lengths: it is damaged",
-            ));
+        let lengths = [self.sizes.len(), self.types.len(), self.counts.len()];
+        if lengths != [fields; 3] || fields == 0 {
+            let [sizes, types, counts] = lengths;
+            let what =
+                format!("has {fields} FIELDS, but {sizes} SIZE, {types} TYPE and {counts} COUNT");
+            return Err(Reason::content(what, HEADER));
         }
-        if self.sizes.iter().chain(&self.counts).any(|n| !(1..=1 << 16).contains(n)) {
-            return Err(Reason::damaged(
-                "has fields of no bytes or numbers, or of more than 65536: it is damaged",
-            ));
+        let (most, sizes) = (1 << 16, &self.sizes);
+        if self.counts.iter().any(|&n| n > most) || sizes.iter().any(|n| !(1..=most).contains(n)) {
+            let what = "has fields of no bytes, or of more than 65536 bytes or numbers";
+            return Err(Reason::content(what, HEADER));
         }
+        let product = match (self.width, self.height) {
+            (Some(width), height) => Some(width.saturating_mul(height.unwrap_or(1))),
+            (None, _) => None,
+        };
+        let points = match (self.points, product) {
+            (Some(points), Some(product)) if points != product => {
+                let what = format!("claims {points} POINTS, but {product} by WIDTH and HEIGHT");
+                return Err(Reason::content(what, HEADER));
+            }
+            (points, product) => points.or(product).ok_or_else(|| {
+                Reason::content("says neither POINTS nor WIDTH in its header", HEADER)
+            })?,
+        };
         // A point takes at least a byte, and LZF packs at most 264 bytes into 3, so 256 points per byte is generous.
-        if self.points as u64 > length.saturating_mul(256) {
-            let points = self.points;
-            return Err(Reason::header(format!(
-                "claims {points} points, which {length} bytes cannot hold"
+        if points as u64 > length.saturating_mul(256) {
+            return Err(Reason::claims_more(format!(
+                "claims {points} points, which {length} bytes cannot hold: it is truncated, or the \
+                 number is wrong"
             )));
         }
-        Ok(())
+        Ok(points)
     }
 
-    /// The field with a name; its offset is in bytes, or else in numbers.
-    fn field(&self, name: &str, bytes: bool) -> Option<Field> {
-        let index = self.names.iter().position(|known| known == name)?;
-        let width = |k: usize| self.counts[k] * if bytes { self.sizes[k] } else { 1 };
-        Some(Field { index, offset: (0..index).map(width).sum() })
-    }
-
-    /// The fields x, y, z, weight, value and radius.
+    /// The fields x, y, z, weight, value and radius, each with an offset in bytes, or else in numbers.
     fn fields(&self, bytes: bool) -> Result<[Option<Field>; 6], Reason> {
-        let field = |name| self.field(name, bytes);
-        let fields = [
-            field("x"),
-            field("y"),
-            field("z"),
-            field("weight"),
-            field("value").or(field("intensity")),
-            field("radius"),
-        ];
-        if fields[..3].iter().all(Option::is_some) {
-            Ok(fields)
-        } else {
-            Err(Reason::header(format!(
-                "has the fields {}, without x, y or z",
-                self.names.join(", ")
-            )))
+        let names: Vec<&str> = self.names.iter().map(String::as_str).collect();
+        let places = places(&names);
+        let width = |k: usize| self.counts[k] * if bytes { self.sizes[k] } else { 1 };
+        let mut fields = [const { None }; 6];
+        for (index, place) in places.iter().enumerate() {
+            let Some(place) = *place else { continue };
+            let name = &self.names[index];
+            let wrong = match (self.counts[index], &fields[place]) {
+                (1, None) => None,
+                (1, Some(_)) => Some(format!("has two fields for {}", COLUMNS[place])),
+                (count, _) => {
+                    Some(format!("has COUNT {count} for the field {name}, which is 1 number"))
+                }
+            };
+            if let Some(what) = wrong {
+                return Err(Reason::content(what, HEADER));
+            }
+            fields[place] = Some(Field { index, offset: (0..index).map(width).sum() });
         }
+        if fields[..3].iter().all(Option::is_some) {
+            return Ok(fields);
+        }
+        let what = format!("has the fields {}, without x, y or z", self.names.join(", "));
+        Err(Reason::content(what, "name another file"))
     }
 
-    fn text(&self, text: &str) -> Result<Vec<[Option<f64>; 6]>, Reason> {
+    fn text(&self, text: &str, points: usize) -> Result<Vec<[Option<f64>; 6]>, Reason> {
         let fields = self.fields(false)?;
         let width: usize = self.counts.iter().sum();
-        let lines: Vec<&str> = text.lines().filter(|line| !line.trim().is_empty()).collect();
-        if lines.len() != self.points {
-            return Err(Reason::header(format!(
-                "claims {} points, but has {} lines",
-                self.points,
-                lines.len()
-            )));
+        let lines = text.split(['\n', '\r']).map(str::trim).filter(|line| !line.is_empty());
+        let lines: Vec<&str> = lines.collect();
+        let what = format!("claims {points} points, but has {} lines of them", lines.len());
+        if lines.len() < points {
+            let what = format!("{what}: it is truncated, or the number is wrong");
+            return Err(Reason::claims_more(what));
+        }
+        if lines.len() > points {
+            return Err(Reason::content(what, HEADER));
         }
         let mut rows = Vec::new();
         for line in lines {
             let words: Vec<&str> = line.split_whitespace().collect();
             if words.len() != width {
-                return Err(Reason::header(format!(
+                return Err(Reason::value(format!(
                     "has {} numbers in the line {line:?}, not {width}",
                     words.len()
                 )));
@@ -162,21 +210,33 @@ impl Header {
     }
 
     /// Reads binary data, stored point by point, or field by field.
-    fn binary(&self, bytes: &[u8], by_field: bool) -> Result<Vec<[Option<f64>; 6]>, Reason> {
+    fn binary(
+        &self,
+        bytes: &[u8],
+        points: usize,
+        by_field: bool,
+    ) -> Result<Vec<[Option<f64>; 6]>, Reason> {
         let fields = self.fields(true)?;
         let width: usize =
             self.sizes.iter().zip(&self.counts).map(|(size, count)| size * count).sum();
-        if bytes.len() < width.saturating_mul(self.points) {
-            let points = self.points;
-            return Err(Reason::header(format!(
-                "claims {points} points of {width} bytes, and has {}",
+        let needed = width.saturating_mul(points);
+        if bytes.len() < needed {
+            return Err(Reason::claims_more(format!(
+                "claims {points} points of {width} bytes, and has {}: it is truncated, or the number \
+                 is wrong",
                 bytes.len()
             )));
+        }
+        let behind = &bytes[needed..];
+        if behind.iter().any(|byte| *byte != 0 && !byte.is_ascii_whitespace()) {
+            let more = behind.len();
+            let what = format!("goes on for {more} bytes behind its {points} points");
+            return Err(Reason::content(what, HEADER));
         }
         let at = |row: usize, field: &Field| {
             let own = self.sizes[field.index] * self.counts[field.index];
             let start = if by_field {
-                self.points * field.offset + row * own
+                points * field.offset + row * own
             } else {
                 row * width + field.offset
             };
@@ -190,33 +250,34 @@ impl Header {
             }
             Ok(numbers)
         };
-        (0..self.points).map(row).collect()
+        (0..points).map(row).collect()
     }
+}
 
-    fn points(&self, path: &Path, rows: &[[Option<f64>; 6]]) -> Result<Points, PointsError> {
-        let placed =
-            |row: &&[Option<f64>; 6]| row[..3].iter().all(|c| c.is_some_and(|c| !c.is_nan()));
-        let kept: Vec<_> = rows.iter().filter(placed).collect();
-        let left_out = self.points - kept.len();
-        if left_out > 0 {
-            tracing::warn!(
-                "{left_out} of {} points have no position (NaN) and are left out",
-                self.points
-            );
-        }
-        let column = |k: usize| kept.iter().map(|row| row[k]).collect();
-        let mut points = Points {
-            positions: kept
-                .iter()
-                .map(|row| [0, 1, 2].map(|k| row[k].unwrap_or(f64::NAN)))
-                .collect(),
-            weights: column(3),
-            values: column(4),
-            ..Points::default()
-        };
-        take_radii(path, &mut points, column(RADIUS))?;
-        Ok(points)
+/// The points that have a position.
+fn points_of(path: &Path, rows: &[[Option<f64>; 6]]) -> Result<Points, PointsError> {
+    let placed = |row: &&[Option<f64>; 6]| row[..3].iter().all(|c| c.is_some_and(|c| !c.is_nan()));
+    let kept: Vec<_> = rows.iter().filter(placed).collect();
+    let left_out = rows.len() - kept.len();
+    if kept.is_empty() && left_out > 0 {
+        let what = format!("holds {left_out} points, none of which has a position (NaN)");
+        return Err(format(path, Reason::content(what, "name another file")));
     }
+    if left_out > 0 {
+        tracing::warn!(
+            "{left_out} of {} points have no position (NaN) and are left out",
+            rows.len()
+        );
+    }
+    let column = |k: usize| kept.iter().map(|row| row[k]).collect();
+    let mut points = Points {
+        positions: kept.iter().map(|row| [0, 1, 2].map(|k| row[k].unwrap_or(f64::NAN))).collect(),
+        weights: column(3),
+        values: column(4),
+        ..Points::default()
+    };
+    take_radii(path, &mut points, column(RADIUS))?;
+    Ok(points)
 }
 
 /// A little-endian number.
@@ -224,28 +285,37 @@ fn number(kind: &str, bytes: &[u8]) -> Result<f64, Reason> {
     Ok(match (kind, bytes) {
         ("F", &[a, b, c, d]) => f64::from(f32::from_le_bytes([a, b, c, d])),
         ("F", &[a, b, c, d, e, f, g, h]) => f64::from_le_bytes([a, b, c, d, e, f, g, h]),
-        ("U", bytes @ ([_] | [_, _] | [_, _, _, _])) => {
+        ("U", bytes @ ([_] | [_, _] | [_, _, _, _] | [_, _, _, _, _, _, _, _])) => {
             bytes.iter().rev().fold(0.0, |n, &byte| 256.0 * n + f64::from(byte))
         }
         ("I", &[a]) => f64::from(i8::from_le_bytes([a])),
         ("I", &[a, b]) => f64::from(i16::from_le_bytes([a, b])),
         ("I", &[a, b, c, d]) => f64::from(i32::from_le_bytes([a, b, c, d])),
+        ("I", &[a, b, c, d, e, f, g, h]) => i64::from_le_bytes([a, b, c, d, e, f, g, h]) as f64,
         _ => {
-            return Err(Reason::header(format!(
-                "has a field of type {kind} and {} bytes",
-                bytes.len()
-            )));
+            let what = format!("has a field of type {kind} and {} bytes", bytes.len());
+            return Err(Reason::content(what, HEADER));
         }
     })
 }
 
-/// Unpacks LZF: the packed and the unpacked size, then literals and references to earlier output.
+/// Unpacks LZF, behind the packed and the unpacked size. Where these are equal, some writers stored what they could not
+/// pack as it is.
 fn unpacked(bytes: &[u8]) -> Result<Vec<u8>, Reason> {
-    let damaged = || Reason::damaged("has compressed data that are damaged or truncated");
-    let sizes = bytes.first_chunk::<8>().ok_or_else(damaged)?;
+    let cut = || Reason::truncated("ends inside its compressed data: it is truncated");
+    let sizes = bytes.first_chunk::<8>().ok_or_else(cut)?;
     let size = |k: usize| u32::from_le_bytes([sizes[k], sizes[k + 1], sizes[k + 2], sizes[k + 3]]);
     let (packed, whole) = (size(0) as usize, size(4) as usize);
-    let mut rest = bytes[8..].get(..packed).ok_or_else(damaged)?;
+    let data = bytes[8..].get(..packed).ok_or_else(cut)?;
+    match from_lzf(data, whole) {
+        Err(_) if packed == whole => Ok(data.to_vec()),
+        unpacked => unpacked,
+    }
+}
+
+/// Literals and references to earlier output.
+fn from_lzf(mut rest: &[u8], whole: usize) -> Result<Vec<u8>, Reason> {
+    let damaged = || Reason::damaged("has compressed data that are damaged");
     let mut out = Vec::new();
     let mut take = |count: usize| {
         let (head, tail) = rest.split_at_checked(count)?;
@@ -297,5 +367,8 @@ mod tests {
         }
         let sizes = [packed.len(), expected.len()].map(|n| (n as u32).to_le_bytes()).concat();
         assert_eq!(unpacked(&[sizes, packed].concat()).ok(), Some(expected));
+        let sizes = 5u32.to_le_bytes();
+        let stored = [&sizes[..], &sizes, b"\xff\xff\xff\xff\xff"].concat();
+        assert_eq!(unpacked(&stored).ok(), Some(vec![0xff; 5]));
     }
 }

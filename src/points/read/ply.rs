@@ -1,12 +1,14 @@
-use std::io::{BufRead, Read};
+use std::io::Read;
 use std::path::Path;
 
 use walpha_check::meshes::{Grid, Mesh};
 
+use super::columns::places;
+use super::content::{Content, HeaderLines};
 use super::{
     COLUMNS, CellCount, Points, PointsError, RADIUS, format, mesh_error, no_complex, take_radii,
 };
-use crate::volume::{Dtype, Element as _, Endian, Lines, OpenFile, Reason, io_error};
+use crate::volume::{Dtype, Element as _, Endian, OpenFile, Reason, io_error};
 
 /// Reads the vertices of a PLY file, text or binary of either byte order: properties x, y and z,
 /// optionally weight or radius, and value. All other elements must be as the header declares.
@@ -54,9 +56,10 @@ fn content(
 ) -> Result<(Points, Header), PointsError> {
     let path = file.path();
     let fail = |reason: Reason| format(path, reason);
-    let mut lines = Lines::new(file.reader()?);
+    let Content { reader, length } = Content::of(file)?;
+    let mut lines = HeaderLines::new(reader);
     let header = Header::read(path, &mut lines)?;
-    let left = file.length() - lines.bytes();
+    let left = length.saturating_sub(lines.bytes());
     let mut reader = lines.into_inner();
     let mut numbers = if let Some(endian) = header.endian {
         Numbers::Binary(reader, endian)
@@ -70,6 +73,9 @@ fn content(
         element.fits(header.endian.is_some(), left).map_err(fail)?;
         if element.name == "vertex" && points.is_none() {
             points = Some(vertices(path, element, &mut numbers)?);
+        } else if element.name == "vertex" {
+            let reason = Reason::content("has two elements vertex", "write one of them alone");
+            return Err(fail(reason));
         } else if let Some(corners) = corners
             && TETRAHEDRA.contains(&element.name.as_str())
         {
@@ -79,9 +85,9 @@ fn content(
         }
     }
     if !numbers.at_end() {
-        return Err(fail(Reason::header(
-            "continues after its last element: it is too long or mislabelled",
-        )));
+        let what = "continues after its last element: a count in its header is too low";
+        let reason = Reason::content(what, "correct its header, or remove what follows");
+        return Err(fail(reason));
     }
     let points = points.ok_or_else(|| {
         fail(Reason::content("has no element vertex, and so no points", "name another file"))
@@ -117,7 +123,8 @@ impl Corners {
 
 /// The numbers of faces, edges and so on that the header declares.
 pub(crate) fn cells(file: &OpenFile) -> Result<Vec<CellCount>, PointsError> {
-    Ok(Header::read(file.path(), &mut Lines::new(file.reader()?))?.cells())
+    let mut lines = HeaderLines::new(Content::of(file)?.reader);
+    Ok(Header::read(file.path(), &mut lines)?.cells())
 }
 
 fn vertices(
@@ -126,19 +133,17 @@ fn vertices(
     numbers: &mut Numbers<impl Read>,
 ) -> Result<Points, PointsError> {
     let fail = |reason: Reason| format(path, reason);
-    let column = |property: &Property| match property {
-        Property::Scalar(name, _) => {
-            COLUMNS.iter().position(|column| column.eq_ignore_ascii_case(name))
-        }
-        Property::List(..) => None,
+    let name = |property: &'_ Property| match property {
+        Property::Scalar(name, _) => name.clone(),
+        Property::List(..) => String::new(),
     };
-    let columns: Vec<Option<usize>> = element.properties.iter().map(column).collect();
+    let names: Vec<String> = element.properties.iter().map(name).collect();
+    let columns = places(&names.iter().map(String::as_str).collect::<Vec<_>>());
     for (place, name) in COLUMNS.iter().enumerate() {
         let count = columns.iter().filter(|&&column| column == Some(place)).count();
         if count > 1 || (count == 0 && place < 3) {
-            return Err(fail(Reason::header(format!(
-                "has {count} vertex properties {name}, and needs one"
-            ))));
+            let what = format!("has {count} vertex properties {name}, and needs one");
+            return Err(fail(Reason::content(what, "correct its header, or write it again")));
         }
     }
     let mut points = Points::default();
@@ -198,10 +203,10 @@ impl Header {
         self.elements.iter().filter_map(count).collect()
     }
 
-    fn read(path: &Path, lines: &mut Lines<impl BufRead>) -> Result<Self, PointsError> {
+    fn read(path: &Path, lines: &mut HeaderLines<'_>) -> Result<Self, PointsError> {
         let fail = |reason: Reason| format(path, reason);
-        let mut line = || lines.read_line().map_err(io_error(path));
-        if line()?.as_deref() != Some("ply") {
+        let mut line = || lines.read().map_err(io_error(path));
+        if line()?.as_deref().map(str::trim_end) != Some("ply") {
             return Err(fail(Reason::other("is no PLY file: it does not begin with a line ply")));
         }
         let mut endian = None;
@@ -209,12 +214,14 @@ impl Header {
         while let Some(line) = line()? {
             let words: Vec<&str> = line.split_whitespace().collect();
             let damaged = || {
-                fail(Reason::header(format!("has a header line {line:?}, which is not understood")))
+                let what = format!("has a header line {line:?}, which is not understood");
+                fail(Reason::content(what, "correct its header"))
             };
             match words[..] {
                 ["end_header"] => {
-                    let endian = endian
-                        .ok_or_else(|| fail(Reason::header("has no format in its header")))?;
+                    let endian = endian.ok_or_else(|| {
+                        fail(Reason::content("has no format in its header", "correct its header"))
+                    })?;
                     return Ok(Self { endian, elements });
                 }
                 ["comment" | "obj_info", ..] | [] => {}
@@ -257,9 +264,9 @@ impl Element {
         let row: u64 = self.properties.iter().map(least).sum();
         if self.count.saturating_mul(row) > left {
             let Self { name, count, .. } = self;
-            return Err(Reason::truncated(format!(
+            return Err(Reason::claims_more(format!(
                 "claims {count} elements {name}, which {left} bytes cannot hold: it is \
-                     truncated or mislabelled"
+                     truncated, or the count is wrong"
             )));
         }
         Ok(())
@@ -289,9 +296,7 @@ impl Property {
             Self::List(_, count, item) => {
                 let count = numbers.next(count)?;
                 if !(count >= 0.0 && count.fract() == 0.0) {
-                    return Err(Reason::damaged(format!(
-                        "has a list of {count} items: it is damaged"
-                    )));
+                    return Err(Reason::damaged(format!("has a list of {count} items")));
                 }
                 (0..count as u64).try_for_each(|_| numbers.next(item).map(&mut *item_of_list))?;
                 Ok(count)
@@ -299,6 +304,9 @@ impl Property {
         }
     }
 }
+
+/// More bytes behind the last element are no padding.
+const MOST_PADDING: u64 = 1 << 16;
 
 /// The numbers after a header.
 enum Numbers<R> {
@@ -308,7 +316,11 @@ enum Numbers<R> {
 
 impl<R: Read> Numbers<R> {
     fn next(&mut self, dtype: Dtype) -> Result<f64, Reason> {
-        let cut = || Reason::truncated("ends before all its elements: it is truncated");
+        let cut = || {
+            Reason::claims_more(
+                "ends before all its elements: it is truncated, or a count is wrong",
+            )
+        };
         match self {
             Self::Text { text, at } => {
                 let rest = text[*at..].trim_start();
@@ -336,7 +348,14 @@ impl<R: Read> Numbers<R> {
     fn at_end(&mut self) -> bool {
         match self {
             Self::Text { text, at } => text[*at..].trim().is_empty(),
-            Self::Binary(reader, _) => !matches!(reader.read(&mut [0]), Ok(1)),
+            // Some writers end binary files with a line end, or fill blocks with zeros.
+            Self::Binary(reader, _) => {
+                let mut rest = Vec::new();
+                let whole = reader.take(MOST_PADDING).read_to_end(&mut rest);
+                let is_padding = |byte: &u8| *byte == 0 || byte.is_ascii_whitespace();
+                whole.is_ok_and(|found| (found as u64) < MOST_PADDING)
+                    && rest.iter().all(is_padding)
+            }
         }
     }
 }

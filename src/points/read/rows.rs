@@ -1,46 +1,8 @@
 use std::path::Path;
 
-use walpha_base::advice::{Setting, advice};
-
+use super::dialect::{PLAINLY, number, without_marks};
 use super::{COLUMNS, Columns, Points, PointsError, RADIUS, format, take_radii};
 use crate::volume::Reason;
-
-impl Columns {
-    /// Guesses columns from their numbers: x y z, perhaps followed by a value, a normal (of length 1 or 0) or a
-    /// colour (whole numbers up to 255).
-    fn guess(rows: &[Vec<f64>]) -> Result<Self, Reason> {
-        let count = rows.first().map_or(0, Vec::len);
-        let vectors = || rows.iter().map(|row| &row[3..]);
-        let unit = |v: &[f64]| {
-            let square: f64 = v.iter().map(|c| c * c).sum();
-            square == 0.0 || (square - 1.0).abs() < 0.02
-        };
-        let colour = |v: &[f64]| v.iter().all(|c| c.fract() == 0.0 && (0.0..=255.0).contains(c));
-        let known = match count {
-            3 => vec![0, 1, 2],
-            4 => vec![0, 1, 2, 4],
-            6 if vectors().all(unit) || vectors().all(colour) => vec![0, 1, 2],
-            _ => {
-                let example = match count {
-                    5 => "x,y,z,weight,value".to_owned(),
-                    6 => "x,y,z,nx,ny,nz".to_owned(),
-                    _ => "x,y,z".to_owned() + &",-".repeat(count.saturating_sub(3)),
-                };
-                return Err(Reason::choice(
-                    Setting::Columns,
-                    format!("has {count} columns, and nothing says what they are"),
-                    advice![
-                        "name them in a first line, or with ",
-                        Setting::Columns,
-                        format!(" {example}")
-                    ],
-                ));
-            }
-        };
-        let column = |place: usize| known.get(place).copied();
-        Ok(Self((0..count).map(column).collect()))
-    }
-}
 
 /// Number of rows from which columns without names are guessed.
 const MAX_PENDING: usize = 100;
@@ -53,6 +15,8 @@ pub(super) struct TextRows<'a> {
     pending: Vec<(u64, Vec<String>)>,
     /// Whether the decimal mark is a comma.
     pub decimal_comma: bool,
+    /// Whether rows may have more columns than are known.
+    pub open_ended: bool,
     /// The columns without names, if their number matches.
     pub default_columns: Option<Columns>,
     points: Points,
@@ -61,30 +25,32 @@ pub(super) struct TextRows<'a> {
 
 impl<'a> TextRows<'a> {
     pub(super) fn new(path: &'a Path, columns: Option<Columns>) -> Self {
-        let (pending, points) = (Vec::new(), Points::default());
         Self {
             path,
             columns,
-            pending,
+            pending: Vec::new(),
             decimal_comma: false,
+            open_ended: false,
             default_columns: None,
-            points,
+            points: Points::default(),
             radii: None,
         }
     }
 
-    /// Sets the columns, unless they are known.
-    pub(super) fn set_columns(&mut self, columns: Columns) {
-        self.columns.get_or_insert(columns);
-    }
-
-    /// Adds the words of a line.
+    /// Adds the words of a line. Empty ones at its end are those behind a separator too many.
     pub(super) fn push(&mut self, line: u64, words: &[&str]) -> Result<(), PointsError> {
+        let expected = match (&self.columns, self.pending.first()) {
+            (Some(columns), _) => columns.len(),
+            (None, Some((_, first))) => first.len(),
+            (None, None) => words.iter().rposition(|word| !word.is_empty()).map_or(0, |k| k + 1),
+        };
+        let spare = words.len().saturating_sub(expected);
+        let spare = words.iter().rev().take(spare).take_while(|word| word.is_empty()).count();
+        let words = &words[..words.len() - spare];
         if self.columns.is_some() {
             return self.add(line, words);
         }
-        let first = self.pending.first().map_or(words.len(), |(_, words)| words.len());
-        self.check_width(line, words.len(), first)?;
+        self.check_width(line, words.len(), expected)?;
         self.pending.push((line, words.iter().map(|&word| word.into()).collect()));
         if self.pending.len() < MAX_PENDING { Ok(()) } else { self.flush() }
     }
@@ -141,7 +107,7 @@ impl<'a> TextRows<'a> {
     }
 
     fn check_width(&self, line: u64, found: usize, expected: usize) -> Result<(), PointsError> {
-        if found == expected {
+        if found == expected || found > expected && self.open_ended {
             return Ok(());
         }
         let reason = Reason::value(format!(
@@ -151,15 +117,30 @@ impl<'a> TextRows<'a> {
     }
 
     fn number(&self, line: u64, name: &str, word: &str) -> Result<f64, PointsError> {
-        let comma = self.decimal_comma && !word.contains('.');
-        let number = if comma { word.replace(',', ".").parse() } else { word.parse() };
-        number.ok().filter(|number: &f64| number.is_finite()).ok_or_else(|| {
-            format(
-                self.path,
+        let finite = number(word, self.decimal_comma).filter(|number| number.is_finite());
+        finite.ok_or_else(|| {
+            let reason = if is_missing(word) {
+                let what = format!("line {line}, column {name}: there is no number ({word:?})");
+                Reason::content(what, "leave the line out, or put a number there")
+            } else if let Some(without) = without_marks(word) {
+                let what = format!(
+                    "line {line}, column {name}: {word:?} is no number, unless its marks group thousands \
+                     ({without})"
+                );
+                Reason::content(what, PLAINLY)
+            } else {
                 Reason::value(format!(
                     "line {line}, column {name}: {word:?} is not a finite number"
-                )),
-            )
+                ))
+            };
+            format(self.path, reason)
         })
     }
+}
+
+/// Whether a word says that there is no number.
+pub(super) fn is_missing(word: &str) -> bool {
+    ["", "nan", "na", "n/a", "null", "none", "-"]
+        .iter()
+        .any(|known| known.eq_ignore_ascii_case(word))
 }

@@ -1,9 +1,15 @@
 use std::collections::HashSet;
 use std::io::Read;
+use std::path::Path;
 
+use walpha_base::shown::shown;
+
+use super::content::Content;
+use super::lines::Numbered;
 use super::off::position;
+use super::text::text;
 use super::{CellCount, Points, PointsError, format};
-use crate::volume::{Lines, OpenFile, Reason, io_error};
+use crate::volume::{OpenFile, Reason, io_error};
 
 /// Bytes before the facets of a binary STL file: a header, and the number of facets.
 const HEAD: u64 = 84;
@@ -12,72 +18,99 @@ const FACET: u64 = 50;
 
 /// Reads the vertices of an STL file, binary or text: the corners of its facets, each position once.
 pub(crate) fn read(file: &OpenFile) -> Result<Points, PointsError> {
-    let (path, length) = (file.path(), file.length());
-    let mut reader = file.reader()?;
-    let mut head = Vec::new();
-    (&mut reader).take(HEAD).read_to_end(&mut head).map_err(io_error(path))?;
-    let count = head.last_chunk().map_or(0, |&count| u64::from(u32::from_le_bytes(count)));
-    if is_text(&head, length, count) {
-        return text(file);
-    }
-    if (head.len() as u64) < HEAD || length < HEAD + FACET * count {
-        let reason = Reason::truncated(format!(
-            "claims {count} facets, which {length} bytes cannot hold: it is truncated"
-        ));
-        return Err(format(path, reason));
-    }
+    let path = file.path();
+    let Content { mut reader, length } = Content::of(file)?;
+    let Some(count) = binary_facets(path, &mut reader, length)? else { return in_text(file) };
     let mut corners = Corners::default();
-    let mut facet = [0; FACET as usize];
+    let (mut facet, mut coloured) = ([0; FACET as usize], false);
     for _ in 0..count {
         reader.read_exact(&mut facet).map_err(io_error(path))?;
-        let (numbers, _) = facet.as_chunks();
+        let (numbers, attribute) = facet.as_chunks();
+        coloured |= attribute != [0, 0];
         let numbers: Vec<f64> =
             numbers.iter().map(|&bytes| f64::from(f32::from_le_bytes(bytes))).collect();
         numbers[3..].as_chunks().0.iter().for_each(|&corner| corners.add(corner));
     }
+    if coloured {
+        tracing::warn!("{}: attributes of its facets (colours) are passed over", shown(path));
+    }
+    let mut behind = Vec::new();
+    reader.read_to_end(&mut behind).map_err(io_error(path))?;
+    if behind.iter().any(|byte| *byte != 0 && !byte.is_ascii_whitespace()) {
+        let bytes = behind.len();
+        tracing::warn!("{}: {bytes} bytes behind its facets are passed over", shown(path));
+    }
     Ok(corners.points)
 }
 
-/// Whether a file is text. Binary files may begin with `solid` too, so their length decides.
-fn is_text(head: &[u8], length: u64, count: u64) -> bool {
-    head.starts_with(b"solid") && length != HEAD + FACET * count
+/// The number of facets of a binary file, whose head is read; `None` for text. A binary file may begin with `solid`, too:
+/// its length tells, or a byte 0, which no text has.
+fn binary_facets(
+    path: &Path,
+    reader: &mut impl Read,
+    length: u64,
+) -> Result<Option<u64>, PointsError> {
+    let fail = |reason: Reason| format(path, reason);
+    let mut head = Vec::new();
+    reader.take(HEAD).read_to_end(&mut head).map_err(io_error(path))?;
+    let count = head.last_chunk().map_or(0, |&count| u64::from(u32::from_le_bytes(count)));
+    let needed = HEAD + FACET * count;
+    let is_whole = head.len() as u64 == HEAD && length == needed;
+    if !is_whole && begins_solid(&head) && !head.contains(&0) {
+        return Ok(None);
+    }
+    let claim = format!("claims {count} facets, {needed} bytes, but has {length}");
+    if (head.len() as u64) < HEAD || length < needed {
+        let reason = Reason::claims_more(format!("{claim}: it is truncated, or no STL file"));
+        return Err(fail(reason));
+    }
+    let behind = length - needed;
+    if behind >= FACET && (behind.is_multiple_of(FACET) || count == 0) {
+        let what = format!("{claim}: more facets follow than it counts");
+        return Err(fail(Reason::content(what, "write it again, with the right count")));
+    }
+    Ok(Some(count))
+}
+
+/// Whether bytes begin with the word of text, in any case.
+fn begins_solid(head: &[u8]) -> bool {
+    let text = head.strip_prefix(b"\xef\xbb\xbf").unwrap_or(head).trim_ascii_start();
+    text.get(..5).is_some_and(|word| word.eq_ignore_ascii_case(b"solid"))
 }
 
 /// The number of facets.
 pub(crate) fn cells(file: &OpenFile) -> Result<Vec<CellCount>, PointsError> {
-    let (path, length) = (file.path(), file.length());
-    let mut head = Vec::new();
-    file.reader()?.take(HEAD).read_to_end(&mut head).map_err(io_error(path))?;
-    let mut count = head.last_chunk().map_or(0, |&count| u64::from(u32::from_le_bytes(count)));
-    if is_text(&head, length, count) {
-        let mut lines = Lines::new(file.reader()?);
-        count = 0;
-        while let Some(line) = lines.read_line().map_err(io_error(path))? {
-            count += u64::from(line.split_whitespace().next() == Some("facet"));
-        }
+    let Content { mut reader, length } = Content::of(file)?;
+    if let Some(count) = binary_facets(file.path(), &mut reader, length)? {
+        return Ok(vec![CellCount::new("facets", count as usize)]);
     }
-    Ok(vec![CellCount::new("facets", count as usize)])
+    let text = text(file)?;
+    let count = Numbered::new(&text).filter(|(_, line)| keyword(line) == "facet").count();
+    Ok(vec![CellCount::new("facets", count)])
 }
 
-fn text(file: &OpenFile) -> Result<Points, PointsError> {
-    let path = file.path();
-    let mut lines = Lines::new(file.reader()?);
+/// The first word of a line, in lower case.
+fn keyword(line: &str) -> String {
+    line.split_whitespace().next().unwrap_or_default().to_ascii_lowercase()
+}
+
+/// Reads all solids of a text.
+fn in_text(file: &OpenFile) -> Result<Points, PointsError> {
+    let (path, text) = (file.path(), text(file)?);
     let mut corners = Corners::default();
-    let (mut number, mut ended) = (0, false);
-    while let Some(line) = lines.read_line().map_err(io_error(path))? {
-        number += 1;
-        let mut words = line.split_whitespace();
-        match words.next() {
-            Some("vertex") => corners.add(position(path, number, words)?),
-            Some("endsolid") => ended = true,
+    let mut is_open = false;
+    for (number, line) in Numbered::new(&text) {
+        match keyword(line).as_str() {
+            "vertex" => corners.add(position(path, number, line.split_whitespace().skip(1))?),
+            "solid" => is_open = true,
+            "endsolid" => is_open = false,
             _ => {}
         }
     }
-    if ended {
-        Ok(corners.points)
-    } else {
-        Err(format(path, Reason::truncated("ends without endsolid: it is truncated")))
+    if is_open {
+        return Err(format(path, Reason::truncated("ends before endsolid: it is truncated")));
     }
+    Ok(corners.points)
 }
 
 /// Distinct positions, in order of first appearance.

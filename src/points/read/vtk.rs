@@ -1,5 +1,6 @@
 use std::path::Path;
 
+use walpha_base::shown::shown;
 use walpha_check::meshes::{Grid, Mesh, MeshFormat};
 use walpha_complex::Alpha;
 
@@ -18,13 +19,76 @@ fn is_geometry(file: &VtkXml) -> bool {
     matches!(file.kind(), "UnstructuredGrid" | "PolyData")
 }
 
-/// Reads the points of VTU or VTP, VTK's unstructured grids and polygons in XML, in one piece, with the point
-/// data `weight` (or `radius`) and `value`, in any letter case. Without a `value`, the active scalars are read.
+/// Reads the points of VTU or VTP, VTK's unstructured grids and polygons in XML, with the point data `weight` (or
+/// `radius`) and `value`, in any letter case. Without a `value`, the active scalars are read. Pieces follow each other;
+/// points that VTK marks as copies of another piece's, or as hidden, are left out.
 pub(crate) fn read(file: &OpenFile) -> Result<Points, PointsError> {
-    points(file.path(), &VtkXml::open(file)?)
+    let path = file.path();
+    let file = VtkXml::open(file)?;
+    let mut all: Option<Points> = None;
+    for piece in file.pieces()?.1 {
+        let mut points = points(path, &file, piece)?;
+        let ghosts = point_array(&file, piece, GHOSTS);
+        let ghosts = ghosts.map(|array| file.values(array, points.len() as u64)).transpose()?;
+        leave_out_ghosts(path, &mut points, ghosts);
+        // An empty piece may lack arrays.
+        match &mut all {
+            Some(all) if !all.is_empty() => join(path, all, points)?,
+            _ => all = Some(points),
+        }
+    }
+    Ok(all.unwrap_or_default())
 }
 
-fn points(path: &Path, file: &VtkXml) -> Result<Points, PointsError> {
+/// The array of bytes in which bits mark points that are copies, or hidden (vtkDataSetAttributes.h).
+const GHOSTS: &str = "vtkGhostType";
+const COPY_OR_HIDDEN: u8 = 3;
+
+fn leave_out_ghosts(path: &Path, points: &mut Points, ghosts: Option<Vec<f64>>) {
+    let Some(ghosts) = ghosts else { return };
+    let kept: Vec<bool> = ghosts.iter().map(|&bits| bits as u8 & COPY_OR_HIDDEN == 0).collect();
+    let left_out = kept.iter().filter(|kept| !**kept).count();
+    if left_out > 0 {
+        points.keep(&kept);
+        tracing::warn!(
+            "{}: {left_out} points are copies or hidden ({GHOSTS}), and left out",
+            shown(path)
+        );
+    }
+}
+
+/// Adds the points of another piece, which must have the same data.
+fn join(path: &Path, all: &mut Points, piece: Points) -> Result<(), PointsError> {
+    if piece.is_empty() {
+        return Ok(());
+    }
+    let columns = [(&mut all.weights, piece.weights), (&mut all.values, piece.values)];
+    for (all, piece) in columns {
+        match (all, piece) {
+            (Some(all), Some(piece)) => all.extend(piece),
+            (None, None) => {}
+            _ => {
+                let what = "has pieces with weights or values, and others without";
+                let advice = "write it in one piece, or with the same data in each";
+                return Err(format(path, Reason::content(what, advice)));
+            }
+        }
+    }
+    all.positions.extend(piece.positions);
+    Ok(())
+}
+
+/// An array of one number for each point, by its name in any case.
+fn point_array(file: &VtkXml, piece: usize, wanted: &str) -> Option<usize> {
+    let data = file.children(piece, "PointData").next()?;
+    let is_it = |&array: &usize| {
+        let name = file.attribute(array, "Name").unwrap_or_default();
+        name.eq_ignore_ascii_case(wanted) && file.components(array) == "1"
+    };
+    file.children(data, "DataArray").find(is_it)
+}
+
+fn points(path: &Path, file: &VtkXml, piece: usize) -> Result<Points, PointsError> {
     if !is_geometry(file) {
         let reason = Reason::unsupported(
             format!("holds {}: points are read from .vtu and .vtp", file.kind()),
@@ -32,14 +96,16 @@ fn points(path: &Path, file: &VtkXml) -> Result<Points, PointsError> {
         );
         return Err(format(path, reason));
     }
-    let (_, piece) = file.piece()?;
     let count = file.attribute(piece, "NumberOfPoints").and_then(|text| text.parse::<u64>().ok());
     let count = count
-        .ok_or_else(|| format(path, Reason::damaged("has no NumberOfPoints: it is damaged")))?;
+        .ok_or_else(|| format(path, Reason::header("has a Piece without a NumberOfPoints")))?;
+    if count == 0 {
+        return Ok(Points::default());
+    }
     let places = file.children(piece, "Points").next();
     let places = places.and_then(|points| file.children(points, "DataArray").next());
     let Some(places) = places else {
-        return Err(format(path, Reason::damaged("has no array of points: it is damaged")));
+        return Err(format(path, Reason::header("has no array of points")));
     };
     if file.components(places) != "3" {
         let components = file.components(places);
@@ -51,13 +117,7 @@ fn points(path: &Path, file: &VtkXml) -> Result<Points, PointsError> {
     let coordinates: Vec<f64> = file.values(places, count.saturating_mul(3))?;
 
     let data = file.children(piece, "PointData").next();
-    let named = |wanted: &str| {
-        let is_named = |&array: &usize| {
-            let name = file.attribute(array, "Name").unwrap_or_default();
-            name.eq_ignore_ascii_case(wanted) && file.components(array) == "1"
-        };
-        file.children(data?, "DataArray").find(is_named)
-    };
+    let named = |wanted: &str| point_array(file, piece, wanted);
     let column = |array: Option<usize>| array.map(|array| file.values(array, count)).transpose();
     let active = data.and_then(|data| file.attribute(data, "Scalars"));
     let is_weight = |name: &&str| WEIGHT_NAMES.iter().any(|known| known.eq_ignore_ascii_case(name));
@@ -76,6 +136,7 @@ fn points(path: &Path, file: &VtkXml) -> Result<Points, PointsError> {
 pub(crate) fn read_legacy(file: &OpenFile) -> Result<Points, PointsError> {
     let path = file.path();
     let file = VtkPoints::open(file)?;
+    let ghosts = file.named(GHOSTS)?;
     let mut points = Points {
         positions: file.coordinates()?.as_chunks().0.to_vec(),
         weights: file.named("weight")?,
@@ -86,6 +147,7 @@ pub(crate) fn read_legacy(file: &OpenFile) -> Result<Points, PointsError> {
         ..Points::default()
     };
     take_radii(path, &mut points, file.named("radius")?)?;
+    leave_out_ghosts(path, &mut points, ghosts);
     Ok(points)
 }
 
@@ -94,11 +156,11 @@ pub(crate) fn read_legacy(file: &OpenFile) -> Result<Points, PointsError> {
 pub(crate) fn cells(file: &OpenFile) -> Result<Vec<CellCount>, PointsError> {
     let path = file.path();
     let file = VtkXml::open(file)?;
-    let (dataset, piece) = file.piece()?;
+    let (dataset, pieces) = file.pieces()?;
     if file.kind() == "PolyData" {
         let count = |(attribute, kind): (&str, &'static str)| {
-            let count = file.attribute(piece, attribute).and_then(|text| text.parse().ok());
-            CellCount::new(kind, count.unwrap_or_default())
+            let counts = pieces.iter().filter_map(|&piece| file.attribute(piece, attribute));
+            CellCount::new(kind, counts.filter_map(|text| text.parse::<usize>().ok()).sum())
         };
         let kinds = [
             ("NumberOfPolys", "polygons"),
@@ -107,7 +169,10 @@ pub(crate) fn cells(file: &OpenFile) -> Result<Vec<CellCount>, PointsError> {
         ];
         return Ok(kinds.into_iter().map(count).collect());
     }
-    let types = Cells::new(path, &file, piece)?.types()?;
+    let mut types = Vec::new();
+    for piece in pieces {
+        types.extend(Cells::new(path, &file, piece)?.types()?);
+    }
     let mut counts: Vec<CellCount> = Vec::new();
     for kind in types.iter().map(|&kind| Grid::kind_of(kind)) {
         match counts.iter_mut().find(|cells| cells.kind == kind) {
@@ -130,8 +195,8 @@ pub(crate) fn cells_of_legacy(file: &OpenFile) -> Result<Vec<CellCount>, PointsE
 pub(crate) fn read_complex(file: &OpenFile) -> Result<Mesh, PointsError> {
     let path = file.path();
     let file = VtkXml::open(file)?;
-    let Points { positions: points, weights, .. } = points(path, &file)?;
     let (dataset, piece) = file.piece()?;
+    let Points { positions: points, weights, .. } = points(path, &file, piece)?;
     if file.kind() != "UnstructuredGrid" {
         let reason = Reason::unsupported(
             "lists polygons, which cannot be read as a complex",
@@ -179,7 +244,7 @@ impl<'a> Cells<'a> {
         let count = file.attribute(piece, "NumberOfCells").and_then(|text| text.parse().ok());
         match count {
             Some(count) => Ok(Self { path, file, piece, count }),
-            None => Err(format(path, Reason::damaged("has no NumberOfCells: it is damaged"))),
+            None => Err(format(path, Reason::header("has a Piece without a NumberOfCells"))),
         }
     }
 
@@ -197,7 +262,7 @@ impl<'a> Cells<'a> {
         let named = |&array: &usize| file.attribute(array, "Name") == Some(name);
         let array = cells.and_then(|cells| file.children(cells, "DataArray").find(named));
         let array = array.ok_or_else(|| {
-            format(self.path, Reason::damaged(format!("has no array {name} of its cells")))
+            format(self.path, Reason::header(format!("has no array {name} of its cells")))
         })?;
         Ok(file.values(array, count)?)
     }

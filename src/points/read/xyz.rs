@@ -1,15 +1,23 @@
-use std::io::BufRead;
 use std::path::Path;
 
+use walpha_base::advice::{Setting, advice};
+use walpha_base::shown::shown;
+
+use super::dialect::{Dialect, number};
 use super::extended::Comment;
+use super::header::Header;
+use super::lines::{Frame, Miscount, Numbered, count, frames};
 use super::rows::TextRows;
-use super::{COLUMNS, Columns, Points, PointsError, format};
-use crate::points::ModelMetadata;
-use crate::volume::{Lines, OpenFile, Reason, io_error};
+use super::text::text;
+use super::{Columns, Points, PointsError, format};
+use crate::points::{Cell, ModelMetadata, PointOptions};
+use crate::volume::{Coordinates, OpenFile, Reason};
 
 /// How lines of numbers are laid out, unless they have names.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum TextLayout {
+    /// A table, whose fields may be empty.
+    Table,
     /// A first line with only a count begins chemistry's XYZ: a comment line, whose form extended XYZ defines,
     /// then for each atom an element, its coordinates, and possibly more columns.
     Atoms,
@@ -26,166 +34,170 @@ impl TextLayout {
     fn default_columns(self) -> Option<Columns> {
         let axes = [Some(0), Some(1), Some(2)];
         match self {
-            Self::Atoms | Self::PointsThenNormals => None,
+            Self::Table | Self::Atoms | Self::PointsThenNormals => None,
             Self::Vectors => Some(Columns([axes, [None; 3]].concat())),
             Self::Scan => Some(Columns([&axes[..], &[Some(4)], &[None; 3]].concat())),
         }
     }
+
+    /// Whether counts may come with a line of comment behind them.
+    fn has_comments(self) -> bool {
+        matches!(self, Self::Atoms | Self::Vectors)
+    }
 }
 
-/// Reads lines of numbers separated by white space or commas. A first line may name the columns, optionally after
-/// `#` or `//`; other lines that begin with `#` or `/` are comments.
+/// Reads lines of numbers: a table with or without names, atoms, or scans with counts. Text says its encoding itself, and
+/// [`Dialect`] what separates fields. Lines that begin with `#` or `/` are comments. Of several frames, one is read.
 pub(crate) fn read(
     file: &OpenFile,
-    columns: Option<&Columns>,
+    options: &PointOptions,
     layout: TextLayout,
 ) -> Result<(Points, ModelMetadata), PointsError> {
     let path = file.path();
-    let mut lines = Lines::new(file.reader()?);
-    let mut rows = TextRows::new(path, columns.cloned());
-    rows.default_columns = layout.default_columns();
-    let (mut number, mut first, mut claimed) = (0, true, None);
-    while let Some(line) = lines.read_line().map_err(io_error(path))? {
-        number += 1;
-        let is_comment = line.trim_start().starts_with(['#', '/']);
-        let words = words(line.trim_start_matches(['\u{feff}', '#', '/', ' ', '\t']));
-        if words.is_empty() {
-            continue;
-        }
-        if first {
-            if let Ok(named) = Columns::named(&words) {
-                rows.set_columns(named);
-                first = false;
-                continue;
-            }
-            if let ([count], false) = (words.as_slice(), is_comment)
-                && let Ok(count) = count.parse()
-            {
-                match layout {
-                    TextLayout::Atoms | TextLayout::Vectors => return atoms(path, lines, count),
-                    TextLayout::PointsThenNormals => {
-                        let points = points_then_normals(path, lines, count)?;
-                        return Ok((points, ModelMetadata::default()));
-                    }
-                    TextLayout::Scan => claimed = Some(count),
-                }
-                continue;
-            }
-            if words[0].eq_ignore_ascii_case("ncols") {
-                let what = "is a grid of heights (ESRI ASCII), not a list of points";
-                return Err(format(path, Reason::unsupported(what, "convert it to x,y,z")));
-            }
-        }
-        if !is_comment {
-            first = false;
-            rows.push(number, &words)?;
-        }
+    let text = text(file)?;
+    let mut lines = Numbered::new(&text);
+    let Header { columns, unit } = Header::read(path, &mut lines, options.columns.as_ref())?;
+    let metadata =
+        ModelMetadata::default().coordinates(Coordinates { unit, ..Coordinates::default() });
+    if lines.is_at_end() {
+        return Err(format(path, Reason::content("has no rows of numbers", "name another file")));
     }
-    let points = rows.finish()?;
-    check_count(path, claimed, points.len(), "points")?;
-    Ok((points, ModelMetadata::default()))
+    if lines.contents().next().is_none_or(|(_, line)| count(line).is_none()) {
+        choose(path, 1, options.frame)?;
+        return Ok((rows(path, &lines, columns, layout, false)?, metadata));
+    }
+    if layout == TextLayout::PointsThenNormals {
+        choose(path, 1, options.frame)?;
+        return Ok((points_then_normals(path, lines)?, metadata));
+    }
+    let frames = counted(path, &lines, layout)?;
+    let frame = &frames[choose(path, frames.len(), options.frame)?];
+    let (points, cell) = of_frame(path, frame, columns, layout)?;
+    Ok((points, metadata.cell(cell)))
 }
 
-/// Refuses a number of items that differs from the claimed number, if there is one.
-fn check_count(
+/// The index of the frame that is asked for.
+fn choose(path: &Path, count: usize, asked: Option<u64>) -> Result<usize, PointsError> {
+    let last = count - 1;
+    let several = match asked {
+        None if count == 1 => return Ok(0),
+        Some(frame) if frame <= last as u64 => return Ok(frame as usize),
+        Some(frame) => format!("has no frame {frame}: it holds {count}"),
+        None => format!("holds {count} frames: scans, or steps of a trajectory"),
+    };
+    let advice = advice!["choose one with ", Setting::Frame, format!(", from 0 to {last}")];
+    Err(format(path, Reason::choice(Setting::Frame, several, advice)))
+}
+
+/// The frames of lines that begin with a count. In chemistry's XYZ a line of comment follows it; where the numbers of rows
+/// tell that none does, points follow.
+fn counted<'a>(
     path: &Path,
-    claimed: Option<u64>,
-    found: usize,
-    what: &str,
-) -> Result<(), PointsError> {
-    match claimed {
-        Some(claimed) if claimed != found as u64 => {
-            let reason = Reason::truncated(format!(
-                "claims {claimed} {what}, but has {found}: it is truncated or mislabelled"
-            ));
-            Err(format(path, reason))
+    lines: &Numbered<'a>,
+    layout: TextLayout,
+) -> Result<Vec<Frame<'a>>, PointsError> {
+    let points = |miscount: Miscount| miscount.error(path, "points");
+    let without = frames(lines.clone(), false);
+    if !layout.has_comments() {
+        return without.map_err(points);
+    }
+    match (frames(lines.clone(), true), without) {
+        (Ok(frames), _) | (_, Ok(frames)) => Ok(frames),
+        (Err(atoms), Err(miscount)) => {
+            let second = lines.clone().nth(1).map(|(_, line)| line).unwrap_or_default();
+            let mut words = second.split_whitespace();
+            let is_row =
+                words.clone().count() > 1 && words.all(|word| number(word, true).is_some());
+            Err(if is_row { points(miscount) } else { atoms.error(path, "atoms") })
         }
-        _ => Ok(()),
     }
 }
 
-fn words(line: &str) -> Vec<&str> {
-    line.split([' ', '\t', ',']).filter(|word| !word.is_empty()).collect()
-}
-
-fn finite(path: &Path, line: u64, name: &str, word: &str) -> Result<f64, PointsError> {
-    word.parse().ok().filter(|number: &f64| number.is_finite()).ok_or_else(|| {
-        format(
-            path,
-            Reason::value(format!("line {line}, column {name}: {word:?} is not a finite number")),
-        )
-    })
-}
-
-/// Reads atoms, after the line with their number.
-fn atoms(
+/// The points of a frame, and the cell that its comment states.
+fn of_frame(
     path: &Path,
-    mut lines: Lines<impl BufRead>,
-    count: u64,
-) -> Result<(Points, ModelMetadata), PointsError> {
-    let line = lines.read_line().map_err(io_error(path))?.unwrap_or_default();
-    let Comment { columns, cell } = Comment::read(path, &line)?;
-    let metadata = ModelMetadata { cell, ..ModelMetadata::default() };
-    let mut points = Points::default();
-    let mut rows = columns.map(|columns| TextRows::new(path, Some(columns)));
-    let mut number = 2;
-    while let Some(line) = lines.read_line().map_err(io_error(path))? {
-        number += 1;
-        let words: Vec<&str> = line.split_whitespace().collect();
-        if words.is_empty() {
-            continue;
+    frame: &Frame<'_>,
+    columns: Option<Columns>,
+    layout: TextLayout,
+) -> Result<(Points, Option<Cell>), PointsError> {
+    let Comment { columns: stated, cell } = match frame.comment {
+        Some(comment) => Comment::read(path, comment)?,
+        None => Comment::default(),
+    };
+    let columns = columns.or(stated);
+    let has_comment = frame.comment.is_some();
+    let atoms = columns.is_none() && layout.has_comments() && are_atoms(&frame.rows, has_comment);
+    // Points right behind their count are laid out as scanners do.
+    let is_scan = layout == TextLayout::Atoms && !has_comment;
+    let layout = if is_scan { TextLayout::Scan } else { layout };
+    let columns = if atoms {
+        let first = frame.rows.contents().next();
+        if first.is_some_and(|(_, row)| row.split_whitespace().count() > 4) {
+            tracing::warn!(
+                "{}: what follows z is passed over, as the comment line has no Properties=… that names it",
+                shown(path)
+            );
         }
-        if let Some(rows) = &mut rows {
-            rows.push(number, &words)?;
-            continue;
-        }
-        let [_, x, y, z, ..] = words[..] else {
-            let reason = Reason::value(format!("line {number} is not an element with x, y and z"));
-            return Err(format(path, reason));
-        };
-        let axis = |axis: usize, word| finite(path, number, COLUMNS[axis], word);
-        points.positions.push([axis(0, x)?, axis(1, y)?, axis(2, z)?]);
-    }
-    if let Some(rows) = rows {
-        points = rows.finish()?;
-    }
-    check_count(path, Some(count), points.len(), "atoms")?;
-    Ok((points, metadata))
+        Some(Columns(vec![None, Some(0), Some(1), Some(2)]))
+    } else {
+        columns
+    };
+    Ok((rows(path, &frame.rows, columns, layout, atoms)?, cell))
 }
 
-/// Reads `count` points, and as many normals, if any, which are skipped.
-fn points_then_normals(
+/// Whether rows begin with elements before x, y and z, or with atomic numbers, if these are looked for.
+fn are_atoms(rows: &Numbered<'_>, by_number: bool) -> bool {
+    let first = |row: &'_ str| row.split_whitespace().next().map(str::to_owned).unwrap_or_default();
+    let is_name = |word: &str| number(word, true).is_none();
+    let is_atomic_number = |word: &str| word.parse().is_ok_and(|number: u8| number <= 120);
+    let has_four = |row: &str| row.split_whitespace().count() > 3;
+    rows.contents().next().is_some_and(|(_, row)| is_name(&first(row)))
+        || by_number
+            && rows.contents().all(|(_, row)| has_four(row) && is_atomic_number(&first(row)))
+}
+
+/// The points of rows.
+fn rows(
     path: &Path,
-    mut lines: Lines<impl BufRead>,
-    count: u64,
+    lines: &Numbered<'_>,
+    columns: Option<Columns>,
+    layout: TextLayout,
+    open_ended: bool,
 ) -> Result<Points, PointsError> {
-    let mut points = Points::default();
-    let (mut number, mut found) = (1, 0);
-    while let Some(line) = lines.read_line().map_err(io_error(path))? {
-        number += 1;
-        let words = words(&line);
-        if words.is_empty() {
-            continue;
-        }
-        let [x, y, z] = words[..] else {
-            return Err(format(
-                path,
-                Reason::value(format!("line {number} has {} columns, not 3", words.len())),
-            ));
-        };
-        let axis = |axis: usize, word| finite(path, number, COLUMNS[axis], word);
-        let vector = [axis(0, x)?, axis(1, y)?, axis(2, z)?];
-        if found < count {
-            points.positions.push(vector);
-        }
-        found += 1;
+    let width = columns.as_ref().map(Columns::len);
+    let dialect = Dialect::of(lines, layout == TextLayout::Table, width)
+        .map_err(|reason| format(path, reason))?;
+    if dialect.decimal_comma && !dialect.has_semicolons() {
+        tracing::warn!("{}: the commas of its numbers mark decimals", shown(path));
     }
+    let mut rows = TextRows::new(path, columns);
+    rows.decimal_comma = dialect.decimal_comma;
+    rows.default_columns = layout.default_columns();
+    rows.open_ended = open_ended;
+    for (number, line) in lines.contents() {
+        rows.push(number, &dialect.fields(line))?;
+    }
+    rows.finish()
+}
+
+/// Reads a count, as many points, and as many normals, if any, which are skipped.
+fn points_then_normals(path: &Path, mut lines: Numbered<'_>) -> Result<Points, PointsError> {
+    let first = lines.next_content();
+    let count = first.and_then(|(_, line)| count(line)).unwrap_or_default();
+    let columns = Columns(vec![Some(0), Some(1), Some(2)]);
+    let layout = TextLayout::PointsThenNormals;
+    let mut points = rows(path, &lines, Some(columns), layout, false)?;
+    let found = points.len() as u64;
     if found != count && Some(found) != count.checked_mul(2) {
-        let reason = Reason::truncated(format!(
-            "claims {count} points and as many normals, but has {found} lines: it is \
-                 truncated or mislabelled"
-        ));
+        let what =
+            format!("claims {count} points and perhaps as many normals, but has {found} lines");
+        let reason = if found < count {
+            Reason::claims_more(format!("{what}: it is truncated, or the count is wrong"))
+        } else {
+            Reason::content(what, "correct the count")
+        };
         return Err(format(path, reason));
     }
+    points.positions.truncate(count as usize);
     Ok(points)
 }

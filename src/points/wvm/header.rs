@@ -89,7 +89,7 @@ impl Header {
     pub(super) fn metadata(&self) -> ModelMetadata {
         let Self { grid, coordinates, alpha, range, .. } = *self;
         let recipe = self.recipe.clone();
-        ModelMetadata { grid, coordinates, alpha, range, recipe, order: None, cell: None }
+        ModelMetadata { grid, coordinates, alpha, range, recipe, ..ModelMetadata::default() }
     }
 
     /// The frame of the grid, unless it is the default.

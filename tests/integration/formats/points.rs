@@ -110,7 +110,7 @@ fn damaged_points_say_what_is_wrong() {
     refuses("a.ply", &ply("float x", "half x"), "half");
     refuses("a.ply", &ply("vertex 2", "vertex 3"), "truncated");
     refuses("a.ply", &ply("vertex 2", "vertex 99999999999"), "cannot hold");
-    refuses("a.ply", &ply("vertex 2", "vertex 1"), "too long");
+    refuses("a.ply", &ply("vertex 2", "vertex 1"), "continues after its last element");
     refuses("a.ply", &ply("vertex 2", "vertex 0").replace(rows, "0\n"), "no point");
     refuses("a.ply", &ply("element vertex", "element corner"), "no element vertex");
     refuses("a.ply", &ply("1 2 3 0", "1 2 3 300"), "300");
@@ -276,14 +276,15 @@ fn point_clouds_are_read() {
     refuses("b.pcd", &cut(&binary.1), "claims 3 points of 30 bytes");
     refuses("c.pcd", &cut(&packed.1), "compressed data");
     let text = String::from_utf8(text.1).unwrap();
-    refuses("d.pcd", text.replace("POINTS 3", "POINTS 4").as_bytes(), "claims 4 points");
+    refuses("d.pcd", text.replace("POINTS 3", "POINTS 4").as_bytes(), "4 POINTS, but 3 by WIDTH");
     refuses("e.pcd", text.replace("FIELDS x", "FIELDS q").as_bytes(), "without x, y or z");
-    refuses("f.pcd", text.replace("SIZE 4", "SIZE 8 4").as_bytes(), "different lengths");
+    refuses("f.pcd", text.replace("SIZE 4", "SIZE 8 4").as_bytes(), "5 FIELDS, but 6 SIZE");
     refuses("g.pcd", text.replace("ascii", "utf-8").as_bytes(), "ascii, binary");
-    refuses("h.pcd", text.replace("POINTS 3", "POINTS 999999999999").as_bytes(), "cannot hold");
+    let many = text.replace("POINTS 3", "POINTS 999999999999").replace("WIDTH 3\n", "");
+    refuses("h.pcd", many.as_bytes(), "cannot hold");
     // Found by fuzzing: a field without numbers, looked for beyond the last one.
     let none = "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 0\nPOINTS 1\nDATA ascii\n1 2\n";
-    refuses("i.pcd", none.as_bytes(), "no bytes or numbers");
+    refuses("i.pcd", none.as_bytes(), "COUNT 0 for the field z");
 }
 
 /// The corners of a tetrahedron, in the order in which its facets name them.

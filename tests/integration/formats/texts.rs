@@ -30,7 +30,7 @@ fn text_under_many_extensions() {
         assert_eq!((points.positions.as_slice(), points.values), (&PLACES[..], values), "{name}");
     }
     save(f, "short.pts", "3\n1 2 3\n4 5 6\n");
-    fails(f, 1, "info short.pts", &["claims 3 points, but has 2"]);
+    fails(f, 1, "info short.pts", &["claims 3 points in line 1, but has 2"]);
     save(f, "grid.asc", "ncols 2\nnrows 2\nxllcorner 0\n1 2\n3 4\n");
     fails(f, 1, "info grid.asc", &["ESRI ASCII", "convert it to x,y,z"]);
     // A volume by its content stays one, whatever it is called.

@@ -39,10 +39,17 @@ fn columns_of_an_array_may_come_first() {
         ndarray_npy::WriteNpyExt::write_npy(&array, &mut bytes).unwrap();
         assert!(bytes.windows(22).any(|header| header == b"'fortran_order': True,"));
         std::fs::write(&path, bytes).unwrap();
-        let points = read_points(&path, None).unwrap();
+        let names = ["x,y,z,weight", "x,y,z,weight,value"][columns - 4].parse().unwrap();
+        let points = read_points(&path, Some(&names)).unwrap();
         assert_eq!(points.positions, [[0.0, 1.0, 2.0], [10.0, 11.0, 12.0], [20.0, 21.0, 22.0]]);
         assert_eq!(points.weights, Some(vec![3.0, 13.0, 23.0]));
         assert_eq!(points.values, (columns == 5).then(|| vec![4.0, 14.0, 24.0]));
+        // Without names a fourth column has values, and a fifth is not guessed.
+        let guessed = read_points(&path, None);
+        assert_eq!(
+            guessed.ok().map(|points| (points.weights, points.values)),
+            (columns == 4).then(|| (None, Some(vec![3.0, 13.0, 23.0])))
+        );
     }
 }
 
@@ -118,23 +125,22 @@ fn bad_point_files_say_where_they_are_bad() {
             assert!(text.contains(part), "{part:?} is missing in: {text}");
         }
     };
-    refuse("empty.csv", b"", &["first line must name"]);
-    refuse("nothing.csv", b"x,y,z\n", &["no point"]);
+    refuse("empty.csv", b"", &["no rows of numbers"]);
+    refuse("nothing.csv", b"x,y,z\n", &["no rows of numbers"]);
     refuse("axis.csv", b"x,z\n1,2\n", &["x, y and z"]);
     refuse("twice.csv", b"x,y,z,X\n1,2,3,4\n", &["twice"]);
     refuse("word.csv", b"x,y,z\n1,2,3\n1,two,3\n", &["line 3", "column y", "two"]);
     refuse("nan.csv", b"x,y,z,weight\n1,2,3,NaN\n", &["line 2", "column weight"]);
-    refuse("short.csv", b"x,y,z\n1,2,3\n1,2\n", &["line: 3"]);
-    // Commas are decimal where semicolons are between numbers, and nowhere else.
-    refuse("comma.tsv", b"x\ty\tz\n1,5\t2\t3\n", &["line 2", "column x", "1,5"]);
-    refuse("text.csv", b"x,y,z\n\xff,2,3\n", &["UTF-8"]);
+    refuse("short.csv", b"x,y,z\n1,2,3\n1,2\n", &["line 3", "2 columns"]);
+    refuse("comma.tsv", b"x\ty\tz\n1,500\t2\t3\n", &["line 2", "1.500 or 1500"]);
+    refuse("text.csv", b"x,y,z\n\xff,2,3\n", &["line 2", "column x", "ÿ"]);
 
     let npy = |array: ndarray::Array2<f64>| {
         let mut bytes = Vec::new();
         ndarray_npy::WriteNpyExt::write_npy(&array, &mut bytes).unwrap();
         bytes
     };
-    refuse("two.npy", &npy(ndarray::arr2(&[[1.0, 2.0]])), &["[1, 2]", "n×4"]);
+    refuse("two.npy", &npy(ndarray::arr2(&[[1.0, 2.0]])), &["2 columns", "`columns` x,y"]);
     let infinite = ndarray::arr2(&[[1.0, 2.0, f64::INFINITY, 0.0]]);
     refuse("inf.npy", &npy(infinite), &["row 0", "z is inf"]);
     refuse("none.npy", &npy(ndarray::Array2::zeros((0, 4))), &["no point"]);
@@ -144,7 +150,7 @@ fn bad_point_files_say_where_they_are_bad() {
     refuse("two.pwn", b"2\n0 0 0\n1 1\n", &["line 3", "2 columns"]);
     refuse("text.stl", b"solid\n\nvertex 0 zero 0\nendsolid\n", &["line 3", "y is \"zero\""]);
     let binary = [&[0; 80][..], &5u32.to_le_bytes(), &[0; 150]].concat();
-    refuse("binary.stl", &binary, &["claims 5 facets, which 234 bytes cannot hold"]);
+    refuse("binary.stl", &binary, &["claims 5 facets, 334 bytes, but has 234"]);
     refuse("short.stl", &binary[..20], &["claims 0 facets"]);
     for items in ["1.5", "-1", "nan"] {
         let list = format!(

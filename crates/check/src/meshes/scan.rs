@@ -54,7 +54,8 @@ impl<'a> Scan<'a> {
         if before.contains(&0) {
             return error.at(&format!("byte {}", self.last));
         }
-        let line = before.split(|&byte| byte == b'\n').count();
+        let end = if before.contains(&b'\n') { b'\n' } else { b'\r' };
+        let line = before.split(|&byte| byte == end).count();
         error.at(&format!("line {line}"))
     }
 
@@ -98,10 +99,12 @@ impl<'a> Scan<'a> {
         self.word().ok_or_else(|| self.truncated(what))
     }
 
-    /// Goes to the beginning of the next line.
+    /// Goes to the beginning of the next line. Lines end with LF, CR LF or CR.
     pub(super) fn skip_line(&mut self) {
         let left = self.left();
-        self.at += left.iter().position(|&byte| byte == b'\n').map_or(left.len(), |end| end + 1);
+        let width = |end: usize| if left[end..].starts_with(b"\r\n") { 2 } else { 1 };
+        let end = left.iter().position(|byte| b"\r\n".contains(byte));
+        self.at += end.map_or(left.len(), |end| end + width(end));
     }
 
     /// The rest of the line.
@@ -224,4 +227,22 @@ pub(super) fn shown(word: &[u8]) -> String {
         text.push('…');
     }
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_end_in_three_ways() {
+        for text in
+            ["# one\n1 2 # two\n\n3", "# one\r\n1 2 # two\r\n\r\n3", "# one\r1 2 # two\r\r3"]
+        {
+            let (mut scan, mut words) = (Scan::with_comments(text.as_bytes()), Vec::new());
+            assert!(scan.record(&mut words), "{text:?}");
+            assert_eq!(words, [b"1", b"2"], "{text:?}");
+            assert!(scan.record(&mut words) && words == [b"3"], "{text:?}");
+            assert!(!scan.record(&mut words), "{text:?}");
+        }
+    }
 }

@@ -33,7 +33,7 @@ const SAVE_TABLE: &str = "save it as CSV";
 const DOWNLOAD: &str = "download the file itself: this is what a server said instead";
 
 /// The kinds, in the order in which they are looked for.
-static KINDS: [Kind; 46] = [
+static KINDS: [Kind; 47] = [
     kind!(b"\x89PNG", "a PNG picture, one slice", SLICES),
     kind!(b"\xff\xd8\xff", "a JPEG picture, one slice", SLICES),
     kind!(b"GIF8", "a GIF picture", SLICES),
@@ -137,6 +137,7 @@ static KINDS: [Kind; 46] = [
         what: "a CIF file of a molecule or crystal, which is not read",
         advice: TABLE,
     },
+    Kind { begins: is_gro, what: "a GRO file of GROMACS, which is not read", advice: TABLE },
     kind!(b"ITEM: TIMESTEP" | b"ITEM: UNITS", "a LAMMPS dump, which is not read", TABLE),
     kind!(
         b"\x7fELF" | b"MZ\x90\0" | b"\xcf\xfa\xed\xfe",
@@ -201,6 +202,27 @@ fn is_other_xml(start: &[u8]) -> bool {
         || start.starts_with(b"<?xml") && !start.windows(4).any(|window| window == b"<!--")
 }
 
+/// A title, a count, and a line of a residue's number and name, an atom's name and number, and a place, each as wide as it
+/// must be.
+fn is_gro(start: &[u8]) -> bool {
+    let mut lines = start.split(|&byte| byte == b'\n').skip(1);
+    let mut next = || str::from_utf8(lines.next()?).ok();
+    let (Some(count), Some(atom)) = (next(), next()) else { return false };
+    let whole = |from: usize, to: usize| {
+        atom.get(from..to).is_some_and(|text| text.trim().parse::<u32>().is_ok())
+    };
+    let place = |axis: usize| {
+        let text = atom.get(20 + 8 * axis..28 + 8 * axis).unwrap_or_default();
+        text.contains('.') && text.trim().parse::<f64>().is_ok()
+    };
+    let is_name = |text: &str| text.contains(|c: char| c.is_ascii_alphabetic());
+    count.trim().parse::<u32>().is_ok()
+        && whole(0, 5)
+        && whole(15, 20)
+        && atom.get(5..15).is_some_and(is_name)
+        && (0..3).all(place)
+}
+
 /// Words that the first lines of CIF have.
 fn is_cif(start: &[u8]) -> bool {
     const WORDS: [&[u8]; 4] = [b"_entry", b"_audit", b"_cell", b"_atom_site"];
@@ -224,7 +246,7 @@ fn is_bmp(start: &[u8]) -> bool {
 fn is_pdb(start: &[u8]) -> bool {
     const RECORDS: [&[u8]; 9] = [
         b"HEADER  ",
-        b"ATOM   ",
+        b"ATOM ",
         b"HETATM ",
         b"REMARK ",
         b"CRYST1 ",
@@ -249,6 +271,8 @@ mod tests {
             (b"version https://git-lfs.github.com/spec/v1\noid", "Git LFS"),
             (b"ATOM      1  N   MET A   1", "PDB"),
             (b"data_1ABC\n#\n_entry.id 1ABC\n", "CIF"),
+            (b"ATOM 1 N ALA 1 0.0 0.0 0.0 -0.4 1.85\n", "PQR"),
+            (b"water\n 2\n    1SOL     OW    1   0.126   1.624   1.679\n", "GROMACS"),
             (b"\x80\x04\x95", "pickle"),
             (b"P5\n# a remark\n3 2\n255\n", "PGM"),
             (b"\0\0\0\x20ftypisom", "video"),

@@ -10,7 +10,7 @@ use crate::formats::is_gzip;
 
 /// What the members of a gzip stream hold, one after the other. As gzip does, it ends where no other member
 /// follows: zeros behind it are passed over, and so is anything else, which is said.
-pub(super) struct Gunzip<R> {
+pub struct Gunzip<R> {
     /// `None` at the end.
     member: Option<GzDecoder<R>>,
     /// Of the file, for what is said; `None` where nothing is to be said.
@@ -19,12 +19,12 @@ pub(super) struct Gunzip<R> {
 
 impl<R: BufRead> Gunzip<R> {
     /// At the first member.
-    pub(super) fn new(path: &Path, stream: R) -> Self {
+    pub fn new(path: &Path, stream: R) -> Self {
         Self { name: Some(shown(path)), ..Self::quiet(stream) }
     }
 
     /// The same for a look at its beginning, about which nothing is said.
-    pub(super) fn quiet(stream: R) -> Self {
+    pub fn quiet(stream: R) -> Self {
         Self { member: Some(GzDecoder::new(stream)), name: None }
     }
 

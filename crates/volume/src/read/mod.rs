@@ -39,10 +39,10 @@ pub(super) mod zarr;
 
 #[cfg(feature = "formats")]
 pub(crate) use detached::naming;
-pub use npy::NpyFile;
+pub use gunzip::Gunzip;
+pub use npy::{NpyFile, element as npy_element};
 pub use open_file::OpenFile;
 pub use options::ReadOptions;
-#[cfg(feature = "formats")]
 pub use payload::Element;
 pub(crate) use payload::Length;
 pub use raw::RawLayout;

@@ -177,7 +177,7 @@ fn instead(descr: &str) -> &'static str {
 }
 
 /// Type, byte order and whether it is boolean, of a `NumPy` type string such as `<f4`.
-fn element(descr: &str) -> Option<(Dtype, Endian, bool)> {
+pub fn element(descr: &str) -> Option<(Dtype, Endian, bool)> {
     let (order, kind) = descr.split_at_checked(1)?;
     let dtype = match kind {
         "b1" | "u1" => Dtype::U8,

@@ -1,15 +1,23 @@
 //! Every row of the tables of fields in docs/formats.md, tried with a file that states that field.
 
+mod clouds;
+mod grids;
 mod inr;
+#[cfg(feature = "las")]
+mod las;
+mod meshes;
 mod metaimage;
 mod mgh;
 mod nifti;
 mod nrrd;
 mod numpy;
+mod points;
 mod slices;
+mod text;
 mod tiff;
 mod volumes;
 mod vtk;
+mod wvm;
 #[cfg(feature = "zarr")]
 mod zarr;
 

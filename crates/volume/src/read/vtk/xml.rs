@@ -298,16 +298,24 @@ impl VtkXml<'_> {
         (0..self.elements.len()).filter(is_child)
     }
 
+    /// The dataset and its elements `Piece`.
+    ///
+    /// # Errors
+    /// [`VolumeError`]: what cannot be read, and why.
+    pub fn pieces(&self) -> Result<(usize, Vec<usize>), VolumeError> {
+        let kind = self.kind();
+        let dataset = self.children(0, kind).next().ok_or_else(|| {
+            self.fail(Reason::header(format!("has no element {kind}, which is its type")))
+        })?;
+        Ok((dataset, self.children(dataset, "Piece").collect()))
+    }
+
     /// The element `Piece` of the dataset, of which there must be one.
     ///
     /// # Errors
     /// [`VolumeError`]: what cannot be read, and why.
     pub fn piece(&self) -> Result<(usize, usize), VolumeError> {
-        let kind = self.kind();
-        let dataset = self.children(0, kind).next().ok_or_else(|| {
-            self.fail(Reason::header(format!("has no element {kind}, which is its type")))
-        })?;
-        let pieces: Vec<usize> = self.children(dataset, "Piece").collect();
+        let (dataset, pieces) = self.pieces()?;
         match pieces[..] {
             [piece] => Ok((dataset, piece)),
             _ => Err(self.fail(Reason::unsupported(
