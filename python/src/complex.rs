@@ -22,9 +22,9 @@ pub struct Complex(Arc<PlacedComplex>);
 /// Simplices of one dimension, and their classes.
 type Listed<'py> = (Option<PyReadonlyArray2<'py, u32>>, Option<PyReadonlyArray1<'py, u8>>);
 
-/// The verdict, how many ties and findings there are, of the first findings what they say and their fields
+/// The verdict, whether it is right, how many ties and findings there are, of the first findings what they say and their fields
 /// as JSON, and what was not judged as JSON.
-type Judged = (String, usize, usize, Vec<(String, String)>, String);
+type Judged = (String, bool, usize, usize, Vec<(String, String)>, String);
 
 #[pymethods]
 impl Complex {
@@ -135,6 +135,17 @@ impl Complex {
         self.0.periodic
     }
 
+    /// The lowest dimension of which all simplices are listed, and not faces of others alone.
+    #[getter]
+    fn lowest(&self) -> usize {
+        self.0.lowest
+    }
+
+    /// The same complex with another lowest dimension.
+    fn with_lowest(&self, lowest: usize) -> Self {
+        Self(Arc::new(PlacedComplex { lowest, ..PlacedComplex::clone(&self.0) }))
+    }
+
     /// What is wrong with it; of the first `most` findings what they say and their fields. Other choices among
     /// ties are findings if `ties_too`.
     fn check(
@@ -153,9 +164,10 @@ impl Complex {
                 findings.iter().take(most).map(|finding| (finding.to_string(), json(finding)));
             let unjudged: Vec<String> =
                 certificate.not_judged.iter().map(ToString::to_string).collect();
-            let (verdict, ties) = (certificate.verdict.to_string(), certificate.ties);
+            let (verdict, ties) = (certificate.verdict, certificate.ties);
+            let right = findings.is_empty() && verdict.is_complete();
             let (total, told) = (findings.len(), told.collect());
-            Ok::<_, CertifyError>((verdict, ties, total, told, json(&unjudged)))
+            Ok::<_, CertifyError>((verdict.to_string(), right, ties, total, told, json(&unjudged)))
         })
     }
 }

@@ -32,7 +32,7 @@ class Complex(Classified):
         ω, squared lengths.
     cells, facets, edges : array_like of int, (m, 4), (m, 3), (m, 2); optional
         Rows of input indices, in any order and winding. A dimension that is missing is made of the
-        faces of the one above it.
+        faces of the one above it; :func:`check` then looks for missing simplices of those above alone.
     vertices : array_like of int, (m,); optional
         Input indices.
     cell_classes, facet_classes, edge_classes, vertex_classes : array_like of int, (m,); optional
@@ -192,15 +192,20 @@ class Complex(Classified):
     def __reduce__(self) -> tuple[Any, ...]:
         names = ("alpha", "weights", "cells", "facets", "edges", "vertices", "cell_classes", "facet_classes",
                  "edge_classes", "vertex_classes", "hidden", "duplicates", "periodic")
-        return _again, (self.points, {name: getattr(self, name) for name in names})
+        given = {name: getattr(self, name) for name in names}
+        return _again, (self.points, given, self._complex.lowest)
 
     def __repr__(self) -> str:
         counts = ", ".join(f"{len(getattr(self, name))} {name}" for name in ("cells", "facets", "edges", "vertices"))
         return f"<walpha.Complex alpha={self.alpha:g}: {len(self.points)} points, {counts}>"
 
 
-def _again(points: Arrays, given: dict[str, Any]) -> Complex:
-    return Complex(points, **given)
+def _again(points: Arrays, given: dict[str, Any], lowest: int = 0) -> Complex:
+    made = Complex(points, **given)
+    if lowest:
+        # All dimensions are given here, and those below were made of faces.
+        made._complex = made._complex.with_lowest(lowest)
+    return made
 
 
 class Finding(NamedTuple):
@@ -232,9 +237,12 @@ class Verdict(NamedTuple):
     verdict : str
         "exact": what the definition makes, ties decided as CGAL does. "valid": right, with another
         choice at ties, where more points lie on one empty sphere than a simplex has corners, or
-        points are equal. "wrong": neither.
+        points are equal. "wrong": neither. "exact as far as judged", "valid as far as judged":
+        nothing wrong was found, but nobody looked for missing simplices, as too many points are
+        near each other; ``not_judged`` names the α beyond which that is so.
     valid : bool
-        Whether that is right: exact or valid; with ``ties="exact"``, exact.
+        Whether that is right: exact or valid; with ``ties="exact"``, exact. Not where it is so only
+        as far as judged.
     ties : int
         At how many ties another choice was made.
     total : int
@@ -335,8 +343,9 @@ def check(
 
     Notes
     -----
-    The checker is exact from the doubles given on, linear in the complex, and shares no code with
-    the engines.
+    The checker is exact from the doubles given on, and shares no code with the engines. Cost is
+    linear in the complex, and in the number of pairs of points that are not surrounded by cells and
+    near enough to each other for an edge between them.
 
     Examples
     --------
@@ -362,12 +371,12 @@ def check(
     else:
         judged = _again(points, given)
     with task(progress, threads) as how:
-        verdict, tied, total, findings, not_judged = judged._complex.check(most, ties == "exact", how)
+        verdict, right, tied, total, findings, not_judged = judged._complex.check(most, ties == "exact", how)
     listed = []
     for text, fields in findings:
         facts = json.loads(fields)
         listed.append(Finding(facts.pop("rule"), text, facts))
-    return Verdict(verdict, total == 0, tied, total, listed, json.loads(not_judged))
+    return Verdict(verdict, right, tied, total, listed, json.loads(not_judged))
 
 
 def compare(

@@ -124,6 +124,7 @@ class Complex:
     hidden: _Rows | None
     duplicates: _Rows | None
     periodic: list[float] | None
+    lowest: int
     def __init__(
         self,
         points: Floats,
@@ -141,9 +142,10 @@ class Complex:
     @staticmethod
     def of(shape: Shape) -> Complex: ...
     def classes(self) -> list[Classes]: ...
+    def with_lowest(self, lowest: int) -> Complex: ...
     def check(
         self, most: int, ties_too: bool, task: _Task
-    ) -> tuple[str, int, int, list[tuple[str, str]], str]: ...
+    ) -> tuple[str, bool, int, int, list[tuple[str, str]], str]: ...
 
 def alpha_shape(
     points: Floats,

@@ -11,10 +11,12 @@ use walpha_base::shown::shown;
 
 use crate::Recipe;
 use crate::check::meshes::{Mesh, MeshFormat};
-use crate::check::schema::{AnyFile, FiltrationFile, PlacedComplex};
+use crate::check::schema::{
+    AnyFile, Classes, ComplexFile, FiltrationFile, PlacedComplex, SchemaError,
+};
 use crate::check::{
-    Comparison, Extent, FiltrationFinding, Finding, Verdict, certify_filtration_monitored, compare,
-    count_by_rule, enumerate_monitored, keep_causes,
+    Claim, Comparison, Complex, Extent, FiltrationFinding, Finding, Placed, Verdict,
+    certify_filtration_monitored, compare, count_by_rule, enumerate_monitored, keep_causes,
 };
 use crate::export::{Target, UnknownFormat, write_findings};
 use crate::pipeline::{AlphaRule, Opened, Values};
@@ -26,7 +28,7 @@ use crate::volume::{OpenFile, OpenVolume};
 use super::args::{PeriodicArgs, PipelineArgs, ShapeArgs};
 use super::compare;
 use super::errors::{CommandError, command_error, fail, fail_usage};
-use super::global::{DIFFERENT, Global};
+use super::global::{DIFFERENT, Global, UNDECIDED};
 use super::output::{name, print_summary};
 use super::pipeline;
 use super::progress::Progress;
@@ -41,8 +43,9 @@ use super::report::SCHEMA_VERSION;
 /// no code with the engines or CGAL.
 ///
 /// The verdict is exact; or valid, if it differs from CGAL's answer only in how ties are broken (points
-/// on one empty sphere, or equal points); or wrong. Exit code 3 if it is wrong or, with --ties exact, not
-/// exact.
+/// on one empty sphere, or equal points); or wrong. A file that lists cells but no facets, edges or vertices of
+/// its own is judged by its cells. Exit code 3 if it is wrong or, with --ties exact, not exact; 4 if it is right as far as
+/// judged, as too many points are near each other for a search for missing simplices.
 ///
 /// Examples:
 ///
@@ -110,7 +113,7 @@ struct CheckSummary<F, C> {
     #[serde(skip_serializing_if = "Option::is_none")]
     extent: Option<&'static str>,
     verdict: Verdict,
-    /// Whether the verdict counts as right: with --ties exact, whether it is exact.
+    /// Whether the verdict counts as right: with --ties exact, whether it is exact. What was not judged in full is not.
     valid: bool,
     findings_total: usize,
     /// How many there are by each rule.
@@ -189,7 +192,7 @@ impl Check {
         let computed = self.compute(path, opened, &mut progress)?;
         let judged = format!("our own shape of {}", name(input));
         let subject = Subject { input, judged, notes: Vec::new(), is_cells_alone: false };
-        self.complex(global, subject, &computed, &[], progress)
+        self.complex(global, subject, &computed, progress)
     }
 
     /// Judges the cells that a file of points lists.
@@ -243,7 +246,6 @@ impl Check {
             compare::replace_points(&mut file.points, &mut file.weights, points)?;
         }
         let mut judged = format!("{kind} of {}", name(input));
-        let mut unjudged = Vec::new();
         if file.states_no_alpha() {
             judged += " as a triangulation (α = ∞; --alpha makes it a shape)";
         }
@@ -251,11 +253,15 @@ impl Check {
         let path = self.pipeline.input.input.path();
         let complex =
             PlacedComplex::try_from(file).map_err(|error| compare::refusal(path, error))?;
-        if complex.claim().extent == Extent::Shape && !compare::is_named(path) {
-            unjudged.push("points that the file leaves out".to_owned());
+        if complex.claim().extent == Extent::Shape && complex.lowest > 0 {
+            judged += match complex.lowest {
+                3 => ", by its cells",
+                2 => ", by its cells and facets",
+                _ => ", by its cells, facets and edges",
+            };
         }
         let subject = Subject { input, judged, notes, is_cells_alone };
-        self.complex(global, subject, &complex, &unjudged, progress)
+        self.complex(global, subject, &complex, progress)
     }
 
     /// Judges a filtration of a file.
@@ -324,9 +330,8 @@ impl Check {
     fn complex(
         &self,
         global: Global,
-        Subject { input, judged: words, notes, is_cells_alone }: Subject,
+        Subject { input, judged: subject, notes, is_cells_alone }: Subject,
         judged: &PlacedComplex,
-        unjudged: &[String],
         mut progress: Progress,
     ) -> anyhow::Result<ExitCode> {
         let n = judged.positions.len();
@@ -360,13 +365,20 @@ impl Check {
         progress.finish();
         let rules = certificate.not_judged.iter().map(ToString::to_string);
         // Enumeration breaks ties by CGAL's rule, so it may differ where other ways are right, too.
-        let is_excused = |comparison: &Comparison| {
-            comparison.is_equal() || self.ties == Ties::Any && certificate.verdict == Verdict::Valid
+        let differing = enumeration.as_ref().filter(|comparison| {
+            !comparison.is_equal()
+                && !(self.ties == Ties::Any && certificate.verdict == Verdict::Valid)
+        });
+        let (verdict, words) = match differing {
+            Some(comparison) if findings.is_empty() => {
+                (Verdict::Wrong, differs_from_definition(comparison))
+            }
+            _ => (certificate.verdict, certificate.to_string()),
         };
         let facts = CheckSummary {
             schema_version: SCHEMA_VERSION,
             input: input.to_owned(),
-            judged: words,
+            judged: subject,
             points: n,
             simplices: [
                 complex.cells.len(),
@@ -375,14 +387,14 @@ impl Check {
                 complex.vertices.len(),
             ],
             extent: Some(if claim.extent == Extent::Whole { "whole" } else { "shape" }),
-            verdict: certificate.verdict,
-            valid: findings.is_empty() && enumeration.as_ref().is_none_or(is_excused),
+            verdict,
+            valid: findings.is_empty() && differing.is_none() && verdict.is_complete(),
             findings_total: findings.len(),
             by_rule: count_by_rule(findings.iter().map(Finding::rule)),
             findings,
             notes,
-            not_judged: rules.chain(unjudged.iter().cloned()).collect(),
-            words: certificate.to_string(),
+            not_judged: rules.collect(),
+            words,
             certificate,
             enumeration,
             seconds,
@@ -472,9 +484,49 @@ pub(super) fn read_mesh(format: &MeshFormat, file: &OpenFile) -> Result<Mesh, Co
 /// Compares a complex (A) with the one built from the definition (B).
 fn by_definition(judged: &PlacedComplex, monitor: &Monitor) -> anyhow::Result<Comparison> {
     Stage::Enumerate.begin(monitor)?;
-    let judged = judged.placed();
+    let claim = judged.claim();
+    let judged = claim.placed;
     let made = enumerate_monitored(judged.positions, judged.weights, judged.alpha, monitor)?;
-    Ok(compare(judged, judged.with_complex(&made.complex))?)
+    let made = match claim.extent {
+        Extent::Shape if claim.lowest > 0 => listed_from(claim.lowest, judged, made.complex)?,
+        _ => made.complex,
+    };
+    Ok(compare(judged, judged.with_complex(&made))?)
+}
+
+/// A complex without the simplices below a dimension that are faces of none of that dimension.
+fn listed_from(
+    lowest: usize,
+    judged: Placed,
+    mut complex: Complex,
+) -> Result<Complex, SchemaError> {
+    complex.retain_shape();
+    let mut file = ComplexFile::from(Claim::new(judged.with_complex(&complex)));
+    file.classes = Classes::default();
+    file.vertices = None;
+    file.edges = file.edges.filter(|_| lowest < 2);
+    file.facets = file.facets.filter(|_| lowest < 3);
+    Ok(PlacedComplex::try_from(file)?.complex)
+}
+
+/// The verdict on a complex (A) that breaks no rule and differs from that of the definition (B), and in what.
+fn differs_from_definition(comparison: &Comparison) -> String {
+    let names = ["vertices", "edges", "facets", "cells"].into_iter().zip(&comparison.dimensions);
+    let counts = names.map(|(name, differences)| {
+        let (only_a, only_b) = (differences.only_a.len(), differences.only_b.len());
+        (name, only_a, only_b, differences.classes.len())
+    });
+    let differing = counts.filter(|(_, a, b, classes)| a + b + classes > 0).map(
+        |(name, only_a, only_b, classes)| {
+            format!("{name} ({only_a} too many, {only_b} missing, {classes} of another class)")
+        },
+    );
+    let differing: Vec<String> = differing.collect();
+    format!(
+        "{}: no rule is broken, but the complex made from the definition has other {}",
+        Verdict::Wrong,
+        differing.join(", ")
+    )
 }
 
 impl<F: Serialize + Display, C: Serialize> CheckSummary<F, C> {
@@ -482,7 +534,13 @@ impl<F: Serialize + Display, C: Serialize> CheckSummary<F, C> {
     fn print(mut self, global: Global) -> anyhow::Result<ExitCode> {
         self.findings.truncate(MOST_LISTED);
         print_summary(global, &self)?;
-        Ok(if self.valid { ExitCode::SUCCESS } else { ExitCode::from(DIFFERENT) })
+        Ok(match self.verdict {
+            _ if self.valid => ExitCode::SUCCESS,
+            verdict if self.findings_total == 0 && !verdict.is_complete() => {
+                ExitCode::from(UNDECIDED)
+            }
+            _ => ExitCode::from(DIFFERENT),
+        })
     }
 }
 
@@ -516,5 +574,29 @@ impl<F: Display, C> Display for CheckSummary<F, C> {
             writeln!(f, "{enumeration}")?;
         }
         writeln!(f, "verdict   {} ({:.2} s)", self.words, self.seconds)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Alpha;
+    use crate::check::enumerate;
+
+    /// What the enumeration alone finds is named in the verdict.
+    #[test]
+    fn the_verdict_says_in_what_the_definition_differs() {
+        let positions = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        let alpha = Alpha::from_squared(1.0).unwrap();
+        let made = enumerate(&positions, &[0.0; 4], alpha).unwrap().complex;
+        let mut less = made.clone();
+        less.cells = [].into_iter().collect();
+        let placed = |complex| Placed::new(&positions, &[0.0; 4], alpha, complex);
+        let comparison = compare(placed(&less), placed(&made)).unwrap();
+        assert_eq!(
+            differs_from_definition(&comparison),
+            "wrong: no rule is broken, but the complex made from the definition has other \
+             cells (0 too many, 1 missing, 0 of another class)"
+        );
     }
 }

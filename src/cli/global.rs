@@ -40,6 +40,8 @@ pub(super) const PANICKED: u8 = 101;
 pub(super) const UNREAD: u8 = 141;
 /// Exit code of a check or comparison that found differences.
 pub(super) const DIFFERENT: u8 = 3;
+/// Exit code of a check that found nothing wrong and could not judge everything.
+pub(super) const UNDECIDED: u8 = 4;
 /// Stack size of a thread in bytes, as in rayon.
 pub(super) const STACK: usize = 2 << 20;
 /// Exit code after Ctrl-C, as in shells.

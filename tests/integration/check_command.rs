@@ -263,6 +263,114 @@ fn our_meshes_are_judged_as_the_shapes_they_are() {
     assert_eq!(code, 2, "{stderr}");
 }
 
+/// Whatever a shape is made of, by whichever engine and in however many blocks: what is written is exact, in each format.
+#[test]
+fn what_we_write_is_exact() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let mut judged = 0;
+    for (points, weights, alphas) in [
+        ("hard:slab-18", "common=0", &["0", "0.25", "0.5", "0.75", "100"][..]),
+        ("hard:duplicates", "column", &["-0.2", "0.25", "0.5"]),
+        ("hard:hidden", "column", &["-1", "0", "0.25", "1"]),
+        ("hard:radii", "column", &["-0.1", "0", "0.1"]),
+        ("hard:rings", "common=0", &["100", "4000", "4300"]),
+        ("hard:oblique-plane", "common=0", &["0", "3", "20"]),
+        ("hard:line", "common=0", &["0", "1", "50"]),
+        ("hard:one-ulp", "common=0", &["0", "0.5", "0.75"]),
+        ("sample:phantom@16", "min-max", &["0.5", "3", "40", "1e9"]),
+    ] {
+        for alpha in alphas {
+            let options: &[&[&str]] =
+                &[&[], &["--blocks", "3"], &["--balls", "radius"], &["--engine", "native"]];
+            for more in options.iter().filter(|more| alpha.len() < 4 || more.len() < 2) {
+                // With the other reading α is a length to add to weights, which are radii.
+                if more.contains(&"radius") && (alpha.starts_with('-') || weights == "column") {
+                    continue;
+                }
+                let make = ["shape", points, "--weights", weights, "--alpha", alpha, "--in-place"];
+                let outputs = ["-o", "s.json", "-o", "s.npz", "-o", "s.vtu"];
+                common::ok(folder, &[&make[..], &outputs, more].concat());
+                // VTU states α and weights as they were given, not the powers that they are read as.
+                let files: &[&str] = if more.contains(&"radius") {
+                    &["s.json", "s.npz"]
+                } else {
+                    &["s.json", "s.npz", "s.vtu"]
+                };
+                for file in files {
+                    let facts = common::json(folder, &["check", file]);
+                    let words = format!("{points} {alpha} {more:?} {file}: {facts:#}");
+                    assert_eq!(facts["verdict"], "exact", "{words}");
+                    let rules = facts["certificate"]["not_judged"].to_string();
+                    assert!(!rules.contains("simplices"), "{words}");
+                    judged += 1;
+                }
+            }
+        }
+    }
+    assert!(judged > 200, "{judged}");
+}
+
+/// The shape of a smaller α is not that of a larger one, and what is missing is named: as a complex, and by its cells.
+#[test]
+fn a_shape_of_a_smaller_alpha_is_wrong() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let make = ["shape", "sample:phantom@16", "--weights", "min-max"];
+    for (alpha, name) in [("3", "small"), ("3.5", "large")] {
+        let json = format!("{name}.json");
+        common::ok(folder, &[&make[..], &["--alpha", alpha, "-o", &json]].concat());
+        let written = std::fs::read(folder.join(&json)).unwrap();
+        let mut file: serde_json::Value = serde_json::from_slice(&written).unwrap();
+        file["alpha"] = 3.5.into();
+        std::fs::write(folder.join(&json), file.to_string()).unwrap();
+        for kind in ["facets", "edges", "vertices"] {
+            file.as_object_mut().unwrap().remove(kind);
+            file["classes"].as_object_mut().unwrap().remove(kind);
+        }
+        std::fs::write(folder.join(format!("{name}-cells.json")), file.to_string()).unwrap();
+    }
+    for (file, code) in
+        [("large.json", 0), ("large-cells.json", 0), ("small.json", 3), ("small-cells.json", 3)]
+    {
+        let (got, stdout, stderr) = common::run(folder, &["check", file, "--json"]);
+        assert_eq!(got, code, "{stdout}{stderr}");
+        let facts: serde_json::Value = serde_json::from_str(&stdout).unwrap();
+        let count = |rule: &str| facts["findings_by_rule"][rule].as_u64().unwrap_or(0);
+        let missing = count("missing_simplex") + count("missing_cell");
+        assert_eq!((missing > 0, facts["valid"] == true), (code == 3, code == 0), "{facts:#}");
+    }
+    let (_, stdout, _) = common::run(folder, &["check", "small-cells.json"]);
+    assert!(stdout.contains("judged    the complex of small-cells.json, by its cells"), "{stdout}");
+    assert!(stdout.contains("] is missing: "), "{stdout}");
+}
+
+/// A mesh of a shape lists no points, edges and facets that are faces of no cell: without them it is right.
+#[test]
+fn what_a_mesh_cannot_list_is_not_missing() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    // Two cells apart, beside one of them a triangle, an edge and a point.
+    let points = "1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 20 0 0\n6 21 0 0\n7 20 1 0\n8 20 0 1\n\
+                  9 40 0 0\n10 41 0 0\n11 40 1 0\n12 60 0 0\n13 61 0 0\n14 80 0 0\n";
+    std::fs::write(folder.join("m.node"), format!("14 3 0 0\n{points}")).unwrap();
+    for (cells, code) in [("1 1 2 3 4\n2 5 6 7 8\n", 0), ("1 1 2 3 4\n", 3)] {
+        let count = cells.lines().count();
+        std::fs::write(folder.join("m.ele"), format!("{count} 4 0\n{cells}")).unwrap();
+        let check = ["check", "m.ele", "--alpha", "0.75"];
+        let (got, stdout, stderr) = common::run(folder, &check);
+        assert_eq!(got, code, "{stdout}{stderr}");
+        let head =
+            format!("judged    the {count} tetrahedra of m.ele, by its cells, over 14 points");
+        assert!(stdout.starts_with(&head), "{stdout}");
+        let (got, stdout, _) = common::run(folder, &[&check[..], &["--enumerate"]].concat());
+        assert_eq!(got, code, "{stdout}");
+        let verdict =
+            if code == 0 { "verdict   exact: no findings" } else { "cell [4, 5, 6, 7] is missing" };
+        assert!(stdout.contains(verdict), "{stdout}");
+    }
+}
+
 /// PLY as `VCGlib` lists tetrahedra, in text and in binary, beside a face.
 #[test]
 fn tetrahedra_of_ply_are_judged() {

@@ -162,6 +162,11 @@ impl<'a, const N: usize> Index<'a, N> {
         NONE
     }
 
+    /// The rows with this smallest vertex, in the lexicographic order of their sorted vertices.
+    pub(crate) fn with_smallest(&self, vertex: u32) -> impl Iterator<Item = [u32; N]> {
+        of_bucket(&self.starts, vertex).map(|place| self.rows[self.number(place) as usize])
+    }
+
     /// The number of the row at a place of the order.
     fn number(&self, place: usize) -> u32 {
         if self.order.is_empty() { place as u32 } else { self.order[place] }

@@ -39,9 +39,9 @@ mod rules;
 pub mod schema;
 
 pub use certify::{
-    Bound, Certificate, CertifyError, CertifyFiltrationError, Claim, Extent, FiltrationCertificate,
-    FiltrationFinding, Finding, NotJudged, Simplex, Unjudged, Verdict, certify_filtration,
-    certify_filtration_monitored,
+    Bound, Certificate, CertifyError, CertifyFiltrationError, Claim, Declined, Extent,
+    FiltrationCertificate, FiltrationFinding, Finding, NotJudged, Simplex, Unjudged, Verdict,
+    certify_filtration, certify_filtration_monitored,
 };
 pub use compare::{
     ClassDifference, CompareError, CompareFiltrationsError, Comparison, Differences, Domain,

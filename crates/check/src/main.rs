@@ -13,7 +13,7 @@ use walpha_check::meshes::{MeshError, MeshFormat, open_weights};
 use walpha_check::schema::{AnyFile, ComplexFile, PlacedComplex, SchemaError};
 use walpha_check::{
     Alpha, CertifyError, CertifyFiltrationError, FiltrationFinding, Finding, Monitor, Unjudged,
-    certify_filtration_monitored, count_by_rule, keep_causes,
+    Verdict, certify_filtration_monitored, count_by_rule, keep_causes,
 };
 
 /// Judge weighted alpha shapes and meshes of tetrahedra exactly.
@@ -24,10 +24,12 @@ use walpha_check::{
 /// points, at α = ∞. Coordinates in text are decimal numbers, each taken to the nearest double.
 ///
 /// A file is exact; or valid: right, with another choice at ties, where more points lie on one empty sphere than a
-/// simplex has corners or points are equal; or wrong. Findings name the simplex and the rule that it breaks.
+/// simplex has corners or points are equal; or wrong. Findings name the simplex and the rule that it breaks. A file that lists
+/// cells but no facets, edges or vertices of its own is judged by its cells.
 ///
 /// Exit code: 0 if all files are exact or valid, 1 if a file cannot be judged, 2 for a wrong command line, 3
-/// if a file is wrong, 141 if standard output is closed by its reader.
+/// if a file is wrong, 4 if all are right as far as judged, as in one too many points are near each other for a search
+/// for missing simplices, 141 if standard output is closed by its reader.
 #[derive(Parser)]
 #[command(version)]
 #[expect(clippy::doc_markdown, reason = "the help would show backticks")]
@@ -63,6 +65,7 @@ const MOST_PRINTED: usize = 20;
 const FAILED: u8 = 1;
 const USAGE: u8 = 2;
 const FOUND: u8 = 3;
+const UNDECIDED: u8 = 4;
 /// The exit code that shells report for a process ended by SIGPIPE.
 const UNREAD: u8 = 141;
 
@@ -73,10 +76,10 @@ fn main() -> ExitCode {
         Err(error) => return print_usage(&error),
     };
     start_threads();
-    let (mut failed, mut found) = (false, false);
+    let (mut failed, mut worst) = (false, Judgement::Right);
     for path in &arguments.files {
         match judge(path, &arguments) {
-            Ok(right) => found |= !right,
+            Ok(judgement) => worst = worst.max(judgement),
             // Further output would be lost, too.
             Err(Failure::Output(error)) => return unprinted(&error),
             Err(failure) => {
@@ -88,10 +91,30 @@ fn main() -> ExitCode {
             }
         }
     }
-    match (failed, found) {
-        (true, _) => ExitCode::from(FAILED),
-        (false, true) => ExitCode::from(FOUND),
-        (false, false) => ExitCode::SUCCESS,
+    match worst {
+        _ if failed => ExitCode::from(FAILED),
+        Judgement::Right => ExitCode::SUCCESS,
+        Judgement::Undecided => ExitCode::from(UNDECIDED),
+        Judgement::Wrong => ExitCode::from(FOUND),
+    }
+}
+
+/// What a file is, as far as the exit code says it.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Judgement {
+    Right,
+    /// Right as far as judged.
+    Undecided,
+    Wrong,
+}
+
+impl Judgement {
+    fn of<F>(findings: &[F], verdict: Verdict) -> Self {
+        match (findings, verdict.is_complete()) {
+            ([], true) => Self::Right,
+            ([], false) => Self::Undecided,
+            _ => Self::Wrong,
+        }
     }
 }
 
@@ -243,8 +266,8 @@ fn complete(
     Ok(())
 }
 
-/// Judges a file, prints the findings, and returns whether it is right.
-fn judge(path: &Path, arguments: &Arguments) -> Result<bool, Failure> {
+/// Judges a file, prints the findings, and returns what it is.
+fn judge(path: &Path, arguments: &Arguments) -> Result<Judgement, Failure> {
     let (file, notes) = read(path, arguments)?;
     let ties = arguments.ties;
     match file {
@@ -266,7 +289,7 @@ fn judge(path: &Path, arguments: &Arguments) -> Result<bool, Failure> {
                 notes: &notes,
             };
             report.print(path)?;
-            Ok(findings.is_empty())
+            Ok(Judgement::of(&findings, certificate.verdict))
         }
         AnyFile::Filtration(file) => {
             let (mut findings, certificate) =
@@ -281,7 +304,7 @@ fn judge(path: &Path, arguments: &Arguments) -> Result<bool, Failure> {
                 notes: &notes,
             };
             report.print(path)?;
-            Ok(findings.is_empty())
+            Ok(Judgement::of(&findings, certificate.verdict))
         }
     }
 }

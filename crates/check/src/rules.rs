@@ -30,6 +30,7 @@ impl Finding {
             Self::NotHidden { .. } => "not_hidden",
             Self::OutsideHull { .. } => "outside_hull",
             Self::MissingCell { .. } => "missing_cell",
+            Self::MissingSimplex { .. } => "missing_simplex",
             Self::MissingVertex { .. } => "missing_vertex",
             Self::Unaccounted { .. } => "unaccounted",
             Self::NotOnlyHidden { .. } => "not_only_hidden",

@@ -26,6 +26,9 @@ pub struct PlacedComplex {
     pub duplicates: Option<Vec<[u32; 2]>>,
     /// The sides of the periodic box, if there is one.
     pub periodic: Option<[f64; 3]>,
+    /// The lowest dimension of which it lists all simplices: 0, unless the file leaves a dimension out. That one, and those below, have
+    /// faces alone.
+    pub lowest: usize,
 }
 
 impl PlacedComplex {
@@ -72,6 +75,7 @@ impl TryFrom<ComplexFile> for PlacedComplex {
                 expected: "the length of a side",
             });
         }
+        let lowest = lowest_listed(&file);
         let weights = file.weights.unwrap_or_else(|| vec![0.0; n]);
         SchemaError::paired("weights", weights.len(), "points", n)?;
         let numbers = file.hidden.iter().flatten();
@@ -117,8 +121,17 @@ impl TryFrom<ComplexFile> for PlacedComplex {
             hidden: file.hidden,
             duplicates: file.duplicates,
             periodic: file.periodic,
+            lowest,
         })
     }
+}
+
+/// The lowest dimension that the file lists, with all above it from the highest that it lists on.
+fn lowest_listed(file: &ComplexFile) -> usize {
+    let lower = [file.facets.is_some(), file.edges.is_some(), file.vertices.is_some()];
+    let listed = [file.cells.is_some()].into_iter().chain(lower);
+    let from_highest = listed.skip_while(|is_listed| !is_listed).collect::<Vec<_>>();
+    from_highest.iter().skip_while(|is_listed| **is_listed).count()
 }
 
 /// The names of the fields of a dimension: its simplices and their classes.

@@ -1,18 +1,23 @@
 use serde::Serialize;
 use walpha_base::Cancelled;
 
+use super::missing::Declined;
 use super::structure::MAX_CELLS;
 use crate::exact::Exact;
 
 /// The result of judging a complex.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
-#[serde(rename_all = "lowercase")]
+#[serde(into = "&'static str")]
 pub enum Verdict {
     /// The complex of the definition, with ties decided by the rule.
     Exact,
+    /// Exact as far as it was judged: whether simplices are missing is not known, as [`NotJudged::MissingSimplices`] says.
+    ExactAsFarAsJudged,
     /// Right, with another choice where the definition leaves one: among points on one empty sphere, or
     /// with equal positions and weights. Each sphere is empty, and a whole triangulation has no gaps.
     Valid,
+    /// Valid as far as it was judged.
+    ValidAsFarAsJudged,
     /// Neither exact nor valid.
     Wrong,
 }
@@ -26,16 +31,30 @@ impl Verdict {
             _ => Self::Wrong,
         }
     }
+
+    /// Whether all that the definition asks for was judged; of what is wrong, enough.
+    pub fn is_complete(self) -> bool {
+        !matches!(self, Self::ExactAsFarAsJudged | Self::ValidAsFarAsJudged)
+    }
 }
 
-/// The name in lower case, as in JSON.
+/// The words, as in JSON.
+impl From<Verdict> for &'static str {
+    fn from(verdict: Verdict) -> Self {
+        match verdict {
+            Verdict::Exact => "exact",
+            Verdict::ExactAsFarAsJudged => "exact as far as judged",
+            Verdict::Valid => "valid",
+            Verdict::ValidAsFarAsJudged => "valid as far as judged",
+            Verdict::Wrong => "wrong",
+        }
+    }
+}
+
+/// The words, as in JSON.
 impl std::fmt::Display for Verdict {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.pad(match self {
-            Self::Exact => "exact",
-            Self::Valid => "valid",
-            Self::Wrong => "wrong",
-        })
+        f.pad((*self).into())
     }
 }
 
@@ -60,6 +79,17 @@ impl Certificate {
     fn is_of_whole(&self) -> bool {
         !self.not_judged.contains(&NotJudged::HiddenAndHull)
     }
+
+    /// Concludes the verdict from the findings and from what was not judged.
+    pub(super) fn conclude(&mut self) {
+        let is_declined =
+            self.not_judged.iter().any(|rule| matches!(rule, NotJudged::MissingSimplices(_)));
+        self.verdict = match Verdict::of(self.findings, self.ties) {
+            Verdict::Exact if is_declined => Verdict::ExactAsFarAsJudged,
+            Verdict::Valid if is_declined => Verdict::ValidAsFarAsJudged,
+            verdict => verdict,
+        };
+    }
 }
 
 /// The verdict with its reason, in one line.
@@ -79,12 +109,12 @@ pub(super) fn write_verdict(
 ) -> std::fmt::Result {
     let plural = |count: usize| if count == 1 { "" } else { "s" };
     match verdict {
-        Verdict::Exact => write!(f, "exact: no findings"),
-        Verdict::Valid => {
+        Verdict::Exact | Verdict::ExactAsFarAsJudged => write!(f, "{verdict}: no findings"),
+        Verdict::Valid | Verdict::ValidAsFarAsJudged => {
             let gaps = if whole { ", and there are no gaps" } else { "" };
             write!(
                 f,
-                "valid: another choice at {ties} tie{}; every sphere is empty{gaps}",
+                "{verdict}: another choice at {ties} tie{}; every sphere is empty{gaps}",
                 plural(ties)
             )
         }
@@ -104,9 +134,11 @@ pub(super) fn write_verdict(
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum NotJudged {
-    /// Whether a simplex of the shape is missing that nothing listed has as a face: this needs the
-    /// whole triangulation.
-    MissingSimplices,
+    /// Whether simplices of the shape are missing: that is not searched for. It is the only rule without which a shape is not
+    /// exact.
+    MissingSimplices(Declined),
+    /// Singular simplices below the lowest dimension that is [claimed](crate::Claim::lowest) to be listed.
+    SingularSimplices,
     /// Whether points that are not vertices are hidden, and the hull: these need the whole
     /// triangulation.
     HiddenAndHull,
@@ -119,8 +151,14 @@ pub enum NotJudged {
 impl std::fmt::Display for NotJudged {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(match self {
-            Self::MissingSimplices => {
-                "whether whole parts of the shape are missing (requires the exterior simplices)"
+            Self::MissingSimplices(Declined { pairs, most, alpha }) => {
+                return write!(
+                    f,
+                    "whether simplices of the shape are missing: about {pairs} pairs of points are near enough for an edge, and {most} are searched; for these simplices that is so beyond α = {alpha}"
+                );
+            }
+            Self::SingularSimplices => {
+                "singular simplices of the kinds that are not listed: of these there are faces alone"
             }
             Self::HiddenAndHull => {
                 "hidden points and the convex hull (requires the exterior simplices)"

@@ -30,6 +30,8 @@ pub struct Claim<'a> {
     pub hidden: Option<&'a [u32]>,
     /// Pairs (removed, kept) of points at one position, if they are listed.
     pub duplicates: Option<&'a [[u32; 2]]>,
+    /// The lowest dimension of which it claims to list all simplices: below it, faces alone are listed.
+    pub lowest: usize,
 }
 
 impl<'a> Claim<'a> {
@@ -37,7 +39,7 @@ impl<'a> Claim<'a> {
     /// that of [`Extent::of`].
     pub fn new(placed: Placed<'a>) -> Self {
         let extent = Extent::of(placed.complex, placed.alpha);
-        Self { placed, extent, hidden: None, duplicates: None }
+        Self { placed, extent, hidden: None, duplicates: None, lowest: 0 }
     }
 
     /// The same claim with another extent.
@@ -50,6 +52,13 @@ impl<'a> Claim<'a> {
     #[must_use]
     pub fn with_hidden(self, hidden: impl Into<Option<&'a [u32]>>) -> Self {
         Self { hidden: hidden.into(), ..self }
+    }
+
+    /// The same claim of a shape that lists, of the simplices below this dimension, only the faces of others: that further ones are
+    /// missing is no finding.
+    #[must_use]
+    pub fn with_lowest(self, lowest: usize) -> Self {
+        Self { lowest, ..self }
     }
 
     /// The same claim with these pairs (removed, kept) listed as duplicates.

@@ -98,21 +98,6 @@ impl<'a> Emptiness<'a> {
         on
     }
 
-    /// Whether no other point is inside or on the sphere of a point alone.
-    pub(super) fn alone(&self, point: u32) -> bool {
-        let site = self.points.get(point);
-        self.layers.iter().all(|layer| {
-            // |q − p|² ≤ ω of q − ω of p, whatever α is.
-            let reach = (layer.heaviest - site.weight).next_up().max(0.0).sqrt().next_up();
-            let near = |index: u32| {
-                let within =
-                    index != point && side([&site], &self.points.get(index)) != Side::Outside;
-                within.then_some(())
-            };
-            layer.grid.within(site.position, reach, near).is_none()
-        })
-    }
-
     fn find<const N: usize>(
         &self,
         simplex: [u32; N],
@@ -138,7 +123,7 @@ const HEAVY: usize = 64;
 
 /// Points in layers of similar weight. The heaviest few form a layer of their own as long as their weights span more than those of
 /// the others.
-fn layers(points: Points, mut sites: Vec<u32>) -> Vec<Vec<u32>> {
+pub(super) fn layers(points: Points, mut sites: Vec<u32>) -> Vec<Vec<u32>> {
     let weight = |&i: &u32| points.weight(i);
     let mut layers = Vec::new();
     loop {

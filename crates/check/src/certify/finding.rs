@@ -211,6 +211,16 @@ pub enum Finding {
         /// The squared radius of its orthogonal sphere.
         radius_squared: Exact,
     },
+    /// Points lie on an empty sphere of squared radius at most α, and the simplices listed do not cover their hull, which is in the
+    /// shape.
+    MissingSimplex {
+        /// A simplex whose smallest orthogonal sphere it is; the missing one, if there are no further points on it.
+        simplex: Simplex,
+        /// All points on the sphere, ascending.
+        points: Vec<u32>,
+        /// The squared radius of the sphere.
+        radius_squared: Exact,
+    },
     /// A point is in the shape by itself, with no other point inside or on its sphere, but it is
     /// not listed as a vertex.
     MissingVertex {
@@ -324,7 +334,8 @@ impl Finding {
             | Self::DuplicateVertex { point, kept: other } => {
                 vec![from_ref(point), from_ref(other)]
             }
-            Self::TiedSphere { simplex, points, .. } => {
+            Self::TiedSphere { simplex, points, .. }
+            | Self::MissingSimplex { simplex, points, .. } => {
                 let points = points.iter().map(from_ref);
                 [simplex.vertices()].into_iter().chain(points).collect()
             }
@@ -392,6 +403,13 @@ impl Finding {
                 *other %= count;
                 point_at_box(point)
             }
+            Self::MissingSimplex { simplex, points, .. } => {
+                points.iter_mut().for_each(|point| *point %= count);
+                points.sort_unstable();
+                let is_at_box = simplex.fold(count);
+                simplex.0.sort_unstable();
+                is_at_box
+            }
             Self::TiedSphere { simplex, points, .. } => {
                 points.iter_mut().for_each(|point| _ = point_at_box(point));
                 simplex.fold(count)
@@ -438,6 +456,7 @@ impl Finding {
             | Self::Winding { facet: simplex, .. }
             | Self::Class { simplex, .. }
             | Self::TiedSphere { simplex, .. }
+            | Self::MissingSimplex { simplex, .. }
             | Self::SpannedSphere { simplex, .. } => vec![simplex],
             Self::MissingFace { face: one, of: other }
             | Self::HullWraps { first: one, facet: other }

@@ -1,5 +1,7 @@
 //! Points sorted into boxes, to find those near a position.
 
+use std::cell::Cell;
+
 use super::structure::Points;
 use crate::index::in_buckets;
 
@@ -59,6 +61,26 @@ impl Grid {
         radius: f64,
         visit: impl Fn(u32) -> Option<T>,
     ) -> Option<T> {
+        self.rows_within(center, radius, |row| row.iter().find_map(|&point| visit(point)))
+    }
+
+    /// How many points that [visits](Self::within).
+    pub(super) fn count(&self, center: [f64; 3], radius: f64) -> usize {
+        let count = Cell::new(0);
+        self.rows_within(center, radius, |row| {
+            count.set(count.get() + row.len());
+            None::<()>
+        });
+        count.get()
+    }
+
+    /// Calls `visit` with rows of boxes that hold every point within `radius` of `center`, until it returns a value.
+    fn rows_within<T>(
+        &self,
+        center: [f64; 3],
+        radius: f64,
+        visit: impl Fn(&[u32]) -> Option<T>,
+    ) -> Option<T> {
         // Rounding is monotonic, so a point between two positions is in a box between theirs.
         let from = self.at(center.map(|x| (x - radius).next_down()));
         let to = self.at(center.map(|x| (x + radius).next_up()));
@@ -70,7 +92,7 @@ impl Grid {
                 if flat * flat + steep * steep > 1.0 + 4e-15 {
                     continue;
                 }
-                let found = self.row([from[0], to[0]], y, z).iter().find_map(|&point| visit(point));
+                let found = visit(self.row([from[0], to[0]], y, z));
                 if found.is_some() {
                     return found;
                 }

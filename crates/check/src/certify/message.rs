@@ -58,6 +58,9 @@ impl fmt::Display for Finding {
             Self::MissingCell { cell, class, radius_squared } => {
                 missing_cell(f, cell, *class, radius_squared)
             }
+            Self::MissingSimplex { simplex, points, radius_squared } => {
+                missing_simplex(f, simplex, points, radius_squared)
+            }
             Self::MissingVertex { point, radius_squared } => {
                 missing_vertex(f, *point, radius_squared)
             }
@@ -165,6 +168,27 @@ fn missing_cell(
         f,
         "{cell} is missing: all its faces are listed, and it is {class} (squared radius {radius_squared})"
     )
+}
+
+fn missing_simplex(
+    f: &mut Formatter<'_>,
+    simplex: &Simplex,
+    points: &[u32],
+    radius: &Exact,
+) -> fmt::Result {
+    let more = points.len() - simplex.vertices().len();
+    if more == 0 {
+        write!(
+            f,
+            "{simplex} is missing: it is in the shape (squared radius {radius}, and no point inside)"
+        )
+    } else {
+        write!(
+            f,
+            "the hull of the {} points on the sphere of {simplex} is in the shape (squared radius {radius}, and no point inside), but no simplices listed cover it",
+            points.len()
+        )
+    }
 }
 
 fn missing_vertex(f: &mut Formatter<'_>, point: u32, radius_squared: &Exact) -> fmt::Result {

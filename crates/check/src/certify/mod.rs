@@ -3,6 +3,7 @@
 mod certificate;
 mod claim;
 mod classes;
+mod cover;
 mod emptiness;
 mod filtration;
 mod finding;
@@ -12,8 +13,10 @@ mod gathered;
 mod geometry;
 mod grid;
 mod message;
+mod missing;
 mod non_vertices;
 mod placed;
+mod spheres;
 mod structure;
 mod ties;
 mod torus;
@@ -26,3 +29,4 @@ pub use filtration::{
     certify_filtration, certify_filtration_monitored,
 };
 pub use finding::{Finding, Simplex};
+pub use missing::Declined;

@@ -8,12 +8,11 @@ use walpha_base::{Cancelled, Monitor};
 use walpha_complex::canonical::outward_facets;
 
 use super::claim::Claim;
-use super::emptiness::Emptiness;
 use super::finding::Finding;
 use super::grid::Grid;
 use super::structure::{Half, Points, Structure};
 use crate::Complex;
-use crate::exact::{in_conflict, orientation, power_value, radius, radius_value, six_volume};
+use crate::exact::{in_conflict, orientation, power_value, six_volume};
 use crate::parallel::of_each;
 
 /// For each point, the one kept at its position by the rule: the heaviest, of equal weights the first.
@@ -174,30 +173,9 @@ pub(super) fn of_whole(structure: &Structure, kept: &[u32], claim: &Claim) -> Ve
     findings
 }
 
-/// Judges a shape alone: points listed as hidden are not vertices, and points that are in the shape by
-/// themselves are vertices.
-///
-/// A point whose sphere of squared radius −ω has all others strictly outside is below them all
-/// once it is lifted, so it is a vertex of the regular triangulation; a tie may hide it.
-pub(super) fn of_shape(
-    structure: &Structure,
-    points: Points,
-    emptiness: &Emptiness,
-    kept: &[u32],
-    claim: &Claim,
-    monitor: &Monitor,
-) -> Result<Vec<Finding>, Cancelled> {
-    let mut statuses = statuses(structure, kept);
-    let mut findings = of_each(points.len(), monitor, |i| {
-        let point = i as u32;
-        let site = points.get(point);
-        let missing = statuses[i] == Status::Unaccounted
-            && radius([&site], claim.placed.alpha).is_le()
-            && emptiness.alone(point);
-        missing.then(|| Finding::MissingVertex { point, radius_squared: radius_value([&site]) })
-    })?;
-    findings.extend(listed_hidden(&mut statuses, claim));
-    Ok(findings)
+/// Judges a shape alone: points listed as hidden are not vertices.
+pub(super) fn of_shape(structure: &Structure, kept: &[u32], claim: &Claim) -> Vec<Finding> {
+    listed_hidden(&mut statuses(structure, kept), claim)
 }
 
 /// Judges that each hidden point is hidden: it does not refute the cell it lies in.

@@ -15,6 +15,7 @@ impl PlacedComplex {
         Claim::new(self.placed())
             .with_hidden(self.hidden.as_deref())
             .with_duplicates(self.duplicates.as_deref())
+            .with_lowest(self.lowest)
     }
 
     /// All broken rules, and the certificate. In space the rules are those of [`Claim::visit`]. On a torus they
@@ -53,6 +54,7 @@ impl From<Claim<'_>> for PlacedComplex {
             hidden: claim.hidden.map(<[_]>::to_vec),
             duplicates: claim.duplicates.map(<[_]>::to_vec),
             periodic: None,
+            lowest: claim.lowest,
         }
     }
 }

@@ -30,6 +30,22 @@ pub(super) struct Torus {
 }
 
 impl Torus {
+    /// The copies of a simplex that are laid out, itself among them.
+    pub(super) fn copies(self, row: &[u32]) -> Vec<Vec<u32>> {
+        let moves = moves();
+        let copy = |by: [i32; 3]| {
+            let copied = row.iter().map(|&v| {
+                let from = moves[(v / self.points) as usize];
+                let to = [0, 1, 2].map(|k| from[k] + by[k]);
+                let number = moves.iter().position(|moved| *moved == to)?;
+                Some(number as u32 * self.points + v % self.points)
+            });
+            copied.collect::<Option<Vec<u32>>>()
+        };
+        let ways = (0..125).map(|i| [i / 25 - 2, i / 5 % 5 - 2, i % 5 - 2]);
+        ways.filter_map(copy).collect()
+    }
+
     fn new(points: usize, [x, y, z]: [f64; 3]) -> Self {
         // A copy of the heaviest point is within half a diagonal of any centre.
         Self { points: points as u32, largest_empty: 0.5001 * x.hypot(y).hypot(z) }
@@ -77,16 +93,12 @@ pub(super) fn findings(
     let whole = extent == Extent::Whole;
     let (volume, missing) = copies.volume(count, sides, &monitor.unreported())?;
     certificate.six_volumes = volume;
-    // Cells that fill the box are all of the cells.
-    if whole || missing.is_none() {
-        certificate.not_judged.retain(|rule| *rule != NotJudged::MissingSimplices);
-    }
     if whole {
         found.extend(missing);
     }
     certificate.findings = found.len();
     certificate.ties = found.iter().filter(|finding| finding.is_tie()).count();
-    certificate.verdict = Verdict::of(certificate.findings, certificate.ties);
+    certificate.conclude();
     Ok((found, certificate))
 }
 
@@ -118,6 +130,7 @@ struct Copies {
     complex: Complex,
     hidden: Option<Vec<u32>>,
     duplicates: Option<Vec<[u32; 2]>>,
+    lowest: usize,
 }
 
 impl Copies {
@@ -144,13 +157,17 @@ impl Copies {
             complex: copied,
             hidden: placed.hidden.as_deref().map(|hidden| layout.of_each(hidden)),
             duplicates: placed.duplicates.as_ref().map(pairs),
+            lowest: placed.lowest,
         }
     }
 
     fn claim(&self, extent: Extent) -> Claim<'_> {
         let placed = Placed::new(&self.positions, &self.weights, self.alpha, &self.complex);
         let claim = Claim::new(placed).with_extent(extent);
-        claim.with_hidden(self.hidden.as_deref()).with_duplicates(self.duplicates.as_deref())
+        claim
+            .with_hidden(self.hidden.as_deref())
+            .with_duplicates(self.duplicates.as_deref())
+            .with_lowest(self.lowest)
     }
 
     /// Six times the volume of the cells of one box, and a finding if they do not fill it.
@@ -184,11 +201,17 @@ impl Copies {
 const BOX: [[u32; 4]; 6] =
     [[0, 1, 3, 7], [0, 3, 2, 7], [0, 2, 6, 7], [0, 6, 4, 7], [0, 4, 5, 7], [0, 5, 1, 7]];
 
+/// The multiples of the sides by which each copy of the box is moved; 0 for the first.
+fn moves() -> Vec<[i32; 3]> {
+    let mut moves: Vec<[i32; 3]> = (0..27).map(|i| [i / 9 - 1, i / 3 % 3 - 1, i % 3 - 1]).collect();
+    moves.sort_by_key(|by| *by != [0; 3]);
+    moves
+}
+
 /// How copies are numbered.
 struct Layout<'a> {
     positions: &'a [[f64; 3]],
     sides: [f64; 3],
-    /// The multiples of the sides by which each copy of the box is moved; 0 for the first.
     moves: Vec<[i32; 3]>,
     numbers: BTreeMap<[i32; 3], u32>,
 }
@@ -196,9 +219,7 @@ struct Layout<'a> {
 impl<'a> Layout<'a> {
     /// With the copies that touch the box.
     fn new(positions: &'a [[f64; 3]], sides: [f64; 3]) -> Self {
-        let mut moves: Vec<[i32; 3]> =
-            (0..27).map(|i| [i / 9 - 1, i / 3 % 3 - 1, i % 3 - 1]).collect();
-        moves.sort_by_key(|by| *by != [0; 3]);
+        let moves = moves();
         let numbers = moves.iter().copied().zip(0..).collect();
         Self { positions, sides, moves, numbers }
     }

@@ -15,9 +15,10 @@ use super::finding::Finding;
 use super::flat::Cone;
 use super::gathered::gathered;
 use super::geometry::{self, Boundary, Linked};
+use super::spheres::Spheres;
 use super::structure::{self, MAX_CELLS, Points, Structure};
 use super::torus::Torus;
-use super::{gaps, non_vertices, ties};
+use super::{gaps, missing, non_vertices, ties};
 use crate::exact::{Exact, WeightedPoint};
 use crate::flat::auxiliary_positions;
 use crate::{Complex, Placed};
@@ -92,7 +93,8 @@ impl Claim<'_> {
     ///    encloses (whole triangulations only);
     /// 6. no point is more than one of vertex, hidden and duplicate, and each is one of them (in a
     ///    shape alone: each that has no other inside or on its sphere is a vertex);
-    /// 7. every class is what the definition says, and regular facets turn counter-clockwise seen
+    /// 7. no simplex of a shape alone is missing, as far as it [claims](Claim::lowest) to list all of them;
+    /// 8. every class is what the definition says, and regular facets turn counter-clockwise seen
     ///    from outside.
     ///
     /// Points that span no volume are judged in their plane, on their line, or as a single point:
@@ -163,7 +165,10 @@ impl Claim<'_> {
             not_judged: Vec::new(),
         };
         if self.extent == Extent::Shape {
-            certificate.not_judged.extend([NotJudged::MissingSimplices, NotJudged::HiddenAndHull]);
+            certificate
+                .not_judged
+                .extend((self.lowest > 0).then_some(NotJudged::SingularSimplices));
+            certificate.not_judged.push(NotJudged::HiddenAndHull);
         }
         if self.duplicates.is_none() {
             certificate.not_judged.push(NotJudged::Duplicates);
@@ -177,17 +182,15 @@ impl Claim<'_> {
         };
         let mut volume = None;
         let rules = apply(self, torus, &mut report, &mut volume, &monitor.part(0, 99, 100));
-        let all_rules = match rules {
-            Ok(()) => true,
-            Err(Stop::Enough) => false,
+        let not_judged = match rules {
+            Ok(not_judged) => not_judged,
+            Err(Stop::Enough) => Some(NotJudged::AfterFindings),
             Err(Stop::Cancelled(cancelled)) => return Err(cancelled.into()),
         };
         monitor.part(99, 100, 100).report(1, 1)?;
-        certificate.verdict = Verdict::of(certificate.findings, certificate.ties);
         certificate.six_volumes = volume.unwrap_or_default();
-        if !all_rules {
-            certificate.not_judged.push(NotJudged::AfterFindings);
-        }
+        certificate.not_judged.extend(not_judged);
+        certificate.conclude();
         Ok(certificate)
     }
 
@@ -243,14 +246,14 @@ fn near_box(torus: Option<Torus>, mut findings: Vec<Finding>) -> Vec<Finding> {
     findings
 }
 
-/// Applies the rules in turn. The monitor's parts are shares of the time that each takes.
+/// Applies the rules in turn, and says what was not judged besides. The monitor's parts are shares of the time that each takes.
 fn apply(
     claim: &Claim,
     torus: Option<Torus>,
     report: &mut Report,
     volume: &mut Option<Exact>,
     monitor: &Monitor,
-) -> Result<(), Stop> {
+) -> Result<Option<NotJudged>, Stop> {
     let (complex, alpha) = (claim.placed.complex, claim.placed.alpha);
     let sites = structure::sites(claim.placed.positions, claim.placed.weights);
     let points = Points { sites: &sites };
@@ -318,8 +321,6 @@ fn apply(
         let in_both = |finding: &Finding| {
             finding.judged_class().is_none_or(|simplex| wrong.contains(simplex))
         };
-        let mut lasting =
-            |findings: Vec<Finding>| report(findings.into_iter().filter(in_both).collect());
         // Only of a whole triangulation are volumes judged.
         let of_cells = if whole {
             let cells = filled.structure.complex.cells.rows();
@@ -328,28 +329,29 @@ fn apply(
             of_cells
         };
         let monitor = rest.part(4, 6, 6);
-        return apply_to(filled, of_cells, claim, &judge, &kept, &mut lasting, &monitor);
+        return apply_to((filled, of_cells), claim, &judge, &kept, &in_both, report, &monitor);
     }
-    apply_to(listed, of_cells, claim, &judge, &kept, report, &rest)
+    apply_to((listed, of_cells), claim, &judge, &kept, &|_| true, report, &rest)
 }
 
-/// Applies the rules after those on rows. Of the cells, six times the volume is given.
+/// Applies the rules after those on rows. Of the cells, six times the volume is given. Only findings that last count.
 fn apply_to(
-    linked: Linked,
-    of_cells: (IBig, i64),
+    (linked, of_cells): (Linked, (IBig, i64)),
     claim: &Claim,
     judge: &Judge,
     kept: &[u32],
+    lasts: &dyn Fn(&Finding) -> bool,
     report: &mut Report,
     monitor: &Monitor,
-) -> Result<(), Stop> {
+) -> Result<Option<NotJudged>, Stop> {
     let regular = linked.is_regular();
     let Linked { structure, broken, irregular } = linked;
     let untied = broken.is_empty() && irregular.is_empty();
     let points = judge.points;
     let (wrong, tied) = (Cell::new(!regular), Cell::new(false));
     let mut report = |findings: Vec<Finding>| {
-        let findings = near_box(judge.torus, findings);
+        let mut findings = near_box(judge.torus, findings);
+        findings.retain(lasts);
         wrong.set(wrong.get() || findings.iter().any(|finding| !finding.is_tie()));
         tied.set(tied.get() || findings.iter().any(Finding::is_tie));
         report(findings)
@@ -360,15 +362,8 @@ fn apply_to(
     }
     report(irregular)?;
     report(non_vertices::duplicates(&structure, kept, claim.duplicates))?;
-    if let Some(emptiness) = judge.emptiness {
-        report(non_vertices::of_shape(
-            &structure,
-            points,
-            emptiness,
-            kept,
-            claim,
-            &monitor.part(0, 1, 10),
-        )?)?;
+    if judge.emptiness.is_some() {
+        report(non_vertices::of_shape(&structure, kept, claim))?;
     } else {
         report(non_vertices::of_whole(&structure, kept, claim))?;
         if regular {
@@ -384,16 +379,32 @@ fn apply_to(
     let judging =
         if judge.emptiness.is_none() { monitor.part(3, 10, 10) } else { monitor.part(1, 6, 10) };
     report(classes::judge(&structure, judge, untied, &judging)?)?;
-    if let (Some(emptiness), false) = (judge.emptiness, wrong.get()) {
+    let Some(emptiness) = judge.emptiness else {
+        return if regular { Ok(None) } else { Err(Stop::Enough) };
+    };
+    if !wrong.get() {
         let (singular, mut found) =
-            ties::singular(&structure, points, emptiness, &monitor.part(6, 8, 10))?;
+            ties::singular(&structure, points, emptiness, &monitor.part(6, 7, 10))?;
         if tied.get() || found.iter().any(Finding::is_tie) {
-            let monitor = monitor.part(8, 10, 10);
+            let monitor = monitor.part(7, 8, 10);
             found.extend(ties::cells(&structure, points, emptiness, &singular, &monitor)?);
         }
         report(found)?;
     }
-    if regular { Ok(()) } else { Err(Stop::Enough) }
+    if wrong.get() {
+        return Err(Stop::Enough);
+    }
+    let search = missing::Search {
+        structure: &structure,
+        spheres: Spheres { points, alpha: judge.alpha, emptiness },
+        torus: judge.torus,
+        lowest: claim.lowest,
+        most_pairs: missing::MOST_PAIRS,
+    };
+    match search.findings(kept, &monitor.part(8, 10, 10))? {
+        Ok(found) => report(found).map(|()| None),
+        Err(declined) => Ok(Some(NotJudged::MissingSimplices(declined))),
+    }
 }
 
 /// Applies the rules to a whole triangulation of points that span no volume: those on cells to a cone over it.
@@ -403,7 +414,7 @@ fn flat(
     cone: &Cone,
     report: &mut Report,
     monitor: &Monitor,
-) -> Result<(), Stop> {
+) -> Result<Option<NotJudged>, Stop> {
     let complex = claim.placed.complex;
     let (kept, equal) = non_vertices::kept_points(points, complex, claim.duplicates);
     report(equal)?;
@@ -438,5 +449,5 @@ fn flat(
         torus: None,
     };
     report(classes::judge(&structure, &judge, false, &monitor.part(6, 10, 10))?)?;
-    if regular { Ok(()) } else { Err(Stop::Enough) }
+    if regular { Ok(None) } else { Err(Stop::Enough) }
 }

@@ -118,7 +118,8 @@ pub(super) fn compare(
 fn verdict(placed: Placed, monitor: &Monitor) -> Result<Verdict, Cancelled> {
     let mut complex = placed.complex.clone();
     orient(&mut complex, placed.positions, None);
-    let claim = Claim::new(placed.with_complex(&complex));
+    // Regions are those of cells.
+    let claim = Claim::new(placed.with_complex(&complex)).with_lowest(3);
     match claim.visit_monitored(&mut |_| ControlFlow::Continue(()), monitor) {
         Ok(certificate) => Ok(certificate.verdict),
         Err(CertifyError::Cancelled(cancelled)) => Err(cancelled),

@@ -3,6 +3,8 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use walpha_base::random::Random;
+
 const POINTS: &str = r#""points":[[0,0,0],[1,0,0],[0,1,0],[0,0,1]],"alpha":0.75"#;
 
 /// A folder of its own for each test, below Cargo's for tests.
@@ -42,6 +44,34 @@ fn exit_codes_say_what_was_found() {
         let (got, stdout, stderr) = run(&folder, arguments);
         assert_eq!(got, code, "{arguments:?}\n{stdout}{stderr}");
     }
+}
+
+/// So many points near each other that nobody looks for edges between them: nothing is found wrong, and the exit code is one of its own.
+#[test]
+fn what_is_right_as_far_as_judged_has_an_exit_code_of_its_own() {
+    let folder = folder("as_far_as_judged");
+    let mut random = Random::new(26);
+    let points: Vec<[f64; 3]> =
+        (0..94_000).map(|_| [0; 3].map(|_| random.whole(0, 1_000_000))).collect();
+    let points = format!("{points:?}");
+    for (alpha, code) in [(1e12, 4), (-1.0, 3)] {
+        let vertices: Vec<u32> = (0..94_000).collect();
+        let file = format!("{{\"points\":{points},\"alpha\":{alpha:?},\"vertices\":{vertices:?}}}");
+        std::fs::write(folder.join("points.json"), file).unwrap();
+        let (got, stdout, stderr) = run(&folder, &["points.json", "right.json"]);
+        assert_eq!(got, code, "{stdout}{stderr}");
+        if code == 4 {
+            let verdict = "\"points.json\": exact as far as judged: no findings\n";
+            assert!(stdout.starts_with(verdict), "{stdout}");
+            assert!(
+                stdout.contains("not judged: whether simplices of the shape are missing: about")
+            );
+            assert!(stdout.contains("beyond α = "), "{stdout}");
+        }
+    }
+    // Whatever is wrong weighs more.
+    let (got, ..) = run(&folder, &["wrong.json", "right.json"]);
+    assert_eq!(got, 3);
 }
 
 #[test]

@@ -11,6 +11,7 @@ mod common;
 mod compare;
 #[cfg(feature = "json")]
 mod compare_filtrations;
+mod completeness;
 mod each_simplex;
 mod flat;
 mod flat_claims;
