@@ -1,4 +1,5 @@
 use std::io::Read;
+use std::ops::Range;
 use std::path::Path;
 
 use super::{Points, PointsError, RADIUS, format, take_radii};
@@ -102,8 +103,13 @@ impl Header {
     /// The field with a name; its offset is in bytes, or else in numbers.
     fn field(&self, name: &str, bytes: bool) -> Option<Field> {
         let index = self.names.iter().position(|known| known == name)?;
-        let width = |k: usize| self.counts[k] * if bytes { self.sizes[k] } else { 1 };
-        Some(Field { index, offset: (0..index).map(width).sum() })
+        Some(Field { index, offset: self.width(0..index, bytes) })
+    }
+
+    /// The bytes, or else the numbers, of some fields of a point; the largest `usize` where they are more, as they may be in 32 bits.
+    fn width(&self, fields: Range<usize>, bytes: bool) -> usize {
+        let width = |k: usize| self.counts[k].saturating_mul(if bytes { self.sizes[k] } else { 1 });
+        fields.map(width).fold(0, usize::saturating_add)
     }
 
     /// The fields x, y, z, weight, value and radius.
@@ -129,7 +135,7 @@ impl Header {
 
     fn text(&self, text: &str) -> Result<Vec<[Option<f64>; 6]>, Reason> {
         let fields = self.fields(false)?;
-        let width: usize = self.counts.iter().sum();
+        let width = self.width(0..self.counts.len(), false);
         let lines: Vec<&str> = text.lines().filter(|line| !line.trim().is_empty()).collect();
         if lines.len() != self.points {
             return Err(Reason::header(format!(
@@ -164,8 +170,7 @@ impl Header {
     /// Reads binary data, stored point by point, or field by field.
     fn binary(&self, bytes: &[u8], by_field: bool) -> Result<Vec<[Option<f64>; 6]>, Reason> {
         let fields = self.fields(true)?;
-        let width: usize =
-            self.sizes.iter().zip(&self.counts).map(|(size, count)| size * count).sum();
+        let width = self.width(0..self.counts.len(), true);
         if bytes.len() < width.saturating_mul(self.points) {
             let points = self.points;
             return Err(Reason::header(format!(
