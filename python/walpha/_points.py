@@ -140,7 +140,7 @@ def write_points(
     OSError
         The file cannot be written. Nothing is left behind.
     ValueError
-        No format has this extension, or columns are not one for each point.
+        No format has this extension, columns are not one for each point, or a number is not finite.
 
     Examples
     --------
@@ -148,9 +148,9 @@ def write_points(
     """
     _walpha.write_points(
         os.fspath(path),
-        _arrays.points(points),
-        _arrays.optional("weights", weights),
-        _arrays.optional("values", values),
+        _arrays.finite("points", _arrays.points(points)),
+        _arrays.finite("weights", _arrays.optional("weights", weights)),
+        _arrays.finite("values", _arrays.optional("values", values)),
         None if alpha is None else _alpha.squared(alpha, None, ""),
         float(value_error),
     )

@@ -166,7 +166,7 @@ pub(crate) fn read_model_file(
     }
     finite(path, &points)?;
     if let Some(side) = *thin {
-        points.thin(side);
+        points.thin(side)?;
     }
     Ok((points, metadata))
 }
