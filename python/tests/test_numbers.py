@@ -223,7 +223,7 @@ CALLS = {
             "spacing": (triple, ()),
             "origin": (triple, ()),
             "nan": (itself, set(WRONG)),
-            "gray": (lambda number: (0.0, number), ()),
+            "gray": (lambda number: (0.0, number), HUGE),
             # All coefficients may be dropped.
             "rms": (itself, {INF, 1e308}),
             "epsilon": (itself, {INF, 1e308}),
@@ -309,7 +309,8 @@ def test_numbers_that_are_none_are_refused_by_name(name, parameter, number):
             return
         text = str(error)
         row = 2 if "corners" in getattr(make, "__qualname__", "") else 7
-        words = [parameter, parameter.rstrip("s"), f"point {row} ", f"row {row}", f"{number:g}", "NaN" if math.isnan(number) else "inf"]
+        # Places of samples are made of spacing and origin.
+        words = [parameter, parameter.rstrip("s"), f"point {row} ", "point 0 has y 1", f"row {row}", f"{number:g}", "NaN" if math.isnan(number) else "inf"]
         assert any(word in text for word in words), text
     else:
         assert is_allowed, f"{name} took {parameter} with {number}"

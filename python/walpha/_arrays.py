@@ -53,9 +53,9 @@ def doubles(name: str, array: NDArray[Any]) -> Floats:
     return nearest
 
 
-def finite(name: str, array: Floats | None) -> Floats | None:
+def finite(name: str, array: Floats) -> Floats:
     """The same, if all of it are numbers and finite."""
-    if array is not None and not np.isfinite(array).all():
+    if not np.isfinite(array).all():
         at = tuple(np.argwhere(~np.isfinite(array))[0])
         raise ValueError(f"{name}: row {at[0]} holds {array[at]}: give finite numbers")
     return array
@@ -132,11 +132,16 @@ def numbers(name: str, given: Arrays) -> NDArray[Any]:
     if array.size and array.dtype.kind not in "fiub":
         raise ValueError(f"{name} must be real numbers, not {array.dtype}{_advice(given)}")
     if array.dtype.kind == "f":
-        # Frames hand over floats where one of their columns has floats.
-        for label in getattr(given, "columns", ()):
-            if (of_one := _array(name, given[label])).dtype.kind in "iu":
-                doubles(f"{name}: column {label!r}", of_one)
+        _check_columns(name, given)
     return array
+
+
+def _check_columns(name: str, frame: Any) -> None:
+    """Integers in a frame, which hands over floats where one of its columns has floats, must be doubles."""
+    for label in getattr(frame, "columns", ()):
+        column = _array(name, frame[label])
+        if column.dtype.kind in "iu":
+            doubles(f"{name}: column {label!r}", column)
 
 
 def _array(name: str, given: Any) -> NDArray[Any]:

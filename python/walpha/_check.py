@@ -82,7 +82,7 @@ class Complex(Classified):
         with task(None, None) as how:
             self._complex = _walpha.Complex(
                 _arrays.finite("points", _arrays.points(points)),
-                _arrays.finite("weights", _arrays.optional("weights", weights)),
+                None if weights is None else _arrays.finite("weights", _arrays.column("weights", weights)),
                 _alpha.squared(alpha, alpha_radius, "; it says what the complex should be"),
                 (_arrays.indices("cells", cells, 4), _classes("cell_classes", cell_classes)),
                 (_arrays.indices("facets", facets, 3), _classes("facet_classes", facet_classes)),
