@@ -399,7 +399,7 @@ impl PointWriter {
         out: &mut dyn Write,
     ) -> io::Result<()> {
         let refused = |what: String| Err(io::Error::new(io::ErrorKind::InvalidInput, what));
-        if !(packing.value_error >= 0.0) {
+        if packing.value_error.is_nan() || packing.value_error < 0.0 {
             return refused(format!(
                 "an error of values of {} makes no sense",
                 packing.value_error
