@@ -362,6 +362,11 @@ def look_at_all(browser, page, checks, files, downloads, out, large):
         page.forget()
         browser.evaluate(f"(() => {{ const e = document.getElementById('alpha-value'); e.value = {alpha}; document.body.dataset.state = 'ready'; e.dispatchEvent(new Event('change')); }})()")
         agrees(page, checks, f"α = {alpha}")
+    for alpha, words in [("0.3", "Only points are in the shape"), ("-5", "Nothing is in the shape")]:
+        page.forget()
+        browser.evaluate(f"(() => {{ const e = document.getElementById('alpha-value'); e.value = {alpha}; document.body.dataset.state = 'ready'; e.dispatchEvent(new Event('change')); }})()")
+        browser.wait(MEASURED, 60)
+        checks.say(f"α = {alpha}: the legend says that there is no surface", words in page.text("legend"), page.text("legend"))
     for share in [0.2, 0.55, 0.9]:
         page.forget()
         browser.evaluate(f"(() => {{ const e = document.getElementById('alpha'); e.value = {share}; document.body.dataset.state = 'ready'; e.dispatchEvent(new Event('input')); }})()")

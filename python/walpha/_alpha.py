@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import sys
 from typing import Any, cast
 
 import numpy as np
@@ -20,6 +21,8 @@ def rule(alpha: Any, alpha_radius: Any) -> float | Rule | None:
         radius = _number("alpha_radius", alpha_radius, "give a length")
         if not radius >= 0:
             raise ValueError(f"alpha_radius={radius} is not a radius: give a number from 0 up")
+        if not (radius in (0, math.inf) or sys.float_info.min <= radius * radius < math.inf):
+            raise ValueError(f"alpha_radius={radius}: a double does not hold its square; rescale the points")
         return radius * radius
     if isinstance(alpha, str):
         if alpha not in ("auto", "auto:connected"):

@@ -17,7 +17,7 @@ def column(name: str, given: Arrays, what: str = "point") -> Floats:
     array = numbers(name, given)
     if array.ndim != 1:
         raise ValueError(f"{name} has shape {array.shape}, expected (n,): give one number for each {what}")
-    return array.astype(np.float64, copy=False)
+    return doubles(name, array)
 
 
 def optional(name: str, given: Arrays | None) -> Floats | None:
@@ -32,11 +32,33 @@ def points(given: Arrays, name: str = "points") -> Floats:
         array = array.reshape(0, 3)
     if array.ndim == 2 and array.shape[1] == 2:
         in_space = np.zeros((len(array), 3))
-        in_space[:, :2] = array
+        in_space[:, :2] = doubles(name, array)
         return in_space
     if array.ndim != 2 or array.shape[1] != 3:
         raise ValueError(f"{name} has shape {array.shape}, expected (n, 3) or (n, 2): x, y, z of each")
-    return array.astype(np.float64, copy=False)
+    return doubles(name, array)
+
+
+def doubles(name: str, array: NDArray[Any]) -> Floats:
+    """The numbers as float64. An integer that no double is, is an error, and not another number."""
+    nearest = array.astype(np.float64, copy=False)
+    if array.dtype.kind in "iu" and array.dtype.itemsize == 8:
+        # Smaller ones all are doubles.
+        for at in zip(*np.nonzero(np.abs(nearest) >= 2.0**53)):
+            if int(array[at]) != int(nearest[at]):
+                raise ValueError(
+                    f"{name}: row {at[0]} holds {array[at]}, which float64 does not hold, only {int(nearest[at])}: "
+                    "subtract an offset first, or round on purpose, by .astype(float)"
+                )
+    return nearest
+
+
+def finite(name: str, array: Floats) -> Floats:
+    """The same, if all of it are numbers and finite."""
+    if not np.isfinite(array).all():
+        at = tuple(np.argwhere(~np.isfinite(array))[0])
+        raise ValueError(f"{name}: row {at[0]} holds {array[at]}: give finite numbers")
+    return array
 
 
 def place(name: str, given: Arrays) -> list[float]:
@@ -44,7 +66,7 @@ def place(name: str, given: Arrays) -> list[float]:
     array = numbers(name, given)
     if array.shape != (3,) or not np.isfinite(array).all():
         raise ValueError(f"{name}={given!r}: give three finite numbers, x, y and z")
-    return [float(number) for number in array]
+    return [float(number) for number in doubles(name, array)]
 
 
 def sides(given: Arrays | None) -> list[float] | None:
@@ -56,7 +78,7 @@ def sides(given: Arrays | None) -> list[float] | None:
         array = np.repeat(array, 3)
     if array.shape != (3,):
         raise ValueError(f"periodic has shape {array.shape}: give the sides of the box along x, y and z")
-    return [float(side) for side in array]
+    return [float(side) for side in doubles("periodic", array)]
 
 
 def samples(given: Arrays) -> tuple[Samples, bool]:
@@ -109,7 +131,17 @@ def numbers(name: str, given: Arrays) -> NDArray[Any]:
     array = _array(name, given)
     if array.size and array.dtype.kind not in "fiub":
         raise ValueError(f"{name} must be real numbers, not {array.dtype}{_advice(given)}")
+    if array.dtype.kind == "f":
+        _check_columns(name, given)
     return array
+
+
+def _check_columns(name: str, frame: Any) -> None:
+    """Integers in a frame, which hands over floats where one of its columns has floats, must be doubles."""
+    for label in getattr(frame, "columns", ()):
+        column = _array(name, frame[label])
+        if column.dtype.kind in "iu":
+            doubles(f"{name}: column {label!r}", column)
 
 
 def _array(name: str, given: Any) -> NDArray[Any]:

@@ -81,8 +81,8 @@ class Complex(Classified):
         unseen = _arrays.indices("hidden", hidden, 1)
         with task(None, None) as how:
             self._complex = _walpha.Complex(
-                _arrays.points(points),
-                _arrays.optional("weights", weights),
+                _arrays.finite("points", _arrays.points(points)),
+                None if weights is None else _arrays.finite("weights", _arrays.column("weights", weights)),
                 _alpha.squared(alpha, alpha_radius, "; it says what the complex should be"),
                 (_arrays.indices("cells", cells, 4), _classes("cell_classes", cell_classes)),
                 (_arrays.indices("facets", facets, 3), _classes("facet_classes", facet_classes)),
@@ -134,6 +134,8 @@ class Complex(Classified):
         for simplex in simplices:
             if len(simplex) == 2 and isinstance(simplex[0], (list, tuple, np.ndarray)):
                 simplex, value = simplex
+                if value != value:
+                    raise ValueError(f"simplices: {simplex!r} has the value NaN: give a squared length")
                 if value > most:
                     continue
             if not 1 <= len(simplex) <= 4:

@@ -139,12 +139,12 @@ class Filtration(Frozen):
         Raises
         ------
         ValueError
-            Another shape, or an index of no point.
+            Another shape, an index of no point, or points that span no simplex, as equal ones do.
 
         Notes
         -----
-        With c the centre and bᵢ its barycentric coordinates these are 2 bᵢ (pᵢ - c) and -bᵢ. They are computed in doubles: the flatter
-        a simplex, the fewer digits are right.
+        With c the centre and bᵢ its barycentric coordinates these are 2 bᵢ (pᵢ - c) and -bᵢ. However flat a simplex is, each bᵢ is right
+        to 1e-15 of the largest, and each product to that times 2 ‖pᵢ - c‖.
 
         Examples
         --------
@@ -166,6 +166,10 @@ class Filtration(Frozen):
         with task(None, None) as how:
             flat = self._filtration.derivatives(rows.astype(np.uint32).ravel(), rows.shape[1], how)
         found = flat.reshape(*rows.shape, 4)
+        flat_rows = np.flatnonzero(np.isnan(found).any(axis=(1, 2)))
+        if len(flat_rows):
+            row = flat_rows[0]
+            raise ValueError(f"simplices: row {row}, {rows[row].tolist()}, spans no simplex: leave it out")
         return found[..., :3], found[..., 3]
 
     def simplex_tree(self, *, ranks: bool = False) -> gudhi.SimplexTree:
@@ -281,6 +285,8 @@ class Filtration(Frozen):
         [0.0, 1.0]
         """
         given = _arrays.column("alphas", alphas, "shape")
+        if np.isnan(given).any():
+            raise ValueError(f"alphas: row {np.flatnonzero(np.isnan(given))[0]} is NaN: give squared lengths")
         with task(progress, threads) as how:
             return [Level._of(facts) for facts in json.loads(self._filtration.ladder(given, how))]
 

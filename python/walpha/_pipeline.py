@@ -337,6 +337,8 @@ def _adaptive(
     if count is None and ratio is None and (target_rmse is not None or max_error is not None):
         count = samples
     elif count is None:
+        if ratio is not None and not 0 < ratio <= 1:
+            raise ValueError(f"ratio={ratio} makes no sense: give a share above 0 and up to 1")
         count = round((_RATIO if ratio is None else ratio) * samples)
     optional = None if max_error is None else float(max_error)
     return int(count), float(target_rmse or 0), optional, bool(exchange)

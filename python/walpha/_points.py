@@ -148,7 +148,7 @@ def write_points(
     OSError
         The file cannot be written. Nothing is left behind.
     ValueError
-        No format has this extension, or columns are not one for each point.
+        No format has this extension, columns are not one for each point, or a number is not finite.
 
     Examples
     --------
@@ -156,9 +156,9 @@ def write_points(
     """
     _walpha.write_points(
         os.fspath(path),
-        _arrays.points(points),
-        _arrays.optional("weights", weights),
-        _arrays.optional("values", values),
+        _arrays.finite("points", _arrays.points(points)),
+        None if weights is None else _arrays.finite("weights", _arrays.column("weights", weights)),
+        None if values is None else _arrays.finite("values", _arrays.column("values", values)),
         None if alpha is None else _alpha.squared(alpha, None, ""),
         float(value_error),
     )

@@ -13,21 +13,23 @@ class PowerDiagram(NamedTuple):
 
     The power cell of a point is where no other point has a smaller power distance. Which vertices and facets there are is decided
     exactly: cells of the triangulation with one orthogonal sphere are one vertex, however ties were broken, and a facet that
-    degenerates to a point, a segment or a ray is not listed. Coordinates, volumes and areas are rounded.
+    degenerates to a point, a segment or a ray is not listed, nor one of a cell without volume, as a point has that is only just not
+    hidden: cells of other points meet there. Coordinates, volumes and areas are rounded.
 
     Attributes
     ----------
     vertices : ndarray of float64, (k, 3)
-        The centres of the orthogonal spheres, each once.
+        The centres of the orthogonal spheres, each once. A coordinate beyond the largest double is infinite.
     same_sphere : ndarray of int64, (m,)
         For each of the triangulation's ``simplices`` its row of ``vertices``. Simplices with the same number have the
         same orthogonal sphere, and are together a polytope (Delaunay's, without weights).
     volumes : ndarray of float64, (n,)
-        Of the power cell of each point: infinite for points on the hull, 0 for hidden points and duplicates, which have none.
+        Of the power cell of each point: infinite where it is unbounded, as for points on the hull, 0 for hidden points and duplicates,
+        which have none, and for cells without volume; NaN where it is not known, as doubles do not hold products of three lengths.
     facets : ndarray of int64, (f, 2)
-        The two points whose cells share a facet, ascending.
+        The two points whose cells share a facet, ascending; both cells have a volume.
     areas : ndarray of float64, (f,)
-        Of each facet; infinite if it is unbounded.
+        Of each facet; infinite if it is unbounded, NaN where doubles do not hold products of two lengths.
     """
 
     vertices: Floats

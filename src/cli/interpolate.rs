@@ -199,10 +199,10 @@ impl Interpolate {
         match (original, weighed.origin.grid, asked) {
             (Some(&Source { ref volume, units, .. }), _, None) => Ok(Grid::of(volume, units)),
             (Some(&Source { ref volume, units, .. }), _, Some(dims)) => {
-                Ok(Grid::over(volume, dims, units))
+                Ok(Grid::over(volume, dims, units)?)
             }
             (None, Some(samples), asked) => {
-                Ok(Grid::over_samples(&samples, asked.unwrap_or(samples.dims)))
+                Ok(Grid::over_samples(&samples, asked.unwrap_or(samples.dims))?)
             }
             (None, None, Some(dims)) => {
                 let positions = weighed.points.positions();
@@ -210,7 +210,7 @@ impl Interpolate {
                     let join = |a: [f64; 3], b: [f64; 3]| [0, 1, 2].map(|k| f(a[k], b[k]));
                     positions.iter().copied().reduce(join).unwrap_or_default()
                 };
-                Ok(Grid::spanning(end(f64::min), end(f64::max), dims))
+                Ok(Grid::spanning(end(f64::min), end(f64::max), dims)?)
             }
             (None, None, None) => {
                 fail!("{} holds points, which have no grid of their own", self.pipeline.input.input => "give --dims X,Y,Z")

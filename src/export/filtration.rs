@@ -179,7 +179,8 @@ fn write_npz(ordered: &Ordered<'_>, out: &mut dyn Write, monitor: &Monitor) -> i
 fn write_json(ordered: &Ordered<'_>, out: &mut dyn Write, monitor: &Monitor) -> io::Result<()> {
     let loops = ordered.loops_monitored(monitor).map_err(io::Error::other)?;
     // Per simplex at most four vertices, three numbers, and its position in the order.
-    let bytes = ordered.len() * (size_of::<[u32; 4]>() + size_of::<[f64; 3]>() + size_of::<u32>());
+    let each = size_of::<[u32; 4]>() + size_of::<[f64; 3]>() + size_of::<u32>();
+    let bytes = ordered.len().saturating_mul(each);
     memory::afford(bytes, || format!("the JSON of {} simplices", ordered.len()))
         .map_err(io::Error::other)?;
     filtration_file(ordered, loops).write_json(out).map_err(|error| match error {

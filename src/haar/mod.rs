@@ -74,7 +74,7 @@ pub fn smooth_monitored(
 ) -> Result<(Volume, Truncation), HaarError> {
     options.tolerance.check()?;
     let dims = volume.dims();
-    let bytes = (size_of::<f64>() + size_of::<f32>()) * dims.samples();
+    let bytes = dims.samples().saturating_mul(size_of::<f64>() + size_of::<f32>());
     memory::afford(bytes, || format!("transforming {dims} samples"))?;
     // Each way takes as long, and truncation a little.
     let mut coefficients = forward(volume.samples(), options.decomposition);

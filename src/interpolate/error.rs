@@ -26,6 +26,20 @@ pub enum InterpolateError {
     /// A volume some of whose samples are missing.
     #[error("adaptive selection interpolates between all samples, and some are missing")]
     Missing,
+    /// Several samples where the grid has no room for them.
+    #[error(
+        "{samples} samples along {axis} from {low} to {high} are not a step apart: the grid must have a positive, finite extent there"
+    )]
+    Extent {
+        /// x, y or z.
+        axis: char,
+        /// Samples asked for.
+        samples: usize,
+        /// The first position.
+        low: f64,
+        /// The last.
+        high: f64,
+    },
     /// Adaptive selection cannot give this many points.
     #[error(
         "{asked} points cannot be selected adaptively: it starts from the 8 corners of the volume"
@@ -84,6 +98,7 @@ impl InterpolateError {
             Self::NoValues => "add a column `value` to the input, or start from a volume".into(),
             Self::Missing => advice!["give ", Setting::Nan, " a value, or select by difference"],
             Self::Value { .. } => "correct the input".into(),
+            Self::Extent { axis, .. } => format!("ask for 1 sample along {axis}").into(),
             Self::Count { available, .. } => {
                 format!("give a count from 8 to {available}, its samples").into()
             }

@@ -1,9 +1,10 @@
 use std::ops::Range;
 
 use rayon::prelude::*;
-use walpha_regular::BitRange;
 use walpha_regular::number::{cross, dot};
+use walpha_regular::{AXES, BitRange};
 
+use super::InterpolateError;
 use crate::points::{SampleGrid, Units};
 use crate::volume::{Coordinates, Dims, Frame, Volume, inverse};
 
@@ -33,36 +34,44 @@ struct World {
 
 impl Grid {
     /// The samples of a volume.
+    #[expect(clippy::missing_panics_doc, reason = "its own samples are a step apart")]
     pub fn of(volume: &Volume, units: Units) -> Self {
-        Self::over(volume, volume.dims(), units)
+        Self::over(volume, volume.dims(), units).expect("as many samples as the volume has")
     }
 
     /// `dims` samples over the extent of a volume.
-    pub fn over(volume: &Volume, dims: Dims, units: Units) -> Self {
+    ///
+    /// # Errors
+    /// [`InterpolateError::Extent`]: several samples along an axis that has one in the volume.
+    pub fn over(volume: &Volume, dims: Dims, units: Units) -> Result<Self, InterpolateError> {
         let samples = SampleGrid { dims: volume.dims(), frame: *volume.frame(), units };
         Self::over_samples(&samples, dims)
     }
 
     /// `dims` samples over the extent of the grid that points are samples of.
-    pub fn over_samples(samples: &SampleGrid, dims: Dims) -> Self {
+    ///
+    /// # Errors
+    /// [`InterpolateError::Extent`]: several samples along an axis that has one there.
+    pub fn over_samples(samples: &SampleGrid, dims: Dims) -> Result<Self, InterpolateError> {
         let SampleGrid { dims: counts, frame: source, units } = *samples;
-        let (counts, n) = (counts.xyz(), dims.xyz());
-        let axes: [Vec<f64>; 3] = [0, 1, 2].map(|k| steps(0.0, (counts[k] - 1) as f64, n[k]));
-        let step = [0, 1, 2].map(|k| step(0.0, (counts[k] - 1) as f64, n[k]));
+        let high = counts.xyz().map(|count| (count - 1) as f64);
+        let (axes, step) = axes([0.0; 3], high, dims)?;
         let frame = source.part([0, 1, 2].map(|k| axes[k][0]), step);
         let world = World { frame: source, inverse: inverse(source.axes()) };
-        Self { dims, axes, world: (units == Units::World).then_some(world), frame }
+        Ok(Self { dims, axes, world: (units == Units::World).then_some(world), frame })
     }
 
     /// `dims` samples over a box, given by its corners (x, y, z).
-    pub fn spanning(low: [f64; 3], high: [f64; 3], dims: Dims) -> Self {
-        let n = dims.xyz();
-        let axes: [Vec<f64>; 3] = [0, 1, 2].map(|k| steps(low[k], high[k], n[k]));
-        let spacing = [0, 1, 2].map(|k| step(low[k], high[k], n[k]));
+    ///
+    /// # Errors
+    /// [`InterpolateError::Extent`]: a coordinate that is not finite, a box whose corners are exchanged, or several samples along an
+    /// axis where it has no extent.
+    pub fn spanning(low: [f64; 3], high: [f64; 3], dims: Dims) -> Result<Self, InterpolateError> {
+        let (axes, spacing) = axes(low, high, dims)?;
         let origin = [0, 1, 2].map(|k| axes[k][0]);
         let coordinates = Coordinates::default();
         let frame = Frame { origin, spacing, coordinates, ..Frame::VOXEL };
-        Self { dims, axes, world: None, frame }
+        Ok(Self { dims, axes, world: None, frame })
     }
 
     /// Sizes along the axes.
@@ -153,6 +162,25 @@ impl World {
 /// The simplex of a sample that is outside the shape.
 pub(super) const OUTSIDE: u32 = u32::MAX;
 
+/// Positions along each axis, and the distances between neighbours.
+fn axes(
+    low: [f64; 3],
+    high: [f64; 3],
+    dims: Dims,
+) -> Result<([Vec<f64>; 3], [f64; 3]), InterpolateError> {
+    let n = dims.xyz();
+    for k in 0..3 {
+        let step = step(low[k], high[k], n[k]);
+        let apart = n[k] == 1 || (step > 0.0 && low[k] + step > low[k] && high[k] - step < high[k]);
+        if !(low[k] <= high[k] && (high[k] - low[k]).is_finite() && apart) {
+            let (axis, samples, low, high) = (AXES[k], n[k], low[k], high[k]);
+            return Err(InterpolateError::Extent { axis, samples, low, high });
+        }
+    }
+    let positions = [0, 1, 2].map(|k| steps(low[k], high[k], n[k]));
+    Ok((positions, [0, 1, 2].map(|k| step(low[k], high[k], n[k]))))
+}
+
 /// `n` numbers at equal steps from the first to the last; the middle where `n` is 1.
 fn steps(first: f64, last: f64, n: usize) -> Vec<f64> {
     if n == 1 {
@@ -163,9 +191,9 @@ fn steps(first: f64, last: f64, n: usize) -> Vec<f64> {
     (0..n).map(at).collect()
 }
 
-/// The distance between neighbours of [`steps`]; 1 where there is one position.
+/// The distance between neighbours of [`steps`]; of one position the extent, or 1 where there is none.
 fn step(first: f64, last: f64, n: usize) -> f64 {
-    let length = if last > first { last - first } else { 1.0 };
+    let length = if n > 1 || last > first { last - first } else { 1.0 };
     length / (n - 1).max(1) as f64
 }
 
@@ -182,9 +210,9 @@ mod tests {
         assert_eq!((own.frame(), own.position([2, 3, 4])), (&frame, [2.0, 3.0, 4.0]));
 
         let dims = Dims::new(5, 1, 9).unwrap();
-        let finer = Grid::over(&volume, dims, Units::Voxel);
+        let finer = Grid::over(&volume, dims, Units::Voxel).unwrap();
         assert_eq!(finer.position([1, 0, 8]), [0.5, 1.5, 4.0]);
-        let world = Grid::over(&volume, dims, Units::World);
+        let world = Grid::over(&volume, dims, Units::World).unwrap();
         assert_eq!(world.position([1, 0, 8]), [10.25, 3.0, 8.0]);
         assert_eq!(world.frame().spacing, [0.25, 6.0, 1.5]);
         assert_eq!(world.frame().to_world([1.0, 0.0, 8.0]), [10.25, 3.0, 8.0]);
@@ -200,8 +228,34 @@ mod tests {
     #[test]
     fn a_box_is_spanned_from_corner_to_corner() {
         let dims = Dims::new(2, 3, 1).unwrap();
-        let grid = Grid::spanning([1.0, 2.0, 3.0], [2.0, 4.0, 3.0], dims);
+        let grid = Grid::spanning([1.0, 2.0, 3.0], [2.0, 4.0, 3.0], dims).unwrap();
         assert_eq!(grid.position([1, 1, 0]), [2.0, 3.0, 3.0]);
         assert_eq!(grid.frame().spacing, [1.0, 1.0, 1.0]);
+    }
+
+    #[test]
+    fn samples_are_a_step_apart() {
+        let dims = Dims::new(2, 1, 2).unwrap();
+        let of = |low: [f64; 3], high: [f64; 3]| match Grid::spanning(low, high, dims) {
+            Ok(_) => None,
+            Err(InterpolateError::Extent { axis, .. }) => Some(axis),
+            Err(other) => panic!("{other}"),
+        };
+        let (nan, inf) = (f64::NAN, f64::INFINITY);
+        assert_eq!(of([0.0; 3], [1.0, 0.0, 1.0]), None);
+        assert_eq!(of([0.0; 3], [1.0, 1.0, 0.0]), Some('z'));
+        assert_eq!(of([1.0; 3], [0.0, 1.0, 2.0]), Some('x'));
+        assert_eq!(of([0.0; 3], [1.0, -1.0, 1.0]), Some('y'));
+        assert_eq!(of([0.0, nan, 0.0], [1.0; 3]), Some('y'));
+        assert_eq!(of([0.0; 3], [1.0, 1.0, inf]), Some('z'));
+        assert_eq!(of([-1e308, 0.0, 0.0], [1e308, 0.0, 1.0]), Some('x'));
+        // Doubles that have no third between them.
+        let three = Dims::new(3, 1, 1).unwrap();
+        assert!(Grid::spanning([1.0, 0.0, 0.0], [1f64.next_up(), 0.0, 0.0], three).is_err());
+        let flat = Volume::new(Array3::zeros((1, 4, 3)), Frame::VOXEL).unwrap();
+        let over = |z| Grid::over(&flat, Dims::new(3, 4, z).unwrap(), Units::World);
+        assert!(
+            over(1).is_ok() && matches!(over(2), Err(InterpolateError::Extent { axis: 'z', .. }))
+        );
     }
 }

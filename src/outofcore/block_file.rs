@@ -189,6 +189,7 @@ impl BlockFile {
         lengths.into_iter().all(|(name, size, count)| has(name, size, count))
             && self.summary.points == points
             && self.summary.halo <= self.samples
+            && self.summary.spanning.len() <= 4
             && components.iter().all(|component| {
                 component.sums.vertices as u128 <= sum(vertices) && component.sums.cells <= *cells
             })
@@ -282,6 +283,8 @@ pub(super) struct BlockSummary {
     pub weights: Option<Weights>,
     pub components: Vec<BlockComponent>,
     pub sheets: Vec<BlockSheet>,
+    /// At most four places, with the same affine hull as the points of the block and its halo.
+    pub spanning: Vec<[f64; 3]>,
 }
 
 /// The weights ω of some points.

@@ -173,11 +173,12 @@ impl VtkFormat {
     ) -> Result<Written, BlocksError> {
         let index = if team.is_first() { Some(Target::open(path)?) } else { None };
         let received;
-        let numbers = if let (1, Some(merged)) = (team.size(), merged) {
-            &merged.numbers
+        let (numbers, is_flat) = if let (1, Some(merged)) = (team.size(), merged) {
+            (&merged.numbers, merged.is_flat)
         } else {
-            received = team.broadcast(merged.map(|merged| merged.numbers.clone()));
-            &received
+            received =
+                team.broadcast(merged.map(|merged| (merged.numbers.clone(), merged.is_flat)));
+            (&received.0, received.1)
         };
         let folder = Self::folder(path);
         let stem = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
@@ -193,7 +194,7 @@ impl VtkFormat {
                 return Ok(None);
             }
             let file: PathBuf = folder.join(name(block));
-            let filled = Target::open(&file)?.fill(|out| piece.write(self, plan, out))?;
+            let filled = Target::open(&file)?.fill(|out| piece.write(self, plan, is_flat, out))?;
             Ok(Some((block, filled)))
         };
         let filled: Result<Vec<_>, _> = own.into_par_iter().map(fill).collect();
@@ -204,18 +205,24 @@ impl VtkFormat {
         if let Some(index) = index {
             let names: Vec<String> =
                 blocks.into_iter().map(|block| format!("{stem}/{}", name(block))).collect();
-            written.files.push(index.fill(|out| self.write_index(&names, out))?);
+            written.files.push(index.fill(|out| self.write_index(&names, is_flat, out))?);
         }
         Ok(written)
     }
 
-    fn write_index(self, names: &[String], out: &mut dyn Write) -> std::io::Result<()> {
+    fn write_index(
+        self,
+        names: &[String],
+        is_flat: bool,
+        out: &mut dyn Write,
+    ) -> std::io::Result<()> {
         let kind = match self {
             Self::Grid => "PUnstructuredGrid",
             Self::Surface => "PPolyData",
         };
         let of_cells: &[(&str, &str)] = match self {
             Self::Grid => &[("UInt8", "class")],
+            Self::Surface if is_flat => &[("UInt8", "class"), ("UInt32", "component")],
             Self::Surface => &[
                 ("UInt8", "class"),
                 ("UInt32", "component"),
@@ -252,7 +259,13 @@ fn escaped(text: &str) -> String {
 }
 
 impl MergedBlock {
-    fn write(&self, kind: VtkFormat, plan: &Plan, out: &mut dyn Write) -> std::io::Result<()> {
+    fn write(
+        &self,
+        kind: VtkFormat,
+        plan: &Plan,
+        is_flat: bool,
+        out: &mut dyn Write,
+    ) -> std::io::Result<()> {
         let job = &plan.job;
         let corners = PointData {
             positions: &self.positions,
@@ -266,7 +279,8 @@ impl MergedBlock {
             VtkFormat::Grid => write_grid(&self.complex, &self.corners(), &corners, &made, out),
             VtkFormat::Surface => {
                 let surface = Surface::of_complex(&self.complex);
-                let parts = Membership { components: &self.components, sheets: Some(&self.sheets) };
+                let sheets = (!is_flat).then_some(&self.sheets);
+                let parts = Membership { components: &self.components, sheets };
                 write_surface(&surface, &corners, &parts, &made, out)
             }
         }

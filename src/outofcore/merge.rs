@@ -3,6 +3,7 @@ use std::collections::hash_map::Entry;
 
 use serde::{Deserialize, Serialize};
 use walpha_base::{Monitor, Sum, UnionFind};
+use walpha_regular::spanning;
 
 use super::block_file::BlockFile;
 use super::block_file::{BlockComponent, BlockSheet, BlockSummary, Met, Weights};
@@ -40,6 +41,8 @@ pub struct Merged {
     pub(super) numbers: Vec<MergedNumbers>,
     /// Number of sheets.
     pub(super) sheets: u32,
+    /// Whether the points span no volume: their shape has no sheets then.
+    pub(super) is_flat: bool,
 }
 
 /// The common numbers of a block's components and sheets.
@@ -161,6 +164,9 @@ impl Union {
             - totals.cells as i64;
         let b1 = u64::try_from((b0 + b2) as i64 - euler).ok()?;
         let with_facets = sheets.into_iter().filter(|(_, _, sums)| *sums != SheetSums::default());
+        let places: Vec<_> =
+            summaries.iter().flat_map(|summary| &summary.spanning).copied().collect();
+        let is_flat = spanning(&places).len() < 4;
         Some(Merged {
             points: totals.points,
             weights: totals.weights,
@@ -170,10 +176,11 @@ impl Union {
             vertices: totals.vertices,
             betti: Betti::in_space(b0, b1, b2),
             measures,
-            components: components_of_sums(&components, Some(with_facets.collect())),
+            components: components_of_sums(&components, (!is_flat).then(|| with_facets.collect())),
             halo: totals.halo,
             numbers,
             sheets: count,
+            is_flat,
         })
     }
 }

@@ -6,6 +6,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use walpha_base::Monitor;
+use walpha_regular::spanning;
 
 use super::block_file::{
     Arrays, BlockComponent, BlockFile, BlockSheet, BlockSummary, Met, Weights,
@@ -180,6 +181,7 @@ fn write(plan: &Plan, block: usize, points: &Points, shape: BlockShape) -> Resul
         }),
         components,
         sheets,
+        spanning: spanning(&points.positions),
     };
     arrays(points, &shape, &component_of, &border).write(plan, block, summary)
 }

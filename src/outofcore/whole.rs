@@ -56,7 +56,7 @@ pub fn whole(plan: &Plan, merged: &Merged) -> Result<AlphaShape, BlocksError> {
         complex,
         hidden: None,
         betti: merged.betti,
-        sheets,
+        sheets: (!merged.is_flat).then_some(sheets),
     };
     Ok(AlphaShape::assembled(assembled)?)
 }

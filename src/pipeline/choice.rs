@@ -4,7 +4,9 @@ use walpha_base::Monitor;
 use super::PipelineError;
 use super::weighed::Importance;
 use crate::interpolate::{Adaptive, adaptive_voxels_monitored, exchange_monitored};
-use crate::points::{Points, Selection, SelectionRule, Units, difference, points_at, select};
+use crate::points::{
+    Points, PointsError, Selection, SelectionRule, Units, difference, points_at, select,
+};
 use crate::volume::Volume;
 
 /// Which samples of a volume become points.
@@ -43,12 +45,18 @@ impl Goal {
     }
 
     /// The goal for a volume of `samples` samples.
-    fn of(&self, samples: u64) -> Adaptive {
+    ///
+    /// # Errors
+    /// A ratio that is no share.
+    fn of(&self, samples: u64) -> Result<Adaptive, PointsError> {
+        if let Some(ratio) = self.ratio {
+            SelectionRule::Ratio(ratio).asked(samples)?;
+        }
         let share = |ratio: f64| (ratio * samples as f64).round() as u64;
         let asked = self.count.or(self.ratio.map(share));
         let all = self.rmse.or(self.max_error).map(|_| samples);
         let count = asked.or(all).unwrap_or_else(|| share(SelectionRule::PAPER));
-        Adaptive::new(count).rmse(self.rmse.unwrap_or(0.0)).max_error(self.max_error)
+        Ok(Adaptive::new(count).rmse(self.rmse.unwrap_or(0.0)).max_error(self.max_error))
     }
 }
 
@@ -107,7 +115,9 @@ impl Choice {
                 let importance = Importance::Differences(by_difference);
                 return Ok(Chosen { points, importance, ended: None });
             }
-            Self::Adaptive(goal) | Self::Exchanged(goal) => goal.of(volume.dims().samples() as u64),
+            Self::Adaptive(goal) | Self::Exchanged(goal) => {
+                goal.of(volume.dims().samples() as u64)?
+            }
         };
         let mut voxels = adaptive_voxels_monitored(volume, &goal, units, monitor)?;
         if matches!(self, Self::Exchanged(_)) {

@@ -142,15 +142,21 @@ impl AlphaRule {
             return Ok(self.given(unit));
         }
         let h = units.cell(frame).cbrt();
-        let alpha = Alpha::from_squared(SQUARED_VOXELS * h * h)?;
+        let squared = SQUARED_VOXELS * h * h;
+        if squared.is_infinite() {
+            return Err(AlphaError::Square(SQUARED_VOXELS.sqrt() * h).into());
+        }
+        let alpha = Alpha::from_squared(squared)?;
         Ok(Some(Parameter { alpha, unit, origin: ParameterOrigin::Default }))
     }
 
     /// The α for points whose filtration, in space, is known.
+    #[expect(clippy::missing_panics_doc, reason = "the points of a filtration are in range")]
     pub fn on(self, filtration: &Filtration, unit: LengthUnit) -> Parameter {
         let found = || match self {
             Self::Connected => Parameter::of_filtration(filtration, unit),
-            _ => Parameter::of_spacing(filtration.points(), None, unit),
+            _ => Parameter::of_spacing(filtration.points(), None, unit)
+                .expect("the points of a filtration were checked"),
         };
         self.given(unit).unwrap_or_else(found)
     }
@@ -169,8 +175,15 @@ impl Parameter {
     /// eighth neighbours, that is the quantile of r² − ω over points, r being the distance to the eighth of the other
     /// places and ω the weight. Surfaces become closed and solids filled, and a few strays do not matter.
     /// Optionally on a torus. O(n log n); of more than 20 000 points a sample is looked at.
-    pub fn of_spacing(points: &WeightedPoints, torus: Option<Torus>, unit: LengthUnit) -> Self {
-        Self { alpha: spacing_alpha(points, torus), unit, origin: ParameterOrigin::Auto }
+    ///
+    /// # Errors
+    /// Coordinates or weights that are not finite or too large.
+    pub fn of_spacing(
+        points: &WeightedPoints,
+        torus: Option<Torus>,
+        unit: LengthUnit,
+    ) -> Result<Self, ShapeError> {
+        Ok(Self { alpha: spacing_alpha(points, torus)?, unit, origin: ParameterOrigin::Auto })
     }
 
     /// The α of [`AlphaRule::Connected`]: the smallest of a filtration at which all points are in one solid component.
@@ -188,7 +201,7 @@ impl Parameter {
         monitor: &Monitor,
     ) -> Result<Self, ShapeError> {
         if rule != AlphaRule::Connected {
-            return Ok(Self::of_spacing(points, torus, unit));
+            return Self::of_spacing(points, torus, unit);
         }
         Ok(Self::of_filtration(&Filtration::monitored(torus, points.clone(), monitor)?, unit))
     }

@@ -4,9 +4,10 @@ use rayon::prelude::*;
 use rstar::RTree;
 use rstar::primitives::GeomWithData;
 use walpha_base::random::Random;
+use walpha_regular::check_numbers;
 
 use crate::points::WeightedPoints;
-use crate::shape::{Alpha, Torus};
+use crate::shape::{Alpha, ShapeError, Torus};
 
 /// How many neighbours the ball of a point reaches. Where points are scattered at random, with m of them in a unit of
 /// area or volume, the largest empty disc or ball has about the radius that nine of ten points need for this many:
@@ -25,7 +26,14 @@ type Neighbour = GeomWithData<[f64; 3], f64>;
 /// ω the weight. On a torus distances are those of the nearest copies. 0 for a single place without weight.
 ///
 /// A function of the set of points alone, not of their order. O(n log n).
-pub(super) fn spacing_alpha(points: &WeightedPoints, torus: Option<Torus>) -> Alpha {
+///
+/// # Errors
+/// Numbers that are not finite or too large.
+pub(super) fn spacing_alpha(
+    points: &WeightedPoints,
+    torus: Option<Torus>,
+) -> Result<Alpha, ShapeError> {
+    check_numbers(points.positions(), points.weights())?;
     let places = places(points, torus);
     let mut random = Random::new(0);
     let looked_at: Vec<usize> = if places.len() <= LOOKED_AT {
@@ -39,8 +47,7 @@ pub(super) fn spacing_alpha(points: &WeightedPoints, torus: Option<Torus>) -> Al
     reaches.sort_unstable_by(f64::total_cmp);
     let rank = (SHARE * reaches.len() as f64).ceil() as usize;
     let squared = reaches.get(rank.saturating_sub(1)).copied().unwrap_or_default();
-    // Coordinates may be so large that a square is not finite.
-    Alpha::from_squared(squared.min(f64::MAX)).expect("a number")
+    Ok(Alpha::from_squared(squared).expect("squares of coordinates in range are numbers"))
 }
 
 /// The distinct places of points, in order, each with the largest weight there.
@@ -62,24 +69,43 @@ fn places(points: &WeightedPoints, torus: Option<Torus>) -> Vec<Neighbour> {
     places.into_iter().map(|(place, weight)| Neighbour::new(place, weight)).collect()
 }
 
-/// The squared distance from a place to the eighth of the others.
+/// The squared distance from a place to the eighth of the others; on a torus these are all copies of places, its own among
+/// them.
 fn eighth(tree: &RTree<Neighbour>, from: &[f64; 3], torus: Option<Torus>) -> f64 {
     let nearest = |from: [f64; 3]| {
         let neighbours = tree.nearest_neighbor_iter_with_distance_2(&from);
+        // The first is the place itself.
         neighbours.map(|(_, squared)| squared).take(NEIGHBOURS + 1)
     };
     let mut squares: Vec<f64> = nearest(*from).collect();
-    if let Some(torus) = torus {
-        let steps = || -1..=1;
-        let copies =
-            steps().flat_map(|x| steps().flat_map(move |y| steps().map(move |z| [x, y, z])));
-        for windings in copies.filter(|&windings| windings != [0; 3]) {
-            squares.extend(nearest(torus.moved(*from, windings)));
+    let Some(torus) = torus else {
+        return squares.get(NEIGHBOURS).or(squares.last()).copied().unwrap_or_default();
+    };
+    let sides = torus.sides();
+    // So far along the shortest side, to either side of it, there are eight copies of the place itself.
+    let enough = (NEIGHBOURS / 2) as f64 * sides.iter().copied().fold(f64::INFINITY, f64::min);
+    let steps = |k: usize| {
+        let most = (enough / sides[k]) as i32 + 1;
+        -most..=most
+    };
+    let copies =
+        steps(0).flat_map(|x| steps(1).flat_map(move |y| steps(2).map(move |z| [x, y, z])));
+    for windings in copies.filter(|&windings| windings != [0; 3]) {
+        let copy = torus.moved(*from, windings);
+        let known = squares.get(NEIGHBOURS).copied().unwrap_or(f64::INFINITY);
+        if squared_distance_to_box(copy, sides) <= known.min(enough * enough) {
+            squares.extend(nearest(copy));
+            squares.sort_unstable_by(f64::total_cmp);
+            squares.truncate(NEIGHBOURS + 1);
         }
-        squares.sort_unstable_by(f64::total_cmp);
     }
-    // The first is the place itself.
-    squares.get(NEIGHBOURS).or(squares.last()).copied().unwrap_or_default()
+    squares[NEIGHBOURS]
+}
+
+/// The squared distance from a place to a box from the origin to its `sides`.
+fn squared_distance_to_box(place: [f64; 3], sides: [f64; 3]) -> f64 {
+    let outside = |k: usize| (-place[k]).max(place[k] - sides[k]).max(0.0);
+    (0..3).map(|k| outside(k) * outside(k)).sum()
 }
 
 #[cfg(test)]
@@ -87,7 +113,8 @@ mod tests {
     use super::*;
 
     fn alpha(positions: &[[f64; 3]], torus: Option<Torus>) -> f64 {
-        spacing_alpha(&WeightedPoints::unweighted(positions.to_vec()), torus).squared()
+        let points = WeightedPoints::unweighted(positions.to_vec());
+        spacing_alpha(&points, torus).unwrap().squared()
     }
 
     fn lattice(side: usize) -> Vec<[f64; 3]> {
@@ -128,8 +155,66 @@ mod tests {
         assert_eq!(alpha(&[[1.0; 3]], None), 0.0);
         assert_eq!(alpha(&[[0.0; 3], [3.0, 0.0, 0.0], [3.0, 0.0, 0.0]], None), 9.0);
         assert_eq!(alpha(&[[0.0; 3]], Some(Torus::new([2.0, 3.0, 4.0]).unwrap())), 13.0);
-        // Distances whose squares are no doubles.
-        assert_eq!(alpha(&[[-1e150, 0.0, 0.0], [3e155, 0.0, 0.0]], None), f64::MAX);
+        // The longest distances whose squares are looked at.
+        assert!(alpha(&[[-3e150; 3], [3e150; 3]], None).is_finite());
+    }
+
+    /// Along a short side, copies are neighbours that are several sides away.
+    #[test]
+    fn copies_are_as_far_away_as_they_must_be() {
+        let along = |axis: usize, short: f64, long: f64| {
+            let mut sides = [long; 3];
+            sides[axis] = short;
+            let at = |x: f64| [0, 1, 2].map(|k| if k == axis { x } else { 0.0 });
+            alpha(&[at(0.0), at(1.0), at(2.0)], Some(Torus::new(sides).unwrap()))
+        };
+        for axis in 0..3 {
+            assert_eq!(along(axis, 3.0, 300.0), 16.0);
+            assert_eq!(along(axis, 3.0, 3.0), 9.0);
+        }
+        // Of one place alone, the fourth copy to either side.
+        assert_eq!(alpha(&[[0.5; 3]], Some(Torus::new([1.0, 1000.0, 1000.0]).unwrap())), 16.0);
+
+        // As copies that are laid out.
+        let mut random = Random::new(3);
+        for sides in [[1.0, 4.0, 9.0], [2.0, 2.0, 1.0], [1.0, 1.0, 8.0]] {
+            let places: Vec<[f64; 3]> =
+                (0..5).map(|_| sides.map(|side| side * random.unit())).collect();
+            let torus = Torus::new(sides).unwrap();
+            let places: Vec<[f64; 3]> = places.iter().map(|&place| torus.wrap(place)).collect();
+            let steps = |k: usize| -> std::ops::RangeInclusive<i32> {
+                let most = (4.0 / sides[k]) as i32 + 1;
+                -most..=most
+            };
+            let laid_out: Vec<[f64; 3]> = steps(0)
+                .flat_map(|x| steps(1).flat_map(move |y| steps(2).map(move |z| [x, y, z])))
+                .flat_map(|windings| places.iter().map(move |&place| torus.moved(place, windings)))
+                .collect();
+            let mut reaches: Vec<f64> = (places.iter())
+                .map(|from| {
+                    let square = |to: &[f64; 3]| (0..3).map(|k| (to[k] - from[k]).powi(2)).sum();
+                    let mut squares: Vec<f64> = laid_out.iter().map(square).collect();
+                    squares.sort_unstable_by(f64::total_cmp);
+                    squares[8]
+                })
+                .collect();
+            reaches.sort_unstable_by(f64::total_cmp);
+            assert_eq!(alpha(&places, Some(torus)), reaches[4], "{sides:?}");
+        }
+    }
+
+    #[test]
+    fn numbers_out_of_range_are_refused_by_their_point() {
+        for wrong in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e308] {
+            let mut points = WeightedPoints::unweighted(lattice(2));
+            points.positions_mut()[5][1] = wrong;
+            let error = spacing_alpha(&points, None).unwrap_err().to_string();
+            assert!(error.starts_with("point 5 has y "), "{error}");
+            let mut points = WeightedPoints::unweighted(lattice(2));
+            points.weights_mut()[3] = wrong;
+            let error = spacing_alpha(&points, None).unwrap_err().to_string();
+            assert!(error.starts_with("point 3 has weight "), "{error}");
+        }
     }
 
     /// Neither strays, duplicates nor the order of points matter.
@@ -150,8 +235,9 @@ mod tests {
     #[test]
     fn weights_are_taken_off() {
         let mut points = WeightedPoints::unweighted(lattice(12));
-        let without = spacing_alpha(&points, None).squared();
+        let squared = |points: &WeightedPoints| spacing_alpha(points, None).unwrap().squared();
+        let without = squared(&points);
         points.weights_mut().iter_mut().for_each(|weight| *weight = 3.0);
-        assert_eq!(spacing_alpha(&points, None).squared(), without - 3.0);
+        assert_eq!(squared(&points), without - 3.0);
     }
 }

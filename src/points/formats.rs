@@ -350,7 +350,7 @@ impl PointWriter {
     /// Writes the whole file. The same points give the same bytes.
     ///
     /// # Errors
-    /// Whatever `out` returns.
+    /// Whatever `out` returns; a number that is not finite, which no reader would take, or a negative error.
     pub fn write(&self, points: &WeightedPoints, out: &mut dyn Write) -> io::Result<()> {
         self.write_model(points, &ModelMetadata::default(), &Packing::default(), out)
     }
@@ -359,7 +359,7 @@ impl PointWriter {
     /// [pack](Self::packs) use.
     ///
     /// # Errors
-    /// Whatever `out` returns.
+    /// As [`write`](Self::write).
     pub fn write_model(
         &self,
         points: &WeightedPoints,
@@ -367,6 +367,22 @@ impl PointWriter {
         packing: &Packing,
         out: &mut dyn Write,
     ) -> io::Result<()> {
+        let refused = |what: String| Err(io::Error::new(io::ErrorKind::InvalidInput, what));
+        if packing.value_error.is_nan() || packing.value_error < 0.0 {
+            return refused(format!(
+                "an error of values of {} makes no sense",
+                packing.value_error
+            ));
+        }
+        let columns = [Some(points.weights()), points.values()];
+        for (index, place) in points.positions().iter().enumerate() {
+            let others = columns.iter().flatten().map(|column| column[index]);
+            if let Some(number) = place.iter().copied().chain(others).find(|x| !x.is_finite()) {
+                return refused(format!(
+                    "point {index} has {number}, which is not a finite number"
+                ));
+            }
+        }
         (self.write)(points, metadata, packing, out)
     }
 }

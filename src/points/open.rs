@@ -183,7 +183,7 @@ pub(crate) fn read_model_file(
         points.weights = points.values.take();
     }
     if let Some(side) = options.thin {
-        points.thin(side);
+        points.thin(side)?;
     }
     Ok((points, metadata))
 }

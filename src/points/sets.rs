@@ -62,7 +62,14 @@ impl Points {
 
     /// Keeps the first point in each cube of a grid of this side, in the order of the points. The grid starts at the
     /// least coordinates. O(n).
-    pub fn thin(&mut self, side: f64) {
+    ///
+    /// # Errors
+    /// A side that is not a finite number above 0.
+    pub fn thin(&mut self, side: f64) -> Result<(), PointsError> {
+        if !(side > 0.0 && side.is_finite()) {
+            let (what, need) = ("cubes of side", "a length above 0");
+            return Err(PointsError::Number { what, given: side, need });
+        }
         let [least, _] = bounding_box(&self.positions);
         // Floats, as a side may be so small that the number of a cube fits no integer.
         let cube = |place: &[f64; 3]| {
@@ -83,6 +90,7 @@ impl Points {
         }
         let mut kept = kept.iter();
         self.positions.retain(|_| kept.next() == Some(&true));
+        Ok(())
     }
 
     /// The number of points.

@@ -149,6 +149,27 @@ fn shell_lines(document: &str) -> Vec<String> {
     lines.map(|line| line.split("  #").next().unwrap_or(line).trim().to_owned()).collect()
 }
 
+/// What sentences about the report quote of it, with `#` for each number.
+fn quoted_reports(document: &str) -> Vec<String> {
+    let of_report = document.split(". ").filter(|sentence| sentence.contains("report"));
+    // Text and quotes take turns.
+    let quotes = of_report.flat_map(|sentence| sentence.split('"').skip(1).step_by(2));
+    quotes.filter(|quote| quote.split_whitespace().count() > 2).map(without_numbers).collect()
+}
+
+fn without_numbers(text: &str) -> String {
+    let mut kept = String::new();
+    for c in text.chars() {
+        match c {
+            '0'..='9' if kept.ends_with('#') => {}
+            '0'..='9' => kept.push('#'),
+            '\n' => kept.push(' '),
+            c => kept.push(c),
+        }
+    }
+    kept
+}
+
 /// The lines of a command's help that are examples.
 fn examples(help: &str) -> Vec<String> {
     let (_, rest) = help.split_once("\nExample").expect("examples");
@@ -203,6 +224,28 @@ fn printed_commands_work() {
         }
     }
     assert!(seen.len() > TEACHING.len(), "{seen:?}");
+}
+
+#[test]
+fn quoted_reports_are_printed() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder.path();
+    let mut random = Random::new(1);
+    let mut rows: Vec<String> =
+        (0..500).map(|_| [0; 3].map(|_| random.unit().to_string()).join(" ")).collect();
+    rows.push("9 9 9".into());
+    fs::write(folder.join("strays.xyz"), rows.join("\n")).expect("a file");
+    fs::write(folder.join("buckyball.csv"), buckyball().join("\n")).expect("a file");
+    let printed = [&["shape", "strays.xyz"][..], &["shape", "buckyball.csv", "--alpha", "1"]];
+    let printed = printed.map(|command| without_numbers(&ok(folder, command))).concat();
+    let mut quotes = 0;
+    for path in documents() {
+        for quote in quoted_reports(&fs::read_to_string(&path).expect("a document")) {
+            assert!(printed.contains(&quote), "{}: {quote:?} in\n{printed}", path.display());
+            quotes += 1;
+        }
+    }
+    assert!(quotes > 2, "{quotes}");
 }
 
 #[test]

@@ -26,6 +26,7 @@ mod las;
 mod laws;
 #[cfg(feature = "mpi")]
 mod mpi;
+mod numbers;
 #[cfg(target_os = "linux")]
 mod opened_once;
 mod outline;

@@ -176,7 +176,9 @@ export class ShapePanel {
     }
     const shown = parts.filter(([, count]) => count > 0);
     byId("legend").replaceChildren(...shown.map(([colour, count, name]) => element("span", {}, box(colour), `${count} ${name}`)));
-    if (regular.length + singular.length + edges.length === 0) byId("legend").append("Only points are in the shape at this α.");
+    if (regular.length + singular.length + edges.length > 0) return;
+    const pointsToo = [INTERIOR, REGULAR, SINGULAR].some((kind) => classes.includes(kind));
+    byId("legend").append(`${pointsToo ? "Only points are" : "Nothing is"} in the shape at this α.`);
   }
 
   showSingular() {

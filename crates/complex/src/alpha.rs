@@ -42,12 +42,15 @@ impl Alpha {
     /// α given by the radius it is the square of, rounded once.
     ///
     /// # Errors
-    /// [`AlphaError`] for NaN and for a negative radius.
+    /// [`AlphaError`] for NaN, for a negative radius, and for one so large or small that a double does not hold its square.
     pub fn from_radius(radius: f64) -> Result<Self, AlphaError> {
         match radius {
             _ if radius.is_nan() => Err(AlphaError::NaN),
             _ if radius < 0.0 => Err(AlphaError::Radius(radius)),
-            _ => Ok(Self(radius * radius)),
+            _ if radius == 0.0 || radius.is_infinite() || (radius * radius).is_normal() => {
+                Ok(Self(radius * radius))
+            }
+            _ => Err(AlphaError::Square(radius)),
         }
     }
 
@@ -92,6 +95,9 @@ pub enum AlphaError {
     /// A negative radius.
     #[error("a radius must not be negative, and {0} is")]
     Radius(f64),
+    /// A radius whose square is beyond the range of doubles.
+    #[error("a double does not hold the square of the radius {0:e}")]
+    Square(f64),
     /// Text that is not a number.
     #[error("{0:?} is not a number")]
     Text(String),
@@ -103,6 +109,7 @@ impl AlphaError {
         match self {
             Self::NaN => "give a number (a squared length), or `inf` for the convex hull",
             Self::Radius(_) => "give a length from 0 up, or α itself",
+            Self::Square(_) => "rescale the input, or give `inf` for the convex hull",
             Self::Text(_) => "give a squared length, as in 10, or `inf` for the convex hull",
         }
     }

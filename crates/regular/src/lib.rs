@@ -42,6 +42,7 @@ pub mod number;
 mod order;
 mod power_diagram;
 mod predicates;
+mod scaled;
 mod sites;
 mod torus;
 mod triangulation;
@@ -70,7 +71,11 @@ pub use lattice::{BitRange, Lattice};
 #[doc(hidden)]
 pub use merging::triangulate_along;
 #[doc(hidden)]
-pub use predicates::{Interval, Predicates, Ratio, Screen, SmallRadius, lattice};
+pub use predicates::{
+    Interval, Predicates, Ratio, Screen, Share, SmallRadius, centre_shares, lattice,
+};
+#[doc(hidden)]
+pub use scaled::Scaled;
 #[doc(hidden)]
 pub use sites::{Sites, check as check_numbers};
 #[doc(hidden)]

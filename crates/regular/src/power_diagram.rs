@@ -1,5 +1,8 @@
 //! The power diagram, dual to the regular triangulation.
 
+use std::collections::HashMap;
+use std::ops::RangeInclusive;
+
 use rayon::prelude::*;
 use walpha_base::vector::{add, cross, dot, length, sub, unit};
 use walpha_base::{Monitor, UnionFind};
@@ -11,12 +14,15 @@ use crate::{CellArrays, Triangulation, TriangulationError, facets, filled, with_
 /// The power diagram of weighted points: its vertices, the volumes of its cells, the areas of the facets between them.
 ///
 /// The power cell of a point is where no other point has a smaller power distance; without weights it is the Voronoi cell. Cells of
-/// points on the convex hull are unbounded, and hidden points and duplicates have none.
+/// points on the convex hull are unbounded, and hidden points and duplicates have none. A point that is only just not hidden, as its power
+/// distance is nowhere smaller than all others, has a cell without volume: a polygon, a segment or a place where cells of other points meet,
+/// which are then neighbours across it.
 ///
 /// Which vertices and facets there are is decided exactly: cells of the triangulation with one orthogonal sphere are one vertex, however
-/// ties were broken, and a facet that degenerates to a point, a segment or a ray is not listed. Hence a point of a cubic lattice has six
-/// facets, and one of a face-centred lattice twelve. Coordinates, areas and volumes are rounded, areas and volumes of distances
-/// from points nearby; they may overflow or vanish where lengths are above 10¹⁰⁰ or below 10⁻¹⁰⁰.
+/// ties were broken, and a facet that degenerates to a point, a segment or a ray is not listed, nor is one of a cell without volume.
+/// Hence a point of a cubic lattice has six facets, and one of a face-centred lattice twelve. Coordinates, areas and volumes are rounded,
+/// areas and volumes of distances from points nearby. Where lengths are so large or small that a double does not hold a product of two or
+/// three of them, as it does from 10⁻¹⁰⁰ to 10¹⁰⁰, areas and volumes are not known, and NaN; a coordinate beyond the largest double is infinite.
 ///
 /// ```
 /// use walpha_regular::{PowerDiagram, triangulate};
@@ -70,7 +76,7 @@ impl PowerDiagram {
         check(positions, weights)?;
         let arrays = &triangulation.arrays;
         // What threads allocate piece by piece.
-        with_capacity::<u8>(arrays.cells.len() * BYTES_OF_A_CELL)?;
+        with_capacity::<u8>(arrays.cells.len().saturating_mul(BYTES_OF_A_CELL))?;
         let predicates = Predicates::new(positions, weights);
         let spheres = Spheres::of(arrays, &predicates, &monitor.part(0, 1, 3))?;
         let centre = |&cell: &u32| {
@@ -80,21 +86,27 @@ impl PowerDiagram {
         let centres: Vec<Centre> = spheres.first.par_iter().map(centre).collect();
         let dual = Dual { arrays, positions, spheres: &spheres, centres: &centres };
         let facets = dual.facets(&monitor.part(1, 3, 3))?;
+        let sides = Sides::of(&facets, positions.len())?;
+        let facets = sides.of_solid_cells(facets);
 
         let mut volumes: Vec<f64> = filled(positions.len(), 0.0)?;
-        for v in triangulation.hull_facets().flatten() {
-            volumes[v as usize] = f64::INFINITY;
-        }
-        for &([p, q], area) in facets.iter().filter(|(_, area)| area.is_finite()) {
+        for &([p, q], area) in facets.iter().filter(|(_, area)| *area != f64::INFINITY) {
             let [p, q] = [p, q].map(|v| v as usize);
             let distance = length(sub(positions[q], positions[p]));
             // Six times the pyramids with this base and the one or the other point as apex: twice the height is the distance, and
             // more for the heavier point.
             let more = (weights[p] - weights[q]) / distance;
+            let is_held = area == 0.0 || area * distance >= f64::MIN_POSITIVE;
+            let area = if is_held { area } else { f64::NAN };
             volumes[p] += area * (distance + more);
             volumes[q] += area * (distance - more);
         }
-        volumes.iter_mut().for_each(|volume| *volume /= 6.0);
+        for volume in &mut volumes {
+            *volume = if volume.is_finite() { *volume / 6.0 } else { f64::NAN };
+        }
+        for v in triangulation.hull_facets().flatten().filter(|&v| sides.is_solid(v)) {
+            volumes[v as usize] = f64::INFINITY;
+        }
         let vertices =
             centres.iter().map(|centre| add(positions[centre.near as usize], centre.offset));
         let vertices = vertices.collect();
@@ -104,7 +116,8 @@ impl PowerDiagram {
         Ok(Self { vertices, same_sphere, volumes, facets, areas })
     }
 
-    /// The centre of each orthogonal sphere, in the order of the first cell that has it.
+    /// The centre of each orthogonal sphere, in the order of the first cell that has it. A coordinate beyond the largest double is
+    /// infinite.
     pub fn vertices(&self) -> &[[f64; 3]] {
         &self.vertices
     }
@@ -115,18 +128,18 @@ impl PowerDiagram {
         &self.same_sphere
     }
 
-    /// The volume of the power cell of each point: ∞ if it is unbounded, 0 for points that have none. Where weights make a cell tiny,
-    /// rounding may leave 0 or less.
+    /// The volume of the power cell of each point: ∞ if it is unbounded, 0 for points that have no cell or one without volume, NaN where
+    /// it is not known, as products of lengths are not held by doubles. Where weights make a cell tiny, rounding may leave 0 or less.
     pub fn volumes(&self) -> &[f64] {
         &self.volumes
     }
 
-    /// The two points of each facet, ascending: those whose power cells share it.
+    /// The two points of each facet, ascending: those whose power cells share it, both of which have a volume.
     pub fn facets(&self) -> &[[u32; 2]] {
         &self.facets
     }
 
-    /// The area of each facet; ∞ if it is unbounded.
+    /// The area of each facet: ∞ if it is unbounded, NaN where it is not known, as products of lengths are not held by doubles.
     pub fn areas(&self) -> &[f64] {
         &self.areas
     }
@@ -278,12 +291,88 @@ impl Dual<'_> {
         let Some(corners) = spheres.iter().map(from_p).collect::<Option<Vec<_>>>() else {
             return Some(f64::INFINITY);
         };
-        let normal = unit(sub(position(q), position(p)))?;
-        let triangle = |side: &[[f64; 3]]| {
-            let [a, b] = [side[0], side[1]].map(|corner| sub(corner, corners[0]));
-            dot(normal, cross(a, b))
+        let way = sub(position(q), position(p));
+        let rays: Vec<_> = corners[1..].iter().map(|&corner| sub(corner, corners[0])).collect();
+        let most = largest(rays.as_flattened());
+        if !(SQUARED.contains(&largest(&way)) && (most == 0.0 || SQUARED.contains(&most))) {
+            return Some(f64::NAN);
+        }
+        let normal = unit(way)?;
+        let triangle = |side: &[[f64; 3]]| dot(normal, cross(side[0], side[1]));
+        Some(rays.windows(2).map(triangle).sum::<f64>().abs() / 2.0)
+    }
+}
+
+/// Lengths whose squares doubles hold, to the last bit and with room for sums.
+const SQUARED: RangeInclusive<f64> = 1e-140..=1e140;
+
+/// The largest magnitude; NaN where there is one.
+fn largest(numbers: &[f64]) -> f64 {
+    numbers.iter().fold(0.0, |most: f64, x| if x.is_nan() { *x } else { most.max(x.abs()) })
+}
+
+/// How many facets the power cell of each point has, by which one knows whether it has a volume.
+///
+/// A cell with a volume has a vertex, as points span a volume, and so three facets at least. A cell that is a polygon has two: the polygon,
+/// seen from the one and the other side, where the next points are in line with its own. Segments and places have none.
+struct Sides(Vec<u8>);
+
+impl Sides {
+    const OF_POLYGON: u8 = 2;
+
+    fn of(facets: &[([u32; 2], f64)], points: usize) -> Result<Self, TriangulationError> {
+        let mut sides: Vec<u8> = filled(points, 0)?;
+        for v in facets.iter().flat_map(|(facet, _)| facet) {
+            let count = &mut sides[*v as usize];
+            *count = count.saturating_add(1);
+        }
+        Ok(Self(sides))
+    }
+
+    fn is_polygon(&self, v: u32) -> bool {
+        self.0[v as usize] == Self::OF_POLYGON
+    }
+
+    fn is_solid(&self, v: u32) -> bool {
+        self.0[v as usize] > Self::OF_POLYGON
+    }
+
+    /// The facets between cells with a volume: what is a facet of a polygon is that of the cells on either side of all polygons there.
+    fn of_solid_cells(&self, facets: Vec<([u32; 2], f64)>) -> Vec<([u32; 2], f64)> {
+        if !self.0.contains(&Self::OF_POLYGON) {
+            return facets;
+        }
+        let mut next: HashMap<u32, Vec<u32>> = HashMap::new();
+        for &([p, q], _) in &facets {
+            for (v, other) in [(p, q), (q, p)].into_iter().filter(|&(v, _)| self.is_polygon(v)) {
+                next.entry(v).or_default().push(other);
+            }
+        }
+        let beyond = |from: u32, polygon: u32| {
+            let (mut last, mut at) = (from, polygon);
+            for _ in 0..next.len() {
+                let onwards = next.get(&at)?.iter().copied().find(|&v| v != last)?;
+                (last, at) = (at, onwards);
+                if !self.is_polygon(at) {
+                    return Some(at);
+                }
+            }
+            None
         };
-        Some(corners[1..].windows(2).map(triangle).sum::<f64>().abs() / 2.0)
+        let between = |([p, q], area): ([u32; 2], f64)| {
+            let (from, polygon) = match [p, q].map(|v| self.is_polygon(v)) {
+                [false, false] => return Some(([p, q], area)),
+                [true, true] => return None,
+                [false, true] => (p, q),
+                [true, false] => (q, p),
+            };
+            // Once, as one gets here from either end.
+            let to = beyond(from, polygon).filter(|&to| from < to)?;
+            Some(([from, to], area))
+        };
+        let mut solid: Vec<_> = facets.into_iter().filter_map(between).collect();
+        solid.par_sort_unstable_by_key(|&(edge, _)| edge);
+        solid
     }
 }
 

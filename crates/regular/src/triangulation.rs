@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use walpha_base::Monitor;
 
 use crate::merging::triangulate_along;
-use crate::{CellArrays, Sites, TriangulationError, facets, filled, with_capacity};
+use crate::{CellArrays, Scaled, Sites, TriangulationError, facets, filled, with_capacity};
 
 /// The regular triangulation of points in space.
 ///
@@ -53,8 +53,11 @@ pub fn triangulate_monitored(
     let zeros = if weights.is_none() { filled(points.len(), 0.0)? } else { Vec::new() };
     let sites = Sites::new(points, weights.unwrap_or(&zeros))?;
     let along = sites.curve();
-    let places: Vec<_> = along.par_iter().map(|&i| sites.positions()[i as usize]).collect();
-    let heights: Vec<_> = along.par_iter().map(|&i| sites.weights()[i as usize]).collect();
+    let mut places: Vec<_> = along.par_iter().map(|&i| sites.positions()[i as usize]).collect();
+    let mut heights: Vec<_> = along.par_iter().map(|&i| sites.weights()[i as usize]).collect();
+    if let Some(scaled) = Scaled::of(&places, &heights) {
+        (places, heights) = (scaled.positions, scaled.weights);
+    }
     let work = monitor.units(along.len() as u64);
     let mut arrays = triangulate_along(&places, &heights, |more| work.add(more as u64))?;
     work.add(along.len() as u64)?;

@@ -41,7 +41,8 @@ pub struct Assembled {
     pub complex: Complex,
     pub hidden: Option<Vec<u32>>,
     pub betti: Betti,
-    pub sheets: Sheets,
+    /// `None` for points that span no volume.
+    pub sheets: Option<Sheets>,
 }
 
 impl AlphaShape {
@@ -63,7 +64,7 @@ impl AlphaShape {
             duplicates: Vec::new(),
             hidden,
             betti: Some(parts.betti),
-            sheets: Some(parts.sheets),
+            sheets: parts.sheets,
             sums: Derived::default(),
             solid: Derived::default(),
             outline: Derived::default(),

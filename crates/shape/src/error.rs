@@ -2,7 +2,7 @@ use walpha_base::Cancelled;
 use walpha_base::advice::{Advice, Setting, advice};
 use walpha_base::memory::{self, NoMemory};
 use walpha_base::monitor::wraps;
-use walpha_regular::{SitesError, TriangulationError, is_flat};
+use walpha_regular::{MAX_COORDINATE, SitesError, TriangulationError, is_flat};
 
 /// Why a shape cannot be computed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -200,6 +200,14 @@ pub enum OutlineError {
     /// The points lie on one line, or at one place.
     #[error("the points lie on one line, where a shape has no area and so no outline")]
     Line,
+    /// A coordinate that is not finite, or too large.
+    #[error(
+        "point {index} has a coordinate that is not a finite number of magnitude at most {MAX_COORDINATE:e}"
+    )]
+    Coordinate {
+        /// Index of the point.
+        index: usize,
+    },
     /// The shape is that of a torus.
     #[error("a shape of a periodic box lies on a torus and in no plane, so it has no outline")]
     Torus,
@@ -211,6 +219,7 @@ impl OutlineError {
         match self {
             Self::Space => "take its boundary, a surface, or leave out a coordinate".into(),
             Self::Line => "take its edges and vertices".into(),
+            Self::Coordinate { .. } => "clean or rescale the input".into(),
             Self::Torus => advice!["omit ", Setting::Periodic],
         }
     }

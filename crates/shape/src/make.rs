@@ -2,15 +2,15 @@ use std::num::NonZeroUsize;
 
 use rayon::prelude::*;
 use walpha_base::{Coordinates, Monitor};
-use walpha_regular::{Sites, check_numbers, lattice};
+use walpha_regular::{Scaled, Sites, SitesError, check_numbers, lattice};
 
 use super::blocks::{self, Limits, Plan, Question, Reach};
 use super::derived::Derived;
 use super::flat::{self, flat};
 use super::topology::{components, connected_on_torus, sheet_betti, torus_betti};
 use super::{
-    AlphaShape, Betti, CgalError, Complex, Engine, ShapeError, ShapeOptions, Sheets, Simplices,
-    WeightedPoints,
+    Alpha, AlphaShape, Balls, Betti, CgalError, Complex, Engine, ShapeError, ShapeOptions, Sheets,
+    Simplices, WeightedPoints,
 };
 
 /// The alpha shape of weighted points.
@@ -97,15 +97,34 @@ fn shape_by(
         check_numbers(&points.positions, &points.weights)?;
         points.positions.par_iter_mut().for_each(|place| *place = torus.wrap(*place));
     }
+    if let Some(values) = points.values()
+        && let Some(index) = values.iter().position(|value| !value.is_finite())
+    {
+        let (what, value, limit) = ("value", values[index], f64::MAX);
+        return Err(SitesError::Value { index, what, value, limit }.into());
+    }
     let squared = options.balls.power_weights(&points.weights, options.alpha)?;
     let weights = squared.as_deref().unwrap_or(&points.weights);
-    let found = match in_space(&points.positions, weights, &options, find) {
+    // What decides: the same at another scale, and with the power weights.
+    let alpha = options.power_alpha();
+    let scaled = Scaled::of(&points.positions, weights).filter(|_| options.periodic.is_none());
+    let scaled = scaled.and_then(|scaled| {
+        let alpha = Alpha::from_squared(scaled.square(alpha.squared())?).ok()?;
+        Some((alpha, scaled))
+    });
+    let (alpha, positions, weights) = match &scaled {
+        Some((alpha, scaled)) => (*alpha, &scaled.positions[..], &scaled.weights[..]),
+        None => (alpha, &points.positions[..], weights),
+    };
+    let question = options.balls(Balls::Power).alpha(alpha);
+    let found = match in_space(positions, weights, &question, find) {
         Err(error) if !options.refuse_flat && error.is_flat() => {
             options.engine = Engine::Native;
-            in_plane(&points.positions, weights, &options, monitor)?
+            in_plane(positions, weights, &question, monitor)?
         }
         found => found?,
     };
+    drop(scaled);
     let Found { mut complex, boundary, hidden, duplicates, betti } = found;
     // Only a whole triangulation has exterior simplices.
     if hidden.is_some() && !options.exterior {

@@ -66,7 +66,7 @@ impl Dims {
     /// The same without a limit to what can be read at once: for volumes that are read part by part.
     ///
     /// # Errors
-    /// [`VolumeError::EmptyAxis`]; [`VolumeError::TooManySamples`] when the bytes of the samples pass 2⁶³.
+    /// [`VolumeError::EmptyAxis`]; [`VolumeError::TooManySamples`] when the bytes of the samples pass 2⁶³, or their number `usize`.
     pub fn unbounded(x: u64, y: u64, z: u64) -> Result<Self, VolumeError> {
         /// No sample has more bytes.
         const WIDEST: u64 = 8;
@@ -74,8 +74,10 @@ impl Dims {
             return Err(VolumeError::EmptyAxis { x, y, z });
         }
         let bytes = x.checked_mul(y).and_then(|xy| xy.checked_mul(z)?.checked_mul(WIDEST));
-        match bytes.map(i64::try_from) {
-            Some(Ok(_)) => Ok(Self { x: x as usize, y: y as usize, z: z as usize }),
+        let fits =
+            |bytes: u64| i64::try_from(bytes).is_ok() && usize::try_from(bytes / WIDEST).is_ok();
+        match bytes {
+            Some(bytes) if fits(bytes) => Ok(Self { x: x as usize, y: y as usize, z: z as usize }),
             _ => Err(VolumeError::TooManySamples { x, y, z }),
         }
     }
@@ -106,6 +108,11 @@ impl Dims {
     /// Samples in all.
     pub fn samples(self) -> usize {
         self.x * self.y * self.z
+    }
+
+    /// Bytes of all samples, of so many each.
+    pub fn bytes(self, each: usize) -> u64 {
+        self.samples() as u64 * each as u64
     }
 
     /// The array shape `[z, y, x]`.

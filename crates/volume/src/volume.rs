@@ -70,7 +70,7 @@ impl Volume {
         samples: ArrayView3<'_, T>,
         frame: Frame,
     ) -> Result<Self, VolumeError> {
-        memory::afford(samples.len() * size_of::<f32>(), || "a volume".into())?;
+        memory::afford(samples.len().saturating_mul(size_of::<f32>()), || "a volume".into())?;
         let samples = samples.as_standard_layout();
         Ok(Self::new(samples.map(|&sample| sample.to_f32()), frame)?.with_dtype(T::DTYPE))
     }

@@ -286,7 +286,8 @@ impl Shape {
         task: Task<'_>,
     ) -> PyResult<Bound<'py, PyArray3<f32>>> {
         let [nx, ny, nz] = sizes;
-        let grid = Grid::spanning(low, high, Dims::new(nx, ny, nz).map_err(Told::told)?);
+        let dims = Dims::new(nx, ny, nz).map_err(Told::told)?;
+        let grid = Grid::spanning(low, high, dims).map_err(Told::told)?;
         let (values, shape) = (self.values(values)?, Arc::clone(&self.shape));
         let samples = run(py, &task, move |monitor| {
             Stage::Interpolate.begin(monitor)?;

@@ -1,4 +1,5 @@
 use std::io::Read;
+use std::ops::Range;
 use std::path::Path;
 
 use walpha_base::shown::shown;
@@ -145,11 +146,16 @@ impl Header {
         Ok(points)
     }
 
+    /// The bytes, or else the numbers, of some fields of a point; the largest `usize` where they are more, as they may be in 32 bits.
+    fn width(&self, fields: Range<usize>, bytes: bool) -> usize {
+        let width = |k: usize| self.counts[k].saturating_mul(if bytes { self.sizes[k] } else { 1 });
+        fields.map(width).fold(0, usize::saturating_add)
+    }
+
     /// The fields x, y, z, weight, value and radius, each with an offset in bytes, or else in numbers.
     fn fields(&self, bytes: bool) -> Result<[Option<Field>; 6], Reason> {
         let names: Vec<&str> = self.names.iter().map(String::as_str).collect();
         let places = places(&names);
-        let width = |k: usize| self.counts[k] * if bytes { self.sizes[k] } else { 1 };
         let mut fields = [const { None }; 6];
         for (index, place) in places.iter().enumerate() {
             let Some(place) = *place else { continue };
@@ -164,7 +170,7 @@ impl Header {
             if let Some(what) = wrong {
                 return Err(Reason::content(what, HEADER));
             }
-            fields[place] = Some(Field { index, offset: (0..index).map(width).sum() });
+            fields[place] = Some(Field { index, offset: self.width(0..index, bytes) });
         }
         if fields[..3].iter().all(Option::is_some) {
             return Ok(fields);
@@ -175,7 +181,7 @@ impl Header {
 
     fn text(&self, text: &str, points: usize) -> Result<Vec<[Option<f64>; 6]>, Reason> {
         let fields = self.fields(false)?;
-        let width: usize = self.counts.iter().sum();
+        let width = self.width(0..self.counts.len(), false);
         let lines = text.split(['\n', '\r']).map(str::trim).filter(|line| !line.is_empty());
         let lines: Vec<&str> = lines.collect();
         let what = format!("claims {points} points, but has {} lines of them", lines.len());
@@ -217,8 +223,7 @@ impl Header {
         by_field: bool,
     ) -> Result<Vec<[Option<f64>; 6]>, Reason> {
         let fields = self.fields(true)?;
-        let width: usize =
-            self.sizes.iter().zip(&self.counts).map(|(size, count)| size * count).sum();
+        let width = self.width(0..self.counts.len(), true);
         let needed = width.saturating_mul(points);
         if bytes.len() < needed {
             return Err(Reason::claims_more(format!(

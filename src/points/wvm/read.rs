@@ -22,7 +22,8 @@ pub(in crate::points) fn read(
 ) -> Result<(Points, ModelMetadata), PointsError> {
     let (path, length) = (file.path(), file.length());
     let fail = |reason: Reason| format(path, reason);
-    let mut bytes = try_with_capacity(length as usize, || format!("{length} bytes of a file"))?;
+    let room = usize::try_from(length).unwrap_or(usize::MAX);
+    let mut bytes = try_with_capacity(room, || format!("{length} bytes of a file"))?;
     file.reader()?.read_to_end(&mut bytes).map_err(io_error(path))?;
     let (header, head) = Header::of_bytes(&bytes).map_err(fail)?;
     let layers = header.layers.len();

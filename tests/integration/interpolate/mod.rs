@@ -74,10 +74,11 @@ fn cross(a: Place, b: Place) -> Place {
 #[test]
 fn what_has_no_values_has_no_interpolant() {
     let places: Vec<Place> = phantom_points(&phantom(8), 60).into_parts().0;
-    let mut points = points(places, vec![0.0; 60], linear);
-    points.values_mut().unwrap()[7] = f64::NAN;
-    let bad = shape(points.clone(), 10.0);
-    let error = Interpolant::new(&bad).unwrap_err();
+    let points = points(places, vec![0.0; 60], linear);
+    let made = shape(points.clone(), 10.0);
+    let mut values = vec![0.0; 60];
+    values[7] = f64::NAN;
+    let error = Interpolant::with_values(&made, &values).unwrap_err();
     assert!(matches!(error, InterpolateError::Value { index: 7, .. }), "{error}");
     let points = points.with_values(None).unwrap();
     let error = Interpolant::new(&shape(points, 10.0)).unwrap_err();
@@ -117,7 +118,7 @@ fn samples_of_tilted_and_mirrored_volumes_are_located_by_index() {
         }
         assert!((900..1728).contains(&alone), "{alone}");
         // Finer grids, too, and the sums around the points.
-        let finer = Grid::over(&volume, Dims::new(23, 23, 23).unwrap(), Units::World);
+        let finer = Grid::over(&volume, Dims::new(23, 23, 23).unwrap(), Units::World).unwrap();
         assert_eq!(interpolant.resample(&finer).unwrap().covered(), 23 * 23 * 23);
         let local = interpolant.local_deviations(&volume, &grid, &resampled);
         let rmse = Deviation::of(&volume, &resampled).rmse.unwrap();
@@ -132,7 +133,7 @@ proptest! {
     fn samples_belong_as_definition_says((places, weights) in lattice(), alpha in 0..24i32) {
         let shape = shape(points(places, weights, wild), f64::from(alpha) / 4.0);
         let interpolant = Interpolant::new(&shape).unwrap();
-        let grid = Grid::spanning([-0.5; 3], [5.0; 3], Dims::new(12, 12, 12).unwrap());
+        let grid = Grid::spanning([-0.5; 3], [5.0; 3], Dims::new(12, 12, 12).unwrap()).unwrap();
         let resampled = interpolant.resample(&grid).unwrap();
         for sample in 0..12 * 12 * 12 {
             let index = [sample % 12, sample / 12 % 12, sample / 144];
@@ -296,7 +297,7 @@ proptest! {
         let volume = Volume::new(Array3::zeros((7, 9, 8)), turned).unwrap();
         for dims in [[8, 9, 7], [5, 11, 3]] {
             let [x, y, z] = dims;
-            let grid = Grid::over(&volume, Dims::new(x, y, z).unwrap(), Units::World);
+            let grid = Grid::over(&volume, Dims::new(x, y, z).unwrap(), Units::World).unwrap();
             let resampled = interpolant.resample(&grid).unwrap();
             let [nx, ny, nz] = grid.dims().xyz();
             let places: Vec<Place> = (0..nx * ny * nz)
@@ -325,7 +326,7 @@ proptest! {
             shape(points(places, weights, wild), f64::from(alpha) / 4.0)
         };
         let shuffled = order.iter().map(|&i| sites[i]).collect();
-        let grid = Grid::spanning([0.0; 3], [4.0; 3], Dims::new(9, 9, 9).unwrap());
+        let grid = Grid::spanning([0.0; 3], [4.0; 3], Dims::new(9, 9, 9).unwrap()).unwrap();
         let samples = |shape: AlphaShape| {
             Interpolant::new(&shape).unwrap().resample(&grid).unwrap().volume().clone()
         };

@@ -6,6 +6,7 @@ use std::fs::File;
 use std::num::NonZeroUsize;
 use std::path::Path;
 
+use walpha::export::{ExportOptions, Format};
 use walpha::interpolate::Refit;
 use walpha::outofcore::{BlocksError, Cutting, Job, Merged, Plan, merge, run, whole};
 use walpha::pipeline::{AlphaRule, Choice, Goal, Model};
@@ -251,7 +252,7 @@ fn world_coordinates_and_regions_are_the_same_in_blocks() {
     }
 }
 
-/// A single slice: every block is flat.
+/// A single slice: every block is flat. Files are the same, byte by byte.
 #[test]
 fn flat_volumes_are_the_same_in_blocks() {
     let folder = tempfile::tempdir().unwrap();
@@ -260,6 +261,17 @@ fn flat_volumes_are_the_same_in_blocks() {
     let (_, merged, shape) = in_blocks(&job, 6);
     let volume = open(&input, &ReadOptions::default()).unwrap();
     let one = job.recipe.run(volume).unwrap();
+    assert_eq!((shape.sheets(), one.shape.sheets()), (None, None));
+    assert_eq!(merged.components, one.shape.components());
+    let written = |shape: &AlphaShape, format: &str| {
+        let mut bytes = Vec::new();
+        let exporter = Format::of(Path::new(format)).unwrap().exporter(&ExportOptions::default());
+        exporter.write(shape, &mut bytes).unwrap();
+        bytes
+    };
+    for format in ["a.npz", "a.vtp", "a.ply", "a.glb"] {
+        assert!(written(&shape, format) == written(&one.shape, format), "{format}");
+    }
     assert_eq!(shape.points(), one.shape.points());
     assert_eq!(shape.complex().facets.len(), {
         let mut complex = one.shape.complex().clone();

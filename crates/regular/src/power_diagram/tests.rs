@@ -161,6 +161,117 @@ fn facets_close_cells() {
     assert!(closed > 500, "{closed}");
 }
 
+/// Whether a point that is not hidden is in a segment, a triangle or a tetrahedron of others, and its height |p|² − ω is the mean of theirs
+/// with the shares that its place has in them.
+fn is_just_seen(points: &[Place], heights: &[i64], v: usize) -> bool {
+    let lifted = |i: usize| {
+        let way = [0, 1, 2].map(|k| points[i][k] - points[v][k]);
+        (way, heights[i] - heights[v])
+    };
+    let dot = |a: Place, b: Place| (0..3).map(|k| a[k] * b[k]).sum::<i64>();
+    let cross = |a: Place, b: Place| {
+        [0, 1, 2].map(|k| a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3])
+    };
+    let balance = |shares: &[(i64, usize)]| {
+        shares.iter().all(|(share, _)| *share > 0)
+            && shares.iter().map(|&(share, i)| share * lifted(i).1).sum::<i64>() == 0
+    };
+    let others: Vec<usize> = (0..points.len()).filter(|&i| i != v).collect();
+    let way = |i: usize| lifted(i).0;
+    others.iter().enumerate().any(|(first, &a)| {
+        others[..first].iter().enumerate().any(|(second, &b)| {
+            let normal = cross(way(a), way(b));
+            if normal == [0; 3] {
+                return balance(&[(dot(way(b), way(b)), a), (-dot(way(a), way(b)), b)]);
+            }
+            others[..second].iter().enumerate().any(|(third, &c)| {
+                let sides = [(cross(way(b), way(c)), a), (cross(way(c), way(a)), b), (normal, c)];
+                let volume = dot(way(c), normal);
+                if volume == 0 {
+                    return balance(&sides.map(|(side, i)| (dot(side, normal), i)));
+                }
+                others[..third].iter().any(|&d| {
+                    let [of_a, of_b, of_c] =
+                        sides.map(|(side, _)| -volume.signum() * dot(side, way(d)));
+                    balance(&[(of_a, a), (of_b, b), (of_c, c), (volume.abs(), d)])
+                })
+            })
+        })
+    })
+}
+
+/// Heights that are the largest of a few linear functions are on no corner of their graph at most points.
+#[test]
+fn points_that_are_just_not_hidden_have_no_volume() {
+    let mut random = Random::new(12);
+    let (mut flat, mut solid) = ([0; 2], 0);
+    for _ in 0..60 {
+        let mut points: Vec<Place> =
+            (0..18).map(|_| [0; 3].map(|_| random.below(3) as i64)).collect();
+        points.sort_unstable();
+        points.dedup();
+        let slopes: Vec<Place> =
+            (0..3).map(|_| [0; 3].map(|_| random.below(7) as i64 - 3)).collect();
+        let height =
+            |p: &Place| slopes.iter().map(|s| (0..3).map(|k| s[k] * p[k]).sum::<i64>()).max();
+        let heights: Vec<i64> = points.iter().map(|p| height(p).unwrap()).collect();
+        let square = |p: &Place| p.iter().map(|x| x * x).sum::<i64>();
+        let weights: Vec<f64> =
+            points.iter().zip(&heights).map(|(p, height)| (square(p) - height) as f64).collect();
+        let Ok(made) = triangulate(&doubles(&points), Some(&weights)) else { continue };
+        let diagram = PowerDiagram::of(&made, Some(&weights)).unwrap();
+        for v in made.vertices() {
+            let volume = diagram.volumes()[v as usize];
+            let seen = is_just_seen(&points, &heights, v as usize);
+            let has_facet = diagram.facets().iter().any(|facet| facet.contains(&v));
+            assert_eq!(
+                (volume == 0.0, !has_facet),
+                (seen, seen),
+                "{v} of {points:?} {weights:?}: {volume}"
+            );
+            let on_hull = made.star(v).into_iter().any(|cell| !made.is_finite(cell));
+            assert!(seen || (volume == f64::INFINITY) == on_hull);
+            flat[usize::from(on_hull)] += usize::from(seen);
+            solid += usize::from(!seen);
+        }
+    }
+    assert!(flat[0] > 10 && flat[1] > 100 && solid > 100, "{flat:?} {solid}");
+}
+
+/// Neighbours are those whose cells have an area in common, also where cells without volume of one point or several are between them.
+#[test]
+fn cells_without_volume_have_no_facets() {
+    let row = |inner: &[f64]| {
+        let mut points = vec![[0.0; 3], [8.0, 0.0, 0.0], [4.0, 8.0, 0.0], [4.0, 0.0, 8.0]];
+        let mut weights = vec![0.0; 4];
+        for &x in inner {
+            points.push([x, 0.0, 0.0]);
+            // As high as the segment from 0 to 8 is there.
+            weights.push(x * x - 8.0 * x);
+        }
+        PowerDiagram::of(&triangulate(&points, Some(&weights)).unwrap(), Some(&weights)).unwrap()
+    };
+    let alone = row(&[]);
+    assert_eq!(alone.facets(), [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]]);
+    for inner in [&[4.0][..], &[1.0, 3.0], &[7.0, 2.0, 5.0]] {
+        let made = row(inner);
+        assert_eq!((made.facets(), made.areas()), (alone.facets(), alone.areas()));
+        assert_eq!(made.volumes()[..4], *alone.volumes());
+        assert!(made.volumes()[4..].iter().all(|&volume| volume == 0.0), "{inner:?}");
+    }
+    // In the middle of a facet of the hull, and of the cell.
+    let corners = [[0.0; 3], [6.0, 0.0, 0.0], [0.0, 6.0, 0.0], [0.0, 0.0, 8.0]];
+    for (inner, weight) in [([2.0, 2.0, 0.0], 8.0 - 24.0), ([1.5, 1.5, 2.0], 8.5 - 34.0)] {
+        let points = [&corners[..], &[inner]].concat();
+        let weights = [0.0, 0.0, 0.0, 0.0, weight];
+        let made = triangulate(&points, Some(&weights)).unwrap();
+        assert!(made.is_vertex(4));
+        let diagram = PowerDiagram::of(&made, Some(&weights)).unwrap();
+        assert_eq!(diagram.volumes()[4], 0.0);
+        assert_eq!(diagram.facets(), alone.facets());
+    }
+}
+
 /// Facets of a point in the middle of a lattice, with the area of each, and the volume of its cell.
 fn of_middle(points: &[Place]) -> (Vec<f64>, f64) {
     let middle = points.iter().position(|&p| p == [0; 3]).unwrap() as u32;
@@ -229,6 +340,37 @@ fn tiny_huge_and_distant_cells_are_as_precise() {
     for (volume, theirs) in made.volumes().iter().zip(other.volumes()) {
         assert!(near(*volume, *theirs, 1.0));
     }
+}
+
+/// Where doubles do not hold areas or volumes, these are not numbers; what is unbounded is known to be.
+#[test]
+fn what_doubles_do_not_hold_is_nan() {
+    let mut random = Random::new(8);
+    let points: Vec<[f64; 3]> = (0..100).map(|_| [0; 3].map(|_| random.whole(0, 4000))).collect();
+    let of =
+        |points: &[[f64; 3]]| PowerDiagram::of(&triangulate(points, None).unwrap(), None).unwrap();
+    let made = of(&points);
+    for (power, areas_too) in [(-400, false), (-900, true), (340, false), (480, true)] {
+        let scaled: Vec<_> = points.iter().map(|p| p.map(|x| x * 2f64.powi(power))).collect();
+        let other = of(&scaled);
+        assert_eq!(made.facets(), other.facets());
+        for (area, theirs) in made.areas().iter().zip(other.areas()) {
+            let infinite = *area == f64::INFINITY;
+            assert!(
+                infinite == (*theirs == f64::INFINITY)
+                    && (infinite || areas_too == theirs.is_nan())
+            );
+        }
+        for (volume, theirs) in made.volumes().iter().zip(other.volumes()) {
+            let infinite = *volume == f64::INFINITY;
+            assert!(if infinite { theirs == volume } else { theirs.is_nan() }, "{power}: {theirs}");
+        }
+    }
+    // A cell so flat that its centre is beyond the doubles: four points within a sphere of a radius of 10³³⁰.
+    let flat = [[0.0; 3], [1e150, 0.0, 0.0], [0.0, 1e150, 0.0], [1e150, 2e150, 1e-30]];
+    let diagram = of(&flat);
+    assert!(diagram.vertices()[0].iter().any(|x| x.is_infinite()), "{:?}", diagram.vertices());
+    assert!(diagram.volumes().iter().all(|&volume| volume == f64::INFINITY));
 }
 
 /// The corners of a tetrahedron, one of them a last bit away from the next.

@@ -89,6 +89,12 @@ pub(super) fn centre_of(sites: [Site; 4]) -> [f64; 3] {
     twice.map(|twice| Ratio::new(twice, &det << 1, exponent).nearest())
 }
 
+/// The rays of a simplex from its first corner, and their units.
+pub(super) fn rays<const N: usize>(sites: &[Site; N]) -> ([Ray<IBig>; N], Units) {
+    let units = Units::of(sites, 0.0);
+    (sites.map(|q| units.ray::<IBig>(sites[0], q)), units)
+}
+
 /// Whether `x` lies strictly inside the smallest orthogonal sphere of a vertex, an edge or a facet.
 pub(super) fn inside<const N: usize>(sites: [Site; N], x: Site) -> bool {
     let mut units = Units::of(&sites, 0.0);
@@ -104,7 +110,7 @@ pub(super) fn inside<const N: usize>(sites: [Site; N], x: Site) -> bool {
 /// Units in which all numbers are integers: powers of two, one for coordinates, and one for squares, which is
 /// `finer` bits finer than the square of the first. The formulas are homogeneous in each unit, so that points on
 /// a lattice with arbitrary doubles as weights need few bits for their coordinates.
-struct Units {
+pub(super) struct Units {
     /// The unit of coordinates is two to this power.
     coordinate: i32,
     finer: usize,
@@ -161,6 +167,16 @@ impl Units {
         let weight = self.highest[1].map_or(0, |bit| (bit - height).max(0) as u32) + 1;
         // Three squares and a difference of weights.
         self.power_bits = (2 * self.coordinate_bits + 2 + self.finer as u32).max(weight) + 1;
+    }
+
+    /// The unit of coordinates is two to this power.
+    pub(super) fn coordinate(&self) -> i32 {
+        self.coordinate
+    }
+
+    /// By how many bits the unit of squares is finer than the square of that of coordinates.
+    pub(super) fn finer(&self) -> usize {
+        self.finer
     }
 
     /// The unit of squares is two to this power.

@@ -78,7 +78,7 @@ pub(super) struct Centre<T, V> {
     /// The determinant of the three rays.
     pub det: V,
     /// Of the facets at p, each opposite one of the other corners: the products of their two rays.
-    normals: [[V; 3]; 3],
+    pub normals: [[V; 3]; 3],
 }
 
 /// The centre of a cell, by Cramer's rule.
@@ -141,7 +141,7 @@ pub(super) fn barycentric(rays: &[Ray<f64>], to: &mut [f64]) {
 
 /// The Gram determinant d of two rays, and d times the coefficients of 2c in the basis of the rays.
 #[inline(always)]
-fn gram<T: Scale<V>, V: Number>(a: &Ray<T, V>, b: &Ray<T, V>) -> ([T; 2], V) {
+pub(super) fn gram<T: Scale<V>, V: Number>(a: &Ray<T, V>, b: &Ray<T, V>) -> ([T; 2], V) {
     let aa = dot(&a.vector, &a.vector);
     let bb = dot(&b.vector, &b.vector);
     let ab = dot(&a.vector, &b.vector);

@@ -12,6 +12,7 @@ mod formulas;
 mod nearest;
 mod ratio;
 mod screen;
+mod shares;
 mod size;
 mod twofold;
 
@@ -21,6 +22,7 @@ use formulas::{Centre, barycentric, centre, determinant, power_determinant, quot
 pub use nearest::SmallRadius;
 pub use ratio::Ratio;
 pub use screen::Screen;
+pub use shares::{Share, centre_shares};
 use size::{Size, View, ray};
 
 use super::Torus;

@@ -64,12 +64,16 @@ impl Counts {
 
     /// Bytes of so many rows, classes and sheets once gathered.
     pub(super) fn bytes(self) -> u64 {
-        let row = |vertices: usize| vertices * size_of::<u32>() + size_of::<Class>();
-        let rows = row(4) * self.cells
-            + row(3) * self.facets
-            + row(2) * self.edges
-            + row(1) * self.vertices;
-        (rows + size_of::<u32>() * (self.facet_sheets + self.edge_sheets)) as u64
+        let rows = |vertices: usize, count: usize| {
+            (vertices * size_of::<u32>() + size_of::<Class>()) as u64 * count as u64
+        };
+        let sheets = |count: usize| size_of::<u32>() as u64 * count as u64;
+        rows(4, self.cells)
+            + rows(3, self.facets)
+            + rows(2, self.edges)
+            + rows(1, self.vertices)
+            + sheets(self.facet_sheets)
+            + sheets(self.edge_sheets)
     }
 }
 

@@ -46,7 +46,8 @@ impl Partition {
             }
             let axis = nodes[at].longest_side();
             let left = blocks / 2;
-            let middle = here.len() * left / blocks;
+            // The product may pass what 32 bits hold.
+            let middle = (here.len() as u64 * left as u64 / blocks as u64) as usize;
             let along =
                 |&rank: &u32| sites.positions()[sites.curve()[rank as usize] as usize][axis];
             here.select_nth_unstable_by(middle, |a, b| {

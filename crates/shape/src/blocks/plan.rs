@@ -11,7 +11,7 @@ pub(crate) struct Plan {
     pub partition: Partition,
     pub at_once: usize,
     /// Points in the blocks worked on at once, their halos' included.
-    at_work: usize,
+    at_work: u64,
     /// The bound on memory, if there is one. Freed memory is then returned to the system at once, which costs a tenth
     /// of the time, as it must be requested again.
     bound: Option<Bound>,
@@ -59,8 +59,8 @@ const MAX_BLOCKS: usize = 1 << 12;
 pub const AT_WORK: u64 = 600;
 
 /// Bytes that a shape of `points` points takes while blocks with `at_work` points, halos included, are computed.
-fn taken(points: usize, at_work: usize) -> u64 {
-    let working = DONE * points as u64 + AT_WORK * at_work as u64;
+fn taken(points: usize, at_work: u64) -> u64 {
+    let working = DONE * points as u64 + AT_WORK * at_work;
     working.max(MERGED * points as u64)
 }
 
@@ -72,7 +72,7 @@ fn fewest(points: usize, threads: usize) -> usize {
 impl Plan {
     /// All sites as one block.
     pub(crate) fn whole(sites: &Sites<'_>) -> Self {
-        let at_work = sites.input().len();
+        let at_work = sites.input().len() as u64;
         Self { partition: Partition::new(sites, 1), at_once: 1, at_work, bound: None }
     }
 
@@ -89,7 +89,7 @@ impl Plan {
             (Some(blocks), _) => {
                 let partition = Partition::new(sites, blocks);
                 let at_once = partition.len().min(threads);
-                let at_work = at_once * partition.largest(sites, reach);
+                let at_work = at_once as u64 * partition.largest(sites, reach) as u64;
                 Ok(Self { partition, at_once, at_work, bound })
             }
             (None, Some(bound)) => Self::within(bound, sites, reach, threads),
@@ -102,11 +102,11 @@ impl Plan {
         let points = sites.input().len();
         let at_once = fewest(points, threads);
         let partition = Partition::new(sites, at_once);
-        let largest = partition.largest(sites, reach);
-        if (at_once * largest) as f64 > points as f64 * (at_once as f64).powf(LOSS) {
+        let at_work = at_once as u64 * partition.largest(sites, reach) as u64;
+        if at_work as f64 > points as f64 * (at_once as f64).powf(LOSS) {
             return Self::whole(sites);
         }
-        Self { partition, at_once, at_work: at_once * largest, bound: None }
+        Self { partition, at_once, at_work, bound: None }
     }
 
     /// The blocks that keep a bound and take the least time.
@@ -118,7 +118,9 @@ impl Plan {
     ) -> Result<Self, PlanError> {
         let Bound { asked, resident } = bound;
         let points = sites.input().len();
-        let needs = |at_once: usize, largest: usize| resident + taken(points, at_once * largest);
+        let at_work = |at_once: usize, largest: usize| at_once as u64 * largest as u64;
+        let needs =
+            |at_once: usize, largest: usize| resident + taken(points, at_work(at_once, largest));
         let mut blocks = fewest(points, threads);
         let mut least = PlanError { asked, needed: u64::MAX, blocks };
         let mut best: Option<(f64, Self)> = None;
@@ -130,7 +132,7 @@ impl Plan {
             let hopeless = needs(1, some) > asked && needs(1, some) >= least.needed;
             let largest = if hopeless { some } else { partition.largest(sites, reach) };
             // The time of a plan is that of its blocks with their halos, shared among threads.
-            let work = (blocks * largest) as f64;
+            let work = at_work(blocks, largest) as f64;
             let time = |at_once: usize| work / at_once as f64;
             let shortest = best.as_ref().map_or(f64::INFINITY, |(time, _)| *time);
             let at_once = (1..=threads.min(blocks)).rev().find(|&at_once| {
@@ -141,7 +143,7 @@ impl Plan {
                 needed <= asked
             });
             if let Some(at_once) = at_once.filter(|&at_once| time(at_once) < shortest) {
-                let (at_work, bound) = (at_once * largest, Some(bound));
+                let (at_work, bound) = (at_work(at_once, largest), Some(bound));
                 best = Some((time(at_once), Self { partition, at_once, at_work, bound }));
             }
             blocks *= 2;

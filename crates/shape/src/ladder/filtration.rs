@@ -79,9 +79,13 @@ impl Filtration {
         let radius = size_of::<Radius>();
         let cell = radius + size_of::<[u32; 4]>();
         let facet = radius + 2 * size_of::<[u32; 3]>() + size_of::<[u32; 2]>();
-        cell * whole.cells.len()
-            + facet * whole.facets.len()
-            + radius * (whole.edges.len() + whole.vertices.len())
+        let parts = [
+            cell.saturating_mul(whole.cells.len()),
+            facet.saturating_mul(whole.facets.len()),
+            radius.saturating_mul(whole.edges.len()),
+            radius.saturating_mul(whole.vertices.len()),
+        ];
+        parts.into_iter().fold(0, usize::saturating_add)
     }
 
     /// The points and their frozen weights.

@@ -64,9 +64,7 @@ impl Filtration {
     pub(super) fn some_values(&self, most: usize) -> Vec<Value> {
         let radii = self.sorted_radii();
         let clusters = clusters(&radii);
-        let last = clusters.len() - 1;
-        let mut ranks: Vec<usize> = (0..most).map(|k| k * last / (most - 1)).collect();
-        ranks.dedup();
+        let ranks = even_ranks(clusters.len() - 1, most);
         let above = |rank: usize| {
             let highs = clusters[rank].iter().map(|(radius, _)| radius.high);
             Value::First(highs.fold(f64::NEG_INFINITY, f64::max))
@@ -105,6 +103,15 @@ impl Filtration {
         };
         Alpha::from_squared(first).expect("radii are numbers")
     }
+}
+
+/// About `most` ranks from 0 to the last, as even as can be.
+fn even_ranks(last: usize, most: usize) -> Vec<usize> {
+    // The product may pass what 32 bits hold.
+    let rank = |k: usize| (k as u64 * last as u64 / (most as u64 - 1)) as usize;
+    let mut ranks: Vec<usize> = (0..most).map(rank).collect();
+    ranks.dedup();
+    ranks
 }
 
 /// Runs of intervals that overlap.
@@ -190,6 +197,16 @@ pub(super) fn is_small_lattice(points: &WeightedPoints, torus: Option<Torus>) ->
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Also where a product of ranks passes 32 bits.
+    #[test]
+    fn ranks_are_even() {
+        assert_eq!(even_ranks(6, 3), [0, 3, 6]);
+        assert_eq!(even_ranks(2, 1024), [0, 1, 2]);
+        let many = even_ranks(400_000_000, 1024);
+        assert_eq!((many.len(), many[0], many[1023]), (1024, 0, 400_000_000));
+        assert!(many.windows(2).all(|pair| (391_006..=391_007).contains(&(pair[1] - pair[0]))));
+    }
 
     /// Two squared lengths that differ by 1 beyond 2⁵³ would be one double, and their simplices taken for congruent.
     #[test]

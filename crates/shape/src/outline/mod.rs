@@ -13,6 +13,7 @@ mod tests;
 mod view;
 
 use rayon::prelude::*;
+use walpha_regular::MAX_COORDINATE;
 
 use super::{AlphaShape, Class, Complex, OutlineError};
 pub use rings::Polygon;
@@ -43,12 +44,16 @@ pub struct Outline {
 }
 
 impl Outline {
-    /// Checks that points have an outline at any α, before the work on their shape. There must be at least one point,
-    /// and no number may be infinite or NaN. Exact. O(n) in a plane, usually less for points that span a volume.
+    /// Checks that points have an outline at any α, before the work on their shape. There must be at least one point.
+    /// Exact. O(n).
     ///
     /// # Errors
-    /// [`OutlineError::Space`] and [`OutlineError::Line`].
+    /// [`OutlineError::Space`], [`OutlineError::Line`] and [`OutlineError::Coordinate`].
     pub fn check(positions: &[[f64; 3]]) -> Result<(), OutlineError> {
+        let is_sane = |place: &[f64; 3]| place.iter().all(|x| x.abs() <= MAX_COORDINATE);
+        if let Some(index) = positions.iter().position(|place| !is_sane(place)) {
+            return Err(OutlineError::Coordinate { index });
+        }
         spanning_plane(positions).map(|_| ())
     }
 

@@ -50,7 +50,7 @@ impl Layout {
 
     /// Bytes of one volume.
     pub(super) fn each(&self) -> u64 {
-        (self.dims.samples() * self.dtype.size()) as u64
+        self.dims.bytes(self.dtype.size())
     }
 
     /// Reads the samples, which are all there is in `bytes` bytes.

@@ -102,7 +102,7 @@ fn samples(
 ) -> Result<Volume, VolumeError> {
     let Layout { dims, dtype, endian, frames, .. } = layout;
     dims.bounded()?;
-    let each = (dims.samples() * dtype.size()) as u64;
+    let each = dims.bytes(dtype.size());
     let (reader, length) = frames.select(path, reader, length, each)?;
     let payload = Payload { reader, length };
     let fail = payload_error(path, &dims, dtype);

@@ -68,7 +68,7 @@ pub(crate) fn box_reader(file: &OpenFile, frame: Option<u64>) -> Result<Uncompre
     };
     let dims = Dims::unbounded(x, y, z)?;
     let frames = FrameChoice::choose(path, beyond, frame)?;
-    let each = (dims.samples() * array.dtype.size()) as u64;
+    let each = dims.bytes(array.dtype.size());
     let all = each.saturating_mul(frames.count);
     let Length::Exactly(found) = array.payload.length else { unreachable!("of a file") };
     if found != all {

@@ -93,20 +93,21 @@ impl<R: Read> Payload<R> {
             |_| PayloadError::Memory { needed: count.saturating_mul(size_of::<T>() as u64) };
         asking(|| samples.try_reserve_exact(usize::try_from(count).unwrap_or(usize::MAX)))
             .map_err(memory)?;
-        let mut bytes = vec![0; CHUNK_BYTES.min(needed as usize)];
-        let mut left = needed as usize;
+        let chunk = |left: u64| usize::try_from(left).unwrap_or(usize::MAX).min(CHUNK_BYTES);
+        let mut bytes = vec![0; chunk(needed)];
+        let mut left = needed;
         while left > 0 {
-            let chunk = &mut bytes[..CHUNK_BYTES.min(left)];
+            let chunk = &mut bytes[..chunk(left)];
             let found = read_up_to(&mut self.reader, chunk).map_err(PayloadError::Io)?;
-            left -= found;
+            left -= found as u64;
             if found < chunk.len() {
-                let found = needed - left as u64;
+                let found = needed - left;
                 return Err(PayloadError::Length { needed, found, bound: "" });
             }
             let start = samples.len();
             samples.resize(start + chunk.len() / dtype.size(), T::default());
             T::decode(chunk, dtype, endian, &mut samples[start..]);
-            monitor.report(needed - left as u64, needed).map_err(|_| PayloadError::Cancelled)?;
+            monitor.report(needed - left, needed).map_err(|_| PayloadError::Cancelled)?;
         }
         if read_up_to(&mut self.reader, &mut [0]).map_err(PayloadError::Io)? > 0 {
             return Err(PayloadError::Length { needed, found: needed + 1, bound: "at least " });

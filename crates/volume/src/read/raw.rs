@@ -62,7 +62,7 @@ pub(crate) fn read(
 pub(crate) fn box_reader(file: &OpenFile, layout: &RawLayout) -> Result<Uncompressed, VolumeError> {
     let (path, length) = (file.path(), file.length());
     let RawLayout { dims, dtype, endian, offset } = *layout;
-    let needed = (dims.samples() * dtype.size()) as u64;
+    let needed = dims.bytes(dtype.size());
     if length != offset.saturating_add(needed) {
         let reason = wrong_length(layout, needed, length);
         return Err(VolumeError::Format { path: path.into(), reason });

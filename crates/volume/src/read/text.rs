@@ -93,13 +93,14 @@ pub(super) fn numbers<T: Element + FromStr + Into<f64>>(
     }
     let no_room =
         |lack: NoMemory| Reason::Memory { claim: lack.what().into(), needed: lack.bytes() as u64 };
-    let mut text = try_with_capacity(bytes as usize, || "its text".into()).map_err(no_room)?;
+    let room = |count: u64| usize::try_from(count).unwrap_or(usize::MAX);
+    let mut text = try_with_capacity(room(bytes), || "its text".into()).map_err(no_room)?;
     reader
         .take(bytes)
         .read_to_end(&mut text)
         .map_err(|error| Reason::damaged(format!("cannot be read: {error}")))?;
-    let mut values = try_with_capacity(count as usize, || format!("a row of {count} numbers"))
-        .map_err(no_room)?;
+    let mut values =
+        try_with_capacity(room(count), || format!("a row of {count} numbers")).map_err(no_room)?;
     for word in text.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty()) {
         if values.len() as u64 == count {
             return Err(Reason::header(format!(

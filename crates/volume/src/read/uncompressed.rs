@@ -134,8 +134,8 @@ impl BoxReader for Uncompressed {
         let mut to = samples.chunks_mut(run);
         for z in first[2]..first[2] + size[2] {
             for y in first[1]..first[1] + runs {
-                let at = ((z * ny + y) * nx + first[0]) * dtype.size();
-                file.read_at(offset + at as u64, &mut bytes).map_err(io_error(path))?;
+                let at = ((z * ny + y) * nx + first[0]) as u64 * dtype.size() as u64;
+                file.read_at(offset + at, &mut bytes).map_err(io_error(path))?;
                 self.decode(&bytes, to.next().expect("as many runs as there are"));
             }
         }

@@ -17,7 +17,7 @@ fn a_run_that_will_not_keep_its_bound_is_stopped() {
         let plan = Plan {
             partition: Partition::new(&sites, 8),
             at_once: 2,
-            at_work: positions.len(),
+            at_work: positions.len() as u64,
             bound: Some(Bound { asked, resident: 0 }),
         };
         run_blocks(&sites, &plan, &question, &walpha_base::Monitor::noop())

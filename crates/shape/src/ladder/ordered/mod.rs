@@ -169,9 +169,12 @@ impl Ordered<'_> {
     /// Bytes that are needed at once.
     fn bytes(numbers: Numbers) -> usize {
         let span = 3 * size_of::<u32>();
-        Ranks::bytes(numbers.all())
-            + numbers.all() * (span + size_of::<u32>())
-            + numbers.count(3) * 2 * (size_of::<[u32; 4]>() + size_of::<u32>())
+        let parts = [
+            Ranks::bytes(numbers.all()),
+            numbers.all().saturating_mul(span + size_of::<u32>()),
+            numbers.count(3).saturating_mul(2 * (size_of::<[u32; 4]>() + size_of::<u32>())),
+        ];
+        parts.into_iter().fold(0, usize::saturating_add)
     }
 
     /// The filtration.

@@ -36,7 +36,7 @@ type Radius = (u64, u32);
 impl Ranks {
     /// Bytes that are needed at once.
     pub(super) fn bytes(simplices: usize) -> usize {
-        simplices * (size_of::<Radius>() + size_of::<u32>() + size_of::<f64>())
+        simplices.saturating_mul(size_of::<Radius>() + size_of::<u32>() + size_of::<f64>())
     }
 
     pub(super) fn of(filtration: &Filtration, numbers: Numbers) -> Result<Self, NoMemory> {

@@ -168,7 +168,7 @@ fn volume(
     let dims = Dims::new(first.columns, first.rows, slices.len() as u64)?;
     let mut samples = Vec::new();
     asking(|| samples.try_reserve_exact(dims.samples())).map_err(|_| {
-        let bytes = dims.samples() * size_of::<f32>();
+        let bytes = dims.bytes(size_of::<f32>());
         let reason = Reason::unsupported(
             format!("needs {bytes} bytes of memory, more than is available"),
             "crop it first",

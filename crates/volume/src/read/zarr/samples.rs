@@ -199,7 +199,7 @@ impl ArrayReader<'_> {
         let [thick, high, _] = axes.sizes(&chunk);
         let mut samples = Vec::new();
         asking(|| samples.try_reserve_exact(dims.samples())).map_err(|_| {
-            let bytes = dims.samples() * size_of::<f32>();
+            let bytes = dims.bytes(size_of::<f32>());
             fail(Reason::choice(
                 Setting::Level,
                 format!("needs {bytes} bytes of memory, more than is available"),
