@@ -1,5 +1,8 @@
 //! Every row of the tables of fields in docs/formats.md, tried with a file that states that field.
 
+#[cfg(feature = "dicom")]
+mod dicom;
+
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
