@@ -18,7 +18,7 @@ use walpha::volume::{ReadOptions, VolumeError, read};
 use crate::common::Told;
 
 /// An element: its group and number, its type, and its value.
-type Element = (u16, u16, &'static [u8; 2], Vec<u8>);
+pub(crate) type Element = (u16, u16, &'static [u8; 2], Vec<u8>);
 
 /// A slice of 3 columns and 2 rows; its pixels are its number times 10, and up.
 #[derive(Clone)]

@@ -135,6 +135,23 @@ fn padding_is_told_and_can_be_replaced() {
     fails(f, 1, "points . --count 13 --rms 0 -o q.npy", &["12"]);
 }
 
+/// A format that knows no padding gets NaN.
+#[cfg(feature = "zarr")]
+#[test]
+fn padding_is_converted_to_nan() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    let padding = |_| vec![(0x28, 0x120, b"SS", (-2000i16).to_le_bytes().to_vec())];
+    std::fs::create_dir(f.join("ct")).unwrap();
+    for (n, slice) in three([-2000, -5, 3, 40, -2000, 7], padding).iter().enumerate() {
+        slice.save(&f.join("ct"), &format!("{n}.dcm"));
+    }
+    let told = json(f, &["convert", "ct", "-o", "ct.zarr"]);
+    assert!(told["warnings"].to_string().contains("6 samples of padding written as NaN"), "{told}");
+    let told = json(f, &["info", "ct.zarr"]);
+    assert_eq!((&told["missing"], &told["samples"]), (&6.into(), &"f32".into()), "{told}");
+}
+
 /// Air around a ball of water with bone in it, in a circle of reconstruction that padding surrounds.
 #[test]
 fn padding_does_not_hide_hounsfield_units() {
@@ -161,7 +178,7 @@ fn padding_does_not_hide_hounsfield_units() {
     };
     let plain = of(-1000, vec![]);
     assert!(plain.0.is_string());
-    for value in [-2000, -3024, -32768] {
+    for value in [-2000_i16, -3024, -32768] {
         let padding = (0x28, 0x120, b"SS", value.to_le_bytes().to_vec());
         let padded = of(value, vec![padding]);
         assert_eq!(padded.0, plain.0, "{value}");

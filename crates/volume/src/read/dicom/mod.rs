@@ -241,8 +241,7 @@ fn samples(slices: &[Slice], monitor: &Monitor) -> Result<Padded, VolumeError> {
     let each = dims.samples() / slices.len();
     let mut padded: Vec<Option<Vec<bool>>> = vec![None; slices.len()];
     let targets = samples.chunks_exact_mut(each).zip(&mut padded);
-    let mut places: Vec<(&Slice, (&mut [f32], &mut Option<Vec<bool>>))> =
-        slices.iter().zip(targets).collect();
+    let mut places: Vec<_> = slices.iter().zip(targets).collect();
     // Frames of one file are decoded together.
     places.sort_by(|a, b| a.0.path.cmp(&b.0.path));
     let mut files: Vec<_> = places.chunk_by_mut(|a, b| a.0.path == b.0.path).collect();

@@ -1,6 +1,5 @@
 //! The pixels of slices, as values.
 
-use std::borrow::Cow;
 use std::path::Path;
 
 use dicom_encoding::{Endianness, TransferSyntax};
@@ -24,37 +23,42 @@ pub(super) struct Plane {
 
 /// The pixels of frames of one file.
 pub(super) fn pixels(slices: &[&Slice]) -> Result<Vec<Plane>, VolumeError> {
-    let Some(&first) = slices.first() else { return Ok(Vec::new()) };
-    let path = &first.path;
+    let Some(first) = slices.first() else { return Ok(Vec::new()) };
+    let bytes = stored_in(first)?;
+    slices.iter().map(|slice| plane(slice, &bytes)).collect()
+}
+
+/// The pixels of a slice, of those of its file.
+pub(super) fn plane(slice: &Slice, bytes: &[u8]) -> Result<Plane, VolumeError> {
+    let Slice { columns, rows, frames, .. } = *slice;
+    let each = (columns * rows) as usize;
+    let before = each.saturating_mul(slice.frame as usize);
+    let (samples, padded) = slice.values.decode(bytes, before, each).ok_or_else(|| {
+        let reason = Reason::truncated(format!(
+            "claims {frames} × {columns}×{rows} pixels and holds {} bytes of them: it is truncated or damaged",
+            bytes.len()
+        ));
+        format_error(&slice.path, reason)
+    })?;
+    Ok(Plane { samples, padded })
+}
+
+/// The bytes of all pixels of the file of a slice, unpacked.
+pub(super) fn stored_in(slice: &Slice) -> Result<Vec<u8>, VolumeError> {
+    let path = &slice.path;
     let start = Start::of(path)?;
     check_syntax(path, &start)?;
     let object = start.object(path, None)?;
-    let bytes = stored(path, &object, &start, first.values.coding)?;
-    let each = (first.columns * first.rows) as usize;
-    let plane = |slice: &&Slice| {
-        let before = each.saturating_mul(slice.frame as usize);
-        let (samples, padded) = slice.values.decode(&bytes, before, each).ok_or_else(|| {
-            let reason = Reason::truncated(format!(
-                "claims {} × {}×{} pixels and holds {} bytes of them: it is truncated or damaged",
-                slice.frames,
-                slice.columns,
-                slice.rows,
-                bytes.len()
-            ));
-            format_error(path, reason)
-        })?;
-        Ok(Plane { samples, padded })
-    };
-    slices.iter().map(plane).collect()
+    stored(path, &object, &start, slice.values.coding)
 }
 
 /// The bytes of all pixels of a file, unpacked, the lowest of each first.
-fn stored<'a>(
+fn stored(
     path: &Path,
-    object: &'a DefaultDicomObject,
+    object: &DefaultDicomObject,
     start: &Start,
     coding: Coding,
-) -> Result<Cow<'a, [u8]>, VolumeError> {
+) -> Result<Vec<u8>, VolumeError> {
     let tag: Tag = match coding {
         Coding::Float => FLOAT_PIXEL_DATA,
         Coding::Double => DOUBLE_PIXEL_DATA,
@@ -63,7 +67,7 @@ fn stored<'a>(
     let element = object.get(tag);
     let Some(value) = element.and_then(|element| element.value().primitive()) else {
         let decoded = object.decode_pixel_data().map_err(|error| damaged(path, &error))?;
-        return Ok(Cow::Owned(decoded.data().to_vec()));
+        return Ok(decoded.data().to_vec());
     };
     let bytes = value.to_bytes();
     let is_of_words = element.is_some_and(|element| element.vr().to_string() == "OW");
@@ -71,9 +75,9 @@ fn stored<'a>(
     // Words come in the order of this machine: longer numbers have them the other way round.
     Ok(if is_big && is_of_words && matches!(coding, Coding::Integer { bytes: 4, .. }) {
         let turned = bytes.as_chunks::<4>().0.iter().flat_map(|&[a, b, c, d]| [c, d, a, b]);
-        Cow::Owned(turned.collect())
+        turned.collect()
     } else {
-        bytes
+        bytes.into_owned()
     })
 }
 

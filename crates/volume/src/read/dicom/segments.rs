@@ -11,7 +11,7 @@ use walpha_base::memory::try_with_capacity;
 use walpha_base::shown::shown;
 
 use super::header::Header;
-use super::pixels::pixels;
+use super::pixels::{plane, stored_in};
 use super::slice::Slice;
 use super::stack::{Order, Stack, stacked};
 use crate::error::format_error;
@@ -132,17 +132,16 @@ pub(super) fn volume(
     let each = dims.x() * dims.y();
     let mut samples = try_with_capacity::<f32>(dims.samples(), || "a segmentation".into())?;
     samples.resize(dims.samples(), 0.0);
-    let all: Vec<&Slice> = slices.iter().collect();
-    for (batch, places) in all.chunks(64).zip(places.chunks(64)) {
-        for ((slice, plane), places) in batch.iter().zip(pixels(batch)?).zip(places) {
-            for &place in places {
-                let target = &mut samples[each * place..each * (place + 1)];
-                let number = of(slice).map(|(number, _)| number).filter(|_| !is_shared);
-                lay(target, &plane.samples, number)
-                    .map_err(|under| fail(overlap(&segments, under, slice)))?;
-            }
+    let bytes = stored_in(first)?;
+    for (done, (slice, places)) in slices.iter().zip(&places).enumerate() {
+        let plane = plane(slice, &bytes)?;
+        let number = of(slice).map(|(number, _)| number).filter(|_| !is_shared);
+        for &place in places {
+            let target = &mut samples[each * place..each * (place + 1)];
+            lay(target, &plane.samples, number)
+                .map_err(|under| fail(overlap(&segments, under, slice)))?;
         }
-        monitor.check()?;
+        monitor.report(done as u64, slices.len() as u64)?;
     }
     let dtype = match segments.keys().last() {
         _ if is_shared => Dtype::F32,

@@ -134,7 +134,6 @@ fn directory(path: &Path) -> Reason {
 
 /// What a file states that is read in another way, or not at all.
 fn notes(header: Header<'_>, start: &Start) -> Vec<String> {
-    let guessed = start.guessed.as_ref().map(|how| format!("{how}, as its first elements look"));
     let inverse =
         header.text(None, PHOTOMETRIC_INTERPRETATION).is_some_and(|of| of == "MONOCHROME1");
     let inverse = inverse.then(|| {
@@ -148,7 +147,7 @@ fn notes(header: Header<'_>, start: &Start) -> Vec<String> {
                  values are those of the modality"
         )
     });
-    guessed.into_iter().chain(inverse).chain(mapped).collect()
+    start.guessed.clone().into_iter().chain(inverse).chain(mapped).collect()
 }
 
 impl Slice {

@@ -71,12 +71,16 @@ impl Start {
         match (uid.filter(|uid| !uid.is_empty()), seen) {
             // Some programs state one of these and write another.
             (Some(uid), Some((other, how))) if is_plain(&uid) && uid != other => {
-                let guessed = format!("states another encoding than {how}, as which it is read");
+                let guessed = format!(
+                    "states an encoding that its first elements do not have, and is read as {how}"
+                );
                 Ok(Self { at, uid: other.into(), guessed: Some(guessed) })
             }
             (Some(uid), _) => Ok(Self { at, uid, guessed: None }),
             (None, Some((uid, how))) => {
-                let guessed = format!("does not say how it is encoded, and is read as {how}");
+                let guessed = format!(
+                    "does not say how it is encoded, and is read as {how}, as its first elements look"
+                );
                 Ok(Self { at, uid: uid.into(), guessed: Some(guessed) })
             }
             (None, None) => {

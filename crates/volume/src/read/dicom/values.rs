@@ -159,9 +159,8 @@ fn words(element: &InMemElement, signed: bool) -> Option<Vec<f64>> {
         return None;
     }
     let bytes = element.value().to_bytes().ok()?;
-    let number = |&word: &[u8; 2]| match signed {
-        true => f64::from(i16::from_le_bytes(word)),
-        false => f64::from(u16::from_le_bytes(word)),
+    let number = |&word: &[u8; 2]| {
+        if signed { i16::from_le_bytes(word).into() } else { u16::from_le_bytes(word).into() }
     };
     Some(bytes.as_chunks().0.iter().map(number).collect())
 }

@@ -1,14 +1,14 @@
 //! Which slices of a series make one volume: copies are dropped, and times, echoes or stacks told apart.
 
 use std::cmp::Ordering;
-use std::collections::HashMap;
-use std::path::Path;
+use std::collections::{HashMap, HashSet};
+use std::path::{Path, PathBuf};
 
 use walpha_base::shown::{counted, shown};
 use walpha_base::vector::{dot, length, sub};
 
 use super::index::{Key, STACK};
-use super::pixels::{Plane, pixels};
+use super::pixels::stored_in;
 use super::slice::Slice;
 use crate::error::format_error;
 use crate::read::frames::FrameChoice;
@@ -28,6 +28,8 @@ pub(super) fn without_copies(
     let mut kept: Vec<Slice> = Vec::with_capacity(slices.len());
     let mut known: HashMap<(String, u32), Vec<usize>> = HashMap::new();
     let (mut copies, mut shared) = (0, None);
+    // All frames of two files are compared at once.
+    let mut compared: HashSet<(PathBuf, PathBuf)> = HashSet::new();
     for slice in slices {
         let of = known.entry((slice.instance.clone(), slice.frame)).or_default();
         if slice.instance.is_empty() {
@@ -39,18 +41,17 @@ pub(super) fn without_copies(
         };
         if let Some(&first) = of.iter().find(|&&i| is_there(&kept[i])) {
             let other = &kept[first];
-            let (a, b) = match (pixels(&[other]), pixels(&[&slice])) {
-                (Ok(a), Ok(b)) => (a, b),
-                (Err(error), _) | (_, Err(error)) => return Ok(Err(error)),
+            let pair = (other.path.clone(), slice.path.clone());
+            let is_same = if compared.contains(&pair) {
+                true
+            } else {
+                match (stored_in(other), stored_in(&slice)) {
+                    (Ok(a), Ok(b)) => a == b,
+                    (Err(error), _) | (_, Err(error)) => return Ok(Err(error)),
+                }
             };
-            let bits = |planes: &[Plane]| -> Vec<u32> {
-                planes
-                    .iter()
-                    .flat_map(|plane| &plane.samples)
-                    .map(|value| value.to_bits())
-                    .collect()
-            };
-            if bits(&a) != bits(&b) {
+            compared.insert(pair);
+            if !is_same || slice.values != other.values {
                 let what = format!(
                     "has two files of one SOP Instance UID whose pixels differ, {} and {}",
                     shown(&other.path),
