@@ -131,8 +131,8 @@ fn padding_is_told_and_can_be_replaced() {
     assert_eq!((replaced.as_slice()[0], replaced.has_missing()), (-100.0, false));
     // Points are not made of it, and what is converted says it.
     let points = json(f, &["points", ".", "--count", "12", "--rms", "0", "-o", "p.npy"]);
-    assert_eq!(points["points"], 12, "{points}");
-    fails(f, 1, "points . --count 13 --rms 0 -o q.npy", &["12"]);
+    assert_eq!(points["points"]["selected"], 12, "{points}");
+    fails(f, 1, "points . --count 13 --rms 0 -o q.npy", &["13 points cannot be selected"]);
 }
 
 /// A format that knows no padding gets NaN.
