@@ -101,10 +101,8 @@ impl Volume {
         let value = match nan {
             Some(Nan::Value(value)) => {
                 if let Some(missing) = self.missing.take() {
-                    let samples = self.samples.as_slice_mut().expect("standard layout");
-                    let padded =
-                        samples.par_iter_mut().zip(missing).filter(|(_, missing)| *missing);
-                    padded.for_each(|(sample, _)| *sample = value);
+                    let samples = self.samples.iter_mut().zip(missing);
+                    samples.filter(|(_, missing)| *missing).for_each(|(sample, _)| *sample = value);
                 }
                 value
             }

@@ -90,7 +90,7 @@ impl SeriesFiles {
         for (note, of) in notes {
             match &of[..] {
                 [first, _, ..] => {
-                    tracing::warn!("{} {note} ({} files are so)", shown(first), of.len())
+                    tracing::warn!("{} {note} ({} files are so)", shown(first), of.len());
                 }
                 of => of.iter().for_each(|path| tracing::warn!("{} {note}", shown(path))),
             }
