@@ -333,6 +333,72 @@ def read_dicom(check):
     # The third of five, by the names given above.
     os.remove(os.path.join(folder, f"{(5 * 2 + 2) % 7}.dcm"))
     check.refused("DICOM with a slice missing", folder, "slices missing: 1")
+    read_values_of_dicom(check, series, axes)
+
+
+def read_values_of_dicom(check, series, axes):
+    """What stored pixels mean, as pydicom has it."""
+
+    def table(first, entries, bits):
+        def spoil(ds, z):
+            lut = pydicom.Dataset()
+            lut.LUTDescriptor, lut.ModalityLUTType = [len(entries) % 2**16, first, bits], "US"
+            lut["LUTDescriptor"].VR = "SS" if first < 0 else "US"
+            lut.add_new(0x00283006, "OW", np.asarray(entries, "<u2").tobytes())
+            ds.ModalityLUTSequence = [lut]
+
+        return spoil
+
+    def bits(stored, high, signed):
+        def spoil(ds, z):
+            ds.BitsStored, ds.HighBit, ds.PixelRepresentation = stored, high, int(signed)
+            if high == stored - 1:
+                # What is above is not of the pixel.
+                ds.PixelData = (np.frombuffer(ds.PixelData, "<u2") & 0x0FFF).tobytes()
+
+        return spoil
+
+    def of_frame(ds, z):
+        ds.RescaleSlope, ds.RescaleIntercept = 1 + z, -10 * z
+
+    def floating(ds, z):
+        values = np.frombuffer(ds.PixelData, "<i2")[: ds.Rows * ds.Columns].astype("<f4") / 8
+        del ds.PixelData, ds.BitsStored, ds.HighBit, ds.PixelRepresentation
+        ds.BitsAllocated, ds.FloatPixelData = 32, values.tobytes()
+
+    def big_endian(ds, z):
+        ds.file_meta.TransferSyntaxUID = pydicom.uid.ExplicitVRBigEndian
+        ds.PixelData = np.frombuffer(ds.PixelData, "<i2").astype(">i2").tobytes()
+
+    small = samples("u1")
+    kinds = [
+        ("a table", small, table(0, 3 * np.arange(256) + 1000, 16)),
+        ("a table from 40 on", small, table(40, 7 * np.arange(50), 16)),
+        ("a table from below 0 on", samples("i2") % 50 - 25, table(-9, 5 * np.arange(20), 16)),
+        ("a table of 65536", samples("i2"), table(-32768, np.arange(65536), 16)),
+        ("a table of 8 bits in words", small, table(0, 255 - np.arange(256), 8)),
+        ("12 bits", samples("u2") * 30, bits(12, 11, False)),
+        ("12 signed bits", samples("i2") * 17 - 1000, bits(12, 11, True)),
+        ("a slope of each slice", samples("i2"), of_frame),
+        ("Float Pixel Data", samples("i2"), floating),
+        ("big endian", samples("i2"), big_endian),
+    ]
+    for name, data, spoil in kinds:
+        folder = series(check.path(f"dicom {name}"), data.astype(data.dtype.str), spoil)
+        slices = [pydicom.dcmread(path) for path in pathlib.Path(folder).iterdir()]
+        slices.sort(key=lambda ds: float(np.dot(ds.ImagePositionPatient, axes[:, 2])))
+        # Wide enough for the difference to the first entry of a table.
+        pixels = [ds.pixel_array if "FloatPixelData" in ds else ds.pixel_array.astype("i4") for ds in slices]
+        theirs = np.stack([pydicom.pixels.apply_modality_lut(*pair) for pair in zip(pixels, slices)])
+        check.volume(f"DICOM with {name}", folder, theirs, ORIGIN, axes, SPACING)
+
+    def padded(ds, z):
+        ds.add_new(0x00280120, "SS", int(np.frombuffer(ds.PixelData, "<i2")[0]))
+
+    data = samples("i2")
+    folder = series(check.path("dicom padding"), data, padded)
+    stored = np.stack([plane == plane.ravel()[0] for plane in data])
+    check.volume("DICOM with padding", folder, np.where(stored, data[~stored].min(), data), ORIGIN, axes, SPACING)
 
 
 def read_zarr(check):

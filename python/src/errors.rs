@@ -7,7 +7,7 @@ use pyo3::exceptions::{
     PyFileNotFoundError, PyIsADirectoryError, PyMemoryError, PyOSError, PyPermissionError,
     PyRuntimeError, PyValueError,
 };
-use walpha::advice::Advice;
+use walpha::advice::{Advice, Setting};
 use walpha::check::schema::SchemaError;
 use walpha::check::{AlphaError, CertifyError, CompareError};
 use walpha::export::{TargetError, UnknownFormat};
@@ -34,8 +34,17 @@ pub fn wrong(text: impl Into<String>) -> PyErr {
 /// What is wrong, and what to do about it.
 fn message(error: &impl ToString, advice: impl Into<Option<Advice>>) -> String {
     match advice.into() {
-        Some(advice) => format!("{}; {advice}", error.to_string()),
+        Some(advice) => format!("{}; {}", error.to_string(), advice.with_names(name)),
         None => error.to_string(),
+    }
+}
+
+/// A setting as an argument of Python.
+fn name(setting: Setting) -> String {
+    match setting {
+        Setting::NoResample => "`resample=False`".into(),
+        Setting::Region => "`roi`".into(),
+        other => format!("`{}`", other.name()),
     }
 }
 

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use numpy::ndarray::Array3;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArray3, PyReadonlyArray1, PyReadonlyArray3};
 use pyo3::prelude::*;
 use walpha::haar::{Decomposition, HaarOptions, Tolerance, smooth_monitored};
@@ -10,7 +11,7 @@ use walpha::pipeline::{Choice, Goal};
 use walpha::points::{self, PointsError, Weighting};
 use walpha::progress::Stage;
 use walpha::volume::{
-    Coordinates, Frame, GrayRange, Nan, ReadOptions, Space, Volume, open_monitored,
+    Coordinates, Frame, GrayRange, Nan, ReadOptions, Space, Volume, VolumeError, open_monitored,
 };
 use walpha::{Alpha, Points, Recipe, Selection, SelectionRule, Units};
 
@@ -51,11 +52,17 @@ pub fn read<'py>(
     Ok((samples.into_pyarray(py), gray, json(&frame)))
 }
 
+/// A volume of these samples, of which NaN are masked if that is asked for.
+fn volume(samples: Array3<f32>, frame: Frame, masked: bool) -> Result<Volume, VolumeError> {
+    Volume::of_file(samples, frame)?.resolve_nan(masked.then_some(Nan::Mask))
+}
+
 /// The truncated volume, and what truncation did as JSON.
 #[pyfunction]
 pub fn haar<'py>(
     py: Python<'py>,
     samples: PyReadonlyArray3<'_, f32>,
+    masked: bool,
     tolerance: (String, f64),
     decomposition: &str,
     task: Task<'_>,
@@ -64,7 +71,7 @@ pub fn haar<'py>(
     let samples = owned(&samples)?;
     let (smoothed, truncation) = run(py, &task, move |monitor| {
         Stage::Haar.begin(monitor)?;
-        smooth_monitored(&Volume::new(samples, Frame::VOXEL)?, &options, monitor)
+        smooth_monitored(&volume(samples, Frame::VOXEL, masked)?, &options, monitor)
     })?;
     Ok((smoothed.into_samples().into_pyarray(py), json(&truncation)))
 }
@@ -74,10 +81,11 @@ pub fn haar<'py>(
 pub fn difference<'py>(
     py: Python<'py>,
     samples: PyReadonlyArray3<'_, f32>,
+    masked: bool,
 ) -> PyResult<Bound<'py, PyArray3<f64>>> {
     let samples = owned(&samples)?;
     let found = run(py, &Task::default(), move |_| {
-        Ok::<_, PointsError>(points::difference(&Volume::new(samples, Frame::VOXEL)?))
+        Ok::<_, PointsError>(points::difference(&volume(samples, Frame::VOXEL, masked)?))
     })?;
     Ok(found.into_pyarray(py))
 }
@@ -91,6 +99,7 @@ type Selected<'py> =
 pub fn select<'py>(
     py: Python<'py>,
     samples: PyReadonlyArray3<'_, f32>,
+    masked: bool,
     smoothed: PyReadonlyArray3<'_, f32>,
     frame: Option<&str>,
     rule: (String, f64),
@@ -108,7 +117,8 @@ pub fn select<'py>(
     let selection = Selection::default().rule(selection_rule(&rule)?).gray_min(gray_min);
     let found = run(py, &Task::default(), move |monitor| {
         let _ = Stage::Points.begin(monitor);
-        let (volume, smoothed) = (Volume::new(samples, frame)?, Volume::new(smoothed, frame)?);
+        let (volume, smoothed) =
+            (volume(samples, frame, masked)?, volume(smoothed, frame, masked)?);
         // Arrays do not say what they hold.
         let smoothed = smoothed.with_gray_levels();
         let differences = points::difference(&smoothed);

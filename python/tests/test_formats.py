@@ -37,8 +37,8 @@ def element(group, number, kind, value):
     return struct.pack("<HH", group, number) + kind.encode() + length + value
 
 
-def dicom(path, z, series, samples):
-    """A slice of a CT."""
+def dicom(path, z, series, samples, more=b""):
+    """A slice of a CT, with more elements behind its Pixel Representation."""
     short = lambda number: struct.pack("<H", number)  # noqa: E731
     ct, instance = "1.2.840.10008.5.1.4.1.1.2", f"{series}.{z + 1}"
     meta = (element(2, 1, "OB", b"\0\1") + element(2, 2, "UI", ct) + element(2, 3, "UI", instance)
@@ -54,7 +54,7 @@ def dicom(path, z, series, samples):
         + element(0x28, 0x10, "US", short(rows)) + element(0x28, 0x11, "US", short(columns))
         + element(0x28, 0x30, "DS", "2\\1") + element(0x28, 0x100, "US", short(16))
         + element(0x28, 0x101, "US", short(16)) + element(0x28, 0x102, "US", short(15))
-        + element(0x28, 0x103, "US", short(0)) + element(0x28, 0x1052, "DS", "-5") + element(0x28, 0x1053, "DS", "2")
+        + element(0x28, 0x103, "US", short(0)) + more + element(0x28, 0x1052, "DS", "-5") + element(0x28, 0x1053, "DS", "2")
         + element(0x7FE0, 0x10, "OW", samples.tobytes())
     )
 
@@ -73,6 +73,28 @@ def test_dicom(tmp_path):
         walpha.read(tmp_path)
     assert {walpha.read(tmp_path, series=number).samples.max() for number in (1, 2)} == {41, 241}
     assert walpha.read(tmp_path, series="3.9").samples.max() == 241
+
+
+def test_padding_of_dicom_is_no_data(tmp_path):
+    for z in (0, 1):
+        dicom(tmp_path / f"{z}.dcm", z, "1.2.3.4", GRID[z], element(0x28, 0x120, "US", struct.pack("<H", 7)))
+    ct = walpha.read(tmp_path)
+    assert ct.masked and np.array_equal(np.isnan(ct.samples), GRID == 7)
+    points = walpha.pipeline(ct, count=23, rms=0, alpha=100.0).points
+    assert len(points) == 23 and not (points == [13, 22, 0]).all(axis=1).any()
+    assert len(walpha.select(ct, count=23).points) == 23
+    assert np.isfinite(walpha.haar(ct)[0]).all() and np.isfinite(walpha.difference(ct)).all()
+    filled = walpha.read(tmp_path, nan=-99)
+    assert not filled.masked and filled.samples[0, 1, 3] == -99
+
+
+def test_slices_at_two_spacings(tmp_path):
+    for k, z in enumerate((0, 1, 2, 4, 6)):
+        dicom(tmp_path / f"{k}.dcm", z, "1.2.3.4", np.full((3, 4), z, "<u2"))
+    volume = walpha.read(tmp_path)
+    assert volume.spacing[2] == 3 and volume.samples[:, 0, 0].tolist() == [-5, -3, -1, 1, 3, 5, 7]
+    with pytest.raises(ValueError, match="several distances"):
+        walpha.read(tmp_path, resample=False)
 
 
 def las(path, points, classes):

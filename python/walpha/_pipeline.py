@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import json
+import math
 from typing import Any, Literal, NamedTuple, TypeAlias
 
 from . import _alpha, _arrays, _walpha
@@ -76,7 +77,7 @@ def haar(
     """
     tolerance = _tolerance(rms, epsilon, coefficients)
     with task(progress, threads) as how:
-        samples, facts = _walpha.haar(_grid(volume)[0], tolerance, decomposition, how)
+        samples, facts = _walpha.haar(_grid(volume)[0], _masked(volume), tolerance, decomposition, how)
     return samples, json.loads(facts)
 
 
@@ -99,7 +100,7 @@ def difference(volume: Arrays | Volume) -> Floats:
     >>> walpha.difference(np.arange(3.0).reshape(1, 1, 3))
     array([[[0.16666667, 0.33333333, 0.16666667]]])
     """
-    return _walpha.difference(_grid(volume)[0])
+    return _walpha.difference(_grid(volume)[0], _masked(volume))
 
 
 def select(
@@ -150,7 +151,7 @@ def select(
     samples, _, frame = _grid(volume, spacing, origin)
     judged = samples if smoothed is None else _grid(smoothed)[0]
     rule = _rule(count, ratio, threshold)
-    return Selected(*_walpha.select(samples, judged, frame, rule, gray_min))
+    return Selected(*_walpha.select(samples, _masked(volume), judged, frame, rule, gray_min))
 
 
 def weigh(differences: Arrays, weighting: str = "min-max", *, alpha: float) -> Floats:
@@ -291,6 +292,8 @@ def pipeline(
         raise ValueError(
             "threshold, gray_min and value_min choose by levels, which select='adaptive' does not: give a count"
         )
+    if nan is None and _masked(volume):
+        nan = math.nan
     with task(progress, threads) as how:
         shape = _walpha.pipeline(
             samples,
@@ -359,6 +362,11 @@ def _grid(
         return samples, gray, None
     placed = Volume(samples, spacing, (0.0, 0.0, 0.0) if origin is None else origin)
     return samples, gray, placed._frame()
+
+
+def _masked(volume: Arrays | Volume) -> bool:
+    """Whether NaN among the samples are no data."""
+    return isinstance(volume, Volume) and volume.masked
 
 
 def _tolerance(

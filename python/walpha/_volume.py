@@ -41,6 +41,8 @@ class Volume:
         Of lengths: "mm", say; "unit" where nobody says; "voxel" where coordinates are indices.
     gray : bool, optional
         Whether samples are gray levels 0 to 255 already; by default those of unsigned bytes are.
+    masked : bool
+        Whether NaN among the samples are no data, as padding of DICOM is: they become no points, and are no error.
 
     Raises
     ------
@@ -63,6 +65,7 @@ class Volume:
     space: str = "unknown"
     unit: str = "unit"
     gray: bool | None = None
+    masked: bool = False
 
     def __post_init__(self) -> None:
         samples, gray = _arrays.samples(self.samples)
@@ -126,6 +129,7 @@ def read(
     frame: int | None = None,
     series: int | str | None = None,
     skip_damaged: bool = False,
+    resample: bool = True,
     shape: tuple[int, int, int] | None = None,
     dtype: DTypeLike | None = None,
     offset: int = 0,
@@ -145,7 +149,7 @@ def read(
         Average blocks of so many samples along each axis, after ``roi``.
     nan : float, optional
         What replaces samples that are NaN or infinite, an error otherwise. NaN leaves them NaN, for ``nan=`` of
-        :func:`pipeline`.
+        :func:`pipeline`. Padding (DICOM) is replaced, too; otherwise it is NaN, and the volume ``masked``.
     format : str, optional
         The extension of the file's format, where neither its content nor its name shows it.
     level : int, optional
@@ -153,11 +157,13 @@ def read(
     array : str, optional
         Which array of a file with several (VTK, NPZ).
     frame : int, optional
-        Which volume of a file with several (a fourth axis), from 0.
+        Which volume of a file with several (a fourth axis; times, echoes or stacks of DICOM), from 0.
     series : int or str, optional
         Which series of a folder with several (DICOM): its number, from 1, or the end of its UID.
     skip_damaged : bool
         Go on without damaged slices (DICOM).
+    resample : bool
+        Resample slices at several distances (DICOM) linearly to the finest; otherwise they are an error.
     shape, dtype, offset : tuple of int, dtype, int; optional
         Of a file of bare samples, as ``numpy.memmap`` takes them: samples along z, y and x; their type, with its byte
         order; and the bytes before the first.
@@ -193,6 +199,7 @@ def read(
         "frame": frame,
         "series": None if series is None else str(series),
         "skip_damaged": bool(skip_damaged),
+        "no_resample": not resample,
         "nan": None if nan is None else "mask" if math.isnan(nan) else {"value": float(nan)},
         "region": None if roi is None else _region(roi),
         "downsample": _block(downsample),
@@ -201,7 +208,8 @@ def read(
         samples, gray, frame_of = _walpha.read(os.fspath(path), json.dumps(options), how)
     placed = json.loads(frame_of)
     coordinates = placed.pop("coordinates")
-    return Volume(samples, **placed, **coordinates, gray=gray)
+    masked = nan is None and bool(np.isnan(samples).any())
+    return Volume(samples, **placed, **coordinates, gray=gray, masked=masked)
 
 
 def _raw(shape: Any, dtype: DTypeLike | None, offset: int) -> dict[str, Any] | None:

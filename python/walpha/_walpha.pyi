@@ -179,11 +179,12 @@ def write_points(
     value_error: float,
 ) -> None: ...
 def haar(
-    samples: Samples, tolerance: tuple[str, float], decomposition: str, task: _Task
+    samples: Samples, masked: bool, tolerance: tuple[str, float], decomposition: str, task: _Task
 ) -> tuple[Samples, str]: ...
-def difference(samples: Samples) -> Floats: ...
+def difference(samples: Samples, masked: bool) -> Floats: ...
 def select(
     samples: Samples,
+    masked: bool,
     smoothed: Samples,
     frame: str | None,
     rule: tuple[str, float],

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use serde::Serialize;
-use walpha_base::shown::shown;
+use walpha_base::shown::{counted, shown};
 
 use crate::progress::Stage;
 use crate::volume::{OpenVolume, Source, convert_monitored};
@@ -64,11 +64,18 @@ impl Convert {
             let volume = OpenVolume::open(input)?;
             let source = match volume.source(&options) {
                 Ok(source) => source,
-                Err(_) => Source::of_volume(
-                    progress
-                        .stage(Stage::Read, || volume.read(&options, &monitor))
-                        .map_err(with_points)?,
-                ),
+                Err(_) => {
+                    let read = || volume.read(&options, &monitor);
+                    let volume = progress.stage(Stage::Read, read).map_err(with_points)?;
+                    let missing = (volume.dims().samples() - volume.samples_there()) as u64;
+                    if missing > 0 {
+                        tracing::warn!(
+                            "{} of padding written as NaN, for --nan to mask where it is read",
+                            counted(missing, "sample")
+                        );
+                    }
+                    Source::of_volume(volume)
+                }
             };
             progress.stage(Stage::Write, || convert_monitored(&source, &self.output, &monitor))?;
             Ok(source.dims().xyz())

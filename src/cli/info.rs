@@ -12,9 +12,7 @@ use crate::check::meshes::Mesh;
 use crate::pipeline::Opened;
 use crate::points::{Cell, CellCount, ModelMetadata, Points, cells_of_file, read_model_file};
 use crate::progress::Stage;
-use crate::volume::{
-    self, Dtype, Nan, OpenVolume, ReadOptions, Reason, SampleStats, Series, Source,
-};
+use crate::volume::{self, Dtype, Nan, OpenVolume, ReadOptions, Reason, SampleStats, Series};
 use crate::{Alpha, Coordinates, Dims, Frame, LengthUnit, VolumeError};
 
 use super::args::InputArgs;
@@ -66,8 +64,11 @@ enum Content {
         /// Range of the finite values; null where there is none.
         min: Option<f32>,
         max: Option<f32>,
-        /// Samples that are NaN or infinite.
+        /// Samples that are NaN, infinite or padding.
         missing: u64,
+        /// Whether these are padding, and masked without an option.
+        #[serde(skip)]
+        padding: bool,
         /// The preset that `walpha shape` uses where no option says what to look for. Absent if there is none.
         #[serde(skip_serializing_if = "Option::is_none")]
         preset: Option<&'static str>,
@@ -222,7 +223,7 @@ impl Info {
             },
         };
         let (format, data_files) = (volume.format_name(&options)?, volume.data_files(&options)?);
-        let VolumeSummary { dims, frame, dtype, gray_levels, stats, volumes } = summary;
+        let VolumeSummary { dims, frame, dtype, gray_levels, stats, padding, volumes } = summary;
         Ok(Content::Volume {
             format,
             samples: dtype.to_string(),
@@ -234,6 +235,7 @@ impl Info {
             min: stats.range.map(|(min, _)| min),
             max: stats.range.map(|(_, max)| max),
             missing: stats.missing,
+            padding,
             preset: stats.hounsfield.map(|_| preset::OF_CT),
             volumes,
             gray_levels,
@@ -249,6 +251,7 @@ struct VolumeSummary {
     dtype: Dtype,
     gray_levels: bool,
     stats: SampleStats,
+    padding: bool,
     volumes: Option<u64>,
 }
 
@@ -259,31 +262,41 @@ impl VolumeSummary {
         options: &ReadOptions,
         monitor: &Monitor,
     ) -> Result<Self, VolumeError> {
-        let (source, stats) = if let Ok(source) = volume.source(options) {
+        if let Ok(source) = volume.source(options) {
             let stats = SampleStats::of(&source, options.nan)?;
-            (source, stats)
-        } else {
-            // Reading the whole volume also reports what is wrong with it.
-            let read = |nan| volume.read(&options.clone().nan(nan), monitor);
-            match read(options.nan.or(Some(Nan::Mask))) {
-                Ok(volume) => {
-                    let stats = SampleStats::of_volume(&volume);
-                    (Source::of_volume(volume), stats)
-                }
-                Err(error) if error.is_not_finite() => {
-                    let volume = read(Some(Nan::Value(0.0)))?;
-                    let missing = volume.dims().samples() as u64;
-                    (
-                        Source::of_volume(volume),
-                        SampleStats { range: None, missing, hounsfield: None },
-                    )
-                }
-                Err(error) => return Err(error),
-            }
+            let (dims, frame, dtype) = (source.dims(), *source.frame(), source.dtype());
+            let gray_levels = source.has_gray_levels();
+            return Ok(Self {
+                dims,
+                frame,
+                dtype,
+                gray_levels,
+                stats,
+                padding: false,
+                volumes: None,
+            });
+        }
+        // Reading the whole volume also reports what is wrong with it.
+        let read = |nan| volume.read(&options.clone().nan(nan), monitor);
+        let (volume, padding) = match read(options.nan) {
+            Err(error) if error.is_not_finite() => (read(Some(Nan::Mask)), false),
+            read => (read, options.nan.is_none()),
         };
-        let (dims, frame, dtype) = (source.dims(), *source.frame(), source.dtype());
-        let gray_levels = source.has_gray_levels();
-        Ok(Self { dims, frame, dtype, gray_levels, stats, volumes: None })
+        let (volume, stats) = match volume {
+            Ok(volume) => {
+                let stats = SampleStats::of_volume(&volume);
+                (volume, stats)
+            }
+            Err(error) if error.is_not_finite() => {
+                let volume = read(Some(Nan::Value(0.0)))?;
+                let missing = volume.dims().samples() as u64;
+                (volume, SampleStats { range: None, missing, hounsfield: None })
+            }
+            Err(error) => return Err(error),
+        };
+        let (dims, frame, dtype) = (volume.dims(), *volume.frame(), volume.dtype());
+        let gray_levels = volume.has_gray_levels();
+        Ok(Self { dims, frame, dtype, gray_levels, stats, padding, volumes: None })
     }
 }
 
@@ -396,6 +409,7 @@ impl std::fmt::Display for Content {
                 min,
                 max,
                 missing,
+                padding,
                 preset,
                 volumes,
                 gray_levels,
@@ -420,10 +434,12 @@ impl std::fmt::Display for Content {
                     )?;
                 }
                 if *missing > 0 {
-                    writeln!(
-                        f,
-                        "missing   {missing} samples are NaN or infinite; --nan masks or replaces them"
-                    )?;
+                    let what = if *padding {
+                        "padding, and masked; --nan VALUE replaces them"
+                    } else {
+                        "NaN or infinite; --nan masks or replaces them"
+                    };
+                    writeln!(f, "missing   {missing} samples are {what}")?;
                 }
                 if let Some(volumes) = volumes {
                     writeln!(

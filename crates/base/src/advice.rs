@@ -50,6 +50,7 @@ pub enum Setting {
     Level,
     Memory,
     Nan,
+    NoResample,
     Offset,
     Periodic,
     Ratio,
@@ -87,6 +88,7 @@ impl Setting {
             Self::Level => "level",
             Self::Memory => "memory",
             Self::Nan => "nan",
+            Self::NoResample => "no_resample",
             Self::Offset => "offset",
             Self::Periodic => "periodic",
             Self::Ratio => "ratio",
@@ -105,6 +107,13 @@ impl Advice {
     #[doc(hidden)]
     pub fn new(parts: impl IntoIterator<Item = Part>) -> Self {
         Self(parts.into_iter().collect())
+    }
+
+    /// This advice and another one after it.
+    #[must_use]
+    pub fn and(mut self, other: Self) -> Self {
+        self.0.extend(other.0);
+        self
     }
 
     /// The text, with each setting under the name that `name` returns.

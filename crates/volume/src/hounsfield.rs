@@ -23,7 +23,13 @@ impl Hounsfield {
             return None;
         }
         let mut counts = Counts::default();
-        counts.add(volume.as_slice());
+        let samples = volume.as_slice();
+        if volume.has_missing() {
+            let there = samples.iter().enumerate().filter(|&(i, _)| !volume.is_missing(i));
+            there.for_each(|(_, value)| counts.add(std::slice::from_ref(value)));
+        } else {
+            counts.add(samples);
+        }
         counts.judge()
     }
 

@@ -27,6 +27,8 @@ pub struct Source {
     parts: Box<dyn BoxReader>,
     /// Whether samples are gray levels as they are.
     gray_levels: bool,
+    /// Whether the file states that its values are labels.
+    labels: bool,
     /// Where the volume begins in what is read.
     first: [usize; 3],
 }
@@ -57,13 +59,24 @@ impl Source {
         parts: Box<dyn BoxReader>,
     ) -> Self {
         let gray_levels = dtype == Dtype::U8;
-        Self { dims, frame, dtype, grain, parts, gray_levels, first: [0; 3] }
+        Self { dims, frame, dtype, grain, parts, gray_levels, labels: false, first: [0; 3] }
     }
 
     /// Sets whether samples are gray levels, whatever their type.
     #[must_use]
     pub fn with_gray_levels(self, gray_levels: bool) -> Self {
         Self { gray_levels, ..self }
+    }
+
+    /// Marks the values as labels, which the file states them to be.
+    #[must_use]
+    pub fn with_labels(self) -> Self {
+        Self { labels: true, ..self }
+    }
+
+    /// Whether the file states that its values are labels.
+    pub fn states_labels(&self) -> bool {
+        self.labels
     }
 
     /// A part of it, in its place.
@@ -78,11 +91,13 @@ impl Source {
         Ok(Self { dims: Dims::unbounded(x, y, z)?, frame, first: region.first, ..self })
     }
 
-    /// A volume in memory.
+    /// A volume in memory. Samples that are missing are read as NaN, and so are `f32`.
     pub fn of_volume(volume: Volume) -> Self {
-        let (dims, frame, dtype) = (volume.dims(), *volume.frame(), volume.dtype());
-        let gray_levels = volume.has_gray_levels();
-        Self::new(dims, frame, dtype, [1; 3], Box::new(volume)).with_gray_levels(gray_levels)
+        let (dims, frame) = (volume.dims(), *volume.frame());
+        let dtype = if volume.has_missing() { Dtype::F32 } else { volume.dtype() };
+        let (gray_levels, labels) = (volume.has_gray_levels(), volume.states_labels());
+        let source = Self::new(dims, frame, dtype, [1; 3], Box::new(volume));
+        Self { labels, ..source }.with_gray_levels(gray_levels)
     }
 
     /// Samples along x, y and z.
@@ -143,7 +158,14 @@ impl Source {
 impl BoxReader for Volume {
     fn read(&self, first: [usize; 3], size: [usize; 3]) -> Result<Vec<f32>, VolumeError> {
         let [x, y, z] = [0, 1, 2].map(|k| first[k]..first[k] + size[k]);
-        Ok(self.samples().slice(ndarray::s![z, y, x]).iter().copied().collect())
+        let part = ndarray::s![z, y, x];
+        let mut samples: Vec<f32> = self.samples().slice(part).iter().copied().collect();
+        if let Some(missing) = self.missing() {
+            let missing = missing.slice_move(part);
+            let all = samples.iter_mut().zip(missing).filter(|(_, missing)| **missing);
+            all.for_each(|(sample, _)| *sample = f32::NAN);
+        }
+        Ok(samples)
     }
 }
 
@@ -161,7 +183,7 @@ pub(crate) const AT_ONCE: usize = 1 << 24;
 pub struct SampleStats {
     /// The smallest and the largest finite value; `None` where there is none.
     pub range: Option<(f32, f32)>,
-    /// How many samples are NaN or infinite.
+    /// How many samples are NaN, infinite or padding.
     pub missing: u64,
     /// Whether the values look like Hounsfield units.
     pub hounsfield: Option<Hounsfield>,
@@ -194,7 +216,7 @@ impl SampleStats {
         Ok(Self { range: (low <= high).then_some((low, high)), missing, hounsfield })
     }
 
-    /// Of a volume in memory, whose [missing](Volume::is_missing) samples are not finite in its file.
+    /// Of a volume in memory, whose [missing](Volume::is_missing) samples are not finite in its file, or padding.
     pub fn of_volume(volume: &Volume) -> Self {
         let missing = volume.dims().samples() - volume.samples_there();
         Self {

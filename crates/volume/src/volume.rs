@@ -28,13 +28,15 @@ pub struct Volume {
     dtype: Dtype,
     /// Samples that the file has no number for, if there are any.
     missing: Option<Vec<bool>>,
+    /// Whether the file states that its values are labels.
+    labels: bool,
 }
 
-/// How to treat samples that are NaN or infinite.
+/// How to treat samples that are NaN or infinite, or that a file states to be padding (DICOM).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Nan {
-    /// This value replaces them.
+    /// This value replaces them, padding too.
     Value(f32),
     /// They are masked: the least of the other values replaces them, and they take no part where
     /// points are selected and errors measured.
@@ -88,7 +90,7 @@ impl Volume {
             samples.as_standard_layout().into_owned()
         };
         let (gray_levels, dtype, missing) = (false, Dtype::F32, None);
-        Ok(Self { samples, dims, frame, gray_levels, dtype, missing })
+        Ok(Self { samples, dims, frame, gray_levels, dtype, missing, labels: false })
     }
 
     /// Applies the rule for samples that are not finite, and refuses what is left of them.
@@ -97,9 +99,19 @@ impl Volume {
     /// [`VolumeError`]: what cannot be read, and why.
     pub fn resolve_nan(mut self, nan: Option<Nan>) -> Result<Self, VolumeError> {
         let value = match nan {
-            Some(Nan::Value(value)) => value,
+            Some(Nan::Value(value)) => {
+                if let Some(missing) = self.missing.take() {
+                    let samples = self.samples.iter_mut().zip(missing);
+                    samples.filter(|(_, missing)| *missing).for_each(|(sample, _)| *sample = value);
+                }
+                value
+            }
             Some(Nan::Mask) if self.as_slice().par_iter().any(|v| !v.is_finite()) => {
-                self.missing = Some(self.as_slice().par_iter().map(|v| !v.is_finite()).collect());
+                let padded = self.missing.take();
+                let is_padded = |i: usize| padded.as_ref().is_some_and(|padded| padded[i]);
+                let samples = self.as_slice().par_iter().enumerate();
+                let missing = samples.map(|(i, v)| !v.is_finite() || is_padded(i)).collect();
+                self.missing = Some(missing);
                 // Infinite where none is finite, which is refused below.
                 self.value_range().0
             }
@@ -131,7 +143,7 @@ impl Volume {
         self.dtype
     }
 
-    /// Whether a sample is missing, by its index in memory order: NaN or infinite in the file, and replaced by the
+    /// Whether a sample is missing, by its index in memory order: NaN, infinite or padding in the file, and replaced by the
     /// least value here.
     pub fn is_missing(&self, sample: usize) -> bool {
         self.missing.as_ref().is_some_and(|missing| missing[sample])
@@ -159,13 +171,42 @@ impl Volume {
         self.missing.as_deref().map(|missing| view(missing).expect("one for each sample"))
     }
 
+    /// The same volume where these samples are padding, and missing; the least of the others replaces them. `None` where
+    /// all are padding.
+    #[cfg(feature = "dicom")]
+    pub(crate) fn with_padding(mut self, padded: Vec<bool>) -> Option<Self> {
+        if padded.par_iter().all(|&padded| padded) {
+            return None;
+        }
+        let samples = self.samples.as_slice_mut().expect("standard layout");
+        let there = samples
+            .par_iter()
+            .zip(&padded)
+            .filter(|(value, padded)| !**padded && value.is_finite());
+        let least = there.map(|(&value, _)| value).reduce(|| f32::INFINITY, f32::min);
+        let all = samples.par_iter_mut().zip(&padded).filter(|(_, padded)| **padded);
+        all.for_each(|(value, _)| *value = least);
+        Some(self.with_missing(Some(padded)))
+    }
+
+    /// Marks the values as labels, which the file states them to be: each a part, and no quantity.
+    #[must_use]
+    pub fn with_labels(self) -> Self {
+        Self { labels: true, ..self }
+    }
+
+    /// Whether the file states that its values are labels.
+    pub fn states_labels(&self) -> bool {
+        self.labels
+    }
+
     /// Other samples of the same kind.
     ///
     /// # Errors
     /// [`VolumeError`]: what cannot be read, and why.
     pub fn like(&self, samples: Array3<f32>, frame: Frame) -> Result<Self, VolumeError> {
-        let (gray_levels, dtype) = (self.gray_levels, self.dtype);
-        Ok(Self { gray_levels, dtype, ..Self::new(samples, frame)? })
+        let (gray_levels, dtype, labels) = (self.gray_levels, self.dtype, self.labels);
+        Ok(Self { gray_levels, dtype, labels, ..Self::new(samples, frame)? })
     }
 
     /// The same volume where these samples are missing.

@@ -62,8 +62,17 @@ pub(crate) struct InputArgs {
 impl InputArgs {
     /// Options for reading a volume.
     pub(crate) fn options(&self) -> ReadOptions {
-        let PartArgs { level, array, frame, series, skip_damaged, nan, roi, downsample } =
-            self.part.clone();
+        let PartArgs {
+            level,
+            array,
+            frame,
+            series,
+            skip_damaged,
+            no_resample,
+            nan,
+            roi,
+            downsample,
+        } = self.part.clone();
         ReadOptions::default()
             .raw(self.raw.layout())
             .format(self.input_format.clone())
@@ -72,6 +81,7 @@ impl InputArgs {
             .frame(frame)
             .series(series)
             .skip_damaged(skip_damaged)
+            .no_resample(no_resample)
             .nan(nan)
             .region(roi)
             .downsample(downsample)
@@ -120,7 +130,8 @@ pub(super) struct PartArgs {
     /// Array to read from a file with several (VTK, NPZ) [default for VTK: the first point array].
     #[arg(long, value_name = "NAME", conflicts_with = "dims")]
     array: Option<String>,
-    /// Volume to read from a file with several (a fourth axis), or scan or step of points (PTS, XYZ), counted from 0.
+    /// Volume to read from a file with several (a fourth axis; times, echoes or stacks of DICOM), or scan or step of points (PTS,
+    /// XYZ), counted from 0.
     #[arg(long, value_name = "K", conflicts_with = "dims")]
     frame: Option<u64>,
     /// Series to read from a folder with several (DICOM): its number in walpha info, or the end of its
@@ -130,8 +141,11 @@ pub(super) struct PartArgs {
     /// Skip damaged slices of a series (DICOM), with a warning for each.
     #[arg(long, conflicts_with = "dims")]
     skip_damaged: bool,
-    /// Value that replaces samples that are NaN or infinite; without a value they are masked: no points, no
-    /// errors.
+    /// Refuse slices at several distances (DICOM), instead of resampling them linearly to the finest.
+    #[arg(long, conflicts_with = "dims")]
+    no_resample: bool,
+    /// Value that replaces samples that are NaN or infinite, or padding (DICOM); without a value they are masked: no
+    /// points, no errors. Padding is masked anyway.
     #[arg(long, value_name = "VALUE", num_args = 0..=1, default_missing_value = "mask",
           value_parser = nan, allow_negative_numbers = true)]
     nan: Option<Nan>,

@@ -169,16 +169,31 @@ fn what_makes_no_volume_is_told() {
         changed: vec![(group, number, kind, value.into())],
         ..at(1)
     };
-    let cases: [(Slice, &[&str]); 11] = [
-        (Slice { position: [-10.0, 5.5, 5.0], ..at(1) }, &["gap of 3.000 mm", "slices missing: 1"]),
+    let cases: [(Slice, &[&str]); 14] = [
+        (
+            Slice { position: [-10.0, 5.5, 5.0], ..at(1) },
+            &["gap of 3.000 mm", "neither the place of whole"],
+        ),
         (Slice { position: [-10.0, 5.5, 2.0], ..at(1) }, &["two slices at one place"]),
         (Slice { orientation: "0\\1\\0\\0\\0\\1", ..at(1) }, &["different orientations"]),
         (Slice { rows: 1, ..at(1) }, &["3×1 pixels"]),
         (with(0x28, 0x30, b"DS", "0.5\\0.5"), &["mm apart"]),
         (with(0x20, 0x32, b"DS", ""), &["no Image Position", "localisers"]),
-        (with(0x28, 8, b"IS", "4"), &["has 4 frames and one place for all of them"]),
-        (with(0x20, 0x32, b"DS", "1\\2"), &["no Image Position"]),
-        (Slice { pixels: vec![1, 2], ..at(1) }, &["cannot be read"]),
+        (
+            Slice { pixels: vec![0; 24], ..with(0x28, 8, b"IS", "4") },
+            &["has 4 frames and one place for all of them"],
+        ),
+        (with(0x28, 8, b"IS", "4"), &["which are 48 bytes, and 12 bytes of them"]),
+        (
+            with(0x20, 0x32, b"DS", "1\\2"),
+            &["has Image Position (Patient) (0020,0032)", "not 3 numbers"],
+        ),
+        (
+            with(0x28, 0x30, b"DS", "0,5\\0,75"),
+            &["has Pixel Spacing (0028,0030) \"0,5\\\\0,75\", which is not"],
+        ),
+        (with(8, 8, b"CS", "ORIGINAL\\PRIMARY\\MOSAIC"), &["is a mosaic", "dcm2niix"]),
+        (Slice { pixels: vec![1, 2], ..at(1) }, &["which are 12 bytes, and 4 bytes of them"]),
         // Found by fuzzing: a table of as many values as these bits make.
         (with(0x28, 0x101, b"US", "\0\0"), &["claims 0 bits of the 16"]),
         (with(0x28, 0x101, b"US", "\x20\0"), &["claims 32 bits of the 16"]),

@@ -1,18 +1,10 @@
 //! Enhanced images and radiation doses: several frames in one file.
 
-use super::{Slice, element, open, series, slice};
+use super::{Slice, element, items, open, series, slice};
 use crate::common::Told;
 
-/// The items of a sequence.
-fn items(items: &[Vec<u8>]) -> Vec<u8> {
-    let item = |data: &Vec<u8>| {
-        [&[0xfe, 0xff, 0x00, 0xe0], &(data.len() as u32).to_le_bytes()[..], data].concat()
-    };
-    items.iter().flat_map(item).collect()
-}
-
 /// Frames of an enhanced image, at these heights; what they share stands once.
-fn enhanced(heights: &[f64]) -> Slice {
+pub(super) fn enhanced(heights: &[f64]) -> Slice {
     let group = |number, content: Vec<u8>| element(0x20, number, b"SQ", &items(&[content]));
     let measures = element(0x28, 0x30, b"DS", b"0.5\\0.75");
     let shared = [

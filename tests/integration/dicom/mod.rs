@@ -3,6 +3,11 @@
 mod folders;
 mod frames;
 mod pixels;
+mod segments;
+mod spacings;
+mod starts;
+mod values;
+mod volumes;
 
 use std::fs;
 use std::path::Path;
@@ -10,24 +15,29 @@ use std::path::Path;
 use walpha::Volume;
 use walpha::volume::{ReadOptions, VolumeError, read};
 
+use crate::common::Told;
+
+/// An element: its group and number, its type, and its value.
+pub(crate) type Element = (u16, u16, &'static [u8; 2], Vec<u8>);
+
 /// A slice of 3 columns and 2 rows; its pixels are its number times 10, and up.
 #[derive(Clone)]
-struct Slice {
-    series: &'static str,
-    position: [f64; 3],
-    orientation: &'static str,
-    rows: u16,
-    bits: u16,
-    pixels: Vec<i16>,
+pub(crate) struct Slice {
+    pub series: &'static str,
+    pub position: [f64; 3],
+    pub orientation: &'static str,
+    pub rows: u16,
+    pub bits: u16,
+    pub pixels: Vec<i16>,
     /// Slope and intercept.
-    rescale: Option<(&'static str, &'static str)>,
+    pub rescale: Option<(&'static str, &'static str)>,
     /// The transfer syntax, and the pixels as it packs them.
-    packed: Option<(&'static str, Vec<u8>)>,
+    pub packed: Option<(&'static str, Vec<u8>)>,
     /// Elements that take the place of others, or are left out where empty.
-    changed: Vec<(u16, u16, &'static [u8; 2], Vec<u8>)>,
+    pub changed: Vec<Element>,
 }
 
-fn slice(number: i16, z: f64) -> Slice {
+pub(crate) fn slice(number: i16, z: f64) -> Slice {
     Slice {
         series: "1.2.3",
         position: [-10.0, 5.5, z],
@@ -41,11 +51,11 @@ fn slice(number: i16, z: f64) -> Slice {
     }
 }
 
-fn element(group: u16, number: u16, kind: &[u8], value: &[u8]) -> Vec<u8> {
+pub(crate) fn element(group: u16, number: u16, kind: &[u8], value: &[u8]) -> Vec<u8> {
     let mut bytes = [group.to_le_bytes(), number.to_le_bytes()].concat();
     bytes.extend(kind);
     let length = value.len() + value.len() % 2;
-    if [b"OW", b"OB", b"SQ"].iter().any(|long| kind == *long) {
+    if [b"OW", b"OB", b"SQ", b"OF", b"OD"].iter().any(|long| kind == *long) {
         bytes.extend([0, 0]);
         bytes.extend((length as u32).to_le_bytes());
     } else {
@@ -58,18 +68,40 @@ fn element(group: u16, number: u16, kind: &[u8], value: &[u8]) -> Vec<u8> {
     bytes
 }
 
+/// The items of a sequence.
+pub(crate) fn items(items: &[Vec<u8>]) -> Vec<u8> {
+    let item = |data: &Vec<u8>| {
+        [&[0xfe, 0xff, 0x00, 0xe0], &(data.len() as u32).to_le_bytes()[..], data].concat()
+    };
+    items.iter().flat_map(item).collect()
+}
+
+/// The group of elements that names the transfer syntax.
+fn meta(syntax: &str) -> Vec<u8> {
+    let meta = [
+        element(2, 1, b"OB", &[0, 1]),
+        element(2, 2, b"UI", b"1.2.840.10008.5.1.4.1.1.2"),
+        element(2, 3, b"UI", b"1.2.3.4"),
+        element(2, 0x10, b"UI", syntax.as_bytes()),
+        element(2, 0x12, b"UI", b"1.2.3.5"),
+    ]
+    .concat();
+    [element(2, 0, b"UL", &(meta.len() as u32).to_le_bytes()), meta].concat()
+}
+
 impl Slice {
-    fn bytes(&self) -> Vec<u8> {
-        let syntax = self.packed.as_ref().map_or("1.2.840.10008.1.2.1", |(syntax, _)| syntax);
-        let meta = [
-            element(2, 1, b"OB", &[0, 1]),
-            element(2, 2, b"UI", b"1.2.840.10008.5.1.4.1.1.2"),
-            element(2, 3, b"UI", b"1.2.3.4"),
-            element(2, 0x10, b"UI", syntax.as_bytes()),
-            element(2, 0x12, b"UI", b"1.2.3.5"),
-        ]
-        .concat();
+    /// With these elements instead of its own, or beside them.
+    pub fn with(mut self, changed: impl IntoIterator<Item = Element>) -> Self {
+        self.changed.extend(changed);
+        self
+    }
+
+    /// The elements of its data set, but for packed pixels.
+    fn elements(&self) -> Vec<Element> {
         let [x, y, z] = self.position;
+        // A name of its own for each content.
+        let content = self.pixels.iter().map(|&v| v as u64).chain([x, y, z].map(f64::to_bits));
+        let instance = content.fold(7, |all: u64, part| all.wrapping_mul(31).wrapping_add(part));
         let number = |n: u16| n.to_le_bytes().to_vec();
         let text = |t: &str| t.as_bytes().to_vec();
         let (slope, intercept) = self.rescale.unwrap_or(("1", "0"));
@@ -79,9 +111,9 @@ impl Slice {
             self.pixels.iter().flat_map(|v| v.to_le_bytes()).collect::<Vec<u8>>()
         };
         let signed = u16::from(self.bits == 16);
-        let mut elements: Vec<(u16, u16, &[u8; 2], Vec<u8>)> = vec![
+        let mut elements: Vec<Element> = vec![
             (8, 0x16, b"UI", text("1.2.840.10008.5.1.4.1.1.2")),
-            (8, 0x18, b"UI", text("1.2.3.4")),
+            (8, 0x18, b"UI", text(&format!("1.2.3.{instance}"))),
             (0x18, 0x50, b"DS", text("2.5")),
             (0x20, 0xe, b"UI", text(self.series)),
             (0x20, 0x32, b"DS", text(&format!("{x}\\{y}\\{z}"))),
@@ -105,9 +137,16 @@ impl Slice {
                 elements.push((*group, *number, kind, value.clone()));
             }
         }
-        elements.sort_by_key(|e| (e.0, e.1));
-        let packed: Vec<u8> = self.packed.as_ref().map_or_else(Vec::new, |(_, pixels)| {
+        if self.packed.is_some() {
             elements.retain(|e| e.0 != 0x7fe0);
+        }
+        elements.sort_by_key(|e| (e.0, e.1));
+        elements
+    }
+
+    pub fn bytes(&self) -> Vec<u8> {
+        let syntax = self.packed.as_ref().map_or("1.2.840.10008.1.2.1", |(syntax, _)| syntax);
+        let packed: Vec<u8> = self.packed.as_ref().map_or_else(Vec::new, |(_, pixels)| {
             // An empty table, one fragment, and the end.
             let head = [0xe0, 0x7f, 0x10, 0, b'O', b'B', 0, 0, 0xff, 0xff, 0xff, 0xff];
             let length = (pixels.len() as u32).to_le_bytes();
@@ -115,18 +154,20 @@ impl Slice {
             let end = [0xfe, 0xff, 0xdd, 0xe0, 0, 0, 0, 0];
             [&head[..], &item, &[0; 4], &item, &length, pixels, &end].concat()
         });
-        let data: Vec<u8> =
-            elements.iter().flat_map(|(g, n, k, v)| element(*g, *n, k.as_slice(), v)).collect();
-        let length = element(2, 0, b"UL", &(meta.len() as u32).to_le_bytes());
-        [&[0; 128][..], b"DICM", &length, &meta, &data, &packed].concat()
+        [&[0; 128][..], b"DICM", &meta(syntax), &self.data(), &packed].concat()
     }
 
-    fn save(&self, folder: &Path, name: &str) {
+    /// Its data set, without packed pixels.
+    fn data(&self) -> Vec<u8> {
+        self.elements().iter().flat_map(|(g, n, k, v)| element(*g, *n, k.as_slice(), v)).collect()
+    }
+
+    pub fn save(&self, folder: &Path, name: &str) {
         fs::write(folder.join(name), self.bytes()).unwrap();
     }
 }
 
-fn open(path: &Path) -> Result<Volume, VolumeError> {
+pub(crate) fn open(path: &Path) -> Result<Volume, VolumeError> {
     read(path, &ReadOptions::default())
 }
 
@@ -136,7 +177,7 @@ fn series(slices: &[Slice]) -> Result<Volume, String> {
     for (number, slice) in slices.iter().enumerate() {
         slice.save(folder.path(), &format!("{:02}.dcm", (7 * number + 3) % 11));
     }
-    open(folder.path()).map_err(|error| error.to_string())
+    open(folder.path()).map_err(|error| error.told())
 }
 
 #[test]

@@ -23,6 +23,9 @@ use crate::{ReadOptions, Reason, Series, Source, Volume, VolumeError};
 /// Bytes of what is unpacked that are looked at.
 const BYTES: u64 = 1024;
 
+/// What DICOM files are often called. They are recognised by their content alone.
+const DICOM_EXTENSIONS: [&str; 4] = ["dcm", "dicom", "dic", "ima"];
+
 /// Reads a volume from a file: raw samples if a layout is given, else by what the file begins with,
 /// and where that says nothing by its extension. Folders are read as the first format that they look
 /// like.
@@ -284,9 +287,23 @@ pub fn begins_as_volume(start: &[u8]) -> bool {
     by_content(start).is_some()
 }
 
+/// What a file is by its content, for people, if that is known.
+#[cfg(feature = "dicom")]
+pub(crate) fn recognised(start: &[u8]) -> Option<&'static str> {
+    let refused =
+        || REFUSED.iter().find(|(magic, ..)| start.starts_with(magic)).map(|(_, what, _)| *what);
+    by_content(start).map(|format| format.name).or_else(refused)
+}
+
 /// The error for a file of no format known.
 fn unknown(path: &Path) -> VolumeError {
     let given = path.extension().unwrap_or_default().to_string_lossy();
+    if DICOM_EXTENSIONS.iter().any(|own| given.eq_ignore_ascii_case(own)) {
+        let what = format!(
+            "is called .{given}, and is no DICOM file: it has neither the mark (DICM at byte 128) nor the elements of one"
+        );
+        return format_error(path, Reason::other(what));
+    }
     let known = FORMATS.iter().filter(|format| format.is_built_in());
     let named = |format: &VolumeFormat| {
         let dotted: Vec<String> = format.extensions.iter().map(|e| format!(".{e}")).collect();
@@ -313,6 +330,7 @@ fn accept(format: &VolumeFormat, path: &Path, options: &ReadOptions) -> Result<(
         (Setting::Frame, options.frame.is_some()),
         (Setting::Series, options.series.is_some()),
         (Setting::SkipDamaged, options.skip_damaged),
+        (Setting::NoResample, options.no_resample),
     ] {
         if given && !format.chooses.contains(&setting) {
             let what = match setting {

@@ -70,8 +70,69 @@ pub(crate) fn is_gzip(start: &[u8]) -> bool {
     start.starts_with(&[0x1f, 0x8b])
 }
 
-/// Whether a file begins as a DICOM file does. The bytes before the mark are anybody's: some scanners
-/// write a TIFF header there.
-pub(super) fn is_dicom(start: &[u8]) -> bool {
-    start.get(128..132) == Some(b"DICM")
+/// Whether a file begins as a DICOM file does: with the mark, or, where that is missing, with elements. The bytes before
+/// the mark are anybody's: some scanners write a TIFF header there.
+pub(crate) fn is_dicom(start: &[u8]) -> bool {
+    match dicom_mark(start) {
+        Some(0) => dicom_order(&start[4..]).is_some(),
+        Some(_) => true,
+        None => dicom_order(start).is_some(),
+    }
+}
+
+/// Where a DICOM file has its mark: behind 128 bytes, which some files lack.
+pub(crate) fn dicom_mark(start: &[u8]) -> Option<u64> {
+    [128, 0].into_iter().find(|&at| start.get(at..at + 4) == Some(b"DICM")).map(|at| at as u64)
+}
+
+/// The order of bytes of DICOM elements, and whether they state their types: of the first three, which are in the order of
+/// their numbers and begin with those about the file (group 2) or the image (group 8).
+pub(crate) fn dicom_order(start: &[u8]) -> Option<(Endian, bool)> {
+    let all = [(Endian::Little, true), (Endian::Little, false), (Endian::Big, true)];
+    all.into_iter().find(|&(order, typed)| begins_with_elements(start, order, typed))
+}
+
+fn begins_with_elements(start: &[u8], order: Endian, typed: bool) -> bool {
+    /// Types whose length has four bytes, behind two that are not used.
+    const LONG: [&[u8]; 6] = [b"OB", b"OW", b"SQ", b"UN", b"UT", b"OF"];
+    const SHORT: [&[u8]; 13] =
+        [b"AE", b"CS", b"DA", b"DS", b"IS", b"LO", b"PN", b"SH", b"TM", b"UI", b"UL", b"US", b"ST"];
+    let short = |at: usize| {
+        let bytes = start.get(at..at + 2)?.try_into().ok()?;
+        Some(match order {
+            Endian::Little => u16::from_le_bytes(bytes),
+            Endian::Big => u16::from_be_bytes(bytes),
+        })
+    };
+    let long = |at: usize| {
+        let (low, high) = match order {
+            Endian::Little => (short(at)?, short(at + 2)?),
+            Endian::Big => (short(at + 2)?, short(at)?),
+        };
+        Some(usize::from(low) + (usize::from(high) << 16))
+    };
+    let (mut at, mut last) = (0, None);
+    for _ in 0..3 {
+        let tag = short(at).zip(short(at + 2));
+        let Some((group, _)) = tag.filter(|_| tag > last) else { return false };
+        if !(group == 2 || group == 8 || at > 0 && group <= 0x28) {
+            return false;
+        }
+        let kind = start.get(at + 4..at + 6).unwrap_or_default();
+        let value = if !typed {
+            long(at + 4).map(|length| (at + 8, length))
+        } else if LONG.contains(&kind) {
+            long(at + 8).map(|length| (at + 12, length))
+        } else if SHORT.contains(&kind) {
+            short(at + 6).map(|length| (at + 8, length.into()))
+        } else {
+            None
+        };
+        // In front of these there is nothing long, such as a sequence.
+        let Some((value, length)) = value.filter(|(_, length)| length % 2 == 0) else {
+            return false;
+        };
+        (at, last) = (value + length, tag);
+    }
+    true
 }

@@ -24,13 +24,17 @@ macro_rules! __built {
 }
 pub use __built as built;
 
+#[cfg(feature = "dicom")]
+pub(crate) use detect::recognised;
 pub use detect::{
     begins_as_volume, data_files, files_of, format_name, read, read_file, read_monitored, series,
 };
 pub(crate) use detect::{data_files_of, format_name_of, source, source_of};
-pub(crate) use magic::is_gzip;
 #[cfg(feature = "formats")]
 pub(crate) use magic::{NIFTI_HEADERS, nifti_version};
+#[cfg(feature = "dicom")]
+pub(crate) use magic::{dicom_mark, dicom_order};
+pub(crate) use magic::{is_dicom, is_gzip};
 pub use magic::{is_npy, is_vtk, is_vtk_xml};
 pub use others::other_kind;
 pub use table::{FORMATS, Keeps, VolumeFormat, VolumeWriter};

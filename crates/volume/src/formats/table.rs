@@ -175,7 +175,7 @@ pub static FORMATS: [VolumeFormat; 14] = [
     VolumeFormat {
         name: "DICOM",
         keeps: ALL,
-        chooses: &[Setting::Series, Setting::SkipDamaged],
+        chooses: &[Setting::Series, Setting::Frame, Setting::SkipDamaged, Setting::NoResample],
         feature: Some("dicom"),
         fuzzed_by: &["dicom"],
         begins: is_dicom,

@@ -27,7 +27,11 @@ pub struct ReadOptions {
     pub series: Option<String>,
     /// Goes on without damaged slices of a series (DICOM), which a warning names; without it they are refused.
     pub skip_damaged: bool,
-    /// How to treat samples that are NaN or infinite; by default they are an error.
+    /// Refuses slices at several distances (DICOM); without it they are resampled linearly to the finest distance.
+    #[serde(default)]
+    pub no_resample: bool,
+    /// How to treat samples that are NaN or infinite; by default they are an error. What a file states as padding (DICOM) is
+    /// masked, unless a value replaces it here.
     pub nan: Option<Nan>,
     /// The region to crop to.
     pub region: Option<Region>,
@@ -44,6 +48,7 @@ impl ReadOptions {
         frame: Option<u64>,
         series: Option<String>,
         skip_damaged: bool,
+        no_resample: bool,
         nan: Option<Nan>,
         region: Option<Region>,
         downsample: Option<NonZeroUsize>,

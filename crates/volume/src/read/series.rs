@@ -14,6 +14,7 @@ use crate::VolumeError;
 #[cfg(feature = "dicom")]
 use crate::error::format_error;
 use crate::error::io_error;
+use crate::formats::is_dicom;
 
 /// A series of slices in a folder (DICOM).
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -171,8 +172,8 @@ enum Kind {
 
 fn kind(path: &Path) -> io::Result<Kind> {
     let mut start = Vec::new();
-    File::open(path)?.take(132).read_to_end(&mut start)?;
-    if start.get(128..) == Some(b"DICM") {
+    File::open(path)?.take(1024).read_to_end(&mut start)?;
+    if is_dicom(&start) {
         return Ok(Kind::Dicom);
     }
     let is_hidden = path.file_name().is_some_and(|name| name.as_encoded_bytes().starts_with(b"."));

@@ -1,6 +1,8 @@
 //! Every row of the tables of fields in docs/formats.md, tried with a file that states that field.
 
 mod clouds;
+#[cfg(feature = "dicom")]
+mod dicom;
 mod grids;
 mod inr;
 #[cfg(feature = "las")]

@@ -1,5 +1,6 @@
 //! The files of a series: which belong to it, and which cannot be read.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
@@ -8,6 +9,8 @@ use walpha_base::shown::shown;
 
 use super::slice::{DicomFile, Slice};
 use crate::error::format_error;
+use crate::formats::recognised;
+use crate::read::OpenFile;
 use crate::read::series::{self, Files};
 use crate::{Reason, VolumeError};
 
@@ -28,6 +31,7 @@ impl SeriesFiles {
         let mut files = Self { found: Vec::new(), damaged: Vec::new() };
         for (path, opened) in opened {
             match opened {
+                Ok(found) if found.is_directory => {}
                 Ok(found) => files.found.push(found),
                 Err(error) => files.damaged.push((path, error)),
             }
@@ -60,11 +64,18 @@ impl SeriesFiles {
         near: impl Fn(&Path) -> bool,
     ) -> Result<Vec<Slice>, VolumeError> {
         let mut slices = Vec::new();
+        let mut notes: BTreeMap<String, Vec<PathBuf>> = BTreeMap::new();
         let mut damaged = self.damaged;
         let some = self.found.iter().any(|found| found.slices.is_ok());
         for found in self.found {
             match found.slices {
-                Ok(of_file) => slices.extend(of_file),
+                Ok(of_file) => {
+                    slices.extend(of_file);
+                    found
+                        .notes
+                        .into_iter()
+                        .for_each(|note| notes.entry(note).or_default().push(found.path.clone()));
+                }
                 Err(error) if skip => damaged.push((found.path, error)),
                 Err(error) if some => return Err(skippable(error)),
                 Err(error) => return Err(error),
@@ -76,6 +87,14 @@ impl SeriesFiles {
             }
             tracing::warn!("{} is left out: {}", shown(&path), reason(&error));
         }
+        for (note, of) in notes {
+            match &of[..] {
+                [first, _, ..] => {
+                    tracing::warn!("{} {note} ({} files are so)", shown(first), of.len());
+                }
+                of => of.iter().for_each(|path| tracing::warn!("{} {note}", shown(path))),
+            }
+        }
         Ok(slices)
     }
 }
@@ -84,7 +103,8 @@ impl SeriesFiles {
 pub(super) fn skippable(error: VolumeError) -> VolumeError {
     match error {
         VolumeError::Format { path, reason } => {
-            let next = advice!["copy it again, or go on without it: ", Setting::SkipDamaged];
+            let next = advice![", or go on without it: ", Setting::SkipDamaged];
+            let next = reason.advice().and(next);
             VolumeError::Format { path, reason: Reason::content(reason.to_string(), next) }
         }
         other => other,
@@ -99,16 +119,25 @@ pub(super) fn reason(error: &VolumeError) -> String {
     }
 }
 
-/// What is wrong with a file that has no mark of DICOM, and is named as if it had.
+/// What is wrong with a file that is no DICOM file, and is named as if it were.
 fn not_dicom(path: &Path) -> Reason {
-    let length = std::fs::metadata(path).map_or(0, |metadata| metadata.len());
-    Reason::damaged(if length == 0 {
-        "is empty, beside DICOM files".to_owned()
-    } else {
-        format!(
-            "has {length} bytes and no mark of DICOM (DICM at byte 128), beside DICOM files: it is damaged"
-        )
-    })
+    let open = OpenFile::open(path);
+    match open.as_ref().map(|file| (file.length(), file.start())) {
+        Ok((0, _)) => Reason::damaged("is empty, beside DICOM files"),
+        Ok((length, start)) => {
+            if let Some(what) = recognised(start) {
+                let what = format!("is {what}, beside DICOM files");
+                return Reason::content(what, "move it out of the folder");
+            }
+            Reason::content(
+                format!(
+                    "has {length} bytes and neither the mark of DICOM (DICM at byte 128) nor its elements, beside DICOM files"
+                ),
+                "move it out of the folder, or copy it again if it is a slice",
+            )
+        }
+        Err(error) => Reason::content(error.to_string(), "move it out of the folder"),
+    }
 }
 
 /// A name without its digits: what slices of one series are called.

@@ -2,27 +2,37 @@
 //! frames of one.
 
 mod claims;
+mod distances;
 mod files;
+mod header;
+mod index;
+mod nuclear;
+mod pixels;
+mod segments;
 mod slice;
 mod stack;
+mod start;
+mod values;
+mod volumes;
 
 use std::path::Path;
 
+use ndarray::Array3;
 use rayon::prelude::*;
 use walpha_base::Monitor;
 use walpha_base::advice::{Setting, advice};
-use walpha_base::memory::asking;
-use walpha_base::shown::shown;
+use walpha_base::memory::try_with_capacity;
+use walpha_base::shown::{counted, number, shown};
 
 use super::ReadOptions;
-use super::frames::FrameChoice;
-use super::layout::{Encoding, Layout};
 use super::series::Series;
 use crate::error::format_error;
-use crate::{Dims, Dtype, Endian, Frame, Reason, Volume, VolumeError};
+use crate::{Dims, Dtype, Reason, Volume, VolumeError};
 use files::{SeriesFiles, pattern, reason, skippable};
-use slice::{DicomFile, Slice, pixels};
-use stack::stacked;
+use pixels::pixels;
+use slice::{DicomFile, Slice};
+use stack::{Order, Stack, stacked};
+use volumes::{chosen, without_copies};
 
 /// Reads the series that a file belongs to: all slices of it in the same folder.
 pub(crate) fn read_series_of(
@@ -43,14 +53,18 @@ pub(crate) fn read_series_of(
         Some(parent) if !parent.as_os_str().is_empty() => parent,
         _ => Path::new("."),
     };
-    one.slices?;
+    let slices = one.slices?;
+    if slices.iter().any(|slice| slice.segment.is_some()) {
+        // A segmentation is whole.
+        one.notes.iter().for_each(|note| tracing::warn!("{} {note}", shown(path)));
+        return assemble(path, slices, options, monitor);
+    }
     let mut files = SeriesFiles::of(folder, false)?;
     files.found.retain(|other| other.series == one.series);
     // Its neighbours may be anything, but those that are called alike.
     let names: Vec<String> = files.found.iter().map(|found| pattern(&found.path)).collect();
     let near = |other: &Path| names.contains(&pattern(other));
-    let skip = options.skip_damaged;
-    assemble(path, files.slices(skip, near)?, skip, monitor)
+    assemble(path, files.slices(options.skip_damaged, near)?, options, monitor)
 }
 
 /// Reads the one series in a folder, or the one wanted.
@@ -64,7 +78,7 @@ pub(crate) fn read_folder(
     let listed = listed(&files.found);
     let list = || listed.iter().map(Series::to_string).collect::<Vec<_>>().join("; ");
     let chosen = match (wanted, &listed[..]) {
-        (None, []) => return assemble(folder, files.slices(skip, |_| true)?, skip, monitor),
+        (None, []) => return assemble(folder, files.slices(skip, |_| true)?, options, monitor),
         (None, [one]) => one,
         (None, several) => {
             let count = several.len();
@@ -94,7 +108,7 @@ pub(crate) fn read_folder(
         }
     };
     files.found.retain(|one| one.series == chosen.uid);
-    assemble(folder, files.slices(skip, |_| true)?, skip, monitor)
+    assemble(folder, files.slices(skip, |_| true)?, options, monitor)
 }
 
 /// The series in a folder that have images, in the order of the names of their files.
@@ -127,18 +141,17 @@ fn listed(found: &[DicomFile]) -> Vec<Series> {
 }
 
 /// The volume of slices of one series. Those whose pixels cannot be read are refused, or left out with a warning
-/// where `skip` says so.
+/// where that is asked for.
 fn assemble(
     path: &Path,
     mut slices: Vec<Slice>,
-    skip: bool,
+    options: &ReadOptions,
     monitor: &Monitor,
 ) -> Result<Volume, VolumeError> {
     loop {
-        let (stack, frame) = stacked(path, slices.clone())?;
-        let error = match volume(path, &stack, frame, monitor) {
+        let error = match volume(path, slices.clone(), options, monitor)? {
             Err(error) => error,
-            done => return done,
+            Ok(volume) => return Ok(volume),
         };
         let of = match &error {
             VolumeError::Format { path, .. } | VolumeError::Io { path, .. } => path.clone(),
@@ -150,34 +163,85 @@ fn assemble(
         if slices.len() == count || slices.is_empty() {
             return Err(error);
         }
-        if !skip {
+        if !options.skip_damaged {
             return Err(skippable(error));
         }
         tracing::warn!("{} is left out: {}", shown(&of), reason(&error));
     }
 }
 
-/// The volume of a stack of slices that can all be read.
+/// The volume of slices, or the error about a file whose pixels cannot be read. The other error is about the slices as a
+/// whole.
 fn volume(
     path: &Path,
-    slices: &[Slice],
-    frame: Frame,
+    slices: Vec<Slice>,
+    options: &ReadOptions,
     monitor: &Monitor,
-) -> Result<Volume, VolumeError> {
+) -> Result<Result<Volume, VolumeError>, VolumeError> {
+    let slices = match without_copies(path, slices)? {
+        Ok(slices) => slices,
+        Err(error) => return Ok(Err(error)),
+    };
+    if slices.iter().any(|slice| slice.segment.is_some()) {
+        return segments::volume(path, slices, options, monitor).map(Ok);
+    }
+    let slices = chosen(path, slices, options.frame)?;
+    let Stack { slices, frame, order } = stacked(path, slices, options.no_resample)?;
+    let dtypes = slices.iter().map(Slice::dtype);
+    let dtype = dtypes.reduce(|a, b| if a == b { a } else { Dtype::F32 }).unwrap_or(Dtype::F32);
+    let (samples, padded) = match samples(&slices, monitor) {
+        Ok(samples) => samples,
+        Err(error) => return Ok(Err(error)),
+    };
+    let (samples, padded, dtype) = match order {
+        Order::Between(places) => {
+            let (samples, padded) = resampled(samples, padded, slices.len(), &places)?;
+            (samples, padded, Dtype::F32)
+        }
+        _ => (samples, padded, dtype),
+    };
+    let (columns, rows) = (slices[0].columns as usize, slices[0].rows as usize);
+    let planes = samples.len() / (columns * rows);
+    let samples = Array3::from_shape_vec((planes, rows, columns), samples);
+    let volume = Volume::of_file(samples.expect("whole planes"), frame)?.with_dtype(dtype);
+    let Some(padded) = padded else { return Ok(Ok(volume)) };
+    let count = padded.par_iter().filter(|&&padded| padded).count();
+    let values = paddings(&slices);
+    let Some(volume) = volume.with_padding(padded) else {
+        let what =
+            format!("holds nothing but padding (Pixel Padding Value {values}): {count} samples");
+        return Err(format_error(path, Reason::content(what, "name another series")));
+    };
+    tracing::warn!(
+        "{} of padding (Pixel Padding Value {values}), which is no data: masked",
+        counted(count as u64, "sample")
+    );
+    Ok(Ok(volume))
+}
+
+/// The numbers that are padding, as they are stored.
+fn paddings(slices: &[Slice]) -> String {
+    let mut all: Vec<String> = Vec::new();
+    for padding in slices.iter().filter_map(|slice| slice.values.padding) {
+        let (low, high) = (number(padding.low), number(padding.high));
+        let shown = if low == high { low } else { format!("{low} to {high}") };
+        if !all.contains(&shown) {
+            all.push(shown);
+        }
+    }
+    all.join(", ")
+}
+
+/// The samples of slices, one after the other, and which of them are padding, if any is.
+fn samples(slices: &[Slice], monitor: &Monitor) -> Result<Padded, VolumeError> {
     let first = &slices[0];
     let dims = Dims::new(first.columns, first.rows, slices.len() as u64)?;
-    let mut samples = Vec::new();
-    asking(|| samples.try_reserve_exact(dims.samples())).map_err(|_| {
-        let bytes = dims.bytes(size_of::<f32>());
-        let reason = Reason::unsupported(
-            format!("needs {bytes} bytes of memory, more than is available"),
-            "crop it first",
-        );
-        format_error(path, reason)
-    })?;
+    let mut samples = try_with_capacity(dims.samples(), || "the slices of a series".into())?;
     samples.resize(dims.samples(), 0.0);
-    let mut places: Vec<(&Slice, &mut [f32])> =
-        slices.iter().zip(samples.chunks_exact_mut(dims.samples() / slices.len())).collect();
+    let each = dims.samples() / slices.len();
+    let mut padded: Vec<Option<Vec<bool>>> = vec![None; slices.len()];
+    let targets = samples.chunks_exact_mut(each).zip(&mut padded);
+    let mut places: Vec<_> = slices.iter().zip(targets).collect();
     // Frames of one file are decoded together.
     places.sort_by(|a, b| a.0.path.cmp(&b.0.path));
     let mut files: Vec<_> = places.chunk_by_mut(|a, b| a.0.path == b.0.path).collect();
@@ -186,17 +250,56 @@ fn volume(
     for (done, batch) in files.chunks_mut(16).enumerate() {
         batch.par_iter_mut().try_for_each(|file| {
             let frames: Vec<&Slice> = file.iter().map(|(slice, _)| *slice).collect();
-            let pixels = pixels(&frames)?;
-            file.iter_mut()
-                .zip(pixels)
-                .for_each(|((_, place), pixels)| place.copy_from_slice(&pixels));
+            for ((_, (place, padded)), plane) in file.iter_mut().zip(pixels(&frames)?) {
+                place.copy_from_slice(&plane.samples);
+                **padded = plane.padded;
+            }
             Ok::<_, VolumeError>(())
         })?;
         monitor.report((16 * done + batch.len()) as u64, count as u64)?;
     }
-    let dtype =
-        slices.iter().map(|slice| slice.dtype).reduce(|a, b| if a == b { a } else { Dtype::F32 });
-    let dtype = dtype.unwrap_or(Dtype::F32);
-    let (endian, encoding) = (Endian::Little, Encoding::Raw);
-    Layout { dims, dtype, endian, frame, encoding, frames: FrameChoice::ONE }.volume(samples)
+    if padded.iter().all(Option::is_none) {
+        return Ok((samples, None));
+    }
+    let mut all = try_with_capacity(dims.samples(), || "the mask of a volume".into())?;
+    for padded in padded {
+        match padded {
+            Some(padded) => all.extend(padded),
+            None => all.resize(all.len() + each, false),
+        }
+    }
+    Ok((samples, Some(all)))
+}
+
+/// Samples and, where any is padding, which.
+type Padded = (Vec<f32>, Option<Vec<bool>>);
+
+/// Planes between slices: mixtures of the slice below and a share of the next. What is mixed with padding is padding.
+fn resampled(
+    samples: Vec<f32>,
+    padded: Option<Vec<bool>>,
+    slices: usize,
+    places: &[(usize, f64)],
+) -> Result<Padded, VolumeError> {
+    let each = samples.len() / slices;
+    let total = Dims::new(each as u64, 1, places.len() as u64)?.samples();
+    let mut out = try_with_capacity(total, || "resampled slices".into())?;
+    let mut mask = match &padded {
+        Some(_) => try_with_capacity(total, || "the mask of a volume".into())?,
+        None => Vec::new(),
+    };
+    let of = |slice: usize| slice * each..(slice + 1) * each;
+    for &(below, share) in places {
+        let above = if share > 0.0 { below + 1 } else { below };
+        let (low, high) = (&samples[of(below)], &samples[of(above)]);
+        let mixed = low.iter().zip(high).map(|(&low, &high)| {
+            let (low, high) = (f64::from(low), f64::from(high));
+            (low + (high - low) * share) as f32
+        });
+        out.extend(mixed);
+        if let Some(padded) = &padded {
+            mask.extend(padded[of(below)].iter().zip(&padded[of(above)]).map(|(&a, &b)| a || b));
+        }
+    }
+    Ok((out, padded.map(|_| mask)))
 }

@@ -1,45 +1,49 @@
-//! One file of a series: its header, its slices and their pixels.
+//! One file of a series: its header, and its slices.
 
 use std::path::{Path, PathBuf};
 
-use dicom_encoding::{TransferSyntax, TransferSyntaxIndex};
-use dicom_object::mem::InMemElement;
-use dicom_object::{DefaultDicomObject, InMemDicomObject, OpenFileOptions, Tag};
-use dicom_pixeldata::PixelDecoder;
-use dicom_transfer_syntax_registry::TransferSyntaxRegistry;
+use dicom_object::Tag;
 use walpha_base::shown::shown;
 use walpha_base::vector::cross;
 
-use super::claims::{self, PIXEL_DATA, damaged};
-use crate::error::format_error;
+use super::claims::{self, FLOAT_PIXEL_DATA, PIXEL_DATA, Pixels};
+use super::header::Header;
+use super::index::{self, Index};
+use super::nuclear;
+use super::segments::{self, Segment};
+use super::start::Start;
+use super::values::{Coding, Values};
+use crate::error::{format_error, io_error};
 use crate::read::payload::MOST_EXPANSION;
 use crate::{Dtype, Reason, VolumeError};
 
 // By their names in part 6 of the standard.
-const SLICE_THICKNESS: Tag = Tag(0x0018, 0x0050);
-const SPACING_BETWEEN_SLICES: Tag = Tag(0x0018, 0x0088);
+const IMAGE_TYPE: Tag = Tag(0x0008, 0x0008);
+const SOP_INSTANCE_UID: Tag = Tag(0x0008, 0x0018);
 const MODALITY: Tag = Tag(0x0008, 0x0060);
 const SERIES_DESCRIPTION: Tag = Tag(0x0008, 0x103E);
+const SLICE_THICKNESS: Tag = Tag(0x0018, 0x0050);
+const SPACING_BETWEEN_SLICES: Tag = Tag(0x0018, 0x0088);
 const SERIES_INSTANCE_UID: Tag = Tag(0x0020, 0x000E);
+const INSTANCE_NUMBER: Tag = Tag(0x0020, 0x0013);
 const IMAGE_POSITION: Tag = Tag(0x0020, 0x0032);
 const IMAGE_ORIENTATION: Tag = Tag(0x0020, 0x0037);
 const SAMPLES_PER_PIXEL: Tag = Tag(0x0028, 0x0002);
+const PHOTOMETRIC_INTERPRETATION: Tag = Tag(0x0028, 0x0004);
 const NUMBER_OF_FRAMES: Tag = Tag(0x0028, 0x0008);
 const ROWS: Tag = Tag(0x0028, 0x0010);
 const COLUMNS: Tag = Tag(0x0028, 0x0011);
 const PIXEL_SPACING: Tag = Tag(0x0028, 0x0030);
-const BITS_ALLOCATED: Tag = Tag(0x0028, 0x0100);
-const PIXEL_REPRESENTATION: Tag = Tag(0x0028, 0x0103);
-const RESCALE_INTERCEPT: Tag = Tag(0x0028, 0x1052);
-const RESCALE_SLOPE: Tag = Tag(0x0028, 0x1053);
-// Of doses of radiation (PS3.3, C.8.8.3).
+const REAL_WORLD_VALUE_MAPPING: Tag = Tag(0x0040, 0x9096);
+/// Of doses of radiation (PS3.3, C.8.8.3).
 const GRID_FRAME_OFFSETS: Tag = Tag(0x3004, 0x000C);
-const DOSE_GRID_SCALING: Tag = Tag(0x3004, 0x000E);
 // Functional groups.
 const PLANE_POSITION: Tag = Tag(0x0020, 0x9113);
 const PLANE_ORIENTATION: Tag = Tag(0x0020, 0x9116);
 const PIXEL_MEASURES: Tag = Tag(0x0028, 0x9110);
-const PIXEL_VALUE_TRANSFORMATION: Tag = Tag(0x0028, 0x9145);
+
+/// Of the index of a medium.
+const DIRECTORY_RECORDS: Tag = Tag(0x0004, 0x1220);
 
 /// One slice of a series: all but its pixels.
 #[derive(Clone, Debug)]
@@ -48,6 +52,10 @@ pub(super) struct Slice {
     /// Which frame of the file it is, from 0, and how many the file has.
     pub frame: u32,
     pub frames: u32,
+    /// The unique name of the file's content.
+    pub instance: String,
+    /// Its place among the slices of its series, where each is a file.
+    pub number: Option<f64>,
     pub columns: u64,
     pub rows: u64,
     /// Where its first pixel lies, in mm: x to the patient's left, y to the back, z to the head.
@@ -56,22 +64,15 @@ pub(super) struct Slice {
     pub orientation: [[f64; 3]; 2],
     /// Distance of neighbouring columns and rows in mm.
     pub spacing: [f64; 2],
-    /// Distance to the next slice as the header has it, for a series of one.
-    pub thickness: f64,
-    /// The type of a pixel if pixels are used unscaled, otherwise `f32`.
-    pub dtype: Dtype,
-    /// What rescaled pixels are multiplied by, where they are doses.
-    pub scaling: Option<f64>,
-    /// How pixels of 32 bits are stored, which the decoder does not know.
-    pub wide: Option<Wide>,
-}
-
-/// Pixels of 32 bits.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Wide {
-    unsigned: bool,
-    slope: f64,
-    intercept: f64,
+    /// Distance to the next slice as the header has it, and how thick the slice is.
+    pub step: Option<f64>,
+    pub thickness: Option<f64>,
+    /// Which volume of several it is of.
+    pub index: Vec<Index>,
+    /// What its pixels mean.
+    pub values: Values,
+    /// The segment that it shows, where it is one of a segmentation.
+    pub segment: Option<Segment>,
 }
 
 /// A file of a series, whether it is a slice or not.
@@ -85,6 +86,10 @@ pub(super) struct DicomFile {
     pub description: String,
     /// Columns and rows, if it is an image.
     pub size: Option<[u64; 2]>,
+    /// Whether it is an index of a medium (DICOMDIR).
+    pub is_directory: bool,
+    /// What it states that is read in another way than stated, or not at all: said once for a series.
+    pub notes: Vec<String>,
     /// Its slices, one for each frame, or why it has none.
     pub slices: Result<Vec<Slice>, VolumeError>,
 }
@@ -92,112 +97,100 @@ pub(super) struct DicomFile {
 impl DicomFile {
     /// Reads the header.
     pub(super) fn open(path: &Path) -> Result<Self, VolumeError> {
-        let unpacked = claims::check(path)?;
-        let object = OpenFileOptions::new()
-            .read_until(PIXEL_DATA)
-            .open_file(path)
-            .map_err(|error| damaged(path, &error))?;
-        let text = |tag| {
-            let element = object.get(tag).and_then(|e| e.to_str().ok());
-            element.map(|text| text.trim().to_owned()).unwrap_or_default()
-        };
+        let start = Start::of(path)?;
+        let pixels = claims::check(path, &start)?;
+        let object = start.object(path, Some(FLOAT_PIXEL_DATA))?;
         let header = Header::new(path, &object);
+        let text = |tag| header.text(None, tag).unwrap_or_default();
         let number = |tag| header.number(None, tag).ok().flatten().map(|n| n as u64);
+        let is_directory = header.has(DIRECTORY_RECORDS);
+        let slices = if is_directory {
+            Err(format_error(path, directory(path)))
+        } else {
+            Slice::all(path, header, pixels, &start)
+        };
         Ok(Self {
             path: path.to_owned(),
             series: text(SERIES_INSTANCE_UID),
             modality: text(MODALITY),
             description: text(SERIES_DESCRIPTION),
             size: number(COLUMNS).zip(number(ROWS)).map(|(columns, rows)| [columns, rows]),
-            slices: Slice::all(path, &object, unpacked),
+            is_directory,
+            notes: notes(header, &start),
+            slices,
         })
     }
 }
 
+/// What to do with the index of a medium.
+fn directory(path: &Path) -> Reason {
+    let folder = match path.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => shown(parent),
+        _ => ".".into(),
+    };
+    let what = "is a DICOMDIR, the index of the files beside it, and holds no image";
+    Reason::content(what, format!("name its folder, {folder}, or a file of the series"))
+}
+
+/// What a file states that is read in another way, or not at all.
+fn notes(header: Header<'_>, start: &Start) -> Vec<String> {
+    let inverse =
+        header.text(None, PHOTOMETRIC_INTERPRETATION).is_some_and(|of| of == "MONOCHROME1");
+    let inverse = inverse.then(|| {
+        "is MONOCHROME1, shown with the least value white: values are read as they are stored"
+            .to_owned()
+    });
+    let mapped = header.of_frame(0).has(REAL_WORLD_VALUE_MAPPING);
+    let mapped = mapped.then(|| {
+        format!(
+            "has a Real World Value Mapping {REAL_WORLD_VALUE_MAPPING}, which is passed over: \
+                 values are those of the modality"
+        )
+    });
+    start.guessed.clone().into_iter().chain(inverse).chain(mapped).collect()
+}
+
 impl Slice {
-    /// The slices of a file, from its header: one, or as many as it has frames. In a packed file, so many bytes are
-    /// said to be pixels.
+    /// The slices of a file, from its header: one, or as many as it has frames.
     fn all(
         path: &Path,
-        object: &InMemDicomObject,
-        unpacked: Option<u64>,
+        header: Header<'_>,
+        pixels: Option<Pixels>,
+        start: &Start,
     ) -> Result<Vec<Self>, VolumeError> {
-        let fail = |reason: Reason| format_error(path, reason);
-        let header = Header::new(path, object);
-        if header.number(None, SAMPLES_PER_PIXEL)?.unwrap_or(1.0) != 1.0 {
-            return Err(fail(Reason::not_scalar("pixels of colours", None)));
-        }
         let [column, row] = [COLUMNS, ROWS].map(|tag| header.number(None, tag));
         let (Some(columns), Some(rows)) = (column?, row?) else {
-            return Err(fail(Reason::content(
-                "holds no image",
-                "move what is not a slice out of the folder",
+            let what = "holds no image";
+            return Err(header.fail(Reason::content(
+                what,
+                "move it out of the folder, or name a file of a series",
             )));
         };
         let size = [columns as u64, rows as u64];
-        let frames = header.number(None, NUMBER_OF_FRAMES)?.unwrap_or(1.0).max(1.0);
-        let bits = header.number(None, BITS_ALLOCATED)?.unwrap_or(16.0);
-        let frame =
-            size[0].saturating_mul(size[1]).saturating_mul((bits as u64).div_ceil(8)).max(1);
-        let length = std::fs::metadata(path).map_or(0, |metadata| metadata.len());
-        if frame.saturating_mul(frames as u64) > length.saturating_mul(MOST_EXPANSION) {
-            return Err(fail(Reason::truncated(format!(
-                "claims {frames} × {columns}×{rows} pixels, which {length} bytes cannot hold: it is \
-                 truncated or damaged"
-            ))));
-        }
-        // One byte may be there to make their number even.
-        let expected = frame.saturating_mul(frames as u64);
-        if let Some(bytes) = unpacked.filter(|&bytes| bytes > expected.saturating_add(1)) {
-            return Err(fail(Reason::header(format!(
-                "claims {frames} × {columns}×{rows} pixels, which are {expected} bytes, and {bytes} bytes of them"
-            ))));
-        }
-        let frames = frames as u32;
-        let mut slices: Vec<Self> = (0..frames)
-            .map(|frame| Self::of(path, header.of_frame(frame), size, [frame, frames]))
-            .collect::<Result<_, _>>()?;
-        Self::spread(path, object, &mut slices)?;
-        Ok(slices)
-    }
-
-    /// Places the frames of a file that says how far each is from the first, as doses do.
-    fn spread(
-        path: &Path,
-        object: &InMemDicomObject,
-        slices: &mut [Self],
-    ) -> Result<(), VolumeError> {
-        let fail = |reason: Reason| format_error(path, reason);
-        let places =
-            |slices: &[Self]| slices.windows(2).any(|two| two[0].position != two[1].position);
-        if slices.len() < 2 || places(slices) {
-            return Ok(());
-        }
-        let Some(element) = object.get(GRID_FRAME_OFFSETS) else {
-            return Err(fail(Reason::unsupported(
-                format!(
-                    "has {} frames and one place for all of them: times, views or a cine, and no volume",
-                    slices.len()
-                ),
-                "convert those of one volume to NRRD or NIfTI",
+        check_colours(header, size)?;
+        if header
+            .text(None, IMAGE_TYPE)
+            .is_some_and(|of| of.split('\\').any(|part| part == "MOSAIC"))
+        {
+            let what = "is a mosaic (Image Type with MOSAIC): all slices of a volume side by side in one picture";
+            return Err(header.fail(Reason::unsupported(
+                what,
+                "convert it with dcm2niix, which takes it apart",
             )));
-        };
-        let offsets = element.to_multi_float64().unwrap_or_default();
-        if offsets.len() != slices.len() || offsets.iter().any(|offset| !offset.is_finite()) {
-            return Err(fail(Reason::header(format!(
-                "has {} frames, and Grid Frame Offset Vector {GRID_FRAME_OFFSETS} of {} numbers",
-                slices.len(),
-                offsets.len()
-            ))));
         }
-        for (slice, offset) in slices.iter_mut().zip(&offsets) {
-            let [column, row] = slice.orientation;
-            let normal = cross(column, row);
-            // Where the first is not 0, they are places along the axis, of which the first is that of the file.
-            let step = offset - offsets[0];
-            slice.position = [0, 1, 2].map(|k| slice.position[k] + step * normal[k]);
+        let coding = Coding::of(header, pixels.map(|pixels| pixels.tag))?;
+        let frames = frames(path, header, size, coding, pixels)?;
+        if let Some(Pixels { bytes: None, .. }) = pixels {
+            check_compressed(header, coding, start)?;
         }
-        Ok(())
+        if segments::is_segmentation(header) {
+            segments::check(header)?;
+        }
+        let mut slices: Vec<Self> = (0..frames)
+            .map(|frame| Self::of(path, header.of_frame(frame), size, [frame, frames], coding))
+            .collect::<Result<_, _>>()?;
+        spread(header, &mut slices)?;
+        Ok(slices)
     }
 
     /// One frame of several.
@@ -206,78 +199,41 @@ impl Slice {
         header: Header<'_>,
         [columns, rows]: [u64; 2],
         [frame, frames]: [u32; 2],
+        coding: Coding,
     ) -> Result<Self, VolumeError> {
-        let placed = "which a slice of a volume needs: move localisers and reports away";
+        let next = "leave localisers, reports and other pictures without a place in the patient out, or convert them \
+                    to NRRD with a spacing of your own";
         let name = "Image Position (Patient)";
-        let position = header.vector::<3>(PLANE_POSITION, IMAGE_POSITION, name, placed)?;
+        let position = header.vector::<3>(PLANE_POSITION, IMAGE_POSITION, name, next)?;
         let name = "Image Orientation (Patient)";
         let [a, b, c, d, e, f] =
-            header.vector::<6>(PLANE_ORIENTATION, IMAGE_ORIENTATION, name, placed)?;
+            header.vector::<6>(PLANE_ORIENTATION, IMAGE_ORIENTATION, name, next)?;
         // The standard gives the distance of rows first.
         let [of_rows, of_columns] =
-            header.vector::<2>(PIXEL_MEASURES, PIXEL_SPACING, "Pixel Spacing", placed)?;
-        let thickness = match header.number(PIXEL_MEASURES, SPACING_BETWEEN_SLICES)? {
-            Some(spacing) => spacing.abs(),
-            None => header.number(PIXEL_MEASURES, SLICE_THICKNESS)?.unwrap_or(1.0),
-        };
-        let bits = header.number(None, BITS_ALLOCATED)?.unwrap_or(16.0);
-        let unsigned = header.number(None, PIXEL_REPRESENTATION)?.unwrap_or(0.0) == 0.0;
-        let slope = header.number(PIXEL_VALUE_TRANSFORMATION, RESCALE_SLOPE)?.unwrap_or(1.0);
-        let intercept =
-            header.number(PIXEL_VALUE_TRANSFORMATION, RESCALE_INTERCEPT)?.unwrap_or(0.0);
-        let scaling = header.number(None, DOSE_GRID_SCALING)?;
+            header.vector::<2>(PIXEL_MEASURES, PIXEL_SPACING, "Pixel Spacing", next)?;
+        let number = (frames == 1).then(|| header.number(None, INSTANCE_NUMBER)).transpose()?;
+        let segment = segments::of_frame(header)?;
+        let values = Values::of(header, coding)?;
         Ok(Self {
             path: path.to_owned(),
             frame,
             frames,
+            instance: header.text(None, SOP_INSTANCE_UID).unwrap_or_default(),
+            number: number.flatten(),
             columns,
             rows,
             position,
             orientation: [[a, b, c], [d, e, f]],
             spacing: [of_columns, of_rows],
-            thickness,
-            dtype: if scaling.is_some() {
-                Dtype::F32
-            } else {
-                dtype(bits, unsigned, slope, intercept)
+            step: header.number(PIXEL_MEASURES, SPACING_BETWEEN_SLICES)?,
+            thickness: header.number(PIXEL_MEASURES, SLICE_THICKNESS)?,
+            index: index::of_frame(header, frame),
+            values: match &segment {
+                Some(Segment { share: Some(most), .. }) => values.times(1.0 / most),
+                _ => values,
             },
-            scaling,
-            wide: (bits == 32.0).then_some(Wide { unsigned, slope, intercept }),
+            segment,
         })
-    }
-
-    /// Pixels of 32 bits that are not compressed.
-    fn wide_pixels(&self, wide: Wide, object: &InMemDicomObject) -> Result<Vec<f32>, VolumeError> {
-        let path = &self.path;
-        let fail = |reason: Reason| format_error(path, reason);
-        let element = object.get(PIXEL_DATA).and_then(|element| element.value().primitive());
-        let Some(value) = element else {
-            let what = "has compressed pixels of 32 bits, which are not read";
-            return Err(fail(Reason::unsupported(what, "unpack it first")));
-        };
-        let bytes = value.to_bytes();
-        let each = (self.columns * self.rows) as usize;
-        let (all, _) = bytes.as_chunks::<4>();
-        let pixels = all.chunks_exact(each.max(1)).nth(self.frame as usize).ok_or_else(|| {
-            fail(Reason::truncated(format!(
-                "claims {} frames of {}×{} pixels and holds {} pixels: it is truncated or damaged",
-                self.frames,
-                self.columns,
-                self.rows,
-                all.len()
-            )))
-        })?;
-        let Wide { unsigned, slope, intercept } = wide;
-        let factor = self.scaling.unwrap_or(1.0);
-        let value = |&bytes: &[u8; 4]| {
-            let stored = if unsigned {
-                f64::from(u32::from_le_bytes(bytes))
-            } else {
-                f64::from(i32::from_le_bytes(bytes))
-            };
-            ((stored * slope + intercept) * factor) as f32
-        };
-        Ok(pixels.iter().map(value).collect())
     }
 
     /// Its file, for people, and which frame it is of several.
@@ -285,149 +241,137 @@ impl Slice {
         let file = shown(&self.path);
         if self.frames == 1 { file } else { format!("frame {} of {file}", self.frame + 1) }
     }
+
+    /// The direction in which slices follow each other.
+    pub(super) fn normal(&self) -> [f64; 3] {
+        let [column, row] = self.orientation;
+        cross(column, row)
+    }
+
+    /// The type of its values.
+    pub(super) fn dtype(&self) -> Dtype {
+        self.values.dtype()
+    }
 }
 
-/// The pixels of frames of one file, row by row, in the units of the modality (rescaled, as Hounsfield
-/// units are).
-pub(super) fn pixels(slices: &[&Slice]) -> Result<Vec<Vec<f32>>, VolumeError> {
-    let Some(&first) = slices.first() else { return Ok(Vec::new()) };
-    let Slice { columns, rows, frames: claimed, .. } = *first;
-    let path = &first.path;
-    let object = dicom_object::open_file(path).map_err(|error| damaged(path, &error))?;
-    check_syntax(path, &object)?;
-    if let Some(wide) = first.wide {
-        return slices.iter().map(|slice| slice.wide_pixels(wide, &object)).collect();
+/// How many frames a file has, whose pixels are compared with what the header claims.
+fn frames(
+    path: &Path,
+    header: Header<'_>,
+    [columns, rows]: [u64; 2],
+    coding: Coding,
+    pixels: Option<Pixels>,
+) -> Result<u32, VolumeError> {
+    let frames = header.number_or(NUMBER_OF_FRAMES, 1.0)?.max(1.0);
+    let each = columns.saturating_mul(rows);
+    let expected = coding.bytes(each.saturating_mul(frames as u64).max(1));
+    let length = std::fs::metadata(path).map_err(io_error(path))?.len();
+    let claim = format!("claims {frames} × {columns}×{rows} pixels");
+    // Compressed pixels are shorter than what they stand for, but not by any factor.
+    if expected > length.saturating_mul(MOST_EXPANSION) {
+        let what = format!("{claim}, which {length} bytes cannot hold: it is truncated or damaged");
+        return Err(header.fail(Reason::truncated(what)));
     }
-    let decoded = object.decode_pixel_data().map_err(|error| damaged(path, &error))?;
-    // The decoder makes a table of all values, and panics if there are none.
-    let (stored, allocated) = (decoded.bits_stored(), decoded.bits_allocated());
-    if !(1..=allocated).contains(&stored) {
-        let reason = Reason::damaged(format!("claims {stored} bits of the {allocated} of a pixel"));
-        return Err(format_error(path, reason));
-    }
-    let found = decoded.number_of_frames();
-    if found != claimed {
-        let reason = Reason::truncated(format!(
-            "claims {claimed} frames and holds {found}: it is truncated or damaged"
-        ));
-        return Err(format_error(path, reason));
-    }
-    let frame = |slice: &&Slice| {
-        let failed = |error| damaged(path, &error);
-        let pixels = if let Some(scaling) = slice.scaling {
-            // Of 32 bits, often.
-            let pixels = decoded.to_vec_frame::<f64>(slice.frame).map_err(failed)?;
-            pixels.into_iter().map(|pixel| (pixel * scaling) as f32).collect()
-        } else {
-            decoded.to_vec_frame::<f32>(slice.frame).map_err(failed)?
-        };
-        let (found, claimed) = (pixels.len() as u64, columns * rows);
-        if found != claimed {
-            let reason = Reason::truncated(format!(
-                "claims {columns}×{rows} pixels and holds {found}: it is truncated or damaged"
-            ));
-            return Err(format_error(path, reason));
+    let claim = format!("{claim}, which are {expected} bytes");
+    match pixels {
+        None => {
+            let next =
+                "copy it again if it is shorter than its original, or move it out of the folder";
+            let what = format!("{claim}, and has none: no Pixel Data {PIXEL_DATA}");
+            Err(header.fail(Reason::content(what, next)))
         }
-        Ok(pixels)
-    };
-    slices.iter().map(frame).collect()
+        // Each compressed frame has a fragment of its own, with a header of 8 bytes.
+        Some(Pixels { bytes: None, .. }) if frames > (length / 8) as f64 => {
+            let what = format!("{claim}, and {length} bytes in all: it is truncated or damaged");
+            Err(header.fail(Reason::truncated(what)))
+        }
+        // Less than a frame may be there to fill up, as one byte to make their number even.
+        Some(Pixels { bytes: Some(found), .. })
+            if found < expected || found - expected >= coding.bytes(each).max(2) =>
+        {
+            let what = format!("{claim}, and {found} bytes of them");
+            Err(header.fail(Reason::header(what)))
+        }
+        Some(_) => Ok(frames as u32),
+    }
 }
 
-/// Refuses pixels that are compressed in a way that there is no decoder for.
-fn check_syntax(path: &Path, object: &DefaultDicomObject) -> Result<(), VolumeError> {
-    let uid = object.meta().transfer_syntax();
-    let known = TransferSyntaxRegistry.get(uid);
-    if known.is_some_and(TransferSyntax::can_decode_all) {
+/// Refuses colours, also those of a palette.
+fn check_colours(header: Header<'_>, [columns, rows]: [u64; 2]) -> Result<(), VolumeError> {
+    let photometric = header.text(None, PHOTOMETRIC_INTERPRETATION).unwrap_or_default();
+    let what = if photometric == "PALETTE COLOR" {
+        "pixels that are numbers of colours in a palette (PALETTE COLOR)".into()
+    } else if header.number_or(SAMPLES_PER_PIXEL, 1.0)? != 1.0 {
+        let named = if photometric.is_empty() { photometric } else { format!(" ({photometric})") };
+        format!("pixels of colours{named}")
+    } else {
+        return Ok(());
+    };
+    let frames = header.number_or(NUMBER_OF_FRAMES, 1.0)?.max(1.0) as u64;
+    Err(header.fail(Reason::not_scalar(what, Some([columns, rows, frames]))))
+}
+
+/// Refuses compressed pixels that there is no decoder for.
+fn check_compressed(header: Header<'_>, coding: Coding, start: &Start) -> Result<(), VolumeError> {
+    let next = "unpack it first, as `gdcmconv --raw` does";
+    let bits = match coding {
+        Coding::Integer { bytes: 1 | 2, .. } => return Ok(()),
+        Coding::Bit => "1 bit".to_owned(),
+        _ => format!("{} bits", 8 * coding.bytes(1)),
+    };
+    let what = format!(
+        "has compressed pixels of {bits} (transfer syntax {}), which are not read",
+        start.uid
+    );
+    Err(header.fail(Reason::unsupported(what, next)))
+}
+
+/// Places the frames of a file that says how far each is from the first, as doses and nuclear medicine do.
+fn spread(header: Header<'_>, slices: &mut [Slice]) -> Result<(), VolumeError> {
+    let differ = |slices: &[Slice]| {
+        let differ = |two: &[Slice]| {
+            let [a, b] = [&two[0], &two[1]];
+            a.position != b.position || a.index != b.index || a.segment != b.segment
+        };
+        slices.windows(2).any(differ)
+    };
+    if slices.len() < 2 || slices.windows(2).any(|two| two[0].position != two[1].position) {
         return Ok(());
     }
-    let name = known.map_or("a transfer syntax that is not known", |syntax| syntax.name());
-    let what = format!("has pixels compressed as {name} ({uid}), which is not read");
-    Err(format_error(path, Reason::unsupported(what, "unpack it first, as `gdcmconv --raw` does")))
-}
-
-/// The type of the rescaled values: that of the file, if pixels are only shifted by whole steps.
-fn dtype(bits: f64, unsigned: bool, slope: f64, intercept: f64) -> Dtype {
-    match (bits as u64, unsigned) {
-        (8, true) if (slope, intercept) == (1.0, 0.0) => Dtype::U8,
-        _ if slope != 1.0 || intercept.fract() != 0.0 => Dtype::F32,
-        (8, false) => Dtype::I8,
-        (16, true) if intercept >= 0.0 => Dtype::U16,
-        (16, _) => Dtype::I16,
-        _ => Dtype::F32,
+    if nuclear::is_nuclear(header) {
+        return nuclear::place(header, slices);
     }
-}
-
-const SHARED_FUNCTIONAL_GROUPS: Tag = Tag(0x5200, 0x9229);
-const PER_FRAME_FUNCTIONAL_GROUPS: Tag = Tag(0x5200, 0x9230);
-
-/// The header of a file, as it applies to one of its frames: in enhanced images some elements are in
-/// functional groups, of the frame or shared by all frames (PS3.3, C.7.6.16).
-#[derive(Clone, Copy)]
-struct Header<'a> {
-    path: &'a Path,
-    object: &'a InMemDicomObject,
-    frame: Option<u32>,
-}
-
-impl<'a> Header<'a> {
-    /// Of a file.
-    fn new(path: &'a Path, object: &'a InMemDicomObject) -> Self {
-        Self { path, object, frame: None }
-    }
-
-    /// As the frame has it that is counted from 0.
-    fn of_frame(self, frame: u32) -> Self {
-        Self { frame: Some(frame), ..self }
-    }
-
-    /// The functional groups that hold for the frame, its own first.
-    fn groups(&self) -> impl Iterator<Item = &'a InMemDicomObject> {
-        let items = |tag: Tag| self.object.get(tag).and_then(|sequence| sequence.items());
-        let own = self.frame.and_then(|frame| {
-            items(PER_FRAME_FUNCTIONAL_GROUPS).and_then(|items| items.get(frame as usize))
-        });
-        own.into_iter().chain(items(SHARED_FUNCTIONAL_GROUPS).and_then(|items| items.first()))
-    }
-
-    /// An element, from the functional group `group` where there is one.
-    fn element(&self, group: Option<Tag>, tag: Tag) -> Option<&'a InMemElement> {
-        let in_group = |all: &'a InMemDicomObject| {
-            all.get(group?)?.items().and_then(|items| items.first())?.get(tag)
-        };
-        self.groups().find_map(in_group).or_else(|| self.object.get(tag))
-    }
-
-    /// A number, if it is there.
-    fn number(&self, group: impl Into<Option<Tag>>, tag: Tag) -> Result<Option<f64>, VolumeError> {
-        let Some(element) = self.element(group.into(), tag) else { return Ok(None) };
-        if element.value().multiplicity() == 0 {
-            return Ok(None);
+    if header.element(None, GRID_FRAME_OFFSETS).is_none() {
+        if differ(slices) {
+            return Ok(());
         }
-        let number = element.to_float64().ok().filter(|number| number.is_finite());
-        number.map(Some).ok_or_else(|| {
-            format_error(
-                self.path,
-                Reason::damaged(format!("has no number at {tag}: it is damaged")),
-            )
-        })
+        let what = format!(
+            "has {} frames and one place for all of them: times, views or a cine, and no volume",
+            slices.len()
+        );
+        return Err(
+            header.fail(Reason::unsupported(what, "convert those of one volume to NRRD or NIfTI"))
+        );
     }
+    let offsets = header.numbers(None, GRID_FRAME_OFFSETS);
+    if offsets.len() != slices.len() || offsets.iter().any(|offset| !offset.is_finite()) {
+        return Err(header.fail(Reason::header(format!(
+            "has {} frames, and Grid Frame Offset Vector {GRID_FRAME_OFFSETS} of {} numbers",
+            slices.len(),
+            offsets.len()
+        ))));
+    }
+    for (slice, offset) in slices.iter_mut().zip(&offsets) {
+        // Where the first is not 0, they are places along the axis, of which the first is that of the file.
+        slice.move_by(offset - offsets[0]);
+    }
+    Ok(())
+}
 
-    /// `N` numbers, called `name`, which a volume needs because of `why`.
-    fn vector<const N: usize>(
-        &self,
-        group: Tag,
-        tag: Tag,
-        name: &str,
-        why: &str,
-    ) -> Result<[f64; N], VolumeError> {
-        let element = self.element(group.into(), tag);
-        let numbers = element.and_then(|element| element.to_multi_float64().ok());
-        let numbers = numbers.and_then(|numbers| <[f64; N]>::try_from(numbers).ok());
-        numbers.filter(|numbers| numbers.iter().all(|number| number.is_finite())).ok_or_else(|| {
-            format_error(
-                self.path,
-                Reason::header(format!("has no {name} {tag} of {N} numbers, {why}")),
-            )
-        })
+impl Slice {
+    /// Moves it along its normal.
+    pub(super) fn move_by(&mut self, length: f64) {
+        let normal = self.normal();
+        self.position = [0, 1, 2].map(|k| self.position[k] + length * normal[k]);
     }
 }

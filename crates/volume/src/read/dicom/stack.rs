@@ -1,7 +1,12 @@
+//! Slices in the order of their places, and where their grid lies.
+
 use std::path::Path;
 
-use walpha_base::vector::{cross, dot};
+use walpha_base::advice::{Setting, advice};
+use walpha_base::shown::six_digits;
+use walpha_base::vector::{dot, length, sub};
 
+use super::distances::{Distances, Wide, distances};
 use super::slice::Slice;
 use crate::error::format_error;
 use crate::read::layout;
@@ -9,102 +14,301 @@ use crate::{Coordinates, Frame, Reason, VolumeError};
 
 /// Unit vectors this alike are one; headers have six digits or more.
 const SAME_DIRECTION: f64 = 1e-3;
-/// A gap this many times the usual one, or more, has slices missing.
-const MISSING: f64 = 1.5;
-/// A warning is given for distances that differ by more than this share of the usual one.
-const UNEVEN: f64 = 0.01;
+/// A slice may be this share of a pixel off the line through the others.
+const ASIDE: f64 = 0.5;
+/// A grid may have this many times as many slices as there are.
+const MOST_FINER: usize = 32;
+/// A place of the grid this near to a slice, as a share of the distance of slices, is that of the slice.
+const SAME_PLACE: f64 = 0.01;
 
-/// Slices in the order of their positions along the normal, and where their grid lies.
+/// Slices along their normal, and the grid that they are on.
+pub(super) struct Stack {
+    pub slices: Vec<Slice>,
+    pub frame: Frame,
+    pub order: Order,
+}
+
+/// Which planes the grid has.
+pub(super) enum Order {
+    /// The slices, one after the other.
+    Slices,
+    /// Between slices: the one below each plane, and the share of the next one.
+    Between(Vec<(usize, f64)>),
+    /// For each slice of a segmentation, the planes that it is laid into.
+    Planes(Vec<Vec<usize>>),
+}
+
+/// Slices in the order of their places along the normal, and where their grid lies.
 ///
-/// Slices of other sizes or directions, two at one place and missing ones are errors; uneven distances
-/// are a warning, and their mean is the spacing. Where slices are shifted against each other, as a
-/// tilted gantry does, the third axis is oblique.
+/// Slices of other sizes or directions, two at one place and missing ones are errors. Where distances differ, the grid has
+/// the finest of them. Where slices are shifted against each other, as a tilted gantry does, the third axis is oblique.
 pub(super) fn stacked(
     path: &Path,
     mut slices: Vec<Slice>,
-) -> Result<(Vec<Slice>, Frame), VolumeError> {
+    no_resample: bool,
+) -> Result<Stack, VolumeError> {
     let fail = |reason: Reason| format_error(path, reason);
     let Some(first) = slices.first().cloned() else {
         return Err(fail(Reason::content("holds no DICOM slices", "name a folder of them")));
     };
-    for slice in &slices {
+    alike(&slices, &first).map_err(fail)?;
+    let normal = first.normal();
+    let at = |slice: &Slice| dot(slice.position, normal);
+    slices.sort_by(|a, b| {
+        at(a).total_cmp(&at(b)).then_with(|| (&a.path, a.frame).cmp(&(&b.path, b.frame)))
+    });
+    let is_segmentation = first.segment.is_some();
+    let (step, order) = if is_segmentation {
+        planes(&slices, normal, no_resample).map_err(fail)?
+    } else {
+        even(&slices, normal, no_resample).map_err(fail)?
+    };
+    let line = line(&slices, normal).map_err(fail)?;
+    let [column, row] = first.orientation;
+    let axes = [
+        column.map(|v| v * first.spacing[0]),
+        row.map(|v| v * first.spacing[1]),
+        line.map(|v| v * step),
+    ];
+    let frame = layout::frame(path, slices[0].position, axes, Coordinates::PATIENT)?;
+    Ok(Stack { slices, frame, order })
+}
+
+/// Refuses slices that are not of one grid.
+fn alike(slices: &[Slice], first: &Slice) -> Result<(), Reason> {
+    for slice in slices {
         let (name, other) = (slice.name(), first.name());
         if (slice.columns, slice.rows) != (first.columns, first.rows) {
-            return Err(fail(Reason::content(
+            return Err(Reason::content(
                 format!(
                     "has a slice of {}×{} pixels in {name}, and of {}×{} in {other}",
                     slice.columns, slice.rows, first.columns, first.rows
                 ),
                 "move those that do not belong away",
-            )));
+            ));
         }
         let turned = slice.orientation.as_flattened().iter().zip(first.orientation.as_flattened());
         if turned.into_iter().any(|(a, b)| (a - b).abs() > SAME_DIRECTION) {
-            return Err(fail(Reason::content(
+            return Err(Reason::content(
                 format!("has slices of different orientations, as {name} and {other}"),
                 "move localisers and other views away",
-            )));
+            ));
         }
         let spaced = slice.spacing.iter().zip(&first.spacing);
         if spaced.into_iter().any(|(a, b)| (a - b).abs() > SAME_DIRECTION * b.abs()) {
-            return Err(fail(Reason::content(
+            return Err(Reason::content(
                 format!(
                     "has pixels {:?} mm apart in {name}, and {:?} in {other}",
                     slice.spacing, first.spacing
                 ),
                 "move those that do not belong away",
-            )));
+            ));
         }
     }
-    let [column, row] = first.orientation;
-    let normal = cross(column, row);
-    slices.sort_by(|a, b| {
-        let [a_at, b_at] = [a, b].map(|slice| dot(slice.position, normal));
-        a_at.total_cmp(&b_at).then_with(|| (&a.path, a.frame).cmp(&(&b.path, b.frame)))
-    });
-    let step = match even(&slices, normal).map_err(fail)? {
-        Some(step) => step,
-        None => normal.map(|n| n * first.thickness),
-    };
-    let axes = [column.map(|v| v * first.spacing[0]), row.map(|v| v * first.spacing[1]), step];
-    let frame = layout::frame(path, slices[0].position, axes, Coordinates::PATIENT)?;
-    Ok((slices, frame))
+    Ok(())
 }
 
-/// The step from one slice to the next; `None` for a single one.
-fn even(slices: &[Slice], normal: [f64; 3]) -> Result<Option<[f64; 3]>, Reason> {
-    let [first, .., last] = slices else { return Ok(None) };
-    let at = |slice: &Slice| dot(slice.position, normal);
-    let mut gaps: Vec<f64> = slices.windows(2).map(|two| at(&two[1]) - at(&two[0])).collect();
-    let pairs: Vec<_> = slices.windows(2).zip(gaps.clone()).collect();
-    let names = |two: &[Slice]| format!("{} and {}", two[0].name(), two[1].name());
-    gaps.sort_by(f64::total_cmp);
-    // Of an even number the greater, so that not all places need be doubled; the lesser for what is
-    // usual, so that a gap among few stands out.
-    let [greater, usual] = [gaps[gaps.len() / 2], gaps[(gaps.len() - 1) / 2]];
-    if let Some((two, _)) = pairs.iter().find(|(_, gap)| *gap <= UNEVEN * greater) {
-        return Err(Reason::content(
-            format!("has two slices at one place, {}: it has several times or echoes", names(two)),
-            "move those of one into a folder of their own, or convert it to NRRD or NIfTI",
-        ));
+/// How far one gets along the line through the first and the last slice while going one millimetre along the normal.
+/// A slice beside this line is an error.
+fn line(slices: &[Slice], normal: [f64; 3]) -> Result<[f64; 3], Reason> {
+    let [first, .., last] = slices else { return Ok(normal) };
+    let whole = sub(last.position, first.position);
+    let along = dot(whole, normal);
+    if along == 0.0 {
+        return Ok(normal);
     }
-    if let Some((two, gap)) = pairs.iter().find(|(_, gap)| *gap >= MISSING * usual) {
-        return Err(Reason::content(
-            format!(
-                "has a gap of {gap:.3} mm between {}, where {usual:.3} mm are usual (slices \
-                     missing: {})",
-                names(two),
-                (gap / usual).round() - 1.0
-            ),
-            "copy the whole series again",
-        ));
+    let line = whole.map(|v| v / along);
+    for slice in slices {
+        let way = sub(slice.position, first.position);
+        let aside = length(sub(way, line.map(|v| v * dot(way, normal))));
+        if aside > ASIDE * slice.spacing[0].min(slice.spacing[1]) {
+            return Err(Reason::content(
+                format!(
+                    "has slices that are shifted against each other unevenly: {} lies {aside:.3} mm beside the line from {} to {}",
+                    slice.name(),
+                    first.name(),
+                    last.name()
+                ),
+                "move slices of other views away, or convert it to NRRD with a program that resamples them",
+            ));
+        }
     }
-    let (least, most) = (gaps[0], gaps[gaps.len() - 1]);
-    if most - least > UNEVEN * usual {
-        tracing::warn!(
-            "slices are {least:.3} to {most:.3} mm apart; the mean is taken for all of them"
+    Ok(line)
+}
+
+/// The distance of planes, and which planes there are.
+fn even(slices: &[Slice], normal: [f64; 3], no_resample: bool) -> Result<(f64, Order), Reason> {
+    let at: Vec<f64> = slices.iter().map(|slice| dot(slice.position, normal)).collect();
+    let numbers: Option<Vec<f64>> = slices.iter().map(|slice| slice.number).collect();
+    let step = match distances(&at, numbers.as_deref()) {
+        Distances::One => return Ok((thickness(&slices[0]), Order::Slices)),
+        Distances::Same(i) => return Err(same_place(&slices[i], &slices[i + 1])),
+        Distances::Wide(wide) => return Err(gap(slices, &wide)),
+        Distances::Even { step, off } => {
+            if off > 0.0 {
+                tracing::warn!(
+                    "slices lie up to {off:.3} mm off places {} mm apart, which are taken",
+                    six_digits(step)
+                );
+            }
+            return Ok((step, Order::Slices));
+        }
+        Distances::Several(step) => step,
+    };
+    let places = between(&at, step)?;
+    let said = format!("{} slices {} mm apart", places.len(), six_digits(step));
+    let what = several(&at);
+    if no_resample {
+        return Err(refused(what, &said, "linearly"));
+    }
+    tracing::warn!("{what}: they are resampled linearly to {said}");
+    Ok((step, Order::Between(places)))
+}
+
+/// The same for a segmentation, in which a plane without a frame is empty.
+fn planes(slices: &[Slice], normal: [f64; 3], no_resample: bool) -> Result<(f64, Order), Reason> {
+    let places: Vec<f64> = slices.iter().map(|slice| dot(slice.position, normal)).collect();
+    let first = &slices[0];
+    // Frames of several segments, each of which may have one there.
+    let mut at: Vec<f64> = Vec::new();
+    for &place in &places {
+        if at.last().is_none_or(|last| place - last > 1e-3) {
+            at.push(place);
+        }
+    }
+    let stated = first.step.filter(|step| slices.iter().all(|slice| slice.step == Some(*step)));
+    let on_grid = |step: f64| {
+        let off = |place: &f64| ((place - at[0]) / step - ((place - at[0]) / step).round()).abs();
+        step > 0.0 && at.iter().all(|place| off(place) <= 0.1)
+    };
+    let finest = at.windows(2).map(|two| two[1] - two[0]).fold(f64::INFINITY, f64::min);
+    let found = distances(&at, None);
+    let step = match (stated.map(f64::abs), &found) {
+        (Some(step), _) if on_grid(step) => step,
+        (_, Distances::One) => thickness(first),
+        (_, Distances::Even { step, .. }) => *step,
+        (_, Distances::Several(step)) => {
+            let below = between(&at, *step)?;
+            let said = format!("{} planes {} mm apart", below.len(), six_digits(*step));
+            let what = several(&at);
+            if no_resample {
+                return Err(refused(what, &said, "to the nearest slice"));
+            }
+            tracing::warn!("{what}: {said} take the nearest slice each");
+            let nearest = |&(below, share): &(usize, f64)| below + usize::from(share >= 0.5);
+            let nearest: Vec<f64> = below.iter().map(nearest).map(|i| at[i]).collect();
+            let planes = |place: &f64| {
+                let near = |(_, at): &(usize, &f64)| (*at - place).abs() <= 1e-3;
+                nearest.iter().enumerate().filter(near).map(|(plane, _)| plane).collect()
+            };
+            return Ok((*step, Order::Planes(places.iter().map(planes).collect())));
+        }
+        _ if on_grid(finest) => finest,
+        _ => {
+            let what = format!(
+                "is a segmentation with frames at distances of no grid: {} to {} mm",
+                six_digits(finest),
+                six_digits(at.windows(2).map(|two| two[1] - two[0]).fold(0.0, f64::max))
+            );
+            return Err(Reason::content(
+                what,
+                "convert it to NRRD with a program that resamples it",
+            ));
+        }
+    };
+    let most = (at[at.len() - 1] - at[0]) / step;
+    if most > (MOST_FINER * 64 * slices.len()) as f64 {
+        let what = format!("is a segmentation of {} frames in {most:.0} planes", slices.len());
+        return Err(Reason::header(what));
+    }
+    let plane = |place: &f64| vec![((place - at[0]) / step).round() as usize];
+    Ok((step, Order::Planes(places.iter().map(plane).collect())))
+}
+
+/// The distance to a next slice that is not there.
+fn thickness(slice: &Slice) -> f64 {
+    slice.step.map(f64::abs).or(slice.thickness).filter(|&step| step > 0.0).unwrap_or(1.0)
+}
+
+/// For each place of a finer grid, the slice below and the share of the next.
+fn between(at: &[f64], step: f64) -> Result<Vec<(usize, f64)>, Reason> {
+    let most = (at[at.len() - 1] - at[0]) / step + SAME_PLACE;
+    if most >= (MOST_FINER * at.len()) as f64 {
+        let what = format!(
+            "has slices at distances from {} mm up, which would make {} slices of {}",
+            six_digits(step),
+            most as u64 + 1,
+            at.len()
         );
+        return Err(Reason::content(what, "move slices that do not belong to the others away"));
     }
-    let count = (slices.len() - 1) as f64;
-    Ok(Some([0, 1, 2].map(|k| (last.position[k] - first.position[k]) / count)))
+    let mut below = 0;
+    let place = |k: usize| {
+        let place = at[0] + k as f64 * step;
+        while below + 1 < at.len() && at[below + 1] <= place + SAME_PLACE * step {
+            below += 1;
+        }
+        let Some(next) = at.get(below + 1) else { return (below, 0.0) };
+        let share = (place - at[below]) / (next - at[below]);
+        (below, if place - at[below] <= SAME_PLACE * step { 0.0 } else { share })
+    };
+    Ok((0..=most as usize).map(place).collect())
+}
+
+/// Which distances there are, for people.
+fn several(at: &[f64]) -> String {
+    let mut counts: Vec<(f64, usize)> = Vec::new();
+    for two in at.windows(2) {
+        let gap = two[1] - two[0];
+        match counts.iter_mut().find(|(of, _)| (gap - *of).abs() <= SAME_PLACE * *of) {
+            Some((_, count)) => *count += 1,
+            None => counts.push((gap, 1)),
+        }
+    }
+    counts.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let shown = |gap: f64| six_digits((gap * 1e6).round() / 1e6);
+    match &counts[..] {
+        [(least, _), .., (most, _)] if counts.len() > 4 => {
+            format!("slices are {} to {} mm apart", shown(*least), shown(*most))
+        }
+        _ => {
+            let each: Vec<String> =
+                counts.iter().map(|&(gap, n)| format!("{} mm ({n} times)", shown(gap))).collect();
+            format!("slices are at several distances, {}", each.join(", "))
+        }
+    }
+}
+
+/// The error where slices may not be resampled.
+fn refused(what: String, said: &str, how: &str) -> Reason {
+    let next = advice!["omit ", Setting::NoResample, format!(" to resample them {how} to {said}")];
+    Reason::choice(Setting::NoResample, format!("holds a series whose {what}"), next)
+}
+
+/// The error for two slices at one place.
+fn same_place(a: &Slice, b: &Slice) -> Reason {
+    let (a, b) = (a.name(), b.name());
+    Reason::content(
+        format!(
+            "has two slices at one place, {a} and {b}, and says of neither to which volume it belongs"
+        ),
+        "move those of one volume into a folder of their own, or convert it to NRRD or NIfTI",
+    )
+}
+
+/// The error for a distance that no rule explains.
+fn gap(slices: &[Slice], &Wide { slice, gap, usual, missing }: &Wide) -> Reason {
+    let [a, b] = [&slices[slice], &slices[slice + 1]].map(Slice::name);
+    let what =
+        format!("has a gap of {gap:.3} mm between {a} and {b}, where {usual:.3} mm are usual");
+    let cause = match missing {
+        Some(count) => format!("(slices missing: {count})"),
+        None => {
+            "(neither the place of whole slices, nor a distance that several slices have)".into()
+        }
+    };
+    Reason::content(
+        format!("{what} {cause}"),
+        "add what is missing, or move the slices on one side of the gap into a folder of their own",
+    )
 }

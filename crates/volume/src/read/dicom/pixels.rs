@@ -1,0 +1,93 @@
+//! The pixels of slices, as values.
+
+use std::path::Path;
+
+use dicom_encoding::{Endianness, TransferSyntax};
+use dicom_object::{DefaultDicomObject, Tag};
+use dicom_pixeldata::PixelDecoder;
+
+use super::claims::{DOUBLE_PIXEL_DATA, FLOAT_PIXEL_DATA, PIXEL_DATA, damaged};
+use super::slice::Slice;
+use super::start::Start;
+use super::values::Coding;
+use crate::error::format_error;
+use crate::{Reason, VolumeError};
+
+/// The pixels of one slice, row by row.
+pub(super) struct Plane {
+    /// Their values, in the units of the modality (rescaled, as Hounsfield units are).
+    pub samples: Vec<f32>,
+    /// Which of them are padding, if any is.
+    pub padded: Option<Vec<bool>>,
+}
+
+/// The pixels of frames of one file.
+pub(super) fn pixels(slices: &[&Slice]) -> Result<Vec<Plane>, VolumeError> {
+    let Some(first) = slices.first() else { return Ok(Vec::new()) };
+    let bytes = stored_in(first)?;
+    slices.iter().map(|slice| plane(slice, &bytes)).collect()
+}
+
+/// The pixels of a slice, of those of its file.
+pub(super) fn plane(slice: &Slice, bytes: &[u8]) -> Result<Plane, VolumeError> {
+    let Slice { columns, rows, frames, .. } = *slice;
+    let each = (columns * rows) as usize;
+    let before = each.saturating_mul(slice.frame as usize);
+    let (samples, padded) = slice.values.decode(bytes, before, each).ok_or_else(|| {
+        let reason = Reason::truncated(format!(
+            "claims {frames} × {columns}×{rows} pixels and holds {} bytes of them: it is truncated or damaged",
+            bytes.len()
+        ));
+        format_error(&slice.path, reason)
+    })?;
+    Ok(Plane { samples, padded })
+}
+
+/// The bytes of all pixels of the file of a slice, unpacked.
+pub(super) fn stored_in(slice: &Slice) -> Result<Vec<u8>, VolumeError> {
+    let path = &slice.path;
+    let start = Start::of(path)?;
+    check_syntax(path, &start)?;
+    let object = start.object(path, None)?;
+    stored(path, &object, &start, slice.values.coding)
+}
+
+/// The bytes of all pixels of a file, unpacked, the lowest of each first.
+fn stored(
+    path: &Path,
+    object: &DefaultDicomObject,
+    start: &Start,
+    coding: Coding,
+) -> Result<Vec<u8>, VolumeError> {
+    let tag: Tag = match coding {
+        Coding::Float => FLOAT_PIXEL_DATA,
+        Coding::Double => DOUBLE_PIXEL_DATA,
+        _ => PIXEL_DATA,
+    };
+    let element = object.get(tag);
+    let Some(value) = element.and_then(|element| element.value().primitive()) else {
+        let decoded = object.decode_pixel_data().map_err(|error| damaged(path, &error))?;
+        return Ok(decoded.data().to_vec());
+    };
+    let bytes = value.to_bytes();
+    let is_of_words = element.is_some_and(|element| element.vr().to_string() == "OW");
+    let is_big = start.syntax(path)?.endianness() == Endianness::Big;
+    // Words come in the order of this machine: longer numbers have them the other way round.
+    Ok(if is_big && is_of_words && matches!(coding, Coding::Integer { bytes: 4, .. }) {
+        let turned = bytes.as_chunks::<4>().0.iter().flat_map(|&[a, b, c, d]| [c, d, a, b]);
+        turned.collect()
+    } else {
+        bytes.into_owned()
+    })
+}
+
+/// Refuses pixels that are compressed in a way that there is no decoder for.
+fn check_syntax(path: &Path, start: &Start) -> Result<(), VolumeError> {
+    let syntax: &TransferSyntax = start.syntax(path)?;
+    if syntax.can_decode_all() {
+        return Ok(());
+    }
+    let what =
+        format!("has pixels compressed as {} ({}), which is not read", syntax.name(), syntax.uid());
+    Err(format_error(path, Reason::unsupported(what, "unpack it first, as `gdcmconv --raw` does")))
+}
