@@ -79,6 +79,7 @@ impl Points {
         let kept: Vec<bool> =
             self.positions.iter().map(|place| taken.insert(cube(place))).collect();
         self.keep(&kept);
+        Ok(())
     }
 
     /// Keeps the points that are marked.
@@ -90,7 +91,6 @@ impl Points {
         }
         let mut kept = kept.iter();
         self.positions.retain(|_| kept.next() == Some(&true));
-        Ok(())
     }
 
     /// The number of points.

@@ -8,6 +8,8 @@ use walpha_base::advice::Setting;
 use walpha_base::near::nearest;
 
 use super::magic::{is_dicom, is_gzip};
+#[cfg(feature = "dicom")]
+use super::others::other_name;
 use super::others::{other_kind, partner};
 use super::table::{FORMATS, VolumeFormat};
 
@@ -290,9 +292,7 @@ pub fn begins_as_volume(start: &[u8]) -> bool {
 /// What a file is by its content, for people, if that is known.
 #[cfg(feature = "dicom")]
 pub(crate) fn recognised(start: &[u8]) -> Option<&'static str> {
-    let refused =
-        || REFUSED.iter().find(|(magic, ..)| start.starts_with(magic)).map(|(_, what, _)| *what);
-    by_content(start).map(|format| format.name).or_else(refused)
+    by_content(start).map(|format| format.name).or_else(|| other_name(start))
 }
 
 /// The error for a file of no format known.

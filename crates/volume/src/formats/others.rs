@@ -150,8 +150,18 @@ static KINDS: [Kind; 47] = [
 
 /// Why a file that begins so is not read, if it is of a kind that is known.
 pub fn other_kind(start: &[u8]) -> Option<Reason> {
-    let kind = KINDS.iter().find(|kind| (kind.begins)(start))?;
+    let kind = kind(start)?;
     Some(Reason::unsupported(format!("is {}", kind.what), kind.advice))
+}
+
+/// What a file is that begins so, if it is of a kind that is known.
+#[cfg(feature = "dicom")]
+pub(super) fn other_name(start: &[u8]) -> Option<&'static str> {
+    Some(kind(start)?.what)
+}
+
+fn kind(start: &[u8]) -> Option<&'static Kind> {
+    KINDS.iter().find(|kind| (kind.begins)(start))
 }
 
 /// Why a file is not read that holds the samples of a header beside it, or is called so.
