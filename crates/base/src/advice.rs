@@ -30,20 +30,24 @@ pub enum Part {
 #[allow(missing_docs, reason = "documented at the fields of the options")]
 pub enum Setting {
     Alpha,
+    AlphaRadius,
     AlphaRef,
     Array,
     Balls,
     Blocks,
     /// Which classes of points are read.
     Class,
+    Coefficients,
     Columns,
     Dims,
     Downsample,
     Dtype,
     Engine,
+    Epsilon,
     Exterior,
     Format,
     Frame,
+    Gray,
     GrayMin,
     Hidden,
     InPlace,
@@ -54,11 +58,13 @@ pub enum Setting {
     Periodic,
     Ratio,
     Region,
+    Rms,
     Series,
     SkipDamaged,
     Solid,
     Space,
     Threshold,
+    ValueMin,
 }
 
 impl Setting {
@@ -66,19 +72,23 @@ impl Setting {
     pub fn name(self) -> &'static str {
         match self {
             Self::Alpha => "alpha",
+            Self::AlphaRadius => "alpha_radius",
             Self::AlphaRef => "alpha_ref",
             Self::Array => "array",
             Self::Balls => "balls",
             Self::Blocks => "blocks",
             Self::Class => "class",
+            Self::Coefficients => "coefficients",
             Self::Columns => "columns",
             Self::Dims => "dims",
             Self::Downsample => "downsample",
             Self::Dtype => "dtype",
             Self::Engine => "engine",
+            Self::Epsilon => "epsilon",
             Self::Exterior => "exterior",
             Self::Format => "format",
             Self::Frame => "frame",
+            Self::Gray => "gray",
             Self::GrayMin => "gray_min",
             Self::Hidden => "hidden",
             Self::InPlace => "in_place",
@@ -89,11 +99,13 @@ impl Setting {
             Self::Periodic => "periodic",
             Self::Ratio => "ratio",
             Self::Region => "region",
+            Self::Rms => "rms",
             Self::Series => "series",
             Self::SkipDamaged => "skip_damaged",
             Self::Solid => "solid",
             Self::Space => "space",
             Self::Threshold => "threshold",
+            Self::ValueMin => "value_min",
         }
     }
 }
