@@ -2,7 +2,7 @@ use std::io::{self, Write};
 
 use walpha_base::advice::Advice;
 
-use super::Exporter;
+use super::{Exporter, Needs};
 use super::planar::{self, Planar};
 use crate::shape::AlphaShape;
 
@@ -41,6 +41,10 @@ impl Exporter for Wkt {
 
     fn remark(&self, shape: &AlphaShape) -> Option<Advice> {
         planar::remark(shape)
+    }
+
+    fn needs(&self) -> Needs {
+        Needs::Facet
     }
 }
 

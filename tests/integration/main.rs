@@ -27,6 +27,7 @@ mod laws;
 #[cfg(feature = "mpi")]
 mod mpi;
 #[cfg(target_os = "linux")]
+mod nothing;
 mod opened_once;
 mod outline;
 mod outofcore;
@@ -40,6 +41,7 @@ mod progress;
 mod refit;
 #[cfg(feature = "paper")]
 mod reproduce;
+mod single;
 mod skull;
 mod solid;
 mod triangulation;
