@@ -148,9 +148,7 @@ def write_points(
     """
     _walpha.write_points(
         os.fspath(path),
-        _arrays.points(points),
-        _arrays.optional("weights", weights),
-        _arrays.optional("values", values),
+        *_arrays.cloud(points, weights, values),
         None if alpha is None else _alpha.squared(alpha, None, ""),
         float(value_error),
     )

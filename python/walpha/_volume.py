@@ -28,7 +28,7 @@ class Volume:
     Parameters
     ----------
     samples : array_like, (nz, ny, nx)
-        Kept as float32, in whatever unit the values have.
+        Kept as float32, in whatever unit the values have. Masked ones are NaN, and :func:`pipeline` makes no points of them.
     spacing : tuple of float
         Distances between samples along x, y and z.
     origin : tuple of float
@@ -63,9 +63,11 @@ class Volume:
     space: str = "unknown"
     unit: str = "unit"
     gray: bool | None = None
+    # Whether samples are NaN because they were masked.
+    _masked: bool = dataclasses.field(default=False, init=False)
 
     def __post_init__(self) -> None:
-        samples, gray = _arrays.samples(self.samples)
+        samples, gray, masked = _arrays.samples(self.samples)
         axes = np.asarray(self.direction, float)
         if axes.shape != (3, 3) or not np.isfinite(axes).all():
             raise ValueError(f"direction has shape {axes.shape}: give three rows of three numbers")
@@ -78,6 +80,7 @@ class Volume:
             "origin": tuple(_arrays.place("origin", self.origin)),
             "direction": tuple(map(tuple, axes.tolist())),
             "gray": gray if self.gray is None else self.gray,
+            "_masked": masked,
         }
         for name, value in own.items():
             object.__setattr__(self, name, value)
