@@ -29,6 +29,7 @@ def cloud(points: Arrays, weights: Arrays | None = None, values: Arrays | None =
     """
     wanted = ("weight", "radius", "value") if valued else ("weight", "radius")
     table = _tables.columns("points", points, wanted)
+    given: dict[str, Any]
     if table is None:
         places = _space("points", _real("points", points))
         given = {"weights": weights, "values": values}
@@ -39,7 +40,9 @@ def cloud(points: Arrays, weights: Arrays | None = None, values: Arrays | None =
             if beside is not None and given[name] is not None:
                 raise ValueError(f"{name} are given twice: as {name}= and as a column of points; omit one")
             given[name] = given[name] if beside is None else beside
-    kept = ~np.ma.getmaskarray(places).any(axis=1) if np.ma.is_masked(places) else None
+    kept: NDArray[np.bool_] | None = None
+    if np.ma.is_masked(places):
+        kept = np.logical_not(np.ma.getmaskarray(places).any(axis=1))
     of_points = np.ma.getdata(places)
     columns = {name: _rows_of(name, own, kept) for name, own in given.items() if own is not None}
     return Cloud(of_points if kept is None else of_points[kept], columns.get("weights"), columns.get("values"))
@@ -68,8 +71,8 @@ def _rows_of(name: str, given: Arrays, kept: NDArray[np.bool_] | None) -> Floats
         if missing.any():
             row = missing.argmax()
             raise ValueError(f"{name} is masked in row {row}, and the point is not: mask the point, too, or give a number")
-    numbers_ = np.ma.getdata(array)
-    return _float64(numbers_ if kept is None else numbers_[kept])
+    column_ = np.ma.getdata(array)
+    return _float64(column_ if kept is None else column_[kept])
 
 
 def column(name: str, given: Arrays, what: str = "point") -> Floats:

@@ -41,7 +41,7 @@ def columns(name: str, given: Any, wanted: tuple[str, ...]) -> dict[str, Any] | 
     found: dict[str, Any] = {}
     skipped = []
     for label, meaning in zip(labels, meanings, strict=True):
-        if meaning in ("x", "y", "z", *wanted):
+        if meaning is not None and meaning in ("x", "y", "z", *wanted):
             found[meaning] = given[label]
         else:
             skipped.append(str(label))
