@@ -163,7 +163,9 @@ impl Interpolate {
         let sampled = progress.stage(Stage::Interpolate, || sample(&shape, &grid, original))?;
         let on_shape = sampled.resampled.covered();
         if on_shape == 0 && !self.fill {
-            tracing::warn!("no sample of the grid lies on the shape: give a larger --alpha, or --fill");
+            tracing::warn!(
+                "no sample of the grid lies on the shape: give a larger --alpha, or --fill"
+            );
         }
         let mask = mask.map(|open| anyhow::Ok((open, sampled.resampled.mask()?))).transpose()?;
         let (inside, filled, resampled) = if self.fill {

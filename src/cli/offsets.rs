@@ -23,7 +23,9 @@ impl FileOffset {
     pub(super) fn of(path: &Path, exporter: &dyn Exporter, shape: &AlphaShape) -> Option<Self> {
         let single = exporter.single_precision(shape)?;
         tracing::warn!("{}: {}", shown(path), single.remark()?);
-        single.has_offset().then(|| Self { file: path.display().to_string(), offset: single.offset })
+        single
+            .has_offset()
+            .then(|| Self { file: path.display().to_string(), offset: single.offset })
     }
 }
 

@@ -21,7 +21,8 @@ use super::report::Report;
 use super::shape_in_blocks::{self, SharedWork};
 use super::{blocks, outline, pipeline};
 use crate::export::{
-    Content, EmptyShape, ExportOptions, Exporter, FORMATS, Format, Needs, Target, TargetError, write_all,
+    Content, EmptyShape, ExportOptions, Exporter, FORMATS, Format, Needs, Target, TargetError,
+    write_all,
 };
 use crate::outofcore::{BlockwiseFormat, Team};
 use crate::pipeline::{Input, Values};

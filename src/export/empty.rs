@@ -5,7 +5,8 @@ use walpha_base::shown::number;
 use crate::ladder::Filtration;
 use crate::pipeline::Parameter;
 use crate::shape::{
-    Alpha, AlphaShape, Balls, Class, Complex, Outline, OutlineError, ShapeOptions, alpha_shape_monitored,
+    Alpha, AlphaShape, Balls, Class, Complex, Outline, OutlineError, ShapeOptions,
+    alpha_shape_monitored,
 };
 use crate::volume::annotation;
 
@@ -148,9 +149,11 @@ impl EmptyShape {
 fn suggested(shape: &AlphaShape, needs: Needs, monitor: &Monitor) -> Option<f64> {
     let options = *shape.options();
     let points = shape.points();
-    let spacing = || Some(Parameter::of_spacing(points, options.periodic, shape.coordinates().unit).alpha);
+    let spacing =
+        || Some(Parameter::of_spacing(points, options.periodic, shape.coordinates().unit).alpha);
     let connected = || {
-        let filtration = Filtration::monitored(options.periodic, points.clone(), &monitor.unreported());
+        let filtration =
+            Filtration::monitored(options.periodic, points.clone(), &monitor.unreported());
         Some(filtration.ok()?.one_region())
     };
     let rules: [&dyn Fn() -> Option<Alpha>; 2] = [&spacing, &connected];

@@ -3,8 +3,8 @@ use std::io::{self, Write};
 use serde::Serialize;
 use walpha_base::advice::Advice;
 
-use super::{Exporter, Needs};
 use super::planar::{self, Planar};
+use super::{Exporter, Needs};
 use crate::LengthUnit;
 use crate::shape::{Alpha, AlphaShape};
 

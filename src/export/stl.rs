@@ -71,7 +71,9 @@ fn head(coordinates: Coordinates, single: &SinglePrecision) -> io::Result<[u8; 8
     let mut head = [b' '; 80];
     let room = head.get_mut(..about.len());
     let room = room.ok_or_else(|| {
-        io::Error::other("the offset of its coordinates has more digits than the header of an STL has room for")
+        io::Error::other(
+            "the offset of its coordinates has more digits than the header of an STL has room for",
+        )
     })?;
     room.copy_from_slice(about.as_bytes());
     Ok(head)

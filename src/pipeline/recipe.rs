@@ -9,7 +9,8 @@ use super::{AlphaRule, Choice, Parameter, PipelineError};
 use crate::haar::{HaarOptions, Tolerance};
 use crate::interpolate::Refit;
 use crate::points::{
-    Columns, LEAST_GRAY, PointOptions, Points, PointsError, Selection, SelectionRule, Units, Weighting,
+    Columns, LEAST_GRAY, PointOptions, Points, PointsError, Selection, SelectionRule, Units,
+    Weighting,
 };
 use crate::shape::{Alpha, Balls, Engine, ShapeError, ShapeOptions, Torus};
 use crate::volume::{Coordinates, Frame, Gray, GrayRange, LengthUnit, ReadOptions, Space};

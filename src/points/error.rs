@@ -150,7 +150,8 @@ impl PointsError {
             Self::Number { need, .. } => format!("give {need}").into(),
             Self::Lengths(_) => return None,
             Self::Count { ratio: Some(ratio), .. } => {
-                format!("give a ratio of at most {ratio}, or omit it to take all that differ").into()
+                format!("give a ratio of at most {ratio}, or omit it to take all that differ")
+                    .into()
             }
             Self::Count { available, .. } => format!("give a count from 1 to {available}").into(),
             Self::Flat { tolerance, .. } => advice![

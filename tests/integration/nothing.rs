@@ -23,8 +23,9 @@ fn volume(folder: &Path, others: &[(usize, f32)]) {
 
 /// The corners of a cube of side 2, and its centre.
 fn cube(folder: &Path) {
-    let corners: String =
-        (0..8).map(|i| format!("{},{},{}\n", 2 * (i & 1), 2 * (i >> 1 & 1), 2 * (i >> 2))).collect();
+    let corners: String = (0..8)
+        .map(|i| format!("{},{},{}\n", 2 * (i & 1), 2 * (i >> 1 & 1), 2 * (i >> 2)))
+        .collect();
     fs::write(folder.join("cube.csv"), format!("x,y,z\n{corners}1,1,1\n")).unwrap();
 }
 
@@ -137,7 +138,8 @@ fn files_that_would_hold_nothing_are_errors() {
     for (points, extension) in cases.chain(outlines) {
         for alpha in ["-3", "0.001"] {
             let args = format!("shape {points} --alpha {alpha} -o e.{extension}");
-            let words = ["e.", "the shape has no ", "facet at α = ", "--alpha-radius", "--allow-empty"];
+            let words =
+                ["e.", "the shape has no ", "facet at α = ", "--alpha-radius", "--allow-empty"];
             fails(f, 1, &args, &words);
         }
         let args = format!("shape {points} --alpha 0.001 --allow-empty -o e.{extension}");
@@ -169,7 +171,8 @@ fn the_suggested_radius_is_enough() {
     cube(f);
     // Two turns of a helix: neighbours in space lie along the curve.
     let turn = |k: usize| 0.05 * k as f64;
-    let helix = (0..250).map(|k| format!("{},{},{}\n", 9.0 * turn(k).cos(), 9.0 * turn(k).sin(), turn(k)));
+    let helix =
+        (0..250).map(|k| format!("{},{},{}\n", 9.0 * turn(k).cos(), 9.0 * turn(k).sin(), turn(k)));
     fs::write(f.join("helix.csv"), format!("x,y,z\n{}", helix.collect::<String>())).unwrap();
     for points in ["cube.csv", "helix.csv", "sample:phantom@16"] {
         for balls in ["power", "radius"] {
@@ -201,7 +204,12 @@ fn flat_points_are_told_of_formats_that_hold_them() {
     fails(f, 1, "shape square.csv --alpha 9 --solid -o e.ply", &plane);
     let line = ["at any α, as its points lie on one line", "as VTU does"];
     fails(f, 1, "shape line.csv --alpha 9 -o e.off", &line);
-    fails(f, 1, "shape place.csv --alpha 9 -o e.obj", &["as its points are at one place", "as VTU does"]);
+    fails(
+        f,
+        1,
+        "shape place.csv --alpha 9 -o e.obj",
+        &["as its points are at one place", "as VTU does"],
+    );
     // What they do have is written.
     ok(f, &split("shape square.csv --alpha 9 -o e.ply e.off e.obj e.glb e.vtp e.png"));
     ok(f, &split("shape line.csv --alpha 9 -o e.obj e.glb e.vtp e.png e.vtu"));
@@ -215,13 +223,13 @@ fn ladders_and_blocks_have_empty_levels() {
     let f = folder.path();
     cube(f);
     ok(f, &split("ladder cube.csv --alphas -3,0.001,9 --mesh stl,vtu -o out"));
-    let report: Value = serde_json::from_slice(&fs::read(f.join("out/ladder.json")).unwrap()).unwrap();
+    let report: Value =
+        serde_json::from_slice(&fs::read(f.join("out/ladder.json")).unwrap()).unwrap();
     let counts: Vec<_> = (0..3).map(|k| &report["levels"][k]["vertices"]).collect();
     assert!(counts.iter().all(|counts| counts.is_object()), "{report}");
     assert_eq!(report["levels"][0]["measures"], report["levels"][1]["measures"]);
     assert!(f.join("out/level-1-alpha--3.stl").exists());
-    let (code, _, said) =
-        run(f, &split("shape sample:phantom@8 --alpha 0.001 -o e.pvtp e.stl"));
+    let (code, _, said) = run(f, &split("shape sample:phantom@8 --alpha 0.001 -o e.pvtp e.stl"));
     assert_eq!(code, 0, "{said}");
     names(&said, &["e.stl: it holds nothing of the shape"]);
     let page = "view cube.csv --alphas -3 -o e.html";
@@ -232,13 +240,23 @@ fn ladders_and_blocks_have_empty_levels() {
 #[test]
 fn shapes_do_not_save_nothing() {
     let folder = tempfile::tempdir().unwrap();
-    let points = WeightedPoints::unweighted(vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
+    let points = WeightedPoints::unweighted(vec![
+        [0.0; 3],
+        [1.0, 0.0, 0.0],
+        [0.0, 1.0, 0.0],
+        [0.0, 0.0, 1.0],
+    ]);
     let at = |alpha: f64| {
-        alpha_shape(points.clone(), &ShapeOptions::new(Alpha::from_squared(alpha).unwrap())).unwrap()
+        alpha_shape(points.clone(), &ShapeOptions::new(Alpha::from_squared(alpha).unwrap()))
+            .unwrap()
     };
     let path = folder.path().join("e.stl");
     match at(0.001).save(&path) {
-        Err(SaveError::Empty(EmptyShape { needs: Needs::RegularFacet, suggested: Some(radius), .. })) => {
+        Err(SaveError::Empty(EmptyShape {
+            needs: Needs::RegularFacet,
+            suggested: Some(radius),
+            ..
+        })) => {
             at(radius * radius).save(&path).unwrap();
         }
         other => panic!("{other:?}"),

@@ -56,9 +56,12 @@ fn an_offset_keeps_vertices_apart() {
     let stated = |file: &str| json!({ "file": file, "offset": offset });
     assert_eq!(report["offsets"], json!([stated("r.stl"), stated("r.glb")]));
     let warned = report["warnings"].to_string();
-    names(&warned, &["r.stl: its coordinates are single precision", "434000, 5412000, 0 is subtracted"]);
+    names(
+        &warned,
+        &["r.stl: its coordinates are single precision", "434000, 5412000, 0 is subtracted"],
+    );
     // PLY holds doubles.
-    let wanted = read_points(&f.join("r.ply"), None).unwrap().positions;
+    let wanted = read_points(f.join("r.ply"), None).unwrap().positions;
     let near = |found: [f64; 3]| {
         let is_near = |place: &&[f64; 3]| (0..3).all(|k| (place[k] - found[k]).abs() <= 5e-5);
         assert_eq!(wanted.iter().filter(is_near).count(), 1, "{found:?}");
@@ -76,7 +79,8 @@ fn an_offset_keeps_vertices_apart() {
     // The node is rotated so that z points up, which is y there.
     assert_eq!(document["nodes"][0]["translation"], json!([434_000.0, 0.0, -5_412_000.0]));
     let count = document["accessors"][0]["count"].as_u64().unwrap() as usize;
-    let floats: Vec<f32> = binary[..12 * count].as_chunks::<4>().0.iter().map(|&b| f32::from_le_bytes(b)).collect();
+    let floats: Vec<f32> =
+        binary[..12 * count].as_chunks::<4>().0.iter().map(|&b| f32::from_le_bytes(b)).collect();
     let places: Vec<[f32; 3]> = floats.as_chunks::<3>().0.to_vec();
     assert_eq!(different(places.iter().map(|c| c.map(f32::to_bits))), wanted.len());
     places.iter().for_each(|c| near([0, 1, 2].map(|k| offset[k] + f64::from(c[k]))));
@@ -106,7 +110,8 @@ fn each_command_states_it() {
     let f = folder.path();
     roof(f, UTM);
     ok(f, &["ladder", "roof.csv", "--alphas", "0.04,0.09", "--mesh", "stl,glb", "-o", "out"]);
-    let report: Value = serde_json::from_slice(&fs::read(f.join("out/ladder.json")).unwrap()).unwrap();
+    let report: Value =
+        serde_json::from_slice(&fs::read(f.join("out/ladder.json")).unwrap()).unwrap();
     assert_eq!(report["offsets"].as_array().unwrap().len(), 4, "{}", report["offsets"]);
     assert_eq!(report["offsets"][0]["offset"], json!([434_000.0, 5_412_000.0, 0.0]));
 
@@ -115,11 +120,29 @@ fn each_command_states_it() {
                   space directions: (0.05,0,0) (0,0.05,0) (0,0,0.05)\nspace origin: (434123.4,5412345.6,0)\n\n";
     let samples = (0..512).flat_map(|i| (((i * 7919) % 255) as f32).to_le_bytes());
     fs::write(f.join("far.nrrd"), header.bytes().chain(samples).collect::<Vec<u8>>()).unwrap();
-    let args = ["ladder", "far.nrrd", "--counts", "200", "--alpha-ref", "0.01", "--mesh", "stl", "-o", "detail"];
+    let args = [
+        "ladder",
+        "far.nrrd",
+        "--counts",
+        "200",
+        "--alpha-ref",
+        "0.01",
+        "--mesh",
+        "stl",
+        "-o",
+        "detail",
+    ];
     ok(f, &args);
-    let report: Value = serde_json::from_slice(&fs::read(f.join("detail/detail.json")).unwrap()).unwrap();
+    let report: Value =
+        serde_json::from_slice(&fs::read(f.join("detail/detail.json")).unwrap()).unwrap();
     assert_eq!(report["levels"][0]["offsets"][0]["file"], "detail-200.stl", "{report}");
-    ok(f, &["blocks", "plan", "far.nrrd", "--count", "200", "--alpha", "0.01", "--blocks", "2", "-o", "work"]);
+    ok(
+        f,
+        &[
+            "blocks", "plan", "far.nrrd", "--count", "200", "--alpha", "0.01", "--blocks", "2",
+            "-o", "work",
+        ],
+    );
     ok(f, &["blocks", "run", "work"]);
     let report = json(f, &["blocks", "merge", "work", "-o", "m.stl"]);
     assert_eq!(report["offsets"][0]["file"], "m.stl");

@@ -576,7 +576,9 @@ impl Made {
             let monitor = Monitor::new(ToPage);
             let shape = self.recipe.finish(weighed, &monitor)?.shape;
             EmptyShape::check(&shape, exporter.needs(), &monitor)?;
-            if let Some(remark) = exporter.single_precision(&shape).and_then(|single| single.remark()) {
+            if let Some(remark) =
+                exporter.single_precision(&shape).and_then(|single| single.remark())
+            {
                 remarks.push(format!("{}: {remark}", name.display()));
             }
             exporter.write(&shape, &mut bytes).map_err(failed)?;

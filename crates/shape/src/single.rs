@@ -51,12 +51,17 @@ impl SinglePrecision {
         let around = |tolerated: f64| {
             let errors = exact.errors(places);
             let of_axis = |axis: usize| {
-                if errors[axis] <= tolerated { 0.0 } else { offset(low[axis], high[axis], tolerated) }
+                if errors[axis] <= tolerated {
+                    0.0
+                } else {
+                    offset(low[axis], high[axis], tolerated)
+                }
             };
             let shifted = Self { offset: [0, 1, 2].map(of_axis), ..exact };
             // An axis on which it gains nothing stays as it is.
             let gains = shifted.errors(places);
-            let kept = |axis: usize| if gains[axis] < errors[axis] { shifted.offset[axis] } else { 0.0 };
+            let kept =
+                |axis: usize| if gains[axis] < errors[axis] { shifted.offset[axis] } else { 0.0 };
             Self { offset: [0, 1, 2].map(kept), ..exact }.measured(places)
         };
         // Where vertices that no edge joins are nearer to each other than any edge is long, as near as can be.
@@ -118,7 +123,8 @@ impl SinglePrecision {
     fn merges(&self, places: &[[f64; 3]]) -> bool {
         // Adding 0 turns −0 into 0.
         let rounded = distinct(places, |place| self.round(place).map(|x| (x + 0.0).to_bits()));
-        rounded < places.len() && rounded < distinct(places, |place| place.map(|x| (x + 0.0).to_bits()))
+        rounded < places.len()
+            && rounded < distinct(places, |place| place.map(|x| (x + 0.0).to_bits()))
     }
 }
 
@@ -153,7 +159,8 @@ fn offset(low: f64, high: f64, tolerated: f64) -> f64 {
     let mut power = first as i32;
     loop {
         let step = 10f64.powi(power.abs());
-        let multiple = if power < 0 { (middle * step).round() / step } else { (middle / step).round() * step };
+        let multiple =
+            if power < 0 { (middle * step).round() / step } else { (middle / step).round() * step };
         let suffices = HALF_STEP * f64::max(high - multiple, multiple - low) <= tolerated;
         // Beyond the digits of a double no number is rounder.
         let ends = 10f64.powi(power) <= half || f64::from(power) < first - 17.0;
@@ -170,7 +177,8 @@ mod tests {
 
     /// A square grid of points 5 cm apart, as far from the origin as UTM has them.
     fn roof(at: [f64; 3]) -> (Vec<[f64; 3]>, Vec<[u32; 2]>) {
-        let place = |i: u32| [at[0] + 0.05 * f64::from(i % 20), at[1] + 0.05 * f64::from(i / 20), at[2]];
+        let place =
+            |i: u32| [at[0] + 0.05 * f64::from(i % 20), at[1] + 0.05 * f64::from(i / 20), at[2]];
         let rows = (0..400).filter(|i| i % 20 < 19).map(|i| [i, i + 1]);
         ((0..400).map(place).collect(), rows.collect())
     }
@@ -202,7 +210,8 @@ mod tests {
         let near = single(&places, &edges);
         assert!(!near.has_offset() && near.error > 0.0 && near.remark().is_none());
         // Whole numbers below 2²⁴, wherever they are.
-        let whole: Vec<[f64; 3]> = (0..9).map(|i| [16_000_000.0 + f64::from(i), 0.0, -1.0]).collect();
+        let whole: Vec<[f64; 3]> =
+            (0..9).map(|i| [16_000_000.0 + f64::from(i), 0.0, -1.0]).collect();
         assert_eq!(single(&whole, &[[0, 1]]), SinglePrecision::default());
         assert_eq!(single(&[], &[]), SinglePrecision::default());
     }
@@ -211,18 +220,27 @@ mod tests {
     #[test]
     fn places_that_differ_stay_different() {
         let places = [[1000.0, 0.0, 0.0], [1000.0 + 1e-5, 0.0, 0.0], [2000.0, 0.0, 0.0]];
-        let far = [[1e6, 0.0, 0.0], [1e6 + 1e-3, 0.0, 0.0], [1e6 + 1.0, 0.0, 0.0], [1e6 + 900.0, 0.0, 0.0]];
+        let far = [
+            [1e6, 0.0, 0.0],
+            [1e6 + 1e-3, 0.0, 0.0],
+            [1e6 + 1.0, 0.0, 0.0],
+            [1e6 + 900.0, 0.0, 0.0],
+        ];
         let found = single(&far, &[[0, 3]]);
         assert!(found.has_offset() && !found.is_lossy, "{found:?}");
         // There is no offset for what is far apart and fine.
         let lossy = single(&places, &[[0, 2]]);
-        assert!(lossy.is_lossy && lossy.remark().unwrap().contains("changes the mesh"), "{lossy:?}");
+        assert!(
+            lossy.is_lossy && lossy.remark().unwrap().contains("changes the mesh"),
+            "{lossy:?}"
+        );
     }
 
     #[test]
     fn numbers_of_any_size_are_measured() {
         for scale in [1e-320, 1e-300, 1e-40, 1e30, 1e300] {
-            let places: Vec<[f64; 3]> = (0..4).map(|i| [scale * f64::from(i), scale, -scale]).collect();
+            let places: Vec<[f64; 3]> =
+                (0..4).map(|i| [scale * f64::from(i), scale, -scale]).collect();
             let found = single(&places, &[[0, 1], [1, 2]]);
             assert!(found.offset.iter().all(|x| x.is_finite()), "{scale}: {found:?}");
         }

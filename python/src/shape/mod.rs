@@ -330,7 +330,9 @@ impl Shape {
         run(py, &Task::default(), move |_| {
             let exporter = exporter();
             target.write(|out| exporter.write(&shape, out))?;
-            Ok::<_, TargetError>(exporter.single_precision(&shape).and_then(|single| single.remark()))
+            Ok::<_, TargetError>(
+                exporter.single_precision(&shape).and_then(|single| single.remark()),
+            )
         })
     }
 }

@@ -63,7 +63,8 @@ impl Ladder {
         let Some(selection) = recipe.selection(&source.range) else {
             fail_usage!("--select adaptive has no effect: levels of detail are selected by differences" => "omit it");
         };
-        let mut front_end = FrontEnd { source: &source, recipe: &recipe, smoothed: None, monitor: &monitor };
+        let mut front_end =
+            FrontEnd { source: &source, recipe: &recipe, smoothed: None, monitor: &monitor };
         let full =
             progress.stage(Stage::Points, || self.full(&mut front_end, &recipe, selection))?;
         let mut rows = Vec::new();
