@@ -245,7 +245,7 @@ impl Most {
         if asked == available && !or_fewer {
             return Ok(0);
         }
-        if differing == 0 && asked > 0 {
+        if differing == 0 {
             return Err(PointsError::Flat { available, tolerance: Setting::Rms });
         }
         if or_fewer && asked > differing {
