@@ -469,6 +469,39 @@ def look_at_all(browser, page, checks, files, downloads, out, large):
     words = subprocess.run([page.walpha, "info", "bad.nii"], cwd=page.folder, capture_output=True, text=True).stderr
     why = next(line.split("why: ", 1)[1] for line in words.splitlines() if "why: " in line)
     checks.say("what cannot be read is refused in the command's words", why[:40] in page.text("failure"), page.text("failure"))
+    shown = "[...document.querySelectorAll('#options label')].filter((e) => e.offsetParent).map((e) => e.querySelector('input, select').id)"
+    left = browser.evaluate(shown) + [page.text("facts")]
+    checks.say("and has no options, facts or slices of a file before", left == [""] and browser.evaluate("document.getElementById('slices').hidden"), str(left))
+    # Where an option helps it is offered.
+    (page.folder / "unnamed.csv").write_text("a,b,c\n0,0,0\n1,0,0\n0,1,0\n0,0,1\n1,1,1\n")
+    page.choose("unnamed.csv")
+    browser.wait("document.body.dataset.state === 'failed'", 30)
+    left = browser.evaluate(shown)
+    checks.say("but the option that makes it readable", left in ([], ["columns"]), f"{left}: {page.text('failure')}")
+
+    # Far from the origin what is saved in single precision is shifted, which the page says; what is read out is not.
+    roof = [(434123.4 + 0.05 * x, 5412345.6 + 0.05 * y, 412 + 0.2 * abs(0.05 * x - 0.5) - low) for low in (0, 0.3) for y in range(20) for x in range(20)]
+    (page.folder / "roof.xyz").write_text("".join(f"{x:.2f} {y:.2f} {z:.3f}\n" for x, y, z in roof))
+    page.choose("roof.xyz")
+    if agrees(page, checks, "roof.xyz"):
+        for extension in ["stl", "glb"]:
+            saved(page, checks, downloads, extension)
+        told = page.text("remarks")
+        checks.say("an offset is told", "434000, 5412000, 0 is subtracted" in told, told)
+        spot = browser.evaluate("(() => { const e = document.getElementById('scene'); e.scrollIntoView(); const b = e.getBoundingClientRect(); return [b.x + b.width / 2, b.y + b.height / 2] })()")
+        click(browser, *spot)
+        browser.wait("document.getElementById('picked').textContent.startsWith('point ')", 5)
+        words = page.text("picked")
+        numbers = [float(word) for word in words.partition("(")[2].partition(")")[0].split(",")]
+        near = any(all(abs(a - b) < 1e-3 for a, b in zip(numbers, place)) for place in roof)
+        checks.say("what is read out are the coordinates of the file", near, words)
+    # A file that would hold nothing of the shape is refused, with an alpha at which it would not.
+    page.forget()
+    browser.evaluate("(() => { const e = document.getElementById('alpha-value'); e.value = 1e-9; document.body.dataset.state = 'ready'; e.dispatchEvent(new Event('change')); })()")
+    page.settled()
+    browser.evaluate("document.getElementById('save-stl').click()")
+    browser.wait("document.body.dataset.state === 'failed'", 30)
+    checks.say("an empty file is an error", "has no regular facet" in page.text("failure") and "move α up" in page.text("failure"), page.text("failure"))
 
     huge_file(page.folder / "huge.nii.gz")
     page.choose("huge.nii.gz")

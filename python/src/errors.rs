@@ -10,7 +10,7 @@ use pyo3::exceptions::{
 use walpha::advice::{Advice, Setting};
 use walpha::check::schema::SchemaError;
 use walpha::check::{AlphaError, CertifyError, CompareError};
-use walpha::export::{TargetError, UnknownFormat};
+use walpha::export::{EmptyShape, TargetError, UnknownFormat};
 use walpha::haar::HaarError;
 use walpha::interpolate::InterpolateError;
 use walpha::pipeline::PipelineError;
@@ -69,6 +69,13 @@ wrong_value! {
     UnknownColumns, |error| error.advice().into();
     UnknownFormat, |error| error.advice().into();
     UnknownWeighting, |error| error.advice().into();
+}
+
+impl Told for EmptyShape {
+    fn told(self) -> PyErr {
+        let advice = self.advice();
+        wrong(format!("{self}; {advice}, or allow_empty=True to write the file all the same"))
+    }
 }
 
 impl Told for NoMemory {

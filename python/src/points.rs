@@ -60,6 +60,14 @@ pub fn read_points<'py>(
     ))
 }
 
+/// What each column of a table is by its name: x, y, z, weight, value, radius, or nothing that is read.
+#[pyfunction]
+pub fn columns(names: Vec<String>) -> PyResult<Vec<Option<String>>> {
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    let columns = String::from(Columns::named(&names).map_err(Told::told)?);
+    Ok(columns.split(',').map(|name| (name != "-").then(|| name.to_owned())).collect())
+}
+
 /// Writes points under an extension of points.
 #[pyfunction]
 pub fn write_points(

@@ -92,16 +92,68 @@ def test_a_tensor_that_is_elsewhere():
         walpha.alpha_shape(Elsewhere())
 
 
+def structured(columns):
+    kinds = [(name, np.asarray(column).dtype) for name, column in columns.items()]
+    rows = np.zeros(len(next(iter(columns.values()))), kinds)
+    for name, column in columns.items():
+        rows[name] = column
+    return rows
+
+
+@pytest.fixture(params=["pandas", "polars", "structured", "recarray", "dict"])
+def table(request):
+    """Makes a table of columns."""
+    if request.param in ("pandas", "polars"):
+        return pytest.importorskip(request.param).DataFrame
+    return {"structured": structured, "recarray": lambda columns: structured(columns).view(np.recarray), "dict": dict}[request.param]
+
+
+def test_columns_of_tables_have_their_names(cloud, weights, table):
+    x, y, z = cloud.T
+    values = np.arange(600.0)
+    wanted = walpha.alpha_shape(cloud, 0.003, weights=weights, values=values)
+    assert same(walpha.alpha_shape(table({"x": x, "y": y, "z": z}), 0.003, weights=weights), wanted)
+    # In any order and letter case; what else there is is skipped, and said to be.
+    with pytest.warns(UserWarning, match="points: skipped, .*: 'id', 'intensity'"):
+        shape = walpha.alpha_shape(table({"id": values, "Z": z, "value": values, "y": y, "intensity": x, "weight": weights, "X": x}), 0.003)
+    assert same(shape, wanted) and np.array_equal(shape.values, values)
+    radii = walpha.alpha_shape(table({"radius": np.full(600, 0.25), "x": x, "y": y, "z": z}), 0.003)
+    assert (radii.weights == 0.0625).all()
+    plane = walpha.alpha_shape(table({"y": y, "x": x}), 0.003)
+    assert np.array_equal(plane.points, np.c_[x, y, 0 * x])
+    with pytest.warns(UserWarning, match="'value'"):
+        made = walpha.triangulation(table({"x": x, "y": y, "z": z, "weight": weights, "value": values}))
+    assert np.array_equal(made.simplices, walpha.triangulation(cloud, weights).simplices)
+    inside = table({"z": [0.5], "x": [0.25], "y": [0.75]})
+    assert np.array_equal(shape.at(inside), shape.at([[0.25, 0.75, 0.5]]), equal_nan=True)
+
+
+def test_tables_without_these_names_are_refused(cloud, weights, table):
+    x, y, z = cloud.T
+    for columns in ({"a": x, "b": y, "c": z}, {"id": x, "x": y, "y": z}, {"x": x, "y": y, "X": z}):
+        with pytest.raises(ValueError, match="points: columns .*to_numpy"):
+            walpha.alpha_shape(table(columns), 0.003)
+    with pytest.raises(ValueError, match="weights are given twice"):
+        walpha.alpha_shape(table({"x": x, "y": y, "z": z, "weight": weights}), 0.003, weights=weights)
+
+
+def test_frames_without_names_are_refused(cloud):
+    pandas = pytest.importorskip("pandas")
+    with pytest.raises(ValueError, match="points: columns .*to_numpy"):
+        walpha.alpha_shape(pandas.DataFrame(cloud), 0.003)
+
+
 @pytest.mark.parametrize("package", ["pandas", "polars"])
 def test_frames(cloud, weights, package):
     frames = pytest.importorskip(package)
     wanted = walpha.alpha_shape(cloud, 0.003, weights=weights)
     frame = frames.DataFrame({"x": cloud[:, 0], "y": cloud[:, 1], "z": cloud[:, 2], "w": weights})
     assert same(walpha.alpha_shape(frame[["x", "y", "z"]], 0.003, weights=frame["w"]), wanted)
+    assert same(walpha.alpha_shape(frame[["x", "y", "z"]], 0.003, weights=np.c_[weights]), wanted)
     whole = frames.DataFrame({"x": [0, 1, 0, 0], "y": [0.0, 0.0, 1.0, 0.0], "z": np.array([0, 0, 0, 1], np.int8)})
     assert walpha.alpha_shape(whole, 1).volume == pytest.approx(1 / 6)
-    named = frames.DataFrame({"x": [0.0], "y": [0.0], "name": ["a"]})
-    with pytest.raises(ValueError, match="points must be real numbers.*'name'"):
+    named = frames.DataFrame({"x": [0.0], "y": [0.0], "z": ["a"]})
+    with pytest.raises(ValueError, match="points\\['z'\\] must be real numbers"):
         walpha.alpha_shape(named)
 
 
@@ -112,6 +164,77 @@ def test_pandas_with_columns_that_may_miss_values():
     frame.loc[1, "x"] = pandas.NA
     with pytest.raises(ValueError, match="points? .*"):
         walpha.alpha_shape(frame, 1)
+
+
+def test_masked_rows_are_no_points(cloud, weights):
+    values = np.arange(600.0)
+    wanted = walpha.alpha_shape(cloud, 0.003, weights=weights, values=values)
+    assert same(walpha.alpha_shape(np.ma.masked_array(cloud), 0.003, weights=np.ma.masked_array(weights)), wanted)
+    # A row is out where any of its coordinates is, whatever lies under the mask, with its weight and value.
+    rows = np.insert(cloud, [0, 300], 9e9, axis=0)
+    beside = [np.insert(column, [0, 300], np.nan) for column in (weights, values)]
+    for mask in (rows > 1, np.c_[rows[:, 0] > 1, np.zeros((602, 2), bool)]):
+        points = np.ma.masked_array(rows, mask)
+        for columns in (beside, [np.ma.masked_invalid(column) for column in beside]):
+            shape = walpha.alpha_shape(points, 0.003, weights=columns[0], values=columns[1])
+            assert same(shape, wanted) and np.array_equal(shape.values, values) and np.array_equal(shape.points, cloud)
+    assert len(walpha.filtration(points).points) == len(walpha.triangulation(points).points) == 600
+    flat = walpha.alpha_shape(points[:, :2], 0.003)
+    assert np.array_equal(flat.points[:, :2], cloud[:, :2])
+    with pytest.raises(ValueError, match="600 weights for 602 points, those that are masked included"):
+        walpha.alpha_shape(points, 0.003, weights=weights)
+
+
+def test_what_is_masked_elsewhere_is_named(cloud, weights, tmp_path):
+    missing = np.ma.masked_array(weights, np.arange(600) == 7)
+    for name in ("weights", "values"):
+        with pytest.raises(ValueError, match=f"{name} is masked in row 7, and the point is not"):
+            walpha.alpha_shape(cloud, 0.003, **{name: missing})
+    points = np.ma.masked_array(cloud)
+    points[3, 1] = np.ma.masked
+    shape = walpha.alpha_shape(cloud, 0.003, values=weights)
+    for use in (shape.at, walpha.triangulation(cloud).find_simplex, lambda points: walpha.Complex(points, alpha=1)):
+        with pytest.raises(ValueError, match="is masked in row 3"):
+            use(points)
+    walpha.write_points(tmp_path / "kept.csv", points)
+    assert len(walpha.read_points(tmp_path / "kept.csv").points) == 599
+
+
+def test_masked_samples_become_no_points():
+    volume = walpha.read("sample:phantom@16").samples
+    masked = np.ma.masked_array(volume, np.zeros(volume.shape, bool))
+    assert same(walpha.pipeline(masked), walpha.pipeline(volume))
+    masked[4:9] = np.ma.masked
+    missing = volume.copy()
+    missing[4:9] = np.nan
+    wanted = walpha.pipeline(missing, nan=np.nan)
+    assert not np.isin(wanted.points[:, 2], range(4, 9)).any()
+    assert same(walpha.pipeline(masked), wanted) and same(walpha.pipeline(walpha.Volume(masked)), walpha.pipeline(walpha.Volume(missing), nan=np.nan))
+    with pytest.raises(ValueError, match="nan"):
+        walpha.pipeline(missing)
+
+
+class Quantity:
+    """As pint has them."""
+
+    def __init__(self, magnitude, units):
+        self.magnitude, self.units = magnitude, units
+
+    def __array__(self, dtype=None, copy=None):
+        return np.array(self.magnitude, dtype)
+
+
+def test_units_are_passed_over_with_a_word(cloud):
+    with pytest.warns(UserWarning, match="points is in millimetre, which is passed over"):
+        shape = walpha.alpha_shape(Quantity(cloud, "millimetre"), 0.003)
+    assert same(shape, walpha.alpha_shape(cloud, 0.003))
+
+
+def test_a_fourth_column_is_no_guess(cloud, weights):
+    with pytest.raises(ValueError, match="shape \\(600, 4\\).*weights= or values="):
+        walpha.alpha_shape(np.c_[cloud, weights], 0.003)
+    with pytest.raises(ValueError, match="not object: give numbers of one type"):
+        walpha.alpha_shape(cloud.astype(object), 0.003)
 
 
 def test_float32_is_widened_exactly(cloud):

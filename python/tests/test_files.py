@@ -93,3 +93,32 @@ def test_points_that_cannot_be_written_or_read(tmp_path):
     (tmp_path / "a.wvm").write_bytes(data)
     with pytest.raises(ValueError, match="damaged"):
         walpha.read_points(tmp_path / "a.wvm")
+
+
+def test_a_file_of_nothing_is_an_error(tmp_path):
+    corners = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
+    shape = walpha.alpha_shape(corners, 0.001)
+    assert shape.boundary().triangles.shape == (0, 3) and shape.cells.shape == (0, 4)
+    for name in ("e.stl", "e.ply", "e.glb"):
+        with pytest.raises(ValueError, match="the shape has no .*facet at α = 0.001.*`alpha_radius`.*allow_empty=True"):
+            shape.save(tmp_path / name)
+        assert not (tmp_path / name).exists()
+        shape.save(tmp_path / name, allow_empty=True)
+    shape.save(tmp_path / "e.json")
+    with pytest.raises(ValueError, match="no simplex"):
+        walpha.alpha_shape(corners, -1).save(tmp_path / "e.npz")
+
+
+def test_single_precision_far_away_has_an_offset(tmp_path):
+    x, y = (axis.ravel() for axis in np.meshgrid(*2 * [np.arange(0, 1, 0.05)]))
+    roof = np.c_[x + 434123.4, y + 5412345.6, 412 + 0.2 * np.abs(x - 0.5)]
+    shape = walpha.alpha_shape(np.r_[roof, roof - [0, 0, 0.3]], alpha_radius=0.2)
+    with pytest.warns(UserWarning, match="roof.stl: .*434000, 5412000, 0 is subtracted"):
+        shape.save(tmp_path / "roof.stl")
+    written = (tmp_path / "roof.stl").read_bytes()
+    assert written.startswith(b"walpha OFFSET=434000,5412000,0 ")
+    rows = np.frombuffer(written[84:], [("numbers", "<f4", 12), ("end", "<u2")])["numbers"]
+    found = np.unique(rows[:, 3:].reshape(-1, 3).astype(float) + [434000, 5412000, 0], axis=0)
+    wanted = shape.boundary(solid=False).points
+    assert len(found) == len(wanted)
+    assert np.abs(found - wanted[np.lexsort(wanted.T[::-1])]).max() < 5e-5

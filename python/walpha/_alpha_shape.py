@@ -28,9 +28,11 @@ def alpha_shape(
 
     Parameters
     ----------
-    points : array_like, (n, 3) or (n, 2)
-        x, y, z, or the points of a plane: whatever numpy takes or has DLPack, tensors and frames among
-        them, contiguous or not. Points in one plane or on one line get the shape that they have there:
+    points : array_like, (n, 3) or (n, 2), or a table
+        x, y, z, or the points of a plane: whatever numpy takes or has DLPack, tensors among
+        them, contiguous or not. Of frames and structured arrays the columns x, y, z, weight or radius, and
+        value are taken by these names, as from CSV; others are skipped, with a warning. Rows that are masked
+        are no points: they are left out, and indices count those that stay. Points in one plane or on one line get the shape that they have there:
         triangles or edges, no cells. Taken as float64; float32 is widened without error, so that the shape
         is exactly that of the places that float32 can hold.
     alpha : float, "auto" or "auto:connected"
@@ -94,11 +96,10 @@ def alpha_shape(
     >>> walpha.alpha_shape(cube, 0.5).betti
     Betti(b0=1, b1=0, b2=1)
     """
+    cloud = _arrays.cloud(points, weights, values)
     with task(progress, threads) as how:
         shape = _walpha.alpha_shape(
-            _arrays.points(points),
-            _arrays.optional("weights", weights),
-            _arrays.optional("values", values),
+            *cloud,
             _alpha.rule(alpha, alpha_radius),
             (engine, balls, exterior, hidden),
             _arrays.sides(periodic),

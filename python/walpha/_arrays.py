@@ -2,22 +2,92 @@
 
 from __future__ import annotations
 
-from typing import Any, TypeVar
+import warnings
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from . import _tables
 from ._typing import Arrays, Floats, Indices, Samples
 
 _Number = TypeVar("_Number", bound=np.generic)
 
 
+class Cloud(NamedTuple):
+    """Points as the library takes them."""
+
+    points: Floats
+    weights: Floats | None
+    values: Floats | None
+
+
+def cloud(points: Arrays, weights: Arrays | None = None, values: Arrays | None = None, *, valued: bool = True) -> Cloud:
+    """Points with their weights and values, given beside them or as columns of a table.
+
+    Masked rows are no points: they are left out, of weights and values too.
+    """
+    wanted = ("weight", "radius", "value") if valued else ("weight", "radius")
+    table = _tables.columns("points", points, wanted)
+    given: dict[str, Any]
+    if table is None:
+        places = _space("points", _real("points", points))
+        given = {"weights": weights, "values": values}
+    else:
+        places = _space("points", _beside("points", table))
+        given = {"weights": _own_weights(table), "values": table.get("value")}
+        for name, beside in (("weights", weights), ("values", values)):
+            if beside is not None and given[name] is not None:
+                raise ValueError(f"{name} are given twice: as {name}= and as a column of points; omit one")
+            given[name] = given[name] if beside is None else beside
+    kept: NDArray[np.bool_] | None = None
+    if np.ma.is_masked(places):
+        kept = np.logical_not(np.ma.getmaskarray(places).any(axis=1))
+    of_points = np.ma.getdata(places)
+    columns = {name: _rows_of(name, own, kept) for name, own in given.items() if own is not None}
+    return Cloud(of_points if kept is None else of_points[kept], columns.get("weights"), columns.get("values"))
+
+
+def _own_weights(table: dict[str, Any]) -> Any:
+    """The weights of a table: a column weight, or else the squares of a column radius."""
+    if "weight" in table or "radius" not in table:
+        return table.get("weight")
+    name = "points['radius']"
+    return doubles(name, _real(name, table["radius"])) ** 2
+
+
+def _beside(name: str, table: dict[str, Any]) -> NDArray[Any]:
+    """The places of a table, n×3 or n×2."""
+    named = {axis: f"{name}[{axis!r}]" for axis in ("x", "y", "z") if axis in table}
+    axes = [doubles(of, _real(of, table[axis])) for axis, of in named.items()]
+    return np.ma.stack(axes, axis=1) if any(map(np.ma.isMaskedArray, axes)) else np.stack(axes, axis=1)
+
+
+def _rows_of(name: str, given: Arrays, kept: NDArray[np.bool_] | None) -> Floats:
+    """A column of the rows that are kept, none of which may be masked."""
+    array = _one_each(name, _real(name, given))
+    if kept is not None and len(array) != len(kept):
+        raise ValueError(f"{len(array)} {name} for {len(kept)} points, those that are masked included")
+    if np.ma.is_masked(array):
+        missing = np.ma.getmaskarray(array) & (True if kept is None else kept)
+        if missing.any():
+            row = missing.argmax()
+            raise ValueError(f"{name} is masked in row {row}, and the point is not: mask the point, too, or give a number")
+    column_ = np.ma.getdata(array)
+    return doubles(name, column_ if kept is None else column_[kept])
+
+
 def column(name: str, given: Arrays, what: str = "point") -> Floats:
     """One number for each point, float64; no copy where they are that already."""
-    array = numbers(name, given)
+    return doubles(name, _one_each(name, numbers(name, given), what))
+
+
+def _one_each(name: str, array: NDArray[Any], what: str = "point") -> NDArray[Any]:
+    if array.ndim == 2 and array.shape[1] == 1:
+        array = array[:, 0]
     if array.ndim != 1:
         raise ValueError(f"{name} has shape {array.shape}, expected (n,): give one number for each {what}")
-    return doubles(name, array)
+    return array
 
 
 def optional(name: str, given: Arrays | None) -> Floats | None:
@@ -27,15 +97,23 @@ def optional(name: str, given: Arrays | None) -> Floats | None:
 
 def points(given: Arrays, name: str = "points") -> Floats:
     """Places, n×3; those of a plane, n×2, are at z = 0. An empty list is not a place."""
-    array = numbers(name, given)
+    table = _tables.columns(name, given, ())
+    array = _real(name, given) if table is None else _beside(name, table)
+    return _space(name, _unmasked(name, array))
+
+
+def _space(name: str, array: NDArray[Any]) -> NDArray[Any]:
+    """Places n×3, float64, masked where they were."""
     if array.size == 0:
         array = array.reshape(0, 3)
     if array.ndim == 2 and array.shape[1] == 2:
-        in_space = np.zeros((len(array), 3))
+        in_space = (np.ma.zeros if np.ma.isMaskedArray(array) else np.zeros)((len(array), 3))
         in_space[:, :2] = doubles(name, array)
         return in_space
     if array.ndim != 2 or array.shape[1] != 3:
-        raise ValueError(f"{name} has shape {array.shape}, expected (n, 3) or (n, 2): x, y, z of each")
+        fourth = array.ndim == 2 and array.shape[1] == 4
+        also = "; give a fourth column as weights= or values=" if fourth else ""
+        raise ValueError(f"{name} has shape {array.shape}, expected (n, 3) or (n, 2): x, y, z of each{also}")
     return doubles(name, array)
 
 
@@ -61,6 +139,15 @@ def finite(name: str, array: Floats) -> Floats:
     return array
 
 
+def finite_cloud(points: Arrays, weights: Arrays | None = None, values: Arrays | None = None) -> Cloud:
+    """:func:`cloud`, if all of it are numbers and finite."""
+    given = cloud(points, weights, values)
+    for name, column_ in zip(given._fields, given):
+        if column_ is not None:
+            finite(name, column_)
+    return given
+
+
 def place(name: str, given: Arrays) -> list[float]:
     """Three finite numbers x, y, z."""
     array = numbers(name, given)
@@ -81,20 +168,25 @@ def sides(given: Arrays | None) -> list[float] | None:
     return [float(side) for side in doubles("periodic", array)]
 
 
-def samples(given: Arrays) -> tuple[Samples, bool]:
-    """A volume `[z, y, x]` as float32, and whether it holds gray levels (unsigned bytes)."""
-    array = numbers("volume", given)
+def samples(given: Arrays) -> tuple[Samples, bool, bool]:
+    """A volume `[z, y, x]` as float32, whether it holds gray levels (unsigned bytes), and whether samples are masked, which
+    are NaN then."""
+    array = _real("volume", given)
     if array.ndim != 3:
         raise ValueError(f"volume has shape {array.shape}: give an array of three axes [z, y, x]")
+    masked = np.ma.getmaskarray(array) if np.ma.is_masked(array) else None
     with np.errstate(over="ignore"):
-        return array.astype(np.float32, copy=False), array.dtype == np.uint8
+        values = np.ma.getdata(array).astype(np.float32, copy=masked is not None)
+    if masked is not None:
+        values[masked] = np.nan
+    return values, array.dtype == np.uint8, masked is not None
 
 
 def indices(name: str, given: Arrays | None, columns: int) -> NDArray[np.uint32] | None:
     """Rows of input indices as uint32, n×columns."""
     if given is None:
         return None
-    array = _array(name, given)
+    array = _unmasked(name, _array(name, given))
     if array.size == 0:
         return np.zeros((0, columns), np.uint32)
     if columns == 1 and array.ndim == 1:
@@ -127,44 +219,52 @@ def kept(rows: NDArray[Any]) -> Indices:
 
 
 def numbers(name: str, given: Arrays) -> NDArray[Any]:
-    """An array of real numbers."""
+    """An array of real numbers, none of them masked."""
+    return _unmasked(name, _real(name, given))
+
+
+def _unmasked(name: str, array: NDArray[Any]) -> NDArray[Any]:
+    """An array of whose rows none is masked."""
+    missing = np.ma.getmaskarray(array) if np.ma.is_masked(array) else None
+    if missing is None:
+        return np.ma.getdata(array)
+    row = int(np.flatnonzero(missing.reshape(len(missing), -1).any(axis=1))[0]) if missing.ndim else 0
+    raise ValueError(f"{name} is masked in row {row}, and each is needed: leave masked rows out, or fill them")
+
+
+def _real(name: str, given: Arrays) -> NDArray[Any]:
+    """An array of real numbers, which may be masked."""
     array = _array(name, given)
     if array.size and array.dtype.kind not in "fiub":
-        raise ValueError(f"{name} must be real numbers, not {array.dtype}{_advice(given)}")
-    if array.dtype.kind == "f":
-        _check_columns(name, given)
+        objects = ": give numbers of one type, as astype(float) makes them" if array.dtype == object else ""
+        raise ValueError(f"{name} must be real numbers, not {array.dtype}{objects}")
     return array
-
-
-def _check_columns(name: str, frame: Any) -> None:
-    """Integers in a frame, which hands over floats where one of its columns has floats, must be doubles."""
-    for label in getattr(frame, "columns", ()):
-        column = _array(name, frame[label])
-        if column.dtype.kind in "iu":
-            doubles(f"{name}: column {label!r}", column)
 
 
 def _array(name: str, given: Any) -> NDArray[Any]:
     try:
+        given = _without_unit(name, given)
         if hasattr(given, "__dlpack__") and not hasattr(given, "__array__"):
             return np.from_dlpack(given)
+        if np.ma.isMaskedArray(given):
+            return given
         array = np.asarray(given)
-        # Frames with missing values, or of extension types, hand over objects.
-        if array.dtype == object and hasattr(given, "columns") and not _advice(given):
+        # Columns of frames with missing values, or of extension types, hand over objects.
+        if array.dtype == object and _is_numeric(getattr(given, "dtype", None)):
             return array.astype(np.float64)
         return array
     except (ValueError, TypeError, RuntimeError, BufferError) as error:
         raise ValueError(f"{name} cannot be read as an array: {error}") from None
 
 
-def _advice(given: Any) -> str:
-    """Which columns of a frame are no numbers."""
-    if not hasattr(given, "columns"):
-        return ""
-    wrong = [name for name, dtype in zip(given.columns, given.dtypes) if not _is_numeric(dtype)]
-    if not wrong:
-        return ""
-    return f": choose columns of numbers; {', '.join(map(repr, wrong))} holds none"
+def _without_unit(name: str, given: Any) -> Any:
+    """The numbers of a quantity, as pint and astropy have them; a warning names the unit, which is passed over."""
+    for number, unit in (("magnitude", "units"), ("value", "unit")):
+        if hasattr(given, unit) and hasattr(given, number):
+            text = f"{name} is in {getattr(given, unit)}, which is passed over: all numbers must be in one unit, and α and weights in its square"
+            warnings.warn(text, stacklevel=5)
+            return getattr(given, number)
+    return given
 
 
 def _is_numeric(dtype: Any) -> bool:

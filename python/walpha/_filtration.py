@@ -73,10 +73,9 @@ class Filtration(Frozen):
         progress: Progress = None,
         threads: int | None = None,
     ) -> None:
+        cloud = _arrays.cloud(points, weights, valued=False)
         with task(progress, threads) as how:
-            self._filtration = _walpha.Filtration(
-                _arrays.points(points), _arrays.optional("weights", weights), _arrays.sides(periodic), how
-            )
+            self._filtration = _walpha.Filtration(cloud.points, cloud.weights, _arrays.sides(periodic), how)
         self._simplices: Simplices | None = None
 
     def __reduce__(self) -> tuple[Any, ...]:

@@ -4,6 +4,8 @@ import json
 import math
 from typing import Any, Literal, NamedTuple, TypeAlias
 
+import numpy as np
+
 from . import _alpha, _arrays, _walpha
 from ._shape import AlphaShape
 from ._typing import Arrays, Balls, Engine, Floats, Place, Progress, Rule, Samples
@@ -123,8 +125,8 @@ def select(
     smoothed : array_like, (nz, ny, nx), optional
         The truncated volume, which differences and ``gray_min`` are judged on; by default the same.
     count, ratio, threshold : int, float, float; optional
-        One of: so many voxels; this share of all (0.0609 by default, that of the paper, or all that take
-        part where these are fewer); all of at least this L.
+        One of: so many voxels; this share of all (0.0609 by default, that of the paper, or all that
+        differ from a neighbour where these are fewer); all of at least this L.
     gray_min : float, optional
         Voxels of the smoothed volume below this take no part.
     spacing : tuple of float, optional
@@ -139,7 +141,8 @@ def select(
     Raises
     ------
     ValueError
-        Volumes of different shapes; options that contradict each other.
+        Volumes of different shapes; options that contradict each other; more voxels asked for than differ
+        from a neighbour, or none that does.
 
     Examples
     --------
@@ -222,7 +225,7 @@ def pipeline(
     Parameters
     ----------
     volume : array_like or Volume, (nz, ny, nx)
-        ``[z, y, x]``, as scikit-image has it. Unsigned bytes are gray levels; anything else is
+        ``[z, y, x]``, as scikit-image has it. Masked samples become no points. Unsigned bytes are gray levels; anything else is
         mapped to gray levels 0 to 255 from its minimum to its maximum, or from ``gray``.
     spacing : tuple of float, optional
         Distances between samples along x, y and z. Without, and for a :class:`Volume` without a
@@ -272,7 +275,7 @@ def pipeline(
     Raises
     ------
     ValueError
-        Samples that are not finite; options that contradict each other.
+        Samples that are not finite; options that contradict each other; no contrast to select points by.
     MemoryError
         The system gives no more.
 
@@ -355,7 +358,7 @@ def _grid(
         if spacing is not None or origin is not None:
             raise ValueError("this volume has its own spacing and origin: give volume.samples to say others")
         return volume.samples, bool(volume.gray), volume._frame()
-    samples, gray = _arrays.samples(volume)
+    samples, gray, _ = _arrays.samples(volume)
     if spacing is None:
         if origin is not None:
             raise ValueError("origin is in units of length: give spacing, too")
@@ -366,7 +369,7 @@ def _grid(
 
 def _masked(volume: Arrays | Volume) -> bool:
     """Whether NaN among the samples are no data."""
-    return isinstance(volume, Volume) and volume.masked
+    return volume.masked if isinstance(volume, Volume) else bool(np.ma.is_masked(volume))
 
 
 def _tolerance(

@@ -156,9 +156,7 @@ def write_points(
     """
     _walpha.write_points(
         os.fspath(path),
-        _arrays.finite("points", _arrays.points(points)),
-        None if weights is None else _arrays.finite("weights", _arrays.column("weights", weights)),
-        None if values is None else _arrays.finite("values", _arrays.column("values", values)),
+        *_arrays.finite_cloud(points, weights, values),
         None if alpha is None else _alpha.squared(alpha, None, ""),
         float(value_error),
     )

@@ -6,6 +6,7 @@ import json
 import math
 import operator
 import os
+import warnings
 from typing import TYPE_CHECKING, Any, Literal, cast, overload
 
 import numpy as np
@@ -347,7 +348,7 @@ class AlphaShape(Classified):
 
     # Elsewhere.
 
-    def save(self, path: str | os.PathLike[str], *, solid: bool = False) -> None:
+    def save(self, path: str | os.PathLike[str], *, solid: bool = False, allow_empty: bool = False) -> None:
         """Write a file; it appears under its name only when it is complete.
 
         Parameters
@@ -358,20 +359,33 @@ class AlphaShape(Classified):
             in a plane).
         solid : bool
             For boundaries: a closed manifold, as :meth:`boundary` makes it.
+        allow_empty : bool
+            Write a file that holds nothing of the shape, such as an STL without a facet, which otherwise
+            is an error.
+
+        Warns
+        -----
+        UserWarning
+            STL and GLB have coordinates in single precision. Where that would move them by more than a
+            thousandth of the shortest edge, a round number is subtracted, which the file states, too: the
+            header of an STL as ``OFFSET=x,y,z``, a GLB as the translation of its node.
 
         Raises
         ------
         OSError
             The file cannot be written. Nothing is left behind.
         ValueError
-            No format has this extension, or it holds no boundary, or the shape has no outline for it.
+            No format has this extension, or it holds no boundary, or the shape has no outline for it, or
+            the file would hold nothing of the shape: the message says at which α it would.
 
         Examples
         --------
         >>> shape = walpha.alpha_shape(np.eye(4)[:, :3], alpha=1)
         >>> shape.save("shape.ply", solid=True)
         """
-        self._shape.save(os.fspath(path), solid)
+        remark = self._shape.save(os.fspath(path), solid, allow_empty)
+        if remark is not None:
+            warnings.warn(f"{os.fspath(path)}: {remark}", stacklevel=2)
 
     @overload
     def to_pyvista(self, what: Literal["boundary"] = "boundary") -> pyvista.PolyData: ...

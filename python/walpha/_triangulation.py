@@ -212,8 +212,7 @@ def triangulation(
     >>> made.neighbors.max(axis=1)
     array([1, 0])
     """
+    cloud = _arrays.cloud(points, weights, valued=False)
     with task(progress, threads) as how:
-        given = _walpha.Triangulation(
-            _arrays.points(points), _arrays.optional("weights", weights), how
-        )
+        given = _walpha.Triangulation(cloud.points, cloud.weights, how)
     return Triangulation._of(given)

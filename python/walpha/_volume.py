@@ -28,7 +28,7 @@ class Volume:
     Parameters
     ----------
     samples : array_like, (nz, ny, nx)
-        Kept as float32, in whatever unit the values have.
+        Kept as float32, in whatever unit the values have. Masked ones are NaN, and :func:`pipeline` makes no points of them.
     spacing : tuple of float
         Distances between samples along x, y and z.
     origin : tuple of float
@@ -42,7 +42,8 @@ class Volume:
     gray : bool, optional
         Whether samples are gray levels 0 to 255 already; by default those of unsigned bytes are.
     masked : bool
-        Whether NaN among the samples are no data, as padding of DICOM is: they become no points, and are no error.
+        Whether NaN among the samples are no data, as padding of DICOM and masked samples of an array are: they become no
+        points, and are no error.
 
     Raises
     ------
@@ -68,7 +69,7 @@ class Volume:
     masked: bool = False
 
     def __post_init__(self) -> None:
-        samples, gray = _arrays.samples(self.samples)
+        samples, gray, masked = _arrays.samples(self.samples)
         axes = np.asarray(self.direction, float)
         if axes.shape != (3, 3) or not np.isfinite(axes).all():
             raise ValueError(f"direction has shape {axes.shape}: give three rows of three numbers")
@@ -81,6 +82,7 @@ class Volume:
             "origin": tuple(_arrays.place("origin", self.origin)),
             "direction": tuple(map(tuple, axes.tolist())),
             "gray": gray if self.gray is None else self.gray,
+            "masked": self.masked or masked,
         }
         for name, value in own.items():
             object.__setattr__(self, name, value)

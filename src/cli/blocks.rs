@@ -14,6 +14,7 @@ use walpha_files::{Working, fill_all, keep_input};
 use super::args::{InputArgs, PipelineArgs, ShapeArgs};
 use super::errors::{CommandError, fail_usage};
 use super::global::{DIFFERENT, Global};
+use super::offsets::{FileOffset, offsets};
 use super::output::{name, print_summary};
 use super::progress::Progress;
 use super::report::Report;
@@ -211,7 +212,8 @@ impl MergeStep {
             merge_monitored(&plan, &monitor)
         })?;
         let mut report = Report::of_blocks(&plan, &merged);
-        progress.stage(Stage::Write, || outputs.write(&plan, Some(&merged), &Alone, &monitor))?;
+        report.offsets = progress
+            .stage(Stage::Write, || outputs.write(&plan, Some(&merged), &Alone, &monitor))?;
         let files = self.output.iter().map(|path| path.display().to_string()).collect();
         report.finish(progress.finish(), files);
         print_summary(global, &report)
@@ -228,14 +230,15 @@ pub(super) struct Outputs {
 }
 
 impl Outputs {
-    /// Writes all outputs or none, as one process of a team. Only the first process has the merged shape, and targets.
+    /// Writes all outputs or none, as one process of a team. Only the first process has the merged shape, and targets. Says
+    /// what files in single precision have subtracted.
     pub(super) fn write(
         self,
         plan: &Plan,
         merged: Option<&Merged>,
         team: &dyn Team,
         monitor: &Monitor,
-    ) -> anyhow::Result<()> {
+    ) -> anyhow::Result<Vec<FileOffset>> {
         // Dropped in reverse order: a folder can be removed only once it is empty.
         let (mut folders, mut files) = (Vec::new(), Vec::new());
         for (pieces, path) in &self.pieces {
@@ -247,6 +250,15 @@ impl Outputs {
             Some(merged) if !self.whole.is_empty() => Some(whole(plan, merged)?),
             _ => None,
         };
+        let mut subtracted = Vec::new();
+        if let Some(shape) = &shape {
+            subtracted = offsets(&self.whole, shape);
+            for (target, exporter) in &self.whole {
+                if !exporter.needs().met_by(shape) {
+                    tracing::warn!("{}: it holds nothing of the shape", shown(target.path()));
+                }
+            }
+        }
         let whole = self.whole.into_iter().zip(std::iter::repeat(shape.as_ref()));
         let whole = whole.filter_map(|((target, exporter), shape)| {
             let shape = shape?;
@@ -264,7 +276,7 @@ impl Outputs {
             team.barrier();
         }
         folders.into_iter().for_each(NewFolder::keep);
-        Ok(())
+        Ok(subtracted)
     }
 }
 

@@ -14,7 +14,7 @@ use super::output::{OutputError, is_broken_pipe, remark};
 use super::progress;
 use crate::check::schema::SchemaError;
 use crate::check::{CertifyError, CertifyFiltrationError, CompareError, CompareFiltrationsError};
-use crate::export::TargetError;
+use crate::export::{EmptyShape, TargetError};
 use crate::haar::HaarError;
 use crate::interpolate::InterpolateError;
 use crate::outofcore::BlocksError;
@@ -97,6 +97,7 @@ macro_rules! advising {
 advising![
     BlocksError,
     CgalError,
+    EmptyShape,
     HaarError,
     InterpolateError,
     NoMemory,

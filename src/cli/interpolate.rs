@@ -162,6 +162,11 @@ impl Interpolate {
         let shape = model.shape;
         let sampled = progress.stage(Stage::Interpolate, || sample(&shape, &grid, original))?;
         let on_shape = sampled.resampled.covered();
+        if on_shape == 0 && !self.fill {
+            tracing::warn!(
+                "no sample of the grid lies on the shape: give a larger --alpha, or --fill"
+            );
+        }
         let mask = mask.map(|open| anyhow::Ok((open, sampled.resampled.mask()?))).transpose()?;
         let (inside, filled, resampled) = if self.fill {
             let units = original.map_or(Units::Voxel, |original| original.units);

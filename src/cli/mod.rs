@@ -22,6 +22,7 @@ mod ladder;
 mod man;
 #[cfg(feature = "mpi")]
 mod mpi;
+mod offsets;
 mod outline;
 mod output;
 #[cfg_attr(not(feature = "render"), path = "no_picture.rs")]

@@ -7,7 +7,7 @@ use std::path::Path;
 use clap::{Args, ValueEnum};
 
 use crate::AlphaShape;
-use crate::export::Exporter;
+use crate::export::{Exporter, Needs};
 use crate::points::bounding_box;
 use crate::render::{
     Background, Camera, ColourMap, Colouring, Projection, RenderError, Scene, ShapeStyle, Size,
@@ -118,6 +118,10 @@ impl Exporter for PictureArgs {
             ));
         }
         out.write_all(&self.draw(shape).map_err(io::Error::other)?)
+    }
+
+    fn needs(&self) -> Needs {
+        Needs::FacetOrLine
     }
 }
 

@@ -4,13 +4,15 @@ use std::io::Write;
 use std::path::PathBuf;
 
 use clap::Args;
+use walpha_base::Monitor;
 use walpha_base::shown::shown;
 use walpha_files::Working;
 
 use super::args::{OutputArgs, PeriodicArgs, PipelineArgs, ShapeArgs};
-use super::errors::{fail_usage, option};
+use super::errors::{CommandError, fail_usage, option};
 use super::formats::shape_output;
 use super::global::Global;
+use super::offsets::offsets;
 use super::output::{print_summary, remark};
 use super::picture::PictureArgs;
 use super::pipeline::VolumeSummary;
@@ -19,7 +21,8 @@ use super::report::Report;
 use super::shape_in_blocks::{self, SharedWork};
 use super::{blocks, outline, pipeline};
 use crate::export::{
-    Content, ExportOptions, Exporter, FORMATS, Format, Target, TargetError, write_all,
+    Content, EmptyShape, ExportOptions, Exporter, FORMATS, Format, Needs, Target, TargetError,
+    write_all,
 };
 use crate::outofcore::{BlockwiseFormat, Team};
 use crate::pipeline::{Input, Values};
@@ -62,6 +65,10 @@ pub(super) struct Shape {
     /// they have there: triangles or edges, and no cells.
     #[arg(long)]
     require_3d: bool,
+    /// Go on with a shape of nothing, which otherwise is an error: write files that hold nothing of it, such as an
+    /// STL without a facet.
+    #[arg(long)]
+    allow_empty: bool,
     #[command(flatten)]
     pipeline: PipelineArgs,
     #[command(flatten)]
@@ -213,6 +220,9 @@ impl Shape {
         let mut report = Report::of_points(&input.input, &weighed, volume.as_ref());
         let mut facts = weighed.metadata(volume.map(|volume| volume.written));
         let model = pipeline::shape(weighed, recipe, progress)?;
+        if !self.allow_empty {
+            outputs.refuse_empty(&model.shape, &progress.monitor())?;
+        }
         facts.alpha = Some(model.parameter.alpha);
         progress.stage(Stage::Measure, || {
             report.add_model(&model);
@@ -221,6 +231,7 @@ impl Shape {
             }
         });
         let remarks = outputs.remarks(&model.shape);
+        report.offsets = offsets(&outputs.whole, &model.shape);
         progress.stage(Stage::Write, || outputs.write(&model.shape, &facts))?;
         if !global.quiet {
             remarks.iter().for_each(|text| remark(&format!("walpha: {text}")));
@@ -268,6 +279,20 @@ impl Outputs {
         Ok(outputs)
     }
 
+    /// Refuses a shape of which a file would hold nothing, and without files one of nothing.
+    fn refuse_empty(&self, shape: &AlphaShape, monitor: &Monitor) -> Result<(), CommandError> {
+        if self.whole.is_empty() && self.models.is_empty() {
+            EmptyShape::check(shape, Needs::Simplex, monitor).map_err(or_allowed)?;
+        }
+        for (target, exporter) in &self.whole {
+            EmptyShape::check(shape, exporter.needs(), monitor).map_err(|error| {
+                let error = or_allowed(error);
+                CommandError { why: format!("{}: {}", shown(target.path()), error.why), ..error }
+            })?;
+        }
+        Ok(())
+    }
+
     /// Remarks of the chosen formats about the shape.
     pub(super) fn remarks(&self, shape: &AlphaShape) -> Vec<String> {
         let remark = |(target, exporter): &(Target, Box<dyn Exporter>)| {
@@ -295,6 +320,13 @@ impl Outputs {
         });
         write_all(whole.chain(models))
     }
+}
+
+/// The error for a shape of nothing, which may be allowed.
+fn or_allowed(empty: EmptyShape) -> CommandError {
+    let error = CommandError::from(empty);
+    let next = error.next.map(|next| format!("{next}, or --allow-empty to go on all the same"));
+    CommandError { next, ..error }
 }
 
 /// Extensions of all formats that a shape is written in.

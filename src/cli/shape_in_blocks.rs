@@ -8,6 +8,7 @@ use walpha_base::memory;
 use super::args::InputArgs;
 use super::blocks::{Outputs, job};
 use super::global::Global;
+use super::offsets::FileOffset;
 use super::progress::Progress;
 use super::report::Report;
 use super::{folder, threads};
@@ -56,8 +57,9 @@ impl SharedWork {
         if team.size() > 1 {
             order(team, Some(serde_json::to_string(&self)?));
         }
-        let (plan, merged) = self.share(new, outputs, progress, team)?;
-        let report = Report::of_blocks(&plan, &merged.expect("the first process merges"));
+        let Shared { plan, merged, offsets } = self.share(new, outputs, progress, team)?;
+        let mut report = Report::of_blocks(&plan, &merged.expect("the first process merges"));
+        report.offsets = offsets;
         plan.remove()?;
         Ok(report)
     }
@@ -69,7 +71,7 @@ impl SharedWork {
         outputs: Outputs,
         progress: &mut Progress,
         team: &dyn Team,
-    ) -> anyhow::Result<(Plan, Option<Merged>)> {
+    ) -> anyhow::Result<Shared> {
         let monitor = progress.monitor();
         let plan = progress.stage(Stage::Points, || {
             Plan::resume_with(self.job.clone(), self.cutting, &self.folder, team, &monitor)
@@ -80,9 +82,19 @@ impl SharedWork {
         progress.stage(Stage::Shape, || run_missing(&plan, team, &monitor))?;
         let merge = || team.is_first().then(|| merge_monitored(&plan, &monitor)).transpose();
         let merged = progress.stage(Stage::Shape, merge)?;
-        progress.stage(Stage::Write, || outputs.write(&plan, merged.as_ref(), team, &monitor))?;
-        Ok((plan, merged))
+        let write = || outputs.write(&plan, merged.as_ref(), team, &monitor);
+        let offsets = progress.stage(Stage::Write, write)?;
+        Ok(Shared { plan, merged, offsets })
     }
+}
+
+/// What a process has done.
+struct Shared {
+    plan: Plan,
+    /// The shape, which the first process has.
+    merged: Option<Merged>,
+    /// What its files in single precision have subtracted.
+    offsets: Vec<FileOffset>,
 }
 
 fn order(team: &dyn Team, work: Option<String>) {

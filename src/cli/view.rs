@@ -12,7 +12,7 @@ use walpha_base::Monitor;
 use walpha_base::shown::{number, shown};
 
 use super::args::{self, Alphas, FrozenPipelineArgs};
-use super::errors::fail_usage;
+use super::errors::{fail, fail_usage};
 use super::global::Global;
 use super::output::{name, print_summary, remark};
 use super::pipeline::{self, VolumeSummary, filled_in};
@@ -141,14 +141,18 @@ impl View {
         let facts = source.map(VolumeSummary::of);
         let facts = facts.as_ref();
         let facts_shown = self.page_facts(&last.weighed, facts, last.reference());
+        let isovalue = self.isovalue.unwrap_or_default();
         let original = source.map(|Source { volume, units, range, .. }| Original {
             volume,
-            isovalue: self.isovalue.unwrap_or_default().gray(range),
+            isovalue: isovalue.gray(range),
             frame: match units {
                 Units::Voxel => &Frame::VOXEL,
                 Units::World => volume.frame(),
             },
         });
+        if let Some(source) = source {
+            isovalue.check(source);
+        }
         let mut shown = Vec::new();
         for detail in details {
             let opening = detail.opening(self.alpha);
@@ -159,6 +163,10 @@ impl View {
                 Alphas::Auto => progress.stage(Stage::Curve, || detail.stops(opening)),
             };
             let levels = detail.filtration.levels(&alphas);
+            let count = levels.len() as u32;
+            if levels.vertices().iter().all(|(_, span)| span.first >= count) {
+                fail!("no shape has a simplex up to {}", levels.alphas()[levels.len() - 1] => "give larger values of α to --alphas, or omit it");
+            }
             if levels.len() > Page::MOST_LEVELS {
                 let (levels, most) = (levels.len(), Page::MOST_LEVELS);
                 fail_usage!("{levels} levels are too many for a page" => "give at most {most} values in --alphas");
@@ -320,11 +328,38 @@ impl Default for Isovalue {
 }
 
 impl Isovalue {
+    /// Says where no sample reaches it, or all do: there is no isosurface then.
+    fn check(self, Source { volume, range, .. }: &Source) {
+        let (low, high) = volume.value_range();
+        let [low, high] = [low, high].map(f64::from);
+        let gray = self.gray(range);
+        if low < gray && gray <= high {
+            return;
+        }
+        let ends = match self {
+            Self::Gray(_) => format!("gray levels go from {} to {}", number(low), number(high)),
+            Self::Value(_) => {
+                let [low, high] = [low, high].map(|gray| number(range.value(gray)));
+                format!("values go from {low} to {high}")
+            }
+        };
+        tracing::warn!("there is no isosurface at {self}, as {ends}; --isovalue chooses another");
+    }
+
     /// The gray level, where values `range` are gray 0..255.
     pub(super) fn gray(self, range: &GrayRange) -> f64 {
         match self {
             Self::Gray(gray) => gray,
             Self::Value(value) => range.gray(value),
+        }
+    }
+}
+
+impl Display for Isovalue {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Gray(gray) => write!(f, "gray {}", number(*gray)),
+            Self::Value(value) => write!(f, "{}", number(*value)),
         }
     }
 }

@@ -4,7 +4,8 @@ use std::io::{self, Write};
 use walpha_base::advice::Advice;
 use walpha_base::setters;
 
-use crate::shape::{AlphaShape, Surface};
+use super::Needs;
+use crate::shape::{AlphaShape, SinglePrecision, Surface};
 
 /// A writer of shapes in one format.
 pub trait Exporter {
@@ -30,6 +31,16 @@ pub trait Exporter {
     /// Whether the format can represent a periodic box.
     fn knows_torus(&self) -> bool {
         false
+    }
+
+    /// What a shape must have for the file to hold something.
+    fn needs(&self) -> Needs {
+        Needs::Simplex
+    }
+
+    /// How the file has the coordinates of a shape, if it has them in single precision.
+    fn single_precision(&self, _shape: &AlphaShape) -> Option<SinglePrecision> {
+        None
     }
 
     /// A remark for users of the file, if this shape needs one.
@@ -60,5 +71,18 @@ impl ExportOptions {
     /// The boundary to write.
     pub(super) fn surface<'a>(&self, shape: &'a AlphaShape) -> Cow<'a, Surface> {
         if self.solid { Cow::Borrowed(shape.solid().0) } else { Cow::Owned(Surface::of(shape)) }
+    }
+
+    /// What a shape must have for a file of its boundary, or of the solid, not to be empty.
+    pub(super) fn needs(&self, boundary: Needs) -> Needs {
+        if self.solid { Needs::RegularFacet } else { boundary }
+    }
+
+    /// How the boundary becomes single precision.
+    pub(super) fn single_precision(&self, shape: &AlphaShape) -> SinglePrecision {
+        match shape.options().periodic {
+            Some(_) => self.single_precision(&shape.unwrapped()),
+            None => SinglePrecision::of_surface(&self.surface(shape), shape.points().positions()),
+        }
     }
 }

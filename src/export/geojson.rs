@@ -3,8 +3,8 @@ use std::io::{self, Write};
 use serde::Serialize;
 use walpha_base::advice::Advice;
 
-use super::Exporter;
 use super::planar::{self, Planar};
+use super::{Exporter, Needs};
 use crate::LengthUnit;
 use crate::shape::{Alpha, AlphaShape};
 
@@ -53,6 +53,10 @@ impl Exporter for GeoJson {
 
     fn remark(&self, shape: &AlphaShape) -> Option<Advice> {
         planar::remark(shape)
+    }
+
+    fn needs(&self) -> Needs {
+        Needs::Facet
     }
 }
 

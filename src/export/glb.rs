@@ -3,13 +3,14 @@ use std::io::{self, Write};
 
 use serde_json::{Value, json};
 
-use super::{ExportOptions, Exporter, colour};
-use crate::shape::{AlphaShape, Surface};
+use super::{ExportOptions, Exporter, Needs, colour};
+use crate::shape::{AlphaShape, SinglePrecision, Surface};
 
 /// GLB, glTF 2.0 in one binary file: the boundary as triangles, singular edges as lines and singular
 /// vertices as points. If F is known, vertices are coloured by it, from dark blue (least) through green to
-/// yellow (most). Coordinates are rounded to `f32`; the scene rotates them so that z becomes glTF's y, which
-/// points up.
+/// yellow (most). Coordinates are rounded to `f32`; where that would move them by more than a thousandth of the shortest
+/// edge, a round number is subtracted first ([`SinglePrecision`]), by which the node is translated. The scene rotates
+/// it so that z becomes glTF's y, which points up.
 #[derive(Clone, Debug, Default)]
 pub struct Glb(pub ExportOptions);
 
@@ -40,9 +41,15 @@ impl Exporter for Glb {
         });
         // glTF does not allow empty meshes.
         if surface.vertex_count() > 0 {
-            let primitives = file.primitives(shape, &surface);
+            let single = SinglePrecision::of_surface(&surface, shape.points().positions());
+            let primitives = file.primitives(shape, &surface, &single);
             document["scenes"][0] = json!({ "nodes": [0] });
             document["nodes"] = json!([{ "mesh": 0, "rotation": UPRIGHT }]);
+            if single.has_offset() {
+                // It is rotated before it is translated.
+                let [x, y, z] = single.offset;
+                document["nodes"][0]["translation"] = json!([x, z, 0.0 - y]);
+            }
             document["meshes"] = json!([{ "primitives": primitives }]);
             let material = |double: bool| {
                 json!({
@@ -73,6 +80,14 @@ impl Exporter for Glb {
         }
         Ok(())
     }
+
+    fn needs(&self) -> Needs {
+        self.0.needs(Needs::FacetOrLine)
+    }
+
+    fn single_precision(&self, shape: &AlphaShape) -> Option<SinglePrecision> {
+        Some(self.0.single_precision(shape))
+    }
 }
 
 /// The binary chunk, and the views and accessors that refer to it. All numbers have 4 bytes, so all are aligned.
@@ -84,10 +99,15 @@ struct File {
 }
 
 impl File {
-    fn primitives(&mut self, shape: &AlphaShape, surface: &Surface) -> Vec<Value> {
+    fn primitives(
+        &mut self,
+        shape: &AlphaShape,
+        surface: &Surface,
+        single: &SinglePrecision,
+    ) -> Vec<Value> {
         let points = shape.points();
         let places = surface.positions(points.positions());
-        let positions: Vec<[f32; 3]> = places.map(|place| place.map(|c| c as f32)).collect();
+        let positions: Vec<[f32; 3]> = places.map(|place| single.round(place)).collect();
         let bound = |pick: fn(f32, f32) -> f32| {
             [0, 1, 2].map(|axis| positions.iter().map(|p| p[axis]).reduce(pick))
         };

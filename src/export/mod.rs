@@ -24,6 +24,7 @@
 //! ```
 
 mod colour;
+mod empty;
 mod exporter;
 mod filtration;
 #[cfg(feature = "cli")]
@@ -45,6 +46,7 @@ mod vtu;
 mod wkt;
 
 pub use crate::volume::UnknownFormat;
+pub use empty::{EmptyShape, Needs};
 pub use exporter::{ExportOptions, Exporter};
 pub use filtration::{FILTRATION_FORMATS, FiltrationFormat};
 #[cfg(feature = "cli")]

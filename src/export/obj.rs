@@ -1,6 +1,6 @@
 use std::io::{self, Write};
 
-use super::{ExportOptions, Exporter};
+use super::{ExportOptions, Exporter, Needs};
 use crate::shape::AlphaShape;
 use crate::volume::annotation;
 
@@ -23,6 +23,10 @@ impl Exporter for Obj {
         elements(out, name("edges"), "l", &surface.edges)?;
         let points: Vec<[u32; 1]> = surface.points.iter().map(|&v| [v]).collect();
         elements(out, name("points"), "p", &points)
+    }
+
+    fn needs(&self) -> Needs {
+        self.0.needs(Needs::FacetOrLine)
     }
 }
 

@@ -1,6 +1,6 @@
 use std::io::{self, Write};
 
-use super::{ExportOptions, Exporter};
+use super::{ExportOptions, Exporter, Needs};
 use crate::shape::AlphaShape;
 use crate::volume::annotation;
 
@@ -29,5 +29,9 @@ impl Exporter for Off {
             }
         }
         Ok(())
+    }
+
+    fn needs(&self) -> Needs {
+        self.0.needs(Needs::Facet)
     }
 }

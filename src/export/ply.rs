@@ -2,7 +2,7 @@ use std::io::{self, Write};
 
 use walpha_base::advice::Advice;
 
-use super::{ExportOptions, Exporter, colour};
+use super::{ExportOptions, Exporter, Needs, colour};
 use crate::shape::{AlphaShape, Class, Surface};
 use crate::volume::annotation;
 
@@ -71,6 +71,10 @@ impl Exporter for Ply {
             )
             .into()
         })
+    }
+
+    fn needs(&self) -> Needs {
+        self.0.needs(Needs::Facet)
     }
 }
 

@@ -1,8 +1,11 @@
 use std::path::Path;
 
+use walpha_base::Monitor;
 use walpha_base::advice::Advice;
 
-use super::{ExportOptions, Format, Target, TargetError};
+#[cfg(doc)]
+use super::Exporter;
+use super::{EmptyShape, ExportOptions, Format, Target, TargetError};
 use crate::shape::AlphaShape;
 use crate::volume::UnknownFormat;
 
@@ -12,7 +15,8 @@ pub trait Save {
     /// [`ExportOptions`]. The file appears under its name when it is complete, and replaces one that is there.
     ///
     /// # Errors
-    /// The extension is unknown, or the file cannot be written.
+    /// The extension is unknown, the file cannot be written, or it would hold nothing of the shape. An [`Exporter`]
+    /// writes such a file, too.
     fn save(&self, path: impl AsRef<Path>) -> Result<(), SaveError>;
 }
 
@@ -20,6 +24,7 @@ impl Save for AlphaShape {
     fn save(&self, path: impl AsRef<Path>) -> Result<(), SaveError> {
         let path = path.as_ref();
         let exporter = Format::of(path)?.exporter(&ExportOptions::default());
+        EmptyShape::check(self, exporter.needs(), &Monitor::noop())?;
         Ok(Target::open(path)?.write(|out| exporter.write(self, out))?)
     }
 }
@@ -31,6 +36,9 @@ pub enum SaveError {
     /// No format has the extension.
     #[error(transparent)]
     Format(#[from] UnknownFormat),
+    /// The file would hold nothing of the shape.
+    #[error(transparent)]
+    Empty(#[from] EmptyShape),
     /// The file cannot be written.
     #[error(transparent)]
     Target(#[from] TargetError),
@@ -41,6 +49,7 @@ impl SaveError {
     pub fn advice(&self) -> Advice {
         match self {
             Self::Format(error) => error.advice(),
+            Self::Empty(error) => error.advice(),
             Self::Target(error) => error.advice(),
         }
     }

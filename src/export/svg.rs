@@ -1,7 +1,7 @@
 use std::fmt::Write as _;
 use std::io::{self, Write};
 
-use super::Exporter;
+use super::{Exporter, Needs};
 use crate::shape::{AlphaShape, Class, Outline};
 use crate::volume::annotation;
 
@@ -56,6 +56,10 @@ impl Exporter for Svg {
             writeln!(out, "</g>")?;
         }
         writeln!(out, "</svg>")
+    }
+
+    fn needs(&self) -> Needs {
+        Needs::Facet
     }
 }
 

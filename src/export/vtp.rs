@@ -1,7 +1,7 @@
 use std::io::{self, Write};
 
 use super::vtu::{Appended, Ids, PointData, Provenance, bytes};
-use super::{ExportOptions, Exporter};
+use super::{ExportOptions, Exporter, Needs};
 use crate::shape::{AlphaShape, Class, Sheets, Surface};
 use crate::volume::annotation;
 
@@ -21,6 +21,10 @@ impl Exporter for Vtp {
         };
         let made = Provenance::of(shape, &self.0);
         write_surface(&self.0.surface(shape), &PointData::of(shape), &membership, &made, out)
+    }
+
+    fn needs(&self) -> Needs {
+        self.0.needs(Needs::FacetOrLine)
     }
 }
 

@@ -2,8 +2,8 @@ use std::io::{self, Write};
 
 use walpha_base::advice::Advice;
 
-use super::Exporter;
 use super::planar::{self, Planar};
+use super::{Exporter, Needs};
 use crate::shape::AlphaShape;
 
 /// Well-known text (OGC Simple Features, ISO 19125-1): the polygons of an [outline](AlphaShape::outline) as one
@@ -41,6 +41,10 @@ impl Exporter for Wkt {
 
     fn remark(&self, shape: &AlphaShape) -> Option<Advice> {
         planar::remark(shape)
+    }
+
+    fn needs(&self) -> Needs {
+        Needs::Facet
     }
 }
 

@@ -141,7 +141,11 @@ impl CurveBuilder<'_> {
     fn selections(&self, method: Method) -> Result<Vec<Points>, InterpolateError> {
         match method {
             Method::Difference => {
-                self.counts().map(|count| self.by(SelectionRule::Count(count))).collect()
+                let differing = self.differences.iter().filter(|&&l| l > 0.0).count() as u64;
+                let all = self.volume.dims().samples() as u64;
+                let is_met = |count: &u64| *count <= differing || *count == all;
+                let counts = self.counts().filter(is_met);
+                counts.map(|count| self.by(SelectionRule::Count(count))).collect()
             }
             Method::Threshold => {
                 let mut levels: Vec<f64> = self.differences.iter().copied().collect();

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 use walpha_base::Monitor;
+use walpha_base::advice::Setting;
 
 use super::brick_digests::ReadDigests;
 use super::field::{Field, Passes, Sample, Truncated};
@@ -58,7 +59,7 @@ pub(super) fn survey(
     let choice = choose(job, field, &truncated, &mut passes)?;
     let Counted { differences, first, counts } = count(field, &truncated, &choice, &mut passes)?;
     if differences.count == 0 {
-        return Err(PointsError::Empty { voxels: job.dims.samples() as u64 }.into());
+        return Err(choice.none_chosen(job, &field.range).into());
     }
     join_digests(&mut field.digests, job, team)?;
     if let Truncated::File(_, digests) = &mut truncated {
@@ -145,6 +146,18 @@ enum Rule {
 }
 
 impl Criterion {
+    /// Why no sample is a point.
+    fn none_chosen(&self, job: &Job, range: &GrayRange) -> PointsError {
+        let error = match self.rule {
+            Rule::Threshold(least) => {
+                let mask = self.gray_min.map(|_| Setting::GrayMin);
+                PointsError::Threshold { least, largest: None, mask }
+            }
+            Rule::Largest(_) => PointsError::Empty { voxels: job.dims.samples() as u64 },
+        };
+        job.recipe.in_its_terms(error, range)
+    }
+
     /// The difference of a sample that takes part, else NaN.
     fn masked(gray_min: Option<f64>, sample: &Sample) -> f64 {
         let out =
@@ -170,7 +183,8 @@ pub(super) fn choose(
     passes: &mut Passes<'_>,
 ) -> Result<Criterion, BlocksError> {
     let Selection { rule, gray_min } = job.selection(&field.range);
-    check_least(gray_min)?;
+    let told = |error| BlocksError::from(job.recipe.in_its_terms(error, &field.range));
+    check_least(gray_min).map_err(told)?;
     let most = match rule.asked(job.dims.samples() as u64)? {
         Asked::Largest(most) => most,
         Asked::AtLeast(least) => return Ok(Criterion { rule: Rule::Threshold(least), gray_min }),
@@ -180,10 +194,12 @@ pub(super) fn choose(
     let (counts, highest) = round(&first, gray_min, field, truncated, passes)?;
     let available = counts.total();
     if available == 0 {
-        let least = gray_min.unwrap_or(f64::NEG_INFINITY);
-        return Err(PointsError::Masked { least, highest: highest.into() }.into());
+        let masked = |least| PointsError::Masked { least, highest: highest.into() };
+        let empty = PointsError::Empty { voxels: job.dims.samples() as u64 };
+        return Err(told(gray_min.map_or(empty, masked)));
     }
-    let mut search = Search::new(Budget::Count(most.not_chosen(available)?), FEW);
+    let left = most.not_chosen(available, available - counts.zeros()).map_err(told)?;
+    let mut search = Search::new(Budget::Count(left), FEW);
     search.learn(counts);
     let next = |search: &Search| Ok(round(search, gray_min, field, truncated, passes)?.0);
     let (cut, _) = search.find::<BlocksError>(next)?;

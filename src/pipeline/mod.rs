@@ -121,8 +121,12 @@ impl Recipe {
         let (smoothed, truncation) = smooth_monitored(volume, &self.haar, monitor)?;
         Stage::Points.begin(monitor)?;
         let choice = self.choice.at_least(self.value_min.map(|value| range.gray(value)));
-        let Chosen { points, importance, ended } =
-            choice.points(volume, &smoothed, units, monitor)?;
+        let chosen =
+            choice.points(volume, &smoothed, units, monitor).map_err(|error| match error {
+                PipelineError::Points(error) => self.in_its_terms(error, range).into(),
+                other => other,
+            })?;
+        let Chosen { points, importance, ended } = chosen;
         let origin = Origin {
             coordinates: units.coordinates(volume),
             weighting: self.weighting_of(&points),

@@ -2,12 +2,16 @@ use std::num::NonZeroUsize;
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
+use walpha_base::advice::Setting;
 use walpha_base::setters;
 
 use super::{AlphaRule, Choice, Parameter, PipelineError};
-use crate::haar::HaarOptions;
+use crate::haar::{HaarOptions, Tolerance};
 use crate::interpolate::Refit;
-use crate::points::{Columns, PointOptions, Points, Selection, SelectionRule, Units, Weighting};
+use crate::points::{
+    Columns, LEAST_GRAY, PointOptions, Points, PointsError, Selection, SelectionRule, Units,
+    Weighting,
+};
 use crate::shape::{Alpha, Balls, Engine, ShapeError, ShapeOptions, Torus};
 use crate::volume::{Coordinates, Frame, Gray, GrayRange, LengthUnit, ReadOptions, Space};
 
@@ -218,6 +222,36 @@ impl Recipe {
         match self.choice.at_least(self.value_min.map(|value| range.gray(value))) {
             Choice::Difference(selection) => Some(selection),
             Choice::Adaptive(_) | Choice::Exchanged(_) => None,
+        }
+    }
+
+    /// An error of selection in the terms of this recipe: of settings that stand for one another it names the one
+    /// that was given, in a volume whose values `range` are gray 0..255.
+    pub(crate) fn in_its_terms(&self, error: PointsError, range: &GrayRange) -> PointsError {
+        let gray_min = match self.choice {
+            Choice::Difference(selection) => selection.gray_min,
+            Choice::Adaptive(_) | Choice::Exchanged(_) => None,
+        };
+        let value_min = self.value_min.filter(|_| gray_min.is_none());
+        match (error, value_min) {
+            (PointsError::Masked { highest, .. }, Some(least)) => {
+                PointsError::MaskedValues { least, highest: range.value(highest) }
+            }
+            (PointsError::Threshold { least, largest, mask: Some(_) }, Some(_)) => {
+                PointsError::Threshold { least, largest, mask: Some(Setting::ValueMin) }
+            }
+            (PointsError::Number { what: LEAST_GRAY, need, .. }, Some(given)) => {
+                PointsError::Number { what: "a least value of", given, need }
+            }
+            (PointsError::Flat { available, .. }, _) => {
+                let tolerance = match self.haar.tolerance {
+                    Tolerance::Epsilon(_) => Setting::Epsilon,
+                    Tolerance::Coefficients(_) => Setting::Coefficients,
+                    _ => Setting::Rms,
+                };
+                PointsError::Flat { available, tolerance }
+            }
+            (error, _) => error,
         }
     }
 

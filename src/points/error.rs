@@ -27,13 +27,29 @@ pub enum PointsError {
     /// A column whose length differs from the number of points.
     #[error(transparent)]
     Lengths(#[from] LengthsError),
-    /// More voxels asked for than there are, or none.
-    #[error("{asked} points cannot be selected")]
+    /// More voxels asked for than take part and differ from a neighbour, or none.
+    #[error(
+        "{asked} points cannot be selected: {available} samples take part and differ from a neighbour after \
+         truncation"
+    )]
     Count {
         /// Points asked for.
         asked: u64,
+        /// Voxels that take part and have a difference.
+        available: u64,
+        /// These as a share of all, if a share was asked for.
+        ratio: Option<f64>,
+    },
+    /// No voxel that takes part differs from a neighbour: there is nothing to select by.
+    #[error(
+        "nothing tells which samples to select: after truncation none of the {available} that take part differs \
+         from a neighbour"
+    )]
+    Flat {
         /// Voxels that take part.
         available: u64,
+        /// The setting that says how much truncation drops.
+        tolerance: Setting,
     },
     /// A volume whose values have not become gray levels.
     #[error("the values of the volume, {low} to {high}, are not gray levels 0 to 255")]
@@ -53,11 +69,29 @@ pub enum PointsError {
         /// The highest gray level of the truncated volume.
         highest: f64,
     },
-    /// The threshold, or the mask, leaves no voxel.
-    #[error("none of {voxels} voxels is selected")]
+    /// The mask, given as a value of the file, leaves no voxel.
+    #[error("no voxel reaches the value {least}: after truncation values end at {highest}")]
+    MaskedValues {
+        /// The least value asked for.
+        least: f64,
+        /// The highest value of the truncated volume.
+        highest: f64,
+    },
+    /// All voxels are missing.
+    #[error("none of {voxels} voxels takes part: all samples are missing")]
     Empty {
         /// Voxels of the volume.
         voxels: u64,
+    },
+    /// The threshold leaves no voxel.
+    #[error("no voxel that takes part has a difference of {least} gray levels{}", at_most(*largest))]
+    Threshold {
+        /// The least difference asked for.
+        least: f64,
+        /// The largest difference, if it is known.
+        largest: Option<f64>,
+        /// The setting that keeps voxels from taking part, if one was given.
+        mask: Option<Setting>,
     },
     /// Weights in proportion to an infinite α.
     #[error("{weighting} weights are proportional to α, which is {alpha}")]
@@ -115,19 +149,26 @@ impl PointsError {
         Some(match self {
             Self::Number { need, .. } => format!("give {need}").into(),
             Self::Lengths(_) => return None,
-            Self::Count { available, .. } => {
-                format!("give a count from 1 to {available}, the voxels that take part").into()
+            Self::Count { ratio: Some(ratio), .. } => {
+                format!("give a ratio of at most {ratio}, or omit it to take all that differ")
+                    .into()
             }
+            Self::Count { available, .. } => format!("give a count from 1 to {available}").into(),
+            Self::Flat { tolerance, .. } => advice![
+                "give a volume with contrast, let the wavelet stage drop less (",
+                *tolerance,
+                "), or spread the values over the gray levels (",
+                Setting::Gray,
+                ")"
+            ],
             Self::NotGray { .. } => "map them first, by Volume::into_gray".into(),
             Self::Masked { .. } => advice!["give less for ", Setting::GrayMin],
-            Self::Empty { .. } => advice![
-                "lower ",
-                Setting::Threshold,
-                " or ",
-                Setting::GrayMin,
-                ", or give ",
-                Setting::Ratio
-            ],
+            Self::MaskedValues { .. } => advice!["give less for ", Setting::ValueMin],
+            Self::Empty { .. } => "give a volume with samples".into(),
+            Self::Threshold { mask: Some(mask), .. } => {
+                advice!["lower ", Setting::Threshold, " or ", *mask]
+            }
+            Self::Threshold { .. } => advice!["lower ", Setting::Threshold],
             Self::UnboundedAlpha { .. } => {
                 advice![
                     "give a finite α, or the one to freeze weights at (",
@@ -147,4 +188,9 @@ impl PointsError {
             Self::File(error) => return error.advice(),
         })
     }
+}
+
+/// The largest difference, where it is known.
+fn at_most(largest: Option<f64>) -> String {
+    largest.map_or_else(String::new, |largest| format!(": the largest is {largest}"))
 }

@@ -53,7 +53,7 @@ pub use model::{Cell, ModelMetadata, Packing, SampleGrid};
 pub(crate) use open::read_model_file;
 pub use open::{PointOptions, is_point_file, read_model, read_points};
 pub use read::{Columns, UnknownColumns};
-pub(crate) use select::{Asked, check_least};
+pub(crate) use select::{Asked, LEAST_GRAY, check_least};
 pub use select::{Selection, SelectionRule, Units, points_at, select};
 pub use sets::{Points, bounding_box};
 pub use weigh::{weigh, weights};

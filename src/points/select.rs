@@ -1,6 +1,7 @@
 use ndarray::Array3;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
+use walpha_base::advice::Setting;
 use walpha_base::memory;
 use walpha_base::setters;
 
@@ -30,12 +31,13 @@ impl Selection {
 #[serde(rename_all = "lowercase")]
 #[non_exhaustive]
 pub enum SelectionRule {
-    /// This many voxels of the largest L, ties in order of the voxel index.
+    /// This many voxels of the largest L, ties in order of the voxel index: an error if fewer take part and have
+    /// an L above 0, unless all that take part are asked for.
     Count(u64),
     /// This share of all voxels of the volume, above 0 and up to 1, rounded to the nearest count
-    /// (half up, and at least 1), then as `Count`: an error if `gray_min` leaves fewer voxels.
+    /// (half up, and at least 1), then as `Count`.
     Ratio(f64),
-    /// As `Ratio`, but all voxels that take part if they are fewer.
+    /// As `Ratio`, but all voxels that take part and have an L above 0 if they are fewer.
     AtMost(f64),
     /// All voxels with L of at least this, in gray levels. Ties count: as doubles, 5/6 is at least 5/6.
     Threshold(f64),
@@ -119,7 +121,7 @@ impl Units {
 ///
 /// # Errors
 /// A truncated volume whose values are no gray levels ([`Volume::into_gray`] makes them), a rule whose number is out of range,
-/// more voxels asked for than there are, no voxel left, or not enough memory.
+/// more voxels asked for than differ from a neighbour, no voxel left, or not enough memory.
 ///
 /// # Panics
 /// If the three shapes differ.
@@ -141,18 +143,19 @@ pub fn select(
     let standard = differences.as_standard_layout();
     let flat = standard.as_slice().expect("standard layout");
     check_least(selection.gray_min)?;
-    let voxels = if selection.gray_min.is_none() && !volume.has_missing() {
-        chosen(flat, n as u64, &selection.rule)?
+    let mask = selection.gray_min.map(|_| Setting::GrayMin);
+    let voxels = if mask.is_none() && !volume.has_missing() {
+        chosen(flat, n as u64, &selection.rule, mask)?
     } else {
         let least = selection.gray_min.unwrap_or(f64::NEG_INFINITY);
         let takes_part = |i: usize, gray: f32| f64::from(gray) >= least && !volume.is_missing(i);
-        let mask = |(i, (&l, &gray)): (usize, (&f64, &f32))| {
+        let masked = |(i, (&l, &gray)): (usize, (&f64, &f32))| {
             if takes_part(i, gray) { l } else { f64::NAN }
         };
         let bytes = size_of_val(flat);
         memory::afford(bytes, || format!("the choice among {} samples", volume.dims()))?;
         let pairs = flat.par_iter().zip(smoothed.as_slice()).enumerate();
-        let masked: Vec<f64> = pairs.map(mask).collect();
+        let masked: Vec<f64> = pairs.map(masked).collect();
         let available = masked.par_iter().filter(|l| !l.is_nan()).count() as u64;
         if available == 0 {
             let highest = f64::from(smoothed.value_range().1);
@@ -161,7 +164,7 @@ pub fn select(
                 None => PointsError::Empty { voxels: n as u64 },
             });
         }
-        chosen(&masked, available, &selection.rule)?
+        chosen(&masked, available, &selection.rule, mask)?
     };
     Ok(points_at(volume, differences, &voxels, units))
 }
@@ -189,22 +192,28 @@ pub fn points_at(
     }
 }
 
-/// The indices that the rule selects, ascending. Masked voxels are NaN, and the other `available` ones are not.
+/// The indices that the rule selects, ascending. Voxels masked by the setting or missing are NaN, and the other `available`
+/// ones are not.
 fn chosen(
     differences: &[f64],
     available: u64,
     rule: &SelectionRule,
+    mask: Option<Setting>,
 ) -> Result<Vec<u32>, PointsError> {
-    let voxels = differences.len() as u64;
-    match rule.asked(voxels)? {
+    match rule.asked(differences.len() as u64)? {
         Asked::Largest(most) => {
-            let left = most.not_chosen(available)?;
+            let differing = differences.par_iter().filter(|&&l| l > 0.0).count() as u64;
+            let left = most.not_chosen(available, differing)?;
             let (cut, _) = Cut::new(differences, Budget::Count(left));
             Ok(collect(differences, |l, i| cut.keeps(l, i as u64)))
         }
         Asked::AtLeast(least) => {
             let chosen = collect(differences, |l, _| l >= least);
-            if chosen.is_empty() { Err(PointsError::Empty { voxels }) } else { Ok(chosen) }
+            if chosen.is_empty() {
+                let largest = Some(differences.iter().copied().fold(0.0, f64::max));
+                return Err(PointsError::Threshold { least, largest, mask });
+            }
+            Ok(chosen)
         }
     }
 }
@@ -221,23 +230,36 @@ pub(crate) enum Asked {
 #[derive(Clone, Copy)]
 pub(crate) struct Most {
     count: u64,
-    /// Whether all voxels are taken if there are fewer.
-    or_all: bool,
+    /// Whether all that differ are taken if these are fewer.
+    or_fewer: bool,
+    /// The number of voxels that the count is a share of, if it was given as one.
+    of: Option<u64>,
 }
 
 impl Most {
-    /// Number of available voxels that are not selected.
-    pub(crate) fn not_chosen(self, available: u64) -> Result<u64, PointsError> {
-        let Self { count: asked, or_all } = self;
-        if or_all && asked > available {
-            tracing::warn!(
-                "{available} samples take part, fewer than the {asked} that are selected by default: all \
-                 become points"
-            );
+    /// Number of available voxels that are not selected, where so many of these differ from a neighbour. Of those that
+    /// do not differ none is selected before another, as only their indices would tell them apart.
+    pub(crate) fn not_chosen(self, available: u64, differing: u64) -> Result<u64, PointsError> {
+        let Self { count: asked, or_fewer, of } = self;
+        // All of them: nothing is chosen.
+        if asked == available && !or_fewer {
             return Ok(0);
         }
-        if asked == 0 || asked > available {
-            return Err(PointsError::Count { asked, available });
+        if differing == 0 {
+            return Err(PointsError::Flat { available, tolerance: Setting::Rms });
+        }
+        if or_fewer && asked > differing {
+            tracing::warn!(
+                "{differing} of {available} samples that take part differ from a neighbour, fewer than the {asked} \
+                 that are selected by default: these become points"
+            );
+            return Ok(available - differing);
+        }
+        if asked == 0 || asked > differing {
+            // Rounded down, so that it can be met.
+            let share = |voxels: u64| (1e4 * differing as f64 / voxels as f64).floor() / 1e4;
+            let ratio = of.map(share).filter(|&ratio| ratio > 0.0);
+            return Err(PointsError::Count { asked, available: differing, ratio });
         }
         Ok(available - asked)
     }
@@ -248,11 +270,11 @@ impl SelectionRule {
     pub(crate) fn asked(&self, voxels: u64) -> Result<Asked, PointsError> {
         let wrong = |what, given, need| Err(PointsError::Number { what, given, need });
         match *self {
-            Self::Count(count) => Ok(Asked::Largest(Most { count, or_all: false })),
+            Self::Count(count) => Ok(Asked::Largest(Most { count, or_fewer: false, of: None })),
             Self::Ratio(ratio) | Self::AtMost(ratio) if ratio > 0.0 && ratio <= 1.0 => {
                 let count = ((ratio * voxels as f64).round() as u64).clamp(1, voxels);
-                let or_all = matches!(self, Self::AtMost(_));
-                Ok(Asked::Largest(Most { count, or_all }))
+                let or_fewer = matches!(self, Self::AtMost(_));
+                Ok(Asked::Largest(Most { count, or_fewer, of: Some(voxels) }))
             }
             Self::Ratio(ratio) | Self::AtMost(ratio) => {
                 wrong("a ratio of", ratio, "a share above 0 and up to 1, as in 0.0609 for 6.09 %")
@@ -265,12 +287,14 @@ impl SelectionRule {
     }
 }
 
+/// What a least gray level is called in an error.
+pub(crate) const LEAST_GRAY: &str = "a least gray level of";
+
 /// Refuses NaN as the least gray level.
 pub(crate) fn check_least(gray_min: Option<f64>) -> Result<(), PointsError> {
     match gray_min {
         Some(given) if given.is_nan() => {
-            let (what, need) = ("a least gray level of", "a number");
-            Err(PointsError::Number { what, given, need })
+            Err(PointsError::Number { what: LEAST_GRAY, given, need: "a number" })
         }
         _ => Ok(()),
     }

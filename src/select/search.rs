@@ -60,6 +60,11 @@ impl Counts {
         self.bins.values().map(|bin| bin.count).sum::<u64>() + self.list.len() as u64
     }
 
+    /// Number of values, in a first round, of magnitude 0, or so small that they are not normal.
+    pub(crate) fn zeros(&self) -> u64 {
+        self.bins.get(&0).map_or(0, |bin| bin.count)
+    }
+
     /// Adds the counts of another part.
     pub(crate) fn join(&mut self, other: Self) {
         for (digit, bin) in other.bins {

@@ -67,10 +67,10 @@ fn a_cube_of_points_is_a_cube() {
     let hull = json(folder.path(), &["shape", "cube.csv", "--alpha", "inf"]);
     assert_eq!(hull["shape"]["volume"], 1.0);
     assert_eq!(hull["alpha"]["squared"], "inf");
-    let empty = json(folder.path(), &["shape", "cube.csv", "--alpha=-1"]);
+    let empty = json(folder.path(), &["shape", "cube.csv", "--alpha=-1", "--allow-empty"]);
     assert_eq!(empty["points"]["in_shape"], 0);
     assert_eq!(empty["shape"]["volume"], 0.0);
-    let said = ok(folder.path(), &["shape", "cube.csv", "--alpha=-1"]);
+    let said = ok(folder.path(), &["shape", "cube.csv", "--alpha=-1", "--allow-empty"]);
     assert!(said.contains("the shape is empty"), "{said}");
 }
 
@@ -161,8 +161,9 @@ fn a_constant_volume_is_no_accident() {
     let f = folder.path();
     fs::write(f.join("flat.raw"), [7; 64]).unwrap();
     let raw = ["flat.raw", "--dims", "4,4,4", "--dtype", "u8"];
-    let flat = "shape flat.raw --dims 4,4,4 --dtype u8 --count 10 --require-3d";
-    fails(f, 1, flat, &["in one plane"]);
+    let flat = "shape flat.raw --dims 4,4,4 --dtype u8 --count 10";
+    fails(f, 1, flat, &["none of the 64 that take part differs from a neighbour"]);
+    // Where all are asked for, none is chosen before another.
     let args = [&["shape"], &raw[..], &["--ratio", "1", "--weights", "min-max"]].concat();
     let report = json(f, &args);
     assert_eq!(report["weights"]["max"], 0.0);

@@ -49,7 +49,7 @@ fn errors_say_what_why_and_what_next() {
             1,
             "points sample:phantom@8 --count 999",
             "could not make weighted points",
-            "from 1 to 512",
+            "a count from 1 to ",
         ),
         (1, "reproduce --input sample:fantom", "could not read its input", "sample:phantom?"),
         (2, "shpe sample:phantom", "unrecognized subcommand 'shpe'", "'shape'"),

@@ -28,6 +28,7 @@ mod laws;
 mod mpi;
 mod numbers;
 #[cfg(target_os = "linux")]
+mod nothing;
 mod opened_once;
 mod outline;
 mod outofcore;
@@ -41,6 +42,7 @@ mod progress;
 mod refit;
 #[cfg(feature = "paper")]
 mod reproduce;
+mod single;
 mod skull;
 mod solid;
 mod triangulation;

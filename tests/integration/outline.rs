@@ -162,7 +162,8 @@ fn empty_shapes_have_empty_files() {
     let folder = tempfile::tempdir().unwrap();
     let f = folder.path();
     table(f, "points.csv", None);
-    ok(f, &["shape", "points.csv", "--alpha", "-1", "-o", "a.geojson", "a.wkt", "a.svg"]);
+    let empty = ["shape", "points.csv", "--alpha", "-1", "--allow-empty", "-o"];
+    ok(f, &[&empty[..], &["a.geojson", "a.wkt", "a.svg"]].concat());
     assert_eq!(read(f, "a.wkt"), "MULTIPOLYGON EMPTY\n");
     let made: Value = serde_json::from_str(&read(f, "a.geojson")).unwrap();
     assert_eq!(made["features"].as_array().unwrap().len(), 1);

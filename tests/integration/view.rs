@@ -315,3 +315,41 @@ fn the_page_explains_itself() {
         assert!(html.contains(&format!("id=\"{id}\"")), "{id}");
     }
 }
+
+/// Pages draw in single precision, as seen from the centre, which they state where it matters.
+#[test]
+fn far_from_the_origin_a_page_states_its_offset() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    for (far, is_stated) in [(0.0, false), (5_412_345.6, true)] {
+        let grid = (0..64).map(|i| [i % 4, i / 4 % 4, i / 16].map(|k| 0.05 * f64::from(k)));
+        let rows = grid.map(|[x, y, z]| format!("{x:.2},{:.2},{z:.2}\n", far + y));
+        fs::write(f.join("grid.csv"), format!("x,y,z\n{}", rows.collect::<String>())).unwrap();
+        ok(f, &["view", "grid.csv", "-o", "grid.html"]);
+        let page = Unpacked::of(&fs::read_to_string(f.join("grid.html")).unwrap(), "page");
+        let facts = page.content["facts"].to_string();
+        assert_eq!(facts.contains("in single precision, after"), is_stated, "{facts}");
+        assert!(!facts.contains("is not exact"), "{facts}");
+    }
+}
+
+/// An isovalue that no sample reaches has no surface, which is said in the terms in which it was given.
+#[test]
+fn an_isovalue_is_named_as_it_was_given() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    ok(f, &["haar", "sample:phantom@16", "-o", "p.nrrd"]);
+    for (given, words) in [
+        ("40", None),
+        ("40v", None),
+        ("9999", Some("no isosurface at gray 9999, as gray levels go from ")),
+        ("9999v", Some("no isosurface at 9999, as values go from ")),
+    ] {
+        let (code, _, said) = run(f, &["view", "p.nrrd", "--isovalue", given, "-o", "p.html"]);
+        assert_eq!(code, 0, "{said}");
+        match words {
+            Some(words) => assert!(said.contains(words), "{said}"),
+            None => assert!(!said.contains("no isosurface"), "{said}"),
+        }
+    }
+}

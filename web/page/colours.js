@@ -35,3 +35,9 @@ export function short(number) {
   if (number === "inf" || number === Infinity) return "∞";
   return Number(Number(number).toPrecision(4)).toLocaleString("en", { maximumSignificantDigits: 4, useGrouping: false });
 }
+
+// A coordinate, with digits enough to tell places apart that are a ten-thousandth of the whole from each other, however far they lie.
+export function placed(coordinate, extent) {
+  const digits = extent > 0 ? Math.ceil(Math.log10(Math.abs(coordinate) / extent)) + 4 : 4;
+  return String(Number(coordinate.toPrecision(Math.min(17, Math.max(4, Number.isFinite(digits) ? digits : 4)))));
+}

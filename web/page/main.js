@@ -50,7 +50,8 @@ function busy(text) {
 
 function fail(error) {
   busy(null);
-  byId("options").hidden = state.input === null;
+  // An input that cannot be read has no options but those that may help.
+  if (state.facts === null) offer(null, Object.keys(READING).filter((id) => error.next?.includes(`“${id}”`)));
   if (error instanceof Cancelled) {
     byId("status").textContent = "Cancelled.";
     document.body.dataset.state = "cancelled";
@@ -151,11 +152,29 @@ function choose(input, files) {
     for (const id of ["frame", "downsample", "columns", "series"]) byId(id).value = "";
     byId("series").replaceChildren();
     Object.assign(state, { input, facts: null, opened: null, suited: false });
+    rows(byId("facts"), []);
+    offer(null);
     panel.clear();
     busy("Reading …");
     engine.put(files);
     await compute();
   });
+}
+
+// The options of how an input is read, and of which kinds.
+const READING = { series: ["series"], frame: ["volume"], downsample: ["volume"], columns: ["points"] };
+
+// Shows the options of a kind of input: how it is read, and what is made of it.
+function offer(kind, others = []) {
+  for (const [id, kinds] of Object.entries(READING)) {
+    const isKnown = id === "series" && byId(id).options.length > 0;
+    byId(id).parentElement.hidden = !(isKnown || kinds.includes(kind) || others.includes(id));
+  }
+  byId("of-volume").hidden = kind !== "volume";
+  byId("of-points").hidden = kind !== "points";
+  byId("of-shape").hidden = kind !== "volume" && kind !== "points";
+  byId("options").hidden = kind === null && others.length === 0;
+  byId("slices").hidden = kind !== "volume";
 }
 
 function reading() {
@@ -177,12 +196,8 @@ async function open() {
   }
   state.facts = facts;
   state.opened = JSON.stringify(reading());
-  byId("options").hidden = false;
+  offer(facts.kind);
   const isVolume = facts.kind === "volume";
-  byId("series-label").hidden = facts.kind !== "series" && byId("series").options.length === 0;
-  byId("of-volume").hidden = !isVolume;
-  byId("of-points").hidden = facts.kind !== "points";
-  byId("slices").hidden = !isVolume;
   if (facts.kind === "series") {
     rows(byId("facts"), [["input", state.input], ["series", `${facts.series.length}: choose one below`]]);
     byId("series").replaceChildren(element("option", { value: "", textContent: "choose one" }), ...facts.series.map((series, k) =>
@@ -351,8 +366,9 @@ async function save(extension) {
   return task(`Writing ${name} …`, async () => {
     const { alpha } = panel;
     const solid = extension === "stl";
-    const { bytes } = await engine.call({ do: "save", name, alpha, solid });
+    const { bytes, remarks } = await engine.call({ do: "save", name, alpha, solid });
     download(bytes, name);
+    remarks.forEach(remark);
     await command(name, alpha, solid);
     document.body.dataset.saved = name;
     byId("status").textContent = `${name}: ${(bytes.length / 1e6).toFixed(2)} MB.`;
@@ -418,7 +434,7 @@ function wire() {
     const files = [...list].filter((file) => !file.name.startsWith("."));
     if (files.length === 0) return undefined;
     const entries = files.map((file) => ({ path: file.webkitRelativePath || file.name, file }));
-    return offer(entries);
+    return take(entries);
   };
   for (const [button, input] of [["choose", "files"], ["choose-folder", "folder"]]) {
     byId(button).addEventListener("click", () => byId(input).click());
@@ -434,7 +450,7 @@ function wire() {
       const entry = item.webkitGetAsEntry?.();
       return entry?.isDirectory ? { entry, handle: item.getAsFileSystemHandle?.() } : { file: item.getAsFile() };
     });
-    return Promise.all(dropped.map(filesOf)).then((files) => offer(files.flat())).catch(quietly);
+    return Promise.all(dropped.map(filesOf)).then((files) => take(files.flat())).catch(quietly);
   });
   byId("examples").append(...EXAMPLES.map(({ input, name }) => element("option", { value: input, textContent: name })));
   byId("examples").addEventListener("change", ({ target }) => {
@@ -480,7 +496,7 @@ async function ofEntry(entry) {
 // Headers whose samples may lie in a file beside them.
 const HEADERS = /\.(nhdr|mhd|hdr)$/i;
 // What is one input: a file, a header with the file beside it, or a folder of slices.
-function offer(files) {
+function take(files) {
   if (files.length === 0) return undefined;
   const [first] = files;
   const folder = first.path.includes("/") ? first.path.slice(0, first.path.indexOf("/")) : null;

@@ -2,7 +2,7 @@
 
 import { Box3, Vector3 } from "three";
 import { Curve } from "./charts.js";
-import { CLASSES, EDGES, INTERIOR, OF_CLASS, REGULAR, short, SINGULAR } from "./colours.js";
+import { CLASSES, EDGES, INTERIOR, OF_CLASS, placed, REGULAR, short, SINGULAR } from "./colours.js";
 import { byId, download, element, rows } from "./dom.js";
 import { ShapeScene } from "./scene.js";
 
@@ -188,7 +188,9 @@ export class ShapePanel {
   // The index of a point, and what is known of it.
   wordsOf(v) {
     const { positions, weights, values, differences, centre, unit } = this.made;
-    const at = [0, 1, 2].map((k) => short(positions[3 * v + k] + centre[k])).join(", ");
+    const { min, max } = this.scene.box;
+    const extent = Math.max(max.x - min.x, max.y - min.y, max.z - min.z);
+    const at = [0, 1, 2].map((k) => placed(positions[3 * v + k] + centre[k], extent)).join(", ");
     const value = values ? `, F = ${short(values[v])}` : "";
     const difference = differences ? `, difference ${short(differences[v])}` : "";
     return `point ${v} at (${at}) ${unit}${value}${difference}, ω = ${short(weights[v])}, ${CLASSES[this.shape.classes[v]]}`;

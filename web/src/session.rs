@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use serde_json::json;
-use walpha::export::{ExportOptions, Format};
+use walpha::export::{EmptyShape, ExportOptions, Format};
 use walpha::ladder::{Filtration, Span};
 use walpha::pipeline::{Input, Parameter, ParameterOrigin, PipelineError, Values, Weighed};
 use walpha::points::{
@@ -136,6 +136,17 @@ failures! {
     VolumeError: VolumeError::advice,
     walpha::shape::ShapeError: walpha::shape::ShapeError::advice,
     volume::UnknownFormat: |error: &volume::UnknownFormat| Some(error.advice()),
+}
+
+/// The page moves α by its slider.
+impl From<EmptyShape> for Failure {
+    fn from(error: EmptyShape) -> Self {
+        let next = match error.suggested {
+            Some(radius) => format!("move α up, to √α = {radius} say"),
+            None => error.advice().to_string(),
+        };
+        Self { why: error.to_string(), next: Some(next) }
+    }
 }
 
 /// An error and its causes, where it does not already contain them.
@@ -540,7 +551,7 @@ impl Made {
     fn save(&self, input: &str, name: &Path, alpha: f64, solid: bool) -> Result<Answer, Failure> {
         let is_shape = self.is_shape(alpha);
         let alpha = Alpha::from_squared(alpha).map_err(PipelineError::from)?;
-        let mut bytes = Vec::new();
+        let (mut bytes, mut remarks) = (Vec::new(), Vec::new());
         let failed = |error: std::io::Error| error.to_string();
         if let Some(writer) = point_writer(name) {
             // Weights that are frozen belong to their own α.
@@ -562,10 +573,17 @@ impl Made {
             let mut parameter = self.reference;
             (parameter.alpha, parameter.origin) = (alpha, ParameterOrigin::Given);
             weighed.parameter = Some(parameter);
-            let model = self.recipe.finish(weighed, &Monitor::new(ToPage))?;
-            exporter.write(&model.shape, &mut bytes).map_err(failed)?;
+            let monitor = Monitor::new(ToPage);
+            let shape = self.recipe.finish(weighed, &monitor)?.shape;
+            EmptyShape::check(&shape, exporter.needs(), &monitor)?;
+            if let Some(remark) =
+                exporter.single_precision(&shape).and_then(|single| single.remark())
+            {
+                remarks.push(format!("{}: {remark}", name.display()));
+            }
+            exporter.write(&shape, &mut bytes).map_err(failed)?;
         }
-        Ok(Answer::of(json!({}), vec![Array::U8("bytes", bytes)]))
+        Ok(Answer::of(json!({ "remarks": remarks }), vec![Array::U8("bytes", bytes)]))
     }
 
     fn command(&self, input: &str, name: &str, alpha: f64, solid: bool) -> Answer {

@@ -11,7 +11,7 @@ use std::sync::Arc;
 use numpy::ndarray::Array3;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArray3, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
-use walpha::export::{ExportOptions, Format, Target};
+use walpha::export::{EmptyShape, ExportOptions, Format, Target, TargetError};
 use walpha::interpolate::{Grid, Interpolant, InterpolateError};
 use walpha::pipeline::Model;
 use walpha::progress::Stage;
@@ -297,8 +297,14 @@ impl Shape {
         Ok(samples.into_pyarray(py))
     }
 
-    /// Writes a file, by its extension.
-    fn save(&self, py: Python<'_>, path: PathBuf, solid: bool) -> PyResult<()> {
+    /// Writes a file, by its extension; says what a user of it has to know of its coordinates, if anything.
+    fn save(
+        &self,
+        py: Python<'_>,
+        path: PathBuf,
+        solid: bool,
+        allow_empty: bool,
+    ) -> PyResult<Option<String>> {
         let format = Format::of(&path).map_err(Told::told)?;
         if solid && !format.boundary {
             return Err(wrong(
@@ -313,10 +319,21 @@ impl Shape {
         if format.outline {
             self.check_outline().map_err(Told::told)?;
         }
-        let options = ExportOptions::default().solid(solid);
-        let (shape, target) = (Arc::clone(&self.shape), Target::open(&path).map_err(Told::told)?);
+        let exporter = move || format.exporter(&ExportOptions::default().solid(solid));
+        let shape = Arc::clone(&self.shape);
+        if !allow_empty {
+            let shape = Arc::clone(&shape);
+            run(py, &Task::default(), move |monitor| {
+                EmptyShape::check(&shape, exporter().needs(), monitor)
+            })?;
+        }
+        let target = Target::open(&path).map_err(Told::told)?;
         run(py, &Task::default(), move |_| {
-            target.write(|out| format.exporter(&options).write(&shape, out))
+            let exporter = exporter();
+            target.write(|out| exporter.write(&shape, out))?;
+            Ok::<_, TargetError>(
+                exporter.single_precision(&shape).and_then(|single| single.remark()),
+            )
         })
     }
 }

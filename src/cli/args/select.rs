@@ -68,8 +68,8 @@ pub(crate) struct SelectArgs {
     /// Keep N samples.
     #[arg(long, value_name = "N", group = "rule", value_parser = count)]
     count: Option<u64>,
-    /// Keep this share of all samples, 0 < R ≤ 1 [default: 0.0609, or all eligible samples if these are
-    /// fewer].
+    /// Keep this share of all samples, 0 < R ≤ 1 [default: 0.0609, or all samples that differ from a
+    /// neighbour if these are fewer].
     #[arg(long, value_name = "R", group = "rule", value_parser = share)]
     ratio: Option<f64>,
     /// Keep the samples whose gray difference is at least T gray levels.

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt::{self, Display};
 use std::io;
+use std::path::Path;
 
 use serde::Serialize;
 use walpha_base::Monitor;
@@ -12,6 +13,7 @@ use crate::cli::args::one_alpha;
 use crate::cli::errors::{fail, fail_usage};
 use crate::cli::folder::Folder;
 use crate::cli::global::Global;
+use crate::cli::offsets::FileOffset;
 use crate::cli::outline;
 use crate::cli::output::{name, print_summary};
 use crate::cli::pipeline::{Domain, read};
@@ -19,7 +21,7 @@ use crate::cli::progress::Progress;
 use crate::cli::report::SCHEMA_VERSION;
 use crate::haar::smooth_monitored;
 use crate::pipeline::{Input, Parameter, Source};
-use crate::points::{Points, Region, Units, difference, focus, select, weigh};
+use crate::points::{Points, Region, difference, focus, select, weigh};
 use crate::progress::Stage;
 use crate::shape::{AlphaShape, Betti, Measures, ShapeOptions, Surface, alpha_shape_monitored};
 use crate::{
@@ -61,7 +63,8 @@ impl Ladder {
         let Some(selection) = recipe.selection(&source.range) else {
             fail_usage!("--select adaptive has no effect: levels of detail are selected by differences" => "omit it");
         };
-        let mut front_end = FrontEnd { volume, units, smoothed: None, monitor: &monitor };
+        let mut front_end =
+            FrontEnd { source: &source, recipe: &recipe, smoothed: None, monitor: &monitor };
         let full =
             progress.stage(Stage::Points, || self.full(&mut front_end, &recipe, selection))?;
         let mut rows = Vec::new();
@@ -153,6 +156,7 @@ fn write_meshes(
     for mesh in meshes {
         let name = format!("detail-{level}.{}", mesh.extension);
         row.bytes += folder.write(&name, |out| mesh.exporter.write(shape, out))?;
+        row.offsets.extend(FileOffset::of(Path::new(&name), mesh.exporter.as_ref(), shape));
         row.files.push(name);
     }
     Ok(())
@@ -160,8 +164,8 @@ fn write_meshes(
 
 /// The stages before the weights; the truncated volume is kept for the next level.
 struct FrontEnd<'a> {
-    volume: &'a Volume,
-    units: Units,
+    source: &'a Source,
+    recipe: &'a Recipe,
     smoothed: Option<(HaarOptions, Volume, Truncation)>,
     monitor: &'a Monitor,
 }
@@ -172,14 +176,16 @@ impl FrontEnd<'_> {
         options: &HaarOptions,
         selection: &Selection,
     ) -> anyhow::Result<(Points, Truncation)> {
+        let Source { ref volume, units, ref range, .. } = *self.source;
         let (_, smoothed, truncation) =
             if let Some(known) = self.smoothed.take().filter(|s| s.0 == *options) {
                 self.smoothed.insert(known)
             } else {
-                let (smoothed, truncation) = smooth_monitored(self.volume, options, self.monitor)?;
+                let (smoothed, truncation) = smooth_monitored(volume, options, self.monitor)?;
                 self.smoothed.insert((*options, smoothed, truncation))
             };
-        let points = select(self.volume, smoothed, &difference(smoothed), selection, self.units)?;
+        let points = select(volume, smoothed, &difference(smoothed), selection, units)
+            .map_err(|error| self.recipe.in_its_terms(error, range))?;
         Ok((points, *truncation))
     }
 }
@@ -219,6 +225,9 @@ pub(super) struct Row {
     /// Size of this level's meshes.
     pub bytes: u64,
     pub files: Vec<String>,
+    /// What meshes in single precision have subtracted from coordinates, where they have.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub offsets: Vec<FileOffset>,
 }
 
 impl Row {
@@ -246,6 +255,7 @@ impl Row {
             },
             bytes: 0,
             files: Vec::new(),
+            offsets: Vec::new(),
         }
     }
 }
@@ -291,6 +301,8 @@ impl Display for DetailSummary {
                 row.files.join(", ")
             )?;
         }
+        let offsets = self.levels.iter().flat_map(|row| &row.offsets);
+        offsets.into_iter().try_for_each(|offset| offset.fmt(f))?;
         writeln!(
             f,
             "rms: the error of the wavelet stage; F: RMSE of the interpolant, on the samples of the \

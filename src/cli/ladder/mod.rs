@@ -14,6 +14,7 @@ use super::args::{Alphas, FrozenPipelineArgs};
 use super::errors::{CommandError, fail_usage};
 use super::folder::Folder;
 use super::global::Global;
+use super::offsets::FileOffset;
 use super::output::print_summary;
 use super::pipeline::{self, filled_in};
 use super::progress::Progress;
@@ -153,7 +154,8 @@ impl Ladder {
                 folder.write("ladder.png", |out| out.write_all(&png))?;
                 folder.write("ladder.svg", |out| out.write_all(svg.as_bytes()))?;
             }
-            write_meshes(&levels, &ladder, coordinates, meshes, &mut folder)
+            facts.offsets = write_meshes(&levels, &ladder, coordinates, meshes, &mut folder)?;
+            Ok(())
         })?;
         facts.add(&filtration, &curve, suggested, &ladder);
         let mut files = folder.written().to_vec();
@@ -165,25 +167,27 @@ impl Ladder {
     }
 }
 
-/// Writes a mesh of each level in each format.
+/// Writes a mesh of each level in each format; says what those in single precision have subtracted.
 fn write_meshes(
     levels: &crate::ladder::Levels<'_>,
     ladder: &Levels,
     coordinates: Coordinates,
     meshes: &[Mesh],
     folder: &mut Folder,
-) -> anyhow::Result<()> {
+) -> anyhow::Result<Vec<FileOffset>> {
+    let mut offsets = Vec::new();
     if meshes.is_empty() {
-        return Ok(());
+        return Ok(offsets);
     }
     for (k, level) in ladder.levels.iter().enumerate() {
         let shape = levels.shape(k, false, level.betti).with_coordinates(coordinates);
         for mesh in meshes {
             let name = level_name(ladder, k, level, &mesh.extension);
             folder.write(&name, |out| mesh.exporter.write(&shape, out))?;
+            offsets.extend(FileOffset::of(Path::new(&name), mesh.exporter.as_ref(), &shape));
         }
     }
-    Ok(())
+    Ok(offsets)
 }
 
 /// The name of a level's mesh: its position in the ladder, and its α.

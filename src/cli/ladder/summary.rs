@@ -11,6 +11,7 @@ use crate::ladder::{Curve, Filtration, Ladder, Level, Suggestions};
 use crate::pipeline::{Parameter, Weighed};
 use crate::shape::{Alpha, Betti, ByClass, Measures, Void};
 
+use crate::cli::offsets::FileOffset;
 use crate::cli::output::name;
 use crate::cli::pipeline::Domain;
 use crate::cli::report::{SCHEMA_VERSION, WeightsReport, ending};
@@ -35,6 +36,9 @@ pub(super) struct LadderSummary {
     suggested: Option<Suggestions>,
     levels: Vec<Row>,
     files: Vec<String>,
+    /// What meshes in single precision have subtracted from coordinates, where they have.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(super) offsets: Vec<FileOffset>,
     seconds: BTreeMap<&'static str, f64>,
 }
 
@@ -80,6 +84,7 @@ impl LadderSummary {
             suggested: None,
             levels: Vec::new(),
             files: Vec::new(),
+            offsets: Vec::new(),
             seconds: BTreeMap::new(),
         }
     }
@@ -147,6 +152,7 @@ impl Display for LadderSummary {
             self.print_suggested(f, suggested)?;
         }
         self.print_levels(f)?;
+        self.offsets.iter().try_for_each(|offset| offset.fmt(f))?;
         ending(f, &self.files, &STAGES, &self.seconds)
     }
 }

@@ -16,6 +16,7 @@ use crate::points::WeightSummary;
 use crate::shape::{Cuts, Engine};
 use crate::{Coordinates, GrayRange};
 
+use super::offsets::FileOffset;
 use super::output::name;
 use super::pipeline::VolumeSummary;
 use parts::ShapeReport;
@@ -63,6 +64,9 @@ pub(super) struct Report {
     #[serde(skip_serializing_if = "Option::is_none")]
     solid: Option<Cuts>,
     files: Vec<String>,
+    /// What files in single precision have subtracted from coordinates, where they have.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(super) offsets: Vec<FileOffset>,
     seconds: BTreeMap<&'static str, f64>,
     pub(super) peak_memory_bytes: Option<u64>,
 }
@@ -101,6 +105,7 @@ impl Report {
             engine: None,
             solid: None,
             files: Vec::new(),
+            offsets: Vec::new(),
             seconds: BTreeMap::new(),
             peak_memory_bytes: None,
         }
@@ -155,6 +160,7 @@ impl Report {
             engine: Some(Engine::Native),
             solid: None,
             files: Vec::new(),
+            offsets: Vec::new(),
             seconds: BTreeMap::new(),
             peak_memory_bytes: None,
         }
@@ -228,6 +234,7 @@ impl Display for Report {
                  vertices and {midpoints} midpoints of edges"
             )?,
         }
+        self.offsets.iter().try_for_each(|offset| offset.fmt(f))?;
         ending(f, &self.files, &STAGES, &self.seconds)
     }
 }

@@ -172,10 +172,27 @@ fn impossible_selections_say_what_is_possible() {
             .unwrap_err()
             .told()
     };
-    assert!(refuse(SelectionRule::Count(0), None).contains("1 to 24"));
-    assert!(refuse(SelectionRule::Count(25), None).contains("1 to 24"));
+    assert!(
+        refuse(SelectionRule::Count(1), None).contains("none of the 24 that take part differs")
+    );
+    assert!(
+        refuse(SelectionRule::Count(25), None).contains("none of the 24 that take part differs")
+    );
+    let step = volume(Array3::from_shape_fn((1, 1, 9), |(_, _, x)| if x < 4 { 0.0 } else { 9.0 }));
+    for count in [0, 3, 10] {
+        let rule = Selection::default().rule(SelectionRule::Count(count));
+        let told =
+            select(&step, &step, &difference(&step), &rule, Units::Voxel).unwrap_err().told();
+        assert!(
+            told.contains("2 samples take part and differ") && told.contains("1 to 2"),
+            "{told}"
+        );
+    }
     assert!(refuse(SelectionRule::Count(1), Some(1.0)).contains("no voxel reaches"));
-    assert!(refuse(SelectionRule::Threshold(0.5), None).contains("none of 24 voxels"));
+    assert!(
+        refuse(SelectionRule::Threshold(0.5), None)
+            .contains("a difference of 0.5 gray levels: the largest is 0")
+    );
     for ratio in [0.0, -0.1, 1.1, f64::NAN] {
         assert!(refuse(SelectionRule::Ratio(ratio), None).contains("ratio"));
     }

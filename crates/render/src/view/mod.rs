@@ -7,6 +7,7 @@ mod pack;
 mod subject;
 
 use serde_json::{Value, json};
+use walpha_shape::SinglePrecision;
 use walpha_shape::ladder::Level;
 
 use crate::error::RenderError;
@@ -90,7 +91,7 @@ fn whole(subject: &Subject<'_>, centre: [f64; 3]) -> Value {
         subject.difference
     );
     json!({
-        "facts": subject.facts,
+        "facts": facts(subject, centre),
         "unit": subject.unit,
         "centre": centre,
         "domain": if subject.original.is_some() { "the volume" } else { "the box" },
@@ -98,6 +99,35 @@ fn whole(subject: &Subject<'_>, centre: [f64; 3]) -> Value {
         "isovalue": subject.original.map(|original| original.isovalue),
         "points": subject.details.iter().map(|detail| detail.levels.points().len()).collect::<Vec<_>>(),
     })
+}
+
+/// The facts that the page lists: those of the subject, and where the picture is seen from if single precision could not
+/// hold it elsewhere.
+fn facts(subject: &Subject<'_>, centre: [f64; 3]) -> Vec<(String, String)> {
+    let mut facts = subject.facts.to_vec();
+    let single = |at: [f64; 3]| subject.details.iter().map(move |detail| single(detail, at));
+    if single([0.0; 3]).any(|single| single.remark().is_some()) {
+        let [x, y, z] = centre.map(walpha_base::shown::number);
+        let mut text = format!(
+            "positions are drawn in single precision, after {x}, {y}, {z} is subtracted; what is read out is in the \
+             coordinates of the input"
+        );
+        if single(centre).any(|single| single.is_lossy) {
+            text += "; even so the picture is not exact";
+        }
+        facts.push(("offset".into(), text));
+    }
+    facts
+}
+
+/// How the positions of a level of detail, as seen from a place, become single precision.
+fn single(detail: &Detail<'_>, from: [f64; 3]) -> SinglePrecision {
+    let seen = |place: &[f64; 3]| [0, 1, 2].map(|k| place[k] - from[k]);
+    let places: Vec<[f64; 3]> = detail.levels.points().positions().iter().map(seen).collect();
+    let facets = detail.levels.facets().into_iter();
+    let sides = facets.flat_map(|([a, b, c], _)| [[a, b], [b, c], [c, a]]);
+    let edges = detail.levels.singular_edges().into_iter().map(|(edge, _)| edge);
+    SinglePrecision::of(&places, sides.chain(edges))
 }
 
 /// A level of detail, without its arrays.

@@ -1,0 +1,250 @@
+//! Coordinates in single precision, in which some formats hold them and all pages draw them.
+
+use rayon::prelude::*;
+use walpha_base::shown::{number, six_digits};
+
+use super::Surface;
+
+/// How coordinates become single precision. Far from the origin rounding moves them, up to letting vertices fall onto one
+/// another; an offset that is subtracted first keeps them apart.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct SinglePrecision {
+    /// What is subtracted along x, y and z: a multiple of a power of ten, the roundest that suffices. 0 along axes that can do
+    /// without.
+    pub offset: [f64; 3],
+    /// The largest error of a coordinate after that, in the unit of the coordinates.
+    pub error: f64,
+    /// Whether even so a mesh is not what it was: the error is more than a thousandth of its shortest edge, or different
+    /// vertices have become one.
+    pub is_lossy: bool,
+}
+
+/// The share of the shortest edge that rounding may move a coordinate by.
+const TOLERATED: f64 = 1e-3;
+/// The largest relative error of rounding to single precision, 2⁻²⁴.
+const HALF_STEP: f64 = f32::EPSILON as f64 / 2.0;
+
+impl SinglePrecision {
+    /// That of a surface, from the positions of the input. O(n log n) where coordinates are not those of single precision
+    /// already, else O(n).
+    pub fn of_surface(surface: &Surface, of_input: &[[f64; 3]]) -> Self {
+        let places: Vec<[f64; 3]> = surface.positions(of_input).collect();
+        let sides = surface.facets().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
+        Self::of(&places, sides.chain(surface.edges.iter().copied()))
+    }
+
+    /// That of places, and of edges between them.
+    pub fn of(places: &[[f64; 3]], edges: impl Iterator<Item = [u32; 2]>) -> Self {
+        let exact = Self::default();
+        if exact.errors(places) == [0.0; 3] {
+            return exact;
+        }
+        let shortest = edges.map(|edge| length(edge.map(|v| places[v as usize])));
+        let tolerated = TOLERATED * shortest.fold(f64::INFINITY, f64::min);
+        let suffices = |found: &Self| found.error <= tolerated && !found.merges(places);
+        let plain = exact.measured(places);
+        if suffices(&plain) {
+            return plain;
+        }
+        let [low, high] = bounds(places);
+        let around = |tolerated: f64| {
+            let errors = exact.errors(places);
+            let of_axis = |axis: usize| {
+                if errors[axis] <= tolerated {
+                    0.0
+                } else {
+                    offset(low[axis], high[axis], tolerated)
+                }
+            };
+            let shifted = Self { offset: [0, 1, 2].map(of_axis), ..exact };
+            // An axis on which it gains nothing stays as it is.
+            let gains = shifted.errors(places);
+            let kept =
+                |axis: usize| if gains[axis] < errors[axis] { shifted.offset[axis] } else { 0.0 };
+            Self { offset: [0, 1, 2].map(kept), ..exact }.measured(places)
+        };
+        // Where vertices that no edge joins are nearer to each other than any edge is long, as near as can be.
+        let found = [tolerated, 0.0].map(around);
+        let best = found.into_iter().find(suffices);
+        best.unwrap_or(Self { is_lossy: true, ..found[1] })
+    }
+
+    /// A place in single precision.
+    pub fn round(&self, place: [f64; 3]) -> [f32; 3] {
+        [0, 1, 2].map(|axis| (place[axis] - self.offset[axis]) as f32)
+    }
+
+    /// Whether something is subtracted.
+    pub fn has_offset(&self) -> bool {
+        self.offset != [0.0; 3]
+    }
+
+    /// What a user of the mesh has to know, if anything.
+    pub fn remark(&self) -> Option<String> {
+        let [x, y, z] = self.offset.map(number);
+        let error = number(six_digits(self.error));
+        match (self.has_offset(), self.is_lossy) {
+            (false, false) => None,
+            (true, false) => Some(format!(
+                "its coordinates are single precision, which does not tell these places apart: {x}, {y}, {z} is \
+                 subtracted from x, y, z"
+            )),
+            (true, true) => Some(format!(
+                "its coordinates are single precision: {x}, {y}, {z} is subtracted from x, y, z, and even so they are \
+                 rounded by up to {error}, which changes the mesh; other formats hold doubles"
+            )),
+            (false, true) => Some(format!(
+                "its coordinates are single precision, rounded by up to {error}, which changes the mesh; other formats \
+                 hold doubles"
+            )),
+        }
+    }
+
+    /// The same with the error that it makes.
+    fn measured(self, places: &[[f64; 3]]) -> Self {
+        Self { error: self.errors(places).into_iter().fold(0.0, f64::max), ..self }
+    }
+
+    /// The largest error along each axis; infinite beyond the range of single precision.
+    fn errors(&self, places: &[[f64; 3]]) -> [f64; 3] {
+        let error = |place: &[f64; 3]| {
+            let rounded = self.round(*place).map(f64::from);
+            [0, 1, 2].map(|axis| match rounded[axis] {
+                rounded if rounded.is_finite() => (place[axis] - self.offset[axis] - rounded).abs(),
+                _ => f64::INFINITY,
+            })
+        };
+        let larger = |a: [f64; 3], b: [f64; 3]| [0, 1, 2].map(|axis| a[axis].max(b[axis]));
+        places.par_iter().map(error).reduce(|| [0.0; 3], larger)
+    }
+
+    /// Whether different places become one.
+    fn merges(&self, places: &[[f64; 3]]) -> bool {
+        // Adding 0 turns −0 into 0.
+        let rounded = distinct(places, |place| self.round(place).map(|x| (x + 0.0).to_bits()));
+        rounded < places.len()
+            && rounded < distinct(places, |place| place.map(|x| (x + 0.0).to_bits()))
+    }
+}
+
+/// Number of different keys.
+fn distinct<K: Ord + Send>(places: &[[f64; 3]], key: impl Fn([f64; 3]) -> K + Sync) -> usize {
+    let mut keys: Vec<K> = places.par_iter().map(|&place| key(place)).collect();
+    keys.par_sort_unstable();
+    keys.dedup();
+    keys.len()
+}
+
+/// The corners of the box of places.
+fn bounds(places: &[[f64; 3]]) -> [[f64; 3]; 2] {
+    places.iter().fold([[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]], |[low, high], place| {
+        [[0, 1, 2].map(|k| low[k].min(place[k])), [0, 1, 2].map(|k| high[k].max(place[k]))]
+    })
+}
+
+fn length([a, b]: [[f64; 3]; 2]) -> f64 {
+    [0, 1, 2].map(|axis| a[axis] - b[axis]).into_iter().fold(0.0, f64::hypot)
+}
+
+/// The roundest number that leaves an error of no more than is tolerated where it is subtracted from numbers between two;
+/// or else one about in their middle.
+fn offset(low: f64, high: f64, tolerated: f64) -> f64 {
+    let (middle, half) = (f64::midpoint(low, high), high / 2.0 - low / 2.0);
+    let first = middle.abs().log10().floor();
+    // What is smaller than all numbers of single precision is none of these elsewhere either.
+    if first < -45.0 {
+        return 0.0;
+    }
+    let mut power = first as i32;
+    loop {
+        let step = 10f64.powi(power.abs());
+        let multiple =
+            if power < 0 { (middle * step).round() / step } else { (middle / step).round() * step };
+        let suffices = HALF_STEP * f64::max(high - multiple, multiple - low) <= tolerated;
+        // Beyond the digits of a double no number is rounder.
+        let ends = 10f64.powi(power) <= half || f64::from(power) < first - 17.0;
+        if suffices || ends {
+            return multiple;
+        }
+        power -= 1;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A square grid of points 5 cm apart, as far from the origin as UTM has them.
+    fn roof(at: [f64; 3]) -> (Vec<[f64; 3]>, Vec<[u32; 2]>) {
+        let place =
+            |i: u32| [at[0] + 0.05 * f64::from(i % 20), at[1] + 0.05 * f64::from(i / 20), at[2]];
+        let rows = (0..400).filter(|i| i % 20 < 19).map(|i| [i, i + 1]);
+        ((0..400).map(place).collect(), rows.collect())
+    }
+
+    fn single(places: &[[f64; 3]], edges: &[[u32; 2]]) -> SinglePrecision {
+        SinglePrecision::of(places, edges.iter().copied())
+    }
+
+    #[test]
+    fn a_round_number_is_subtracted_where_rounding_moves_coordinates() {
+        let (places, edges) = roof([434_123.4, 5_412_345.6, 412.0]);
+        let found = single(&places, &edges);
+        assert_eq!(found.offset, [434_000.0, 5_412_000.0, 0.0]);
+        assert!(!found.is_lossy && found.error <= 5e-5, "{found:?}");
+        let rounded: Vec<[f32; 3]> = places.iter().map(|&place| found.round(place)).collect();
+        for (place, rounded) in places.iter().zip(&rounded) {
+            for axis in 0..3 {
+                let back = found.offset[axis] + f64::from(rounded[axis]);
+                assert!((back - place[axis]).abs() <= found.error + 1e-9);
+            }
+        }
+        let told = found.remark().unwrap();
+        assert!(told.contains("434000, 5412000, 0 is subtracted"), "{told}");
+    }
+
+    #[test]
+    fn what_single_precision_holds_stays() {
+        let (places, edges) = roof([0.0; 3]);
+        let near = single(&places, &edges);
+        assert!(!near.has_offset() && near.error > 0.0 && near.remark().is_none());
+        // Whole numbers below 2²⁴, wherever they are.
+        let whole: Vec<[f64; 3]> =
+            (0..9).map(|i| [16_000_000.0 + f64::from(i), 0.0, -1.0]).collect();
+        assert_eq!(single(&whole, &[[0, 1]]), SinglePrecision::default());
+        assert_eq!(single(&[], &[]), SinglePrecision::default());
+    }
+
+    /// Vertices that no edge joins may be nearer to each other than any edge is long.
+    #[test]
+    fn places_that_differ_stay_different() {
+        let places = [[1000.0, 0.0, 0.0], [1000.0 + 1e-5, 0.0, 0.0], [2000.0, 0.0, 0.0]];
+        let far = [
+            [1e6, 0.0, 0.0],
+            [1e6 + 1e-3, 0.0, 0.0],
+            [1e6 + 1.0, 0.0, 0.0],
+            [1e6 + 900.0, 0.0, 0.0],
+        ];
+        let found = single(&far, &[[0, 3]]);
+        assert!(found.has_offset() && !found.is_lossy, "{found:?}");
+        // There is no offset for what is far apart and fine.
+        let lossy = single(&places, &[[0, 2]]);
+        assert!(
+            lossy.is_lossy && lossy.remark().unwrap().contains("changes the mesh"),
+            "{lossy:?}"
+        );
+    }
+
+    #[test]
+    fn numbers_of_any_size_are_measured() {
+        for scale in [1e-320, 1e-300, 1e-40, 1e30, 1e300] {
+            let places: Vec<[f64; 3]> =
+                (0..4).map(|i| [scale * f64::from(i), scale, -scale]).collect();
+            let found = single(&places, &[[0, 1], [1, 2]]);
+            assert!(found.offset.iter().all(|x| x.is_finite()), "{scale}: {found:?}");
+        }
+        let huge = single(&[[1e300, 0.0, 0.0], [1e300, 1.0, 0.0]], &[[0, 1]]);
+        assert_eq!((huge.offset, huge.is_lossy), ([1e300, 0.0, 0.0], false));
+    }
+}
