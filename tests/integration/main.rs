@@ -46,6 +46,8 @@ mod triangulation;
 #[cfg(feature = "render")]
 mod view;
 mod volume;
+#[cfg(unix)]
+mod working_folders;
 mod wvm;
 #[cfg(feature = "zarr")]
 mod zarr;
