@@ -152,6 +152,7 @@ impl PlanStep {
             return print_summary(global, &CostSummary(estimate_cost(&job, cutting)?));
         };
         let new = folder::make(&folder, "with --output")?;
+        keep_input_of(&job, global);
         let plan = progress
             .stage(Stage::Points, || Plan::make_with(job, cutting, &folder, &Alone, &monitor))?;
         if let Some(new) = new {
@@ -167,6 +168,7 @@ impl RunStep {
         let mut progress = Progress::new(global);
         let monitor = progress.monitor();
         let plan = Plan::open(&self.folder)?;
+        keep_input_of(&plan.job, global);
         let blocks = if self.blocks.is_empty() {
             plan.restore()?;
             plan.missing()?
@@ -192,9 +194,7 @@ impl MergeStep {
         let export = ExportOptions { input, ..ExportOptions::default() };
         // An output in this folder could replace files of the plan.
         let _working = (!global.in_place).then(|| Working::folder(&self.folder));
-        if !global.in_place {
-            keep_input(Path::new(&plan.job.input), files_of);
-        }
+        keep_input_of(&plan.job, global);
         let mut outputs = Outputs::default();
         for path in &self.output {
             if let Some(pieces) = BlockwiseFormat::of(path) {
@@ -217,6 +217,13 @@ impl MergeStep {
         let files = self.output.iter().map(|path| path.display().to_string()).collect();
         report.finish(progress.finish(), files);
         print_summary(global, &report)
+    }
+}
+
+/// Protects the input, which may lie in the folder of a plan under the name of a block, say.
+fn keep_input_of(job: &Job, global: Global) {
+    if !global.in_place {
+        keep_input(Path::new(&job.input), files_of);
     }
 }
 

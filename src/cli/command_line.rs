@@ -71,7 +71,7 @@ impl Args for TypedOptions {
 }
 
 /// Options that name files to read; positional arguments do so, too.
-const READ: [&str; 2] = ["input", "points"];
+const READ: [&str; 3] = ["config", "input", "points"];
 /// Options that name files to write.
 const WRITTEN: [&str; 3] = ["output", "out", "mask"];
 /// The option that lets outputs replace inputs.
@@ -95,9 +95,9 @@ pub(super) fn protect_inputs(command: &Command, matches: &ArgMatches) -> anyhow:
         }
         return Ok(());
     }
-    let is_read = |id: &str, is_positional: bool| is_positional || READ.contains(&id);
-    for arg in args().filter(|arg| is_read(arg.get_id().as_str(), arg.is_positional())) {
-        let values = matches.try_get_raw(arg.get_id().as_str()).ok().flatten();
+    let positional = args().filter(|arg| arg.is_positional()).map(|arg| arg.get_id().as_str());
+    for id in positional.chain(READ) {
+        let values = matches.try_get_raw(id).ok().flatten();
         values.into_iter().flatten().for_each(|value| keep_input(Path::new(value), files_of));
     }
     Ok(())

@@ -4,6 +4,8 @@
 //! checked once and in one place, and new commands and options need no code here.
 
 use std::ffi::{OsStr, OsString};
+use std::fs::File;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
@@ -22,6 +24,8 @@ use super::preset;
 const FILE: &str = "config";
 /// The option that prints one.
 pub(super) const PRINT: &str = "print-config";
+/// Bytes of a file with settings, at most: there are a hundred options.
+const LONGEST: u64 = 1 << 20;
 /// Options that a file cannot set: they concern the configuration itself, or only this call.
 const NOT_CONFIGURED: [&str; 5] = [FILE, PRINT, preset::OPTION, "help", "version"];
 
@@ -164,9 +168,14 @@ fn path(matches: &ArgMatches) -> Option<PathBuf> {
 
 /// The file's settings for this command.
 fn read(command: &Command, file: &Path, name: &str) -> anyhow::Result<Table> {
-    let text = std::fs::read_to_string(file).map_err(|error| {
+    let mut text = String::new();
+    let read = File::open(file).and_then(|open| open.take(LONGEST + 1).read_to_string(&mut text));
+    read.map_err(|error| {
         command_error!("cannot read {}: {error}", shown(file) => "give --config the name of a TOML file")
     })?;
+    if text.len() as u64 > LONGEST {
+        fail!("{} has more than {LONGEST} bytes, and no configuration is that long", shown(file) => "give --config the name of a TOML file");
+    }
     let table: Table = text.parse().map_err(|error: toml::de::Error| {
         let message = error.to_string();
         let lines = message.lines().map(str::trim).filter(|line| !line.is_empty());

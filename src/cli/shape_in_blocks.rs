@@ -1,12 +1,16 @@
 //! `walpha shape` in blocks, by one process or by all that MPI started.
 
+use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 use walpha_base::memory;
+use walpha_base::shown::shown;
+use walpha_files::Lock;
 
 use super::args::InputArgs;
 use super::blocks::{Outputs, job};
+use super::errors::fail;
 use super::global::Global;
 use super::offsets::FileOffset;
 use super::progress::Progress;
@@ -53,13 +57,15 @@ impl SharedWork {
         progress: &mut Progress,
         team: &dyn Team,
     ) -> anyhow::Result<Report> {
-        let new = folder::make(&self.folder, "by naming another output")?;
+        let working = AtWork::in_folder(&self.folder)?;
         if team.size() > 1 {
             order(team, Some(serde_json::to_string(&self)?));
         }
-        let Shared { plan, merged, offsets } = self.share(new, outputs, progress, team)?;
+        let Shared { plan, merged, offsets, working } =
+            self.share(Some(working), outputs, progress, team)?;
         let mut report = Report::of_blocks(&plan, &merged.expect("the first process merges"));
         report.offsets = offsets;
+        working.expect("the first process has it").end()?;
         plan.remove()?;
         Ok(report)
     }
@@ -67,7 +73,7 @@ impl SharedWork {
     /// Does the share of one process.
     fn share(
         &self,
-        new: Option<NewFolder>,
+        working: Option<AtWork>,
         outputs: Outputs,
         progress: &mut Progress,
         team: &dyn Team,
@@ -76,15 +82,58 @@ impl SharedWork {
         let plan = progress.stage(Stage::Points, || {
             Plan::resume_with(self.job.clone(), self.cutting, &self.folder, team, &monitor)
         })?;
-        if let Some(new) = new {
-            new.keep();
-        }
+        let working = working.map(AtWork::kept);
         progress.stage(Stage::Shape, || run_missing(&plan, team, &monitor))?;
         let merge = || team.is_first().then(|| merge_monitored(&plan, &monitor)).transpose();
         let merged = progress.stage(Stage::Shape, merge)?;
         let write = || outputs.write(&plan, merged.as_ref(), team, &monitor);
         let offsets = progress.stage(Stage::Write, write)?;
-        Ok(Shared { plan, merged, offsets })
+        Ok(Shared { plan, merged, offsets, working })
+    }
+}
+
+/// A working folder that this command made, now or before it was interrupted, while it works there.
+struct AtWork {
+    lock: Lock,
+    new: Option<NewFolder>,
+}
+
+impl AtWork {
+    /// The file that tells such a folder from others, and is locked while a process works there.
+    const FILE: &str = "shape.lock";
+
+    /// Makes the folder, or takes the one that is there up again. A folder of others is refused, as its files could be
+    /// replaced.
+    fn in_folder(folder: &Path) -> anyhow::Result<Self> {
+        const INSTEAD: &str = "by naming another output";
+        let new = folder::make(folder, INSTEAD)?;
+        let path = folder.join(Self::FILE);
+        let lock = if new.is_some() { Lock::make(&path).map(Some) } else { Lock::take(&path) };
+        let folder = shown(folder);
+        match lock {
+            Ok(Some(lock)) => Ok(Self { lock, new }),
+            Ok(None) => {
+                fail!("another walpha shape is at work in {folder}" => "wait for it, or name another output")
+            }
+            Err(error) if error.kind() == ErrorKind::NotFound => {
+                fail!("blocks would be kept in {folder}, a folder that this command did not make" => "name another output, or remove the folder")
+            }
+            Err(error) => {
+                fail!("cannot lock the folder {folder}: {error}" => "choose another {INSTEAD}")
+            }
+        }
+    }
+
+    /// Keeps the folder, from which an interrupted command goes on.
+    fn kept(mut self) -> Self {
+        self.lock.keep();
+        self.new.take().map(NewFolder::keep);
+        self
+    }
+
+    /// Leaves the folder, without the lock.
+    fn end(self) -> io::Result<()> {
+        self.lock.remove()
     }
 }
 
@@ -95,6 +144,8 @@ struct Shared {
     merged: Option<Merged>,
     /// What its files in single precision have subtracted.
     offsets: Vec<FileOffset>,
+    /// The working folder, which the first process has.
+    working: Option<AtWork>,
 }
 
 fn order(team: &dyn Team, work: Option<String>) {

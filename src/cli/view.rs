@@ -182,7 +182,7 @@ impl View {
             render::Detail { levels, ladder, first: *first, differences }
         });
         let rendered: Vec<_> = rendered.collect();
-        let title = format!("Alpha shapes of {}", self.pipeline.input.input);
+        let title = format!("Alpha shapes of {}", name(&self.pipeline.input.input));
         let grays = facts.is_some_and(|facts| facts.written == GrayRange::IDENTITY);
         let subject = Subject {
             title: &title,
@@ -208,7 +208,7 @@ impl View {
         volume: Option<&VolumeSummary>,
         reference: Parameter,
     ) -> Vec<(String, String)> {
-        let mut facts_shown = vec![("input".to_owned(), self.pipeline.input.input.to_string())];
+        let mut facts_shown = vec![("input".to_owned(), name(&self.pipeline.input.input))];
         if let Some((volume, t)) = volume.zip(weighed.origin.truncation.as_ref()) {
             let [x, y, z] = volume.dims;
             let (low, high) = (number(volume.range.low), number(volume.range.high));

@@ -8,7 +8,7 @@ use std::path::PathBuf;
 use serde::{Deserialize, Serialize};
 use walpha_base::Sum;
 
-use super::bytes::{Digest, Number, digest_of, numbers};
+use super::bytes::{self, Digest, Number, digest_of, numbers};
 use super::{BlocksError, Plan};
 use crate::export::Target;
 use crate::shape::{Class, Complex, ComponentSums, SheetSums, Sheets, Simplices};
@@ -72,7 +72,7 @@ impl Arrays {
         let version = Plan::VERSION.into();
         let header = Header { version, plan: plan.digest, block, summary, arrays };
         let header = serde_json::to_vec(&header).expect("it has no maps");
-        Target::open(plan.block_file(block))?.write(|out| {
+        Target::replacing(plan.block_file(block))?.write(|out| {
             out.write_all(MAGIC)?;
             out.write_all(&(header.len() as u64).to_le_bytes())?;
             out.write_all(Digest::of(&header).bytes())?;
@@ -100,8 +100,8 @@ impl BlockFile {
     /// It is not there, does not verify, or is of another plan or block.
     pub(super) fn open(plan: &Plan, block: usize) -> Result<Self, BlocksError> {
         let path = plan.block_file(block);
-        let read = || -> io::Result<Option<(Vec<u8>, u64)>> {
-            let mut file = File::open(&path)?;
+        let mut file = bytes::open(&path)?;
+        let read = |file: &mut File| -> io::Result<Option<(Vec<u8>, u64)>> {
             let length = file.metadata()?.len();
             let mut start = [0; START];
             if length < START as u64 {
@@ -117,7 +117,8 @@ impl BlockFile {
             let digest = Digest::read(&start[24..]);
             Ok(digest.is_of(&header).then_some((header, length)))
         };
-        let read = read().map_err(|source| BlocksError::Io { path: path.clone(), source })?;
+        let read =
+            read(&mut file).map_err(|source| BlocksError::Io { path: path.clone(), source })?;
         let damaged =
             |what: &str| BlocksError::Damaged { path: path.clone(), what: what.to_owned() };
         let (text, length) = read.ok_or_else(|| damaged(Self::DAMAGED))?;
@@ -206,8 +207,8 @@ impl BlockFile {
     pub(super) fn read<T: Number>(&self, name: &str) -> Result<Vec<T>, BlocksError> {
         let known = self.arrays.iter().find(|(known, _)| known.name == name);
         let (array, at) = known.ok_or_else(|| self.damaged(&format!("has no {name}")))?;
-        let read = || {
-            let mut file = File::open(&self.path)?;
+        let mut file = bytes::open(&self.path)?;
+        let mut read = || {
             file.seek(SeekFrom::Start(*at))?;
             let mut bytes = vec![0; array.bytes as usize];
             file.read_exact(&mut bytes)?;
@@ -257,7 +258,7 @@ impl BlockFile {
     /// It is not, or cannot be read.
     pub(super) fn verify(&self) -> Result<(), BlocksError> {
         let io = |source| BlocksError::Io { path: self.path.clone(), source };
-        let mut file = File::open(&self.path).map_err(io)?;
+        let mut file = bytes::open(&self.path)?;
         for (array, at) in &self.arrays {
             file.seek(SeekFrom::Start(*at)).map_err(io)?;
             let found = digest_of(file.by_ref().take(array.bytes)).map_err(io)?;

@@ -1,10 +1,12 @@
 //! Digests, by which files and samples are known again.
 
 use std::fmt::{self, Debug, Display};
+use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
+use walpha_files::open_ordinary;
 
 use super::BlocksError;
 
@@ -135,9 +137,21 @@ pub(super) fn numbers<T: Number>(bytes: &[u8]) -> Option<Vec<T>> {
     whole.then(|| bytes.chunks(T::SIZE).map(T::get).collect())
 }
 
-/// A whole file.
+/// Opens a file in the folder of a plan. Anything but an ordinary file counts as damaged: what a link leads to is not of
+/// the plan.
+pub(super) fn open(path: &Path) -> Result<File, BlocksError> {
+    let opened = open_ordinary(path);
+    let opened = opened.map_err(|source| BlocksError::Io { path: path.into(), source })?;
+    let what = "is a link, or not a file: neither is followed in the folder of a plan";
+    opened.ok_or_else(|| BlocksError::Damaged { path: path.into(), what: what.into() })
+}
+
+/// A whole file in the folder of a plan.
 pub(super) fn read_file(path: &Path) -> Result<Vec<u8>, BlocksError> {
-    std::fs::read(path).map_err(|source| BlocksError::Io { path: path.into(), source })
+    let mut bytes = Vec::new();
+    let read = open(path)?.read_to_end(&mut bytes);
+    read.map_err(|source| BlocksError::Io { path: path.into(), source })?;
+    Ok(bytes)
 }
 
 /// Length and digest of a file, read in chunks.

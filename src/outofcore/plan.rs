@@ -197,7 +197,7 @@ impl Plan {
     }
 
     fn write(&self) -> Result<(), BlocksError> {
-        let target = Target::open(self.folder.join(Self::FILE))?;
+        let target = Target::replacing(self.folder.join(Self::FILE))?;
         Ok(target.write(|out| out.write_all(&self.text()))?)
     }
 
@@ -220,7 +220,11 @@ impl Plan {
     /// There is none, it cannot be read, or does not verify.
     pub fn open(folder: impl AsRef<Path>) -> Result<Self, BlocksError> {
         let folder = folder.as_ref();
-        Self::of_text(&read_file(&folder.join(Self::FILE))?, folder)
+        let text = read_file(&folder.join(Self::FILE)).map_err(|error| match error {
+            BlocksError::Damaged { path, what } => BlocksError::NoPlan { path, what },
+            other => other,
+        });
+        Self::of_text(&text?, folder)
     }
 
     fn of_text(text: &[u8], folder: &Path) -> Result<Self, BlocksError> {

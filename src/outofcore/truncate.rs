@@ -7,7 +7,7 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use super::brick_digests::ReadDigests;
-use super::bytes::{Digest, Hasher, digest_of};
+use super::bytes::{self, Digest, Hasher, digest_of};
 use super::field::{Field, Passes, Truncated};
 use super::{BlocksError, Job, SampleBox};
 use crate::export::Target;
@@ -32,7 +32,7 @@ impl DigestedFile {
     /// Writes the sums of bricks into a folder.
     pub(super) fn write_sums(sums: &[f64], folder: &Path) -> Result<Self, BlocksError> {
         let bytes: Vec<u8> = sums.iter().flat_map(|sum| sum.to_le_bytes()).collect();
-        Target::open(folder.join(SUMS))?.write(|out| out.write_all(&bytes))?;
+        Target::replacing(folder.join(SUMS))?.write(|out| out.write_all(&bytes))?;
         let digest = Digest::of(&bytes);
         Ok(Self { name: SUMS.into(), bytes: bytes.len() as u64, digest })
     }
@@ -43,7 +43,10 @@ impl DigestedFile {
     /// It is not, or is not there.
     pub(super) fn verify(&self, folder: &Path) -> Result<(), BlocksError> {
         let path = folder.join(&self.name);
-        let found = File::open(&path).and_then(digest_of);
+        let found = match bytes::open(&path) {
+            Err(BlocksError::Io { source, .. }) => Err(source),
+            opened => digest_of(opened?),
+        };
         match found {
             Ok((bytes, digest)) if bytes == self.bytes && self.digest.is(digest) => Ok(()),
             Ok(_) => Err(BlocksError::Damaged { path, what: Self::DAMAGED.into() }),
@@ -61,6 +64,7 @@ impl DigestedFile {
 /// was read of it.
 pub(super) fn smoothed(folder: &Path, dims: Dims) -> Result<(Source, ReadDigests), BlocksError> {
     let path = folder.join(SMOOTHED);
+    bytes::open(&path)?;
     let options = ReadOptions::default().raw(RawLayout::new(dims, Dtype::F32));
     let source = Source::open(&path, &options)?;
     let dims = dims.xyz();
@@ -248,7 +252,7 @@ impl StandardTransform<'_> {
             self.slabs.inverse_walls(&mut values, walls.first[1]);
             self.write(walls, &values)
         })?;
-        let target = Target::open(self.folder.join(SMOOTHED))?;
+        let target = Target::replacing(self.folder.join(SMOOTHED))?;
         let (mut failed, mut hasher, mut length) = (None, Hasher::default(), 0);
         let written = target.write(|out| {
             let done = passes.serial(planes, |planes| {

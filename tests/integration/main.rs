@@ -26,9 +26,9 @@ mod las;
 mod laws;
 #[cfg(feature = "mpi")]
 mod mpi;
-mod numbers;
 #[cfg(target_os = "linux")]
 mod nothing;
+mod numbers;
 mod opened_once;
 mod outline;
 mod outofcore;
@@ -49,6 +49,8 @@ mod triangulation;
 #[cfg(feature = "render")]
 mod view;
 mod volume;
+#[cfg(unix)]
+mod working_folders;
 mod wvm;
 #[cfg(feature = "zarr")]
 mod zarr;

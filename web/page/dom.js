@@ -8,6 +8,9 @@ export function element(name, properties = {}, ...children) {
   return made;
 }
 
+// A name of a file with what is not seen escaped, as marks that turn the direction of letters: as `walpha_base::shown` does.
+export const shown = (name) => name.replace(/[\p{Cc}\p{Cf}\p{Zl}\p{Zp}\p{DI}]/gu, (c) => `\\u{${c.codePointAt(0).toString(16)}}`);
+
 // Fills a table with names and values.
 export function rows(table, facts) {
   table.replaceChildren(...facts.map(([name, value]) =>

@@ -8,7 +8,7 @@ import paper from "../../presets/paper.toml";
 import scattered from "../../presets/points.toml";
 import { AlphaScale, Diagram, Histogram } from "./charts.js";
 import { short } from "./colours.js";
-import { byId, download, element, remark, rows, showNotices, unpacked } from "./dom.js";
+import { byId, download, element, remark, rows, showNotices, shown, unpacked } from "./dom.js";
 import { Cancelled, Engine, Failure } from "./engine.js";
 import { EXAMPLES } from "./examples.js";
 import { ShapePanel } from "./shape.js";
@@ -139,7 +139,7 @@ function factsOf(facts) {
 
 // The name of the input; what was made here can be saved.
 function inputName() {
-  if (!EXAMPLES.some(({ input, make }) => make && input === state.input)) return state.input;
+  if (!EXAMPLES.some(({ input, make }) => make && input === state.input)) return shown(state.input);
   const [{ file }] = engine.files;
   const button = element("button", { type: "button", textContent: "Save", onclick: () => download(file, file.name) });
   return element("span", {}, `${state.input} `, button);
@@ -199,7 +199,7 @@ async function open() {
   offer(facts.kind);
   const isVolume = facts.kind === "volume";
   if (facts.kind === "series") {
-    rows(byId("facts"), [["input", state.input], ["series", `${facts.series.length}: choose one below`]]);
+    rows(byId("facts"), [["input", shown(state.input)], ["series", `${facts.series.length}: choose one below`]]);
     byId("series").replaceChildren(element("option", { value: "", textContent: "choose one" }), ...facts.series.map((series, k) =>
       element("option", { value: k + 1, textContent: `${k + 1}: ${Object.values(series).filter((x) => typeof x === "string").join(", ")}` })));
     return;
@@ -363,7 +363,7 @@ async function command(name = nameOf("ply"), alpha = panel.alpha, solid = false)
 
 async function save(extension) {
   const name = nameOf(extension);
-  return task(`Writing ${name} …`, async () => {
+  return task(`Writing ${shown(name)} …`, async () => {
     const { alpha } = panel;
     const solid = extension === "stl";
     const { bytes, remarks } = await engine.call({ do: "save", name, alpha, solid });
@@ -371,7 +371,7 @@ async function save(extension) {
     remarks.forEach(remark);
     await command(name, alpha, solid);
     document.body.dataset.saved = name;
-    byId("status").textContent = `${name}: ${(bytes.length / 1e6).toFixed(2)} MB.`;
+    byId("status").textContent = `${shown(name)}: ${(bytes.length / 1e6).toFixed(2)} MB.`;
   });
 }
 

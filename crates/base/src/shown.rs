@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-/// A path for messages: control characters, which could move a terminal's cursor or change its
-/// colours, are escaped.
+/// A path for messages: characters that are not seen are escaped, as those that could move a terminal's cursor, change
+/// its colours, or show letters in another order.
 pub fn shown(path: &Path) -> String {
     escaped(&path.to_string_lossy(), |_| false)
 }
@@ -29,17 +29,52 @@ pub fn six_digits(number: f64) -> f64 {
     format!("{number:.5e}").parse().unwrap_or(number)
 }
 
-/// A text with its control characters escaped, except those for which `kept` holds.
+/// A text with its [unseen](is_unseen) characters escaped, except those for which `kept` holds.
 pub fn escaped(text: &str, kept: impl Fn(char) -> bool) -> String {
     let mut shown = String::with_capacity(text.len());
     for c in text.chars() {
-        if c.is_control() && !kept(c) {
+        if is_unseen(c) && !kept(c) {
             shown.extend(c.escape_default());
         } else {
             shown.push(c);
         }
     }
     shown
+}
+
+/// Whether a character is not seen itself but may change how others are shown: Unicode's control characters (Cc), line and
+/// paragraph separators (Zl, Zp), and format characters (Cf), which include marks of direction and those without width;
+/// and variation selectors and fillers, which are not seen, either (Unicode 16, `DerivedGeneralCategory.txt` and
+/// `Default_Ignorable_Code_Point`).
+pub fn is_unseen(c: char) -> bool {
+    c.is_control()
+        || matches!(
+            u32::from(c),
+            0xad | 0x34f
+                | 0x600..=0x605
+                | 0x61c
+                | 0x6dd
+                | 0x70f
+                | 0x890..=0x891
+                | 0x8e2
+                | 0x115f..=0x1160
+                | 0x17b4..=0x17b5
+                | 0x180b..=0x180f
+                | 0x200b..=0x200f
+                | 0x2028..=0x202e
+                | 0x2060..=0x206f
+                | 0x3164
+                | 0xfe00..=0xfe0f
+                | 0xfeff
+                | 0xffa0
+                | 0xfff0..=0xfffb
+                | 0x110bd
+                | 0x110cd
+                | 0x13430..=0x1343f
+                | 0x1bca0..=0x1bca3
+                | 0x1d173..=0x1d17a
+                | 0xe0000..=0xe0fff
+        )
 }
 
 #[cfg(test)]
@@ -62,5 +97,11 @@ mod tests {
     fn nothing_reaches_the_terminal_but_text() {
         assert_eq!(shown(Path::new("häd\x1b[2J\n.nrrd")), "häd\\u{1b}[2J\\n.nrrd");
         assert_eq!(escaped("a\nb\u{9b}c", |c| c == '\n'), "a\nb\\u{9b}c");
+        // The name of a program that seems to be a picture, and names that seem to be equal.
+        let hidden = "a\u{202e}gpj.exe b\u{200b} c\u{2066} \u{feff}d e\u{e0041} f\u{2028}";
+        let seen = "a\\u{202e}gpj.exe b\\u{200b} c\\u{2066} \\u{feff}d e\\u{e0041} f\\u{2028}";
+        assert_eq!(shown(Path::new(hidden)), seen);
+        let words = "Schädel, 頭蓋骨, جمجمة, 🦴, e\u{301}";
+        assert_eq!(shown(Path::new(words)), words);
     }
 }

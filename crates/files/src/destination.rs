@@ -10,7 +10,7 @@ use crate::identity::{Key, behind_links, folder};
 use crate::inputs;
 use crate::unfinished::gate;
 
-/// The destination of a file, with all links followed, and the metadata of an existing file.
+/// The destination of a file, with all links followed unless they are replaced, and the metadata of an existing file.
 #[derive(Debug)]
 pub(super) struct Destination {
     pub path: PathBuf,
@@ -47,6 +47,16 @@ impl Destination {
             Some(_) => {}
         }
         Ok(Self { path, existing })
+    }
+
+    /// A destination at which whatever is not a folder is replaced: a link is not followed, and a file that has other
+    /// names is not written to.
+    pub(super) fn replacing(path: &Path) -> io::Result<Self> {
+        match fs::symlink_metadata(path) {
+            Ok(existing) if existing.is_dir() => Err(ErrorKind::IsADirectory.into()),
+            Err(error) if error.kind() != ErrorKind::NotFound => Err(error),
+            _ => Ok(Self { path: path.to_owned(), existing: None }),
+        }
     }
 
     /// Whether it is a pipe, a device or the like, which is written directly.

@@ -53,6 +53,19 @@ impl Target {
             .map_err(TargetError::of(path, ""))
     }
 
+    /// As [`open`](Self::open), for a file of a folder that others may write to, too: whatever has its name, except a
+    /// folder, is replaced. Links are not followed, so that nothing outside the folder changes.
+    ///
+    /// # Errors
+    /// Those of [`open`](Self::open).
+    pub fn replacing(path: impl AsRef<Path>) -> Result<Self, TargetError> {
+        let path = path.as_ref();
+        Destination::replacing(path)
+            .and_then(Self::of_file)
+            .map(|(sink, claim)| Self { path: path.to_owned(), sink, claim })
+            .map_err(TargetError::of(path, ""))
+    }
+
     fn sink(path: &Path) -> io::Result<(Sink, Option<Claim>)> {
         if path == Path::new(Self::STDOUT) {
             walpha_base::standard_output::check()?;
@@ -62,6 +75,10 @@ impl Target {
         if destination.is_stream() {
             return Ok((Sink::Device, None));
         }
+        Self::of_file(destination)
+    }
+
+    fn of_file(destination: Destination) -> io::Result<(Sink, Option<Claim>)> {
         let claim = Claim::of(&destination)?;
         Ok((Sink::PartialFile(PartialFile::for_destination(destination)?.into()), Some(claim)))
     }

@@ -1,0 +1,41 @@
+use std::fs::{self, File, OpenOptions};
+use std::io;
+use std::path::Path;
+
+/// Opens a file of a folder that others may write to, too; `None` if it is not an ordinary file: a link, which might lead
+/// anywhere, a folder, a pipe or a device.
+///
+/// # Errors
+/// Those of the system.
+pub fn open_ordinary(path: &Path) -> io::Result<Option<File>> {
+    if !fs::symlink_metadata(path)?.is_file() {
+        return Ok(None);
+    }
+    let mut options = OpenOptions::new();
+    options.read(true);
+    // In case that it has become something else since.
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::OpenOptionsExt;
+        let flags = rustix::fs::OFlags::NOFOLLOW | rustix::fs::OFlags::NONBLOCK;
+        options.custom_flags(flags.bits().cast_signed());
+    }
+    options.open(path).map(Some)
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn links_and_folders_are_not_ordinary() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        fs::write(at("file"), "a").unwrap();
+        std::os::unix::fs::symlink("file", at("link")).unwrap();
+        assert!(open_ordinary(&at("file")).unwrap().is_some());
+        assert!(open_ordinary(&at("link")).unwrap().is_none());
+        assert!(open_ordinary(folder.path()).unwrap().is_none());
+        assert_eq!(open_ordinary(&at("none")).unwrap_err().kind(), io::ErrorKind::NotFound);
+    }
+}
