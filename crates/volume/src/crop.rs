@@ -118,6 +118,7 @@ fn downsample_slabs(
     let (samples, missing) = blocks.filled(means, least, is_any_missing);
     let volume = Volume::new(samples, blocks.frame(source.frame()))?.with_missing(missing);
     let volume = volume.with_dtype(source.dtype());
+    let volume = if source.states_labels() { volume.with_labels() } else { volume };
     Ok(if source.has_gray_levels() { volume.with_gray_levels() } else { volume })
 }
 

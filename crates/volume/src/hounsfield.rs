@@ -36,7 +36,7 @@ impl Hounsfield {
             return Ok(None);
         }
         let mut counts = Counts::default();
-        source.for_each_part(|values| counts.add(values))?;
+        source.for_each_part(|values, _| counts.add(values))?;
         Ok(counts.judge())
     }
 }

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use crate::hounsfield::{Counts, Hounsfield};
+use crate::labels::{Labels, Tally};
 use crate::{Dims, Dtype, Frame, Nan, Reason, Region, Volume, VolumeError};
 
 /// What to do about volumes that cannot be read in parts.
@@ -27,6 +28,8 @@ pub struct Source {
     parts: Box<dyn BoxReader>,
     /// Whether samples are gray levels as they are.
     gray_levels: bool,
+    /// Whether the file states that values are labels.
+    labels: bool,
     /// Where the volume begins in what is read.
     first: [usize; 3],
 }
@@ -57,13 +60,19 @@ impl Source {
         parts: Box<dyn BoxReader>,
     ) -> Self {
         let gray_levels = dtype == Dtype::U8;
-        Self { dims, frame, dtype, grain, parts, gray_levels, first: [0; 3] }
+        Self { dims, frame, dtype, grain, parts, gray_levels, labels: false, first: [0; 3] }
     }
 
     /// Sets whether samples are gray levels, whatever their type.
     #[must_use]
     pub fn with_gray_levels(self, gray_levels: bool) -> Self {
         Self { gray_levels, ..self }
+    }
+
+    /// Marks the values as [labels](Labels), as a file states it.
+    #[must_use]
+    pub fn with_labels(self) -> Self {
+        Self { labels: true, ..self }
     }
 
     /// A part of it, in its place.
@@ -81,8 +90,9 @@ impl Source {
     /// A volume in memory.
     pub fn of_volume(volume: Volume) -> Self {
         let (dims, frame, dtype) = (volume.dims(), *volume.frame(), volume.dtype());
-        let gray_levels = volume.has_gray_levels();
-        Self::new(dims, frame, dtype, [1; 3], Box::new(volume)).with_gray_levels(gray_levels)
+        let (gray_levels, labels) = (volume.has_gray_levels(), volume.states_labels());
+        let source = Self::new(dims, frame, dtype, [1; 3], Box::new(volume));
+        Self { labels, ..source.with_gray_levels(gray_levels) }
     }
 
     /// Samples along x, y and z.
@@ -105,6 +115,11 @@ impl Source {
         self.gray_levels
     }
 
+    /// Whether the file states that the values are labels.
+    pub fn states_labels(&self) -> bool {
+        self.labels
+    }
+
     /// The box of samples, along x, y and z, that is read as quickly as a single one: boxes made of such are
     /// read best.
     pub fn grain(&self) -> [usize; 3] {
@@ -124,15 +139,18 @@ impl Source {
         self.parts.read([0, 1, 2].map(|k| self.first[k] + first[k]), size)
     }
 
-    /// Reads all samples, a part at a time.
-    pub(crate) fn for_each_part(&self, mut look: impl FnMut(&[f32])) -> Result<(), VolumeError> {
+    /// Reads all samples, a part at a time, and hands over its size along x, y and z, too.
+    pub(crate) fn for_each_part(
+        &self,
+        mut look: impl FnMut(&[f32], [usize; 3]),
+    ) -> Result<(), VolumeError> {
         let (dims, step) = (self.dims().xyz(), step(self));
         for z in (0..dims[2]).step_by(step[2]) {
             for y in (0..dims[1]).step_by(step[1]) {
                 for x in (0..dims[0]).step_by(step[0]) {
                     let first = [x, y, z];
                     let size = [0, 1, 2].map(|k| step[k].min(dims[k] - first[k]));
-                    look(&self.read(first, size)?);
+                    look(&self.read(first, size)?, size);
                 }
             }
         }
@@ -156,8 +174,8 @@ pub(super) fn whole_only(path: &Path, name: &str) -> VolumeError {
 /// Samples read at a time at most, where the format allows it: 64 MiB.
 pub(crate) const AT_ONCE: usize = 1 << 24;
 
-/// Range of a volume's samples, and the number of missing ones.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// Range of a volume's samples, the number of missing ones, and what they look like.
+#[derive(Clone, Debug, PartialEq)]
 pub struct SampleStats {
     /// The smallest and the largest finite value; `None` where there is none.
     pub range: Option<(f32, f32)>,
@@ -165,6 +183,8 @@ pub struct SampleStats {
     pub missing: u64,
     /// Whether the values look like Hounsfield units.
     pub hounsfield: Option<Hounsfield>,
+    /// The labels, if the values are some.
+    pub labels: Option<Labels>,
 }
 
 impl SampleStats {
@@ -175,9 +195,10 @@ impl SampleStats {
     /// The file cannot be read or is damaged.
     pub fn of(source: &Source, nan: Option<Nan>) -> Result<Self, VolumeError> {
         let (mut low, mut high, mut missing) = (f32::INFINITY, f32::NEG_INFINITY, 0);
-        let mut counts = Counts::default();
-        source.for_each_part(|values| {
+        let (mut counts, mut tally) = (Counts::default(), Tally::of_source(source));
+        source.for_each_part(|values, size| {
             counts.add(values);
+            tally.add(values, size, |_| false);
             for &value in values {
                 let value = match nan {
                     Some(Nan::Value(instead)) if !value.is_finite() => instead,
@@ -191,7 +212,8 @@ impl SampleStats {
             }
         })?;
         let hounsfield = counts.judge().filter(|_| !source.has_gray_levels());
-        Ok(Self { range: (low <= high).then_some((low, high)), missing, hounsfield })
+        let labels = tally.of_source_judged(source);
+        Ok(Self { range: (low <= high).then_some((low, high)), missing, hounsfield, labels })
     }
 
     /// Of a volume in memory, whose [missing](Volume::is_missing) samples are not finite in its file.
@@ -201,6 +223,7 @@ impl SampleStats {
             range: Some(volume.value_range()),
             missing: missing as u64,
             hounsfield: Hounsfield::of_volume(volume),
+            labels: Labels::of_volume(volume),
         }
     }
 }

@@ -24,6 +24,8 @@ pub struct Volume {
     frame: Frame,
     /// Whether values are gray levels already, as those of unsigned 8-bit files are.
     gray_levels: bool,
+    /// Whether the file states that values are labels.
+    labels: bool,
     /// How the file stores a sample; `f32` if there is no file.
     dtype: Dtype,
     /// Samples that the file has no number for, if there are any.
@@ -87,8 +89,8 @@ impl Volume {
         } else {
             samples.as_standard_layout().into_owned()
         };
-        let (gray_levels, dtype, missing) = (false, Dtype::F32, None);
-        Ok(Self { samples, dims, frame, gray_levels, dtype, missing })
+        let (gray_levels, labels, dtype, missing) = (false, false, Dtype::F32, None);
+        Ok(Self { samples, dims, frame, gray_levels, labels, dtype, missing })
     }
 
     /// Applies the rule for samples that are not finite, and refuses what is left of them.
@@ -164,8 +166,8 @@ impl Volume {
     /// # Errors
     /// [`VolumeError`]: what cannot be read, and why.
     pub fn like(&self, samples: Array3<f32>, frame: Frame) -> Result<Self, VolumeError> {
-        let (gray_levels, dtype) = (self.gray_levels, self.dtype);
-        Ok(Self { gray_levels, dtype, ..Self::new(samples, frame)? })
+        let Self { gray_levels, labels, dtype, .. } = *self;
+        Ok(Self { gray_levels, labels, dtype, ..Self::new(samples, frame)? })
     }
 
     /// The same volume where these samples are missing.
@@ -184,6 +186,17 @@ impl Volume {
     /// Whether the samples are gray levels 0..255 already, so that [`Gray::Automatic`] keeps them.
     pub fn has_gray_levels(&self) -> bool {
         self.gray_levels
+    }
+
+    /// Marks the values as [labels](crate::Labels), as a file states it.
+    #[must_use]
+    pub fn with_labels(self) -> Self {
+        Self { labels: true, ..self }
+    }
+
+    /// Whether the file states that the values are labels.
+    pub fn states_labels(&self) -> bool {
+        self.labels
     }
 
     /// Sizes along the axes.
