@@ -9,13 +9,14 @@ use walpha_base::Monitor;
 use walpha_base::shown::number;
 
 use crate::check::meshes::Mesh;
+use crate::labels::{LabelSize, LabelSizes};
 use crate::pipeline::Opened;
 use crate::points::{Cell, CellCount, ModelMetadata, Points, cells_of_file, read_model_file};
 use crate::progress::Stage;
 use crate::volume::{
     self, Dtype, Nan, OpenVolume, ReadOptions, Reason, SampleStats, Series, Source,
 };
-use crate::{Alpha, Coordinates, Dims, Frame, LengthUnit, VolumeError};
+use crate::{Alpha, Coordinates, Dims, Frame, LengthUnit, Units, VolumeError};
 
 use super::args::InputArgs;
 use super::check::{mesh_format, read_mesh};
@@ -71,6 +72,9 @@ enum Content {
         /// The preset that `walpha shape` uses where no option says what to look for. Absent if there is none.
         #[serde(skip_serializing_if = "Option::is_none")]
         preset: Option<&'static str>,
+        /// The labels of a segmentation, with their voxels. Absent if the values are no labels.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        labels: Option<LabelSummary>,
         /// Volumes in the file, of which --frame reads one; the first is described. Absent if there is only one.
         #[serde(skip_serializing_if = "Option::is_none")]
         volumes: Option<u64>,
@@ -122,6 +126,34 @@ enum Content {
         #[serde(skip_serializing_if = "Option::is_none")]
         recipe: Option<Value>,
     },
+}
+
+/// The labels of a segmentation.
+#[derive(Serialize)]
+struct LabelSummary {
+    /// Whether the file states that its values are labels.
+    stated: bool,
+    #[serde(flatten)]
+    sizes: LabelSizes,
+}
+
+/// Most labels listed as text.
+const MOST_LABELS: usize = 30;
+
+impl std::fmt::Display for LabelSummary {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let LabelSizes { labels, unit, .. } = &self.sizes;
+        let how = if self.stated { "the file states labels" } else { "the values look like labels" };
+        writeln!(f, "labels    {how}: `walpha shape` makes the solid of all but 0; --label N takes one")?;
+        let unit = unit.symbol();
+        for LabelSize { label, voxels, volume, .. } in labels.iter().take(MOST_LABELS) {
+            writeln!(f, "          {label}: {voxels} voxels, {} {unit}³", number(*volume))?;
+        }
+        match labels.len().saturating_sub(MOST_LABELS) {
+            0 => Ok(()),
+            more => writeln!(f, "          and {more} more, which --json lists"),
+        }
+    }
 }
 
 /// A cell in which points repeat.
@@ -220,6 +252,12 @@ impl Info {
         };
         let (format, data_files) = (volume.format_name(&options)?, volume.data_files(&options)?);
         let VolumeSummary { dims, frame, dtype, gray_levels, stats, volumes } = summary;
+        let unit = frame.coordinates.unit;
+        let units = if unit == LengthUnit::Voxel { Units::Voxel } else { Units::World };
+        let labels = stats.labels.map(|found| LabelSummary {
+            stated: found.stated,
+            sizes: LabelSizes::new(found.foreground(), &frame, units),
+        });
         Ok(Content::Volume {
             format,
             samples: dtype.to_string(),
@@ -231,7 +269,8 @@ impl Info {
             min: stats.range.map(|(min, _)| min),
             max: stats.range.map(|(_, max)| max),
             missing: stats.missing,
-            preset: stats.hounsfield.map(|_| preset::OF_CT),
+            preset: labels.as_ref().map(|_| preset::OF_LABELS).or(stats.hounsfield.map(|_| preset::OF_CT)),
+            labels,
             volumes,
             gray_levels,
             data_files: data_files.iter().map(|file| file.display().to_string()).collect(),
@@ -272,7 +311,7 @@ impl VolumeSummary {
                     let missing = volume.dims().samples() as u64;
                     (
                         Source::of_volume(volume),
-                        SampleStats { range: None, missing, hounsfield: None },
+                        SampleStats { range: None, missing, hounsfield: None, labels: None },
                     )
                 }
                 Err(error) => return Err(error),
@@ -387,6 +426,7 @@ impl std::fmt::Display for Content {
                 max,
                 missing,
                 preset,
+                labels,
                 volumes,
                 gray_levels,
                 data_files,
@@ -402,7 +442,9 @@ impl std::fmt::Display for Content {
                     }
                     _ => writeln!(f, "values    none that is a finite number")?,
                 }
-                if let Some(preset) = preset {
+                if let Some(labels) = labels {
+                    write!(f, "{labels}")?;
+                } else if let Some(preset) = preset {
                     writeln!(
                         f,
                         "units     the values look like Hounsfield units: `walpha shape` selects bone unless told \

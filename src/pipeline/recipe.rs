@@ -7,6 +7,7 @@ use walpha_base::setters;
 use super::{AlphaRule, Choice, Parameter, PipelineError};
 use crate::haar::HaarOptions;
 use crate::interpolate::Refit;
+use crate::labels::LabelChoice;
 use crate::points::{Columns, PointOptions, Points, Selection, SelectionRule, Units, Weighting};
 use crate::shape::{Alpha, Balls, Engine, ShapeError, ShapeOptions, Torus};
 use crate::volume::{Coordinates, Frame, Gray, GrayRange, LengthUnit, ReadOptions, Space};
@@ -45,6 +46,9 @@ pub struct Recipe {
     pub classes: Option<Vec<u8>>,
     /// Keeps the first point in each cube of this side ([`PointOptions::thin`]).
     pub thin: Option<f64>,
+    /// The labels whose [solid](Recipe::solid) the shape is; `None` selects points by gray levels. With labels nothing else of
+    /// the recipe has an effect, except how a volume is read, its units and its space.
+    pub labels: Option<LabelChoice>,
     /// The values that become gray 0 and 255; `None` leaves unsigned bytes unchanged, and otherwise takes the
     /// smallest and largest value.
     pub gray: Option<GrayRange>,
@@ -107,6 +111,7 @@ impl Recipe {
         columns: Option<Columns>,
         classes: Option<Vec<u8>>,
         thin: Option<f64>,
+        labels: Option<LabelChoice>,
         gray_out: bool,
         haar: HaarOptions,
         choice: Choice,

@@ -7,7 +7,7 @@ use walpha_complex::canonical::{outward_facets, smallest_even, sort, sorted};
 
 use crate::exact::orientation;
 use crate::index::Index;
-use crate::{Alpha, Class, Complex, Placed, Simplices};
+use crate::{Alpha, Class, Complex, Placed, Simplices, Voxels};
 
 /// A complex with its points, in canonical order, ready to be judged.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,6 +26,8 @@ pub struct PlacedComplex {
     pub duplicates: Option<Vec<[u32; 2]>>,
     /// The sides of the periodic box, if there is one.
     pub periodic: Option<[f64; 3]>,
+    /// The voxels that the cells fill, if the complex is of labels.
+    pub voxels: Option<Voxels>,
 }
 
 impl PlacedComplex {
@@ -38,6 +40,12 @@ impl PlacedComplex {
     #[must_use]
     pub fn with_periodic(self, periodic: Option<[f64; 3]>) -> Self {
         Self { periodic, ..self }
+    }
+
+    /// The same complex as one of labels, whose cells fill these voxels, or as one of α.
+    #[must_use]
+    pub fn with_voxels(self, voxels: Option<Voxels>) -> Self {
+        Self { voxels, ..self }
     }
 }
 
@@ -70,6 +78,20 @@ impl TryFrom<ComplexFile> for PlacedComplex {
                 name: "periodic",
                 value: side.to_string(),
                 expected: "the length of a side",
+            });
+        }
+        if file.voxels.as_ref().is_some_and(|voxels| !voxels.is_sound()) {
+            return Err(SchemaError::Value {
+                name: "voxels",
+                value: "runs that overlap, are not in order or leave the grid".into(),
+                expected: "ascending runs of voxels of the grid",
+            });
+        }
+        if file.voxels.is_some() && file.periodic.is_some() {
+            return Err(SchemaError::Value {
+                name: "periodic",
+                value: "the sides of a box".into(),
+                expected: "none, as the complex is of labels",
             });
         }
         let weights = file.weights.unwrap_or_else(|| vec![0.0; n]);
@@ -117,6 +139,7 @@ impl TryFrom<ComplexFile> for PlacedComplex {
             hidden: file.hidden,
             duplicates: file.duplicates,
             periodic: file.periodic,
+            voxels: file.voxels,
         })
     }
 }

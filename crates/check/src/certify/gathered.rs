@@ -57,6 +57,7 @@ fn renumbered(claim: &Claim) -> Option<PlacedComplex> {
         hidden: hidden.flatten(),
         duplicates: duplicates.flatten(),
         periodic: None,
+        voxels: None,
     })
 }
 
