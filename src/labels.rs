@@ -263,4 +263,3 @@ fn runs(voxels: usize, is_inside: impl Fn(usize) -> bool) -> Result<Vec<[u64; 2]
     }
     Ok(runs)
 }
-

@@ -229,7 +229,8 @@ impl Check {
             _ => None,
         };
         if alpha.is_some() && !file.states_no_alpha() {
-            let states = if file.voxels.is_some() { "is of labels, without α" } else { "states its α" };
+            let states =
+                if file.voxels.is_some() { "is of labels, without α" } else { "states its α" };
             fail_usage!("--alpha has no effect: {} {states}", name(input) => "omit it");
         }
         let takes_column = self.pipeline.weights.weights == Some(Weighting::Column);

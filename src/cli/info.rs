@@ -143,8 +143,12 @@ const MOST_LABELS: usize = 30;
 impl std::fmt::Display for LabelSummary {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let LabelSizes { labels, unit, .. } = &self.sizes;
-        let how = if self.stated { "the file states labels" } else { "the values look like labels" };
-        writeln!(f, "labels    {how}: `walpha shape` makes the solid of all but 0; --label N takes one")?;
+        let how =
+            if self.stated { "the file states labels" } else { "the values look like labels" };
+        writeln!(
+            f,
+            "labels    {how}: `walpha shape` makes the solid of all but 0; --label N takes one"
+        )?;
         let unit = unit.symbol();
         for LabelSize { label, voxels, volume, .. } in labels.iter().take(MOST_LABELS) {
             writeln!(f, "          {label}: {voxels} voxels, {} {unit}³", number(*volume))?;
@@ -269,7 +273,10 @@ impl Info {
             min: stats.range.map(|(min, _)| min),
             max: stats.range.map(|(_, max)| max),
             missing: stats.missing,
-            preset: labels.as_ref().map(|_| preset::OF_LABELS).or(stats.hounsfield.map(|_| preset::OF_CT)),
+            preset: labels
+                .as_ref()
+                .map(|_| preset::OF_LABELS)
+                .or(stats.hounsfield.map(|_| preset::OF_CT)),
             labels,
             volumes,
             gray_levels,

@@ -204,7 +204,9 @@ pub(super) fn with_file<T>(
 pub(super) fn accept(input: &Input, args: &InputArgs) -> Result<(), CommandError> {
     let holds = |what| format!("{} holds {what}", args.input);
     match input {
-        Input::Volume(..) | Input::Labels(..) => args.typed.refuse(&["columns", "class", "thin"], holds("a volume")),
+        Input::Volume(..) | Input::Labels(..) => {
+            args.typed.refuse(&["columns", "class", "thin"], holds("a volume"))
+        }
         Input::Points(_, facts) => {
             let what = holds("points, and no volume");
             if facts.range.is_none() {

@@ -134,7 +134,8 @@ pub(super) fn suited_to(args: &InputArgs, recipe: &Recipe, volume: &Volume) -> O
         && let Some(found) = Labels::of_volume(volume)
     {
         let there: Vec<i32> = found.foreground().map(|(label, _)| label).collect();
-        let how = if found.stated { "the file states labels" } else { "the values look like labels" };
+        let how =
+            if found.stated { "the file states labels" } else { "the values look like labels" };
         tracing::warn!(
             "{how} ({}), so the shape is the solid of all but 0, as by --preset {OF_LABELS}; --label takes some of \
              them, and --threshold, --count or --ratio selects points by gray levels. The same, stated: {}",

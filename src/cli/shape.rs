@@ -42,9 +42,9 @@ use crate::{AlphaShape, Recipe};
 ///
 /// walpha shape foam.xyz --periodic 20,20,20 --alpha 1.5 -o foam.npz foam.vtu
 ///
-/// walpha shape labels.nii.gz --label 3,5 --solid -o organ.stl
+/// walpha shape labels.nrrd --label 3,5 --solid -o organ.stl
 ///
-/// walpha shape labels.nii.gz --each-label --solid -o organs
+/// walpha shape labels.nrrd --each-label --solid -o organs
 #[derive(Args)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a switch of its own")]
 pub(super) struct Shape {
@@ -70,7 +70,13 @@ pub(super) struct Shape {
     #[arg(long, help_heading = "Labels")]
     each_label: bool,
     /// With --each-label: formats to write, by extension, as in ply,vtu [default: stl].
-    #[arg(long, value_name = "EXT,EXT,…", value_delimiter = ',', requires = "each_label", help_heading = "Labels")]
+    #[arg(
+        long,
+        value_name = "EXT,EXT,…",
+        value_delimiter = ',',
+        requires = "each_label",
+        help_heading = "Labels"
+    )]
     pub(super) mesh: Vec<String>,
     #[command(flatten)]
     pub(super) pipeline: PipelineArgs,

@@ -149,8 +149,15 @@ impl Display for EachLabel {
         let unit: LengthUnit = self.coordinates.unit;
         writeln!(f, "input     {}", super::output::name(&self.input))?;
         writeln!(f, "lengths   in {}", self.coordinates)?;
-        for SolidSummary { size: LabelSize { label, voxels, volume, .. }, betti, .. } in &self.labels {
-            write!(f, "label     {label}: {voxels} voxels, {} {}³", number(*volume), unit.symbol())?;
+        for SolidSummary { size: LabelSize { label, voxels, volume, .. }, betti, .. } in
+            &self.labels
+        {
+            write!(
+                f,
+                "label     {label}: {voxels} voxels, {} {}³",
+                number(*volume),
+                unit.symbol()
+            )?;
             match betti {
                 Some(betti) => writeln!(f, "; {betti}")?,
                 None => writeln!(f)?,

@@ -19,7 +19,9 @@ impl Exporter for Stl {
         let mut head = [b' '; 80];
         // The header must not begin with "solid", as some readers would take the file for text.
         let stated = annotation::comment(shape.coordinates());
-        let about = format!("walpha, boundary of an alpha shape{stated}");
+        let of =
+            if shape.voxels().is_some() { "solid of labels" } else { "boundary of an alpha shape" };
+        let about = format!("walpha, {of}{stated}");
         head[..about.len()].copy_from_slice(about.as_bytes());
         out.write_all(&head)?;
         let count = u32::try_from(surface.regular.len())

@@ -25,7 +25,9 @@ pub enum PipelineError {
     #[error(transparent)]
     Labels(LabelsError),
     /// Labels, where points are to be selected by gray levels.
-    #[error("the volume holds labels, and their solid comes from voxels, without α, differences or weights")]
+    #[error(
+        "the volume holds labels, and their solid comes from voxels, without α, differences or weights"
+    )]
     OfLabels,
     /// An error in computing the shape.
     #[error(transparent)]

@@ -43,7 +43,10 @@ impl Labels {
     /// The file cannot be read or is damaged.
     pub fn of(source: &Source) -> Result<Option<Self>, VolumeError> {
         let mut tally = Tally::of_source(source);
-        source.for_each_part(|values, size| tally.add(values, size, |_| false))?;
+        source.for_each_part(|values, size| {
+            tally.add(values, size, |_| false);
+            !tally.ended
+        })?;
         Ok(tally.of_source_judged(source))
     }
 
@@ -256,16 +259,19 @@ mod tests {
 
     #[test]
     fn segmentations_are_labels() {
-        let ball = |inside: f32| volume([32; 3], move |at| if squared(at) < 80.0 { inside } else { 0.0 });
+        let ball =
+            |inside: f32| volume([32; 3], move |at| if squared(at) < 80.0 { inside } else { 0.0 });
         for inside in [1.0, 255.0, -3.0, 70_000.0] {
             let found = Labels::of_volume(&ball(inside)).expect("a mask");
             assert_eq!(found.foreground().collect::<Vec<_>>(), [(inside as i32, 3016)]);
             assert!(!found.stated);
         }
-        let nested = volume([32; 3], |at| f32::from(squared(at) < 80.0) + f32::from(squared(at) < 30.0));
+        let nested =
+            volume([32; 3], |at| f32::from(squared(at) < 80.0) + f32::from(squared(at) < 30.0));
         let plate = volume([12, 12, 12], |[_, _, z]| f32::from(z == 5));
         let rod = volume([40, 40, 40], |[x, y, _]| f32::from([x, y] == [7, 9]));
-        let cavity = volume([5; 3], |at| f32::from(at.iter().all(|i| (1..4).contains(i)) && at != [2; 3]));
+        let cavity =
+            volume([5; 3], |at| f32::from(at.iter().all(|i| (1..4).contains(i)) && at != [2; 3]));
         // Organs that lie in many places, as 30 boxes.
         let organs = volume([40; 3], |[x, y, z]| match (x % 8, y % 10, z % 13) {
             (0..5, 0..7, 0..9) => (1 + x / 8 + 5 * (y / 10) + 20 * (z / 13)) as f32,
@@ -296,7 +302,9 @@ mod tests {
             assert_eq!(Labels::of_volume(&phantom(size).unwrap()), None, "{size}");
         }
         // A CT in a window of 8 bits, much of it black or white.
-        let window = ct().samples().mapv(|value| ((value + 160.0) / 400.0 * 255.0).clamp(0.0, 255.0).floor());
+        let window = ct()
+            .samples()
+            .mapv(|value| ((value + 160.0) / 400.0 * 255.0).clamp(0.0, 255.0).floor());
         let window = Volume::new(window, Frame::VOXEL).unwrap();
         assert!(!are_labels(&window));
     }

@@ -139,10 +139,10 @@ impl Source {
         self.parts.read([0, 1, 2].map(|k| self.first[k] + first[k]), size)
     }
 
-    /// Reads all samples, a part at a time, and hands over its size along x, y and z, too.
+    /// Reads all samples, a part at a time, and hands over its size along x, y and z, too, as long as `look` wants more.
     pub(crate) fn for_each_part(
         &self,
-        mut look: impl FnMut(&[f32], [usize; 3]),
+        mut look: impl FnMut(&[f32], [usize; 3]) -> bool,
     ) -> Result<(), VolumeError> {
         let (dims, step) = (self.dims().xyz(), step(self));
         for z in (0..dims[2]).step_by(step[2]) {
@@ -150,7 +150,9 @@ impl Source {
                 for x in (0..dims[0]).step_by(step[0]) {
                     let first = [x, y, z];
                     let size = [0, 1, 2].map(|k| step[k].min(dims[k] - first[k]));
-                    look(&self.read(first, size)?, size);
+                    if !look(&self.read(first, size)?, size) {
+                        return Ok(());
+                    }
                 }
             }
         }
@@ -210,6 +212,7 @@ impl SampleStats {
                     missing += 1;
                 }
             }
+            true
         })?;
         let hounsfield = counts.judge().filter(|_| !source.has_gray_levels());
         let labels = tally.of_source_judged(source);

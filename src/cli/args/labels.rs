@@ -28,7 +28,16 @@ pub(crate) fn of_gray_levels() -> Vec<String> {
 
 /// Options of a shape by α, besides those.
 const OF_ALPHA: [&str; 10] = [
-    "alpha_ref", "balls", "engine", "blocks", "memory", "exterior", "hidden", "periodic", "gray_out", "require_3d",
+    "alpha_ref",
+    "balls",
+    "engine",
+    "blocks",
+    "memory",
+    "exterior",
+    "hidden",
+    "periodic",
+    "gray_out",
+    "require_3d",
 ];
 
 impl LabelArgs {
@@ -36,6 +45,9 @@ impl LabelArgs {
     pub(crate) fn refuse_others(typed: &TypedOptions) -> Result<(), CommandError> {
         let names: Vec<String> =
             of_gray_levels().into_iter().chain(OF_ALPHA.map(str::to_owned)).collect();
-        typed.refuse(&names, "the solid of labels fills their voxels, without gray levels, weights and α")
+        typed.refuse(
+            &names,
+            "the solid of labels fills their voxels, without gray levels, weights and α",
+        )
     }
 }

@@ -78,8 +78,10 @@ fn accounts(placed: &PlacedComplex) -> Vec<Finding> {
     let hidden = placed.hidden.iter().flatten();
     found.extend(hidden.map(|&point| Finding::NotOnlyHidden { point }));
     let duplicates = placed.duplicates.iter().flatten();
-    found.extend(duplicates.map(|&[point, kept]| {
-        Finding::Duplicate { point, given: Some(kept), expected: None }
+    found.extend(duplicates.map(|&[point, kept]| Finding::Duplicate {
+        point,
+        given: Some(kept),
+        expected: None,
     }));
     found
 }
@@ -192,8 +194,7 @@ fn facets(structure: &Structure, corners: &[Place], voxels: &Voxels) -> Vec<Find
     let mut borders: Vec<(Half, usize)> = borders.into_iter().flatten().collect();
     borders.par_sort_unstable();
     for of_face in borders.chunk_by(|a, b| (a.0.0, a.0.1) == (b.0.0, b.0.1)) {
-        let is_whole =
-            matches!(of_face, [((.., one), _), ((.., other), _)] if *one == 3 - *other);
+        let is_whole = matches!(of_face, [((.., one), _), ((.., other), _)] if *one == 3 - *other);
         if !is_whole {
             let facet = |&(_, row): &(Half, usize)| facets.rows()[row].into();
             found.extend(of_face.iter().map(|half| Finding::NotABorder { facet: facet(half) }));
@@ -206,14 +207,15 @@ fn facets(structure: &Structure, corners: &[Place], voxels: &Voxels) -> Vec<Find
         (first..first + count).flat_map(|number| {
             let voxel = voxels.indices(number);
             let sides = [-3, -2, -1, 1, 2, 3].into_iter();
-            sides.filter(move |&side| {
-                let axis = usize::from(side_axis(side));
-                let (mut corner, mut beyond) = (voxel, voxel.map(i64::from));
-                corner[axis] += u32::from(side > 0);
-                beyond[axis] += i64::from(side.signum());
-                !holds(voxels, beyond) && !is_covered(corner, axis)
-            })
-            .map(move |side| Finding::Unfilled { voxel, side })
+            sides
+                .filter(move |&side| {
+                    let axis = usize::from(side_axis(side));
+                    let (mut corner, mut beyond) = (voxel, voxel.map(i64::from));
+                    corner[axis] += u32::from(side > 0);
+                    beyond[axis] += i64::from(side.signum());
+                    !holds(voxels, beyond) && !is_covered(corner, axis)
+                })
+                .map(move |side| Finding::Unfilled { voxel, side })
         })
     });
     found.par_extend(unfilled);
@@ -238,7 +240,8 @@ fn border(outward: [u32; 3], corners: &[Place], voxels: &Voxels) -> Option<Half>
     }
     // Which corner of the face each is, by two bits; their exclusive or is the one that is left out.
     let bits = places.map(|place| {
-        (place[along[0]] - least[along[0]]) as usize | ((place[along[1]] - least[along[1]]) as usize) << 1
+        (place[along[0]] - least[along[0]]) as usize
+            | ((place[along[1]] - least[along[1]]) as usize) << 1
     });
     let out = bits[0] ^ bits[1] ^ bits[2];
     // In the plane of the next two axes it turns counter-clockwise seen from the side of larger indices.
@@ -269,7 +272,8 @@ fn faces(structure: &Structure) -> Vec<Finding> {
     let (mut of_edges, mut of_vertices) = (vec![None; edges.len()], vec![None; vertices.len()]);
     let mut found = Vec::new();
     for (row, &facet) in facets.rows().iter().enumerate() {
-        let class = if structure.halves(row).count() == 1 { Class::Regular } else { Class::Interior };
+        let class =
+            if structure.halves(row).count() == 1 { Class::Regular } else { Class::Interior };
         let [a, b, c] = facet;
         for edge in [[a, b], [a, c], [b, c]].map(sorted) {
             match structure.edges.row(edge) {
@@ -279,17 +283,25 @@ fn faces(structure: &Structure) -> Vec<Finding> {
         }
         for vertex in facet {
             match structure.vertices.row([vertex]) {
-                NONE => found.push(Finding::MissingFace { face: [vertex].into(), of: facet.into() }),
+                NONE => {
+                    found.push(Finding::MissingFace { face: [vertex].into(), of: facet.into() })
+                }
                 at => of_vertices[at as usize] = of_vertices[at as usize].max(Some(class)),
             }
         }
     }
-    found.extend(edges.iter().zip(of_edges).filter_map(|((&row, given), expected)| {
-        judged(row, given, expected)
-    }));
-    found.extend(vertices.iter().zip(of_vertices).filter_map(|((&row, given), expected)| {
-        judged(row, given, expected)
-    }));
+    found.extend(
+        edges
+            .iter()
+            .zip(of_edges)
+            .filter_map(|((&row, given), expected)| judged(row, given, expected)),
+    );
+    found.extend(
+        vertices
+            .iter()
+            .zip(of_vertices)
+            .filter_map(|((&row, given), expected)| judged(row, given, expected)),
+    );
     found
 }
 

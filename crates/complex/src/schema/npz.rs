@@ -311,7 +311,11 @@ fn index(name: &'static str, value: f64) -> Result<u32, SchemaError> {
 
 fn whole(name: &'static str, value: f64) -> Result<u64, SchemaError> {
     let number = value as u64;
-    if number as f64 == value { Ok(number) } else { Err(unexpected(name, value, "a number of a voxel")) }
+    if number as f64 == value {
+        Ok(number)
+    } else {
+        Err(unexpected(name, value, "a number of a voxel"))
+    }
 }
 
 #[cold]

@@ -1,7 +1,7 @@
 //! The cells of a region of voxels: those of voxels with corners, and those that fill what is deep.
 
-use walpha_base::memory::{try_reserve, try_with_capacity};
 use walpha_base::Monitor;
+use walpha_base::memory::{try_reserve, try_with_capacity};
 use walpha_complex::canonical::smallest_even;
 use walpha_regular::{triangulate, triangulate_monitored};
 
@@ -50,7 +50,8 @@ impl Lattice {
         let cube = cells_of_cube()?;
         let mut cells = try_with_capacity(cube.len() * self.shell.count() as usize, what)?;
         self.shell.each(|voxel| {
-            let corners = CUBE.map(|step| self.corners.number([0, 1, 2].map(|k| voxel[k] + step[k])));
+            let corners =
+                CUBE.map(|step| self.corners.number([0, 1, 2].map(|k| voxel[k] + step[k])));
             cells.extend(cube.iter().map(|cell| written(cell.map(|v| corners[v as usize]))));
         });
         let lining = self.deep.dilated()?.and(&self.shell)?.corners()?;
@@ -72,22 +73,16 @@ impl Lattice {
         };
         let deep = || filling.finite_cells().map(|(_, cell)| cell).filter(is_deep);
         try_reserve(&mut cells, deep().count(), what)?;
-        cells.extend(deep().map(|cell| written(cell.map(|v| self.corners.number(corners[v as usize])))));
+        cells.extend(
+            deep().map(|cell| written(cell.map(|v| self.corners.number(corners[v as usize])))),
+        );
         Ok(cells)
     }
 }
 
 /// The corners of a cube.
-const CUBE: [[usize; 3]; 8] = [
-    [0, 0, 0],
-    [1, 0, 0],
-    [0, 1, 0],
-    [1, 1, 0],
-    [0, 0, 1],
-    [1, 0, 1],
-    [0, 1, 1],
-    [1, 1, 1],
-];
+const CUBE: [[usize; 3]; 8] =
+    [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0], [0, 0, 1], [1, 0, 1], [0, 1, 1], [1, 1, 1]];
 
 /// The cells of a cube by the rule for ties, as rows of its corners.
 fn cells_of_cube() -> Result<Vec<[u32; 4]>, ShapeError> {

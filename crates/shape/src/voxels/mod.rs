@@ -48,7 +48,10 @@ pub enum VoxelsError {
     #[error("the runs of voxels overlap, are not in order, or leave the grid")]
     Runs,
     /// More corners than can be numbered.
-    #[error("the boundary of the region has {corners} corners of voxels, and at most {} can be numbered", cells::MOST_CORNERS)]
+    #[error(
+        "the boundary of the region has {corners} corners of voxels, and at most {} can be numbered",
+        cells::MOST_CORNERS
+    )]
     TooMany {
         /// The number of corners.
         corners: u64,
@@ -158,8 +161,9 @@ fn keeps_orientation(voxels: &Voxels) -> Result<(), VoxelsError> {
     let norm = |v: [f64; 3]| v.iter().map(|x| x.abs()).sum::<f64>();
     let inverse = [cross(b, c), cross(c, a), cross(a, b)].map(norm).into_iter().fold(0.0, f64::max)
         / determinant.abs();
-    let reach =
-        |r: usize| origin[r].abs() + (0..3).map(|k| f64::from(dims[k]) * axes[k][r].abs()).sum::<f64>();
+    let reach = |r: usize| {
+        origin[r].abs() + (0..3).map(|k| f64::from(dims[k]) * axes[k][r].abs()).sum::<f64>()
+    };
     let far = [0, 1, 2].map(reach).into_iter().fold(0.0, f64::max);
     let moved = far * inverse * 2f64.powi(-50);
     let longest = f64::from(dims.iter().copied().fold(1, u32::max));

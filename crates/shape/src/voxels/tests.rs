@@ -78,9 +78,11 @@ fn by_definition(points: &[[f64; 3]], inside: impl Fn([i64; 3]) -> bool) -> Comp
     // On the hull the space outside is another exterior cell.
     let facets = cofaces.iter().filter(|(face, of)| face.len() == 3 && of.len() == 1);
     let hull: BTreeSet<Vec<u32>> = facets
-        .flat_map(|(f, _)| [[0, 1, 2], [0, 1, 1], [0, 2, 2], [1, 2, 2], [0, 0, 0], [1, 1, 1], [2, 2, 2]].map(|of| {
-            of.map(|i| f[i]).into_iter().collect::<BTreeSet<_>>().into_iter().collect()
-        }))
+        .flat_map(|(f, _)| {
+            [[0, 1, 2], [0, 1, 1], [0, 2, 2], [1, 2, 2], [0, 0, 0], [1, 1, 1], [2, 2, 2]].map(
+                |of| of.map(|i| f[i]).into_iter().collect::<BTreeSet<_>>().into_iter().collect(),
+            )
+        })
         .collect();
     let class = |face: &[u32]| {
         let of = &cofaces[face];
@@ -167,9 +169,8 @@ fn components_and_voids_are_those_of_the_voxels() {
     for voxels in regions() {
         let found = shape(&voxels);
         let dims = voxels.dims.map(i64::from);
-        let all = (-1..=dims[2]).flat_map(|z| {
-            (-1..=dims[1]).flat_map(move |y| (-1..=dims[0]).map(move |x| [x, y, z]))
-        });
+        let all = (-1..=dims[2])
+            .flat_map(|z| (-1..=dims[1]).flat_map(move |y| (-1..=dims[0]).map(move |x| [x, y, z])));
         let (inside, outside): (BTreeSet<_>, BTreeSet<_>) = all.partition(|&at| holds(&voxels, at));
         let betti = found.betti().unwrap();
         assert_eq!(betti.b0, parts(&inside, 3) as u64, "{voxels:?}");
@@ -183,7 +184,10 @@ fn components_and_voids_are_those_of_the_voxels() {
 /// Two voxels that share an edge or a corner are one component, and two solids.
 #[test]
 fn solids_are_the_parts_that_share_faces() {
-    for diagonal in [voxels([2, 2, 1], |at| at[0] == at[1]), voxels([2; 3], |at| at[0] == at[1] && at[1] == at[2])] {
+    for diagonal in [
+        voxels([2, 2, 1], |at| at[0] == at[1]),
+        voxels([2; 3], |at| at[0] == at[1] && at[1] == at[2]),
+    ] {
         let found = shape(&diagonal);
         assert_eq!((found.betti().unwrap().b0, found.measures().volume), (1, 2.0));
         let (solid, cuts) = found.solid();

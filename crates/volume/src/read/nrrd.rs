@@ -108,7 +108,8 @@ impl Header {
         if !first.as_bytes().starts_with(MAGIC) {
             return Err(fail(Reason::other("is no NRRD file: it does not begin with NRRD000")));
         }
-        let mut header = Self { fields: HashMap::new(), files: None, labels: is_segmentation(path) };
+        let mut header =
+            Self { fields: HashMap::new(), files: None, labels: is_segmentation(path) };
         // A header alone may end with its file; samples need the blank line.
         while let Some(line) = lines.read_line().map_err(io_error(path))? {
             if line.is_empty() {
