@@ -88,10 +88,7 @@ struct Rows<const N: usize> {
     classes: Vec<Class>,
 }
 
-impl<const N: usize> Rows<N>
-where
-    [u32; N]: Default,
-{
+impl<const N: usize> Rows<N> {
     /// Adds simplices that come after all others.
     fn add(&mut self, mut more: Vec<([u32; N], Class)>) -> Result<(), ShapeError> {
         more.par_sort_unstable();
