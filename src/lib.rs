@@ -54,6 +54,7 @@ pub mod cli;
 pub mod export;
 pub mod haar;
 pub mod interpolate;
+pub mod labels;
 pub mod outofcore;
 pub mod pipeline;
 pub mod points;
@@ -82,6 +83,7 @@ pub use walpha_check as check;
 pub use export::Save;
 pub use haar::{Coefficients, Decomposition, HaarOptions, Tolerance, Truncation};
 pub use interpolate::Interpolant;
+pub use labels::LabelChoice;
 pub use pipeline::Recipe;
 pub use points::{Points, PointsError, Selection, SelectionRule, Units, Weighting};
 pub use shape::{

@@ -13,6 +13,7 @@ use walpha::check::{AlphaError, CertifyError, CompareError};
 use walpha::export::{EmptyShape, TargetError, UnknownFormat};
 use walpha::haar::HaarError;
 use walpha::interpolate::InterpolateError;
+use walpha::labels::LabelsError;
 use walpha::pipeline::PipelineError;
 use walpha::points::{PointsError, UnknownColumns, UnknownWeighting};
 use walpha::shape::{OutlineError, ShapeError, TorusError};
@@ -175,7 +176,7 @@ impl Told for PipelineError {
             Self::Haar(error) => error.told(),
             Self::Points(error) => error.told(),
             Self::Interpolate(error) => error.told(),
-            Self::Shape(error) => error.told(),
+            Self::Labels(LabelsError::Shape(error)) | Self::Shape(error) => error.told(),
             other => wrong(message(&other, other.advice())),
         }
     }

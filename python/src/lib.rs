@@ -37,7 +37,7 @@ mod _walpha {
     #[pymodule_export]
     use super::triangulation::{PowerDiagram, Triangulation};
     #[pymodule_export]
-    use super::volume::{difference, haar, pipeline, read, select, weigh};
+    use super::volume::{difference, haar, label_shape, pipeline, read, select, weigh};
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {

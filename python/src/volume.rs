@@ -13,7 +13,7 @@ use walpha::progress::Stage;
 use walpha::volume::{
     Coordinates, Frame, GrayRange, Nan, ReadOptions, Space, Volume, VolumeError, open_monitored,
 };
-use walpha::{Alpha, Points, Recipe, Selection, SelectionRule, Units};
+use walpha::{Alpha, LabelChoice, Points, Recipe, Selection, SelectionRule, Units};
 
 use crate::arrays::{numbers, samples as owned};
 use crate::errors::{Told, wrong};
@@ -212,6 +212,31 @@ pub fn pipeline(
         let volume = volume.map_err(PointsError::from)?;
         let volume = if is_gray { volume.with_gray_levels() } else { volume };
         recipe.run_monitored(volume, monitor)
+    })?;
+    Ok(Shape::of(model))
+}
+
+/// The solid of labels: of all that are not 0, or of these. `frame` is JSON; without one, coordinates are indices. Samples that are NaN have
+/// no label.
+#[pyfunction]
+pub fn label_shape(
+    py: Python<'_>,
+    samples: PyReadonlyArray3<'_, f32>,
+    frame: Option<&str>,
+    labels: Option<Vec<i32>>,
+    task: Task<'_>,
+) -> PyResult<Shape> {
+    let (frame, units) = place(frame)?;
+    let recipe = Recipe::new()
+        .labels(Some(labels.map_or(LabelChoice::All, LabelChoice::These)))
+        .units(units)
+        // Coordinates stay in the space that the frame is in.
+        .space(Some(frame.coordinates.space).filter(|space| space.is_known()));
+    let samples = owned(&samples)?;
+    let model = run(py, &task, move |monitor| {
+        let volume =
+            Volume::of_file(samples, frame).and_then(|volume| volume.resolve_nan(Some(Nan::Mask)));
+        recipe.solid(volume.map_err(PointsError::from)?, monitor)
     })?;
     Ok(Shape::of(model))
 }

@@ -1,3 +1,5 @@
+import pickle
+
 import numpy as np
 import pytest
 
@@ -233,3 +235,33 @@ def test_values_below_a_bound_take_no_part(phantom):
     assert np.allclose(np.sort(shape.values), np.sort(phantom.samples[phantom.samples >= bound]), atol=1e-3)
     with pytest.raises(ValueError, match=f"{above}"):
         walpha.pipeline(phantom, count=above + 1, value_min=bound, rms=0)
+
+
+def test_labels_fill_their_voxels():
+    z, y, x = np.mgrid[:9, :10, :11]
+    labels = ((x - 5) ** 2 + (y - 5) ** 2 + (z - 4) ** 2 < 14).astype(np.int16)
+    labels[4, 5, 5] = 0
+    labels[2, 3:5, 4] = 7
+    whole = walpha.label_shape(labels, spacing=(0.5, 1, 2), origin=(1, 2, 3))
+    assert whole.voxels == np.count_nonzero(labels) and whole.volume == whole.voxels
+    assert whole.betti == (1, 0, 1) and whole.alpha_origin == "labels"
+    assert set(whole.values) <= {1, 7} and "of labels" in repr(whole)
+    assert walpha.check(whole) and walpha.check(whole).verdict == "exact"
+    for seven in (walpha.label_shape(labels, 7), walpha.label_shape(labels == 7), walpha.label_shape(labels, [7])):
+        assert seven.voxels == 2 and np.array_equal(seven.points.min(0), [3.5, 2.5, 1.5])
+    again = pickle.loads(pickle.dumps(whole))
+    assert same(again, whole) and again.voxels == whole.voxels and np.array_equal(again.values, whole.values)
+    assert again.alpha_origin == "labels"
+
+
+def test_labels_that_are_none_are_refused():
+    with pytest.raises(ValueError, match="no voxel has the label 3; there are 1"):
+        walpha.label_shape(np.ones((2, 2, 2), int), 3)
+    with pytest.raises(ValueError, match="whole numbers"):
+        walpha.label_shape(np.full((2, 2, 2), 0.5))
+    with pytest.raises(ValueError, match="the background"):
+        walpha.label_shape(np.zeros((2, 2, 2)))
+    with pytest.raises(ValueError, match="renumber"):
+        walpha.label_shape(np.full((2, 2, 2), 1 << 25))
+    with pytest.raises(TypeError):
+        walpha.label_shape(np.ones((2, 2, 2)), 1.5)

@@ -29,8 +29,8 @@ if TYPE_CHECKING:
 class AlphaShape(Classified):
     """The alpha shape of weighted points, by input index.
 
-    Made by :func:`alpha_shape`, :func:`pipeline` and :meth:`Filtration.shape`. It does not change:
-    its arrays cannot be written to.
+    Made by :func:`alpha_shape`, :func:`pipeline`, :func:`label_shape` and :meth:`Filtration.shape`. It does
+    not change: its arrays cannot be written to.
 
     Notes
     -----
@@ -96,8 +96,14 @@ class AlphaShape(Classified):
     @property
     def alpha_origin(self) -> str:
         """str: ``given``, ``default`` (10 h² for a volume), ``auto`` or ``connected``, or these
-        with ``-unweighted``, where weights are proportional to α."""
+        with ``-unweighted``, where weights are proportional to α; ``labels`` where the shape has no α."""
         return cast(str, self._facts["alpha_origin"])
+
+    @property
+    def voxels(self) -> int | None:
+        """int or None: of a :func:`label_shape` the number of voxels that its cells fill. Its ``alpha`` is infinite,
+        as no α has a part in it."""
+        return self._shape.voxels
 
     @property
     def truncation(self) -> dict[str, Any] | None:
@@ -498,8 +504,10 @@ class AlphaShape(Classified):
         }
 
     def __repr__(self) -> str:
+        alpha = f"alpha={self.alpha:g} (radius {self.alpha_radius:g})"
+        made = alpha if self.voxels is None else f"of labels ({self.voxels} voxels)"
         return (
-            f"<walpha.AlphaShape alpha={self.alpha:g} (radius {self.alpha_radius:g}): {len(self.points)} points, "
+            f"<walpha.AlphaShape {made}: {len(self.points)} points, "
             f"{len(self.cells)} cells, volume {self.volume:g}, betti {tuple(self.betti)}>"
         )
 

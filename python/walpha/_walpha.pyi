@@ -31,6 +31,7 @@ class Shape:
     edges: _Rows
     vertices: _Rows
     alpha: float
+    voxels: int | None
     engine: Literal["cgal", "native"]
     exterior: bool
     measures: tuple[float, float, float]
@@ -206,6 +207,12 @@ def pipeline(
     alpha: float | str | None,
     how: _Options,
     refit: str | None,
+    task: _Task,
+) -> Shape: ...
+def label_shape(
+    samples: Samples,
+    frame: str | None,
+    labels: list[int] | None,
     task: _Task,
 ) -> Shape: ...
 def sweep() -> None: ...

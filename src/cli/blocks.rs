@@ -25,9 +25,9 @@ use crate::outofcore::{
     Alone, BlocksError, BlockwiseFormat, Checked, CostEstimate, Cutting, Finding, Job, Merged,
     Plan, Team, estimate_cost, merge_monitored, run, run_all, whole,
 };
-use crate::pipeline::Opened;
+use crate::pipeline::{Opened, PipelineError};
 use crate::progress::Stage;
-use crate::volume::{Hounsfield, files_of};
+use crate::volume::{Hounsfield, Labels, files_of};
 
 /// Compute a shape in blocks, on any number of machines that share a folder: plan, run each block, merge.
 ///
@@ -305,6 +305,12 @@ pub(super) fn job(args: &InputArgs, recipe: Recipe) -> anyhow::Result<Job> {
     let alone = ["refit", "exchange", "max_error"];
     args.typed.refuse(&alone, "blocks look at a part of the volume each")?;
     let source = volume.source(&recipe.read).map_err(pipeline::with_points)?;
+    if recipe.labels.is_some()
+        || !preset::looks_for_gray_levels(args)
+            && Labels::of(&source).map_err(pipeline::with_points)?.is_some()
+    {
+        return Err(PipelineError::OfLabels.into());
+    }
     let found = || Hounsfield::of(&source).ok()?;
     let recipe = preset::suited(args, &recipe, found).unwrap_or(recipe);
     Job::of_source(input, recipe, &source).map_err(|error| match error {

@@ -19,13 +19,13 @@ use crate::check::{
     certify_filtration_monitored, compare, count_by_rule, enumerate_monitored, keep_causes,
 };
 use crate::export::{Target, UnknownFormat, write_findings};
-use crate::pipeline::{AlphaRule, Opened, Values};
+use crate::pipeline::{AlphaRule, Input, Opened, Values};
 use crate::points::{CellCount, Weighting, cells_of_file, read_complex_file};
 use crate::progress::{Monitor, Stage};
 use crate::shape::placed_complex;
 use crate::volume::{OpenFile, OpenVolume};
 
-use super::args::{PeriodicArgs, PipelineArgs, ShapeArgs};
+use super::args::{LabelArgs, PeriodicArgs, PipelineArgs, ShapeArgs};
 use super::compare;
 use super::errors::{CommandError, command_error, fail, fail_usage};
 use super::global::{DIFFERENT, Global, UNDECIDED};
@@ -232,7 +232,9 @@ impl Check {
             _ => None,
         };
         if alpha.is_some() && !file.states_no_alpha() {
-            fail_usage!("--alpha has no effect: {} states its α", name(input) => "omit it");
+            let states =
+                if file.voxels.is_some() { "is of labels, without α" } else { "states its α" };
+            fail_usage!("--alpha has no effect: {} {states}", name(input) => "omit it");
         }
         let takes_column = self.pipeline.weights.weights == Some(Weighting::Column);
         let mut used = vec!["alpha", "alpha_radius"];
@@ -248,6 +250,9 @@ impl Check {
         let mut judged = format!("{kind} of {}", name(input));
         if file.states_no_alpha() {
             judged += " as a triangulation (α = ∞; --alpha makes it a shape)";
+        }
+        if let Some(voxels) = &file.voxels {
+            judged += &format!(", the solid of {} voxels", voxels.count());
         }
         let is_cells_alone = file.is_cells_alone();
         let path = self.pipeline.input.input.path();
@@ -316,6 +321,11 @@ impl Check {
         let input = &self.pipeline.input;
         input.typed.refuse(&["refit"], "values are not judged")?;
         let read = pipeline::read_opened(opened, input, &mut recipe, progress)?;
+        if let Input::Labels(volume) = read {
+            LabelArgs::refuse_others(&input.typed)?;
+            let model = progress.watch(|monitor| recipe.solid(volume, monitor))?;
+            return Ok(placed_complex(&model.shape));
+        }
         let (weighed, _) = pipeline::weigh(read, input, &recipe, Values::Written, progress)?;
         // With the whole triangulation every rule can be judged. Shapes made in several blocks are judged as
         // they are; and on a torus the whole may have an edge that is too long where the shape has none.
@@ -337,6 +347,9 @@ impl Check {
         let n = judged.positions.len();
         if self.enumerate && judged.periodic.is_some() {
             fail!("--enumerate does not support a periodic box" => "omit it");
+        }
+        if self.enumerate && judged.voxels.is_some() {
+            fail!("--enumerate builds α-shapes, and this is the solid of labels" => "omit it");
         }
         if self.enumerate && n > MOST_ENUMERATED {
             fail!("--enumerate takes at most {MOST_ENUMERATED} points, and there are {n}" => "omit it");
@@ -386,7 +399,11 @@ impl Check {
                 complex.edges.len(),
                 complex.vertices.len(),
             ],
-            extent: Some(if claim.extent == Extent::Whole { "whole" } else { "shape" }),
+            extent: Some(match claim.extent {
+                _ if judged.voxels.is_some() => "labels",
+                Extent::Whole => "whole",
+                Extent::Shape => "shape",
+            }),
             verdict,
             valid: findings.is_empty() && differing.is_none() && verdict.is_complete(),
             findings_total: findings.len(),

@@ -9,11 +9,12 @@ use walpha_base::Monitor;
 use walpha_base::shown::number;
 
 use crate::check::meshes::Mesh;
+use crate::labels::{LabelSize, LabelSizes};
 use crate::pipeline::Opened;
 use crate::points::{Cell, CellCount, ModelMetadata, Points, cells_of_file, read_model_file};
 use crate::progress::Stage;
 use crate::volume::{self, Dtype, Nan, OpenVolume, ReadOptions, Reason, SampleStats, Series};
-use crate::{Alpha, Coordinates, Dims, Frame, LengthUnit, VolumeError};
+use crate::{Alpha, Coordinates, Dims, Frame, LengthUnit, Units, VolumeError};
 
 use super::args::InputArgs;
 use super::check::{mesh_format, read_mesh};
@@ -72,6 +73,9 @@ enum Content {
         /// The preset that `walpha shape` uses where no option says what to look for. Absent if there is none.
         #[serde(skip_serializing_if = "Option::is_none")]
         preset: Option<&'static str>,
+        /// The labels of a segmentation, with their voxels. Absent if the values are no labels.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        labels: Option<LabelSummary>,
         /// Volumes in the file, of which --frame reads one; the first is described. Absent if there is only one.
         #[serde(skip_serializing_if = "Option::is_none")]
         volumes: Option<u64>,
@@ -126,6 +130,38 @@ enum Content {
         #[serde(skip_serializing_if = "Option::is_none")]
         recipe: Option<Value>,
     },
+}
+
+/// The labels of a segmentation.
+#[derive(Serialize)]
+struct LabelSummary {
+    /// Whether the file states that its values are labels.
+    stated: bool,
+    #[serde(flatten)]
+    sizes: LabelSizes,
+}
+
+/// Most labels listed as text.
+const MOST_LABELS: usize = 30;
+
+impl std::fmt::Display for LabelSummary {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let LabelSizes { labels, unit, .. } = &self.sizes;
+        let how =
+            if self.stated { "the file states labels" } else { "the values look like labels" };
+        writeln!(
+            f,
+            "labels    {how}: `walpha shape` makes the solid of all but 0; --label N takes one"
+        )?;
+        let unit = unit.symbol();
+        for LabelSize { label, voxels, volume, .. } in labels.iter().take(MOST_LABELS) {
+            writeln!(f, "          {label}: {voxels} voxels, {} {unit}³", number(*volume))?;
+        }
+        match labels.len().saturating_sub(MOST_LABELS) {
+            0 => Ok(()),
+            more => writeln!(f, "          and {more} more, which --json lists"),
+        }
+    }
 }
 
 /// A cell in which points repeat.
@@ -224,6 +260,12 @@ impl Info {
         };
         let (format, data_files) = (volume.format_name(&options)?, volume.data_files(&options)?);
         let VolumeSummary { dims, frame, dtype, gray_levels, stats, padding, volumes } = summary;
+        let unit = frame.coordinates.unit;
+        let units = if unit == LengthUnit::Voxel { Units::Voxel } else { Units::World };
+        let labels = stats.labels.map(|found| LabelSummary {
+            stated: found.stated,
+            sizes: LabelSizes::new(found.foreground(), &frame, units),
+        });
         Ok(Content::Volume {
             format,
             samples: dtype.to_string(),
@@ -236,7 +278,11 @@ impl Info {
             max: stats.range.map(|(_, max)| max),
             missing: stats.missing,
             padding,
-            preset: stats.hounsfield.map(|_| preset::OF_CT),
+            preset: labels
+                .as_ref()
+                .map(|_| preset::OF_LABELS)
+                .or(stats.hounsfield.map(|_| preset::OF_CT)),
+            labels,
             volumes,
             gray_levels,
             data_files: data_files.iter().map(|file| file.display().to_string()).collect(),
@@ -290,7 +336,7 @@ impl VolumeSummary {
             Err(error) if error.is_not_finite() => {
                 let volume = read(Some(Nan::Value(0.0)))?;
                 let missing = volume.dims().samples() as u64;
-                (volume, SampleStats { range: None, missing, hounsfield: None })
+                (volume, SampleStats { range: None, missing, hounsfield: None, labels: None })
             }
             Err(error) => return Err(error),
         };
@@ -411,6 +457,7 @@ impl std::fmt::Display for Content {
                 missing,
                 padding,
                 preset,
+                labels,
                 volumes,
                 gray_levels,
                 data_files,
@@ -426,7 +473,9 @@ impl std::fmt::Display for Content {
                     }
                     _ => writeln!(f, "values    none that is a finite number")?,
                 }
-                if let Some(preset) = preset {
+                if let Some(labels) = labels {
+                    write!(f, "{labels}")?;
+                } else if let Some(preset) = preset {
                     writeln!(
                         f,
                         "units     the values look like Hounsfield units: `walpha shape` selects bone unless told \

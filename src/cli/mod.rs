@@ -38,6 +38,7 @@ mod report;
 mod reproduce;
 mod shape;
 mod shape_in_blocks;
+mod shape_of_labels;
 mod signals;
 mod threads;
 #[cfg(feature = "render")]

@@ -204,7 +204,7 @@ pub(super) fn with_file<T>(
 pub(super) fn accept(input: &Input, args: &InputArgs) -> Result<(), CommandError> {
     let holds = |what| format!("{} holds {what}", args.input);
     match input {
-        Input::Volume(..) => {
+        Input::Volume(..) | Input::Labels(..) => {
             args.typed.refuse(&["columns", "class", "withheld", "thin"], holds("a volume"))
         }
         Input::Points(_, facts) => {

@@ -3,20 +3,24 @@
 use clap::builder::PossibleValuesParser;
 use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
 
-use super::args::{InputArgs, PipelineArgs, WeightArgs};
+use super::args::{InputArgs, PipelineArgs, WeightArgs, of_gray_levels};
 use super::config;
-use crate::volume::{Hounsfield, Volume};
+use crate::labels::{self, LabelChoice};
+use crate::volume::{Hounsfield, Labels, Volume};
 use crate::{HaarOptions, Recipe};
 
 /// The name of the option.
 pub(super) const OPTION: &str = "preset";
 /// The preset that a CT gets where no option says what to look for.
 pub(super) const OF_CT: &str = "ct-bone";
+/// The preset that a segmentation gets where no option says what to look for.
+pub(super) const OF_LABELS: &str = "labels";
 
 /// Names and contents.
-const PRESETS: [(&str, &str); 6] = [
+const PRESETS: [(&str, &str); 7] = [
     (OF_CT, include_str!("../../presets/ct-bone.toml")),
     ("ct-skin", include_str!("../../presets/ct-skin.toml")),
+    (OF_LABELS, include_str!("../../presets/labels.toml")),
     ("mri", include_str!("../../presets/mri.toml")),
     ("points", include_str!("../../presets/points.toml")),
     ("molecule", include_str!("../../presets/molecule.toml")),
@@ -93,25 +97,53 @@ pub(super) fn suited(
     }
     let Hounsfield { air, soft_tissue, .. } = found()?;
     let (bone, settings) = recipe_of(OF_CT);
-    let explicit = settings.join(" ").replace('=', " ");
-    // For a shell; no argument holds a zero byte.
-    let typed: Vec<String> = std::env::args_os()
-        .skip(1)
-        .map(|arg| shlex::try_quote(&arg.to_string_lossy()).unwrap_or_default().into_owned())
-        .collect();
     tracing::warn!(
         "the values look like Hounsfield units ({:.0} % air, {:.0} % soft tissue), so bone is selected, as by \
-         --preset {OF_CT}. The same, stated: walpha {} {explicit}",
+         --preset {OF_CT}. The same, stated: {}",
         100.0 * air,
         100.0 * soft_tissue,
-        typed.join(" "),
+        stated(&settings),
     );
     let haar = if recipe.haar == HaarOptions::default() { bone.haar } else { recipe.haar };
     Some(recipe.clone().gray(bone.gray).choice(bone.choice).haar(haar))
 }
 
-/// [`suited`] for a volume in memory.
+/// The command line with these settings.
+fn stated(settings: &[String]) -> String {
+    // For a shell; no argument holds a zero byte.
+    let typed: Vec<String> = std::env::args_os()
+        .skip(1)
+        .map(|arg| shlex::try_quote(&arg.to_string_lossy()).unwrap_or_default().into_owned())
+        .collect();
+    format!("walpha {} {}", typed.join(" "), settings.join(" ").replace('=', " "))
+}
+
+/// Whether an option says what to look for by gray levels, weights or α, so that a volume is not taken for labels.
+pub(super) fn looks_for_gray_levels(args: &InputArgs) -> bool {
+    let has = |name: &str| args.typed.has(name) || config::has_set(name);
+    has(OPTION) || of_gray_levels().iter().any(|name| has(name))
+}
+
+/// [`suited`] for a volume in memory: for a segmentation whose labels nobody named the solid of all of them, with a warning that
+/// says how to have it otherwise.
 pub(super) fn suited_to(args: &InputArgs, recipe: &Recipe, volume: &Volume) -> Option<Recipe> {
+    if recipe.labels.is_some() {
+        return None;
+    }
+    if !looks_for_gray_levels(args)
+        && let Some(found) = Labels::of_volume(volume)
+    {
+        let there: Vec<i32> = found.foreground().map(|(label, _)| label).collect();
+        let how =
+            if found.stated { "the file states labels" } else { "the values look like labels" };
+        tracing::warn!(
+            "{how} ({}), so the shape is the solid of all but 0, as by --preset {OF_LABELS}; --label takes some of \
+             them, and --threshold, --count or --ratio selects points by gray levels. The same, stated: {}",
+            labels::list(there.into_iter()),
+            stated(&recipe_of(OF_LABELS).1),
+        );
+        return Some(recipe.clone().labels(Some(LabelChoice::All)));
+    }
     suited(args, recipe, || Hounsfield::of_volume(volume))
 }
 

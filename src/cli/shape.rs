@@ -44,23 +44,27 @@ use crate::{AlphaShape, Recipe};
 /// walpha shape trees.csv --alpha-radius 50 -o forest.geojson forest.svg
 ///
 /// walpha shape foam.xyz --periodic 20,20,20 --alpha 1.5 -o foam.npz foam.vtu
+///
+/// walpha shape labels.nrrd --label 3,5 --solid -o organ.stl
+///
+/// walpha shape labels.nrrd --each-label --solid -o organs
 #[derive(Args)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a switch of its own")]
 pub(super) struct Shape {
     #[arg(short, long, value_name = "FILE", num_args = 1.., help = "Files to write, as in bone.ply; --help lists the formats",
           long_help = shape_output())]
-    output: Vec<PathBuf>,
+    pub(super) output: Vec<PathBuf>,
     /// Write PLY as text instead of binary.
     #[arg(long)]
-    ascii: bool,
+    pub(super) ascii: bool,
     /// Write boundaries as solids, for 3D printing or meshing: only regular facets, closed, oriented, and
     /// cut apart where parts touch along edges or at vertices.
     #[arg(long)]
-    solid: bool,
+    pub(super) solid: bool,
     /// Distinguish regular and singular facets, which some programs do not expect: by groups (OBJ),
     /// colours (OFF) or numbers (PLY, with components and sheets).
     #[arg(long)]
-    groups: bool,
+    pub(super) groups: bool,
     /// Refuse points that span no volume. Otherwise points in one plane or on one line get the shape that
     /// they have there: triangles or edges, and no cells.
     #[arg(long)]
@@ -69,8 +73,20 @@ pub(super) struct Shape {
     /// STL without a facet.
     #[arg(long)]
     allow_empty: bool,
+    /// Write the solid of each label of a segmentation to a file of its own, label-N, in the folder that --output names.
+    #[arg(long, help_heading = "Labels")]
+    each_label: bool,
+    /// With --each-label: formats to write, by extension, as in ply,vtu [default: stl].
+    #[arg(
+        long,
+        value_name = "EXT,EXT,…",
+        value_delimiter = ',',
+        requires = "each_label",
+        help_heading = "Labels"
+    )]
+    pub(super) mesh: Vec<String>,
     #[command(flatten)]
-    pipeline: PipelineArgs,
+    pub(super) pipeline: PipelineArgs,
     #[command(flatten)]
     shape: ShapeArgs,
     #[command(flatten)]
@@ -100,7 +116,9 @@ impl Shape {
         let input = &self.pipeline.input;
         self.format.check(self.output.iter())?;
         let names = self.names()?;
-        let formats: Vec<&Format> = formats(&names).collect();
+        let of_each = if self.each_label { self.meshes()? } else { Vec::new() };
+        let formats: Vec<&Format> =
+            formats(&names).chain(of_each.iter().map(|mesh| mesh.format)).collect();
         let written = |has: fn(&Format) -> bool| formats.iter().any(|format| has(format));
         let known = |has: fn(&Format) -> bool| {
             let names = FORMATS.iter().filter(|format| has(format)).map(|format| format.name);
@@ -139,6 +157,16 @@ impl Shape {
         Ok(recipe.refuse_flat(self.require_3d))
     }
 
+    /// How outputs are written.
+    pub(super) fn export(&self) -> ExportOptions {
+        ExportOptions {
+            ascii: self.ascii,
+            solid: self.solid,
+            groups: self.groups,
+            input: Some(self.pipeline.input.input.to_string()),
+        }
+    }
+
     /// The outputs, under names whose extensions say their formats.
     fn names(&self) -> anyhow::Result<Vec<PathBuf>> {
         self.output.iter().map(|path| self.format.named(path)).collect()
@@ -147,6 +175,9 @@ impl Shape {
     pub(super) fn run(self, global: Global, team: &dyn Team) -> anyhow::Result<()> {
         // Before the long work, a bad option, extension or path costs nothing yet.
         let recipe = self.recipe()?;
+        if self.each_label {
+            return self.each_label(&recipe, global);
+        }
         let folder = shape_in_blocks::working_folder(&self.output, &self.pipeline.input.input);
         let in_blocks =
             team.size() > 1 || self.output.iter().any(|path| BlockwiseFormat::of(path).is_some());
@@ -208,6 +239,13 @@ impl Shape {
         let mut recipe = recipe.clone();
         let read = pipeline::read_suited(input, &mut recipe, progress)?;
         let recipe = &recipe;
+        pipeline::accept(&read, input)?;
+        let read = match read {
+            Input::Labels(volume) => {
+                return self.of_labels(volume, recipe, outputs, global, progress);
+            }
+            read => read,
+        };
         if let Input::Points(points, _) = &read {
             outline::check(formats(&names), &points.positions)?;
         }
@@ -254,12 +292,7 @@ pub(super) struct Outputs {
 impl Outputs {
     /// Opens the outputs that the options name.
     pub(super) fn open(shape: &Shape) -> anyhow::Result<Self> {
-        let export = ExportOptions {
-            ascii: shape.ascii,
-            solid: shape.solid,
-            groups: shape.groups,
-            input: Some(shape.pipeline.input.input.to_string()),
-        };
+        let export = shape.export();
         let mut outputs = Self::default();
         for path in &shape.output {
             let name = shape.format.named(path)?;

@@ -21,7 +21,7 @@ use super::report::{SCHEMA_VERSION, WeightsReport};
 use crate::export::Target;
 use crate::interpolate::{Deviation, Grid, Interpolant};
 use crate::ladder::Filtration;
-use crate::pipeline::{AlphaRule, Input, Parameter, Source, Values, Weighed};
+use crate::pipeline::{AlphaRule, Input, Parameter, PipelineError, Source, Values, Weighed};
 use crate::progress::Stage;
 use crate::render::{self, Differences, Original, Page, Subject};
 use crate::volume::UnknownFormat;
@@ -115,6 +115,7 @@ impl View {
                 let (weighed, _) = progress.watch(weigh)?;
                 return Ok((vec![weighed], None));
             }
+            Input::Labels(..) => return Err(PipelineError::OfLabels.into()),
             Input::Volume(grays) => grays,
         };
         let source = recipe.source(grays)?;

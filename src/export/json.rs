@@ -18,6 +18,7 @@ impl Exporter for Json {
     fn encode(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
         let mut file = ComplexFile::from(claim(shape));
         file.periodic = shape.options().periodic.map(|torus| torus.sides());
+        file.voxels = shape.voxels().cloned();
         file.info = Some(serde_json::json!({
             "program": concat!("walpha ", env!("CARGO_PKG_VERSION")),
             "balls": shape.options().balls,

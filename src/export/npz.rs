@@ -6,7 +6,7 @@ use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
 
 use super::Exporter;
-use crate::shape::{AlphaShape, Class, NO_COMPONENT};
+use crate::shape::{AlphaShape, Class, NO_COMPONENT, Voxels};
 
 /// NPZ, `NumPy`'s archive of arrays: the complex with its points, power weights and α, in the
 /// [`schema`](crate::check::schema) that `walpha check` and `walpha compare` read, as in
@@ -41,6 +41,10 @@ impl Exporter for Npz {
         archive.rows("duplicates", shape.duplicates())?;
         if let Some(torus) = shape.options().periodic {
             archive.list("periodic", &torus.sides())?;
+        }
+        if let Some(Voxels { dims, origin, axes: [a, b, c], runs }) = shape.voxels() {
+            archive.rows("voxel_grid", &[dims.map(f64::from), *origin, *a, *b, *c])?;
+            archive.rows("voxel_runs", runs)?;
         }
         if let Some(values) = points.values() {
             archive.list("values", values)?;

@@ -1,5 +1,6 @@
 use std::io::{self, Write};
 
+use super::about::about;
 use super::{ExportOptions, Exporter, Needs};
 use crate::shape::AlphaShape;
 use crate::volume::annotation;
@@ -12,7 +13,7 @@ pub struct Obj(pub ExportOptions);
 impl Exporter for Obj {
     fn encode(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
         let surface = self.0.surface(shape);
-        writeln!(out, "# walpha: {}", annotation::alpha(shape.options().alpha))?;
+        writeln!(out, "# walpha: {}", about(shape))?;
         write!(out, "{}", annotation::line("#", shape.coordinates()))?;
         for [x, y, z] in surface.positions(shape.points().positions()) {
             writeln!(out, "v {x} {y} {z}")?;

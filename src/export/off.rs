@@ -1,5 +1,6 @@
 use std::io::{self, Write};
 
+use super::about::about;
 use super::{ExportOptions, Exporter, Needs};
 use crate::shape::AlphaShape;
 use crate::volume::annotation;
@@ -13,7 +14,7 @@ impl Exporter for Off {
     fn encode(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
         let surface = self.0.surface(shape);
         writeln!(out, "OFF")?;
-        writeln!(out, "# walpha: {}", annotation::alpha(shape.options().alpha))?;
+        writeln!(out, "# walpha: {}", about(shape))?;
         write!(out, "{}", annotation::line("#", shape.coordinates()))?;
         let facets = surface.regular.len() + surface.singular.len();
         writeln!(out, "{} {facets} 0", surface.vertex_count())?;

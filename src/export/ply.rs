@@ -2,6 +2,7 @@ use std::io::{self, Write};
 
 use walpha_base::advice::Advice;
 
+use super::about::about;
 use super::{ExportOptions, Exporter, Needs, colour};
 use crate::shape::{AlphaShape, Class, Surface};
 use crate::volume::annotation;
@@ -29,7 +30,7 @@ impl Exporter for Ply {
              property double x\nproperty double y\nproperty double z\nproperty double weight\n{}\
              property uint index\nelement face {}\nproperty list uchar uint vertex_indices\n{}{}end_header\n",
             if options.ascii { "ascii" } else { "binary_little_endian" },
-            annotation::alpha(shape.options().alpha),
+            about(shape),
             annotation::line("comment", shape.coordinates()),
             surface.vertex_count(),
             if valued { VALUED } else { "" },

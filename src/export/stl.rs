@@ -5,7 +5,7 @@ use walpha_base::shown::number;
 
 use super::{ExportOptions, Exporter, Needs};
 use crate::shape::{AlphaShape, SinglePrecision};
-use crate::volume::{Coordinates, annotation};
+use crate::volume::annotation;
 
 /// Binary STL: the regular facets, counter-clockwise seen from outside, with their normals.
 /// Coordinates are rounded to `f32`; where that would move them by more than a thousandth of the shortest edge, a round number
@@ -19,7 +19,7 @@ impl Exporter for Stl {
         let surface = self.0.surface(shape);
         let positions: Vec<_> = surface.positions(shape.points().positions()).collect();
         let single = SinglePrecision::of_surface(&surface, shape.points().positions());
-        out.write_all(&head(shape.coordinates(), &single)?)?;
+        out.write_all(&head(shape, &single)?)?;
         let count = u32::try_from(surface.regular.len())
             .map_err(|_| io::Error::other("more facets than STL can count"))?;
         out.write_all(&count.to_le_bytes())?;
@@ -59,14 +59,16 @@ impl Exporter for Stl {
 ///
 /// # Errors
 /// Numbers of an offset that have no room in it.
-fn head(coordinates: Coordinates, single: &SinglePrecision) -> io::Result<[u8; 80]> {
-    let stated = annotation::comment(coordinates);
+fn head(shape: &AlphaShape, single: &SinglePrecision) -> io::Result<[u8; 80]> {
+    let stated = annotation::comment(shape.coordinates());
     // It must not begin with "solid", as some readers would take the file for text.
     let about = if single.has_offset() {
         let [x, y, z] = single.offset.map(number);
         format!("walpha OFFSET={x},{y},{z}{stated}")
     } else {
-        format!("walpha, boundary of an alpha shape{stated}")
+        let of =
+            if shape.voxels().is_some() { "solid of labels" } else { "boundary of an alpha shape" };
+        format!("walpha, {of}{stated}")
     };
     let mut head = [b' '; 80];
     let room = head.get_mut(..about.len());

@@ -51,7 +51,7 @@ pub(crate) fn write_surface(
         "<?xml version=\"1.0\"?>\n<!-- walpha: {} -->\n\
          <VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n\
          <PolyData>\n",
-        annotation::alpha(made.alpha),
+        made.about(annotation::alpha(made.alpha)),
     )?;
     file.field_data(made, true)?;
     write!(

@@ -1,7 +1,8 @@
 use std::io::{self, Write};
 
+use super::about::of_labels;
 use super::{ExportOptions, Exporter};
-use crate::shape::{Alpha, AlphaShape, Complex, Simplices};
+use crate::shape::{Alpha, AlphaShape, Complex, Simplices, Voxels};
 use crate::volume::{Coordinates, annotation};
 
 /// VTU, VTK's unstructured grid: every simplex of the shape, vertices first, with its class as
@@ -28,13 +29,21 @@ pub(crate) struct Provenance<'a> {
     pub alpha: Alpha,
     pub coordinates: Coordinates,
     pub input: Option<&'a str>,
+    /// The number of voxels that the shape fills, if it is the solid of labels, which has no α.
+    pub voxels: Option<u64>,
 }
 
 impl<'a> Provenance<'a> {
     /// How a shape was made from the input in the options.
     pub(crate) fn of(shape: &AlphaShape, options: &'a ExportOptions) -> Self {
         let (alpha, coordinates) = (shape.options().alpha, shape.coordinates());
-        Self { alpha, coordinates, input: options.input.as_deref() }
+        let voxels = shape.voxels().map(Voxels::count);
+        Self { alpha, coordinates, input: options.input.as_deref(), voxels }
+    }
+
+    /// What the shape is: α, in these words, or of labels.
+    pub(super) fn about(&self, alpha: String) -> String {
+        self.voxels.map_or(alpha, of_labels)
     }
 }
 
@@ -93,7 +102,7 @@ pub(crate) fn write_grid(
     let of =
         |per_point: &[f64]| bytes(vertices.iter().map(|&v| per_point[v as usize].to_le_bytes()));
     let mut file = Appended::default();
-    file.begin(&format!("<!-- walpha: {} -->\n", made.alpha))?;
+    file.begin(&format!("<!-- walpha: {} -->\n", made.about(made.alpha.to_string())))?;
     file.field_data(made, false)?;
     write!(
         file.xml,
@@ -218,7 +227,7 @@ impl Appended {
         let alpha = made.alpha;
         writeln!(self.xml, "<FieldData>")?;
         for (name, number) in [("alpha", Some(alpha.squared())), ("alpha_radius", alpha.radius())] {
-            if let Some(number) = number {
+            if let Some(number) = number.filter(|_| made.voxels.is_none()) {
                 // In binary, as VTK cannot read "inf".
                 self.field("DataArray", "Float64", name, 1, &number.to_le_bytes())?;
             }

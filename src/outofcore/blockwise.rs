@@ -274,7 +274,8 @@ impl MergedBlock {
             voxels: Some(&self.voxels),
         };
         let coordinates = job.units.coordinates_of(&job.frame);
-        let made = Provenance { alpha: plan.alpha(), coordinates, input: Some(&job.input) };
+        let input = Some(job.input.as_str());
+        let made = Provenance { alpha: plan.alpha(), coordinates, input, voxels: None };
         match kind {
             VtkFormat::Grid => write_grid(&self.complex, &self.corners(), &corners, &made, out),
             VtkFormat::Surface => {

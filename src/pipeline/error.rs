@@ -4,6 +4,7 @@ use walpha_base::monitor::wraps;
 
 use crate::haar::HaarError;
 use crate::interpolate::InterpolateError;
+use crate::labels::LabelsError;
 use crate::points::PointsError;
 use crate::shape::{AlphaError, ShapeError};
 
@@ -20,6 +21,14 @@ pub enum PipelineError {
     /// An error in adaptive selection or fitting.
     #[error(transparent)]
     Interpolate(InterpolateError),
+    /// An error in making the solid of labels.
+    #[error(transparent)]
+    Labels(LabelsError),
+    /// Labels, where points are to be selected by gray levels.
+    #[error(
+        "the volume holds labels, and their solid comes from voxels, without α, differences or weights"
+    )]
+    OfLabels,
     /// An error in computing the shape.
     #[error(transparent)]
     Shape(ShapeError),
@@ -52,7 +61,12 @@ pub enum PipelineError {
     PeriodicWeights,
 }
 
-wraps! { PipelineError: Haar(HaarError), Interpolate(InterpolateError), Shape(ShapeError) }
+wraps! {
+    PipelineError: Haar(HaarError),
+    Interpolate(InterpolateError),
+    Labels(LabelsError),
+    Shape(ShapeError)
+}
 
 impl PipelineError {
     /// What to do about it, if anything.
@@ -61,6 +75,12 @@ impl PipelineError {
             Self::Haar(error) => error.advice(),
             Self::Points(error) => error.advice(),
             Self::Interpolate(error) => error.advice(),
+            Self::Labels(error) => error.advice(),
+            Self::OfLabels => Some(advice![
+                "take their solid by `walpha shape`, or say what to look for in gray levels, as in ",
+                Setting::Threshold,
+                " 30"
+            ]),
             Self::Shape(error) => error.advice(),
             Self::Alpha(error) => Some(error.advice().into()),
             Self::Cancelled(_) => None,

@@ -12,6 +12,8 @@ use crate::volume::{GrayRange, OpenFile, OpenVolume, Volume};
 pub enum Input {
     /// A grid of gray levels.
     Volume(Grays),
+    /// A segmentation, whose labels the recipe [asks for](Recipe::labels).
+    Labels(Volume),
     /// Points, perhaps with weights and values, and the metadata of their file.
     Points(Points, ModelMetadata),
 }
@@ -119,6 +121,9 @@ impl Recipe {
         };
         if let Some(suited) = suited(self, &volume) {
             *self = suited;
+        }
+        if self.labels.is_some() {
+            return Ok(Input::Labels(volume));
         }
         Ok(Input::Volume(self.grays(volume)?))
     }

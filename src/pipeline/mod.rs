@@ -26,6 +26,7 @@ use walpha_base::Monitor;
 
 use crate::haar::smooth_monitored;
 use crate::interpolate::{Refit, refit_monitored};
+use crate::labels::{self, LabelChoice, LabelSizes};
 use crate::points::{ModelMetadata, Points, SampleGrid};
 use crate::progress::Stage;
 use crate::shape::{AlphaShape, alpha_shape_monitored};
@@ -41,10 +42,13 @@ pub struct Model {
     pub parameter: Parameter,
     /// Where its points come from.
     pub origin: Origin,
+    /// The labels that it is the solid of, if it is of labels.
+    pub labels: Option<LabelSizes>,
 }
 
 impl Recipe {
-    /// The shape of a volume, whose values are mapped to gray levels first if needed.
+    /// The shape of a volume: that of its [labels](Recipe::labels), if the recipe names some; otherwise its values are mapped to
+    /// gray levels first if needed.
     ///
     /// # Errors
     /// The errors of its stages.
@@ -57,8 +61,29 @@ impl Recipe {
     /// # Errors
     /// The errors of its stages, and [`PipelineError::Cancelled`].
     pub fn run_monitored(&self, volume: Volume, monitor: &Monitor) -> Result<Model, PipelineError> {
+        if self.labels.is_some() {
+            return self.solid(volume, monitor);
+        }
         let source = self.source(self.grays(volume)?)?;
         self.finish(self.weighed(&source, Values::Written, monitor)?, monitor)
+    }
+
+    /// The solid of the labels that the recipe names, of all but 0 if it names none: its cells fill their voxels
+    /// ([`labels::solid`]).
+    ///
+    /// # Errors
+    /// [`PipelineError::Labels`], and the errors of [`Recipe::place`].
+    pub fn solid(&self, volume: Volume, monitor: &Monitor) -> Result<Model, PipelineError> {
+        Stage::Shape.begin(monitor)?;
+        let (frame, units) = self.place(*volume.frame())?;
+        let volume = volume.with_frame(frame);
+        let counts = labels::chosen(&volume, self.labels.as_ref().unwrap_or(&LabelChoice::All))?;
+        let chosen: Vec<i32> = counts.iter().map(|&(label, _)| label).collect();
+        let shape = labels::solid(&volume, units, &chosen, monitor)?;
+        let sizes = LabelSizes::new(counts, &frame, units);
+        let parameter = Parameter::of_labels(sizes.unit);
+        let origin = Origin::of_labels(units.coordinates_of(&frame));
+        Ok(Model { shape, parameter, origin, labels: Some(sizes) })
     }
 
     /// The shape of scattered points.
@@ -97,6 +122,7 @@ impl Recipe {
             Input::Points(points, metadata) => {
                 Ok((self.weighed_points(points, &metadata, values, monitor)?, None))
             }
+            Input::Labels(_) => Err(PipelineError::OfLabels),
             Input::Volume(grays) => {
                 let source = self.source(grays)?;
                 Ok((self.weighed(&source, values, monitor)?, Some(source)))
@@ -202,7 +228,7 @@ impl Recipe {
         let Weighed { points, origin, .. } = weighed;
         let shape =
             alpha_shape_monitored(points, &options, monitor)?.with_coordinates(origin.coordinates);
-        Ok(Model { shape, parameter, origin })
+        Ok(Model { shape, parameter, origin, labels: None })
     }
 
     /// Fits the values of weighted points to their volume.

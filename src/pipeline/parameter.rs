@@ -103,6 +103,8 @@ pub enum ParameterOrigin {
     Connected,
     /// The same for the points without weights, as the weights are proportional to α.
     ConnectedUnweighted,
+    /// There is none: the shape is the solid of labels.
+    Labels,
 }
 
 /// α as a squared length and as a radius.
@@ -222,6 +224,11 @@ impl Parameter {
         Ok(Self { origin, ..found })
     }
 
+    /// That of the solid of labels, which has none: infinite.
+    pub(super) fn of_labels(unit: LengthUnit) -> Self {
+        Self { alpha: Alpha::INFINITE, unit, origin: ParameterOrigin::Labels }
+    }
+
     /// Whether it was found rather than given.
     pub fn is_found(&self) -> bool {
         use ParameterOrigin::{Auto, AutoUnweighted, Connected, ConnectedUnweighted};
@@ -237,6 +244,9 @@ impl From<Parameter> for ParameterFields {
 
 impl Display for Parameter {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.origin == ParameterOrigin::Labels {
+            return f.write_str("none: the cells are those of voxels, by their labels");
+        }
         let (squared, unit) = (number(self.alpha.squared()), self.unit.symbol());
         write!(f, "α = {squared} {unit}² (squared length; ")?;
         match self.alpha.radius() {
@@ -244,7 +254,7 @@ impl Display for Parameter {
             None => f.write_str("negative, so no radius)")?,
         }
         f.write_str(match self.origin {
-            ParameterOrigin::Given => "",
+            ParameterOrigin::Given | ParameterOrigin::Labels => "",
             ParameterOrigin::Default => ", the default",
             ParameterOrigin::Stored => ", that of the file",
             ParameterOrigin::Auto => ", from the spacing of the points",

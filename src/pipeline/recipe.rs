@@ -8,6 +8,7 @@ use walpha_base::setters;
 use super::{AlphaRule, Choice, Parameter, PipelineError};
 use crate::haar::{HaarOptions, Tolerance};
 use crate::interpolate::Refit;
+use crate::labels::LabelChoice;
 use crate::points::{
     Columns, LEAST_GRAY, PointOptions, Points, PointsError, Selection, SelectionRule, Units,
     Weighting,
@@ -51,6 +52,9 @@ pub struct Recipe {
     pub withheld: bool,
     /// Keeps the first point in each cube of this side ([`PointOptions::thin`]).
     pub thin: Option<f64>,
+    /// The labels whose [solid](Recipe::solid) the shape is; `None` selects points by gray levels. With labels nothing else of
+    /// the recipe has an effect, except how a volume is read, its units and its space.
+    pub labels: Option<LabelChoice>,
     /// The values that become gray 0 and 255; `None` leaves unsigned bytes unchanged, and otherwise takes the
     /// smallest and largest value.
     pub gray: Option<GrayRange>,
@@ -114,6 +118,7 @@ impl Recipe {
         classes: Option<Vec<u8>>,
         withheld: bool,
         thin: Option<f64>,
+        labels: Option<LabelChoice>,
         gray_out: bool,
         haar: HaarOptions,
         choice: Choice,

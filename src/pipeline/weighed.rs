@@ -63,6 +63,23 @@ pub struct Origin {
     pub fit: Option<Fit>,
 }
 
+impl Origin {
+    /// That of the corners of voxels, in these coordinates.
+    pub(super) fn of_labels(coordinates: Coordinates) -> Self {
+        Self {
+            coordinates,
+            weighting: Weighting::Common(0.0),
+            truncation: None,
+            grid: None,
+            range: None,
+            ended: None,
+            of_radii: false,
+            folded: None,
+            fit: None,
+        }
+    }
+}
+
 impl Weighed {
     /// Gives points their weights, and finds α first if the weights are proportional to it.
     pub(super) fn new(

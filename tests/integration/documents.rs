@@ -11,10 +11,11 @@ use walpha_base::random::Random;
 use crate::common::ok;
 
 /// Documents that teach by commands: that one of them has none is a mistake of [`shell_lines`].
-const TEACHING: [&str; 6] = [
+const TEACHING: [&str; 7] = [
     "README.md",
     "docs/clusters.md",
     "docs/gallery.md",
+    "docs/labels.md",
     "docs/tutorials/ct.md",
     "docs/tutorials/lidar.md",
     "docs/tutorials/molecules.md",
@@ -81,6 +82,15 @@ fn reader_files(folder: &Path) {
     write("outline.csv", &table("x,y", 2));
     write("trees.csv", &table("x,y", 2));
     write("buckyball.csv", &buckyball());
+    // Two organs.
+    let header = "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 12 10 8\nencoding: raw\n\n";
+    let organ = |i: usize| match [i % 12, i / 12 % 10, i / 120] {
+        [2..6, 2..8, 2..6] => 3,
+        [6..10, 3..7, 1..5] => 5,
+        _ => 0,
+    };
+    let labels: Vec<u8> = header.bytes().chain((0..960).map(organ)).collect();
+    fs::write(folder.join("labels.nrrd"), labels).expect("a file");
     // What other programs would write.
     let mesh = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n$EndNodes\n\
                 $Elements\n1\n1 4 0 1 2 3 4\n$EndElements";

@@ -20,6 +20,7 @@ mod formats;
 mod haar;
 mod hard;
 mod interpolate;
+mod labels;
 mod ladder;
 #[cfg(feature = "las")]
 mod las;

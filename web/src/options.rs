@@ -50,6 +50,14 @@ impl Options {
             .downsample(self.downsample)
     }
 
+    /// Whether something says what to look for by gray levels, weights or α, so that a volume is not taken for labels.
+    pub(crate) fn looks_for_gray_levels(&self) -> bool {
+        let selects = self.count.is_some() || self.ratio.or(self.threshold).is_some();
+        let bounds = self.gray.is_some() || self.gray_min.or(self.value_min).is_some();
+        let others = self.rms.is_some() || self.weights.is_some() || self.alpha.is_some();
+        selects || bounds || others
+    }
+
     /// The recipe of all stages.
     pub(crate) fn recipe(&self) -> Result<Recipe, String> {
         let columns = self.columns.as_deref().map(str::parse::<Columns>).transpose();

@@ -12,7 +12,7 @@ use walpha::points::{
 };
 use walpha::progress::{Listener, Monitor, Stage};
 use walpha::shape::Betti;
-use walpha::volume::{self, Hounsfield, OpenVolume, ReadOptions, SampleStats, Series};
+use walpha::volume::{self, Hounsfield, Labels, OpenVolume, ReadOptions, SampleStats, Series};
 use walpha::{Alpha, AlphaShape, Class, Dims, Points, PointsError, Recipe, Volume, VolumeError};
 
 use crate::answer::{Answer, Array};
@@ -287,6 +287,12 @@ impl Session {
         let recipe = options.recipe()?;
         let input = match self.opened.as_ref().ok_or("nothing has been opened".to_owned())? {
             Opened::Points(points, metadata) => Input::Points(points.clone(), metadata.clone()),
+            // The page has a slider over α, and the solid of labels has none.
+            Opened::Volume(volume)
+                if !options.looks_for_gray_levels() && Labels::of_volume(volume).is_some() =>
+            {
+                return Err(PipelineError::OfLabels.into());
+            }
             Opened::Volume(volume) => Input::Volume(recipe.grays(volume.clone())?),
         };
         let (mut weighed, source) = recipe.weigh(input, Values::Written, &monitor)?;

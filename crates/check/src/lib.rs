@@ -54,7 +54,7 @@ pub use rules::{count_by_rule, keep_causes};
 /// Progress and cancelling of long work.
 pub use walpha_base::{Cancelled, Monitor};
 pub use walpha_complex::{
-    Alpha, AlphaError, ByClass, Class, Complex, Placed, Simplices, SimplicesError,
+    Alpha, AlphaError, ByClass, Class, Complex, Placed, Simplices, SimplicesError, Voxels,
 };
 
 /// The example in the README runs.

@@ -40,6 +40,9 @@ impl Finding {
             Self::TiedFacets { .. } => "tied_facets",
             Self::SpannedSphere { .. } => "spanned_sphere",
             Self::DuplicateVertex { .. } => "duplicate_vertex",
+            Self::NotACorner { .. } => "not_a_corner",
+            Self::NotABorder { .. } => "not_a_border",
+            Self::Unfilled { .. } => "unfilled",
         }
     }
 }

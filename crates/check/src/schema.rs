@@ -7,7 +7,7 @@ use walpha_complex::canonical::{outward_facets, smallest_even, sort, sorted};
 
 use crate::exact::orientation;
 use crate::index::Index;
-use crate::{Alpha, Class, Complex, Placed, Simplices};
+use crate::{Alpha, Class, Complex, Placed, Simplices, Voxels};
 
 /// A complex with its points, in canonical order, ready to be judged.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,6 +29,8 @@ pub struct PlacedComplex {
     /// The lowest dimension of which it lists all simplices: 0, unless the file leaves a dimension out. That one, and those below, have
     /// faces alone.
     pub lowest: usize,
+    /// The voxels that the cells fill, if the complex is of labels.
+    pub voxels: Option<Voxels>,
 }
 
 impl PlacedComplex {
@@ -41,6 +43,12 @@ impl PlacedComplex {
     #[must_use]
     pub fn with_periodic(self, periodic: Option<[f64; 3]>) -> Self {
         Self { periodic, ..self }
+    }
+
+    /// The same complex as one of labels, whose cells fill these voxels, or as one of α.
+    #[must_use]
+    pub fn with_voxels(self, voxels: Option<Voxels>) -> Self {
+        Self { voxels, ..self }
     }
 }
 
@@ -76,6 +84,20 @@ impl TryFrom<ComplexFile> for PlacedComplex {
             });
         }
         let lowest = lowest_listed(&file);
+        if file.voxels.as_ref().is_some_and(|voxels| !voxels.is_sound()) {
+            return Err(SchemaError::Value {
+                name: "voxels",
+                value: "runs that overlap, are not in order or leave the grid".into(),
+                expected: "ascending runs of voxels of the grid",
+            });
+        }
+        if file.voxels.is_some() && file.periodic.is_some() {
+            return Err(SchemaError::Value {
+                name: "periodic",
+                value: "the sides of a box".into(),
+                expected: "none, as the complex is of labels",
+            });
+        }
         let weights = file.weights.unwrap_or_else(|| vec![0.0; n]);
         SchemaError::paired("weights", weights.len(), "points", n)?;
         let numbers = file.hidden.iter().flatten();
@@ -122,6 +144,7 @@ impl TryFrom<ComplexFile> for PlacedComplex {
             duplicates: file.duplicates,
             periodic: file.periodic,
             lowest,
+            voxels: file.voxels,
         })
     }
 }

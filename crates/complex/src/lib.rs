@@ -21,11 +21,13 @@ mod class;
 mod complex;
 pub mod schema;
 mod simplices;
+mod voxels;
 
 pub use alpha::{Alpha, AlphaError};
 pub use class::{ByClass, Class};
 pub use complex::{Complex, Placed};
 pub use simplices::{Simplices, SimplicesError};
+pub use voxels::Voxels;
 
 /// The example in the README runs.
 #[cfg(doctest)]

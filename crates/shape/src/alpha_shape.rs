@@ -1,5 +1,7 @@
+use std::sync::Arc;
+
 use walpha_base::Coordinates;
-use walpha_complex::Placed;
+use walpha_complex::{Placed, Voxels};
 
 use super::derived::Derived;
 use super::measure::together;
@@ -21,6 +23,8 @@ pub struct AlphaShape {
     pub(super) complex: Complex,
     /// The points that the last points are copies of, if the shape is that of a torus unwrapped into space.
     pub(super) copies: Vec<u32>,
+    /// The voxels that the cells fill, if the shape is of labels.
+    pub(super) voxels: Option<Arc<Voxels>>,
     pub(super) duplicates: Vec<[u32; 2]>,
     pub(super) hidden: Option<Vec<u32>>,
     pub(super) betti: Option<Betti>,
@@ -61,6 +65,7 @@ impl AlphaShape {
             squared,
             complex,
             copies: Vec::new(),
+            voxels: None,
             duplicates: Vec::new(),
             hidden,
             betti: Some(parts.betti),
@@ -81,6 +86,7 @@ impl AlphaShape {
             squared: self.squared.clone(),
             complex,
             copies: Vec::new(),
+            voxels: None,
             duplicates: self.duplicates.clone(),
             hidden: self.hidden.clone(),
             betti: Some(betti),
@@ -117,6 +123,11 @@ impl AlphaShape {
     /// order.
     pub fn copies(&self) -> &[u32] {
         &self.copies
+    }
+
+    /// The voxels that the shape fills, if it [is of labels](super::voxel_shape()) and not of α.
+    pub fn voxels(&self) -> Option<&Voxels> {
+        self.voxels.as_deref()
     }
 
     /// The options that the shape was computed with.

@@ -4,6 +4,8 @@ use walpha_base::memory::{self, NoMemory};
 use walpha_base::monitor::wraps;
 use walpha_regular::{MAX_COORDINATE, SitesError, TriangulationError, is_flat};
 
+use super::VoxelsError;
+
 /// Why a shape cannot be computed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -78,6 +80,9 @@ pub enum ShapeError {
         /// The side of the box along that axis.
         side: f64,
     },
+    /// The voxels have no solid.
+    #[error(transparent)]
+    Voxels(#[from] VoxelsError),
 }
 
 /// The memory allowed is not enough.
@@ -170,6 +175,7 @@ impl ShapeError {
             Self::Divided { by: Whole::Hidden, .. } => {
                 advice!["give ", Setting::Blocks, " 1, or omit ", Setting::Hidden]
             }
+            Self::Voxels(error) => error.advice(),
             Self::Divided { .. } => {
                 advice!["give ", Setting::Blocks, " 1, or omit ", Setting::Exterior]
             }

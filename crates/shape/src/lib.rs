@@ -47,6 +47,7 @@ mod surface;
 mod topology;
 mod unwrapped;
 mod voids;
+mod voxels;
 mod winding;
 
 pub use alpha_shape::AlphaShape;
@@ -67,8 +68,9 @@ pub use solid::Cuts;
 pub use sums::{Component, Enclosed};
 pub use surface::Surface;
 pub use voids::Void;
+pub use voxels::{VoxelsError, voxel_shape};
 pub use walpha_base::{Cancelled, Coordinates, LengthUnit, Monitor, Space};
-pub use walpha_complex::{Alpha, AlphaError, ByClass, Class, Complex, Placed, Simplices};
+pub use walpha_complex::{Alpha, AlphaError, ByClass, Class, Complex, Placed, Simplices, Voxels};
 pub use walpha_regular::{Torus, TorusError};
 
 // For walpha, which computes shapes in blocks from file to file: not covered by semantic versioning.

@@ -145,6 +145,7 @@ fn shape_by(
         squared,
         complex,
         copies: Vec::new(),
+        voxels: None,
         duplicates,
         hidden,
         betti: betti.or(counted),

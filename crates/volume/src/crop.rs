@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use walpha_base::Monitor;
 
 use super::source::AT_ONCE;
-use super::{Dims, Frame, Nan, Source, Volume, VolumeError};
+use super::{Dims, Frame, Labels, Nan, Source, Volume, VolumeError};
 
 /// Samples from one index up to, and without, another along each axis (x, y, z); a missing
 /// end is that of the volume.
@@ -46,14 +46,15 @@ impl Region {
     }
 }
 
-/// A coarser volume: the mean of each `n`×`n`×`n` samples is placed at their centre. What is left at the
-/// end of an axis is dropped; an axis of fewer samples becomes one. Missing samples are left out of the
+/// A coarser volume: the mean of each `n`×`n`×`n` samples is placed at their centre; of [labels](Labels) the one that most of them have, of equally
+/// many the least. What is left at the end of an axis is dropped; an axis of fewer samples becomes one. Missing samples are left out of the
 /// mean.
 #[expect(clippy::missing_panics_doc, reason = "an invariant, never met")]
 pub fn downsample(volume: Volume, n: NonZeroUsize) -> Volume {
     let blocks = Blocks::of(volume.dims(), n);
     let samples = volume.as_slice();
-    let means = blocks.means(samples, |sample| volume.is_missing(sample));
+    let pick = Pick::of(Labels::of_volume(&volume).is_some());
+    let means = blocks.picked(samples, pick, |sample| volume.is_missing(sample));
     let least = samples.iter().copied().fold(f32::INFINITY, f32::min);
     let (samples, missing) = blocks.filled(means, least, volume.has_missing());
     let frame = blocks.frame(volume.frame());
@@ -82,6 +83,7 @@ fn downsample_slabs(
     monitor: &Monitor,
 ) -> Result<Volume, VolumeError> {
     let blocks = Blocks::of(source.dims(), n);
+    let pick = Pick::of(Labels::of(source)?.is_some());
     let [sx, sy, sz] = source.dims().xyz();
     // Whole blocks of planes, as many as are read at once.
     let step = blocks.step[2];
@@ -111,7 +113,7 @@ fn downsample_slabs(
         let is_missing = |sample: usize| is_missing.get(sample).is_some_and(|&missing| missing);
         let there = samples.iter().enumerate().filter(|&(sample, _)| !is_missing(sample));
         least = there.fold(least, |least, (_, &value)| least.min(value));
-        means.extend(blocks.means(&samples, is_missing));
+        means.extend(blocks.picked(&samples, pick, is_missing));
         monitor.report((z + planes).min(sz) as u64, sz as u64)?;
     }
     // Where none is finite the least is not either, which is refused.
@@ -120,6 +122,28 @@ fn downsample_slabs(
     let volume = volume.with_dtype(source.dtype());
     let volume = if source.states_labels() { volume.with_labels() } else { volume };
     Ok(if source.has_gray_levels() { volume.with_gray_levels() } else { volume })
+}
+
+/// What a block of samples becomes.
+#[derive(Clone, Copy, PartialEq)]
+enum Pick {
+    Mean,
+    /// The value that most samples have, of equally many the least: labels do not mix.
+    Most,
+}
+
+impl Pick {
+    fn of(labels: bool) -> Self {
+        if labels { Self::Most } else { Self::Mean }
+    }
+}
+
+/// The most frequent of values, of equally many the least.
+fn most_frequent(mut values: Vec<f32>) -> Option<f32> {
+    values.sort_unstable_by(f32::total_cmp);
+    // Of equally many the last is taken.
+    let equal = values.chunk_by(|a, b| a == b).rev().max_by_key(|equal| equal.len());
+    equal.map(|equal| equal[0])
 }
 
 /// The blocks of samples that become one each.
@@ -139,25 +163,29 @@ impl Blocks {
         Self { row: [sizes[0], sizes[1]], step, count: [0, 1, 2].map(|k| sizes[k] / step[k]) }
     }
 
-    /// The mean of each block among planes that begin with one, x fastest; `None` where all samples are missing.
-    fn means(
+    /// What becomes of each block among planes that begin with one, x fastest; `None` where all samples are missing.
+    fn picked(
         &self,
         samples: &[f32],
+        pick: Pick,
         is_missing: impl Fn(usize) -> bool + Sync,
     ) -> Vec<Option<f32>> {
         let Self { row: [sx, sy], step, count: [nx, ny, _] } = *self;
-        let mean = |voxel: usize| {
+        let picked = |voxel: usize| {
             let block = [voxel % nx, voxel / nx % ny, voxel / (nx * ny)];
             let [x, y, z] = [0, 1, 2].map(|k| block[k] * step[k]..(block[k] + 1) * step[k]);
             let rows = z.flat_map(|z| y.clone().map(move |y| (z * sy + y) * sx));
             let all = rows.flat_map(|row| x.clone().map(move |x| row + x));
             let there = all.filter(|&i| !is_missing(i));
+            if pick == Pick::Most {
+                return most_frequent(there.map(|i| samples[i]).collect());
+            }
             let (count, sum) =
                 there.fold((0u32, 0.0), |(n, sum), i| (n + 1, sum + f64::from(samples[i])));
             if count == 0 { None } else { Some((sum / f64::from(count)) as f32) }
         };
         let layers = samples.len() / (sx * sy) / step[2];
-        (0..nx * ny * layers).into_par_iter().map(mean).collect()
+        (0..nx * ny * layers).into_par_iter().map(picked).collect()
     }
 
     /// The coarse samples, of which missing ones are the least of all, and which are missing, if any sample is.
@@ -229,6 +257,22 @@ mod tests {
         let part = Region { first: [2, 0, 0], end: [None; 3] }.of(&volume).unwrap();
         assert!(part.is_missing(0) && !part.is_missing(2));
     }
+    /// Labels do not mix: of 27 samples the most, of equally many the least.
+    #[test]
+    fn labels_do_not_mix() {
+        let label = |x: usize| [0.0, 0.0, 7.0, 7.0, 7.0, 0.0][x % 6];
+        let samples = Array3::from_shape_fn((6, 6, 12), |(_, _, x)| label(x));
+        let volume = Volume::new(samples, Frame::VOXEL).unwrap().with_labels();
+        let coarse = |n| downsample(volume.clone(), NonZeroUsize::new(n).unwrap());
+        assert_eq!(coarse(3).as_slice()[..4], [0.0, 7.0, 0.0, 7.0]);
+        assert_eq!(coarse(2).as_slice()[..6], [0.0, 7.0, 0.0, 0.0, 7.0, 0.0]);
+        assert!(coarse(2).states_labels());
+        let source = Source::of_volume(volume.clone());
+        let in_parts =
+            downsample_slabs(&source, NonZeroUsize::new(2).unwrap(), None, 1, &Monitor::noop());
+        assert_eq!(in_parts.unwrap().as_slice(), coarse(2).as_slice());
+    }
+
     /// Whatever is missing, and where planes are left over.
     #[test]
     fn read_in_parts_it_is_the_same() {

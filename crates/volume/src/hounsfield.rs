@@ -42,7 +42,10 @@ impl Hounsfield {
             return Ok(None);
         }
         let mut counts = Counts::default();
-        source.for_each_part(|values| counts.add(values))?;
+        source.for_each_part(|values, _| {
+            counts.add(values);
+            true
+        })?;
         Ok(counts.judge())
     }
 }

@@ -22,6 +22,7 @@ mod formats;
 mod gray;
 mod grid;
 mod hounsfield;
+mod labels;
 mod open;
 mod read;
 mod reason;
@@ -40,6 +41,7 @@ pub use formats::{
 pub use gray::{Gray, GrayRange};
 pub use grid::{Dims, Frame};
 pub use hounsfield::Hounsfield;
+pub use labels::Labels;
 #[cfg(feature = "zarr")]
 pub use open::{convert, convert_monitored};
 pub use open::{open, open_monitored};

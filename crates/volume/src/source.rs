@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use crate::hounsfield::{Counts, Hounsfield};
+use crate::labels::{Labels, Tally};
 use crate::{Dims, Dtype, Frame, Nan, Reason, Region, Volume, VolumeError};
 
 /// What to do about volumes that cannot be read in parts.
@@ -68,7 +69,7 @@ impl Source {
         Self { gray_levels, ..self }
     }
 
-    /// Marks the values as labels, which the file states them to be.
+    /// Marks the values as [labels](crate::Labels), as a file states it.
     #[must_use]
     pub fn with_labels(self) -> Self {
         Self { labels: true, ..self }
@@ -139,15 +140,20 @@ impl Source {
         self.parts.read([0, 1, 2].map(|k| self.first[k] + first[k]), size)
     }
 
-    /// Reads all samples, a part at a time.
-    pub(crate) fn for_each_part(&self, mut look: impl FnMut(&[f32])) -> Result<(), VolumeError> {
+    /// Reads all samples, a part at a time, and hands over its size along x, y and z, too, as long as `look` wants more.
+    pub(crate) fn for_each_part(
+        &self,
+        mut look: impl FnMut(&[f32], [usize; 3]) -> bool,
+    ) -> Result<(), VolumeError> {
         let (dims, step) = (self.dims().xyz(), step(self));
         for z in (0..dims[2]).step_by(step[2]) {
             for y in (0..dims[1]).step_by(step[1]) {
                 for x in (0..dims[0]).step_by(step[0]) {
                     let first = [x, y, z];
                     let size = [0, 1, 2].map(|k| step[k].min(dims[k] - first[k]));
-                    look(&self.read(first, size)?);
+                    if !look(&self.read(first, size)?, size) {
+                        return Ok(());
+                    }
                 }
             }
         }
@@ -178,8 +184,8 @@ pub(super) fn whole_only(path: &Path, name: &str) -> VolumeError {
 /// Samples read at a time at most, where the format allows it: 64 MiB.
 pub(crate) const AT_ONCE: usize = 1 << 24;
 
-/// Range of a volume's samples, and the number of missing ones.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// Range of a volume's samples, the number of missing ones, and what they look like.
+#[derive(Clone, Debug, PartialEq)]
 pub struct SampleStats {
     /// The smallest and the largest finite value; `None` where there is none.
     pub range: Option<(f32, f32)>,
@@ -187,6 +193,8 @@ pub struct SampleStats {
     pub missing: u64,
     /// Whether the values look like Hounsfield units.
     pub hounsfield: Option<Hounsfield>,
+    /// The labels, if the values are some.
+    pub labels: Option<Labels>,
 }
 
 impl SampleStats {
@@ -197,9 +205,10 @@ impl SampleStats {
     /// The file cannot be read or is damaged.
     pub fn of(source: &Source, nan: Option<Nan>) -> Result<Self, VolumeError> {
         let (mut low, mut high, mut missing) = (f32::INFINITY, f32::NEG_INFINITY, 0);
-        let mut counts = Counts::default();
-        source.for_each_part(|values| {
+        let (mut counts, mut tally) = (Counts::default(), Tally::of_source(source));
+        source.for_each_part(|values, size| {
             counts.add(values);
+            tally.add(values, size, |_| false);
             for &value in values {
                 let value = match nan {
                     Some(Nan::Value(instead)) if !value.is_finite() => instead,
@@ -211,9 +220,11 @@ impl SampleStats {
                     missing += 1;
                 }
             }
+            true
         })?;
         let hounsfield = counts.judge().filter(|_| !source.has_gray_levels());
-        Ok(Self { range: (low <= high).then_some((low, high)), missing, hounsfield })
+        let labels = tally.of_source_judged(source);
+        Ok(Self { range: (low <= high).then_some((low, high)), missing, hounsfield, labels })
     }
 
     /// Of a volume in memory, whose [missing](Volume::is_missing) samples are not finite in its file, or padding.
@@ -223,6 +234,7 @@ impl SampleStats {
             range: Some(volume.value_range()),
             missing: missing as u64,
             hounsfield: Hounsfield::of_volume(volume),
+            labels: Labels::of_volume(volume),
         }
     }
 }

@@ -24,12 +24,12 @@ pub struct Volume {
     frame: Frame,
     /// Whether values are gray levels already, as those of unsigned 8-bit files are.
     gray_levels: bool,
+    /// Whether the file states that values are labels.
+    labels: bool,
     /// How the file stores a sample; `f32` if there is no file.
     dtype: Dtype,
     /// Samples that the file has no number for, if there are any.
     missing: Option<Vec<bool>>,
-    /// Whether the file states that its values are labels.
-    labels: bool,
 }
 
 /// How to treat samples that are NaN or infinite, or that a file states to be padding (DICOM).
@@ -89,8 +89,8 @@ impl Volume {
         } else {
             samples.as_standard_layout().into_owned()
         };
-        let (gray_levels, dtype, missing) = (false, Dtype::F32, None);
-        Ok(Self { samples, dims, frame, gray_levels, dtype, missing, labels: false })
+        let (gray_levels, labels, dtype, missing) = (false, false, Dtype::F32, None);
+        Ok(Self { samples, dims, frame, gray_levels, labels, dtype, missing })
     }
 
     /// Applies the rule for samples that are not finite, and refuses what is left of them.
@@ -189,7 +189,7 @@ impl Volume {
         Some(self.with_missing(Some(padded)))
     }
 
-    /// Marks the values as labels, which the file states them to be: each a part, and no quantity.
+    /// Marks the values as [labels](crate::Labels), as a file states it.
     #[must_use]
     pub fn with_labels(self) -> Self {
         Self { labels: true, ..self }
@@ -205,8 +205,8 @@ impl Volume {
     /// # Errors
     /// [`VolumeError`]: what cannot be read, and why.
     pub fn like(&self, samples: Array3<f32>, frame: Frame) -> Result<Self, VolumeError> {
-        let (gray_levels, dtype, labels) = (self.gray_levels, self.dtype, self.labels);
-        Ok(Self { gray_levels, dtype, labels, ..Self::new(samples, frame)? })
+        let Self { gray_levels, labels, dtype, .. } = *self;
+        Ok(Self { gray_levels, labels, dtype, ..Self::new(samples, frame)? })
     }
 
     /// The same volume where these samples are missing.

@@ -160,6 +160,12 @@ impl Shape {
         self.shape.options().alpha.squared()
     }
 
+    /// The number of voxels that the solid of labels fills.
+    #[getter]
+    fn voxels(&self) -> Option<u64> {
+        self.shape.voxels().map(|voxels| voxels.count())
+    }
+
     #[getter]
     fn engine(&self) -> &'static str {
         match self.shape.options().engine {

@@ -1,9 +1,12 @@
 //! How a shape was made, to be made again from its points: what a pickle holds.
 
+use std::cell::Cell;
+
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
+use serde_json::Value;
 use walpha::pipeline::AlphaRule;
-use walpha::shape::{Coordinates, LengthsError, alpha_shape_monitored};
+use walpha::shape::{Coordinates, LengthsError, Voxels, alpha_shape_monitored, voxel_shape};
 use walpha::{AlphaShape, Recipe, WeightedPoints};
 
 use super::{Shape, json};
@@ -14,8 +17,20 @@ use crate::work::{Task, run};
 /// The options as those of a recipe, the coordinates, and the facts of [`Shape`]: all as JSON.
 pub type State = (String, String, String);
 
+/// The fact that the solid of labels fills these voxels.
+const VOXELS: &str = "voxels";
+
 /// How a shape was made. Hidden points are asked for again if they are known.
+/// Of the solid of labels the facts have its voxels, too.
 pub fn state(shape: &AlphaShape, facts: &str) -> State {
+    let facts = match shape.voxels() {
+        None => facts.to_owned(),
+        Some(voxels) => {
+            let mut facts: Value = serde_json::from_str(facts).expect("facts are JSON");
+            facts[VOXELS] = serde_json::to_value(voxels).expect("voxels are numbers");
+            facts.to_string()
+        }
+    };
     let options = shape.options();
     let recipe = Recipe::new()
         .alpha(AlphaRule::Given(options.alpha))
@@ -24,7 +39,7 @@ pub fn state(shape: &AlphaShape, facts: &str) -> State {
         .exterior(options.exterior)
         .hidden(options.hidden || shape.hidden().is_some())
         .periodic(options.periodic);
-    (recipe.to_json(), json(&shape.coordinates()), facts.into())
+    (recipe.to_json(), json(&shape.coordinates()), facts)
 }
 
 /// The shape of these points that was made like this.
@@ -49,8 +64,18 @@ pub fn restored(
     if let Some(values) = values {
         points = points.with_values(numbers(&values)?).map_err(lengths)?;
     }
-    let shape = run(py, &Task::default(), move |monitor| {
-        alpha_shape_monitored(points, &recipe.shape_at(alpha), monitor)
+    let mut facts: Value = serde_json::from_str(&facts).map_err(broken)?;
+    let voxels = facts.as_object_mut().and_then(|facts| facts.remove(VOXELS));
+    let voxels: Option<Voxels> = voxels.map(serde_json::from_value).transpose().map_err(broken)?;
+    let shape = run(py, &Task::default(), move |monitor| match voxels {
+        None => alpha_shape_monitored(points, &recipe.shape_at(alpha), monitor),
+        Some(voxels) => {
+            // Corners come in the order of the points.
+            let values = points.values().unwrap_or_default();
+            let next = Cell::new(0);
+            let value = |_| values.get(next.replace(next.get() + 1)).copied().unwrap_or_default();
+            voxel_shape(voxels, value, monitor)
+        }
     })?;
-    Ok(Shape { shape: shape.with_coordinates(coordinates).into(), facts })
+    Ok(Shape { shape: shape.with_coordinates(coordinates).into(), facts: facts.to_string() })
 }

@@ -153,7 +153,7 @@ pub(super) struct PartArgs {
     /// 20:40,:,10:.
     #[arg(long, value_name = "X0:X1,Y0:Y1,Z0:Z1", value_parser = ranges::samples)]
     roi: Option<Region>,
-    /// Average blocks of N×N×N samples.
+    /// Average blocks of N×N×N samples; of labels take the most frequent one.
     #[arg(long, value_name = "N")]
     downsample: Option<NonZeroUsize>,
 }

@@ -1,6 +1,7 @@
 //! Options that several commands share, and how they become options of the library.
 
 mod input;
+mod labels;
 mod select;
 mod shape;
 mod values;
@@ -9,6 +10,7 @@ use clap::{Args, Command};
 
 pub(super) use input::InputArgs;
 use input::PartArgs;
+pub(super) use labels::{LabelArgs, of_gray_levels};
 pub(super) use select::{Alphas, FrozenArgs, WeightArgs, one_alpha};
 pub(super) use select::{HaarArgs, RefitArgs, SelectArgs};
 pub(super) use shape::OutputArgs;
@@ -32,6 +34,8 @@ pub(super) struct PipelineArgs<W: Args = WeightArgs> {
     #[command(flatten)]
     preset: PresetArgs,
     #[command(flatten)]
+    pub labels: LabelArgs,
+    #[command(flatten)]
     pub haar: HaarArgs,
     #[command(flatten)]
     pub select: SelectArgs,
@@ -44,7 +48,11 @@ pub(super) struct PipelineArgs<W: Args = WeightArgs> {
 impl<W: Args + Copy + Into<WeightArgs>> PipelineArgs<W> {
     /// The options of all stages except that of the shape.
     pub(super) fn recipe(&self) -> Result<Recipe, CommandError> {
+        if self.labels.label.is_some() {
+            LabelArgs::refuse_others(&self.input.typed)?;
+        }
         let recipe = self.input.recipe().haar(self.haar.options()).refit(self.refit.refit);
+        let recipe = recipe.labels(self.labels.label.clone());
         Ok(self.weights.into().set(self.select.set(recipe)?))
     }
 }
@@ -76,7 +84,7 @@ pub(super) type FrozenPipelineArgs = PipelineArgs<FrozenArgs>;
 pub(super) fn volume_options() -> Vec<String> {
     let part = PartArgs::augment_args(Command::new("volume"));
     let points = SelectArgs::augment_args(HaarArgs::augment_args(part));
-    let all = RefitArgs::augment_args(points);
+    let all = LabelArgs::augment_args(RefitArgs::augment_args(points));
     let names = all.get_arguments().map(|arg| arg.get_id().to_string());
     names
         .filter(|name| !["frame", "level"].contains(&name.as_str()))

@@ -91,7 +91,8 @@ impl Ladder {
         }
         refuse_repeated("--counts", &self.counts)?;
         refuse_repeated("--epsilons", &self.epsilons)?;
-        let meshes = meshes(&self.mesh, if detail { &["ply"] } else { &[] })?;
+        let default: &[&str] = if detail { &["ply"] } else { &[] };
+        let meshes = meshes(&self.mesh, default, &ExportOptions::default())?;
         let names: &[&str] = if detail {
             &["detail.csv", "detail.json"]
         } else {
@@ -215,13 +216,18 @@ fn refuse_repeated<T: PartialEq + Display>(option: &str, values: &[T]) -> anyhow
 }
 
 /// A format of meshes.
-struct Mesh {
-    extension: String,
-    format: &'static Format,
-    exporter: Box<dyn Exporter>,
+pub(super) struct Mesh {
+    pub(super) extension: String,
+    pub(super) format: &'static Format,
+    pub(super) exporter: Box<dyn Exporter>,
 }
 
-fn meshes(asked: &[String], default: &[&str]) -> anyhow::Result<Vec<Mesh>> {
+/// The formats asked for by their extensions, or else the default ones.
+pub(super) fn meshes(
+    asked: &[String],
+    default: &[&str],
+    export: &ExportOptions,
+) -> anyhow::Result<Vec<Mesh>> {
     let plain = |extension: &str| extension.trim().trim_start_matches('.').to_ascii_lowercase();
     let mut extensions: Vec<String> = asked.iter().map(|extension| plain(extension)).collect();
     refuse_repeated("--mesh", &extensions)?;
@@ -234,7 +240,7 @@ fn meshes(asked: &[String], default: &[&str]) -> anyhow::Result<Vec<Mesh>> {
             let unknown = CommandError::usage_of(&unknown);
             CommandError { why: format!("--mesh: {}", unknown.why), ..unknown }
         })?;
-        Ok(Mesh { exporter: format.exporter(&ExportOptions::default()), format, extension })
+        Ok(Mesh { exporter: format.exporter(export), format, extension })
     };
     extensions.into_iter().map(mesh).collect()
 }

@@ -10,6 +10,7 @@ use serde::Serialize;
 use walpha_base::memory;
 
 use crate::interpolate::{Adaptive, Fit, Refit};
+use crate::labels::LabelSizes;
 use crate::outofcore::{Merged, Plan};
 use crate::pipeline::{Model, Parameter, Weighed};
 use crate::points::WeightSummary;
@@ -49,13 +50,17 @@ pub(super) struct Report {
     /// Coordinates of points, and the unit of all lengths: areas are in the square of this unit, volumes in its cube, α and
     /// weights in the square.
     coordinates: Coordinates,
+    /// The labels that the shape is the solid of; absent where it is one of α.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    labels: Option<LabelSizes>,
     haar: Option<HaarReport>,
     points: PointsReport,
     /// How values were fitted; null if they are those of samples.
     fit: Option<Fit>,
     /// Null where no α was needed.
     alpha: Option<Parameter>,
-    weights: WeightsReport,
+    /// Null for labels, which have none.
+    weights: Option<WeightsReport>,
     #[serde(skip_serializing_if = "Option::is_none")]
     shape: Option<ShapeReport>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -85,6 +90,7 @@ impl Report {
                     .map(|VolumeSummary { range: GrayRange { low, high }, .. }| [*low, *high]),
             },
             coordinates: origin.coordinates,
+            labels: None,
             haar: truncation.map(|(truncation, v)| HaarReport::new(truncation, &v.range)),
             points: PointsReport {
                 selected: weighed.points.len(),
@@ -100,7 +106,7 @@ impl Report {
             },
             fit: origin.fit,
             alpha: weighed.parameter,
-            weights: WeightsReport::of(weighed),
+            weights: Some(WeightsReport::of(weighed)),
             shape: None,
             engine: None,
             solid: None,
@@ -109,6 +115,39 @@ impl Report {
             seconds: BTreeMap::new(),
             peak_memory_bytes: None,
         }
+    }
+
+    /// The report on the solid of labels, on a grid of `dims` samples.
+    pub(super) fn of_labels(name: &str, dims: [usize; 3], model: &Model) -> Self {
+        let points = model.shape.points().len();
+        let mut report = Self {
+            schema_version: SCHEMA_VERSION,
+            input: InputReport { name: name.to_owned(), dims: Some(dims), gray_range: None },
+            coordinates: model.origin.coordinates,
+            labels: model.labels.clone(),
+            haar: None,
+            points: PointsReport {
+                selected: points,
+                duplicates: None,
+                folded: None,
+                hidden: None,
+                in_shape: None,
+                ended_early: None,
+            },
+            fit: None,
+            alpha: None,
+            weights: None,
+            shape: None,
+            engine: None,
+            solid: None,
+            files: Vec::new(),
+            seconds: BTreeMap::new(),
+            peak_memory_bytes: None,
+        };
+        report.add_model(model);
+        // No engine made it, and no α has a part in it.
+        (report.alpha, report.engine) = (None, None);
+        report
     }
 
     /// Adds the shape.
@@ -137,6 +176,7 @@ impl Report {
                 gray_range: Some([low, high]),
             },
             coordinates: job.units.coordinates_of(&job.frame),
+            labels: None,
             haar: Some(HaarReport::new(&survey.truncation, &survey.range)),
             points: PointsReport {
                 selected: merged.points as usize,
@@ -147,14 +187,14 @@ impl Report {
                 ended_early: None,
             },
             alpha: Some(parameter),
-            weights: WeightsReport {
+            weights: Some(WeightsReport {
                 kind: job.weighting().to_string(),
                 of_radii: false,
                 min,
                 mean,
                 max,
                 unit: parameter.unit,
-            },
+            }),
             fit: None,
             shape: Some(ShapeReport::of_blocks(merged)),
             engine: Some(Engine::Native),
@@ -199,7 +239,12 @@ impl Display for Report {
             write!(f, "relative residual {residual:.1e}")?;
         }
         writeln!(f, "\nlengths   in {}", self.coordinates)?;
-        writeln!(f, "weights   {} (squared lengths)", self.weights)?;
+        if let Some(labels) = &self.labels {
+            writeln!(f, "labels    {labels}, and the cells fill these voxels, without α")?;
+        }
+        if let Some(weights) = &self.weights {
+            writeln!(f, "weights   {weights} (squared lengths)")?;
+        }
         if let Some(alpha) = &self.alpha {
             writeln!(f, "parameter {alpha}")?;
         }

@@ -131,9 +131,12 @@ impl Display for HaarReport {
 impl Display for InputReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}", name(&self.name))?;
-        if let (Some([x, y, z]), Some([low, high])) = (self.dims, self.gray_range) {
+        if let Some([x, y, z]) = self.dims {
+            write!(f, "  {x}×{y}×{z} samples")?;
+        }
+        if let (Some(_), Some([low, high])) = (self.dims, self.gray_range) {
             let (low, high) = (number(low), number(high));
-            write!(f, "  {x}×{y}×{z} samples, values {low}..{high} are gray 0..255")?;
+            write!(f, ", values {low}..{high} are gray 0..255")?;
         }
         Ok(())
     }

@@ -290,6 +290,24 @@ pub enum Finding {
         /// The point kept at its position.
         kept: u32,
     },
+    /// Of labels: a point is not at a corner of a voxel, or another point is at the same one.
+    NotACorner {
+        /// The point.
+        point: u32,
+    },
+    /// Of labels: a facet with one cell is not half of a face between a voxel of the region, where the cell is, and one outside; or
+    /// it is not one of two that cover this face.
+    NotABorder {
+        /// The facet.
+        facet: Simplex,
+    },
+    /// Of labels: a face between a voxel of the region and one outside is no boundary of cells.
+    Unfilled {
+        /// The voxel of the region.
+        voxel: [u32; 3],
+        /// Its face: from −3 to 3, the axis across it, counted from 1, negative for the side of smaller indices.
+        side: i8,
+    },
 }
 
 impl Finding {
@@ -305,6 +323,7 @@ impl Finding {
             | Self::LongEdge { edge: s }
             | Self::HullEdge { edge: s, .. }
             | Self::OpenFacet { facet: s }
+            | Self::NotABorder { facet: s }
             | Self::MissingCell { cell: s, .. } => vec![s.vertices()],
             Self::MissingFace { face: s, of: t }
             | Self::HullWraps { facet: s, first: t }
@@ -328,6 +347,7 @@ impl Finding {
             }
             Self::MissingVertex { point, .. }
             | Self::Unaccounted { point }
+            | Self::NotACorner { point }
             | Self::NotOnlyHidden { point }
             | Self::Duplicate { point, .. } => vec![from_ref(point)],
             Self::EqualPoint { point, first: other }
@@ -339,7 +359,7 @@ impl Finding {
                 let points = points.iter().map(from_ref);
                 [simplex.vertices()].into_iter().chain(points).collect()
             }
-            Self::NoCells | Self::Volume { .. } => Vec::new(),
+            Self::NoCells | Self::Unfilled { .. } | Self::Volume { .. } => Vec::new(),
         }
     }
 
@@ -360,6 +380,7 @@ impl Finding {
             | Self::LongEdge { edge: s }
             | Self::HullEdge { edge: s, .. }
             | Self::OpenFacet { facet: s }
+            | Self::NotABorder { facet: s }
             | Self::MissingCell { cell: s, .. } => s.fold(count),
             Self::MissingFace { face, of } => {
                 of.fold(count);
@@ -393,6 +414,7 @@ impl Finding {
             }
             Self::MissingVertex { point, .. }
             | Self::Unaccounted { point }
+            | Self::NotACorner { point }
             | Self::NotOnlyHidden { point } => point_at_box(point),
             Self::Duplicate { point, given, expected } => {
                 given.iter_mut().chain(expected).for_each(|other| *other %= count);
@@ -422,7 +444,7 @@ impl Finding {
                 point_at_box(point);
                 simplex.fold(count)
             }
-            Self::NoCells | Self::Volume { .. } => true,
+            Self::NoCells | Self::Unfilled { .. } | Self::Volume { .. } => true,
         };
         is_at_box.then_some(self)
     }
@@ -447,6 +469,7 @@ impl Finding {
             | Self::Orientation { cell: simplex, .. }
             | Self::LongEdge { edge: simplex }
             | Self::HullEdge { edge: simplex, .. }
+            | Self::NotABorder { facet: simplex }
             | Self::OpenFacet { facet: simplex }
             | Self::MissingCell { cell: simplex, .. }
             | Self::NotRegular { cell: simplex, .. }
@@ -464,6 +487,8 @@ impl Finding {
             Self::Crowded { facet, cells } => std::iter::once(facet).chain(cells).collect(),
             Self::Overlap { facet, cells } => std::iter::once(facet).chain(cells).collect(),
             Self::NoCells
+            | Self::NotACorner { .. }
+            | Self::Unfilled { .. }
             | Self::Volume { .. }
             | Self::MissingVertex { .. }
             | Self::Unaccounted { .. }

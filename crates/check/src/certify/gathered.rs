@@ -58,6 +58,7 @@ fn renumbered(claim: &Claim) -> Option<PlacedComplex> {
         duplicates: duplicates.flatten(),
         periodic: None,
         lowest: claim.lowest,
+        voxels: None,
     })
 }
 

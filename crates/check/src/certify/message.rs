@@ -86,6 +86,19 @@ impl fmt::Display for Finding {
                 f,
                 "{simplex} is not a face of any listed simplex, but point {point} lies on its sphere, too: the simplex that they span is missing"
             ),
+            Self::NotACorner { point } => {
+                write!(f, "point {point} is not at a corner of a voxel, or not alone there")
+            }
+            Self::NotABorder { facet } => write!(
+                f,
+                "{facet} has one cell, but is not half of a face between a voxel of the region and one outside of it"
+            ),
+            Self::Unfilled { voxel, side } => write!(
+                f,
+                "voxel {voxel:?} is in the region and its neighbour {} along axis {} is not, but no cells end at the face between them",
+                if *side < 0 { "before it" } else { "behind it" },
+                ["x", "y", "z"][usize::from(side.unsigned_abs().clamp(1, 3)) - 1]
+            ),
             Self::DuplicateVertex { point, kept } => {
                 write!(f, "point {point} is a vertex, but point {kept} is kept at its position")
             }

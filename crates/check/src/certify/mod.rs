@@ -21,6 +21,7 @@ mod structure;
 mod ties;
 mod torus;
 mod verify;
+mod voxels;
 
 pub use certificate::{Certificate, CertifyError, NotJudged, Verdict};
 pub use claim::{Claim, Extent};

@@ -5,7 +5,7 @@ use walpha_base::Monitor;
 use super::certificate::{Certificate, CertifyError};
 use super::claim::Claim;
 use super::finding::Finding;
-use super::torus;
+use super::{torus, voxels};
 use crate::Placed;
 use crate::schema::{ComplexFile, PlacedComplex};
 
@@ -18,7 +18,8 @@ impl PlacedComplex {
             .with_lowest(self.lowest)
     }
 
-    /// All broken rules, and the certificate. In space the rules are those of [`Claim::visit`]. On a torus they
+    /// All broken rules, and the certificate. Of labels the rules are that the cells fill the voxels, face to face, and nothing else, and that
+    /// classes follow from it. In space the rules are those of [`Claim::visit`]. On a torus they
     /// are the same around each simplex; besides, no edge may span half of the box; and a whole triangulation
     /// must fill the box, instead of the rules on the hull.
     ///
@@ -36,6 +37,9 @@ impl PlacedComplex {
         &self,
         monitor: &Monitor,
     ) -> Result<(Vec<Finding>, Certificate), CertifyError> {
+        if let Some(region) = &self.voxels {
+            return voxels::findings(self, region, monitor);
+        }
         match self.periodic {
             None => self.claim().findings_monitored(monitor),
             Some(sides) => torus::findings(self, sides, monitor),
@@ -55,6 +59,7 @@ impl From<Claim<'_>> for PlacedComplex {
             duplicates: claim.duplicates.map(<[_]>::to_vec),
             periodic: None,
             lowest: claim.lowest,
+            voxels: None,
         }
     }
 }

@@ -194,7 +194,7 @@ impl Claim<'_> {
         Ok(certificate)
     }
 
-    fn check(&self) -> Result<(), CertifyError> {
+    pub(super) fn check(&self) -> Result<(), CertifyError> {
         let Placed { positions, weights, complex, .. } = self.placed;
         if positions.len() != weights.len() {
             let (positions, weights) = (positions.len(), weights.len());

@@ -28,13 +28,17 @@
 //! - `periodic` are the sides of a box that repeats along x, y and z: the complex is then one of a
 //!   torus. All points are in the box, from 0 to less than its sides. A row means the copies of its vertices
 //!   nearest to the first one, which must be nearer than half a side along each axis.
+//! - `voxels` says that the complex is no α-shape but the solid of labels: its cells fill these voxels of a grid, and `alpha` is `"inf"`.
+//!   `dims` are the voxels of the grid along its x, y and z; `origin` is the position of the first sample, `axes` are the
+//!   steps from a sample to the next along x, y and z; a voxel is the box of half a step around its sample. `runs` are rows [first, number]
+//!   of the voxels in the region, ascending, voxel (i, j, k) being number i + X·(j + Y·k). The points are corners of voxels.
 //! - `info` is for whatever the writer wants to add.
 //!
 //! In NPZ (`numpy.savez`, `numpy.savez_compressed`) the same names are arrays of any integer or
 //! floating-point type: `points` n×3, `weights` n, `alpha` a scalar, `cells` m×4, `facets` m×3,
 //! `edges` m×2, `vertices` m, `hidden` m, `duplicates` m×2. Classes are arrays `cell_classes`,
 //! `facet_classes`, `edge_classes` and `vertex_classes`, with 0 exterior, 1 interior, 2 regular,
-//! 3 singular.
+//! 3 singular. `voxels` is two arrays: `voxel_runs` m×2, and `voxel_grid` 5×3, rows of `dims`, `origin` and the three axes.
 //!
 //! [`AnyFile`] reads triangulations under the names that others use, too: cells as `simplices`, `tetra` or `t`, points
 //! as `points`, `p` or `vertices`, perhaps `weights` and `alpha`, and passes over the rest. Without `alpha` they, and
@@ -53,7 +57,7 @@ mod open;
 
 use serde::{Deserialize, Serialize};
 
-use crate::{Alpha, Class, Placed};
+use crate::{Alpha, Class, Placed, Voxels};
 
 pub use error::SchemaError;
 pub use filtration::{Below, FiltrationFile, PairsFile, Values};
@@ -98,6 +102,9 @@ pub struct ComplexFile {
     /// The sides of the periodic box, if there is one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub periodic: Option<[f64; 3]>,
+    /// The voxels that the cells fill, if the complex is of labels.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub voxels: Option<Voxels>,
     /// Whatever the writer wants to add.
     #[cfg(feature = "json")]
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -151,7 +158,7 @@ impl ComplexFile {
 
     /// Whether this may be a triangulation whose file states no α: α is ∞, and no simplex has a class.
     pub fn states_no_alpha(&self) -> bool {
-        self.alpha == Alpha::INFINITE && self.classes.is_empty()
+        self.alpha == Alpha::INFINITE && self.classes.is_empty() && self.voxels.is_none()
     }
 
     /// Whether this is a triangulation of which only the cells are listed.
@@ -174,6 +181,7 @@ impl ComplexFile {
             hidden: None,
             duplicates: None,
             periodic: None,
+            voxels: None,
             #[cfg(feature = "json")]
             info: None,
         }

@@ -8,7 +8,7 @@ use zip::ZipArchive;
 use zip::read::ZipFile;
 
 use super::{Below, Classes, ComplexFile, FiltrationFile, PairsFile, SchemaError, Values};
-use crate::{Alpha, Class};
+use crate::{Alpha, Class, Voxels};
 
 /// Deflate expands by no more than this factor (zlib's technical details), so a larger claim is false.
 const MAX_EXPANSION: u64 = 1032;
@@ -45,6 +45,7 @@ impl ComplexFile {
             hidden: file.list("hidden", index)?,
             duplicates: file.rows("duplicates", index)?,
             periodic: file.sides()?,
+            voxels: file.voxels()?,
             ..Self::of_points(file.rows("points", |_, x| Ok(x))?.unwrap_or_default(), alpha)
         })
     }
@@ -103,7 +104,7 @@ enum Kind {
     Rows(u64),
 }
 
-const COMPLEX_ARRAYS: [(&str, Kind); 14] = [
+const COMPLEX_ARRAYS: [(&str, Kind); 16] = [
     ("points", Kind::Rows(3)),
     ("alpha", Kind::Scalar),
     ("periodic", Kind::Rows(1)),
@@ -118,6 +119,8 @@ const COMPLEX_ARRAYS: [(&str, Kind); 14] = [
     ("facet_classes", Kind::Column("facets")),
     ("edge_classes", Kind::Column("edges")),
     ("vertex_classes", Kind::Column("vertices")),
+    ("voxel_runs", Kind::Rows(2)),
+    ("voxel_grid", Kind::Rows(3)),
 ];
 
 /// The arrays of a file, whose elements are read as doubles, which represent every index and class exactly.
@@ -232,6 +235,22 @@ impl<R: Read + Seek> Npz<R> {
         })
     }
 
+    /// The voxels that the cells fill, if the complex is of labels.
+    fn voxels(&mut self) -> Result<Option<Voxels>, SchemaError> {
+        let Some(runs) = self.rows("voxel_runs", whole)? else { return Ok(None) };
+        let grid = self.rows("voxel_grid", |_, x| Ok(x))?;
+        let grid = grid.ok_or(SchemaError::Missing("voxel_grid"))?;
+        let [dims, origin, a, b, c] = grid[..] else {
+            return Err(SchemaError::Array {
+                name: "voxel_grid",
+                got: format!("{} rows", grid.len()),
+                expected: "five: dims, origin and three axes".into(),
+            });
+        };
+        let [x, y, z] = dims.map(|n| index("voxel_grid", n));
+        Ok(Some(Voxels { dims: [x?, y?, z?], origin, axes: [a, b, c], runs }))
+    }
+
     fn rows<T: Copy + Send, const N: usize>(
         &mut self,
         name: &'static str,
@@ -287,6 +306,15 @@ fn index(name: &'static str, value: f64) -> Result<u32, SchemaError> {
         Ok(number)
     } else {
         Err(unexpected(name, value, "a point number"))
+    }
+}
+
+fn whole(name: &'static str, value: f64) -> Result<u64, SchemaError> {
+    let number = value as u64;
+    if number as f64 == value {
+        Ok(number)
+    } else {
+        Err(unexpected(name, value, "a number of a voxel"))
     }
 }
 

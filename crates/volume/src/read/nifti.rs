@@ -32,6 +32,19 @@ pub(crate) fn read(
     let path = file.path();
     let (mut reader, length) = file.unpacked()?;
     let header = Header::read(path, &mut reader)?;
+    let volume = volume(file, &header, frame, (reader, length), monitor)?;
+    Ok(if header.states_labels() { volume.with_labels() } else { volume })
+}
+
+/// Reads the samples behind a header, or in the file beside it.
+fn volume(
+    file: &OpenFile,
+    header: &Header,
+    frame: Option<u64>,
+    (mut reader, length): (impl Read, Length),
+    monitor: &Monitor,
+) -> Result<Volume, VolumeError> {
+    let path = file.path();
     let layout = header.layout(path, frame)?;
     let (slope, inter) = header.scaling();
     if header.is_pair(path)? {
@@ -71,7 +84,7 @@ pub(crate) fn box_reader(file: &OpenFile, frame: Option<u64>) -> Result<Uncompre
     } else {
         Uncompressed::after_header(file, layout, header.offset(path)?, Some(0))?
     };
-    Ok(samples.scaled(scaling))
+    Ok(samples.scaled(scaling).with_labels(header.states_labels()))
 }
 
 /// The file that holds the samples, where the header has one of its own.
@@ -292,6 +305,11 @@ impl Header {
         let frame = self.frame(path, dims)?;
         let (endian, encoding) = (self.endian, Encoding::Raw);
         Ok(Layout { dims, dtype, endian, frame, encoding, frames })
+    }
+
+    /// Whether values are labels: `intent_code` is `NIFTI_INTENT_LABEL`.
+    fn states_labels(&self) -> bool {
+        self.code(68, 504) == 1002
     }
 
     /// Slope and intercept; a slope of 0 means none.

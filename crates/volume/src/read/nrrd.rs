@@ -76,9 +76,22 @@ pub(crate) fn read(
     monitor: &Monitor,
 ) -> Result<Volume, VolumeError> {
     let path = file.path();
-    let fail = |reason: Reason| format_error(path, reason);
     let mut lines = Lines::new(file.reader()?);
     let header = Header::read(path, &mut lines)?;
+    let volume = volume(file, &header, frame, lines, monitor)?;
+    Ok(if header.labels { volume.with_labels() } else { volume })
+}
+
+/// Reads the samples behind a header, or in the files that it names.
+fn volume(
+    file: &OpenFile,
+    header: &Header,
+    frame: Option<u64>,
+    lines: Lines<impl BufRead>,
+    monitor: &Monitor,
+) -> Result<Volume, VolumeError> {
+    let path = file.path();
+    let fail = |reason: Reason| format_error(path, reason);
     let layout = header.layout(path, frame)?;
     let skip = header.skip(path, &layout)?;
     match &header.files {
@@ -109,10 +122,11 @@ pub(crate) fn box_reader(file: &OpenFile, frame: Option<u64>) -> Result<Uncompre
     let header = Header::read(path, &mut lines)?;
     let layout = header.layout(path, frame)?;
     let skip = header.skip(path, &layout)?;
-    match &header.files {
+    let samples = match &header.files {
         None => Uncompressed::after_header(file, layout, lines.bytes(), skip),
         Some(names) => Uncompressed::in_data_file(path, layout, &data_paths(path, names), skip),
-    }
+    };
+    Ok(samples?.with_labels(header.labels))
 }
 
 /// The files that hold the samples, where the header does not.
@@ -127,6 +141,8 @@ struct Header {
     fields: HashMap<String, String>,
     /// The files that hold the samples; `None` where they follow the header.
     files: Option<Vec<String>>,
+    /// Whether values are labels: it has keys of 3D Slicer's segments, or is named as a file of these.
+    labels: bool,
 }
 
 impl Header {
@@ -136,13 +152,18 @@ impl Header {
         if !first.as_bytes().starts_with(MAGIC) {
             return Err(fail(Reason::other("is no NRRD file: it does not begin with NRRD000")));
         }
-        let mut header = Self { fields: HashMap::new(), files: None };
+        let mut header =
+            Self { fields: HashMap::new(), files: None, labels: is_segmentation(path) };
         // A header alone may end with its file; samples need the blank line.
         while let Some(line) = lines.read_line().map_err(io_error(path))? {
             if line.is_empty() {
                 return Ok(header);
             }
-            if line.starts_with('#') || line.contains(":=") {
+            if line.starts_with('#') {
+                continue;
+            }
+            if let Some((key, _)) = line.split_once(":=") {
+                header.labels |= is_of_segment(key);
                 continue;
             }
             let Some((name, value)) = line.split_once(':') else {
@@ -357,6 +378,18 @@ impl Header {
             }
         }
     }
+}
+
+/// Whether a key is one of 3D Slicer's about a segment, as `Segment0_LabelValue`.
+fn is_of_segment(key: &str) -> bool {
+    let number = key.strip_prefix("Segment").and_then(|rest| rest.split_once('_'));
+    number.is_some_and(|(number, _)| number.parse::<u32>().is_ok())
+}
+
+/// Whether the name is that of 3D Slicer's segmentations, `.seg.nrrd` or `.seg.nhdr`.
+fn is_segmentation(path: &Path) -> bool {
+    let inner = path.file_stem().map(Path::new).and_then(Path::extension);
+    inner.is_some_and(|inner| inner.eq_ignore_ascii_case("seg"))
 }
 
 fn scalar_type(name: &str) -> Option<Dtype> {

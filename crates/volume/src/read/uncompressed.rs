@@ -31,6 +31,8 @@ pub(crate) struct Uncompressed {
     offset: u64,
     /// Slope and intercept.
     scaling: Option<(f64, f64)>,
+    /// Whether the file states that values are labels.
+    labels: bool,
 }
 
 impl Uncompressed {
@@ -44,13 +46,19 @@ impl Uncompressed {
     ) -> Result<Self, VolumeError> {
         let path = file.path().to_owned();
         let file = SharedFile::new(file.handle()?);
-        Ok(Self { path, file, dims, frame, dtype, endian, offset, scaling: None })
+        Ok(Self { path, file, dims, frame, dtype, endian, offset, scaling: None, labels: false })
     }
 
     /// Scales samples, in doubles. Scaled bytes are not gray levels.
     #[cfg(feature = "formats")]
     pub(crate) fn scaled(self, (slope, inter): (f64, f64)) -> Self {
         Self { scaling: ((slope, inter) != (1.0, 0.0)).then_some((slope, inter)), ..self }
+    }
+
+    /// Says whether the file states that values are labels.
+    #[cfg(feature = "formats")]
+    pub(crate) fn with_labels(self, labels: bool) -> Self {
+        Self { labels, ..self }
     }
 
     /// Samples behind a header of so many bytes, of which further ones are skipped: `None` where the samples
@@ -118,7 +126,9 @@ impl Uncompressed {
         let dtype = if self.scaling.is_some() { Dtype::F32 } else { self.dtype };
         // Rows lie one behind the other: whole ones are read in one piece.
         let grain = [self.dims.x(), 1, 1];
-        Source::new(self.dims, self.frame, dtype, grain, Box::new(self))
+        let labels = self.labels;
+        let source = Source::new(self.dims, self.frame, dtype, grain, Box::new(self));
+        if labels { source.with_labels() } else { source }
     }
 }
 

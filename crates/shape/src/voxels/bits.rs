@@ -1,0 +1,219 @@
+//! Sets of voxels and of corners, a bit each.
+
+use walpha_base::memory::{NoMemory, try_with_capacity};
+use walpha_complex::Voxels;
+
+use super::VoxelsError;
+use crate::ShapeError;
+
+/// A set of places (x, y, z) of a box, a bit each, in rows along x of whole words.
+#[derive(Debug)]
+pub(super) struct Bits {
+    pub(super) size: [usize; 3],
+    /// Words of a row.
+    words: usize,
+    bits: Vec<u64>,
+}
+
+impl Bits {
+    fn new(size: [usize; 3]) -> Result<Self, NoMemory> {
+        let words = size[0].div_ceil(64);
+        let all = words.saturating_mul(size[1]).saturating_mul(size[2]);
+        let mut bits = try_with_capacity(all, || "the voxels of a region".into())?;
+        bits.resize(all, 0);
+        Ok(Self { size, words, bits })
+    }
+
+    /// The voxels of a region in the smallest box around it, and the indices of that box's first voxel.
+    pub(super) fn of(voxels: &Voxels) -> Result<(Self, [u32; 3]), ShapeError> {
+        let (mut first, mut last) = ([u32::MAX; 3], [0; 3]);
+        for_each_row(voxels, |from, to| {
+            for k in 0..3 {
+                first[k] = first[k].min(from[k]);
+                last[k] = last[k].max(if k == 0 { to } else { from[k] });
+            }
+        });
+        if first[0] == u32::MAX {
+            return Err(VoxelsError::Empty.into());
+        }
+        let size = [0, 1, 2].map(|k| (last[k] - first[k]) as usize + 1);
+        let mut set = Self::new(size)?;
+        for_each_row(voxels, |from, to| {
+            let [x, y, z] = [0, 1, 2].map(|k| (from[k] - first[k]) as usize);
+            let row = set.row_mut(y, z);
+            for i in x..=x + (to - from[0]) as usize {
+                row[i / 64] |= 1 << (i % 64);
+            }
+        });
+        Ok((set, first))
+    }
+
+    fn row_mut(&mut self, y: usize, z: usize) -> &mut [u64] {
+        let first = self.words * (y + self.size[1] * z);
+        &mut self.bits[first..first + self.words]
+    }
+
+    /// A row; none outside of the box.
+    fn row(&self, y: i64, z: i64) -> Option<&[u64]> {
+        let inside = |i: i64, n: usize| usize::try_from(i).ok().filter(|&i| i < n);
+        let (y, z) = (inside(y, self.size[1])?, inside(z, self.size[2])?);
+        let first = self.words * (y + self.size[1] * z);
+        Some(&self.bits[first..first + self.words])
+    }
+
+    /// Whether a place is in the set; `false` outside of the box.
+    pub(super) fn has(&self, [x, y, z]: [i64; 3]) -> bool {
+        let inside = usize::try_from(x).ok().filter(|&x| x < self.size[0]);
+        inside.is_some_and(|x| self.row(y, z).is_some_and(|row| row[x / 64] >> (x % 64) & 1 == 1))
+    }
+
+    pub(super) fn count(&self) -> u64 {
+        self.bits.iter().map(|word| u64::from(word.count_ones())).sum()
+    }
+
+    /// Calls `visit` with each place of the set, in the order of z, y and x.
+    pub(super) fn each(&self, mut visit: impl FnMut([usize; 3])) {
+        for (row, words) in self.bits.chunks(self.words.max(1)).enumerate() {
+            let (y, z) = (row % self.size[1], row / self.size[1]);
+            for (at, &word) in words.iter().enumerate() {
+                let mut left = word;
+                while left != 0 {
+                    visit([64 * at + left.trailing_zeros() as usize, y, z]);
+                    left &= left - 1;
+                }
+            }
+        }
+    }
+
+    /// A set in a box of this size, from rows that `fill` makes of those of this set around them.
+    fn map(
+        &self,
+        size: [usize; 3],
+        mut fill: impl FnMut(&Self, [i64; 2], &mut [u64]),
+    ) -> Result<Self, NoMemory> {
+        let mut set = Self::new(size)?;
+        let words = set.words.max(1);
+        for (row, out) in set.bits.chunks_mut(words).enumerate() {
+            fill(self, [(row % size[1]) as i64, (row / size[1]) as i64], out);
+        }
+        Ok(set)
+    }
+
+    /// The places whose 26 neighbours are in the set, too.
+    pub(super) fn deep(&self) -> Result<Self, NoMemory> {
+        self.map(self.size, |set, at, out| {
+            out.fill(u64::MAX);
+            for [y, z] in around(at) {
+                match set.row(y, z) {
+                    Some(row) => out.iter_mut().zip(row).for_each(|(out, word)| *out &= word),
+                    None => out.fill(0),
+                }
+            }
+            along(out, |word, before, after| word & before & after);
+        })
+    }
+
+    /// The places in the set, and their 26 neighbours in the box.
+    pub(super) fn dilated(&self) -> Result<Self, NoMemory> {
+        self.map(self.size, |set, at, out| {
+            for [y, z] in around(at) {
+                let row = set.row(y, z).unwrap_or_default();
+                out.iter_mut().zip(row).for_each(|(out, word)| *out |= word);
+            }
+            along(out, |word, before, after| word | before | after);
+        })
+    }
+
+    /// The places in this set that are in another of the same box.
+    pub(super) fn and(&self, other: &Self) -> Result<Self, NoMemory> {
+        self.combined(other, |word, other| word & other)
+    }
+
+    /// The places in this set that are not in another of the same box.
+    pub(super) fn without(&self, other: &Self) -> Result<Self, NoMemory> {
+        self.combined(other, |word, other| word & !other)
+    }
+
+    fn combined(&self, other: &Self, of: impl Fn(u64, u64) -> u64) -> Result<Self, NoMemory> {
+        let mut set = Self::new(self.size)?;
+        let both = self.bits.iter().zip(&other.bits);
+        set.bits.iter_mut().zip(both).for_each(|(word, (&a, &b))| *word = of(a, b));
+        Ok(set)
+    }
+
+    /// The corners of the voxels in the set.
+    pub(super) fn corners(&self) -> Result<Self, NoMemory> {
+        self.map(self.size.map(|n| n + 1), |set, [y, z], out| {
+            for [y, z] in [[y, z], [y - 1, z], [y, z - 1], [y - 1, z - 1]] {
+                let row = set.row(y, z).unwrap_or_default();
+                out.iter_mut().zip(row).for_each(|(out, word)| *out |= word);
+            }
+            along(out, |word, before, _| word | before);
+        })
+    }
+}
+
+/// A set whose places are numbered in the order of z, y and x.
+pub(super) struct Numbered {
+    set: Bits,
+    /// The number of places before each word.
+    before: Vec<u32>,
+    count: u64,
+}
+
+impl Numbered {
+    pub(super) fn new(set: Bits) -> Result<Self, NoMemory> {
+        let mut before = try_with_capacity(set.bits.len(), || "the numbers of corners".into())?;
+        let mut count = 0;
+        for word in &set.bits {
+            before.push(count as u32);
+            count += u64::from(word.count_ones());
+        }
+        Ok(Self { set, before, count })
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.count as usize
+    }
+
+    /// The number of a place in the set.
+    pub(super) fn number(&self, [x, y, z]: [usize; 3]) -> u32 {
+        let word = self.set.words * (y + self.set.size[1] * z) + x / 64;
+        let below = self.set.bits[word] & ((1 << (x % 64)) - 1);
+        self.before[word] + below.count_ones()
+    }
+
+    /// Calls `visit` with each place, in the order of numbers.
+    pub(super) fn each(&self, visit: impl FnMut([usize; 3])) {
+        self.set.each(visit);
+    }
+}
+
+/// The rows at a row and around it.
+fn around([y, z]: [i64; 2]) -> impl Iterator<Item = [i64; 2]> {
+    (-1..=1).flat_map(move |dz| (-1..=1).map(move |dy| [y + dy, z + dz]))
+}
+
+/// Replaces each word by a function of itself and of the row shifted to both sides: bit i of them is what bits i − 1 and i + 1 were.
+fn along(row: &mut [u64], of: impl Fn(u64, u64, u64) -> u64) {
+    let mut last = 0;
+    for at in 0..row.len() {
+        let word = row[at];
+        let next = row.get(at + 1).copied().unwrap_or_default();
+        row[at] = of(word, word << 1 | last >> 63, word >> 1 | next << 63);
+        last = word;
+    }
+}
+
+/// Calls `visit` with the pieces of runs in each row: the first voxel, and the x of the last.
+fn for_each_row(voxels: &Voxels, mut visit: impl FnMut([u32; 3], u32)) {
+    let x = u64::from(voxels.dims[0]);
+    for &[first, count] in &voxels.runs {
+        let (mut at, end) = (first, first + count);
+        while at < end {
+            let until = end.min((at / x + 1) * x);
+            visit(voxels.indices(at), ((until - 1) % x) as u32);
+            at = until;
+        }
+    }
+}

@@ -1,0 +1,169 @@
+//! `walpha shape` of a segmentation: the solid of its labels, in one file or in one for each label.
+
+use std::collections::BTreeMap;
+use std::fmt::{self, Display};
+
+use serde::Serialize;
+use walpha_base::shown::number;
+
+use super::args::LabelArgs;
+use super::errors::fail_usage;
+use super::folder::Folder;
+use super::global::Global;
+use super::ladder::{Mesh, meshes};
+use super::output::{print_summary, remark};
+use super::pipeline;
+use super::progress::Progress;
+use super::report::{Report, SCHEMA_VERSION, ending};
+use super::shape::{Outputs, Shape};
+use crate::labels::{LabelChoice, LabelSize, chosen};
+use crate::pipeline::Input;
+use crate::points::ModelMetadata;
+use crate::progress::Stage;
+use crate::shape::Betti;
+use crate::volume::Volume;
+use crate::{Coordinates, LengthUnit, Recipe};
+
+/// What the solids are written as unless told otherwise.
+const DEFAULT_MESH: &str = "stl";
+
+impl Shape {
+    /// Makes the solid of the labels that the recipe names.
+    pub(super) fn of_labels(
+        &self,
+        volume: Volume,
+        recipe: &Recipe,
+        outputs: Outputs,
+        global: Global,
+        progress: &mut Progress,
+    ) -> anyhow::Result<Report> {
+        let input = &self.pipeline.input;
+        LabelArgs::refuse_others(&input.typed)?;
+        self.refuse_points_alone(&outputs)?;
+        let dims = volume.dims().xyz();
+        let model = progress.watch(|monitor| recipe.solid(volume, monitor))?;
+        let report = progress.stage(Stage::Measure, || {
+            let mut report = Report::of_labels(&input.input, dims, &model);
+            if self.solid {
+                report.add_solid(model.shape.solid().1);
+            }
+            report
+        });
+        let remarks = outputs.remarks(&model.shape);
+        let write = || outputs.write(&model.shape, &ModelMetadata::default());
+        progress.stage(Stage::Write, write)?;
+        if !global.quiet {
+            remarks.iter().for_each(|text| remark(&format!("walpha: {text}")));
+        }
+        Ok(report)
+    }
+
+    /// Makes the solid of each label, in files of their own.
+    pub(super) fn each_label(&self, recipe: &Recipe, global: Global) -> anyhow::Result<()> {
+        let [folder] = &self.output[..] else {
+            fail_usage!("--each-label writes a file for each label to one folder" => "name it, as in -o labels");
+        };
+        let meshes = self.meshes()?;
+        LabelArgs::refuse_others(&self.pipeline.input.typed)?;
+        let recipe = match recipe.labels {
+            None => recipe.clone().labels(Some(LabelChoice::All)),
+            Some(_) => recipe.clone(),
+        };
+        let mut folder = Folder::open(folder, "--output", &[])?;
+        let mut progress = Progress::new(global);
+        let input = &self.pipeline.input;
+        let read = pipeline::read(input, &recipe, &mut progress)?;
+        pipeline::accept(&read, input)?;
+        let Input::Labels(volume) = read else {
+            fail_usage!("{} holds points, which have no labels", input.input => "omit --each-label");
+        };
+        let choice = recipe.labels.as_ref().unwrap_or(&LabelChoice::All);
+        let mut solids = Vec::new();
+        let mut coordinates = volume.frame().coordinates;
+        for (label, _) in chosen(&volume, choice)? {
+            let one = recipe.clone().labels(Some(LabelChoice::These(vec![label])));
+            let model = progress.watch(|monitor| one.solid(volume.clone(), monitor))?;
+            coordinates = model.origin.coordinates;
+            let shape = &model.shape;
+            let mut files = Vec::new();
+            for mesh in &meshes {
+                let name = format!("label-{label}.{}", mesh.extension);
+                progress.stage(Stage::Write, || {
+                    folder.write(&name, |out| mesh.exporter.write(shape, out))
+                })?;
+                files.extend(folder.written().last().cloned());
+            }
+            let size = model.labels.as_ref().and_then(|sizes| sizes.labels.first().copied());
+            let size = size.expect("a label that is there");
+            solids.push(SolidSummary { size, betti: shape.betti(), files });
+        }
+        folder.finish()?;
+        print_summary(
+            global,
+            &EachLabel {
+                schema_version: SCHEMA_VERSION,
+                input: input.input.to_string(),
+                coordinates,
+                labels: solids,
+                seconds: progress.finish().into_iter().collect(),
+            },
+        )
+    }
+
+    /// The formats that `--each-label` writes.
+    pub(super) fn meshes(&self) -> anyhow::Result<Vec<Mesh>> {
+        meshes(&self.mesh, &[DEFAULT_MESH], &self.export())
+    }
+
+    /// Refuses outputs that hold points alone, from which a shape is made by α.
+    fn refuse_points_alone(&self, outputs: &Outputs) -> anyhow::Result<()> {
+        if let Some((target, _)) = outputs.models.first() {
+            let name = walpha_base::shown::shown(target.path());
+            fail_usage!("{name} holds points, of which shapes are made by α, and this is the solid of labels" => "write a mesh, .json or .npz");
+        }
+        Ok(())
+    }
+}
+
+/// Summary printed after writing a solid for each label.
+#[derive(Serialize)]
+struct EachLabel {
+    schema_version: u32,
+    input: String,
+    coordinates: Coordinates,
+    labels: Vec<SolidSummary>,
+    seconds: BTreeMap<&'static str, f64>,
+}
+
+/// The solid of a label.
+#[derive(Serialize)]
+struct SolidSummary {
+    #[serde(flatten)]
+    size: LabelSize,
+    betti: Option<Betti>,
+    files: Vec<String>,
+}
+
+impl Display for EachLabel {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let unit: LengthUnit = self.coordinates.unit;
+        writeln!(f, "input     {}", super::output::name(&self.input))?;
+        writeln!(f, "lengths   in {}", self.coordinates)?;
+        for SolidSummary { size: LabelSize { label, voxels, volume, .. }, betti, .. } in
+            &self.labels
+        {
+            write!(
+                f,
+                "label     {label}: {voxels} voxels, {} {}³",
+                number(*volume),
+                unit.symbol()
+            )?;
+            match betti {
+                Some(betti) => writeln!(f, "; {betti}")?,
+                None => writeln!(f)?,
+            }
+        }
+        let files: Vec<String> = self.labels.iter().flat_map(|solid| solid.files.clone()).collect();
+        ending(f, &files, &["read", "shape", "write", "total"], &self.seconds)
+    }
+}
