@@ -140,7 +140,7 @@ pub fn voxel_shape(
         complex,
         hidden: None,
         betti,
-        sheets,
+        sheets: Some(sheets),
     })?;
     Ok(AlphaShape { voxels: Some(Arc::new(voxels)), ..shape })
 }
