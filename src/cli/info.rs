@@ -429,6 +429,20 @@ fn fmt_frame(
     Ok(())
 }
 
+/// The range of the values that are finite, if there are any.
+fn fmt_values(
+    f: &mut std::fmt::Formatter<'_>,
+    range: Option<(f32, f32)>,
+    gray_levels: bool,
+) -> std::fmt::Result {
+    let Some((min, max)) = range else {
+        return writeln!(f, "values    none that is a finite number");
+    };
+    let (min, max) = (number(f64::from(min)), number(f64::from(max)));
+    let gray = if gray_levels { ", gray levels as they are" } else { "" };
+    writeln!(f, "values    {min} to {max}{gray}")
+}
+
 /// The files that hold the samples of a volume, if they are not in the file that describes it.
 fn fmt_data_files(f: &mut std::fmt::Formatter<'_>, files: &[String]) -> std::fmt::Result {
     match files {
@@ -465,14 +479,7 @@ impl std::fmt::Display for Content {
                 writeln!(f, "format    {format}, samples of type {samples}")?;
                 writeln!(f, "volume    {x}×{y}×{z} samples (x, y, z)")?;
                 fmt_frame(f, *spacing, *origin, direction, *coordinates)?;
-                let gray = if *gray_levels { ", gray levels as they are" } else { "" };
-                match (min, max) {
-                    (Some(min), Some(max)) => {
-                        let (min, max) = (number(f64::from(*min)), number(f64::from(*max)));
-                        writeln!(f, "values    {min} to {max}{gray}")?;
-                    }
-                    _ => writeln!(f, "values    none that is a finite number")?,
-                }
+                fmt_values(f, min.zip(*max), *gray_levels)?;
                 if let Some(labels) = labels {
                     write!(f, "{labels}")?;
                 } else if let Some(preset) = preset {

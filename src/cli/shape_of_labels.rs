@@ -39,7 +39,7 @@ impl Shape {
     ) -> anyhow::Result<Report> {
         let input = &self.pipeline.input;
         LabelArgs::refuse_others(&input.typed)?;
-        self.refuse_points_alone(&outputs)?;
+        refuse_points_alone(&outputs)?;
         let dims = volume.dims().xyz();
         let model = progress.watch(|monitor| recipe.solid(volume, monitor))?;
         let report = progress.stage(Stage::Measure, || {
@@ -114,15 +114,15 @@ impl Shape {
     pub(super) fn meshes(&self) -> anyhow::Result<Vec<Mesh>> {
         meshes(&self.mesh, &[DEFAULT_MESH], &self.export())
     }
+}
 
-    /// Refuses outputs that hold points alone, from which a shape is made by α.
-    fn refuse_points_alone(&self, outputs: &Outputs) -> anyhow::Result<()> {
-        if let Some((target, _)) = outputs.models.first() {
-            let name = walpha_base::shown::shown(target.path());
-            fail_usage!("{name} holds points, of which shapes are made by α, and this is the solid of labels" => "write a mesh, .json or .npz");
-        }
-        Ok(())
+/// Refuses outputs that hold points alone, from which a shape is made by α.
+fn refuse_points_alone(outputs: &Outputs) -> anyhow::Result<()> {
+    if let Some((target, _)) = outputs.models.first() {
+        let name = walpha_base::shown::shown(target.path());
+        fail_usage!("{name} holds points, of which shapes are made by α, and this is the solid of labels" => "write a mesh, .json or .npz");
     }
+    Ok(())
 }
 
 /// Summary printed after writing a solid for each label.

@@ -284,7 +284,8 @@ fn faces(structure: &Structure) -> Vec<Finding> {
         for vertex in facet {
             match structure.vertices.row([vertex]) {
                 NONE => {
-                    found.push(Finding::MissingFace { face: [vertex].into(), of: facet.into() })
+                    let face = [vertex].into();
+                    found.push(Finding::MissingFace { face, of: facet.into() });
                 }
                 at => of_vertices[at as usize] = of_vertices[at as usize].max(Some(class)),
             }
