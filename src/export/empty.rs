@@ -149,8 +149,10 @@ impl EmptyShape {
 fn suggested(shape: &AlphaShape, needs: Needs, monitor: &Monitor) -> Option<f64> {
     let options = *shape.options();
     let points = shape.points();
-    let spacing =
-        || Some(Parameter::of_spacing(points, options.periodic, shape.coordinates().unit).alpha);
+    let spacing = || {
+        let unit = shape.coordinates().unit;
+        Some(Parameter::of_spacing(points, options.periodic, unit).ok()?.alpha)
+    };
     let connected = || {
         let filtration =
             Filtration::monitored(options.periodic, points.clone(), &monitor.unreported());

@@ -141,6 +141,7 @@ impl Report {
             engine: None,
             solid: None,
             files: Vec::new(),
+            offsets: Vec::new(),
             seconds: BTreeMap::new(),
             peak_memory_bytes: None,
         };
