@@ -72,7 +72,7 @@ fn links_in_a_folder_of_a_plan_are_replaced_and_not_followed() {
         let (code, _, stderr) = run(at, &args("blocks run work"));
         assert_eq!(code, 1);
         names(&stderr, &["plan.json", "is a link", "plan again"]);
-        ["plain", "work"].map(|name| fs::remove_dir_all(at.join(name)).unwrap());
+        ["plain", "work"].iter().for_each(|name| fs::remove_dir_all(at.join(name)).unwrap());
     }
 }
 
