@@ -28,7 +28,9 @@ pub enum LabelChoice {
 
 /// A list of labels that cannot be read.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{0:?} is no label: labels are whole numbers with commas between them, as in 3,5, or all")]
+#[error(
+    "{0:?} is not a label: labels are whole numbers with commas between them, as in 3,5, or all"
+)]
 pub struct UnknownLabels(String);
 
 impl FromStr for LabelChoice {
@@ -132,8 +134,8 @@ pub fn list(labels: impl ExactSizeIterator<Item = i32>) -> String {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum LabelsError {
-    /// The values are no whole numbers.
-    #[error("the values are no labels: some are no whole numbers, or beyond 2²⁴")]
+    /// The values are not whole numbers.
+    #[error("the values are not labels: some are not whole numbers, or beyond 2²⁴")]
     NotWhole,
     /// A label that no voxel has.
     #[error("no voxel has the label {label}; {}", there_are(there))]

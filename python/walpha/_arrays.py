@@ -25,7 +25,7 @@ class Cloud(NamedTuple):
 def cloud(points: Arrays, weights: Arrays | None = None, values: Arrays | None = None, *, valued: bool = True) -> Cloud:
     """Points with their weights and values, given beside them or as columns of a table.
 
-    Masked rows are no points: they are left out, of weights and values too.
+    Masked rows are not points: they are left out, of weights and values too.
     """
     wanted = ("weight", "radius", "value") if valued else ("weight", "radius")
     table = _tables.columns("points", points, wanted)

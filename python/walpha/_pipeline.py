@@ -336,7 +336,7 @@ def label_shape(
     Parameters
     ----------
     volume : array_like or Volume, (nz, ny, nx)
-        Labels, ``[z, y, x]``: whole numbers, or booleans. NaN is no label.
+        Labels, ``[z, y, x]``: whole numbers, or booleans. NaN is not a label.
     labels : int or sequence of int, optional
         The labels to take. By default all that are not 0.
     spacing : tuple of float, optional
@@ -357,7 +357,7 @@ def label_shape(
     Raises
     ------
     ValueError
-        Values that are no whole numbers, or beyond 2²⁴; a label that no voxel has; all voxels are 0.
+        Values that are not whole numbers, or beyond 2²⁴; a label that no voxel has; all voxels are 0.
     MemoryError
         The system gives no more.
 
@@ -431,7 +431,7 @@ def _grid(
 
 
 def _masked(volume: Arrays | Volume) -> bool:
-    """Whether NaN among the samples are no data."""
+    """Whether NaN among the samples are not data."""
     return volume.masked if isinstance(volume, Volume) else bool(np.ma.is_masked(volume))
 
 

@@ -11,7 +11,7 @@ from . import _walpha
 
 
 def names(given: Any) -> list[Any] | None:
-    """The names of the columns of a table; None of what is no table."""
+    """The names of the columns of a table; None of what is not a table."""
     dtype = getattr(given, "dtype", None)
     if isinstance(dtype, np.dtype) and dtype.names:
         return list(dtype.names)

@@ -42,8 +42,8 @@ class Volume:
     gray : bool, optional
         Whether samples are gray levels 0 to 255 already; by default those of unsigned bytes are.
     masked : bool
-        Whether NaN among the samples are no data, as padding of DICOM and masked samples of an array are: they become no
-        points, and are no error.
+        Whether NaN among the samples are not data, as padding of DICOM and masked samples of an array are: they become no
+        points, and are not an error.
 
     Raises
     ------

@@ -73,7 +73,7 @@ enum Content {
         /// The preset that `walpha shape` uses where no option says what to look for. Absent if there is none.
         #[serde(skip_serializing_if = "Option::is_none")]
         preset: Option<&'static str>,
-        /// The labels of a segmentation, with their voxels. Absent if the values are no labels.
+        /// The labels of a segmentation, with their voxels. Absent if the values are not labels.
         #[serde(skip_serializing_if = "Option::is_none")]
         labels: Option<LabelSummary>,
         /// Volumes in the file, of which --frame reads one; the first is described. Absent if there is only one.

@@ -47,7 +47,7 @@ impl Goal {
     /// The goal for a volume of `samples` samples.
     ///
     /// # Errors
-    /// A ratio that is no share.
+    /// A ratio that is not a share.
     fn of(&self, samples: u64) -> Result<Adaptive, PointsError> {
         if let Some(ratio) = self.ratio {
             SelectionRule::Ratio(ratio).asked(samples)?;

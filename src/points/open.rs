@@ -30,7 +30,7 @@ pub struct PointOptions {
     pub classes: Option<Vec<u8>>,
     /// Whether points of LAS and LAZ are read that are flagged *withheld*, which are not to be processed.
     pub withheld: bool,
-    /// Whether a column that is no weight by its name is one where the file has no other: the values.
+    /// Whether a column that is not a weight by its name is one where the file has no other: the values.
     pub weights: bool,
     /// Keeps the first point in each cube of this side, in the unit of the points; `None` keeps all.
     pub thin: Option<f64>,

@@ -141,7 +141,7 @@ fn what_labels_have_no_use_for_is_refused() {
     }
     fails(f, 2, "shape ball.nrrd --hidden", &["--hidden has no effect", "solid of labels"]);
     fails(f, 1, "shape ball.nrrd --label 1,7", &["no voxel has the label 7", "there are 1, 2"]);
-    fails(f, 2, "shape ball.nrrd --label one", &["\"one\" is no label"]);
+    fails(f, 2, "shape ball.nrrd --label one", &["\"one\" is not a label"]);
     fails(f, 2, "shape ball.nrrd -o ball.wvm", &["ball.wvm holds points", "solid of labels"]);
     fails(f, 1, "shape sample:phantom@16 --label 1", &["whole numbers"]);
     for command in [

@@ -22,7 +22,7 @@ pub struct Labels {
 }
 
 impl Labels {
-    /// Of a volume in memory; `None` if its values are no labels. One pass.
+    /// Of a volume in memory; `None` if its values are not labels. One pass.
     pub fn of_volume(volume: &Volume) -> Option<Self> {
         let stated = volume.states_labels();
         if !stated && is_gray(volume.has_gray_levels(), volume.dtype()) {
@@ -31,7 +31,7 @@ impl Labels {
         Tally::of(volume, stated).judge(stated)
     }
 
-    /// Of a volume whose values are labels, whatever the rule says; `None` if some are no whole numbers. One pass.
+    /// Of a volume whose values are labels, whatever the rule says; `None` if some are not whole numbers. One pass.
     pub fn of_any(volume: &Volume) -> Option<Self> {
         let stated = volume.states_labels();
         Tally::of(volume, true).labels(stated)
@@ -80,7 +80,7 @@ pub(crate) struct Tally {
     pairs: Vec<u64>,
     /// Whether all values count, even if they are too many for the rule.
     all: bool,
-    /// Whether there is nothing more to find out, as these are no labels.
+    /// Whether there is nothing more to find out, as these are not labels.
     ended: bool,
 }
 

@@ -107,7 +107,7 @@ impl<'a> HeaderLines<'a> {
         Self { reader, end: None, bytes: 0 }
     }
 
-    /// The next line without its end. Bytes that are no UTF-8 are replaced.
+    /// The next line without its end. Bytes that are not UTF-8 are replaced.
     pub(super) fn read(&mut self) -> io::Result<Option<String>> {
         /// Longer lines are data taken for a header.
         const MOST: u64 = 1 << 16;

@@ -338,7 +338,7 @@ mod tests {
             ("1 2, 3\n4 5 6", vec![1.0, 2.0, 3.0, 4.0, 5.0, 6.0]),
             ("1,2,3\n4 5 6", vec![1.0, 2.0, 3.0, 4.0, 5.0, 6.0]),
             ("1.5,2.5, 3.5", vec![1.5, 2.5, 3.5]),
-            // One number of four digits, or a leading zero, is no group of thousands.
+            // One number of four digits, or a leading zero, is not a group of thousands.
             (
                 "1,234 5,678 9,012\n1234,567 8,901 2,345",
                 vec![1.234, 5.678, 9.012, 1234.567, 8.901, 2.345],

@@ -141,7 +141,7 @@ fn is_count_up(words: &[&str]) -> bool {
     words.iter().enumerate().all(|(k, word)| word.parse() == Ok(k))
 }
 
-/// Says that a first row 0, 1, 2 is a point, where the others are no whole numbers.
+/// Says that a first row 0, 1, 2 is a point, where the others are not whole numbers.
 fn say_first_row(path: &Path, lines: &Numbered<'_>) {
     let mut rows = lines.contents();
     if let (Some((_, first)), Some((_, second))) = (rows.next(), rows.next())
@@ -150,7 +150,7 @@ fn say_first_row(path: &Path, lines: &Numbered<'_>) {
         && second.contains('.')
     {
         tracing::warn!(
-            "{}: its first line, {first}, is taken for a point, as numbers are no names; remove the line if it \
+            "{}: its first line, {first}, is taken for a point, as numbers are not names; remove the line if it \
              numbers the columns",
             shown(path)
         );

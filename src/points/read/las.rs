@@ -140,7 +140,7 @@ fn refuse_angles(path: &Path, header: &las::Header) -> Result<(), PointsError> {
     Ok(())
 }
 
-/// Refuses a file that has fewer points than it claims, or that claims none and has some; scales that are no numbers, or 0;
+/// Refuses a file that has fewer points than it claims, or that claims none and has some; scales that are not numbers, or 0;
 /// and claims that the library would trust: more bytes of points than 64 bits can count, and an extended record longer than
 /// the file, for which it would allocate memory.
 fn check(file: &OpenFile) -> Result<(), PointsError> {

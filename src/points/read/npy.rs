@@ -102,7 +102,7 @@ fn points(
 /// A field of the elements of a structured array, or one of its numbers, if it has several.
 struct Field<'a> {
     name: &'a str,
-    /// Its type, unless it is no number.
+    /// Its type, unless it is not a number.
     kind: Option<(Dtype, Endian)>,
     /// Where it begins in an element, in bytes.
     offset: usize,

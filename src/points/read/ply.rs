@@ -305,7 +305,7 @@ impl Property {
     }
 }
 
-/// More bytes behind the last element are no padding.
+/// More bytes behind the last element are not padding.
 const MOST_PADDING: u64 = 1 << 16;
 
 /// The numbers after a header.

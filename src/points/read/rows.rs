@@ -124,7 +124,7 @@ impl<'a> TextRows<'a> {
                 Reason::content(what, "leave the line out, or put a number there")
             } else if let Some(without) = without_marks(word) {
                 let what = format!(
-                    "line {line}, column {name}: {word:?} is no number, unless its marks group thousands \
+                    "line {line}, column {name}: {word:?} is not a number, unless its marks group thousands \
                      ({without})"
                 );
                 Reason::content(what, PLAINLY)

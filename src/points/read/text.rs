@@ -16,7 +16,7 @@ pub(super) fn text(file: &OpenFile) -> Result<String, PointsError> {
     })
 }
 
-/// Why bytes are no text.
+/// Why bytes are not text.
 enum Undecodable {
     Reason(Reason),
     Memory(NoMemory),

@@ -109,8 +109,8 @@ fn other_files_are_named_as_what_they_are() {
     let f = folder.path();
     let png = [&b"\x89PNG\r\n\x1a\n"[..], &[0; 200]].concat();
     let files: [(&str, &[u8], &str); 4] = [
-        ("page.dcm", b"<html>404</html>", "is called .dcm, and is no DICOM file"),
-        ("zeros.IMA", &[0; 500], "is called .IMA, and is no DICOM file"),
+        ("page.dcm", b"<html>404</html>", "is called .dcm, and is not a DICOM file"),
+        ("zeros.IMA", &[0; 500], "is called .IMA, and is not a DICOM file"),
         ("picture.dcm", &png, "is a PNG image"),
         ("empty.dcm", b"", "is empty"),
     ];

@@ -55,7 +55,7 @@ impl<'a> Claim<'a> {
     }
 
     /// The same claim of a shape that lists, of the simplices below this dimension, only the faces of others: that further ones are
-    /// missing is no finding.
+    /// missing is not a finding.
     #[must_use]
     pub fn with_lowest(self, lowest: usize) -> Self {
         Self { lowest, ..self }

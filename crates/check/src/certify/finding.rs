@@ -301,7 +301,7 @@ pub enum Finding {
         /// The facet.
         facet: Simplex,
     },
-    /// Of labels: a face between a voxel of the region and one outside is no boundary of cells.
+    /// Of labels: a face between a voxel of the region and one outside is not a boundary of cells.
     Unfilled {
         /// The voxel of the region.
         voxel: [u32; 3],

@@ -293,7 +293,7 @@ impl Search<'_> {
         }
     }
 
-    /// The findings: of what was found, that which is no face of anything else found.
+    /// The findings: of what was found, that which is not a face of anything else found.
     fn told(&self, found: &BTreeMap<Vec<u32>, Corners>) -> Vec<Finding> {
         let points = self.spheres.points;
         let mut at = BTreeMap::<u32, Vec<&Vec<u32>>>::new();

@@ -67,7 +67,7 @@ pub(super) fn findings(
     Ok((found, certificate))
 }
 
-/// Points that are listed as what no corner is, or that are no vertex of a cell.
+/// Points that are listed as what a corner is not, or that are not vertices of a cell.
 fn accounts(placed: &PlacedComplex) -> Vec<Finding> {
     let mut is_in_cell = vec![false; placed.positions.len()];
     for &v in placed.complex.cells.rows().as_flattened() {

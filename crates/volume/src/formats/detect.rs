@@ -300,7 +300,7 @@ fn unknown(path: &Path) -> VolumeError {
     let given = path.extension().unwrap_or_default().to_string_lossy();
     if DICOM_EXTENSIONS.iter().any(|own| given.eq_ignore_ascii_case(own)) {
         let what = format!(
-            "is called .{given}, and is no DICOM file: it has neither the mark (DICM at byte 128) nor the elements of one"
+            "is called .{given}, and is not a DICOM file: it has neither the mark (DICM at byte 128) nor the elements of one"
         );
         return format_error(path, Reason::other(what));
     }

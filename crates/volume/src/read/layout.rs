@@ -158,7 +158,7 @@ pub(super) fn one_unit(
         if !unit.is_known() || !first.is_known() {
             let [first, other] = [first, unit].map(|unit| format!("{:?}", unit.symbol()));
             let what =
-                format!("has axes in the units {first} and {other}, of which one is no length");
+                format!("has axes in the units {first} and {other}, of which one is not a length");
             return Err(format_error(path, Reason::header(what)));
         }
         let [from, to] = [unit, first].map(|unit| Coordinates { unit, ..Coordinates::default() });

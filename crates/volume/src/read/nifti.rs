@@ -335,7 +335,7 @@ impl Header {
         let unit = taken.coordinates.unit;
         if self.length_unit() > 3 {
             tracing::warn!(
-                "{}: its unit (xyzt_units {}) is none, and passed over",
+                "{}: its unit (xyzt_units {}) is not known, and passed over",
                 shown(path),
                 self.length_unit()
             );

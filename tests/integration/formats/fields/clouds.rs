@@ -232,7 +232,7 @@ fn each_field_of_npy() {
                 Fate::Read(without_a_word)
             ),
             row!(
-                "types that are no numbers",
+                "types that are not numbers",
                 "a.npy",
                 npy("'<c8'", "False", "(1, 3)", &[0; 24]),
                 Fate::Refused(&["<c8"])

@@ -164,7 +164,7 @@ fn each_field_of_the_table() {
             Field {
                 name: "`xyzt_units` that there are not",
                 file: |f| with(f, &[(123, &[7])]),
-                fate: Fate::PassedOver(&["its unit (xyzt_units 7) is none"]),
+                fate: Fate::PassedOver(&["its unit (xyzt_units 7) is not known"]),
             },
             Field {
                 name: "`intent_code` 1002 (labels)",

@@ -126,7 +126,7 @@ fn each_field_of_the_table() {
                 }),
             },
             Field {
-                name: "a unit that is no length",
+                name: "a unit that is not a length",
                 file: |f| with(f, "spacings: 1 2 3\nunits: \"furlong\" \"furlong\" \"furlong\"\n"),
                 fate: Fate::PassedOver(&["furlong"]),
             },

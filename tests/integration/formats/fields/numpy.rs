@@ -150,7 +150,7 @@ fn each_field_of_the_table() {
                 }),
             },
             Field {
-                name: "files that are no arrays, alone",
+                name: "files that are not arrays, alone",
                 file: |f| archive(f, &[("a.txt", b"1 2 3")]),
                 fate: Fate::Refused(&["a zip archive of a.txt, and of no array", "unpack it"]),
             },

@@ -250,7 +250,7 @@ fn each_field_of_the_table() {
                 }),
             },
             Field {
-                name: "a `unit` that is no length",
+                name: "a `unit` that is not a length",
                 file: |f| {
                     let axes = json!([
                         space("z", "furlong"),

@@ -119,7 +119,7 @@ pub(super) fn reason(error: &VolumeError) -> String {
     }
 }
 
-/// What is wrong with a file that is no DICOM file, and is named as if it were.
+/// What is wrong with a file that is not a DICOM file, and is named as if it were.
 fn not_dicom(path: &Path) -> Reason {
     let open = OpenFile::open(path);
     match open.as_ref().map(|file| (file.length(), file.start())) {

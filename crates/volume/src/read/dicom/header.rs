@@ -94,7 +94,7 @@ impl<'a> Header<'a> {
         let number = element.to_float64().ok().filter(|number| number.is_finite());
         let wrong = || {
             self.fail(Reason::header(format!(
-                "has {} at {tag}, which is no number",
+                "has {} at {tag}, which is not a number",
                 shown(element)
             )))
         };

@@ -213,7 +213,7 @@ fn volume(
         return Err(format_error(path, Reason::content(what, "name another series")));
     };
     tracing::warn!(
-        "{} of padding (Pixel Padding Value {values}), which is no data: masked",
+        "{} of padding (Pixel Padding Value {values}), which is not data: masked",
         counted(count as u64, "sample")
     );
     Ok(Ok(volume))

@@ -57,7 +57,7 @@ pub(super) fn check(header: Header<'_>) -> Result<(), VolumeError> {
     Err(header.fail(Reason::unsupported(what, "convert it to NRRD or NIfTI")))
 }
 
-/// What a frame shows; `None` where the file is no segmentation.
+/// What a frame shows; `None` where the file is not a segmentation.
 pub(super) fn of_frame(header: Header<'_>) -> Result<Option<Segment>, VolumeError> {
     if !is_segmentation(header) {
         return Ok(None);

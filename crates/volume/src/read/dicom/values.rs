@@ -225,7 +225,7 @@ impl Table {
         let wrong =
             |what: String| header.fail(Reason::header(format!("has a Modality LUT {what}")));
         if coding.range().is_none() {
-            return Err(wrong("for pixels that are no whole numbers".into()));
+            return Err(wrong("for pixels that are not whole numbers".into()));
         }
         let numbers = |signed| item.get(LUT_DESCRIPTOR).and_then(|of| words(of, signed));
         let (Some(unsigned), Some(own)) = (numbers(false), numbers(coding.is_signed())) else {

@@ -18,7 +18,7 @@ use crate::{Reason, VolumeError};
 const SAME_PLACE: f64 = 1e-3;
 
 /// The slices without copies: files of one SOP Instance UID with the same places and pixels. Those with other pixels are
-/// refused, and other places are no copy's.
+/// refused, and copies do not have other places.
 ///
 /// The inner error is about a file whose pixels cannot be read.
 pub(super) fn without_copies(

@@ -78,7 +78,7 @@ fn check_row(paths: &[PathBuf], names: &[Name]) -> Option<Reason> {
 
 /// The first gap in a row of numbers.
 fn gap<'a>(paths: &[PathBuf], numbers: impl Iterator<Item = &'a Number>) -> Option<Reason> {
-    // Numbers of more than 38 digits are no counts.
+    // Numbers of more than 38 digits are not counts.
     let value =
         |(_, digits): &Number| if digits.is_empty() { Some(0) } else { digits.parse().ok() };
     let numbers: Vec<u128> = numbers.map(value).collect::<Option<_>>()?;

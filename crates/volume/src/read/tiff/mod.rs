@@ -198,7 +198,7 @@ impl<'a> Pages<'a> {
         Ok(())
     }
 
-    /// Refuses what is no row of gray values.
+    /// Refuses what is not a row of gray values.
     fn check_gray(&self, page: usize) -> Result<(), VolumeError> {
         let fail = |reason: Reason| Err(format_error(self.path, reason));
         let number = |tag, default| {

@@ -13,7 +13,7 @@ pub(super) const NAME: &str = "vtkGhostType";
 const HIDDEN_POINT: u8 = 2;
 const HIDDEN_CELL: u8 = 32;
 
-/// Which samples are hidden by these bytes, `None` where none is. They are no data: the least of the others replaces
+/// Which samples are hidden by these bytes, `None` where none is. They are not data: the least of the others replaces
 /// them.
 pub(super) fn hide(
     path: &Path,

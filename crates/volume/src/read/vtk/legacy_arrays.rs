@@ -220,7 +220,7 @@ impl<'a, R: BufRead> Scanner<'a, R> {
             }
             let words: Vec<&str> = line.split_whitespace().collect();
             let &[name, components, count, kind] = words.as_slice() else {
-                let what = format!("has a FIELD with a line {line:?}, which is no array");
+                let what = format!("has a FIELD with a line {line:?}, which is not an array");
                 let reason = Reason::header(what);
                 return Err(format_error(self.path, reason));
             };
