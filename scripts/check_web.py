@@ -120,6 +120,9 @@ def make_files(folder):
     (folder / "two.mhd").write_bytes(mha.encode() + b"ElementDataFile = two.raw\n")
     (folder / "two.raw").write_bytes(raw)
     description = f"{{'descr': '<i2', 'fortran_order': False, 'shape': ({SIZE}, {SIZE}, {SIZE}), }}".ljust(117) + "\n"
+    # Two labels, one around the other.
+    marks = bytes((value > 300) + (value > 700) for value in samples)
+    (folder / "labels.nrrd").write_bytes(nrrd.replace("int16", "uint8").encode() + marks)
     (folder / "ball.npy").write_bytes(b"\x93NUMPY\x01\x00" + struct.pack("<H", len(description)) + description.encode() + raw)
     (folder / "ball.tif").write_bytes(tiff(samples))
     dicom(folder / "series", samples)
@@ -356,6 +359,17 @@ def look_at_all(browser, page, checks, files, downloads, out, large):
     page.run(toml.read_text().splitlines()[0].removeprefix("# "))
     same = (page.folder / "ball.ply").read_bytes() == (downloads / "ball.ply").read_bytes()
     checks.say("the recipe as a file gives the same bytes", same)
+
+    # The solid of labels, all or one, which has no α.
+    page.choose("labels.nrrd")
+    agrees(page, checks, "labels")
+    checks.say("labels have no slider over α", browser.evaluate("document.getElementById('alpha-row').hidden"))
+    saved(page, checks, downloads, "stl")
+    page.forget()
+    browser.evaluate("(() => { document.getElementById('labels').value = '2'; document.getElementById('options').requestSubmit(); })()")
+    agrees(page, checks, "one of the labels")
+    page.choose("ball.nii.gz")
+    page.settled()
 
     # α: the slider moves among stops, a number is taken as it is.
     for alpha in ["3.7", "0.3"]:

@@ -207,6 +207,7 @@ async function open() {
   rows(byId("facts"), factsOf(facts));
   if (!state.suited) suit(facts);
   state.suited = true;
+  labelled();
   if (isVolume) {
     histogram.set(facts.histogram, facts.low, facts.high);
     await slices.open(facts);
@@ -220,7 +221,11 @@ function suit(facts) {
   const names = isVolume ? ["", ...OF_VOLUMES] : ["", ...OF_POINTS];
   byId("preset").replaceChildren(...names.map((name) => element("option", { value: name, textContent: name || "none" })));
   // Points have presets, too; their control is moved beside their columns.
-  (isVolume ? byId("of-volume") : byId("of-points")).prepend(byId("preset").parentElement);
+  (isVolume ? byId("of-grays") : byId("of-points")).prepend(byId("preset").parentElement);
+  const labels = facts.labels?.map(([label, voxels]) => [String(label), `label ${label}, ${voxels} voxels`]) ?? [];
+  const choices = [["all", "all but 0"], ...labels, ["", "none: by gray levels"]];
+  byId("labels").replaceChildren(...choices.map(([value, textContent]) => element("option", { value, textContent })));
+  byId("labels").value = facts.labels ? "all" : "";
   const weights = [["", isVolume || !facts.weights ? "none" : "of the file"], ["common=0", "none"], ["min-max", "min-max (4.1)"], ["barycentric", "barycentric (4.2)"], ["barycentric-n", "barycentric, times N"]];
   const offered = isVolume || !facts.weights ? weights.filter(([name]) => name !== "common=0") : weights;
   byId("weights").replaceChildren(...offered.map(([value, textContent]) => element("option", { value, textContent })));
@@ -257,6 +262,15 @@ function ruled() {
   byId("rule-value").placeholder = rule === "ratio" ? "0.0609" : "";
 }
 
+// Whether the shape is the solid of labels, which no gray level, weight or α has a part in.
+const ofLabels = () => state.facts?.kind === "volume" && byId("labels").value !== "";
+
+function labelled() {
+  byId("labels-label").hidden = !state.facts?.labels;
+  byId("of-grays").hidden = ofLabels();
+  byId("of-shape").hidden = ofLabels();
+}
+
 // The window: what is not given is the volume's.
 const grayRange = () => {
   const own = state.facts.grayLevels ? [0, 255] : [state.facts.low, state.facts.high];
@@ -285,6 +299,7 @@ function optionsOfForm() {
   const number = (id) => (given(id) === undefined ? undefined : Number(given(id)));
   const options = { ...reading(), weights: given("weights"), alpha: given("alpha-ref") };
   if (state.facts.kind === "points") return options;
+  if (ofLabels()) return { ...reading(), labels: byId("labels").value };
   if (given("gray-low") !== undefined || given("gray-high") !== undefined) options.gray = grayRange();
   if (state.grayMin !== null) options.grayMin = state.grayMin;
   else options.valueMin = number("value-min");
@@ -304,7 +319,7 @@ async function compute() {
   if (state.facts.kind === "series") return;
   panel.clear();
   const made = await engine.call({ do: "shape", options: optionsOfForm() });
-  made.domain = state.facts.kind === "volume" ? "the volume" : "the box";
+  made.domain = state.facts.kind === "volume" && !made.labels ? "the volume" : "the box";
   state.toml = null;
   byId("command").textContent = "";
   // The first look, while the shapes at all other α are computed.
@@ -318,10 +333,14 @@ async function compute() {
   byId("output").hidden = false;
   diagram.set(new AlphaScale({ ...made, ...all }), null);
   byId("diagram").hidden = true;
-  byId("compute-diagram").hidden = false;
+  byId("compute-diagram").hidden = Boolean(made.labels);
+  for (const id of ["alpha-row", "marks"]) byId(id).hidden = Boolean(made.labels);
+  for (const extension of ["csv", "wvm"]) byId(`save-${extension}`).hidden = Boolean(made.labels);
   const kept = made.truncation ? `; ${made.truncation.kept} of ${made.truncation.total} Haar coefficients kept` : "";
   byId("status").textContent = `${made.points} points, ${all.cells} cells in all${kept}.`;
+  if (made.labels) byId("status").textContent = `${made.labels}.`;
   await panel.open(all, diagram.scale);
+  if (made.labels) return;
   // Nobody waits for these.
   engine.call({ do: "suggest" }).then((found) => {
     if (panel.made !== made) return;
@@ -408,6 +427,7 @@ function wire() {
   byId("cancel").addEventListener("click", () => engine.cancel());
   byId("preset").addEventListener("change", () => apply(byId("preset").value));
   byId("rule").addEventListener("change", ruled);
+  byId("labels").addEventListener("change", labelled);
   byId("value-min").addEventListener("input", () => { state.grayMin = null; marks(); });
   for (const id of ["gray-low", "gray-high"]) byId(id).addEventListener("input", () => { keepLeast(); marks(); });
   byId("series").addEventListener("change", () => {

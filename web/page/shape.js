@@ -136,7 +136,7 @@ export class ShapePanel {
     const [b0, b1, b2] = level.betti;
     const radius = this.alpha >= 0 ? ` (√α = ${short(Math.sqrt(this.alpha))} ${unit})` : "";
     rows(byId("measures"), [
-      ["α", `${short(this.alpha)} ${unit}²${radius}`],
+      this.made.labels ? ["labels", this.made.labels] : ["α", `${short(this.alpha)} ${unit}²${radius}`],
       ["cells", level.cells], ["facets", classes(level.facets)], ["edges", classes(level.edges)], ["vertices", classes(level.vertices)],
       ["components", b0], ["tunnels", b1], ["voids", b2],
       ["volume", `${short(level.volume)} ${unit}³, ${(100 * level.coverage).toFixed(1)} % of ${domain}`],
@@ -144,14 +144,14 @@ export class ShapePanel {
       ...(this.made.rows ?? []),
     ]);
     document.body.dataset.cells = level.cells;
-    const shown = level.voids.slice(0, 200).map((hole) => {
+    const shown = (level.voids ?? []).slice(0, 200).map((hole) => {
       const [low, high] = [hole.low, hole.high].map((corner) => corner.map((x, k) => x - centre[k]));
       const item = element("li", { tabIndex: 0, textContent: `${short(hole.volume)} ${unit}³, ${hole.cells} cells, filled at α = ${short(hole.filling_alpha)}` });
       item.onpointerenter = item.onfocus = () => this.scene.light(low, high);
       item.onpointerleave = item.onblur = () => this.scene.light();
       return item;
     });
-    byId("voids").replaceChildren(...(shown.length ? shown : [element("li", { textContent: "none" })]));
+    byId("voids").replaceChildren(...(shown.length ? shown : [element("li", { textContent: level.voids ? "none" : "not listed" })]));
   }
 
   // What is drawn, in its colours.

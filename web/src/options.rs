@@ -4,6 +4,7 @@ use std::num::NonZeroUsize;
 
 use serde::Deserialize;
 use walpha::haar::Tolerance;
+use walpha::labels::LabelChoice;
 use walpha::pipeline::{AlphaRule, Choice};
 use walpha::points::Columns;
 use walpha::volume::ReadOptions;
@@ -21,6 +22,8 @@ pub(crate) struct Options {
     pub downsample: Option<NonZeroUsize>,
     /// The columns of a table.
     pub columns: Option<String>,
+    /// The labels whose solid the shape is, as the command names them.
+    pub labels: Option<String>,
     /// The values that become gray 0 and 255.
     pub gray: Option<[f64; 2]>,
     /// Samples below this value are left out.
@@ -50,14 +53,6 @@ impl Options {
             .downsample(self.downsample)
     }
 
-    /// Whether something says what to look for by gray levels, weights or α, so that a volume is not taken for labels.
-    pub(crate) fn looks_for_gray_levels(&self) -> bool {
-        let selects = self.count.is_some() || self.ratio.or(self.threshold).is_some();
-        let bounds = self.gray.is_some() || self.gray_min.or(self.value_min).is_some();
-        let others = self.rms.is_some() || self.weights.is_some() || self.alpha.is_some();
-        selects || bounds || others
-    }
-
     /// The recipe of all stages.
     pub(crate) fn recipe(&self) -> Result<Recipe, String> {
         let columns = self.columns.as_deref().map(str::parse::<Columns>).transpose();
@@ -73,6 +68,7 @@ impl Options {
         if rules.next().is_some() {
             return Err("a number of samples, a share and a threshold exclude each other".into());
         }
+        let labels = self.labels.as_deref().map(str::parse::<LabelChoice>).transpose();
         let alpha = self.alpha.as_deref().map(str::parse::<AlphaRule>).transpose();
         let alpha = alpha.map_err(|error| error.to_string())?.unwrap_or_default();
         if matches!(alpha, AlphaRule::Given(alpha) if alpha.squared().is_infinite()) {
@@ -85,6 +81,7 @@ impl Options {
         Ok(Recipe::new()
             .read(self.reading())
             .columns(columns.map_err(|error| error.to_string())?)
+            .labels(labels.map_err(|error| error.to_string())?)
             .gray(self.gray.map(|[low, high]| GrayRange { low, high }))
             .value_min(self.value_min)
             .choice(Choice::Difference(selection))
@@ -103,6 +100,7 @@ impl Options {
         add("series", self.series.clone().map(Written::Text));
         add("downsample", self.downsample.map(Written::number));
         add("columns", self.columns.clone().map(Written::Text));
+        add("label", self.labels.clone().map(Written::Text));
         add("gray", self.gray.map(|[low, high]| Written::Text(format!("{low}..{high}"))));
         add("value-min", self.value_min.map(Written::number));
         add("gray-min", self.gray_min.map(Written::number));

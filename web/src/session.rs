@@ -5,15 +5,20 @@ use std::path::Path;
 use serde_json::json;
 use walpha::export::{EmptyShape, ExportOptions, Format};
 use walpha::ladder::{Filtration, Span};
-use walpha::pipeline::{Input, Parameter, ParameterOrigin, PipelineError, Values, Weighed};
+use walpha::pipeline::{
+    Input, Model, Origin, Parameter, ParameterOrigin, PipelineError, Values, Weighed,
+};
 use walpha::points::{
     ModelMetadata, Packing, PointOptions, PointWriter, SampleGrid, bounding_box, is_point_file,
     read_model,
 };
 use walpha::progress::{Listener, Monitor, Stage};
-use walpha::shape::Betti;
+use walpha::shape::{Betti, ByClass};
 use walpha::volume::{self, Hounsfield, Labels, OpenVolume, ReadOptions, SampleStats, Series};
-use walpha::{Alpha, AlphaShape, Class, Dims, Points, PointsError, Recipe, Volume, VolumeError};
+use walpha::{
+    Alpha, AlphaShape, Class, Dims, Points, PointsError, Recipe, Volume, VolumeError,
+    WeightedPoints,
+};
 
 use crate::answer::{Answer, Array};
 use crate::options::{Options, Setting, Written, quoted};
@@ -44,7 +49,7 @@ enum Opened {
 struct Made {
     options: Options,
     recipe: Recipe,
-    weighed: Weighed,
+    what: What,
     metadata: ModelMetadata,
     /// The α that weights are computed for, or else the suggested one.
     reference: Parameter,
@@ -56,10 +61,43 @@ struct Made {
     centre: [f64; 3],
 }
 
-/// The shapes at all α.
+/// What shapes are of.
+#[expect(clippy::large_enum_variant, reason = "there is one")]
+enum What {
+    /// Points, which have a shape at each α.
+    Weighed(Weighed),
+    /// Labels, which have one solid.
+    Labels(Model),
+}
+
+impl What {
+    fn points(&self) -> &WeightedPoints {
+        match self {
+            Self::Weighed(weighed) => &weighed.points,
+            Self::Labels(model) => model.shape.points(),
+        }
+    }
+
+    fn origin(&self) -> &Origin {
+        match self {
+            Self::Weighed(weighed) => &weighed.origin,
+            Self::Labels(model) => &model.origin,
+        }
+    }
+}
+
+/// The shapes at all α. The solid of labels stands at α = 0 alone.
 struct All {
-    filtration: Filtration,
+    /// `None` of labels.
+    filtration: Option<Filtration>,
     stops: Shown,
+}
+
+impl All {
+    fn filtration(&self) -> Result<&Filtration, Failure> {
+        let none = || "the solid of labels is the same at all α".to_owned().into();
+        self.filtration.as_ref().ok_or_else(none)
+    }
 }
 
 /// The simplices that are drawn at some of these α, and all cells, with the levels at which they change.
@@ -84,6 +122,29 @@ impl Shown {
             betti: levels.betti(),
             alphas: levels.alphas().to_vec(),
         }
+    }
+}
+
+impl Shown {
+    /// All simplices of a shape, at α = 0.
+    fn of(shape: &AlphaShape) -> Result<Self, Failure> {
+        let complex = shape.complex();
+        let span = |class: Class| {
+            let from = |least: Class| u32::from(number(class) < number(least));
+            Span {
+                first: from(Class::Singular),
+                regular: from(Class::Regular),
+                interior: from(Class::Interior),
+            }
+        };
+        Ok(Self {
+            alphas: vec![Alpha::from_squared(0.0).map_err(PipelineError::from)?],
+            facets: complex.facets.iter().map(|(&row, class)| (row, span(class))).collect(),
+            edges: complex.edges.iter().map(|(&row, class)| (row, span(class))).collect(),
+            vertices: complex.vertices.iter().map(|(row, class)| (row[0], span(class))).collect(),
+            cells: complex.cells.rows().iter().map(|&row| (row, 0)).collect(),
+            betti: vec![shape.betti().ok_or("its Betti numbers are not known".to_owned())?],
+        })
     }
 }
 
@@ -287,11 +348,9 @@ impl Session {
         let recipe = options.recipe()?;
         let input = match self.opened.as_ref().ok_or("nothing has been opened".to_owned())? {
             Opened::Points(points, metadata) => Input::Points(points.clone(), metadata.clone()),
-            // The page has a slider over α, and the solid of labels has none.
-            Opened::Volume(volume)
-                if !options.looks_for_gray_levels() && Labels::of_volume(volume).is_some() =>
-            {
-                return Err(PipelineError::OfLabels.into());
+            Opened::Volume(volume) if recipe.labels.is_some() => {
+                let model = recipe.solid(volume.clone(), &monitor)?;
+                return Ok(self.made_of_labels(options, recipe, model));
             }
             Opened::Volume(volume) => Input::Volume(recipe.grays(volume.clone())?),
         };
@@ -313,23 +372,51 @@ impl Session {
             all: None,
             domain,
             centre: [0, 1, 2].map(|k| f64::midpoint(low[k], high[k])),
-            weighed,
+            what: What::Weighed(weighed),
         };
         let answer = made.described(&shape);
         self.made = Some(made);
         Ok(answer)
     }
 
+    /// Keeps the solid of labels, and describes it.
+    fn made_of_labels(&mut self, options: Options, recipe: Recipe, model: Model) -> Answer {
+        let [low, high] = bounding_box(model.shape.points().positions());
+        let shape = model.shape.clone();
+        let mut reference = model.parameter;
+        reference.alpha = Alpha::from_squared(0.0).unwrap_or(reference.alpha);
+        let made = Made {
+            options,
+            recipe,
+            metadata: ModelMetadata::default(),
+            reference,
+            all: None,
+            domain: [0, 1, 2].iter().map(|&k| high[k] - low[k]).product(),
+            centre: [0, 1, 2].map(|k| f64::midpoint(low[k], high[k])),
+            what: What::Labels(model),
+        };
+        let answer = made.described(&shape);
+        self.made = Some(made);
+        answer
+    }
+
     fn filtration(&mut self) -> Result<Answer, Failure> {
         let made = self.made.as_mut().ok_or("there is no shape yet".to_owned())?;
         let monitor = Monitor::new(ToPage);
         Stage::Filtration.begin(&monitor).map_err(PipelineError::from)?;
-        let filtration = Filtration::monitored(None, made.weighed.points.clone(), &monitor)?;
+        let weighed = match &made.what {
+            What::Weighed(weighed) => weighed,
+            What::Labels(model) => {
+                let stops = Shown::of(&model.shape)?;
+                return Ok(made.all.insert(All { filtration: None, stops }).described());
+            }
+        };
+        let filtration = Filtration::monitored(None, weighed.points.clone(), &monitor)?;
         Stage::Curve.begin(&monitor).map_err(PipelineError::from)?;
         let mut alphas = filtration.coarse_alphas(STOPS);
         alphas.push(made.reference.alpha);
         let stops = Shown::at(&filtration, &alphas);
-        Ok(made.all.insert(All { filtration, stops }).described())
+        Ok(made.all.insert(All { filtration: Some(filtration), stops }).described())
     }
 }
 
@@ -365,6 +452,7 @@ fn describe_volume(volume: &Volume) -> Answer {
     let SampleStats { missing, .. } = SampleStats::of_volume(volume);
     let (low, high) = volume.value_range();
     let hounsfield = Hounsfield::of_volume(volume);
+    let labels = Labels::of_volume(volume);
     let frame = volume.frame();
     let mut bars = vec![0u32; BARS];
     let scale = BARS as f32 / (high - low).max(f32::MIN_POSITIVE);
@@ -384,6 +472,7 @@ fn describe_volume(volume: &Volume) -> Answer {
         "high": high,
         "missing": missing,
         "grayLevels": volume.has_gray_levels(),
+        "labels": labels.map(|labels| labels.foreground().collect::<Vec<_>>()),
         "hounsfield": hounsfield.map(|found| json!({ "air": found.air, "softTissue": found.soft_tissue })),
     });
     Answer::of(head, vec![Array::U32("histogram", bars)])
@@ -398,7 +487,7 @@ impl Made {
 
     /// The points, the shape to look at first, and what is known besides.
     fn described(&self, shape: &AlphaShape) -> Answer {
-        let points = &self.weighed.points;
+        let (points, origin) = (self.what.points(), self.what.origin());
         let flat = points.positions().iter().flat_map(|&p| self.seen(p)).collect();
         let mut arrays = vec![
             Array::F32("positions", flat),
@@ -407,7 +496,7 @@ impl Made {
         if let Some(values) = points.values() {
             arrays.push(Array::F32("values", values.iter().map(|&value| value as f32).collect()));
         }
-        let samples = self.weighed.origin.grid.map(|grid| samples(&grid, points.positions()));
+        let samples = origin.grid.map(|grid| samples(&grid, points.positions()));
         if let Some(samples) = samples {
             arrays.push(Array::U32("samples", samples));
         }
@@ -421,16 +510,20 @@ impl Made {
         let mut classes = vec![number(Class::Exterior); points.len()];
         complex.vertices.iter().for_each(|(row, class)| classes[row[0] as usize] = number(class));
         arrays.push(Array::U8("classes", classes));
-        let truncation =
-            self.weighed.origin.truncation.map(|t| json!({ "kept": t.kept, "total": t.total }));
+        let truncation = origin.truncation.map(|t| json!({ "kept": t.kept, "total": t.total }));
+        let labels = match &self.what {
+            What::Labels(model) => model.labels.as_ref().map(ToString::to_string),
+            What::Weighed(_) => None,
+        };
         let head = json!({
             "points": points.len(),
             "reference": self.reference.alpha.squared(),
             "origin": self.reference,
-            "unit": self.weighed.origin.coordinates.unit.symbol(),
+            "unit": origin.coordinates.unit.symbol(),
             "centre": self.centre,
             "largestWeight": points.weights().iter().copied().fold(f64::NEG_INFINITY, f64::max),
             "truncation": truncation,
+            "labels": labels,
         });
         Answer::of(head, arrays)
     }
@@ -443,10 +536,11 @@ impl Made {
     /// The simplices to draw at an α, and their level: of the stops, or else computed now.
     fn shown(&self, alpha: f64) -> Result<(Lent<'_>, u32), Failure> {
         let alpha = Alpha::from_squared(alpha).map_err(PipelineError::from)?;
-        let All { filtration, stops } = self.all()?;
+        let all = self.all()?;
+        let stops = &all.stops;
         Ok(match stops.alphas.binary_search(&alpha) {
             Ok(level) => (Lent::Stop(stops), level as u32),
-            Err(_) => (Lent::Made(Shown::at(filtration, &[alpha])), 0),
+            Err(_) => (Lent::Made(Shown::at(all.filtration()?, &[alpha])), 0),
         })
     }
 
@@ -460,7 +554,7 @@ impl Made {
         let edges = shown.edges.iter().filter(|(_, span)| span.class(level) == Class::Singular);
         let edges: Vec<u32> = edges.flat_map(|(row, _)| *row).collect();
         // Points that are no vertices are hidden.
-        let mut classes = vec![HIDDEN; self.weighed.points.len()];
+        let mut classes = vec![HIDDEN; self.what.points().len()];
         for (v, span) in &shown.vertices {
             classes[*v as usize] = number(span.class(level));
         }
@@ -475,16 +569,42 @@ impl Made {
     }
 
     fn measure(&self, alpha: f64) -> Result<Answer, Failure> {
+        if let What::Labels(model) = &self.what {
+            return Ok(Answer::of(self.measured(&model.shape), Vec::new()));
+        }
         let alpha = Alpha::from_squared(alpha).map_err(PipelineError::from)?;
-        let ladder = self.all()?.filtration.ladder(&[alpha], self.domain);
+        let ladder = self.all()?.filtration()?.ladder(&[alpha], self.domain);
         let level = serde_json::to_value(&ladder.levels[0]).map_err(|error| error.to_string())?;
         Ok(Answer::of(level, Vec::new()))
+    }
+
+    /// The numbers of a solid, as those of a level.
+    fn measured(&self, shape: &AlphaShape) -> serde_json::Value {
+        let complex = shape.complex();
+        let counts = |counts: ByClass<usize>| {
+            json!({
+                "interior": counts[Class::Interior],
+                "regular": counts[Class::Regular],
+                "singular": counts[Class::Singular],
+            })
+        };
+        let measures = shape.measures();
+        json!({
+            "cells": complex.cells.len(),
+            "facets": counts(complex.facets.counts()),
+            "edges": counts(complex.edges.counts()),
+            "vertices": counts(complex.vertices.counts()),
+            "betti": shape.betti(),
+            "volume": measures.volume,
+            "area": measures.area,
+            "coverage": if self.domain > 0.0 { measures.volume / self.domain } else { 0.0 },
+        })
     }
 
     /// The section of the cells with a plane across an axis: triangles, and the value at each corner.
     fn section(&self, alpha: f64, axis: usize, place: f64) -> Result<Answer, Failure> {
         let (shown, level) = self.shown(alpha)?;
-        let points = &self.weighed.points;
+        let points = self.what.points();
         let (positions, values) = (points.positions(), points.values());
         let (mut corners, mut shades) = (Vec::new(), Vec::new());
         for (cell, first) in &shown.cells {
@@ -527,7 +647,7 @@ impl Made {
 
     /// Values of α at which something happens, of the stops.
     fn suggest(&self) -> Result<Answer, Failure> {
-        let All { filtration, .. } = self.all()?;
+        let filtration = self.all()?.filtration()?;
         let suggested = filtration.suggest(&filtration.coarse_curve(STOPS));
         let suggested = serde_json::to_value(suggested).map_err(|error| error.to_string())?;
         Ok(Answer::of(suggested, Vec::new()))
@@ -536,7 +656,7 @@ impl Made {
     fn diagram(&self) -> Result<Answer, Failure> {
         let monitor = Monitor::new(ToPage);
         Stage::Order.begin(&monitor).map_err(PipelineError::from)?;
-        let simplices = self.all()?.filtration.simplices_monitored(&monitor)?;
+        let simplices = self.all()?.filtration()?.simplices_monitored(&monitor)?;
         Stage::Pairs.begin(&monitor).map_err(PipelineError::from)?;
         simplices.loops_monitored(&monitor)?;
         let mut arrays = Vec::new();
@@ -550,7 +670,7 @@ impl Made {
 
     /// Whether the command `shape` makes this shape: weights that are proportional to α are frozen otherwise.
     fn is_shape(&self, alpha: f64) -> bool {
-        let proportional = self.weighed.origin.weighting.needs_differences();
+        let proportional = self.what.origin().weighting.needs_differences();
         !proportional || alpha == self.reference.alpha.squared()
     }
 
@@ -567,20 +687,27 @@ impl Made {
             if metadata.recipe == Some(self.recipe.to_json()) {
                 metadata.recipe = Some(self.recipe.clone().alpha(alpha).to_json());
             }
-            let points = &self.weighed.points;
+            let What::Weighed(weighed) = &self.what else {
+                return Err("the corners of voxels are not points to select".to_owned().into());
+            };
             writer
-                .write_model(points, &metadata, &Packing::default(), &mut bytes)
+                .write_model(&weighed.points, &metadata, &Packing::default(), &mut bytes)
                 .map_err(failed)?;
         } else {
             let exporter = Format::of(name)?.exporter(
                 &ExportOptions::default().solid(solid && is_shape).input(Some(input.to_owned())),
             );
-            let mut weighed = self.weighed.clone();
-            let mut parameter = self.reference;
-            (parameter.alpha, parameter.origin) = (alpha, ParameterOrigin::Given);
-            weighed.parameter = Some(parameter);
             let monitor = Monitor::new(ToPage);
-            let shape = self.recipe.finish(weighed, &monitor)?.shape;
+            let shape = match &self.what {
+                What::Labels(model) => model.shape.clone(),
+                What::Weighed(weighed) => {
+                    let mut weighed = weighed.clone();
+                    let mut parameter = self.reference;
+                    (parameter.alpha, parameter.origin) = (alpha, ParameterOrigin::Given);
+                    weighed.parameter = Some(parameter);
+                    self.recipe.finish(weighed, &monitor)?.shape
+                }
+            };
             EmptyShape::check(&shape, exporter.needs(), &monitor)?;
             if let Some(remark) =
                 exporter.single_precision(&shape).and_then(|single| single.remark())
@@ -597,7 +724,10 @@ impl Made {
         let input = quoted(input);
         let points = point_writer(Path::new(name));
         let is_shape = self.is_shape(alpha);
-        let (program, output) = if is_shape || points.is_some() {
+        let (program, output) = if matches!(self.what, What::Labels(_)) {
+            let solid = if solid { " --solid" } else { "" };
+            ("shape", format!("{solid} -o {}", quoted(name)))
+        } else if is_shape || points.is_some() {
             let alpha = if is_shape { alpha } else { self.reference.alpha.squared() };
             settings.push(Setting { name: "alpha", value: Written::number(alpha) });
             let solid = if solid { " --solid" } else { "" };

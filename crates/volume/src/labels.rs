@@ -6,7 +6,7 @@ use crate::{Dtype, Source, Volume, VolumeError};
 
 /// The labels of a volume: whole numbers that say what a voxel is part of. 0 is the background.
 ///
-/// A file may state it ([`Volume::states_labels`]). Otherwise values are taken for labels by this rule: all are whole numbers, of 2 to 1000
+/// A file may state it ([`Volume::states_labels`]). Otherwise values are taken for labels by this rule: all are whole numbers, none below 0, of 2 to 1000
 /// different ones, in flat regions. *Flat*: of the pairs of neighbours (along x, y and z) in which a value has a part, some are equal; for values at random that
 /// share would be e = p / (2 − p), p being the share of the value among all samples. Of the way from e to 1, the shares go a quarter or more
 /// in the mean over all values. And *regions*: where there are more than three values, at least a tenth of the unequal pairs
@@ -191,7 +191,8 @@ impl Tally {
 
     /// The labels, if they are stated or the rule says so.
     fn judge(self, stated: bool) -> Option<Labels> {
-        let is_it = stated || !self.ended && self.values.len() > 1 && self.is_flat();
+        let counted = !self.ended && self.values.iter().all(|&(value, _)| value >= 0);
+        let is_it = stated || counted && self.values.len() > 1 && self.is_flat();
         if is_it { self.labels(stated) } else { None }
     }
 
@@ -261,11 +262,14 @@ mod tests {
     fn segmentations_are_labels() {
         let ball =
             |inside: f32| volume([32; 3], move |at| if squared(at) < 80.0 { inside } else { 0.0 });
-        for inside in [1.0, 255.0, -3.0, 70_000.0] {
+        for inside in [1.0, 255.0, 70_000.0] {
             let found = Labels::of_volume(&ball(inside)).expect("a mask");
             assert_eq!(found.foreground().collect::<Vec<_>>(), [(inside as i32, 3016)]);
             assert!(!found.stated);
         }
+        // As Hounsfield units are; a file may state that they are labels.
+        assert_eq!(Labels::of_volume(&ball(-3.0)), None);
+        assert!(Labels::of_volume(&ball(-3.0).with_labels()).is_some());
         let nested =
             volume([32; 3], |at| f32::from(squared(at) < 80.0) + f32::from(squared(at) < 30.0));
         let plate = volume([12, 12, 12], |[_, _, z]| f32::from(z == 5));
