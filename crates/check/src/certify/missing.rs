@@ -514,8 +514,7 @@ mod tests {
             position: [0; 3].map(|_| random.whole(0, 99)),
             weight: random.pick(weights),
         };
-        let mut sites: Vec<WeightedPoint> = (0..140).map(|_| draw(&[0.0, 3.0])).collect();
-        sites.extend((0..2).map(|_| draw(&[900.0])));
+        let sites: Vec<WeightedPoint> = (0..142).map(|_| draw(&[0.0, 3.0])).collect();
         let points = Points { sites: &sites };
         let vertices = (0..142).map(|v| ([v], Class::Singular)).collect();
         let complex = Complex { vertices, ..Complex::default() };

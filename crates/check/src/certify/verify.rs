@@ -348,11 +348,13 @@ fn apply_to(
     let Linked { structure, broken, irregular } = linked;
     let untied = broken.is_empty() && irregular.is_empty();
     let points = judge.points;
-    let (wrong, tied) = (Cell::new(!regular), Cell::new(false));
+    let (wrong, lasting, tied) = (Cell::new(!regular), Cell::new(!regular), Cell::new(false));
     let mut report = |findings: Vec<Finding>| {
         let mut findings = near_box(judge.torus, findings);
+        let is_wrong = |findings: &[Finding]| findings.iter().any(|finding| !finding.is_tie());
+        wrong.set(wrong.get() || is_wrong(&findings));
         findings.retain(lasts);
-        wrong.set(wrong.get() || findings.iter().any(|finding| !finding.is_tie()));
+        lasting.set(lasting.get() || is_wrong(&findings));
         tied.set(tied.get() || findings.iter().any(Finding::is_tie));
         report(findings)
     };
@@ -391,7 +393,7 @@ fn apply_to(
         }
         report(found)?;
     }
-    if wrong.get() {
+    if lasting.get() {
         return Err(Stop::Enough);
     }
     let search = missing::Search {
