@@ -7,7 +7,7 @@ use crate::volume::annotation;
 pub(super) fn about(shape: &AlphaShape) -> String {
     match shape.voxels() {
         Some(voxels) => of_labels(voxels.count()),
-        None => annotation::alpha(shape.options().alpha),
+        None => annotation::alpha(shape.power_alpha()),
     }
 }
 

@@ -26,6 +26,7 @@ impl Exporter for Vtu {
 
 /// How a shape was made, for the field data of files.
 pub(crate) struct Provenance<'a> {
+    /// A squared length, as the weights are, whichever balls the shape was made of.
     pub alpha: Alpha,
     pub coordinates: Coordinates,
     pub input: Option<&'a str>,
@@ -36,7 +37,7 @@ pub(crate) struct Provenance<'a> {
 impl<'a> Provenance<'a> {
     /// How a shape was made from the input in the options.
     pub(crate) fn of(shape: &AlphaShape, options: &'a ExportOptions) -> Self {
-        let (alpha, coordinates) = (shape.options().alpha, shape.coordinates());
+        let (alpha, coordinates) = (shape.power_alpha(), shape.coordinates());
         let voxels = shape.voxels().map(Voxels::count);
         Self { alpha, coordinates, input: options.input.as_deref(), voxels }
     }
@@ -63,7 +64,7 @@ impl<'a> PointData<'a> {
         let points = shape.points();
         Self {
             positions: points.positions(),
-            weights: points.weights(),
+            weights: shape.power_weights(),
             values: points.values(),
             voxels: None,
         }

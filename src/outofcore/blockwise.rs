@@ -266,16 +266,19 @@ impl MergedBlock {
         is_flat: bool,
         out: &mut dyn Write,
     ) -> std::io::Result<()> {
-        let job = &plan.job;
+        let (job, balls) = (&plan.job, plan.job.recipe.balls);
+        let squared = balls.power_weights(&self.weights, plan.alpha());
+        let squared = squared.map_err(std::io::Error::other)?;
         let corners = PointData {
             positions: &self.positions,
-            weights: &self.weights,
+            weights: squared.as_deref().unwrap_or(&self.weights),
             values: Some(&self.values),
             voxels: Some(&self.voxels),
         };
         let coordinates = job.units.coordinates_of(&job.frame);
         let input = Some(job.input.as_str());
-        let made = Provenance { alpha: plan.alpha(), coordinates, input, voxels: None };
+        let alpha = balls.power_alpha(plan.alpha());
+        let made = Provenance { alpha, coordinates, input, voxels: None };
         match kind {
             VtkFormat::Grid => write_grid(&self.complex, &self.corners(), &corners, &made, out),
             VtkFormat::Surface => {
