@@ -33,7 +33,7 @@ const SAVE_TABLE: &str = "save it as CSV";
 const DOWNLOAD: &str = "download the file itself: this is what a server said instead";
 
 /// The kinds, in the order in which they are looked for.
-static KINDS: [Kind; 47] = [
+static KINDS: [Kind; 48] = [
     kind!(b"\x89PNG", "a PNG picture, one slice", SLICES),
     kind!(b"\xff\xd8\xff", "a JPEG picture, one slice", SLICES),
     kind!(b"GIF8", "a GIF picture", SLICES),
@@ -101,6 +101,11 @@ static KINDS: [Kind; 47] = [
     ),
     kind!(b"SQLite format 3", "an SQLite database, which is not read", SAVE_TABLE),
     kind!(b"glTF", "a glTF mesh, which is not read", "save it as PLY"),
+    Kind {
+        begins: is_ptx,
+        what: "a PTX scan, whose points have a place of their own, which is not read",
+        advice: "convert it to LAS or PLY",
+    },
     kind!(b"ASTM-E57", "an E57 scan, which is not read", "convert it to LAS or PLY"),
     kind!(b"%PDF", "a PDF document", "name a file with samples or points in it"),
     kind!(b"%!PS", "a PostScript document", "name a file with samples or points in it"),
@@ -246,6 +251,17 @@ fn is_pnm(start: &[u8]) -> bool {
     matches!(start, [b'P', b'1'..=b'6', b' ' | b'\n' | b'\r' | b'\t', b'0'..=b'9' | b'#', ..])
 }
 
+/// Two counts, the place of the scanner and its axes, and a matrix: lines of 1, 1, 3, 3, 3, 3, 4, 4, 4 and 4 numbers.
+fn is_ptx(start: &[u8]) -> bool {
+    let lines = start.split(|&byte| byte == b'\n').take(10);
+    let counts = lines.map(|line| {
+        let words = line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty());
+        let numbers = words.map(|word| str::from_utf8(word).ok()?.parse::<f64>().ok());
+        numbers.collect::<Option<Vec<_>>>().map(|numbers| numbers.len())
+    });
+    counts.eq([1, 1, 3, 3, 3, 3, 4, 4, 4, 4].map(Some))
+}
+
 /// A header of 14 bytes and one of a length that there is.
 fn is_bmp(start: &[u8]) -> bool {
     start.starts_with(b"BM")
@@ -281,6 +297,10 @@ mod tests {
             (b"version https://git-lfs.github.com/spec/v1\noid", "Git LFS"),
             (b"ATOM      1  N   MET A   1", "PDB"),
             (b"data_1ABC\n#\n_entry.id 1ABC\n", "CIF"),
+            (
+                b"2\n3\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n10 20 30 1\n1 2 3 0.5\n",
+                "PTX",
+            ),
             (b"ATOM 1 N ALA 1 0.0 0.0 0.0 -0.4 1.85\n", "PQR"),
             (b"water\n 2\n    1SOL     OW    1   0.126   1.624   1.679\n", "GROMACS"),
             (b"\x80\x04\x95", "pickle"),
