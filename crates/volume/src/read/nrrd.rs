@@ -227,6 +227,16 @@ impl Header {
             let single = kept.iter().position(|&axis| sizes[axis] == 1);
             kept.remove(single.unwrap_or(3));
         }
+        if directions.is_none()
+            && kinds.is_empty()
+            && sizes.iter().filter(|&&size| size > 1).count() > 3
+        {
+            tracing::warn!(
+                "{}: says neither kinds nor directions of its {} axes, of which the first three are taken for x, y and z",
+                shown(path),
+                sizes.len()
+            );
+        }
         let last = kept.last().copied().unwrap_or(0);
         let between = (0..last).find(|axis| sizes[*axis] > 1 && !kept.contains(axis));
         if let Some(axis) = between {

@@ -175,6 +175,16 @@ fn each_field_of_the_table() {
                 fate: Fate::Read(|path| assert_eq!(frame(path, 1).as_slice(), numbers())),
             },
             Field {
+                name: "four axes without `kinds` or `space directions`",
+                file: |f| {
+                    let four = |header: String| {
+                        header.replace("dimension: 3", "dimension: 4").replace("3 2 2", "3 2 2 2")
+                    };
+                    save(f, "v.nrrd", nrrd(four, &[shorts(), shorts()].concat()))
+                },
+                fate: Fate::PassedOver(&["first three", "x, y and z"]),
+            },
+            Field {
                 name: "`old min`, `old max`",
                 file: |f| with(f, "old min: -1\nold max: 1\n"),
                 fate: Fate::PassedOver(&["old min and old max"]),
