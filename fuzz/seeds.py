@@ -40,7 +40,7 @@ def inrimage():
 
 
 def npy(descr, shape, data, fortran=False):
-    head = f"{{'descr': {descr!r}, 'fortran_order': {fortran}, 'shape': {shape}, }}"
+    head = f"{{'descr': '{descr}', 'fortran_order': {fortran}, 'shape': {shape}, }}"
     head += " " * (63 - (10 + len(head)) % 64) + "\n"
     return b"\x93NUMPY\x01\x00" + struct.pack("<H", len(head)) + head.encode() + data
 
@@ -197,13 +197,11 @@ def tiffs():
 
 
 def table():
-    return [b"x,y,z,weight,value\n0,0,0,1,2\n1,0,0,1,3\n0,1e3,-2.5,0,4\n", b"x\ty\tz\n1\t2\t3\n", b'"x","y","z"\r\n1,2,3\r\n',
-            "sep=;\nx [m];y [m];z [m]\n1,5;2;3\n".encode("utf-16"), b"//X;Y;Z\n2\n1;2;3\r4;5;6\r", b"x,y,z\nmm,mm,mm\n1,2,3,\n"]
+    return [b"x,y,z,weight,value\n0,0,0,1,2\n1,0,0,1,3\n0,1e3,-2.5,0,4\n", b"x\ty\tz\n1\t2\t3\n", b'"x","y","z"\r\n1,2,3\r\n']
 
 
 def xyz():
-    return [b"0 0 0\n1 0 0\n", b"x y z value\n1 2 3 4\n", b"2\nwater\nH 0 0 0\nO 1 0 0\n", b"# a comment\n1 2 3 4\n",
-            b"1\nstep\nC 1 2 3\n1\n2\nC 1 2 3\n", b"2\n1,5 2,5 3,5\n4 5 6,0D+00\n", b"1\nProperties=pos:R:3:radius:R:1 Lattice=\"1 0 0 0 1 0 0 0 1\"\n1 2 3 4\n"]
+    return [b"0 0 0\n1 0 0\n", b"x y z value\n1 2 3 4\n", b"2\nwater\nH 0 0 0\nO 1 0 0\n", b"# a comment\n1 2 3 4\n"]
 
 
 def pwn():
@@ -211,8 +209,7 @@ def pwn():
 
 
 def npy_points():
-    fields = npy([("xyz", "<f4", (3,)), ("weight", "<f4")], (2,), struct.pack("<8f", *range(8)))
-    return [npy("<f8", (3, 4), F64), npy("<f8", (3, 4), F64, True), fields]
+    return [npy("<f8", (3, 4), F64), npy("<f8", (3, 4), F64, True)]
 
 
 def ply():
@@ -269,7 +266,23 @@ def las():
     record = bytearray(newer)
     struct.pack_into("<QI", record, 235, 375 + len(points), 1)
     extended = struct.pack("<H16sHQ32s", 0, b"", 0, 2**62, b"")
-    return [bytes(head) + points, bytes(long) + b"\1\2\3", bytes(many) + points, bytes(record) + points + extended]
+    return [bytes(head) + points, bytes(long) + b"\1\2\3", bytes(many) + points, bytes(record) + points + extended, *laz()]
+
+
+def laz():
+    """Three points as laszip packs them, in chunks (LAS 1.2, format 1) and in layers (LAS 1.4, format 6)."""
+    return [base64.b64decode(text) for text in (
+        "TEFTRgAAAAAAAAAAAAAAAAAAAAAAAAAAAQJPVEhFUgAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAGxhc3B5IDIuNy4wAAAAAAAAAAAAAAAAAAAAAAAAAAAASwHqB+MARwEA"
+        "AAEAAACBHAADAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAB7FK5H4XqEP3sUrkfheoQ/exSuR+F6hD8AAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAQAAAAAAAAAAAAAAA"
+        "AAAAEEAAAAAAAAAAAAAAAAAAAABAAAAAAAAAAAAAAGxhc3ppcCBlbmNvZGVkAAC8Vi4AaHR0cDovL2xhc3ppcC5vcmcAAAAAAAAAAAAAAAAAAAACAAAAAgIAAAAAAABQwwAA"
+        "/////////////////////wIABgAUAAIABwAIAAIAfAEAAAAAAAAAAAAAAAAAAAAAAAAHAAAAAAAAAAAAAAAAAAAAQOrwZbXl5IH0aHk7psoAAAAAAAAAAQAAADPfAAAA",
+        "TEFTRgAAAAAAAAAAAAAAAAAAAAAAAAAAAQRPVEhFUgAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAGxhc3B5IDIuNy4wAAAAAAAAAAAAAAAAAAAAAAAAAAAASwHqB3cB1QEA"
+        "AAEAAACGHgAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAB7FK5H4XqEP3sUrkfheoQ/exSuR+F6hD8AAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAQAAAAAAAAAAAAAAA"
+        "AAAAEEAAAAAAAAAAAAAAAAAAAABAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAMAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAA"
+        "AAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAABsYXN6aXAgZW5jb2RlZAAAvFYo"
+        "AGh0dHA6Ly9sYXN6aXAub3JnAAAAAAAAAAAAAAAAAAAAAwAAAAICAAAAAAAAUMMAAP////////////////////8BAAoAHgADADsCAAAAAAAAAAAAAAAAAAAAAAAABwAAAAAA"
+        "AAAAAAAAAAAAAAAAAwAAAAwAAAAHAAAAAAAAAAAAAAAFAAAAAAAAAAAAAAAAAAAAAAAAAAB4gSc2VmovtAAAAEQW/UkAAAAHwAAAAAAAAAABAAAAO+8AAAA=",
+    )]
 
 
 def wvm():
@@ -284,7 +297,7 @@ def wvm():
 
 
 def dicom():
-    """A slice of 3 columns and 2 rows, explicit little endian; deflated; and with 32 bits of 16 stored."""
+    """A slice of 3 columns and 2 rows, explicit little endian; deflated; with 32 bits of 16 stored; and in RLE."""
 
     def element(group, number, kind, value):
         value += (b"\0" if kind in (b"UI", b"OB") else b" ") * (len(value) % 2)
@@ -312,7 +325,14 @@ def dicom():
         data = b"".join(element(*row) for row in rows)
         data = packer.compress(data) + packer.flush() if syntax == deflated else data
         files.append(bytes(128) + b"DICM" + element(2, 0, b"UL", struct.pack("<I", len(meta))) + meta + data)
-    return files
+    # Two segments, of the high and the low bytes: a run of six, and six as they are.
+    packed = struct.pack("<16I", 2, 64, 66, *[0] * 13) + b"\xfb\0" + b"\5" + bytes(range(6)) + b"\0"
+    items = b"\xfe\xff\0\xe0" + bytes(4) + b"\xfe\xff\0\xe0" + struct.pack("<I", len(packed)) + packed
+    pixels = b"\xe0\x7f\x10\0OB\0\0\xff\xff\xff\xff" + items + b"\xfe\xff\xdd\xe0" + bytes(4)
+    meta = element(2, 1, b"OB", b"\0\1") + element(2, 2, b"UI", b"1.2.840.10008.5.1.4.1.1.2")
+    meta += element(2, 3, b"UI", b"1.2.3.4") + element(2, 0x10, b"UI", b"1.2.840.10008.1.2.5") + element(2, 0x12, b"UI", b"1.2.3.5")
+    head = bytes(128) + b"DICM" + element(2, 0, b"UL", struct.pack("<I", len(meta))) + meta
+    return [*files, head + b"".join(element(*row) for row in body[:-1]) + pixels]
 
 
 def slices():

@@ -6,6 +6,7 @@ use std::io::{self, Write};
 use std::path::Path;
 
 use walpha_base::advice::Setting;
+use walpha_base::foreign::decode;
 use walpha_check::meshes::Mesh;
 
 use super::model::MODEL;
@@ -322,7 +323,10 @@ impl PointFormat {
             let (what, feature) = (self.name, self.feature.unwrap_or_default());
             return Err(format(file.path(), Reason::Without { what, feature }));
         };
-        read(file, options)
+        // What panics in it, in a decoder that others wrote, is an error of the file.
+        decode(|| read(file, options)).unwrap_or_else(|panicked| {
+            Err(format(file.path(), Reason::damaged(panicked.to_string())))
+        })
     }
 }
 

@@ -3,7 +3,7 @@
 use walpha::points::{PointOptions, is_point_file, read_model, read_points};
 
 use crate::common::Told;
-use crate::common::{alone, fails, json};
+use crate::common::{alone, fails, json, largest};
 
 /// Coordinates are whole numbers of thousandths, so that the format's scales keep them.
 fn write(path: &std::path::Path, version: (u8, u8)) {
@@ -119,4 +119,45 @@ fn classes_and_thinning() {
     fails(f, 2, "points sample:phantom@8 --thin 1", &["--thin", "a volume"]);
     std::fs::write(f.join("a.xyz"), "0 0 0\n1 0 0\n").unwrap();
     fails(f, 1, "points a.xyz --class ground", &["no classes"]);
+}
+
+/// Three points as laszip packs them: in chunks (LAS 1.2, format 1), and in layers (LAS 1.4, format 6).
+fn packed(path: &std::path::Path, version: (u8, u8), format: u8) -> Vec<u8> {
+    let mut builder = las::Builder::from(version);
+    builder.point_format = las::point::Format::new(format).unwrap();
+    builder.point_format.is_compressed = true;
+    let mut writer = las::Writer::from_path(path, builder.into_header().unwrap()).unwrap();
+    for k in 0..3 {
+        let gps_time = Some(f64::from(k));
+        let x = f64::from(k);
+        writer.write_point(las::Point { x, gps_time, ..las::Point::default() }).unwrap();
+    }
+    writer.close().unwrap();
+    std::fs::read(path).unwrap()
+}
+
+/// No change of a byte panics or asks for more memory than a file of this size can need: of items that make no point, of
+/// more chunks than there are bytes, of longer layers than the file.
+#[test]
+fn damaged_compression_is_an_error() {
+    alone(|| {
+        let folder = tempfile::tempdir().unwrap();
+        for (version, format) in [((1, 2), 1), ((1, 4), 6)] {
+            let path = folder.path().join(format!("{format}.laz"));
+            let whole = packed(&path, version, format);
+            assert_eq!(read_points(&path, None).unwrap().len(), 3);
+            let mut refused = 0;
+            for place in 0..whole.len() {
+                for value in [0, 0xff, whole[place] ^ 1] {
+                    let mut bytes = whole.clone();
+                    bytes[place] = value;
+                    std::fs::write(&path, &bytes).unwrap();
+                    refused += usize::from(read_points(&path, None).is_err());
+                }
+            }
+            assert!(refused > 100, "{refused}");
+        }
+        // A batch of points, and no table of chunks.
+        assert!(largest() < 64 << 20, "{} bytes at once", largest());
+    });
 }

@@ -16,6 +16,7 @@
 pub mod advice;
 #[cfg(feature = "serde")]
 mod coordinates;
+pub mod foreign;
 #[cfg(feature = "serde")]
 mod infinite;
 pub mod memory;

@@ -6,9 +6,10 @@ use std::path::Path;
 use walpha_base::advice::{Setting, advice};
 use walpha_base::shown::shown;
 
+use super::laz::Claims;
 use super::{COLUMNS, Points, PointsError, format};
 use crate::points::{ModelMetadata, PointOptions};
-use crate::volume::{OpenFile, Reason};
+use crate::volume::{OpenFile, Reason, io_error};
 
 /// Bytes of points read at once: a header may claim records of up to 64 KiB, and more than the file has.
 const BATCH: u64 = 1 << 22;
@@ -140,6 +141,27 @@ fn refuse_angles(path: &Path, header: &las::Header) -> Result<(), PointsError> {
     Ok(())
 }
 
+/// Refuses what a compressed file claims of its compression and does not hold.
+fn check_compression(
+    path: &Path,
+    reader: &mut (impl Read + Seek),
+    header: &las::raw::Header,
+    length: u64,
+) -> Result<(), PointsError> {
+    let io = |error: io::Error| match error.kind() {
+        io::ErrorKind::UnexpectedEof => {
+            format(path, Reason::truncated("ends inside its compressed points: it is truncated"))
+        }
+        _ => io_error(path)(error).into(),
+    };
+    let Some(claims) = Claims::of(reader, header, length).map_err(io)? else { return Ok(()) };
+    let checked = match claims {
+        Ok(claims) => claims.check(reader).map_err(io)?,
+        Err(reason) => Err(reason),
+    };
+    checked.map_err(|reason| format(path, reason))
+}
+
 /// Refuses a file that has fewer points than it claims, or that claims none and has some; scales that are not numbers, or 0;
 /// and claims that the library would trust: more bytes of points than 64 bits can count, and an extended record longer than
 /// the file, for which it would allocate memory.
@@ -169,6 +191,7 @@ fn check(file: &OpenFile) -> Result<(), PointsError> {
         return Err(format(path, Reason::content(what, "correct its header, or write it again")));
     }
     let compressed = header.point_data_record_format & 0xc0 != 0;
+    check_compression(path, &mut reader, &header, length)?;
     // Some writers say where such records would begin, and that there are none.
     let behind = header.evlr.filter(|records| records.number_of_evlrs > 0);
     let behind = behind.map(|records| records.start_of_first_evlr);

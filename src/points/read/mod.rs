@@ -11,6 +11,8 @@ mod extended;
 mod header;
 #[cfg(feature = "las")]
 pub(super) mod las;
+#[cfg(feature = "las")]
+mod laz;
 #[cfg(feature = "formats")]
 mod lines;
 pub(super) mod npy;

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use walpha_base::Monitor;
 use walpha_base::advice::Setting;
+use walpha_base::foreign::decode;
 use walpha_base::near::nearest;
 
 use super::magic::{is_dicom, is_gzip};
@@ -62,7 +63,7 @@ pub fn read_monitored(
     let volume = format_of_folder(path).and_then(|format| {
         accept(format, path, options)?;
         let read = format.read_folder.ok_or_else(|| left_out(format, path))?;
-        read(path, options, monitor)
+        decoded(path, || read(path, options, monitor))
     });
     finish(path, options, volume, |error| error)
 }
@@ -88,7 +89,7 @@ pub fn read_file(
         None => detect(file, options).and_then(|Detected { format, .. }| {
             accept(format, file.path(), options)?;
             let read = format.read.ok_or_else(|| left_out(format, file.path()))?;
-            read(file, options, monitor)
+            decoded(file.path(), || read(file, options, monitor))
         }),
     };
     finish(file.path(), options, volume, |error| naming_data_files(file, options, error))
@@ -131,13 +132,22 @@ fn naming_data_files(file: &OpenFile, options: &ReadOptions, error: VolumeError)
     error
 }
 
+/// Calls a reader. What panics in it, in a decoder that others wrote, is an error of the file.
+fn decoded<T>(
+    path: &Path,
+    read: impl FnOnce() -> Result<T, VolumeError>,
+) -> Result<T, VolumeError> {
+    decode(read)
+        .unwrap_or_else(|panicked| Err(format_error(path, Reason::damaged(panicked.to_string()))))
+}
+
 /// Opens a volume to be read part by part.
 pub(crate) fn source(path: &Path, options: &ReadOptions) -> Result<Source, VolumeError> {
     if is_folder(path, options) {
         let format = format_of_folder(path)?;
         accept(format, path, options)?;
         return match format.parts_of_folder {
-            Some(parts) => parts(path, options),
+            Some(parts) => decoded(path, || parts(path, options)),
             None => Err(whole(format, path)),
         };
     }
@@ -152,7 +162,7 @@ pub(crate) fn source_of(file: &OpenFile, options: &ReadOptions) -> Result<Source
     let Detected { format, gzip } = detect(file, options)?;
     accept(format, file.path(), options)?;
     match format.parts {
-        Some(parts) if !gzip => parts(file, options),
+        Some(parts) if !gzip => decoded(file.path(), || parts(file, options)),
         _ => Err(whole(format, file.path())),
     }
 }
@@ -223,7 +233,7 @@ pub(crate) fn data_files_of(
     }
     match detect(file, options)? {
         Detected { format: VolumeFormat { data_files: Some(data_files), .. }, gzip: false } => {
-            data_files(file)
+            decoded(file.path(), || data_files(file))
         }
         _ => Ok(Vec::new()),
     }

@@ -5,6 +5,7 @@ use std::path::Path;
 use dicom_encoding::{Endianness, TransferSyntax};
 use dicom_object::{DefaultDicomObject, Tag};
 use dicom_pixeldata::PixelDecoder;
+use walpha_base::foreign::decode;
 
 use super::claims::{DOUBLE_PIXEL_DATA, FLOAT_PIXEL_DATA, PIXEL_DATA, damaged};
 use super::slice::Slice;
@@ -66,7 +67,11 @@ fn stored(
     };
     let element = object.get(tag);
     let Some(value) = element.and_then(|element| element.value().primitive()) else {
-        let decoded = object.decode_pixel_data().map_err(|error| damaged(path, &error))?;
+        // Each slice on its own, so that the series may go on without it.
+        let decoded = decode(|| object.decode_pixel_data());
+        let decoded = decoded
+            .map_err(|panicked| format_error(path, Reason::damaged(panicked.to_string())))?;
+        let decoded = decoded.map_err(|error| damaged(path, &error))?;
         return Ok(decoded.data().to_vec());
     };
     let bytes = value.to_bytes();
