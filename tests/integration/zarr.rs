@@ -14,6 +14,7 @@ use zarrs::group::GroupBuilder;
 
 use crate::common::Told;
 use crate::common::alone;
+use crate::common::fails;
 use crate::common::largest;
 
 fn open(path: &Path, level: Option<u32>) -> Result<Volume, VolumeError> {
@@ -262,4 +263,25 @@ fn claims_that_nothing_stored_can_bear_out_take_no_memory() {
         assert!(error.contains("nearly all its chunks are missing"), "{error}");
         assert!(largest() < 50 << 20);
     });
+}
+
+/// An array of 4 GB of which nothing is stored: whoever goes through its parts would not end.
+#[test]
+fn parts_of_what_is_not_there_are_not_gone_through() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    let head = json!({
+        "zarr_format": 2, "shape": [65536, 65535, 1], "chunks": [64, 64, 1], "dtype": "|u1",
+        "compressor": null, "fill_value": 0, "order": "C", "filters": null,
+    });
+    fs::create_dir(f.join("a.zarr")).unwrap();
+    fs::write(f.join("a.zarr/.zarray"), head.to_string()).unwrap();
+    for command in [
+        "info a.zarr",
+        "convert a.zarr -o b.zarr",
+        "blocks plan a.zarr --alpha 10 --blocks 2 -o work",
+        "shape a.zarr --alpha 10 --blocks 2 -o x.pvtu",
+    ] {
+        fails(f, 1, command, &["nearly all its chunks are missing", "copy the whole store"]);
+    }
 }

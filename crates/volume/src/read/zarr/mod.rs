@@ -21,7 +21,7 @@ use crate::error::format_error;
 use crate::source::Source;
 use crate::{Coordinates, Endian, Frame, Reason, Volume, VolumeError};
 use axes::{Axes, NamedAxis};
-use samples::{ZarrBoxes, check_chunk, damaged, dtype, samples};
+use samples::{ZarrBoxes, check_chunk, check_stored, damaged, dtype, samples};
 
 /// Reads a Zarr array of version 2 or 3 in a folder, or a level of an OME-Zarr pyramid (0, the finest,
 /// unless `level` says otherwise).
@@ -54,6 +54,7 @@ pub(crate) fn source(
     let chunk = chunk.map_err(|error| damaged(path, &error))?;
     let [z, y, x] = axes.sizes(&chunk).map(|size| size as usize);
     check_chunk(path, &chunk, dims)?;
+    check_stored(path, dims)?;
     let parts = ZarrBoxes { path: path.into(), array, axes };
     Ok(Source::new(dims, frame, dtype, [x, y, z], Box::new(parts)))
 }

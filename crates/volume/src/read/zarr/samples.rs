@@ -141,6 +141,23 @@ const MOST_UNSTORED: u64 = 1 << 28;
 /// No codec expands by more: zstd repeats a byte 128 KiB long for 4 bytes of code.
 const MOST_EXPANSION: u64 = 1 << 15;
 
+/// Refuses an array that claims far more than what is stored can hold: before memory is asked for, and before its parts are
+/// gone through.
+pub(super) fn check_stored(path: &Path, dims: Dims) -> Result<(), VolumeError> {
+    let needed = (dims.samples() as u64).saturating_mul(size_of::<f32>() as u64);
+    if needed <= MOST_UNSTORED {
+        return Ok(());
+    }
+    let enough = needed.div_ceil(MOST_EXPANSION);
+    let found = stored(path, enough);
+    if found >= enough {
+        return Ok(());
+    }
+    let what =
+        format!("claims {dims} samples and holds {found} bytes: nearly all its chunks are missing");
+    Err(format_error(path, Reason::content(what, "copy the whole store, or correct its shape")))
+}
+
 /// The bytes in a folder and those in it, as far as `enough`.
 fn stored(folder: &Path, enough: u64) -> u64 {
     let (mut folders, mut bytes) = (vec![folder.to_owned()], 0u64);
@@ -160,29 +177,6 @@ fn stored(folder: &Path, enough: u64) -> u64 {
 }
 
 impl ArrayReader<'_> {
-    /// Refuses an array that claims far more than what is stored can hold, before memory is asked for.
-    fn check_stored(&self) -> Result<(), VolumeError> {
-        let Self { path, axes: Axes { dims, .. }, .. } = self;
-        let needed = (dims.samples() as u64).saturating_mul(size_of::<f32>() as u64);
-        if needed <= MOST_UNSTORED {
-            return Ok(());
-        }
-        let enough = needed.div_ceil(MOST_EXPANSION);
-        let found = stored(path, enough);
-        if found < enough {
-            return Err(format_error(
-                path,
-                Reason::content(
-                    format!(
-                        "claims {dims} samples and holds {found} bytes: nearly all its chunks are missing"
-                    ),
-                    "copy the whole store, or correct its shape",
-                ),
-            ));
-        }
-        Ok(())
-    }
-
     /// All samples, by as many slices at once as a chunk is thick, and as many rows as fit a piece.
     fn all<T: ElementOwned + Copy>(
         &self,
@@ -195,7 +189,7 @@ impl ArrayReader<'_> {
         let chunk =
             array.chunk_shape(&vec![0; array.dimensionality()]).map_err(|error| damaged(&error))?;
         check_chunk(path, &chunk, dims)?;
-        self.check_stored()?;
+        check_stored(path, dims)?;
         let [thick, high, _] = axes.sizes(&chunk);
         let mut samples = Vec::new();
         asking(|| samples.try_reserve_exact(dims.samples())).map_err(|_| {
