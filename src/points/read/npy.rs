@@ -12,7 +12,11 @@ use crate::volume::{Dtype, Element as _, Endian, NpyFile, OpenFile, Reason, npy_
 
 /// Whether an array lists points: its elements have fields, or it has two axes.
 pub(crate) fn holds_points(file: &OpenFile) -> Result<bool, PointsError> {
-    Ok(fields_of(file)?.is_some() || NpyFile::open(file)?.shape.len() == 2)
+    Ok(match fields_of(file)? {
+        // One of three axes is a volume, of which a field is asked for.
+        Some(header) => header.shape.len() != 3,
+        None => NpyFile::open(file)?.shape.len() == 2,
+    })
 }
 
 /// Reads an array of two axes, whose columns are those given, or else x, y, z and perhaps a value; or an array whose
