@@ -62,20 +62,19 @@ impl Convert {
         let options = self.input.options();
         let dims = with_file(&self.input, |input| {
             let volume = OpenVolume::open(input)?;
-            let source = match volume.source(&options) {
-                Ok(source) => source,
-                Err(_) => {
-                    let read = || volume.read(&options, &monitor);
-                    let volume = progress.stage(Stage::Read, read).map_err(with_points)?;
-                    let missing = (volume.dims().samples() - volume.samples_there()) as u64;
-                    if missing > 0 {
-                        tracing::warn!(
-                            "{} of padding written as NaN, for --nan to mask where it is read",
-                            counted(missing, "sample")
-                        );
-                    }
-                    Source::of_volume(volume)
+            let source = if let Ok(source) = volume.source(&options) {
+                source
+            } else {
+                let read = || volume.read(&options, &monitor);
+                let volume = progress.stage(Stage::Read, read).map_err(with_points)?;
+                let missing = (volume.dims().samples() - volume.samples_there()) as u64;
+                if missing > 0 {
+                    tracing::warn!(
+                        "{} of padding written as NaN, for --nan to mask where it is read",
+                        counted(missing, "sample")
+                    );
                 }
+                Source::of_volume(volume)
             };
             progress.stage(Stage::Write, || convert_monitored(&source, &self.output, &monitor))?;
             Ok(source.dims().xyz())

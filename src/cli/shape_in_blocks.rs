@@ -127,7 +127,9 @@ impl AtWork {
     /// Keeps the folder, from which an interrupted command goes on.
     fn kept(mut self) -> Self {
         self.lock.keep();
-        self.new.take().map(NewFolder::keep);
+        if let Some(new) = self.new.take() {
+            new.keep();
+        }
         self
     }
 

@@ -1,7 +1,7 @@
 //! What a LAZ file claims about its compression, checked before it is decompressed: the library for that trusts items that do
 //! not add up to a record, and allocates as much as a table of chunks or the layers of a chunk claim.
 //!
-//! Source: LASzip's `laszip.hpp` and the LAZ specification (Isenburg, "`LASzip`: lossless compression of `LiDAR` data", 2013).
+//! Source: `LASzip`'s `laszip.hpp` and the LAZ specification (Isenburg, "`LASzip`: lossless compression of `LiDAR` data", 2013).
 
 use std::io::{self, Read, Seek, SeekFrom};
 
