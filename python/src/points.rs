@@ -26,6 +26,7 @@ type Read<'py> = (
 /// A file of points: without so many of its last layers, with these columns of a table, one frame of several, of these
 /// classes, with those that are withheld, and thinned to one point in each cube of this side.
 #[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "they have names in Python")]
 pub fn read_points<'py>(
     py: Python<'py>,
     path: PathBuf,

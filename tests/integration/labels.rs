@@ -166,7 +166,7 @@ fn what_labels_have_no_use_for_is_refused() {
     fails(f, 2, "shape p.xyz --label 1", &["--label has no effect", "holds points"]);
 }
 
-/// Files state it: 3D Slicer's segmentations, and the intent of NIfTI.
+/// Files state it: 3D Slicer's segmentations, and the intent of `NIfTI`.
 #[test]
 fn files_state_labels() {
     let folder = tempfile::tempdir().unwrap();
@@ -322,7 +322,7 @@ fn solids_are_certified() {
         told["findings_by_rule"].as_object().unwrap().keys().cloned().collect::<Vec<_>>()
     };
     let has = |rules: Vec<String>, rule: &str| {
-        assert!(rules.iter().any(|r| r == rule), "{rule}: {rules:?}")
+        assert!(rules.iter().any(|r| r == rule), "{rule}: {rules:?}");
     };
     has(
         changed("cell.json", &|file| {

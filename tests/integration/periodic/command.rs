@@ -54,9 +54,9 @@ fn what_is_missing_on_a_torus_is_found() {
                 let is_all = part.complex == large.complex;
                 assert_eq!(verdict(&part), expected(is_all), "{:?}", findings(&part));
                 if is_all {
-                    exact += 1
+                    exact += 1;
                 } else {
-                    wrong += 1
+                    wrong += 1;
                 }
                 let mut file = ComplexFile::of_points(part.positions.clone(), part.alpha);
                 file.weights = Some(part.weights.clone());

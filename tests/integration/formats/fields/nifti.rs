@@ -1,4 +1,4 @@
-//! NIfTI.
+//! `NIfTI`.
 
 use std::path::{Path, PathBuf};
 

@@ -110,7 +110,7 @@ fn each_field_of_the_table() {
                 name: "PNG: 1, 2 and 4 bits",
                 file: |f| one(f, &png(0, 4, 4, &[0x12, 0x3f], &[])),
                 fate: Fate::Read(|path| {
-                    assert_eq!(volume(path).as_slice()[..4], [1.0, 2.0, 3.0, 15.0])
+                    assert_eq!(volume(path).as_slice()[..4], [1.0, 2.0, 3.0, 15.0]);
                 }),
             },
             Field {
@@ -134,7 +134,7 @@ fn each_field_of_the_table() {
                     one(f, &png(0, 8, 3, &[7, 100, 200], chunks))
                 },
                 fate: Fate::Read(|path| {
-                    assert_eq!(volume(path).as_slice()[..3], [7.0, 100.0, 200.0])
+                    assert_eq!(volume(path).as_slice()[..3], [7.0, 100.0, 200.0]);
                 }),
             },
             Field {
