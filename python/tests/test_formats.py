@@ -37,8 +37,9 @@ def element(group, number, kind, value):
     return struct.pack("<HH", group, number) + kind.encode() + length + value
 
 
-def dicom(path, z, series, samples, more=b""):
-    """A slice of a CT, with more elements behind its Pixel Representation."""
+def dicom(path, z, series, samples, more=b"", number=None):
+    """A slice of a CT with an Instance Number, by default that of its place, and more elements behind its Pixel Representation."""
+    number = z + 1 if number is None else number
     short = lambda number: struct.pack("<H", number)  # noqa: E731
     ct, instance = "1.2.840.10008.5.1.4.1.1.2", f"{series}.{z + 1}"
     meta = (element(2, 1, "OB", b"\0\1") + element(2, 2, "UI", ct) + element(2, 3, "UI", instance)
@@ -48,7 +49,7 @@ def dicom(path, z, series, samples, more=b""):
         bytes(128) + b"DICM" + element(2, 0, "UL", struct.pack("<I", len(meta))) + meta
         + element(8, 0x16, "UI", ct) + element(8, 0x18, "UI", instance) + element(8, 0x60, "CS", "CT")
         + element(0x18, 0x50, "DS", "3") + element(0x20, 0xD, "UI", "1.2.3") + element(0x20, 0xE, "UI", series)
-        + element(0x20, 0x13, "IS", str(z + 1)) + element(0x20, 0x32, "DS", f"10\\20\\{3 * z}")
+        + element(0x20, 0x13, "IS", str(number)) + element(0x20, 0x32, "DS", f"10\\20\\{3 * z}")
         + element(0x20, 0x37, "DS", "1\\0\\0\\0\\1\\0")
         + element(0x28, 2, "US", short(1)) + element(0x28, 4, "CS", "MONOCHROME2")
         + element(0x28, 0x10, "US", short(rows)) + element(0x28, 0x11, "US", short(columns))
@@ -90,7 +91,7 @@ def test_padding_of_dicom_is_no_data(tmp_path):
 
 def test_slices_at_two_spacings(tmp_path):
     for k, z in enumerate((0, 1, 2, 4, 6)):
-        dicom(tmp_path / f"{k}.dcm", z, "1.2.3.4", np.full((3, 4), z, "<u2"))
+        dicom(tmp_path / f"{k}.dcm", z, "1.2.3.4", np.full((3, 4), z, "<u2"), number=k + 1)
     volume = walpha.read(tmp_path)
     assert volume.spacing[2] == 3 and volume.samples[:, 0, 0].tolist() == [-5, -3, -1, 1, 3, 5, 7]
     with pytest.raises(ValueError, match="several distances"):

@@ -21,7 +21,7 @@ CORNERS = np.eye(4, 3)
 OTHER = {
     "self", "cls", "progress", "threads", "engine", "exterior", "hidden", "balls", "path", "level", "columns", "classes", "format",
     "array", "frame", "series", "skip_damaged", "shape", "dtype", "offset", "decomposition", "weighting", "select", "exchange",
-    "refit", "roi", "solid", "what", "ranks", "dimension", "homology_dimensions", "radius", "reduced_homology", "deep",
+    "refit", "roi", "solid", "allow_empty", "labels", "masked", "resample", "withheld", "what", "ranks", "dimension", "homology_dimensions", "radius", "reduced_homology", "deep",
     "parameters", "y", "duplicates", "cells", "facets", "edges", "vertices", "cell_classes", "facet_classes", "edge_classes",
     "vertex_classes", "most", "ties", "a", "b", "space", "unit", "gray", "copy", "components", "coefficients", "count", "downsample",
 }  # fmt: skip
@@ -194,6 +194,11 @@ CALLS = {
             "direction": (lambda number: (triple(number), (0, 1, 0), (0, 0, 1)), HUGE),
         },
     ),
+    "label_shape": (
+        lambda **given: walpha.label_shape(**{"volume": np.ones((3, 4, 5), np.uint8), "spacing": (1, 1, 1), **given}),
+        # Samples that are not whole numbers are refused as such, whichever they are.
+        {"volume": (samples, set(WRONG)), "spacing": (triple, HUGE), "origin": (triple, HUGE)},
+    ),
     "haar": (
         lambda **given: walpha.haar(**{"volume": VOLUME, **given}),
         {"volume": (samples, ()), "rms": (itself, {INF, 1e308}), "epsilon": (itself, {INF, 1e308})},
@@ -274,7 +279,7 @@ def public():
                 yield f"{prefix}{name}.{method}", of
 
 
-@pytest.mark.parametrize("name, called", public())
+@pytest.mark.parametrize("name, called", list(public()))
 def test_each_public_parameter_is_in_the_table(name, called):
     try:
         parameters = set(inspect.signature(called).parameters)
@@ -310,7 +315,7 @@ def test_numbers_that_are_none_are_refused_by_name(name, parameter, number):
         text = str(error)
         row = 2 if "corners" in getattr(make, "__qualname__", "") else 7
         # Places of samples are made of spacing and origin.
-        words = [parameter, parameter.rstrip("s"), f"point {row} ", "point 0 has y 1", f"row {row}", f"{number:g}", "NaN" if math.isnan(number) else "inf"]
+        words = [parameter, parameter.rstrip("s"), f"point {row} ", "point 0 has y 1", f"row {row}", "along x", f"{number:g}", "NaN" if math.isnan(number) else "inf"]
         assert any(word in text for word in words), text
     else:
         assert is_allowed, f"{name} took {parameter} with {number}"
@@ -357,7 +362,7 @@ def test_integers_that_doubles_hold_are_taken():
 def test_integers_of_frames_are_refused_by_their_column():
     pandas = pytest.importorskip("pandas")
     frame = pandas.DataFrame({"x": [0, 1, LARGE, 0], "y": [0.5, 0, 0, 1], "z": [0.0, 1, 0, 0]})
-    with pytest.raises(ValueError, match=f"points: column 'x': row 2 holds {LARGE}"):
+    with pytest.raises(ValueError, match=rf"points\['x'\]: row 2 holds {LARGE}"):
         walpha.alpha_shape(frame)
 
 
