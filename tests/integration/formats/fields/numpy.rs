@@ -151,8 +151,9 @@ fn each_field_of_the_table() {
             },
             Field {
                 name: "files that are not arrays, alone",
-                file: |f| archive(f, &[("a.txt", b"1 2 3")]),
-                fate: Fate::Refused(&["a zip archive of a.txt, and of no array", "unpack it"]),
+                // One text alone would be points.
+                file: |f| archive(f, &[("a.txt", b"1 2 3"), ("b.txt", b"4 5 6")]),
+                fate: Fate::Refused(&["a zip archive of a.txt and 1 others", "unpack it"]),
             },
         ],
     );
