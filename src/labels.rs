@@ -204,13 +204,15 @@ pub fn chosen(volume: &Volume, choice: &LabelChoice) -> Result<Vec<(i32, u64)>, 
     Ok(found.counts.into_iter().filter(|(label, _)| labels.contains(label)).collect())
 }
 
-/// The solid of the voxels that have one of some labels, in these units: see [`voxel_shape`]. The value of a corner is the label that most of
-/// its voxels of the solid have, of equally frequent ones the least.
+/// The solid of the voxels that have one of some labels: see [`voxel_shape`]. The grid lies where `frame` says, whatever the
+/// volume's own frame is, unless the units are voxels. The value of a corner is the label that most of its voxels of the
+/// solid have, of equally frequent ones the least.
 ///
 /// # Errors
 /// [`LabelsError::Shape`] and [`LabelsError::Cancelled`]; no voxel has such a label.
 pub fn solid(
     volume: &Volume,
+    frame: &Frame,
     units: Units,
     labels: &[i32],
     monitor: &Monitor,
@@ -222,13 +224,13 @@ pub fn solid(
         let label = samples[voxel] as i32;
         (labels.binary_search(&label).is_ok() && !volume.is_missing(voxel)).then_some(label)
     };
-    let frame = match units {
+    let laid = match units {
         Units::Voxel => &Frame::VOXEL,
-        Units::World => volume.frame(),
+        Units::World => frame,
     };
     let sizes = volume.dims().xyz();
     let runs = runs(samples.len(), |voxel| label(voxel).is_some())?;
-    let (dims, origin, axes) = (sizes.map(|n| n as u32), frame.origin, frame.axes());
+    let (dims, origin, axes) = (sizes.map(|n| n as u32), laid.origin, laid.axes());
     let voxels = Voxels { dims, origin, axes, runs };
     let value = |corner: [u32; 3]| {
         let around = (0..8).filter_map(|i| {
@@ -244,7 +246,7 @@ pub fn solid(
         most.map_or(0.0, |equal| f64::from(equal[0]))
     };
     let shape = voxel_shape(voxels, value, monitor)?;
-    Ok(shape.with_coordinates(units.coordinates(volume)))
+    Ok(shape.with_coordinates(units.coordinates_of(frame)))
 }
 
 /// The voxels for which `is_inside` holds, as runs.

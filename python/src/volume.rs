@@ -236,7 +236,7 @@ pub fn label_shape(
     let model = run(py, &task, move |monitor| {
         let volume =
             Volume::of_file(samples, frame).and_then(|volume| volume.resolve_nan(Some(Nan::Mask)));
-        recipe.solid(volume.map_err(PointsError::from)?, monitor)
+        recipe.solid(&volume.map_err(PointsError::from)?, monitor)
     })?;
     Ok(Shape::of(model))
 }

@@ -323,7 +323,7 @@ impl Check {
         let read = pipeline::read_opened(opened, input, &mut recipe, progress)?;
         if let Input::Labels(volume) = read {
             LabelArgs::refuse_others(&input.typed)?;
-            let model = progress.watch(|monitor| recipe.solid(volume, monitor))?;
+            let model = progress.watch(|monitor| recipe.solid(&volume, monitor))?;
             return Ok(placed_complex(&model.shape));
         }
         let (weighed, _) = pipeline::weigh(read, input, &recipe, Values::Written, progress)?;

@@ -262,15 +262,26 @@ impl Shape {
             outputs.refuse_empty(&model.shape, &progress.monitor())?;
         }
         facts.alpha = Some(model.parameter.alpha);
-        progress.stage(Stage::Measure, || {
-            report.add_model(&model);
-            if self.solid {
-                report.add_solid(model.shape.solid().1);
-            }
-        });
-        let remarks = outputs.remarks(&model.shape);
-        report.offsets = offsets(&outputs.whole, &model.shape);
-        progress.stage(Stage::Write, || outputs.write(&model.shape, &facts))?;
+        progress.stage(Stage::Measure, || report.add_model(&model));
+        self.deliver(&model.shape, &facts, report, outputs, global, progress)
+    }
+
+    /// Writes a shape, and adds to its report what the files do to its boundary and its coordinates.
+    pub(super) fn deliver(
+        &self,
+        shape: &AlphaShape,
+        facts: &ModelMetadata,
+        mut report: Report,
+        outputs: Outputs,
+        global: Global,
+        progress: &mut Progress,
+    ) -> anyhow::Result<Report> {
+        if self.solid {
+            progress.stage(Stage::Measure, || report.add_solid(shape.solid().1));
+        }
+        let remarks = outputs.remarks(shape);
+        report.offsets = offsets(&outputs.whole, shape);
+        progress.stage(Stage::Write, || outputs.write(shape, facts))?;
         if !global.quiet {
             remarks.iter().for_each(|text| remark(&format!("walpha: {text}")));
         }
@@ -327,7 +338,7 @@ impl Outputs {
     }
 
     /// Remarks of the chosen formats about the shape.
-    pub(super) fn remarks(&self, shape: &AlphaShape) -> Vec<String> {
+    fn remarks(&self, shape: &AlphaShape) -> Vec<String> {
         let remark = |(target, exporter): &(Target, Box<dyn Exporter>)| {
             let remark = exporter.remark(shape)?.with_names(option);
             Some(format!("{}: {remark}", shown(target.path())))
@@ -336,11 +347,7 @@ impl Outputs {
     }
 
     /// Writes all outputs that are made from a whole shape.
-    pub(super) fn write(
-        self,
-        shape: &AlphaShape,
-        facts: &ModelMetadata,
-    ) -> Result<(), TargetError> {
+    fn write(self, shape: &AlphaShape, facts: &ModelMetadata) -> Result<(), TargetError> {
         let whole = self.whole.into_iter().map(|(target, exporter)| {
             let content = move |out: &mut dyn Write| exporter.write(shape, out);
             (target, Box::new(content) as Content<'_>)

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::fmt::{self, Display};
+use std::path::Path;
 
 use serde::Serialize;
 use walpha_base::shown::number;
@@ -11,7 +12,8 @@ use super::errors::fail_usage;
 use super::folder::Folder;
 use super::global::Global;
 use super::ladder::{Mesh, meshes};
-use super::output::{print_summary, remark};
+use super::offsets::FileOffset;
+use super::output::print_summary;
 use super::pipeline;
 use super::progress::Progress;
 use super::report::{Report, SCHEMA_VERSION, ending};
@@ -41,21 +43,10 @@ impl Shape {
         LabelArgs::refuse_others(&input.typed)?;
         refuse_points_alone(&outputs)?;
         let dims = volume.dims().xyz();
-        let model = progress.watch(|monitor| recipe.solid(volume, monitor))?;
-        let report = progress.stage(Stage::Measure, || {
-            let mut report = Report::of_labels(&input.input, dims, &model);
-            if self.solid {
-                report.add_solid(model.shape.solid().1);
-            }
-            report
-        });
-        let remarks = outputs.remarks(&model.shape);
-        let write = || outputs.write(&model.shape, &ModelMetadata::default());
-        progress.stage(Stage::Write, write)?;
-        if !global.quiet {
-            remarks.iter().for_each(|text| remark(&format!("walpha: {text}")));
-        }
-        Ok(report)
+        let model = progress.watch(|monitor| recipe.solid(&volume, monitor))?;
+        let mut report = Report::of_labels(&input.input, dims, &model);
+        progress.stage(Stage::Measure, || report.add_shape(&model));
+        self.deliver(&model.shape, &ModelMetadata::default(), report, outputs, global, progress)
     }
 
     /// Makes the solid of each label, in files of their own.
@@ -82,12 +73,13 @@ impl Shape {
         let mut coordinates = volume.frame().coordinates;
         for (label, _) in chosen(&volume, choice)? {
             let one = recipe.clone().labels(Some(LabelChoice::These(vec![label])));
-            let model = progress.watch(|monitor| one.solid(volume.clone(), monitor))?;
+            let model = progress.watch(|monitor| one.solid(&volume, monitor))?;
             coordinates = model.origin.coordinates;
             let shape = &model.shape;
-            let mut files = Vec::new();
+            let (mut files, mut offsets) = (Vec::new(), Vec::new());
             for mesh in &meshes {
                 let name = format!("label-{label}.{}", mesh.extension);
+                offsets.extend(FileOffset::of(Path::new(&name), mesh.exporter.as_ref(), shape));
                 progress.stage(Stage::Write, || {
                     folder.write(&name, |out| mesh.exporter.write(shape, out))
                 })?;
@@ -95,7 +87,7 @@ impl Shape {
             }
             let size = model.labels.as_ref().and_then(|sizes| sizes.labels.first().copied());
             let size = size.expect("a label that is there");
-            solids.push(SolidSummary { size, betti: shape.betti(), files });
+            solids.push(SolidSummary { size, betti: shape.betti(), files, offsets });
         }
         folder.finish()?;
         print_summary(
@@ -142,6 +134,9 @@ struct SolidSummary {
     size: LabelSize,
     betti: Option<Betti>,
     files: Vec<String>,
+    /// What files in single precision have subtracted from coordinates, where they have.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    offsets: Vec<FileOffset>,
 }
 
 impl Display for EachLabel {
@@ -163,6 +158,8 @@ impl Display for EachLabel {
                 None => writeln!(f)?,
             }
         }
+        let offsets = self.labels.iter().flat_map(|solid| &solid.offsets);
+        offsets.into_iter().try_for_each(|offset| offset.fmt(f))?;
         let files: Vec<String> = self.labels.iter().flat_map(|solid| solid.files.clone()).collect();
         ending(f, &files, &["read", "shape", "write", "total"], &self.seconds)
     }

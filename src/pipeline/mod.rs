@@ -62,7 +62,7 @@ impl Recipe {
     /// The errors of its stages, and [`PipelineError::Cancelled`].
     pub fn run_monitored(&self, volume: Volume, monitor: &Monitor) -> Result<Model, PipelineError> {
         if self.labels.is_some() {
-            return self.solid(volume, monitor);
+            return self.solid(&volume, monitor);
         }
         let source = self.source(self.grays(volume)?)?;
         self.finish(self.weighed(&source, Values::Written, monitor)?, monitor)
@@ -73,13 +73,12 @@ impl Recipe {
     ///
     /// # Errors
     /// [`PipelineError::Labels`], and the errors of [`Recipe::place`].
-    pub fn solid(&self, volume: Volume, monitor: &Monitor) -> Result<Model, PipelineError> {
+    pub fn solid(&self, volume: &Volume, monitor: &Monitor) -> Result<Model, PipelineError> {
         Stage::Shape.begin(monitor)?;
         let (frame, units) = self.place(*volume.frame())?;
-        let volume = volume.with_frame(frame);
-        let counts = labels::chosen(&volume, self.labels.as_ref().unwrap_or(&LabelChoice::All))?;
+        let counts = labels::chosen(volume, self.labels.as_ref().unwrap_or(&LabelChoice::All))?;
         let chosen: Vec<i32> = counts.iter().map(|&(label, _)| label).collect();
-        let shape = labels::solid(&volume, units, &chosen, monitor)?;
+        let shape = labels::solid(volume, &frame, units, &chosen, monitor)?;
         let sizes = LabelSizes::new(counts, &frame, units);
         let parameter = Parameter::of_labels(sizes.unit);
         let origin = Origin::of_labels(units.coordinates_of(&frame));

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use crate::common::{fails, json, names, ok, run};
 
@@ -124,6 +124,26 @@ fn options_of_gray_levels_take_precedence() {
         found += 1;
     }
     assert!(found >= 2, "{found}");
+}
+
+/// What single precision subtracts is reported of the solid of labels, and of each label.
+#[test]
+fn solids_far_from_the_origin_report_their_offset() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    balls(f);
+    let near = fs::read_to_string(f.join("ball.nrrd")).unwrap();
+    fs::write(f.join("far.nrrd"), near.replace("(5,6,7)", "(434000.3,5412000.3,0)")).unwrap();
+    let is_far = |offsets: &Value, file: &str| {
+        let stated = json!([{ "file": file, "offset": [430_000.0, 5_400_000.0, 0.0] }]);
+        assert_eq!(*offsets, stated);
+    };
+    let made = json(f, &["shape", "far.nrrd", "-o", "b.stl"]);
+    is_far(&made["offsets"], "b.stl");
+    let each = json(f, &["shape", "far.nrrd", "--each-label", "-o", "parts"]);
+    is_far(&each["labels"][0]["offsets"], "label-1.stl");
+    is_far(&each["labels"][1]["offsets"], "label-2.stl");
+    assert_eq!(json(f, &["shape", "ball.nrrd", "-o", "b.stl"])["offsets"], Value::Null);
 }
 
 #[test]

@@ -349,7 +349,7 @@ impl Session {
         let input = match self.opened.as_ref().ok_or("nothing has been opened".to_owned())? {
             Opened::Points(points, metadata) => Input::Points(points.clone(), metadata.clone()),
             Opened::Volume(volume) if recipe.labels.is_some() => {
-                let model = recipe.solid(volume.clone(), &monitor)?;
+                let model = recipe.solid(volume, &monitor)?;
                 return Ok(self.made_of_labels(options, recipe, model));
             }
             Opened::Volume(volume) => Input::Volume(recipe.grays(volume.clone())?),

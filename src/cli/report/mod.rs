@@ -77,63 +77,15 @@ pub(super) struct Report {
 }
 
 impl Report {
-    /// The report on points without a shape.
-    pub(super) fn of_points(name: &str, weighed: &Weighed, volume: Option<&VolumeSummary>) -> Self {
-        let origin = weighed.origin;
-        let truncation = origin.truncation.as_ref().zip(volume);
+    /// A report with all of which nothing is known left out.
+    fn new(input: InputReport, coordinates: Coordinates, points: PointsReport) -> Self {
         Self {
             schema_version: SCHEMA_VERSION,
-            input: InputReport {
-                name: name.to_owned(),
-                dims: volume.map(|v| v.dims),
-                gray_range: volume
-                    .map(|VolumeSummary { range: GrayRange { low, high }, .. }| [*low, *high]),
-            },
-            coordinates: origin.coordinates,
+            input,
+            coordinates,
             labels: None,
-            haar: truncation.map(|(truncation, v)| HaarReport::new(truncation, &v.range)),
-            points: PointsReport {
-                selected: weighed.points.len(),
-                duplicates: None,
-                folded: None,
-                hidden: None,
-                in_shape: None,
-                ended_early: origin.ended.map(|Adaptive { count, rmse, max_error }| EndedEarly {
-                    asked: count,
-                    rmse,
-                    max_error,
-                }),
-            },
-            fit: origin.fit,
-            alpha: weighed.parameter,
-            weights: Some(WeightsReport::of(weighed)),
-            shape: None,
-            engine: None,
-            solid: None,
-            files: Vec::new(),
-            offsets: Vec::new(),
-            seconds: BTreeMap::new(),
-            peak_memory_bytes: None,
-        }
-    }
-
-    /// The report on the solid of labels, on a grid of `dims` samples.
-    pub(super) fn of_labels(name: &str, dims: [usize; 3], model: &Model) -> Self {
-        let points = model.shape.points().len();
-        let mut report = Self {
-            schema_version: SCHEMA_VERSION,
-            input: InputReport { name: name.to_owned(), dims: Some(dims), gray_range: None },
-            coordinates: model.origin.coordinates,
-            labels: model.labels.clone(),
             haar: None,
-            points: PointsReport {
-                selected: points,
-                duplicates: None,
-                folded: None,
-                hidden: None,
-                in_shape: None,
-                ended_early: None,
-            },
+            points,
             fit: None,
             alpha: None,
             weights: None,
@@ -144,22 +96,57 @@ impl Report {
             offsets: Vec::new(),
             seconds: BTreeMap::new(),
             peak_memory_bytes: None,
-        };
-        report.add_model(model);
-        // No engine made it, and no α has a part in it.
-        (report.alpha, report.engine) = (None, None);
-        report
+        }
     }
 
-    /// Adds the shape.
+    /// The report on points without a shape.
+    pub(super) fn of_points(name: &str, weighed: &Weighed, volume: Option<&VolumeSummary>) -> Self {
+        let origin = weighed.origin;
+        let truncation = origin.truncation.as_ref().zip(volume);
+        let input = InputReport {
+            name: name.to_owned(),
+            dims: volume.map(|v| v.dims),
+            gray_range: volume
+                .map(|VolumeSummary { range: GrayRange { low, high }, .. }| [*low, *high]),
+        };
+        let points = PointsReport {
+            ended_early: origin.ended.map(|Adaptive { count, rmse, max_error }| EndedEarly {
+                asked: count,
+                rmse,
+                max_error,
+            }),
+            ..PointsReport::new(weighed.points.len())
+        };
+        Self {
+            haar: truncation.map(|(truncation, v)| HaarReport::new(truncation, &v.range)),
+            fit: origin.fit,
+            alpha: weighed.parameter,
+            weights: Some(WeightsReport::of(weighed)),
+            ..Self::new(input, origin.coordinates, points)
+        }
+    }
+
+    /// The report on the solid of labels, on a grid of `dims` samples, before its shape is added.
+    pub(super) fn of_labels(name: &str, dims: [usize; 3], model: &Model) -> Self {
+        let input = InputReport { name: name.to_owned(), dims: Some(dims), gray_range: None };
+        let points = PointsReport::new(model.shape.points().len());
+        Self { labels: model.labels.clone(), ..Self::new(input, model.origin.coordinates, points) }
+    }
+
+    /// Adds a shape of α.
     pub(super) fn add_model(&mut self, model: &Model) {
-        let shape = &model.shape;
         self.alpha = Some(model.parameter);
+        self.engine = Some(model.shape.options().engine);
+        self.add_shape(model);
+    }
+
+    /// Adds a shape, of α or not.
+    pub(super) fn add_shape(&mut self, model: &Model) {
+        let shape = &model.shape;
         self.points.duplicates = Some(shape.duplicates().len());
         self.points.folded = model.origin.folded;
         self.points.hidden = shape.hidden().map(<[u32]>::len);
         self.points.in_shape = Some(shape.points_in_shape());
-        self.engine = Some(shape.options().engine);
         self.shape = Some(ShapeReport::of(shape));
     }
 
@@ -169,24 +156,18 @@ impl Report {
         let GrayRange { low, high } = survey.range;
         let WeightSummary { min, mean, max } = merged.weights;
         let parameter = job.parameter();
+        let input = InputReport {
+            name: job.input.clone(),
+            dims: Some(job.dims.xyz()),
+            gray_range: Some([low, high]),
+        };
+        let points = PointsReport {
+            duplicates: Some(0),
+            in_shape: Some(merged.vertices.in_shape()),
+            ..PointsReport::new(merged.points as usize)
+        };
         Self {
-            schema_version: SCHEMA_VERSION,
-            input: InputReport {
-                name: job.input.clone(),
-                dims: Some(job.dims.xyz()),
-                gray_range: Some([low, high]),
-            },
-            coordinates: job.units.coordinates_of(&job.frame),
-            labels: None,
             haar: Some(HaarReport::new(&survey.truncation, &survey.range)),
-            points: PointsReport {
-                selected: merged.points as usize,
-                duplicates: Some(0),
-                folded: None,
-                hidden: None,
-                in_shape: Some(merged.vertices.in_shape()),
-                ended_early: None,
-            },
             alpha: Some(parameter),
             weights: Some(WeightsReport {
                 kind: job.weighting().to_string(),
@@ -196,14 +177,9 @@ impl Report {
                 max,
                 unit: parameter.unit,
             }),
-            fit: None,
             shape: Some(ShapeReport::of_blocks(merged)),
             engine: Some(Engine::Native),
-            solid: None,
-            files: Vec::new(),
-            offsets: Vec::new(),
-            seconds: BTreeMap::new(),
-            peak_memory_bytes: None,
+            ..Self::new(input, job.units.coordinates_of(&job.frame), points)
         }
     }
 

@@ -46,6 +46,20 @@ pub(super) struct PointsReport {
     pub(super) ended_early: Option<EndedEarly>,
 }
 
+impl PointsReport {
+    /// Of a number of points, of which no more is known.
+    pub(super) fn new(selected: usize) -> Self {
+        Self {
+            selected,
+            duplicates: None,
+            folded: None,
+            hidden: None,
+            in_shape: None,
+            ended_early: None,
+        }
+    }
+}
+
 /// Why there are fewer points than asked for.
 #[derive(Clone, Copy, Serialize)]
 pub(super) struct EndedEarly {
