@@ -51,6 +51,7 @@ pub struct PointFormat {
     /// Whether a file holds points, for formats that may hold something else.
     holds_points: fn(&OpenFile) -> Result<bool, PointsError>,
     /// Whether its files are also read compressed with gzip, or alone in a ZIP archive.
+    #[cfg_attr(not(feature = "formats"), expect(dead_code))]
     pub(super) is_packed: bool,
     /// Its reader, unless it was left out of the build.
     read: Option<Read>,

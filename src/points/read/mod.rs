@@ -36,6 +36,7 @@ pub(super) mod vtk;
 pub(super) mod xyz;
 
 pub(super) use columns::COLUMNS;
+#[cfg(feature = "formats")]
 use columns::RADIUS;
 pub use columns::{Columns, UnknownColumns};
 
