@@ -44,6 +44,7 @@ impl Shape {
         refuse_points_alone(&outputs)?;
         let dims = volume.dims().xyz();
         let model = progress.watch(|monitor| recipe.solid(&volume, monitor))?;
+        drop(volume);
         let mut report = Report::of_labels(&input.input, dims, &model);
         progress.stage(Stage::Measure, || report.add_shape(&model));
         self.deliver(&model.shape, &ModelMetadata::default(), report, outputs, global, progress)

@@ -73,14 +73,18 @@ impl Bits {
 
     /// Calls `visit` with each place of the set, in the order of z, y and x.
     pub(super) fn each(&self, mut visit: impl FnMut([usize; 3])) {
-        for (row, words) in self.bits.chunks(self.words.max(1)).enumerate() {
-            let (y, z) = (row % self.size[1], row / self.size[1]);
-            for (at, &word) in words.iter().enumerate() {
-                let mut left = word;
-                while left != 0 {
-                    visit([64 * at + left.trailing_zeros() as usize, y, z]);
-                    left &= left - 1;
-                }
+        (0..self.size[2]).for_each(|z| self.each_of(z, &mut visit));
+    }
+
+    /// Calls `visit` with each place of a plane, in the order of y and x.
+    fn each_of(&self, z: usize, mut visit: impl FnMut([usize; 3])) {
+        let plane = self.words * self.size[1];
+        for (at, &word) in self.bits[plane * z..plane * (z + 1)].iter().enumerate() {
+            let mut left = word;
+            while left != 0 {
+                let x = 64 * (at % self.words) + left.trailing_zeros() as usize;
+                visit([x, at / self.words, z]);
+                left &= left - 1;
             }
         }
     }
@@ -186,6 +190,20 @@ impl Numbered {
     /// Calls `visit` with each place, in the order of numbers.
     pub(super) fn each(&self, visit: impl FnMut([usize; 3])) {
         self.set.each(visit);
+    }
+
+    /// The number of planes along z.
+    pub(super) fn planes(&self) -> usize {
+        self.set.size[2]
+    }
+
+    /// Calls `visit` with each place of a plane and its number, in their order.
+    pub(super) fn each_of(&self, z: usize, mut visit: impl FnMut((u32, [usize; 3]))) {
+        let mut number = self.before[self.set.words * self.set.size[1] * z];
+        self.set.each_of(z, |place| {
+            visit((number, place));
+            number += 1;
+        });
     }
 }
 

@@ -1,9 +1,10 @@
-//! The cells of a region of voxels: those of voxels with corners, and those that fill what is deep.
+//! A region of voxels by the part that each plays in its solid, and the simplices that fill what is deep.
 
+use rayon::prelude::*;
 use walpha_base::Monitor;
-use walpha_base::memory::{try_reserve, try_with_capacity};
-use walpha_complex::canonical::smallest_even;
-use walpha_regular::{triangulate, triangulate_monitored};
+use walpha_base::memory::try_with_capacity;
+use walpha_complex::canonical::{outward_facets, smallest_even, sorted};
+use walpha_regular::triangulate_monitored;
 
 use super::VoxelsError;
 use super::bits::{Bits, Numbered};
@@ -34,29 +35,12 @@ impl Lattice {
         Ok(Self { shell, deep, corners: Numbered::new(corners)? })
     }
 
-    /// The cells, positively oriented where the axes of the grid are right-handed; turned over where `mirrored`.
-    pub(super) fn cells(
-        &self,
-        mirrored: bool,
-        monitor: &Monitor,
-    ) -> Result<Vec<[u32; 4]>, ShapeError> {
-        let written = |mut cell: [u32; 4]| {
-            if mirrored {
-                cell.swap(2, 3);
-            }
-            smallest_even(cell)
-        };
-        let what = || "the cells of voxels".to_owned();
-        let cube = cells_of_cube()?;
-        let mut cells = try_with_capacity(cube.len() * self.shell.count() as usize, what)?;
-        self.shell.each(|voxel| {
-            let corners =
-                CUBE.map(|step| self.corners.number([0, 1, 2].map(|k| voxel[k] + step[k])));
-            cells.extend(cube.iter().map(|cell| written(cell.map(|v| corners[v as usize]))));
-        });
+    /// What fills the deep voxels: positively oriented where the axes of the grid are right-handed; turned over where `mirrored`.
+    pub(super) fn filling(&self, mirrored: bool, monitor: &Monitor) -> Result<Filling, ShapeError> {
+        let what = || "the cells of deep voxels".to_owned();
         let lining = self.deep.dilated()?.and(&self.shell)?.corners()?;
         if lining.count() == 0 {
-            return Ok(cells);
+            return Ok(Filling::default());
         }
         let mut corners = try_with_capacity(lining.count() as usize, what)?;
         lining.each(|corner| corners.push(corner));
@@ -72,20 +56,43 @@ impl Lattice {
             self.deep.has([of(0), of(1), of(2)].map(|i| i as i64))
         };
         let deep = || filling.finite_cells().map(|(_, cell)| cell).filter(is_deep);
-        try_reserve(&mut cells, deep().count(), what)?;
-        cells.extend(
-            deep().map(|cell| written(cell.map(|v| self.corners.number(corners[v as usize])))),
-        );
-        Ok(cells)
+        let mut cells = try_with_capacity(deep().count(), what)?;
+        cells.extend(deep().map(|cell| {
+            let mut cell = cell.map(|v| self.corners.number(corners[v as usize]));
+            if mirrored {
+                cell.swap(2, 3);
+            }
+            smallest_even(cell)
+        }));
+        Filling::of(cells)
     }
 }
 
-/// The corners of a cube.
-const CUBE: [[usize; 3]; 8] =
-    [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0], [0, 0, 1], [1, 0, 1], [0, 1, 1], [1, 1, 1]];
+/// The simplices that fill the deep voxels and are not of a voxel of the shell, sorted. All are interior.
+#[derive(Default)]
+pub(super) struct Filling {
+    pub(super) cells: Vec<[u32; 4]>,
+    pub(super) facets: Vec<[u32; 3]>,
+    /// Some are edges of the shell.
+    pub(super) edges: Vec<[u32; 2]>,
+}
 
-/// The cells of a cube by the rule for ties, as rows of its corners.
-fn cells_of_cube() -> Result<Vec<[u32; 4]>, ShapeError> {
-    let cube = triangulate(&CUBE.map(|corner| corner.map(|i| i as f64)), None)?;
-    Ok(cube.finite_cells().map(|(_, cell)| cell).collect())
+impl Filling {
+    fn of(mut cells: Vec<[u32; 4]>) -> Result<Self, ShapeError> {
+        let what = || "the simplices of deep voxels".to_owned();
+        cells.par_sort_unstable();
+        let mut facets = try_with_capacity(4 * cells.len(), what)?;
+        facets.extend(cells.iter().flat_map(|cell| outward_facets(*cell).map(sorted)));
+        facets.par_sort_unstable();
+        // A facet of one cell lies between a deep voxel and one of the shell, which lists it.
+        let shared = || facets.chunk_by(|a, b| a == b).filter(|same| same.len() == 2);
+        let mut inner = try_with_capacity(shared().count(), what)?;
+        inner.extend(shared().map(|same| same[0]));
+        drop(facets);
+        let mut edges = try_with_capacity(3 * inner.len(), what)?;
+        edges.extend(inner.iter().flat_map(|&[a, b, c]| [[a, b], [a, c], [b, c]]));
+        edges.par_sort_unstable();
+        edges.dedup();
+        Ok(Self { cells, facets: inner, edges })
+    }
 }

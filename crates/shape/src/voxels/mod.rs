@@ -3,7 +3,7 @@
 //! The points are corners of voxels, in *index space*: the lattice of integers, in which a voxel is a cube of side 1. A cube of the lattice is a
 //! Delaunay polytope of every set of lattice points that contains its eight corners: the sphere through them has radius √¾, and any other
 //! lattice point is at √11/2 or more from its centre. So by the rule for ties (`docs/ties.md`) each such cube is a union of cells, which depend on
-//! nothing else, and which are the same in every cube, since moving points does not change their order. [`cells`] therefore writes the
+//! nothing else, and which are the same in every cube, since moving points does not change their order. [`closure`] therefore writes the
 //! cells of voxels down without a triangulation.
 //!
 //! **Deep voxels**, those whose 26 neighbours are all in the region, need no corners of their own. Let D be the deep voxels, and L, the lining, the
@@ -27,7 +27,7 @@ mod tests;
 use std::sync::Arc;
 
 use walpha_base::advice::Advice;
-use walpha_base::memory::{afford, try_with_capacity};
+use walpha_base::memory::try_with_capacity;
 use walpha_base::{Coordinates, Monitor};
 use walpha_complex::Voxels;
 
@@ -113,11 +113,9 @@ pub fn voxel_shape(
     let (region, first) = Bits::of(&voxels)?;
     keeps_orientation(&voxels)?;
     let lattice = Lattice::of(&region)?;
-    let bytes = (lattice.shell.count() * BYTES).try_into().unwrap_or(usize::MAX);
-    afford(bytes, || "the solid of labels".into())?;
     let points = lattice.corners.len();
-    let cells = lattice.cells(voxels.determinant() < 0.0, &monitor.part(0, 5, 10))?;
-    let complex = closure::classified(cells, points, &monitor.part(5, 9, 10))?;
+    let mirrored = voxels.determinant() < 0.0;
+    let complex = closure::complex(&lattice, &region, mirrored, &monitor.part(0, 9, 10))?;
     let what = || "the corners of voxels".to_owned();
     let mut corners = try_with_capacity(points, what)?;
     lattice.corners.each(|corner| corners.push(corner.map(|i| i as u32)));
@@ -144,9 +142,6 @@ pub fn voxel_shape(
     })?;
     Ok(AlphaShape { voxels: Some(Arc::new(voxels)), ..shape })
 }
-
-/// Bytes that a voxel with corners takes at most: its points, six cells, twelve facets, seven edges, and what is needed to sort them.
-const BYTES: u64 = 450;
 
 /// Whether the cells keep their orientation where corners are rounded. A coordinate of the world is rounded by no more than 2⁻⁵⁰ of the sum of
 /// its terms; in steps of the grid that moves a corner by δ. The edges of a cell are no longer than the diagonal of the grid, L √3, and its determinant, which
