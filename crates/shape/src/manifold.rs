@@ -25,11 +25,10 @@ impl Surface {
     /// The defects of the surface of regular facets. Singular simplices, which bound nothing, do not count.
     /// O(n log n).
     pub fn manifold_defects(&self) -> ManifoldDefects {
-        let sides = self.sides();
         let fans = UnionFind::new(3 * self.regular.len());
         let mut on_defect = vec![false; self.vertex_count()];
         let mut edges = 0;
-        for around in sides.chunk_by(|a, b| a.0 == b.0) {
+        self.each_edge(|around| {
             if let [(_, a), (_, b)] = around {
                 fans.unite(a[0], b[0]);
                 fans.unite(a[1], b[1]);
@@ -37,7 +36,7 @@ impl Surface {
                 edges += 1;
                 around[0].0.iter().for_each(|&v| on_defect[v as usize] = true);
             }
-        }
+        });
         let mut fans_of = vec![0usize; self.vertex_count()];
         for (corner, &v) in self.regular.as_flattened().iter().enumerate() {
             let corner = corner as u32;

@@ -1,10 +1,11 @@
 //! The boundary of a shape as a closed, oriented manifold, which other programs accept as the boundary of a solid.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, HashMap, HashSet};
 
 use serde::Serialize;
 use walpha_base::UnionFind;
 
+use super::surface::Side;
 use super::{Class, Complex, Surface};
 
 /// Where a boundary was cut apart to become a manifold.
@@ -26,34 +27,51 @@ impl Surface {
     /// As [`AlphaShape::solid`](crate::AlphaShape::solid) says.
     pub(super) fn solid(complex: &Complex) -> (Self, Cuts) {
         let whole = Self::of_complex(complex);
-        let pairs = Pairs::of(complex, &whole);
         let fans = UnionFind::new(3 * whole.regular.len());
-        for [a, b] in &pairs.corners {
-            fans.unite(a[0], b[0]);
-            fans.unite(a[1], b[1]);
+        let mut touching = Vec::new();
+        whole.each_edge(|sides| match sides {
+            [(_, a), (_, b)] => join(&fans, *a, *b),
+            _ => touching.push(sides.to_vec()),
+        });
+        let pairs = pairs(complex, &whole, &touching);
+        for [a, b] in &pairs {
+            join(&fans, *a, *b);
         }
         // Fans are numbered in the order of their vertices; each gets a vertex.
-        let mut vertices = Vec::new();
-        let mut number = HashMap::new();
-        let mut order: Vec<(u32, Corner)> =
-            whole.regular.as_flattened().iter().copied().zip(0..).collect();
-        order.sort_unstable();
-        for &(v, corner) in &order {
-            number.entry(fans.find(corner)).or_insert_with(|| {
-                vertices.push(whole.vertices[v as usize]);
-                vertices.len() as u32 - 1
-            });
+        let mut solid = Self { regular: whole.regular.clone(), ..Self::default() };
+        let mut cuts = Cuts { edges: touching.len(), vertices: 0, midpoints: 0 };
+        let (starts, corners) = whole.corners_by_vertex();
+        for (v, around) in starts.windows(2).enumerate() {
+            let mut roots: Vec<Corner> = Vec::new();
+            let first = solid.vertices.len();
+            for &corner in &corners[around[0] as usize..around[1] as usize] {
+                let root = fans.find(corner);
+                let fan = roots.iter().position(|&other| other == root).unwrap_or(roots.len());
+                if fan == roots.len() {
+                    roots.push(root);
+                    solid.vertices.push(whole.vertices[v]);
+                }
+                solid.regular.as_flattened_mut()[corner as usize] = (first + fan) as u32;
+            }
+            cuts.vertices += roots.len().saturating_sub(1);
         }
-        let first_ones = order.chunk_by(|a, b| a.0 == b.0).count();
-        let mut corner = 0..;
-        let mut named = || number[&fans.find(corner.next().expect("endless"))];
-        let regular = whole.regular.iter().map(|facet| facet.map(|_| named())).collect();
-        let mut cuts =
-            Cuts { edges: pairs.touching, vertices: vertices.len() - first_ones, midpoints: 0 };
-        let mut solid = Self { vertices, regular, ..Self::default() };
-        solid.insert_midpoints(&pairs.corners);
+        solid.insert_midpoints(&pairs);
         cuts.midpoints = solid.midpoints.len();
         (solid, cuts)
+    }
+
+    /// The corners of regular facets at each vertex: where those of a vertex start among all, and all.
+    fn corners_by_vertex(&self) -> (Vec<u32>, Vec<Corner>) {
+        let all = self.regular.as_flattened();
+        let mut starts = vec![0; self.vertices.len() + 1];
+        all.iter().for_each(|&v| starts[v as usize + 1] += 1);
+        (1..starts.len()).for_each(|v| starts[v] += starts[v - 1]);
+        let (mut next, mut corners) = (starts.clone(), vec![0; all.len()]);
+        for (&v, corner) in all.iter().zip(0..) {
+            corners[next[v as usize] as usize] = corner;
+            next[v as usize] += 1;
+        }
+        (starts, corners)
     }
 
     /// Separates pairs of facets at an edge whose ends they share, by vertices at its midpoint.
@@ -99,53 +117,41 @@ fn divided(row: [u32; 3], middles: [Option<u32>; 3]) -> Vec<[u32; 3]> {
     turned[1..].windows(2).map(|pair| [from, pair[0], pair[1]]).collect()
 }
 
-/// Pairs of facets that stay joined along an edge, as they bound the same cells there.
-struct Pairs {
-    /// For two facets, their corners at the ends of the edge, in the same order.
-    corners: Vec<[[Corner; 2]; 2]>,
-    /// Edges on more than two facets.
-    touching: usize,
+/// Joins two facets at the ends of an edge.
+fn join(fans: &UnionFind, a: [Corner; 2], b: [Corner; 2]) {
+    fans.unite(a[0], b[0]);
+    fans.unite(a[1], b[1]);
 }
 
-impl Pairs {
-    fn of(complex: &Complex, surface: &Surface) -> Self {
-        let sides = surface.sides();
-        let around: Vec<_> = sides.chunk_by(|a, b| a.0 == b.0).collect();
-        let number = |end: u32| surface.vertices[end as usize];
-        let touching: HashMap<[u32; 2], usize> = (around.iter().enumerate())
-            .filter(|(_, sides)| sides.len() > 2)
-            .map(|(k, sides)| (sides[0].0.map(number), k))
-            .collect();
-        let wedges = wedges(complex, &touching);
-        let mut corners = Vec::new();
-        for sides in &around {
-            if let [(_, a), (_, b)] = sides {
-                corners.push([*a, *b]);
-                continue;
-            }
-            // By the third corner of each facet, which is also one of the first or last cell between two facets.
-            let third = |corners: &[Corner; 2]| {
-                let row = surface.regular[corners[0] as usize / 3];
-                let ends = sides[0].0;
-                number(*row.iter().find(|v| !ends.contains(v)).expect("a third corner"))
-            };
-            let by_third: HashMap<u32, [Corner; 2]> =
-                sides.iter().map(|(_, corners)| (third(corners), *corners)).collect();
-            let links = &wedges[&sides[0].0.map(number)];
-            for (&from, &corners_from) in &by_third {
-                let to = last(links, from);
-                if from < to {
-                    corners.push([corners_from, by_third[&to]]);
-                }
+/// Pairs of facets that stay joined along one of these edges, as they bound the same cells there: by their corners at the ends
+/// of the edge, in the same order.
+fn pairs(complex: &Complex, surface: &Surface, edges: &[Vec<Side>]) -> Vec<[[Corner; 2]; 2]> {
+    let number = |end: u32| surface.vertices[end as usize];
+    let wedges = wedges(complex, edges.iter().map(|sides| sides[0].0.map(number)).collect());
+    let mut pairs = Vec::new();
+    for sides in edges {
+        // By the third corner of each facet, which is also one of the first or last cell between two facets.
+        let third = |corners: &[Corner; 2]| {
+            let row = surface.regular[corners[0] as usize / 3];
+            let ends = sides[0].0;
+            number(*row.iter().find(|v| !ends.contains(v)).expect("a third corner"))
+        };
+        let by_third: HashMap<u32, [Corner; 2]> =
+            sides.iter().map(|(_, corners)| (third(corners), *corners)).collect();
+        let links = &wedges[&sides[0].0.map(number)];
+        for (&from, &corners_from) in &by_third {
+            let to = last(links, from);
+            if from < to {
+                pairs.push([corners_from, by_third[&to]]);
             }
         }
-        corners.sort_unstable();
-        Self { corners, touching: touching.len() }
     }
+    pairs.sort_unstable();
+    pairs
 }
 
 /// By edge, the third and fourth corners of the cells of the shape around it: the link of the edge in the shape.
-fn wedges(complex: &Complex, edges: &HashMap<[u32; 2], usize>) -> HashMap<[u32; 2], Vec<[u32; 2]>> {
+fn wedges(complex: &Complex, edges: HashSet<[u32; 2]>) -> HashMap<[u32; 2], Vec<[u32; 2]>> {
     let mut wedges: HashMap<[u32; 2], Vec<[u32; 2]>> = HashMap::new();
     if edges.is_empty() {
         return wedges;
@@ -155,7 +161,7 @@ fn wedges(complex: &Complex, edges: &HashMap<[u32; 2], usize>) -> HashMap<[u32; 
             [(0, 1, 2, 3), (0, 2, 1, 3), (0, 3, 1, 2), (1, 2, 0, 3), (1, 3, 0, 2), (2, 3, 0, 1)]
         {
             let edge = [cell[i].min(cell[j]), cell[i].max(cell[j])];
-            if edges.contains_key(&edge) {
+            if edges.contains(&edge) {
                 wedges.entry(edge).or_default().push([cell[k], cell[l]]);
             }
         }

@@ -1,6 +1,12 @@
-use std::collections::BTreeSet;
+use rayon::prelude::*;
 
 use super::{Class, Complex};
+
+/// The side of a facet at an edge: the ends of the edge, the smaller one first, and the corners of the facet there, as 3·row + corner.
+pub(super) type Side = ([u32; 2], [u32; 2]);
+
+/// Sides that are sorted at once, 256 MiB.
+const AT_ONCE: usize = 1 << 24;
 
 /// The visible part of a shape: regular facets and all singular simplices, with a compact numbering of their
 /// vertices.
@@ -31,13 +37,16 @@ impl Surface {
         let singular: Vec<_> = complex.facets.of(Class::Singular).copied().collect();
         let edges: Vec<_> = complex.edges.of(Class::Singular).copied().collect();
         let points: Vec<_> = complex.vertices.of(Class::Singular).copied().collect();
-        let used: BTreeSet<u32> = (regular.as_flattened().iter())
-            .chain(singular.as_flattened())
-            .chain(edges.as_flattened())
-            .chain(points.as_flattened())
-            .copied()
-            .collect();
-        let vertices: Vec<u32> = used.into_iter().collect();
+        let mut vertices = [
+            regular.as_flattened(),
+            singular.as_flattened(),
+            edges.as_flattened(),
+            points.as_flattened(),
+        ]
+        .concat();
+        vertices.par_sort_unstable();
+        vertices.dedup();
+        vertices.shrink_to_fit();
         let number = |v: u32| vertices.partition_point(|&used| used < v) as u32;
         Self {
             regular: regular.into_iter().map(|row| row.map(number)).collect(),
@@ -82,22 +91,29 @@ impl Surface {
         self.vertices.iter().map(|&v| of_input[v as usize]).chain(self.midpoints.iter().map(mean))
     }
 
-    /// Each edge of each regular facet, smaller end first, with the corners of the facet at its ends
-    /// as 3·row + corner. Sorted.
-    pub(super) fn sides(&self) -> Vec<([u32; 2], [u32; 2])> {
-        let mut sides: Vec<([u32; 2], [u32; 2])> = Vec::with_capacity(3 * self.regular.len());
-        for (facet, row) in self.regular.iter().enumerate() {
-            for (i, j) in [(0, 1), (1, 2), (2, 0)] {
-                let corner = |i: usize| (3 * facet + i) as u32;
-                let (mut ends, mut corners) = ([row[i], row[j]], [corner(i), corner(j)]);
-                if ends[0] > ends[1] {
-                    ends.reverse();
-                    corners.reverse();
-                }
-                sides.push((ends, corners));
-            }
+    /// Calls `visit` with the sides of regular facets at each edge, in the order of edges. They are sorted for some edges at a
+    /// time, so that large surfaces take little memory. O(n log n).
+    pub(super) fn each_edge(&self, mut visit: impl FnMut(&[Side])) {
+        let parts = (3 * self.regular.len()).div_ceil(AT_ONCE).max(1);
+        let step = self.vertex_count().div_ceil(parts).max(1);
+        for first in (0..self.vertex_count()).step_by(step) {
+            let range = first as u32..(first + step) as u32;
+            let of_facet = |(facet, row): (usize, &[u32; 3])| {
+                let (row, range) = (*row, range.clone());
+                let sides = [(0, 1), (1, 2), (2, 0)].into_iter().map(move |(i, j)| {
+                    let corner = |i: usize| (3 * facet + i) as u32;
+                    if row[i] < row[j] {
+                        ([row[i], row[j]], [corner(i), corner(j)])
+                    } else {
+                        ([row[j], row[i]], [corner(j), corner(i)])
+                    }
+                });
+                sides.filter(move |(ends, _)| range.contains(&ends[0]))
+            };
+            let mut sides: Vec<Side> =
+                self.regular.par_iter().enumerate().flat_map_iter(of_facet).collect();
+            sides.par_sort_unstable();
+            sides.chunk_by(|a, b| a.0 == b.0).for_each(&mut visit);
         }
-        sides.sort_unstable();
-        sides
     }
 }
