@@ -56,11 +56,9 @@ impl Shape {
             fail_usage!("--each-label writes a file for each label to one folder" => "name it, as in -o labels");
         };
         let meshes = self.meshes()?;
+        let choice = recipe.labels.clone().unwrap_or(LabelChoice::All);
+        let recipe = recipe.clone().labels(Some(choice.clone()));
         LabelArgs::refuse_others(&self.pipeline.input.typed)?;
-        let recipe = match recipe.labels {
-            None => recipe.clone().labels(Some(LabelChoice::All)),
-            Some(_) => recipe.clone(),
-        };
         let mut folder = Folder::open(folder, "--output", &[])?;
         let mut progress = Progress::new(global);
         let input = &self.pipeline.input;
@@ -69,12 +67,11 @@ impl Shape {
         let Input::Labels(volume) = read else {
             fail_usage!("{} holds points, which have no labels", input.input => "omit --each-label");
         };
-        let choice = recipe.labels.as_ref().unwrap_or(&LabelChoice::All);
         let mut solids = Vec::new();
         let mut coordinates = volume.frame().coordinates;
-        for (label, _) in chosen(&volume, choice)? {
-            let one = recipe.clone().labels(Some(LabelChoice::These(vec![label])));
-            let model = progress.watch(|monitor| one.solid(&volume, monitor))?;
+        for (label, voxels) in chosen(&volume, &choice)? {
+            let one = vec![(label, voxels)];
+            let model = progress.watch(|monitor| recipe.solid_of(&volume, one, monitor))?;
             coordinates = model.origin.coordinates;
             let shape = &model.shape;
             let (mut files, mut offsets) = (Vec::new(), Vec::new());

@@ -74,9 +74,19 @@ impl Recipe {
     /// # Errors
     /// [`PipelineError::Labels`], and the errors of [`Recipe::place`].
     pub fn solid(&self, volume: &Volume, monitor: &Monitor) -> Result<Model, PipelineError> {
+        let counts = labels::chosen(volume, self.labels.as_ref().unwrap_or(&LabelChoice::All))?;
+        self.solid_of(volume, counts, monitor)
+    }
+
+    /// The solid of these labels, which have these numbers of voxels.
+    pub(crate) fn solid_of(
+        &self,
+        volume: &Volume,
+        counts: Vec<(i32, u64)>,
+        monitor: &Monitor,
+    ) -> Result<Model, PipelineError> {
         Stage::Shape.begin(monitor)?;
         let (frame, units) = self.place(*volume.frame())?;
-        let counts = labels::chosen(volume, self.labels.as_ref().unwrap_or(&LabelChoice::All))?;
         let chosen: Vec<i32> = counts.iter().map(|&(label, _)| label).collect();
         let shape = labels::solid(volume, &frame, units, &chosen, monitor)?;
         let sizes = LabelSizes::new(counts, &frame, units);
