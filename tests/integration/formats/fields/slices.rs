@@ -138,6 +138,20 @@ fn each_field_of_the_table() {
                 }),
             },
             Field {
+                name: "JPEG: end marker, data and scans",
+                file: |f| {
+                    let path = f.join("s1.jpg");
+                    GrayImage::from_fn(40, 40, |x, y| Luma([(x * y % 251) as u8]))
+                        .save(&path)
+                        .unwrap();
+                    let bytes = std::fs::read(&path).unwrap();
+                    // Half of it, and an end.
+                    save(f, "s1.jpg", [&bytes[..bytes.len() * 3 / 4], &[0xff, 0xd9]].concat());
+                    f.into()
+                },
+                fate: Fate::Refused(&["s1.jpg", "ends inside its image"]),
+            },
+            Field {
                 name: "TIFF: a stack in one file",
                 file: |f| {
                     save(f, "s1.tif", tiff(2, None));

@@ -1,3 +1,4 @@
+mod jpeg;
 mod numbers;
 
 use std::cmp::Ordering;
@@ -113,7 +114,9 @@ fn page(path: &Path, is_first: bool) -> Result<Page, VolumeError> {
         ),
     };
     let file = OpenFile::open(path)?;
-    let length = file.length();
+    if jpeg::is_jpeg(file.start()) {
+        return jpeg::page(path, &file);
+    }
     let png = Png::of(file.start());
     if png == Some(Png::Palette) {
         let what = "has a palette of colours: only gray is read";
@@ -126,15 +129,7 @@ fn page(path: &Path, is_first: bool) -> Result<Page, VolumeError> {
         .map_err(unreadable)?;
     let (width, height) = decoder.dimensions();
     let size = [width, height].map(u64::from);
-    // PNG may have eight samples in a byte; JPEG has 64 in two bits at best.
-    let most = length.saturating_mul(8 * MOST_EXPANSION);
-    if size[0] * size[1] > most {
-        let reason = Reason::claims_more(format!(
-            "claims {width}×{height} pixels, which {length} bytes cannot hold: it is \
-                 truncated or damaged"
-        ));
-        return Err(format_error(path, reason));
-    }
+    check_claim(path, size, file.length())?;
     let image = DynamicImage::from_decoder(decoder).map_err(unreadable)?;
     match image {
         DynamicImage::ImageLuma8(image) => {
@@ -160,6 +155,18 @@ fn page(path: &Path, is_first: bool) -> Result<Page, VolumeError> {
             Err(format_error(path, Reason::NotScalar { what, dims: None }))
         }
     }
+}
+
+/// Checks that a file of this length may hold as many pixels as it claims. PNG may have eight of them in a byte; JPEG has 64 in
+/// two bits at best.
+fn check_claim(path: &Path, [width, height]: [u64; 2], length: u64) -> Result<(), VolumeError> {
+    if width * height <= length.saturating_mul(8 * MOST_EXPANSION) {
+        return Ok(());
+    }
+    let what = format!(
+        "claims {width}×{height} pixels, which {length} bytes cannot hold: it is truncated or damaged"
+    );
+    Err(format_error(path, Reason::claims_more(what)))
 }
 
 /// What the header of a PNG says of its pixels.
