@@ -1,4 +1,7 @@
 //! Arrays of numpy as the library takes them, and back.
+//!
+//! What is read is given away by the caller: numpy keeps track of who reads an array, by its shape, and panics if that is another when the
+//! reader is done. So reading must be done before any code of Python runs, which a callback for progress is.
 
 use numpy::ndarray::{Array3, ArrayView2, Ix1, Ix2, Ix3};
 use numpy::{Element, IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray};
@@ -10,39 +13,42 @@ use crate::errors::wrong;
 /// Rows of `N` numbers, copied once: the work owns them, as it may outlive the call that is interrupted.
 pub fn rows<const N: usize, T: Element + Copy>(
     name: &str,
-    array: &PyReadonlyArray<'_, T, Ix2>,
+    array: PyReadonlyArray<'_, T, Ix2>,
 ) -> PyResult<Vec<[T; N]>> {
-    let array = array.as_array();
-    if array.ncols() != N {
-        let shape = array.shape();
+    let view = array.as_array();
+    if view.ncols() != N {
+        let shape = view.shape();
         return Err(wrong(format!("{name} has shape {shape:?}, expected (n, {N})")));
     }
-    let mut rows = room(array.nrows())?;
-    match array.as_slice() {
+    let mut rows = room(view.nrows())?;
+    match view.as_slice() {
         Some(flat) => rows.extend_from_slice(flat.as_chunks::<N>().0),
         None => {
             rows.extend(
-                array.rows().into_iter().map(|row| std::array::from_fn::<T, N, _>(|k| row[k])),
+                view.rows().into_iter().map(|row| std::array::from_fn::<T, N, _>(|k| row[k])),
             );
         }
     }
+    drop(array);
     Ok(rows)
 }
 
 /// Numbers, copied once.
-pub fn numbers<T: Element + Copy>(array: &PyReadonlyArray<'_, T, Ix1>) -> PyResult<Vec<T>> {
-    let array = array.as_array();
-    let mut numbers = room(array.len())?;
-    numbers.extend(array);
+pub fn numbers<T: Element + Copy>(array: PyReadonlyArray<'_, T, Ix1>) -> PyResult<Vec<T>> {
+    let view = array.as_array();
+    let mut numbers = room(view.len())?;
+    numbers.extend(view);
+    drop(array);
     Ok(numbers)
 }
 
 /// Samples of a volume, copied once, x fastest.
-pub fn samples(array: &PyReadonlyArray<'_, f32, Ix3>) -> PyResult<Array3<f32>> {
-    let array = array.as_array();
-    let mut samples = room(array.len())?;
-    samples.extend(array);
-    Ok(Array3::from_shape_vec(array.dim(), samples).expect("as many samples as in the array"))
+pub fn samples(array: PyReadonlyArray<'_, f32, Ix3>) -> PyResult<Array3<f32>> {
+    let view = array.as_array();
+    let (dim, mut samples) = (view.dim(), room(view.len())?);
+    samples.extend(view);
+    drop(array);
+    Ok(Array3::from_shape_vec(dim, samples).expect("as many samples as in the array"))
 }
 
 /// A new array of these numbers.

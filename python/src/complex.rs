@@ -46,18 +46,18 @@ impl Complex {
         task: Task<'_>,
     ) -> PyResult<Self> {
         let alpha = Alpha::from_squared(alpha).map_err(Told::told)?;
-        let mut file = ComplexFile::of_points(rows("points", &points)?, alpha);
-        file.weights = weights.as_ref().map(numbers).transpose()?;
-        file.cells = table("cells", &cells)?;
-        file.facets = table("facets", &facets)?;
-        file.edges = table("edges", &edges)?;
-        file.vertices = table::<1>("vertices", &vertices)?.map(|rows| rows.into_flattened());
-        file.classes.cells = classes("cell_classes", &cells)?;
-        file.classes.facets = classes("facet_classes", &facets)?;
-        file.classes.edges = classes("edge_classes", &edges)?;
-        file.classes.vertices = classes("vertex_classes", &vertices)?;
-        file.hidden = hidden.as_ref().map(numbers).transpose()?;
-        file.duplicates = duplicates.as_ref().map(|pairs| rows("duplicates", pairs)).transpose()?;
+        let mut file = ComplexFile::of_points(rows("points", points)?, alpha);
+        file.weights = weights.map(numbers).transpose()?;
+        file.cells = table("cells", cells.0)?;
+        file.facets = table("facets", facets.0)?;
+        file.edges = table("edges", edges.0)?;
+        file.vertices = table::<1>("vertices", vertices.0)?.map(|rows| rows.into_flattened());
+        file.classes.cells = classes("cell_classes", cells.1)?;
+        file.classes.facets = classes("facet_classes", facets.1)?;
+        file.classes.edges = classes("edge_classes", edges.1)?;
+        file.classes.vertices = classes("vertex_classes", vertices.1)?;
+        file.hidden = hidden.map(numbers).transpose()?;
+        file.duplicates = duplicates.map(|pairs| rows("duplicates", pairs)).transpose()?;
         file.periodic = periodic;
         Ok(Self(Arc::new(run(py, &task, move |_| PlacedComplex::try_from(file))?)))
     }
@@ -194,16 +194,18 @@ pub fn compare(
     })
 }
 
-fn table<const N: usize>(name: &str, listed: &Listed<'_>) -> PyResult<Option<Vec<[u32; N]>>> {
-    listed.0.as_ref().map(|array| rows(name, array)).transpose()
+fn table<const N: usize>(
+    name: &str,
+    array: Option<PyReadonlyArray2<'_, u32>>,
+) -> PyResult<Option<Vec<[u32; N]>>> {
+    array.map(|array| rows(name, array)).transpose()
 }
 
-fn classes(name: &str, listed: &Listed<'_>) -> PyResult<Option<Vec<Class>>> {
+fn classes(name: &str, array: Option<PyReadonlyArray1<'_, u8>>) -> PyResult<Option<Vec<Class>>> {
     let class = |number: u8| {
         Class::from_number(number).ok_or_else(|| {
             wrong(format!("{name} holds {number}: classes are numbered from 0 to 3"))
         })
     };
-    let all = |array: &PyReadonlyArray1<'_, u8>| numbers(array)?.into_iter().map(class).collect();
-    listed.1.as_ref().map(all).transpose()
+    array.map(|array| numbers(array)?.into_iter().map(class).collect()).transpose()
 }

@@ -35,7 +35,7 @@ impl Filtration {
         task: Task<'_>,
     ) -> PyResult<Self> {
         let torus = torus(periodic)?;
-        let points = weighted(&points, weights.as_ref(), None)?;
+        let points = weighted(points, weights, None)?;
         let made = run(py, &task, move |monitor| {
             Stage::Filtration.begin(monitor)?;
             let positions = points.positions;
@@ -74,7 +74,7 @@ impl Filtration {
         alphas: PyReadonlyArray1<'_, f64>,
         task: Task<'_>,
     ) -> PyResult<String> {
-        let alphas = numbers(&alphas)?.into_iter().map(Alpha::from_squared);
+        let alphas = numbers(alphas)?.into_iter().map(Alpha::from_squared);
         let alphas: Vec<Alpha> = alphas.collect::<Result<_, _>>().map_err(Told::told)?;
         let filtration = Arc::clone(&self.0);
         run(py, &task, move |monitor| {
@@ -138,7 +138,7 @@ impl Filtration {
         corners: usize,
         task: Task<'_>,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let vertices = numbers(&vertices)?;
+        let vertices = numbers(vertices)?;
         let filtration = Arc::clone(&self.0);
         let found = run(py, &task, move |_| {
             let mut found = Vec::with_capacity(4 * vertices.len());

@@ -88,7 +88,7 @@ pub fn write_points(
         return Err(wrong("value_error must be a number from 0 up"));
     }
     let alpha = alpha.map(Alpha::from_squared).transpose().map_err(Told::told)?;
-    let points = weighted(&points, weights.as_ref(), values.as_ref())?;
+    let points = weighted(points, weights, values)?;
     let facts = ModelMetadata::default().alpha(alpha);
     let packing = Packing::default().value_error(value_error);
     let target = Target::open(&path).map_err(Told::told)?;

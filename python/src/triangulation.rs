@@ -46,7 +46,7 @@ impl Triangulation {
         weights: Option<PyReadonlyArray1<'_, f64>>,
         task: Task<'_>,
     ) -> PyResult<Self> {
-        let Points { positions, weights, .. } = weighted(&points, weights.as_ref(), None)?;
+        let Points { positions, weights, .. } = weighted(points, weights, None)?;
         let weights = weights.unwrap_or_else(|| vec![0.0; positions.len()]);
         let arrays = run(py, &task, move |monitor| Arrays::of(positions, weights, monitor))?;
         Ok(Self(Arc::new(arrays)))
@@ -99,7 +99,7 @@ impl Triangulation {
         places: PyReadonlyArray2<'_, f64>,
         task: Task<'_>,
     ) -> PyResult<Bound<'py, PyArray1<i64>>> {
-        let (arrays, places) = (Arc::clone(&self.0), rows("places", &places)?);
+        let (arrays, places) = (Arc::clone(&self.0), rows("places", places)?);
         let found = run(py, &task, move |monitor| arrays.find(&places, monitor))?;
         column(py, found.into_iter())
     }

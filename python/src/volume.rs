@@ -68,7 +68,7 @@ pub fn haar<'py>(
     task: Task<'_>,
 ) -> PyResult<(Bound<'py, PyArray3<f32>>, String)> {
     let options = haar_options(&tolerance, decomposition)?;
-    let samples = owned(&samples)?;
+    let samples = owned(samples)?;
     let (smoothed, truncation) = run(py, &task, move |monitor| {
         Stage::Haar.begin(monitor)?;
         smooth_monitored(&volume(samples, Frame::VOXEL, masked)?, &options, monitor)
@@ -83,7 +83,7 @@ pub fn difference<'py>(
     samples: PyReadonlyArray3<'_, f32>,
     masked: bool,
 ) -> PyResult<Bound<'py, PyArray3<f64>>> {
-    let samples = owned(&samples)?;
+    let samples = owned(samples)?;
     let found = run(py, &Task::default(), move |_| {
         Ok::<_, PointsError>(points::difference(&volume(samples, Frame::VOXEL, masked)?))
     })?;
@@ -112,7 +112,7 @@ pub fn select<'py>(
             "smoothed has shape {other:?}, the volume {given:?}: give one of its shape"
         )));
     }
-    let (samples, smoothed) = (owned(&samples)?, owned(&smoothed)?);
+    let (samples, smoothed) = (owned(samples)?, owned(smoothed)?);
     let (frame, units) = place(frame)?;
     let selection = Selection::default().rule(selection_rule(&rule)?).gray_min(gray_min);
     let found = run(py, &Task::default(), move |monitor| {
@@ -141,7 +141,7 @@ pub fn weigh<'py>(
     alpha: f64,
 ) -> PyResult<Bound<'py, PyArray1<f64>>> {
     let weighting: Weighting = weighting.parse().map_err(Told::told)?;
-    let differences = numbers(&differences)?;
+    let differences = numbers(differences)?;
     let alpha = Alpha::from_squared(alpha).map_err(Told::told)?;
     let weights = run(py, &Task::default(), move |_| {
         // Places do not count here.
@@ -206,7 +206,7 @@ pub fn pipeline(
         .refit(refit);
     let recipe = with_options(recipe, &how)?;
     let nan = nan.map(|value| if value.is_nan() { Nan::Mask } else { Nan::Value(value) });
-    let samples = owned(&samples)?;
+    let samples = owned(samples)?;
     let model = run(py, &task, move |monitor| {
         let volume = Volume::of_file(samples, frame).and_then(|volume| volume.resolve_nan(nan));
         let volume = volume.map_err(PointsError::from)?;
@@ -232,7 +232,7 @@ pub fn label_shape(
         .units(units)
         // Coordinates stay in the space that the frame is in.
         .space(Some(frame.coordinates.space).filter(|space| space.is_known()));
-    let samples = owned(&samples)?;
+    let samples = owned(samples)?;
     let model = run(py, &task, move |monitor| {
         let volume =
             Volume::of_file(samples, frame).and_then(|volume| volume.resolve_nan(Some(Nan::Mask)));

@@ -87,7 +87,7 @@ pub fn alpha_shape(
 ) -> PyResult<Shape> {
     let recipe = with_options(Recipe::new().alpha(alpha_rule(alpha)?), &how)?;
     let recipe = recipe.periodic(torus(periodic)?);
-    let points = weighted(&points, weights.as_ref(), values.as_ref())?;
+    let points = weighted(points, weights, values)?;
     let shape = move |monitor: &_| recipe.run_points_monitored(points, monitor);
     let model = run(py, &task, shape)?;
     Ok(Shape::of(model))
@@ -95,9 +95,9 @@ pub fn alpha_shape(
 
 /// Points with a column of weights, or without; as many of each as points.
 pub fn weighted(
-    points: &PyReadonlyArray2<'_, f64>,
-    weights: Option<&PyReadonlyArray1<'_, f64>>,
-    values: Option<&PyReadonlyArray1<'_, f64>>,
+    points: PyReadonlyArray2<'_, f64>,
+    weights: Option<PyReadonlyArray1<'_, f64>>,
+    values: Option<PyReadonlyArray1<'_, f64>>,
 ) -> PyResult<Points> {
     let mut points = Points::new(rows("points", points)?);
     if let Some(weights) = weights {

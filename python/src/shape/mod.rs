@@ -74,7 +74,7 @@ impl Shape {
     fn values(&self, given: Option<PyReadonlyArray1<'_, f64>>) -> PyResult<Vec<f64>> {
         match given {
             Some(given) => {
-                let (values, points) = (numbers(&given)?, self.shape.points().len());
+                let (values, points) = (numbers(given)?, self.shape.points().len());
                 LengthsError::unless_equal("values", values.len(), points)
                     .map_err(|error| Told::told(PointsError::from(error)))?;
                 Ok(values)
@@ -271,7 +271,7 @@ impl Shape {
         places: PyReadonlyArray2<'_, f64>,
         values: Option<PyReadonlyArray1<'_, f64>>,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let (places, values) = (rows("places", &places)?, self.values(values)?);
+        let (places, values) = (rows("places", places)?, self.values(values)?);
         let shape = Arc::clone(&self.shape);
         let found = run(py, &Task::default(), move |_| {
             let interpolant = Interpolant::with_values(&shape, &values)?;

@@ -58,11 +58,11 @@ pub fn restored(
     let AlphaRule::Given(alpha) = recipe.alpha else {
         return Err(wrong("the state of a shape has no alpha"));
     };
-    let (points, weights) = (rows("points", &points)?, numbers(&weights)?);
+    let (points, weights) = (rows("points", points)?, numbers(weights)?);
     let lengths = |error: LengthsError| wrong(error.to_string());
     let mut points = WeightedPoints::new(points, weights).map_err(lengths)?;
     if let Some(values) = values {
-        points = points.with_values(numbers(&values)?).map_err(lengths)?;
+        points = points.with_values(numbers(values)?).map_err(lengths)?;
     }
     let mut facts: Value = serde_json::from_str(&facts).map_err(broken)?;
     let voxels = facts.as_object_mut().and_then(|facts| facts.remove(VOXELS));
