@@ -91,5 +91,7 @@ function explained(error) {
   if (/memory allocation|capacity overflow/.test(lines) || memory > 3.5) {
     return [`not enough memory: a page has 4 GiB, and ${memory.toFixed(1)} GiB are in use`, "downsample, or select fewer samples; the command walpha has no such limit"];
   }
+  const decoder = lines.match(/cannot be decoded: .*/);
+  if (decoder) return [`the file ${decoder[0]}`, "it is damaged: copy it again; if other programs read it, please report it"];
   return [`the program ended unexpectedly: ${lines || error.message}`, "this is a bug in walpha: please report it, with the file if you can"];
 }

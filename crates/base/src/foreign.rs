@@ -1,5 +1,6 @@
 //! The door to decoders that others wrote: a panic within becomes an error.
 
+use std::any::Any;
 use std::cell::Cell;
 use std::fmt;
 use std::panic::{AssertUnwindSafe, catch_unwind, set_hook, take_hook};
@@ -11,6 +12,16 @@ use std::sync::Once;
 pub struct Panicked {
     /// What it said.
     pub message: String,
+}
+
+impl Panicked {
+    fn new(payload: &dyn Any) -> Self {
+        let text = payload.downcast_ref::<&str>().copied().map(str::to_owned);
+        let text = text.or_else(|| payload.downcast_ref::<String>().cloned());
+        // On one line, whatever it is.
+        let message = text.unwrap_or_default().split_whitespace().collect::<Vec<_>>().join(" ");
+        Self { message }
+    }
 }
 
 impl fmt::Display for Panicked {
@@ -25,10 +36,10 @@ thread_local! {
     static WITHIN: Cell<bool> = const { Cell::new(false) };
 }
 
-/// Calls a decoder. What it borrows must be left alone after a panic, as it may be half changed. In programs that abort on
-/// panics it protects from nothing.
+/// Calls a decoder. What it borrows must be left alone after a panic, as it may be half changed.
 ///
-/// The first call puts a hook before that of the process, so that such panics of this thread are not printed.
+/// The first call puts a hook before that of the process, so that such panics of this thread are not printed. A program that aborts on
+/// panics ends, and the hook prints the error, for whoever starts it again: so does the page that computes.
 ///
 /// ```
 /// use walpha_base::foreign::decode;
@@ -47,19 +58,15 @@ pub fn decode<T>(decoder: impl FnOnce() -> T) -> Result<T, Panicked> {
         set_hook(Box::new(move |panic| {
             if !WITHIN.get() {
                 before(panic);
+            } else if cfg!(panic = "abort") {
+                eprintln!("{}", Panicked::new(panic.payload()));
             }
         }));
     });
     let outside = WITHIN.replace(true);
     let decoded = catch_unwind(AssertUnwindSafe(decoder));
     WITHIN.set(outside);
-    decoded.map_err(|panic| {
-        let text = panic.downcast_ref::<&str>().copied().map(str::to_owned);
-        let text = text.or_else(|| panic.downcast_ref::<String>().cloned());
-        // On one line, whatever it is.
-        let message = text.unwrap_or_default().split_whitespace().collect::<Vec<_>>().join(" ");
-        Panicked { message }
-    })
+    decoded.map_err(|payload| Panicked::new(&*payload))
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 use std::io::{Read, Seek, SeekFrom};
 
 use rayon::prelude::*;
+use walpha_base::foreign::decode;
 use walpha_base::npy::Header;
 use zip::ZipArchive;
 use zip::read::ZipFile;
@@ -25,7 +26,10 @@ impl ComplexFile {
     /// # Errors
     /// Missing, ill-shaped or unreadable arrays; numbers that cannot be indices or classes.
     pub fn read_npz(reader: impl Read + Seek) -> Result<Self, SchemaError> {
-        let mut file = Npz::new(reader)?;
+        unpacked(|| Self::of_archive(Npz::new(reader)?))
+    }
+
+    fn of_archive(mut file: Npz<impl Read + Seek>) -> Result<Self, SchemaError> {
         file.check(&COMPLEX_ARRAYS)?;
         let alpha = file.numbers("alpha")?.ok_or(SchemaError::Missing("alpha"))?[0];
         let alpha = self::alpha("alpha", alpha)?;
@@ -51,6 +55,11 @@ impl ComplexFile {
     }
 }
 
+/// Calls a reader of archives. What panics in it, in a decoder that others wrote, is an error of the file.
+fn unpacked<T>(read: impl FnOnce() -> Result<T, SchemaError>) -> Result<T, SchemaError> {
+    decode(read).unwrap_or_else(|panicked| Err(SchemaError::Zip(panicked.to_string())))
+}
+
 /// The names of the arrays in NPZ; none if it cannot be read.
 pub(super) fn names(reader: impl Read + Seek) -> Vec<String> {
     let Ok(Npz { archive, .. }) = Npz::new(reader) else { return Vec::new() };
@@ -63,7 +72,13 @@ pub(super) fn read_named(
     reader: impl Read + Seek,
     [points, cells]: [&'static str; 2],
 ) -> Result<ComplexFile, SchemaError> {
-    let mut file = Npz::new(reader)?;
+    unpacked(|| named(Npz::new(reader)?, [points, cells]))
+}
+
+fn named(
+    mut file: Npz<impl Read + Seek>,
+    [points, cells]: [&'static str; 2],
+) -> Result<ComplexFile, SchemaError> {
     file.check(&[
         (points, Kind::Rows(3)),
         (cells, Kind::Rows(4)),
@@ -382,7 +397,10 @@ impl FiltrationFile {
     /// # Errors
     /// Missing, ill-shaped or unreadable arrays; numbers that cannot be indices or values.
     pub fn read_npz(reader: impl Read + Seek) -> Result<Self, SchemaError> {
-        let mut file = Npz::new(reader)?;
+        unpacked(|| Self::of_archive(Npz::new(reader)?))
+    }
+
+    fn of_archive(mut file: Npz<impl Read + Seek>) -> Result<Self, SchemaError> {
         file.check(&FILTRATION_ARRAYS)?;
         let components = file.rows("component_pairs", index)?;
         let lasting = file.list("lasting_components", index)?;
