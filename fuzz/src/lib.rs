@@ -10,13 +10,26 @@ use walpha::check::meshes::{Mesh, open_weights};
 use walpha::check::schema::{ComplexFile, FiltrationFile, PlacedComplex, SchemaError};
 use walpha::outofcore::{BlockwiseFormat, Cutting, Job, Plan, merge, run, whole};
 use walpha::points::{PointOptions, cells_of, is_point_file, read_complex, read_points};
-use walpha::volume::{ReadOptions, read};
+use walpha::volume::{ReadOptions, Source, files_of, format_name, read, series};
 use walpha::{Decomposition, HaarOptions, Recipe, Tolerance};
 
 /// Reads bytes as a volume file of this name.
 pub fn volume(name: &str, bytes: &[u8]) {
     let (_folder, path) = file(name, bytes);
-    let _ = read(&path, &ReadOptions::default());
+    read_volume(&path);
+}
+
+/// Looks at a file in each way that commands do before they read it, reads a part of it, and all.
+fn read_volume(path: &Path) {
+    let options = ReadOptions::default();
+    let _ = format_name(path, &options);
+    let _ = files_of(path);
+    let _ = series(path);
+    if let Ok(source) = Source::open(path, &options) {
+        let size = source.dims().xyz().map(|n| n.min(4));
+        let _ = source.read([0; 3], size);
+    }
+    let _ = read(path, &options);
 }
 
 /// Reads bytes as a point file of this name.
@@ -34,7 +47,7 @@ pub fn points(name: &str, bytes: &[u8]) {
 pub fn slices(bytes: &[u8]) {
     let name = if bytes.starts_with(b"\x89PNG") { "1.png" } else { "1.jpg" };
     let (folder, _path) = file(name, bytes);
-    let _ = read(folder.path(), &ReadOptions::default());
+    read_volume(folder.path());
 }
 
 /// Reads bytes as a complex to be checked, NPZ or else JSON.
@@ -191,7 +204,7 @@ pub fn zarr(bytes: &[u8]) {
     let third = text.contains("node_type");
     write(array.join(if third { "zarr.json" } else { ".zarray" }), bytes);
     write(array.join(if third { "c/0/0/0" } else { "0.0.0" }), rest);
-    let _ = read(folder.path(), &ReadOptions::default());
+    read_volume(folder.path());
 }
 
 /// Whether an array's shape or that of its chunks has a number that makes a large volume.

@@ -1,8 +1,10 @@
 """What is asked of the library with too little memory is refused with `MemoryError`, and the interpreter lives on."""
 
 import os
+import struct
 import subprocess
 import sys
+import zlib
 
 import pytest
 
@@ -79,6 +81,13 @@ def test_views_larger_than_any_memory(given, asked):
     assert limited(1000, given, asked).startswith("MemoryError: not enough memory: a copy of an array needs")
 
 
+@pytest.mark.parametrize("dtype", ["np.uint32", "np.int64"])
+def test_indices_larger_than_any_memory(dtype):
+    """They are not read to their end first."""
+    given = f"cells = np.broadcast_to(np.arange(4, dtype={dtype}), (2**40, 4))"
+    assert limited(1000, given, "walpha.check(corner, np.inf, cells=cells)").startswith("MemoryError")
+
+
 def test_texts_larger_than_memory(tmp_path):
     """A text is held as a whole, before anybody knows how many points are in it."""
     path = tmp_path / "points.csv"
@@ -87,3 +96,43 @@ def test_texts_larger_than_memory(tmp_path):
         file.write("1,2,3\n" * 6_000_000)
     told = limited(20, f"path = {str(path)!r}", "walpha.read_points(path)")
     assert told.startswith("MemoryError: not enough memory: what a file holds needs"), told
+
+
+def png(side):
+    """A slice of zeros, as Pillow would write it: a thousandth of its size."""
+
+    def chunk(name, data):
+        return len(data).to_bytes(4, "big") + name + data + zlib.crc32(name + data).to_bytes(4, "big")
+
+    head = side.to_bytes(4, "big") * 2 + bytes([8, 0, 0, 0, 0])
+    rows = zlib.compress(bytes(side * (side + 1)), 9)
+    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", head) + chunk(b"IDAT", rows) + chunk(b"IEND", b"")
+
+
+def tiff(side):
+    """The same as one strip of a TIFF."""
+    pixels = zlib.compress(bytes(side * side), 9)
+    entries = [(256, 4, side), (257, 4, side), (258, 3, 8), (259, 3, 8), (262, 3, 1), (273, 4, 8), (277, 3, 1), (278, 4, side), (279, 4, len(pixels))]
+    directory = struct.pack("<H", len(entries)) + b"".join(struct.pack("<HHII", tag, kind, 1, value) for tag, kind, value in entries)
+    return struct.pack("<2sHI", b"II", 42, 8 + len(pixels)) + pixels + directory + bytes(4)
+
+
+@pytest.mark.parametrize("name, content", [("slices/1.png", png(16000)), ("bomb.tif", tiff(16000))], ids=["png", "tiff"])
+def test_pictures_larger_than_memory(tmp_path, name, content):
+    """Again and again: what was refused leaves neither a thread nor memory behind, so that the last work is done as the first."""
+    path = tmp_path / name
+    path.parent.mkdir(exist_ok=True)
+    path.write_bytes(content)
+    given = f"""
+def read(path):
+    for _ in range(6):
+        try:
+            walpha.read(path)
+        except MemoryError as error:
+            last = error
+    threads = [line for line in open("/proc/self/status") if line.startswith("Threads:")]
+    assert int(threads[0].split()[1]) == 1, threads
+    raise last
+path = {str(path if path.suffix == ".tif" else path.parent)!r}
+"""
+    assert limited(400, given, "read(path)").startswith("MemoryError: not enough memory")

@@ -196,10 +196,15 @@ def indices(name: str, given: Arrays | None, columns: int) -> NDArray[np.uint32]
         raise ValueError(f"{name} has shape {array.shape}, expected {expected}: rows of input indices")
     if array.dtype.kind not in "iu":
         raise ValueError(f"{name} must be integers, input indices from 0 on, not {array.dtype}")
+    if array.dtype == np.uint32:
+        return array
+    # Room comes first: a view that repeats a row more often than there is memory for is refused at once, and not read to its end.
+    rows = np.empty(array.shape, np.uint32)
     least, most = array.min(), array.max()
     if least < 0 or most >= 2**32:
         raise ValueError(f"{name} holds the index {least if least < 0 else most}: they count from 0")
-    return array.astype(np.uint32, copy=False)
+    np.copyto(rows, array, casting="unsafe")
+    return rows
 
 
 def int64(rows: NDArray[Any]) -> Indices:

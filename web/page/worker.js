@@ -13,7 +13,7 @@ let complaints = [];
 
 function complain(line) {
   complaints.push(line);
-  if (!/^(thread '|note:|$)/.test(line)) postMessage({ remark: line });
+  if (!/^(thread '|note:|cannot be decoded: |$)/.test(line)) postMessage({ remark: line });
 }
 
 async function load(module) {
