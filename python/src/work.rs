@@ -101,13 +101,16 @@ fn pool(call: &Arc<Call>, asked: Option<NonZeroUsize>) -> PyResult<ThreadPool> {
     if available == 0 {
         return Err(no_threads());
     }
-    ThreadPoolBuilder::new()
+    let pool = ThreadPoolBuilder::new()
         .num_threads(available)
         .thread_name(|i| format!("walpha {i}"))
         .stack_size(STACK)
         .start_handler(move |_| Arc::clone(&call).enter())
         .build()
-        .map_err(|_| no_threads())
+        .map_err(|_| no_threads())?;
+    // A thread that finds no memory when it starts ends the process, so no work begins before all have started.
+    pool.broadcast(|_| ());
+    Ok(pool)
 }
 
 /// What was free when threads were counted may be gone when they start.

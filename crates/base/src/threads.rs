@@ -3,6 +3,8 @@
 use std::sync::mpsc;
 use std::thread;
 
+use crate::memory::afford;
+
 /// The most threads for each processor; more would only wait for each other.
 pub const MOST_EACH: usize = 4;
 
@@ -28,7 +30,8 @@ pub fn wanted(asked: Option<usize>) -> usize {
 /// How many of `wanted` threads, with stacks of `stack` bytes, the system starts at once: fewer where processes or
 /// memory are limited. They end before this returns.
 ///
-/// rayon fails, or waits forever, if one of its threads does not start.
+/// rayon fails, or waits forever, if one of its threads does not start. And a thread that has started takes memory for what is its own: where
+/// there is none, the C library ends the process. So that room is looked for before each start.
 pub fn available(wanted: usize, stack: usize) -> usize {
     let (ready, started) = mpsc::channel();
     thread::scope(|scope| {
@@ -41,15 +44,20 @@ pub fn available(wanted: usize, stack: usize) -> usize {
                 let _ = ready.send(());
                 let _ = wait.recv();
             };
-            if thread::Builder::new().stack_size(stack).spawn_scoped(scope, work).is_err() {
+            let room = afford(stack.saturating_add(OWN), || "a thread".into());
+            let thread = thread::Builder::new().stack_size(stack);
+            if room.is_err() || thread.spawn_scoped(scope, work).is_err() || started.recv().is_err()
+            {
                 break;
             }
             gates.push(gate);
         }
-        drop(ready);
-        gates.iter().take_while(|_| started.recv().is_ok()).count()
+        gates.len()
     })
 }
+
+/// More than what a thread has of its own beside its stack: its part of each library's data, and the blocks that those refer to.
+const OWN: usize = 1 << 20;
 
 #[cfg(test)]
 mod tests {
