@@ -121,15 +121,17 @@ fn samples(
     let fail = payload_error(path, &dims, dtype);
     let count = dims.samples() as u64;
     if (slope, inter) == (1.0, 0.0) {
-        let samples = payload.samples(dtype, endian, count, monitor).map_err(fail)?;
+        let samples = payload.samples(path, dtype, endian, count, monitor).map_err(fail)?;
         return layout.volume(samples);
     }
     let scaled: Vec<f32> = if dtype.size() < 4 || dtype == Dtype::F32 {
-        let mut samples: Vec<f32> = payload.samples(dtype, endian, count, monitor).map_err(fail)?;
+        let mut samples: Vec<f32> =
+            payload.samples(path, dtype, endian, count, monitor).map_err(fail)?;
         samples.iter_mut().for_each(|v| *v = (f64::from(*v) * slope + inter) as f32);
         samples
     } else {
-        let samples: Vec<f64> = payload.samples(dtype, endian, count, monitor).map_err(fail)?;
+        let samples: Vec<f64> =
+            payload.samples(path, dtype, endian, count, monitor).map_err(fail)?;
         samples.iter().map(|v| (v * slope + inter) as f32).collect()
     };
     // Scaled bytes are not gray levels.

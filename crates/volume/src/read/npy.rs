@@ -160,7 +160,7 @@ impl<R: Read> NpyFile<R> {
         let count = self.shape.iter().fold(1u64, |product, &n| product.saturating_mul(n));
         let claim = format!("an array of shape {:?} and type {}", self.shape, self.dtype);
         self.payload
-            .samples(self.dtype, self.endian, count, monitor)
+            .samples(path, self.dtype, self.endian, count, monitor)
             .map_err(|error| payload_error_of(path, &claim, error))
     }
 }
