@@ -135,8 +135,14 @@ pub fn list(labels: impl ExactSizeIterator<Item = i32>) -> String {
 #[non_exhaustive]
 pub enum LabelsError {
     /// The values are not whole numbers.
-    #[error("the values are not labels: some are not whole numbers, or beyond 2²⁴")]
+    #[error("the values are not labels: some are not whole numbers")]
     NotWhole,
+    /// Some values are too large.
+    #[error(
+        "the labels cannot be told apart: some reach 16777216 (2²⁴), from where on several whole numbers are rounded to \
+         one sample of single precision"
+    )]
+    TooLarge,
     /// A label that no voxel has.
     #[error("no voxel has the label {label}; {}", there_are(there))]
     Absent {
@@ -176,6 +182,7 @@ impl LabelsError {
     pub fn advice(&self) -> Option<Advice> {
         match self {
             Self::NotWhole => Some("select by gray levels, without naming labels".into()),
+            Self::TooLarge => Some("number them anew, below 16777216".into()),
             Self::Absent { .. } => Some("name labels that are there, or all".into()),
             Self::Background => Some("name a volume with a segmentation".into()),
             Self::Shape(error) => error.advice(),
@@ -187,9 +194,12 @@ impl LabelsError {
 /// The labels of a volume that a choice names, each with its number of voxels.
 ///
 /// # Errors
-/// [`LabelsError::NotWhole`], [`LabelsError::Absent`], [`LabelsError::Background`].
+/// [`LabelsError::NotWhole`], [`LabelsError::TooLarge`], [`LabelsError::Absent`], [`LabelsError::Background`].
 pub fn chosen(volume: &Volume, choice: &LabelChoice) -> Result<Vec<(i32, u64)>, LabelsError> {
-    let found = Labels::of_any(volume).ok_or(LabelsError::NotWhole)?;
+    let found = Labels::of_any(volume).ok_or_else(|| {
+        let are_whole = volume.as_slice().iter().all(|value| value.fract() == 0.0);
+        if are_whole { LabelsError::TooLarge } else { LabelsError::NotWhole }
+    })?;
     let there: Vec<i32> = found.foreground().map(|(label, _)| label).collect();
     let LabelChoice::These(labels) = choice else {
         if there.is_empty() {

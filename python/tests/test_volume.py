@@ -1,4 +1,5 @@
 import pickle
+import warnings
 
 import numpy as np
 import pytest
@@ -17,6 +18,16 @@ def test_a_sample_is_read(phantom):
     assert phantom.samples.shape == (32, 32, 32) and phantom.samples.dtype == np.float32
     assert phantom.unit == "voxel" and phantom.spacing == (1, 1, 1)
     assert np.array_equal(np.asarray(phantom), phantom.samples)
+
+
+def test_whole_numbers_that_are_rounded_are_said():
+    with pytest.warns(UserWarning, match="are rounded to samples of single precision"):
+        volume = walpha.Volume(np.full((2, 2, 2), 2**24 + 1))
+    assert volume.samples[0, 0, 0] == 2**24
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        walpha.Volume(np.full((2, 2, 2), 2**30))
+        walpha.Volume(np.full((2, 2, 2), 2**15 - 1, np.int16))
 
 
 def test_stages_by_hand_are_the_pipeline(phantom):

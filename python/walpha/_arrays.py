@@ -175,8 +175,16 @@ def samples(given: Arrays) -> tuple[Samples, bool, bool]:
     if array.ndim != 3:
         raise ValueError(f"volume has shape {array.shape}: give an array of three axes [z, y, x]")
     masked = np.ma.getmaskarray(array) if np.ma.is_masked(array) else None
+    numbers = np.ma.getdata(array)
     with np.errstate(over="ignore"):
-        values = np.ma.getdata(array).astype(np.float32, copy=masked is not None)
+        values = numbers.astype(np.float32, copy=masked is not None)
+    is_wide = numbers.dtype.kind in "iu" and numbers.dtype.itemsize > 2
+    if is_wide and np.any(values.astype(np.float64) != numbers):
+        text = (
+            "volume: whole numbers beyond 16777216 (2²⁴) are rounded to samples of single precision: "
+            "different ones, as of labels, may become the same"
+        )
+        warnings.warn(text, stacklevel=4)
     if masked is not None:
         values[masked] = np.nan
     return values, array.dtype == np.uint8, masked is not None

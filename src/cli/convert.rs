@@ -19,7 +19,7 @@ use super::progress::Progress;
 /// Convert a volume to Zarr, which can be read in parts.
 ///
 /// Formats that can be read in parts are converted part by part, at any size; others are read at once. Values are
-/// written unchanged.
+/// written as they are read: whole numbers beyond 16777216 (2²⁴) and doubles are rounded to single precision.
 ///
 /// Example:
 ///

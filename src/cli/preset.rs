@@ -130,9 +130,8 @@ pub(super) fn suited_to(args: &InputArgs, recipe: &Recipe, volume: &Volume) -> O
     if recipe.labels.is_some() {
         return None;
     }
-    if !looks_for_gray_levels(args)
-        && let Some(found) = Labels::of_volume(volume)
-    {
+    let by_labels = !looks_for_gray_levels(args);
+    if by_labels && let Some(found) = Labels::of_volume(volume) {
         let there: Vec<i32> = found.foreground().map(|(label, _)| label).collect();
         let how =
             if found.stated { "the file states labels" } else { "the values look like labels" };
@@ -143,6 +142,12 @@ pub(super) fn suited_to(args: &InputArgs, recipe: &Recipe, volume: &Volume) -> O
             stated(&recipe_of(OF_LABELS).1),
         );
         return Some(recipe.clone().labels(Some(LabelChoice::All)));
+    }
+    if by_labels && volume.states_labels() {
+        tracing::warn!(
+            "the file states labels, but some are no whole numbers below 16777216 (2²⁴), from where on single precision does \
+             not tell all apart: they are taken for gray levels"
+        );
     }
     suited(args, recipe, || Hounsfield::of_volume(volume))
 }

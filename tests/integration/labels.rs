@@ -391,6 +391,27 @@ fn solids_are_certified() {
     fails(f, 1, "check unsound.json", &["ascending runs of voxels"]);
 }
 
+/// From 2²⁴ on single precision does not tell labels apart.
+#[test]
+fn labels_that_are_rounded_are_none() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    let file = |label: i32| {
+        let header =
+            "NRRD0004\ntype: int\ndimension: 3\nsizes: 4 4 4\nendian: little\nencoding: raw\n\n";
+        let label = |i: i32| if i % 4 < 2 { 0 } else { label + i % 2 };
+        [header.as_bytes(), &(0..64).flat_map(|i| label(i).to_le_bytes()).collect::<Vec<u8>>()]
+            .concat()
+    };
+    fs::write(f.join("large.nrrd"), file(1 << 24)).unwrap();
+    fs::write(f.join("small.nrrd"), file((1 << 24) - 2)).unwrap();
+    let told = ["cannot be told apart", "16777216", "number them anew, below 16777216"];
+    fails(f, 1, "shape large.nrrd --label all -o a.ply", &told);
+    let labels =
+        json(f, &["shape", "small.nrrd", "--label", "all", "-o", "a.ply"])["labels"].to_string();
+    assert!(labels.contains("16777214") && labels.contains("16777215"), "{labels}");
+}
+
 /// Every format of a mesh says of what it is, and no α.
 #[test]
 fn all_formats_hold_solids() {

@@ -8,7 +8,7 @@ use walpha_base::advice::Advice;
 /// How a file stores one sample.
 ///
 /// Samples become `f32`. 8-bit and 16-bit integers and `f32` keep their exact value; `u32`, `i32`,
-/// `u64`, `i64` and `f64` are rounded to the nearest `f32` (24 significant bits), and an `f64`
+/// `u64`, `i64` and `f64` are rounded to the nearest `f32` (24 significant bits), which readers say of whole numbers, and an `f64`
 /// beyond its range becomes infinite, which [`Volume::new`](super::Volume::new) refuses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -120,11 +120,18 @@ pub trait Sample: Copy + Send + Sync + sealed::Sealed {
     const DTYPE: Dtype;
     /// The number, rounded as [`Dtype`] says.
     fn to_f32(self) -> f32;
+    /// Whether it is a whole number that `f32` does not hold, so that it becomes another one.
+    fn is_rounded(self) -> bool;
 }
 
 mod sealed {
     pub trait Sealed {}
 }
+
+/// Up to here `f32` holds every whole number.
+pub(crate) const HELD: f64 = 16777216.0;
+/// From here on all `f64` are whole numbers.
+const ALL_WHOLE: f64 = 9007199254740992.0;
 
 macro_rules! samples {
     ($($number:ty: $dtype:ident),*) => {$(
@@ -134,6 +141,16 @@ macro_rules! samples {
             #[allow(clippy::cast_lossless, trivial_numeric_casts, reason = "from any number to f32")]
             fn to_f32(self) -> f32 {
                 self as f32
+            }
+            #[allow(clippy::cast_lossless, trivial_numeric_casts, reason = "from any number to f64")]
+            fn is_rounded(self) -> bool {
+                let exact = self as f64;
+                size_of::<Self>() > 2
+                    && exact.abs() > HELD
+                    // Doubles from 2⁵³ on are whole for want of bits, not by their meaning.
+                    && (Self::DTYPE != Dtype::F64
+                        || exact.fract() == 0.0 && exact.abs() < ALL_WHOLE)
+                    && self as f32 as i128 != self as i128
             }
         }
     )*};

@@ -6,6 +6,8 @@ use crate::{Dtype, Source, Volume, VolumeError};
 
 /// The labels of a volume: whole numbers that say what a voxel is part of. 0 is the background.
 ///
+/// None reach 2²⁴, from where on single precision does not tell all of them apart.
+///
 /// A file may state it ([`Volume::states_labels`]). Otherwise values are taken for labels by this rule: all are whole numbers, none below 0, of 2 to 1000
 /// different ones, in flat regions. *Flat*: of the pairs of neighbours (along x, y and z) in which a value has a part, some are equal; for values at random that
 /// share would be e = p / (2 − p), p being the share of the value among all samples. Of the way from e to 1, the shares go a quarter or more
@@ -31,7 +33,8 @@ impl Labels {
         Tally::of(volume, stated).judge(stated)
     }
 
-    /// Of a volume whose values are labels, whatever the rule says; `None` if some are not whole numbers. One pass.
+    /// Of a volume whose values are labels, whatever the rule says; `None` if some are not whole numbers, or reach 2²⁴, where single
+    /// precision no longer tells all of them apart. One pass.
     pub fn of_any(volume: &Volume) -> Option<Self> {
         let stated = volume.states_labels();
         Tally::of(volume, true).labels(stated)
@@ -65,8 +68,8 @@ fn is_gray(gray_levels: bool, dtype: Dtype) -> bool {
 const MOST: usize = 1000;
 /// Whole numbers up to this are looked up in a table.
 const SMALL: usize = 4096;
-/// The largest whole number up to which `f32` holds all.
-const LARGEST: f32 = 16_777_216.0;
+/// From here on several whole numbers may be rounded to one `f32`: 2²⁴ + 1 to this.
+const TOO_LARGE: f32 = 16_777_216.0;
 /// Stands for a value that is not known yet, and for a missing sample.
 const NONE: u32 = u32::MAX;
 
@@ -163,7 +166,7 @@ impl Tally {
             return NONE;
         }
         let value = sample as i32;
-        if value as f32 != sample || sample.abs() > LARGEST {
+        if value as f32 != sample || sample.abs() >= TOO_LARGE {
             self.ended = true;
             return NONE;
         }

@@ -26,6 +26,7 @@ mod labels;
 mod open;
 mod read;
 mod reason;
+mod rounding;
 mod sample;
 mod source;
 mod volume;

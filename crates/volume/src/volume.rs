@@ -3,6 +3,7 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use walpha_base::memory;
 
+use super::rounding::ROUNDED;
 use super::{Dims, Dtype, Frame, Gray, GrayRange, Sample, VolumeError};
 
 /// A grid of finite samples, stored `[z, y, x]` (x fastest) in standard layout.
@@ -73,6 +74,9 @@ impl Volume {
         frame: Frame,
     ) -> Result<Self, VolumeError> {
         memory::afford(samples.len().saturating_mul(size_of::<f32>()), || "a volume".into())?;
+        if samples.iter().any(|sample| sample.is_rounded()) {
+            tracing::warn!("{ROUNDED}");
+        }
         let samples = samples.as_standard_layout();
         Ok(Self::new(samples.map(|&sample| sample.to_f32()), frame)?.with_dtype(T::DTYPE))
     }
@@ -173,7 +177,7 @@ impl Volume {
 
     /// The same volume where these samples are padding, and missing; the least of the others replaces them. `None` where
     /// all are padding.
-    #[cfg(feature = "dicom")]
+    #[cfg(any(feature = "dicom", feature = "zarr"))]
     pub(crate) fn with_padding(mut self, padded: Vec<bool>) -> Option<Self> {
         if padded.par_iter().all(|&padded| padded) {
             return None;

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use serde_json::Value;
+use walpha::volume::{ReadOptions, Source};
 
 use super::files::*;
 use crate::common::{json, ok, run};
@@ -113,4 +114,87 @@ fn selection_and_isovalue_can_be_said_in_values() {
     assert!(code == 2 && error.contains("bone"), "{error}");
     let both = ["points", "head.nrrd", "--gray-min", "1", "--value-min", "1"];
     assert_eq!(run(f, &both).0, 2);
+}
+
+/// A file of each format that holds integers of 32 or 64 bits, all 0 but the first. It has a name and what makes a file of
+/// that number.
+type OfNumber = (&'static str, fn(i32) -> Vec<u8>);
+
+fn integers(first: i32) -> Vec<u8> {
+    let all = std::iter::once(first).chain([0; 11]);
+    all.flat_map(i32::to_le_bytes).collect()
+}
+
+fn text(first: i32) -> Vec<u8> {
+    format!("{first} 0 0 0 0 0 0 0 0 0 0 0").into_bytes()
+}
+
+fn tiff_of(first: i32) -> Vec<u8> {
+    use tiff::encoder::{TiffEncoder, colortype::GrayI32};
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    let mut encoder = TiffEncoder::new(&mut bytes).unwrap();
+    encoder.write_image::<GrayI32>(3, 2, &[first, 0, 0, 0, 0, 0]).unwrap();
+    bytes.into_inner()
+}
+
+fn npy_of(descr: &str, numbers: &[u8]) -> Vec<u8> {
+    let header = format!("{{'descr': '{descr}', 'fortran_order': False, 'shape': (2, 2, 3)}}\n");
+    [b"\x93NUMPY\x01\0", &(header.len() as u16).to_le_bytes()[..], header.as_bytes(), numbers]
+        .concat()
+}
+
+#[test]
+fn whole_numbers_that_are_rounded_are_said() {
+    let wide: [OfNumber; 10] = [
+        ("a.npy", |first| npy_of("<i4", &integers(first))),
+        ("b.npy", |first| {
+            let all = std::iter::once(first.into()).chain([0; 11]);
+            npy_of("<i8", &all.flat_map(i64::to_le_bytes).collect::<Vec<u8>>())
+        }),
+        ("c.npy", |first| {
+            let all = std::iter::once(first.into()).chain([0.0; 11]);
+            npy_of("<f8", &all.flat_map(f64::to_le_bytes).collect::<Vec<u8>>())
+        }),
+        ("a.nrrd", |first| nrrd(|h| h.replace("short", "int"), &integers(first))),
+        ("b.nrrd", |first| {
+            nrrd(|h| h.replace("short", "int").replace("raw", "text"), &text(first))
+        }),
+        ("a.mha", |first| {
+            let header = MHA.replace("SHORT", "INT") + "ElementDataFile = LOCAL\n";
+            [header.as_bytes(), &integers(first)].concat()
+        }),
+        ("a.vti", |first| {
+            let text = String::from_utf8(text(first)).unwrap();
+            let file = vti("", &format!("format=\"ascii\">{text}"), b"");
+            String::from_utf8(file).unwrap().replace("Int16", "Int32").into_bytes()
+        }),
+        ("a.vtk", |first| [VTK.replace("short", "int").as_bytes(), &text(first)].concat()),
+        ("a.inr", |first| {
+            let header = "#INRIMAGE-4#{\nXDIM=3\nYDIM=2\nZDIM=2\nTYPE=signed fixed\nPIXSIZE=32 bits\nCPU=decm\n";
+            let filled = format!("{header:\n<252}##}}\n");
+            [filled.as_bytes(), &integers(first)].concat()
+        }),
+        ("a.tif", tiff_of),
+    ];
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    let said = |name: &str| {
+        let facts = json(f, &["info", name]);
+        let warnings = facts["warnings"].as_array().cloned().unwrap_or_default();
+        warnings.iter().filter(|warning| warning.to_string().contains("are rounded")).count()
+    };
+    for (name, file) in wide {
+        for (first, times) in [((1 << 24) + 1, 1), (1 << 24, 0), (1 << 30, 0), (-3 - (1 << 25), 1)]
+        {
+            save(f, name, file(first));
+            assert_eq!(said(name), times, "{name}: {first}");
+        }
+    }
+    // Scaled numbers are no whole ones.
+    save(f, "d.npy", npy_of("<f8", &[16777217.5f64; 12].map(f64::to_le_bytes).concat()));
+    assert_eq!(said("d.npy"), 0);
+    // In parts, too, and once.
+    save(f, "a.npy", npy_of("<i4", &integers((1 << 24) + 1)));
+    let source = Source::open(f.join("a.npy"), &ReadOptions::default()).unwrap();
+    assert_eq!(source.read([0; 3], [1; 3]).unwrap(), [16777216.0]);
 }

@@ -133,7 +133,7 @@ fn naming_data_files(file: &OpenFile, options: &ReadOptions, error: VolumeError)
 }
 
 /// Calls a reader. What panics in it, in a decoder that others wrote, is an error of the file.
-fn decoded<T>(
+pub(crate) fn decoded<T>(
     path: &Path,
     read: impl FnOnce() -> Result<T, VolumeError>,
 ) -> Result<T, VolumeError> {

@@ -31,7 +31,7 @@ pub(super) fn is_metaimage(start: &[u8]) -> bool {
     const FIRST_KEYS: [&str; 4] = ["ObjectType", "NDims", "Comment", "ObjectSubType"];
     let line = start.split(|&byte| byte == b'\n').next().unwrap_or_default();
     let line = String::from_utf8_lossy(line);
-    line.split_once('=').is_some_and(|(key, _)| FIRST_KEYS.contains(&key.trim()))
+    line.split_once(['=', ':']).is_some_and(|(key, _)| FIRST_KEYS.contains(&key.trim()))
 }
 
 /// Whether a file begins as VTK's XML files do.

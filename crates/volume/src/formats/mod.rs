@@ -24,6 +24,8 @@ macro_rules! __built {
 }
 pub use __built as built;
 
+#[cfg(feature = "zarr")]
+pub(crate) use detect::decoded;
 #[cfg(feature = "dicom")]
 pub(crate) use detect::recognised;
 pub use detect::{

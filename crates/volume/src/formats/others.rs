@@ -33,7 +33,7 @@ const SAVE_TABLE: &str = "save it as CSV";
 const DOWNLOAD: &str = "download the file itself: this is what a server said instead";
 
 /// The kinds, in the order in which they are looked for.
-static KINDS: [Kind; 48] = [
+static KINDS: [Kind; 49] = [
     kind!(b"\x89PNG", "a PNG picture, one slice", SLICES),
     kind!(b"\xff\xd8\xff", "a JPEG picture, one slice", SLICES),
     kind!(b"GIF8", "a GIF picture", SLICES),
@@ -126,6 +126,11 @@ static KINDS: [Kind; 48] = [
         },
         what: "an error message of a server (JSON)",
         advice: DOWNLOAD,
+    },
+    Kind {
+        begins: |start| is_other_xml(start) && start.windows(4).any(|window| window == b"<OME"),
+        what: "OME-XML, the metadata of an image in TIFF files, and no samples",
+        advice: "name a TIFF file that has its own metadata: save the image as one OME-TIFF",
     },
     Kind {
         begins: is_other_xml,

@@ -40,7 +40,7 @@ pub(crate) fn read(
     Fields(&String::from_utf8_lossy(&text)).say_what_is_passed_over(path);
     let payload = Payload { reader, length: length.minus(text.len() as u64) };
     let samples = payload
-        .samples(dtype, endian, dims.samples() as u64, monitor)
+        .samples(path, dtype, endian, dims.samples() as u64, monitor)
         .map_err(payload_error(path, &dims, dtype))?;
     let samples = Array3::from_shape_vec(dims.shape(), samples).expect("count was checked");
     Ok(Volume::of_file(samples, frame)?.with_dtype(dtype))

@@ -77,7 +77,7 @@ impl Layout {
             Encoding::Text => {
                 let count = self.dims.samples();
                 let all = (count as u64).saturating_mul(self.frames.count);
-                let mut samples = text::numbers(compressed, bytes, self.dtype, all)
+                let mut samples = text::numbers(path, compressed, bytes, self.dtype, all)
                     .map_err(|reason| format_error(path, reason))?;
                 samples.drain(..count * self.frames.index as usize);
                 samples.truncate(count);
@@ -95,7 +95,7 @@ impl Layout {
     ) -> Result<Volume, VolumeError> {
         let (reader, length) = self.frames.select(path, reader, length, self.each())?;
         let samples = Payload { reader, length }
-            .samples(self.dtype, self.endian, self.dims.samples() as u64, monitor)
+            .samples(path, self.dtype, self.endian, self.dims.samples() as u64, monitor)
             .map_err(payload_error(path, &self.dims, self.dtype))?;
         self.volume(samples)
     }

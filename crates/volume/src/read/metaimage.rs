@@ -81,7 +81,7 @@ impl Header {
             if line.trim().is_empty() {
                 continue;
             }
-            let Some((key, value)) = line.split_once('=') else {
+            let Some((key, value)) = line.split_once(['=', ':']) else {
                 let line: String = line.chars().take(40).collect();
                 let reason =
                     Reason::other(format!("is no MetaImage file: its header has a line {line:?}"));

@@ -40,7 +40,7 @@ pub(crate) fn read(
     let Layout { dims, dtype, endian, frames, .. } = layout;
     let (reader, length) = frames.select(path, reader.take(all), length, layout.each())?;
     let samples = Payload { reader, length }
-        .samples(dtype, endian, dims.samples() as u64, monitor)
+        .samples(path, dtype, endian, dims.samples() as u64, monitor)
         .map_err(payload_error(path, &dims, dtype))?;
     layout.volume(samples)
 }

@@ -46,7 +46,7 @@ fn volume(
 ) -> Result<Volume, VolumeError> {
     let path = file.path();
     let layout = header.layout(path, frame)?;
-    let (slope, inter) = header.scaling();
+    let (slope, inter) = header.scaling(path);
     if header.is_pair(path)? {
         let image = image(path);
         let data = OpenFile::open(&image)?;
@@ -74,7 +74,7 @@ pub(crate) fn box_reader(file: &OpenFile, frame: Option<u64>) -> Result<Uncompre
     let path = file.path();
     let header = Header::read(path, &mut file.reader()?)?;
     let layout = header.layout(path, frame)?;
-    let scaling = header.scaling();
+    let scaling = header.scaling(path);
     let samples = if header.is_pair(path)? {
         if image(path).extension().is_some_and(|own| own.eq_ignore_ascii_case("gz")) {
             return Err(whole_only(path, "NIfTI"));
@@ -121,15 +121,17 @@ fn samples(
     let fail = payload_error(path, &dims, dtype);
     let count = dims.samples() as u64;
     if (slope, inter) == (1.0, 0.0) {
-        let samples = payload.samples(dtype, endian, count, monitor).map_err(fail)?;
+        let samples = payload.samples(path, dtype, endian, count, monitor).map_err(fail)?;
         return layout.volume(samples);
     }
     let scaled: Vec<f32> = if dtype.size() < 4 || dtype == Dtype::F32 {
-        let mut samples: Vec<f32> = payload.samples(dtype, endian, count, monitor).map_err(fail)?;
+        let mut samples: Vec<f32> =
+            payload.samples(path, dtype, endian, count, monitor).map_err(fail)?;
         samples.iter_mut().for_each(|v| *v = (f64::from(*v) * slope + inter) as f32);
         samples
     } else {
-        let samples: Vec<f64> = payload.samples(dtype, endian, count, monitor).map_err(fail)?;
+        let samples: Vec<f64> =
+            payload.samples(path, dtype, endian, count, monitor).map_err(fail)?;
         samples.iter().map(|v| (v * slope + inter) as f32).collect()
     };
     // Scaled bytes are not gray levels.
@@ -312,14 +314,21 @@ impl Header {
         self.code(68, 504) == 1002
     }
 
-    /// Slope and intercept; a slope of 0 means none.
-    fn scaling(&self) -> (f64, f64) {
+    /// Slope and intercept; a slope of 0, or none, means neither. An intercept that is no number is 0, as for `NIfTI`'s own library,
+    /// which is said.
+    fn scaling(&self, path: &Path) -> (f64, f64) {
         let (slope, inter) = (self.real(112, 176, 0), self.real(116, 184, 0));
-        if slope != 0.0 && slope.is_finite() && inter.is_finite() {
-            (slope, inter)
-        } else {
-            (1.0, 0.0)
+        if slope == 0.0 || !slope.is_finite() {
+            return (1.0, 0.0);
         }
+        if !inter.is_finite() {
+            tracing::warn!(
+                "{}: its scl_inter is {inter}, and taken as 0; scl_slope is {slope}",
+                shown(path)
+            );
+            return (slope, 0.0);
+        }
+        (slope, inter)
     }
 }
 
@@ -331,7 +340,17 @@ const APART: f64 = 0.01;
 impl Header {
     /// Where the samples lie: as `sform` says, else as `qform` does. A warning says by how much these differ.
     fn frame(&self, path: &Path, dims: Dims) -> Result<Frame, VolumeError> {
-        let taken = if self.code(254, 348) > 0 { self.sform(path)? } else { self.qform(path)? };
+        let taken = if self.code(254, 348) > 0 {
+            self.sform(path)?
+        } else {
+            let pixdim = |i: usize| self.real(76, 104, i);
+            let is_placed = self.code(252, 344) > 0 || (1..=3).any(|i| pixdim(i) != 0.0);
+            let is_unknown = |i: &usize| is_placed && pixdim(*i) == 0.0 && dims.xyz()[i - 1] > 1;
+            for i in (1..=3).filter(is_unknown) {
+                tracing::warn!("{}: its pixdim[{i}] is 0, and taken as 1", shown(path));
+            }
+            self.qform(path)?
+        };
         let unit = taken.coordinates.unit;
         if self.length_unit() > 3 {
             tracing::warn!(

@@ -28,14 +28,14 @@ pub struct NpyFile<R> {
 }
 
 /// Reads an array of three axes `[z, y, x]`, in C or Fortran order, or the one numbered `frame` of an
-/// array of four, in C order.
+/// array of four, in C order. Of four axes, a last one of one element is a channel, and is left out.
 pub(crate) fn read(
     file: &OpenFile,
     frame: Option<u64>,
     monitor: &Monitor,
 ) -> Result<Volume, VolumeError> {
     let path = file.path();
-    let file = NpyFile::open(file)?;
+    let file = NpyFile::open(file)?.without_channel();
     if let (&[count, z, y, x], false) = (file.shape.as_slice(), file.fortran) {
         let each =
             [z, y, x, file.dtype.size() as u64].iter().fold(1, |n: u64, m| n.saturating_mul(*m));
@@ -58,7 +58,7 @@ pub(crate) fn read(
 pub(crate) fn box_reader(file: &OpenFile, frame: Option<u64>) -> Result<Uncompressed, VolumeError> {
     let (path, length) = (file.path(), file.length());
     let fail = |reason: Reason| VolumeError::Format { path: path.into(), reason };
-    let array = NpyFile::open(file)?;
+    let array = NpyFile::open(file)?.without_channel();
     let (beyond, axes) = array.shape.split_at(array.shape.len().saturating_sub(3));
     let (&[z, y, x], false) = (axes, array.fortran || beyond.len() > 1) else {
         return Err(fail(Reason::unsupported(
@@ -122,6 +122,14 @@ impl<'a> NpyFile<BufReader<&'a File>> {
 }
 
 impl<R: Read> NpyFile<R> {
+    /// The same without a last axis of one element behind three others: a channel, and no row along x.
+    fn without_channel(mut self) -> Self {
+        if let [_, _, _, 1] = self.shape[..] {
+            self.shape.pop();
+        }
+        self
+    }
+
     /// Reads and checks the header of an array of so many bytes in a file.
     ///
     /// # Errors
@@ -160,7 +168,7 @@ impl<R: Read> NpyFile<R> {
         let count = self.shape.iter().fold(1u64, |product, &n| product.saturating_mul(n));
         let claim = format!("an array of shape {:?} and type {}", self.shape, self.dtype);
         self.payload
-            .samples(self.dtype, self.endian, count, monitor)
+            .samples(path, self.dtype, self.endian, count, monitor)
             .map_err(|error| payload_error_of(path, &claim, error))
     }
 }

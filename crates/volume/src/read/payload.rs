@@ -8,7 +8,8 @@ use walpha_base::memory::asking;
 use walpha_base::{Cancelled, Monitor};
 
 use crate::error::format_error;
-use crate::{Dims, Dtype, Endian, Reason, VolumeError};
+use crate::rounding::Rounding;
+use crate::{Dims, Dtype, Endian, Reason, Sample, VolumeError};
 
 /// Decoded at a time, so that a file is never held in memory along with its samples.
 const CHUNK_BYTES: usize = 8 << 20;
@@ -73,6 +74,7 @@ impl<R: Read> Payload<R> {
     /// claim before anything is allocated; decoding runs in parallel, a few MB at a time.
     pub(super) fn samples<T: Element>(
         mut self,
+        path: &Path,
         dtype: Dtype,
         endian: Endian,
         count: u64,
@@ -96,6 +98,7 @@ impl<R: Read> Payload<R> {
         let chunk = |left: u64| usize::try_from(left).unwrap_or(usize::MAX).min(CHUNK_BYTES);
         let mut bytes = vec![0; chunk(needed)];
         let mut left = needed;
+        let rounding = Rounding::default();
         while left > 0 {
             let chunk = &mut bytes[..chunk(left)];
             let found = read_up_to(&mut self.reader, chunk).map_err(PayloadError::Io)?;
@@ -106,12 +109,13 @@ impl<R: Read> Payload<R> {
             }
             let start = samples.len();
             samples.resize(start + chunk.len() / dtype.size(), T::default());
-            T::decode(chunk, dtype, endian, &mut samples[start..]);
+            rounding.note(T::decode(chunk, dtype, endian, &mut samples[start..]));
             monitor.report(needed - left, needed).map_err(|_| PayloadError::Cancelled)?;
         }
         if read_up_to(&mut self.reader, &mut [0]).map_err(PayloadError::Io)? > 0 {
             return Err(PayloadError::Length { needed, found: needed + 1, bound: "at least " });
         }
+        rounding.say(path);
         Ok(samples)
     }
 }
@@ -176,15 +180,15 @@ fn read_up_to(reader: &mut impl Read, buffer: &mut [u8]) -> io::Result<usize> {
 
 /// The number type samples become: `f32` for volumes, `f64` for point columns.
 pub trait Element: Copy + Default + Send + Sync {
-    /// Decodes as many samples as `out` is long.
-    fn decode(bytes: &[u8], dtype: Dtype, endian: Endian, out: &mut [Self]);
+    /// Decodes as many samples as `out` is long. Returns whether whole numbers were rounded to `f32`.
+    fn decode(bytes: &[u8], dtype: Dtype, endian: Endian, out: &mut [Self]) -> bool;
 }
 
 /// Implements [`Element`] with the language's `as`, which rounds to nearest.
 macro_rules! element {
     ($target:ty) => {
         impl Element for $target {
-            fn decode(bytes: &[u8], dtype: Dtype, endian: Endian, out: &mut [Self]) {
+            fn decode(bytes: &[u8], dtype: Dtype, endian: Endian, out: &mut [Self]) -> bool {
                 macro_rules! each {
                     ($source:ty) => {{
                         const SIZE: usize = size_of::<$source>();
@@ -196,7 +200,12 @@ macro_rules! element {
                         out.par_iter_mut()
                             .with_min_len(1 << 14)
                             .zip(words)
-                            .for_each(|(value, &word)| *value = from(word) as $target);
+                            .map(|(value, &word)| {
+                                let number = from(word);
+                                *value = number as $target;
+                                size_of::<$target>() == size_of::<f32>() && number.is_rounded()
+                            })
+                            .reduce(|| false, |one, other| one | other)
                     }};
                 }
                 match dtype {

@@ -45,15 +45,16 @@ pub(crate) fn read(
     dims.bounded()?;
     let reader = file.reader_at(offset.min(length))?;
     let payload = Payload { reader, length: Length::Exactly(length.saturating_sub(offset)) };
-    let samples = payload.samples(dtype, endian, dims.samples() as u64, monitor).map_err(
-        |error| match error {
-            PayloadError::Length { needed, .. } => VolumeError::Format {
-                path: path.into(),
-                reason: wrong_length(layout, needed, length),
-            },
-            other => payload_error(path, &dims, dtype)(other),
-        },
-    )?;
+    let samples =
+        payload.samples(path, dtype, endian, dims.samples() as u64, monitor).map_err(|error| {
+            match error {
+                PayloadError::Length { needed, .. } => VolumeError::Format {
+                    path: path.into(),
+                    reason: wrong_length(layout, needed, length),
+                },
+                other => payload_error(path, &dims, dtype)(other),
+            }
+        })?;
     let samples = Array3::from_shape_vec(dims.shape(), samples).expect("count was checked");
     Ok(Volume::of_file(samples, Frame::VOXEL)?.with_dtype(dtype))
 }

@@ -1,12 +1,15 @@
 //! Text in files of samples: the lines of a header, and numbers.
 
 use std::io::{self, BufRead, Read};
+use std::path::Path;
 use std::str::FromStr;
 
 use walpha_base::memory::{NoMemory, try_with_capacity};
 
 use super::payload::Element;
-use crate::{Dtype, Reason};
+use crate::dtype::HELD;
+use crate::rounding::Rounding;
+use crate::{Dtype, Reason, Sample as _};
 
 /// Longer lines than this are data taken for a header.
 const MAX_LINE: u64 = 1 << 20;
@@ -79,6 +82,7 @@ impl<R: BufRead> Lines<R> {
 ///
 /// The error says what is wrong, in words that follow the name of the file.
 pub(super) fn numbers<T: Element + FromStr + Into<f64>>(
+    path: &Path,
     reader: impl Read,
     bytes: u64,
     dtype: Dtype,
@@ -101,6 +105,7 @@ pub(super) fn numbers<T: Element + FromStr + Into<f64>>(
         .map_err(|error| Reason::damaged(format!("cannot be read: {error}")))?;
     let mut values =
         try_with_capacity(room(count), || format!("a row of {count} numbers")).map_err(no_room)?;
+    let rounding = Rounding::default();
     for word in text.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty()) {
         if values.len() as u64 == count {
             return Err(Reason::header(format!(
@@ -109,7 +114,14 @@ pub(super) fn numbers<T: Element + FromStr + Into<f64>>(
         }
         let number = std::str::from_utf8(word).ok().and_then(|word| word.parse::<T>().ok());
         match number {
-            Some(number) if dtype.holds(number.into()) => values.push(number),
+            Some(number) if dtype.holds(number.into()) => {
+                let is_single = size_of::<T>() == size_of::<f32>() && dtype != Dtype::F32;
+                if is_single && number.into().abs() >= HELD {
+                    let exact = std::str::from_utf8(word).ok().and_then(|word| word.parse().ok());
+                    rounding.note(exact.is_some_and(f64::is_rounded));
+                }
+                values.push(number);
+            }
             _ => {
                 let word = String::from_utf8_lossy(&word[..word.len().min(40)]);
                 let place = values.len() + 1;
@@ -125,5 +137,6 @@ pub(super) fn numbers<T: Element + FromStr + Into<f64>>(
             values.len()
         )));
     }
+    rounding.say(path);
     Ok(values)
 }

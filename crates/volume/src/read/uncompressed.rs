@@ -13,6 +13,7 @@ use crate::Reason;
 #[cfg(feature = "formats")]
 use crate::error::format_error;
 use crate::error::io_error;
+use crate::rounding::Rounding;
 #[cfg(feature = "formats")]
 use crate::source::CONVERT;
 use crate::source::{BoxReader, Source};
@@ -33,6 +34,7 @@ pub(crate) struct Uncompressed {
     scaling: Option<(f64, f64)>,
     /// Whether the file states that values are labels.
     labels: bool,
+    rounding: Rounding,
 }
 
 impl Uncompressed {
@@ -46,7 +48,18 @@ impl Uncompressed {
     ) -> Result<Self, VolumeError> {
         let path = file.path().to_owned();
         let file = SharedFile::new(file.handle()?);
-        Ok(Self { path, file, dims, frame, dtype, endian, offset, scaling: None, labels: false })
+        Ok(Self {
+            path,
+            file,
+            dims,
+            frame,
+            dtype,
+            endian,
+            offset,
+            scaling: None,
+            labels: false,
+            rounding: Rounding::default(),
+        })
     }
 
     /// Scales samples, in doubles. Scaled bytes are not gray levels.
@@ -157,7 +170,8 @@ impl Uncompressed {
     fn decode(&self, bytes: &[u8], samples: &mut [f32]) {
         let Self { dtype, endian, scaling, .. } = *self;
         let Some((slope, inter)) = scaling else {
-            return f32::decode(bytes, dtype, endian, samples);
+            self.rounding.note(f32::decode(bytes, dtype, endian, samples));
+            return self.rounding.say(&self.path);
         };
         // In doubles where `f32` does not hold the numbers of the file.
         let mut exact = vec![0.0; samples.len()];

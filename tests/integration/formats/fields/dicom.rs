@@ -248,6 +248,18 @@ fn dicom() {
                 }),
             ),
             field(
+                "Image Orientation that has not the length 1",
+                |f| {
+                    let orientation = "2\\0\\0\\0\\2\\0";
+                    (0..3).for_each(|n| {
+                        Slice { orientation, ..slice(n, f64::from(n)) }
+                            .save(f, &format!("{n}.dcm"));
+                    });
+                    f.to_owned()
+                },
+                Refused(&["of the lengths [2.0, 2.0], where directions have the length 1"]),
+            ),
+            field(
                 "Image Position, Image Orientation",
                 |f| {
                     let orientation = "0\\1\\0\\1\\0\\0";

@@ -28,6 +28,15 @@ fn each_field_of_the_table() {
         "MetaImage",
         &[
             Field {
+                name: "`=` or `:` behind a name",
+                file: |f| {
+                    let header =
+                        MHA.replace(" =", ":") + "Comment: a = b\nElementDataFile: LOCAL\n";
+                    save(f, "v", [header.as_bytes(), &shorts()].concat())
+                },
+                fate: Fate::Read(same),
+            },
+            Field {
                 name: "`NDims`, `DimSize`",
                 file: |f| with(f, ""),
                 fate: Fate::Read(|path| assert_eq!(volume(path).dims().xyz(), [3, 2, 2])),

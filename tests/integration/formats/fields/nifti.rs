@@ -98,6 +98,11 @@ fn each_field_of_the_table() {
                 fate: Fate::Read(same),
             },
             Field {
+                name: "`scl_inter` that is no number",
+                file: |f| with(f, &[(112, &float(2.0)), (116, &float(f32::NAN))]),
+                fate: Fate::PassedOver(&["scl_inter is NaN, and taken as 0; scl_slope is 2"]),
+            },
+            Field {
                 name: "`vox_offset`, extensions",
                 file: |f| {
                     let extended = header(&[(108, &float(368.0)), (348, &[1, 0, 0, 0])]);
@@ -141,6 +146,11 @@ fn each_field_of_the_table() {
                 name: "`pixdim` below 0",
                 file: |f| with(f, &[(76, &floats(&[1.0, -2.0, 2.0, 2.0]))]),
                 fate: Fate::PassedOver(&["pixdim is negative, and taken without the sign"]),
+            },
+            Field {
+                name: "`pixdim` of 0, where there is no sform",
+                file: |f| with(f, &[(252, &[1, 0]), (76, &floats(&[1.0, 2.0, 2.0, 0.0]))]),
+                fate: Fate::PassedOver(&["pixdim[3] is 0, and taken as 1"]),
             },
             Field {
                 name: "`sform` and `qform` that disagree",

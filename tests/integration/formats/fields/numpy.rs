@@ -3,7 +3,7 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use walpha::volume::{Dtype, ReadOptions, read};
+use walpha::volume::{Dtype, ReadOptions, Source, read};
 
 use super::volumes::{frame, same, same_without_a_word, volume};
 use super::{Fate, Field, walk};
@@ -45,6 +45,15 @@ fn each_field_of_the_table() {
                 name: "`shape` of four axes",
                 file: |f| with(f, "'<i2'", "False", "(2, 1, 2, 3)"),
                 fate: Fate::Read(|path| assert_eq!(frame(path, 1).as_slice()[0], 12.0)),
+            },
+            Field {
+                name: "a last axis of one element behind three others",
+                file: |f| with(f, "'<i2'", "False", "(2, 2, 3, 1)"),
+                fate: Fate::Read(|path| {
+                    same(path);
+                    let source = Source::open(path, &ReadOptions::default()).unwrap();
+                    assert_eq!(source.dims().xyz(), [3, 2, 2]);
+                }),
             },
             Field {
                 name: "other `shape`",

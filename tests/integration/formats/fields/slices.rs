@@ -7,6 +7,7 @@ use walpha::volume::Dtype;
 
 use super::volumes::{same_without_a_word, volume};
 use super::{Fate, Field, walk};
+use crate::common::json;
 use crate::formats::files::*;
 
 /// A folder of slices of 3×2 pixels with these names; the first two have the samples of `numbers`.
@@ -54,6 +55,18 @@ fn each_field_of_the_table() {
                 name: "numbers in the names",
                 file: |f| slices(f, &["s9.png", "s10.png"]),
                 fate: Fate::Read(same_without_a_word),
+            },
+            Field {
+                name: "numbers with decimals or signs",
+                file: |f| slices(f, &["z0.25.png", "z0.5.png", "z0.75.png", "z1.0.png"]),
+                fate: Fate::Read(|path| {
+                    let told = json(path, &["info", "."])["warnings"].to_string();
+                    assert!(
+                        told.contains("with their decimals and signs, from z0.25.png"),
+                        "{told}"
+                    );
+                    assert_eq!(volume(path).as_slice()[6], 12.0);
+                }),
             },
             Field {
                 name: "a number that is missing",
@@ -122,6 +135,28 @@ fn each_field_of_the_table() {
                 name: "PNG: transparency (alpha, `tRNS`)",
                 file: |f| one(f, &png(0, 8, 2, &[0, 1], &[(b"tRNS", &[0, 1])])),
                 fate: Fate::Refused(&["gray values with transparency"]),
+            },
+            Field {
+                name: "Exif: `Orientation` other than 1, of any slice",
+                file: |f| {
+                    let exif = b"II*\0\x08\0\0\0\x01\0\x12\x01\x03\0\x01\0\0\0\x06\0\0\0\0\0\0\0";
+                    one(f, &png(0, 8, 2, &[0, 1], &[]));
+                    save(f, "s2.png", png(0, 8, 2, &[0, 1], &[(b"eXIf", exif)]));
+                    f.to_owned()
+                },
+                fate: Fate::PassedOver(&["s2.png: Orientation 6 is passed over"]),
+            },
+            Field {
+                name: "TIFF: 0 is white, in any slice",
+                file: |f| {
+                    let mut white = tiff(1, None);
+                    let entry = white.windows(4).position(|window| window == [6, 1, 3, 0]).unwrap();
+                    white[entry + 8] = 0;
+                    save(f, "s1.tif", tiff(1, None));
+                    save(f, "s2.tif", white);
+                    f.to_owned()
+                },
+                fate: Fate::PassedOver(&["s2.tif: 0 is white", "values are as stored"]),
             },
             Field {
                 name: "PNG: `gAMA`, `sBIT`, `pHYs` and other fields",

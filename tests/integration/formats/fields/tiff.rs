@@ -71,6 +71,54 @@ fn described(folder: &Path, text: &[u8]) -> PathBuf {
     with(folder, &[(270, 2, text), (282, 5, &ratio), (283, 5, &ratio), (296, 3, &[1, 0])])
 }
 
+/// One page with these tags, whose samples and those of a second one are at the end of the file.
+fn behind_one_page(folder: &Path, tags: &[Tag]) -> PathBuf {
+    let page = file(1, tags);
+    let start = page.windows(12).position(|window| window == &shorts()[..12]).unwrap();
+    let place = (page.len() as u32).to_le_bytes();
+    let mut page = [&page[..], &shorts()].concat();
+    let entry = page.windows(4).position(|window| window == [17, 1, 4, 0]).unwrap();
+    assert_eq!(page[entry + 8..entry + 12], (start as u32).to_le_bytes());
+    page[entry + 8..entry + 12].copy_from_slice(&place);
+    save(folder, "v.tif", page)
+}
+
+/// Tags of a page of one row, of 0, 2, 4 or, where `tiff_of` writes it second, 12, 14, 16.
+fn row<'a>(tags: &[Tag<'a>]) -> Vec<Tag<'a>> {
+    let own: [Tag; 3] = [(257, 4, &[1, 0, 0, 0]), (278, 4, &[1, 0, 0, 0]), (279, 4, &[6, 0, 0, 0])];
+    [&own, tags].concat()
+}
+
+/// So many pages of one row, of the samples of `shorts` one after the other, with a description.
+fn rows(folder: &Path, text: &[u8], pages: usize) -> PathBuf {
+    let page = |k: usize| if k == 0 { row(&[(270, 2, text)]) } else { row(&[]) };
+    let pages: Vec<Vec<Tag>> = (0..pages).map(page).collect();
+    let pages: Vec<&[Tag]> = pages.iter().map(Vec::as_slice).collect();
+    let mut bytes = tiff_of(&pages);
+    // What `tiff_of` wrote as the first rows of two slices.
+    let first = [&shorts()[..12], &shorts()[12..]];
+    let mut from = 0;
+    for k in 0..pages.len() {
+        let at =
+            bytes[from..].windows(12).position(|window| window == first[k % 2]).unwrap() + from;
+        bytes[at..at + 6].copy_from_slice(&shorts()[6 * k..6 * k + 6]);
+        from = at + 6;
+    }
+    save(folder, "v.tif", bytes)
+}
+
+/// Two times of two planes, in a table of a kind of scan.
+fn lsm(scan: u8) -> Vec<u8> {
+    let mut table = vec![0; 100];
+    for (place, size) in [(8, 3u32), (12, 1), (16, 2), (20, 1), (24, 2), (88, scan.into())] {
+        table[place..place + 4].copy_from_slice(&size.to_le_bytes());
+    }
+    for (k, metres) in [0.5e-6f64, 0.25e-6, 3e-6].into_iter().enumerate() {
+        table[40 + 8 * k..48 + 8 * k].copy_from_slice(&metres.to_le_bytes());
+    }
+    table
+}
+
 #[test]
 fn each_field_of_the_table() {
     walk(
@@ -108,6 +156,14 @@ fn each_field_of_the_table() {
                 name: "`SampleFormat` of complex numbers, or none",
                 file: |f| with(f, &[(339, 3, &[5, 0])]),
                 fate: Fate::Refused(&["complex numbers (SampleFormat)"]),
+            },
+            Field {
+                name: "`NewSubfileType` of all pages",
+                file: |f| with(f, &[(254, 4, &[1, 0, 0, 0])]),
+                fate: Fate::PassedOver(&[
+                    "all its pages claim to be smaller copies",
+                    "read as slices",
+                ]),
             },
             Field {
                 name: "`PhotometricInterpretation` 0 (0 is white)",
@@ -160,8 +216,8 @@ fn each_field_of_the_table() {
                 fate: Fate::Refused(&["FillOrder 2"]),
             },
             Field {
-                name: "`Orientation` other than 1",
-                file: |f| with(f, &[(274, 3, &[4, 0])]),
+                name: "`Orientation` other than 1, of any page",
+                file: |f| save(f, "v.tif", tiff_of(&[&[], &[(274, 3, &[4, 0])]])),
                 fate: Fate::PassedOver(&["Orientation 4"]),
             },
             Field {
@@ -210,18 +266,7 @@ fn each_field_of_the_table() {
             },
             Field {
                 name: "ImageJ: a stack behind one page",
-                file: |f| {
-                    // The samples of the second page are at the end of the file, and the description is in the tag.
-                    let page = file(1, &[(270, 2, b"ImageJ=1\nimages=2\nslices=2\n\0")]);
-                    let start =
-                        page.windows(12).position(|window| window == &shorts()[..12]).unwrap();
-                    let place = (page.len() as u32).to_le_bytes();
-                    let mut page = [&page[..], &shorts()].concat();
-                    let entry = page.windows(4).position(|window| window == [17, 1, 4, 0]).unwrap();
-                    assert_eq!(page[entry + 8..entry + 12], (start as u32).to_le_bytes());
-                    page[entry + 8..entry + 12].copy_from_slice(&place);
-                    save(f, "v.tif", page)
-                },
+                file: |f| behind_one_page(f, &[(270, 2, b"ImageJ=1\nimages=2\nslices=2\n\0")]),
                 fate: Fate::Read(same),
             },
             Field {
@@ -250,6 +295,24 @@ fn each_field_of_the_table() {
                 }),
             },
             Field {
+                name: "OME-XML: no `PhysicalSizeX`…, where another is there",
+                file: |f| {
+                    described(f, b"<OME><Image><Pixels SizeZ=\"2\" PhysicalSizeX=\"0.5\" PhysicalSizeY=\"0.5\"/></Image></OME>\0")
+                },
+                fate: Fate::PassedOver(&[
+                    "no PhysicalSizeZ is stated: it is taken to be 1 \u{b5}m",
+                ]),
+            },
+            Field {
+                name: "OME-XML: `BinaryOnly`",
+                file: |f| {
+                    described(f, b"<OME><BinaryOnly MetadataFile=\"d.companion.ome\"/></OME>\0")
+                },
+                fate: Fate::Refused(&[
+                    "names the file that has it (BinaryOnly): \"d.companion.ome\"",
+                ]),
+            },
+            Field {
                 name: "OME-XML: a volume in several files",
                 file: |f| {
                     described(f, b"<OME><Image><Pixels SizeZ=\"2\"><TiffData><UUID FileName=\"a.tif\"/></TiffData><TiffData>\
@@ -264,6 +327,90 @@ fn each_field_of_the_table() {
                                    </Pixels></Image></OME>\0")
                 },
                 fate: Fate::Refused(&["another order"]),
+            },
+            Field {
+                name: "SCIFIO: `axes`, `lengths`, `scales`, `units`",
+                file: |f| {
+                    let text = b"SCIFIO=0.46.0\naxes=X,Y,Channel,Z\nlengths=3,1,2,2\nscales=0.5,0.25,1.0,2500\nunits=um,um,null,nm\n\0";
+                    rows(f, text, 4)
+                },
+                fate: Fate::Read(|path| {
+                    // Channels are counted first, as the axes say: the second one is of pages 2 and 4.
+                    let volume = frame(path, 1);
+                    assert_eq!(volume.as_slice(), [6.0, 8.0, 10.0, 18.0, 20.0, 22.0]);
+                    assert_eq!(volume.frame().spacing, [0.5, 0.25, 2.5]);
+                    assert_eq!(volume.frame().coordinates.unit, LengthUnit::Micrometre);
+                }),
+            },
+            Field {
+                name: "SCIFIO, tifffile: axes of other orders, or more of them",
+                file: |f| rows(f, b"SCIFIO=0.46.0\naxes=X,Z,Y\nlengths=3,4,1\n\0", 4),
+                fate: Fate::Refused(&[
+                    "the axes \"X,Z,Y\" by its description",
+                    "save it in that order",
+                ]),
+            },
+            Field {
+                name: "tifffile: `shape`, `axes`",
+                file: |f| rows(f, b"{\"shape\": [2, 2, 1, 3], \"axes\": \"TZYX\"}\0", 4),
+                fate: Fate::Read(|path| {
+                    let second = [12.0, 14.0, 16.0, 18.0, 20.0, 22.0];
+                    assert_eq!(frame(path, 1).as_slice(), second);
+                    let folder = path.parent().unwrap();
+                    let unnamed = rows(folder, b"{\"shape\": [2, 2, 1, 3]}\0", 4);
+                    assert_eq!(frame(&unnamed, 1).as_slice(), second);
+                    let by_channel = b"{\"shape\": [2, 2, 1, 3], \"axes\": \"ZCYX\"}\0";
+                    let path = rows(folder, by_channel, 4);
+                    assert_eq!(frame(&path, 0).as_slice(), [0.0, 2.0, 4.0, 12.0, 14.0, 16.0]);
+                    same(&behind_one_page(
+                        folder,
+                        &[(270, 2, b"{\"shape\": [2, 2, 3], \"truncated\": true}\0")],
+                    ));
+                }),
+            },
+            Field {
+                name: "tifffile: `spacing`, `unit`",
+                file: |f| {
+                    described(f, b"{\"shape\": [2, 2, 3], \"axes\": \"ZYX\", \"spacing\": 2.5, \"unit\": \"um\"}\0")
+                },
+                fate: Fate::Read(|path| {
+                    let frame = *volume(path).frame();
+                    assert_eq!(frame.spacing, [0.25, 0.25, 2.5]);
+                    assert_eq!(frame.coordinates.unit, LengthUnit::Micrometre);
+                }),
+            },
+            Field {
+                name: "LSM: sizes and times, distances of voxels",
+                file: |f| {
+                    save(
+                        f,
+                        "v.tif",
+                        tiff_of(&[&row(&[(34412, 1, &lsm(6))]), &row(&[]), &row(&[]), &row(&[])]),
+                    )
+                },
+                fate: Fate::Read(|path| {
+                    let volume = frame(path, 1);
+                    assert_eq!(volume.as_slice(), [0.0, 2.0, 4.0, 12.0, 14.0, 16.0]);
+                    assert_eq!(volume.frame().spacing, [0.5, 0.25, 3.0]);
+                    assert_eq!(volume.frame().coordinates.unit, LengthUnit::Micrometre);
+                }),
+            },
+            Field {
+                name: "LSM: scans of other planes, lines and points",
+                file: |f| with(f, &[(34412, 1, &lsm(1))]),
+                fate: Fate::Refused(&["an LSM file of scan type 1", "export its planes"]),
+            },
+            Field {
+                name: "MetaMorph (STK): planes behind one page",
+                file: |f| behind_one_page(f, &[(33629, 5, &[1; 16])]),
+                fate: Fate::Read(same),
+            },
+            Field {
+                name: "MetaMorph (STK): distances of planes",
+                file: |f| behind_one_page(f, &[(33629, 5, &[1; 16])]),
+                fate: Fate::PassedOver(&[
+                    "MetaMorph's distances of slices (UIC tags) are passed over",
+                ]),
             },
             Field {
                 name: "texts in Latin-1",
@@ -285,6 +432,14 @@ fn each_field_of_the_table() {
                 name: "`GDAL_NODATA`",
                 file: |f| with(f, &[(42113, 2, b"-9999\0")]),
                 fate: Fate::PassedOver(&["-9999", "no data"]),
+            },
+            Field {
+                name: "`GDAL_METADATA`: scale and offset of values",
+                file: |f| {
+                    let text = b"<GDALMetadata><Item name=\"SCALE\" sample=\"0\" role=\"scale\">0.1</Item></GDALMetadata>\0";
+                    with(f, &[(42112, 2, text)])
+                },
+                fate: Fate::PassedOver(&["scale and offset of values that GDAL states"]),
             },
             Field {
                 name: "`ModelPixelScale` (GeoTIFF)",

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
-use walpha::volume::{LengthUnit, ReadOptions, read};
+use walpha::volume::{Dtype, LengthUnit, ReadOptions, Source, read};
 
 use super::volumes::{frame, same, same_without_a_word, volume};
 use super::{Fate, Field, walk};
@@ -43,6 +43,32 @@ fn pyramid(folder: &Path, shape: &[u64], axes: Value, inner: Value, outer: Value
     put(folder, ".zattrs", &json!({"multiscales": multiscales}));
     array(&folder.join("0"), shape, &[], &shorts());
     folder.to_owned()
+}
+
+/// An array with attributes.
+fn stating(folder: &Path, attributes: Value) -> PathBuf {
+    with(folder, &[]);
+    stating_beside(folder, attributes)
+}
+
+fn stating_beside(array: &Path, attributes: Value) -> PathBuf {
+    put(array, ".zattrs", &attributes);
+    array.to_owned()
+}
+
+/// An array with coordinates along x, packed, and along y, but none along z.
+fn coordinates(folder: &Path, y: &[i16]) -> PathBuf {
+    let bytes = |row: &[i16]| row.iter().flat_map(|place| place.to_le_bytes()).collect::<Vec<u8>>();
+    array(&folder.join("x"), &[3], &[], &bytes(&[10, 11, 12]));
+    stating_beside(&folder.join("x"), json!({"units": "mm", "scale_factor": 0.5}));
+    array(&folder.join("y"), &[2], &[], &bytes(y));
+    stating(&folder.join("density"), json!({"_ARRAY_DIMENSIONS": ["z", "y", "x"]}))
+}
+
+/// The samples as they are read in parts.
+fn parts(path: &Path) -> Vec<f32> {
+    let source = Source::open(path, &ReadOptions::default()).unwrap();
+    source.read([0; 3], source.dims().xyz()).unwrap()
 }
 
 fn space(name: &str, unit: &str) -> Value {
@@ -209,6 +235,7 @@ fn each_field_of_the_table() {
                         (frame.spacing, frame.origin),
                         ([10.0, 20.0, 50.0], [103.0, 202.0, 501.0])
                     );
+                    assert_eq!(*volume(&path.join("0")).frame(), frame);
                 }),
             },
             Field {
@@ -281,6 +308,78 @@ fn each_field_of_the_table() {
                     "a Zarr group without the levels of OME-Zarr",
                     "name one of these",
                 ]),
+            },
+            Field {
+                name: "several `multiscales`",
+                file: |f| {
+                    let path = pyramid(f, &[2, 2, 3], json!(["z", "y", "x"]), json!([]), json!([]));
+                    let first = json!({"axes": ["z", "y", "x"], "datasets": [{"path": "0"}]});
+                    let second = json!({"axes": ["z", "y", "x"], "datasets": [{"path": "1"}]});
+                    put(f, ".zattrs", &json!({"multiscales": [first, second]}));
+                    path
+                },
+                fate: Fate::PassedOver(&["of its 2 images (multiscales) the first is read"]),
+            },
+            Field {
+                name: "`scale_factor`, `add_offset` (CF, xarray)",
+                file: |f| stating(f, json!({"scale_factor": 0.5, "add_offset": -1000})),
+                fate: Fate::Read(|path| {
+                    let volume = volume(path);
+                    assert_eq!(volume.as_slice()[..3], [-1000.0, -999.0, -998.0]);
+                    assert_eq!(volume.dtype(), Dtype::F32);
+                    assert_eq!(parts(path)[..3], [-1000.0, -999.0, -998.0]);
+                }),
+            },
+            Field {
+                name: "`_FillValue`, `missing_value`",
+                file: |f| stating(f, json!({"_FillValue": 0, "missing_value": [22]})),
+                fate: Fate::Read(|path| {
+                    let volume = volume(path);
+                    let missing: Vec<usize> = (0..12).filter(|&i| volume.is_missing(i)).collect();
+                    assert_eq!((missing, volume.value_range()), (vec![0, 11], (2.0, 20.0)));
+                    assert!(parts(path)[0].is_nan() && parts(path)[1] == 2.0);
+                }),
+            },
+            Field {
+                name: "`_Unsigned`",
+                file: |f| {
+                    let bytes: Vec<u8> = (244..=255).collect();
+                    array(f, &[2, 2, 3], &[("dtype", json!("|i1"))], &bytes);
+                    stating_beside(f, json!({"_Unsigned": "true"}))
+                },
+                fate: Fate::Read(|path| {
+                    let volume = volume(path);
+                    assert_eq!((volume.as_slice()[11], volume.dtype()), (255.0, Dtype::U8));
+                    assert_eq!(parts(path)[0], 244.0);
+                }),
+            },
+            Field {
+                name: "`valid_min`, `valid_max`, `valid_range`",
+                file: |f| stating(f, json!({"valid_range": [2, 10]})),
+                fate: Fate::PassedOver(&["valid_range is passed over"]),
+            },
+            Field {
+                name: "`fill_value` that xarray takes for missing",
+                file: |f| {
+                    with(f, &[("fill_value", json!(22))]);
+                    stating_beside(f, json!({"_ARRAY_DIMENSIONS": ["z", "y", "x"]}))
+                },
+                fate: Fate::PassedOver(&["its fill_value 22 is read as a sample"]),
+            },
+            Field {
+                name: "coordinates: arrays called as the axes, beside the array",
+                file: |f| coordinates(f, &[10, 8]),
+                fate: Fate::Read(|path| {
+                    let frame = *volume(path).frame();
+                    assert_eq!((frame.spacing, frame.origin), ([0.5, 2.0, 1.0], [5.0, 10.0, 0.0]));
+                    assert_eq!(frame.direction[1][1], -1.0);
+                    assert_eq!(frame.coordinates.unit, LengthUnit::Millimetre);
+                }),
+            },
+            Field {
+                name: "coordinates that are not evenly spaced",
+                file: |f| coordinates(f, &[10, 10]),
+                fate: Fate::PassedOver(&["the coordinates y beside it are passed over"]),
             },
             Field {
                 name: "`omero` and other attributes",

@@ -27,6 +27,7 @@ use walpha_base::shown::{counted, number, shown};
 use super::ReadOptions;
 use super::series::Series;
 use crate::error::format_error;
+use crate::rounding::Rounding;
 use crate::{Dims, Dtype, Reason, Volume, VolumeError};
 use files::{SeriesFiles, pattern, reason, skippable};
 use pixels::pixels;
@@ -246,11 +247,12 @@ fn samples(slices: &[Slice], monitor: &Monitor) -> Result<Padded, VolumeError> {
     places.sort_by(|a, b| a.0.path.cmp(&b.0.path));
     let mut files: Vec<_> = places.chunk_by_mut(|a, b| a.0.path == b.0.path).collect();
     let count = files.len();
+    let rounding = Rounding::default();
     // So many at once: pixels decoded ahead take memory.
     for (done, batch) in files.chunks_mut(16).enumerate() {
         batch.par_iter_mut().try_for_each(|file| {
             let frames: Vec<&Slice> = file.iter().map(|(slice, _)| *slice).collect();
-            for ((_, (place, padded)), plane) in file.iter_mut().zip(pixels(&frames)?) {
+            for ((_, (place, padded)), plane) in file.iter_mut().zip(pixels(&frames, &rounding)?) {
                 place.copy_from_slice(&plane.samples);
                 **padded = plane.padded;
             }
@@ -258,6 +260,7 @@ fn samples(slices: &[Slice], monitor: &Monitor) -> Result<Padded, VolumeError> {
         })?;
         monitor.report((16 * done + batch.len()) as u64, count as u64)?;
     }
+    rounding.say(&slices[0].path);
     if padded.iter().all(Option::is_none) {
         return Ok((samples, None));
     }

@@ -17,6 +17,7 @@ use super::stack::{Order, Stack, stacked};
 use crate::error::format_error;
 use crate::read::frames::FrameChoice;
 use crate::read::layout::{Encoding, Layout};
+use crate::rounding::Rounding;
 use crate::{Dims, Dtype, Endian, ReadOptions, Reason, Volume, VolumeError};
 
 const SOP_CLASS_UID: Tag = Tag(0x0008, 0x0016);
@@ -134,7 +135,7 @@ pub(super) fn volume(
     samples.resize(dims.samples(), 0.0);
     let bytes = stored_in(first)?;
     for (done, (slice, places)) in slices.iter().zip(&places).enumerate() {
-        let plane = plane(slice, &bytes)?;
+        let plane = plane(slice, &bytes, &Rounding::default())?;
         let number = of(slice).map(|(number, _)| number).filter(|_| !is_shared);
         for &place in places {
             let target = &mut samples[each * place..each * (place + 1)];

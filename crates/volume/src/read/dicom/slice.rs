@@ -17,6 +17,9 @@ use crate::error::{format_error, io_error};
 use crate::read::payload::MOST_EXPANSION;
 use crate::{Dtype, Reason, VolumeError};
 
+/// A direction longer or shorter than 1 by more is none: it would scale the distances of pixels.
+const LONGER: f64 = 0.01;
+
 // By their names in part 6 of the standard.
 const IMAGE_TYPE: Tag = Tag(0x0008, 0x0008);
 const SOP_INSTANCE_UID: Tag = Tag(0x0008, 0x0018);
@@ -208,6 +211,14 @@ impl Slice {
         let name = "Image Orientation (Patient)";
         let [a, b, c, d, e, f] =
             header.vector::<6>(PLANE_ORIENTATION, IMAGE_ORIENTATION, name, next)?;
+        // Cosines of directions, up to the digits that they are written with.
+        let lengths = [[a, b, c], [d, e, f]].map(|[x, y, z]| x.hypot(y).hypot(z));
+        if lengths.iter().any(|length| (length - 1.0).abs() > LONGER) {
+            let what = format!(
+                "has {name} {IMAGE_ORIENTATION} of the lengths {lengths:?}, where directions have the length 1"
+            );
+            return Err(header.fail(Reason::header(what)));
+        }
         // The standard gives the distance of rows first.
         let [of_rows, of_columns] =
             header.vector::<2>(PIXEL_MEASURES, PIXEL_SPACING, "Pixel Spacing", next)?;

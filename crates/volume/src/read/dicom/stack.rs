@@ -287,18 +287,29 @@ fn refused(what: String, said: &str, how: &str) -> Reason {
 
 /// The error for two slices at one place.
 fn same_place(a: &Slice, b: &Slice) -> Reason {
+    let next = if a.path == b.path {
+        "convert the frames of one volume to NRRD or NIfTI"
+    } else {
+        "move those of one volume into a folder of their own, or convert it to NRRD or NIfTI"
+    };
     let (a, b) = (a.name(), b.name());
     Reason::content(
         format!(
             "has two slices at one place, {a} and {b}, and says of neither to which volume it belongs"
         ),
-        "move those of one volume into a folder of their own, or convert it to NRRD or NIfTI",
+        next,
     )
 }
 
 /// The error for a distance that no rule explains.
 fn gap(slices: &[Slice], &Wide { slice, gap, usual, missing }: &Wide) -> Reason {
-    let [a, b] = [&slices[slice], &slices[slice + 1]].map(Slice::name);
+    let beside = [&slices[slice], &slices[slice + 1]];
+    let next = if beside[0].path == beside[1].path {
+        "write the file anew without the gap, or convert the frames on one side of it to NRRD or NIfTI"
+    } else {
+        "add what is missing, or move the slices on one side of the gap into a folder of their own"
+    };
+    let [a, b] = beside.map(Slice::name);
     let what =
         format!("has a gap of {gap:.3} mm between {a} and {b}, where {usual:.3} mm are usual");
     let cause = match missing {
@@ -307,8 +318,5 @@ fn gap(slices: &[Slice], &Wide { slice, gap, usual, missing }: &Wide) -> Reason 
             "(neither the place of whole slices, nor a distance that several slices have)".into()
         }
     };
-    Reason::content(
-        format!("{what} {cause}"),
-        "add what is missing, or move the slices on one side of the gap into a folder of their own",
-    )
+    Reason::content(format!("{what} {cause}"), next)
 }

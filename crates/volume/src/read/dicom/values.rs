@@ -7,6 +7,7 @@ use dicom_object::{InMemDicomObject, Tag};
 
 use super::claims::{DOUBLE_PIXEL_DATA, FLOAT_PIXEL_DATA};
 use super::header::Header;
+use crate::rounding::Rounding;
 use crate::{Dtype, Reason, VolumeError};
 
 const BITS_ALLOCATED: Tag = Tag(0x0028, 0x0100);
@@ -317,6 +318,7 @@ impl Values {
         bytes: &[u8],
         first: usize,
         count: usize,
+        rounding: &Rounding,
     ) -> Option<(Vec<f32>, Option<Vec<bool>>)> {
         let end = first.checked_add(count)?;
         if u64::try_from(bytes.len()).ok()? < self.coding.bytes(end as u64) {
@@ -329,7 +331,7 @@ impl Values {
                 padded.resize(samples.len(), false);
                 padded.push(true);
             }
-            samples.push((self.mapping.value(stored) * self.factor) as f32);
+            samples.push(rounding.sample(self.mapping.value(stored) * self.factor));
         };
         match self.coding {
             Coding::Bit => {

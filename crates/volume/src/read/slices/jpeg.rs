@@ -3,13 +3,14 @@
 use std::io::Read;
 use std::path::Path;
 
+use image::metadata::Orientation;
 use jpeg_decoder::{Decoder, Error, ImageInfo, PixelFormat};
-use walpha_base::memory::{try_reserve, try_with_capacity};
+use walpha_base::memory::{afford, try_reserve, try_with_capacity};
 
 use super::check_claim;
 use crate::error::{format_error, io_error};
 use crate::read::OpenFile;
-use crate::read::tiff::Page;
+use crate::read::tiff::{self, Page};
 use crate::{Dtype, Reason, VolumeError};
 
 /// Whether a file begins as JPEG does.
@@ -35,6 +36,12 @@ pub(super) fn page(path: &Path, file: &OpenFile) -> Result<Page, VolumeError> {
         let what = format!("pixels of {pixel_format:?}: only gray of 8 bits is read");
         return Err(refused(Reason::NotScalar { what, dims: None }));
     }
+    let orientation = headers.exif_data().and_then(Orientation::from_exif_chunk);
+    let orientation = orientation.unwrap_or(Orientation::NoTransforms).to_exif();
+    let remarks = tiff::orientation_remark(orientation.into()).into_iter().collect();
+    // Of each pixel a coefficient, the levels of both times, and the sample.
+    let room = (size[0] * size[1]).saturating_mul(8) as usize;
+    afford(room, || format!("an image of {width}×{height} pixels"))?;
     let cut = || refused(Reason::truncated("ends inside its image: it is truncated"));
     let scans = Scans::of(&bytes).ok_or_else(cut)?;
     if !scans.are_complete() {
@@ -57,7 +64,7 @@ pub(super) fn page(path: &Path, file: &OpenFile) -> Result<Page, VolumeError> {
     if once != levels(0xaa)? {
         return Err(cut());
     }
-    Ok(Page { size, dtype: Dtype::U8, samples: once.into_iter().map(f32::from).collect() })
+    Ok(Page { size, dtype: Dtype::U8, samples: once.into_iter().map(f32::from).collect(), remarks })
 }
 
 /// Bytes that are appended to the data of a scan.

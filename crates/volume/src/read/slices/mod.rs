@@ -5,6 +5,7 @@ use std::cmp::Ordering;
 use std::path::{Path, PathBuf};
 
 use image::{DynamicImage, ImageDecoder, ImageError, ImageReader};
+use walpha_base::memory::{afford, try_reserve};
 
 use crate::error::{format_error, io_error};
 use crate::read::OpenFile;
@@ -21,15 +22,17 @@ const EXTENSIONS: [[&str; 2]; 3] = [["png", "png"], ["jpg", "jpeg"], ["tif", "ti
 const OTHER_PICTURES: [&str; 7] = ["bmp", "dcm", "gif", "jp2", "pgm", "ppm", "webp"];
 
 /// Reads a folder of gray PNG, JPEG or TIFF slices, all of one kind and size, in the natural order
-/// of their names: `slice9` before `slice10`. Their numbers must be a row without gaps. Other files and hidden
+/// of their names: `slice9` before `slice10`. Their numbers must be a row without gaps, also with decimals and signs. Other files and hidden
 /// ones are passed over.
 pub(crate) fn read(folder: &Path) -> Result<Volume, VolumeError> {
     let paths = slices(folder)?;
     numbers::check(folder, &paths)?;
     let mut stack = Vec::new();
     let mut first: Option<([u64; 2], Dtype)> = None;
+    let mut said = Vec::new();
     for path in &paths {
-        let Page { size, dtype, samples } = page(path, first.is_none())?;
+        let Page { size, dtype, samples, remarks } = page(path, first.is_none())?;
+        tiff::say(path, &remarks, &mut said);
         let expected = *first.get_or_insert((size, dtype));
         if (size, dtype) != expected {
             let (sizes, other) = expected;
@@ -43,6 +46,7 @@ pub(crate) fn read(folder: &Path) -> Result<Volume, VolumeError> {
             return Err(format_error(path, reason));
         }
         Dims::new(size[0], size[1], paths.len() as u64)?;
+        try_reserve(&mut stack, samples.len(), || "a stack of slices".into())?;
         stack.extend(samples);
     }
     let Some((size, dtype)) = first else {
@@ -88,7 +92,7 @@ pub(crate) fn slices(folder: &Path) -> Result<Vec<PathBuf>, VolumeError> {
     }
     let mut paths = found.concat();
     paths.sort_by(|a, b| natural(&a.to_string_lossy(), &b.to_string_lossy()).then(a.cmp(b)));
-    Ok(paths)
+    Ok(numbers::by_real_numbers(&paths).unwrap_or(paths))
 }
 
 fn page(path: &Path, is_first: bool) -> Result<Page, VolumeError> {
@@ -122,14 +126,19 @@ fn page(path: &Path, is_first: bool) -> Result<Page, VolumeError> {
         let what = "has a palette of colours: only gray is read";
         return Err(format_error(path, Reason::unsupported(what, "save it as gray")));
     }
-    let decoder = ImageReader::new(file.reader()?)
+    let mut decoder = ImageReader::new(file.reader()?)
         .with_guessed_format()
         .map_err(io_error(path))?
         .into_decoder()
         .map_err(unreadable)?;
     let (width, height) = decoder.dimensions();
+    let orientation = decoder.orientation().map_err(unreadable)?.to_exif();
+    let remarks = tiff::orientation_remark(orientation.into()).into_iter().collect();
     let size = [width, height].map(u64::from);
     check_claim(path, size, file.length())?;
+    let room = decoder.total_bytes().saturating_add(size[0] * size[1] * 4);
+    let room = usize::try_from(room).unwrap_or(usize::MAX);
+    afford(room, || format!("an image of {width}×{height} pixels"))?;
     let image = DynamicImage::from_decoder(decoder).map_err(unreadable)?;
     match image {
         DynamicImage::ImageLuma8(image) => {
@@ -137,11 +146,11 @@ fn page(path: &Path, is_first: bool) -> Result<Page, VolumeError> {
             let step = png.map_or(1, Png::step);
             let samples =
                 image.into_raw().into_iter().map(|level| f32::from(level / step)).collect();
-            Ok(Page { size, dtype: Dtype::U8, samples })
+            Ok(Page { size, dtype: Dtype::U8, samples, remarks })
         }
         DynamicImage::ImageLuma16(image) => {
             let samples = image.into_raw().into_iter().map(f32::from).collect();
-            Ok(Page { size, dtype: Dtype::U16, samples })
+            Ok(Page { size, dtype: Dtype::U16, samples, remarks })
         }
         DynamicImage::ImageLumaA8(_) | DynamicImage::ImageLumaA16(_) => {
             let what = "gray values with transparency: only gray is read";

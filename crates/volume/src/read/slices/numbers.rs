@@ -42,7 +42,9 @@ impl Name {
 /// names.
 pub(super) fn check(folder: &Path, paths: &[PathBuf]) -> Result<(), VolumeError> {
     let names: Vec<Name> = paths.iter().map(|path| Name::of(path)).collect();
-    let ([first, ..], true) = (&names[..], names.len() > 1) else { return Ok(()) };
+    if names.len() < 2 {
+        return Ok(());
+    }
     if names.iter().all(|name| name.numbers.is_empty()) {
         tracing::warn!(
             "{}: its slices have no numbers, and are taken in the order of their names",
@@ -50,11 +52,75 @@ pub(super) fn check(folder: &Path, paths: &[PathBuf]) -> Result<(), VolumeError>
         );
         return Ok(());
     }
-    let reason = match names.iter().position(|name| name.around != first.around) {
+    let Some(reason) = wrong(paths, &names) else { return Ok(()) };
+    if by_real_numbers(paths).is_some() {
+        tracing::warn!(
+            "{}: the numbers of its slices are taken with their decimals and signs, from {} to {}",
+            shown(folder),
+            file_name(&paths[0]),
+            file_name(&paths[paths.len() - 1])
+        );
+        return Ok(());
+    }
+    Err(format_error(folder, reason))
+}
+
+/// What is wrong with names as whole numbers.
+fn wrong(paths: &[PathBuf], names: &[Name]) -> Option<Reason> {
+    let first = names.first()?;
+    match names.iter().position(|name| name.around != first.around) {
         Some(other) => Some(groups(&paths[0], &paths[other])),
-        None => check_row(paths, &names),
+        None => check_row(paths, names),
+    }
+}
+
+/// The same slices in the order of a number with decimals or signs in their names, where that counts them by equal steps, and
+/// whole numbers do not.
+pub(super) fn by_real_numbers(paths: &[PathBuf]) -> Option<Vec<PathBuf>> {
+    let names: Vec<Name> = paths.iter().map(|path| Name::of(path)).collect();
+    let is_apart = |name: &Name| {
+        let before = &name.around[..name.numbers.len()];
+        before.iter().skip(1).any(|text| text == ".")
+            || before.iter().any(|text| text.ends_with('-'))
     };
-    reason.map_or(Ok(()), |reason| Err(format_error(folder, reason)))
+    if names.len() < 2 || !names.iter().any(is_apart) || wrong(paths, &names).is_none() {
+        return None;
+    }
+    let named: Vec<(Vec<String>, Vec<f64>)> = paths.iter().map(|path| real_numbers(path)).collect();
+    let (around, numbers) = named.first()?;
+    let varies = |i: &usize| named.iter().any(|(_, other)| other[*i] != numbers[*i]);
+    if named.iter().any(|(other, _)| other != around) {
+        return None;
+    }
+    let varying: Vec<usize> = (0..numbers.len()).filter(varies).collect();
+    let &[i] = varying.as_slice() else { return None };
+    let mut order: Vec<usize> = (0..paths.len()).collect();
+    order.sort_by(|&a, &b| named[a].1[i].total_cmp(&named[b].1[i]));
+    let steps: Vec<f64> =
+        order.windows(2).map(|pair| named[pair[1]].1[i] - named[pair[0]].1[i]).collect();
+    let is_even =
+        steps.iter().all(|step| *step > 0.0 && (step - steps[0]).abs() <= 1e-6 * steps[0]);
+    is_even.then(|| order.into_iter().map(|i| paths[i].clone()).collect())
+}
+
+/// The numbers in a name, with their decimals and signs, and the text around them.
+fn real_numbers(path: &Path) -> (Vec<String>, Vec<f64>) {
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    let (mut around, mut numbers) = (vec![String::new()], Vec::new());
+    let mut rest = stem.as_str();
+    while let Some(first) = rest.find(|c: char| c.is_ascii_digit()) {
+        let count = |text: &str| text.bytes().take_while(u8::is_ascii_digit).count();
+        let start = if rest[..first].ends_with('-') { first - 1 } else { first };
+        let whole = first + count(&rest[first..]);
+        let decimals = rest[whole..].strip_prefix('.').map_or(0, count);
+        let end = if decimals > 0 { whole + 1 + decimals } else { whole };
+        around.last_mut().expect("there is one").push_str(&rest[..start]);
+        numbers.push(rest[start..end].parse().unwrap_or(f64::NAN));
+        around.push(String::new());
+        rest = &rest[end..];
+    }
+    around.last_mut().expect("there is one").push_str(rest);
+    (around, numbers)
 }
 
 /// What is wrong with names that differ in their numbers alone.
@@ -120,6 +186,9 @@ mod tests {
             &["one.png"],
             &["front.png", "middle.png"],
             &["only7.png"],
+            &["z0.25.png", "z0.5.png", "z0.75.png", "z1.0.png"],
+            &["z9.5.png", "z10.0.png", "z10.5.png"],
+            &["z-10.png", "z-5.png", "z0.png", "z5.png"],
             &[
                 "s99999999999999999999999999999999999999999.png",
                 "s99999999999999999999999999999999999999999990.png",
@@ -127,6 +196,27 @@ mod tests {
         ] {
             assert_eq!(told(names), None, "{names:?}");
         }
+    }
+
+    #[test]
+    fn decimals_and_signs_order_slices() {
+        let sorted = |names: &[&str]| {
+            let paths: Vec<PathBuf> = names.iter().map(PathBuf::from).collect();
+            let paths = by_real_numbers(&paths)?;
+            Some(paths.iter().map(|path| path.display().to_string()).collect::<Vec<_>>())
+        };
+        let expected = |names: &[&str]| Some(names.iter().map(ToString::to_string).collect());
+        assert_eq!(
+            sorted(&["s_0.1.tif", "s_0.2.tif", "s_0.15.tif"]),
+            expected(&["s_0.1.tif", "s_0.15.tif", "s_0.2.tif"])
+        );
+        assert_eq!(
+            sorted(&["z-1.png", "z-2.png", "z0.png"]),
+            expected(&["z-2.png", "z-1.png", "z0.png"])
+        );
+        // As whole numbers they are a row.
+        assert_eq!(sorted(&["s1.1.png", "s1.2.png", "s1.3.png"]), None);
+        assert_eq!(sorted(&["a-1.png", "a-2.png"]), None);
     }
 
     #[test]
@@ -138,6 +228,8 @@ mod tests {
             (&["t0_z1.png", "t0_z2.png", "t1_z1.png", "t1_z2.png"], "t0_z1.png and t1_z1.png"),
             (&["a1.png", "b1.png"], "a1.png and b1.png"),
             (&["s01.png", "s1.png"], "s01.png and s1.png"),
+            (&["z0.25.png", "z0.5.png", "z1.0.png"], "several groups"),
+            (&["a-1.png", "a-2.png", "a-4.png"], "misses slice 3"),
             (&["cover.png", "s1.png", "s2.png"], "cover.png and s1.png"),
         ] {
             let told = told(names).unwrap_or_default();

@@ -40,11 +40,14 @@ pub(super) mod tag {
     pub(crate) const SAMPLE_FORMAT: u16 = 339;
     pub(crate) const IMAGE_DEPTH: u16 = 32997;
     pub(crate) const MODEL_PIXEL_SCALE: u16 = 33550;
+    pub(crate) const UIC2: u16 = 33629;
+    pub(crate) const CZ_LSMINFO: u16 = 34412;
+    pub(crate) const GDAL_METADATA: u16 = 42112;
     pub(crate) const GDAL_NODATA: u16 = 42113;
 }
 
 /// The tags above, all others are passed over.
-const LOOKED_AT: [u16; 15] = [
+const LOOKED_AT: [u16; 18] = [
     tag::NEW_SUBFILE_TYPE,
     tag::SUBFILE_TYPE,
     tag::BITS_PER_SAMPLE,
@@ -59,6 +62,9 @@ const LOOKED_AT: [u16; 15] = [
     tag::SAMPLE_FORMAT,
     tag::IMAGE_DEPTH,
     tag::MODEL_PIXEL_SCALE,
+    tag::UIC2,
+    tag::CZ_LSMINFO,
+    tag::GDAL_METADATA,
     tag::GDAL_NODATA,
 ];
 
@@ -163,6 +169,17 @@ impl<'a> Directories<'a> {
         }))
     }
 
+    /// How many values there are.
+    pub(super) fn count(&self, page: usize, tag: u16) -> Option<u64> {
+        self.pages.get(page)?.entry(tag).map(|entry| entry.count)
+    }
+
+    /// Whole numbers of so many bytes and doubles, by their places in a value that is a table of them.
+    pub(super) fn table(&self, page: usize, tag: u16) -> Result<Option<Table>, VolumeError> {
+        let found = self.bytes(page, tag)?;
+        Ok(found.map(|(_, bytes)| Table { bytes, big_endian: self.big_endian }))
+    }
+
     /// A value that is a ratio.
     pub(super) fn ratio(&self, page: usize, tag: u16) -> Result<Option<f64>, VolumeError> {
         let found = self.bytes(page, tag)?.filter(|(entry, _)| entry.kind == 5);
@@ -192,6 +209,11 @@ impl<'a> Directories<'a> {
         Ok(flags & 0b101 != 0 || old == 2)
     }
 
+    /// Whether a page is a mask of transparency.
+    pub(super) fn is_mask(&self, page: usize) -> Result<bool, VolumeError> {
+        Ok(self.number(page, tag::NEW_SUBFILE_TYPE)?.unwrap_or(0) & 0b100 != 0)
+    }
+
     /// Whether a page says that 0 is white.
     pub(super) fn is_white_zero(&self, page: usize) -> Result<bool, VolumeError> {
         Ok(self.number(page, tag::PHOTOMETRIC)? == Some(WHITE_IS_ZERO))
@@ -216,6 +238,24 @@ impl<'a> Directories<'a> {
 impl Directory {
     fn entry(&self, tag: u16) -> Option<&Entry> {
         self.entries.iter().find(|entry| entry.tag == tag)
+    }
+}
+
+/// A value that holds numbers of several types.
+pub(super) struct Table {
+    bytes: Vec<u8>,
+    big_endian: bool,
+}
+
+impl Table {
+    /// A whole number of `size` bytes.
+    pub(super) fn number(&self, place: usize, size: usize) -> Option<u64> {
+        Some(number(self.bytes.get(place..place + size)?, self.big_endian))
+    }
+
+    /// A double.
+    pub(super) fn double(&self, place: usize) -> Option<f64> {
+        self.number(place, 8).map(f64::from_bits)
     }
 }
 

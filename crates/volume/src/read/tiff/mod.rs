@@ -10,12 +10,14 @@ use tiff::decoder::{Decoder, DecodingResult, Limits};
 use tiff::tags::{ByteOrder, Tag};
 use tiff::{ColorType, TiffError};
 use walpha_base::Monitor;
+use walpha_base::memory::afford;
 use walpha_base::shown::{counted, shown};
 
 use super::OpenFile;
 use super::frames::FrameChoice;
 use crate::error::{format_error, io_error};
-use crate::{Dims, Dtype, Endian, Reason, Volume, VolumeError};
+use crate::rounding::Rounding;
+use crate::{Dims, Dtype, Endian, Reason, Sample, Volume, VolumeError};
 use directories::{AsStored, Directories, tag};
 use stack::{PageRange, StackInfo};
 
@@ -37,7 +39,11 @@ pub(crate) fn read(
 ) -> Result<Volume, VolumeError> {
     let path = file.path();
     let mut pages = Pages::open(file)?;
-    pages.say_what_is_passed_over()?;
+    pages.say_what_is_left_out();
+    let mut said = Vec::new();
+    for &page in &pages.slices {
+        say(path, &pages.remarks(page)?, &mut said);
+    }
     pages.check_gray(pages.slices[0])?;
     let info = StackInfo::of(path, &pages.directories, pages.slices[0])?;
     let count = pages.slices.len() as u64;
@@ -83,7 +89,7 @@ pub(super) fn read_page(path: &Path, is_first: bool) -> Result<Page, VolumeError
     let file = OpenFile::open(path)?;
     let mut pages = Pages::open(&file)?;
     if is_first {
-        pages.say_what_is_passed_over()?;
+        pages.say_what_is_left_out();
         let info = StackInfo::of(path, &pages.directories, pages.slices[0])?;
         if info.has_spacing() {
             tracing::warn!(
@@ -108,6 +114,28 @@ pub(super) struct Page {
     pub size: [u64; 2],
     pub dtype: Dtype,
     pub samples: Vec<f32>,
+    /// What it states that is not taken.
+    pub remarks: Vec<String>,
+}
+
+/// The first row is the top, and the first column the left.
+const AS_STORED: u64 = 1;
+
+/// What is said of another orientation.
+pub(super) fn orientation_remark(orientation: u64) -> Option<String> {
+    (orientation != AS_STORED).then(|| {
+        format!("Orientation {orientation} is passed over: rows and columns are as stored")
+    })
+}
+
+/// Says each remark once.
+pub(super) fn say(path: &Path, remarks: &[String], said: &mut Vec<String>) {
+    for remark in remarks {
+        if !said.contains(remark) {
+            tracing::warn!("{}: {remark}", shown(path));
+            said.push(remark.clone());
+        }
+    }
 }
 
 struct Pages<'a> {
@@ -119,6 +147,7 @@ struct Pages<'a> {
     at: usize,
     /// The most bytes all samples can have.
     most: u64,
+    rounding: Rounding,
 }
 
 impl<'a> Pages<'a> {
@@ -137,42 +166,60 @@ impl<'a> Pages<'a> {
                 slices.push(page);
             }
         }
+        // Copies of nothing that is there.
+        if slices.is_empty() {
+            for page in 0..directories.pages.len() {
+                if !directories.is_mask(page)? {
+                    slices.push(page);
+                }
+            }
+            tracing::warn!(
+                "{}: all its pages claim to be smaller copies of others (NewSubfileType), and are read as slices",
+                shown(path)
+            );
+        }
         if slices.is_empty() {
             let reason = Reason::content("has no page of samples", "name another file");
             return Err(format_error(path, reason));
         }
         let decoder = Decoder::new(directories.as_stored()?).map_err(damaged(path))?;
         let decoder = decoder.with_limits(limits);
-        Ok(Self { path, decoder, directories, slices, at: 0, most })
+        let rounding = Rounding::default();
+        Ok(Self { path, decoder, directories, slices, at: 0, most, rounding })
     }
 
-    /// Says which of the things that the first page states are not taken.
-    fn say_what_is_passed_over(&self) -> Result<(), VolumeError> {
-        let path = shown(self.path);
-        let first = self.slices[0];
+    /// Says which of the pages are no slices.
+    fn say_what_is_left_out(&self) {
         let copies = self.directories.pages.len() - self.slices.len();
         if copies > 0 {
-            let copies = counted(copies as u64, "page");
+            let (path, copies) = (shown(self.path), counted(copies as u64, "page"));
             tracing::warn!("{path}: {copies} passed over: smaller copies or masks of others");
         }
-        if self.directories.is_white_zero(first)? {
-            tracing::warn!(
-                "{path}: 0 is white (photometric interpretation 0); values are as stored"
+    }
+
+    /// Which of the things that a page states are not taken.
+    fn remarks(&self, page: usize) -> Result<Vec<String>, VolumeError> {
+        let directories = &self.directories;
+        let mut remarks = Vec::new();
+        if directories.is_white_zero(page)? {
+            remarks.push("0 is white (photometric interpretation 0); values are as stored".into());
+        }
+        let orientation = directories.number(page, tag::ORIENTATION)?.unwrap_or(AS_STORED);
+        remarks.extend(orientation_remark(orientation));
+        if let Some(value) = directories.text(page, tag::GDAL_NODATA)? {
+            remarks.push(format!("the value {value:?} of no data (GDAL) is passed over"));
+        }
+        let gdal = directories.text(page, tag::GDAL_METADATA)?.unwrap_or_default();
+        if ["scale", "offset"].iter().any(|role| gdal.contains(&format!("role=\"{role}\""))) {
+            remarks.push(
+                "the scale and offset of values that GDAL states are passed over: values are as stored"
+                    .into(),
             );
         }
-        match self.directories.number(first, tag::ORIENTATION)? {
-            None | Some(1) => {}
-            Some(way) => tracing::warn!(
-                "{path}: Orientation {way} is passed over: rows and columns are as stored"
-            ),
+        if directories.number(page, tag::MODEL_PIXEL_SCALE)?.is_some() {
+            remarks.push("the place on Earth that GeoTIFF states is passed over".into());
         }
-        if let Some(value) = self.directories.text(first, tag::GDAL_NODATA)? {
-            tracing::warn!("{path}: the value {value:?} of no data (GDAL) is passed over");
-        }
-        if self.directories.number(first, tag::MODEL_PIXEL_SCALE)?.is_some() {
-            tracing::warn!("{path}: the place on Earth that GeoTIFF states is passed over");
-        }
-        Ok(())
+        Ok(remarks)
     }
 
     /// Goes to a slice, not before the one where the decoder is.
@@ -254,13 +301,13 @@ impl<'a> Pages<'a> {
         let page = self.go_to(slice)?;
         self.check_gray(page)?;
         let (x, y) = self.decoder.dimensions().map_err(damaged(path))?;
-        match self.decoder.colortype().map_err(damaged(path))? {
-            ColorType::Gray(_) => {}
+        let bits = match self.decoder.colortype().map_err(damaged(path))? {
+            ColorType::Gray(bits) => bits,
             other => {
                 let what = format!("colours ({other:?}): only gray is read");
                 return Err(fail(Reason::NotScalar { what, dims: None }));
             }
-        }
+        };
         if self.directories.number(page, tag::IMAGE_DEPTH)?.is_some_and(|depth| depth > 1) {
             return Err(fail(Reason::content(
                 "is a volume in one page (ImageDepth)",
@@ -268,17 +315,21 @@ impl<'a> Pages<'a> {
             )));
         }
         self.reserve(slice, 0, Dtype::U8)?;
+        // As they are stored, and as floats.
+        let room = u64::from(x) * u64::from(y) * (u64::from(bits / 8) + 4);
+        let room = usize::try_from(room).unwrap_or(usize::MAX);
+        afford(room, || format!("a page of {x}×{y} samples"))?;
         let (samples, dtype) = match self.decoder.read_image().map_err(damaged(path))? {
             DecodingResult::U8(v) => (v.into_iter().map(f32::from).collect(), Dtype::U8),
             DecodingResult::I8(v) => (v.into_iter().map(f32::from).collect(), Dtype::I8),
             DecodingResult::U16(v) => (v.into_iter().map(f32::from).collect(), Dtype::U16),
             DecodingResult::I16(v) => (v.into_iter().map(f32::from).collect(), Dtype::I16),
-            DecodingResult::U32(v) => (v.into_iter().map(|v| v as f32).collect(), Dtype::U32),
-            DecodingResult::I32(v) => (v.into_iter().map(|v| v as f32).collect(), Dtype::I32),
-            DecodingResult::U64(v) => (v.into_iter().map(|v| v as f32).collect(), Dtype::U64),
-            DecodingResult::I64(v) => (v.into_iter().map(|v| v as f32).collect(), Dtype::I64),
+            DecodingResult::U32(v) => (self.rounded(v), Dtype::U32),
+            DecodingResult::I32(v) => (self.rounded(v), Dtype::I32),
+            DecodingResult::U64(v) => (self.rounded(v), Dtype::U64),
+            DecodingResult::I64(v) => (self.rounded(v), Dtype::I64),
             DecodingResult::F32(v) => (v, Dtype::F32),
-            DecodingResult::F64(v) => (v.into_iter().map(|v| v as f32).collect(), Dtype::F64),
+            DecodingResult::F64(v) => (self.rounded(v), Dtype::F64),
             DecodingResult::F16(_) => {
                 return Err(fail(Reason::unsupported(
                     "has floats of 16 bits, which are not read",
@@ -293,7 +344,15 @@ impl<'a> Pages<'a> {
             let what = format!("has {found} samples in a page of {size:?}");
             return Err(fail(Reason::damaged(what)));
         }
-        Ok(Page { size, dtype, samples })
+        let remarks = self.remarks(page)?;
+        Ok(Page { size, dtype, samples, remarks })
+    }
+
+    /// Numbers as samples.
+    fn rounded(&self, numbers: Vec<impl Sample>) -> Vec<f32> {
+        let samples = numbers.into_iter().map(|number| self.rounding.sample(number)).collect();
+        self.rounding.say(self.path);
+        samples
     }
 }
 

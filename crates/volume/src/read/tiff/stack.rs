@@ -1,12 +1,14 @@
-//! What `ImageJ` and OME-XML say of a stack in the description of its first page.
+//! What programs say of a stack in the first page: `ImageJ`, OME-XML, SCIFIO and tifffile in its description, and `MetaMorph` and
+//! Zeiss in tags of their own.
 
 use std::path::Path;
 
 use quick_xml::events::Event;
 use quick_xml::{Reader, XmlVersion};
+use serde_json::Value;
 use walpha_base::shown::shown;
 
-use super::directories::{Directories, tag};
+use super::directories::{Directories, Table, tag};
 use crate::error::format_error;
 use crate::read::frames::FrameChoice;
 use crate::read::layout::{Encoding, Layout, diagonal, frame, one_unit, unit_named};
@@ -18,7 +20,7 @@ pub(super) struct StackInfo {
     spacing: [f64; 3],
     origin: [f64; 3],
     unit: LengthUnit,
-    /// Pages, as `ImageJ` counts them.
+    /// Pages, as `ImageJ`, tifffile and `MetaMorph` count them, which may follow the only one that there is.
     pub(super) images: Option<u64>,
     /// What the pages run along, fastest first, and how many there are of each.
     axes: [(Axis, u64); 3],
@@ -57,7 +59,7 @@ impl StackInfo {
         others: false,
     };
 
-    /// Looks at the description of the first page.
+    /// Looks at the first page.
     pub(super) fn of(
         path: &Path,
         directories: &Directories,
@@ -69,6 +71,27 @@ impl StackInfo {
         }
         if text.contains("<OME") {
             return Self::of_ome(path, &text);
+        }
+        if text.starts_with("SCIFIO=") {
+            return Self::of_scifio(path, &text);
+        }
+        if let Some(table) = directories.table(first, tag::CZ_LSMINFO)? {
+            return Self::of_lsm(path, &table);
+        }
+        let shaped =
+            serde_json::from_str(&text).ok().filter(|about: &Value| about["shape"].is_array());
+        let info = match shaped {
+            Some(about) => Self::of_shape(path, directories, first, &about)?,
+            None => Self { images: directories.count(first, tag::UIC2), ..Self::PLAIN },
+        };
+        if info.has_spacing() {
+            return Ok(info);
+        }
+        if directories.count(first, tag::UIC2).is_some() {
+            tracing::warn!(
+                "{}: MetaMorph's distances of slices (UIC tags) are passed over",
+                shown(path)
+            );
         }
         let [x, y] =
             [tag::X_RESOLUTION, tag::Y_RESOLUTION].map(|tag| directories.ratio(first, tag));
@@ -86,7 +109,7 @@ impl StackInfo {
                 shown(path)
             );
         }
-        Ok(Self::PLAIN)
+        Ok(info)
     }
 
     /// Whether anything is said of where samples lie.
@@ -107,31 +130,10 @@ impl StackInfo {
         let real = |key: &str| value(key).and_then(|text| text.parse::<f64>().ok());
         let axes = [(Axis::Channel, "channels"), (Axis::Slice, "slices"), (Axis::Time, "frames")];
         let axes = axes.map(|(axis, key)| (axis, count(key).unwrap_or(1)));
-        // Pixels a unit.
-        let along = |tag| {
-            Ok::<f64, VolumeError>(
-                directories.ratio(first, tag)?.map_or(1.0, |pixels| 1.0 / pixels),
-            )
-        };
         let slices = real("spacing").filter(|&length| length != 0.0).map_or(1.0, f64::abs);
-        let mut spacing = [along(tag::X_RESOLUTION)?, along(tag::Y_RESOLUTION)?, slices];
-        let by_tag = match directories.number(first, tag::RESOLUTION_UNIT)? {
-            Some(2) => Some("inch"),
-            Some(3) => Some("cm"),
-            _ => None,
-        };
-        let unit = value("unit").or(by_tag);
-        let units =
-            [unit, value("yunit").or(unit), value("zunit").or(unit)].map(|name| match name {
-                Some("inch" | "inches") => (LengthUnit::Millimetre, INCH),
-                Some(name) => (unit_named(path, name), 1.0),
-                None if spacing == [1.0; 3] => (LengthUnit::Voxel, 1.0),
-                None => (LengthUnit::Unstated, 1.0),
-            });
-        let (unit, factors) = one_unit(path, units.map(|(unit, _)| Some(unit)))?;
-        for ((length, (_, size)), factor) in spacing.iter_mut().zip(units).zip(factors) {
-            *length *= size * factor;
-        }
+        let unit = value("unit");
+        let units = [unit, value("yunit").or(unit), value("zunit").or(unit)];
+        let (spacing, unit) = calibration(path, directories, first, units, slices)?;
         // Places of the origin are counted in pixels.
         let places =
             ["xorigin", "yorigin", "zorigin"].map(|key| real(key).filter(|&place| place != 0.0));
@@ -145,6 +147,110 @@ impl StackInfo {
             );
         }
         Ok(Self { spacing, origin, unit, images: count("images"), axes, others: false })
+    }
+
+    /// By lists of axes, fastest first, in a description of SCIFIO.
+    fn of_scifio(path: &Path, text: &str) -> Result<Self, VolumeError> {
+        let list = |key: &str| -> Vec<&str> {
+            let line = text.lines().find_map(|line| line.strip_prefix(key)?.strip_prefix('='));
+            line.map(|line| line.split(',').map(str::trim).collect()).unwrap_or_default()
+        };
+        let (names, lengths) = (list("axes"), list("lengths"));
+        let sizes: Vec<u64> = lengths.iter().filter_map(|length| length.parse().ok()).collect();
+        if names.is_empty() {
+            return Ok(Self::PLAIN);
+        }
+        let ["X", "Y", pages @ ..] = names.as_slice() else {
+            return Err(unlike_pages(path, &names.join(",")));
+        };
+        if sizes.len() != names.len() {
+            let what = "states as many lengths as axes neither in number nor as numbers (SCIFIO)";
+            return Err(format_error(path, Reason::header(what)));
+        }
+        let pages = pages.iter().copied().zip(sizes[2..].iter().copied());
+        let axes = axes_of(pages).ok_or_else(|| unlike_pages(path, &names.join(",")))?;
+        let place = |axis: &str| names.iter().position(|name| *name == axis);
+        let (scales, units) = (list("scales"), list("units"));
+        let along = ["X", "Y", "Z"].map(|axis| {
+            let place = place(axis)?;
+            let scale = scales.get(place).and_then(|scale| scale.parse::<f64>().ok());
+            Some((scale?, units.get(place).filter(|unit| **unit != "null").copied()))
+        });
+        let spacing = along.map(|axis| axis.map_or(1.0, |(scale, _)| scale.abs()));
+        let units = along.map(|axis| axis.and_then(|(_, unit)| unit));
+        let images =
+            Some(sizes[2..].iter().fold(1, |product: u64, size| product.saturating_mul(*size)));
+        if spacing == [1.0; 3] && units == [None; 3] {
+            return Ok(Self { images, axes, ..Self::PLAIN });
+        }
+        let (unit, factors) =
+            one_unit(path, units.map(|unit| unit.map(|name| unit_named(path, name))))?;
+        let spacing = [0, 1, 2].map(|k| spacing[k] * factors[k]);
+        Ok(Self { spacing, unit, images, axes, ..Self::PLAIN })
+    }
+
+    /// By the shape, slowest axis first, that tifffile describes, and the names of axes, where it has some.
+    fn of_shape(
+        path: &Path,
+        directories: &Directories,
+        first: usize,
+        about: &Value,
+    ) -> Result<Self, VolumeError> {
+        let shape: Vec<u64> =
+            about["shape"].as_array().into_iter().flatten().filter_map(Value::as_u64).collect();
+        let names = about["axes"].as_str().unwrap_or_default();
+        let letters: Vec<String> = match names {
+            "" => vec![String::new(); shape.len()],
+            _ => names.chars().map(String::from).collect(),
+        };
+        let fits = letters.len() == shape.len() && (names.is_empty() || names.ends_with("YX"));
+        let beyond = shape.len().checked_sub(2).filter(|_| fits);
+        let pages = beyond.map(|beyond| (0..beyond).rev().map(|k| (letters[k].as_str(), shape[k])));
+        let axes = pages.and_then(axes_of).ok_or_else(|| unlike_pages(path, names))?;
+        let images = axes.iter().fold(1, |product: u64, (_, size)| product.saturating_mul(*size));
+        let info = Self { axes, images: Some(images), ..Self::PLAIN };
+        let (slices, unit) = (about["spacing"].as_f64(), about["unit"].as_str());
+        if slices.is_none() && unit.is_none() {
+            return Ok(info);
+        }
+        if unit.is_some() && matches!(directories.number(first, tag::RESOLUTION_UNIT)?, Some(2 | 3))
+        {
+            tracing::warn!(
+                "{}: its resolution is taken to be pixels per {}, the unit of its description, and not per inch or centimetre",
+                shown(path),
+                unit.unwrap_or_default()
+            );
+        }
+        let slices = slices.filter(|&length| length != 0.0).map_or(1.0, f64::abs);
+        let (spacing, unit) = calibration(path, directories, first, [unit; 3], slices)?;
+        Ok(Self { spacing, unit, ..info })
+    }
+
+    /// By the table of Zeiss' LSM, in which lengths are metres.
+    fn of_lsm(path: &Path, table: &Table) -> Result<Self, VolumeError> {
+        let damaged =
+            || format_error(path, Reason::damaged("has a table CZ_LSMINFO that is too short"));
+        let size = |place| table.number(place, 4).ok_or_else(damaged);
+        let scan = table.number(88, 2).ok_or_else(damaged)?;
+        // Planes of x and y: a stack, times of a plane, and times of a stack.
+        if !matches!(scan, 0 | 3 | 6) {
+            let what =
+                format!("is an LSM file of scan type {scan}: only planes of x and y are read");
+            return Err(format_error(path, Reason::unsupported(what, "export its planes")));
+        }
+        let axes = [(Axis::Slice, size(16)?), (Axis::Channel, 1), (Axis::Time, size(24)?)];
+        let to = |unit| Coordinates { unit, ..Coordinates::default() };
+        let unit = LengthUnit::Micrometre;
+        let micrometres = to(LengthUnit::Metre).to(to(unit));
+        let mut spacing = [1.0; 3];
+        for (k, length) in spacing.iter_mut().enumerate() {
+            *length = micrometres.length(table.double(40 + 8 * k).ok_or_else(damaged)?);
+        }
+        // A single plane has no distance.
+        if spacing[2] == 0.0 && axes[0].1 <= 1 {
+            spacing[2] = spacing[0];
+        }
+        Ok(Self { spacing, unit, axes, ..Self::PLAIN })
     }
 
     fn of_ome(path: &Path, text: &str) -> Result<Self, VolumeError> {
@@ -178,6 +284,14 @@ impl StackInfo {
                     Some(info) => info.others = true,
                     None => info = Some(Self::of_pixels(path, &text, &number, &damaged)?),
                 },
+                "BinaryOnly" => {
+                    let file = text("MetadataFile")?.unwrap_or_default();
+                    let what = format!(
+                        "has no OME-XML of its own, but names the file that has it (BinaryOnly): {file:?}"
+                    );
+                    let advice = "save it as one OME-TIFF file with its own metadata";
+                    return Err(format_error(path, Reason::unsupported(what, advice)));
+                }
                 "UUID" => files.extend(text("FileName")?.filter(|name| !files.contains(name))),
                 "TiffData" => {
                     if let (Some(info), Some(page)) = (&info, number("IFD")?) {
@@ -224,6 +338,14 @@ impl StackInfo {
             return Ok(Self { axes, ..Self::PLAIN });
         }
         let (unit, factors) = one_unit(path, units)?;
+        let missing = (0..3).filter(|&k| units[k].is_none() && (k < 2 || sizes[0] > 1));
+        for axis in missing.map(|k| ["X", "Y", "Z"][k]) {
+            tracing::warn!(
+                "{}: no PhysicalSize{axis} is stated: it is taken to be 1 {}",
+                shown(path),
+                unit.symbol()
+            );
+        }
         let spacing = [0, 1, 2].map(|k| spacing[k] * factors[k]);
         Ok(Self { spacing, unit, axes, ..Self::PLAIN })
     }
@@ -318,8 +440,72 @@ impl StackInfo {
     }
 }
 
+/// Spacing and unit by the resolution of pixels, which is counted in the unit of x that the description names, or else in that of its
+/// tag, and a distance of slices.
+fn calibration(
+    path: &Path,
+    directories: &Directories,
+    first: usize,
+    [x, y, z]: [Option<&str>; 3],
+    slices: f64,
+) -> Result<([f64; 3], LengthUnit), VolumeError> {
+    // Pixels a unit.
+    let along = |tag| {
+        Ok::<f64, VolumeError>(directories.ratio(first, tag)?.map_or(1.0, |pixels| 1.0 / pixels))
+    };
+    let mut spacing = [along(tag::X_RESOLUTION)?, along(tag::Y_RESOLUTION)?, slices];
+    let by_tag = match directories.number(first, tag::RESOLUTION_UNIT)? {
+        Some(2) => Some("inch"),
+        Some(3) => Some("cm"),
+        _ => None,
+    };
+    let units = [x, y, z].map(|unit| match unit.or(by_tag) {
+        Some("inch" | "inches") => (LengthUnit::Millimetre, INCH),
+        Some(name) => (unit_named(path, name), 1.0),
+        None if spacing == [1.0; 3] => (LengthUnit::Voxel, 1.0),
+        None => (LengthUnit::Unstated, 1.0),
+    });
+    let (unit, factors) = one_unit(path, units.map(|(unit, _)| Some(unit)))?;
+    for ((length, (_, size)), factor) in spacing.iter_mut().zip(units).zip(factors) {
+        *length *= size * factor;
+    }
+    Ok((spacing, unit))
+}
+
 /// Pages that are slices.
 const SLICES: [(Axis, u64); 3] = [(Axis::Slice, 1), (Axis::Channel, 1), (Axis::Time, 1)];
+
+/// Slices, channels and times of axes by their names, fastest first. Axes of one page are left out; one of another name takes the place
+/// of slices, or else that of times or channels, where it is free. `None` where there is none left, or two have one name.
+fn axes_of<'a>(named: impl Iterator<Item = (&'a str, u64)>) -> Option<[(Axis, u64); 3]> {
+    let known = |name: &str| match name {
+        "Z" => Some(Axis::Slice),
+        "C" | "Channel" => Some(Axis::Channel),
+        "T" | "Time" => Some(Axis::Time),
+        _ => None,
+    };
+    let mut axes: Vec<(Option<Axis>, u64)> =
+        named.filter(|(_, size)| *size != 1).map(|(name, size)| (known(name), size)).collect();
+    for place in [Axis::Slice, Axis::Time, Axis::Channel] {
+        let count = axes.iter().filter(|(axis, _)| *axis == Some(place)).count();
+        match (count, axes.iter_mut().find(|(axis, _)| axis.is_none())) {
+            (0, Some((free, _))) => *free = Some(place),
+            (0, None) => axes.push((Some(place), 1)),
+            (1, _) => {}
+            _ => return None,
+        }
+    }
+    let axes: Option<Vec<_>> = axes.into_iter().map(|(axis, size)| Some((axis?, size))).collect();
+    axes?.try_into().ok()
+}
+
+/// The error for axes of which pages are not made.
+fn unlike_pages(path: &Path, names: &str) -> VolumeError {
+    let what = format!(
+        "has the axes {names:?} by its description: pages of x and y are read, along slices, channels and times"
+    );
+    format_error(path, Reason::unsupported(what, "save it in that order"))
+}
 
 /// Numbers of slices, channels and times, in the order that OME names, as in XYZCT.
 fn ordered(order: &str, [z, c, t]: [u64; 3]) -> Option<[(Axis, u64); 3]> {

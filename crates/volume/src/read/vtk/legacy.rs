@@ -82,7 +82,7 @@ fn read_text(
         return layout.read(path, &text[..end], end as u64, monitor);
     }
     let count = layout.dims.samples() as u64;
-    let mut shares: Vec<f32> = text::numbers(&text[..end], end as u64, Dtype::F32, count)
+    let mut shares: Vec<f32> = text::numbers(path, &text[..end], end as u64, Dtype::F32, count)
         .map_err(|reason| format_error(path, reason))?;
     shares.iter_mut().for_each(|share| *share = (*share * 255.0).round());
     layout.volume(shares)

@@ -110,7 +110,7 @@ impl<'a> VtkPoints<'a> {
         let reader = self.file.reader_at(array.start)?;
         let left = array.end.unwrap_or(self.file.length()).saturating_sub(array.start);
         if self.text {
-            return text::numbers(reader.take(left), left, dtype, count)
+            return text::numbers(path, reader.take(left), left, dtype, count)
                 .map_err(|reason| format_error(path, reason));
         }
         let bytes = count.saturating_mul(dtype.size() as u64).min(left);
@@ -118,7 +118,7 @@ impl<'a> VtkPoints<'a> {
         let payload = Payload { reader: reader.take(bytes), length };
         let claim = format!("{count} numbers {} of type {dtype}", array.name);
         payload
-            .samples(dtype, Endian::Big, count, &Monitor::noop())
+            .samples(path, dtype, Endian::Big, count, &Monitor::noop())
             .map_err(|error| payload_error_of(path, &claim, error))
     }
 }

@@ -12,3 +12,5 @@ pub(crate) use image::read as read_image;
 pub(crate) use legacy::read as read_legacy;
 pub use legacy_points::VtkPoints;
 pub use xml::VtkXml;
+#[cfg(feature = "zarr")]
+pub(super) use xml_arrays::Base64;

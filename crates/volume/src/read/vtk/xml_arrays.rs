@@ -29,7 +29,8 @@ impl VtkXml<'_> {
         };
         match self.attribute(array, "format") {
             Some("ascii") => {
-                text::numbers(self.part(start, end)?, end - start, dtype, count).map_err(of_array)
+                let (path, text) = (self.file.path(), self.part(start, end)?);
+                text::numbers(path, text, end - start, dtype, count).map_err(of_array)
             }
             Some("binary") => {
                 let text = Base64::new(self.part(start, end)?);
@@ -120,7 +121,9 @@ impl VtkXml<'_> {
                 ))));
             }
             let payload = Payload { reader: data.take(first), length: Length::Exactly(first) };
-            return payload.samples(dtype, self.endian, count, &self.monitor).map_err(located);
+            return payload
+                .samples(self.file.path(), dtype, self.endian, count, &self.monitor)
+                .map_err(located);
         };
         let [block, last] =
             [self.word(&mut data).map_err(cut)?, self.word(&mut data).map_err(cut)?];
@@ -164,7 +167,7 @@ impl VtkXml<'_> {
             at: At::End,
         };
         let payload = Payload { reader, length: Length::Exactly(bytes) };
-        payload.samples(dtype, self.endian, count, &self.monitor).map_err(located)
+        payload.samples(self.file.path(), dtype, self.endian, count, &self.monitor).map_err(located)
     }
 
     /// A length in front of an array.
@@ -246,7 +249,7 @@ impl<R: Read> Read for Blocks<R> {
 
 /// Decodes base64 (RFC 4648) as VTK writes it: white space is passed over, and padding may end one
 /// piece of data in the middle of the text, where the next begins.
-struct Base64<R> {
+pub(in crate::read) struct Base64<R> {
     text: R,
     /// Decoded bytes not yet given out, and how many were.
     ready: [u8; 3],
@@ -255,7 +258,7 @@ struct Base64<R> {
 }
 
 impl<R: BufRead> Base64<R> {
-    fn new(text: R) -> Self {
+    pub(in crate::read) fn new(text: R) -> Self {
         Self { text, ready: [0; 3], length: 0, given: 0 }
     }
 

@@ -71,6 +71,8 @@ impl Axes {
                 ))));
             }
             Some(axes) => by_name(path, axes)?,
+            // A last axis of one sample behind three others is a channel.
+            None if matches!(shape, [_, _, _, 1]) => [0, 1, 2].map(Some),
             None => match shape.len() {
                 count @ 3.. => [count - 3, count - 2, count - 1].map(Some),
                 _ => {
@@ -189,6 +191,7 @@ mod tests {
         assert_eq!(found(json!(["depth", "row", "column"]), &[2, 3, 4]), all(0, 1, 2));
         assert_eq!(found(json!(["x", "slice", "y"]), &[4, 2, 3]), all(1, 2, 0));
         assert_eq!(found(json!([null, null, null]), &[2, 3, 4]), all(0, 1, 2));
+        assert_eq!(found(json!([]), &[2, 3, 4, 1]), all(0, 1, 2));
         assert_eq!(found(json!(["x", "y"]), &[2, 3, 4]), None);
         assert_eq!(found(json!(["x", "x", "y"]), &[2, 3, 4]), None);
         assert_eq!(found(json!([]), &[3, 4]), None);

@@ -1,6 +1,8 @@
 //! Zarr arrays, and pyramids of them as OME-Zarr lays them out.
 
 mod axes;
+mod coordinates;
+mod packing;
 mod samples;
 
 use std::path::{Component, Path};
@@ -9,7 +11,7 @@ use std::sync::Arc;
 use serde_json::Value;
 use walpha_base::Monitor;
 use walpha_base::advice::{Setting, advice};
-use walpha_base::shown::shown;
+use walpha_base::shown::{counted, shown};
 use zarrs::array::{Array, ArrayCreateError, ArrayMetadata, ArrayMetadataV2};
 use zarrs::filesystem::FilesystemStore;
 use zarrs::group::Group;
@@ -21,25 +23,46 @@ use crate::error::format_error;
 use crate::source::Source;
 use crate::{Coordinates, Endian, Frame, Reason, Volume, VolumeError};
 use axes::{Axes, NamedAxis};
-use samples::{ZarrBoxes, check_chunk, check_stored, damaged, dtype, samples};
+use packing::Packing;
+use samples::{ZarrBoxes, check_chunk, check_stored, damaged, samples};
 
 /// Reads a Zarr array of version 2 or 3 in a folder, or a level of an OME-Zarr pyramid (0, the finest,
 /// unless `level` says otherwise).
 ///
 /// Axes called x, y and z are these, whatever their order; where none has a name the last three are z, y and x.
 /// The others count volumes, of which the one numbered `frame_index` is read. Scale and translation
-/// of a pyramid give the frame. Memory for the samples and some rows of chunks at a time.
+/// of a pyramid give the frame, or else coordinates beside the array; attributes of CF unpack its numbers. Memory for the samples and some rows of chunks at a time.
 pub(crate) fn read(
     path: &Path,
     level: Option<u32>,
     frame_index: Option<u64>,
     monitor: &Monitor,
 ) -> Result<Volume, VolumeError> {
-    let PlacedArray { array, axes, frame } = open(path, level, frame_index)?;
-    let dims = axes.dims.bounded()?;
-    let (dtype, samples) = samples(path, &array, &axes, monitor)?;
+    let PlacedArray { array, axes, packing, frame } = open(path, level, frame_index)?;
+    let (dims, dtype) = (axes.dims.bounded()?, packing.dtype());
+    let samples = samples(path, &array, &axes, &packing, monitor)?;
     let (endian, encoding) = (Endian::Little, Encoding::Raw);
-    Layout { dims, dtype, endian, frame, encoding, frames: FrameChoice::ONE }.volume(samples)
+    let layout = Layout { dims, dtype, endian, frame, encoding, frames: FrameChoice::ONE };
+    let volume = layout.volume(samples)?;
+    if packing.states_missing() { mask(path, volume) } else { Ok(volume) }
+}
+
+/// Masks what the attributes state to be missing.
+fn mask(path: &Path, volume: Volume) -> Result<Volume, VolumeError> {
+    let missing: Vec<bool> = volume.as_slice().iter().map(|sample| sample.is_nan()).collect();
+    let count = missing.iter().filter(|&&missing| missing).count();
+    if count == 0 {
+        return Ok(volume);
+    }
+    tracing::warn!(
+        "{}: {} of no value (_FillValue, missing_value): masked",
+        shown(path),
+        counted(count as u64, "sample")
+    );
+    volume.with_padding(missing).ok_or_else(|| {
+        let what = "has no samples but those of no value (_FillValue, missing_value)";
+        format_error(path, Reason::content(what, "name another array"))
+    })
 }
 
 /// The same, to be read part by part.
@@ -48,14 +71,14 @@ pub(crate) fn source(
     level: Option<u32>,
     frame_index: Option<u64>,
 ) -> Result<Source, VolumeError> {
-    let PlacedArray { array, axes, frame } = open(path, level, frame_index)?;
-    let (dtype, dims) = (dtype(path, array.data_type())?, axes.dims);
+    let PlacedArray { array, axes, packing, frame } = open(path, level, frame_index)?;
+    let (dtype, dims) = (packing.dtype(), axes.dims);
     let chunk = array.chunk_shape(&vec![0; array.dimensionality()]);
     let chunk = chunk.map_err(|error| damaged(path, &error))?;
     let [z, y, x] = axes.sizes(&chunk).map(|size| size as usize);
     check_chunk(path, &chunk, dims)?;
     check_stored(path, dims)?;
-    let parts = ZarrBoxes { path: path.into(), array, axes };
+    let parts = ZarrBoxes { path: path.into(), array, axes, packing };
     Ok(Source::new(dims, frame, dtype, [x, y, z], Box::new(parts)))
 }
 
@@ -63,6 +86,7 @@ pub(crate) fn source(
 struct PlacedArray {
     array: Array<FilesystemStore>,
     axes: Axes,
+    packing: Packing,
     frame: Frame,
 }
 
@@ -84,14 +108,13 @@ fn open(
             )));
         }
         let array = open_array(path, store, "/")?;
-        let named = named_by_array(&array).or_else(|| named_by_pyramid_of(path));
-        let axes = Axes::find(path, array.shape(), named.as_deref(), frame_index)?;
-        return Ok(PlacedArray { array, axes, frame: Frame::VOXEL });
+        let pyramid = pyramid_of(path);
+        return place(path, array, pyramid.as_ref().map(|(all, level)| (all, level)), frame_index);
     }
     let group = Group::open(Arc::clone(&store), "/").map_err(|error| unreadable(&error))?;
     let attributes = Value::Object(group.attributes().clone());
-    let pyramid = ["/ome/multiscales/0", "/multiscales/0"];
-    let Some(pyramid) = pyramid.iter().find_map(|at| attributes.pointer(at)) else {
+    let pyramids = pyramids(&attributes);
+    let Some(pyramid) = pyramids.first() else {
         return Err(fail(Reason::unsupported(
             format!("is a Zarr group without the levels of OME-Zarr, of {}", children(path)),
             "name one of these",
@@ -99,8 +122,39 @@ fn open(
     };
     let (dataset, name) = dataset(pyramid, level).map_err(fail)?;
     let array = open_array(path, store, &format!("/{}", name.trim_matches('/')))?;
-    let named = NamedAxis::of(&pyramid["axes"]).or_else(|| named_by_array(&array));
+    if pyramids.len() > 1 {
+        let count = pyramids.len();
+        tracing::warn!("{}: of its {count} images (multiscales) the first is read", shown(path));
+    }
+    place(path, array, Some((pyramid, dataset)), frame_index)
+}
+
+/// Finds the volume in an array, which may be a level of a pyramid.
+fn place(
+    path: &Path,
+    array: Array<FilesystemStore>,
+    level: Option<(&Value, &Value)>,
+    frame_index: Option<u64>,
+) -> Result<PlacedArray, VolumeError> {
+    let named = level.and_then(|(pyramid, _)| NamedAxis::of(&pyramid["axes"]));
+    let named = named.or_else(|| names(&array).and_then(|names| NamedAxis::of(&names)));
     let axes = Axes::find(path, array.shape(), named.as_deref(), frame_index)?;
+    let packing = Packing::of(path, &array)?;
+    let frame = match level {
+        Some((pyramid, dataset)) => frame_of(path, array.shape().len(), &axes, pyramid, dataset)?,
+        None => coordinates::frame(path, array.shape(), &axes, &names(&array).unwrap_or_default())?,
+    };
+    Ok(PlacedArray { array, axes, packing, frame })
+}
+
+/// Where a level of a pyramid has its samples, by the array's number of axes.
+fn frame_of(
+    path: &Path,
+    count: usize,
+    axes: &Axes,
+    pyramid: &Value,
+    dataset: &Value,
+) -> Result<Frame, VolumeError> {
     let transforms = [&dataset["coordinateTransformations"], &pyramid["coordinateTransformations"]];
     let transforms: Vec<&Value> =
         transforms.into_iter().filter_map(Value::as_array).flatten().collect();
@@ -108,11 +162,10 @@ fn open(
         |axis: usize| pyramid["axes"][axis]["unit"].as_str().map(|name| unit_named(path, name));
     let [z, y, x] = axes.space.map(|axis| axis.and_then(unit));
     let (unit, factors) = one_unit(path, [x, y, z])?;
-    let (scale, origin) = placed(path, array.shape().len(), &axes, &transforms)?;
+    let (scale, origin) = placed(path, count, axes, &transforms)?;
     let [scale, origin] = [scale, origin].map(|lengths| [0, 1, 2].map(|k| lengths[k] * factors[k]));
     let coordinates = Coordinates { unit, ..Coordinates::default() };
-    let frame = frame(path, origin, diagonal(scale), coordinates)?;
-    Ok(PlacedArray { array, axes, frame })
+    frame(path, origin, diagonal(scale), coordinates)
 }
 
 /// Opens an array; what it is stored by may not be known here.
@@ -161,26 +214,42 @@ fn boolean(folder: &Path) -> Option<ArrayMetadata> {
 }
 
 /// Names of axes that an array has itself: `dimension_names` of version 3, or those that xarray writes.
-fn named_by_array(array: &Array<FilesystemStore>) -> Option<Vec<NamedAxis>> {
-    let metadata = serde_json::to_value(array.metadata()).ok()?;
-    let of_xarray = array.attributes().get("_ARRAY_DIMENSIONS");
-    NamedAxis::of(&metadata["dimension_names"]).or_else(|| NamedAxis::of(of_xarray?))
+fn names(array: &Array<FilesystemStore>) -> Option<Value> {
+    match array.metadata() {
+        ArrayMetadata::V3(metadata) if metadata.dimension_names.is_some() => {
+            serde_json::to_value(&metadata.dimension_names).ok()
+        }
+        _ => array.attributes().get("_ARRAY_DIMENSIONS").cloned(),
+    }
 }
 
-/// Names of axes in the pyramid of which an array is a level.
-fn named_by_pyramid_of(level: &Path) -> Option<Vec<NamedAxis>> {
-    let group = level.parent()?;
-    let json = |name: &str| -> Option<Value> {
-        serde_json::from_slice(&std::fs::read(group.join(name)).ok()?).ok()
-    };
-    let attributes =
-        json(".zattrs").or_else(|| Some(json("zarr.json")?["attributes"]["ome"].clone()))?;
-    let pyramid = &attributes["multiscales"][0];
-    let name = level.file_name()?.to_str()?;
-    let is_level = |dataset: &Value| {
-        dataset["path"].as_str().is_some_and(|path| path.trim_matches('/') == name)
-    };
-    pyramid["datasets"].as_array()?.iter().any(is_level).then(|| NamedAxis::of(&pyramid["axes"]))?
+/// The pyramids that the attributes of a group state.
+fn pyramids(attributes: &Value) -> &[Value] {
+    let places = ["/ome/multiscales", "/multiscales"];
+    let found = places.iter().find_map(|at| attributes.pointer(at)?.as_array());
+    found.map_or(&[], Vec::as_slice)
+}
+
+/// The pyramid of which an array is a level, and what it says of that level.
+fn pyramid_of(level: &Path) -> Option<(Value, Value)> {
+    let level = level.canonicalize().ok()?;
+    level.ancestors().skip(1).find_map(|group| {
+        let name = level.strip_prefix(group).ok()?;
+        let json = |name: &str| -> Option<Value> {
+            serde_json::from_slice(&std::fs::read(group.join(name)).ok()?).ok()
+        };
+        let attributes =
+            json(".zattrs").or_else(|| Some(json("zarr.json")?["attributes"].take()))?;
+        pyramids(&attributes).iter().find_map(|pyramid| {
+            let is_it = |dataset: &&Value| {
+                dataset["path"]
+                    .as_str()
+                    .is_some_and(|path| Path::new(path.trim_matches('/')) == name)
+            };
+            let dataset = pyramid["datasets"].as_array()?.iter().find(is_it)?;
+            Some((pyramid.clone(), dataset.clone()))
+        })
+    })
 }
 
 /// A level of a pyramid, and the path of its array.

@@ -14,38 +14,43 @@ use zarrs::array_subset::ArraySubset;
 use zarrs::filesystem::FilesystemStore;
 
 use super::axes::Axes;
+use super::packing::Packing;
 use crate::error::format_error;
+use crate::formats::decoded;
 use crate::source::BoxReader;
 use crate::{Dims, Dtype, Reason, VolumeError};
 
-/// Calls a method with what turns samples of the type of an array into `f32`.
+/// Calls a method with what turns numbers of the type of an array into samples.
 macro_rules! by_type {
-    ($array:expr, $dtype:expr, $object:ident.$read:ident $(, $argument:expr)*) => {
-        match $dtype {
-            _ if *$array.data_type() == DataType::Bool => $object.$read($($argument,)* |v: bool| v.into()),
-            Dtype::U8 => $object.$read($($argument,)* |v: u8| v.into()),
-            Dtype::I8 => $object.$read($($argument,)* |v: i8| v.into()),
-            Dtype::U16 => $object.$read($($argument,)* |v: u16| v.into()),
-            Dtype::I16 => $object.$read($($argument,)* |v: i16| v.into()),
-            Dtype::U32 => $object.$read($($argument,)* |v: u32| v as f32),
-            Dtype::I32 => $object.$read($($argument,)* |v: i32| v as f32),
-            Dtype::U64 => $object.$read($($argument,)* |v: u64| v as f32),
-            Dtype::I64 => $object.$read($($argument,)* |v: i64| v as f32),
-            Dtype::F32 => $object.$read($($argument,)* |v: f32| v),
-            Dtype::F64 => $object.$read($($argument,)* |v: f64| v as f32),
+    ($array:expr, $packing:expr, $object:ident.$read:ident $(, $argument:expr)*) => {{
+        let packing = $packing;
+        match packing.stored {
+            _ if *$array.data_type() == DataType::Bool => $object.$read($($argument,)* |v: bool| f32::from(v)),
+            Dtype::U8 => $object.$read($($argument,)* |v: u8| packing.sample(v, v.into())),
+            Dtype::I8 => $object.$read($($argument,)* |v: i8| packing.sample(v, v.into())),
+            Dtype::U16 => $object.$read($($argument,)* |v: u16| packing.sample(v, v.into())),
+            Dtype::I16 => $object.$read($($argument,)* |v: i16| packing.sample(v, v.into())),
+            Dtype::U32 => $object.$read($($argument,)* |v: u32| packing.sample(v, v.into())),
+            Dtype::I32 => $object.$read($($argument,)* |v: i32| packing.sample(v, v.into())),
+            Dtype::U64 => $object.$read($($argument,)* |v: u64| packing.sample(v, v as f64)),
+            Dtype::I64 => $object.$read($($argument,)* |v: i64| packing.sample(v, v as f64)),
+            Dtype::F32 => $object.$read($($argument,)* |v: f32| packing.sample(v, v.into())),
+            Dtype::F64 => $object.$read($($argument,)* |v: f64| packing.sample(v, v)),
         }
-    };
+    }};
 }
 
 pub(super) fn samples(
     path: &Path,
     array: &Array<FilesystemStore>,
     axes: &Axes,
+    packing: &Packing,
     monitor: &Monitor,
-) -> Result<(Dtype, Vec<f32>), VolumeError> {
-    let dtype = dtype(path, array.data_type())?;
+) -> Result<Vec<f32>, VolumeError> {
     let read = ArrayReader { path, array, axes, monitor };
-    Ok((dtype, by_type!(array, dtype, read.all)?))
+    let samples = by_type!(array, packing, read.all)?;
+    packing.rounding.say(path);
+    Ok(samples)
 }
 
 /// The type of samples.
@@ -98,15 +103,19 @@ pub(super) struct ZarrBoxes {
     pub path: PathBuf,
     pub array: Array<FilesystemStore>,
     pub axes: Axes,
+    pub packing: Packing,
 }
 
 impl BoxReader for ZarrBoxes {
     fn read(&self, first: [usize; 3], size: [usize; 3]) -> Result<Vec<f32>, VolumeError> {
-        let dtype = dtype(&self.path, self.array.data_type())?;
         let ranges = [2, 1, 0].map(|k| first[k] as u64..(first[k] + size[k]) as u64);
         let part = self.axes.subset(ranges);
         let [x, y, z] = size;
-        by_type!(self.array, dtype, self.part, &part, [z, y, x])
+        let samples = decoded(&self.path, || {
+            by_type!(self.array, &self.packing, self.part, &part, [z, y, x])
+        })?;
+        self.packing.rounding.say(&self.path);
+        Ok(samples)
     }
 }
 

@@ -1,0 +1,50 @@
+//! Whole numbers that single precision does not hold, of which a reader says that they are rounded.
+
+use std::path::Path;
+use std::sync::Once;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use walpha_base::shown::shown;
+
+#[cfg(feature = "formats")]
+use crate::Sample;
+
+/// What became of the whole numbers of a file.
+#[derive(Debug)]
+pub(crate) struct Rounding {
+    found: AtomicBool,
+    said: Once,
+}
+
+impl Default for Rounding {
+    fn default() -> Self {
+        Self { found: AtomicBool::new(false), said: Once::new() }
+    }
+}
+
+impl Rounding {
+    /// A number as a sample.
+    #[cfg(feature = "formats")]
+    pub(crate) fn sample(&self, number: impl Sample) -> f32 {
+        self.note(number.is_rounded());
+        number.to_f32()
+    }
+
+    /// Takes note of numbers that are rounded.
+    pub(crate) fn note(&self, is_rounded: bool) {
+        if is_rounded {
+            self.found.store(true, Ordering::Relaxed);
+        }
+    }
+
+    /// Says, once of a file, whether some were.
+    pub(crate) fn say(&self, path: &Path) {
+        if self.found.load(Ordering::Relaxed) {
+            self.said.call_once(|| tracing::warn!("{}: {ROUNDED}", shown(path)));
+        }
+    }
+}
+
+/// What is said of them.
+pub(crate) const ROUNDED: &str = "whole numbers beyond 16777216 (2²⁴) are rounded to samples of single precision: \
+                                  different ones, as of labels, may become the same";
