@@ -23,8 +23,9 @@ pub(crate) fn read(file: &OpenFile) -> Result<Points, PointsError> {
         let line = line.ok_or_else(|| {
             fail(Reason::truncated("ends inside its PCD header: it is truncated"))
         })?;
-        if let Some(data) = line.strip_prefix("DATA ") {
-            break data.trim().to_owned();
+        let mut words = line.split_whitespace();
+        if words.next() == Some("DATA") {
+            break words.collect::<Vec<_>>().join(" ");
         }
         header.parse_line(&line).map_err(fail)?;
     };

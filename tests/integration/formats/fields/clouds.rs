@@ -151,6 +151,12 @@ fn each_field_of_pcd() {
                 Fate::Read(without_a_word)
             ),
             row!(
+                "white space between words",
+                "a.pcd",
+                String::from_utf8(pcd(&[], ROWS)).unwrap().replace(' ', "\t "),
+                Fate::Read(without_a_word)
+            ),
+            row!(
                 "`DATA` of another kind",
                 "a.pcd",
                 pcd(&["DATA csv"], ROWS),
@@ -230,6 +236,17 @@ fn each_field_of_npy() {
                 "a.npy",
                 npy("'>i2'", "False", "(2, 3)", &[0, 1, 0, 2, 0, 3, 0, 4, 0, 5, 0, 6]),
                 Fate::Read(without_a_word)
+            ),
+            row!(
+                "integers beyond those that doubles hold",
+                "a.npy",
+                npy(
+                    "'<i8'",
+                    "False",
+                    "(2, 3)",
+                    [1i64, 2, 3, 4, -((1 << 53) + 1), 6].map(i64::to_le_bytes).as_flattened()
+                ),
+                Fate::Refused(&["row 1: an integer near -9007199254740992", "a.astype('f8')"])
             ),
             row!(
                 "types that are not numbers",
