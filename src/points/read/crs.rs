@@ -242,19 +242,19 @@ mod tests {
 
     #[test]
     fn keys_tell_angles_and_units() {
-        let told = |keys: &[[u16; 2]]| {
+        let told_of_keys = |keys: &[[u16; 2]]| {
             let count = keys.len() as u16;
             let keys = keys.iter().flat_map(|&[key, value]| [key, 0, 1, value]);
             let bytes: Vec<u8> =
                 [1, 1, 0, count].into_iter().chain(keys).flat_map(u16::to_le_bytes).collect();
-            self::told(&ReferenceSystem::of_keys(&bytes))
+            told(&ReferenceSystem::of_keys(&bytes))
         };
         for keys in
             [&[[1024, 2], [2048, 4326]][..], &[[2048, 4326]], &[[1024, 32767], [2054, 9102]]]
         {
-            assert!(told(keys).contains("longitude and latitude"), "{keys:?}");
+            assert!(told_of_keys(keys).contains("longitude and latitude"), "{keys:?}");
         }
-        let told_of_feet = told(&[[1024, 1], [3076, 9001], [4099, 9003]]);
+        let told_of_feet = told_of_keys(&[[1024, 1], [3076, 9001], [4099, 9003]]);
         assert!(
             told_of_feet.contains("metre of x and y and US survey foot of z"),
             "{told_of_feet}"
@@ -267,7 +267,7 @@ mod tests {
             &[[3076, 9002], [4099, 9003]],
             &[[3076, 9001], [4099, 32767]],
         ] {
-            assert_eq!(told(keys), "", "{keys:?}");
+            assert_eq!(told_of_keys(keys), "", "{keys:?}");
         }
     }
 }

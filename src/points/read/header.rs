@@ -31,22 +31,6 @@ impl Header {
         lines: &mut Numbered<'_>,
         given: Option<&Columns>,
     ) -> Result<Self, PointsError> {
-        let mut separator = None;
-        let header = Self::before_rows(path, lines, given, &mut separator)?;
-        let separator = separator.or_else(|| lines.peek().map(|(_, row)| mark(row)));
-        if let (Some(columns), Some(separator)) = (&header.columns, separator) {
-            lines.set_labelled(Labelled::new(columns, separator));
-        }
-        Ok(header)
-    }
-
-    /// Reads these lines, and finds what separates the names.
-    fn before_rows(
-        path: &Path,
-        lines: &mut Numbered<'_>,
-        given: Option<&Columns>,
-        separator: &mut Option<Option<char>>,
-    ) -> Result<Self, PointsError> {
         let mut remark = None;
         while let Some((_, line)) = lines.peek() {
             let bare = line.trim_start_matches(['#', '/', ' ', '\t']).trim_end();
@@ -55,8 +39,8 @@ impl Header {
             let names = names(&joined);
             if let Ok(columns) = Columns::named(&names) {
                 lines.next();
-                *separator = Some(mark(&joined));
                 let columns = given.cloned().unwrap_or(columns);
+                lines.set_labelled(Labelled::new(&columns, mark(&joined)));
                 return Self::with_unit(path, lines, columns, &names)
                     .map_err(|error| unknown(path, &error));
             }
@@ -105,6 +89,9 @@ impl Header {
             }
             lines.next();
             break;
+        }
+        if let (Some(given), Some((_, row))) = (given, lines.peek()) {
+            lines.set_labelled(Labelled::new(given, mark(row)));
         }
         if let Some(remark) = remark {
             tracing::warn!(

@@ -103,6 +103,17 @@ fn each_field_of_pcd() {
                 Fate::Refused(&["type F and 3 bytes"])
             ),
             row!(
+                "integers that no double holds",
+                "a.pcd",
+                pcd(
+                    &["SIZE 8 8 8", "TYPE U I U", "WIDTH 1", "POINTS 1", "DATA binary"],
+                    [5u64, (-(1i64 << 53) - 1).cast_unsigned(), 1 << 60]
+                        .map(u64::to_le_bytes)
+                        .as_flattened()
+                ),
+                Fate::Refused(&["the integer -9007199254740993", "subtract an offset"])
+            ),
+            row!(
                 "`COUNT` of x, y or z",
                 "a.pcd",
                 pcd(&["COUNT 2 1 1"], b"1 1 2 3\n4 4 5 6\n"),

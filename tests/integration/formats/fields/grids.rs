@@ -209,3 +209,14 @@ fn arrays_behind_texts_are_found() {
     weights(&path);
     assert_eq!(warnings(&path), "null");
 }
+
+/// Texts beside samples are no samples.
+#[test]
+fn texts_are_passed_by_in_a_volume() {
+    use crate::formats::files::{VTK, open, save};
+    let folder = tempfile::tempdir().unwrap();
+    let texts = format!("FIELD f 1\nname 1 12 string\n{}SCALARS", "a b\n\n".repeat(6));
+    let file = VTK.replace("SCALARS", &texts) + "0 1 2 3 4 5 6 7 8 9 10 11\n";
+    let volume = open(&save(folder.path(), "v.vtk", file)).unwrap();
+    assert_eq!(volume.as_slice()[..3], [0.0, 1.0, 2.0]);
+}

@@ -460,10 +460,7 @@ fn a_fourth_column_is_a_weight_where_that_is_asked_for() {
     assert_eq!(told["weights"]["max"], 0.0);
     let told = json(f, &["shape", "a.xyz", "--alpha", "1", "--weights", "column"]);
     assert_eq!(told["weights"]["max"], 4.0);
-    assert!(
-        told["warnings"].to_string().contains("its values are taken for weights"),
-        "{told}"
-    );
+    assert!(told["warnings"].to_string().contains("its values are taken for weights"), "{told}");
 }
 
 /// What the name says, and the content does not.
