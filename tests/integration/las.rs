@@ -136,6 +136,23 @@ fn packed(path: &std::path::Path, version: (u8, u8), format: u8) -> Vec<u8> {
     std::fs::read(path).unwrap()
 }
 
+/// Of 1.4 the number of 64 bits holds, also of chunks of layers.
+#[test]
+fn the_number_of_64_bits_holds_where_an_old_one_differs() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.laz");
+    let whole = packed(&path, (1, 4), 6);
+    for old in [0u32, 2, 9] {
+        let mut bytes = whole.clone();
+        bytes[107..111].copy_from_slice(&old.to_le_bytes());
+        std::fs::write(&path, &bytes).unwrap();
+        assert_eq!(read_points(&path, None).unwrap().len(), 3, "{old}");
+        let told = json(folder.path(), &["info", "a.laz"]);
+        let said = told["warnings"].to_string().contains("3 in its own field: 3 are read");
+        assert_eq!(said, old > 0, "{old}: {told}");
+    }
+}
+
 /// No change of a byte panics or asks for more memory than a file of this size can need: of items that make no point, of
 /// more chunks than there are bytes, of longer layers than the file.
 #[test]

@@ -1,7 +1,9 @@
+use std::path::Path;
 use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 use walpha_base::advice::{Advice, Setting, advice};
+use walpha_base::shown::shown;
 
 use crate::volume::Reason;
 
@@ -63,6 +65,9 @@ const SYNONYMS: [(usize, &[&str]); 5] = [
     (VALUE, &["reflectance"]),
 ];
 
+/// Rows of which the first column may number the points; fewer are so by chance.
+const LEAST_COUNTED: usize = 4;
+
 /// Names of angles, which cannot be coordinates.
 const ANGLES: [&str; 5] = ["lon", "lat", "lng", "longitude", "latitude"];
 
@@ -73,6 +78,16 @@ const DEGREES: [&str; 5] = ["deg", "degree", "degrees", "°", "rad"];
 fn is_angle(name: &str) -> bool {
     let (name, unit) = name_and_unit(name);
     is_among(name, &ANGLES) || unit.is_some_and(|unit| is_among(unit, &DEGREES))
+}
+
+/// Whether a word among others shows that they name columns: a part of it is x, y or z, or an angle, as in `X-coord` and `lon_deg`.
+#[cfg(feature = "formats")]
+pub(super) fn is_of_coordinate(word: &str) -> bool {
+    const PLANE: [&str; 2] = ["easting", "northing"];
+    is_angle(word)
+        || word
+            .split(|c: char| !c.is_alphanumeric())
+            .any(|part| [&COLUMNS[..3], &PLANE, &ANGLES].iter().any(|known| is_among(part, known)))
 }
 
 /// Whether a name is one of these, in any letter case.
@@ -154,8 +169,8 @@ impl Columns {
 
 impl Columns {
     /// Guesses columns from their numbers: x y z, perhaps followed by a value, a normal (of length 1 or 0) or a
-    /// colour (whole numbers up to 255).
-    pub(super) fn guess(rows: &[Vec<f64>]) -> Result<Self, Reason> {
+    /// colour (whole numbers up to 255). Says what other columns it may be.
+    pub(super) fn guess(path: &Path, rows: &[Vec<f64>]) -> Result<Self, Reason> {
         let count = rows.first().map_or(0, Vec::len);
         let vectors = || rows.iter().map(|row| &row[3..]);
         let unit = |v: &[f64]| {
@@ -185,6 +200,21 @@ impl Columns {
                 ));
             }
         };
+        if known.contains(&VALUE) {
+            tracing::warn!(
+                "{}: the fourth column is taken for values; if it has weights, name the columns x,y,z,weight",
+                shown(path)
+            );
+        }
+        if rows.len() >= LEAST_COUNTED && rows.windows(2).all(|pair| pair[1][0] == pair[0][0] + 1.0)
+        {
+            tracing::warn!(
+                "{}: the first column counts from {} up, and is taken for x; if it numbers the points, name the columns, as \
+                 in -,x,y,z",
+                shown(path),
+                rows[0][0]
+            );
+        }
         let column = |place: usize| known.get(place).copied();
         Ok(Self((0..count).map(column).collect()))
     }

@@ -5,9 +5,9 @@ use std::path::Path;
 use walpha_base::advice::{Setting, advice};
 use walpha_base::shown::shown;
 
-use super::columns::name_and_unit;
-use super::dialect::{number, split_at};
-use super::lines::{Numbered, count};
+use super::columns::{is_of_coordinate, name_and_unit};
+use super::dialect::number;
+use super::lines::{Labelled, Numbered, count, fields_at, is_comment, mark};
 use super::rows::is_missing;
 use super::{Columns, PointsError, UnknownColumns, format};
 use crate::volume::{LengthUnit, Reason};
@@ -25,25 +25,42 @@ const FIRST_LINE: &str = "its first line must name the columns x, y and z, perha
 
 impl Header {
     /// Reads the lines before the first row or count. Names follow `#` or `//`, or nothing. A first line of other names is
-    /// no row where `given` says what the columns are.
+    /// no row where `given` says what the columns are. From here on the lines know which rows begin as comments do.
     pub(super) fn read(
         path: &Path,
         lines: &mut Numbered<'_>,
         given: Option<&Columns>,
     ) -> Result<Self, PointsError> {
+        let mut remark = None;
         while let Some((_, line)) = lines.peek() {
             let bare = line.trim_start_matches(['#', '/', ' ', '\t']).trim_end();
             // Units belong to the names before them.
             let joined = bare.replace(" [", "[").replace(" (", "(");
             let names = names(&joined);
-            let is_comment = line.trim_start().starts_with(['#', '/']);
             if let Ok(columns) = Columns::named(&names) {
                 lines.next();
                 let columns = given.cloned().unwrap_or(columns);
+                lines.set_labelled(Labelled::new(&columns, mark(&joined)));
                 return Self::with_unit(path, lines, columns, &names)
                     .map_err(|error| unknown(path, &error));
             }
-            if bare.is_empty() || is_comment || bare.to_ascii_lowercase().starts_with("sep=") {
+            if bare.is_empty() || bare.to_ascii_lowercase().starts_with("sep=") {
+                lines.next();
+                continue;
+            }
+            if is_comment(line) {
+                if given.is_some_and(|given| Labelled::new(given, mark(line)).is_row(line)) {
+                    break;
+                }
+                if given.is_none() && may_head(&names, lines) {
+                    if is_header(&names, mark(&joined)) {
+                        let Err(error) = Columns::named(&names) else {
+                            unreachable!("tried above")
+                        };
+                        return Err(unknown(path, &error));
+                    }
+                    remark = Some(line.trim());
+                }
                 lines.next();
                 continue;
             }
@@ -72,6 +89,16 @@ impl Header {
             }
             lines.next();
             break;
+        }
+        if let (Some(given), Some((_, row))) = (given, lines.peek()) {
+            lines.set_labelled(Labelled::new(given, mark(row)));
+        }
+        if let Some(remark) = remark {
+            tracing::warn!(
+                "{}: {remark:?} is taken for a remark, as it names no x, y or z; if it names the columns, say with \
+                 `columns` what they are",
+                shown(path)
+            );
         }
         say_first_row(path, lines);
         Ok(Self { columns: given.cloned(), unit: LengthUnit::Unstated })
@@ -111,17 +138,25 @@ fn unknown(path: &Path, error: &UnknownColumns) -> PointsError {
     format(path, Reason::content(format!("{FIRST_LINE}: {error}"), error.advice()))
 }
 
-/// The names in a line, which are between semicolons, tabs, commas, or else blanks.
+/// The names in a line.
 fn names(line: &str) -> Vec<&str> {
-    let mark = [';', '\t', ','].into_iter().find(|&mark| line.contains(mark));
-    let mut names = match mark {
-        Some(mark) => split_at(line, mark),
-        None => line.split_whitespace().collect(),
-    };
-    while names.len() > 1 && names.last().is_some_and(|name| name.is_empty()) {
-        names.pop();
-    }
-    names
+    fields_at(line, mark(line))
+}
+
+/// Whether a comment may name the columns: it has a word for each number of the first row, and no number.
+fn may_head(names: &[&str], lines: &Numbered<'_>) -> bool {
+    let is_row = |line: &&str| count(line).is_none();
+    let row = lines.contents().map(|(_, line)| line).find(is_row).unwrap_or_default();
+    names.len() > 1
+        && holds_number(row)
+        && !names.iter().any(|name| number(name, true).is_some())
+        && [self::names(row).len(), row.split_whitespace().count()].contains(&names.len())
+}
+
+/// Whether words that may name columns do so: by a name of a coordinate among them, or as they are separated. Other words may be
+/// a remark.
+fn is_header(names: &[&str], mark: Option<char>) -> bool {
+    mark.is_some() || names.iter().any(|name| is_of_coordinate(name))
 }
 
 /// Whether a line has a number in it, or a word for a missing one.

@@ -1,11 +1,13 @@
 //! LAS and LAZ, the formats of laser scanners.
 
 use std::io::{self, Read, Seek, SeekFrom};
+use std::ops::Range;
 use std::path::Path;
 
 use walpha_base::advice::{Setting, advice};
 use walpha_base::shown::shown;
 
+use super::crs::ReferenceSystem;
 use super::laz::Claims;
 use super::{COLUMNS, Points, PointsError, format};
 use crate::points::{ModelMetadata, PointOptions};
@@ -22,10 +24,18 @@ pub(crate) fn read(
     options: &PointOptions,
 ) -> Result<(Points, ModelMetadata), PointsError> {
     let path = file.path();
-    check(file)?;
+    let header = check(file)?;
+    let claimed = count(&header);
     let fail = |error| unreadable(path, error);
-    let mut reader = las::Reader::new(file.owned_reader()?).map_err(fail)?;
-    refuse_angles(path, reader.header())?;
+    let reader = file.owned_reader()?;
+    let reader = if claimed == u64::from(header.number_of_point_records) {
+        las::Reader::new(reader)
+    } else {
+        las::Reader::new(WithoutOldCount { reader, at: 0 })
+    };
+    let mut reader = reader.map_err(fail)?;
+    let records = reader.header().vlrs().iter().chain(reader.header().evlrs());
+    ReferenceSystem::of(records).check().map_err(|reason| format(path, reason))?;
     let mut points = Points { values: Some(Vec::new()), ..Points::default() };
     let record = u64::from(reader.header().point_format().len()).max(1);
     let at_once = (BATCH / record).max(1);
@@ -51,7 +61,6 @@ pub(crate) fn read(
             }
         }
     }
-    let claimed = reader.header().number_of_points();
     if found != claimed {
         let reason =
             Reason::truncated(format!("claims {claimed} points, but has {found}: it is truncated"));
@@ -113,32 +122,55 @@ impl Kinds {
     }
 }
 
-/// Refuses coordinates that are longitude and latitude by the file's reference system: `GeoTIFF`'s model type 2, or a text
-/// that begins with a geographic system.
-fn refuse_angles(path: &Path, header: &las::Header) -> Result<(), PointsError> {
-    const DIRECTORY: u16 = 34735;
-    const TEXT: u16 = 2112;
-    const MODEL: u16 = 1024;
-    const GEOGRAPHIC: u16 = 2;
-    let is_geographic = |record: &las::Vlr| match record.record_id {
-        DIRECTORY => {
-            let (pairs, _) = record.data.as_chunks::<2>();
-            let numbers: Vec<u16> = pairs.iter().map(|&pair| u16::from_le_bytes(pair)).collect();
-            let (keys, _) = numbers.as_chunks::<4>();
-            keys.iter().skip(1).any(|&[key, .., value]| (key, value) == (MODEL, GEOGRAPHIC))
-        }
-        TEXT => [&b"GEOGCS"[..], b"GEOGCRS", b"GEODCRS"]
-            .iter()
-            .any(|name| record.data.starts_with(name)),
-        _ => false,
-    };
-    let mut records = header.vlrs().iter().chain(header.evlrs());
-    if records.any(|record| record.user_id == "LASF_Projection" && is_geographic(record)) {
-        let what = "states longitude and latitude, which are angles and no lengths";
-        let advice = "project them to a plane first, as UTM does";
-        return Err(format(path, Reason::unsupported(what, advice)));
+/// The number of points. Version 1.4 counts them in 64 bits, and perhaps also in the field of older versions; where the two
+/// differ, PDAL, laspy and `LAStools` take the former, and so do we (LAS 1.4 R15 would have the latter, with an error).
+pub(super) fn count(header: &las::raw::Header) -> u64 {
+    let large = header.large_file.map_or(0, |large| large.number_of_point_records);
+    if large > 0 { large } else { header.number_of_point_records.into() }
+}
+
+/// Says that the two numbers of points differ.
+fn say_counts(path: &Path, header: &las::raw::Header) {
+    let old = u64::from(header.number_of_point_records);
+    let Some(large) = header.large_file.map(|large| large.number_of_point_records) else { return };
+    if old > 0 && old != large {
+        tracing::warn!(
+            "{}: counts {old} points for programs that do not know LAS 1.4, and {large} in its own field: {} are read",
+            shown(path),
+            count(header)
+        );
     }
-    Ok(())
+}
+
+/// A LAS file without the number of points in the field of older versions, which the library prefers.
+struct WithoutOldCount<R> {
+    reader: R,
+    at: u64,
+}
+
+impl<R: Read> Read for WithoutOldCount<R> {
+    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
+        const FIELD: Range<u64> = 107..111;
+        let found = self.reader.read(bytes)?;
+        if self.at < FIELD.end {
+            let places = (self.at..).zip(&mut bytes[..found]);
+            places.filter(|(at, _)| FIELD.contains(at)).for_each(|(_, byte)| *byte = 0);
+        }
+        self.at += found as u64;
+        Ok(found)
+    }
+}
+
+impl<R: Seek> Seek for WithoutOldCount<R> {
+    fn seek(&mut self, place: SeekFrom) -> io::Result<u64> {
+        self.at = self.reader.seek(place)?;
+        Ok(self.at)
+    }
+
+    // Seeking by 0 would empty the buffer of the reader.
+    fn stream_position(&mut self) -> io::Result<u64> {
+        Ok(self.at)
+    }
 }
 
 /// Refuses what a compressed file claims of its compression and does not hold.
@@ -164,8 +196,8 @@ fn check_compression(
 
 /// Refuses a file that has fewer points than it claims, or that claims none and has some; scales that are not numbers, or 0;
 /// and claims that the library would trust: more bytes of points than 64 bits can count, and an extended record longer than
-/// the file, for which it would allocate memory.
-fn check(file: &OpenFile) -> Result<(), PointsError> {
+/// the file, for which it would allocate memory. Returns the header.
+fn check(file: &OpenFile) -> Result<las::raw::Header, PointsError> {
     let (path, length) = (file.path(), file.length());
     let mut reader = file.reader()?;
     let header =
@@ -183,13 +215,13 @@ fn check(file: &OpenFile) -> Result<(), PointsError> {
         }
     }
     let record = u64::from(header.point_data_record_length).max(1);
-    let large = header.large_file.map_or(0, |large| large.number_of_point_records);
-    let count = if large > 0 { large } else { header.number_of_point_records.into() };
+    let count = count(&header);
     let bytes = count.checked_mul(record);
     if bytes.and_then(|bytes| bytes.checked_add(header.offset_to_point_data.into())).is_none() {
         let what = "claims more bytes of points than a number can count";
         return Err(format(path, Reason::content(what, "correct its header, or write it again")));
     }
+    say_counts(path, &header);
     let compressed = header.point_data_record_format & 0xc0 != 0;
     check_compression(path, &mut reader, &header, length)?;
     // Some writers say where such records would begin, and that there are none.
@@ -213,13 +245,13 @@ fn check(file: &OpenFile) -> Result<(), PointsError> {
         }
         tracing::warn!("{}: {claim}; those behind are passed over", shown(path));
     }
-    let Some(records) = header.evlr else { return Ok(()) };
+    let Some(records) = header.evlr else { return Ok(header) };
     // The length follows 2 reserved bytes, a user id of 16 and a record id of 2. If it is missing, the library
     // reports that.
     let mut claimed = [0; 8];
     let place = SeekFrom::Start(records.start_of_first_evlr.saturating_add(20));
     if reader.seek(place).and_then(|_| reader.read_exact(&mut claimed)).is_err() {
-        return Ok(());
+        return Ok(header);
     }
     let claimed = u64::from_le_bytes(claimed);
     if claimed > length {
@@ -227,7 +259,7 @@ fn check(file: &OpenFile) -> Result<(), PointsError> {
             format!("claims a record of {claimed} bytes in a file of {length}: it is truncated");
         return Err(format(path, Reason::truncated(what)));
     }
-    Ok(())
+    Ok(header)
 }
 
 fn unreadable(path: &Path, error: las::Error) -> PointsError {

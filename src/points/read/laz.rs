@@ -5,6 +5,7 @@
 
 use std::io::{self, Read, Seek, SeekFrom};
 
+use super::las::count;
 use crate::volume::Reason;
 
 /// The record that describes the compression: its user and number, and its bytes before the items.
@@ -91,11 +92,6 @@ impl Claims {
             }
             let mut bytes = vec![0; bytes];
             reader.read_exact(&mut bytes)?;
-            let large = header.large_file.map(|large| large.number_of_point_records);
-            let points = match header.number_of_point_records {
-                0 => large.unwrap_or(0),
-                points => points.into(),
-            };
             let record = header.point_data_record_length.into();
             // The two highest bits are of the compression.
             let items = items(&bytes, format & 0x3f, record);
@@ -104,7 +100,7 @@ impl Claims {
                 compressor,
                 items,
                 record,
-                points,
+                points: count(header),
                 data,
                 length,
             })));

@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use super::{PointsError, format};
+use super::dialect::{number, split_at};
+use super::{Columns, PointsError, format};
 use crate::volume::Reason;
 
 /// Lines, counted from 1.
@@ -12,11 +13,18 @@ pub(super) struct Numbered<'a> {
     text: &'a str,
     /// The number of the next line.
     line: u64,
+    /// What rows look like that begin as comments do.
+    labelled: Option<Labelled>,
 }
 
 impl<'a> Numbered<'a> {
     pub(super) fn new(text: &'a str) -> Self {
-        Self { text, line: 1 }
+        Self { text, line: 1, labelled: None }
+    }
+
+    /// Takes lines that begin as comments do for rows where they look like rows.
+    pub(super) fn set_labelled(&mut self, labelled: Labelled) {
+        self.labelled = Some(labelled);
     }
 
     /// The next line, which stays.
@@ -24,14 +32,15 @@ impl<'a> Numbered<'a> {
         self.clone().next()
     }
 
-    /// Lines that are neither empty nor comments, which begin with `#` or `//`.
+    /// Lines that are neither empty nor comments, which begin with `#` or `/`.
     pub(super) fn contents(&self) -> impl Iterator<Item = (u64, &'a str)> + use<'a> {
-        self.clone().filter(|(_, line)| is_content(line))
+        let labelled = self.labelled;
+        self.clone().filter(move |(_, line)| is_content(line, labelled))
     }
 
     /// What comes before a later place in the same text.
     fn until(&self, end: &Self) -> Self {
-        Self { text: &self.text[..self.text.len() - end.text.len()], line: self.line }
+        Self { text: &self.text[..self.text.len() - end.text.len()], ..*self }
     }
 
     /// Whether nothing but empty lines and comments is left.
@@ -41,7 +50,8 @@ impl<'a> Numbered<'a> {
 
     /// The next line that is neither empty nor a comment.
     pub(super) fn next_content(&mut self) -> Option<(u64, &'a str)> {
-        self.find(|(_, line)| is_content(line))
+        let labelled = self.labelled;
+        self.find(|(_, line)| is_content(line, labelled))
     }
 }
 
@@ -80,10 +90,63 @@ fn is_open(line: &str) -> bool {
     line.matches('"').count() % 2 == 1 && line.match_indices('"').next().is_some_and(begins)
 }
 
+/// The words of lines, each with the number of its line.
+pub(super) fn words<'a>(
+    lines: impl Iterator<Item = (u64, &'a str)> + Clone,
+) -> impl Iterator<Item = (u64, &'a str)> + Clone {
+    lines.flat_map(|(number, line)| line.split_whitespace().map(move |word| (number, word)))
+}
+
+/// Rows that may begin with a label such as `#2` or `/data/b.jpg`: by the names of their columns, or what separates these.
+#[derive(Clone, Copy)]
+pub(super) struct Labelled {
+    /// `None` for blanks.
+    mark: Option<char>,
+    width: usize,
+    /// The columns of x, y and, if there is one, z.
+    axes: [Option<usize>; 3],
+}
+
+impl Labelled {
+    pub(super) fn new(Columns(columns): &Columns, mark: Option<char>) -> Self {
+        let axis = |axis: usize| columns.iter().position(|&column| column == Some(axis));
+        Self { mark, width: columns.len(), axes: [axis(0), axis(1), axis(2)] }
+    }
+
+    /// Whether a line has a field for each name, and numbers for x, y and z.
+    pub(super) fn is_row(&self, line: &str) -> bool {
+        let fields = fields_at(line, self.mark);
+        let mut axes = self.axes.iter().flatten();
+        fields.len() == self.width && axes.all(|&axis| number(fields[axis], true).is_some())
+    }
+}
+
+/// What separates the fields of a line: semicolons, tabs, commas, or else blanks.
+pub(super) fn mark(line: &str) -> Option<char> {
+    [';', '\t', ','].into_iter().find(|&mark| line.contains(mark))
+}
+
+/// The fields of a line, without empty ones at its end.
+pub(super) fn fields_at(line: &str, mark: Option<char>) -> Vec<&str> {
+    let mut fields = match mark {
+        Some(mark) => split_at(line, mark),
+        None => line.split_whitespace().collect(),
+    };
+    while fields.len() > 1 && fields.last().is_some_and(|field| field.is_empty()) {
+        fields.pop();
+    }
+    fields
+}
+
+/// Whether a line begins as comments do.
+pub(super) fn is_comment(line: &str) -> bool {
+    line.trim_start_matches([' ', '\t', ';', ',']).starts_with(['#', '/'])
+}
+
 /// Whether a line is neither empty nor a comment. A line of separators alone is empty.
-fn is_content(line: &str) -> bool {
-    let line = line.trim_start_matches([' ', '\t', ';', ',']);
-    !line.trim().is_empty() && !line.starts_with('#') && !line.starts_with('/')
+fn is_content(line: &str, labelled: Option<Labelled>) -> bool {
+    !line.trim_matches([' ', '\t', ';', ',']).trim().is_empty()
+        && (!is_comment(line) || labelled.is_some_and(|labelled| labelled.is_row(line)))
 }
 
 /// The number that a line holds alone.

@@ -3,6 +3,8 @@
 mod columns;
 #[cfg(feature = "formats")]
 pub(super) mod content;
+#[cfg(feature = "las")]
+mod crs;
 #[cfg(feature = "formats")]
 mod dialect;
 #[cfg(feature = "formats")]

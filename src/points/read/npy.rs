@@ -4,7 +4,6 @@ use std::path::Path;
 use walpha_base::Monitor;
 use walpha_base::advice::{Setting, advice};
 use walpha_base::npy::Header;
-use walpha_base::shown::shown;
 
 use super::columns::{RADIUS, VALUE, WEIGHT};
 use super::{Columns, Points, PointsError, format, take_radii};
@@ -46,6 +45,7 @@ fn plain(file: &OpenFile, columns: Option<&Columns>) -> Result<Points, PointsErr
         return Err(format(path, Reason::content(what, "save a.reshape(-1, 3)")));
     };
     let (fortran, rows, width) = (file.fortran, rows as usize, width as usize);
+    let dtype = file.dtype;
     let numbers: Vec<f64> = file.values(path, &Monitor::noop())?;
     let at = |row: usize, column: usize| {
         numbers[if fortran { column * rows + row } else { row * width + column }]
@@ -58,19 +58,30 @@ fn plain(file: &OpenFile, columns: Option<&Columns>) -> Result<Points, PointsErr
     } else {
         let row = |row| (0..width).map(|column| at(row, column)).collect();
         let first: Vec<Vec<f64>> = (0..rows.min(ROWS)).map(row).collect();
-        let guessed = Columns::guess(&first).map_err(|reason| format(path, reason))?;
-        if guessed.0.contains(&Some(VALUE)) {
-            tracing::warn!(
-                "{}: the fourth column is taken for values; if it has weights, name the columns x,y,z,weight",
-                shown(path)
-            );
-        }
-        guessed
+        Columns::guess(path, &first).map_err(|reason| format(path, reason))?
     };
     if columns.len() != width {
         return Err(format(path, wrong_width(width, columns.len())));
     }
-    points(path, rows, &columns, |column| Ok((0..rows).map(|row| at(row, column)).collect()))
+    points(path, rows, &columns, |column| {
+        let numbers: Vec<f64> = (0..rows).map(|row| at(row, column)).collect();
+        check_integers(path, dtype, &numbers)?;
+        Ok(numbers)
+    })
+}
+
+/// Refuses integers that may be others than the doubles nearest to them.
+fn check_integers(path: &Path, dtype: Dtype, numbers: &[f64]) -> Result<(), PointsError> {
+    /// All smaller ones are doubles.
+    const LEAST: f64 = (1u64 << f64::MANTISSA_DIGITS) as f64;
+    let wrong = numbers.iter().position(|number| number.abs() >= LEAST);
+    let Some(row) = wrong.filter(|_| matches!(dtype, Dtype::I64 | Dtype::U64)) else {
+        return Ok(());
+    };
+    let what =
+        format!("row {row}: an integer near {} may be none that a double holds", numbers[row]);
+    let advice = "subtract an offset before it is saved, or round on purpose, by a.astype('f8')";
+    Err(format(path, Reason::content(what, advice)))
 }
 
 /// The error for columns that are named, and are not as many as there are.
@@ -154,6 +165,7 @@ fn structured(
             elements.flat_map(|element| &element[offset..offset + dtype.size()]).copied().collect();
         let mut numbers = vec![0.0; count as usize];
         f64::decode(&own, dtype, endian, &mut numbers);
+        check_integers(path, dtype, &numbers)?;
         Ok(numbers)
     })
 }

@@ -45,16 +45,32 @@ pub(crate) fn cells(file: &OpenFile) -> Result<Vec<CellCount>, PointsError> {
     Ok(counts.into())
 }
 
-/// Lines, with those that a backslash at their end continues.
+/// Lines without comments, with those that a backslash at their end continues.
 fn statements(text: &str) -> impl Iterator<Item = (u64, Cow<'_, str>)> {
     let mut lines = Numbered::new(text);
     std::iter::from_fn(move || {
         let (number, line) = lines.next()?;
-        let mut line = Cow::Borrowed(line);
-        while let Some(begun) = line.trim_end().strip_suffix('\\') {
-            let next = lines.next().map(|(_, next)| next).unwrap_or_default();
-            line = format!("{begun} {next}").into();
+        let (begun, mut goes_on) = content(line);
+        let mut statement = Cow::Borrowed(begun);
+        while goes_on {
+            let Some((_, line)) = lines.next() else { break };
+            let next;
+            (next, goes_on) = content(line);
+            statement = format!("{statement} {next}").into();
         }
-        Some((number, line))
+        Some((number, statement))
     })
+}
+
+/// A line without its comment, or without the backslash that says that it goes on. A `#` begins a comment where a word begins; a
+/// backslash in a comment continues nothing.
+fn content(line: &str) -> (&str, bool) {
+    let begins = |&(at, _): &(usize, &str)| at == 0 || line[..at].ends_with([' ', '\t']);
+    match line.match_indices('#').find(begins) {
+        Some((at, _)) => (&line[..at], false),
+        None => match line.trim_end().strip_suffix('\\') {
+            Some(begun) => (begun, true),
+            None => (line, false),
+        },
+    }
 }

@@ -23,8 +23,9 @@ pub(crate) fn read(file: &OpenFile) -> Result<Points, PointsError> {
         let line = line.ok_or_else(|| {
             fail(Reason::truncated("ends inside its PCD header: it is truncated"))
         })?;
-        if let Some(data) = line.strip_prefix("DATA ") {
-            break data.trim().to_owned();
+        let mut words = line.split_whitespace();
+        if words.next() == Some("DATA") {
+            break words.collect::<Vec<_>>().join(" ");
         }
         header.parse_line(&line).map_err(fail)?;
     };
@@ -291,17 +292,31 @@ fn number(kind: &str, bytes: &[u8]) -> Result<f64, Reason> {
         ("F", &[a, b, c, d]) => f64::from(f32::from_le_bytes([a, b, c, d])),
         ("F", &[a, b, c, d, e, f, g, h]) => f64::from_le_bytes([a, b, c, d, e, f, g, h]),
         ("U", bytes @ ([_] | [_, _] | [_, _, _, _] | [_, _, _, _, _, _, _, _])) => {
-            bytes.iter().rev().fold(0.0, |n, &byte| 256.0 * n + f64::from(byte))
+            double(bytes.iter().rev().fold(0, |n, &byte| n << 8 | i128::from(byte)))?
         }
         ("I", &[a]) => f64::from(i8::from_le_bytes([a])),
         ("I", &[a, b]) => f64::from(i16::from_le_bytes([a, b])),
         ("I", &[a, b, c, d]) => f64::from(i32::from_le_bytes([a, b, c, d])),
-        ("I", &[a, b, c, d, e, f, g, h]) => i64::from_le_bytes([a, b, c, d, e, f, g, h]) as f64,
+        ("I", &[a, b, c, d, e, f, g, h]) => {
+            double(i64::from_le_bytes([a, b, c, d, e, f, g, h]).into())?
+        }
         _ => {
             let what = format!("has a field of type {kind} and {} bytes", bytes.len());
             return Err(Reason::content(what, HEADER));
         }
     })
+}
+
+/// The double that an integer is.
+fn double(integer: i128) -> Result<f64, Reason> {
+    let nearest = integer as f64;
+    if nearest as i128 == integer {
+        return Ok(nearest);
+    }
+    Err(Reason::content(
+        format!("has the integer {integer}, which no double holds"),
+        "subtract an offset before it is written",
+    ))
 }
 
 /// Unpacks LZF, behind the packed and the unpacked size. Where these are equal, some writers stored what they could not

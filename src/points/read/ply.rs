@@ -66,7 +66,7 @@ fn content(
     } else {
         let mut text = String::new();
         reader.read_to_string(&mut text).map_err(io_error(path))?;
-        Numbers::Text { text, at: 0 }
+        Numbers::Text(Words { text, at: 0, row: 0, wrong: None })
     };
     let mut points = None;
     for element in &header.elements {
@@ -87,7 +87,7 @@ fn content(
     if !numbers.at_end() {
         let what = "continues after its last element: a count in its header is too low";
         let reason = Reason::content(what, "correct its header, or remove what follows");
-        return Err(fail(reason));
+        return Err(fail(numbers.wrong_row().unwrap_or(reason)));
     }
     let points = points.ok_or_else(|| {
         fail(Reason::content("has no element vertex, and so no points", "name another file"))
@@ -116,6 +116,7 @@ impl Corners {
                 property.read(numbers, &mut keep)?;
             }
             self.ends.push(self.numbers.len() as f64);
+            numbers.end_row()?;
         }
         Ok(())
     }
@@ -163,6 +164,7 @@ fn vertices(
             }
         }
         points.positions.push(position);
+        numbers.end_row().map_err(fail)?;
     }
     take_radii(path, &mut points, radii)?;
     Ok(points)
@@ -279,6 +281,7 @@ impl Element {
             for property in &self.properties {
                 property.read(numbers, &mut |_| ())?;
             }
+            numbers.end_row()?;
         }
         Ok(())
     }
@@ -310,8 +313,57 @@ const MOST_PADDING: u64 = 1 << 16;
 
 /// The numbers after a header.
 enum Numbers<R> {
-    Text { text: String, at: usize },
+    Text(Words),
     Binary(R, Endian),
+}
+
+/// Numbers as text. A row may go on in further lines, and a line may hold several rows; but where a row begins within a line
+/// and goes on in the next, lines are not what the header declares.
+struct Words {
+    text: String,
+    at: usize,
+    /// Where the row begins.
+    row: usize,
+    /// The first row that began a line and ended within one: where it begins, and where it ends.
+    wrong: Option<(usize, usize)>,
+}
+
+impl Words {
+    fn next(&mut self) -> Option<&str> {
+        let rest = self.text[self.at..].trim_start();
+        let word = rest.split_whitespace().next()?;
+        self.at = self.text.len() - rest.len() + word.len();
+        Some(word)
+    }
+
+    /// Compares a row with the lines that it is in; `false` if these cannot be what the header declares.
+    fn end_row(&mut self) -> bool {
+        const ENDS: [char; 2] = ['\n', '\r'];
+        let read = &self.text[self.row..self.at];
+        let (blank, words) = read.split_at(read.len() - read.trim_start().len());
+        let begins_line = self.row == 0 || blank.contains(ENDS);
+        let behind = self.text[self.at..].trim_start_matches([' ', '\t']);
+        let ends_line = behind.is_empty() || behind.starts_with(ENDS);
+        if begins_line && !ends_line && self.wrong.is_none() {
+            self.wrong = Some((self.row + blank.len(), self.at));
+        }
+        let fits = begins_line || !words.contains(ENDS);
+        self.row = self.at;
+        fits
+    }
+
+    /// What is wrong with the first row that did not end with its line.
+    fn wrong_row(&self) -> Option<Reason> {
+        let (start, end) = self.wrong?;
+        let (before, rest) = self.text.split_at(start);
+        let line = 1 + before.matches('\n').count().max(before.matches('\r').count());
+        let found = rest.split(['\n', '\r']).next().unwrap_or_default().split_whitespace().count();
+        let declared = self.text[start..end].split_whitespace().count();
+        let what = format!(
+            "has {found} numbers in line {line} behind its header, which declares {declared} there"
+        );
+        Some(Reason::header(what))
+    }
 }
 
 impl<R: Read> Numbers<R> {
@@ -322,14 +374,15 @@ impl<R: Read> Numbers<R> {
             )
         };
         match self {
-            Self::Text { text, at } => {
-                let rest = text[*at..].trim_start();
-                let word = rest.split_whitespace().next().ok_or_else(cut)?;
-                *at = text.len() - rest.len() + word.len();
-                let number = word.parse::<f64>().ok().filter(|&number| dtype.holds(number));
-                number.ok_or_else(|| {
-                    Reason::value(format!("has {word:?}, which is not a valid {dtype}"))
-                })
+            Self::Text(words) => {
+                let Some(word) = words.next() else {
+                    return Err(words.wrong_row().unwrap_or_else(cut));
+                };
+                if let Some(number) = word.parse().ok().filter(|&number| dtype.holds(number)) {
+                    return Ok(number);
+                }
+                let invalid = Reason::value(format!("has {word:?}, which is not a valid {dtype}"));
+                Err(words.wrong_row().unwrap_or(invalid))
             }
             Self::Binary(reader, endian) => {
                 let mut bytes = [0; 8];
@@ -345,9 +398,20 @@ impl<R: Read> Numbers<R> {
         }
     }
 
+    /// Ends a row of an element.
+    fn end_row(&mut self) -> Result<(), Reason> {
+        let Self::Text(words) = self else { return Ok(()) };
+        if words.end_row() { Ok(()) } else { words.wrong_row().map_or(Ok(()), Err) }
+    }
+
+    fn wrong_row(&self) -> Option<Reason> {
+        let Self::Text(words) = self else { return None };
+        words.wrong_row()
+    }
+
     fn at_end(&mut self) -> bool {
         match self {
-            Self::Text { text, at } => text[*at..].trim().is_empty(),
+            Self::Text(words) => words.text[words.at..].trim().is_empty(),
             // Some writers end binary files with a line end, or fill blocks with zeros.
             Self::Binary(reader, _) => {
                 let mut rest = Vec::new();

@@ -79,7 +79,7 @@ impl<'a> TextRows<'a> {
         let defaults = self.default_columns.take_if(|columns| width == Some(columns.len()));
         self.columns = Some(match defaults {
             Some(columns) => columns,
-            None => Columns::guess(&rows).map_err(|reason| format(self.path, reason))?,
+            None => Columns::guess(self.path, &rows).map_err(|reason| format(self.path, reason))?,
         });
         let mut pending = pending.into_iter();
         pending.try_for_each(|(line, words)| {

@@ -5,7 +5,7 @@ use std::path::Path;
 use walpha_base::shown::shown;
 
 use super::content::Content;
-use super::lines::Numbered;
+use super::lines::{Numbered, words};
 use super::off::position;
 use super::text::text;
 use super::{CellCount, Points, PointsError, format};
@@ -20,7 +20,9 @@ const FACET: u64 = 50;
 pub(crate) fn read(file: &OpenFile) -> Result<Points, PointsError> {
     let path = file.path();
     let Content { mut reader, length } = Content::of(file)?;
-    let Some(count) = binary_facets(path, &mut reader, length)? else { return in_text(file) };
+    let Some(count) = binary_facets(path, &mut reader, length)? else {
+        return Ok(in_text(file)?.0);
+    };
     let mut corners = Corners::default();
     let (mut facet, mut coloured) = ([0; FACET as usize], false);
     for _ in 0..count {
@@ -84,33 +86,52 @@ pub(crate) fn cells(file: &OpenFile) -> Result<Vec<CellCount>, PointsError> {
     if let Some(count) = binary_facets(file.path(), &mut reader, length)? {
         return Ok(vec![CellCount::new("facets", count as usize)]);
     }
-    let text = text(file)?;
-    let count = Numbered::new(&text).filter(|(_, line)| keyword(line) == "facet").count();
-    Ok(vec![CellCount::new("facets", count)])
+    Ok(vec![CellCount::new("facets", in_text(file)?.1)])
 }
 
-/// The first word of a line, in lower case.
-fn keyword(line: &str) -> String {
-    line.split_whitespace().next().unwrap_or_default().to_ascii_lowercase()
-}
-
-/// Reads all solids of a text.
-fn in_text(file: &OpenFile) -> Result<Points, PointsError> {
+/// Reads all solids of a text, and counts their facets. Ends of lines mean nothing, but that a name ends there, or before the
+/// first facet.
+fn in_text(file: &OpenFile) -> Result<(Points, usize), PointsError> {
     let (path, text) = (file.path(), text(file)?);
     let mut corners = Corners::default();
-    let mut is_open = false;
-    for (number, line) in Numbered::new(&text) {
-        match keyword(line).as_str() {
-            "vertex" => corners.add(position(path, number, line.split_whitespace().skip(1))?),
-            "solid" => is_open = true,
-            "endsolid" => is_open = false,
+    let (mut is_open, mut facets, mut vertices) = (false, 0, 0);
+    let mut words = words(Numbered::new(&text)).peekable();
+    while let Some((line, word)) = words.next() {
+        let is_normal = |(_, next): &(u64, &str)| next.eq_ignore_ascii_case("normal");
+        match word.to_ascii_lowercase().as_str() {
+            "facet" if words.next_if(is_normal).is_some() => {
+                facets += 1;
+                is_open = true;
+            }
+            "vertex" => {
+                vertices += 1;
+                corners.add(position(path, line, words.by_ref().map(|(_, word)| word))?);
+            }
+            keyword @ ("solid" | "endsolid") => {
+                is_open = keyword == "solid";
+                while words.peek().is_some_and(|(own, _)| *own == line) {
+                    let mut ahead = words.clone();
+                    let is_facet =
+                        ahead.next().is_some_and(|(_, w)| w.eq_ignore_ascii_case("facet"));
+                    if is_facet && ahead.next().as_ref().is_some_and(is_normal) {
+                        break;
+                    }
+                    words.next();
+                }
+            }
             _ => {}
         }
     }
     if is_open {
         return Err(format(path, Reason::truncated("ends before endsolid: it is truncated")));
     }
-    Ok(corners.points)
+    if vertices != 3 * facets {
+        tracing::warn!(
+            "{}: has {vertices} vertices in {facets} facets, which have 3 each; all vertices are read",
+            shown(path)
+        );
+    }
+    Ok((corners.points, facets))
 }
 
 /// Distinct positions, in order of first appearance.

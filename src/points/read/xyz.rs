@@ -6,7 +6,7 @@ use walpha_base::shown::shown;
 use super::dialect::{Dialect, number};
 use super::extended::Comment;
 use super::header::Header;
-use super::lines::{Frame, Miscount, Numbered, count, frames};
+use super::lines::{Frame, Miscount, Numbered, count, frames, is_comment};
 use super::rows::TextRows;
 use super::text::text;
 use super::{Columns, Points, PointsError, format};
@@ -102,6 +102,15 @@ fn counted<'a>(
         return without.map_err(points);
     }
     match (frames(lines.clone(), true), without) {
+        (Ok(frames), _) if is_row_or_comment(&frames) => {
+            let (count, comment) = (frames[0].rows.contents().count(), frames[0].comment);
+            let what = format!(
+                "counts {count} points, and {:?} behind that may be a comment or one more of them",
+                comment.unwrap_or_default().trim()
+            );
+            let advice = "correct the count, or write words into the comment";
+            Err(format(path, Reason::content(what, advice)))
+        }
         (Ok(frames), _) | (_, Ok(frames)) => Ok(frames),
         (Err(atoms), Err(miscount)) => {
             let second = lines.clone().nth(1).map(|(_, line)| line).unwrap_or_default();
@@ -111,6 +120,18 @@ fn counted<'a>(
             Err(if is_row { points(miscount) } else { atoms.error(path, "atoms") })
         }
     }
+}
+
+/// Whether the comment of a single frame looks like its rows: numbers, and as many of them.
+fn is_row_or_comment(frames: &[Frame<'_>]) -> bool {
+    let [Frame { rows, comment: Some(comment) }] = frames else { return false };
+    let numbers = |line: &str| {
+        let words = line.split_whitespace();
+        let are_numbers = words.clone().all(|word| number(word, true).is_some());
+        are_numbers.then(|| words.count()).filter(|count| *count > 1)
+    };
+    let own = numbers(comment);
+    own.is_some() && rows.contents().next().is_some_and(|(_, row)| numbers(row) == own)
 }
 
 /// The points of a frame, and the cell that its comment states.
@@ -149,7 +170,8 @@ fn of_frame(
 fn are_atoms(rows: &Numbered<'_>, by_number: bool) -> bool {
     let first = |row: &'_ str| row.split_whitespace().next().map(str::to_owned).unwrap_or_default();
     let is_name = |word: &str| number(word, true).is_none();
-    let is_atomic_number = |word: &str| word.parse().is_ok_and(|number: u8| number <= 120);
+    let is_atomic_number =
+        |word: &str| word.parse().is_ok_and(|number: u8| (1..=118).contains(&number));
     let has_four = |row: &str| row.split_whitespace().count() > 3;
     rows.contents().next().is_some_and(|(_, row)| is_name(&first(row)))
         || by_number
@@ -174,8 +196,17 @@ fn rows(
     rows.decimal_comma = dialect.decimal_comma;
     rows.default_columns = layout.default_columns();
     rows.open_ended = open_ended;
+    let mut labelled = 0;
     for (number, line) in lines.contents() {
+        labelled += usize::from(is_comment(line));
         rows.push(number, &dialect.fields(line))?;
+    }
+    if labelled > 0 {
+        tracing::warn!(
+            "{}: {labelled} lines that begin as comments do have a field for each name, and numbers for x, y and z: they are \
+             taken for rows",
+            shown(path)
+        );
     }
     rows.finish()
 }

@@ -199,7 +199,15 @@ impl Reader<'_> {
             if self.scan.peek().is_some_and(|word| word != b"LOOKUP_TABLE") {
                 components = self.scan.size("the number of components")?;
             }
-            self.scan.expect("LOOKUP_TABLE")?;
+            let table = self.scan.expect("LOOKUP_TABLE")?;
+            if table != b"LOOKUP_TABLE" {
+                let why = format!(
+                    "{:?} stands where LOOKUP_TABLE should, below SCALARS {}",
+                    shown(table),
+                    shown(name)
+                );
+                return Err(self.scan.fault(why));
+            }
             self.scan.expect("the name of a table")?;
         }
         let values = self.array(kind, count.saturating_mul(components), "values")?;

@@ -20,7 +20,8 @@ pub struct NpyFile<R> {
     pub shape: Vec<u64>,
     /// The first axis is the fastest in the file.
     pub fortran: bool,
-    dtype: Dtype,
+    /// Type of the elements.
+    pub dtype: Dtype,
     endian: Endian,
     /// Booleans are read as 0 and 1, not as gray levels.
     boolean: bool,

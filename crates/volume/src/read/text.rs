@@ -58,6 +58,16 @@ impl<R: BufRead> Lines<R> {
         Ok(())
     }
 
+    /// The next byte, which is in no line; 0 at the end of the file.
+    ///
+    /// # Errors
+    /// What the system says.
+    pub fn byte(&mut self) -> io::Result<u8> {
+        let mut byte = [0];
+        self.bytes += self.reader.read(&mut byte)? as u64;
+        Ok(byte[0])
+    }
+
     /// Whether nothing follows.
     ///
     /// # Errors

@@ -103,6 +103,17 @@ fn each_field_of_pcd() {
                 Fate::Refused(&["type F and 3 bytes"])
             ),
             row!(
+                "integers that no double holds",
+                "a.pcd",
+                pcd(
+                    &["SIZE 8 8 8", "TYPE U I U", "WIDTH 1", "POINTS 1", "DATA binary"],
+                    [5u64, (-(1i64 << 53) - 1).cast_unsigned(), 1 << 60]
+                        .map(u64::to_le_bytes)
+                        .as_flattened()
+                ),
+                Fate::Refused(&["the integer -9007199254740993", "subtract an offset"])
+            ),
+            row!(
                 "`COUNT` of x, y or z",
                 "a.pcd",
                 pcd(&["COUNT 2 1 1"], b"1 1 2 3\n4 4 5 6\n"),
@@ -148,6 +159,12 @@ fn each_field_of_pcd() {
                 "`DATA`",
                 "a.pcd",
                 pcd(&["DATA binary"], &floats(&[1.0, 2.0, 3.0, 4.0, 5.0, 6.0])),
+                Fate::Read(without_a_word)
+            ),
+            row!(
+                "white space between words",
+                "a.pcd",
+                String::from_utf8(pcd(&[], ROWS)).unwrap().replace(' ', "\t "),
                 Fate::Read(without_a_word)
             ),
             row!(
@@ -230,6 +247,17 @@ fn each_field_of_npy() {
                 "a.npy",
                 npy("'>i2'", "False", "(2, 3)", &[0, 1, 0, 2, 0, 3, 0, 4, 0, 5, 0, 6]),
                 Fate::Read(without_a_word)
+            ),
+            row!(
+                "integers beyond those that doubles hold",
+                "a.npy",
+                npy(
+                    "'<i8'",
+                    "False",
+                    "(2, 3)",
+                    [1i64, 2, 3, 4, -((1 << 53) + 1), 6].map(i64::to_le_bytes).as_flattened()
+                ),
+                Fate::Refused(&["row 1: an integer near -9007199254740992", "a.astype('f8')"])
             ),
             row!(
                 "types that are not numbers",

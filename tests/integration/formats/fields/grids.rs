@@ -156,6 +156,21 @@ fn each_field_of_legacy_vtk() {
                 Fate::PassedOver(&["1 points are copies or hidden"])
             ),
             row!(
+                "texts",
+                "a.vtk",
+                legacy("POLYDATA", "FIELD f 2\nname 1 2 string\na b\n\nweight 1 2 double\n7 8\n"),
+                Fate::Read(weights)
+            ),
+            row!(
+                "what is not understood",
+                "a.vtk",
+                legacy("POLYDATA", "SCALARS t float\n7 8\nFIELD f 1\nweight 1 2 double\n7 8\n"),
+                Fate::PassedOver(&[
+                    "what follows is passed over",
+                    "no LOOKUP_TABLE line below SCALARS t"
+                ])
+            ),
+            row!(
                 "a dataset of another kind",
                 "a.vtk",
                 "# vtk DataFile Version 3.0\nt\nASCII\nDATASET RECTILINEAR_GRID\n",
@@ -169,4 +184,39 @@ fn each_field_of_legacy_vtk() {
             ),
         ],
     );
+}
+
+/// Texts in binary, short and long: each behind its length.
+#[test]
+fn arrays_behind_texts_are_found() {
+    let folder = tempfile::tempdir().unwrap();
+    let long = "n".repeat(300);
+    let texts = [&b"\xc1a\x81\x2c"[..], long.as_bytes(), b"\n"].concat();
+    let numbers = |numbers: &[f64]| {
+        numbers.iter().flat_map(|number| number.to_be_bytes()).collect::<Vec<u8>>()
+    };
+    let file = [
+        b"# vtk DataFile Version 5.1\nt\nBINARY\nDATASET POLYDATA\nPOINTS 2 double\n",
+        &numbers(&[1.0, 2.0, 3.0, 4.0, 5.0, 6.0])[..],
+        b"\nPOINT_DATA 2\nFIELD f 2\nname 1 2 string\n",
+        &texts,
+        b"METADATA\nINFORMATION 0\n\nweight 1 2 double\n",
+        &numbers(&[7.0, 8.0]),
+        b"\n",
+    ]
+    .concat();
+    let path = crate::formats::files::save(folder.path(), "a.vtk", &file);
+    weights(&path);
+    assert_eq!(warnings(&path), "null");
+}
+
+/// Texts beside samples are no samples.
+#[test]
+fn texts_are_passed_by_in_a_volume() {
+    use crate::formats::files::{VTK, open, save};
+    let folder = tempfile::tempdir().unwrap();
+    let texts = format!("FIELD f 1\nname 1 12 string\n{}SCALARS", "a b\n\n".repeat(6));
+    let file = VTK.replace("SCALARS", &texts) + "0 1 2 3 4 5 6 7 8 9 10 11\n";
+    let volume = open(&save(folder.path(), "v.vtk", file)).unwrap();
+    assert_eq!(volume.as_slice()[..3], [0.0, 1.0, 2.0]);
 }

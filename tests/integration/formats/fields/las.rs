@@ -35,6 +35,33 @@ fn las(classes: [u8; 2], changes: &[(usize, &[u8])], behind: &[u8]) -> Vec<u8> {
     [&bytes[..], behind].concat()
 }
 
+/// The same in version 1.4, with the numbers of points that its two fields state.
+fn las_of_1_4(old: u32, large: u64) -> Vec<u8> {
+    /// Bytes of the header, and where the number of 64 bits is.
+    const HEADER_OF_1_4: u16 = 375;
+    const LARGE: usize = 247;
+    let size = HEADER_OF_1_4.to_le_bytes();
+    let [old, large] = [old.to_le_bytes().to_vec(), large.to_le_bytes().to_vec()];
+    let short = las([2, 6], &[(25, &[4]), (94, &size), (96, &size), (107, &old)], b"");
+    let (head, records) = short.split_at(HEADER.into());
+    let mut head = head.to_vec();
+    head.resize(HEADER_OF_1_4.into(), 0);
+    head[LARGE..][..8].copy_from_slice(&large);
+    [&head, records].concat()
+}
+
+/// A file with a record that says what its coordinates are.
+fn las_with_system(number: u16, content: &[u8]) -> Vec<u8> {
+    let mut record = vec![0; 54];
+    record[2..17].copy_from_slice(b"LASF_Projection");
+    record[18..20].copy_from_slice(&number.to_le_bytes());
+    record[20..22].copy_from_slice(&(content.len() as u16).to_le_bytes());
+    let offset = u32::from(HEADER) + (record.len() + content.len()) as u32;
+    let whole = las([2, 6], &[(96, &offset.to_le_bytes()), (100, &[1])], b"");
+    let (head, records) = whole.split_at(HEADER.into());
+    [head, &record, content, records].concat()
+}
+
 const WITHHELD: u8 = 0x80;
 
 #[test]
@@ -118,6 +145,25 @@ fn each_field_of_the_table() {
                 Fate::Refused(&["counts 0 points in its header, but has 2", "right count"])
             ),
             row!(
+                "a number of points in 64 bits",
+                "a.las",
+                las_of_1_4(0, 2),
+                Fate::Read(|path| {
+                    values(path);
+                    let told = json(path.parent().unwrap(), &["info", "a.las"]);
+                    assert!(told["warnings"].as_array().is_none_or(Vec::is_empty), "{told}");
+                })
+            ),
+            row!(
+                "an old number of points that differs from it",
+                "a.las",
+                las_of_1_4(1, 2),
+                Fate::PassedOver(&[
+                    "counts 1 points for programs",
+                    "2 in its own field: 2 are read"
+                ])
+            ),
+            row!(
                 "longer records",
                 "a.las",
                 {
@@ -134,20 +180,19 @@ fn each_field_of_the_table() {
                 "a.las",
                 {
                     // A record of keys: model type (1024) is 2, geographic.
-                    let keys: Vec<u8> = [1u16, 1, 0, 1, 1024, 0, 1, 2]
-                        .iter()
-                        .flat_map(|key| key.to_le_bytes())
-                        .collect();
-                    let mut record = vec![0; 54];
-                    record[2..17].copy_from_slice(b"LASF_Projection");
-                    record[18..20].copy_from_slice(&34735u16.to_le_bytes());
-                    record[20..22].copy_from_slice(&16u16.to_le_bytes());
-                    let offset = u32::from(HEADER) + 54 + 16;
-                    let whole = las([2, 6], &[(96, &offset.to_le_bytes()), (100, &[1])], b"");
-                    let (head, records) = whole.split_at(HEADER.into());
-                    [head, &record, &keys, records].concat()
+                    let keys = [1u16, 1, 0, 1, 1024, 0, 1, 2].map(u16::to_le_bytes);
+                    las_with_system(34735, keys.as_flattened())
                 },
                 Fate::Refused(&["longitude and latitude", "UTM"])
+            ),
+            row!(
+                "units of heights that differ",
+                "a.las",
+                las_with_system(
+                    2112,
+                    br#"COMPD_CS["c",PROJCS["p",UNIT["metre",1]],VERT_CS["v",UNIT["foot",0.3048]]]"#
+                ),
+                Fate::Refused(&["metre of x and y and foot of z", "in one unit"])
             ),
             row!(
                 "other fields",
@@ -161,6 +206,16 @@ fn each_field_of_the_table() {
             ),
         ],
     );
+}
+
+/// In 1.4 the number of 64 bits holds, whichever is larger, unless it is left out.
+#[test]
+fn numbers_of_points_that_differ() {
+    let folder = tempfile::tempdir().unwrap();
+    for (old, large, read) in [(0, 2, 2), (1, 2, 2), (9, 2, 2), (2, 1, 1), (2, 0, 2)] {
+        let path = crate::formats::files::save(folder.path(), "a.las", las_of_1_4(old, large));
+        assert_eq!(points(&path).positions, PLACES[..read], "{old} {large}");
+    }
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 use super::points::*;
 use super::{Fate, walk};
+use crate::common::json;
 
 /// A PLY of this format, with these lines between the first and the last of the header.
 fn ply(format: &str, lines: &str, data: &[u8]) -> Vec<u8> {
@@ -141,6 +142,22 @@ fn each_field_of_ply() {
                 Fate::Read(without_a_word)
             ),
             row!(
+                "rows over several lines, or several in one",
+                "a.ply",
+                ply("ascii", &vertex("property int a\n"), b"1 2\n3 9\n4\n5\n6\n9"),
+                Fate::Read(without_a_word)
+            ),
+            row!(
+                "lines of more or fewer numbers than declared",
+                "a.ply",
+                ply(
+                    "ascii",
+                    &format!("{}element face 1\nproperty list uchar int v\n", vertex("")),
+                    b"1 2 3 7\n4 5 6 7\n3 0 1\n0\n"
+                ),
+                Fate::Refused(&["has 4 numbers in line 1 behind its header, which declares 3"])
+            ),
+            row!(
                 "NaN",
                 "a.ply",
                 ply("ascii", &vertex(""), b"1 2 3\n4 nan 6\n"),
@@ -158,6 +175,25 @@ fn each_field_of_ply() {
             ),
         ],
     );
+}
+
+/// What the lines say, rather than that a count were wrong.
+#[test]
+fn lines_that_differ_from_the_header_of_ply_are_named() {
+    let folder = tempfile::tempdir().unwrap();
+    for (rows, words) in [
+        (&b"1 2 3 0 0 1\n4 5 6 0 0 1\n"[..], "has 6 numbers in line 1 behind"),
+        (b"1 2 3 red\n4 5 6 red\n", "has 4 numbers in line 1 behind"),
+        (b"1 2\n4 5 6\n7\n", "has 2 numbers in line 1 behind"),
+        (b"\n1 2 3 4\n5 6\n", "has 4 numbers in line 2 behind"),
+    ] {
+        let bytes = ply("ascii", &vertex(""), rows);
+        let path = crate::formats::files::save(folder.path(), "a.ply", bytes);
+        let error = walpha::points::read_points(path, None).unwrap_err().to_string();
+        assert!(error.contains(words), "{error}");
+    }
+    let bytes = ply("ascii", &vertex(""), b"1 2 3 4 5 6\n");
+    without_a_word(&crate::formats::files::save(folder.path(), "a.ply", bytes));
 }
 
 #[test]
@@ -190,6 +226,24 @@ fn each_field_of_off() {
                 "4OFF\n1 0 0\n1 2 3 4\n",
                 Fate::Refused(&["is 4OFF", "three coordinates"])
             ),
+            row!(
+                "a count right behind the kind",
+                "a.off",
+                "OFF2 0 0\n1 2 3\n4 5 6\n",
+                Fate::Read(without_a_word)
+            ),
+            row!(
+                "line breaks anywhere",
+                "a.off",
+                "OFF\n2 1\n0\n1 2\n3 4 5 6\n3\n0 1 0\n",
+                Fate::Read(without_a_word)
+            ),
+            row!(
+                "lines of other numbers than a vertex has",
+                "a.off",
+                "OFF\n2 0 0\n1 2 3 4\n4 5 6 7\n",
+                Fate::Refused(&["has 4 numbers in line 3, where a vertex has 3"])
+            ),
             row!("`BINARY`", "a.off", "OFF BINARY\n", Fate::Refused(&["is binary"])),
             row!(
                 "counts that are too high",
@@ -211,6 +265,36 @@ fn each_field_of_off() {
             ),
         ],
     );
+}
+
+/// Lines mean nothing where the numbers are those of the counts; where they are not, nothing is read.
+#[test]
+fn off_is_read_word_by_word() {
+    let folder = tempfile::tempdir().unwrap();
+    let save = |text: &str| crate::formats::files::save(folder.path(), "a.off", text);
+    for text in [
+        "OFF 2 1 0 1 2 3 4 5 6 3 0 1 0",
+        "OFF\n2 2 0\n1 2 3  4 5 6\n3 0 1 0\n3 0 1 1\n",
+        "OFF\n2 1\n1 2 3 255 0 0\n4 5 6 0 0 0\n3 0 1 0 0.5 0.5 0.5\n",
+        "COFF\n2 0 0\n1 2 3 255 0 0\n4 5 6 0 0 0\n",
+        "COFF\n2 1 0\n1 2 3\n1 0 0 1 4 5 6 0 0 0 1 2 0 1\n",
+        "2 0 0\n1 2 3\n4 5 6\n",
+    ] {
+        without_a_word(&save(text));
+    }
+    for (text, words) in [
+        ("OFF\n2 0 0\n1 2 3 4 5 6\n7 8 9\n", "goes on in line 4"),
+        (
+            "OFF\n4 2 0\n0 0 0  1 0 0\n0 1 0  0 0 1\n3 0 1 2\n3 0 1 3\n4 0 1 2 3\n3 1 2 3\n",
+            "goes on in line 7",
+        ),
+        ("OFF\n2 1 0\n1 2 3\n4 5 6\n3 0 1\n", "ends before its 2 vertices and 1 faces"),
+        ("OFF\n2 1 0\n1 2 3\n4 5 6\nx\n", "\"x\" is not the number of corners"),
+        ("OFFICE\n", "does not say how many"),
+    ] {
+        let error = walpha::points::read_points(save(text), None).unwrap_err().to_string();
+        assert!(error.contains(words), "{text}: {error}");
+    }
 }
 
 #[test]
@@ -235,6 +319,12 @@ fn each_field_of_obj() {
                 "lines that go on",
                 "a.obj",
                 "v 1 2 \\\n3\nv 4 5 6\nf 1 \\\n2 1\n",
+                Fate::Read(without_a_word)
+            ),
+            row!(
+                "comments",
+                "a.obj",
+                "#\\\nv 1 2 3 # 1 \\\n# C:\\\nv 4 5 6 #\\\nf 1 2 1\n",
                 Fate::Read(without_a_word)
             ),
             row!("ends of lines", "a.obj", "v 1 2 3\rv 4 5 6\r", Fate::Read(without_a_word)),
@@ -294,6 +384,23 @@ fn each_field_of_stl() {
                 "a.stl",
                 STL.repeat(2).replace("4 5 6", "4 5 6 "),
                 Fate::Read(without_a_word)
+            ),
+            row!(
+                "line breaks anywhere",
+                "a.stl",
+                STL.replace("solid a", "solid of facet vertex").replace('\n', " ")
+                    + &STL.replace("loop\n", "loop "),
+                Fate::Read(|path| {
+                    without_a_word(path);
+                    let told = json(path.parent().unwrap(), &["info", "a.stl"]);
+                    assert_eq!(told["cells"][0]["count"], 2, "{told}");
+                })
+            ),
+            row!(
+                "facets of other than three corners",
+                "a.stl",
+                STL.replace("vertex 1 2 3\nendloop", "endloop"),
+                Fate::PassedOver(&["has 2 vertices in 1 facets"])
             ),
             row!(
                 "a solid without an end",

@@ -38,6 +38,11 @@ pub fn without_a_word(path: &Path) {
     assert!(told.get("warnings").is_none_or(|told| told.as_array().unwrap().is_empty()), "{told}");
 }
 
+/// What is said about a file.
+pub fn warnings(path: &Path) -> String {
+    json(path.parent().unwrap(), &["info", path.to_str().unwrap()])["warnings"].to_string()
+}
+
 /// The points with values 7 and 8.
 pub fn values(path: &Path) {
     let points = points(path);

@@ -68,6 +68,39 @@ fn each_field_of_tables() {
                 Fate::Read(without_a_word)
             ),
             row!(
+                "names in a comment, without x, y or z",
+                "a.csv",
+                "# t x y\n0.1 1 2\n0.2 4 5\n",
+                Fate::Refused(&["t,x,y", "do not name z"])
+            ),
+            row!(
+                "a comment that may name the columns",
+                "a.csv",
+                "# made by me\n1 2 3\n4 5 6\n",
+                Fate::PassedOver(&["# made by me", "is taken for a remark", "names the columns"])
+            ),
+            row!(
+                "labels that begin as comments do",
+                "a.csv",
+                "name,x,y,z\n#1,1,2,3\n/b.jpg,4,5,6\n# 1,2 3,4\n",
+                Fate::Read(|path| {
+                    places(path);
+                    let told = warnings(path);
+                    assert!(told.contains("2 lines that begin as comments do"), "{told}");
+                })
+            ),
+            row!(
+                "a first column that counts up",
+                "a.csv",
+                "7,1,2,3\n8,4,5,6\n9,1,1,1\n10,0,0,0\n",
+                Fate::Read(|path| {
+                    assert_eq!(points(path).positions[0], [7.0, 1.0, 2.0]);
+                    let told = warnings(path);
+                    assert!(told.contains("the first column counts from 7 up"), "{told}");
+                    assert!(told.contains("the fourth column is taken for values"), "{told}");
+                })
+            ),
+            row!(
                 "names that are numbers",
                 "a.csv",
                 ",0,1,2\n0,1.5,2,3\n1,4,5,6\n",
@@ -229,6 +262,22 @@ fn each_field_of_xyz() {
                 Fate::Refused(&["claims 3", "has 2", "copy it again"])
             ),
             row!(
+                "a count, and as many rows but one more",
+                "a.xyz",
+                "2\n1 2 3\n4 5 6\n7 8 9\n",
+                Fate::Refused(&["counts 2 points, and \"1 2 3\" behind", "or one more of them"])
+            ),
+            row!(
+                "numbers that are no atomic numbers",
+                "a.xyz",
+                "2\n# cloud\n0 2 3 7\n4 5 6 8\n",
+                Fate::Read(|path| {
+                    let points = points(path);
+                    assert_eq!(points.positions, [[0.0, 2.0, 3.0], [4.0, 5.0, 6.0]]);
+                    assert_eq!(points.values, Some(vec![7.0, 8.0]));
+                })
+            ),
+            row!(
                 "`Properties`",
                 "a.xyz",
                 "2\nProperties=pos:R:3:id:I:1:radius:R:1:species:S:1\n1 2 3 9 2 C\n4 5 6 9 3 H\n",
@@ -364,6 +413,43 @@ fn each_field_of_pwn() {
     );
 }
 
+/// Names and labels behind `#`, in the ways in which programs write them.
+#[test]
+fn comments_are_names_or_rows_or_neither() {
+    let folder = tempfile::tempdir().unwrap();
+    let save = |text: &str| crate::formats::files::save(folder.path(), "a.csv", text);
+    for text in [
+        "# lon,lat,height\n10.5,50,1\n",
+        "#longitude,latitude,z\n10.5,50,1\n",
+        "# id x y\n1 1 2\n",
+        "# r theta z\n1 0.5 2\n",
+        "# x y t\n1 2 0.5\n",
+        "# n X-coord Y-coord Z-coord\n1 0 0 0\n",
+        "// a;b;c\n1;2;3\n",
+        "# a,b,c\n# made today\n2\n1,5 2,5 3,5\n1 2 3\n",
+    ] {
+        let error = walpha::points::read_points(save(text), None).unwrap_err().to_string();
+        assert!(error.contains("must name the columns"), "{text}: {error}");
+    }
+    for text in [
+        "# z y x\n3 2 1\n6 5 4\n",
+        "# 0 0 0\n1 2 3\n4 5 6\n",
+        "# of x and so on\n1 2 3\n4 5 6\n",
+        "x,y,z\n1,2,3\n#7,8,9\n4,5,6\n",
+        "name,x,y,z\n\"#1\",1,2,3\nb,4,5,6\n",
+    ] {
+        without_a_word(&save(text));
+    }
+    let labels = "colour;x;y;z\n#ff0000;1;2;3\n#00ff00;4;5;6\n";
+    places(&save(labels));
+    places(&save("name x y z\n#1 1,0 2,0 3,0\n#2 4,0 5,0 6,0\n"));
+    let columns = "-,x,y,z".parse().unwrap();
+    for text in ["# t a b c\n#1 1 2 3\n2 4 5 6\n", labels] {
+        let points = walpha::points::read_points(save(text), Some(&columns)).unwrap();
+        assert_eq!(points.positions, PLACES, "{text}");
+    }
+}
+
 /// What `--weights column` asks for, where no column is a weight by its name.
 #[test]
 fn a_fourth_column_is_a_weight_where_that_is_asked_for() {
@@ -374,10 +460,7 @@ fn a_fourth_column_is_a_weight_where_that_is_asked_for() {
     assert_eq!(told["weights"]["max"], 0.0);
     let told = json(f, &["shape", "a.xyz", "--alpha", "1", "--weights", "column"]);
     assert_eq!(told["weights"]["max"], 4.0);
-    assert!(
-        told["warnings"][0].as_str().unwrap().contains("its values are taken for weights"),
-        "{told}"
-    );
+    assert!(told["warnings"].to_string().contains("its values are taken for weights"), "{told}");
 }
 
 /// What the name says, and the content does not.

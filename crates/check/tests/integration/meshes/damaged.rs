@@ -276,6 +276,12 @@ fn errors_of_vtk_say_what_and_where() {
         ),
         (
             old(),
+            "LOOKUP_TABLE default\n",
+            "",
+            "line 13: \"0\" stands where LOOKUP_TABLE should, below SCALARS weight",
+        ),
+        (
+            old(),
             "SCALARS weight",
             "WHAT weight",
             "line 12: \"WHAT\" stands where data should begin",

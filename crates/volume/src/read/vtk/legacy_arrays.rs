@@ -31,6 +31,9 @@ pub(super) const NO_SCALARS: &str = "ends before any SCALARS: it is truncated, o
 /// The name of the array of places.
 pub(super) const POINTS: &str = "POINTS";
 
+/// The type of texts.
+const TEXTS: &str = "string";
+
 /// An array of points or cells.
 #[expect(clippy::struct_excessive_bools, reason = "each is an answer of its own")]
 pub(super) struct Array {
@@ -55,7 +58,8 @@ pub(super) struct Array {
 
 /// Finds the arrays; `line` begins the data of points or cells.
 ///
-/// The scan ends at whatever cannot be parsed after the first array.
+/// The scan ends at whatever cannot be parsed after the first array, which is said. Texts are no samples, and found where there
+/// is nothing else.
 pub(super) fn find(
     path: &Path,
     lines: &mut Lines<impl BufRead>,
@@ -64,7 +68,11 @@ pub(super) fn find(
 ) -> Result<Vec<Array>, VolumeError> {
     let mut scanner = Scanner::new(path, lines, text, false);
     scanner.all(Some(line.to_owned()))?;
-    Ok(scanner.found)
+    let mut found = scanner.found;
+    if found.iter().any(|array| array.kind != TEXTS) {
+        found.retain(|array| array.kind != TEXTS);
+    }
+    Ok(found)
 }
 
 /// How many cells a keyword lists, in the plural.
@@ -110,15 +118,17 @@ impl<'a, R: BufRead> Scanner<'a, R> {
         let scanner = self;
         let path = scanner.path;
         while let Some(words) = line {
-            match scanner.section(&words) {
-                Ok(true) => {}
-                Ok(false) => break,
-                Err(_) if !scanner.found.is_empty() => break,
-                Err(error) => return Err(error),
-            }
-            line = match scanner.lines.read_line() {
-                Err(_) if !scanner.found.is_empty() => break,
-                next => next.map_err(io_error(path))?,
+            let next = match scanner.section(&words) {
+                Ok(true) => scanner.lines.read_line().map_err(io_error(path)),
+                Ok(false) => Err(format_error(path, not_understood(&words))),
+                Err(error) => Err(error),
+            };
+            line = match next {
+                Err(error) if !scanner.found.is_empty() => {
+                    tracing::warn!("what follows is passed over: {error}");
+                    break;
+                }
+                next => next?,
             };
         }
         if scanner.found.is_empty() {
@@ -144,8 +154,8 @@ impl<'a, R: BufRead> Scanner<'a, R> {
                 let table =
                     self.lines.read_line().map_err(io_error(self.path))?.unwrap_or_default();
                 if !table.starts_with("LOOKUP_TABLE") {
-                    let reason = Reason::header("has no LOOKUP_TABLE line below SCALARS");
-                    return Err(format_error(self.path, reason));
+                    let what = format!("has no LOOKUP_TABLE line below SCALARS {}", word(1));
+                    return Err(format_error(self.path, Reason::header(what)));
                 }
                 self.array(word(1), word(2), components, self.count, true)?;
                 if let Some(array) = self.found.last_mut() {
@@ -254,8 +264,11 @@ impl<'a, R: BufRead> Scanner<'a, R> {
         Ok(())
     }
 
-    /// Passes over so many numbers.
+    /// Passes over so many numbers, or texts.
     fn pass(&mut self, kind: &str, values: u64) -> Result<(), VolumeError> {
+        if kind == TEXTS {
+            return self.pass_texts(values).map_err(io_error(self.path));
+        }
         if !self.text {
             let bytes = match kind {
                 "bit" => values.div_ceil(8),
@@ -270,6 +283,40 @@ impl<'a, R: BufRead> Scanner<'a, R> {
         }
         Ok(())
     }
+
+    /// Passes over texts: lines, or in binary each behind its length, which has 6, 14, 30 or 62 bits as the first two bits of the
+    /// first byte say (vtkDataWriter.cxx).
+    fn pass_texts(&mut self, count: u64) -> std::io::Result<()> {
+        for _ in 0..count {
+            if self.lines.at_end()? {
+                break;
+            }
+            if self.text {
+                self.lines.read_line()?;
+                continue;
+            }
+            let first = self.lines.byte()?;
+            let more = match first >> 6 {
+                3 => 0,
+                2 => 1,
+                1 => 3,
+                _ => 7,
+            };
+            let mut length = u64::from(first & 0x3f);
+            for _ in 0..more {
+                length = length << 8 | u64::from(self.lines.byte()?);
+            }
+            self.lines.skip(length)?;
+        }
+        Ok(())
+    }
+}
+
+/// What is wrong with a line that begins no section.
+fn not_understood(line: &str) -> Reason {
+    const SHOWN: usize = 40;
+    let line: String = line.chars().take(SHOWN).collect();
+    Reason::header(format!("has {line:?} where a section should begin"))
 }
 
 /// The type of one number, by its name.
