@@ -105,20 +105,22 @@ pub(super) fn is_broken_pipe(error: &anyhow::Error) -> bool {
 /// Distinct warnings so far.
 static WARNINGS: Mutex<Vec<String>> = Mutex::new(Vec::new());
 
-/// Collects warnings, once each.
+/// Collects warnings, and lets each through once: a file that is looked at before it is read would be warned about twice.
 pub(super) struct WarningCollector;
 
 impl<S: Subscriber> Layer<S> for WarningCollector {
-    fn on_event(&self, event: &Event<'_>, _: Context<'_, S>) {
+    fn event_enabled(&self, event: &Event<'_>, _: Context<'_, S>) -> bool {
         if *event.metadata().level() != Level::WARN {
-            return;
+            return true;
         }
         let mut message = Message::default();
         event.record(&mut message);
         let mut warnings = WARNINGS.lock().unwrap_or_else(PoisonError::into_inner);
-        if !warnings.contains(&message.0) {
+        let is_new = !warnings.contains(&message.0);
+        if is_new {
             warnings.push(message.0);
         }
+        is_new
     }
 }
 

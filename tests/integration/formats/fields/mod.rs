@@ -97,6 +97,9 @@ pub fn walk(format: &str, fields: &[Field]) {
             Fate::PassedOver(words) => {
                 let report: serde_json::Value = serde_json::from_str(&stdout).unwrap();
                 has(&report["warnings"].to_string(), words);
+                let lines: Vec<&str> = stderr.lines().collect();
+                let distinct: BTreeSet<&str> = lines.iter().copied().collect();
+                assert_eq!(lines.len(), distinct.len(), "{format}, {name}: said twice\n{stderr}");
             }
         }
     }
