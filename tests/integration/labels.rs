@@ -407,6 +407,10 @@ fn labels_that_are_rounded_are_none() {
     fs::write(f.join("small.nrrd"), file((1 << 24) - 2)).unwrap();
     let told = ["cannot be told apart", "16777216", "number them anew, below 16777216"];
     fails(f, 1, "shape large.nrrd --label all -o a.ply", &told);
+    // Where the file states labels, and nobody asks for them.
+    fs::write(f.join("large.seg.nrrd"), file(1 << 24)).unwrap();
+    let (_, _, told) = run(f, &["shape", "large.seg.nrrd", "-o", "a.ply"]);
+    names(&told, &["no whole numbers below 16777216", "taken for gray levels"]);
     let labels =
         json(f, &["shape", "small.nrrd", "--label", "all", "-o", "a.ply"])["labels"].to_string();
     assert!(labels.contains("16777214") && labels.contains("16777215"), "{labels}");

@@ -174,6 +174,11 @@ fn files_of_no_known_format_are_refused() {
         (b"ASTM-E57", "is an E57 scan", "LAS or PLY"),
         (b"\x80\x04\x95", "is a pickle of Python", "numpy.save"),
         (b"<?xml version=\"1.0\"?><gpx/>", "is XML, and no file of VTK", "name a file"),
+        (
+            b"<?xml version=\"1.0\"?><OME/>",
+            "is OME-XML, the metadata of an image",
+            "name a TIFF file",
+        ),
         (b"\xfd7zXZ", "compressed with xz", "unpack it"),
     ] {
         // Whatever the name says.

@@ -359,6 +359,11 @@ fn each_field_of_the_table() {
                     let folder = path.parent().unwrap();
                     let unnamed = rows(folder, b"{\"shape\": [2, 2, 1, 3]}\0", 4);
                     assert_eq!(frame(&unnamed, 1).as_slice(), second);
+                    // Of two arrays in a file the first; arrays of a page each are slices.
+                    let first = volume(&rows(folder, b"{\"shape\": [2, 1, 3]}\0", 4));
+                    assert_eq!(first.as_slice(), [0.0, 2.0, 4.0, 6.0, 8.0, 10.0]);
+                    let pages = volume(&rows(folder, b"{\"shape\": [1, 3]}\0", 4));
+                    assert_eq!(pages.dims().xyz(), [3, 1, 4]);
                     let by_channel = b"{\"shape\": [2, 2, 1, 3], \"axes\": \"ZCYX\"}\0";
                     let path = rows(folder, by_channel, 4);
                     assert_eq!(frame(&path, 0).as_slice(), [0.0, 2.0, 4.0, 12.0, 14.0, 16.0]);

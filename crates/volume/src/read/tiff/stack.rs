@@ -208,7 +208,8 @@ impl StackInfo {
         let pages = beyond.map(|beyond| (0..beyond).rev().map(|k| (letters[k].as_str(), shape[k])));
         let axes = pages.and_then(axes_of).ok_or_else(|| unlike_pages(path, names))?;
         let images = axes.iter().fold(1, |product: u64, (_, size)| product.saturating_mul(*size));
-        let info = Self { axes, images: Some(images), ..Self::PLAIN };
+        // Of one page each, arrays are slices that were written one by one.
+        let info = Self { axes, images: Some(images), others: images > 1, ..Self::PLAIN };
         let (slices, unit) = (about["spacing"].as_f64(), about["unit"].as_str());
         if slices.is_none() && unit.is_none() {
             return Ok(info);
