@@ -158,7 +158,7 @@ fn each_field_of_legacy_vtk() {
             row!(
                 "texts",
                 "a.vtk",
-                legacy("POLYDATA", "FIELD f 2\nname 1 2 string\na b\n\nweight 1 2 double\n7 8\n"),
+                legacy("POLYDATA", "FIELD f 2\nname 1 2 string\na\n\nweight 1 2 double\n7 8\n"),
                 Fate::Read(weights)
             ),
             row!(

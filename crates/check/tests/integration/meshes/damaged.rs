@@ -278,7 +278,7 @@ fn errors_of_vtk_say_what_and_where() {
             old(),
             "LOOKUP_TABLE default\n",
             "",
-            "line 13: \"0\" stands where LOOKUP_TABLE should, below SCALARS weight",
+            "line 13: \"0.0\" stands where LOOKUP_TABLE should, below SCALARS weight",
         ),
         (
             old(),
