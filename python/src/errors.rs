@@ -125,6 +125,9 @@ impl Told for VolumeError {
             // The file of a sample that is not installed.
             Self::NoSkull { .. } => PyOSError::new_err(text),
             Self::Memory(error) => error.told(),
+            Self::InFile { source, .. } if matches!(*source, Self::Memory(_)) => {
+                PyMemoryError::new_err(text)
+            }
             _ => wrong(text),
         }
     }

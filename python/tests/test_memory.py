@@ -135,4 +135,5 @@ def read(path):
     raise last
 path = {str(path if path.suffix == ".tif" else path.parent)!r}
 """
-    assert limited(400, given, "read(path)").startswith("MemoryError: not enough memory")
+    told = limited(400, given, "read(path)")
+    assert told.startswith("MemoryError: ") and "not enough memory: " in told, told

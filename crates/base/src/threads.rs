@@ -44,7 +44,7 @@ pub fn available(wanted: usize, stack: usize) -> usize {
                 let _ = ready.send(());
                 let _ = wait.recv();
             };
-            let room = afford(stack.saturating_add(OWN), || "a thread".into());
+            let room = afford(stack.saturating_add(ROOM), || "a thread".into());
             let thread = thread::Builder::new().stack_size(stack);
             if room.is_err() || thread.spawn_scoped(scope, work).is_err() || started.recv().is_err()
             {
@@ -56,8 +56,9 @@ pub fn available(wanted: usize, stack: usize) -> usize {
     })
 }
 
-/// More than what a thread has of its own beside its stack: its part of each library's data, and the blocks that those refer to.
-const OWN: usize = 1 << 20;
+/// Much more than what a thread has of its own beside its stack. So large a block comes from the system each time, as a thread's do, where the GNU C
+/// library would take one of up to 32 MiB from what it keeps (`M_MMAP_THRESHOLD` in mallopt(3)).
+const ROOM: usize = 33 << 20;
 
 #[cfg(test)]
 mod tests {
