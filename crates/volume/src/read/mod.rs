@@ -24,6 +24,8 @@ mod open_file;
 mod options;
 mod payload;
 pub(super) mod raw;
+#[cfg(feature = "formats")]
+mod scans;
 pub(super) mod series;
 #[cfg(feature = "formats")]
 pub(super) mod slices;

@@ -9,6 +9,29 @@ use super::volumes::{frame, same, same_without_a_word, volume};
 use super::{Fate, Field, walk};
 use crate::formats::files::*;
 
+/// A file of one strip of JPEG, of a square page.
+fn strip_of_jpeg(side: u32, jpeg: &[u8]) -> Vec<u8> {
+    let length = jpeg.len() as u32;
+    let entries = [
+        (256, side),
+        (257, side),
+        (258, 8),
+        (259, 7),
+        (262, 1),
+        (273, 8),
+        (277, 1),
+        (278, side),
+        (279, length),
+    ];
+    let entry = |(tag, value): (u16, u32)| {
+        let value = [1, value].map(u32::to_le_bytes).concat();
+        [&[tag, 4].map(u16::to_le_bytes).concat()[..], &value].concat()
+    };
+    let directory = entries.into_iter().flat_map(entry).collect::<Vec<u8>>();
+    let start = [&b"II*\0"[..], &(8 + length).to_le_bytes()].concat();
+    [&start[..], jpeg, &(entries.len() as u16).to_le_bytes(), &directory, &[0; 4]].concat()
+}
+
 /// A tag: its number, its type (2 text, 3 and 4 whole numbers, 5 pairs of them) and its bytes.
 type Tag<'a> = (u16, u16, &'a [u8]);
 
@@ -204,6 +227,22 @@ fn each_field_of_the_table() {
                     save(f, "v.tif", bytes.into_inner())
                 },
                 fate: Fate::Read(same),
+            },
+            Field {
+                name: "JPEG strips and tiles without an end",
+                file: |f| {
+                    let mut jpeg = std::io::Cursor::new(Vec::new());
+                    let image = image::GrayImage::from_fn(40, 40, |x, y| [(x * y) as u8].into());
+                    image.write_to(&mut jpeg, image::ImageFormat::Jpeg).unwrap();
+                    let mut jpeg = jpeg.into_inner();
+                    let whole = save(f, "whole.tif", strip_of_jpeg(40, &jpeg));
+                    assert_eq!(volume(&whole).dims().xyz(), [40, 40, 1]);
+                    // As a copy that stopped leaves it.
+                    let from = jpeg.len() * 3 / 4;
+                    jpeg[from..].fill(0);
+                    save(f, "v.tif", strip_of_jpeg(40, &jpeg))
+                },
+                fate: Fate::Refused(&["ends inside its JPEG data"]),
             },
             Field {
                 name: "other `Compression`",

@@ -10,6 +10,7 @@ use walpha_base::memory::{afford, try_reserve, try_with_capacity};
 use super::check_claim;
 use crate::error::{format_error, io_error};
 use crate::read::OpenFile;
+use crate::read::scans::Scans;
 use crate::read::tiff::{self, Page};
 use crate::{Dtype, Reason, VolumeError};
 
@@ -78,54 +79,6 @@ fn unreadable(error: &Error) -> Reason {
         }
         other => Reason::damaged(format!("is not an image that can be read: {other}")),
     }
-}
-
-/// The scans of an image up to its end marker (ITU-T T.81, B.1 and B.2).
-struct Scans {
-    /// Where the data of each end.
-    ends: Vec<usize>,
-    /// How many low bits of each coefficient are missing; `None` of one that no scan has.
-    missing: [Option<u8>; 64],
-}
-
-impl Scans {
-    /// `None` of an image without an end.
-    fn of(bytes: &[u8]) -> Option<Self> {
-        let mut scans = Self { ends: Vec::new(), missing: [None; 64] };
-        let mut at = 2;
-        loop {
-            // Decoders pass over bytes between segments.
-            at += bytes.get(at..)?.windows(2).position(is_marker)?;
-            let marker = bytes[at + 1];
-            at += 2;
-            match marker {
-                0xd9 => return Some(scans),
-                0x01 | 0xd0..=0xd8 => continue,
-                _ => {}
-            }
-            let length = usize::from(u16::from_be_bytes([*bytes.get(at)?, *bytes.get(at + 1)?]));
-            let segment = bytes.get(at..at + length.max(2))?;
-            at += segment.len();
-            if marker == 0xda {
-                let &[.., first, last, bits] = segment else { return None };
-                let coefficients = usize::from(first)..=usize::from(last);
-                scans.missing.get_mut(coefficients)?.fill(Some(bits & 15));
-                let ends = |pair: &[u8]| is_marker(pair) && !(0xd0..=0xd7).contains(&pair[1]);
-                at += bytes.get(at..)?.windows(2).position(ends)?;
-                scans.ends.push(at);
-            }
-        }
-    }
-
-    /// Whether each coefficient has all of its bits.
-    fn are_complete(&self) -> bool {
-        self.missing.iter().all(|missing| *missing == Some(0))
-    }
-}
-
-/// Whether two bytes are a marker: not a byte 255 of data, nor one that fills.
-fn is_marker(pair: &[u8]) -> bool {
-    pair[0] == 0xff && pair[1] != 0 && pair[1] != 0xff
 }
 
 #[cfg(test)]

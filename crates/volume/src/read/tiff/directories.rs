@@ -76,7 +76,7 @@ const WHITE_IS_ZERO: u64 = 0;
 /// The directories of a file, one for each page, and the file to read their values from.
 pub(super) struct Directories<'a> {
     path: &'a Path,
-    file: &'a OpenFile,
+    pub(super) file: &'a OpenFile,
     big_endian: bool,
     pub(super) pages: Vec<Directory>,
 }

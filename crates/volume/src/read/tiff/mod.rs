@@ -15,6 +15,7 @@ use walpha_base::shown::{counted, shown};
 
 use super::OpenFile;
 use super::frames::FrameChoice;
+use super::scans::Scans;
 use crate::error::{format_error, io_error};
 use crate::rounding::Rounding;
 use crate::{Dims, Dtype, Endian, Reason, Sample, Volume, VolumeError};
@@ -295,6 +296,37 @@ impl<'a> Pages<'a> {
         }
     }
 
+    /// Refuses JPEG strips and tiles of this page that have no end: decoders go on as if zeros followed, and do not say so.
+    fn check_jpegs(&mut self) -> Result<(), VolumeError> {
+        const JPEG: u64 = 7;
+        let path = self.path;
+        let compression: Option<u64> =
+            self.decoder.find_tag_unsigned(Tag::Compression).map_err(damaged(path))?;
+        if compression != Some(JPEG) {
+            return Ok(());
+        }
+        for places in
+            [[Tag::StripOffsets, Tag::StripByteCounts], [Tag::TileOffsets, Tag::TileByteCounts]]
+        {
+            let mut numbers = |tag| {
+                let numbers: Option<Vec<u64>> =
+                    self.decoder.find_tag_unsigned_vec(tag).map_err(damaged(path))?;
+                Ok::<_, VolumeError>(numbers.unwrap_or_default())
+            };
+            let [offsets, lengths] = [numbers(places[0])?, numbers(places[1])?];
+            for (offset, length) in offsets.into_iter().zip(lengths) {
+                let mut bytes = Vec::new();
+                let part = self.directories.file.reader_at(offset)?;
+                part.take(length).read_to_end(&mut bytes).map_err(io_error(path))?;
+                if Scans::of(&bytes).is_none() {
+                    let reason = Reason::truncated("ends inside its JPEG data: it is truncated");
+                    return Err(format_error(path, reason));
+                }
+            }
+        }
+        Ok(())
+    }
+
     fn page(&mut self, slice: u64) -> Result<Page, VolumeError> {
         let path = self.path;
         let fail = |reason: Reason| format_error(path, reason);
@@ -315,6 +347,7 @@ impl<'a> Pages<'a> {
             )));
         }
         self.reserve(slice, 0, Dtype::U8)?;
+        self.check_jpegs()?;
         // As they are stored, and as floats.
         let room = u64::from(x) * u64::from(y) * (u64::from(bits / 8) + 4);
         let room = usize::try_from(room).unwrap_or(usize::MAX);
