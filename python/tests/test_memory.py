@@ -94,7 +94,7 @@ def test_texts_larger_than_memory(tmp_path):
     with open(path, "w") as file:
         file.write("x,y,z\n")
         file.write("1,2,3\n" * 6_000_000)
-    told = limited(20, f"path = {str(path)!r}", "walpha.read_points(path)")
+    told = limited(60, f"path = {str(path)!r}", "walpha.read_points(path)")
     assert told.startswith("MemoryError: not enough memory: what a file holds needs"), told
 
 
@@ -124,14 +124,18 @@ def test_pictures_larger_than_memory(tmp_path, name, content):
     path.parent.mkdir(exist_ok=True)
     path.write_bytes(content)
     given = f"""
+import os, time
 def read(path):
+    # Threads of a call end beside Python.
+    time.sleep(0.5)
+    before = len(os.listdir("/proc/self/task"))
     for _ in range(6):
         try:
             walpha.read(path)
         except MemoryError as error:
             last = error
-    threads = [line for line in open("/proc/self/status") if line.startswith("Threads:")]
-    assert int(threads[0].split()[1]) == 1, threads
+    time.sleep(0.5)
+    assert len(os.listdir("/proc/self/task")) == before
     raise last
 path = {str(path if path.suffix == ".tif" else path.parent)!r}
 """
