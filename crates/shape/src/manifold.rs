@@ -1,6 +1,7 @@
 use walpha_base::UnionFind;
 
 use super::Surface;
+use super::solid::join;
 
 /// Numbers of edges and vertices where the boundary of a shape is not a manifold. Other programs expect of a solid
 /// that there are none; alpha shapes often have some.
@@ -30,8 +31,7 @@ impl Surface {
         let mut edges = 0;
         self.each_edge(|around| {
             if let [(_, a), (_, b)] = around {
-                fans.unite(a[0], b[0]);
-                fans.unite(a[1], b[1]);
+                join(&fans, *a, *b);
             } else {
                 edges += 1;
                 around[0].0.iter().for_each(|&v| on_defect[v as usize] = true);

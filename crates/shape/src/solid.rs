@@ -118,7 +118,7 @@ fn divided(row: [u32; 3], middles: [Option<u32>; 3]) -> Vec<[u32; 3]> {
 }
 
 /// Joins two facets at the ends of an edge.
-fn join(fans: &UnionFind, a: [Corner; 2], b: [Corner; 2]) {
+pub(super) fn join(fans: &UnionFind, a: [Corner; 2], b: [Corner; 2]) {
     fans.unite(a[0], b[0]);
     fans.unite(a[1], b[1]);
 }

@@ -57,15 +57,18 @@ impl Lattice {
         };
         let deep = || filling.finite_cells().map(|(_, cell)| cell).filter(is_deep);
         let mut cells = try_with_capacity(deep().count(), what)?;
-        cells.extend(deep().map(|cell| {
-            let mut cell = cell.map(|v| self.corners.number(corners[v as usize]));
-            if mirrored {
-                cell.swap(2, 3);
-            }
-            smallest_even(cell)
-        }));
+        let number = |v: u32| self.corners.number(corners[v as usize]);
+        cells.extend(deep().map(|cell| written(cell.map(number), mirrored)));
         Filling::of(cells)
     }
+}
+
+/// A positively oriented cell in canonical form, turned over where `mirrored`.
+pub(super) fn written(mut cell: [u32; 4], mirrored: bool) -> [u32; 4] {
+    if mirrored {
+        cell.swap(2, 3);
+    }
+    smallest_even(cell)
 }
 
 /// The simplices that fill the deep voxels and are not of a voxel of the shell, sorted. All are interior.

@@ -9,7 +9,7 @@ use walpha_complex::canonical::{outward_facets, smallest_even, sorted};
 use walpha_regular::triangulate;
 
 use super::bits::Bits;
-use super::cells::{Filling, Lattice};
+use super::cells::{Filling, Lattice, written};
 use crate::{Class, Complex, ShapeError, Simplices};
 
 /// The complex of a region: each corner lists the simplices whose smallest vertex it is. A facet of one cell is regular, as are its edges and
@@ -55,7 +55,7 @@ pub(super) fn complex(
         .zip(facets.parts(&of(1)))
         .zip(edges.parts(&of(2)))
         .zip(vertices.parts(&of(3)));
-    let written = parts.zip(planes()).map(|((((cells, facets), edges), vertices), plane)| {
+    let filled = parts.zip(planes()).map(|((((cells, facets), edges), vertices), plane)| {
         let (mut cells, mut facets) = (Place::new(cells), Place::new(facets));
         let (mut edges, mut vertices) = (Place::new(edges), Place::new(vertices));
         each(plane, &mut |found| {
@@ -65,7 +65,7 @@ pub(super) fn complex(
             vertices.write(&[found.vertex]);
         })
     });
-    written.collect::<Result<(), ShapeError>>()?;
+    filled.collect::<Result<(), ShapeError>>()?;
     let (cells, facets) = (cells.simplices(), facets.simplices());
     Ok(Complex { cells, facets, edges: edges.simplices(), vertices: vertices.simplices() })
 }
@@ -120,11 +120,8 @@ impl Patterns {
         let cube = triangulate(&CUBE.map(|corner| corner.map(f64::from)), None)?;
         let (mut cells, mut facets, mut edges) = Default::default();
         for octant in 0..8 {
-            for (_, mut cell) in cube.finite_cells() {
-                if mirrored {
-                    cell.swap(2, 3);
-                }
-                let cell = smallest_even(cell.map(|v| place(octant, CUBE[v as usize])));
+            for (_, cell) in cube.finite_cells() {
+                let cell = written(cell.map(|v| place(octant, CUBE[v as usize])), mirrored);
                 add(&mut cells, octant, cell);
                 for facet in outward_facets(cell).map(smallest_even) {
                     add(&mut facets, octant, facet);

@@ -24,7 +24,7 @@ macro_rules! __built {
 }
 pub use __built as built;
 
-#[cfg(feature = "zarr")]
+#[cfg(any(feature = "dicom", feature = "zarr"))]
 pub(crate) use detect::decoded;
 #[cfg(feature = "dicom")]
 pub(crate) use detect::recognised;

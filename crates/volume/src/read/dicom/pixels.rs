@@ -6,7 +6,6 @@ use dicom_encoding::{Endianness, TransferSyntax};
 use dicom_object::mem::InMemElement;
 use dicom_object::{DefaultDicomObject, Tag};
 use dicom_pixeldata::PixelDecoder;
-use walpha_base::foreign::decode;
 use walpha_base::memory::afford;
 
 use super::claims::{DOUBLE_PIXEL_DATA, FLOAT_PIXEL_DATA, PIXEL_DATA, damaged};
@@ -14,6 +13,7 @@ use super::slice::Slice;
 use super::start::Start;
 use super::values::Coding;
 use crate::error::format_error;
+use crate::formats::decoded;
 use crate::rounding::Rounding;
 use crate::{Reason, VolumeError};
 
@@ -80,11 +80,8 @@ fn stored(
     let element = object.get(tag);
     let Some(value) = element.and_then(|element| element.value().primitive()) else {
         // Each slice on its own, so that the series may go on without it.
-        let decoded = decode(|| object.decode_pixel_data());
-        let decoded = decoded
-            .map_err(|panicked| format_error(path, Reason::damaged(panicked.to_string())))?;
-        let decoded = decoded.map_err(|error| damaged(path, &error))?;
-        return Ok(decoded.data().to_vec());
+        let pixels = || object.decode_pixel_data().map_err(|error| damaged(path, &error));
+        return Ok(decoded(path, pixels)?.data().to_vec());
     };
     let bytes = value.to_bytes();
     let is_of_words = element.is_some_and(|element| element.vr().to_string() == "OW");

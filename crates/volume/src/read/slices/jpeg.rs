@@ -41,7 +41,7 @@ pub(super) fn page(path: &Path, file: &OpenFile) -> Result<Page, VolumeError> {
     let orientation = orientation.unwrap_or(Orientation::NoTransforms).to_exif();
     let remarks = tiff::orientation_remark(orientation.into()).into_iter().collect();
     // Of each pixel a coefficient, the levels of both times, and the sample.
-    let room = (size[0] * size[1]).saturating_mul(8) as usize;
+    let room = usize::try_from(size[0] * size[1] * 8).unwrap_or(usize::MAX);
     afford(room, || format!("an image of {width}×{height} pixels"))?;
     let cut = || refused(Reason::truncated("ends inside its image: it is truncated"));
     let scans = Scans::of(&bytes).ok_or_else(cut)?;
