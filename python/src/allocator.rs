@@ -1,6 +1,8 @@
 //! What happens in the threads of this module when memory runs out: the interpreter lives on.
 
 use std::alloc::{GlobalAlloc, Layout, System};
+use std::ptr;
+use std::sync::atomic::{AtomicPtr, AtomicUsize, Ordering};
 use std::thread;
 use std::time::Duration;
 
@@ -10,9 +12,10 @@ use crate::call::Call;
 ///
 /// What is large is asked for in ways that can be refused, and what the library can estimate is refused before it
 /// begins. Where any other allocation fails, Rust has no way back: the process ends, and with it the interpreter. An
-/// allocator may not unwind, but it may wait. So a thread that works for a call waits here until there is memory again,
-/// while the call raises `MemoryError` ([`crate::work::run`]); the call's other threads stop, what they held comes free, and
-/// so does what the caller gives up. Then this thread goes on to where it learns that nobody wants its work.
+/// allocator may not unwind, but it may wait. So the call's [`Reserve`] is given up, and a thread that works for the call waits
+/// here until there is memory again, while the call raises `MemoryError` ([`crate::work::run`]); the call's other threads
+/// stop, what they held comes free, and so does what the caller gives up. Then this thread goes on to where it learns
+/// that nobody wants its work.
 struct Patient;
 
 #[global_allocator]
@@ -20,6 +23,51 @@ static MEMORY: Patient = Patient;
 
 /// Between two attempts.
 const PAUSE: Duration = Duration::from_millis(20);
+/// After how many pauses a thread no longer lets those that start go first: one of them may wait for it.
+const PATIENCE: usize = 250;
+
+/// How many calls are starting their threads.
+static STARTING: AtomicUsize = AtomicUsize::new(0);
+
+/// Starts threads, and meanwhile leaves all memory to them. A thread that starts takes memory for what is its own, and where there is none,
+/// the C library ends the process; so no thread that waits for memory may take what they were promised.
+pub fn starting<T>(start: impl FnOnce() -> T) -> T {
+    STARTING.fetch_add(1, Ordering::SeqCst);
+    let started = start();
+    STARTING.fetch_sub(1, Ordering::SeqCst);
+    started
+}
+
+/// Memory that is kept for the end of a call that runs out of it: enough for all its threads to go on to where they
+/// learn that the call has ended.
+#[derive(Debug)]
+pub struct Reserve(AtomicPtr<u8>);
+
+/// Nobody writes to it, so it takes address space and hardly a page of memory.
+const RESERVE: Layout = Layout::new::<[u8; 8 << 20]>();
+
+impl Reserve {
+    /// Keeps memory, if there is any.
+    pub fn new() -> Self {
+        // SAFETY: the layout is not empty.
+        Self(AtomicPtr::new(unsafe { System.alloc(RESERVE) }))
+    }
+
+    /// Gives it back; the second time there is none.
+    pub fn give_up(&self) {
+        let block = self.0.swap(ptr::null_mut(), Ordering::Relaxed);
+        if !block.is_null() {
+            // SAFETY: it came from there with this layout, and was given to nobody.
+            unsafe { System.dealloc(block, RESERVE) };
+        }
+    }
+}
+
+impl Drop for Reserve {
+    fn drop(&mut self) {
+        self.give_up();
+    }
+}
 
 // SAFETY: all is the system's allocator; what it refuses is asked for again with the same arguments, or refused.
 unsafe impl GlobalAlloc for Patient {
@@ -54,10 +102,17 @@ fn patiently(ask: impl Fn() -> *mut u8) -> *mut u8 {
 #[cold]
 fn wait(ask: &dyn Fn() -> *mut u8) -> *mut u8 {
     if walpha::is_asking() || !Call::starve() {
-        return std::ptr::null_mut();
+        return ptr::null_mut();
     }
+    let mut pauses = 0;
     loop {
-        thread::sleep(PAUSE);
+        if pauses > 0 {
+            thread::sleep(PAUSE);
+        }
+        pauses += 1;
+        if pauses < PATIENCE && STARTING.load(Ordering::SeqCst) > 0 {
+            continue;
+        }
         let block = ask();
         if !block.is_null() {
             return block;

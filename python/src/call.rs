@@ -2,9 +2,11 @@
 
 use std::cell::RefCell;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use walpha::progress::{Listener, Monitor};
+
+use crate::allocator::Reserve;
 
 thread_local! {
     /// The call that this thread works for, which the allocator ends where memory runs out.
@@ -17,6 +19,7 @@ pub struct Call {
     steps: Arc<Steps>,
     monitor: Monitor,
     starved: AtomicBool,
+    reserve: OnceLock<Reserve>,
 }
 
 /// The reports that Python does not know of yet.
@@ -38,12 +41,17 @@ impl Call {
     pub fn new() -> Self {
         let steps = Arc::<Steps>::default();
         let monitor = Monitor::new(Heard(Arc::clone(&steps)));
-        Self { steps, monitor, starved: AtomicBool::new(false) }
+        Self { steps, monitor, starved: AtomicBool::new(false), reserve: OnceLock::new() }
     }
 
     /// The monitor of the work.
     pub fn monitor(&self) -> &Monitor {
         &self.monitor
+    }
+
+    /// Keeps memory for the end of the call, should it run out.
+    pub fn reserve(&self) {
+        self.reserve.get_or_init(Reserve::new);
     }
 
     /// From now on this thread works for this call.
@@ -64,6 +72,9 @@ impl Call {
             let call = call.as_ref()?;
             call.starved.store(true, Ordering::Relaxed);
             call.stop();
+            if let Some(reserve) = call.reserve.get() {
+                reserve.give_up();
+            }
             Some(())
         };
         CALL.try_with(starve).is_ok_and(|starved| starved.is_some())

@@ -13,6 +13,7 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 use walpha::progress::Monitor;
 use walpha::threads;
 
+use crate::allocator::starting;
 use crate::call::Call;
 use crate::errors::Told;
 
@@ -44,7 +45,8 @@ where
 {
     let call = Arc::new(Call::new());
     let wanted = Wanted(Arc::clone(&call));
-    let threads = pool(&call, *threads)?;
+    let threads = starting(|| pool(&call, *threads))?;
+    call.reserve();
     let (sender, mut receiver) = sync_channel(1);
     let mut starved = None;
     let waiting = thread::Builder::new().name("walpha".into());

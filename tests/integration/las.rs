@@ -173,6 +173,17 @@ fn damaged_compression_is_an_error() {
                 }
             }
             assert!(refused > 100, "{refused}");
+            // Layers that are not announced, and the reverse; with more bytes than the file where layers would be.
+            let user = b"laszip encoded";
+            let compressor = whole.windows(user.len()).position(|at| at == user).unwrap() + 52;
+            let layers = usize::from(u16::from_le_bytes([whole[105], whole[106]])) + 12;
+            let data = u32::from_le_bytes(whole[96..100].try_into().unwrap()) as usize + layers;
+            let mut bytes = whole.clone();
+            bytes[compressor] ^= 1;
+            bytes[data + 3] = 0x7f;
+            std::fs::write(&path, &bytes).unwrap();
+            let refused = read_points(&path, None).unwrap_err().to_string();
+            assert!(refused.contains("is not one of points of format"), "{refused}");
         }
         // A batch of points, and no table of chunks.
         assert!(largest() < 64 << 20, "{} bytes at once", largest());

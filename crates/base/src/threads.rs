@@ -3,7 +3,7 @@
 use std::sync::mpsc;
 use std::thread;
 
-use crate::memory::afford;
+use crate::memory::{afford, share_heaps};
 
 /// The most threads for each processor; more would only wait for each other.
 pub const MOST_EACH: usize = 4;
@@ -33,6 +33,7 @@ pub fn wanted(asked: Option<usize>) -> usize {
 /// rayon fails, or waits forever, if one of its threads does not start. And a thread that has started takes memory for what is its own: where
 /// there is none, the C library ends the process. So that room is looked for before each start.
 pub fn available(wanted: usize, stack: usize) -> usize {
+    share_heaps();
     let (ready, started) = mpsc::channel();
     thread::scope(|scope| {
         let mut gates = Vec::new();

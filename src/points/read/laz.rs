@@ -94,9 +94,10 @@ impl Claims {
             reader.read_exact(&mut bytes)?;
             let record = header.point_data_record_length.into();
             // The two highest bits are of the compression.
-            let items = items(&bytes, format & 0x3f, record);
-            let compressor = u16::from_le_bytes([bytes[0], bytes[1]]);
-            return Ok(Some(items.map(|items| Self {
+            let format = format & 0x3f;
+            let compression = items(&bytes, format, record)
+                .and_then(|items| Ok((compressor(&bytes, format)?, items)));
+            return Ok(Some(compression.map(|(compressor, items)| Self {
                 compressor,
                 items,
                 record,
@@ -116,14 +117,10 @@ impl Claims {
         match self.compressor {
             POINTWISE => Ok(Ok(())),
             CHUNKED => self.check_table(reader),
-            LAYERED => Ok(match self.check_table(reader)? {
+            _ => Ok(match self.check_table(reader)? {
                 Ok(()) => self.check_layers(reader)?,
                 refused => refused,
             }),
-            other => {
-                let what = format!("is compressed in a way that is not known ({other})");
-                Ok(Err(Reason::header(what)))
-            }
         }
     }
 
@@ -222,6 +219,19 @@ fn items(bytes: &[u8], format: u8, record: u64) -> Result<Vec<(u16, u16)>, Reaso
         )));
     }
     Ok(found)
+}
+
+/// The compressor of points of a format: the formats of LAS 1.4 are compressed in layers, and no others are. The library goes by
+/// the items, and would read layers that this does not announce.
+fn compressor(bytes: &[u8], format: u8) -> Result<u16, Reason> {
+    let compressor = u16::from_le_bytes([bytes[0], bytes[1]]);
+    match compressor {
+        LAYERED if format >= 6 => Ok(compressor),
+        POINTWISE | CHUNKED if format < 6 => Ok(compressor),
+        _ => Err(Reason::header(format!(
+            "is compressed in a way ({compressor}) that is not one of points of format {format}"
+        ))),
+    }
 }
 
 fn array<const N: usize>(reader: &mut impl Read) -> io::Result<[u8; N]> {
