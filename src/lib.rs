@@ -32,7 +32,6 @@
 //! |---|---|---|
 //! | `cgal` | yes | CGAL's engine, through a bridge to C++; without it the crate is Rust alone |
 //! | `gmp` | yes | CGAL computes with GMP and MPFR where they are installed |
-//! | `formats` | yes | readers and writers of volumes beyond NPY, NPZ, raw samples, pictures and INRIMAGE |
 //! | `render` | yes | pictures, charts and the interactive page: the module `render` |
 //! | `paper` | yes | `walpha reproduce`: the paper's figures and its table |
 //! | `cli` | yes | the command `walpha`; libraries leave it out |

@@ -194,6 +194,7 @@ pub fn pipeline(
         Some(other) => return Err(unknown("refit", other, "'whole' and 'shape'")),
     };
     let recipe = Recipe::new()
+        .classifier(walpha::shape::CGAL)
         .gray(gray.map(|(low, high)| GrayRange { low, high }))
         .haar(haar_options(&haar.0, &haar.1)?)
         .choice(choice)
@@ -228,6 +229,7 @@ pub fn label_shape(
 ) -> PyResult<Shape> {
     let (frame, units) = place(frame)?;
     let recipe = Recipe::new()
+        .classifier(walpha::shape::CGAL)
         .labels(Some(labels.map_or(LabelChoice::All, LabelChoice::These)))
         .units(units)
         // Coordinates stay in the space that the frame is in.

@@ -13,7 +13,6 @@ use crate::volume::VolumeError;
 
 /// Which functions of (x, y, z) the basis is made of.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 #[serde(rename_all = "lowercase")]
 pub enum Decomposition {
     /// All axes step once per level, then the octant of means continues: cubes of 2ˡ samples a side.

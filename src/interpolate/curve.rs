@@ -14,8 +14,8 @@ use crate::haar::{HaarOptions, Tolerance, smooth};
 use crate::points::{
     Points, Selection, SelectionRule, Units, Weighting, difference, points_at, select, weigh,
 };
-use crate::shape::{Alpha, Engine, ShapeError, ShapeOptions, alpha_shape_monitored};
 use crate::volume::Volume;
+use walpha_shape::{Alpha, Engine, ShapeError, ShapeOptions, alpha_shape_monitored};
 
 /// Where the numbers of an error curve come from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]

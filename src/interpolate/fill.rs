@@ -2,8 +2,8 @@ use walpha_base::Monitor;
 
 use super::InterpolateError;
 use crate::points::{Units, WeightedPoints};
-use crate::shape::{Alpha, AlphaShape, ShapeOptions, alpha_shape_monitored};
 use crate::volume::Volume;
+use walpha_shape::{Alpha, AlphaShape, ShapeOptions, alpha_shape_monitored};
 
 /// The whole regular triangulation of a shape's points (α = ∞) and, given their volume, of its
 /// corner samples too, so that it covers every sample of the grid.
@@ -50,8 +50,9 @@ pub fn fill_monitored(
     let points = WeightedPoints::new(positions, weights)
         .and_then(|points| points.with_values(values))
         .expect("columns that grow together");
-    let engine = shape.options().engine;
-    let options = ShapeOptions::new(Alpha::INFINITE).engine(engine).hidden(true);
+    let ShapeOptions { engine, classifier, .. } = *shape.options();
+    let options =
+        ShapeOptions::new(Alpha::INFINITE).engine(engine).classifier(classifier).hidden(true);
     Ok(alpha_shape_monitored(points, &options, monitor)?)
 }
 

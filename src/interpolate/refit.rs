@@ -9,15 +9,10 @@ use crate::volume::Volume;
 
 /// Which samples the values of points are fitted to.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 #[serde(rename_all = "lowercase")]
 #[non_exhaustive]
 pub enum Refit {
     /// All samples, with F on the whole triangulation as [`fill`](super::fill()) makes it.
-    #[cfg_attr(
-        feature = "cli",
-        value(help = "All samples, with F on the whole triangulation, as with --fill")
-    )]
     #[default]
     Whole,
     /// The samples on the shape.

@@ -29,8 +29,8 @@ use crate::interpolate::{Refit, refit_monitored};
 use crate::labels::{self, LabelChoice, LabelSizes};
 use crate::points::{ModelMetadata, Points, SampleGrid};
 use crate::progress::Stage;
-use crate::shape::{AlphaShape, alpha_shape_monitored};
 use crate::volume::Volume;
+use walpha_shape::{AlphaShape, alpha_shape_monitored};
 
 /// A shape, and how it was made.
 #[derive(Debug)]

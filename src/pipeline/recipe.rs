@@ -13,7 +13,7 @@ use crate::points::{
     Columns, LEAST_GRAY, PointOptions, Points, PointsError, Selection, SelectionRule, Units,
     Weighting,
 };
-use crate::shape::{Alpha, Balls, Engine, ShapeError, ShapeOptions, Torus};
+use crate::shape::{Alpha, Balls, Classifier, Engine, ShapeError, ShapeOptions, Torus};
 use crate::volume::{Coordinates, Frame, Gray, GrayRange, LengthUnit, ReadOptions, Space};
 
 /// The numbers of the paper's experiment.
@@ -94,6 +94,10 @@ pub struct Recipe {
     /// The periodic box, if there is one; serialised as its sides.
     #[serde(with = "sides")]
     pub periodic: Option<Torus>,
+    /// The engine of another crate ([`ShapeOptions::classifier`]): in the crate `walpha`, CGAL. It is not stored with the
+    /// other options.
+    #[serde(skip)]
+    pub classifier: Option<Classifier>,
 }
 
 impl Recipe {
@@ -131,6 +135,7 @@ impl Recipe {
         memory: Option<u64>,
         refuse_flat: bool,
         periodic: Option<Torus>,
+        classifier: Option<Classifier>,
     }
 
     /// The options that differ from the default, as a JSON object from which the recipe can be deserialised. A
@@ -278,6 +283,7 @@ impl Recipe {
             .memory(self.memory)
             .refuse_flat(self.refuse_flat)
             .periodic(self.periodic)
+            .classifier(self.classifier)
     }
 
     /// Checks in advance that the options of the shape are compatible, as far as α is known.

@@ -23,7 +23,6 @@ impl fmt::Display for CellCount {
 }
 
 impl CellCount {
-    #[cfg(feature = "formats")]
     pub(super) fn new(kind: &'static str, count: usize) -> Self {
         Self { kind, count }
     }

@@ -10,16 +10,12 @@ use walpha_base::foreign::decode;
 use walpha_check::meshes::Mesh;
 
 use super::model::MODEL;
-#[cfg(feature = "formats")]
 use super::read::xyz::{self, TextLayout};
 use super::read::{format, npy};
-#[cfg(feature = "formats")]
 use super::read::{obj, off, pcd, ply, stl, vtk};
 use super::write;
-#[cfg(feature = "formats")]
 use super::wvm;
 use super::{CellCount, ModelMetadata, Packing, PointOptions, Points, PointsError, WeightedPoints};
-#[cfg(feature = "formats")]
 use crate::volume::VtkPoints;
 use crate::volume::{OpenFile, Reason, UnknownFormat, built, is_npy, is_vtk, is_vtk_xml};
 
@@ -51,7 +47,6 @@ pub struct PointFormat {
     /// Whether a file holds points, for formats that may hold something else.
     holds_points: fn(&OpenFile) -> Result<bool, PointsError>,
     /// Whether its files are also read compressed with gzip, or alone in a ZIP archive.
-    #[cfg_attr(not(feature = "formats"), expect(dead_code))]
     pub(super) is_packed: bool,
     /// Its reader, unless it was left out of the build.
     read: Option<Read>,
@@ -79,7 +74,7 @@ const PLAIN: PointFormat = PointFormat {
     name: "",
     extensions: &[],
     chooses: &[],
-    feature: Some("formats"),
+    feature: None,
     fuzzed_by: "",
     begins: |_| false,
     holds_points: |_| Ok(true),
@@ -99,7 +94,7 @@ pub static FORMATS: [PointFormat; 15] = [
         chooses: &[Setting::Columns, Setting::Frame],
         fuzzed_by: "table",
         is_packed: true,
-        read: built!("formats", |file, options| xyz::read(file, options, TextLayout::Table)),
+        read: Some(|file, options| xyz::read(file, options, TextLayout::Table)),
         writers: &[PointWriter {
             extension: "csv",
             packs: false,
@@ -113,7 +108,7 @@ pub static FORMATS: [PointFormat; 15] = [
         chooses: &[Setting::Columns, Setting::Frame],
         fuzzed_by: "xyz",
         is_packed: true,
-        read: built!("formats", |file, options| xyz::read(file, options, TextLayout::Atoms)),
+        read: Some(|file, options| xyz::read(file, options, TextLayout::Atoms)),
         ..PLAIN
     },
     PointFormat {
@@ -122,7 +117,7 @@ pub static FORMATS: [PointFormat; 15] = [
         chooses: &[Setting::Columns, Setting::Frame],
         fuzzed_by: "xyz",
         is_packed: true,
-        read: built!("formats", |file, options| xyz::read(file, options, TextLayout::Vectors)),
+        read: Some(|file, options| xyz::read(file, options, TextLayout::Vectors)),
         ..PLAIN
     },
     PointFormat {
@@ -131,7 +126,7 @@ pub static FORMATS: [PointFormat; 15] = [
         chooses: &[Setting::Columns, Setting::Frame],
         fuzzed_by: "xyz",
         is_packed: true,
-        read: built!("formats", |file, options| xyz::read(file, options, TextLayout::Scan)),
+        read: Some(|file, options| xyz::read(file, options, TextLayout::Scan)),
         ..PLAIN
     },
     PointFormat {
@@ -140,11 +135,7 @@ pub static FORMATS: [PointFormat; 15] = [
         chooses: &[Setting::Columns],
         fuzzed_by: "pwn",
         is_packed: true,
-        read: built!("formats", |file, options| xyz::read(
-            file,
-            options,
-            TextLayout::PointsThenNormals
-        )),
+        read: Some(|file, options| xyz::read(file, options, TextLayout::PointsThenNormals)),
         ..PLAIN
     },
     PointFormat {
@@ -155,9 +146,9 @@ pub static FORMATS: [PointFormat; 15] = [
             start.starts_with(b"ply") && start.get(3).is_some_and(u8::is_ascii_whitespace)
         },
         is_packed: true,
-        read: built!("formats", |file, _| plain(ply::read(file))),
-        cells: built!("formats", ply::cells),
-        read_complex: built!("formats", ply::read_complex),
+        read: Some(|file, _| plain(ply::read(file))),
+        cells: Some(ply::cells),
+        read_complex: Some(ply::read_complex),
         ..PLAIN
     },
     PointFormat {
@@ -165,8 +156,8 @@ pub static FORMATS: [PointFormat; 15] = [
         extensions: &["off"],
         fuzzed_by: "off",
         is_packed: true,
-        read: built!("formats", |file, _| plain(off::read(file))),
-        cells: built!("formats", off::cells),
+        read: Some(|file, _| plain(off::read(file))),
+        cells: Some(off::cells),
         ..PLAIN
     },
     PointFormat {
@@ -174,8 +165,8 @@ pub static FORMATS: [PointFormat; 15] = [
         extensions: &["obj"],
         fuzzed_by: "obj",
         is_packed: true,
-        read: built!("formats", |file, _| plain(obj::read(file))),
-        cells: built!("formats", obj::cells),
+        read: Some(|file, _| plain(obj::read(file))),
+        cells: Some(obj::cells),
         ..PLAIN
     },
     PointFormat {
@@ -183,8 +174,8 @@ pub static FORMATS: [PointFormat; 15] = [
         extensions: &["stl"],
         fuzzed_by: "stl",
         is_packed: true,
-        read: built!("formats", |file, _| plain(stl::read(file))),
-        cells: built!("formats", stl::cells),
+        read: Some(|file, _| plain(stl::read(file))),
+        cells: Some(stl::cells),
         ..PLAIN
     },
     PointFormat {
@@ -193,7 +184,7 @@ pub static FORMATS: [PointFormat; 15] = [
         fuzzed_by: "pcd",
         begins: |start| start.starts_with(b"# .PCD"),
         is_packed: true,
-        read: built!("formats", |file, _| plain(pcd::read(file))),
+        read: Some(|file, _| plain(pcd::read(file))),
         ..PLAIN
     },
     PointFormat {
@@ -201,10 +192,10 @@ pub static FORMATS: [PointFormat; 15] = [
         extensions: &["vtu", "vtp"],
         fuzzed_by: "vtk_geometry",
         begins: is_vtk_xml,
-        holds_points: is_geometry,
-        read: built!("formats", |file, _| plain(vtk::read(file))),
-        cells: built!("formats", vtk::cells),
-        read_complex: built!("formats", vtk::read_complex),
+        holds_points: vtk::holds_points,
+        read: Some(|file, _| plain(vtk::read(file))),
+        cells: Some(vtk::cells),
+        read_complex: Some(vtk::read_complex),
         ..PLAIN
     },
     PointFormat {
@@ -213,9 +204,9 @@ pub static FORMATS: [PointFormat; 15] = [
         fuzzed_by: "vtk_geometry",
         begins: is_vtk,
         holds_points: lists_points,
-        read: built!("formats", |file, _| plain(vtk::read_legacy(file))),
-        cells: built!("formats", vtk::cells_of_legacy),
-        read_complex: built!("formats", vtk::read_legacy_complex),
+        read: Some(|file, _| plain(vtk::read_legacy(file))),
+        cells: Some(vtk::cells_of_legacy),
+        read_complex: Some(vtk::read_legacy_complex),
         ..PLAIN
     },
     PointFormat {
@@ -250,48 +241,25 @@ pub static FORMATS: [PointFormat; 15] = [
         fuzzed_by: "wvm",
         begins: |start| start.starts_with(MODEL),
         chooses: &[Setting::Level],
-        read: built!("formats", |file, options| wvm::read(file, options.level.unwrap_or_default())),
+        read: Some(|file, options| wvm::read(file, options.level.unwrap_or_default())),
         writers: MODEL_WRITERS,
         ..PLAIN
     },
 ];
 
 /// The writers of `.wvm`, if built in.
-const MODEL_WRITERS: &[PointWriter] = &[
-    #[cfg(feature = "formats")]
-    PointWriter { extension: "wvm", packs: true, write: wvm::write },
-];
+const MODEL_WRITERS: &[PointWriter] =
+    &[PointWriter { extension: "wvm", packs: true, write: wvm::write }];
 
 /// Points of a format without metadata.
 fn plain(points: Result<Points, PointsError>) -> Result<(Points, ModelMetadata), PointsError> {
     Ok((points?, ModelMetadata::default()))
 }
 
-/// Whether a VTK XML file holds points.
-#[cfg_attr(
-    not(feature = "formats"),
-    expect(clippy::unnecessary_wraps, reason = "the file is not read")
-)]
-fn is_geometry(file: &OpenFile) -> Result<bool, PointsError> {
-    #[cfg(feature = "formats")]
-    return vtk::holds_points(file);
-    #[cfg(not(feature = "formats"))]
-    {
-        let extension = file.path().extension().unwrap_or_default();
-        Ok(extension == "vtu" || extension == "vtp")
-    }
-}
-
 /// Whether a legacy VTK file lists points.
 #[expect(clippy::unnecessary_wraps, reason = "the reader reports damaged files")]
 fn lists_points(file: &OpenFile) -> Result<bool, PointsError> {
-    #[cfg(feature = "formats")]
-    return Ok(VtkPoints::lists_points(file).unwrap_or(false));
-    #[cfg(not(feature = "formats"))]
-    {
-        let _ = file;
-        Ok(false)
-    }
+    Ok(VtkPoints::lists_points(file).unwrap_or(false))
 }
 
 impl PointFormat {

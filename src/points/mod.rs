@@ -33,7 +33,6 @@ mod sets;
 mod weigh;
 mod weighting;
 mod write;
-#[cfg(feature = "formats")]
 mod wvm;
 
 pub use crate::shape::{WeightSummary, WeightedPoints};

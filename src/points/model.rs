@@ -147,7 +147,6 @@ impl SampleGrid {
 
     /// The grid in voxels from 0 to the largest coordinates of some positions; `None` unless all are
     /// nonnegative whole numbers.
-    #[cfg(feature = "formats")]
     pub(super) fn spanned(positions: &[[f64; 3]], coordinates: Coordinates) -> Option<Self> {
         let mut end = [0u64; 3];
         for position in positions {

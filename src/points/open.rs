@@ -7,7 +7,6 @@ use walpha_base::setters;
 use walpha_base::shown::shown;
 
 use super::formats::{FORMATS, PointFormat};
-#[cfg(feature = "formats")]
 use super::read::content::Packed;
 use super::read::{COLUMNS, format};
 use super::{Columns, ModelMetadata, Points, PointsError, hard};
@@ -75,7 +74,6 @@ impl PointOptions {
 
     /// The format of a file, by its content, or else by its extension. Of one that is compressed, what it holds decides.
     pub(super) fn format_of(&self, file: &OpenFile) -> Option<&'static PointFormat> {
-        #[cfg(feature = "formats")]
         if let Some(Packed { name, start }) = Packed::of(file) {
             return self.format_that_is(&start, &name).filter(|format| format.is_packed);
         }
@@ -190,7 +188,6 @@ pub(crate) fn read_model_file(
 
 /// Why a file is not read that has the name of a format, and begins as one of another kind does.
 fn of_another_kind(known: &PointFormat, file: &OpenFile) -> Option<Reason> {
-    #[cfg(feature = "formats")]
     if let Some(Packed { start, .. }) = Packed::of(file) {
         return if known.begins(&start) { None } else { other_kind(&start) };
     }

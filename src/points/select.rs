@@ -58,7 +58,6 @@ impl Default for SelectionRule {
 /// Units of the coordinates of points. There is no default but that of a [`Recipe`](crate::pipeline::Recipe), which goes by what
 /// the file states.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 #[serde(rename_all = "lowercase")]
 #[non_exhaustive]
 pub enum Units {

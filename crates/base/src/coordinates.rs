@@ -4,30 +4,19 @@ use serde::{Deserialize, Serialize};
 
 /// The directions of the axes of world coordinates in a patient.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum Space {
     /// x to the left, y to the back, z to the head: DICOM, ITK, `MetaImage`.
-    #[cfg_attr(
-        feature = "clap",
-        value(help = "x to the left, y to the back, z to the head, as in DICOM and ITK")
-    )]
     #[serde(rename = "LPS")]
     Lps,
     /// x to the right, y to the front, z to the head: `NIfTI`.
-    #[cfg_attr(
-        feature = "clap",
-        value(help = "x to the right, y to the front, z to the head, as in NIfTI")
-    )]
     #[serde(rename = "RAS")]
     Ras,
     /// x to the left, y to the front, z to the head: some NRRD files.
     #[serde(rename = "LAS")]
-    #[cfg_attr(feature = "clap", value(skip))]
     Las,
     /// Not stated.
     #[default]
     #[serde(rename = "unknown")]
-    #[cfg_attr(feature = "clap", value(skip))]
     Unknown,
 }
 

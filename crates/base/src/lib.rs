@@ -12,6 +12,8 @@
 //! ```
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
+#![deny(unsafe_code)]
+#![warn(unreachable_pub)]
 
 pub mod advice;
 #[cfg(feature = "serde")]

@@ -26,6 +26,8 @@
 //! ```
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
+#![forbid(unsafe_code)]
+#![warn(unreachable_pub)]
 
 mod certify;
 mod compare;

@@ -29,6 +29,9 @@
 //! # Ok::<(), walpha_regular::TriangulationError>(())
 //! ```
 
+#![forbid(unsafe_code)]
+#![warn(missing_debug_implementations, unreachable_pub)]
+
 mod arrays;
 mod dynamic;
 mod error;

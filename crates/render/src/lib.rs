@@ -23,6 +23,9 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+#![deny(unsafe_code)]
+#![warn(unreachable_pub)]
+
 mod base64;
 mod charts;
 mod colour;

@@ -249,10 +249,8 @@ pub enum CgalError {
         /// The message of the exception.
         text: String,
     },
-    /// This program was built without CGAL.
-    #[error(
-        "this walpha was built without CGAL: there is no engine cgal and no triangulation of the plane"
-    )]
+    /// No engine of another crate was handed over ([`ShapeOptions::classifier`](crate::ShapeOptions::classifier)).
+    #[error("there is no engine cgal: this program was built without it, or does not hand it over")]
     Absent,
 }
 
@@ -262,7 +260,7 @@ impl CgalError {
         match self {
             Self::Memory { .. } => "allow more, use the native engine, or select fewer points",
             Self::Thrown { .. } => "please report this with the input",
-            Self::Absent => "use the native engine, or build with the feature `cgal`",
+            Self::Absent => "use the native engine, which gives the same, or build walpha with the feature `cgal`",
         }
         .into()
     }

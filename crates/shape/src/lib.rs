@@ -21,6 +21,8 @@
 //! ```
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
+#![forbid(unsafe_code)]
+#![warn(missing_debug_implementations, unreachable_pub)]
 
 mod alpha_shape;
 #[cfg(feature = "ndarray")]
@@ -56,10 +58,10 @@ pub use arrays::ArrayError;
 pub use betti::{Betti, BettiError};
 pub use components::NO_COMPONENT;
 pub use error::{CgalError, OutlineError, PlanError, ShapeError, Whole};
-pub use make::{alpha_shape, alpha_shape_by, alpha_shape_monitored};
+pub use make::{alpha_shape, alpha_shape_monitored};
 pub use manifold::ManifoldDefects;
 pub use measure::Measures;
-pub use options::{Balls, Engine, ShapeOptions};
+pub use options::{Balls, Classifier, Engine, MOST_FOR_CGAL, ShapeOptions};
 pub use outline::{Outline, Polygon};
 pub use points::{LengthsError, WeightSummary, WeightedPoints};
 pub use sheets::Sheets;

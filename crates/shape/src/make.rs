@@ -9,8 +9,8 @@ use super::derived::Derived;
 use super::flat::{self, flat};
 use super::topology::{components, connected_on_torus, sheet_betti, torus_betti};
 use super::{
-    Alpha, AlphaShape, Balls, Betti, CgalError, Complex, Engine, ShapeError, ShapeOptions, Sheets,
-    Simplices, WeightedPoints,
+    Alpha, AlphaShape, Balls, Betti, CgalError, Classifier, Complex, Engine, ShapeError,
+    ShapeOptions, Sheets, Simplices, WeightedPoints,
 };
 
 /// The alpha shape of weighted points.
@@ -32,7 +32,7 @@ use super::{
 /// such edge. At α = ∞ the shape is the whole torus.
 ///
 /// # Errors
-/// [`CgalError::Absent`] for [`Engine::Cgal`], which only the crate `walpha` has; numbers that are not finite or too large, no
+/// [`CgalError::Absent`] for [`Engine::Cgal`] without a [classifier](ShapeOptions::classifier), and other errors of that engine; numbers that are not finite or too large, no
 /// points, and with [`ShapeOptions::refuse_flat`] points that span no volume: see
 /// [`SitesError`](walpha_regular::SitesError); a negative radius: [`ShapeError::Radius`]; incompatible options:
 /// [`ShapeOptions::check`].
@@ -43,7 +43,7 @@ pub fn alpha_shape(
     alpha_shape_monitored(points, options, &Monitor::noop())
 }
 
-/// The same, which reports its progress and can be cancelled.
+/// The same, which reports its progress and can be cancelled. The engine of another crate cannot be interrupted.
 ///
 /// # Errors
 /// Those of [`alpha_shape`], and [`ShapeError::Cancelled`].
@@ -52,22 +52,20 @@ pub fn alpha_shape_monitored(
     options: &ShapeOptions,
     monitor: &Monitor,
 ) -> Result<AlphaShape, ShapeError> {
+    let points = points.into();
+    let options = options.engine(options.engine_for(points.len()));
     if options.engine == Engine::Cgal {
         options.check()?;
-        return Err(CgalError::Absent.into());
+        let Classifier(classify) = options.classifier.ok_or(CgalError::Absent)?;
+        return alpha_shape_by(points, &options, classify, monitor);
     }
     let find = |sites: &Sites<'_>, options: &ShapeOptions| by_blocks(sites, options, monitor);
-    shape_by(points.into(), options.engine(Engine::Native), &find, monitor)
+    shape_by(points, options, &find, monitor)
 }
 
-/// Like [`alpha_shape`], where another program classifies the simplices: `classify` returns the whole triangulation of
-/// the sites at α, in canonical order, by input indices. Components, topology and measures are computed from this
-/// complex. `classify` is not called for points in one plane or on one line.
-///
-/// # Errors
-/// As [`alpha_shape`], and those of the other program.
-pub fn alpha_shape_by(
-    points: impl Into<WeightedPoints>,
+/// [`alpha_shape`] by the engine of another crate: components, topology and measures are computed from its complex.
+pub(crate) fn alpha_shape_by(
+    points: WeightedPoints,
     options: &ShapeOptions,
     classify: impl Fn(&Sites<'_>, f64) -> Result<Complex, ShapeError>,
     monitor: &Monitor,
@@ -80,7 +78,7 @@ pub fn alpha_shape_by(
         let duplicates = sites.duplicates().to_vec();
         Ok(Found { complex, boundary, hidden, duplicates, betti: None })
     };
-    shape_by(points.into(), *options, &find, monitor)
+    shape_by(points, *options, &find, monitor)
 }
 
 /// An engine: computes the shape of sites that span a volume.

@@ -1,32 +1,44 @@
+use std::fmt;
 use std::num::NonZeroUsize;
 
 use serde::{Deserialize, Serialize};
 use walpha_base::setters;
+use walpha_regular::Sites;
 
-use super::{Alpha, ShapeError, Torus, Whole};
+use super::{Alpha, Complex, ShapeError, Torus, Whole};
+
+/// The largest number of points for which [`Engine::Auto`] takes the engine of another crate: about the paper's size,
+/// which takes CGAL a third of a second.
+pub const MOST_FOR_CGAL: usize = 20_000;
+
+/// An engine of another crate. From sites and α, a squared length, it computes the whole triangulation with the class of each
+/// simplex at α, in canonical order, by input indices. It is not called for points in one plane or on one line.
+#[derive(Clone, Copy)]
+pub struct Classifier(pub fn(&Sites<'_>, f64) -> Result<Complex, ShapeError>);
+
+/// Engines give one answer, so options are equal whichever of them is at hand.
+impl PartialEq for Classifier {
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
+}
+
+impl fmt::Debug for Classifier {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Classifier").finish_non_exhaustive()
+    }
+}
 
 /// The implementation that computes the shape; the result is the same.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 #[serde(rename_all = "lowercase")]
 #[non_exhaustive]
 pub enum Engine {
-    /// Native; in the crate `walpha`, CGAL for up to 20 000 points, and native for more or for what only it can do:
-    /// blocks, a limit on memory, periodic boxes, a build without CGAL.
-    #[cfg_attr(
-        feature = "clap",
-        value(help = "CGAL for up to 20 000 points; native for more, and for what only it can do")
-    )]
+    /// CGAL, if it is at hand ([`ShapeOptions::classifier`]), for up to [`MOST_FOR_CGAL`] points; native for more, and for
+    /// what only it can do: blocks, a limit on memory, periodic boxes.
     #[default]
     Auto,
-    /// CGAL's `Regular_triangulation_3` and `Fixed_alpha_shape_3`, as in the paper, on one thread, in the crate
-    /// `walpha`.
-    #[cfg_attr(
-        feature = "clap",
-        value(
-            help = "CGAL's Regular_triangulation_3 and Fixed_alpha_shape_3, as in the paper, on one thread"
-        )
-    )]
+    /// CGAL's `Regular_triangulation_3` and `Fixed_alpha_shape_3`, as in the paper, on one thread: the crate `walpha` has them.
     Cgal,
     /// Triangulation and classes in Rust: without C++, on all cores, in bounded memory, and the fastest.
     Native,
@@ -34,7 +46,6 @@ pub enum Engine {
 
 /// Which ball a point of weight ω is at parameter α.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 #[serde(rename_all = "lowercase")]
 pub enum Balls {
     /// A ball of squared radius α + ω: the usual definition (Edelsbrunner 1992; CGAL), the default.
@@ -120,6 +131,8 @@ pub struct ShapeOptions {
     pub refuse_flat: bool,
     /// The periodic box, if there is one: points and shape are those of a torus.
     pub periodic: Option<Torus>,
+    /// The engine of another crate, which [`Engine::Cgal`] asks for and [`Engine::Auto`] may take.
+    pub classifier: Option<Classifier>,
 }
 
 impl ShapeOptions {
@@ -135,6 +148,20 @@ impl ShapeOptions {
             memory: None,
             refuse_flat: false,
             periodic: None,
+            classifier: None,
+        }
+    }
+
+    /// The engine that runs for this number of points.
+    pub(crate) fn engine_for(&self, points: usize) -> Engine {
+        let needs_native = self.periodic.is_some()
+            || self.memory.is_some()
+            || self.blocks.is_some_and(|blocks| blocks.get() > 1);
+        match self.engine {
+            Engine::Auto if self.classifier.is_none() || needs_native => Engine::Native,
+            Engine::Auto if points > MOST_FOR_CGAL => Engine::Native,
+            Engine::Auto => Engine::Cgal,
+            asked => asked,
         }
     }
 
@@ -148,6 +175,7 @@ impl ShapeOptions {
         memory: Option<u64>,
         refuse_flat: bool,
         periodic: Option<Torus>,
+        classifier: Option<Classifier>,
     }
 
     /// Checks that the options are compatible, as [`alpha_shape`](super::alpha_shape()) does first.
@@ -190,6 +218,24 @@ mod tests {
     use super::*;
 
     /// A ball may be a point, and no less.
+    #[test]
+    fn the_engine_suits_the_size_and_what_is_asked_for() {
+        let native = ShapeOptions::new(Alpha::ZERO);
+        assert_eq!(native.engine_for(9), Engine::Native);
+        let options = native.classifier(Some(Classifier(|_, _| Ok(Complex::default()))));
+        assert_eq!(options.engine_for(MOST_FOR_CGAL), Engine::Cgal);
+        assert_eq!(options.engine_for(MOST_FOR_CGAL + 1), Engine::Native);
+        let blocks = |count| options.blocks(NonZeroUsize::new(count)).engine_for(9);
+        assert_eq!((blocks(1), blocks(2)), (Engine::Cgal, Engine::Native));
+        assert_eq!(options.memory(1 << 30).engine_for(9), Engine::Native);
+        let torus = Torus::new([1.0; 3]).unwrap();
+        assert_eq!(options.periodic(torus).engine_for(9), Engine::Native);
+        for engine in [Engine::Cgal, Engine::Native] {
+            assert_eq!(options.engine(engine).engine_for(9), engine);
+            assert_eq!(options.engine(engine).engine_for(1 << 20), engine);
+        }
+    }
+
     #[test]
     fn weights_of_radii_are_their_squares() {
         let alpha = Alpha::from_squared(1.0).unwrap();

@@ -30,7 +30,6 @@ pub fn line(sign: &str, coordinates: Coordinates) -> String {
 }
 
 /// The same as VTK's field data in XML: arrays of one string each, in the numbers of its characters.
-#[cfg(feature = "formats")]
 pub fn field_data(coordinates: Coordinates) -> String {
     let pairs = pairs(coordinates);
     if pairs.is_empty() {

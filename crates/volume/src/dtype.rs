@@ -80,7 +80,6 @@ impl Dtype {
     }
 
     /// Whether a number read from text is one of this type.
-    #[cfg(feature = "formats")]
     pub fn holds(self, value: f64) -> bool {
         let (low, high) = match self {
             Self::U8 => (0.0, f64::from(u8::MAX)),

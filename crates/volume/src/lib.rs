@@ -12,6 +12,8 @@
 //! ```
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
+#![deny(unsafe_code)]
+#![warn(unreachable_pub)]
 
 #[doc(hidden)]
 pub mod annotation;
@@ -64,7 +66,6 @@ pub use grid::{any_size, inverse};
 pub use open::OpenVolume;
 #[doc(hidden)]
 pub use read::{Element, Gunzip, NpyFile, OpenFile, npy_element};
-#[cfg(feature = "formats")]
 #[doc(hidden)]
 pub use read::{Lines, VtkPoints, VtkXml};
 

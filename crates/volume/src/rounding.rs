@@ -6,7 +6,6 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use walpha_base::shown::shown;
 
-#[cfg(feature = "formats")]
 use crate::Sample;
 
 /// What became of the whole numbers of a file.
@@ -24,7 +23,6 @@ impl Default for Rounding {
 
 impl Rounding {
     /// A number as a sample.
-    #[cfg(feature = "formats")]
     pub(crate) fn sample(&self, number: impl Sample) -> f32 {
         self.note(number.is_rounded());
         number.to_f32()

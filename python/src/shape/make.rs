@@ -85,7 +85,10 @@ pub fn alpha_shape(
     periodic: Option<[f64; 3]>,
     task: Task<'_>,
 ) -> PyResult<Shape> {
-    let recipe = with_options(Recipe::new().alpha(alpha_rule(alpha)?), &how)?;
+    let recipe = with_options(
+        Recipe::new().classifier(walpha::shape::CGAL).alpha(alpha_rule(alpha)?),
+        &how,
+    )?;
     let recipe = recipe.periodic(torus(periodic)?);
     let points = weighted(points, weights, values)?;
     let shape = move |monitor: &_| recipe.run_points_monitored(points, monitor);

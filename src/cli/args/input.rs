@@ -15,7 +15,7 @@ use crate::cli::ranges;
 use crate::export::Target;
 use crate::points::{Columns, PointOptions};
 use crate::volume::{Dtype, Endian, Nan, RawLayout, ReadOptions, Region};
-use crate::{Dims, GrayRange, Recipe};
+use crate::{Dims, GrayRange, Recipe, shape};
 
 /// What to read.
 #[derive(Args, Clone)]
@@ -95,6 +95,7 @@ impl InputArgs {
     /// A recipe with these options.
     pub(crate) fn recipe(&self) -> Recipe {
         Recipe::new()
+            .classifier(shape::CGAL)
             .read(self.options())
             .columns(self.columns.clone())
             .classes((!self.class.is_empty()).then(|| self.class.concat()))

@@ -1,5 +1,6 @@
 //! Options that several commands share, and how they become options of the library.
 
+mod choices;
 mod input;
 mod labels;
 mod select;

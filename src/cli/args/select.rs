@@ -4,6 +4,7 @@ use std::str::FromStr;
 
 use clap::{Args, ValueEnum};
 
+use super::choices::choice;
 use super::values::{alpha_radius, count, not_nan, not_negative, share};
 use crate::cli::errors::{CommandError, command_error, fail_usage};
 use crate::interpolate::Refit;
@@ -18,7 +19,8 @@ use crate::{
 #[command(next_help_heading = "Wavelet stage")]
 pub(crate) struct HaarArgs {
     /// Decomposition: all axes once per level, or each axis fully.
-    #[arg(long, value_enum, default_value_t, value_name = "KIND")]
+    #[arg(long, value_parser = choice::<Decomposition>(), default_value = "non-standard",
+          value_name = "KIND")]
     haar: Decomposition,
     /// Root mean square error allowed, in gray levels.
     #[arg(long, value_name = "E", group = "tolerance", value_parser = not_negative,
@@ -93,7 +95,7 @@ pub(crate) struct RefitArgs {
     /// Fit the values of points to the volume by least squares: to all its samples, on the triangulation
     /// that interpolate --fill uses, or to those that the shape covers. Otherwise points have the
     /// values of their samples.
-    #[arg(long, value_enum, value_name = "TO", num_args = 0..=1, require_equals = true,
+    #[arg(long, value_parser = choice::<Refit>(), value_name = "TO", num_args = 0..=1, require_equals = true,
           default_missing_value = "whole")]
     pub refit: Option<Refit>,
 }
@@ -104,11 +106,11 @@ pub(crate) struct RefitArgs {
 pub(super) struct CoordinateArgs {
     /// Coordinates, α, weights and sizes in voxels, or in the unit of the file [default: world where the
     /// file states a spacing or an origin, otherwise voxel].
-    #[arg(long, value_enum, value_name = "UNITS")]
+    #[arg(long, value_parser = choice::<Units>(), value_name = "UNITS")]
     units: Option<Units>,
     /// Direction of world coordinates, where the file states the patient's orientation: x to the left
     /// and y to the back (lps), or to the right and the front (ras) [default: lps].
-    #[arg(long, value_enum, value_name = "SPACE")]
+    #[arg(long, value_parser = choice::<Space>(), value_name = "SPACE")]
     space: Option<Space>,
 }
 

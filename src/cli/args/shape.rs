@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
+use super::choices::choice;
 use super::values::{bytes, number};
 use crate::cli::errors::{CommandError, fail, fail_usage};
 use crate::export::Target;
@@ -16,10 +17,10 @@ use crate::{Balls, Recipe};
 #[command(next_help_heading = "Shape")]
 pub(crate) struct ShapeArgs {
     /// A point is a ball of squared radius α + ω (power) or of radius α + ω (radius).
-    #[arg(long, value_enum, default_value_t, value_name = "READING")]
+    #[arg(long, value_parser = choice::<Balls>(), default_value = "power", value_name = "READING")]
     balls: Balls,
     /// Engine that computes the shape; both give the same answer.
-    #[arg(long, value_enum, default_value_t, value_name = "ENGINE")]
+    #[arg(long, value_parser = choice::<Engine>(), default_value = "auto", value_name = "ENGINE")]
     engine: Engine,
     /// Number of blocks [default: from threads and memory].
     #[arg(long, value_name = "N")]

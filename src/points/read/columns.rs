@@ -81,7 +81,6 @@ fn is_angle(name: &str) -> bool {
 }
 
 /// Whether a word among others shows that they name columns: a part of it is x, y or z, or an angle, as in `X-coord` and `lon_deg`.
-#[cfg(feature = "formats")]
 pub(super) fn is_of_coordinate(word: &str) -> bool {
     const PLANE: [&str; 2] = ["easting", "northing"];
     is_angle(word)
@@ -220,7 +219,6 @@ impl Columns {
     }
 }
 
-#[cfg(feature = "formats")]
 impl Columns {
     /// The unit of lengths that names state for x, y, z and the radius; the first one, if they differ in none.
     ///

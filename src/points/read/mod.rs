@@ -1,54 +1,37 @@
 //! Readers of the formats of points.
 
 mod columns;
-#[cfg(feature = "formats")]
 pub(super) mod content;
 #[cfg(feature = "las")]
 mod crs;
-#[cfg(feature = "formats")]
 mod dialect;
-#[cfg(feature = "formats")]
 mod extended;
-#[cfg(feature = "formats")]
 mod header;
 #[cfg(feature = "las")]
 pub(super) mod las;
 #[cfg(feature = "las")]
 mod laz;
-#[cfg(feature = "formats")]
 mod lines;
 pub(super) mod npy;
-#[cfg(feature = "formats")]
 pub(super) mod obj;
-#[cfg(feature = "formats")]
 pub(super) mod off;
-#[cfg(feature = "formats")]
 pub(super) mod pcd;
-#[cfg(feature = "formats")]
 pub(super) mod ply;
-#[cfg(feature = "formats")]
 mod rows;
-#[cfg(feature = "formats")]
 pub(super) mod stl;
-#[cfg(feature = "formats")]
 mod text;
-#[cfg(feature = "formats")]
 pub(super) mod vtk;
-#[cfg(feature = "formats")]
 pub(super) mod xyz;
 
 pub(super) use columns::COLUMNS;
-#[cfg(feature = "formats")]
 use columns::RADIUS;
 pub use columns::{Columns, UnknownColumns};
 
 use std::path::Path;
 
 use walpha_base::shown::shown;
-#[cfg(feature = "formats")]
 use walpha_check::meshes::MeshError;
 
-#[cfg(feature = "formats")]
 use super::CellCount;
 use super::{Points, PointsError};
 use crate::volume::Reason;
@@ -59,7 +42,6 @@ pub(super) fn format(path: &Path, reason: Reason) -> PointsError {
 }
 
 /// The error for a mesh that the checker's reader refuses.
-#[cfg(feature = "formats")]
 fn mesh_error(path: &Path, error: &MeshError) -> PointsError {
     let advice = error.advice().unwrap_or("write the file again").to_owned();
     format(path, Reason::content(error.to_string(), advice))

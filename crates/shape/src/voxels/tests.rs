@@ -5,7 +5,8 @@ use walpha_complex::canonical::{outward_facets, smallest_even, sorted};
 use walpha_regular::triangulate;
 
 use super::*;
-use crate::{Class, Complex, Simplices, alpha_shape_by};
+use crate::make::alpha_shape_by;
+use crate::{Class, Complex, Simplices};
 
 const UNIT: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 

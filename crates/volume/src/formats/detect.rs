@@ -16,7 +16,6 @@ use super::table::{FORMATS, VolumeFormat};
 
 use crate::crop::downsample_source;
 use crate::error::{format_error, io_error};
-#[cfg(feature = "formats")]
 use crate::read::naming;
 use crate::read::series::is_zarr;
 use crate::read::{OpenFile, raw};
@@ -122,7 +121,6 @@ fn in_file(path: &Path, error: VolumeError) -> VolumeError {
 
 /// An error about samples, with the names of the files that hold them where those are not the header's.
 fn naming_data_files(file: &OpenFile, options: &ReadOptions, error: VolumeError) -> VolumeError {
-    #[cfg(feature = "formats")]
     if let Ok(files) = data_files_of(file, options)
         && !files.is_empty()
     {
@@ -257,7 +255,6 @@ fn files_of_folder(folder: &Path) -> Vec<PathBuf> {
     }
     let is_dicom = |path: &PathBuf| OpenFile::open(path).is_ok_and(|file| is_dicom(file.start()));
     let series: Vec<PathBuf> = files.into_iter().filter(is_dicom).collect();
-    #[cfg(feature = "formats")]
     if series.is_empty() {
         return crate::read::slices::slices(folder).unwrap_or_default();
     }

@@ -32,7 +32,6 @@ pub use detect::{
     begins_as_volume, data_files, files_of, format_name, read, read_file, read_monitored, series,
 };
 pub(crate) use detect::{data_files_of, format_name_of, source, source_of};
-#[cfg(feature = "formats")]
 pub(crate) use magic::{NIFTI_HEADERS, nifti_version};
 #[cfg(feature = "dicom")]
 pub(crate) use magic::{dicom_mark, dicom_order};

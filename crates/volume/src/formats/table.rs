@@ -10,7 +10,6 @@ use walpha_base::advice::Setting;
 use super::magic::{is_dicom, is_metaimage, is_mgh, is_nifti, is_npy, is_tiff, is_vtk, is_vtk_xml};
 use super::{UnknownFormat, built};
 use crate::read::{OpenFile, inr, npy, series};
-#[cfg(feature = "formats")]
 use crate::read::{metaimage, mgh, nifti, npz, nrrd, slices, tiff, vtk};
 use crate::{ReadOptions, Source, Volume, VolumeError, write};
 
@@ -83,8 +82,10 @@ pub struct Keeps {
 pub struct VolumeWriter {
     /// The extension without its first dot.
     pub extension: &'static str,
-    write: fn(&Volume, &mut dyn Write) -> io::Result<()>,
+    write: WriteAs,
 }
+
+type WriteAs = fn(&Volume, &mut dyn Write) -> io::Result<()>;
 
 impl VolumeFormat {
     /// Whether it was built in.
@@ -135,18 +136,8 @@ const ALL: Keeps = Keeps { spacing: true, directions: true, space: true, unit: t
 const SAMPLES: Keeps =
     Keeps { spacing: false, directions: false, space: false, unit: false, dtype: true };
 
-/// The writers that the feature `formats` brings.
-macro_rules! writers {
-    ($($extension:literal: $write:expr),*) => {{
-        #[cfg(feature = "formats")]
-        {
-            &[$(VolumeWriter { extension: $extension, write: $write }),*]
-        }
-        #[cfg(not(feature = "formats"))]
-        {
-            &[]
-        }
-    }};
+const fn writer(extension: &'static str, write: WriteAs) -> VolumeWriter {
+    VolumeWriter { extension, write }
 }
 
 /// A format of single files, recognised by extension only.
@@ -208,15 +199,13 @@ pub static FORMATS: [VolumeFormat; 14] = [
         extensions: &["nrrd", "nhdr"],
         keeps: ALL,
         chooses: &[Setting::Frame],
-        feature: Some("formats"),
+        feature: None,
         fuzzed_by: &["nrrd"],
-        writers: writers!["nrrd": write::nrrd],
+        writers: &[writer("nrrd", write::nrrd)],
         begins: |start| start.starts_with(b"NRRD000"),
-        read: built!("formats", |file, options, monitor| nrrd::read(file, options.frame, monitor)),
-        parts: built!("formats", |file, options| Ok(
-            nrrd::box_reader(file, options.frame)?.source()
-        )),
-        data_files: built!("formats", nrrd::data_files),
+        read: Some(|file, options, monitor| nrrd::read(file, options.frame, monitor)),
+        parts: Some(|file, options| Ok(nrrd::box_reader(file, options.frame)?.source())),
+        data_files: Some(nrrd::data_files),
         ..PLAIN
     },
     VolumeFormat {
@@ -224,16 +213,14 @@ pub static FORMATS: [VolumeFormat; 14] = [
         extensions: &["nii", "hdr", "nii.gz"],
         keeps: ALL,
         chooses: &[Setting::Frame],
-        feature: Some("formats"),
+        feature: None,
         fuzzed_by: &["nifti", "nifti_gzip"],
-        writers: writers!["nii": write::nifti, "nii.gz": write::nifti_gzip],
+        writers: &[writer("nii", write::nifti), writer("nii.gz", write::nifti_gzip)],
         gzip: true,
         begins: is_nifti,
-        read: built!("formats", |file, options, monitor| nifti::read(file, options.frame, monitor)),
-        parts: built!("formats", |file, options| Ok(
-            nifti::box_reader(file, options.frame)?.source()
-        )),
-        data_files: built!("formats", nifti::data_files),
+        read: Some(|file, options, monitor| nifti::read(file, options.frame, monitor)),
+        parts: Some(|file, options| Ok(nifti::box_reader(file, options.frame)?.source())),
+        data_files: Some(nifti::data_files),
         ..PLAIN
     },
     VolumeFormat {
@@ -241,15 +228,12 @@ pub static FORMATS: [VolumeFormat; 14] = [
         extensions: &["mgz", "mgh", "mgh.gz"],
         keeps: ALL,
         chooses: &[Setting::Frame],
-        feature: Some("formats"),
+        feature: None,
         fuzzed_by: &["mgh"],
         gzip: true,
         begins: is_mgh,
-        read: built!("formats", |file, options, monitor| mgh::read(file, options.frame, monitor)),
-        parts: built!(
-            "formats",
-            |file, options| Ok(mgh::box_reader(file, options.frame)?.source())
-        ),
+        read: Some(|file, options, monitor| mgh::read(file, options.frame, monitor)),
+        parts: Some(|file, options| Ok(mgh::box_reader(file, options.frame)?.source())),
         ..PLAIN
     },
     VolumeFormat {
@@ -257,19 +241,13 @@ pub static FORMATS: [VolumeFormat; 14] = [
         extensions: &["mha", "mhd"],
         keeps: ALL,
         chooses: &[Setting::Frame],
-        feature: Some("formats"),
+        feature: None,
         fuzzed_by: &["metaimage"],
-        writers: writers!["mha": write::metaimage],
+        writers: &[writer("mha", write::metaimage)],
         begins: is_metaimage,
-        read: built!("formats", |file, options, monitor| metaimage::read(
-            file,
-            options.frame,
-            monitor
-        )),
-        parts: built!("formats", |file, options| Ok(
-            metaimage::box_reader(file, options.frame)?.source()
-        )),
-        data_files: built!("formats", metaimage::data_files),
+        read: Some(|file, options, monitor| metaimage::read(file, options.frame, monitor)),
+        parts: Some(|file, options| Ok(metaimage::box_reader(file, options.frame)?.source())),
+        data_files: Some(metaimage::data_files),
         ..PLAIN
     },
     VolumeFormat {
@@ -277,15 +255,13 @@ pub static FORMATS: [VolumeFormat; 14] = [
         extensions: &["vti"],
         keeps: ALL,
         chooses: &[Setting::Array],
-        feature: Some("formats"),
+        feature: None,
         fuzzed_by: &["vti"],
-        writers: writers!["vti": write::vti],
+        writers: &[writer("vti", write::vti)],
         begins: is_vtk_xml,
-        read: built!("formats", |file, options, monitor| vtk::read_image(
-            file,
-            options.array.as_deref(),
-            monitor
-        )),
+        read: Some(|file, options, monitor| {
+            vtk::read_image(file, options.array.as_deref(), monitor)
+        }),
         ..PLAIN
     },
     VolumeFormat {
@@ -293,14 +269,12 @@ pub static FORMATS: [VolumeFormat; 14] = [
         extensions: &["vtk"],
         keeps: Keeps { spacing: true, directions: true, ..SAMPLES },
         chooses: &[Setting::Array],
-        feature: Some("formats"),
+        feature: None,
         fuzzed_by: &["vtk_legacy"],
         begins: is_vtk,
-        read: built!("formats", |file, options, monitor| vtk::read_legacy(
-            file,
-            options.array.as_deref(),
-            monitor
-        )),
+        read: Some(|file, options, monitor| {
+            vtk::read_legacy(file, options.array.as_deref(), monitor)
+        }),
         ..PLAIN
     },
     VolumeFormat {
@@ -308,11 +282,11 @@ pub static FORMATS: [VolumeFormat; 14] = [
         extensions: &["tif", "tiff"],
         keeps: Keeps { spacing: true, unit: true, ..SAMPLES },
         chooses: &[Setting::Frame],
-        feature: Some("formats"),
+        feature: None,
         fuzzed_by: &["tiff"],
-        writers: writers!["tif": write::tiff, "tiff": write::tiff],
+        writers: &[writer("tif", write::tiff), writer("tiff", write::tiff)],
         begins: is_tiff,
-        read: built!("formats", |file, options, monitor| tiff::read(file, options.frame, monitor)),
+        read: Some(|file, options, monitor| tiff::read(file, options.frame, monitor)),
         ..PLAIN
     },
     VolumeFormat {
@@ -340,23 +314,19 @@ pub static FORMATS: [VolumeFormat; 14] = [
         name: "NPZ",
         extensions: &["npz"],
         chooses: &[Setting::Array],
-        feature: Some("formats"),
+        feature: None,
         fuzzed_by: &["npz"],
         begins: |start| start.starts_with(b"PK\x03\x04") || start.starts_with(b"PK\x05\x06"),
-        read: built!("formats", |file, options, monitor| npz::read(
-            file,
-            options.array.as_deref(),
-            monitor
-        )),
+        read: Some(|file, options, monitor| npz::read(file, options.array.as_deref(), monitor)),
         ..PLAIN
     },
     VolumeFormat {
         name: "folder of slices",
-        feature: Some("formats"),
+        feature: None,
         fuzzed_by: &["slices"],
         folder_name: "folder of slices",
         is_folder: |_| Ok(true),
-        read_folder: built!("formats", |path, _, _| slices::read(path)),
+        read_folder: Some(|path, _, _| slices::read(path)),
         ..PLAIN
     },
     // Bare samples cannot be recognised: the user describes them.

@@ -42,7 +42,6 @@ impl Length {
     }
 
     /// The same for bzip2, which packs 900 kB of runs, each of 255 bytes in 5, into as few as 40 bytes.
-    #[cfg(feature = "formats")]
     pub(crate) fn of_bzip2(compressed: u64) -> Self {
         Self::AtMost(compressed.saturating_mul(1 << 21))
     }

@@ -1,20 +1,15 @@
 use std::fs::File;
 use std::io;
-#[cfg(feature = "formats")]
 use std::path::Path;
 use std::path::PathBuf;
 
 use super::OpenFile;
-#[cfg(feature = "formats")]
 use super::layout::{Encoding, Layout};
 use super::payload::Element;
-#[cfg(feature = "formats")]
 use crate::Reason;
-#[cfg(feature = "formats")]
 use crate::error::format_error;
 use crate::error::io_error;
 use crate::rounding::Rounding;
-#[cfg(feature = "formats")]
 use crate::source::CONVERT;
 use crate::source::{BoxReader, Source};
 use crate::{Dims, Dtype, Endian, Frame, VolumeError};
@@ -63,20 +58,17 @@ impl Uncompressed {
     }
 
     /// Scales samples, in doubles. Scaled bytes are not gray levels.
-    #[cfg(feature = "formats")]
     pub(crate) fn scaled(self, (slope, inter): (f64, f64)) -> Self {
         Self { scaling: ((slope, inter) != (1.0, 0.0)).then_some((slope, inter)), ..self }
     }
 
     /// Says whether the file states that values are labels.
-    #[cfg(feature = "formats")]
     pub(crate) fn with_labels(self, labels: bool) -> Self {
         Self { labels, ..self }
     }
 
     /// Samples behind a header of so many bytes, of which further ones are skipped: `None` where the samples
     /// are at the end of the file.
-    #[cfg(feature = "formats")]
     pub(super) fn after_header(
         file: &OpenFile,
         layout: Layout,
@@ -87,7 +79,6 @@ impl Uncompressed {
     }
 
     /// Samples in a file of their own.
-    #[cfg(feature = "formats")]
     pub(super) fn in_data_file(
         header: &Path,
         layout: Layout,
@@ -109,7 +100,6 @@ impl Uncompressed {
         }
     }
 
-    #[cfg(feature = "formats")]
     fn within(
         header: &Path,
         file: &OpenFile,
