@@ -108,8 +108,8 @@ def run(walpha, name, script):
 
 PACKAGE = """
 import hashlib, sys
-import numpy as np
 try:
+    import numpy as np
     import walpha
 except ImportError:
     sys.exit(77)

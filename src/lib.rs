@@ -50,21 +50,15 @@ pub use ndarray;
 mod cgal;
 #[cfg(feature = "cli")]
 pub mod cli;
-pub mod export;
-pub mod haar;
-pub mod interpolate;
-pub mod labels;
-pub mod outofcore;
-pub mod pipeline;
-pub mod points;
-pub mod progress;
 #[cfg(feature = "paper")]
 pub mod reproduce;
-mod select;
 pub mod shape;
 
 /// The advice of errors.
 pub use walpha_base::advice;
+/// From a volume to weighted points: a crate of its own, `walpha-points`, for use in other programs.
+pub use walpha_points as points;
+pub use walpha_points::haar;
 /// Exact regular triangulations: a crate of its own, `walpha-regular`, for use in other programs.
 pub use walpha_regular as triangulation;
 /// Pictures, figures and the interactive page: a crate of its own, `walpha-render`, for use in other programs.
@@ -79,11 +73,14 @@ pub use walpha_base::threads;
 /// The exact checker: a crate of its own, `walpha-check`, for use in other programs.
 pub use walpha_check as check;
 
-pub use export::Save;
+/// The recipe and what runs it, interpolation, files and work in blocks: a crate of its own, `walpha-model`, for use in other
+/// programs.
+pub use walpha_model::{
+    Interpolant, LabelChoice, Recipe, Save, export, interpolate, labels, outofcore, pipeline,
+    progress,
+};
+
 pub use haar::{Coefficients, Decomposition, HaarOptions, Tolerance, Truncation};
-pub use interpolate::Interpolant;
-pub use labels::LabelChoice;
-pub use pipeline::Recipe;
 pub use points::{Points, PointsError, Selection, SelectionRule, Units, Weighting};
 pub use shape::{
     Alpha, AlphaShape, Balls, CgalError, Class, Complex, Simplices, WeightedPoints, alpha_shape,

@@ -191,7 +191,7 @@ impl MergeStep {
         let monitor = progress.monitor();
         let plan = Plan::open(&self.folder)?;
         let input = Some(plan.job.input.clone());
-        let export = ExportOptions { input, ..ExportOptions::default() };
+        let export = ExportOptions::default().input(input);
         // An output in this folder could replace files of the plan.
         let _working = (!global.in_place).then(|| Working::folder(&self.folder));
         keep_input_of(&plan.job, global);

@@ -20,10 +20,11 @@ use crate::check::{
 };
 use crate::export::{Target, UnknownFormat, write_findings};
 use crate::pipeline::{AlphaRule, Input, Opened, Values};
-use crate::points::{CellCount, Weighting, cells_of_file, read_complex_file};
+use crate::points::{CellCount, Weighting};
 use crate::progress::{Monitor, Stage};
 use crate::shape::placed_complex;
 use crate::volume::{OpenFile, OpenVolume};
+use walpha_points::internal::{cells_of_file, read_complex_file};
 
 use super::args::{LabelArgs, PeriodicArgs, PipelineArgs, ShapeArgs};
 use super::compare;

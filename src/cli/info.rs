@@ -11,10 +11,11 @@ use walpha_base::shown::number;
 use crate::check::meshes::Mesh;
 use crate::labels::{LabelSize, LabelSizes};
 use crate::pipeline::Opened;
-use crate::points::{Cell, CellCount, ModelMetadata, Points, cells_of_file, read_model_file};
+use crate::points::{Cell, CellCount, ModelMetadata, Points};
 use crate::progress::Stage;
 use crate::volume::{self, Dtype, Nan, OpenVolume, ReadOptions, Reason, SampleStats, Series};
 use crate::{Alpha, Coordinates, Dims, Frame, LengthUnit, Units, VolumeError};
+use walpha_points::internal::{cells_of_file, read_model_file};
 
 use super::args::InputArgs;
 use super::check::{mesh_format, read_mesh};

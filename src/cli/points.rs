@@ -74,7 +74,8 @@ impl Points {
             let facts =
                 weighed.metadata(volume.map(|volume| volume.written)).order(weighed.order());
             let step = facts.range.filter(|_| volume.is_some()).map_or(1.0, |range| range.step());
-            let packing = Packing { value_error: self.value_error * step, layers: self.layers };
+            let packing =
+                Packing::default().value_error(self.value_error * step).layers(self.layers);
             progress.stage(Stage::Write, || {
                 target.write(|out| writer.write_model(&weighed.points, &facts, &packing, out))
             })?;

@@ -159,12 +159,11 @@ impl Shape {
 
     /// How outputs are written.
     pub(super) fn export(&self) -> ExportOptions {
-        ExportOptions {
-            ascii: self.ascii,
-            solid: self.solid,
-            groups: self.groups,
-            input: Some(self.pipeline.input.input.to_string()),
-        }
+        ExportOptions::default()
+            .ascii(self.ascii)
+            .solid(self.solid)
+            .groups(self.groups)
+            .input(Some(self.pipeline.input.input.to_string()))
     }
 
     /// The outputs, under names whose extensions say their formats.

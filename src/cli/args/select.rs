@@ -42,7 +42,7 @@ impl HaarArgs {
             (_, Some(count)) => Tolerance::Coefficients(count),
             _ => Tolerance::Rms(self.rms),
         };
-        HaarOptions { decomposition: self.haar, tolerance }
+        HaarOptions::default().decomposition(self.haar).tolerance(tolerance)
     }
 }
 
@@ -140,7 +140,7 @@ impl SelectArgs {
             if self.max_error.is_some() || self.exchange {
                 fail_usage!("--max-error and --exchange belong to --select adaptive" => "add it");
             }
-            let selection = Selection { rule: self.rule(), gray_min: self.gray_min };
+            let selection = Selection::default().rule(self.rule()).gray_min(self.gray_min);
             return Ok((Choice::Difference(selection), self.value_min));
         }
         if self.threshold.is_some() || self.gray_min.or(self.value_min).is_some() {

@@ -129,11 +129,11 @@ impl Ladder {
         let by_count = self.counts.iter().map(|&count| LevelOptions {
             name: count.to_string(),
             haar,
-            selection: Selection { rule: SelectionRule::Count(count), ..selection },
+            selection: selection.rule(SelectionRule::Count(count)),
         });
         let by_epsilon = self.epsilons.iter().map(|&epsilon| LevelOptions {
             name: format!("epsilon-{}", short(epsilon)),
-            haar: HaarOptions { tolerance: Tolerance::Epsilon(epsilon), ..haar },
+            haar: haar.tolerance(Tolerance::Epsilon(epsilon)),
             selection,
         });
         by_count.chain(by_epsilon).collect()

@@ -109,14 +109,13 @@ impl Report {
             gray_range: volume
                 .map(|VolumeSummary { range: GrayRange { low, high }, .. }| [*low, *high]),
         };
-        let points = PointsReport {
-            ended_early: origin.ended.map(|Adaptive { count, rmse, max_error }| EndedEarly {
-                asked: count,
-                rmse,
-                max_error,
-            }),
-            ..PointsReport::new(weighed.points.len())
-        };
+        let points =
+            PointsReport {
+                ended_early: origin.ended.map(|Adaptive { count, rmse, max_error, .. }| {
+                    EndedEarly { asked: count, rmse, max_error }
+                }),
+                ..PointsReport::new(weighed.points.len())
+            };
         Self {
             haar: truncation.map(|(truncation, v)| HaarReport::new(truncation, &v.range)),
             fit: origin.fit,

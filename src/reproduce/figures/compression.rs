@@ -165,8 +165,8 @@ fn through_file(
     const NAME: &str = ".wvm";
     let grid = SampleGrid { dims: volume.dims(), frame: *volume.frame(), units: Units::Voxel };
     let coordinates = Coordinates::VOXEL;
-    let facts = ModelMetadata { grid: Some(grid), coordinates, ..ModelMetadata::default() };
-    let packing = Packing { value_error, ..Packing::default() };
+    let facts = ModelMetadata::default().grid(Some(grid)).coordinates(coordinates);
+    let packing = Packing::default().value_error(value_error);
     let writer = PointWriter::of(format!("model{NAME}")).map_err(std::io::Error::other)?;
     let mut bytes = Vec::new();
     writer.write_model(points, &facts, &packing, &mut bytes)?;

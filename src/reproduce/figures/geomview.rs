@@ -148,8 +148,7 @@ impl Side {
         name: &str,
     ) -> Result<Self, ReproduceError> {
         let mut bytes = Vec::new();
-        Off(ExportOptions { groups: true, ..ExportOptions::default() })
-            .write(&shaped.shape, &mut bytes)?;
+        Off(ExportOptions::default().groups(true)).write(&shaped.shape, &mut bytes)?;
         let mesh = OffMesh::parse(&String::from_utf8_lossy(&bytes))?;
         let surface = Surface::of(&shaped.shape);
         let positions = shaped.shape.points().positions();

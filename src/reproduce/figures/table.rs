@@ -1,8 +1,8 @@
 use super::bench::Bench;
 use super::bench::{Claim, judge};
 use crate::haar::Unnormalised;
-use crate::points::difference_row;
 use crate::reproduce::{Item, ReproduceError, Table, Verdict, text};
+use walpha_points::internal::difference_row;
 
 /// The paper's row of gray levels.
 const ROW: [f64; 4] = [9.0, 7.0, 3.0, 5.0];

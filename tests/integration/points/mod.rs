@@ -51,7 +51,7 @@ fn slow_selection(l: &Array3<f64>, f: &Array3<f32>, selection: &Selection) -> Op
         SelectionRule::Count(n) => n as usize,
         SelectionRule::Ratio(r) => ((r * l.len() as f64).round() as usize).max(1),
         SelectionRule::Threshold(t) => open.iter().filter(|&&i| l[i] >= t).count(),
-        other => panic!("{other:?} is not tested"),
+        other @ SelectionRule::AtMost(_) => panic!("{other:?} is not tested"),
     };
     if count == 0 || count > open.len() {
         return None;

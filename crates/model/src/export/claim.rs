@@ -1,0 +1,16 @@
+//! Shapes as what the checker judges.
+
+use walpha_check::Claim;
+use walpha_check::schema::PlacedComplex;
+use walpha_shape::AlphaShape;
+
+/// The claim of a shape, for the checker, as a complex in space.
+pub fn claim(shape: &AlphaShape) -> Claim<'_> {
+    Claim::new(shape.placed()).with_hidden(shape.hidden()).with_duplicates(shape.duplicates())
+}
+
+/// A copy of a shape's complex with its points, for the checker; on a torus too.
+pub fn placed_complex(shape: &AlphaShape) -> PlacedComplex {
+    let sides = shape.options().periodic.map(|torus| torus.sides());
+    PlacedComplex::from(claim(shape)).with_periodic(sides).with_voxels(shape.voxels().cloned())
+}

@@ -1,0 +1,251 @@
+use walpha_base::Monitor;
+use walpha_base::advice::{Advice, Setting, advice};
+use walpha_base::shown::number;
+
+use crate::pipeline::Parameter;
+use walpha_shape::ladder::Filtration;
+use walpha_shape::{
+    Alpha, AlphaShape, Balls, Class, Complex, Outline, OutlineError, ShapeOptions,
+    alpha_shape_monitored,
+};
+use walpha_volume::annotation;
+
+/// What a shape must have for a file of it to hold something.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Needs {
+    /// Any simplex: formats of whole complexes.
+    Simplex,
+    /// A facet, or, where all points lie on one line, an edge: formats of the boundary that have edges.
+    FacetOrLine,
+    /// A facet: formats of facets, and of outlines.
+    Facet,
+    /// A regular facet: solids.
+    RegularFacet,
+}
+
+impl Needs {
+    /// Whether a shape has it.
+    pub fn met_by(self, shape: &AlphaShape) -> bool {
+        let Complex { vertices, edges, facets, .. } = shape.complex();
+        let has_facet = || facets.classes().iter().any(|&class| class != Class::Exterior);
+        match self {
+            // With exterior simplices the file is that of the triangulation.
+            Self::Simplex => !vertices.is_empty(),
+            Self::FacetOrLine => {
+                let has_edge = || edges.classes().iter().any(|&class| class != Class::Exterior);
+                has_facet() || has_edge() && Extent::of(shape) == Extent::Line
+            }
+            Self::Facet => has_facet(),
+            Self::RegularFacet => facets.of(Class::Regular).next().is_some(),
+        }
+    }
+
+    fn name(self, extent: Extent) -> &'static str {
+        match self {
+            Self::Simplex => "simplex",
+            Self::FacetOrLine if extent == Extent::Line => "edge",
+            Self::FacetOrLine | Self::Facet => "facet",
+            Self::RegularFacet => "regular facet",
+        }
+    }
+}
+
+/// A file would hold nothing of a shape.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("the shape has no {} {}", needs.name(*extent), self.cause())]
+#[non_exhaustive]
+pub struct EmptyShape {
+    /// What the file needs.
+    pub needs: Needs,
+    /// The α of the shape.
+    pub alpha: Alpha,
+    /// The parameter of a shape of the same points that has it, rounded up: √α, and with [`Balls::Radius`] α. `None` where
+    /// none is known.
+    pub suggested: Option<f64>,
+    balls: Balls,
+    extent: Extent,
+}
+
+/// What points span.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Extent {
+    Place,
+    Line,
+    Plane,
+    Space,
+}
+
+impl Extent {
+    fn of(shape: &AlphaShape) -> Self {
+        let positions = shape.points().positions();
+        match Outline::check(positions) {
+            _ if positions.windows(2).all(|pair| pair[0] == pair[1]) => Self::Place,
+            Ok(()) => Self::Plane,
+            Err(OutlineError::Line) => Self::Line,
+            Err(_) => Self::Space,
+        }
+    }
+}
+
+impl EmptyShape {
+    /// Refuses a shape that has not what a file needs. The error names a radius at which it would have it: from the spacing of
+    /// the points if that is enough, which is tried, or else the smallest at which all points are in one solid component.
+    ///
+    /// # Errors
+    /// [`EmptyShape`].
+    pub fn check(shape: &AlphaShape, needs: Needs, monitor: &Monitor) -> Result<(), Self> {
+        if needs.met_by(shape) {
+            return Ok(());
+        }
+        let ShapeOptions { alpha, balls, .. } = *shape.options();
+        let extent = Extent::of(shape);
+        let mut empty = Self { needs, alpha, suggested: None, balls, extent };
+        if empty.can_have_it() {
+            empty.suggested = suggested(shape, needs, monitor);
+        }
+        Err(empty)
+    }
+
+    /// Whether some α would do.
+    fn can_have_it(&self) -> bool {
+        match (self.extent, self.needs) {
+            (Extent::Space, _) | (_, Needs::Simplex) => true,
+            (Extent::Plane, needs) => needs != Needs::RegularFacet,
+            (Extent::Line, needs) => needs == Needs::FacetOrLine,
+            (Extent::Place, _) => false,
+        }
+    }
+
+    fn cause(&self) -> String {
+        match self.extent {
+            _ if self.can_have_it() => format!("at {}", annotation::alpha(self.alpha)),
+            Extent::Place => "at any α, as its points are at one place".into(),
+            Extent::Line => "at any α, as its points lie on one line".into(),
+            _ => "at any α, as its points lie in one plane, where no facet bounds a volume".into(),
+        }
+    }
+
+    /// What to do about it.
+    pub fn advice(&self) -> Advice {
+        match self.suggested {
+            None if !self.can_have_it() => match self.extent {
+                Extent::Place | Extent::Line => {
+                    "write a format that has vertices and edges, as VTU does".into()
+                }
+                _ => "write a format that has singular facets, as PLY does".into(),
+            },
+            None => "give a larger α".into(),
+            Some(suggested) => {
+                let setting =
+                    if self.balls == Balls::Radius { Setting::Alpha } else { Setting::AlphaRadius };
+                advice!["give a larger α, as in ", setting, format!(" {}", number(suggested))]
+            }
+        }
+    }
+}
+
+/// The parameter of a shape of the same points that has what a file needs.
+fn suggested(shape: &AlphaShape, needs: Needs, monitor: &Monitor) -> Option<f64> {
+    let options = *shape.options();
+    let points = shape.points();
+    let spacing = || {
+        let unit = shape.coordinates().unit;
+        Some(Parameter::of_spacing(points, options.periodic, unit).ok()?.alpha)
+    };
+    let connected = || {
+        let filtration =
+            Filtration::monitored(options.periodic, points.clone(), &monitor.unreported());
+        Some(filtration.ok()?.one_region())
+    };
+    let rules: [&dyn Fn() -> Option<Alpha>; 2] = [&spacing, &connected];
+    rules.into_iter().find_map(|rule| {
+        let parameter = three_digits_up(rule()?.radius()?);
+        let alpha = match options.balls {
+            Balls::Power => Alpha::from_radius(parameter),
+            Balls::Radius => Alpha::from_squared(parameter),
+        };
+        let mut larger = options;
+        larger.alpha = alpha.ok()?;
+        let larger = alpha_shape_monitored(points.clone(), &larger, &monitor.unreported()).ok()?;
+        needs.met_by(&larger).then_some(parameter)
+    })
+}
+
+/// A number rounded up to three significant digits.
+fn three_digits_up(number: f64) -> f64 {
+    let rounded = |number: f64| format!("{number:.2e}").parse().unwrap_or(number);
+    match rounded(number) {
+        up if up >= number => up,
+        // A little more than half a step of the third digit.
+        _ => rounded(number + 0.500_01 * 10f64.powf(number.log10().floor() - 2.0)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn shape(positions: Vec<[f64; 3]>, alpha: f64) -> AlphaShape {
+        let options = ShapeOptions::new(Alpha::from_squared(alpha).unwrap());
+        walpha_shape::alpha_shape(walpha_shape::WeightedPoints::unweighted(positions), &options)
+            .unwrap()
+    }
+
+    fn refused(shape: &AlphaShape, needs: Needs) -> (String, String) {
+        let error = EmptyShape::check(shape, needs, &Monitor::noop()).unwrap_err();
+        (error.to_string(), error.advice().to_string())
+    }
+
+    /// What is suggested has what was asked for, and is no more than needed for it to be a round number.
+    #[test]
+    fn a_radius_is_suggested_that_does_it() {
+        let cube: Vec<[f64; 3]> =
+            (0..64).map(|i| [i % 4, i / 4 % 4, i / 16].map(f64::from)).collect();
+        // Points along a curve have all neighbours before and behind them, so their spacing makes edges alone.
+        let curve: Vec<[f64; 3]> = (0..60)
+            .map(|i| f64::from(i) / 10.0)
+            .map(|t| [50.0 * t.cos(), 50.0 * t.sin(), 3.0 * t])
+            .collect();
+        for points in [cube, curve] {
+            for (alpha, needs) in [
+                (-3.0, Needs::Simplex),
+                (0.001, Needs::FacetOrLine),
+                (0.001, Needs::Facet),
+                (0.001, Needs::RegularFacet),
+            ] {
+                let nothing = shape(points.clone(), alpha);
+                let error = EmptyShape::check(&nothing, needs, &Monitor::noop()).unwrap_err();
+                let radius = error.suggested.expect("a radius is known");
+                let larger = shape(points.clone(), radius * radius);
+                assert!(needs.met_by(&larger), "{needs:?}: {radius}");
+                assert!(error.advice().to_string().contains("`alpha_radius`"));
+            }
+        }
+    }
+
+    #[test]
+    fn flat_points_are_told_of_their_kind() {
+        let line: Vec<[f64; 3]> = (0..5).map(|i| [f64::from(i), 1.0, 2.0]).collect();
+        let stick = shape(line.clone(), 1.0);
+        assert!(Needs::FacetOrLine.met_by(&stick), "edges are all that a line can have");
+        let (why, next) = refused(&stick, Needs::Facet);
+        assert!(why.contains("no facet at any α, as its points lie on one line"), "{why}");
+        assert!(next.contains("VTU"), "{next}");
+        let (why, next) = refused(&shape(line, 0.1), Needs::FacetOrLine);
+        assert!(why.contains("no edge at α = 0.1"), "{why}");
+        assert!(next.contains("`alpha_radius`"), "{next}");
+        let square = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.0]];
+        let plane = shape(square, 1.0);
+        assert!(Needs::Facet.met_by(&plane));
+        let (why, next) = refused(&plane, Needs::RegularFacet);
+        assert!(why.contains("lie in one plane"), "{why}");
+        assert!(next.contains("singular facets"), "{next}");
+    }
+
+    #[test]
+    fn numbers_are_rounded_up() {
+        let up = [1.0, 1.001, 2.344_9, 9.999, 0.001_231, 1e300, 0.0].map(three_digits_up);
+        assert_eq!(up, [1.0, 1.01, 2.35, 10.0, 0.001_24, 1e300, 0.0]);
+    }
+}

@@ -1,0 +1,88 @@
+use std::borrow::Cow;
+use std::io::{self, Write};
+
+use walpha_base::advice::Advice;
+use walpha_base::setters;
+
+use super::Needs;
+use walpha_shape::{AlphaShape, SinglePrecision, Surface};
+
+/// A writer of shapes in one format.
+pub trait Exporter {
+    /// Writes the whole file. The same shape gives the same bytes. A shape on a torus is
+    /// [unwrapped](AlphaShape::unwrapped) first if the format cannot represent a torus.
+    ///
+    /// # Errors
+    /// Whatever `out` returns.
+    fn write(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
+        match shape.options().periodic {
+            Some(_) if !self.knows_torus() => self.encode(&shape.unwrapped(), out),
+            _ => self.encode(shape, out),
+        }
+    }
+
+    /// The bytes of a format, for [`Exporter::write`]: the shape is one on a torus only if the format
+    /// [knows](Exporter::knows_torus) these.
+    ///
+    /// # Errors
+    /// Whatever `out` returns.
+    fn encode(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()>;
+
+    /// Whether the format can represent a periodic box.
+    fn knows_torus(&self) -> bool {
+        false
+    }
+
+    /// What a shape must have for the file to hold something.
+    fn needs(&self) -> Needs {
+        Needs::Simplex
+    }
+
+    /// How the file has the coordinates of a shape, if it has them in single precision.
+    fn single_precision(&self, _shape: &AlphaShape) -> Option<SinglePrecision> {
+        None
+    }
+
+    /// A remark for users of the file, if this shape needs one.
+    fn remark(&self, _shape: &AlphaShape) -> Option<Advice> {
+        None
+    }
+}
+
+/// Options of the writers.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct ExportOptions {
+    /// Text, if the format also has a binary form: PLY.
+    pub ascii: bool,
+    /// The boundary of a [solid](AlphaShape::solid): only regular facets, closed, oriented and cut apart into a
+    /// manifold. For formats that hold the boundary.
+    pub solid: bool,
+    /// Separates regular and singular facets in ways that some programs do not expect: by groups (OBJ, also edges
+    /// and points), colours (OFF) or properties (PLY, also components and sheets).
+    pub groups: bool,
+    /// The input of the shape, recorded in VTP and VTU files.
+    pub input: Option<String>,
+}
+
+impl ExportOptions {
+    setters! { ascii: bool, solid: bool, groups: bool, input: Option<String> }
+
+    /// The boundary to write.
+    pub(super) fn surface<'a>(&self, shape: &'a AlphaShape) -> Cow<'a, Surface> {
+        if self.solid { Cow::Borrowed(shape.solid().0) } else { Cow::Owned(Surface::of(shape)) }
+    }
+
+    /// What a shape must have for a file of its boundary, or of the solid, not to be empty.
+    pub(super) fn needs(&self, boundary: Needs) -> Needs {
+        if self.solid { Needs::RegularFacet } else { boundary }
+    }
+
+    /// How the boundary becomes single precision.
+    pub(super) fn single_precision(&self, shape: &AlphaShape) -> SinglePrecision {
+        match shape.options().periodic {
+            Some(_) => self.single_precision(&shape.unwrapped()),
+            None => SinglePrecision::of_surface(&self.surface(shape), shape.points().positions()),
+        }
+    }
+}

@@ -1,0 +1,165 @@
+use std::fmt;
+use std::path::Path;
+
+use super::{
+    ExportOptions, Exporter, GeoJson, Glb, Json, Npz, Obj, Off, Ply, Stl, Svg, Vtp, Vtu, Wkt,
+};
+use walpha_volume::UnknownFormat;
+
+/// A format that shapes are written in, chosen by file name extension.
+#[derive(Clone, Copy)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a property of its own")]
+pub struct Format {
+    /// Its name, as users know it.
+    pub name: &'static str,
+    /// Its extension, without the dot.
+    pub extension: &'static str,
+    /// Its content.
+    pub about: &'static str,
+    /// Whether it holds only the boundary, which may then be that of a solid.
+    pub boundary: bool,
+    /// Whether it holds the outline of points in a plane, and nothing else.
+    pub outline: bool,
+    /// Whether it has both a text form and a binary form.
+    pub ascii: bool,
+    /// Whether it can separate regular and singular facets in a way that some programs do not expect.
+    pub groups: bool,
+    exporter: fn(ExportOptions) -> Box<dyn Exporter>,
+}
+
+/// Defaults: a format of all simplices.
+const PLAIN: Format = Format {
+    name: "",
+    extension: "",
+    about: "",
+    boundary: false,
+    outline: false,
+    ascii: false,
+    groups: false,
+    exporter: |_| Box::new(Json),
+};
+
+/// All formats.
+pub static FORMATS: [Format; 12] = [
+    Format {
+        name: "PLY",
+        extension: "ply",
+        about: "Polygon file format: boundary, singular edges and vertices.",
+        boundary: true,
+        ascii: true,
+        groups: true,
+        exporter: |options| Box::new(Ply(options)),
+        ..PLAIN
+    },
+    Format {
+        name: "OFF",
+        extension: "off",
+        about: "Object file format of Geomview: boundary facets.",
+        boundary: true,
+        groups: true,
+        exporter: |options| Box::new(Off(options)),
+        ..PLAIN
+    },
+    Format {
+        name: "OBJ",
+        extension: "obj",
+        about: "Wavefront: boundary, singular edges and vertices in groups.",
+        boundary: true,
+        groups: true,
+        exporter: |options| Box::new(Obj(options)),
+        ..PLAIN
+    },
+    Format {
+        name: "STL",
+        extension: "stl",
+        about: "Stereolithography: regular facets.",
+        boundary: true,
+        exporter: |options| Box::new(Stl(options)),
+        ..PLAIN
+    },
+    Format {
+        name: "GLB",
+        extension: "glb",
+        about: "glTF in one binary file: boundary, singular edges and vertices, coloured by F.",
+        boundary: true,
+        exporter: |options| Box::new(Glb(options)),
+        ..PLAIN
+    },
+    Format {
+        name: "VTU",
+        extension: "vtu",
+        about: "VTK unstructured grid: simplices of all dimensions with their data.",
+        exporter: |options| Box::new(Vtu(options)),
+        ..PLAIN
+    },
+    Format {
+        name: "VTP",
+        extension: "vtp",
+        about: "VTK polygons: boundary, singular edges and vertices with their data.",
+        boundary: true,
+        exporter: |options| Box::new(Vtp(options)),
+        ..PLAIN
+    },
+    Format {
+        name: "NPZ",
+        extension: "npz",
+        about: "NumPy arrays of indices and classes of simplices of all dimensions.",
+        exporter: |_| Box::new(Npz),
+        ..PLAIN
+    },
+    Format {
+        name: "JSON",
+        extension: "json",
+        about: "The whole complex, for `walpha check` and other programs.",
+        ..PLAIN
+    },
+    Format {
+        name: "GeoJSON",
+        extension: "geojson",
+        about: "Points in a plane: polygons with holes, with area and perimeter; singular edges and vertices.",
+        outline: true,
+        exporter: |_| Box::new(GeoJson),
+        ..PLAIN
+    },
+    Format {
+        name: "WKT",
+        extension: "wkt",
+        about: "Points in a plane: polygons with holes, singular edges and vertices, as well-known text.",
+        outline: true,
+        exporter: |_| Box::new(Wkt),
+        ..PLAIN
+    },
+    Format {
+        name: "SVG",
+        extension: "svg",
+        about: "Points in a plane: a drawing of polygons with holes, singular edges and vertices.",
+        outline: true,
+        exporter: |_| Box::new(Svg),
+        ..PLAIN
+    },
+];
+
+impl Format {
+    /// The format for the extension of a path.
+    ///
+    /// # Errors
+    /// [`UnknownFormat`], which names the known extensions.
+    pub fn of(path: impl AsRef<Path>) -> Result<&'static Self, UnknownFormat> {
+        UnknownFormat::find(
+            path.as_ref(),
+            "a shape",
+            FORMATS.iter().map(|format| (format.extension, format)),
+        )
+    }
+
+    /// Its writer.
+    pub fn exporter(&self, options: &ExportOptions) -> Box<dyn Exporter> {
+        (self.exporter)(options.clone())
+    }
+}
+
+impl fmt::Debug for Format {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Format").field("name", &self.name).finish_non_exhaustive()
+    }
+}

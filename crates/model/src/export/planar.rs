@@ -1,0 +1,60 @@
+//! What the formats of shapes in a plane share.
+
+use std::io;
+
+use walpha_base::advice::Advice;
+
+use walpha_shape::{AlphaShape, Outline};
+
+/// An outline and the places of its points, as text formats of geographic data have them: x and y, and z unless it is 0
+/// for all points.
+pub(super) struct Planar<'a> {
+    pub outline: &'a Outline,
+    positions: &'a [[f64; 3]],
+    columns: usize,
+}
+
+/// Says that polygons in a vertical plane are none to programs that look at x and y alone, as most do.
+pub(super) fn remark(shape: &AlphaShape) -> Option<Advice> {
+    let is_vertical = shape.outline().is_ok_and(|outline| outline.axes != [0, 1]);
+    is_vertical.then(|| {
+        "the plane is vertical: programs that look at x and y alone see polygons without area, so \
+         exchange coordinates first"
+            .into()
+    })
+}
+
+impl<'a> Planar<'a> {
+    /// Those of a shape.
+    ///
+    /// # Errors
+    /// The shape has no outline.
+    pub(super) fn of(shape: &'a AlphaShape) -> io::Result<Self> {
+        let outline = shape.outline().map_err(io::Error::other)?;
+        let positions = shape.points().positions();
+        let columns = if positions.iter().all(|place| place[2] == 0.0) { 2 } else { 3 };
+        Ok(Self { outline, positions, columns })
+    }
+
+    /// Whether places have a z.
+    pub(super) fn has_z(&self) -> bool {
+        self.columns == 3
+    }
+
+    /// The place of a point: two or three coordinates.
+    pub(super) fn place(&self, v: u32) -> &'a [f64] {
+        &self.positions[v as usize][..self.columns]
+    }
+
+    /// The places of points, one after the other.
+    pub(super) fn places(&self, points: &[u32]) -> Vec<&'a [f64]> {
+        points.iter().map(|&v| self.place(v)).collect()
+    }
+
+    /// The places of a ring, the first once more at the end.
+    pub(super) fn ring(&self, ring: &[u32]) -> Vec<&'a [f64]> {
+        let mut places = self.places(ring);
+        places.extend(ring.first().map(|&v| self.place(v)));
+        places
+    }
+}

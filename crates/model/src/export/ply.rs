@@ -1,0 +1,131 @@
+use std::io::{self, Write};
+
+use walpha_base::advice::Advice;
+
+use super::about::about;
+use super::{ExportOptions, Exporter, Needs, colour};
+use walpha_shape::{AlphaShape, Class, Surface};
+use walpha_volume::annotation;
+
+/// PLY: vertices of the boundary with weight, input index and, if known, value and its colour (red, green, blue);
+/// facets. With groups, facets have their class (2 regular, 3 singular), their component and, if known and not of
+/// a solid, the [sheets](walpha_shape::Sheets) in front and behind, −1 for none. Coordinates are doubles. Binary
+/// little-endian, or text.
+///
+/// Singular edges are left out, as most programs refuse a PLY file with edges. Groups are optional because meshio
+/// cannot read properties of facets.
+#[derive(Clone, Debug, Default)]
+pub struct Ply(pub ExportOptions);
+
+impl Exporter for Ply {
+    fn encode(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
+        let Self(options) = self;
+        let surface = options.surface(shape);
+        let sheets = shape.sheets().filter(|_| options.groups && !options.solid);
+        let sheets: Option<Vec<_>> = sheets.map(|sheets| sheets.sides().collect());
+        let valued = shape.points().values().is_some();
+        write!(
+            out,
+            "ply\nformat {} 1.0\ncomment walpha: {}\n{}element vertex {}\n\
+             property double x\nproperty double y\nproperty double z\nproperty double weight\n{}\
+             property uint index\nelement face {}\nproperty list uchar uint vertex_indices\n{}{}end_header\n",
+            if options.ascii { "ascii" } else { "binary_little_endian" },
+            about(shape),
+            annotation::line("comment", shape.coordinates()),
+            surface.vertex_count(),
+            if valued { VALUED } else { "" },
+            surface.regular.len() + surface.singular.len(),
+            if options.groups { "property uchar class\nproperty uint component\n" } else { "" },
+            if sheets.is_some() { "property int sheet\nproperty int sheet_behind\n" } else { "" },
+        )?;
+        let mut row = Row { ascii: options.ascii, out, started: false };
+        vertices(&mut row, shape, &surface)?;
+        let (components, indices) =
+            (shape.component_numbers(), surface.indices().collect::<Vec<_>>());
+        for (i, facet) in surface.facets().enumerate() {
+            row.put(3u8, u8::to_le_bytes)?;
+            for &v in facet {
+                row.put(v, u32::to_le_bytes)?;
+            }
+            if options.groups {
+                let regular = i < surface.regular.len();
+                let class = if regular { Class::Regular } else { Class::Singular };
+                row.put(class as u8, u8::to_le_bytes)?;
+                let component = components[indices[facet[0] as usize] as usize];
+                row.put(component, u32::to_le_bytes)?;
+            }
+            for &sheet in sheets.iter().flat_map(|sheets| &sheets[i]) {
+                row.put(sheet, i32::to_le_bytes)?;
+            }
+            row.end()?;
+        }
+        Ok(())
+    }
+
+    fn remark(&self, shape: &AlphaShape) -> Option<Advice> {
+        // A solid has no singular edges.
+        let edges = shape.complex().edges.of(Class::Singular).count();
+        (edges > 0 && !self.0.solid).then(|| {
+            format!(
+                "{edges} singular edges are left out, as most programs refuse a PLY file with edges; OBJ, \
+                 GLB and VTP have them"
+            )
+            .into()
+        })
+    }
+
+    fn needs(&self) -> Needs {
+        self.0.needs(Needs::Facet)
+    }
+}
+
+/// Properties of a vertex with a value.
+const VALUED: &str =
+    "property double value\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n";
+
+fn vertices(row: &mut Row<'_>, shape: &AlphaShape, surface: &Surface) -> io::Result<()> {
+    let points = shape.points();
+    let values: Option<Vec<f64>> = points.values().map(|v| surface.numbers(v).collect());
+    let colours = values.as_deref().map(colour::bytes);
+    let places = surface.positions(points.positions()).zip(surface.numbers(points.weights()));
+    for (i, ((place, weight), index)) in places.zip(surface.indices()).enumerate() {
+        for number in [place[0], place[1], place[2], weight] {
+            row.put(number, f64::to_le_bytes)?;
+        }
+        if let (Some(values), Some(colours)) = (&values, &colours) {
+            row.put(values[i], f64::to_le_bytes)?;
+            for part in colours[i] {
+                row.put(part, u8::to_le_bytes)?;
+            }
+        }
+        row.put(index, u32::to_le_bytes)?;
+        row.end()?;
+    }
+    Ok(())
+}
+
+/// Numbers of one element, as text on a line or as bytes.
+struct Row<'a> {
+    ascii: bool,
+    out: &'a mut dyn Write,
+    started: bool,
+}
+
+impl Row<'_> {
+    fn put<T: std::fmt::Display + Copy, const B: usize>(
+        &mut self,
+        value: T,
+        bytes: impl Fn(T) -> [u8; B],
+    ) -> io::Result<()> {
+        if !self.ascii {
+            return self.out.write_all(&bytes(value));
+        }
+        let separator = if std::mem::replace(&mut self.started, true) { " " } else { "" };
+        write!(self.out, "{separator}{value}")
+    }
+
+    fn end(&mut self) -> io::Result<()> {
+        self.started = false;
+        if self.ascii { writeln!(self.out) } else { Ok(()) }
+    }
+}

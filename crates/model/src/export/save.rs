@@ -1,0 +1,56 @@
+use std::path::Path;
+
+use walpha_base::Monitor;
+use walpha_base::advice::Advice;
+
+#[cfg(doc)]
+use super::Exporter;
+use super::{EmptyShape, ExportOptions, Format, Target, TargetError};
+use walpha_shape::AlphaShape;
+use walpha_volume::UnknownFormat;
+
+/// Shapes that save themselves.
+pub trait Save {
+    /// Writes a file in the format of its extension, one of [`FORMATS`](super::FORMATS), with the default
+    /// [`ExportOptions`]. The file appears under its name when it is complete, and replaces one that is there.
+    ///
+    /// # Errors
+    /// The extension is unknown, the file cannot be written, or it would hold nothing of the shape. An [`Exporter`]
+    /// writes such a file, too.
+    fn save(&self, path: impl AsRef<Path>) -> Result<(), SaveError>;
+}
+
+impl Save for AlphaShape {
+    fn save(&self, path: impl AsRef<Path>) -> Result<(), SaveError> {
+        let path = path.as_ref();
+        let exporter = Format::of(path)?.exporter(&ExportOptions::default());
+        EmptyShape::check(self, exporter.needs(), &Monitor::noop())?;
+        Ok(Target::open(path)?.write(|out| exporter.write(self, out))?)
+    }
+}
+
+/// Why a shape is not saved.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum SaveError {
+    /// No format has the extension.
+    #[error(transparent)]
+    Format(#[from] UnknownFormat),
+    /// The file would hold nothing of the shape.
+    #[error(transparent)]
+    Empty(#[from] EmptyShape),
+    /// The file cannot be written.
+    #[error(transparent)]
+    Target(#[from] TargetError),
+}
+
+impl SaveError {
+    /// How to resolve the error.
+    pub fn advice(&self) -> Advice {
+        match self {
+            Self::Format(error) => error.advice(),
+            Self::Empty(error) => error.advice(),
+            Self::Target(error) => error.advice(),
+        }
+    }
+}

@@ -1,0 +1,94 @@
+use std::io::{self, Write};
+
+use walpha_base::advice::{Advice, Setting, advice};
+use walpha_base::shown::number;
+
+use super::{ExportOptions, Exporter, Needs};
+use walpha_shape::{AlphaShape, SinglePrecision};
+use walpha_volume::annotation;
+
+/// Binary STL: the regular facets, counter-clockwise seen from outside, with their normals.
+/// Coordinates are rounded to `f32`; where that would move them by more than a thousandth of the shortest edge, a round number
+/// is subtracted first ([`SinglePrecision`]), which the header states: `OFFSET=434000,5412000,0`. Singular facets, edges and vertices do not bound a solid and are
+/// left out.
+#[derive(Clone, Debug, Default)]
+pub struct Stl(pub ExportOptions);
+
+impl Exporter for Stl {
+    fn encode(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
+        let surface = self.0.surface(shape);
+        let positions: Vec<_> = surface.positions(shape.points().positions()).collect();
+        let single = SinglePrecision::of_surface(&surface, shape.points().positions());
+        out.write_all(&head(shape, &single)?)?;
+        let count = u32::try_from(surface.regular.len())
+            .map_err(|_| io::Error::other("more facets than STL can count"))?;
+        out.write_all(&count.to_le_bytes())?;
+        for facet in &surface.regular {
+            let corners = facet.map(|v| positions[v as usize]);
+            let [a, b, c] = corners.map(|corner| single.round(corner));
+            for component in [normal(corners).map(|x| x as f32), a, b, c].as_flattened() {
+                out.write_all(&component.to_le_bytes())?;
+            }
+            out.write_all(&[0; 2])?;
+        }
+        Ok(())
+    }
+
+    fn needs(&self) -> Needs {
+        Needs::RegularFacet
+    }
+
+    fn single_precision(&self, shape: &AlphaShape) -> Option<SinglePrecision> {
+        Some(self.0.single_precision(shape))
+    }
+
+    fn remark(&self, shape: &AlphaShape) -> Option<Advice> {
+        let defects = self.0.surface(shape).manifold_defects();
+        (!defects.is_empty()).then(|| {
+            let what = format!(
+                "the boundary is not manifold: {} edges lie on more than two facets, and parts touch \
+                 at {} other vertices; programs that want a solid may refuse it: ",
+                defects.edges, defects.vertices
+            );
+            advice![what, Setting::Solid, " cuts it apart there"]
+        })
+    }
+}
+
+/// The header: 80 bytes.
+///
+/// # Errors
+/// Numbers of an offset that have no room in it.
+fn head(shape: &AlphaShape, single: &SinglePrecision) -> io::Result<[u8; 80]> {
+    let stated = annotation::comment(shape.coordinates());
+    // It must not begin with "solid", as some readers would take the file for text.
+    let about = if single.has_offset() {
+        let [x, y, z] = single.offset.map(number);
+        format!("walpha OFFSET={x},{y},{z}{stated}")
+    } else {
+        let of =
+            if shape.voxels().is_some() { "solid of labels" } else { "boundary of an alpha shape" };
+        format!("walpha, {of}{stated}")
+    };
+    let mut head = [b' '; 80];
+    let room = head.get_mut(..about.len());
+    let room = room.ok_or_else(|| {
+        io::Error::other(
+            "the offset of its coordinates has more digits than the header of an STL has room for",
+        )
+    })?;
+    room.copy_from_slice(about.as_bytes());
+    Ok(head)
+}
+
+/// The unit normal of a triangle; 0 if it has no area.
+fn normal([a, b, c]: [[f64; 3]; 3]) -> [f64; 3] {
+    let from_a = |p: [f64; 3]| [0, 1, 2].map(|i| p[i] - a[i]);
+    let (u, v) = (from_a(b), from_a(c));
+    let cross = [0, 1, 2].map(|i| {
+        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+        u[j] * v[k] - u[k] * v[j]
+    });
+    let length = cross.iter().map(|n| n * n).sum::<f64>().sqrt();
+    if length > 0.0 { cross.map(|n| n / length) } else { [0.0; 3] }
+}

@@ -1,0 +1,81 @@
+use walpha_base::Monitor;
+
+use super::InterpolateError;
+use walpha_points::{Units, WeightedPoints};
+use walpha_shape::{Alpha, AlphaShape, ShapeOptions, alpha_shape_monitored};
+use walpha_volume::Volume;
+
+/// The whole regular triangulation of a shape's points (α = ∞) and, given their volume, of its
+/// corner samples too, so that it covers every sample of the grid.
+///
+/// Corners that are not points yet come with their gray level and the least weight there is among
+/// the points. Being corners they are never hidden, and being light they hide little. Weights
+/// decide which points the triangulation has: a point hidden by heavier neighbours is not a vertex,
+/// and its value is not used. With [`Balls::Radius`](walpha_shape::Balls::Radius) the weights are (α + ω)²
+/// for the α of the shape.
+///
+/// # Errors
+/// Points without values, and what [`alpha_shape`](walpha_shape::alpha_shape) refuses.
+pub fn fill(
+    shape: &AlphaShape,
+    volume: Option<&Volume>,
+    units: Units,
+) -> Result<AlphaShape, InterpolateError> {
+    fill_monitored(shape, volume, units, &Monitor::noop())
+}
+
+/// [`fill()`] with progress and cancelling through `monitor`.
+///
+/// # Errors
+/// Those of [`fill`], and [`InterpolateError::Cancelled`].
+#[expect(clippy::missing_panics_doc, reason = "an invariant, never met")]
+pub fn fill_monitored(
+    shape: &AlphaShape,
+    volume: Option<&Volume>,
+    units: Units,
+    monitor: &Monitor,
+) -> Result<AlphaShape, InterpolateError> {
+    let (mut positions, _, mut values) = shape.points().clone().into_parts();
+    let mut weights = shape.power_weights().to_vec();
+    if let Some(volume) = volume {
+        let values = values.as_mut().ok_or(InterpolateError::NoValues)?;
+        let missing = missing_corners(volume, units, &positions);
+        let lightest = weights.iter().copied().reduce(f64::min).unwrap_or(0.0);
+        weights.resize(weights.len() + missing.len(), lightest);
+        for (position, value) in missing {
+            positions.push(position);
+            values.push(value);
+        }
+    }
+    let points = WeightedPoints::new(positions, weights)
+        .and_then(|points| points.with_values(values))
+        .expect("columns that grow together");
+    let ShapeOptions { engine, classifier, .. } = *shape.options();
+    let options =
+        ShapeOptions::new(Alpha::INFINITE).engine(engine).classifier(classifier).hidden(true);
+    Ok(alpha_shape_monitored(points, &options, monitor)?)
+}
+
+/// The corner samples of a volume that are not among these positions, and their values.
+fn missing_corners(volume: &Volume, units: Units, positions: &[[f64; 3]]) -> Vec<([f64; 3], f64)> {
+    let value = |voxel: u32| f64::from(volume.as_slice()[voxel as usize]);
+    let corners = corners(volume).into_iter();
+    let corners = corners.map(|voxel| (units.position(volume, voxel), value(voxel)));
+    corners.filter(|(corner, _)| !positions.contains(corner)).collect()
+}
+
+/// The corner samples of a volume, ascending: 8, or fewer where an axis has one sample.
+pub(super) fn corners(volume: &Volume) -> Vec<u32> {
+    let [nx, ny, nz] = volume.dims().xyz();
+    let mut corners = Vec::with_capacity(8);
+    for z in [0, nz - 1] {
+        for y in [0, ny - 1] {
+            for x in [0, nx - 1] {
+                corners.push((x + nx * (y + ny * z)) as u32);
+            }
+        }
+    }
+    corners.sort_unstable();
+    corners.dedup();
+    corners
+}

@@ -1,0 +1,67 @@
+//! The function F on a shape, what it misses of the volume, and points that miss less.
+//!
+//! F is linear on each simplex of the shape: on interior cells, and on the facets, edges and
+//! vertices that are faces of no other simplex, at positions exactly on them. Which simplex holds a
+//! position is decided exactly, so F is defined everywhere on the shape and nowhere else, and each sample of a
+//! grid belongs to one simplex, whatever the number of threads.
+//!
+//! `barycentric.rs` computes coordinates in plain doubles where a lattice makes these exact, otherwise behind an error
+//! bound with big integers to fall back on. `raster.rs` fills grids in parallel over the simplices: each sample keeps the
+//! least number written to it. `adaptive.rs` chooses points by the error they leave, over `sampled.rs`, which keeps F at all
+//! samples while points come and leave; `trial.rs` says what one point more or less would change, and `exchange.rs` exchanges
+//! the cheapest points for the best samples. `refit.rs` fits values by least squares.
+//!
+//! ```
+//! use walpha_model::interpolate::{Deviation, Grid, Interpolant, fill};
+//! use walpha_points::{Selection, Units, Weighting, difference, select, weigh};
+//! use walpha_shape::{Alpha, ShapeOptions, alpha_shape};
+//! use walpha_volume as volume;
+//!
+//! let volume = volume::sample("sample:phantom@24")?;
+//! let points = select(&volume, &volume, &difference(&volume), &Selection::default(), Units::Voxel)?;
+//! let weighted = weigh(points, Weighting::Common(0.0), Alpha::from_squared(10.0)?)?;
+//! let shape = alpha_shape(weighted, &ShapeOptions::new(Alpha::from_squared(10.0)?))?;
+//!
+//! let interpolant = Interpolant::new(&shape)?;
+//! let points = shape.points();
+//! // At a point F is the point's value, bit for bit; outside the shape it has none.
+//! let value = interpolant.value_at(points.positions()[0]);
+//! assert_eq!(value, points.values().map(|values| values[0]));
+//! assert_eq!(interpolant.value_at([-5.0, 0.0, 0.0]), None);
+//!
+//! let grid = Grid::of(&volume, Units::Voxel);
+//! let inside = Deviation::of(&volume, &interpolant.resample(&grid)?);
+//! let whole = fill(&shape, Some(&volume), Units::Voxel)?;
+//! let filled = Deviation::of(&volume, &Interpolant::new(&whole)?.resample(&grid)?);
+//! assert!(inside.covered_share() < 1.0 && filled.covered_share() == 1.0);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod adaptive;
+mod barycentric;
+#[cfg(feature = "render")]
+mod chart;
+mod curve;
+mod error;
+mod exchange;
+mod fill;
+mod grid;
+mod interpolant;
+mod least_squares;
+mod raster;
+mod refit;
+mod resample;
+mod sampled;
+
+pub use adaptive::{Adaptive, adaptive_voxels, adaptive_voxels_monitored};
+#[cfg(feature = "render")]
+pub use chart::error_figure;
+pub use curve::{CurveOptions, CurvePoint, Method, error_curve, write_curve_csv};
+pub use error::InterpolateError;
+pub use exchange::{exchange, exchange_monitored};
+pub use fill::{fill, fill_monitored};
+pub use grid::Grid;
+pub use interpolant::{Interpolant, Location};
+pub use refit::{Fit, Refit, Refitted, refit, refit_monitored};
+pub use resample::Deviation;
+pub use resample::Resampled;

@@ -1,0 +1,30 @@
+//! From a volume or points to an alpha shape, by one [`Recipe`]; and what is made of a shape: files, an interpolant, or the
+//! whole in blocks.
+//!
+//! ```
+//! use walpha_model::Recipe;
+//! use walpha_points::Weighting;
+//! use walpha_shape::{Alpha, Class};
+//!
+//! let recipe = Recipe::new().weighting(Weighting::MinMax).alpha(Alpha::from_squared(10.0)?);
+//! let model = recipe.run(walpha_volume::sample("sample:phantom@32")?)?;
+//! assert!(model.shape.complex().facets.counts()[Class::Regular] > 0);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+#![cfg_attr(docsrs, feature(doc_cfg))]
+// The macro of ndarray for slices allows it within itself, so it cannot be forbidden.
+#![deny(unsafe_code)]
+#![warn(unreachable_pub)]
+
+pub mod export;
+pub mod interpolate;
+pub mod labels;
+pub mod outofcore;
+pub mod pipeline;
+pub mod progress;
+
+pub use export::Save;
+pub use interpolate::Interpolant;
+pub use labels::LabelChoice;
+pub use pipeline::Recipe;

@@ -1,0 +1,172 @@
+//! How the files of an input look without reading them.
+
+use std::fs::{self, Metadata};
+use std::path::Path;
+use std::time::UNIX_EPOCH;
+
+use serde::{Deserialize, Serialize};
+
+use super::BlocksError;
+use crate::Recipe;
+use crate::pipeline::{Choice, Parameter};
+use walpha_points::{Selection, Units, Weighting};
+use walpha_shape::{Alpha, Engine};
+use walpha_volume::{Dims, Frame, GrayRange, Source, any_size, files_of};
+
+/// An input, and the recipe for its shape. Plans hold it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct Job {
+    /// A sample or a file.
+    pub input: String,
+    /// The options of all stages.
+    pub recipe: Recipe,
+    /// Samples along x, y and z.
+    #[serde(deserialize_with = "any_size")]
+    pub dims: Dims,
+    /// Where the grid lies, in the space that its points are in.
+    pub frame: Frame,
+    /// What coordinates are measured in.
+    pub units: Units,
+}
+
+impl Job {
+    /// The recipe for the volume behind an input, which is opened.
+    ///
+    /// # Errors
+    /// The input cannot be read in parts; what is not local ([`Job::check`]).
+    pub fn new(input: &str, recipe: Recipe) -> Result<Self, BlocksError> {
+        let source = Source::open(input, &recipe.read)?;
+        Self::of_source(input, recipe, &source)
+    }
+
+    /// The same for a volume that is open.
+    ///
+    /// # Errors
+    /// What is not local ([`Job::check`]).
+    pub fn of_source(input: &str, recipe: Recipe, source: &Source) -> Result<Self, BlocksError> {
+        let (frame, units) = recipe.place(*source.frame())?;
+        let job = Self { input: input.to_owned(), recipe, dims: source.dims(), frame, units };
+        job.check()?;
+        Ok(job)
+    }
+
+    /// Whether it can be done in blocks.
+    ///
+    /// # Errors
+    /// [`BlocksError::NotLocal`].
+    pub fn check(&self) -> Result<(), BlocksError> {
+        let not_local = |what: &str, next: &'static str| Err(BlocksError::not_local(what, next));
+        let Recipe { choice, refit, exterior, hidden, periodic, engine, .. } = &self.recipe;
+        match self.rule()? {
+            None => return not_local("--alpha auto", "give α as a number"),
+            Some(Parameter { alpha, .. }) if alpha == Alpha::INFINITE => {
+                return not_local("α = inf, the convex hull,", "give a finite α");
+            }
+            Some(_) => {}
+        }
+        if !matches!(choice, Choice::Difference(_)) {
+            return not_local("--select adaptive, which looks at all points at once,", "omit it");
+        }
+        if *exterior || *hidden {
+            return not_local("the whole triangulation", "omit --exterior and --hidden");
+        }
+        if refit.is_some() {
+            return not_local("--refit", "omit it");
+        }
+        if periodic.is_some() {
+            return not_local("--periodic", "omit it");
+        }
+        if *engine == Engine::Cgal {
+            return not_local("the engine cgal", "use the engine native");
+        }
+        if self.recipe.weighting == Some(Weighting::Column) {
+            return Err(walpha_points::PointsError::NoColumn.into());
+        }
+        if self.units == Units::World && inverse(self.frame.axes()).is_none() {
+            return not_local("a grid whose axes lie in one plane", "correct its directions");
+        }
+        Ok(())
+    }
+
+    /// α; `None` where it is to be found, which takes all points at once.
+    fn rule(&self) -> Result<Option<Parameter>, BlocksError> {
+        Ok(self.recipe.alpha.of_frame(&self.frame, self.units)?)
+    }
+
+    /// α as a parameter.
+    ///
+    /// # Panics
+    /// It is not known: [`Job::check`] refuses that.
+    pub fn parameter(&self) -> Parameter {
+        self.rule().ok().flatten().expect("a job that was checked has an α")
+    }
+
+    /// α.
+    pub(super) fn alpha(&self) -> Alpha {
+        self.parameter().alpha
+    }
+
+    /// Where weights come from.
+    pub fn weighting(&self) -> Weighting {
+        self.recipe.weighting.unwrap_or(Weighting::Common(0.0))
+    }
+
+    /// Which samples become points, where `range` became gray 0 and 255.
+    ///
+    /// # Panics
+    /// They are chosen adaptively: [`Job::check`] refuses that.
+    pub(super) fn selection(&self, range: &GrayRange) -> Selection {
+        self.recipe.selection(range).expect("a job that was checked selects by differences")
+    }
+
+    /// How many samples along x, y and z balls of this radius reach.
+    pub(super) fn reach(&self, radius: f64) -> [usize; 3] {
+        let samples = |step: f64| (radius * step).ceil().max(0.0) as usize;
+        match self.units {
+            Units::Voxel => [samples(1.0); 3],
+            Units::World => {
+                let inverse = inverse(self.frame.axes()).unwrap_or([[f64::INFINITY; 3]; 3]);
+                inverse.map(|row| samples(row.iter().map(|v| v * v).sum::<f64>().sqrt()))
+            }
+        }
+    }
+}
+
+/// The rows of the inverse of the matrix of these columns, if there is one.
+fn inverse([a, b, c]: [[f64; 3]; 3]) -> Option<[[f64; 3]; 3]> {
+    use walpha_base::vector::{cross, dot};
+    let volume = dot(a, cross(b, c));
+    let rows = [cross(b, c), cross(c, a), cross(a, b)].map(|row| row.map(|v| v / volume));
+    rows.as_flattened().iter().all(|v| v.is_finite()).then_some(rows)
+}
+
+/// How many files an input has, how large they are, and when one was written last. A hint: a file may be touched
+/// and stay what it was. What was read of it is known by its digests ([`ReadDigests`](super::brick_digests::ReadDigests)).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) struct Stamp {
+    files: u64,
+    bytes: u64,
+    /// Nanoseconds since 1970.
+    newest: u64,
+}
+
+impl Stamp {
+    /// The stamp of the input of a job as it is now; empty for a sample. Looks at each file of a folder.
+    pub(super) fn of(job: &Job) -> Self {
+        let mut stamp = Self::default();
+        if !job.input.starts_with("sample:") {
+            let files = files_of(Path::new(&job.input)).into_iter();
+            // Whoever reads says what is wrong with one that is not there.
+            files.filter_map(|path| fs::metadata(path).ok()).for_each(|file| stamp.add(&file));
+        }
+        stamp
+    }
+
+    fn add(&mut self, file: &Metadata) {
+        self.files += 1;
+        self.bytes = self.bytes.wrapping_add(file.len());
+        let written = file.modified().ok().and_then(|at| at.duration_since(UNIX_EPOCH).ok());
+        self.newest = self.newest.max(written.map_or(0, |at| at.as_nanos() as u64));
+    }
+}

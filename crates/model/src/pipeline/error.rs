@@ -1,0 +1,96 @@
+use walpha_base::Cancelled;
+use walpha_base::advice::{Advice, Setting, advice};
+use walpha_base::monitor::wraps;
+
+use crate::interpolate::InterpolateError;
+use crate::labels::LabelsError;
+use walpha_points::PointsError;
+use walpha_points::haar::HaarError;
+use walpha_shape::{AlphaError, ShapeError};
+
+/// Why a pipeline fails: an error of one of its stages, or contradicting options.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum PipelineError {
+    /// An error of the wavelet stage.
+    #[error(transparent)]
+    Haar(HaarError),
+    /// An error in reading or selecting points, or in their weights.
+    #[error(transparent)]
+    Points(#[from] PointsError),
+    /// An error in adaptive selection or fitting.
+    #[error(transparent)]
+    Interpolate(InterpolateError),
+    /// An error in making the solid of labels.
+    #[error(transparent)]
+    Labels(LabelsError),
+    /// Labels, where points are to be selected by gray levels.
+    #[error(
+        "the volume holds labels, and their solid comes from voxels, without α, differences or weights"
+    )]
+    OfLabels,
+    /// An error in computing the shape.
+    #[error(transparent)]
+    Shape(ShapeError),
+    /// A voxel so large that 10 h² is not finite.
+    #[error(transparent)]
+    Alpha(#[from] AlphaError),
+    /// The work was cancelled.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+    /// With [`Balls::Radius`](walpha_shape::Balls) α is a radius, but the α that was found is a squared radius.
+    #[error(
+        "with balls of radius α + ω, α is a radius, but the α that was found is a squared radius"
+    )]
+    Radii {
+        /// The radius of the α that was found.
+        radius: f64,
+    },
+    /// A space was given for coordinates in voxels.
+    #[error("a space is for world coordinates, and these are voxels")]
+    SpaceOfVoxels,
+    /// A space was given for a volume that does not state its orientation.
+    #[error(
+        "the input does not state the orientation of its axes in a patient, so no space can be chosen"
+    )]
+    UnknownSpace,
+    /// Weights from differences to neighbours, for scattered points on a torus.
+    #[error(
+        "these weights come from differences to neighbours, and neighbours across the sides of a periodic box are not considered"
+    )]
+    PeriodicWeights,
+}
+
+wraps! {
+    PipelineError: Haar(HaarError),
+    Interpolate(InterpolateError),
+    Labels(LabelsError),
+    Shape(ShapeError)
+}
+
+impl PipelineError {
+    /// What to do about it, if anything.
+    pub fn advice(&self) -> Option<Advice> {
+        match self {
+            Self::Haar(error) => error.advice(),
+            Self::Points(error) => error.advice(),
+            Self::Interpolate(error) => error.advice(),
+            Self::Labels(error) => error.advice(),
+            Self::OfLabels => Some(advice![
+                "take their solid by `walpha shape`, or say what to look for in gray levels, as in ",
+                Setting::Threshold,
+                " 30"
+            ]),
+            Self::Shape(error) => error.advice(),
+            Self::Alpha(error) => Some(error.advice().into()),
+            Self::Cancelled(_) => None,
+            Self::SpaceOfVoxels | Self::UnknownSpace => Some(advice!["omit ", Setting::Space]),
+            Self::PeriodicWeights => {
+                Some(advice!["give weights as a column of the input, or omit ", Setting::Periodic])
+            }
+            Self::Radii { radius } => {
+                Some(advice!["give a number, as in ", Setting::Alpha, format!(" {radius}")])
+            }
+        }
+    }
+}

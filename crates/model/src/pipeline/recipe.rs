@@ -1,0 +1,389 @@
+use std::num::NonZeroUsize;
+
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use walpha_base::advice::Setting;
+use walpha_base::setters;
+
+use super::{AlphaRule, Choice, Parameter, PipelineError};
+use crate::interpolate::Refit;
+use crate::labels::LabelChoice;
+use walpha_points::haar::{HaarOptions, Tolerance};
+use walpha_points::internal::LEAST_GRAY;
+use walpha_points::{
+    Columns, PointOptions, Points, PointsError, Selection, SelectionRule, Units, Weighting,
+};
+use walpha_shape::{Alpha, Balls, Classifier, Engine, ShapeError, ShapeOptions, Torus};
+use walpha_volume::{Coordinates, Frame, Gray, GrayRange, LengthUnit, ReadOptions, Space};
+
+/// The numbers of the paper's experiment.
+pub mod paper {
+    /// Points selected.
+    pub const POINTS: usize = 15956;
+    /// Samples of its volume: 64³.
+    pub const SAMPLES: usize = 262_144;
+}
+
+/// The options of all stages, from an input to its shape. The defaults are those of the paper, without weights.
+///
+/// Recipes can be serialised. The command builds one from its arguments, and a plan of blocks stores one.
+///
+/// ```
+/// use walpha_model::Recipe;
+/// use walpha_points::Weighting;
+/// use walpha_shape::Alpha;
+///
+/// let recipe = Recipe::new().weighting(Weighting::MinMax).alpha(Alpha::from_squared(10.0)?);
+/// let text = serde_json::to_string(&recipe)?;
+/// assert_eq!(serde_json::from_str::<Recipe>(&text)?, recipe);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+#[must_use]
+#[non_exhaustive]
+#[expect(clippy::struct_excessive_bools, reason = "each is an option of its own")]
+pub struct Recipe {
+    /// How a volume is read.
+    pub read: ReadOptions,
+    /// The columns of a table of points; `None` takes them from its header or guesses them from its numbers.
+    pub columns: Option<Columns>,
+    /// The classes of points to read from LAS and LAZ ([`PointOptions::classes`]).
+    pub classes: Option<Vec<u8>>,
+    /// Whether points of LAS and LAZ that are withheld are read ([`PointOptions::withheld`]).
+    pub withheld: bool,
+    /// Keeps the first point in each cube of this side ([`PointOptions::thin`]).
+    pub thin: Option<f64>,
+    /// The labels whose [solid](Recipe::solid) the shape is; `None` selects points by gray levels. With labels nothing else of
+    /// the recipe has an effect, except how a volume is read, its units and its space.
+    pub labels: Option<LabelChoice>,
+    /// The values that become gray 0 and 255; `None` leaves unsigned bytes unchanged, and otherwise takes the
+    /// smallest and largest value.
+    pub gray: Option<GrayRange>,
+    /// Whether points get gray levels rather than the values of the input.
+    pub gray_out: bool,
+    /// Units of the coordinates; `None` is [`Units::World`] if the input states a unit of length, a spacing or an
+    /// origin, and otherwise [`Units::Voxel`].
+    pub units: Option<Units>,
+    /// Directions of the world axes, if the input states the patient's orientation; `None` is [`Space::Lps`].
+    pub space: Option<Space>,
+    /// How the volume is transformed and truncated.
+    pub haar: HaarOptions,
+    /// Which samples become points.
+    pub choice: Choice,
+    /// Leaves out samples below this value of the input; an alternative to [`Selection::gray_min`].
+    pub value_min: Option<f64>,
+    /// Fits the values of points to the volume by least squares; `None` keeps the values of its samples.
+    pub refit: Option<Refit>,
+    /// Where weights come from; `None` is the column of the input, or 0 if there is none.
+    pub weighting: Option<Weighting>,
+    /// α, or how to find it.
+    pub alpha: AlphaRule,
+    /// How α and ω define the balls.
+    pub balls: Balls,
+    /// Which engine computes the shape.
+    pub engine: Engine,
+    /// Whether the simplices outside the shape are listed too ([`ShapeOptions::exterior`]).
+    pub exterior: bool,
+    /// Whether hidden points are listed ([`ShapeOptions::hidden`]).
+    pub hidden: bool,
+    /// The number of blocks that the points are cut into ([`ShapeOptions::blocks`]).
+    pub blocks: Option<NonZeroUsize>,
+    /// A bound on memory in bytes ([`ShapeOptions::memory`]).
+    pub memory: Option<u64>,
+    /// Whether points that span no volume are an error ([`ShapeOptions::refuse_flat`]).
+    pub refuse_flat: bool,
+    /// The periodic box, if there is one; serialised as its sides.
+    #[serde(with = "sides")]
+    pub periodic: Option<Torus>,
+    /// The engine of another crate ([`ShapeOptions::classifier`]): in the crate `walpha`, CGAL. It is not stored with the
+    /// other options.
+    #[serde(skip)]
+    pub classifier: Option<Classifier>,
+}
+
+impl Recipe {
+    /// The defaults.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// The paper's experiment on any volume: its share of the samples, lengths in voxels, weights by its equation 4.1, and
+    /// α = 10, which is the default for voxels. The command calls this `--preset paper`, and `reproduce` starts from it.
+    pub fn paper() -> Self {
+        let share = SelectionRule::Ratio(paper::POINTS as f64 / paper::SAMPLES as f64);
+        Self::new()
+            .choice(Choice::Difference(Selection::default().rule(share)))
+            .units(Units::Voxel)
+            .weighting(Weighting::MinMax)
+    }
+
+    setters! {
+        read: ReadOptions,
+        columns: Option<Columns>,
+        classes: Option<Vec<u8>>,
+        withheld: bool,
+        thin: Option<f64>,
+        labels: Option<LabelChoice>,
+        gray_out: bool,
+        haar: HaarOptions,
+        choice: Choice,
+        value_min: Option<f64>,
+        balls: Balls,
+        engine: Engine,
+        exterior: bool,
+        hidden: bool,
+        blocks: Option<NonZeroUsize>,
+        memory: Option<u64>,
+        refuse_flat: bool,
+        periodic: Option<Torus>,
+        classifier: Option<Classifier>,
+    }
+
+    /// The options that differ from the default, as a JSON object from which the recipe can be deserialised. A
+    /// `.wvm` stores this.
+    ///
+    /// # Panics
+    /// Never: all options can be serialised.
+    pub fn to_json(&self) -> String {
+        let object = |recipe: &Self| match serde_json::to_value(recipe) {
+            Ok(Value::Object(object)) => object,
+            other => unreachable!("options have names: {other:?}"),
+        };
+        let (mut options, default) = (object(self), object(&Self::default()));
+        options.retain(|name, value| default.get(name) != Some(value));
+        let mut options = Value::Object(options);
+        drop_nulls(&mut options);
+        options.to_string()
+    }
+
+    /// Sets `gray`: a range, or `None`.
+    pub fn gray(self, gray: impl Into<Option<GrayRange>>) -> Self {
+        Self { gray: gray.into(), ..self }
+    }
+
+    /// Sets `units`; `None` leaves them to the input.
+    pub fn units(self, units: impl Into<Option<Units>>) -> Self {
+        Self { units: units.into(), ..self }
+    }
+
+    /// Sets `space`; `None` is LPS.
+    pub fn space(self, space: impl Into<Option<Space>>) -> Self {
+        Self { space: space.into(), ..self }
+    }
+
+    /// Sets `refit`; `None` keeps the values of the samples.
+    pub fn refit(self, to: impl Into<Option<Refit>>) -> Self {
+        Self { refit: to.into(), ..self }
+    }
+
+    /// Sets `weighting`; `None` leaves weights to the input.
+    pub fn weighting(self, weighting: impl Into<Option<Weighting>>) -> Self {
+        Self { weighting: weighting.into(), ..self }
+    }
+
+    /// Sets `alpha`: a number, or a rule.
+    pub fn alpha(self, alpha: impl Into<AlphaRule>) -> Self {
+        Self { alpha: alpha.into(), ..self }
+    }
+
+    /// How points are read.
+    #[doc(hidden)]
+    pub fn of_points(&self) -> PointOptions {
+        PointOptions::default()
+            .columns(self.columns.clone())
+            .level(self.read.level)
+            .format(self.read.format.clone())
+            .frame(self.read.frame)
+            .classes(self.classes.clone())
+            .withheld(self.withheld)
+            .weights(self.weighting == Some(Weighting::Column))
+            .thin(self.thin)
+    }
+
+    /// How values become gray levels.
+    pub(crate) fn gray_levels(&self) -> Gray {
+        self.gray.map_or(Gray::Automatic, Gray::Range)
+    }
+
+    /// The values that gray levels stand for in what is written, where `range` became 0..255.
+    pub(crate) fn written(&self, range: GrayRange) -> GrayRange {
+        if self.gray_out { GrayRange::IDENTITY } else { range }
+    }
+
+    /// The grid in the coordinates that its points will have, and their units.
+    ///
+    /// # Errors
+    /// [`PipelineError::SpaceOfVoxels`] and [`PipelineError::UnknownSpace`].
+    pub fn place(&self, frame: Frame) -> Result<(Frame, Units), PipelineError> {
+        let Coordinates { space, unit } = frame.coordinates;
+        let stated = if unit == LengthUnit::Voxel { Units::Voxel } else { Units::World };
+        let units = self.units.unwrap_or(stated);
+        if self.space.is_some() && units == Units::Voxel {
+            return Err(PipelineError::SpaceOfVoxels);
+        }
+        if self.space.is_some() && !space.is_known() {
+            return Err(PipelineError::UnknownSpace);
+        }
+        let space = self.space.unwrap_or(Space::Lps);
+        Ok((frame.to(Coordinates { space, unit }), units))
+    }
+
+    /// The selection by differences in a volume whose values `range` are gray 0..255; `None` if points are chosen
+    /// adaptively.
+    #[doc(hidden)]
+    pub fn selection(&self, range: &GrayRange) -> Option<Selection> {
+        match self.choice.at_least(self.value_min.map(|value| range.gray(value))) {
+            Choice::Difference(selection) => Some(selection),
+            Choice::Adaptive(_) | Choice::Exchanged(_) => None,
+        }
+    }
+
+    /// An error of selection in the terms of this recipe: of settings that stand for one another it names the one
+    /// that was given, in a volume whose values `range` are gray 0..255.
+    #[doc(hidden)]
+    pub fn in_its_terms(&self, error: PointsError, range: &GrayRange) -> PointsError {
+        let gray_min = match self.choice {
+            Choice::Difference(selection) => selection.gray_min,
+            Choice::Adaptive(_) | Choice::Exchanged(_) => None,
+        };
+        let value_min = self.value_min.filter(|_| gray_min.is_none());
+        match (error, value_min) {
+            (PointsError::Masked { highest, .. }, Some(least)) => {
+                PointsError::MaskedValues { least, highest: range.value(highest) }
+            }
+            (PointsError::Threshold { least, largest, mask: Some(_) }, Some(_)) => {
+                PointsError::Threshold { least, largest, mask: Some(Setting::ValueMin) }
+            }
+            (PointsError::Number { what: LEAST_GRAY, need, .. }, Some(given)) => {
+                PointsError::Number { what: "a least value of", given, need }
+            }
+            (PointsError::Flat { available, .. }, _) => {
+                let tolerance = match self.haar.tolerance {
+                    Tolerance::Epsilon(_) => Setting::Epsilon,
+                    Tolerance::Coefficients(_) => Setting::Coefficients,
+                    _ => Setting::Rms,
+                };
+                PointsError::Flat { available, tolerance }
+            }
+            (error, _) => error,
+        }
+    }
+
+    /// Where the weights of these points come from.
+    pub(super) fn weighting_of(&self, points: &Points) -> Weighting {
+        let of_input =
+            if points.weights.is_some() { Weighting::Column } else { Weighting::Common(0.0) };
+        self.weighting.unwrap_or(of_input)
+    }
+
+    /// The options of the shape at α.
+    pub fn shape_at(&self, alpha: Alpha) -> ShapeOptions {
+        ShapeOptions::new(alpha)
+            .balls(self.balls)
+            .engine(self.engine)
+            .exterior(self.exterior)
+            .hidden(self.hidden)
+            .blocks(self.blocks)
+            .memory(self.memory)
+            .refuse_flat(self.refuse_flat)
+            .periodic(self.periodic)
+            .classifier(self.classifier)
+    }
+
+    /// Checks in advance that the options of the shape are compatible, as far as α is known.
+    ///
+    /// # Errors
+    /// Those of [`ShapeOptions::check`].
+    pub fn check(&self) -> Result<(), ShapeError> {
+        let alpha = match self.alpha {
+            AlphaRule::Given(alpha) => alpha,
+            // An α that is found is finite.
+            AlphaRule::Auto | AlphaRule::Connected | AlphaRule::Default => Alpha::ZERO,
+        };
+        self.shape_at(alpha).check()
+    }
+
+    /// The options of the shape at an α that was given or found.
+    pub(super) fn shape_of(&self, parameter: Parameter) -> Result<ShapeOptions, PipelineError> {
+        if self.balls == Balls::Radius && parameter.is_found() {
+            return Err(PipelineError::Radii { radius: parameter.alpha.squared().abs().sqrt() });
+        }
+        Ok(self.shape_at(parameter.alpha))
+    }
+}
+
+/// Drops null fields: they are options that are absent by default.
+fn drop_nulls(value: &mut Value) {
+    if let Value::Object(fields) = value {
+        fields.retain(|_, value| !value.is_null());
+        fields.values_mut().for_each(drop_nulls);
+    }
+}
+
+/// A periodic box as its sides.
+mod sides {
+    use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
+
+    use walpha_shape::Torus;
+
+    #[expect(clippy::ref_option, reason = "serde hands over the field")]
+    pub(super) fn serialize<S: Serializer>(
+        torus: &Option<Torus>,
+        serializer: S,
+    ) -> Result<S::Ok, S::Error> {
+        torus.map(|torus| torus.sides()).serialize(serializer)
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(
+        deserializer: D,
+    ) -> Result<Option<Torus>, D::Error> {
+        let sides = Option::<[f64; 3]>::deserialize(deserializer)?;
+        sides.map(|sides| Torus::new(sides).map_err(D::Error::custom)).transpose()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pipeline::Goal;
+    use walpha_points::SelectionRule;
+
+    /// Including an infinite α, which JSON has no number for, and one that is to be found.
+    #[test]
+    fn recipes_survive_json() {
+        let base = Recipe::new()
+            .columns(Some("x,y,other,z,value".parse().unwrap()))
+            .gray(GrayRange { low: -1000.0, high: 0.1 })
+            .units(Units::World)
+            .space(Space::Ras)
+            .value_min(Some(-0.3))
+            .refit(Refit::Shape)
+            .weighting(Weighting::Common(2.5))
+            .blocks(NonZeroUsize::new(3))
+            .memory(Some(1 << 40))
+            .periodic(Some(Torus::new([1.0, 2.5, 0.7]).unwrap()));
+        let goal = Goal { ratio: Some(0.1), max_error: Some(3.5), ..Goal::default() };
+        let selection = Selection::default().rule(SelectionRule::Threshold(30.0)).gray_min(64.5);
+        let alphas = ["auto", "auto:connected", "inf", "0.1", "-3"];
+        for alpha in
+            alphas.map(|text| text.parse().unwrap()).into_iter().chain([AlphaRule::Default])
+        {
+            for choice in
+                [Choice::Difference(selection), Choice::Adaptive(goal), Choice::Exchanged(goal)]
+            {
+                let recipe = base.clone().alpha(alpha).choice(choice);
+                for text in [serde_json::to_string(&recipe).unwrap(), recipe.to_json()] {
+                    assert_eq!(serde_json::from_str::<Recipe>(&text).unwrap(), recipe, "{text}");
+                }
+            }
+        }
+        assert_eq!(serde_json::from_str::<Recipe>("{}").unwrap(), Recipe::new());
+        assert_eq!(Recipe::new().to_json(), "{}");
+        assert_eq!(Recipe::new().hidden(true).to_json(), r#"{"hidden":true}"#);
+        let wrong = [r#"{"alfa": "1"}"#, r#"{"alpha": "nan"}"#, r#"{"periodic": [1, 0, 1]}"#];
+        for text in wrong {
+            assert!(serde_json::from_str::<Recipe>(text).is_err(), "{text}");
+        }
+    }
+}

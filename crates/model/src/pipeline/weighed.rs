@@ -1,0 +1,184 @@
+use rayon::prelude::*;
+use walpha_base::Monitor;
+
+use super::{AlphaRule, Parameter, PipelineError};
+use crate::interpolate::{Adaptive, Fit};
+use crate::progress::Stage;
+use walpha_points::haar::Truncation;
+use walpha_points::{
+    ModelMetadata, Points, SampleGrid, WeightedPoints, Weighting, scattered_difference, weigh,
+    weights,
+};
+use walpha_shape::{Alpha, Torus};
+use walpha_volume::{Coordinates, GrayRange};
+
+/// Weighted points, and how they were made.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct Weighed {
+    /// The points, with the values that [`Values`](super::Values) asked for.
+    pub points: WeightedPoints,
+    /// Where the points come from.
+    pub origin: Origin,
+    /// α; `None` while it is still to be found ([`Weighed::find_parameter`]) because weights do not need it.
+    pub parameter: Option<Parameter>,
+    /// How α is found where it is still to be found.
+    pub rule: AlphaRule,
+    /// The recipe that made them ([`Recipe::to_json`](super::Recipe::to_json)), or else that of the file they were read from.
+    pub recipe: Option<String>,
+    /// What orders the points, if they were selected from a volume.
+    importance: Option<Importance>,
+}
+
+/// The order of importance of points.
+#[derive(Clone, Debug)]
+pub(super) enum Importance {
+    /// By their differences L.
+    Differences(Vec<f64>),
+    /// In this order, given by their indices.
+    Order(Vec<u32>),
+}
+
+/// Where points come from.
+#[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
+pub struct Origin {
+    /// Axes and unit of the coordinates.
+    pub coordinates: Coordinates,
+    /// Where their weights come from.
+    pub weighting: Weighting,
+    /// The truncation of the volume.
+    pub truncation: Option<Truncation>,
+    /// The grid whose samples the points are, if known.
+    pub grid: Option<SampleGrid>,
+    /// The values that were gray 0 and 255, if a file of points states them.
+    pub range: Option<GrayRange>,
+    /// The goal of adaptive selection, if it was reached with fewer points than allowed.
+    pub ended: Option<Adaptive>,
+    /// Whether their weights are squares of radii.
+    pub of_radii: bool,
+    /// Number of points outside the periodic box, which are moved to their copies inside; `None` without a box.
+    pub folded: Option<usize>,
+    /// How values were fitted to the volume; `None` if they are those of its samples.
+    pub fit: Option<Fit>,
+}
+
+impl Origin {
+    /// That of the corners of voxels, in these coordinates.
+    pub(super) fn of_labels(coordinates: Coordinates) -> Self {
+        Self {
+            coordinates,
+            weighting: Weighting::Common(0.0),
+            truncation: None,
+            grid: None,
+            range: None,
+            ended: None,
+            of_radii: false,
+            folded: None,
+            fit: None,
+        }
+    }
+}
+
+impl Weighed {
+    /// Gives points their weights, and finds α first if the weights are proportional to it.
+    pub(super) fn new(
+        mut points: Points,
+        origin: Origin,
+        rule: AlphaRule,
+        mut parameter: Option<Parameter>,
+        monitor: &Monitor,
+    ) -> Result<Self, PipelineError> {
+        Stage::Points.begin(monitor)?;
+        let Origin { weighting, coordinates, .. } = origin;
+        let scattered = points.differences.is_none() && points.values.is_some();
+        if scattered && weighting.needs_differences() {
+            points.differences = Some(scattered_difference(&points)?);
+        }
+        if parameter.is_none() && weighting.needs_differences() {
+            // Checks the weights before the costly search for α.
+            weights(&points, weighting, Alpha::ZERO)?;
+            Stage::Alpha.begin(monitor)?;
+            parameter = Some(Parameter::find_unweighted(rule, &points, coordinates.unit, monitor)?);
+            Stage::Points.begin(monitor)?;
+        }
+        // Weights that do not depend on α are the same at ∞.
+        let alpha = parameter.map_or(Alpha::INFINITE, |parameter| parameter.alpha);
+        let points = weigh(points, weighting, alpha)?;
+        Ok(Self { points, origin, parameter, rule, recipe: None, importance: None })
+    }
+
+    /// The same points with their order of importance.
+    pub(super) fn ordered(self, importance: Importance) -> Self {
+        Self { importance: Some(importance), ..self }
+    }
+
+    /// The indices of the points, the most important first, if they were selected from a volume. The first k are
+    /// what a count of k would have selected, unless points were exchanged. O(n log n).
+    pub fn order(&self) -> Option<Vec<u32>> {
+        Some(match self.importance.as_ref()? {
+            Importance::Differences(differences) => largest_first(differences),
+            Importance::Order(order) => order.clone(),
+        })
+    }
+
+    /// What a file of these points states besides them, except their order. `written` is the mapping of the volume
+    /// that they were selected from to written values ([`Source::written`](super::Source::written)).
+    pub fn metadata(&self, written: Option<GrayRange>) -> ModelMetadata {
+        let origin = self.origin;
+        ModelMetadata::default()
+            .grid(origin.grid)
+            .coordinates(origin.coordinates)
+            .alpha(self.parameter.map(|parameter| parameter.alpha))
+            .range(written.or(origin.range))
+            .recipe(self.recipe.clone())
+    }
+
+    /// α, found now if weights did not need it.
+    ///
+    /// # Errors
+    /// For [`AlphaRule::Connected`], the errors of a [`Filtration`](walpha_shape::ladder::Filtration).
+    pub fn find_parameter(&mut self, monitor: &Monitor) -> Result<Parameter, PipelineError> {
+        self.find_parameter_on(None, monitor)
+    }
+
+    /// [`find_parameter`](Self::find_parameter), on a torus if there is one.
+    pub(super) fn find_parameter_on(
+        &mut self,
+        torus: Option<Torus>,
+        monitor: &Monitor,
+    ) -> Result<Parameter, PipelineError> {
+        if let Some(parameter) = self.parameter {
+            return Ok(parameter);
+        }
+        Stage::Alpha.begin(monitor)?;
+        let unit = self.origin.coordinates.unit;
+        let found = Parameter::find(self.rule, &self.points, torus, unit, monitor)?;
+        self.parameter = Some(found);
+        Ok(found)
+    }
+
+    /// Marks the points as those of a torus, if there is one, and counts the points outside its box.
+    ///
+    /// # Errors
+    /// [`PipelineError::PeriodicWeights`]: weights of scattered points from differences to neighbours do not take
+    /// the copies across the sides of the box into account.
+    pub fn on_torus(&mut self, torus: Option<Torus>) -> Result<(), PipelineError> {
+        let Some(torus) = torus else { return Ok(()) };
+        let Origin { weighting, truncation, .. } = self.origin;
+        if truncation.is_none() && weighting.needs_differences() {
+            return Err(PipelineError::PeriodicWeights);
+        }
+        let is_outside = |place: &&[f64; 3]| !torus.holds(**place);
+        self.origin.folded = Some(self.points.positions().par_iter().filter(is_outside).count());
+        Ok(())
+    }
+}
+
+/// The indices of numbers, the largest first, ties by the index.
+fn largest_first(numbers: &[f64]) -> Vec<u32> {
+    let mut order: Vec<u32> = (0..numbers.len() as u32).collect();
+    let number = |index: u32| numbers[index as usize];
+    order.par_sort_unstable_by(|&a, &b| number(b).total_cmp(&number(a)).then(a.cmp(&b)));
+    order
+}

@@ -1,0 +1,167 @@
+use std::fmt;
+
+use walpha_base::setters;
+use walpha_complex::Alpha;
+
+use super::Units;
+use walpha_volume::{Coordinates, Dims, Frame, GrayRange};
+
+/// The grid that points are samples of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SampleGrid {
+    /// Number of samples along each axis.
+    pub dims: Dims,
+    /// Position of the samples in the world.
+    pub frame: Frame,
+    /// Units of the coordinates of points.
+    pub units: Units,
+}
+
+/// A unit cell that repeats, as in crystals.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cell {
+    /// Its edge vectors, in the unit of the points.
+    pub vectors: [[f64; 3]; 3],
+    /// Along which of these vectors the points repeat.
+    pub repeats: [bool; 3],
+}
+
+impl Cell {
+    /// Its sides, if it is an axis-aligned box that repeats along all axes: the points then lie on a torus.
+    pub fn sides(&self) -> Option<[f64; 3]> {
+        let [[x, a, b], [c, y, d], [e, f, z]] = self.vectors;
+        let is_box = [a, b, c, d, e, f] == [0.0; 6] && [x, y, z].iter().all(|&side| side > 0.0);
+        (is_box && self.repeats == [true; 3]).then_some([x, y, z])
+    }
+}
+
+impl fmt::Display for Cell {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let list = |numbers: [f64; 3]| numbers.map(|x| x.to_string()).join(",");
+        match self.sides() {
+            Some(sides) => {
+                write!(f, "a box of sides {0}, and `periodic` {0} makes its torus", list(sides))
+            }
+            None if self.repeats == [true; 3] => {
+                let [a, b, c] = self.vectors.map(list);
+                write!(
+                    f,
+                    "the vectors ({a}), ({b}), ({c}), which are no box along the axes: it is not supported"
+                )
+            }
+            None => {
+                f.write_str("points repeat along some of its vectors only: it is not supported")
+            }
+        }
+    }
+}
+
+/// Metadata of weighted points. A `.wvm` stores all of it but the cell, which comes from extended XYZ, and the notes; of
+/// other formats, text may state a unit.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct ModelMetadata {
+    /// The grid whose samples the points are.
+    pub grid: Option<SampleGrid>,
+    /// Axes and unit of the coordinates.
+    pub coordinates: Coordinates,
+    /// The α intended for their shape, which the weights may be proportional to.
+    pub alpha: Option<Alpha>,
+    /// The values that were gray 0 and 255.
+    pub range: Option<GrayRange>,
+    /// The [`Recipe`](crate::Recipe) that made them, as JSON ([`Recipe::to_json`](crate::Recipe::to_json)).
+    pub recipe: Option<String>,
+    /// Indices of all points, the most important first.
+    pub order: Option<Vec<u32>>,
+    /// The unit cell of periodic points.
+    pub cell: Option<Cell>,
+    /// What a file says of some of its points, for people: how many are synthetic, or noise.
+    pub notes: Vec<String>,
+}
+
+/// How a `.wvm` is packed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Packing {
+    /// The largest error of a value, in units of the values; it bounds the error of F everywhere. 0 keeps
+    /// every value bit for bit.
+    pub value_error: f64,
+    /// Number of layers of points, the most important first. A reader may stop after any layer: without the
+    /// last it has a quarter of the points, without the last two a sixteenth. One layer makes the smallest file.
+    pub layers: u8,
+}
+
+impl ModelMetadata {
+    setters! {
+        grid: Option<SampleGrid>,
+        coordinates: Coordinates,
+        alpha: Option<Alpha>,
+        range: Option<GrayRange>,
+        recipe: Option<String>,
+        order: Option<Vec<u32>>,
+        cell: Option<Cell>,
+        notes: Vec<String>,
+    }
+}
+
+impl Default for Packing {
+    fn default() -> Self {
+        Self { value_error: 0.0, layers: 1 }
+    }
+}
+
+impl Packing {
+    /// Maximum number of layers.
+    pub const MOST_LAYERS: u8 = 8;
+
+    setters! { value_error: f64, layers: u8 }
+}
+
+impl SampleGrid {
+    /// The position of the sample with these indices (x, y, z).
+    pub fn position(&self, sample: [u32; 3]) -> [f64; 3] {
+        let index = sample.map(f64::from);
+        match self.units {
+            Units::Voxel => index,
+            Units::World => self.frame.to_world(index),
+        }
+    }
+
+    /// The sample exactly at a position, if there is one.
+    pub fn sample_at(&self, position: [f64; 3]) -> Option<[u32; 3]> {
+        let index = match self.units {
+            Units::Voxel => position,
+            Units::World => self.frame.to_index(position),
+        };
+        let dims = self.dims.xyz();
+        let mut sample = [0; 3];
+        for k in 0..3 {
+            let nearest = index[k].round();
+            if !(nearest >= 0.0 && nearest < dims[k] as f64) {
+                return None;
+            }
+            sample[k] = nearest as u32;
+        }
+        (self.position(sample) == position).then_some(sample)
+    }
+
+    /// The grid in voxels from 0 to the largest coordinates of some positions; `None` unless all are
+    /// nonnegative whole numbers.
+    pub(super) fn spanned(positions: &[[f64; 3]], coordinates: Coordinates) -> Option<Self> {
+        let mut end = [0u64; 3];
+        for position in positions {
+            for k in 0..3 {
+                let x = position[k];
+                if x.fract() != 0.0 || !(0.0..4e9).contains(&x) {
+                    return None;
+                }
+                end[k] = end[k].max(x as u64 + 1);
+            }
+        }
+        let dims = Dims::new(end[0], end[1], end[2]).ok()?;
+        Some(Self { dims, frame: Frame::VOXEL.with_coordinates(coordinates), units: Units::Voxel })
+    }
+}
+
+/// Signature of a `.wvm`. As in PNG, a transfer that converts line endings damages it detectably.
+pub(super) const MODEL: &[u8] = b"\x89wvm\r\n\x1a\n";

@@ -1,0 +1,232 @@
+//! Reading points from files. The format is recognised by the content first, then by the extension.
+
+use std::path::Path;
+
+use walpha_base::advice::Setting;
+use walpha_base::setters;
+use walpha_base::shown::shown;
+
+use super::formats::{FORMATS, PointFormat};
+use super::read::content::Packed;
+use super::read::{COLUMNS, format};
+use super::{Columns, ModelMetadata, Points, PointsError, hard};
+use walpha_volume::{OpenFile, Reason, begins_as_volume, other_kind};
+
+/// What a user may state about a file of points.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct PointOptions {
+    /// What the columns of a table hold.
+    pub columns: Option<Columns>,
+    /// Number of layers of a `.wvm` to leave out, from the last: each level is a coarser model with a quarter
+    /// of the points.
+    pub level: Option<u32>,
+    /// The extension of the file's format, in place of its own extension; the content takes precedence.
+    pub format: Option<String>,
+    /// The frame to read from a text with several: a scan of PTS, a step of a trajectory. Counted from 0.
+    pub frame: Option<u64>,
+    /// The classes of points to read from LAS and LAZ, by their ASPRS codes; `None` reads all.
+    pub classes: Option<Vec<u8>>,
+    /// Whether points of LAS and LAZ are read that are flagged *withheld*, which are not to be processed.
+    pub withheld: bool,
+    /// Whether a column that is not a weight by its name is one where the file has no other: the values.
+    pub weights: bool,
+    /// Keeps the first point in each cube of this side, in the unit of the points; `None` keeps all.
+    pub thin: Option<f64>,
+}
+
+impl PointOptions {
+    setters! {
+        columns: Option<Columns>,
+        level: Option<u32>,
+        format: Option<String>,
+        frame: Option<u64>,
+        classes: Option<Vec<u8>>,
+        withheld: bool,
+        weights: bool,
+        thin: Option<f64>,
+    }
+
+    /// Whether a file holds points rather than a volume under these options; see [`is_point_file`].
+    ///
+    /// # Errors
+    /// As [`is_point_file`].
+    pub fn is_point_file(&self, path: impl AsRef<Path>) -> Result<bool, PointsError> {
+        let path = path.as_ref();
+        if hard(path)?.is_some() {
+            return Ok(true);
+        }
+        // A pipe is recognised by name alone, as bytes read from it are gone.
+        if path.is_file() {
+            self.holds_points(&OpenFile::open(path)?)
+        } else {
+            Ok(!path.is_dir() && self.format_named(path).is_some())
+        }
+    }
+
+    /// [`is_point_file`](Self::is_point_file) for an open file.
+    #[doc(hidden)]
+    pub fn holds_points(&self, file: &OpenFile) -> Result<bool, PointsError> {
+        match self.format_of(file) {
+            Some(format) if file.is_ordinary() => format.holds_points(file),
+            named => Ok(named.is_some()),
+        }
+    }
+
+    /// The format of a file, by its content, or else by its extension. Of one that is compressed, what it holds decides.
+    pub(super) fn format_of(&self, file: &OpenFile) -> Option<&'static PointFormat> {
+        if let Some(Packed { name, start }) = Packed::of(file) {
+            return self.format_that_is(&start, &name).filter(|format| format.is_packed);
+        }
+        self.format_that_is(file.start(), file.path())
+    }
+
+    fn format_that_is(&self, start: &[u8], path: &Path) -> Option<&'static PointFormat> {
+        let of_content = FORMATS.iter().find(|format| format.begins(start));
+        if of_content.is_some() || begins_as_volume(start) {
+            return of_content;
+        }
+        self.format_named(path)
+    }
+
+    /// The format of the given extension, or else of the path's.
+    pub(super) fn format_named(&self, path: &Path) -> Option<&'static PointFormat> {
+        let own = path.extension().unwrap_or_default().to_string_lossy();
+        let extension = self.format.as_deref().unwrap_or(&own);
+        FORMATS.iter().find(|format| format.is_named(extension))
+    }
+}
+
+/// Whether a file holds points rather than a volume, by its content or else by its extension
+/// ([`FORMATS`](super::FORMATS)). NPY files hold points if their array has two axes, VTK XML files if they
+/// hold geometry.
+///
+/// # Errors
+/// A file that cannot be opened, or that begins like NPY or VTK XML and cannot be read.
+pub fn is_point_file(path: &Path) -> Result<bool, PointsError> {
+    PointOptions::default().is_point_file(path)
+}
+
+/// Reads points, with weights and values if the file has such columns. Points are counted from 0.
+///
+/// - Text (CSV, TSV, XYZ, PTS): fields are separated by commas, semicolons, tabs or blanks. The first line may name the
+///   columns: x, y, z, optionally weight (or radius, whose square is the weight) and value (or intensity), in any order
+///   and case; others are skipped. Without names, `columns` gives them; without both, x y z are read, followed by a value,
+///   or by a normal or a colour, which are skipped. XYZ may also hold atoms, as in chemistry, with the columns and the
+///   cell that extended XYZ states. Counts of points may come first; of several frames, one is read.
+/// - PWN: as XYZ; or the number of points, the points, and as many normals.
+/// - OFF, OBJ, STL: the vertices; for STL each position once.
+/// - PCD, PLY (text, or binary of either byte order), VTU, VTP and legacy VTK: the points, with their properties, fields or
+///   point data of these names; VTK's active scalars are the values if no array is named so.
+/// - LAS and LAZ: coordinates, and the intensity as value, without the points that are withheld.
+/// - NPY: an array n×3 (x, y, z) or n×4 (…, value), or what `columns` say; of a structured array the fields of these names.
+/// - WVM: all layers ([`read_model`] can leave some out).
+///
+/// Text, OFF, OBJ, STL, PCD and PLY may be compressed with gzip, or be alone in a ZIP archive.
+///
+/// # Errors
+/// The file cannot be read, is truncated or longer than it claims, a column is missing or named twice,
+/// a number is not finite or a radius negative (the message says where), the file holds no point, or
+/// `columns` are given for a format that names its own.
+pub fn read_points(
+    path: impl AsRef<Path>,
+    columns: Option<&Columns>,
+) -> Result<Points, PointsError> {
+    Ok(read_model(path, &PointOptions::default().columns(columns.cloned()))?.0)
+}
+
+/// Reads points and their metadata, which is empty if the format stores none; or makes those of a [`hard`] set, by its name.
+///
+/// # Errors
+/// As [`read_points`]; a level that the file does not have; a stated format that contradicts the content.
+pub fn read_model(
+    path: impl AsRef<Path>,
+    options: &PointOptions,
+) -> Result<(Points, ModelMetadata), PointsError> {
+    let path = path.as_ref();
+    if let Some(points) = hard(path)? {
+        return Ok((points, ModelMetadata::default()));
+    }
+    read_model_file(&OpenFile::open(path)?, options)
+}
+
+/// [`read_model`] from an open file.
+///
+/// # Errors
+/// Those of [`read_model`].
+pub fn read_model_file(
+    file: &OpenFile,
+    options: &PointOptions,
+) -> Result<(Points, ModelMetadata), PointsError> {
+    let path = file.path();
+    let known = options.format_of(file).unwrap_or(&FORMATS[0]);
+    if options.format.as_ref().is_some_and(|named| !known.is_named(named)) {
+        let what = format!("begins like a file of the format {}", known.name);
+        return Err(format(path, Reason::needless(Setting::Format, what)));
+    }
+    accept(known, path, options)?;
+    if let Some(reason) = of_another_kind(known, file) {
+        return Err(format(path, reason));
+    }
+    let (mut points, metadata) = known.read(file, options)?;
+    if points.is_empty() && options.classes.is_some() {
+        let what = "holds no point of these classes";
+        return Err(format(path, Reason::content(what, "see which classes it has, or read all")));
+    }
+    if points.is_empty() {
+        return Err(format(path, Reason::content("holds no points", "name another file")));
+    }
+    finite(path, &points)?;
+    if options.weights && points.weights.is_none() && points.values.is_some() {
+        tracing::warn!(
+            "{} has no column weight or radius: its values are taken for weights, as is asked for",
+            shown(path)
+        );
+        points.weights = points.values.take();
+    }
+    if let Some(side) = options.thin {
+        points.thin(side)?;
+    }
+    Ok((points, metadata))
+}
+
+/// Why a file is not read that has the name of a format, and begins as one of another kind does.
+fn of_another_kind(known: &PointFormat, file: &OpenFile) -> Option<Reason> {
+    if let Some(Packed { start, .. }) = Packed::of(file) {
+        return if known.begins(&start) { None } else { other_kind(&start) };
+    }
+    if known.begins(file.start()) { None } else { other_kind(file.start()) }
+}
+
+/// Refuses settings that the format has no use for.
+fn accept(format: &PointFormat, path: &Path, options: &PointOptions) -> Result<(), PointsError> {
+    for (setting, given, what) in [
+        (Setting::Columns, options.columns.is_some(), "defines its own columns"),
+        (Setting::Level, options.level.is_some(), "has no layers of points"),
+        (Setting::Frame, options.frame.is_some(), "is of a format of one frame"),
+        (Setting::Class, options.classes.is_some(), "has no classes of points"),
+        (Setting::Withheld, options.withheld, "has no points that can be withheld"),
+    ] {
+        // Without its reader, the format says so itself.
+        if given && format.is_built_in() && !format.chooses.contains(&setting) {
+            return Err(super::read::format(path, Reason::needless(setting, what)));
+        }
+    }
+    Ok(())
+}
+
+/// Refuses NaN and infinities.
+fn finite(path: &Path, points: &Points) -> Result<(), PointsError> {
+    for (row, position) in points.positions.iter().enumerate() {
+        let [weight, value] =
+            [&points.weights, &points.values].map(|column| column.as_ref().map_or(0.0, |c| c[row]));
+        let numbers = [position[0], position[1], position[2], weight, value];
+        if let Some(column) = numbers.iter().position(|number| !number.is_finite()) {
+            let (name, value) = (COLUMNS[column], numbers[column]);
+            let reason =
+                Reason::value(format!("row {row}: {name} is {value}, and must be a finite number"));
+            return Err(format(path, reason));
+        }
+    }
+    Ok(())
+}

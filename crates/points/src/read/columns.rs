@@ -1,0 +1,275 @@
+use std::path::Path;
+use std::str::FromStr;
+
+use serde::{Deserialize, Serialize};
+use walpha_base::advice::{Advice, Setting, advice};
+use walpha_base::shown::shown;
+
+use walpha_volume::Reason;
+
+/// The names of the columns that are read.
+pub(crate) const COLUMNS: [&str; 6] = ["x", "y", "z", "weight", "value", "radius"];
+/// Index in [`COLUMNS`] of the weight.
+pub(super) const WEIGHT: usize = 3;
+/// Index in [`COLUMNS`] of the value.
+pub(super) const VALUE: usize = 4;
+/// Index in [`COLUMNS`] of the radius, whose square is a weight.
+pub(super) const RADIUS: usize = 5;
+
+/// The columns of a table of points, in order. The names `x`, `y`, `z`, `weight`, `value` and `radius` may occur
+/// once each, in any letter case, with a unit in brackets behind it, or with `CloudCompare`'s `scalar_` before it;
+/// columns of other names are skipped. If there are no other names and no `z`, the points lie in the plane z = 0. Where
+/// x, y or z is not named, the surveying names `easting`, `northing`, and `height`, `elevation` or `altitude`, stand for
+/// it, or `ParaView`'s `Points:0` and so on; where there is no `value`, `intensity` or `reflectance` is one.
+///
+/// ```
+/// use walpha_points::Columns;
+///
+/// let columns: Columns = "x,y,z,nx,ny,nz".parse()?;
+/// assert_eq!(columns.len(), 6);
+/// assert!("x,y,nx,ny,nz".parse::<Columns>().is_err(), "z is missing");
+/// assert!("x,y,value".parse::<Columns>().is_ok(), "points of a plane");
+/// # Ok::<(), walpha_points::UnknownColumns>(())
+/// ```
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(into = "String", try_from = "String")]
+pub struct Columns(pub(super) Vec<Option<usize>>);
+
+/// The error for names that do not identify x, y and z.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("columns {names:?} {what}")]
+pub struct UnknownColumns {
+    names: String,
+    what: String,
+    next: &'static str,
+}
+
+impl UnknownColumns {
+    /// What to do about it.
+    pub fn advice(&self) -> Advice {
+        self.next.into()
+    }
+}
+
+/// The advice for names without an x, y or z.
+const NAME_THEM: &str = "name each column of the file, x, y and z once each, perhaps weight (or radius) and \
+                         value, and others as you like, as in x,y,z,nx,ny,nz";
+
+/// Other names of x, y, z, and of a value, each with the place of its column in [`COLUMNS`]. They hold where a file
+/// has no column of the name itself.
+const SYNONYMS: [(usize, &[&str]); 5] = [
+    (0, &["easting", "points:0", "points_0"]),
+    (1, &["northing", "points:1", "points_1"]),
+    (2, &["height", "elevation", "altitude", "points:2", "points_2"]),
+    (VALUE, &["intensity"]),
+    (VALUE, &["reflectance"]),
+];
+
+/// Rows of which the first column may number the points; fewer are so by chance.
+const LEAST_COUNTED: usize = 4;
+
+/// Names of angles, which cannot be coordinates.
+const ANGLES: [&str; 5] = ["lon", "lat", "lng", "longitude", "latitude"];
+
+/// Units of angles.
+const DEGREES: [&str; 5] = ["deg", "degree", "degrees", "°", "rad"];
+
+/// Whether a name or its unit is that of an angle.
+fn is_angle(name: &str) -> bool {
+    let (name, unit) = name_and_unit(name);
+    is_among(name, &ANGLES) || unit.is_some_and(|unit| is_among(unit, &DEGREES))
+}
+
+/// Whether a word among others shows that they name columns: a part of it is x, y or z, or an angle, as in `X-coord` and `lon_deg`.
+pub(super) fn is_of_coordinate(word: &str) -> bool {
+    const PLANE: [&str; 2] = ["easting", "northing"];
+    is_angle(word)
+        || word
+            .split(|c: char| !c.is_alphanumeric())
+            .any(|part| [&COLUMNS[..3], &PLANE, &ANGLES].iter().any(|known| is_among(part, known)))
+}
+
+/// Whether a name is one of these, in any letter case.
+fn is_among(name: &str, known: &[&str]) -> bool {
+    known.iter().any(|known| known.eq_ignore_ascii_case(name))
+}
+
+/// A name without white space, quotes, and a unit in brackets; and this unit.
+pub(super) fn name_and_unit(text: &str) -> (&str, Option<&str>) {
+    let text = text.trim_matches(|c: char| c.is_whitespace() || c == '"' || c == '\'');
+    for (open, close) in [('[', ']'), ('(', ')')] {
+        if let Some((name, unit)) = text.strip_suffix(close).and_then(|text| text.rsplit_once(open))
+            && !name.trim().is_empty()
+        {
+            return (name.trim(), Some(unit.trim()).filter(|unit| !unit.is_empty()));
+        }
+    }
+    (text, None)
+}
+
+/// The name of a scalar field as `CloudCompare` writes it, without its prefix.
+fn scalar(name: &str) -> Option<&str> {
+    let (prefix, name) = name.split_at_checked(7)?;
+    prefix.eq_ignore_ascii_case("scalar_").then_some(name)
+}
+
+/// The column of each name, by its index in [`COLUMNS`]; `None` for other names.
+pub(super) fn places(names: &[&str]) -> Vec<Option<usize>> {
+    let names: Vec<&str> = names.iter().map(|name| name_and_unit(name).0).collect();
+    let place = |name: &str| COLUMNS.iter().position(|known| known.eq_ignore_ascii_case(name));
+    let mut places: Vec<Option<usize>> = names.iter().map(|name| place(name)).collect();
+    let mut stand_in = |column: usize, is_it: &dyn Fn(&str) -> bool| {
+        if !places.contains(&Some(column)) {
+            let others = places.iter_mut().zip(&names).filter(|(place, _)| place.is_none());
+            others.filter(|(_, name)| is_it(name)).for_each(|(place, _)| *place = Some(column));
+        }
+    };
+    for column in 3..COLUMNS.len() {
+        stand_in(column, &|name| scalar(name).is_some_and(|name| place(name) == Some(column)));
+    }
+    for (column, known) in SYNONYMS {
+        stand_in(column, &|name| is_among(scalar(name).unwrap_or(name), known));
+    }
+    places
+}
+
+#[expect(clippy::len_without_is_empty, reason = "there are at least two")]
+impl Columns {
+    /// The number of columns.
+    pub fn len(&self) -> usize {
+        self.0.len()
+    }
+
+    /// The columns with these names.
+    ///
+    /// # Errors
+    /// x or y is missing; z is missing and other columns than those read are named; or a name that is read occurs
+    /// twice.
+    pub fn named(names: &[&str]) -> Result<Self, UnknownColumns> {
+        let columns = places(names);
+        let is_planar = columns.iter().all(Option::is_some);
+        for (place, name) in COLUMNS.iter().enumerate() {
+            let count = columns.iter().filter(|&&column| column == Some(place)).count();
+            let (what, next) = match count {
+                0 if place == 2 && is_planar => continue,
+                0 if place < 3 && names.iter().any(|name| is_angle(name)) => (
+                    "name longitude and latitude, which are angles and no lengths".to_owned(),
+                    "project them to a plane first, as UTM does",
+                ),
+                0 if place < 3 => (format!("do not name {name}"), NAME_THEM),
+                0 | 1 => continue,
+                _ => (format!("name {name} twice"), NAME_THEM),
+            };
+            return Err(UnknownColumns { names: names.join(","), what, next });
+        }
+        Ok(Self(columns))
+    }
+}
+
+impl Columns {
+    /// Guesses columns from their numbers: x y z, perhaps followed by a value, a normal (of length 1 or 0) or a
+    /// colour (whole numbers up to 255). Says what other columns it may be.
+    pub(super) fn guess(path: &Path, rows: &[Vec<f64>]) -> Result<Self, Reason> {
+        let count = rows.first().map_or(0, Vec::len);
+        let vectors = || rows.iter().map(|row| &row[3..]);
+        let unit = |v: &[f64]| {
+            let square: f64 = v.iter().map(|c| c * c).sum();
+            square == 0.0 || (square - 1.0).abs() < 0.02
+        };
+        let colour = |v: &[f64]| v.iter().all(|c| c.fract() == 0.0 && (0.0..=255.0).contains(c));
+        let known = match count {
+            3 => vec![0, 1, 2],
+            4 => vec![0, 1, 2, 4],
+            6 if vectors().all(unit) || vectors().all(colour) => vec![0, 1, 2],
+            _ => {
+                let example = match count {
+                    0..=2 => "x,y".to_owned(),
+                    5 => "x,y,z,weight,value".to_owned(),
+                    6 => "x,y,z,nx,ny,nz".to_owned(),
+                    _ => "x,y,z".to_owned() + &",-".repeat(count.saturating_sub(3)),
+                };
+                return Err(Reason::choice(
+                    Setting::Columns,
+                    format!("has {count} columns, and nothing says what they are"),
+                    advice![
+                        "name them in a first line, or with ",
+                        Setting::Columns,
+                        format!(" {example}")
+                    ],
+                ));
+            }
+        };
+        if known.contains(&VALUE) {
+            tracing::warn!(
+                "{}: the fourth column is taken for values; if it has weights, name the columns x,y,z,weight",
+                shown(path)
+            );
+        }
+        if rows.len() >= LEAST_COUNTED && rows.windows(2).all(|pair| pair[1][0] == pair[0][0] + 1.0)
+        {
+            tracing::warn!(
+                "{}: the first column counts from {} up, and is taken for x; if it numbers the points, name the columns, as \
+                 in -,x,y,z",
+                shown(path),
+                rows[0][0]
+            );
+        }
+        let column = |place: usize| known.get(place).copied();
+        Ok(Self((0..count).map(column).collect()))
+    }
+}
+
+impl Columns {
+    /// The unit of lengths that names state for x, y, z and the radius; the first one, if they differ in none.
+    ///
+    /// # Errors
+    /// Two of them differ, or are those of angles.
+    pub(super) fn unit<'a>(
+        &self,
+        names: &[&'a str],
+        units: &[Option<&'a str>],
+    ) -> Result<Option<&'a str>, UnknownColumns> {
+        let lengths = self
+            .0
+            .iter()
+            .zip(units)
+            .filter(|(place, _)| place.is_some_and(|place| place < 3 || place == RADIUS));
+        let stated: Vec<&str> = lengths.filter_map(|(_, unit)| *unit).collect();
+        let error = |what: String, next| Err(UnknownColumns { names: names.join(","), what, next });
+        match stated.iter().find(|unit| **unit != stated[0]) {
+            _ if stated.iter().any(|unit| is_among(unit, &DEGREES)) => error(
+                format!("state the unit {}, which is one of angles and no length", stated[0]),
+                "project them to a plane first, as UTM does",
+            ),
+            Some(other) => error(
+                format!("state different units, {} and {other}", stated[0]),
+                "write all coordinates and radii in one unit",
+            ),
+            None => Ok(stated.first().copied()),
+        }
+    }
+}
+
+/// The names, with `-` for a skipped column.
+impl From<Columns> for String {
+    fn from(columns: Columns) -> Self {
+        let name = |column: &Option<usize>| column.map_or("-", |column| COLUMNS[column]);
+        columns.0.iter().map(name).collect::<Vec<_>>().join(",")
+    }
+}
+
+impl TryFrom<String> for Columns {
+    type Error = UnknownColumns;
+
+    fn try_from(names: String) -> Result<Self, UnknownColumns> {
+        names.parse()
+    }
+}
+
+impl FromStr for Columns {
+    type Err = UnknownColumns;
+
+    fn from_str(text: &str) -> Result<Self, UnknownColumns> {
+        Self::named(&text.split(',').collect::<Vec<_>>())
+    }
+}

@@ -1,0 +1,273 @@
+//! What the coordinates of a LAS file are by its reference system: lengths in one unit, or not. It is stated as `GeoTIFF`'s keys or
+//! as well-known text.
+//!
+//! Sources: OGC 19-008r4, `GeoTIFF`; OGC 01-009, 12-063r5 and 18-010r7, well-known text, versions 1 and 2; LAS 1.4 R15, section 3.
+
+use walpha_volume::Reason;
+
+/// What is known of a reference system.
+#[derive(Default)]
+pub(super) struct ReferenceSystem {
+    /// Whether x and y are longitude and latitude.
+    is_geographic: bool,
+    /// The units of x and y, and of z, as far as they are stated.
+    units: [Option<Unit>; 2],
+}
+
+/// A unit of lengths.
+#[derive(Clone, Debug, PartialEq)]
+struct Unit {
+    name: String,
+    /// In metres, or else 0.
+    metres: f64,
+}
+
+impl ReferenceSystem {
+    /// Reads it from the records of a file.
+    pub(super) fn of<'a>(records: impl Iterator<Item = &'a las::Vlr>) -> Self {
+        const DIRECTORY: u16 = 34735;
+        const TEXT: u16 = 2112;
+        let mut all = Self::default();
+        for record in records.filter(|record| record.user_id == "LASF_Projection") {
+            let own = match record.record_id {
+                DIRECTORY => Self::of_keys(&record.data),
+                TEXT => Self::of_text(&String::from_utf8_lossy(&record.data)),
+                _ => continue,
+            };
+            all.is_geographic |= own.is_geographic;
+            for (unit, own) in all.units.iter_mut().zip(own.units) {
+                *unit = own.or(unit.take());
+            }
+        }
+        all
+    }
+
+    /// Refuses angles, and heights in another unit than x and y.
+    pub(super) fn check(&self) -> Result<(), Reason> {
+        if self.is_geographic {
+            let what = "states longitude and latitude, which are angles and no lengths";
+            return Err(Reason::unsupported(what, "project them to a plane first, as UTM does"));
+        }
+        if let [Some(plane), Some(height)] = &self.units
+            && !plane.is_like(height)
+        {
+            let (plane, height) = (&plane.name, &height.name);
+            let what = format!("states different units, {plane} of x and y and {height} of z");
+            return Err(Reason::content(what, "write all coordinates in one unit"));
+        }
+        Ok(())
+    }
+
+    /// From a directory of keys: each is a number, where its values are (0: here), how many it has, and its value.
+    fn of_keys(bytes: &[u8]) -> Self {
+        const MODEL: u16 = 1024;
+        const GEOGRAPHIC: [u16; 2] = [2048, 2054];
+        const UNITS: [u16; 2] = [3076, 4099];
+        let (pairs, _) = bytes.as_chunks::<2>();
+        let numbers: Vec<u16> = pairs.iter().map(|&pair| u16::from_le_bytes(pair)).collect();
+        let keys = || numbers.as_chunks::<4>().0.iter().skip(1);
+        let value = |wanted: u16| {
+            keys().find(|[key, place, ..]| (*key, *place) == (wanted, 0)).map(|&[.., value]| value)
+        };
+        let is_projected = || keys().any(|[key, ..]| (3072..=3095).contains(key));
+        let is_geographic = match value(MODEL) {
+            Some(1 | 3) => false,
+            Some(2) => true,
+            // A writer may leave the kind of system out, and state the system or its unit of angles.
+            _ => GEOGRAPHIC.iter().any(|&key| value(key).is_some()) && !is_projected(),
+        };
+        Self { is_geographic, units: UNITS.map(|key| value(key).and_then(Unit::of_code)) }
+    }
+
+    /// From well-known text of either version: nested lists, each with a keyword before its bracket.
+    fn of_text(text: &str) -> Self {
+        let mut system = Self::default();
+        let [mut has_angles, mut has_lengths] = [false; 2];
+        let (mut quoted, mut word) = (false, 0);
+        let mut open: Vec<Part> = Vec::new();
+        for (at, c) in text.char_indices() {
+            quoted ^= c == '"';
+            if quoted || !"[(]),".contains(c) {
+                continue;
+            }
+            if c == ']' || c == ')' {
+                open.pop();
+            } else if c != ',' {
+                let (part, content) = (Part::of(text[word..at].trim()), &text[at + 1..]);
+                let inside = open.iter().rev().find(|part| **part != Part::Axis);
+                match (part, inside) {
+                    (Part::Angles, _) => has_angles = true,
+                    (Part::Plane, _) => has_lengths = true,
+                    (Part::Axes, _) => has_lengths |= is_cartesian(content),
+                    (Part::Unit, Some(Part::Plane)) => system.add(0, Unit::of_text(content)),
+                    (Part::Unit, Some(Part::Height)) => system.add(1, Unit::of_text(content)),
+                    _ => {}
+                }
+                open.push(part);
+            }
+            word = at + 1;
+        }
+        system.is_geographic = has_angles && !has_lengths;
+        system
+    }
+
+    /// Takes the first unit of an axis.
+    fn add(&mut self, axis: usize, unit: Option<Unit>) {
+        let known = &mut self.units[axis];
+        *known = known.take().or(unit);
+    }
+}
+
+/// What a keyword of well-known text begins, as far as it matters here.
+#[derive(Clone, Copy, PartialEq)]
+enum Part {
+    /// A system of longitude and latitude, unless it is Cartesian: geocentric.
+    Angles,
+    /// A system of lengths.
+    Plane,
+    Height,
+    Axes,
+    Axis,
+    Unit,
+    Other,
+}
+
+impl Part {
+    fn of(keyword: &str) -> Self {
+        match keyword.to_ascii_uppercase().as_str() {
+            "GEOGCS" | "GEOGCRS" | "GEOGRAPHICCRS" | "GEODCRS" | "GEODETICCRS" => Self::Angles,
+            "PROJCS" | "PROJCRS" | "PROJECTEDCRS" | "DERIVEDPROJCRS" | "LOCAL_CS" | "ENGCRS"
+            | "ENGINEERINGCRS" => Self::Plane,
+            "VERT_CS" | "VERTCS" | "VERTCRS" | "VERTICALCRS" => Self::Height,
+            "CS" => Self::Axes,
+            "AXIS" => Self::Axis,
+            "UNIT" | "LENGTHUNIT" => Self::Unit,
+            _ => Self::Other,
+        }
+    }
+}
+
+/// Whether axes are Cartesian, by what follows `CS[`.
+fn is_cartesian(content: &str) -> bool {
+    const WORD: &str = "Cartesian";
+    content.trim_start().get(..WORD.len()).is_some_and(|kind| kind.eq_ignore_ascii_case(WORD))
+}
+
+impl Unit {
+    /// From a number of EPSG's; `None` if it is undefined.
+    fn of_code(code: u16) -> Option<Self> {
+        let (name, metres) = match code {
+            0 | 32767 => return None,
+            9001 => ("metre".to_owned(), 1.0),
+            9002 => ("foot".to_owned(), 0.3048),
+            9003 => ("US survey foot".to_owned(), 1200.0 / 3937.0),
+            other => (format!("EPSG's unit {other}"), 0.0),
+        };
+        Some(Self { name, metres })
+    }
+
+    /// From a name in quotes and a number of metres.
+    fn of_text(content: &str) -> Option<Self> {
+        let (name, rest) = content.trim_start().strip_prefix('"')?.split_once('"')?;
+        let number = rest.trim_start().strip_prefix(',')?.split([',', ']', ')']).next()?;
+        Some(Self { name: name.to_owned(), metres: number.trim().parse().ok()? })
+    }
+
+    /// Whether lengths in one are lengths in the other, but for the two feet, which differ by 2 in a million.
+    fn is_like(&self, other: &Self) -> bool {
+        self.name == other.name || (self.metres / other.metres - 1.0).abs() < 1e-5
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const DEGREES: &str = r#"["WGS 84",DATUM["World, \"[new]\"",ELLIPSOID["WGS 84",6378137,298.257,LENGTHUNIT["metre",1]]],UNIT["degree",0.0175]"#;
+
+    fn told(system: &ReferenceSystem) -> String {
+        system.check().map_or_else(|reason| reason.to_string(), |()| String::new())
+    }
+
+    fn told_of_text(text: &str) -> String {
+        told(&ReferenceSystem::of_text(&text.replace('*', DEGREES)))
+    }
+
+    #[test]
+    fn systems_of_angles_are_refused_however_they_are_wrapped() {
+        for text in [
+            "GEOGCS*]",
+            " geogcs *]",
+            r#"COMPD_CS["both",GEOGCS*],VERT_CS["h",UNIT["metre",1]]]"#,
+            r#"COMPOUNDCRS["both",GEOGCRS*,CS[ellipsoidal,2]],VERTCRS["h",LENGTHUNIT["foot",0.3048]]]"#,
+            "BOUNDCRS[SOURCECRS[GEOGRAPHICCRS*]],TARGETCRS[GEOGCRS*]]]",
+            "GEODCRS*,CS[ellipsoidal,3]]",
+            "GEODETICCRS(\"WGS 84\")",
+        ] {
+            assert!(told_of_text(text).contains("longitude and latitude"), "{text}");
+        }
+        for text in [
+            r#"PROJCS["UTM",GEOGCS*],UNIT["metre",1]]"#,
+            r#"BOUNDCRS[SOURCECRS[PROJCRS["UTM",BASEGEOGCRS*]]],TARGETCRS[GEOGCRS*]]]"#,
+            "GEODCRS*,CS[Cartesian,3]]",
+            "GEOCCS*]",
+            "",
+            "]][",
+        ] {
+            assert_eq!(told_of_text(text), "", "{text}");
+        }
+    }
+
+    #[test]
+    fn heights_in_another_unit_are_refused() {
+        const FEET: &str = r#"UNIT["US survey foot",0.3048006096012192]"#;
+        let both = |plane: &str, height: &str| {
+            let plane = format!(r#"PROJCS["p",GEOGCS*],PARAMETER["a",1],{plane}]"#);
+            told_of_text(&format!(r#"COMPD_CS["c",{plane},VERT_CS["v",{height},AXIS["Up",UP]]]"#))
+        };
+        let told = both(r#"UNIT["metre",1]"#, FEET);
+        assert!(told.contains("metre of x and y and US survey foot of z"), "{told}");
+        let axis = r#"AXIS["e",east,LENGTHUNIT["metre",1]],AXIS["n",north,LENGTHUNIT["metre",1]]"#;
+        assert!(both(axis, &FEET.replace("UNIT", "LENGTHUNIT")).contains("units"));
+        for (plane, height) in [
+            (FEET, FEET),
+            (FEET, r#"UNIT["foot",0.3048]"#),
+            (r#"UNIT["metre",1]"#, r#"UNIT["m",1.0,AUTHORITY["EPSG","9001"]]"#),
+            (r#"UNIT["metre",1]"#, ""),
+            ("", FEET),
+        ] {
+            assert_eq!(both(plane, height), "", "{plane} {height}");
+        }
+    }
+
+    #[test]
+    fn keys_tell_angles_and_units() {
+        let told_of_keys = |keys: &[[u16; 2]]| {
+            let count = keys.len() as u16;
+            let keys = keys.iter().flat_map(|&[key, value]| [key, 0, 1, value]);
+            let bytes: Vec<u8> =
+                [1, 1, 0, count].into_iter().chain(keys).flat_map(u16::to_le_bytes).collect();
+            told(&ReferenceSystem::of_keys(&bytes))
+        };
+        for keys in
+            [&[[1024, 2], [2048, 4326]][..], &[[2048, 4326]], &[[1024, 32767], [2054, 9102]]]
+        {
+            assert!(told_of_keys(keys).contains("longitude and latitude"), "{keys:?}");
+        }
+        let told_of_feet = told_of_keys(&[[1024, 1], [3076, 9001], [4099, 9003]]);
+        assert!(
+            told_of_feet.contains("metre of x and y and US survey foot of z"),
+            "{told_of_feet}"
+        );
+        for keys in [
+            &[][..],
+            &[[1024, 1], [2048, 4326]],
+            &[[2048, 4326], [3072, 32617]],
+            &[[1024, 3], [2048, 4978]],
+            &[[3076, 9002], [4099, 9003]],
+            &[[3076, 9001], [4099, 32767]],
+        ] {
+            assert_eq!(told_of_keys(keys), "", "{keys:?}");
+        }
+    }
+}

@@ -1,0 +1,277 @@
+//! LAS and LAZ, the formats of laser scanners.
+
+use std::io::{self, Read, Seek, SeekFrom};
+use std::ops::Range;
+use std::path::Path;
+
+use walpha_base::advice::{Setting, advice};
+use walpha_base::shown::shown;
+
+use super::crs::ReferenceSystem;
+use super::laz::Claims;
+use super::{COLUMNS, Points, PointsError, format};
+use crate::{ModelMetadata, PointOptions};
+use walpha_volume::{OpenFile, Reason, io_error};
+
+/// Bytes of points read at once: a header may claim records of up to 64 KiB, and more than the file has.
+const BATCH: u64 = 1 << 22;
+
+/// Reads the positions of the points, of some classes (ASPRS codes) or of all, and their intensities as values. Points
+/// that are withheld are left out unless they are asked for. Coordinates are doubles, computed with the file's scales and
+/// offsets.
+pub(crate) fn read(
+    file: &OpenFile,
+    options: &PointOptions,
+) -> Result<(Points, ModelMetadata), PointsError> {
+    let path = file.path();
+    let header = check(file)?;
+    let claimed = count(&header);
+    let fail = |error| unreadable(path, error);
+    let reader = file.owned_reader()?;
+    let reader = if claimed == u64::from(header.number_of_point_records) {
+        las::Reader::new(reader)
+    } else {
+        las::Reader::new(WithoutOldCount { reader, at: 0 })
+    };
+    let mut reader = reader.map_err(fail)?;
+    let records = reader.header().vlrs().iter().chain(reader.header().evlrs());
+    ReferenceSystem::of(records).check().map_err(|reason| format(path, reason))?;
+    let mut points = Points { values: Some(Vec::new()), ..Points::default() };
+    let record = u64::from(reader.header().point_format().len()).max(1);
+    let at_once = (BATCH / record).max(1);
+    let mut batch = las::PointDataBuilder::new().for_header(reader.header()).build();
+    let is_extended = reader.header().point_format().is_extended;
+    let (mut found, mut withheld, mut kinds) = (0, 0, Kinds::default());
+    while reader.fill_points(at_once, &mut batch).map_err(fail)? > 0 {
+        let places = batch.x().zip(batch.y()).zip(batch.z()).map(|((x, y), z)| [x, y, z]);
+        let records = batch.raw_bytes().chunks_exact(batch.record_len());
+        let rows = places.zip(batch.intensity()).zip(batch.classification()).zip(records);
+        for (((place, intensity), class), record) in rows {
+            found += 1;
+            // Formats 0 to 5 have the flags above the class, and the others in a byte before it (LAS 1.4 R15, tables 8 and 16).
+            let flags = if is_extended { record[15] & 15 } else { record[15] >> 5 };
+            if options.classes.as_ref().is_some_and(|classes| !classes.contains(&class)) {
+                continue;
+            }
+            withheld += u64::from(flags & WITHHELD != 0);
+            if flags & WITHHELD == 0 || options.withheld {
+                kinds.count(flags, class);
+                points.positions.push(place);
+                points.values.get_or_insert_default().push(f64::from(intensity));
+            }
+        }
+    }
+    if found != claimed {
+        let reason =
+            Reason::truncated(format!("claims {claimed} points, but has {found}: it is truncated"));
+        return Err(format(path, reason));
+    }
+    if withheld > 0 && !options.withheld {
+        if points.is_empty() {
+            let reason = Reason::choice(
+                Setting::Withheld,
+                format!("holds {withheld} points, all of them withheld"),
+                advice!["give ", Setting::Withheld, " to take them"],
+            );
+            return Err(format(path, reason));
+        }
+        tracing::warn!(
+            "{}: {withheld} points are flagged as withheld, which are not to be processed: they are left out \
+             unless `withheld` asks for them",
+            shown(path)
+        );
+    }
+    if reader.header().point_format().has_waveform {
+        tracing::warn!("{}: waveforms of its points are passed over", shown(path));
+    }
+    Ok((points, ModelMetadata::default().notes(kinds.notes())))
+}
+
+/// The flag of points that are not to be processed.
+const WITHHELD: u8 = 4;
+/// The other flags, and the classes of points that others may leave out, with their names.
+const FLAGS: [(u8, &str); 3] =
+    [(1, "synthetic"), (2, "key points"), (8, "in an overlap of swaths")];
+const CLASSES: [(u8, &str); 3] =
+    [(7, "noise (class 7)"), (12, "in an overlap (class 12)"), (18, "high noise (class 18)")];
+
+/// How many points there are of each kind that a user may want to leave out.
+#[derive(Default)]
+struct Kinds {
+    flags: [u64; FLAGS.len()],
+    classes: [u64; CLASSES.len()],
+}
+
+impl Kinds {
+    fn count(&mut self, flags: u8, class: u8) {
+        for (count, (flag, _)) in self.flags.iter_mut().zip(FLAGS) {
+            *count += u64::from(flags & flag != 0);
+        }
+        for (count, (known, _)) in self.classes.iter_mut().zip(CLASSES) {
+            *count += u64::from(class == known);
+        }
+    }
+
+    fn notes(&self) -> Vec<String> {
+        let names = FLAGS.iter().chain(&CLASSES).map(|(_, name)| name);
+        let counts = self.flags.iter().chain(&self.classes).zip(names);
+        counts
+            .filter(|(count, _)| **count > 0)
+            .map(|(count, name)| format!("{count} {name}"))
+            .collect()
+    }
+}
+
+/// The number of points. Version 1.4 counts them in 64 bits, and perhaps also in the field of older versions; where the two
+/// differ, PDAL, laspy and `LAStools` take the former, and so do we (LAS 1.4 R15 would have the latter, with an error).
+pub(super) fn count(header: &las::raw::Header) -> u64 {
+    let large = header.large_file.map_or(0, |large| large.number_of_point_records);
+    if large > 0 { large } else { header.number_of_point_records.into() }
+}
+
+/// Says that the two numbers of points differ.
+fn say_counts(path: &Path, header: &las::raw::Header) {
+    let old = u64::from(header.number_of_point_records);
+    let Some(large) = header.large_file.map(|large| large.number_of_point_records) else { return };
+    if old > 0 && old != large {
+        tracing::warn!(
+            "{}: counts {old} points for programs that do not know LAS 1.4, and {large} in its own field: {} are read",
+            shown(path),
+            count(header)
+        );
+    }
+}
+
+/// A LAS file without the number of points in the field of older versions, which the library prefers.
+struct WithoutOldCount<R> {
+    reader: R,
+    at: u64,
+}
+
+impl<R: Read> Read for WithoutOldCount<R> {
+    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
+        const FIELD: Range<u64> = 107..111;
+        let found = self.reader.read(bytes)?;
+        if self.at < FIELD.end {
+            let places = (self.at..).zip(&mut bytes[..found]);
+            places.filter(|(at, _)| FIELD.contains(at)).for_each(|(_, byte)| *byte = 0);
+        }
+        self.at += found as u64;
+        Ok(found)
+    }
+}
+
+impl<R: Seek> Seek for WithoutOldCount<R> {
+    fn seek(&mut self, place: SeekFrom) -> io::Result<u64> {
+        self.at = self.reader.seek(place)?;
+        Ok(self.at)
+    }
+
+    // Seeking by 0 would empty the buffer of the reader.
+    fn stream_position(&mut self) -> io::Result<u64> {
+        Ok(self.at)
+    }
+}
+
+/// Refuses what a compressed file claims of its compression and does not hold.
+fn check_compression(
+    path: &Path,
+    reader: &mut (impl Read + Seek),
+    header: &las::raw::Header,
+    length: u64,
+) -> Result<(), PointsError> {
+    let io = |error: io::Error| match error.kind() {
+        io::ErrorKind::UnexpectedEof => {
+            format(path, Reason::truncated("ends inside its compressed points: it is truncated"))
+        }
+        _ => io_error(path)(error).into(),
+    };
+    let Some(claims) = Claims::of(reader, header, length).map_err(io)? else { return Ok(()) };
+    let checked = match claims {
+        Ok(claims) => claims.check(reader).map_err(io)?,
+        Err(reason) => Err(reason),
+    };
+    checked.map_err(|reason| format(path, reason))
+}
+
+/// Refuses a file that has fewer points than it claims, or that claims none and has some; scales that are not numbers, or 0;
+/// and claims that the library would trust: more bytes of points than 64 bits can count, and an extended record longer than
+/// the file, for which it would allocate memory. Returns the header.
+fn check(file: &OpenFile) -> Result<las::raw::Header, PointsError> {
+    let (path, length) = (file.path(), file.length());
+    let mut reader = file.reader()?;
+    let header =
+        las::raw::Header::read_from(&mut reader).map_err(|error| unreadable(path, error))?;
+    let scales = [header.x_scale_factor, header.y_scale_factor, header.z_scale_factor];
+    let offsets = [header.x_offset, header.y_offset, header.z_offset];
+    for (name, scale, offset) in [0, 1, 2].map(|k| (COLUMNS[k], scales[k], offsets[k])) {
+        if !scale.is_finite() || scale == 0.0 || !offset.is_finite() {
+            let what =
+                format!("has scale {scale} and offset {offset} for {name}, which place nothing");
+            return Err(format(
+                path,
+                Reason::content(what, "correct its header, or write it again"),
+            ));
+        }
+    }
+    let record = u64::from(header.point_data_record_length).max(1);
+    let count = count(&header);
+    let bytes = count.checked_mul(record);
+    if bytes.and_then(|bytes| bytes.checked_add(header.offset_to_point_data.into())).is_none() {
+        let what = "claims more bytes of points than a number can count";
+        return Err(format(path, Reason::content(what, "correct its header, or write it again")));
+    }
+    say_counts(path, &header);
+    let compressed = header.point_data_record_format & 0xc0 != 0;
+    check_compression(path, &mut reader, &header, length)?;
+    // Some writers say where such records would begin, and that there are none.
+    let behind = header.evlr.filter(|records| records.number_of_evlrs > 0);
+    let behind = behind.map(|records| records.start_of_first_evlr);
+    let waves = header.start_of_waveform_data_packet_record.filter(|&start| start > 0);
+    let end = behind.into_iter().chain(waves).fold(length, u64::min);
+    let stored = end.saturating_sub(header.offset_to_point_data.into()) / record;
+    if !compressed && stored < count {
+        let what = format!("claims {count} points, but has {stored}: it is truncated");
+        return Err(format(path, Reason::truncated(what)));
+    }
+    if !compressed && stored > count {
+        let claim = format!("counts {count} points in its header, but has {stored}");
+        if count == 0 {
+            let what = format!("{claim}: the writer was not closed");
+            return Err(format(
+                path,
+                Reason::content(what, "write it again, with the right count"),
+            ));
+        }
+        tracing::warn!("{}: {claim}; those behind are passed over", shown(path));
+    }
+    let Some(records) = header.evlr else { return Ok(header) };
+    // The length follows 2 reserved bytes, a user id of 16 and a record id of 2. If it is missing, the library
+    // reports that.
+    let mut claimed = [0; 8];
+    let place = SeekFrom::Start(records.start_of_first_evlr.saturating_add(20));
+    if reader.seek(place).and_then(|_| reader.read_exact(&mut claimed)).is_err() {
+        return Ok(header);
+    }
+    let claimed = u64::from_le_bytes(claimed);
+    if claimed > length {
+        let what =
+            format!("claims a record of {claimed} bytes in a file of {length}: it is truncated");
+        return Err(format(path, Reason::truncated(what)));
+    }
+    Ok(header)
+}
+
+fn unreadable(path: &Path, error: las::Error) -> PointsError {
+    let cut = |error: &io::Error| error.kind() == io::ErrorKind::UnexpectedEof;
+    let what = format!("is not a readable LAS file: {error}");
+    format(
+        path,
+        match error {
+            las::Error::Io(error) if cut(&error) => {
+                Reason::truncated("ends inside its records: it is truncated")
+            }
+            _ => Reason::other(what),
+        },
+    )
+}

@@ -1,0 +1,81 @@
+//! Readers of the formats of points.
+
+mod columns;
+pub(super) mod content;
+#[cfg(feature = "las")]
+mod crs;
+mod dialect;
+mod extended;
+mod header;
+#[cfg(feature = "las")]
+pub(super) mod las;
+#[cfg(feature = "las")]
+mod laz;
+mod lines;
+pub(super) mod npy;
+pub(super) mod obj;
+pub(super) mod off;
+pub(super) mod pcd;
+pub(super) mod ply;
+mod rows;
+pub(super) mod stl;
+mod text;
+pub(super) mod vtk;
+pub(super) mod xyz;
+
+pub(super) use columns::COLUMNS;
+use columns::RADIUS;
+pub use columns::{Columns, UnknownColumns};
+
+use std::path::Path;
+
+use walpha_base::shown::shown;
+use walpha_check::meshes::MeshError;
+
+use super::CellCount;
+use super::{Points, PointsError};
+use walpha_volume::Reason;
+
+/// The error for a file of points.
+pub(super) fn format(path: &Path, reason: Reason) -> PointsError {
+    PointsError::Format { path: path.into(), reason }
+}
+
+/// The error for a mesh that the checker's reader refuses.
+fn mesh_error(path: &Path, error: &MeshError) -> PointsError {
+    let advice = error.advice().unwrap_or("write the file again").to_owned();
+    format(path, Reason::content(error.to_string(), advice))
+}
+
+/// The error for a file whose cells are no simplices that the checker judges.
+pub(super) fn no_complex(path: &Path) -> PointsError {
+    let reason = Reason::unsupported(
+        "its cells cannot be read as a complex",
+        "give a complex as .json or .npz, or a mesh of tetrahedra as .vtu, .vtk or .ply (docs/cross-checking.md)",
+    );
+    format(path, reason)
+}
+
+/// Sets the weights to the squares of radii, unless the file has weights.
+fn take_radii(
+    path: &Path,
+    points: &mut Points,
+    radii: Option<Vec<f64>>,
+) -> Result<(), PointsError> {
+    let Some(radii) = radii else { return Ok(()) };
+    if points.weights.is_some() {
+        tracing::warn!("{} has weights and radii: the weights are taken", shown(path));
+        return Ok(());
+    }
+    let wrong = |radius: &f64| !(*radius >= 0.0 && (radius * radius).is_finite());
+    if let Some(row) = radii.iter().position(wrong) {
+        let radius = radii[row];
+        let what = format!(
+            "row {row}: radius is {radius}, and must be from 0 up, with a square that is finite"
+        );
+        return Err(format(path, Reason::value(what)));
+    }
+    points.weights = Some(radii.iter().map(|radius| radius * radius).collect());
+    points.of_radii = true;
+    Ok(())
+}

@@ -1,0 +1,224 @@
+use std::io::Read;
+use std::path::Path;
+
+use walpha_base::Monitor;
+use walpha_base::advice::{Setting, advice};
+use walpha_base::npy::Header;
+
+use super::columns::{RADIUS, VALUE, WEIGHT};
+use super::{Columns, Points, PointsError, format, take_radii};
+use walpha_volume::{Dtype, Element as _, Endian, NpyFile, OpenFile, Reason, npy_element};
+
+/// Whether an array lists points: its elements have fields, or it has two axes.
+pub(crate) fn holds_points(file: &OpenFile) -> Result<bool, PointsError> {
+    Ok(match fields_of(file)? {
+        // One of three axes is a volume, of which a field is asked for.
+        Some(header) => header.shape.len() != 3,
+        None => NpyFile::open(file)?.shape.len() == 2,
+    })
+}
+
+/// Reads an array of two axes, whose columns are those given, or else x, y, z and perhaps a value; or an array whose
+/// elements have fields of these names.
+pub(crate) fn read(file: &OpenFile, columns: Option<&Columns>) -> Result<Points, PointsError> {
+    match fields_of(file)? {
+        Some(header) => structured(file, &header, columns),
+        None => plain(file, columns),
+    }
+}
+
+/// The header of an array whose elements have fields.
+fn fields_of(file: &OpenFile) -> Result<Option<Header>, PointsError> {
+    // What is wrong with a header says the reader of arrays.
+    let header = Header::read(&mut file.reader()?).ok();
+    Ok(header.filter(|header| header.descr.starts_with('[')))
+}
+
+fn plain(file: &OpenFile, columns: Option<&Columns>) -> Result<Points, PointsError> {
+    /// Rows from which columns without names are guessed, as in text.
+    const ROWS: usize = 100;
+    let path = file.path();
+    let file = NpyFile::open(file)?;
+    let &[rows, width] = file.shape.as_slice() else {
+        let what =
+            format!("is an array of shape {:?}, and points are rows of two axes", file.shape);
+        return Err(format(path, Reason::content(what, "save a.reshape(-1, 3)")));
+    };
+    let (fortran, rows, width) = (file.fortran, rows as usize, width as usize);
+    let dtype = file.dtype;
+    let numbers: Vec<f64> = file.values(path, &Monitor::noop())?;
+    let at = |row: usize, column: usize| {
+        numbers[if fortran { column * rows + row } else { row * width + column }]
+    };
+    if rows == 0 {
+        return Ok(Points::default());
+    }
+    let columns = if let Some(columns) = columns {
+        columns.clone()
+    } else {
+        let row = |row| (0..width).map(|column| at(row, column)).collect();
+        let first: Vec<Vec<f64>> = (0..rows.min(ROWS)).map(row).collect();
+        Columns::guess(path, &first).map_err(|reason| format(path, reason))?
+    };
+    if columns.len() != width {
+        return Err(format(path, wrong_width(width, columns.len())));
+    }
+    points(path, rows, &columns, |column| {
+        let numbers: Vec<f64> = (0..rows).map(|row| at(row, column)).collect();
+        check_integers(path, dtype, &numbers)?;
+        Ok(numbers)
+    })
+}
+
+/// Refuses integers that may be others than the doubles nearest to them.
+fn check_integers(path: &Path, dtype: Dtype, numbers: &[f64]) -> Result<(), PointsError> {
+    /// All smaller ones are doubles.
+    const LEAST: f64 = (1u64 << f64::MANTISSA_DIGITS) as f64;
+    let wrong = numbers.iter().position(|number| number.abs() >= LEAST);
+    let Some(row) = wrong.filter(|_| matches!(dtype, Dtype::I64 | Dtype::U64)) else {
+        return Ok(());
+    };
+    let what =
+        format!("row {row}: an integer near {} may be none that a double holds", numbers[row]);
+    let advice = "subtract an offset before it is saved, or round on purpose, by a.astype('f8')";
+    Err(format(path, Reason::content(what, advice)))
+}
+
+/// The error for columns that are named, and are not as many as there are.
+fn wrong_width(found: usize, named: usize) -> Reason {
+    Reason::choice(
+        Setting::Columns,
+        format!("has {found} columns, but {named} were named"),
+        advice!["name each with ", Setting::Columns],
+    )
+}
+
+/// Points whose columns are read one by one.
+fn points(
+    path: &Path,
+    rows: usize,
+    Columns(columns): &Columns,
+    read: impl Fn(usize) -> Result<Vec<f64>, PointsError>,
+) -> Result<Points, PointsError> {
+    let column = |place| columns.iter().position(|&column| column == Some(place));
+    let read = |place| column(place).map(&read).transpose();
+    let axes = [read(0)?, read(1)?, read(2)?];
+    let axis = |axis: usize, row: usize| axes[axis].as_ref().map_or(0.0, |numbers| numbers[row]);
+    let mut points = Points {
+        positions: (0..rows).map(|row| [axis(0, row), axis(1, row), axis(2, row)]).collect(),
+        weights: read(WEIGHT)?,
+        values: read(VALUE)?,
+        ..Points::default()
+    };
+    take_radii(path, &mut points, read(RADIUS)?)?;
+    Ok(points)
+}
+
+/// A field of the elements of a structured array, or one of its numbers, if it has several.
+struct Field<'a> {
+    name: &'a str,
+    /// Its type, unless it is not a number.
+    kind: Option<(Dtype, Endian)>,
+    /// Where it begins in an element, in bytes.
+    offset: usize,
+}
+
+fn structured(
+    file: &OpenFile,
+    header: &Header,
+    columns: Option<&Columns>,
+) -> Result<Points, PointsError> {
+    let path = file.path();
+    let Some((fields, size)) = fields(&header.descr).filter(|(_, size)| *size > 0) else {
+        let what = format!("has elements of the type {}], which is not understood", header.descr);
+        return Err(format(
+            path,
+            Reason::unsupported(what, "save x, y and z as one array of floats"),
+        ));
+    };
+    let count = header.shape.iter().fold(1u64, |product, &n| product.saturating_mul(n));
+    let (needed, found) =
+        (count.saturating_mul(size as u64), file.length().saturating_sub(header.length));
+    if needed != found {
+        let claim = format!("an array of shape {:?}, {size} bytes each", header.shape);
+        return Err(format(path, Reason::Length { claim, needed, found, bound: "" }));
+    }
+    let names: Vec<&str> = fields.iter().map(|field| field.name).collect();
+    let columns = match columns {
+        Some(columns) if columns.len() == fields.len() => columns.clone(),
+        Some(columns) => return Err(format(path, wrong_width(fields.len(), columns.len()))),
+        None => Columns::named(&names)
+            .map_err(|error| format(path, Reason::content(error.to_string(), error.advice())))?,
+    };
+    let mut bytes = Vec::new();
+    let mut reader = file.reader_at(header.length)?;
+    walpha_base::memory::try_reserve(&mut bytes, found as usize, || "an array of points".into())?;
+    reader.read_to_end(&mut bytes).map_err(walpha_volume::io_error(path))?;
+    points(path, count as usize, &columns, |column| {
+        let Field { name, kind, offset } = fields[column];
+        let Some((dtype, endian)) = kind else {
+            let what = format!("has a field {name} of a type that is not read");
+            return Err(format(path, Reason::unsupported(what, "save it as f4 or f8")));
+        };
+        let elements = bytes.chunks_exact(size);
+        let own: Vec<u8> =
+            elements.flat_map(|element| &element[offset..offset + dtype.size()]).copied().collect();
+        let mut numbers = vec![0.0; count as usize];
+        f64::decode(&own, dtype, endian, &mut numbers);
+        check_integers(path, dtype, &numbers)?;
+        Ok(numbers)
+    })
+}
+
+/// The fields of a structured type such as `[('x', '<f4'), ('normal', '<f4', (3,))`, and the bytes of an element.
+fn fields(descr: &str) -> Option<(Vec<Field<'_>>, usize)> {
+    let (mut fields, mut offset) = (Vec::new(), 0usize);
+    let mut rest = descr.strip_prefix('[')?.trim();
+    while !rest.is_empty() {
+        let (name, behind) = quoted(rest.strip_prefix('(')?)?;
+        let (kind, behind) = quoted(behind.trim_start().strip_prefix(',')?.trim_start())?;
+        // A shape, as (3,), or nothing.
+        let (shape, behind) = behind.split_once(')')?;
+        let shape = shape.trim_start_matches(',').trim_start();
+        let (shape, behind) = match shape.strip_prefix('(') {
+            Some(shape) => (shape, behind.trim_start().strip_prefix(')')?),
+            None => (shape, behind),
+        };
+        let axes = shape.split(',').map(str::trim).filter(|axis| !axis.is_empty());
+        let count = axes
+            .map(|axis| axis.parse::<usize>().ok())
+            .try_fold(1usize, |product, axis| product.checked_mul(axis?))?;
+        let bytes = match kind.as_bytes() {
+            [_, b'U', ..] => kind[2..].parse::<usize>().ok()?.checked_mul(4)?,
+            [_, _, ..] => kind.get(2..)?.parse().ok()?,
+            _ => return None,
+        };
+        if count > 1 << 10 || bytes > 1 << 20 {
+            return None;
+        }
+        let place = count == 3 && AXES.iter().any(|known| known.eq_ignore_ascii_case(name));
+        for k in 0..count {
+            let name = if place {
+                ["x", "y", "z"][k]
+            } else if count > 1 {
+                ""
+            } else {
+                name
+            };
+            let kind = npy_element(kind).map(|(dtype, endian, _)| (dtype, endian));
+            fields.push(Field { name, kind, offset });
+            offset += bytes;
+        }
+        rest = behind.trim_start_matches([' ', ',']);
+    }
+    Some((fields, offset))
+}
+
+/// Names of fields of three numbers that are x, y and z.
+const AXES: [&str; 6] = ["xyz", "pos", "position", "points", "coordinates", "vertex"];
+
+/// A text in quotes, and what follows it.
+fn quoted(text: &str) -> Option<(&str, &str)> {
+    let quote = text.chars().next().filter(|quote| ['\'', '"'].contains(quote))?;
+    text[1..].split_once(quote)
+}

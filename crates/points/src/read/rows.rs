@@ -1,0 +1,146 @@
+use std::path::Path;
+
+use super::dialect::{PLAINLY, number, without_marks};
+use super::{COLUMNS, Columns, Points, PointsError, RADIUS, format, take_radii};
+use walpha_volume::Reason;
+
+/// Number of rows from which columns without names are guessed.
+const MAX_PENDING: usize = 100;
+
+/// Turns rows of text into points.
+pub(super) struct TextRows<'a> {
+    path: &'a Path,
+    columns: Option<Columns>,
+    /// The first lines, while their columns are not known.
+    pending: Vec<(u64, Vec<String>)>,
+    /// Whether the decimal mark is a comma.
+    pub decimal_comma: bool,
+    /// Whether rows may have more columns than are known.
+    pub open_ended: bool,
+    /// The columns without names, if their number matches.
+    pub default_columns: Option<Columns>,
+    points: Points,
+    radii: Option<Vec<f64>>,
+}
+
+impl<'a> TextRows<'a> {
+    pub(super) fn new(path: &'a Path, columns: Option<Columns>) -> Self {
+        Self {
+            path,
+            columns,
+            pending: Vec::new(),
+            decimal_comma: false,
+            open_ended: false,
+            default_columns: None,
+            points: Points::default(),
+            radii: None,
+        }
+    }
+
+    /// Adds the words of a line. Empty ones at its end are those behind a separator too many.
+    pub(super) fn push(&mut self, line: u64, words: &[&str]) -> Result<(), PointsError> {
+        let expected = match (&self.columns, self.pending.first()) {
+            (Some(columns), _) => columns.len(),
+            (None, Some((_, first))) => first.len(),
+            (None, None) => words.iter().rposition(|word| !word.is_empty()).map_or(0, |k| k + 1),
+        };
+        let spare = words.len().saturating_sub(expected);
+        let spare = words.iter().rev().take(spare).take_while(|word| word.is_empty()).count();
+        let words = &words[..words.len() - spare];
+        if self.columns.is_some() {
+            return self.add(line, words);
+        }
+        self.check_width(line, words.len(), expected)?;
+        self.pending.push((line, words.iter().map(|&word| word.into()).collect()));
+        if self.pending.len() < MAX_PENDING { Ok(()) } else { self.flush() }
+    }
+
+    /// All points.
+    pub(super) fn finish(mut self) -> Result<Points, PointsError> {
+        self.flush()?;
+        take_radii(self.path, &mut self.points, self.radii)?;
+        Ok(self.points)
+    }
+
+    /// Adds the pending lines.
+    fn flush(&mut self) -> Result<(), PointsError> {
+        let pending = std::mem::take(&mut self.pending);
+        if pending.is_empty() {
+            return Ok(());
+        }
+        let mut rows = Vec::new();
+        for (line, words) in &pending {
+            let number = |(k, word): (usize, &String)| {
+                self.number(*line, COLUMNS.get(k).copied().unwrap_or("behind"), word)
+            };
+            rows.push(words.iter().enumerate().map(number).collect::<Result<Vec<_>, _>>()?);
+        }
+        let width = rows.first().map(Vec::len);
+        let defaults = self.default_columns.take_if(|columns| width == Some(columns.len()));
+        self.columns = Some(match defaults {
+            Some(columns) => columns,
+            None => Columns::guess(self.path, &rows).map_err(|reason| format(self.path, reason))?,
+        });
+        let mut pending = pending.into_iter();
+        pending.try_for_each(|(line, words)| {
+            self.add(line, &words.iter().map(String::as_str).collect::<Vec<_>>())
+        })
+    }
+
+    fn add(&mut self, line: u64, words: &[&str]) -> Result<(), PointsError> {
+        let Some(Columns(columns)) = self.columns.take() else { return Ok(()) };
+        self.check_width(line, words.len(), columns.len())?;
+        let mut position = [0.0; 3];
+        for (word, column) in words.iter().zip(&columns) {
+            let Some(column) = *column else { continue };
+            let number = self.number(line, COLUMNS[column], word)?;
+            match column {
+                3 => self.points.weights.get_or_insert_default().push(number),
+                4 => self.points.values.get_or_insert_default().push(number),
+                RADIUS => self.radii.get_or_insert_default().push(number),
+                axis => position[axis] = number,
+            }
+        }
+        self.points.positions.push(position);
+        self.columns = Some(Columns(columns));
+        Ok(())
+    }
+
+    fn check_width(&self, line: u64, found: usize, expected: usize) -> Result<(), PointsError> {
+        if found == expected || found > expected && self.open_ended {
+            return Ok(());
+        }
+        let reason = Reason::value(format!(
+            "line {line} has {found} columns, but {expected} were named or are in earlier lines"
+        ));
+        Err(format(self.path, reason))
+    }
+
+    fn number(&self, line: u64, name: &str, word: &str) -> Result<f64, PointsError> {
+        let finite = number(word, self.decimal_comma).filter(|number| number.is_finite());
+        finite.ok_or_else(|| {
+            let reason = if is_missing(word) {
+                let what = format!("line {line}, column {name}: there is no number ({word:?})");
+                Reason::content(what, "leave the line out, or put a number there")
+            } else if let Some(without) = without_marks(word) {
+                let what = format!(
+                    "line {line}, column {name}: {word:?} is not a number, unless its marks group thousands \
+                     ({without})"
+                );
+                Reason::content(what, PLAINLY)
+            } else {
+                Reason::value(format!(
+                    "line {line}, column {name}: {word:?} is not a finite number"
+                ))
+            };
+            format(self.path, reason)
+        })
+    }
+}
+
+/// Whether a word says that there is no number.
+pub(super) fn is_missing(word: &str) -> bool {
+    ["", "nan", "na", "n/a", "null", "none", "-"]
+        .iter()
+        .any(|known| known.eq_ignore_ascii_case(word))
+}

@@ -1,0 +1,234 @@
+use std::path::Path;
+
+use walpha_base::advice::{Setting, advice};
+use walpha_base::shown::shown;
+
+use super::dialect::{Dialect, number};
+use super::extended::Comment;
+use super::header::Header;
+use super::lines::{Frame, Miscount, Numbered, count, frames, is_comment};
+use super::rows::TextRows;
+use super::text::text;
+use super::{Columns, Points, PointsError, format};
+use crate::{Cell, ModelMetadata, PointOptions};
+use walpha_volume::{Coordinates, OpenFile, Reason};
+
+/// How lines of numbers are laid out, unless they have names.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum TextLayout {
+    /// A table, whose fields may be empty.
+    Table,
+    /// A first line with only a count begins chemistry's XYZ: a comment line, whose form extended XYZ defines,
+    /// then for each atom an element, its coordinates, and possibly more columns.
+    Atoms,
+    /// As `Atoms`, but six columns are a position with a normal or colour.
+    Vectors,
+    /// PTS: a count may come first; seven columns are x y z, the intensity and a colour.
+    Scan,
+    /// PWN: a count, the points, and then as many normals.
+    PointsThenNormals,
+}
+
+impl TextLayout {
+    /// The columns without names, unless they are guessed from the numbers in them.
+    fn default_columns(self) -> Option<Columns> {
+        let axes = [Some(0), Some(1), Some(2)];
+        match self {
+            Self::Table | Self::Atoms | Self::PointsThenNormals => None,
+            Self::Vectors => Some(Columns([axes, [None; 3]].concat())),
+            Self::Scan => Some(Columns([&axes[..], &[Some(4)], &[None; 3]].concat())),
+        }
+    }
+
+    /// Whether counts may come with a line of comment behind them.
+    fn has_comments(self) -> bool {
+        matches!(self, Self::Atoms | Self::Vectors)
+    }
+}
+
+/// Reads lines of numbers: a table with or without names, atoms, or scans with counts. Text says its encoding itself, and
+/// [`Dialect`] what separates fields. Lines that begin with `#` or `/` are comments. Of several frames, one is read.
+pub(crate) fn read(
+    file: &OpenFile,
+    options: &PointOptions,
+    layout: TextLayout,
+) -> Result<(Points, ModelMetadata), PointsError> {
+    let path = file.path();
+    let text = text(file)?;
+    let mut lines = Numbered::new(&text);
+    let Header { columns, unit } = Header::read(path, &mut lines, options.columns.as_ref())?;
+    let metadata =
+        ModelMetadata::default().coordinates(Coordinates { unit, ..Coordinates::default() });
+    if lines.is_at_end() {
+        return Err(format(path, Reason::content("has no rows of numbers", "name another file")));
+    }
+    if lines.contents().next().is_none_or(|(_, line)| count(line).is_none()) {
+        choose(path, 1, options.frame)?;
+        return Ok((rows(path, &lines, columns, layout, false)?, metadata));
+    }
+    if layout == TextLayout::PointsThenNormals {
+        choose(path, 1, options.frame)?;
+        return Ok((points_then_normals(path, lines)?, metadata));
+    }
+    let frames = counted(path, &lines, layout)?;
+    let frame = &frames[choose(path, frames.len(), options.frame)?];
+    let (points, cell) = of_frame(path, frame, columns, layout)?;
+    Ok((points, metadata.cell(cell)))
+}
+
+/// The index of the frame that is asked for.
+fn choose(path: &Path, count: usize, asked: Option<u64>) -> Result<usize, PointsError> {
+    let last = count - 1;
+    let several = match asked {
+        None if count == 1 => return Ok(0),
+        Some(frame) if frame <= last as u64 => return Ok(frame as usize),
+        Some(frame) => format!("has no frame {frame}: it holds {count}"),
+        None => format!("holds {count} frames: scans, or steps of a trajectory"),
+    };
+    let advice = advice!["choose one with ", Setting::Frame, format!(", from 0 to {last}")];
+    Err(format(path, Reason::choice(Setting::Frame, several, advice)))
+}
+
+/// The frames of lines that begin with a count. In chemistry's XYZ a line of comment follows it; where the numbers of rows
+/// tell that none does, points follow.
+fn counted<'a>(
+    path: &Path,
+    lines: &Numbered<'a>,
+    layout: TextLayout,
+) -> Result<Vec<Frame<'a>>, PointsError> {
+    let points = |miscount: Miscount| miscount.error(path, "points");
+    let without = frames(lines.clone(), false);
+    if !layout.has_comments() {
+        return without.map_err(points);
+    }
+    match (frames(lines.clone(), true), without) {
+        (Ok(frames), _) if is_row_or_comment(&frames) => {
+            let (count, comment) = (frames[0].rows.contents().count(), frames[0].comment);
+            let what = format!(
+                "counts {count} points, and {:?} behind that may be a comment or one more of them",
+                comment.unwrap_or_default().trim()
+            );
+            let advice = "correct the count, or write words into the comment";
+            Err(format(path, Reason::content(what, advice)))
+        }
+        (Ok(frames), _) | (_, Ok(frames)) => Ok(frames),
+        (Err(atoms), Err(miscount)) => {
+            let second = lines.clone().nth(1).map(|(_, line)| line).unwrap_or_default();
+            let mut words = second.split_whitespace();
+            let is_row =
+                words.clone().count() > 1 && words.all(|word| number(word, true).is_some());
+            Err(if is_row { points(miscount) } else { atoms.error(path, "atoms") })
+        }
+    }
+}
+
+/// Whether the comment of a single frame looks like its rows: numbers, and as many of them.
+fn is_row_or_comment(frames: &[Frame<'_>]) -> bool {
+    let [Frame { rows, comment: Some(comment) }] = frames else { return false };
+    let numbers = |line: &str| {
+        let words = line.split_whitespace();
+        let are_numbers = words.clone().all(|word| number(word, true).is_some());
+        are_numbers.then(|| words.count()).filter(|count| *count > 1)
+    };
+    let own = numbers(comment);
+    own.is_some() && rows.contents().next().is_some_and(|(_, row)| numbers(row) == own)
+}
+
+/// The points of a frame, and the cell that its comment states.
+fn of_frame(
+    path: &Path,
+    frame: &Frame<'_>,
+    columns: Option<Columns>,
+    layout: TextLayout,
+) -> Result<(Points, Option<Cell>), PointsError> {
+    let Comment { columns: stated, cell } = match frame.comment {
+        Some(comment) => Comment::read(path, comment)?,
+        None => Comment::default(),
+    };
+    let columns = columns.or(stated);
+    let has_comment = frame.comment.is_some();
+    let atoms = columns.is_none() && layout.has_comments() && are_atoms(&frame.rows, has_comment);
+    // Points right behind their count are laid out as scanners do.
+    let is_scan = layout == TextLayout::Atoms && !has_comment;
+    let layout = if is_scan { TextLayout::Scan } else { layout };
+    let columns = if atoms {
+        let first = frame.rows.contents().next();
+        if first.is_some_and(|(_, row)| row.split_whitespace().count() > 4) {
+            tracing::warn!(
+                "{}: what follows z is passed over, as the comment line has no Properties=… that names it",
+                shown(path)
+            );
+        }
+        Some(Columns(vec![None, Some(0), Some(1), Some(2)]))
+    } else {
+        columns
+    };
+    Ok((rows(path, &frame.rows, columns, layout, atoms)?, cell))
+}
+
+/// Whether rows begin with elements before x, y and z, or with atomic numbers, if these are looked for.
+fn are_atoms(rows: &Numbered<'_>, by_number: bool) -> bool {
+    let first = |row: &'_ str| row.split_whitespace().next().map(str::to_owned).unwrap_or_default();
+    let is_name = |word: &str| number(word, true).is_none();
+    let is_atomic_number =
+        |word: &str| word.parse().is_ok_and(|number: u8| (1..=118).contains(&number));
+    let has_four = |row: &str| row.split_whitespace().count() > 3;
+    rows.contents().next().is_some_and(|(_, row)| is_name(&first(row)))
+        || by_number
+            && rows.contents().all(|(_, row)| has_four(row) && is_atomic_number(&first(row)))
+}
+
+/// The points of rows.
+fn rows(
+    path: &Path,
+    lines: &Numbered<'_>,
+    columns: Option<Columns>,
+    layout: TextLayout,
+    open_ended: bool,
+) -> Result<Points, PointsError> {
+    let width = columns.as_ref().map(Columns::len);
+    let dialect = Dialect::of(lines, layout == TextLayout::Table, width)
+        .map_err(|reason| format(path, reason))?;
+    if dialect.decimal_comma && !dialect.has_semicolons() {
+        tracing::warn!("{}: the commas of its numbers mark decimals", shown(path));
+    }
+    let mut rows = TextRows::new(path, columns);
+    rows.decimal_comma = dialect.decimal_comma;
+    rows.default_columns = layout.default_columns();
+    rows.open_ended = open_ended;
+    let mut labelled = 0;
+    for (number, line) in lines.contents() {
+        labelled += usize::from(is_comment(line));
+        rows.push(number, &dialect.fields(line))?;
+    }
+    if labelled > 0 {
+        tracing::warn!(
+            "{}: {labelled} lines that begin as comments do have a field for each name, and numbers for x, y and z: they are \
+             taken for rows",
+            shown(path)
+        );
+    }
+    rows.finish()
+}
+
+/// Reads a count, as many points, and as many normals, if any, which are skipped.
+fn points_then_normals(path: &Path, mut lines: Numbered<'_>) -> Result<Points, PointsError> {
+    let first = lines.next_content();
+    let count = first.and_then(|(_, line)| count(line)).unwrap_or_default();
+    let columns = Columns(vec![Some(0), Some(1), Some(2)]);
+    let layout = TextLayout::PointsThenNormals;
+    let mut points = rows(path, &lines, Some(columns), layout, false)?;
+    let found = points.len() as u64;
+    if found != count && Some(found) != count.checked_mul(2) {
+        let what =
+            format!("claims {count} points and perhaps as many normals, but has {found} lines");
+        let reason = if found < count {
+            Reason::claims_more(format!("{what}: it is truncated, or the count is wrong"))
+        } else {
+            Reason::content(what, "correct the count")
+        };
+        return Err(format(path, reason));
+    }
+    points.positions.truncate(count as usize);
+    Ok(points)
+}

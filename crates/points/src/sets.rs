@@ -1,0 +1,122 @@
+use std::collections::HashSet;
+
+use super::PointsError;
+use walpha_shape::LengthsError;
+
+/// Points with their optional data: columns of equal length.
+///
+/// ```
+/// use walpha_points::Points;
+///
+/// let points = Points::new(vec![[0.0; 3], [1.0, 0.0, 0.0]]).with_values(vec![10.0, 20.0])?;
+/// assert!(points.with_weights(vec![0.5]).is_err());
+/// # Ok::<(), walpha_points::PointsError>(())
+/// ```
+#[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct Points {
+    /// Coordinates (x, y, z).
+    pub positions: Vec<[f64; 3]>,
+    /// Values F: original gray levels, or a column of the input.
+    pub values: Option<Vec<f64>>,
+    /// Differences L, of a voxel or of scattered values.
+    pub differences: Option<Vec<f64>>,
+    /// Weights ω of the input, as squared lengths.
+    pub weights: Option<Vec<f64>>,
+    /// Whether the weights are squares of radii, which the input has instead of weights.
+    pub of_radii: bool,
+}
+
+impl Points {
+    /// Points at these positions (x, y, z), without other data.
+    pub fn new(positions: Vec<[f64; 3]>) -> Self {
+        Self { positions, ..Self::default() }
+    }
+
+    /// The same points with values F.
+    ///
+    /// # Errors
+    /// [`PointsError::Lengths`] unless there is one for each point.
+    pub fn with_values(self, values: Vec<f64>) -> Result<Self, PointsError> {
+        let values = column("values", values, self.len())?;
+        Ok(Self { values: Some(values), ..self })
+    }
+
+    /// The same points with differences L.
+    ///
+    /// # Errors
+    /// As [`with_values`](Self::with_values).
+    pub fn with_differences(self, differences: Vec<f64>) -> Result<Self, PointsError> {
+        let differences = column("differences", differences, self.len())?;
+        Ok(Self { differences: Some(differences), ..self })
+    }
+
+    /// The same points with weights ω, squared lengths.
+    ///
+    /// # Errors
+    /// As [`with_values`](Self::with_values).
+    pub fn with_weights(self, weights: Vec<f64>) -> Result<Self, PointsError> {
+        let weights = column("weights", weights, self.len())?;
+        Ok(Self { weights: Some(weights), ..self })
+    }
+
+    /// Keeps the first point in each cube of a grid of this side, in the order of the points. The grid starts at the
+    /// least coordinates. O(n).
+    ///
+    /// # Errors
+    /// A side that is not a finite number above 0.
+    pub fn thin(&mut self, side: f64) -> Result<(), PointsError> {
+        if !(side > 0.0 && side.is_finite()) {
+            let (what, need) = ("cubes of side", "a length above 0");
+            return Err(PointsError::Number { what, given: side, need });
+        }
+        let [least, _] = bounding_box(&self.positions);
+        // Floats, as a side may be so small that the number of a cube fits no integer.
+        let cube = |place: &[f64; 3]| {
+            [0, 1, 2].map(|axis| ((place[axis] - least[axis]) / side).floor().to_bits())
+        };
+        let mut taken = HashSet::new();
+        let kept: Vec<bool> =
+            self.positions.iter().map(|place| taken.insert(cube(place))).collect();
+        self.keep(&kept);
+        Ok(())
+    }
+
+    /// Keeps the points that are marked.
+    pub(super) fn keep(&mut self, kept: &[bool]) {
+        let mut columns = [&mut self.values, &mut self.differences, &mut self.weights];
+        for column in columns.iter_mut().filter_map(|column| column.as_mut()) {
+            let mut kept = kept.iter();
+            column.retain(|_| kept.next() == Some(&true));
+        }
+        let mut kept = kept.iter();
+        self.positions.retain(|_| kept.next() == Some(&true));
+    }
+
+    /// The number of points.
+    pub fn len(&self) -> usize {
+        self.positions.len()
+    }
+
+    /// Whether there are no points.
+    pub fn is_empty(&self) -> bool {
+        self.positions.is_empty()
+    }
+}
+
+/// Returns the column if it has an entry for each point.
+fn column(name: &'static str, column: Vec<f64>, points: usize) -> Result<Vec<f64>, PointsError> {
+    LengthsError::unless_equal(name, column.len(), points)?;
+    Ok(column)
+}
+
+/// The least and the greatest corner of the box around some points, infinite without any. O(n).
+pub fn bounding_box(positions: &[[f64; 3]]) -> [[f64; 3]; 2] {
+    let none = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
+    positions.iter().fold(none, |[least, greatest], place| {
+        [
+            [0, 1, 2].map(|axis| least[axis].min(place[axis])),
+            [0, 1, 2].map(|axis| greatest[axis].max(place[axis])),
+        ]
+    })
+}
