@@ -15,7 +15,8 @@ use crate::points::{Cell, CellCount, ModelMetadata, Points};
 use crate::progress::Stage;
 use crate::volume::{self, Dtype, Nan, OpenVolume, ReadOptions, Reason, SampleStats, Series};
 use crate::{Alpha, Coordinates, Dims, Frame, LengthUnit, Units, VolumeError};
-use walpha_points::internal::{cells_of_file, read_model_file};
+use walpha_points::internal::cells_of_file;
+use walpha_points::read_model_file;
 
 use super::args::InputArgs;
 use super::check::{mesh_format, read_mesh};

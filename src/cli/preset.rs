@@ -158,6 +158,6 @@ mod tests {
 
     #[test]
     fn the_paper_of_the_command_is_that_of_the_library() {
-        assert_eq!(recipe_of("paper").0, Recipe::paper());
+        assert_eq!(recipe_of("paper").0, Recipe::paper().classifier(crate::shape::CGAL));
     }
 }

@@ -3,12 +3,11 @@
 use std::num::NonZeroUsize;
 
 use serde::Deserialize;
-use walpha::haar::Tolerance;
-use walpha::labels::LabelChoice;
-use walpha::pipeline::{AlphaRule, Choice};
-use walpha::points::Columns;
-use walpha::volume::ReadOptions;
-use walpha::{GrayRange, HaarOptions, Recipe, Selection, SelectionRule, Weighting};
+use walpha_model::pipeline::{AlphaRule, Choice};
+use walpha_model::{LabelChoice, Recipe};
+use walpha_points::haar::{HaarOptions, Tolerance};
+use walpha_points::{Columns, Selection, SelectionRule, Weighting};
+use walpha_volume::{GrayRange, ReadOptions};
 
 /// What a user chose. Absent options have the defaults of the command.
 #[derive(Clone, Debug, Default, Deserialize, PartialEq)]

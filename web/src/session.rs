@@ -3,21 +3,21 @@
 use std::path::Path;
 
 use serde_json::json;
-use walpha::export::{EmptyShape, ExportOptions, Format};
-use walpha::ladder::{Filtration, Span};
-use walpha::pipeline::{
-    Input, Model, Origin, Parameter, ParameterOrigin, PipelineError, Values, Weighed,
+use walpha_model::Recipe;
+use walpha_model::export::{EmptyShape, ExportOptions, Format};
+use walpha_model::pipeline::{
+    Input, Model, Opened as OpenInput, Origin, Parameter, ParameterOrigin, PipelineError, Values,
+    Weighed,
 };
-use walpha::points::{
-    ModelMetadata, Packing, PointOptions, PointWriter, SampleGrid, bounding_box, is_point_file,
-    read_model,
+use walpha_model::progress::{Listener, Monitor, Stage};
+use walpha_points::{
+    ModelMetadata, Packing, PointOptions, PointWriter, Points, PointsError, SampleGrid,
+    bounding_box, read_model_file,
 };
-use walpha::progress::{Listener, Monitor, Stage};
-use walpha::shape::{Betti, ByClass};
-use walpha::volume::{self, Hounsfield, Labels, OpenVolume, ReadOptions, SampleStats, Series};
-use walpha::{
-    Alpha, AlphaShape, Class, Dims, Points, PointsError, Recipe, Volume, VolumeError,
-    WeightedPoints,
+use walpha_shape::ladder::{Filtration, Span};
+use walpha_shape::{Alpha, AlphaShape, Betti, ByClass, Class, ShapeError, WeightedPoints};
+use walpha_volume::{
+    self as volume, Dims, Hounsfield, Labels, ReadOptions, SampleStats, Series, Volume, VolumeError,
 };
 
 use crate::answer::{Answer, Array};
@@ -182,7 +182,7 @@ macro_rules! failures {
     ($($error:ty: $advice:expr),+ $(,)?) => { $(
         impl From<$error> for Failure {
             fn from(error: $error) -> Self {
-                let advice: Option<walpha::advice::Advice> = $advice(&error);
+                let advice: Option<walpha_base::advice::Advice> = $advice(&error);
                 // The page's fields have the names of settings.
                 let next = advice.map(|advice| advice.with_names(|setting| format!("“{}”", setting.name())));
                 Self { why: with_causes(&error), next }
@@ -195,7 +195,7 @@ failures! {
     PipelineError: PipelineError::advice,
     PointsError: PointsError::advice,
     VolumeError: VolumeError::advice,
-    walpha::shape::ShapeError: walpha::shape::ShapeError::advice,
+    ShapeError: ShapeError::advice,
     volume::UnknownFormat: |error: &volume::UnknownFormat| Some(error.advice()),
 }
 
@@ -299,17 +299,17 @@ impl Session {
                 return Ok(Answer::of(json!({ "kind": "series", "series": series }), Vec::new()));
             }
         }
-        let is_sample = self.input.starts_with("sample:");
-        if !is_sample && is_point_file(input)? {
-            let of_points = PointOptions::default().columns(recipe.columns.clone());
-            let (points, metadata) = read_model(input, &of_points)?;
-            let answer = describe_points(&points, &metadata);
-            self.opened = Some(Opened::Points(points, metadata));
-            return Ok(answer);
-        }
-        let file = OpenVolume::open(input)?;
+        let file = match recipe.opened(input)? {
+            OpenInput::Volume(file) => file,
+            OpenInput::Made(points) => return Ok(self.keep(points, ModelMetadata::default())),
+            OpenInput::Points(file) => {
+                let of_points = PointOptions::default().columns(recipe.columns.clone());
+                let (points, metadata) = read_model_file(&file, &of_points)?;
+                return Ok(self.keep(points, metadata));
+            }
+        };
         // Before it is read, where the format says how large it is; samples are small.
-        if !is_sample
+        if !self.input.starts_with("sample:")
             && let Ok(source) = file.source(&recipe.read)
             && let Some(answer) = too_large(source.dims(), &recipe.read)
         {
@@ -325,6 +325,13 @@ impl Session {
         Ok(answer)
     }
 
+    /// Keeps points as the input, and describes them.
+    fn keep(&mut self, points: Points, metadata: ModelMetadata) -> Answer {
+        let answer = describe_points(&points, &metadata);
+        self.opened = Some(Opened::Points(points, metadata));
+        answer
+    }
+
     fn plane(&self, axis: usize, index: usize) -> Result<Answer, Failure> {
         let Some(Opened::Volume(volume)) = &self.opened else {
             return Err("points have no planes".to_owned().into());
@@ -335,7 +342,7 @@ impl Session {
         }
         // The array is [z, y, x].
         let samples = volume.samples();
-        let plane = samples.index_axis(walpha::ndarray::Axis(2 - axis), index);
+        let plane = samples.index_axis(ndarray::Axis(2 - axis), index);
         let (rows, columns) = plane.dim();
         let values = plane.iter().copied().collect();
         let head = json!({ "columns": columns, "rows": rows });

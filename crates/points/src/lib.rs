@@ -51,7 +51,7 @@ pub use formats::{FORMATS, PointFormat, PointWriter};
 pub use hard::{HARD_SETS, HardSet, hard};
 pub use mesh::{cells_of, read_complex};
 pub use model::{Cell, ModelMetadata, Packing, SampleGrid};
-pub use open::{PointOptions, is_point_file, read_model, read_points};
+pub use open::{PointOptions, is_point_file, read_model, read_model_file, read_points};
 pub use read::{Columns, UnknownColumns};
 pub use select::{Selection, SelectionRule, Units, points_at, select};
 pub use sets::{Points, bounding_box};
@@ -66,7 +66,6 @@ pub mod internal {
     pub use crate::haar::internal::{Bricks, Slabs};
     pub use crate::largest::{Budget, Counts, Cut, Search};
     pub use crate::mesh::{cells_of_file, read_complex_file};
-    pub use crate::open::read_model_file;
     pub use crate::select::{Asked, LEAST_GRAY, check_least};
     pub use crate::weighting::{Differences, Shares};
 }

@@ -3,7 +3,7 @@ use std::path::Path;
 use walpha_base::Monitor;
 
 use super::{PipelineError, Recipe};
-use walpha_points::internal::read_model_file;
+use walpha_points::read_model_file;
 use walpha_points::{ModelMetadata, Points, PointsError, Units, hard};
 use walpha_volume::{GrayRange, OpenFile, OpenVolume, Volume};
 
