@@ -27,8 +27,8 @@ linux=(x86_64-unknown-linux-gnu aarch64-unknown-linux-gnu)
 if [ "$host" = "${linux[1]}" ]; then linux=("${linux[1]}" "${linux[0]}"); fi
 windows=x86_64-pc-windows-gnu
 # Without GMP, CGAL needs no library that a system may lack. There is no CGAL for mingw: the native engine, without the paper.
-portable=(--no-default-features --features "cgal,cli,dicom,las,paper,render,zarr")
-rust_alone=(--no-default-features --features "cli,dicom,las,render,zarr")
+portable=(--no-default-features --features "cgal,dicom,las,paper,render,zarr")
+rust_alone=(--no-default-features --features "dicom,las,render,zarr")
 of_debian=(--features "dicom,las,zarr")
 SOURCE_DATE_EPOCH=$(git log -1 --format=%ct)
 export SOURCE_DATE_EPOCH TZ=UTC

@@ -34,7 +34,6 @@
 //! | `gmp` | yes | CGAL computes with GMP and MPFR where they are installed |
 //! | `render` | yes | pictures, charts and the interactive page: the module `render` |
 //! | `paper` | yes | `walpha reproduce`: the paper's figures and its table |
-//! | `cli` | yes | the command `walpha`; libraries leave it out |
 //! | `dicom` | no | DICOM series |
 //! | `las` | no | LAS and LAZ |
 //! | `zarr` | no | Zarr, versions 2 and 3, and OME-Zarr; builds the C libraries blosc and zstd |
@@ -48,7 +47,6 @@ pub use ndarray;
 
 #[cfg(feature = "cgal")]
 mod cgal;
-#[cfg(feature = "cli")]
 pub mod cli;
 #[cfg(feature = "paper")]
 pub mod reproduce;

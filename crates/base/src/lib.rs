@@ -26,7 +26,6 @@ pub mod monitor;
 #[cfg(feature = "near")]
 pub mod near;
 pub mod npy;
-#[cfg(any(test, feature = "random"))]
 #[doc(hidden)]
 pub mod random;
 mod setters;

@@ -25,7 +25,6 @@
 #![warn(missing_debug_implementations, unreachable_pub)]
 
 mod alpha_shape;
-#[cfg(feature = "ndarray")]
 mod arrays;
 mod betti;
 mod blocks;
@@ -53,7 +52,6 @@ mod voxels;
 mod winding;
 
 pub use alpha_shape::AlphaShape;
-#[cfg(feature = "ndarray")]
 pub use arrays::ArrayError;
 pub use betti::{Betti, BettiError};
 pub use components::NO_COMPONENT;

@@ -1,7 +1,6 @@
 //! Shapes of a torus: against copies in space, against homology by matrices, and by the laws that only a
 //! torus has; filtrations, too.
 
-#[cfg(feature = "cli")]
 mod command;
 mod oracle;
 
