@@ -4,8 +4,8 @@ use std::fmt::Write;
 
 use super::text::number;
 use super::{File, Finding, Item, Report, ShapeNumbers, Table, Verdict};
-use crate::render::base64;
 use crate::shape::ByClass;
+use base64::prelude::{BASE64_STANDARD, Engine};
 
 const STYLE: &str = include_str!("page.css");
 
@@ -177,7 +177,7 @@ fn section(html: &mut String, item: &Item, files: &[File]) {
              <figcaption>Tap the figure to open it large.</figcaption></figure>",
             escape(&file.name),
             escape(&item.title),
-            base64(&file.bytes)
+            BASE64_STANDARD.encode(&file.bytes)
         );
     }
     html.push_str("<div class=\"findings\">\n");

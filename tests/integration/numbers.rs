@@ -8,7 +8,7 @@ use walpha::ladder::Filtration;
 use walpha::pipeline::{AlphaRule, Choice, Goal, Parameter};
 use walpha::points::{ModelMetadata, Packing, PointWriter};
 use walpha::shape::{Balls, Engine, Outline, ShapeOptions, Torus, WeightedPoints};
-use walpha::triangulation::{DynamicTriangulation, PowerDiagram, triangulate};
+use walpha::triangulation::{PowerDiagram, triangulate};
 use walpha::volume::{Dims, Frame, GrayRange, LengthUnit, Volume};
 use walpha::{
     Alpha, HaarOptions, Points, Recipe, Selection, SelectionRule, Tolerance, Units, Weighting,
@@ -54,11 +54,6 @@ fn points_are_named() {
             }
             names(Filtration::new(points()), &[word], &what("filtration"));
             names(triangulate(positions, Some(weights)), &[word], &what("triangulation"));
-            names(
-                DynamicTriangulation::new(positions, Some(weights)).map(drop),
-                &[word],
-                &what("dynamic"),
-            );
             let unit = LengthUnit::default();
             names(Parameter::of_spacing(&points(), None, unit), &[word], &what("spacing"));
             for rule in [AlphaRule::Auto, AlphaRule::Connected, AlphaRule::Default] {
@@ -76,8 +71,6 @@ fn points_are_named() {
         let made = triangulate(&cloud(), None).unwrap();
         names(PowerDiagram::of(&made, Some(&weights)), &["point 7 has weight "], "power diagram");
         assert!(made.locate([0.5, wrong, 0.5]).is_none());
-        let mut dynamic = DynamicTriangulation::new(&cloud(), None).unwrap();
-        names(dynamic.insert(&positions, None).map(drop), &[place], "insert");
     }
 }
 

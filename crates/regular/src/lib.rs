@@ -33,7 +33,6 @@
 #![warn(missing_debug_implementations, unreachable_pub)]
 
 mod arrays;
-mod dynamic;
 mod error;
 mod flat;
 mod incremental;
@@ -53,7 +52,6 @@ mod triangulation;
 use rayon::prelude::*;
 use walpha_base::memory::asking;
 
-pub use dynamic::DynamicTriangulation;
 pub use error::{SitesError, TriangulationError};
 pub use locate::Location;
 pub use power_diagram::PowerDiagram;

@@ -26,7 +26,6 @@
 #![deny(unsafe_code)]
 #![warn(unreachable_pub)]
 
-mod base64;
 mod charts;
 mod colour;
 mod error;
@@ -53,7 +52,6 @@ pub use view::{Detail, Differences, Original, Page, Subject};
 
 // For the figures and the report of walpha: not covered by semantic versioning.
 #[doc(hidden)]
-pub use base64::base64;
 #[doc(hidden)]
 pub use figure::{ColourBar, Content, Drawing, Panel, Pen, Step};
 

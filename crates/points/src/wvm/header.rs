@@ -7,12 +7,8 @@ use crate::model::MODEL;
 use crate::{ModelMetadata, SampleGrid, Units};
 use walpha_volume::{Coordinates, Dims, Frame, GrayRange, Reason};
 
-/// The version without a recipe, written if there is none.
-const WITHOUT_RECIPE: u8 = 1;
-/// The version whose header ends with a recipe, written if 16 bits hold the length of the header.
-const WITH_RECIPE: u8 = 2;
-/// The version of longer headers, whose length has 64 bits. They end with a recipe, too: nothing else is that long.
-const WITH_LONG_RECIPE: u8 = 3;
+/// The version of the format.
+const VERSION: u8 = 1;
 
 /// Maximum number of points per byte of a layer, so that a reader's memory is proportional to the file.
 pub(super) const POINTS_PER_BYTE: u64 = 64;
@@ -143,15 +139,8 @@ impl Header {
         }
         let FieldWriter(fields) = out;
         // The length counts all of the header, itself included.
-        let whole = |of_length: usize| MODEL.len() + 1 + of_length + fields.len() + CHECKSUM;
-        let (version, length) = if let Ok(short) = u16::try_from(whole(size_of::<u16>())) {
-            let version = if self.recipe.is_some() { WITH_RECIPE } else { WITHOUT_RECIPE };
-            (version, short.to_le_bytes().to_vec())
-        } else {
-            let long = whole(size_of::<u64>()) as u64;
-            (WITH_LONG_RECIPE, long.to_le_bytes().to_vec())
-        };
-        let mut header = [MODEL, &[version], &length, &fields].concat();
+        let length = (MODEL.len() + 1 + size_of::<u64>() + fields.len() + CHECKSUM) as u64;
+        let mut header = [MODEL, &[VERSION], &length.to_le_bytes(), &fields].concat();
         let checksum = crc32fast::hash(&header);
         header.extend(checksum.to_le_bytes());
         header
@@ -165,17 +154,11 @@ impl Header {
         };
         let mut fields = FieldReader { rest };
         let version = fields.byte()?;
-        let length = match version {
-            WITHOUT_RECIPE | WITH_RECIPE => u64::from(u16::from_le_bytes(fields.bytes()?)),
-            WITH_LONG_RECIPE => u64::from_le_bytes(fields.bytes()?),
-            _ => {
-                let what = format!(
-                    "is of version {version} of the format: versions {WITHOUT_RECIPE} to {WITH_LONG_RECIPE} are read"
-                );
-                return Err(Reason::unsupported(what, "update walpha"));
-            }
-        };
-        let length = usize::try_from(length).unwrap_or(usize::MAX);
+        if version != VERSION {
+            let what = format!("is of version {version} of the format: version {VERSION} is read");
+            return Err(Reason::unsupported(what, "update walpha"));
+        }
+        let length = usize::try_from(u64::from_le_bytes(fields.bytes()?)).unwrap_or(usize::MAX);
         let whole = file.get(..length).and_then(|head| head.split_last_chunk::<CHECKSUM>());
         let Some((head, checksum)) = whole else {
             return Err(Reason::truncated("is truncated: it ends within its header"));
@@ -186,11 +169,9 @@ impl Header {
         let mut fields =
             FieldReader { rest: head.get(file.len() - fields.rest.len()..).unwrap_or_default() };
         let mut header = Self::of_fields(&mut fields)?;
-        if version != WITHOUT_RECIPE {
+        if !fields.rest.is_empty() {
             let recipe = String::from_utf8(fields.rest.to_vec());
             header.recipe = Some(recipe.map_err(|_| Reason::header("its recipe is not UTF-8"))?);
-        } else if !fields.rest.is_empty() {
-            return Err(Reason::header("its header is longer than its fields"));
         }
         Ok((header, length))
     }

@@ -6,10 +6,10 @@ mod ticks;
 
 use std::fmt::Write;
 
-use crate::base64::base64;
 use crate::colour::{ColourMap, Rgb};
 use crate::error::RenderError;
 use crate::pixels::{Picture, Size};
+use base64::prelude::{BASE64_STANDARD, Engine};
 pub use drawing::{Drawing, Pen, Step};
 use svg::{FAMILIES, LEADING, escape, num, rasterise, text_width, wrap, write_lines};
 use ticks::ticks;
@@ -147,7 +147,7 @@ fn write_picture(
     corner: [f64; 2],
     size: [f64; 2],
 ) -> Result<(), RenderError> {
-    let data = base64(&picture.to_png()?);
+    let data = BASE64_STANDARD.encode(picture.to_png()?);
     let [x, y] = corner.map(num);
     let [w, h] = size.map(num);
     let _ = writeln!(

@@ -8,9 +8,9 @@ use serde_json::{Map, Value, json};
 use walpha_shape::ladder::Span;
 
 use super::subject::{Detail, Original};
-use crate::base64::base64;
 use crate::error::RenderError;
 use crate::marching::Isosurface;
+use base64::prelude::{BASE64_STANDARD, Engine};
 
 /// Bytes between whose multiples numbers begin, as typed arrays of JavaScript ask.
 const ALIGNMENT: usize = 8;
@@ -70,7 +70,7 @@ impl Arrays {
         let mut gzip = GzEncoder::new(Vec::new(), Compression::default());
         gzip.write_all(&bytes)
             .and_then(|()| gzip.finish())
-            .map(|packed| base64(&packed))
+            .map(|packed| BASE64_STANDARD.encode(packed))
             .expect("memory takes all bytes")
     }
 }
