@@ -477,8 +477,8 @@ struct Subject<'a> {
     is_cells_alone: bool,
 }
 
-/// The format of a file that holds nothing but a mesh. What VTK's files hold is told by their content: they may as
-/// well be points or volumes.
+/// The format of a file that holds nothing but a mesh. `.vtk` is excluded: such a file may also hold points or a
+/// volume, so its content decides.
 pub(super) fn mesh_format(path: &Path) -> Option<&'static MeshFormat> {
     MeshFormat::of(path).filter(|format| !format.extensions.contains(&"vtk"))
 }

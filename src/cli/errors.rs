@@ -236,10 +236,6 @@ pub(super) fn print_usage_error(command: &str, error: &clap::Error, configured: 
     {
         (what, rest) = (format!("{head}'"), tail.to_owned());
     }
-    if what.contains("'--format'") {
-        // In 0.2, `--format` was the name of both options.
-        tips = vec!["give --input-format for INPUT, or --output-format for standard output".into()];
-    }
     if what.ends_with(':') {
         what = format!("{what} {rest}");
         rest = String::new();

@@ -171,7 +171,7 @@ impl Report {
         let findings = || items.iter().flat_map(|item| &item.findings);
         let count = |verdict| findings().filter(|finding| finding.verdict == verdict).count();
         Self {
-            schema_version: 2,
+            schema_version: 1,
             paper: "Volume Modeling of Scattered Data based on Weighted Alpha Shapes",
             source: "in English, with a Korean abstract; the copy followed here names neither \
                      authors nor a journal, and its latest reference is of 2004",

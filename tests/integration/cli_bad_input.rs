@@ -8,7 +8,7 @@ fn usage_errors_exit_with_2() {
     let f = folder.path();
     fails(f, 2, "shap sample:phantom", &["shape"]);
     fails(f, 2, "shape", &["INPUT"]);
-    fails(f, 2, "shape a.txt --format xyz", &["--input-format", "--output-format"]);
+    fails(f, 2, "shape a.txt --format xyz", &["--format"]);
     fails(f, 2, "shape sample:phantom --alpha nan", &["α cannot be NaN"]);
     fails(f, 2, "shape sample:phantom --alpha 1 --alpha-radius 1", &["cannot be used with"]);
     fails(f, 2, "shape sample:phantom --alpha-radius=-1", &["radius must not be negative"]);

@@ -10,7 +10,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use proptest::prelude::*;
 use walpha::advice::Advice;
-use walpha::points::{UnknownColumns, UnknownWeighting};
+use walpha::points::UnknownColumns;
 use walpha::shape::ShapeError;
 use walpha::volume::UnknownFormat;
 use walpha::{PointsError, VolumeError, WeightedPoints};
@@ -196,4 +196,4 @@ macro_rules! told {
         })*
     };
 }
-told![PointsError, ShapeError, UnknownColumns, UnknownFormat, UnknownWeighting, VolumeError];
+told![PointsError, ShapeError, UnknownColumns, UnknownFormat, VolumeError];

@@ -96,7 +96,7 @@ fn a_segmentation_gives_its_solid() {
     assert!(!warned.contains("look like"), "{warned}");
 }
 
-/// What says how to look for gray levels makes the α-shape, as before.
+/// Options that choose by gray levels make the α-shape, not the solid of labels.
 #[test]
 fn options_of_gray_levels_take_precedence() {
     let folder = tempfile::tempdir().unwrap();

@@ -17,7 +17,6 @@ mod exchange;
 mod filtration;
 mod flat;
 mod formats;
-mod haar;
 mod hard;
 mod interpolate;
 mod labels;
@@ -38,7 +37,6 @@ mod outputs;
 mod periodic;
 #[cfg(feature = "paper")]
 mod plane;
-mod points;
 mod progress;
 mod refit;
 #[cfg(feature = "paper")]

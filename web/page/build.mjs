@@ -45,7 +45,9 @@ if (kind === "view") {
 }
 // Sections of the other page go, and comments around those of this one.
 const other = kind === "view" ? "computes" : "view";
+const made = "<!-- Made by `node web/page/build.mjs` from web/page: change what is there. -->";
 const page = readFileSync(here + "index.html", "utf8")
+  .replace("<!DOCTYPE html>", `<!DOCTYPE html>${made}`)
   .replace(new RegExp(`<!--${other}-->\n.*?<!--/${other}-->\n`, "gs"), "")
   .replace(/<!--\/?(view|computes)-->\n/g, "")
   .replace("/*{style}*/", () => parts.style)

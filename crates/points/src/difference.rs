@@ -93,7 +93,7 @@ pub fn scattered_difference(points: &Points) -> Result<Vec<f64>, PointsError> {
     let delaunay = triangulate(&points.positions, None)?;
     let neighbours = Neighbours::of(&delaunay);
 
-    let mut vertex_of: Vec<u32> = (0..delaunay.ghost()).collect();
+    let mut vertex_of: Vec<u32> = (0..delaunay.infinite_vertex()).collect();
     for &[removed, kept] in delaunay.duplicates() {
         vertex_of[removed as usize] = kept;
     }
@@ -120,7 +120,7 @@ impl Neighbours {
         let mut pairs: Vec<[u32; 2]> = edges.flat_map(|[a, b]| [[a, b], [b, a]]).collect();
         pairs.sort_unstable();
         pairs.dedup();
-        let mut ends = vec![0; delaunay.ghost() as usize];
+        let mut ends = vec![0; delaunay.infinite_vertex() as usize];
         for (i, &[vertex, _]) in pairs.iter().enumerate() {
             ends[vertex as usize] = i + 1;
         }

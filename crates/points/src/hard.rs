@@ -32,7 +32,7 @@ impl std::fmt::Debug for HardSet {
     }
 }
 
-/// All sets. They have no chance in them: the same doubles everywhere.
+/// All sets. They contain no random numbers, so their doubles are identical on every platform.
 pub static HARD_SETS: &[HardSet] = &[
     HardSet {
         name: "voxels",

@@ -69,7 +69,7 @@ pub struct ModelMetadata {
     pub alpha: Option<Alpha>,
     /// The values that were gray 0 and 255.
     pub range: Option<GrayRange>,
-    /// The [`Recipe`](crate::Recipe) that made them, as JSON ([`Recipe::to_json`](crate::Recipe::to_json)).
+    /// The `Recipe` of `walpha-model` that made them, as JSON (`Recipe::to_json`).
     pub recipe: Option<String>,
     /// Indices of all points, the most important first.
     pub order: Option<Vec<u32>>,

@@ -55,7 +55,7 @@ impl Default for SelectionRule {
     }
 }
 
-/// Units of the coordinates of points. There is no default but that of a [`Recipe`](crate::pipeline::Recipe), which goes by what
+/// Units of the coordinates of points. There is no default but that of a `Recipe` of `walpha-model`, which goes by what
 /// the file states.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]

@@ -1,12 +1,12 @@
 //! The cells of a triangulation as flat arrays, by the numbers of points alone.
 
-/// Corners and adjacency of all cells. The infinite cells, one beyond each facet of the hull, have the ghost as a corner;
+/// Corners and adjacency of all cells. The infinite cells, one beyond each facet of the hull, have the infinite vertex as a corner;
 /// see [`Triangulation`](crate::Triangulation), whose arrays these become.
 #[derive(Clone, Debug)]
 pub struct CellArrays {
     pub(crate) cells: Vec<[u32; 4]>,
     pub(crate) adjacency: Vec<[u32; 4]>,
-    pub(crate) ghost: u32,
+    pub(crate) at_infinity: u32,
 }
 
 impl CellArrays {
@@ -21,12 +21,12 @@ impl CellArrays {
     }
 
     /// The infinite vertex. Its number is the number of points.
-    pub fn ghost(&self) -> u32 {
-        self.ghost
+    pub fn infinite_vertex(&self) -> u32 {
+        self.at_infinity
     }
 
-    /// Cells, adjacency and ghost, by value, so that each can be dropped on its own.
+    /// Cells, adjacency and infinite vertex, by value, so that each can be dropped on its own.
     pub fn into_parts(self) -> (Vec<[u32; 4]>, Vec<[u32; 4]>, u32) {
-        (self.cells, self.adjacency, self.ghost)
+        (self.cells, self.adjacency, self.at_infinity)
     }
 }

@@ -40,7 +40,7 @@ pub fn triangulate_flat(
     weights.extend(along.iter().map(|&i| sites.weights()[i as usize]));
     let made = insert_all(&positions, &weights, inserted)?;
     let mut flat = Flat::default();
-    for cell in made.cells().iter().filter(|cell| !cell.contains(&made.ghost())) {
+    for cell in made.cells().iter().filter(|cell| !cell.contains(&made.infinite_vertex())) {
         let mut rest: Vec<u32> =
             cell.iter().filter(|&&v| v >= extra).map(|&v| along[(v - extra) as usize]).collect();
         rest.sort_unstable();

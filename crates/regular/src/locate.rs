@@ -79,7 +79,7 @@ impl Triangulation {
     /// The same by a walk from a cell; `None` also where there is no such cell. Fast where the cell is near the
     /// point: that of the last point, say, of points along a curve.
     pub fn locate_from(&self, point: [f64; 3], cell: u32) -> Option<Location> {
-        let mut cell = match self.ghost_corner(*self.cells().get(cell as usize)?) {
+        let mut cell = match self.infinite_corner(*self.cells().get(cell as usize)?) {
             Some(corner) => self.adjacency()[cell as usize][corner] / 4,
             None => cell,
         };
@@ -131,7 +131,7 @@ impl Triangulation {
         };
         let nearest = (some.filter(|&v| self.cell_at[v] != NO_CELL))
             .min_by(|v, w| square(v).total_cmp(&square(w)));
-        self.cell_at[nearest.unwrap_or(self.ghost() as usize)]
+        self.cell_at[nearest.unwrap_or(self.infinite_vertex() as usize)]
     }
 
     /// The orientation of a finite cell with a point in place of a corner. Exact.
@@ -141,8 +141,8 @@ impl Triangulation {
         Predicates::on(Lattice::NONE, &places, &[0.0; 4]).orientation([0, 1, 2, 3])
     }
 
-    fn ghost_corner(&self, cell: [u32; 4]) -> Option<usize> {
-        cell.iter().position(|&v| v == self.ghost())
+    fn infinite_corner(&self, cell: [u32; 4]) -> Option<usize> {
+        cell.iter().position(|&v| v == self.infinite_vertex())
     }
 }
 

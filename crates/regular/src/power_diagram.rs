@@ -165,7 +165,7 @@ impl Spheres {
         predicates: &Predicates,
         monitor: &Monitor,
     ) -> Result<Self, TriangulationError> {
-        let is_finite = |corners: &[u32; 4]| !corners.contains(&arrays.ghost);
+        let is_finite = |corners: &[u32; 4]| !corners.contains(&arrays.at_infinity);
         let sets = UnionFind::new(arrays.cells.len());
         let done = monitor.units(arrays.cells.len() as u64);
         arrays.cells.par_chunks(CHUNK).enumerate().try_for_each(|(chunk, cells)| {
@@ -178,7 +178,7 @@ impl Spheres {
                     let same = match [is_finite(corners), is_finite(&next)] {
                         [true, true] => predicates.power(*corners, across).is_eq(),
                         [false, false] => {
-                            let beyond = corners.iter().position(|&v| v == arrays.ghost);
+                            let beyond = corners.iter().position(|&v| v == arrays.at_infinity);
                             let [a, b, c] = facets(*corners)[beyond.unwrap_or_default()];
                             predicates.orientation([a, b, c, across]).is_eq()
                         }
@@ -241,7 +241,9 @@ impl Dual<'_> {
             for (cell, corners) in ((chunk * CHUNK) as u32..).zip(cells) {
                 for [p, q, r, s] in EDGES {
                     let [p, q] = [corners[p].min(corners[q]), corners[p].max(corners[q])];
-                    if q == self.arrays.ghost || !self.is_first_around(cell, [r, s], &mut around) {
+                    if q == self.arrays.at_infinity
+                        || !self.is_first_around(cell, [r, s], &mut around)
+                    {
                         continue;
                     }
                     found.extend(self.area([p, q], &mut around).map(|area| ([p, q], area)));

@@ -63,11 +63,11 @@ pub fn triangulate_monitored(
     work.add(along.len() as u64)?;
     drop((places, heights));
     let index = |v: u32| along.get(v as usize).map(|&site| sites.input()[site as usize]);
-    let ghost = points.len() as u32;
+    let at_infinity = points.len() as u32;
     arrays.cells.par_iter_mut().with_min_len(MIN_LEN).for_each(|cell| {
-        *cell = cell.map(|v| index(v).unwrap_or(ghost));
+        *cell = cell.map(|v| index(v).unwrap_or(at_infinity));
     });
-    arrays.ghost = ghost;
+    arrays.at_infinity = at_infinity;
     let duplicates = sites.duplicates().to_vec();
     drop(sites);
     let mut positions = with_capacity(points.len())?;
@@ -81,12 +81,12 @@ const MIN_LEN: usize = 1 << 12;
 /// A regular triangulation of points; [`triangulate`] makes it.
 ///
 /// Points are named by their indices. The outside of the convex hull is divided into infinite cells, one for each
-/// facet of the hull. Their fourth corner is the infinite vertex, called the *ghost*: its number is the number of
+/// facet of the hull. Their fourth corner is the *infinite vertex*, as in CGAL: its number is the number of
 /// points, one past the last index. Cells are positively oriented: a, b, c turn counter-clockwise seen from d, where the
-/// ghost counts as a point far outside the hull.
+/// infinite vertex counts as a point far outside the hull.
 ///
 /// Example: four points have the cell `[0, 1, 2, 3]` and four infinite cells, among them
-/// `[0, 2, 1, 4]` with the ghost 4 as its corner 3. If that cell has number 2, `adjacency()[0][3]` is
+/// `[0, 2, 1, 4]` with the infinite vertex 4 as its corner 3. If that cell has number 2, `adjacency()[0][3]` is
 /// 4·2 + 3: the facet opposite corner 3 of cell 0 is also the facet opposite corner 3 of cell 2.
 #[derive(Clone, Debug)]
 pub struct Triangulation {
@@ -94,7 +94,7 @@ pub struct Triangulation {
     pub(crate) arrays: CellArrays,
     duplicates: Vec<[u32; 2]>,
     hidden: Vec<u32>,
-    /// A cell at each vertex, a finite one, and an infinite one at the ghost; [`NO_CELL`] for other points.
+    /// A cell at each vertex, a finite one, and an infinite one at the infinite vertex; [`NO_CELL`] for other points.
     pub(crate) cell_at: Vec<u32>,
 }
 
@@ -112,14 +112,14 @@ impl Triangulation {
     ) -> Result<Self, TriangulationError> {
         let mut cell_at = filled(positions.len() + 1, NO_CELL)?;
         for (cell, corners) in (0..).zip(&arrays.cells) {
-            if corners.contains(&arrays.ghost) {
-                cell_at[arrays.ghost as usize] = cell;
+            if corners.contains(&arrays.at_infinity) {
+                cell_at[arrays.at_infinity as usize] = cell;
             } else {
                 corners.iter().for_each(|&v| cell_at[v as usize] = cell);
             }
         }
         let mut hidden: Vec<u32> =
-            (0..arrays.ghost).filter(|&v| cell_at[v as usize] == NO_CELL).collect();
+            (0..arrays.at_infinity).filter(|&v| cell_at[v as usize] == NO_CELL).collect();
         let is_duplicate =
             |v: &u32| duplicates.binary_search_by_key(v, |&[removed, _]| removed).is_ok();
         hidden.retain(|v| !is_duplicate(v));
@@ -143,19 +143,21 @@ impl Triangulation {
     }
 
     /// The infinite vertex, a corner of every infinite cell. Its number is the number of points.
-    pub fn ghost(&self) -> u32 {
-        self.arrays.ghost
+    pub fn infinite_vertex(&self) -> u32 {
+        self.arrays.at_infinity
     }
 
     /// The number and the corners of each finite cell, a tetrahedron; ascending numbers.
     pub fn finite_cells(&self) -> impl Iterator<Item = (u32, [u32; 4])> + '_ {
         let cells = (0..).zip(self.cells().iter().copied());
-        cells.filter(|(_, corners)| !corners.contains(&self.ghost()))
+        cells.filter(|(_, corners)| !corners.contains(&self.infinite_vertex()))
     }
 
     /// Whether there is a finite cell of this number.
     pub fn is_finite(&self, cell: u32) -> bool {
-        self.cells().get(cell as usize).is_some_and(|corners| !corners.contains(&self.ghost()))
+        self.cells()
+            .get(cell as usize)
+            .is_some_and(|corners| !corners.contains(&self.infinite_vertex()))
     }
 
     /// The neighbours of a cell across the facets opposite its corners; some may be infinite. `None` where there is no
@@ -166,12 +168,12 @@ impl Triangulation {
 
     /// The points that are vertices, ascending: those that are neither hidden nor duplicates.
     pub fn vertices(&self) -> impl Iterator<Item = u32> + '_ {
-        (0..self.ghost()).filter(|&v| self.is_vertex(v))
+        (0..self.infinite_vertex()).filter(|&v| self.is_vertex(v))
     }
 
     /// Whether a point is a vertex; `false` past the last point.
     pub fn is_vertex(&self, point: u32) -> bool {
-        point < self.ghost() && self.cell_at[point as usize] != NO_CELL
+        point < self.infinite_vertex() && self.cell_at[point as usize] != NO_CELL
     }
 
     /// The points that heavier ones hide, ascending. Without weights there are none.
@@ -188,12 +190,12 @@ impl Triangulation {
     /// three vertices is divided. O(cells).
     pub fn hull_facets(&self) -> impl Iterator<Item = [u32; 3]> + '_ {
         self.cells().iter().filter_map(|&corners| {
-            let beyond = corners.iter().position(|&v| v == self.ghost())?;
+            let beyond = corners.iter().position(|&v| v == self.infinite_vertex())?;
             Some(facets(corners)[beyond])
         })
     }
 
-    /// The cells at a vertex, infinite ones included, in no particular order; of the ghost, all infinite cells. Empty for
+    /// The cells at a vertex, infinite ones included, in no particular order; of the infinite vertex, all infinite cells. Empty for
     /// points that are no vertices. Linear in their number.
     pub fn star(&self, vertex: u32) -> Vec<u32> {
         let mut star = match self.cell_at.get(vertex as usize) {

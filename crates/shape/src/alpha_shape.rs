@@ -119,8 +119,8 @@ impl AlphaShape {
         together(self.options.periodic, row.map(|v| self.points.positions[v as usize]))
     }
 
-    /// In an [unwrapped](Self::unwrapped) shape: the points that the last points are copies of, in their
-    /// order.
+    /// In an [unwrapped](Self::unwrapped) shape of n points, `copies()[i]` is the original of point
+    /// n − `copies().len()` + i.
     pub fn copies(&self) -> &[u32] {
         &self.copies
     }

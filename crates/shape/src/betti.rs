@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use walpha_base::shown::counted;
 
 /// The Betti numbers of a shape: components, tunnels, voids. Written `[b0, b1, b2]`, of a torus
-/// `[b0, b1, b2, b3]`. Open: there are no more.
+/// `[b0, b1, b2, b3]`. Its fields are public: this is plain data.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(into = "Vec<u64>", try_from = "Vec<u64>")]
 pub struct Betti {

@@ -45,8 +45,8 @@ pub(super) fn complement_on(torus: Torus, whole: &Complex, positions: &[[f64; 3]
     sets
 }
 
-/// The multiples of the sides by which the second of two cells must be moved so that a common vertex coincides, where
-/// each cell is the copy whose first vertex is in the box.
+/// The translation, in multiples of the sides, that makes the shared vertex of two cells coincide. Each cell is represented
+/// by its copy whose first vertex lies in the box.
 pub fn between(torus: Torus, cells: [[u32; 4]; 2], vertex: u32, positions: &[[f64; 3]]) -> Winding {
     let way =
         |cell: [u32; 4]| torus.windings(positions[cell[0] as usize], positions[vertex as usize]);

@@ -1,4 +1,4 @@
-//! What follows from a shape, or from a filtration, and is computed when it is first asked for.
+//! Values that are computed from a shape or a filtration when they are first needed, and kept.
 
 use std::sync::{Arc, OnceLock};
 

@@ -4,7 +4,7 @@ use rayon::prelude::*;
 use walpha_base::{Coordinates, Monitor};
 use walpha_regular::{Scaled, Sites, SitesError, check_numbers, lattice};
 
-use super::blocks::{self, Limits, Plan, Question, Reach};
+use super::blocks::{self, BlockParams, Limits, Plan, Reach};
 use super::derived::Derived;
 use super::flat::{self, flat};
 use super::topology::{components, connected_on_torus, sheet_betti, torus_betti};
@@ -114,11 +114,11 @@ fn shape_by(
         Some((alpha, scaled)) => (*alpha, &scaled.positions[..], &scaled.weights[..]),
         None => (alpha, &points.positions[..], weights),
     };
-    let question = options.balls(Balls::Power).alpha(alpha);
-    let found = match in_space(positions, weights, &question, find) {
+    let params = options.balls(Balls::Power).alpha(alpha);
+    let found = match in_space(positions, weights, &params, find) {
         Err(error) if !options.refuse_flat && error.is_flat() => {
             options.engine = Engine::Native;
-            in_plane(positions, weights, &question, monitor)?
+            in_plane(positions, weights, &params, monitor)?
         }
         found => found?,
     };
@@ -214,12 +214,12 @@ fn by_blocks(
     };
     plan.afford(sites.input().len())?;
     let lattice = lattice(sites.positions(), sites.weights(), sites.torus());
-    let question = Question { alpha, lattice, exterior };
-    let answer = blocks::run(sites, &plan, &question, monitor)?;
-    let sheets = Sheets::numbered(&answer.complex, &answer.facet_sheets, &answer.edge_sheets);
-    let boundary = Some((answer.b0, sheets, answer.sheet_windings));
+    let params = BlockParams { alpha, lattice, exterior };
+    let merged = blocks::run(sites, &plan, &params, monitor)?;
+    let sheets = Sheets::numbered(&merged.complex, &merged.facet_sheets, &merged.edge_sheets);
+    let boundary = Some((merged.b0, sheets, merged.sheet_windings));
     let duplicates = sites.duplicates().to_vec();
-    Ok(Found { complex: answer.complex, boundary, hidden: answer.hidden, duplicates, betti: None })
+    Ok(Found { complex: merged.complex, boundary, hidden: merged.hidden, duplicates, betti: None })
 }
 
 /// The sites that are no vertices. Both lists ascend.

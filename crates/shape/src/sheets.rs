@@ -17,7 +17,7 @@ use super::{Class, Complex};
 /// The sheets of a shape's boundary: the connected components of the boundary of a thin neighbourhood of the shape.
 /// A component of the shape has one around it and one for each of its voids. Sheets are numbered from 0 in the order
 /// of their first boundary facets, then of their first singular edges. The sheet of an isolated point has no number.
-/// Open: there are no others.
+/// Its fields are public: this is plain data.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Sheets {
     /// For each regular facet, in their order, its sheet.

@@ -112,7 +112,7 @@ impl OpenVolume {
 
 impl Source {
     /// Opens what a user names, a sample or a file: uncompressed NRRD, `MetaImage`, `NIfTI`, NPY and raw samples,
-    /// and Zarr (feature `zarr`). Of the options, `nan` is left to whoever reads.
+    /// and Zarr (feature `zarr`). `nan` of the options is ignored: the caller handles NaN.
     ///
     /// # Errors
     /// As [`read()`](crate::read()), and [`VolumeError::Format`] for what cannot be read in parts.

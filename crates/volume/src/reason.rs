@@ -15,7 +15,7 @@ pub enum Reason {
         /// An extension like its own.
         near: Option<&'static str>,
     },
-    /// It is not of the format that its name or its place says.
+    /// Its content does not match the format that its extension, or the header that refers to it, implies.
     Other {
         /// What it is not, and by what one sees that.
         what: String,
@@ -79,7 +79,7 @@ pub enum Reason {
         /// Samples along x, y and z, where they are known.
         dims: Option<[u64; 3]>,
     },
-    /// It holds several volumes, and the one asked for is none of them, or none was asked for.
+    /// It holds several volumes, and `frame` is missing or out of range.
     Several {
         /// How many.
         count: u64,

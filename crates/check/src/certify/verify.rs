@@ -64,8 +64,8 @@ impl Claim<'_> {
         self.findings_on(None, monitor)
     }
 
-    /// The same, of copies of a complex of a torus, if one is given: only what is found of simplices that touch its box
-    /// counts.
+    /// The findings, where a torus is given of its unwrapped complex: then only those that involve a vertex inside the box
+    /// are kept.
     pub(super) fn findings_on(
         &self,
         torus: Option<Torus>,

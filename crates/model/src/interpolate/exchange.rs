@@ -32,9 +32,9 @@ const LEAST: f64 = 2e-3;
 /// Error is that of fitted values ([`refit`](super::refit())) on the unweighted triangulation, over all
 /// samples. In each round
 ///
-/// 1. the loss of each point is the squared error that its removal would add with the other values
-///    as they are, and the gain of the worst sample of each cell, of those where error is largest, is
-///    what it would take away with the value that is best there: both by local retriangulation;
+/// 1. the *loss* of each point is computed, the increase of the squared error when it is removed and all
+///    other values stay; and the *gain* of the worst sample of each cell, worst cells first, the decrease
+///    when it is inserted with its optimal value: both by local retriangulation;
 /// 2. the greatest gain is paired with the least loss, the next with the next, as long as the gain is
 ///    greater; points near others of the round wait;
 /// 3. values are fitted. If the error is not smaller, the round is taken back and the next one is

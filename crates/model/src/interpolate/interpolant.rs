@@ -28,7 +28,7 @@ const CHUNK: usize = 256;
 /// Where all points are samples of a volume, the samples of a grid over it are located by their indices in the volume, which
 /// are exact in any frame, and not by the rounded coordinates of the world.
 ///
-/// Of points at one place the one that stayed in the shape has the say; hidden points have none.
+/// If several points coincide, the value of the one that was kept is used. Hidden points are ignored.
 #[derive(Clone, Debug)]
 pub struct Interpolant<'a> {
     positions: Cow<'a, [[f64; 3]]>,

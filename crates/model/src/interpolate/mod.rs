@@ -8,8 +8,8 @@
 //! `barycentric.rs` computes coordinates in plain doubles where a lattice makes these exact, otherwise behind an error
 //! bound with big integers to fall back on. `raster.rs` fills grids in parallel over the simplices: each sample keeps the
 //! least number written to it. `adaptive.rs` chooses points by the error they leave, over `sampled.rs`, which keeps F at all
-//! samples while points come and leave; `trial.rs` says what one point more or less would change, and `exchange.rs` exchanges
-//! the cheapest points for the best samples. `refit.rs` fits values by least squares.
+//! samples while points come and leave; `exchange.rs` computes the gain of adding a point and the loss of removing one, and
+//! exchanges the points of least loss for the samples of most gain. `refit.rs` fits values by least squares.
 //!
 //! ```
 //! use walpha_model::interpolate::{Deviation, Grid, Interpolant, fill};

@@ -36,7 +36,7 @@ pub(super) struct Sampled<'a> {
     /// Whether coordinates of the world are exact, so that every cell has a volume in indices, too.
     exact: bool,
     growing: Growing,
-    /// The sample of each point, by its number in the triangulation; 0 for the ghost.
+    /// The sample of each point, by its number in the triangulation; 0 for the infinite vertex.
     voxels: Vec<u32>,
     /// Its index (x, y, z) in the volume.
     indices: Vec<[i64; 3]>,

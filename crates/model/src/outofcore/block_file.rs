@@ -149,8 +149,8 @@ impl BlockFile {
 
     const DAMAGED: &str = "is damaged, or cut off";
 
-    /// Whether the facts are those of the arrays, by their lengths. A block that was written is; what is wrong
-    /// here nobody has to expect later.
+    /// Whether the facts match the lengths of the arrays. That is true of every block that was written; it is checked
+    /// here so that later code may rely on it.
     fn fits(&self, points: u64) -> bool {
         let BlockSummary { cells, facets, edges, vertices, components, sheets, .. } = &self.summary;
         let sum = |counts: &[usize; 3]| counts.iter().map(|&count| count as u128).sum::<u128>();

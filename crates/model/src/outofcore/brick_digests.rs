@@ -159,7 +159,7 @@ mod tests {
             assert!(!planned.note(&around, &values), "{at}: it was something else before");
             planned.differs.store(false, Ordering::Relaxed);
         }
-        // A part that has no brick as a whole says nothing.
+        // A part that contains no complete brick has no digest.
         let part = SampleBox { first: [1, 0, 0], size: [7, 17, 30] };
         assert!(planned.note(&part, &vec![0.0; part.samples()]));
     }

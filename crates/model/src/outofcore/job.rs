@@ -157,7 +157,7 @@ impl Stamp {
         let mut stamp = Self::default();
         if !job.input.starts_with("sample:") {
             let files = files_of(Path::new(&job.input)).into_iter();
-            // Whoever reads says what is wrong with one that is not there.
+            // A missing file is reported when it is read.
             files.filter_map(|path| fs::metadata(path).ok()).for_each(|file| stamp.add(&file));
         }
         stamp

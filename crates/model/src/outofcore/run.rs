@@ -44,7 +44,7 @@ pub fn run(plan: &Plan, block: usize) -> Result<(), BlocksError> {
         return Ok(());
     }
     let points = match points(plan, block) {
-        // Whatever went wrong, it may be for want of these.
+        // A kept file may be missing or damaged: restore it, and retry once.
         Err(_) if plan.verify_kept().is_err() => {
             plan.restore()?;
             points(plan, block)?

@@ -8,8 +8,8 @@ const CHUNK: usize = 1 << 17;
 /// and a bit of the mantissa first.
 const DIGITS: [(u32, u32); 6] = [(51, 12), (41, 10), (31, 10), (21, 10), (11, 10), (0, 11)];
 
-/// Where values in order of decreasing magnitude, equal ones in order of their index, are cut into
-/// those that stay and those that are dropped.
+/// The threshold between kept and dropped values, which are ordered by decreasing magnitude, equal ones by increasing
+/// index.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Cut {
     /// The bits of the magnitude at the cut: larger ones stay, smaller ones are dropped.

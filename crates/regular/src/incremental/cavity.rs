@@ -4,7 +4,7 @@ use super::{Builder, Mesh};
 use crate::predicates::Screen;
 use crate::{Cell, Triangulation, TriangulationError, filled};
 
-/// Side of [`Cavity::table`]: the largest number of distinct vertices of the boundary of a cavity, the ghost
+/// Side of [`Cavity::table`]: the largest number of distinct vertices of the boundary of a cavity, the infinite vertex
 /// included, whose cells are joined by table. A power of two.
 const TABLE_SIDE: usize = 64;
 

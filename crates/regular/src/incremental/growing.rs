@@ -14,7 +14,7 @@ use crate::{Cell, DELETED, Sites, TriangulationError, order};
 /// Ties are broken as in [`Triangulation`](crate::Triangulation), so the cells depend on the points in the
 /// triangulation alone, and not on the order of insertions and removals. Points are numbered from
 /// [`Growing::FIRST`] on in the order in which they are registered; a registered point need not be a vertex. The
-/// ghost is vertex 0. Without weights, or where all are equal, every point that is inserted becomes a vertex and stays
+/// infinite vertex is vertex 0. Without weights, or where all are equal, every point that is inserted becomes a vertex and stays
 /// one; otherwise [`Growing::settle`] finds out which ones are.
 #[derive(Debug)]
 pub struct Growing {
@@ -45,13 +45,13 @@ pub(super) struct State {
 }
 
 /// The infinite vertex. Its number precedes those of the points, whose number is not known in advance.
-pub(super) const GHOST: u32 = 0;
+pub(super) const AT_INFINITY: u32 = 0;
 /// Stands for the absence of a cell.
 pub(super) const NO_CELL: u32 = u32::MAX;
 
 impl Growing {
     /// The number of the first point.
-    pub const FIRST: u32 = GHOST + 1;
+    pub const FIRST: u32 = AT_INFINITY + 1;
 
     /// The Delaunay triangulation of points.
     ///
@@ -72,10 +72,10 @@ impl Growing {
     /// # Errors
     /// Out of memory.
     pub fn empty(positions: &[[f64; 3]], weights: &[f64]) -> Result<Self, TriangulationError> {
-        let builder = Builder::with_capacity(positions.len(), positions.len() + 1, GHOST)?;
+        let builder = Builder::with_capacity(positions.len(), positions.len() + 1, AT_INFINITY)?;
         let (occupied, cell_at, new_cells) = (HashSet::new(), vec![NO_CELL], Vec::new());
         let mut growing = Self {
-            // The ghost is like one of the points, so that it widens no bound.
+            // The infinite vertex is like one of the points, so that it widens no bound.
             positions: vec![positions[0]],
             weights: vec![weights[0]],
             state: State { builder, occupied, cell_at, new_cells },
@@ -91,7 +91,7 @@ impl Growing {
     pub fn start_again(&mut self, points: &[u32]) -> Result<(), TriangulationError> {
         let Self { positions, weights, state } = self;
         let predicates = Predicates::new(positions, weights);
-        let screen = Screen::with_ghost(&predicates, GHOST)?;
+        let screen = Screen::with_infinite(&predicates, AT_INFINITY)?;
         state.builder.start(&screen, points.iter().copied())?;
         state.cell_at.fill(NO_CELL);
         state.new_cells.clear();
@@ -121,7 +121,7 @@ impl Growing {
     pub fn insert(&mut self, points: &[u32]) -> Result<(), TriangulationError> {
         let Self { positions, weights, state } = self;
         let predicates = Predicates::new(positions, weights);
-        state.insert_all(positions, &Screen::with_ghost(&predicates, GHOST)?, points)
+        state.insert_all(positions, &Screen::with_infinite(&predicates, AT_INFINITY)?, points)
     }
 
     /// Removes vertices, except those without which the others span no volume. Returns the number of vertices removed.
@@ -131,7 +131,7 @@ impl Growing {
     pub fn remove(&mut self, points: &[u32]) -> Result<usize, TriangulationError> {
         let Self { positions, weights, state } = self;
         let predicates = Predicates::new(positions, weights);
-        let screen = Screen::with_ghost(&predicates, GHOST)?;
+        let screen = Screen::with_infinite(&predicates, AT_INFINITY)?;
         let mut workspace = Workspace::new(positions.len())?;
         let mut removed = 0;
         for &v in points {
@@ -171,7 +171,7 @@ impl Growing {
     /// # Errors
     /// Out of memory.
     pub fn screen<'a>(predicates: &'a Predicates<'a>) -> Result<Screen<'a>, TriangulationError> {
-        Screen::with_ghost(predicates, GHOST)
+        Screen::with_infinite(predicates, AT_INFINITY)
     }
 
     /// What the removal of a vertex would change; `None` where all others span no volume.
@@ -210,7 +210,7 @@ impl Growing {
                 }
             }
         }
-        cells.retain(|cell| !cell.contains(&GHOST));
+        cells.retain(|cell| !cell.contains(&AT_INFINITY));
         Insertion { removed, cells }
     }
 
@@ -227,7 +227,7 @@ impl Growing {
     /// Whether a cell is finite and not deleted.
     pub fn is_cell(&self, cell: u32) -> bool {
         let [a, b, c, d] = self.cells()[cell as usize].corners;
-        a != DELETED && a != GHOST && b != GHOST && c != GHOST && d != GHOST
+        a != DELETED && a != AT_INFINITY && b != AT_INFINITY && c != AT_INFINITY && d != AT_INFINITY
     }
 
     /// The finite cells made since the last call, ascending.
@@ -240,7 +240,7 @@ impl Growing {
         new.map(|(cell, _)| cell).collect()
     }
 
-    /// The positions of registered points, by number; the first one is that of the ghost, and of no use.
+    /// The positions of registered points, by number; index 0 is a placeholder for the infinite vertex.
     pub fn positions(&self) -> &[[f64; 3]] {
         &self.positions
     }

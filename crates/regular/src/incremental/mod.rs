@@ -38,8 +38,8 @@ pub fn insert_all(
     weights: &[f64],
     inserted: impl FnMut(usize) -> Result<(), Cancelled>,
 ) -> Result<CellArrays, TriangulationError> {
-    let Built { cells, ghost, .. } = insert_cells(positions, weights, inserted)?;
-    CellArrays::of_cells(cells, ghost)
+    let Built { cells, at_infinity, .. } = insert_cells(positions, weights, inserted)?;
+    CellArrays::of_cells(cells, at_infinity)
 }
 
 /// The same, with cells in the order in which they were made. The corner 0 of free slots is [`DELETED`].
@@ -69,7 +69,7 @@ pub(crate) struct Built {
     pub cells: Vec<Cell>,
     /// Slots of deleted cells.
     pub free_slots: Vec<u32>,
-    pub ghost: u32,
+    pub at_infinity: u32,
 }
 
 /// Memory is reserved for this many cells per point, and 1/16 more. A Poisson–Delaunay triangulation has
@@ -97,15 +97,19 @@ struct Builder {
 }
 
 impl Builder {
-    /// An empty triangulation with capacity for `points` points. All vertex numbers, the ghost's included, are below
+    /// An empty triangulation with capacity for `points` points. All vertex numbers, the infinite vertex's included, are below
     /// `below`.
-    fn with_capacity(points: usize, below: usize, ghost: u32) -> Result<Self, TriangulationError> {
+    fn with_capacity(
+        points: usize,
+        below: usize,
+        at_infinity: u32,
+    ) -> Result<Self, TriangulationError> {
         let expected = (points + points / 16).saturating_mul(CELLS_PER_POINT).max(MIN_CELLS);
         let mut builder = Self {
-            mesh: Mesh { cells: Vec::new(), ghost },
+            mesh: Mesh { cells: Vec::new(), at_infinity },
             stamps: Vec::new(),
             free_slots: Vec::new(),
-            first_cell: [ghost; 4],
+            first_cell: [at_infinity; 4],
             hint: 0,
             cavity: Cavity::new(below)?,
         };
@@ -120,7 +124,9 @@ impl Builder {
         screen: &Screen<'_>,
         points: impl Iterator<Item = u32> + Clone,
     ) -> Result<(), TriangulationError> {
-        let Self { mesh: Mesh { cells, ghost }, stamps, free_slots, first_cell, hint, .. } = self;
+        let Self {
+            mesh: Mesh { cells, at_infinity }, stamps, free_slots, first_cell, hint, ..
+        } = self;
         *first_cell = spanning(screen, points)?;
         cells.clear();
         free_slots.clear();
@@ -129,7 +135,7 @@ impl Builder {
         cells.push(Cell { corners: *first_cell, neighbors: [0; 4] });
         for corner in 0..4 {
             let mut infinite = *first_cell;
-            infinite[corner] = *ghost;
+            infinite[corner] = *at_infinity;
             // Seen from outside, the facet has the opposite orientation.
             infinite.swap((corner + 1) % 4, (corner + 2) % 4);
             cells.push(Cell { corners: infinite, neighbors: [0; 4] });
@@ -170,7 +176,7 @@ impl Builder {
     #[inline(never)]
     fn locate(&self, screen: &Screen<'_>, v: u32) -> u32 {
         let mut cell = self.hint;
-        if let Some(corner) = self.mesh.ghost_corner(cell) {
+        if let Some(corner) = self.mesh.infinite_corner(cell) {
             cell = self.mesh.cells[cell as usize].neighbors[corner] / 4;
         }
         let mut from = u32::MAX;
@@ -185,7 +191,7 @@ impl Builder {
                 let mut moved = corners;
                 moved[corner] = v;
                 if screen.orientation(moved).is_lt() {
-                    if self.mesh.ghost_corner(next).is_some() {
+                    if self.mesh.infinite_corner(next).is_some() {
                         return next;
                     }
                     from = cell;
@@ -198,9 +204,9 @@ impl Builder {
     }
 
     fn finish(self) -> Built {
-        let Self { mesh: Mesh { mut cells, ghost }, free_slots, .. } = self;
+        let Self { mesh: Mesh { mut cells, at_infinity }, free_slots, .. } = self;
         free_slots.iter().for_each(|&slot| cells[slot as usize].corners[0] = DELETED);
-        Built { cells, free_slots, ghost }
+        Built { cells, free_slots, at_infinity }
     }
 }
 
@@ -210,7 +216,7 @@ struct Mesh {
     cells: Vec<Cell>,
     /// The number of the infinite vertex. In [`CellArrays`] it is the number of points, so that the points are
     /// 0, 1, …; in [`Growing`], where points are added later, it is 0 and the points are 1, 2, …
-    ghost: u32,
+    at_infinity: u32,
 }
 
 impl Mesh {
@@ -226,7 +232,7 @@ impl Mesh {
     #[inline(never)]
     fn conflicts_exactly(&self, screen: &Screen<'_>, cell: u32, v: u32) -> bool {
         let mut corners = self.cells[cell as usize].corners;
-        let Some(corner) = self.ghost_corner(cell) else {
+        let Some(corner) = self.infinite_corner(cell) else {
             return screen.conflicts_exactly(corners, v);
         };
         corners[corner] = v;
@@ -242,10 +248,10 @@ impl Mesh {
         }
     }
 
-    /// Which corner of a cell is the ghost; `None` for finite cells.
+    /// Which corner of a cell is the infinite vertex; `None` for finite cells.
     #[inline(always)]
-    fn ghost_corner(&self, cell: u32) -> Option<usize> {
-        self.cells[cell as usize].corners.iter().position(|&v| v == self.ghost)
+    fn infinite_corner(&self, cell: u32) -> Option<usize> {
+        self.cells[cell as usize].corners.iter().position(|&v| v == self.at_infinity)
     }
 
     /// Makes two cells adjacent across the facets 4·cell + corner.

@@ -1,7 +1,7 @@
 //! Removal of a vertex: its star is replaced by cells of the regular triangulation of its neighbours.
 
 use super::Builder;
-use super::growing::{GHOST, NO_CELL, State};
+use super::growing::{AT_INFINITY, NO_CELL, State};
 use crate::predicates::Screen;
 use crate::{Cell, DELETED, Triangulation, TriangulationError, facets, smallest_first};
 
@@ -41,7 +41,7 @@ impl Workspace {
     /// # Errors
     /// Out of memory.
     pub fn new(below: usize) -> Result<Self, TriangulationError> {
-        let builder = Builder::with_capacity(TYPICAL_DEGREE, below, GHOST)?;
+        let builder = Builder::with_capacity(TYPICAL_DEGREE, below, AT_INFINITY)?;
         Ok(Self { builder, facets: Vec::new(), outside: Vec::new(), index_of: Vec::new() })
     }
 
@@ -127,14 +127,14 @@ impl State {
     ) -> Result<Option<Hole>, TriangulationError> {
         let (star, boundary) = self.star(v);
         let corners = boundary.iter().flat_map(|facet| facet.0);
-        let mut around: Vec<u32> = corners.filter(|&w| w != GHOST).collect();
+        let mut around: Vec<u32> = corners.filter(|&w| w != AT_INFINITY).collect();
         around.sort_unstable();
         around.dedup();
         if !workspace.triangulate(screen, &around)? {
             // A peak over a plane of neighbours: with points beyond the plane they span a volume. The cells that
             // fill the hole are cells of any set of vertices that has their corners.
             around.extend(boundary.iter().map(|&(_, outside)| self.corner(outside)));
-            around.retain(|&w| w != GHOST);
+            around.retain(|&w| w != AT_INFINITY);
             around.sort_unstable();
             around.dedup();
             if !workspace.triangulate(screen, &around)? {

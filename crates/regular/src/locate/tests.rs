@@ -45,7 +45,10 @@ fn check(made: &Triangulation, points: &[Place], point: Place, location: Locatio
         Location::Outside { cell } => {
             assert!(faces.is_empty(), "{point:?} is in {faces:?}");
             let mut corners = made.cells()[cell as usize];
-            let beyond = corners.iter().position(|&v| v == made.ghost()).expect("an infinite cell");
+            let beyond = corners
+                .iter()
+                .position(|&v| v == made.infinite_vertex())
+                .expect("an infinite cell");
             corners[beyond] = corners[(beyond + 1) % 4];
             let mut places = corners.map(|v| points[v as usize]);
             places[beyond] = point;

@@ -25,7 +25,7 @@ pub(super) fn merge(
 ) -> Result<Option<Half>, TriangulationError> {
     let all = a.points.start..b.points.end;
     let extent = a.extent.union(&b.extent);
-    let mut corners = Corners::new(all.start, all.len(), points.ghost);
+    let mut corners = Corners::new(all.start, all.len(), points.at_infinity);
     let (mut mesh, mut infinite) = (a.mesh, Vec::new());
     for (half, of_half, other) in [(&a.points, &mesh, &b.extent), (&b.points, &b.mesh, &a.extent)] {
         if of_half.spans() {
@@ -88,16 +88,16 @@ struct Corners {
     /// By point of both halves: 1 for corners, and, once they are numbered, their number.
     numbers: Vec<u32>,
     list: Vec<u32>,
-    ghost: u32,
+    at_infinity: u32,
 }
 
 impl Corners {
-    fn new(first: usize, count: usize, ghost: u32) -> Self {
-        Self { first, numbers: vec![0; count], list: Vec::new(), ghost }
+    fn new(first: usize, count: usize, at_infinity: u32) -> Self {
+        Self { first, numbers: vec![0; count], list: Vec::new(), at_infinity }
     }
 
     fn add(&mut self, v: u32) {
-        if v != self.ghost {
+        if v != self.at_infinity {
             let number = &mut self.numbers[v as usize - self.first];
             if *number == 0 {
                 *number = 1;
@@ -114,13 +114,17 @@ impl Corners {
         }
     }
 
-    /// The number of a corner; the ghost's is that of corners.
+    /// The number of a corner; the infinite vertex's is that of corners.
     fn of(&self, v: u32) -> u32 {
-        if v == self.ghost { self.list.len() as u32 } else { self.numbers[v as usize - self.first] }
+        if v == self.at_infinity {
+            self.list.len() as u32
+        } else {
+            self.numbers[v as usize - self.first]
+        }
     }
 
     fn vertex(&self, number: u32) -> u32 {
-        self.list.get(number as usize).copied().unwrap_or(self.ghost)
+        self.list.get(number as usize).copied().unwrap_or(self.at_infinity)
     }
 }
 
@@ -200,7 +204,7 @@ impl<'a> Filling<'a> {
             mesh.slots.get_mut(slot).corners[0] = DELETED;
             mesh.free.push(slot);
         }
-        let ghost = self.corners.list.len() as u32;
+        let at_infinity = self.corners.list.len() as u32;
         for (&cell, &slot) in self.taken.iter().zip(&slots) {
             let Cell { corners, mut neighbors } = self.built.cells[cell as usize];
             for (corner, side) in (0..).zip(&mut neighbors) {
@@ -212,7 +216,7 @@ impl<'a> Filling<'a> {
                     kept
                 };
             }
-            if corners.contains(&ghost) {
+            if corners.contains(&at_infinity) {
                 mesh.infinite = slot;
             }
             let corners = corners.map(|v| self.corners.vertex(v));

@@ -67,8 +67,8 @@ pub fn triangulate_along(
             return numbering::number(mesh.slots, count as u32);
         }
     }
-    let Built { cells, ghost, .. } = insert_cells(positions, weights, &inserted)?;
-    CellArrays::of_cells(cells, ghost)
+    let Built { cells, at_infinity, .. } = insert_cells(positions, weights, &inserted)?;
+    CellArrays::of_cells(cells, at_infinity)
 }
 
 /// Points along the Hilbert curve through them.
@@ -83,7 +83,7 @@ impl<'a> Along<'a> {
     fn new(positions: &'a [[f64; 3]], weights: &'a [f64]) -> Option<Self> {
         let curve = Curve::through(positions);
         let indices: Vec<u64> = positions.par_iter().map(|place| curve.index(place)).collect();
-        let points = Points { positions, weights, ghost: positions.len() as u32 };
+        let points = Points { positions, weights, at_infinity: positions.len() as u32 };
         indices.is_sorted().then_some(Self { points, indices })
     }
 
@@ -165,7 +165,7 @@ fn middle(range: &Range<usize>, indices: &[u64]) -> Option<usize> {
 struct Points<'a> {
     positions: &'a [[f64; 3]],
     weights: &'a [f64],
-    ghost: u32,
+    at_infinity: u32,
 }
 
 /// Points and their triangulation.
@@ -203,7 +203,7 @@ impl<I: Fn(usize) -> Result<(), Cancelled> + Sync> Work<'_, I> {
         let extent = Extent::of(positions, weights);
         let (leaf, leaves) = (leaf.leaf, self.leaves);
         let mesh = match insert_cells(positions, weights, self.inserted) {
-            Ok(built) => Mesh::of_leaf(built, leaf, leaves, points.start, self.points.ghost),
+            Ok(built) => Mesh::of_leaf(built, leaf, leaves, points.start, self.points.at_infinity),
             Err(TriangulationError::Sites(_)) => Some(Mesh::of_flat_leaf(leaf, leaves)),
             Err(other) => return Err(other),
         };

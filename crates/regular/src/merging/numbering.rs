@@ -59,8 +59,8 @@ fn canonical(corners: [u32; 4]) -> usize {
 
 impl CellArrays {
     /// The triangulation of cells in the order in which they were made.
-    pub(crate) fn of_cells(cells: Vec<Cell>, ghost: u32) -> Result<Self, TriangulationError> {
-        number(Slots::of_one(cells), ghost)
+    pub(crate) fn of_cells(cells: Vec<Cell>, at_infinity: u32) -> Result<Self, TriangulationError> {
+        number(Slots::of_one(cells), at_infinity)
     }
 }
 
@@ -71,9 +71,9 @@ const VERTICES: usize = 1 << 11;
 
 /// The cells in canonical order: each as its lexicographically smallest even permutation, and these ascending. So cells
 /// of consecutive points are close in memory. O(cells) for bounded numbers of cells at a point.
-pub(super) fn number(slots: Slots, ghost: u32) -> Result<CellArrays, TriangulationError> {
+pub(super) fn number(slots: Slots, at_infinity: u32) -> Result<CellArrays, TriangulationError> {
     let Slots { chunks: mut old, bits, .. } = slots;
-    let ranges = ghost as usize / VERTICES + 1;
+    let ranges = at_infinity as usize / VERTICES + 1;
     let by_piece: Vec<Vec<Vec<Corners>>> = (old.par_iter_mut().enumerate())
         .flat_map(|(chunk, cells)| {
             let start = (chunk as u32) << bits;
@@ -136,7 +136,7 @@ pub(super) fn number(slots: Slots, ghost: u32) -> Result<CellArrays, Triangulati
             })
         })
         .collect_into_vec(&mut adjacency);
-    Ok(CellArrays { cells, adjacency, ghost })
+    Ok(CellArrays { cells, adjacency, at_infinity })
 }
 
 /// The corners of a cell, permuted, and its slot.

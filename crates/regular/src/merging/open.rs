@@ -47,7 +47,7 @@ impl Extent {
     /// Whether it is certain that no point of the extent is in conflict with a cell. `false` where rounding leaves it
     /// undecided, which includes NaN and infinities.
     fn is_clear_of(&self, corners: [u32; 4], points: &Points<'_>) -> bool {
-        match corners.iter().position(|&v| v == points.ghost) {
+        match corners.iter().position(|&v| v == points.at_infinity) {
             Some(corner) => self.is_behind(facets(corners)[corner], points),
             None => self.is_outside(corners, points),
         }
@@ -129,14 +129,14 @@ pub(super) fn flood(
         }
         is_new
     };
-    // All infinite cells: they are connected by their facets with the ghost.
+    // All infinite cells: they are connected by their facets with the infinite vertex.
     let mut hull = vec![infinite];
     let mut at = open.len();
     mark(infinite, open);
     while let Some(slot) = hull.pop() {
         let cell = slots.get(slot);
         for (v, side) in cell.corners.into_iter().zip(cell.neighbors) {
-            if v != points.ghost && mark(side / 4, open) {
+            if v != points.at_infinity && mark(side / 4, open) {
                 hull.push(side / 4);
             }
         }

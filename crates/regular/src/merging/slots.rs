@@ -96,9 +96,9 @@ impl Mesh {
         leaf: usize,
         leaves: usize,
         first_point: usize,
-        ghost: u32,
+        at_infinity: u32,
     ) -> Option<Self> {
-        let Built { mut cells, mut free_slots, ghost: own_ghost } = built;
+        let Built { mut cells, mut free_slots, at_infinity: own_infinite } = built;
         let bits = bits(leaves);
         if cells.len() > 1 << bits {
             return None;
@@ -107,8 +107,8 @@ impl Mesh {
         let mut infinite = 0;
         for (slot, cell) in (start..).zip(&mut cells).filter(|(_, c)| c.corners[0] != DELETED) {
             for v in &mut cell.corners {
-                if *v == own_ghost {
-                    *v = ghost;
+                if *v == own_infinite {
+                    *v = at_infinity;
                     infinite = slot;
                 } else {
                     *v += first_point as u32;

@@ -17,10 +17,10 @@ fn both(points: &[([f64; 3], f64)], leaf: usize) -> [Result<CellArrays, Triangul
     let one = insert_cells(&positions, &weights, |_| Ok(()));
     [
         merged.and_then(|mesh| {
-            let ghost = positions.len() as u32;
+            let at_infinity = positions.len() as u32;
             mesh.map_or_else(
                 || one_leaf(insert_cells(&positions, &weights, |_| Ok(()))),
-                |mesh| number(mesh.slots, ghost),
+                |mesh| number(mesh.slots, at_infinity),
             )
         }),
         one_leaf(one),
@@ -28,7 +28,7 @@ fn both(points: &[([f64; 3], f64)], leaf: usize) -> [Result<CellArrays, Triangul
 }
 
 fn one_leaf(built: Result<Built, TriangulationError>) -> Result<CellArrays, TriangulationError> {
-    built.and_then(|Built { cells, ghost, .. }| CellArrays::of_cells(cells, ghost))
+    built.and_then(|Built { cells, at_infinity, .. }| CellArrays::of_cells(cells, at_infinity))
 }
 
 /// Sets of points, most of them degenerate; each case has a number.

@@ -73,7 +73,7 @@ fn cells_with_one_centre_have_one_number() {
 fn by_centres(made: &Triangulation, weights: &[f64]) -> Vec<f64> {
     let bounded = |v: u32| made.star(v).into_iter().all(|cell| made.is_finite(cell));
     let none = |v: u32| if !made.is_vertex(v) || bounded(v) { 0.0 } else { f64::INFINITY };
-    let mut volumes: Vec<f64> = (0..made.ghost()).map(none).collect();
+    let mut volumes: Vec<f64> = (0..made.infinite_vertex()).map(none).collect();
     for (_, corners) in made.finite_cells() {
         for order in orders(corners) {
             let site = |v: u32| (made.positions()[v as usize], weights[v as usize]);

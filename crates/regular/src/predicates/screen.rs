@@ -15,7 +15,7 @@ pub struct Screen<'a> {
     predicates: &'a Predicates<'a>,
     /// Points as [x, z, y, h], not [x, y, z, h]: `power_determinant` multiplies the lanes (x, z) by the lanes (y, h),
     /// so that one vector instruction computes the minors in the columns (x, y) and (z, h). In this order both pairs
-    /// are adjacent in memory, and a difference of two points is not shuffled. After the last point comes the ghost,
+    /// are adjacent in memory, and a difference of two points is not shuffled. After the last point comes the infinite vertex,
     /// all NaN: no comparison accepts a sign that it takes part in.
     points: Vec<[f64; 4]>,
     /// Where every orientation is exact: factors of x and y for which `x·fx + y·fy + z` orders points by (x, y, z),
@@ -82,21 +82,21 @@ impl<'a> Screen<'a> {
         Ok(Self { predicates, points, order, orientation, power })
     }
 
-    /// The same where the ghost has the number of an element of the positions, which is no point. That position must
+    /// Like `new`, but the infinite vertex has an index into the positions whose entry is a dummy. That entry must
     /// be a copy of a point's, so that it widens no bound.
     ///
     /// # Errors
     /// Out of memory: 32 bytes per point are needed.
-    pub fn with_ghost(
+    pub fn with_infinite(
         predicates: &'a Predicates<'a>,
-        ghost: u32,
+        at_infinity: u32,
     ) -> Result<Self, TriangulationError> {
         let mut screen = Self::new(predicates)?;
-        screen.points[ghost as usize] = [f64::NAN; 4];
+        screen.points[at_infinity as usize] = [f64::NAN; 4];
         Ok(screen)
     }
 
-    /// The number of points; a [`Self::with_ghost`] counts, too.
+    /// The number of points; a [`Self::with_infinite`] counts, too.
     pub fn count(&self) -> usize {
         self.points.len() - 1
     }

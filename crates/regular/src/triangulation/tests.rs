@@ -48,7 +48,7 @@ fn each_point_is_a_vertex_hidden_or_a_duplicate() {
         let corners: HashSet<u32> = made.finite_cells().flat_map(|(_, corners)| corners).collect();
         assert!(made.vertices().all(|v| corners.contains(&v)));
         assert_eq!(made.vertices().count(), corners.len());
-        assert!(!made.is_vertex(made.ghost()) && !made.is_vertex(u32::MAX));
+        assert!(!made.is_vertex(made.infinite_vertex()) && !made.is_vertex(u32::MAX));
         hidden += made.hidden().len();
         duplicates += made.duplicates().len();
     }
@@ -70,7 +70,7 @@ fn neighbours_share_facets() {
                     4 * cell + corner as u32
                 );
             }
-            assert_eq!(made.is_finite(cell), !corners.contains(&made.ghost()));
+            assert_eq!(made.is_finite(cell), !corners.contains(&made.infinite_vertex()));
         }
         assert_eq!(made.neighbors(made.cells().len() as u32), None);
         assert!(!made.is_finite(u32::MAX));
@@ -80,7 +80,7 @@ fn neighbours_share_facets() {
 #[test]
 fn a_star_is_the_cells_at_a_vertex() {
     for (_, made) in all() {
-        for v in 0..=made.ghost() + 1 {
+        for v in 0..=made.infinite_vertex() + 1 {
             let mut star = made.star(v);
             star.sort_unstable();
             let at_v = (0..).zip(made.cells()).filter(|(_, corners)| corners.contains(&v));

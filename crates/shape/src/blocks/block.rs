@@ -11,7 +11,7 @@ use crate::Complex;
 
 /// The parameters of the shape, the same for all blocks.
 #[derive(Clone, Copy)]
-pub(crate) struct Question {
+pub(crate) struct BlockParams {
     /// A squared length or +∞.
     pub alpha: f64,
     /// The lattice of the whole set.
@@ -21,7 +21,7 @@ pub(crate) struct Question {
 }
 
 /// The merged result of all blocks.
-pub(crate) struct Answer {
+pub(crate) struct MergedComplex {
     pub complex: Complex,
     /// Number of components.
     pub b0: u64,

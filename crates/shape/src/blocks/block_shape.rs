@@ -4,7 +4,7 @@ use rayon::prelude::*;
 use walpha_base::{Monitor, UnionFind};
 use walpha_regular::{Lattice, Sites};
 
-use super::block::{Block, Question};
+use super::block::{Block, BlockParams};
 use super::classify::{Buckets, Owned, RANGE, classify};
 use super::gather::{Counts, Gathered, Location};
 use super::partition::Neighbourhood;
@@ -67,8 +67,8 @@ pub fn block_shape(points: Own<'_>, alpha: f64) -> Result<BlockShape, ShapeError
     let work = monitor.units(1);
     let made = spanning(&mut block, alpha, next, &work)?;
     let lattice = Lattice::of(&block.positions, &block.weights);
-    let question = Question { alpha, lattice, exterior: false };
-    let owned = classify(&block, made, &question, Buckets::new(&[], 1), &work)?;
+    let params = BlockParams { alpha, lattice, exterior: false };
+    let owned = classify(&block, made, &params, Buckets::new(&[], 1), &work)?;
     Ok(BlockShape { halo, ..ordered(owned, &block, positions.len()) })
 }
 

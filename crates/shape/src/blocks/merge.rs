@@ -4,7 +4,7 @@ use rayon::prelude::*;
 use walpha_base::UnionFind;
 use walpha_regular::Sites;
 
-use super::block::{Answer, Question};
+use super::block::{BlockParams, MergedComplex};
 use super::classify::{Buckets, Owned, RANGE, Records, Side};
 use super::gather::{Counts, Gathered, Location};
 use super::partition::Partition;
@@ -19,10 +19,10 @@ pub(super) fn merge(
     sites: &Sites<'_>,
     plan: &Plan,
     mut blocks: Vec<Owned>,
-    question: &Question,
+    params: &BlockParams,
     buckets: Buckets,
-) -> Answer {
-    let exterior = question.exterior;
+) -> MergedComplex {
+    let exterior = params.exterior;
     let sheet_windings = unite_sheets(&mut blocks);
     let joined = joined(sites, &mut blocks);
     plan.give_back();
@@ -43,7 +43,7 @@ pub(super) fn merge(
     let in_shape = complex.vertices.classes().iter().filter(|&&class| class != Class::Exterior);
     // On a torus, one block with its halo is not the whole triangulation.
     let whole = blocks.len() == 1 && (sites.torus().is_none() || exterior);
-    Answer {
+    MergedComplex {
         b0: in_shape.count() as u64 - joined,
         complex,
         facet_sheets,

@@ -25,7 +25,7 @@ mod run;
 mod spanning;
 mod torus;
 
-pub(super) use block::Question;
+pub(super) use block::BlockParams;
 pub use block_shape::{BlockShape, Own, Side, block_shape};
 pub(crate) use partition::Reach;
 pub use plan::AT_WORK;

@@ -3,7 +3,7 @@ use walpha_base::Monitor;
 use walpha_base::monitor::Units;
 use walpha_regular::{CellArrays, Lattice, Sites, TriangulationError, check_span};
 
-use super::block::{Answer, Block, Question, WORK};
+use super::block::{Block, BlockParams, MergedComplex, WORK};
 use super::classify::{Buckets, Owned, classify};
 use super::merge::merge;
 use super::partition::{Partition, Reach};
@@ -16,9 +16,9 @@ use crate::ShapeError;
 pub(crate) fn run(
     sites: &Sites<'_>,
     plan: &Plan,
-    question: &Question,
+    params: &BlockParams,
     monitor: &Monitor,
-) -> Result<Answer, ShapeError> {
+) -> Result<MergedComplex, ShapeError> {
     let partition = &plan.partition;
     if sites.torus().is_none() {
         check_span(sites).map_err(TriangulationError::from)?;
@@ -33,17 +33,17 @@ pub(crate) fn run(
     for batch in blocks.chunks(plan.at_once) {
         let done: Result<Vec<_>, ShapeError> = batch
             .par_iter()
-            .map(|&block| decide(sites, partition, block, question, buckets, &work))
+            .map(|&block| decide(sites, partition, block, params, buckets, &work))
             .collect();
         for done in done? {
-            bytes += done.merged_bytes(question.exterior);
+            bytes += done.merged_bytes(params.exterior);
             points += done.points();
             owned.push(done);
         }
         plan.keeps(bytes, points, sites.input().len())?;
         plan.give_back();
     }
-    Ok(merge(sites, plan, owned, question, buckets))
+    Ok(merge(sites, plan, owned, params, buckets))
 }
 
 /// Classifies the simplices that a block owns.
@@ -51,16 +51,16 @@ pub(super) fn decide(
     sites: &Sites<'_>,
     partition: &Partition,
     block: usize,
-    question: &Question,
+    params: &BlockParams,
     buckets: Buckets,
     work: &Units<'_>,
 ) -> Result<Owned, ShapeError> {
     let (points, made, lattice) = match sites.torus() {
-        None => in_space(sites, partition, block, question, work)?,
-        Some(torus) => on_torus(sites, torus, partition, block, question, work)?,
+        None => in_space(sites, partition, block, params, work)?,
+        Some(torus) => on_torus(sites, torus, partition, block, params, work)?,
     };
-    let question = Question { lattice, ..*question };
-    let owned = classify(&points, made, &question, buckets, work)?;
+    let params = BlockParams { lattice, ..*params };
+    let owned = classify(&points, made, &params, buckets, work)?;
     match (owned.long, sites.torus()) {
         (Some(edge), Some(torus)) => Err(too_long(torus, edge)),
         _ => Ok(owned),
@@ -72,17 +72,17 @@ pub(super) fn in_space(
     sites: &Sites<'_>,
     partition: &Partition,
     block: usize,
-    question: &Question,
+    params: &BlockParams,
     work: &Units<'_>,
 ) -> Result<(Block, CellArrays, Lattice), ShapeError> {
-    let mut points = partition.block(sites, Reach::Balls(question.alpha), block);
+    let mut points = partition.block(sites, Reach::Balls(params.alpha), block);
     let (inside, next) = (points.input.len(), sites.input().last().map_or(0, |last| last + 1));
-    let made = spanning(&mut points, question.alpha, next, work)?;
+    let made = spanning(&mut points, params.alpha, next, work)?;
     // Auxiliary points need not be on the lattice of the set.
     let lattice = if points.input.len() > inside {
         Lattice::of(&points.positions, &points.weights)
     } else {
-        question.lattice
+        params.lattice
     };
     Ok((points, made, lattice))
 }

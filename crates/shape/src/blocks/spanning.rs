@@ -32,7 +32,7 @@ mod tests {
     use walpha_regular::Lattice;
     use walpha_regular::Sites;
 
-    use crate::blocks::block::Question;
+    use crate::blocks::block::BlockParams;
     use crate::blocks::partition::Partition;
     use crate::blocks::run::in_space;
 
@@ -45,15 +45,15 @@ mod tests {
         let sites = Sites::new(&positions, &weights).unwrap();
         let partition = Partition::new(&sites, 8);
         let lattice = Lattice::of(&positions, &weights);
-        let question = Question { alpha: 1024.0 * 1024.0, lattice, exterior: false };
+        let params = BlockParams { alpha: 1024.0 * 1024.0, lattice, exterior: false };
         let mut flat = 0;
         for block in 0..partition.len() {
             let monitor = Monitor::noop();
             let work = monitor.units(1);
             let (points, made, lattice_of_block) =
-                in_space(&sites, &partition, block, &question, &work).unwrap();
+                in_space(&sites, &partition, block, &params, &work).unwrap();
             assert!(points.positions.len() < 110, "{}", points.positions.len());
-            assert_eq!(made.ghost() as usize, points.input.len());
+            assert_eq!(made.infinite_vertex() as usize, points.input.len());
             // Auxiliary points have a lattice of their own.
             let own = Lattice::of(&points.positions, &points.weights);
             let is_flat = points.weights.iter().any(|&weight| weight < 0.0);

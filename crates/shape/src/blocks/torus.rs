@@ -5,7 +5,7 @@ use walpha_base::monitor::Units;
 use walpha_regular::Lattice;
 use walpha_regular::{AXES, CellArrays, Predicates, Sites, SitesError, Torus, TriangulationError};
 
-use super::block::{Block, Question, triangulate};
+use super::block::{Block, BlockParams, triangulate};
 use super::classify::Long;
 use super::partition::{Partition, Reach};
 use crate::ShapeError;
@@ -17,20 +17,20 @@ pub(super) fn on_torus(
     torus: Torus,
     partition: &Partition,
     block: usize,
-    question: &Question,
+    params: &BlockParams,
     work: &Units<'_>,
 ) -> Result<(Block, CellArrays, Lattice), ShapeError> {
-    for reach in question.reaches(sites, torus) {
+    for reach in params.reaches(sites, torus) {
         let points = partition.block(sites, reach, block);
         match triangulate(&points, work) {
             Err(TriangulationError::Sites(SitesError::Flat { .. })) => {}
-            Ok(made) if !question.decides(reach, &points, &made) => {}
-            made => return Ok((points, made?, question.lattice)),
+            Ok(made) if !params.decides(reach, &points, &made) => {}
+            made => return Ok((points, made?, params.lattice)),
         }
     }
     let points = partition.block(sites, Reach::whole(sites), block);
     let made = triangulate(&points, work)?;
-    Ok((points, made, question.lattice))
+    Ok((points, made, params.lattice))
 }
 
 /// Squared radii of spheres for which halos are tried, in squares of the mean spacing of points. The largest empty
@@ -38,7 +38,7 @@ pub(super) fn on_torus(
 /// enough, and much smaller than that for a large α.
 const SQUARED_RADII: [f64; 3] = [4.0, 16.0, 64.0];
 
-impl Question {
+impl BlockParams {
     /// The halos to try, in this order, before that of the whole triangulation.
     fn reaches(&self, sites: &Sites<'_>, torus: Torus) -> Vec<Reach> {
         let heaviest = sites.weights().iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -60,7 +60,7 @@ impl Question {
         let spheres = Predicates::on(self.lattice, &points.positions, &points.weights);
         made.cells().par_iter().all(|&cell| {
             !cell.iter().any(|&v| v < points.own)
-                || (!cell.contains(&made.ghost()) && spheres.fits(cell, alpha))
+                || (!cell.contains(&made.infinite_vertex()) && spheres.fits(cell, alpha))
         })
     }
 }
@@ -79,9 +79,9 @@ mod tests {
 
     use super::*;
 
-    fn question(alpha: f64, exterior: bool, sites: &Sites<'_>) -> Question {
+    fn params(alpha: f64, exterior: bool, sites: &Sites<'_>) -> BlockParams {
         let lattice = Lattice::of(sites.positions(), sites.weights());
-        Question { alpha, lattice, exterior }
+        BlockParams { alpha, lattice, exterior }
     }
 
     /// Points of even density in a box of 8: a point to each cube of side 1, and not at its centre.
@@ -111,7 +111,7 @@ mod tests {
             (f64::INFINITY, false, vec![one, two, all, all]),
             (1.0, true, vec![one, two, all, all]),
         ] {
-            assert_eq!(question(alpha, exterior, &sites).reaches(&sites, torus), expected);
+            assert_eq!(params(alpha, exterior, &sites).reaches(&sites, torus), expected);
         }
     }
 
@@ -131,11 +131,11 @@ mod tests {
                 (f64::INFINITY, false, decided),
                 (4.0, true, decided),
             ] {
-                let asked = question(alpha, exterior, &sites);
+                let asked = params(alpha, exterior, &sites);
                 assert_eq!(asked.decides(one, &points, &made), expected, "{alpha} {exterior}");
                 assert!(asked.decides(Reach::whole(&sites), &points, &made));
             }
-            let asked = question(4.0, true, &sites);
+            let asked = params(4.0, true, &sites);
             let (looked, ..) =
                 on_torus(&sites, torus, &partition, 3, &asked, &Monitor::noop().units(1)).unwrap();
             let reach = if decided { one } else { Reach::Balls(16.0) };

@@ -14,7 +14,7 @@ use super::radii::{Radii, Radius, Slots};
 use crate::Complex;
 
 /// The incidences and radii of all simplices. Expected O(n log d), where d is the degree of a vertex, and exact arithmetic
-/// where doubles do not decide. `done` hears of each of three parts.
+/// where doubles do not decide. Calls `done` after each of the three passes.
 pub(super) fn incidence_and_radii(
     whole: &Complex,
     positions: &[[f64; 3]],

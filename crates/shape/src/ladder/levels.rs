@@ -8,7 +8,7 @@ use super::incidence::Incidence;
 use crate::{Alpha, AlphaShape, Betti, Class, Complex, WeightedPoints};
 
 /// The levels at which the class of a simplex changes. Levels count from 0; the number of levels stands for never.
-/// Open: there are three changes.
+/// Its fields are public: this is plain data.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Span {
     /// From here on it is in the shape.

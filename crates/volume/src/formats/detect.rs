@@ -28,9 +28,8 @@ const BYTES: u64 = 1024;
 /// What DICOM files are often called. They are recognised by their content alone.
 const DICOM_EXTENSIONS: [&str; 4] = ["dcm", "dicom", "dic", "ima"];
 
-/// Reads a volume from a file: raw samples if a layout is given, else by what the file begins with,
-/// and where that says nothing by its extension. Folders are read as the first format that they look
-/// like.
+/// Reads a volume from a file: raw samples if a layout is given, otherwise in the format that its first bytes show, or else
+/// its extension. Folders are read as the first format that they look like.
 ///
 /// [`FORMATS`] are read, as far as their features were built in. Spacing, origin and directions are
 /// those of the file, in the space it means; where it says none, spacing is 1 and the origin 0.

@@ -72,7 +72,7 @@ pub struct Keeps {
     pub space: bool,
     /// The unit of lengths.
     pub unit: bool,
-    /// The type of samples; without it the user says it.
+    /// Whether the file stores the type of samples; if not, the user has to give it.
     pub dtype: bool,
 }
 

@@ -338,7 +338,7 @@ fn each_field_of_npy() {
     );
 }
 
-/// Columns that are named, and what walpha wrote itself: arrays n×5 up to 0.3, and fields from then on.
+/// Columns that are named, and the fields that walpha writes.
 #[test]
 fn columns_of_arrays_may_be_named() {
     use walpha::points::{PointWriter, read_points};
@@ -346,22 +346,22 @@ fn columns_of_arrays_may_be_named() {
 
     let folder = tempfile::tempdir().unwrap();
     let rows = [1.0, 2.0, 3.0, 7.0, 0.5, 4.0, 5.0, 6.0, 8.0, 0.25];
-    let old = crate::formats::files::save(
+    let plain = crate::formats::files::save(
         folder.path(),
-        "old.npy",
+        "plain.npy",
         npy("'<f4'", "False", "(2, 5)", &floats(&rows)),
     );
     let columns = "x,y,z,weight,value".parse().unwrap();
-    let points = read_points(old, Some(&columns)).unwrap();
+    let points = read_points(plain, Some(&columns)).unwrap();
     let expected = (Some(vec![7.0, 8.0]), Some(vec![0.5, 0.25]));
     assert_eq!((points.weights, points.values), expected.clone());
     let weighted = WeightedPoints::new(PLACES.to_vec(), vec![7.0, 8.0]).unwrap();
     let weighted = weighted.with_values(Some(vec![0.5, 0.25])).unwrap();
     let mut bytes = Vec::new();
-    PointWriter::of("new.npy").unwrap().write(&weighted, &mut bytes).unwrap();
+    PointWriter::of("fields.npy").unwrap().write(&weighted, &mut bytes).unwrap();
     assert_eq!((bytes.len() - 2 * 5 * 8) % 64, 0);
-    let new = crate::formats::files::save(folder.path(), "new.npy", bytes);
-    let points = read_points(new, None).unwrap();
+    let fields = crate::formats::files::save(folder.path(), "fields.npy", bytes);
+    let points = read_points(fields, None).unwrap();
     assert_eq!(points.positions, PLACES);
     assert_eq!((points.weights, points.values), expected);
 }

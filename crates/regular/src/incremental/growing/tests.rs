@@ -103,7 +103,7 @@ proptest! {
             let hole = growing.hole(&screen, leaves, &mut workspace).unwrap();
             hole.map(|hole| {
                 let rows = hole.filling.iter().map(|cell| cell.corners);
-                cells(rows.filter(|row| !row.contains(&GHOST)), growing.positions())
+                cells(rows.filter(|row| !row.contains(&AT_INFINITY)), growing.positions())
             })
         };
         if let Some(foreseen) = foreseen {

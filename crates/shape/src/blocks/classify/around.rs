@@ -215,7 +215,7 @@ impl Walker<'_> {
             if !cell.contains(&u) {
                 continue;
             }
-            let others = cell.into_iter().filter(|&x| x != v && x != u && x != local.ghost);
+            let others = cell.into_iter().filter(|&x| x != v && x != u && x != local.at_infinity);
             for x in others {
                 if local.predicates.inside([v, u], x) {
                     return None;

@@ -22,11 +22,11 @@ impl Boundary {
 
 impl Local<'_> {
     pub(super) fn classify_cells(&self) -> Vec<Kind> {
-        let ghost = self.ghost;
+        let at_infinity = self.at_infinity;
         let kind = |&cell: &[u32; 4]| {
             if !cell.iter().any(|&v| self.owned(v)) {
                 Kind::Foreign
-            } else if cell.contains(&ghost) {
+            } else if cell.contains(&at_infinity) {
                 Kind::Infinite
             } else if self.fits(cell) {
                 Kind::Inside
@@ -168,15 +168,18 @@ impl Local<'_> {
 
     /// Whether a facet between two cells that are not in the shape, 4·cell + corner on both sides, is in the shape.
     fn is_singular(&self, here: u32, there: u32) -> bool {
-        let ghost = self.ghost;
+        let at_infinity = self.at_infinity;
         let facet = self.facet(here);
-        if facet.contains(&ghost) || !self.fits(facet) {
+        if facet.contains(&at_infinity) || !self.fits(facet) {
             return false;
         }
         // In a regular triangulation, a smallest orthogonal sphere of a facet that contains any point contains one
         // of the two vertices opposite the facet.
         let apex = |side: u32| self.cells[side as usize / 4][side as usize % 4];
-        ![here, there].into_iter().map(apex).any(|v| v != ghost && self.predicates.inside(facet, v))
+        ![here, there]
+            .into_iter()
+            .map(apex)
+            .any(|v| v != at_infinity && self.predicates.inside(facet, v))
     }
 
     /// The vertices of a facet, by 4·cell + corner opposite.

@@ -6,14 +6,14 @@ use crate::blocks::block::Block;
 pub(super) struct Local<'a> {
     pub block: &'a Block,
     pub cells: &'a [[u32; 4]],
-    pub ghost: u32,
+    pub at_infinity: u32,
     pub predicates: Predicates<'a>,
     pub alpha: f64,
     pub exterior: bool,
 }
 
 impl Local<'_> {
-    /// Whether a vertex is one of the block's own points; the ghost is nobody's.
+    /// Whether a vertex is one of the block's own points. The infinite vertex belongs to no block.
     #[inline(always)]
     pub(super) fn owned(&self, v: u32) -> bool {
         v < self.block.own

@@ -23,7 +23,7 @@ use walpha_base::monitor::Units;
 use walpha_base::{Cancelled, UnionFind};
 use walpha_regular::{CellArrays, Predicates};
 
-use super::block::{Block, Question, TRIANGULATION, WORK};
+use super::block::{Block, BlockParams, TRIANGULATION, WORK};
 use around::{Walker, Worker};
 use local::Local;
 pub use records::Side;
@@ -42,18 +42,18 @@ const CELLS: usize = 1 << 10;
 pub(super) fn classify(
     block: &Block,
     mesh: CellArrays,
-    question: &Question,
+    params: &BlockParams,
     buckets: Buckets,
     work: &Units<'_>,
 ) -> Result<Owned, Cancelled> {
-    let (cells, neighbors, ghost) = mesh.into_parts();
+    let (cells, neighbors, at_infinity) = mesh.into_parts();
     let local = Local {
         block,
         cells: &cells,
-        ghost,
-        predicates: Predicates::on(question.lattice, &block.positions, &block.weights),
-        alpha: question.alpha,
-        exterior: question.exterior,
+        at_infinity,
+        predicates: Predicates::on(params.lattice, &block.positions, &block.weights),
+        alpha: params.alpha,
+        exterior: params.exterior,
     };
     let kinds = local.classify_cells();
     let sheets = Sheets::new(&kinds);

@@ -261,7 +261,7 @@ mod tests {
     use walpha_regular::Sites;
 
     use super::*;
-    use crate::blocks::block::Question;
+    use crate::blocks::block::BlockParams;
     use crate::blocks::merge::merge;
     use crate::blocks::run::decide;
     use crate::blocks::{Limits, Plan, Reach};
@@ -277,7 +277,7 @@ mod tests {
         let weights = vec![0.0; positions.len()];
         let sites = Sites::new(&positions, &weights).unwrap();
         let lattice = Lattice::of(&positions, &weights);
-        let question = Question { alpha: 0.75, lattice, exterior: false };
+        let params = BlockParams { alpha: 0.75, lattice, exterior: false };
         for blocks in [1, 7] {
             let limits = Limits { blocks: Some(blocks), memory: None };
             let plan = Plan::new(&sites, Reach::Balls(0.75), limits).unwrap();
@@ -285,12 +285,12 @@ mod tests {
             let monitor = Monitor::noop();
             let work = monitor.units(1);
             let owned: Vec<_> = (0..plan.partition.len())
-                .map(|block| decide(&sites, &plan.partition, block, &question, buckets, &work))
+                .map(|block| decide(&sites, &plan.partition, block, &params, buckets, &work))
                 .collect::<Result<_, _>>()
                 .unwrap();
             assert_eq!(owned.iter().map(Owned::points).sum::<usize>(), positions.len());
             let foreseen: u64 = owned.iter().map(|owned| owned.merged_bytes(false)).sum();
-            let made = merge(&sites, &plan, owned, &question, buckets);
+            let made = merge(&sites, &plan, owned, &params, buckets);
             let complex = &made.complex;
             assert!(made.facet_sheets.len() > 2 && !made.edge_sheets.is_empty());
             let bytes = size_of_val(complex.cells.rows())

@@ -5,7 +5,7 @@ use crate::Class;
 pub(super) enum Kind {
     /// None of its corners is the block's own, so that the block needs nothing of it.
     Foreign,
-    /// One of its corners is the ghost.
+    /// One of its corners is the infinite vertex.
     Infinite,
     Outside,
     Inside,

@@ -4,7 +4,7 @@ use walpha_regular::Lattice;
 
 use super::*;
 use crate::ShapeError;
-use crate::blocks::{Question, run as run_blocks};
+use crate::blocks::{BlockParams, run as run_blocks};
 
 /// Each cube of a grid has six cells: with their faces more than is reckoned with for each point.
 #[test]
@@ -12,7 +12,7 @@ fn a_run_that_will_not_keep_its_bound_is_stopped() {
     let (positions, weights) = grid();
     let sites = Sites::new(&positions, &weights).unwrap();
     let lattice = Lattice::of(&positions, &weights);
-    let question = Question { alpha: 0.75, lattice, exterior: false };
+    let params = BlockParams { alpha: 0.75, lattice, exterior: false };
     let run = |asked| {
         let plan = Plan {
             partition: Partition::new(&sites, 8),
@@ -20,8 +20,8 @@ fn a_run_that_will_not_keep_its_bound_is_stopped() {
             at_work: positions.len() as u64,
             bound: Some(Bound { asked, resident: 0 }),
         };
-        run_blocks(&sites, &plan, &question, &walpha_base::Monitor::noop())
-            .map(|answer| answer.complex.cells.len())
+        run_blocks(&sites, &plan, &params, &walpha_base::Monitor::noop())
+            .map(|merged| merged.complex.cells.len())
     };
     assert_eq!(run(POINTS * 350), Ok(6 * 19 * 19 * 19));
     let error = run(POINTS * 250).unwrap_err();

@@ -6,12 +6,12 @@ use std::path::Path;
 
 use ndarray::Array3;
 use proptest::prelude::*;
-use walpha::Alpha;
-use walpha::haar::{HaarOptions, Tolerance, smooth};
-use walpha::points::*;
-use walpha::volume::{Frame, Gray, Volume, VolumeError, sample};
+use walpha_points::haar::{HaarOptions, Tolerance, smooth};
+use walpha_points::*;
+use walpha_shape::Alpha;
+use walpha_volume::{Frame, Gray, Volume, VolumeError, sample};
 
-use crate::common::Told;
+use crate::Told;
 
 fn volume(samples: Array3<f32>) -> Volume {
     Volume::new(samples, Frame::VOXEL).unwrap().with_gray_levels()

@@ -1,7 +1,7 @@
 //! Damaged and forged files.
 
 use proptest::prelude::*;
-use walpha::points::{ModelMetadata, Packing, read_points};
+use walpha_points::{ModelMetadata, Packing, read_points};
 
 use super::{checksum, grid, refused, save, scattered, written};
 

@@ -3,8 +3,9 @@
 
 use std::path::Path;
 
-use walpha::points::{ModelMetadata, Packing};
-use walpha::{Alpha, GrayRange, WeightedPoints};
+use walpha_points::{ModelMetadata, Packing, WeightedPoints};
+use walpha_shape::Alpha;
+use walpha_volume::GrayRange;
 
 use super::{Chance, back, grid, scattered, written};
 

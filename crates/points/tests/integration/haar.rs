@@ -2,10 +2,10 @@
 
 use ndarray::{Array3, ArrayView3};
 use proptest::prelude::*;
-use walpha::haar::{Decomposition, HaarError, HaarOptions, Tolerance, forward, smooth};
-use walpha::volume::{Frame, Volume};
 use walpha_base::Sum;
 use walpha_base::random::Random;
+use walpha_points::haar::{Decomposition, HaarError, HaarOptions, Tolerance, forward, smooth};
+use walpha_volume::{Frame, Volume};
 
 const BOTH: [Decomposition; 2] = [Decomposition::NonStandard, Decomposition::Standard];
 
