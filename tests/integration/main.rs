@@ -28,22 +28,18 @@ mod laws;
 mod mpi;
 #[cfg(target_os = "linux")]
 mod nothing;
-mod numbers;
 mod opened_once;
 mod outline;
-mod outofcore;
 #[cfg(unix)]
 mod outputs;
 mod periodic;
 #[cfg(feature = "paper")]
 mod plane;
-mod progress;
 mod refit;
 #[cfg(feature = "paper")]
 mod reproduce;
 mod single;
 mod skull;
-mod solid;
 mod triangulation;
 #[cfg(feature = "render")]
 mod view;

@@ -2,10 +2,11 @@
 
 use std::collections::HashMap;
 
-use walpha::points::{Selection, SelectionRule, Units, difference, select, weigh};
-use walpha::shape::{Cuts, ShapeOptions, Surface};
-use walpha::volume::sample;
-use walpha::{Alpha, AlphaShape, WeightedPoints, Weighting, alpha_shape};
+use walpha_points::Weighting;
+use walpha_points::{Selection, SelectionRule, Units, difference, select, weigh};
+use walpha_shape::{Alpha, AlphaShape, WeightedPoints, alpha_shape};
+use walpha_shape::{Cuts, ShapeOptions, Surface};
+use walpha_volume::sample;
 
 fn shape(points: WeightedPoints, alpha: f64) -> AlphaShape {
     alpha_shape(points, &ShapeOptions::new(Alpha::from_squared(alpha).unwrap())).unwrap()

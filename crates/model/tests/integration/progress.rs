@@ -2,14 +2,19 @@
 
 use std::sync::{Arc, Mutex};
 
-use walpha::haar::{HaarError, smooth_monitored};
-use walpha::interpolate::{Adaptive, InterpolateError, adaptive_voxels_monitored};
-use walpha::ladder::Filtration;
-use walpha::pipeline::{Choice, Goal, PipelineError, Values};
-use walpha::progress::{Listener, Monitor, Stage};
-use walpha::shape::{Engine, ShapeError, ShapeOptions, alpha_shape_monitored};
-use walpha::volume::{ReadOptions, VolumeError, VolumeWriter, open_monitored};
-use walpha::{Alpha, Gray, HaarOptions, Points, Recipe, Units, Volume, WeightedPoints, volume};
+use walpha_model::Recipe;
+use walpha_model::interpolate::{Adaptive, InterpolateError, adaptive_voxels_monitored};
+use walpha_model::pipeline::{Choice, Goal, PipelineError, Values};
+use walpha_model::progress::{Listener, Monitor, Stage};
+use walpha_points::haar::HaarOptions;
+use walpha_points::haar::{HaarError, smooth_monitored};
+use walpha_points::{Points, Units};
+use walpha_shape::ladder::Filtration;
+use walpha_shape::{Alpha, WeightedPoints};
+use walpha_shape::{Engine, ShapeError, ShapeOptions, alpha_shape_monitored};
+use walpha_volume as volume;
+use walpha_volume::{Gray, Volume};
+use walpha_volume::{ReadOptions, VolumeError, VolumeWriter, open_monitored};
 
 /// Keeps what is reported.
 #[derive(Clone, Default)]

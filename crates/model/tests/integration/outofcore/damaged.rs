@@ -3,12 +3,13 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use walpha::export::{ExportOptions, Format};
-use walpha::outofcore::{BlocksError, Job, Plan, merge, run, whole};
+use walpha_model::export::{ExportOptions, Format};
+use walpha_model::outofcore::{BlocksError, Job, Plan, merge, run, whole};
+use walpha_points::Weighting;
+use walpha_points::haar::{Decomposition, Tolerance};
 #[cfg(feature = "zarr")]
-use walpha::volume::Source;
-use walpha::volume::{ReadOptions, open};
-use walpha::{Decomposition, Tolerance, Weighting};
+use walpha_volume::Source;
+use walpha_volume::{ReadOptions, open};
 
 use super::planned;
 
@@ -54,7 +55,7 @@ fn no_flipped_bit_makes_a_wrong_shape() {
         let folder = tempfile::tempdir().unwrap();
         let mut job = small(decomposition);
         // Not a point more than it takes.
-        job.recipe.choice = super::selected(walpha::SelectionRule::Count(16));
+        job.recipe.choice = super::selected(walpha_points::SelectionRule::Count(16));
         let plan = done(&job, 2, folder.path());
         let expected = merged(&plan).unwrap();
         assert!(plan.check().unwrap().is_whole());
@@ -182,7 +183,7 @@ fn an_input_that_changed_is_refused_where_it_is_read() {
     let folder = tempfile::tempdir().unwrap();
     let input = folder.path().join("a.npy");
     written(&input, |_| {});
-    let job = Job::new(input.to_str().unwrap(), walpha::Recipe::new()).unwrap();
+    let job = Job::new(input.to_str().unwrap(), walpha_model::Recipe::new()).unwrap();
     let work = folder.path().join("work");
     fs::create_dir(&work).unwrap();
     let plan = planned(&job, 4, &work);
@@ -225,8 +226,8 @@ fn work_goes_on_where_an_input_was_touched_and_anew_where_it_changed() {
     let (input, work) = (folder.path().join("a.npy"), folder.path().join("work"));
     fs::create_dir(&work).unwrap();
     written(&input, |_| {});
-    let job = Job::new(input.to_str().unwrap(), walpha::Recipe::new()).unwrap();
-    let cutting = walpha::outofcore::Cutting::default().blocks(4);
+    let job = Job::new(input.to_str().unwrap(), walpha_model::Recipe::new()).unwrap();
+    let cutting = walpha_model::outofcore::Cutting::default().blocks(4);
     let plan = Plan::resume(job.clone(), cutting, &work).unwrap();
     run(&plan, 0).unwrap();
     let touch = |seconds| {
@@ -256,7 +257,7 @@ fn a_chunk_that_changed_is_refused() {
         sized(&from, 70, change);
         let source = Source::open(from.to_str().unwrap(), &ReadOptions::default()).unwrap();
         let path = folder.path().join(name);
-        walpha::volume::convert(&source, &path).unwrap();
+        walpha_volume::convert(&source, &path).unwrap();
         path
     };
     let input = convert("a.zarr", |_| {});
@@ -264,7 +265,7 @@ fn a_chunk_that_changed_is_refused() {
     let other = convert("b.zarr", |samples| samples[samples.len() - 1] += 1e-3);
     let work = folder.path().join("work");
     fs::create_dir(&work).unwrap();
-    let job = Job::new(input.to_str().unwrap(), walpha::Recipe::new()).unwrap();
+    let job = Job::new(input.to_str().unwrap(), walpha_model::Recipe::new()).unwrap();
     let plan = planned(&job, 2, &work);
     run(&plan, 0).unwrap();
     let chunk = Path::new("c/1/1/1");

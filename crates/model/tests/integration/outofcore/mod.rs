@@ -6,19 +6,20 @@ use std::fs::File;
 use std::num::NonZeroUsize;
 use std::path::Path;
 
-use walpha::export::{ExportOptions, Format};
-use walpha::interpolate::Refit;
-use walpha::outofcore::{BlocksError, Cutting, Job, Merged, Plan, merge, run, whole};
-use walpha::pipeline::{AlphaRule, Choice, Goal, Model};
-use walpha::shape::{Component, Engine, Torus};
-use walpha::volume::{Nan, ReadOptions, open};
-use walpha::{
-    Alpha, AlphaShape, Balls, Decomposition, GrayRange, Recipe, Selection, SelectionRule,
-    Tolerance, Units, Weighting,
-};
 use walpha_base::random::Random;
+use walpha_model::Recipe;
+use walpha_model::export::{ExportOptions, Format};
+use walpha_model::interpolate::Refit;
+use walpha_model::outofcore::{BlocksError, Cutting, Job, Merged, Plan, merge, run, whole};
+use walpha_model::pipeline::{AlphaRule, Choice, Goal, Model};
+use walpha_points::haar::{Decomposition, Tolerance};
+use walpha_points::{Selection, SelectionRule, Units, Weighting};
+use walpha_shape::{Alpha, AlphaShape, Balls};
+use walpha_shape::{Component, Engine, Torus};
+use walpha_volume::GrayRange;
+use walpha_volume::{Nan, ReadOptions, open};
 
-use crate::common::has_skull;
+use crate::has_skull;
 
 /// The job in one piece, in as many blocks of a k-d tree as asked for.
 fn in_one_piece(job: &Job, blocks: usize) -> Model {
@@ -235,14 +236,14 @@ fn missing_samples_and_given_ranges_are_the_same_in_blocks() {
 fn world_coordinates_and_regions_are_the_same_in_blocks() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("turned.mha");
-    let volume = walpha::volume::phantom(40).unwrap();
+    let volume = walpha_volume::phantom(40).unwrap();
     let axes = [[0.42, 0.56, 0.0], [-0.8, 0.6, 0.0], [0.0, 0.0, 1.3]];
-    let frame = walpha::Frame::from_axes([-31.7, 12.25, 100.0], axes).unwrap();
-    let frame = frame.with_coordinates(walpha::Coordinates::PATIENT);
+    let frame = walpha_volume::Frame::from_axes([-31.7, 12.25, 100.0], axes).unwrap();
+    let frame = frame.with_coordinates(walpha_volume::Coordinates::PATIENT);
     let volume = volume.with_frame(frame);
-    let writer = walpha::volume::VolumeWriter::of(&path).unwrap();
+    let writer = walpha_volume::VolumeWriter::of(&path).unwrap();
     writer.write(&volume, &mut File::create(&path).unwrap()).unwrap();
-    let region = walpha::volume::Region { first: [3, 0, 5], end: [Some(37), None, Some(33)] };
+    let region = walpha_volume::Region { first: [3, 0, 5], end: [Some(37), None, Some(33)] };
     for region in [None, Some(region)] {
         let read = ReadOptions::default().region(region);
         let recipe = Recipe::new().read(read).weighting(Weighting::MinMax);

@@ -1,20 +1,20 @@
 //! NaN, infinities and numbers beyond what makes sense, in whatever takes numbers: an error that names the point or the option.
 
 use ndarray::Array3;
-use walpha::check::enumerate;
-use walpha::check::schema::{ComplexFile, PlacedComplex};
-use walpha::interpolate::{Grid, Interpolant};
-use walpha::ladder::Filtration;
-use walpha::pipeline::{AlphaRule, Choice, Goal, Parameter};
-use walpha::points::{ModelMetadata, Packing, PointWriter};
-use walpha::shape::{Balls, Engine, Outline, ShapeOptions, Torus, WeightedPoints};
-use walpha::triangulation::{PowerDiagram, triangulate};
-use walpha::volume::{Dims, Frame, GrayRange, LengthUnit, Volume};
-use walpha::{
-    Alpha, HaarOptions, Points, Recipe, Selection, SelectionRule, Tolerance, Units, Weighting,
-    alpha_shape,
-};
 use walpha_base::random::Random;
+use walpha_check::enumerate;
+use walpha_check::schema::{ComplexFile, PlacedComplex};
+use walpha_model::Recipe;
+use walpha_model::interpolate::{Grid, Interpolant};
+use walpha_model::pipeline::{AlphaRule, Choice, Goal, Parameter};
+use walpha_points::haar::{HaarOptions, Tolerance};
+use walpha_points::{ModelMetadata, Packing, PointWriter};
+use walpha_points::{Points, Selection, SelectionRule, Units, Weighting};
+use walpha_regular::{PowerDiagram, triangulate};
+use walpha_shape::ladder::Filtration;
+use walpha_shape::{Alpha, alpha_shape};
+use walpha_shape::{Balls, Engine, Outline, ShapeOptions, Torus, WeightedPoints};
+use walpha_volume::{Dims, Frame, GrayRange, LengthUnit, Volume};
 
 const WRONG: [f64; 4] = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e308];
 /// The point at fault.
