@@ -12,6 +12,7 @@
 //! ```
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
+// Allowed in `standard_output`, and where `memory` calls the C library.
 #![deny(unsafe_code)]
 #![warn(unreachable_pub)]
 

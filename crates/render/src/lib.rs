@@ -23,6 +23,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+// The macro of ndarray for slices allows it within itself, so it cannot be forbidden.
 #![deny(unsafe_code)]
 #![warn(unreachable_pub)]
 
