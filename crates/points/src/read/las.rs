@@ -8,7 +8,7 @@ use walpha_base::advice::{Setting, advice};
 use walpha_base::shown::shown;
 
 use super::crs::ReferenceSystem;
-use super::laz::Claims;
+use super::laz::{Claims, Records};
 use super::{COLUMNS, Points, PointsError, format};
 use crate::{ModelMetadata, PointOptions};
 use walpha_volume::{OpenFile, Reason, io_error};
@@ -24,7 +24,7 @@ pub(crate) fn read(
     options: &PointOptions,
 ) -> Result<(Points, ModelMetadata), PointsError> {
     let path = file.path();
-    let header = check(file)?;
+    let (header, claims) = check(file)?;
     let claimed = count(&header);
     let fail = |error| unreadable(path, error);
     let reader = file.owned_reader()?;
@@ -42,7 +42,27 @@ pub(crate) fn read(
     let mut batch = las::PointDataBuilder::new().for_header(reader.header()).build();
     let is_extended = reader.header().point_format().is_extended;
     let (mut found, mut withheld, mut kinds) = (0, 0, Kinds::default());
-    while reader.fill_points(at_once, &mut batch).map_err(fail)? > 0 {
+    let mut packed = match claims {
+        None => None,
+        Some(claims) => {
+            let description = reader.header().laz_vlr().map_err(fail)?;
+            let records =
+                Records::new(file.owned_reader()?, claims.data, claims.compressor, description);
+            Some(records.map_err(|error| fail(error.into()))?)
+        }
+    };
+    while found < claimed {
+        match &mut packed {
+            None => {
+                if reader.fill_points(at_once, &mut batch).map_err(fail)? == 0 {
+                    break;
+                }
+            }
+            Some(records) => {
+                let records = records.fill(batch.resize_for(at_once.min(claimed - found) as usize));
+                records.map_err(|error| fail(error.into()))?;
+            }
+        }
         let places = batch.x().zip(batch.y()).zip(batch.z()).map(|((x, y), z)| [x, y, z]);
         let records = batch.raw_bytes().chunks_exact(batch.record_len());
         let rows = places.zip(batch.intensity()).zip(batch.classification()).zip(records);
@@ -173,31 +193,29 @@ impl<R: Seek> Seek for WithoutOldCount<R> {
     }
 }
 
-/// Refuses what a compressed file claims of its compression and does not hold.
+/// Refuses what a compressed file claims of its compression and does not hold; returns what it claims, if it is compressed.
 fn check_compression(
     path: &Path,
     reader: &mut (impl Read + Seek),
     header: &las::raw::Header,
     length: u64,
-) -> Result<(), PointsError> {
+) -> Result<Option<Claims>, PointsError> {
     let io = |error: io::Error| match error.kind() {
         io::ErrorKind::UnexpectedEof => {
             format(path, Reason::truncated("ends inside its compressed points: it is truncated"))
         }
         _ => io_error(path)(error).into(),
     };
-    let Some(claims) = Claims::of(reader, header, length).map_err(io)? else { return Ok(()) };
-    let checked = match claims {
-        Ok(claims) => claims.check(reader).map_err(io)?,
-        Err(reason) => Err(reason),
-    };
-    checked.map_err(|reason| format(path, reason))
+    let Some(claims) = Claims::of(reader, header, length).map_err(io)? else { return Ok(None) };
+    let claims = claims.map_err(|reason| format(path, reason))?;
+    claims.check(reader).map_err(io)?.map_err(|reason| format(path, reason))?;
+    Ok(Some(claims))
 }
 
 /// Refuses a file that has fewer points than it claims, or that claims none and has some; scales that are not numbers, or 0;
 /// and claims that the library would trust: more bytes of points than 64 bits can count, and an extended record longer than
-/// the file, for which it would allocate memory. Returns the header.
-fn check(file: &OpenFile) -> Result<las::raw::Header, PointsError> {
+/// the file, for which it would allocate memory. Returns the header, and what it claims of its compression.
+fn check(file: &OpenFile) -> Result<(las::raw::Header, Option<Claims>), PointsError> {
     let (path, length) = (file.path(), file.length());
     let mut reader = file.reader()?;
     let header =
@@ -222,19 +240,18 @@ fn check(file: &OpenFile) -> Result<las::raw::Header, PointsError> {
         return Err(format(path, Reason::content(what, "correct its header, or write it again")));
     }
     say_counts(path, &header);
-    let compressed = header.point_data_record_format & 0xc0 != 0;
-    check_compression(path, &mut reader, &header, length)?;
+    let claims = check_compression(path, &mut reader, &header, length)?;
     // Some writers say where such records would begin, and that there are none.
     let behind = header.evlr.filter(|records| records.number_of_evlrs > 0);
     let behind = behind.map(|records| records.start_of_first_evlr);
     let waves = header.start_of_waveform_data_packet_record.filter(|&start| start > 0);
     let end = behind.into_iter().chain(waves).fold(length, u64::min);
     let stored = end.saturating_sub(header.offset_to_point_data.into()) / record;
-    if !compressed && stored < count {
+    if claims.is_none() && stored < count {
         let what = format!("claims {count} points, but has {stored}: it is truncated");
         return Err(format(path, Reason::truncated(what)));
     }
-    if !compressed && stored > count {
+    if claims.is_none() && stored > count {
         let claim = format!("counts {count} points in its header, but has {stored}");
         if count == 0 {
             let what = format!("{claim}: the writer was not closed");
@@ -245,13 +262,13 @@ fn check(file: &OpenFile) -> Result<las::raw::Header, PointsError> {
         }
         tracing::warn!("{}: {claim}; those behind are passed over", shown(path));
     }
-    let Some(records) = header.evlr else { return Ok(header) };
+    let Some(records) = header.evlr else { return Ok((header, claims)) };
     // The length follows 2 reserved bytes, a user id of 16 and a record id of 2. If it is missing, the library
     // reports that.
     let mut claimed = [0; 8];
     let place = SeekFrom::Start(records.start_of_first_evlr.saturating_add(20));
     if reader.seek(place).and_then(|_| reader.read_exact(&mut claimed)).is_err() {
-        return Ok(header);
+        return Ok((header, claims));
     }
     let claimed = u64::from_le_bytes(claimed);
     if claimed > length {
@@ -259,7 +276,7 @@ fn check(file: &OpenFile) -> Result<las::raw::Header, PointsError> {
             format!("claims a record of {claimed} bytes in a file of {length}: it is truncated");
         return Err(format(path, Reason::truncated(what)));
     }
-    Ok(header)
+    Ok((header, claims))
 }
 
 fn unreadable(path: &Path, error: las::Error) -> PointsError {

@@ -5,7 +5,7 @@
 
 use std::io::{self, Read, Seek, SeekFrom};
 
-use super::las::count;
+use crate::read::las::count;
 use walpha_volume::Reason;
 
 /// The record that describes the compression: its user and number, and its bytes before the items.
@@ -14,9 +14,9 @@ const BEFORE_ITEMS: usize = 34;
 /// Bytes of a record's header.
 const RECORD_HEADER: u64 = 54;
 /// The compressors: all points in one stream, in chunks, and in chunks of layers, one for each kind of field.
-const POINTWISE: u16 = 1;
-const CHUNKED: u16 = 2;
-const LAYERED: u16 = 3;
+pub(super) const POINTWISE: u16 = 1;
+pub(super) const CHUNKED: u16 = 2;
+pub(super) const LAYERED: u16 = 3;
 /// Types of items, with their bytes.
 const BYTES: u16 = 0;
 const BYTES_14: u16 = 14;
@@ -45,16 +45,16 @@ const ITEMS: [&[(u16, u16)]; 11] = [
 ];
 
 /// What is checked against the file.
-pub(super) struct Claims {
+pub(in crate::read) struct Claims {
     /// The compressor, and for each item its type and bytes.
-    compressor: u16,
+    pub(in crate::read) compressor: u16,
     items: Vec<(u16, u16)>,
     /// Bytes of a point.
     record: u64,
     /// Number of points.
     points: u64,
     /// Where points begin.
-    data: u64,
+    pub(in crate::read) data: u64,
     /// Bytes of the file.
     length: u64,
 }
@@ -64,7 +64,7 @@ impl Claims {
     ///
     /// # Errors
     /// Those of the system, an early end of the file among them.
-    pub(super) fn of(
+    pub(in crate::read) fn of(
         reader: &mut (impl Read + Seek),
         header: &las::raw::Header,
         length: u64,
@@ -113,7 +113,10 @@ impl Claims {
     ///
     /// # Errors
     /// Those of the system, an early end of the file among them.
-    pub(super) fn check(&self, reader: &mut (impl Read + Seek)) -> io::Result<Result<(), Reason>> {
+    pub(in crate::read) fn check(
+        &self,
+        reader: &mut (impl Read + Seek),
+    ) -> io::Result<Result<(), Reason>> {
         match self.compressor {
             POINTWISE => Ok(Ok(())),
             CHUNKED => self.check_table(reader),
