@@ -25,18 +25,6 @@ pub fn alpha_shape(
     points: impl Into<WeightedPoints>,
     options: &ShapeOptions,
 ) -> Result<AlphaShape, ShapeError> {
-    alpha_shape_monitored(points, options, &Monitor::noop())
-}
-
-/// [`alpha_shape`] with progress and cancelling through `monitor`. CGAL cannot be interrupted.
-///
-/// # Errors
-/// Those of [`alpha_shape`], and [`ShapeError::Cancelled`].
-pub fn alpha_shape_monitored(
-    points: impl Into<WeightedPoints>,
-    options: &ShapeOptions,
-    monitor: &Monitor,
-) -> Result<AlphaShape, ShapeError> {
     let options = options.classifier(options.classifier.or(CGAL));
-    walpha_shape::alpha_shape_monitored(points, &options, monitor)
+    walpha_shape::alpha_shape(points, &options)
 }

@@ -6,7 +6,7 @@ use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use walpha::Class;
 use walpha::check::schema::{ComplexFile, PlacedComplex};
-use walpha::check::{Alpha, CertifyError, CompareError, compare_monitored};
+use walpha::check::{self, Alpha, CertifyError, CompareError};
 use walpha::progress::Stage;
 use walpha::shape::placed_complex;
 
@@ -59,7 +59,7 @@ impl Complex {
         file.hidden = hidden.map(numbers).transpose()?;
         file.duplicates = duplicates.map(|pairs| rows("duplicates", pairs)).transpose()?;
         file.periodic = periodic;
-        Ok(Self(Arc::new(run(py, &task, move |_| PlacedComplex::try_from(file))?)))
+        Ok(Self(Arc::new(run(py, &task, move || PlacedComplex::try_from(file))?)))
     }
 
     /// What a shape claims to be.
@@ -67,7 +67,7 @@ impl Complex {
     fn of(py: Python<'_>, shape: &Bound<'_, Shape>) -> PyResult<Self> {
         let shape = Arc::clone(shape.get().shape());
         let placed =
-            run(py, &Task::default(), move |_| Ok::<_, CertifyError>(placed_complex(&shape)))?;
+            run(py, &Task::default(), move || Ok::<_, CertifyError>(placed_complex(&shape)))?;
         Ok(Self(Arc::new(placed)))
     }
 
@@ -156,9 +156,9 @@ impl Complex {
         task: Task<'_>,
     ) -> PyResult<Judged> {
         let placed = Arc::clone(&self.0);
-        run(py, &task, move |monitor| {
-            Stage::Certify.begin(monitor)?;
-            let (mut findings, certificate) = placed.findings_monitored(monitor)?;
+        run(py, &task, move || {
+            Stage::Certify.begin()?;
+            let (mut findings, certificate) = placed.findings()?;
             findings.retain(|finding| ties_too || !finding.is_tie());
             let told =
                 findings.iter().take(most).map(|finding| (finding.to_string(), json(finding)));
@@ -186,9 +186,9 @@ pub fn compare(
             "complexes of a periodic box are not compared by places; compare the arrays of rows",
         ));
     }
-    run(py, &task, move |monitor| {
-        Stage::Compare.begin(monitor)?;
-        let comparison = compare_monitored(a.placed(), b.placed(), monitor)?;
+    run(py, &task, move || {
+        Stage::Compare.begin()?;
+        let comparison = check::compare(a.placed(), b.placed())?;
         let text = comparison.to_string();
         Ok::<_, CompareError>((comparison.is_equal(), text, json(&comparison)))
     })

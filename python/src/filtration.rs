@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 use rayon::prelude::*;
 use self_cell::self_cell;
 use walpha::ladder::{self, Ordered};
-use walpha::progress::{Monitor, Stage};
+use walpha::progress::Stage;
 use walpha::shape::ShapeError;
 use walpha::{Alpha, WeightedPoints};
 
@@ -36,13 +36,13 @@ impl Filtration {
     ) -> PyResult<Self> {
         let torus = torus(periodic)?;
         let points = weighted(points, weights, None)?;
-        let made = run(py, &task, move |monitor| {
-            Stage::Filtration.begin(monitor)?;
+        let made = run(py, &task, move || {
+            Stage::Filtration.begin()?;
             let positions = points.positions;
             let weights = points.weights.unwrap_or_else(|| vec![0.0; positions.len()]);
             let points =
                 WeightedPoints::new(positions, weights).expect("as many weights as points");
-            ladder::Filtration::monitored(torus, points, monitor)
+            ladder::Filtration::on(torus, points)
         })?;
         Ok(Self(Arc::new(made)))
     }
@@ -51,7 +51,7 @@ impl Filtration {
     fn whole(&self, py: Python<'_>) -> PyResult<Shape> {
         let filtration = Arc::clone(&self.0);
         let whole =
-            run(py, &Task::default(), move |_| Ok::<_, ShapeError>(filtration.whole().clone()))?;
+            run(py, &Task::default(), move || Ok::<_, ShapeError>(filtration.whole().clone()))?;
         Ok(Shape::at_level(whole))
     }
 
@@ -59,8 +59,8 @@ impl Filtration {
     fn shape(&self, py: Python<'_>, alpha: f64, exterior: bool, task: Task<'_>) -> PyResult<Shape> {
         let alpha = Alpha::from_squared(alpha).map_err(Told::told)?;
         let filtration = Arc::clone(&self.0);
-        let shape = run(py, &task, move |monitor| {
-            Stage::Ladder.begin(monitor)?;
+        let shape = run(py, &task, move || {
+            Stage::Ladder.begin()?;
             let levels = filtration.levels(&[alpha]);
             Ok::<_, ShapeError>(levels.shape(0, exterior, levels.betti()[0]))
         })?;
@@ -77,8 +77,8 @@ impl Filtration {
         let alphas = numbers(alphas)?.into_iter().map(Alpha::from_squared);
         let alphas: Vec<Alpha> = alphas.collect::<Result<_, _>>().map_err(Told::told)?;
         let filtration = Arc::clone(&self.0);
-        run(py, &task, move |monitor| {
-            Stage::Ladder.begin(monitor)?;
+        run(py, &task, move || {
+            Stage::Ladder.begin()?;
             let hull = filtration.whole().measures().volume;
             Ok::<_, ShapeError>(json(&filtration.ladder(&alphas, hull).levels))
         })
@@ -87,8 +87,8 @@ impl Filtration {
     /// The topology at every critical value.
     fn curve<'py>(&self, py: Python<'py>, task: Task<'_>) -> PyResult<Columns<'py>> {
         let filtration = Arc::clone(&self.0);
-        let (alphas, columns) = run(py, &task, move |monitor| {
-            Stage::Curve.begin(monitor)?;
+        let (alphas, columns) = run(py, &task, move || {
+            Stage::Curve.begin()?;
             let curve = filtration.curve();
             let alphas: Vec<f64> = curve.alphas().collect();
             let column = |k: usize| curve.betti.iter().map(|&b| <[u64; 3]>::from(b)[k]).collect();
@@ -123,9 +123,9 @@ impl Filtration {
     /// All simplices in order.
     fn simplices(&self, py: Python<'_>, task: Task<'_>) -> PyResult<Simplices> {
         let filtration = Arc::clone(&self.0);
-        run(py, &task, move |monitor| {
-            Stage::Order.begin(monitor)?;
-            let ordered = Owned::try_new(filtration, |own| own.simplices_monitored(monitor))?;
+        run(py, &task, move || {
+            Stage::Order.begin()?;
+            let ordered = Owned::try_new(filtration, |own| own.simplices())?;
             Ok::<_, ShapeError>(Simplices { ordered: Arc::new(ordered), entries: OnceLock::new() })
         })
     }
@@ -140,7 +140,7 @@ impl Filtration {
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let vertices = numbers(vertices)?;
         let filtration = Arc::clone(&self.0);
-        let found = run(py, &task, move |_| {
+        let found = run(py, &task, move || {
             let mut found = Vec::with_capacity(4 * vertices.len());
             for simplex in vertices.chunks_exact(corners) {
                 for ladder::Derivative { position: [x, y, z], weight, .. } in
@@ -157,8 +157,8 @@ impl Filtration {
     /// Values of α to try, as JSON.
     fn suggestions(&self, py: Python<'_>, task: Task<'_>) -> PyResult<String> {
         let filtration = Arc::clone(&self.0);
-        run(py, &task, move |monitor| {
-            Stage::Curve.begin(monitor)?;
+        run(py, &task, move || {
+            Stage::Curve.begin()?;
             Ok::<_, ShapeError>(json(&filtration.suggest(&filtration.curve())))
         })
     }
@@ -168,8 +168,8 @@ impl Filtration {
         let components = NonZeroU64::new(components)
             .ok_or_else(|| wrong("components=0 makes no sense: give a number from 1 up"))?;
         let filtration = Arc::clone(&self.0);
-        run(py, &task, move |monitor| {
-            Stage::Alpha.begin(monitor)?;
+        run(py, &task, move || {
+            Stage::Alpha.begin()?;
             Ok::<_, ShapeError>(filtration.optimal_alpha(components).squared())
         })
     }
@@ -221,14 +221,14 @@ impl Simplices {
         if let Some(entries) = self.entries.get() {
             return Ok(entries);
         }
-        let entries = self.work(py, |ordered, _| Ok(Entries::of(ordered)))?;
+        let entries = self.work(py, |ordered| Ok(Entries::of(ordered)))?;
         Ok(self.entries.get_or_init(|| entries))
     }
 
     /// The persistence pairs of dimensions 0 and 2.
     fn pairs(&self, py: Python<'_>) -> PyResult<&ladder::Pairs> {
         // Found once, by the first who asks.
-        self.work(py, |ordered, _| {
+        self.work(py, |ordered| {
             ordered.pairs();
             Ok(())
         })?;
@@ -237,7 +237,7 @@ impl Simplices {
 
     /// Those of dimension 1.
     fn loops(&self, py: Python<'_>) -> PyResult<&ladder::Loops> {
-        self.work(py, |ordered, monitor| ordered.loops_monitored(monitor).map(|_| ()))?;
+        self.work(py, |ordered| ordered.loops().map(|_| ()))?;
         self.ordered().loops().map_err(Told::told)
     }
 
@@ -245,12 +245,12 @@ impl Simplices {
     fn work<T: Send + 'static>(
         &self,
         py: Python<'_>,
-        work: impl FnOnce(&Ordered<'_>, &Monitor) -> Result<T, ShapeError> + Send + 'static,
+        work: impl FnOnce(&Ordered<'_>) -> Result<T, ShapeError> + Send + 'static,
     ) -> PyResult<T> {
         let ordered = Arc::clone(&self.ordered);
-        run(py, &Task::default(), move |monitor| {
-            Stage::Pairs.begin(monitor)?;
-            work(ordered.borrow_dependent(), monitor)
+        run(py, &Task::default(), move || {
+            Stage::Pairs.begin()?;
+            work(ordered.borrow_dependent())
         })
     }
 }
@@ -299,7 +299,7 @@ impl Simplices {
 
     #[getter]
     fn gabriel_simplices<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<u32>>> {
-        Ok(self.work(py, |ordered, _| Ok(ordered.gabriel_simplices()))?.into_pyarray(py))
+        Ok(self.work(py, |ordered| Ok(ordered.gabriel_simplices()))?.into_pyarray(py))
     }
 
     #[getter]

@@ -45,8 +45,8 @@ pub fn read_points<'py>(
         .classes(classes)
         .withheld(withheld)
         .thin(thin);
-    let (points, facts) = run(py, &Task::default(), move |monitor| {
-        let _ = Stage::Read.begin(monitor);
+    let (points, facts) = run(py, &Task::default(), move || {
+        let _ = Stage::Read.begin();
         read_model(&path, &options)
     })?;
     let rows = points.positions.len();
@@ -92,7 +92,7 @@ pub fn write_points(
     let facts = ModelMetadata::default().alpha(alpha);
     let packing = Packing::default().value_error(value_error);
     let target = Target::open(&path).map_err(Told::told)?;
-    run(py, &Task::default(), move |_| {
+    run(py, &Task::default(), move || {
         let weights = points.weights.unwrap_or_else(|| vec![0.0; points.positions.len()]);
         let weighted = WeightedPoints::new(points.positions, weights)
             .and_then(|weighted| weighted.with_values(points.values))

@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 use rayon::prelude::*;
 use walpha::Points;
 use walpha::progress::Monitor;
-use walpha::triangulation::{self, TriangulationError, along_curve, triangulate_monitored};
+use walpha::triangulation::{self, TriangulationError, along_curve, triangulate};
 
 use crate::arrays::{column, lend, rows};
 use crate::shape::weighted;
@@ -48,7 +48,7 @@ impl Triangulation {
     ) -> PyResult<Self> {
         let Points { positions, weights, .. } = weighted(points, weights, None)?;
         let weights = weights.unwrap_or_else(|| vec![0.0; positions.len()]);
-        let arrays = run(py, &task, move |monitor| Arrays::of(positions, weights, monitor))?;
+        let arrays = run(py, &task, move || Arrays::of(positions, weights))?;
         Ok(Self(Arc::new(arrays)))
     }
 
@@ -100,16 +100,16 @@ impl Triangulation {
         task: Task<'_>,
     ) -> PyResult<Bound<'py, PyArray1<i64>>> {
         let (arrays, places) = (Arc::clone(&self.0), rows("places", places)?);
-        let found = run(py, &task, move |monitor| arrays.find(&places, monitor))?;
+        let found = run(py, &task, move || arrays.find(&places))?;
         column(py, found.into_iter())
     }
 
     fn power_diagram(&self, py: Python<'_>, task: Task<'_>) -> PyResult<PowerDiagram> {
         let arrays = Arc::clone(&self.0);
-        let made = run(py, &task, move |monitor| {
-            monitor.stage("power diagram")?;
+        let made = run(py, &task, move || {
+            Monitor::current().stage("power diagram")?;
             let weights = Some(arrays.weights.as_slice());
-            triangulation::PowerDiagram::of_monitored(&arrays.made, weights, monitor)
+            triangulation::PowerDiagram::of(&arrays.made, weights)
         })?;
         Ok(PowerDiagram(made))
     }
@@ -150,13 +150,9 @@ impl PowerDiagram {
 }
 
 impl Arrays {
-    fn of(
-        positions: Vec<[f64; 3]>,
-        weights: Vec<f64>,
-        monitor: &Monitor,
-    ) -> Result<Self, TriangulationError> {
-        monitor.stage("triangulation")?;
-        let made = triangulate_monitored(&positions, Some(&weights), monitor)?;
+    fn of(positions: Vec<[f64; 3]>, weights: Vec<f64>) -> Result<Self, TriangulationError> {
+        Monitor::current().stage("triangulation")?;
+        let made = triangulate(&positions, Some(&weights))?;
         drop(positions);
         let mut count = 0..;
         let mut row = vec![OUTSIDE; made.cells().len()];
@@ -174,7 +170,8 @@ impl Arrays {
         Ok(Self { made, weights, row, simplices, neighbors, hull, duplicates })
     }
 
-    fn find(&self, places: &[[f64; 3]], monitor: &Monitor) -> Result<Vec<i64>, TriangulationError> {
+    fn find(&self, places: &[[f64; 3]]) -> Result<Vec<i64>, TriangulationError> {
+        let monitor = &*Monitor::current();
         monitor.stage("location")?;
         let is_finite = |&k: &usize| places[k].iter().all(|x| x.is_finite());
         let numbers: Vec<usize> = (0..places.len()).filter(is_finite).collect();

@@ -5,13 +5,13 @@ use std::path::PathBuf;
 use numpy::ndarray::Array3;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArray3, PyReadonlyArray1, PyReadonlyArray3};
 use pyo3::prelude::*;
-use walpha::haar::{Decomposition, HaarOptions, Tolerance, smooth_monitored};
+use walpha::haar::{Decomposition, HaarOptions, Tolerance, smooth};
 use walpha::interpolate::Refit;
 use walpha::pipeline::{Choice, Goal};
 use walpha::points::{self, PointsError, Weighting};
 use walpha::progress::Stage;
 use walpha::volume::{
-    Coordinates, Frame, GrayRange, Nan, ReadOptions, Space, Volume, VolumeError, open_monitored,
+    Coordinates, Frame, GrayRange, Nan, ReadOptions, Space, Volume, VolumeError, open,
 };
 use walpha::{Alpha, LabelChoice, Points, Recipe, Selection, SelectionRule, Units};
 
@@ -31,9 +31,9 @@ pub fn read<'py>(
 ) -> PyResult<(Bound<'py, PyArray3<f32>>, bool, String)> {
     let options: ReadOptions =
         serde_json::from_str(options).map_err(|error| wrong(format!("the options: {error}")))?;
-    let volume = run(py, &task, move |monitor| {
-        Stage::Read.begin(monitor)?;
-        open_monitored(&input, &options, monitor)
+    let volume = run(py, &task, move || {
+        Stage::Read.begin()?;
+        open(&input, &options)
     })?;
     let mut frame = *volume.frame();
     if frame.coordinates.space.is_known() {
@@ -69,9 +69,9 @@ pub fn haar<'py>(
 ) -> PyResult<(Bound<'py, PyArray3<f32>>, String)> {
     let options = haar_options(&tolerance, decomposition)?;
     let samples = owned(samples)?;
-    let (smoothed, truncation) = run(py, &task, move |monitor| {
-        Stage::Haar.begin(monitor)?;
-        smooth_monitored(&volume(samples, Frame::VOXEL, masked)?, &options, monitor)
+    let (smoothed, truncation) = run(py, &task, move || {
+        Stage::Haar.begin()?;
+        smooth(&volume(samples, Frame::VOXEL, masked)?, &options)
     })?;
     Ok((smoothed.into_samples().into_pyarray(py), json(&truncation)))
 }
@@ -84,7 +84,7 @@ pub fn difference<'py>(
     masked: bool,
 ) -> PyResult<Bound<'py, PyArray3<f64>>> {
     let samples = owned(samples)?;
-    let found = run(py, &Task::default(), move |_| {
+    let found = run(py, &Task::default(), move || {
         Ok::<_, PointsError>(points::difference(&volume(samples, Frame::VOXEL, masked)?))
     })?;
     Ok(found.into_pyarray(py))
@@ -115,8 +115,8 @@ pub fn select<'py>(
     let (samples, smoothed) = (owned(samples)?, owned(smoothed)?);
     let (frame, units) = place(frame)?;
     let selection = Selection::default().rule(selection_rule(&rule)?).gray_min(gray_min);
-    let found = run(py, &Task::default(), move |monitor| {
-        let _ = Stage::Points.begin(monitor);
+    let found = run(py, &Task::default(), move || {
+        let _ = Stage::Points.begin();
         let (volume, smoothed) =
             (volume(samples, frame, masked)?, volume(smoothed, frame, masked)?);
         // Arrays do not say what they hold.
@@ -143,7 +143,7 @@ pub fn weigh<'py>(
     let weighting: Weighting = weighting.parse().map_err(Told::told)?;
     let differences = numbers(differences)?;
     let alpha = Alpha::from_squared(alpha).map_err(Told::told)?;
-    let weights = run(py, &Task::default(), move |_| {
+    let weights = run(py, &Task::default(), move || {
         // Places do not count here.
         let positions = vec![[0.0; 3]; differences.len()];
         let points = Points::new(positions).with_differences(differences)?;
@@ -208,11 +208,11 @@ pub fn pipeline(
     let recipe = with_options(recipe, &how)?;
     let nan = nan.map(|value| if value.is_nan() { Nan::Mask } else { Nan::Value(value) });
     let samples = owned(samples)?;
-    let model = run(py, &task, move |monitor| {
+    let model = run(py, &task, move || {
         let volume = Volume::of_file(samples, frame).and_then(|volume| volume.resolve_nan(nan));
         let volume = volume.map_err(PointsError::from)?;
         let volume = if is_gray { volume.with_gray_levels() } else { volume };
-        recipe.run_monitored(volume, monitor)
+        recipe.run(volume)
     })?;
     Ok(Shape::of(model))
 }
@@ -235,10 +235,10 @@ pub fn label_shape(
         // Coordinates stay in the space that the frame is in.
         .space(Some(frame.coordinates.space).filter(|space| space.is_known()));
     let samples = owned(samples)?;
-    let model = run(py, &task, move |monitor| {
+    let model = run(py, &task, move || {
         let volume =
             Volume::of_file(samples, frame).and_then(|volume| volume.resolve_nan(Some(Nan::Mask)));
-        recipe.solid(&volume.map_err(PointsError::from)?, monitor)
+        recipe.solid(&volume.map_err(PointsError::from)?)
     })?;
     Ok(Shape::of(model))
 }

@@ -10,7 +10,6 @@ use std::time::{Duration, Instant};
 use pyo3::exceptions::PyMemoryError;
 use pyo3::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
-use walpha::progress::Monitor;
 use walpha::threads;
 
 use crate::allocator::starting;
@@ -37,7 +36,7 @@ pub struct Task<'py>(Option<NonZeroUsize>, Option<Bound<'py, PyAny>>);
 pub fn run<T, E>(
     py: Python<'_>,
     Task(threads, progress): &Task<'_>,
-    work: impl FnOnce(&Monitor) -> Result<T, E> + Send + 'static,
+    work: impl FnOnce() -> Result<T, E> + Send + 'static,
 ) -> PyResult<T>
 where
     T: Send + 'static,
@@ -51,7 +50,8 @@ where
     let mut starved = None;
     let waiting = thread::Builder::new().name("walpha".into());
     let started = waiting.spawn(move || {
-        let outcome = catch_unwind(AssertUnwindSafe(|| threads.install(|| work(call.monitor()))));
+        let outcome =
+            catch_unwind(AssertUnwindSafe(|| threads.install(|| call.monitor().watch(work))));
         // Nobody waits after an interrupt.
         let _ = sender.send(outcome);
     });

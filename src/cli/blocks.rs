@@ -6,7 +6,6 @@ use std::process::ExitCode;
 
 use clap::{Args, Subcommand};
 use serde::Serialize;
-use walpha_base::Monitor;
 use walpha_base::memory::readable;
 use walpha_base::shown::shown;
 use walpha_files::{Working, fill_all, keep_input};
@@ -23,7 +22,7 @@ use crate::Recipe;
 use crate::export::{Content, ExportOptions, Exporter, Format, NewFolder, Target};
 use crate::outofcore::{
     Alone, BlocksError, BlockwiseFormat, Checked, CostEstimate, Cutting, Finding, Job, Merged,
-    Plan, Team, estimate_cost, merge_monitored, run, run_all, whole,
+    Plan, Team, estimate_cost, merge, run, run_all, whole,
 };
 use crate::pipeline::{Opened, PipelineError};
 use crate::progress::Stage;
@@ -143,7 +142,6 @@ impl CheckStep {
 impl PlanStep {
     fn run(self, global: Global) -> anyhow::Result<()> {
         let mut progress = Progress::new(global);
-        let monitor = progress.monitor();
         let recipe = self.pipeline.recipe_of(&self.shape, None)?;
         let cutting = Cutting::of(&recipe);
         let job = job(&self.pipeline.input, recipe)?;
@@ -153,8 +151,8 @@ impl PlanStep {
         };
         let new = folder::make(&folder, "with --output")?;
         keep_input_of(&job, global);
-        let plan = progress
-            .stage(Stage::Points, || Plan::make_with(job, cutting, &folder, &Alone, &monitor))?;
+        let plan =
+            progress.stage(Stage::Points, || Plan::make_with(job, cutting, &folder, &Alone))?;
         if let Some(new) = new {
             new.keep();
         }
@@ -166,7 +164,6 @@ impl PlanStep {
 impl RunStep {
     fn run(self, global: Global) -> anyhow::Result<()> {
         let mut progress = Progress::new(global);
-        let monitor = progress.monitor();
         let plan = Plan::open(&self.folder)?;
         keep_input_of(&plan.job, global);
         let blocks = if self.blocks.is_empty() {
@@ -177,7 +174,7 @@ impl RunStep {
         };
         progress.stage(Stage::Shape, || match blocks[..] {
             [one] => run(&plan, one),
-            _ => run_all(&plan, &blocks, &monitor),
+            _ => run_all(&plan, &blocks),
         })?;
         let seconds = progress.total();
         let folder = self.folder.display().to_string();
@@ -188,7 +185,6 @@ impl RunStep {
 impl MergeStep {
     fn run(self, global: Global) -> anyhow::Result<()> {
         let mut progress = Progress::new(global);
-        let monitor = progress.monitor();
         let plan = Plan::open(&self.folder)?;
         let input = Some(plan.job.input.clone());
         let export = ExportOptions::default().input(input);
@@ -209,11 +205,11 @@ impl MergeStep {
         }
         let merged = progress.stage(Stage::Shape, || {
             plan.verify_blocks()?;
-            merge_monitored(&plan, &monitor)
+            merge(&plan)
         })?;
         let mut report = Report::of_blocks(&plan, &merged);
-        report.offsets = progress
-            .stage(Stage::Write, || outputs.write(&plan, Some(&merged), &Alone, &monitor))?;
+        report.offsets =
+            progress.stage(Stage::Write, || outputs.write(&plan, Some(&merged), &Alone))?;
         let files = self.output.iter().map(|path| path.display().to_string()).collect();
         report.finish(progress.finish(), files);
         print_summary(global, &report)
@@ -244,12 +240,11 @@ impl Outputs {
         plan: &Plan,
         merged: Option<&Merged>,
         team: &dyn Team,
-        monitor: &Monitor,
     ) -> anyhow::Result<Vec<FileOffset>> {
         // Dropped in reverse order: a folder can be removed only once it is empty.
         let (mut folders, mut files) = (Vec::new(), Vec::new());
         for (pieces, path) in &self.pieces {
-            let written = pieces.fill(plan, merged, path, team, monitor)?;
+            let written = pieces.fill(plan, merged, path, team)?;
             files.extend(written.files);
             folders.extend(written.new);
         }

@@ -16,12 +16,12 @@ use crate::check::schema::{
 };
 use crate::check::{
     Claim, Comparison, Complex, Extent, FiltrationFinding, Finding, Placed, Verdict,
-    certify_filtration_monitored, compare, count_by_rule, enumerate_monitored, keep_causes,
+    certify_filtration, compare, count_by_rule, enumerate, keep_causes,
 };
 use crate::export::{Target, UnknownFormat, write_findings};
 use crate::pipeline::{AlphaRule, Input, Opened, Values};
 use crate::points::{CellCount, Weighting};
-use crate::progress::{Monitor, Stage};
+use crate::progress::Stage;
 use crate::shape::placed_complex;
 use crate::volume::{OpenFile, OpenVolume};
 use walpha_points::internal::{cells_of_file, read_complex_file};
@@ -324,7 +324,7 @@ impl Check {
         let read = pipeline::read_opened(opened, input, &mut recipe, progress)?;
         if let Input::Labels(volume) = read {
             LabelArgs::refuse_others(&input.typed)?;
-            let model = progress.watch(|monitor| recipe.solid(&volume, monitor))?;
+            let model = progress.watch(|| recipe.solid(&volume))?;
             return Ok(placed_complex(&model.shape));
         }
         let (weighed, _) = pipeline::weigh(read, input, &recipe, Values::Written, progress)?;
@@ -358,9 +358,9 @@ impl Check {
         let target = self.output.as_deref().map(findings_target).transpose()?;
         let (claim, complex) = (judged.claim(), &judged.complex);
         let started = Instant::now();
-        let (mut findings, mut certificate) = progress.watch(|monitor| {
-            Stage::Certify.begin(monitor)?;
-            judged.findings_monitored(monitor)
+        let (mut findings, mut certificate) = progress.watch(|| {
+            Stage::Certify.begin()?;
+            judged.findings()
         })?;
         if is_cells_alone {
             keep_causes(&mut findings, &mut certificate);
@@ -371,11 +371,8 @@ impl Check {
             let write = || target.write(|out| write_findings(&findings, &judged.positions, out));
             progress.stage(Stage::Write, write)?;
         }
-        let enumeration = if self.enumerate {
-            Some(progress.watch(|monitor| by_definition(judged, monitor))?)
-        } else {
-            None
-        };
+        let enumeration =
+            if self.enumerate { Some(progress.watch(|| by_definition(judged))?) } else { None };
         progress.finish();
         let rules = certificate.not_judged.iter().map(ToString::to_string);
         // Enumeration breaks ties by CGAL's rule, so it may differ where other ways are right, too.
@@ -429,9 +426,9 @@ impl Check {
         mut progress: Progress,
     ) -> anyhow::Result<ExitCode> {
         let started = Instant::now();
-        let (mut findings, certificate) = progress.watch(|monitor| {
-            Stage::Certify.begin(monitor)?;
-            certify_filtration_monitored(file, monitor)
+        let (mut findings, certificate) = progress.watch(|| {
+            Stage::Certify.begin()?;
+            certify_filtration(file)
         })?;
         findings.retain(|finding| self.ties == Ties::Exact || !finding.is_tie());
         let seconds = started.elapsed().as_secs_f64();
@@ -500,11 +497,11 @@ pub(super) fn read_mesh(format: &MeshFormat, file: &OpenFile) -> Result<Mesh, Co
 }
 
 /// Compares a complex (A) with the one built from the definition (B).
-fn by_definition(judged: &PlacedComplex, monitor: &Monitor) -> anyhow::Result<Comparison> {
-    Stage::Enumerate.begin(monitor)?;
+fn by_definition(judged: &PlacedComplex) -> anyhow::Result<Comparison> {
+    Stage::Enumerate.begin()?;
     let claim = judged.claim();
     let judged = claim.placed;
-    let made = enumerate_monitored(judged.positions, judged.weights, judged.alpha, monitor)?;
+    let made = enumerate(judged.positions, judged.weights, judged.alpha)?;
     let made = match claim.extent {
         Extent::Shape if claim.lowest > 0 => listed_from(claim.lowest, judged, made.complex)?,
         _ => made.complex,

@@ -16,7 +16,7 @@ use super::output::{name, print_summary};
 use super::progress::Progress;
 use super::report::SCHEMA_VERSION;
 use crate::check::schema::{AnyFile, ComplexFile, FiltrationFile, PlacedComplex, SchemaError};
-use crate::check::{compare_filtrations_monitored, compare_monitored};
+use crate::check::{compare, compare_filtrations};
 use crate::points::read_points;
 use crate::progress::Stage;
 
@@ -62,17 +62,17 @@ impl Compare {
                 if a.periodic.or(b.periodic).is_some() {
                     fail!("complexes of a periodic box are not compared: their simplices have no unique position" => "judge each with `walpha check`");
                 }
-                let comparison = progress.watch(|monitor| {
-                    Stage::Compare.begin(monitor)?;
-                    compare_monitored(a.placed(), b.placed(), monitor)
+                let comparison = progress.watch(|| {
+                    Stage::Compare.begin()?;
+                    compare(a.placed(), b.placed())
                 })?;
                 progress.finish();
                 self.print(global, comparison.is_equal(), comparison)
             }
             (CheckFile::Filtration(a), CheckFile::Filtration(b)) => {
-                let comparison = progress.watch(|monitor| {
-                    Stage::Compare.begin(monitor)?;
-                    compare_filtrations_monitored(&a, &b, monitor)
+                let comparison = progress.watch(|| {
+                    Stage::Compare.begin()?;
+                    compare_filtrations(&a, &b)
                 })?;
                 progress.finish();
                 self.print(global, comparison.is_equal(), comparison)

@@ -7,7 +7,7 @@ use serde::Serialize;
 use walpha_base::shown::{counted, shown};
 
 use crate::progress::Stage;
-use crate::volume::{OpenVolume, Source, convert_monitored};
+use crate::volume::{OpenVolume, Source, convert};
 
 use super::args::InputArgs;
 use super::errors::fail_usage;
@@ -58,14 +58,13 @@ impl Convert {
         let without_effect = ["gray", "gray_out", "columns", "nan"];
         self.input.typed.refuse(&without_effect, "values are converted as they are")?;
         let mut progress = Progress::new(global);
-        let monitor = progress.monitor();
         let options = self.input.options();
         let dims = with_file(&self.input, |input| {
             let volume = OpenVolume::open(input)?;
             let source = if let Ok(source) = volume.source(&options) {
                 source
             } else {
-                let read = || volume.read(&options, &monitor);
+                let read = || volume.read(&options);
                 let volume = progress.stage(Stage::Read, read).map_err(with_points)?;
                 let missing = (volume.dims().samples() - volume.samples_there()) as u64;
                 if missing > 0 {
@@ -76,7 +75,7 @@ impl Convert {
                 }
                 Source::of_volume(volume)
             };
-            progress.stage(Stage::Write, || convert_monitored(&source, &self.output, &monitor))?;
+            progress.stage(Stage::Write, || convert(&source, &self.output))?;
             Ok(source.dims().xyz())
         })?;
         let seconds = progress.total();

@@ -115,18 +115,15 @@ impl Filtration {
         let recipe = self.pipeline.recipe()?.periodic(torus);
         let (mut weighed, _) = pipeline::weighted_points(input, &recipe, &mut progress)?;
         weighed.on_torus(torus)?;
-        let filtration =
-            progress.watch(|monitor| pipeline::filtration(torus, &weighed, monitor))?;
-        let monitor = progress.monitor();
-        let ordered = progress.stage(Stage::Order, || filtration.simplices_monitored(&monitor))?;
+        let filtration = progress.watch(|| pipeline::filtration(torus, &weighed))?;
+        let ordered = progress.stage(Stage::Order, || filtration.simplices())?;
         if global.json || targets.iter().any(|(_, format)| format.pairs) {
-            progress.stage(Stage::Pairs, || ordered.loops_monitored(&monitor))?;
+            progress.stage(Stage::Pairs, || ordered.loops())?;
         }
         progress.stage(Stage::Write, || {
             write_all(targets.into_iter().map(|(target, format)| {
-                let (ordered, monitor) = (&ordered, &monitor);
-                let content =
-                    move |out: &mut dyn Write| format.write_monitored(ordered, out, monitor);
+                let ordered = &ordered;
+                let content = move |out: &mut dyn Write| format.write(ordered, out);
                 (target, Box::new(content) as Content<'_>)
             }))
         })?;

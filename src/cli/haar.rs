@@ -6,7 +6,7 @@ use clap::Args;
 use serde::Serialize;
 
 use crate::export::Target;
-use crate::haar::smooth_monitored;
+use crate::haar::smooth;
 use crate::pipeline::{Grays, Input};
 use crate::progress::Stage;
 use crate::volume::VolumeWriter;
@@ -62,9 +62,7 @@ impl Haar {
             fail!("{} holds points", self.input.input => "name a volume");
         };
         let options = self.haar.options();
-        let monitor = progress.monitor();
-        let (smoothed, truncation) =
-            progress.stage(Stage::Haar, || smooth_monitored(&volume, &options, &monitor))?;
+        let (smoothed, truncation) = progress.stage(Stage::Haar, || smooth(&volume, &options))?;
         if let Some((format, target)) = target {
             let smoothed = smoothed.into_values(&written);
             progress.stage(Stage::Write, || target.write(|out| format.write(&smoothed, out)))?;

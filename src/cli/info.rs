@@ -5,7 +5,6 @@ use std::path::Path;
 use clap::Args;
 use serde::Serialize;
 use serde_json::Value;
-use walpha_base::Monitor;
 use walpha_base::shown::number;
 
 use crate::check::meshes::Mesh;
@@ -193,8 +192,7 @@ impl From<Cell> for CellSummary {
 impl Info {
     pub(super) fn run(self, global: Global) -> anyhow::Result<()> {
         let mut progress = Progress::new(global);
-        let monitor = progress.monitor();
-        let describe = || pipeline::with_file(&self.input, |input| self.describe(input, &monitor));
+        let describe = || pipeline::with_file(&self.input, |input| self.describe(input));
         let content = progress.stage(Stage::Read, describe)?;
         print_summary(
             global,
@@ -206,7 +204,7 @@ impl Info {
         )
     }
 
-    fn describe(&self, input: &Path, monitor: &Monitor) -> anyhow::Result<Content> {
+    fn describe(&self, input: &Path) -> anyhow::Result<Content> {
         match self.input.recipe().opened(input).map_err(pipeline::unread)? {
             Opened::Made(points) => {
                 Ok(Content::of_points(&points, ModelMetadata::default(), Vec::new()))
@@ -216,17 +214,12 @@ impl Info {
                 let (points, metadata) = read_model_file(&file, &options)?;
                 Ok(Content::of_points(&points, metadata, cells_of_file(&file, &options)?))
             }
-            Opened::Volume(volume) => self.describe_volume(input, &volume, monitor),
+            Opened::Volume(volume) => self.describe_volume(input, &volume),
         }
     }
 
     /// Describes a volume, or a file that holds nothing but a mesh.
-    fn describe_volume(
-        &self,
-        input: &Path,
-        volume: &OpenVolume,
-        monitor: &Monitor,
-    ) -> anyhow::Result<Content> {
+    fn describe_volume(&self, input: &Path, volume: &OpenVolume) -> anyhow::Result<Content> {
         if let (OpenVolume::File(file), Some(format)) = (volume, mesh_format(input)) {
             let Mesh { complex, notes, .. } = read_mesh(format, file)?;
             return Ok(Content::Mesh {
@@ -243,7 +236,7 @@ impl Info {
                 return Ok(Content::Series { series });
             }
         }
-        let summary = match VolumeSummary::of(volume, &options, monitor) {
+        let summary = match VolumeSummary::of(volume, &options) {
             Ok(summary) => summary,
             Err(error) => match error.reason() {
                 Some(Reason::NotScalar { what, dims }) => {
@@ -252,10 +245,7 @@ impl Info {
                 }
                 Some(&Reason::Several { count }) if options.frame.is_none() => {
                     let first = options.clone().frame(0);
-                    VolumeSummary {
-                        volumes: Some(count),
-                        ..VolumeSummary::of(volume, &first, monitor)?
-                    }
+                    VolumeSummary { volumes: Some(count), ..VolumeSummary::of(volume, &first)? }
                 }
                 _ => return Err(pipeline::with_points(error)),
             },
@@ -305,11 +295,7 @@ struct VolumeSummary {
 
 impl VolumeSummary {
     /// Summarises a volume: part by part if its format allows that, otherwise at once.
-    fn of(
-        volume: &OpenVolume,
-        options: &ReadOptions,
-        monitor: &Monitor,
-    ) -> Result<Self, VolumeError> {
+    fn of(volume: &OpenVolume, options: &ReadOptions) -> Result<Self, VolumeError> {
         if let Ok(source) = volume.source(options) {
             let stats = SampleStats::of(&source, options.nan)?;
             let (dims, frame, dtype) = (source.dims(), *source.frame(), source.dtype());
@@ -325,7 +311,7 @@ impl VolumeSummary {
             });
         }
         // Reading the whole volume also reports what is wrong with it.
-        let read = |nan| volume.read(&options.clone().nan(nan), monitor);
+        let read = |nan| volume.read(&options.clone().nan(nan));
         let (volume, padding) = match read(options.nan) {
             Err(error) if error.is_not_finite() => (read(Some(Nan::Mask)), false),
             read => (read, options.nan.is_none()),

@@ -18,11 +18,11 @@ use super::pipeline::{self, VolumeSummary, read};
 use super::progress::Progress;
 use super::report::{Report, SCHEMA_VERSION};
 use crate::export::{Content, NewFolder, Target, TargetError, write_all};
-use crate::haar::smooth_monitored;
+use crate::haar::smooth;
 #[cfg(feature = "render")]
 use crate::interpolate::error_figure;
 use crate::interpolate::{
-    CurveOptions, CurvePoint, Deviation, Grid, Interpolant, Resampled, error_curve, fill_monitored,
+    CurveOptions, CurvePoint, Deviation, Grid, Interpolant, Resampled, error_curve, fill,
     write_curve_csv,
 };
 use crate::pipeline::{Input, Source, Values, Weighed};
@@ -170,9 +170,8 @@ impl Interpolate {
         let mask = mask.map(|open| anyhow::Ok((open, sampled.resampled.mask()?))).transpose()?;
         let (inside, filled, resampled) = if self.fill {
             let units = original.map_or(Units::Voxel, |original| original.units);
-            let monitor = progress.monitor();
             let whole = progress.stage(Stage::Fill, || {
-                fill_monitored(&shape, original.map(|original| &original.volume), units, &monitor)
+                fill(&shape, original.map(|original| &original.volume), units)
             })?;
             let filled = progress.stage(Stage::Interpolate, || sample(&whole, &grid, original))?;
             (sampled.error, filled.error, filled.resampled)
@@ -320,17 +319,14 @@ pub(super) fn run_curve(
     };
     let source = recipe.source(grays)?;
     let Source { ref volume, units, range, .. } = source;
-    let monitor = progress.monitor();
-    let (smoothed, _) =
-        progress.stage(Stage::Haar, || smooth_monitored(volume, &recipe.haar, &monitor))?;
+    let (smoothed, _) = progress.stage(Stage::Haar, || smooth(volume, &recipe.haar))?;
     let options = CurveOptions {
         counts: counts(volume, select)?,
         weightings: vec![Weighting::Common(0.0), Weighting::MinMax, Weighting::Barycentric],
         alpha: one_alpha(recipe.alpha, &source)?.alpha,
         units,
     };
-    let curve =
-        progress.stage(Stage::Curve, || error_curve(volume, &smoothed, &options, &monitor))?;
+    let curve = progress.stage(Stage::Curve, || error_curve(volume, &smoothed, &options))?;
     let mut csv = Vec::new();
     write_curve_csv(&curve, range.step(), &mut csv)?;
     let alpha = options.alpha.squared();

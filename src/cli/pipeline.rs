@@ -4,14 +4,13 @@ use std::fmt::{self, Display};
 use std::path::Path;
 
 use serde::Serialize;
-use walpha_base::Monitor;
 
 use super::args::{self, InputArgs};
 use super::errors::{CommandError, command_error, is_usage, reasons};
 use super::preset;
 use super::progress::Progress;
 use crate::export::Scratch;
-use crate::interpolate::{InterpolateError, fill_monitored};
+use crate::interpolate::{InterpolateError, fill};
 use crate::ladder::{Curve, Filtration};
 use crate::pipeline::{Input, Model, Opened, PipelineError, Source, Values, Weighed};
 use crate::points::bounding_box;
@@ -71,7 +70,7 @@ pub(super) fn weigh(
     progress: &mut Progress,
 ) -> anyhow::Result<(Weighed, Option<Source>)> {
     accept(&read, args)?;
-    Ok(progress.watch(|monitor| recipe.weigh(read, values, monitor))?)
+    Ok(progress.watch(|| recipe.weigh(read, values))?)
 }
 
 /// The shape of weighted points.
@@ -80,7 +79,7 @@ pub(super) fn shape(
     recipe: &Recipe,
     progress: &mut Progress,
 ) -> anyhow::Result<Model> {
-    progress.watch(|monitor| recipe.finish(weighed, monitor)).map_err(|error| match &error {
+    progress.watch(|| recipe.finish(weighed)).map_err(|error| match &error {
         PipelineError::Radii { .. } => CommandError::usage_of(&error).into(),
         _ => error.into(),
     })
@@ -90,10 +89,9 @@ pub(super) fn shape(
 pub(super) fn filtration(
     torus: Option<Torus>,
     weighed: &Weighed,
-    monitor: &Monitor,
 ) -> Result<Filtration, ShapeError> {
-    Stage::Filtration.begin(monitor)?;
-    Filtration::monitored(torus, weighed.points.clone(), monitor)
+    Stage::Filtration.begin()?;
+    Filtration::on(torus, weighed.points.clone())
 }
 
 /// The α of a ladder: at most `count` critical values, the suggested ones, and the one that the weights are computed for.
@@ -123,7 +121,7 @@ pub(super) fn read(
     recipe: &Recipe,
     progress: &mut Progress,
 ) -> anyhow::Result<Input> {
-    read_with(args, progress, |input, monitor| recipe.open(input, monitor))
+    read_with(args, progress, |input| recipe.open(input))
 }
 
 /// Reads INPUT for selecting points of it. If it is a CT, and no option says what to look for, the recipe is made
@@ -134,7 +132,7 @@ pub(super) fn read_suited(
     progress: &mut Progress,
 ) -> anyhow::Result<Input> {
     let suited = |recipe: &Recipe, volume: &Volume| preset::suited_to(args, recipe, volume);
-    read_with(args, progress, |input, monitor| recipe.open_suited(input, monitor, suited))
+    read_with(args, progress, |input| recipe.open_suited(input, suited))
 }
 
 /// [`read_suited`] for INPUT that is open.
@@ -144,19 +142,17 @@ pub(super) fn read_opened(
     recipe: &mut Recipe,
     progress: &mut Progress,
 ) -> anyhow::Result<Input> {
-    let monitor = progress.monitor();
     let suited = |recipe: &Recipe, volume: &Volume| preset::suited_to(args, recipe, volume);
-    let read = || recipe.read_suited(opened, &monitor, suited).map_err(unread);
+    let read = || recipe.read_suited(opened, suited).map_err(unread);
     progress.stage(Stage::Read, read)
 }
 
 fn read_with(
     args: &InputArgs,
     progress: &mut Progress,
-    open: impl FnOnce(&Path, &Monitor) -> Result<Input, PipelineError>,
+    open: impl FnOnce(&Path) -> Result<Input, PipelineError>,
 ) -> anyhow::Result<Input> {
-    let monitor = progress.monitor();
-    progress.stage(Stage::Read, || with_file(args, |input| open(input, &monitor).map_err(unread)))
+    progress.stage(Stage::Read, || with_file(args, |input| open(input).map_err(unread)))
 }
 
 /// The error for INPUT that cannot be opened or read.
@@ -259,9 +255,8 @@ pub(super) fn filled_in(
     grays: &[f64],
     volume: &Volume,
     units: Units,
-    monitor: &Monitor,
 ) -> Result<(AlphaShape, Vec<f64>), InterpolateError> {
-    let whole = fill_monitored(shape, Some(volume), units, monitor)?;
+    let whole = fill(shape, Some(volume), units)?;
     // The corners come after the points, and are in gray levels already.
     let corners = whole.points().values().into_iter().flatten().skip(grays.len());
     let all = grays.iter().chain(corners).copied().collect();

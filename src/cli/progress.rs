@@ -78,23 +78,18 @@ impl Progress {
         Self { times, monitor }
     }
 
-    /// The monitor of the work: stages reported to it are shown and timed.
-    pub(super) fn monitor(&self) -> Monitor {
-        self.monitor.clone()
-    }
-
     /// Runs a stage. Calls with the same stage add up.
     pub(super) fn stage<T>(&mut self, stage: Stage, work: impl FnOnce() -> T) -> T {
-        self.watch(|monitor| {
+        self.watch(|| {
             // Cancelled work ends at its next check.
-            let _ = stage.begin(monitor);
+            let _ = stage.begin();
             work()
         })
     }
 
-    /// Runs work that reports which stage begins.
-    pub(super) fn watch<T>(&mut self, work: impl FnOnce(&Monitor) -> T) -> T {
-        let result = work(&self.monitor);
+    /// Runs work that reports which stage begins: stages are shown and timed.
+    pub(super) fn watch<T>(&mut self, work: impl FnOnce() -> T) -> T {
+        let result = self.monitor.watch(work);
         self.lock().end();
         result
     }

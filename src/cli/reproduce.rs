@@ -5,14 +5,13 @@ use std::time::{SystemTime, UNIX_EPOCH};
 
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use walpha_base::Monitor;
 use walpha_base::shown::shown;
 
 use crate::progress::Stage;
 use crate::reproduce::{
     File, ItemName, Report, Subject, markdown, page, reproduce, reproduce_only,
 };
-use crate::volume::{ReadOptions, open_monitored};
+use crate::volume::{ReadOptions, open};
 use crate::{Gray, Volume, VolumeError};
 
 use super::folder::Folder;
@@ -62,16 +61,15 @@ impl Reproduce {
         // Before the long work.
         let mut folder =
             Folder::open(&self.out, "--out", &["report.html", "report.json", "reproduction.md"])?;
-        let monitor = progress.monitor();
-        let (name, volume) = progress.stage(Stage::Read, || self.volume(global, &monitor))?;
+        let (name, volume) = progress.stage(Stage::Read, || self.volume(global))?;
         let (volume, range) = volume.into_gray(Gray::Automatic)?;
         let date = today();
         let subject = Subject { volume: &volume, range, name: &name, date: &date };
-        let made = progress.watch(|monitor| {
+        let made = progress.watch(|| {
             if self.only.is_empty() {
-                reproduce(&subject, monitor)
+                reproduce(&subject)
             } else {
-                reproduce_only(&subject, &self.only, monitor)
+                reproduce_only(&subject, &self.only)
             }
         })?;
         let mut files = made.files;
@@ -100,11 +98,11 @@ impl Reproduce {
         Ok(())
     }
 
-    fn volume(&self, global: Global, monitor: &Monitor) -> anyhow::Result<(String, Volume)> {
+    fn volume(&self, global: Global) -> anyhow::Result<(String, Volume)> {
         if let Some(name) = &self.input {
-            return Ok((name.clone(), open_monitored(name, &ReadOptions::default(), monitor)?));
+            return Ok((name.clone(), open(name, &ReadOptions::default())?));
         }
-        match open_monitored(SKULL, &ReadOptions::default(), monitor) {
+        match open(SKULL, &ReadOptions::default()) {
             Err(VolumeError::NoSkull { .. }) => {
                 if !global.quiet {
                     remark(&format!(
@@ -112,7 +110,7 @@ impl Reproduce {
                          libcgal-demo` installs it); continuing with {PHANTOM}"
                     ));
                 }
-                Ok((PHANTOM.into(), open_monitored(PHANTOM, &ReadOptions::default(), monitor)?))
+                Ok((PHANTOM.into(), open(PHANTOM, &ReadOptions::default())?))
             }
             other => Ok((SKULL.into(), other?)),
         }

@@ -4,7 +4,6 @@ use std::io::Write;
 use std::path::PathBuf;
 
 use clap::Args;
-use walpha_base::Monitor;
 use walpha_base::shown::shown;
 use walpha_files::Working;
 
@@ -258,7 +257,7 @@ impl Shape {
         let mut facts = weighed.metadata(volume.map(|volume| volume.written));
         let model = pipeline::shape(weighed, recipe, progress)?;
         if !self.allow_empty {
-            outputs.refuse_empty(&model.shape, &progress.monitor())?;
+            progress.watch(|| outputs.refuse_empty(&model.shape))?;
         }
         facts.alpha = Some(model.parameter.alpha);
         progress.stage(Stage::Measure, || report.add_model(&model));
@@ -323,12 +322,12 @@ impl Outputs {
     }
 
     /// Refuses a shape of which a file would hold nothing, and without files one of nothing.
-    fn refuse_empty(&self, shape: &AlphaShape, monitor: &Monitor) -> Result<(), CommandError> {
+    fn refuse_empty(&self, shape: &AlphaShape) -> Result<(), CommandError> {
         if self.whole.is_empty() && self.models.is_empty() {
-            EmptyShape::check(shape, Needs::Simplex, monitor).map_err(or_allowed)?;
+            EmptyShape::check(shape, Needs::Simplex).map_err(or_allowed)?;
         }
         for (target, exporter) in &self.whole {
-            EmptyShape::check(shape, exporter.needs(), monitor).map_err(|error| {
+            EmptyShape::check(shape, exporter.needs()).map_err(|error| {
                 let error = or_allowed(error);
                 CommandError { why: format!("{}: {}", shown(target.path()), error.why), ..error }
             })?;

@@ -18,9 +18,7 @@ use super::report::Report;
 use super::{folder, threads};
 use crate::Recipe;
 use crate::export::{NewFolder, Target};
-use crate::outofcore::{
-    BlockwiseFormat, Cutting, Job, Merged, Plan, Team, merge_monitored, run_missing,
-};
+use crate::outofcore::{BlockwiseFormat, Cutting, Job, Merged, Plan, Team, merge, run_missing};
 use crate::progress::Stage;
 
 /// The work of a team. The first process reads the command line and sends it to the others.
@@ -78,15 +76,14 @@ impl SharedWork {
         progress: &mut Progress,
         team: &dyn Team,
     ) -> anyhow::Result<Shared> {
-        let monitor = progress.monitor();
         let plan = progress.stage(Stage::Points, || {
-            Plan::resume_with(self.job.clone(), self.cutting, &self.folder, team, &monitor)
+            Plan::resume_with(self.job.clone(), self.cutting, &self.folder, team)
         })?;
         let working = working.map(AtWork::kept);
-        progress.stage(Stage::Shape, || run_missing(&plan, team, &monitor))?;
-        let merge = || team.is_first().then(|| merge_monitored(&plan, &monitor)).transpose();
+        progress.stage(Stage::Shape, || run_missing(&plan, team))?;
+        let merge = || team.is_first().then(|| merge(&plan)).transpose();
         let merged = progress.stage(Stage::Shape, merge)?;
-        let write = || outputs.write(&plan, merged.as_ref(), team, &monitor);
+        let write = || outputs.write(&plan, merged.as_ref(), team);
         let offsets = progress.stage(Stage::Write, write)?;
         Ok(Shared { plan, merged, offsets, working })
     }

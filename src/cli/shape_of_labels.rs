@@ -43,7 +43,7 @@ impl Shape {
         LabelArgs::refuse_others(&input.typed)?;
         refuse_points_alone(&outputs)?;
         let dims = volume.dims().xyz();
-        let model = progress.watch(|monitor| recipe.solid(&volume, monitor))?;
+        let model = progress.watch(|| recipe.solid(&volume))?;
         drop(volume);
         let mut report = Report::of_labels(&input.input, dims, &model);
         progress.stage(Stage::Measure, || report.add_shape(&model));
@@ -71,7 +71,7 @@ impl Shape {
         let mut coordinates = volume.frame().coordinates;
         for (label, voxels) in chosen(&volume, &choice)? {
             let one = vec![(label, voxels)];
-            let model = progress.watch(|monitor| recipe.solid_of(&volume, one, monitor))?;
+            let model = progress.watch(|| recipe.solid_of(&volume, one))?;
             coordinates = model.origin.coordinates;
             let shape = &model.shape;
             let (mut files, mut offsets) = (Vec::new(), Vec::new());

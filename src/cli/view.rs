@@ -8,7 +8,6 @@ use std::str::FromStr;
 use anyhow::bail;
 use clap::Args;
 use serde::Serialize;
-use walpha_base::Monitor;
 use walpha_base::shown::{number, shown};
 
 use super::args::{self, Alphas, FrozenPipelineArgs};
@@ -111,7 +110,7 @@ impl View {
                 if !self.counts.is_empty() {
                     fail_usage!("--counts chooses samples of a volume, and {} holds points", input.input => "omit it");
                 }
-                let weigh = |monitor: &Monitor| recipe.weigh(read, Values::Written, monitor);
+                let weigh = || recipe.weigh(read, Values::Written);
                 let (weighed, _) = progress.watch(weigh)?;
                 return Ok((vec![weighed], None));
             }
@@ -124,9 +123,7 @@ impl View {
         counts.dedup();
         let selected = |count| recipe.clone().choice(recipe.choice.with_count(count));
         let coarse: Vec<Recipe> = counts.into_iter().map(selected).collect();
-        let weigh = |recipe: &Recipe| {
-            progress.watch(|monitor| recipe.weighed(&source, Values::Written, monitor))
-        };
+        let weigh = |recipe: &Recipe| progress.watch(|| recipe.weighed(&source, Values::Written));
         let details = coarse.iter().chain([&recipe]).map(weigh).collect::<Result<_, _>>()?;
         Ok((details, Some(source)))
     }
@@ -253,11 +250,10 @@ impl Detail {
         source: Option<&Source>,
         progress: &mut Progress,
     ) -> anyhow::Result<Self> {
-        let filtration = progress.watch(|monitor| pipeline::filtration(None, &weighed, monitor))?;
+        let filtration = progress.watch(|| pipeline::filtration(None, &weighed))?;
         let differences = match source {
             Some(source) => {
-                let monitor = progress.monitor();
-                let measure = || differences(&weighed, source, &filtration, &monitor);
+                let measure = || differences(&weighed, source, &filtration);
                 progress.stage(Stage::Interpolate, measure)?
             }
             None => None,
@@ -296,12 +292,11 @@ fn differences(
     weighed: &Weighed,
     source: &Source,
     filtration: &Filtration,
-    monitor: &Monitor,
 ) -> anyhow::Result<Option<Differences>> {
     let Source { volume, units, written, .. } = source;
     let Some(values) = weighed.points.values() else { return Ok(None) };
     let grays: Vec<f64> = values.iter().map(|&value| written.gray(value)).collect();
-    let (whole, grays) = filled_in(filtration.whole(), &grays, volume, *units, monitor)?;
+    let (whole, grays) = filled_in(filtration.whole(), &grays, volume, *units)?;
     let interpolant = Interpolant::with_values(&whole, &grays)?;
     let grid = Grid::of(volume, *units);
     let resampled = interpolant.resample(&grid)?;

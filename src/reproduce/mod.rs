@@ -69,9 +69,9 @@ impl ItemName {
 ///
 /// # Errors
 /// When the subject yields no points, or points that span no volume.
-pub fn reproduce(subject: &Subject<'_>, monitor: &Monitor) -> Result<Reproduction, ReproduceError> {
+pub fn reproduce(subject: &Subject<'_>) -> Result<Reproduction, ReproduceError> {
     let all: Vec<ItemName> = ItemName::all().collect();
-    reproduce_only(subject, &all, monitor)
+    reproduce_only(subject, &all)
 }
 
 /// Makes the named items, each as [`reproduce`] makes it and with the same files, in its order. Shapes that none of
@@ -82,8 +82,8 @@ pub fn reproduce(subject: &Subject<'_>, monitor: &Monitor) -> Result<Reproductio
 pub fn reproduce_only(
     subject: &Subject<'_>,
     names: &[ItemName],
-    monitor: &Monitor,
 ) -> Result<Reproduction, ReproduceError> {
+    let monitor = &*Monitor::current();
     let asked = |entry: &&Entry| names.contains(&ItemName(entry.name));
     let entries: Vec<&Entry> = figures::ALL.iter().filter(asked).collect();
     let needed: BTreeSet<_> = entries.iter().flat_map(|entry| entry.needs).copied().collect();

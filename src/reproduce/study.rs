@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use walpha_base::{Cancelled, Monitor};
 
 use super::{Input, ItemName, Origin, ReproduceError, ShapeNumbers, text};
-use crate::haar::{Truncation, smooth_monitored};
+use crate::haar::{Truncation, smooth};
 use crate::pipeline::{Choice, Recipe};
 use crate::points::{Points, Units, Weighting, difference, select, weigh};
 use crate::render::{
@@ -60,7 +60,7 @@ impl<'a> Study<'a> {
         let Choice::Difference(selection) = recipe.choice else {
             unreachable!("the paper selects by difference")
         };
-        let (smoothed, truncation) = smooth_monitored(volume, &recipe.haar, monitor)?;
+        let (smoothed, truncation) = monitor.watch(|| smooth(volume, &recipe.haar))?;
         let differences = difference(&smoothed);
         let points = select(volume, &smoothed, &differences, &selection, Units::Voxel)?;
         let cameras = Cameras::of(volume.dims());

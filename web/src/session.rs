@@ -257,7 +257,7 @@ impl Session {
 
     /// Carries out a request.
     pub(crate) fn answer(&mut self, request: Request) -> Answer {
-        match self.carry_out(request) {
+        match Monitor::new(ToPage).watch(|| self.carry_out(request)) {
             Ok(answer) => answer,
             Err(Failure { why, next }) => Answer::failed(&why, next),
         }
@@ -290,8 +290,7 @@ impl Session {
     fn open(&mut self, input: String, options: &Options) -> Result<Answer, Failure> {
         *self = Self { input, ..Self::EMPTY };
         let input = Path::new(&self.input);
-        let monitor = Monitor::new(ToPage);
-        Stage::Read.begin(&monitor).map_err(PipelineError::from)?;
+        Stage::Read.begin().map_err(PipelineError::from)?;
         let recipe = options.recipe()?;
         if input.is_dir() && options.series.is_none() {
             let series: Vec<Series> = volume::series(input)?;
@@ -316,7 +315,7 @@ impl Session {
             return Ok(answer);
         }
         // Values as they are: gray levels follow the window, which changes.
-        let volume = file.read(&recipe.read, &monitor)?;
+        let volume = file.read(&recipe.read)?;
         if let Some(answer) = too_large(volume.dims(), &recipe.read) {
             return Ok(answer);
         }
@@ -351,17 +350,16 @@ impl Session {
 
     fn shape(&mut self, options: Options) -> Result<Answer, Failure> {
         self.made = None;
-        let monitor = Monitor::new(ToPage);
         let recipe = options.recipe()?;
         let input = match self.opened.as_ref().ok_or("nothing has been opened".to_owned())? {
             Opened::Points(points, metadata) => Input::Points(points.clone(), metadata.clone()),
             Opened::Volume(volume) if recipe.labels.is_some() => {
-                let model = recipe.solid(volume, &monitor)?;
+                let model = recipe.solid(volume)?;
                 return Ok(self.made_of_labels(options, recipe, model));
             }
             Opened::Volume(volume) => Input::Volume(recipe.grays(volume.clone())?),
         };
-        let (mut weighed, source) = recipe.weigh(input, Values::Written, &monitor)?;
+        let (mut weighed, source) = recipe.weigh(input, Values::Written)?;
         let metadata = weighed.metadata(source.as_ref().map(|source| source.written));
         let [low, high] = bounding_box(weighed.points.positions());
         let domain = match &source {
@@ -369,8 +367,8 @@ impl Session {
             None => [0, 1, 2].iter().map(|&k| high[k] - low[k]).product(),
         };
         drop(source);
-        let reference = weighed.find_parameter(&monitor)?;
-        let shape = recipe.finish(weighed.clone(), &monitor)?.shape;
+        let reference = weighed.find_parameter()?;
+        let shape = recipe.finish(weighed.clone())?.shape;
         let made = Made {
             options,
             recipe,
@@ -409,8 +407,7 @@ impl Session {
 
     fn filtration(&mut self) -> Result<Answer, Failure> {
         let made = self.made.as_mut().ok_or("there is no shape yet".to_owned())?;
-        let monitor = Monitor::new(ToPage);
-        Stage::Filtration.begin(&monitor).map_err(PipelineError::from)?;
+        Stage::Filtration.begin().map_err(PipelineError::from)?;
         let weighed = match &made.what {
             What::Weighed(weighed) => weighed,
             What::Labels(model) => {
@@ -418,8 +415,8 @@ impl Session {
                 return Ok(made.all.insert(All { filtration: None, stops }).described());
             }
         };
-        let filtration = Filtration::monitored(None, weighed.points.clone(), &monitor)?;
-        Stage::Curve.begin(&monitor).map_err(PipelineError::from)?;
+        let filtration = Filtration::on(None, weighed.points.clone())?;
+        Stage::Curve.begin().map_err(PipelineError::from)?;
         let mut alphas = filtration.coarse_alphas(STOPS);
         alphas.push(made.reference.alpha);
         let stops = Shown::at(&filtration, &alphas);
@@ -661,11 +658,10 @@ impl Made {
     }
 
     fn diagram(&self) -> Result<Answer, Failure> {
-        let monitor = Monitor::new(ToPage);
-        Stage::Order.begin(&monitor).map_err(PipelineError::from)?;
-        let simplices = self.all()?.filtration()?.simplices_monitored(&monitor)?;
-        Stage::Pairs.begin(&monitor).map_err(PipelineError::from)?;
-        simplices.loops_monitored(&monitor)?;
+        Stage::Order.begin().map_err(PipelineError::from)?;
+        let simplices = self.all()?.filtration()?.simplices()?;
+        Stage::Pairs.begin().map_err(PipelineError::from)?;
+        simplices.loops()?;
         let mut arrays = Vec::new();
         for (dimension, name) in ["pairs0", "pairs1", "pairs2"].into_iter().enumerate() {
             let pairs = simplices.persistence(dimension)?;
@@ -704,7 +700,6 @@ impl Made {
             let exporter = Format::of(name)?.exporter(
                 &ExportOptions::default().solid(solid && is_shape).input(Some(input.to_owned())),
             );
-            let monitor = Monitor::new(ToPage);
             let shape = match &self.what {
                 What::Labels(model) => model.shape.clone(),
                 What::Weighed(weighed) => {
@@ -712,10 +707,10 @@ impl Made {
                     let mut parameter = self.reference;
                     (parameter.alpha, parameter.origin) = (alpha, ParameterOrigin::Given);
                     weighed.parameter = Some(parameter);
-                    self.recipe.finish(weighed, &monitor)?.shape
+                    self.recipe.finish(weighed)?.shape
                 }
             };
-            EmptyShape::check(&shape, exporter.needs(), &monitor)?;
+            EmptyShape::check(&shape, exporter.needs())?;
             if let Some(remark) =
                 exporter.single_precision(&shape).and_then(|single| single.remark())
             {

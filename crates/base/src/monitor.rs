@@ -1,22 +1,34 @@
 //! Progress and cancellation of long work.
 
+use std::cell::RefCell;
 use std::fmt;
+use std::marker::PhantomData;
+use std::ops::Deref;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// Receives the progress of long work, and can cancel it.
 ///
-/// A clone, and a [part](Self::part), belong to the same work: cancelling one cancels all. Long functions take a
-/// `&Monitor`; [`noop`](Self::noop) discards their reports, and never cancels them.
+/// Every long function of walpha reports to the monitor that [watches](Self::watch) its call, and ends with [`Cancelled`]
+/// once that is cancelled. Where nobody watches, nothing is reported and nothing can be cancelled. A clone, and a
+/// [part](Self::part), belong to the same work: cancelling one cancels all.
 ///
 /// ```
 /// use walpha_base::{Cancelled, Monitor};
 ///
+/// fn long_work() -> Result<u32, Cancelled> {
+///     let monitor = &*Monitor::current();
+///     for done in 1..=3 {
+///         monitor.report(done, 3)?;
+///     }
+///     Ok(3)
+/// }
+///
 /// let monitor = Monitor::new(|done, total| eprintln!("{done} of {total}"));
-/// monitor.report(1, 2)?;
+/// assert_eq!(monitor.watch(long_work), Ok(3));
 /// monitor.clone().cancel();
-/// assert_eq!(monitor.report(2, 2), Err(Cancelled));
-/// # Ok::<(), Cancelled>(())
+/// assert_eq!(monitor.watch(long_work), Err(Cancelled));
+/// assert_eq!(long_work(), Ok(3));
 /// ```
 #[derive(Clone, Default)]
 pub struct Monitor {
@@ -100,6 +112,19 @@ impl Monitor {
         Self { shared: None, scale: Scale::Stage }
     }
 
+    /// Watches the long functions that `work` calls on this thread, one after another. A function that it starts on another
+    /// thread is watched if that thread calls `watch` with a clone.
+    pub fn watch<T>(&self, work: impl FnOnce() -> T) -> T {
+        let _before = Current::replacing(self.clone());
+        work()
+    }
+
+    /// The monitor that watches this call: what a long function begins with. Until what is returned is dropped, the
+    /// thread has none, so that other work which rayon gives to it meanwhile is not taken for a part of this.
+    pub fn current() -> Current {
+        Current::replacing(Self::noop())
+    }
+
     /// Ends the work with [`Cancelled`] at its next check. Without effect on a no-op monitor.
     pub fn cancel(&self) {
         if let Some(shared) = &self.shared {
@@ -173,6 +198,39 @@ impl Monitor {
     }
 }
 
+thread_local! {
+    /// What watches the next long function that this thread calls.
+    static CURRENT: RefCell<Monitor> = const { RefCell::new(Monitor::noop()) };
+}
+
+/// A monitor that was taken from its thread ([`Monitor::current`]), which gets it back when this is dropped.
+#[derive(Debug)]
+pub struct Current {
+    monitor: Monitor,
+    /// It is dropped on the thread that it was taken from.
+    of_thread: PhantomData<*const ()>,
+}
+
+impl Current {
+    fn replacing(monitor: Monitor) -> Self {
+        Self { monitor: CURRENT.replace(monitor), of_thread: PhantomData }
+    }
+}
+
+impl Deref for Current {
+    type Target = Monitor;
+
+    fn deref(&self) -> &Monitor {
+        &self.monitor
+    }
+}
+
+impl Drop for Current {
+    fn drop(&mut self) {
+        CURRENT.replace(std::mem::take(&mut self.monitor));
+    }
+}
+
 impl fmt::Debug for Monitor {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let cancelled = self.check().is_err();
@@ -211,6 +269,8 @@ impl Units<'_> {
 
 #[cfg(test)]
 mod tests {
+    use std::panic::{AssertUnwindSafe, catch_unwind};
+
     use super::*;
 
     /// A monitor, and what it hears.
@@ -234,6 +294,34 @@ mod tests {
             *heard.lock().unwrap(),
             [[1, 3], [500_000, STEPS], [687_500, STEPS], [STEPS; 2]]
         );
+    }
+
+    /// A long function that reports once.
+    fn work(part: u64) -> Result<(), Cancelled> {
+        Monitor::current().report(part, 9)
+    }
+
+    #[test]
+    fn calls_are_watched_by_the_innermost_monitor() {
+        let ((outer, by_outer), (inner, by_inner)) = (heard(), heard());
+        outer.watch(|| {
+            work(1).unwrap();
+            inner.watch(|| work(2)).unwrap();
+            work(3).unwrap();
+            // While a long function runs, what else its thread does is not watched, nor is another thread.
+            let running = Monitor::current();
+            work(4).unwrap();
+            drop(running);
+            std::thread::scope(|scope| scope.spawn(|| work(5)).join().unwrap()).unwrap();
+            let panicked = catch_unwind(AssertUnwindSafe(|| inner.watch(|| panic!("inside"))));
+            assert!(panicked.is_err());
+            work(6).unwrap();
+        });
+        work(7).unwrap();
+        assert_eq!(*by_outer.lock().unwrap(), [[1, 9], [3, 9], [6, 9]]);
+        assert_eq!(*by_inner.lock().unwrap(), [[2, 9]]);
+        inner.cancel();
+        assert_eq!(outer.watch(|| inner.watch(|| work(8))), Err(Cancelled));
     }
 
     #[test]

@@ -65,19 +65,7 @@ pub fn enumerate(
     weights: &[f64],
     alpha: Alpha,
 ) -> Result<Enumeration, EnumerateError> {
-    enumerate_monitored(positions, weights, alpha, &Monitor::noop())
-}
-
-/// The same, as one stage under a monitor, which can cancel it.
-///
-/// # Errors
-/// [`EnumerateError`].
-pub fn enumerate_monitored(
-    positions: &[[f64; 3]],
-    weights: &[f64],
-    alpha: Alpha,
-    monitor: &Monitor,
-) -> Result<Enumeration, EnumerateError> {
+    let monitor = &*Monitor::current();
     if positions.len() != weights.len() {
         return Err(EnumerateError::Lengths { positions: positions.len(), weights: weights.len() });
     }

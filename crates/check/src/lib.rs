@@ -43,14 +43,13 @@ pub mod schema;
 pub use certify::{
     Bound, Certificate, CertifyError, CertifyFiltrationError, Claim, Declined, Extent,
     FiltrationCertificate, FiltrationFinding, Finding, NotJudged, Simplex, Unjudged, Verdict,
-    certify_filtration, certify_filtration_monitored,
+    certify_filtration,
 };
 pub use compare::{
     ClassDifference, CompareError, CompareFiltrationsError, Comparison, Differences, Domain,
     FiltrationComparison, ValueDifference, WeightDifference, compare, compare_filtrations,
-    compare_filtrations_monitored, compare_monitored,
 };
-pub use enumerate::{EnumerateError, Enumeration, enumerate, enumerate_monitored};
+pub use enumerate::{EnumerateError, Enumeration, enumerate};
 pub use exact::Exact;
 pub use rules::{count_by_rule, keep_causes};
 /// Progress and cancelling of long work.

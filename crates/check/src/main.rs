@@ -13,7 +13,7 @@ use walpha_check::meshes::{MeshError, MeshFormat, open_weights};
 use walpha_check::schema::{AnyFile, ComplexFile, PlacedComplex, SchemaError};
 use walpha_check::{
     Alpha, CertifyError, CertifyFiltrationError, FiltrationFinding, Finding, Monitor, Unjudged,
-    Verdict, certify_filtration_monitored, count_by_rule, keep_causes,
+    Verdict, certify_filtration, count_by_rule, keep_causes,
 };
 
 /// Judge weighted alpha shapes and meshes of tetrahedra exactly.
@@ -274,8 +274,7 @@ fn judge(path: &Path, arguments: &Arguments) -> Result<Judgement, Failure> {
         AnyFile::Complex(file) => {
             let is_cells_alone = file.is_cells_alone();
             let complex = PlacedComplex::try_from(file)?;
-            let (mut findings, mut certificate) =
-                watched(|monitor| complex.findings_monitored(monitor))?;
+            let (mut findings, mut certificate) = watched(|| complex.findings())?;
             if is_cells_alone {
                 keep_causes(&mut findings, &mut certificate);
             }
@@ -292,8 +291,7 @@ fn judge(path: &Path, arguments: &Arguments) -> Result<Judgement, Failure> {
             Ok(Judgement::of(&findings, certificate.verdict))
         }
         AnyFile::Filtration(file) => {
-            let (mut findings, certificate) =
-                watched(|monitor| certify_filtration_monitored(&file, monitor))?;
+            let (mut findings, certificate) = watched(|| certify_filtration(&file))?;
             findings.retain(|finding| ties == Ties::Exact || !finding.is_tie());
             let report = Report {
                 certificate: &certificate,
@@ -310,11 +308,11 @@ fn judge(path: &Path, arguments: &Arguments) -> Result<Judgement, Failure> {
 }
 
 /// Does long work, and shows on a terminal how far it is.
-fn watched<T>(work: impl FnOnce(&Monitor) -> T) -> T {
+fn watched<T>(work: impl FnOnce() -> T) -> T {
     /// What takes no longer shows nothing.
     const QUICK: Duration = Duration::from_secs(1);
     if !io::stderr().is_terminal() {
-        return work(&Monitor::noop());
+        return work();
     }
     let started = Instant::now();
     let monitor = Monitor::new(move |done: u64, total: u64| {
@@ -322,7 +320,7 @@ fn watched<T>(work: impl FnOnce(&Monitor) -> T) -> T {
             let _ = write!(io::stderr().lock(), "\rjudging {:3} %", 100 * done / total.max(1));
         }
     });
-    let made = work(&monitor);
+    let made = monitor.watch(work);
     if started.elapsed() > QUICK {
         let _ = write!(io::stderr().lock(), "\r{:13}\r", "");
     }

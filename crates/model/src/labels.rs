@@ -4,11 +4,11 @@ use std::fmt;
 use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
+use walpha_base::Cancelled;
 use walpha_base::advice::Advice;
 use walpha_base::memory::{NoMemory, try_reserve};
 use walpha_base::monitor::wraps;
 use walpha_base::shown::number;
-use walpha_base::{Cancelled, Monitor};
 
 use walpha_points::Units;
 use walpha_shape::{AlphaShape, ShapeError, Voxels, voxel_shape};
@@ -225,7 +225,6 @@ pub fn solid(
     frame: &Frame,
     units: Units,
     labels: &[i32],
-    monitor: &Monitor,
 ) -> Result<AlphaShape, LabelsError> {
     let mut labels = labels.to_vec();
     labels.sort_unstable();
@@ -255,7 +254,7 @@ pub fn solid(
         let most = around.chunk_by(|a, b| a == b).rev().max_by_key(|equal| equal.len());
         most.map_or(0.0, |equal| f64::from(equal[0]))
     };
-    let shape = voxel_shape(voxels, value, monitor)?;
+    let shape = voxel_shape(voxels, value)?;
     Ok(shape.with_coordinates(units.coordinates_of(frame)))
 }
 

@@ -47,12 +47,12 @@ pub enum Stage {
 }
 
 impl Stage {
-    /// Reports that the stage begins.
+    /// Reports that the stage begins, to the monitor that watches this call.
     ///
     /// # Errors
     /// The work was cancelled.
-    pub fn begin(self, monitor: &Monitor) -> Result<(), Cancelled> {
-        monitor.stage(self.name())
+    pub fn begin(self) -> Result<(), Cancelled> {
+        Monitor::current().stage(self.name())
     }
 
     /// Its name in reports.

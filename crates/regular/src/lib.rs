@@ -57,7 +57,7 @@ pub use locate::Location;
 pub use power_diagram::PowerDiagram;
 pub use sites::{MAX_COORDINATE, MAX_WEIGHT};
 pub use torus::{Torus, TorusError};
-pub use triangulation::{Triangulation, triangulate, triangulate_monitored};
+pub use triangulation::{Triangulation, triangulate};
 pub use walpha_base::{Cancelled, Monitor};
 
 // For the other crates of walpha: not covered by semantic versioning.

@@ -58,18 +58,7 @@ impl PowerDiagram {
         triangulation: &Triangulation,
         weights: Option<&[f64]>,
     ) -> Result<Self, TriangulationError> {
-        Self::of_monitored(triangulation, weights, &Monitor::noop())
-    }
-
-    /// The same, which reports how many cells are done, and can be cancelled.
-    ///
-    /// # Errors
-    /// Those of [`PowerDiagram::of`], and [`TriangulationError::Cancelled`].
-    pub fn of_monitored(
-        triangulation: &Triangulation,
-        weights: Option<&[f64]>,
-        monitor: &Monitor,
-    ) -> Result<Self, TriangulationError> {
+        let monitor = &*Monitor::current();
         let positions = triangulation.positions();
         let zeros = if weights.is_none() { filled(positions.len(), 0.0)? } else { Vec::new() };
         let weights = weights.unwrap_or(&zeros);

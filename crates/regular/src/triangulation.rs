@@ -33,23 +33,13 @@ use crate::{CellArrays, Scaled, Sites, TriangulationError, facets, filled, with_
 /// # Errors
 /// [`TriangulationError::Sites`]: other numbers of weights than of points; a number that is not finite or is too large
 /// ([`MAX_COORDINATE`](crate::MAX_COORDINATE), [`MAX_WEIGHT`](crate::MAX_WEIGHT)); fewer than four distinct points; all
-/// points in one plane. Out of memory; more than [`Triangulation::MAX_CELLS`] cells.
+/// points in one plane. Out of memory; more than [`Triangulation::MAX_CELLS`] cells;
+/// cancelled by a [`Monitor`] that watches.
 pub fn triangulate(
     points: &[[f64; 3]],
     weights: Option<&[f64]>,
 ) -> Result<Triangulation, TriangulationError> {
-    triangulate_monitored(points, weights, &Monitor::noop())
-}
-
-/// The same, which reports how many points are inserted, and can be cancelled.
-///
-/// # Errors
-/// Those of [`triangulate`], and [`TriangulationError::Cancelled`].
-pub fn triangulate_monitored(
-    points: &[[f64; 3]],
-    weights: Option<&[f64]>,
-    monitor: &Monitor,
-) -> Result<Triangulation, TriangulationError> {
+    let monitor = &*Monitor::current();
     let zeros = if weights.is_none() { filled(points.len(), 0.0)? } else { Vec::new() };
     let sites = Sites::new(points, weights.unwrap_or(&zeros))?;
     let along = sites.curve();

@@ -56,7 +56,7 @@ pub use arrays::ArrayError;
 pub use betti::{Betti, BettiError};
 pub use components::NO_COMPONENT;
 pub use error::{CgalError, OutlineError, PlanError, ShapeError, Whole};
-pub use make::{alpha_shape, alpha_shape_monitored};
+pub use make::alpha_shape;
 pub use manifold::ManifoldDefects;
 pub use measure::Measures;
 pub use options::{Balls, Classifier, Engine, MOST_FOR_CGAL, ShapeOptions};

@@ -35,23 +35,13 @@ use super::{
 /// [`CgalError::Absent`] for [`Engine::Cgal`] without a [classifier](ShapeOptions::classifier), and other errors of that engine; numbers that are not finite or too large, no
 /// points, and with [`ShapeOptions::refuse_flat`] points that span no volume: see
 /// [`SitesError`](walpha_regular::SitesError); a negative radius: [`ShapeError::Radius`]; incompatible options:
-/// [`ShapeOptions::check`].
+/// [`ShapeOptions::check`]. [`ShapeError::Cancelled`], once a [`Monitor`] that watches is cancelled; the engine of another
+/// crate cannot be interrupted.
 pub fn alpha_shape(
     points: impl Into<WeightedPoints>,
     options: &ShapeOptions,
 ) -> Result<AlphaShape, ShapeError> {
-    alpha_shape_monitored(points, options, &Monitor::noop())
-}
-
-/// The same, which reports its progress and can be cancelled. The engine of another crate cannot be interrupted.
-///
-/// # Errors
-/// Those of [`alpha_shape`], and [`ShapeError::Cancelled`].
-pub fn alpha_shape_monitored(
-    points: impl Into<WeightedPoints>,
-    options: &ShapeOptions,
-    monitor: &Monitor,
-) -> Result<AlphaShape, ShapeError> {
+    let monitor = &*Monitor::current();
     let points = points.into();
     let options = options.engine(options.engine_for(points.len()));
     if options.engine == Engine::Cgal {

@@ -39,15 +39,15 @@ pub use dtype::{Dtype, Endian, Sample, UnknownName};
 pub use error::VolumeError;
 pub use formats::{
     FORMATS, Keeps, UnknownFormat, VolumeFormat, VolumeWriter, data_files, files_of, format_name,
-    read, read_monitored, series,
+    read, series,
 };
 pub use gray::{Gray, GrayRange};
 pub use grid::{Dims, Frame};
 pub use hounsfield::Hounsfield;
 pub use labels::Labels;
 #[cfg(feature = "zarr")]
-pub use open::{convert, convert_monitored};
-pub use open::{open, open_monitored};
+pub use open::convert;
+pub use open::open;
 pub use read::{RawLayout, ReadOptions, Series};
 pub use reason::Reason;
 pub use sample::{SAMPLES, SKULL_SHA256, ct, phantom, sample, skull_sha256};

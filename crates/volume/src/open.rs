@@ -8,29 +8,17 @@ use walpha_base::advice::Setting;
 use crate::formats;
 use crate::read::OpenFile;
 use crate::sample::PhantomBoxes;
-use crate::{ReadOptions, Reason, Source, Volume, VolumeError, read_monitored, sample};
+use crate::{ReadOptions, Reason, Source, Volume, VolumeError, read, sample};
 
 /// Opens what a user names: a sample, or else a file.
 ///
 /// # Errors
 /// Those of [`sample`] and [`read()`](crate::read()).
 pub fn open(input: impl AsRef<Path>, options: &ReadOptions) -> Result<Volume, VolumeError> {
-    open_monitored(input, options, &Monitor::noop())
-}
-
-/// The same, which says how far it is and can be cancelled.
-///
-/// # Errors
-/// Those of [`open`], and [`VolumeError::Cancelled`].
-pub fn open_monitored(
-    input: impl AsRef<Path>,
-    options: &ReadOptions,
-    monitor: &Monitor,
-) -> Result<Volume, VolumeError> {
     let input = input.as_ref();
     match sample_name(input) {
         Some(name) => options.part(sample(name)?),
-        None => read_monitored(input, options, monitor),
+        None => read(input, options),
     }
 }
 
@@ -65,11 +53,11 @@ impl OpenVolume {
     /// Reads it.
     ///
     /// # Errors
-    /// As [`open_monitored`].
-    pub fn read(&self, options: &ReadOptions, monitor: &Monitor) -> Result<Volume, VolumeError> {
+    /// As [`open`].
+    pub fn read(&self, options: &ReadOptions) -> Result<Volume, VolumeError> {
         match self {
-            Self::Named(input) => open_monitored(input, options, monitor),
-            Self::File(file) => formats::read_file(file, options, monitor),
+            Self::Named(input) => open(input, options),
+            Self::File(file) => formats::read_file(file, options),
         }
     }
 
@@ -157,19 +145,7 @@ impl Source {
 /// `folder` is there already or cannot be made; the volume cannot be read. Nothing is left behind then.
 #[cfg(feature = "zarr")]
 pub fn convert(source: &Source, folder: impl AsRef<Path>) -> Result<(), VolumeError> {
-    convert_monitored(source, folder, &Monitor::noop())
-}
-
-/// The same, which says how far it is and can be cancelled.
-///
-/// # Errors
-/// Those of [`convert`], and [`VolumeError::Cancelled`].
-#[cfg(feature = "zarr")]
-pub fn convert_monitored(
-    source: &Source,
-    folder: impl AsRef<Path>,
-    monitor: &Monitor,
-) -> Result<(), VolumeError> {
+    let monitor = &*Monitor::current();
     crate::write::zarr(source, folder.as_ref(), monitor)
 }
 

@@ -24,7 +24,7 @@ pub fn boundary<'py>(
     shape: Arc<AlphaShape>,
     solid: bool,
 ) -> PyResult<Boundary<'py>> {
-    let (places, triangles, indices, cuts) = run(py, &Task::default(), move |_| {
+    let (places, triangles, indices, cuts) = run(py, &Task::default(), move || {
         let (surface, cuts) = match solid {
             true => {
                 let (surface, cuts) = shape.solid();

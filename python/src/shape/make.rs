@@ -91,7 +91,7 @@ pub fn alpha_shape(
     )?;
     let recipe = recipe.periodic(torus(periodic)?);
     let points = weighted(points, weights, values)?;
-    let shape = move |monitor: &_| recipe.run_points_monitored(points, monitor);
+    let shape = move || recipe.run_points(points);
     let model = run(py, &task, shape)?;
     Ok(Shape::of(model))
 }

@@ -208,7 +208,7 @@ impl Shape {
     fn unwrapped(&self, py: Python<'_>) -> PyResult<Self> {
         let shape = Arc::clone(&self.shape);
         let unwrapped =
-            run(py, &Task::default(), move |_| Ok::<_, InterpolateError>(shape.unwrapped()))?;
+            run(py, &Task::default(), move || Ok::<_, InterpolateError>(shape.unwrapped()))?;
         Ok(Self { shape: Arc::new(unwrapped), facts: self.facts.clone() })
     }
 
@@ -233,14 +233,14 @@ impl Shape {
     /// The components, as JSON.
     fn components(&self, py: Python<'_>) -> PyResult<String> {
         let shape = Arc::clone(&self.shape);
-        run(py, &Task::default(), move |_| Ok::<_, InterpolateError>(json(&shape.components())))
+        run(py, &Task::default(), move || Ok::<_, InterpolateError>(json(&shape.components())))
     }
 
     /// The number of the component of each point; −1 outside.
     fn component_numbers<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<i64>>> {
         let number = |n: u32| if n == walpha::shape::NO_COMPONENT { -1 } else { i64::from(n) };
         let shape = Arc::clone(&self.shape);
-        let numbers = run(py, &Task::default(), move |_| {
+        let numbers = run(py, &Task::default(), move || {
             Ok::<_, InterpolateError>(shape.component_numbers())
         })?;
         column(py, numbers.into_iter().map(number))
@@ -249,7 +249,7 @@ impl Shape {
     /// The voids, as JSON; `None` without exterior simplices.
     fn voids(&self, py: Python<'_>) -> PyResult<Option<String>> {
         let shape = Arc::clone(&self.shape);
-        run(py, &Task::default(), move |_| {
+        run(py, &Task::default(), move || {
             Ok::<_, InterpolateError>(shape.voids().as_ref().map(json))
         })
     }
@@ -273,7 +273,7 @@ impl Shape {
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let (places, values) = (rows("places", places)?, self.values(values)?);
         let shape = Arc::clone(&self.shape);
-        let found = run(py, &Task::default(), move |_| {
+        let found = run(py, &Task::default(), move || {
             let interpolant = Interpolant::with_values(&shape, &values)?;
             let values = interpolant.values_at(&places).into_iter();
             Ok::<Vec<f64>, InterpolateError>(values.map(|v| v.unwrap_or(f64::NAN)).collect())
@@ -295,8 +295,8 @@ impl Shape {
         let dims = Dims::new(nx, ny, nz).map_err(Told::told)?;
         let grid = Grid::spanning(low, high, dims).map_err(Told::told)?;
         let (values, shape) = (self.values(values)?, Arc::clone(&self.shape));
-        let samples = run(py, &task, move |monitor| {
-            Stage::Interpolate.begin(monitor)?;
+        let samples = run(py, &task, move || {
+            Stage::Interpolate.begin()?;
             let found = Interpolant::with_values(&shape, &values)?.resample(&grid)?;
             Ok::<_, InterpolateError>(with_nan(found))
         })?;
@@ -329,12 +329,10 @@ impl Shape {
         let shape = Arc::clone(&self.shape);
         if !allow_empty {
             let shape = Arc::clone(&shape);
-            run(py, &Task::default(), move |monitor| {
-                EmptyShape::check(&shape, exporter().needs(), monitor)
-            })?;
+            run(py, &Task::default(), move || EmptyShape::check(&shape, exporter().needs()))?;
         }
         let target = Target::open(&path).map_err(Told::told)?;
-        run(py, &Task::default(), move |_| {
+        run(py, &Task::default(), move || {
             let exporter = exporter();
             target.write(|out| exporter.write(&shape, out))?;
             Ok::<_, TargetError>(

@@ -25,7 +25,7 @@ pub type Outline<'py> = (
 
 /// As [`AlphaShape::outline`] makes it.
 pub fn outline<'py>(py: Python<'py>, shape: Arc<AlphaShape>) -> PyResult<Outline<'py>> {
-    let outline = run(py, &Task::default(), move |_| shape.outline().cloned())?;
+    let outline = run(py, &Task::default(), move || shape.outline().cloned())?;
     let polygon = |Polygon { outer, holes, .. }| {
         let holes = holes.into_iter().map(|hole: Vec<u32>| hole.into_pyarray(py)).collect();
         (Vec::into_pyarray(outer, py), holes)

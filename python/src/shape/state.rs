@@ -6,7 +6,7 @@ use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use serde_json::Value;
 use walpha::pipeline::AlphaRule;
-use walpha::shape::{Coordinates, LengthsError, Voxels, alpha_shape_monitored, voxel_shape};
+use walpha::shape::{Coordinates, LengthsError, Voxels, alpha_shape, voxel_shape};
 use walpha::{AlphaShape, Recipe, WeightedPoints};
 
 use super::{Shape, json};
@@ -68,14 +68,14 @@ pub fn restored(
     let mut facts: Value = serde_json::from_str(&facts).map_err(broken)?;
     let voxels = facts.as_object_mut().and_then(|facts| facts.remove(VOXELS));
     let voxels: Option<Voxels> = voxels.map(serde_json::from_value).transpose().map_err(broken)?;
-    let shape = run(py, &Task::default(), move |monitor| match voxels {
-        None => alpha_shape_monitored(points, &recipe.shape_at(alpha), monitor),
+    let shape = run(py, &Task::default(), move || match voxels {
+        None => alpha_shape(points, &recipe.shape_at(alpha)),
         Some(voxels) => {
             // Corners come in the order of the points.
             let values = points.values().unwrap_or_default();
             let next = Cell::new(0);
             let value = |_| values.get(next.replace(next.get() + 1)).copied().unwrap_or_default();
-            voxel_shape(voxels, value, monitor)
+            voxel_shape(voxels, value)
         }
     })?;
     Ok(Shape { shape: shape.with_coordinates(coordinates).into(), facts: facts.to_string() })

@@ -6,7 +6,6 @@ use std::io;
 use std::path::Path;
 
 use serde::Serialize;
-use walpha_base::Monitor;
 
 use super::{Ladder, LevelErrors, Mesh, short};
 use crate::cli::args::one_alpha;
@@ -19,11 +18,11 @@ use crate::cli::output::{name, print_summary};
 use crate::cli::pipeline::{Domain, read};
 use crate::cli::progress::Progress;
 use crate::cli::report::SCHEMA_VERSION;
-use crate::haar::smooth_monitored;
+use crate::haar::smooth;
 use crate::pipeline::{Input, Parameter, Source};
 use crate::points::{Points, Region, difference, focus, select, weigh};
 use crate::progress::Stage;
-use crate::shape::{AlphaShape, Betti, Measures, ShapeOptions, Surface, alpha_shape_monitored};
+use crate::shape::{AlphaShape, Betti, Measures, ShapeOptions, Surface, alpha_shape};
 use crate::{
     Coordinates, HaarOptions, Recipe, Selection, SelectionRule, Tolerance, Truncation, Volume,
     Weighting,
@@ -59,12 +58,10 @@ impl Ladder {
         let alpha = parameter.alpha;
         let coordinates = units.coordinates(volume);
         let domain = Domain::of_grid(volume, units);
-        let monitor = progress.monitor();
         let Some(selection) = recipe.selection(&source.range) else {
             fail_usage!("--select adaptive has no effect: levels of detail are selected by differences" => "omit it");
         };
-        let mut front_end =
-            FrontEnd { source: &source, recipe: &recipe, smoothed: None, monitor: &monitor };
+        let mut front_end = FrontEnd { source: &source, recipe: &recipe, smoothed: None };
         let full =
             progress.stage(Stage::Points, || self.full(&mut front_end, &recipe, selection))?;
         let mut rows = Vec::new();
@@ -81,10 +78,9 @@ impl Ladder {
             outline::check(meshes.iter().map(|mesh| mesh.format), &points.positions)?;
             let weighted = weigh(points, weighting, alpha)?;
             let options = ShapeOptions::new(alpha);
-            let shape = progress
-                .stage(Stage::Shape, || alpha_shape_monitored(weighted, &options, &monitor))?;
+            let shape = progress.stage(Stage::Shape, || alpha_shape(weighted, &options))?;
             let shape = shape.with_coordinates(coordinates);
-            let errors = || LevelErrors::of(&shape, &grays, volume, units, &monitor);
+            let errors = || LevelErrors::of(&shape, &grays, volume, units);
             let errors = progress.stage(Stage::Interpolate, errors)?;
             let mut row = Row::of(&shape, &truncation, &domain, errors);
             progress.stage(Stage::Write, || {
@@ -167,7 +163,6 @@ struct FrontEnd<'a> {
     source: &'a Source,
     recipe: &'a Recipe,
     smoothed: Option<(HaarOptions, Volume, Truncation)>,
-    monitor: &'a Monitor,
 }
 
 impl FrontEnd<'_> {
@@ -181,7 +176,7 @@ impl FrontEnd<'_> {
             if let Some(known) = self.smoothed.take().filter(|s| s.0 == *options) {
                 self.smoothed.insert(known)
             } else {
-                let (smoothed, truncation) = smooth_monitored(volume, options, self.monitor)?;
+                let (smoothed, truncation) = smooth(volume, options)?;
                 self.smoothed.insert((*options, smoothed, truncation))
             };
         let points = select(volume, smoothed, &difference(smoothed), selection, units)

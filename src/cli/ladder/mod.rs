@@ -8,7 +8,6 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use serde::Serialize;
-use walpha_base::Monitor;
 
 use super::args::{Alphas, FrozenPipelineArgs};
 use super::errors::{CommandError, fail_usage};
@@ -125,7 +124,7 @@ impl Ladder {
         let (weighed, volume) = pipeline::weighted_points(input, &recipe, &mut progress)?;
         outline::check(meshes.iter().map(|mesh| mesh.format), weighed.points.positions())?;
         let domain = pipeline::domain(&weighed, volume.as_ref());
-        let filtration = progress.watch(|monitor| pipeline::filtration(None, &weighed, monitor))?;
+        let filtration = progress.watch(|| pipeline::filtration(None, &weighed))?;
         let coordinates = weighed.origin.coordinates;
         let found = || weighed.rule.on(&filtration, coordinates.unit);
         let reference = weighed.parameter.unwrap_or_else(found);
@@ -264,14 +263,13 @@ impl LevelErrors {
         grays: &[f64],
         volume: &Volume,
         units: Units,
-        monitor: &Monitor,
     ) -> Result<Self, InterpolateError> {
         let grid = Grid::of(volume, units);
         let rmse = |interpolant: Interpolant<'_>| -> Result<Option<f64>, InterpolateError> {
             Ok(Deviation::of(volume, &interpolant.resample(&grid)?).rmse)
         };
         let inside = rmse(Interpolant::with_values(shape, grays)?)?;
-        let (whole, all) = filled_in(shape, grays, volume, units, monitor)?;
+        let (whole, all) = filled_in(shape, grays, volume, units)?;
         let filled = rmse(Interpolant::with_values(&whole, &all)?)?;
         Ok(Self { inside, filled: filled.unwrap_or_default() })
     }

@@ -8,7 +8,7 @@ use walpha_base::Monitor;
 use super::bench::Bench;
 use crate::export::Scratch;
 use crate::interpolate::{
-    Adaptive, Deviation, Grid, Interpolant, InterpolateError, adaptive_voxels_monitored,
+    Adaptive, Deviation, Grid, Interpolant, InterpolateError, adaptive_voxels,
 };
 use crate::points::{
     ModelMetadata, Packing, PointOptions, PointWriter, SampleGrid, Units, WeightedPoints,
@@ -123,7 +123,7 @@ fn verdict(curves: &[RateCurve]) -> String {
 fn models(volume: &Volume, monitor: &Monitor) -> Result<Vec<Measured>, ReproduceError> {
     let samples = volume.dims().samples();
     let count = ((MOST * samples as f64) as u64).max(8);
-    let voxels = adaptive_voxels_monitored(volume, &Adaptive::new(count), Units::Voxel, monitor)?;
+    let voxels = monitor.watch(|| adaptive_voxels(volume, &Adaptive::new(count), Units::Voxel))?;
     let counts = [8, 4, 2, 1].map(|part| (voxels.len() / part).max(8).min(voxels.len()));
     let mut measured = Vec::new();
     for count in counts {

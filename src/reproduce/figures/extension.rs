@@ -21,7 +21,8 @@ pub(super) fn error_against_points(bench: &mut Bench<'_>) -> Result<Item, Reprod
         alpha: Alpha::from_squared(ALPHA).expect("a number"),
         units: Units::Voxel,
     };
-    let curve = error_curve(study.subject.volume, &study.smoothed, &options, &bench.monitor)?;
+    let curve =
+        bench.monitor.watch(|| error_curve(study.subject.volume, &study.smoothed, &options))?;
     let figure =
         error_figure("Our extension. Error of the interpolant against points", ALPHA, &curve);
     let picture = bench.file("extension-1.png", figure.to_png()?);

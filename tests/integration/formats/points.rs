@@ -5,7 +5,7 @@ use std::{process::Command, sync::mpsc, thread, time::Duration};
 
 use walpha::points::{Columns, read_points};
 #[cfg(unix)]
-use walpha::{Recipe, pipeline::Input, progress::Monitor};
+use walpha::{Recipe, pipeline::Input};
 
 use super::files::{save, *};
 use crate::common::{Told, run};
@@ -46,7 +46,7 @@ fn points_come_through_a_pipe_that_is_opened_once() {
         let (opened, done) = mpsc::channel();
         let input = path.clone();
         thread::spawn(move || {
-            let read = Recipe::default().open(&input, &Monitor::noop());
+            let read = Recipe::default().open(&input);
             // Nobody listens where the test has ended.
             drop(opened.send(read.map_err(|error| error.to_string())));
         });

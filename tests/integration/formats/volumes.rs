@@ -7,7 +7,6 @@ use std::path::{Path, PathBuf};
 use flate2::Compression;
 use flate2::write::GzEncoder;
 use ndarray::Array3;
-use walpha::progress::Monitor;
 use walpha::volume::{
     Coordinates, Dtype, Endian, FORMATS, Frame, OpenVolume, RawLayout, ReadOptions, Source, Space,
     Volume, VolumeWriter, format_name, read,
@@ -82,7 +81,7 @@ fn volumes_are_read_from_a_file_that_is_opened_once() {
         let in_parts = Source::open(&path, &options).is_ok();
         let file = OpenVolume::open(&path).unwrap();
         fs::remove_file(&path).unwrap();
-        let volume = file.read(&options, &Monitor::noop());
+        let volume = file.read(&options);
         let volume = volume.unwrap_or_else(|error| panic!("{name}: {error}"));
         assert_eq!(volume.as_slice(), numbers(), "{name}");
         assert_eq!(file.format_name(&options).unwrap(), named, "{name}");

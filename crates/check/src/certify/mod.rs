@@ -27,7 +27,7 @@ pub use certificate::{Certificate, CertifyError, NotJudged, Verdict};
 pub use claim::{Claim, Extent};
 pub use filtration::{
     Bound, CertifyFiltrationError, FiltrationCertificate, FiltrationFinding, Unjudged,
-    certify_filtration, certify_filtration_monitored,
+    certify_filtration,
 };
 pub use finding::{Finding, Simplex};
 pub use missing::Declined;

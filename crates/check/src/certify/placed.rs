@@ -26,22 +26,12 @@ impl PlacedComplex {
     /// # Errors
     /// [`CertifyError`].
     pub fn findings(&self) -> Result<(Vec<Finding>, Certificate), CertifyError> {
-        self.findings_monitored(&Monitor::noop())
-    }
-
-    /// The same, as one stage under a monitor, which can cancel it.
-    ///
-    /// # Errors
-    /// [`CertifyError`].
-    pub fn findings_monitored(
-        &self,
-        monitor: &Monitor,
-    ) -> Result<(Vec<Finding>, Certificate), CertifyError> {
+        let monitor = &*Monitor::current();
         if let Some(region) = &self.voxels {
             return voxels::findings(self, region, monitor);
         }
         match self.periodic {
-            None => self.claim().findings_monitored(monitor),
+            None => monitor.watch(|| self.claim().findings()),
             Some(sides) => torus::findings(self, sides, monitor),
         }
     }

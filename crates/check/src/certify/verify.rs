@@ -50,17 +50,7 @@ impl Claim<'_> {
     /// # Errors
     /// [`CertifyError`].
     pub fn findings(&self) -> Result<(Vec<Finding>, Certificate), CertifyError> {
-        self.findings_monitored(&Monitor::noop())
-    }
-
-    /// The same, as one stage under a monitor, which can cancel it.
-    ///
-    /// # Errors
-    /// [`CertifyError`].
-    pub fn findings_monitored(
-        &self,
-        monitor: &Monitor,
-    ) -> Result<(Vec<Finding>, Certificate), CertifyError> {
+        let monitor = &*Monitor::current();
         self.findings_on(None, monitor)
     }
 
@@ -112,18 +102,7 @@ impl Claim<'_> {
         &self,
         visitor: &mut dyn FnMut(Finding) -> ControlFlow<()>,
     ) -> Result<Certificate, CertifyError> {
-        self.visit_monitored(visitor, &Monitor::noop())
-    }
-
-    /// The same, as one stage under a monitor, which can cancel it.
-    ///
-    /// # Errors
-    /// [`CertifyError`].
-    pub fn visit_monitored(
-        &self,
-        visitor: &mut dyn FnMut(Finding) -> ControlFlow<()>,
-        monitor: &Monitor,
-    ) -> Result<Certificate, CertifyError> {
+        let monitor = &*Monitor::current();
         self.visit_on(None, visitor, monitor)
     }
 

@@ -110,18 +110,7 @@ impl CompareError {
 /// # Errors
 /// [`CompareError`].
 pub fn compare(a: Placed, b: Placed) -> Result<Comparison, CompareError> {
-    compare_monitored(a, b, &Monitor::noop())
-}
-
-/// The same, as one stage under a monitor, which can cancel it.
-///
-/// # Errors
-/// [`CompareError`].
-pub fn compare_monitored(
-    a: Placed,
-    b: Placed,
-    monitor: &Monitor,
-) -> Result<Comparison, CompareError> {
+    let monitor = &*Monitor::current();
     check('A', a)?;
     check('B', b)?;
     let common = CommonPositions::new(a.positions, b.positions);

@@ -120,7 +120,7 @@ fn verdict(placed: Placed, monitor: &Monitor) -> Result<Verdict, Cancelled> {
     orient(&mut complex, placed.positions, None);
     // Regions are those of cells.
     let claim = Claim::new(placed.with_complex(&complex)).with_lowest(3);
-    match claim.visit_monitored(&mut |_| ControlFlow::Continue(()), monitor) {
+    match monitor.watch(|| claim.visit(&mut |_| ControlFlow::Continue(()))) {
         Ok(certificate) => Ok(certificate.verdict),
         Err(CertifyError::Cancelled(cancelled)) => Err(cancelled),
         Err(_) => Ok(Verdict::Wrong),

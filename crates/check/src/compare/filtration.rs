@@ -97,18 +97,7 @@ pub fn compare_filtrations(
     a: &FiltrationFile,
     b: &FiltrationFile,
 ) -> Result<FiltrationComparison, CompareFiltrationsError> {
-    compare_filtrations_monitored(a, b, &Monitor::noop())
-}
-
-/// The same, as one stage under a monitor, which can cancel it.
-///
-/// # Errors
-/// [`CompareFiltrationsError`].
-pub fn compare_filtrations_monitored(
-    a: &FiltrationFile,
-    b: &FiltrationFile,
-    monitor: &Monitor,
-) -> Result<FiltrationComparison, CompareFiltrationsError> {
+    let monitor = &*Monitor::current();
     a.check()?;
     b.check()?;
     finite(a)?;

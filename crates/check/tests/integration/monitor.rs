@@ -9,8 +9,7 @@ use walpha_base::random::Random;
 use walpha_check::schema::{ComplexFile, FiltrationFile, PairsFile, PlacedComplex};
 use walpha_check::{
     CertifyError, CertifyFiltrationError, Claim, CompareError, CompareFiltrationsError,
-    EnumerateError, Extent, Monitor, certify_filtration_monitored, compare_filtrations_monitored,
-    compare_monitored, enumerate_monitored,
+    EnumerateError, Extent, Monitor, certify_filtration, compare, compare_filtrations, enumerate,
 };
 
 use crate::common::{Answer, Case, definition, grid, shape_of};
@@ -18,7 +17,7 @@ use crate::ties::mirrored_cube;
 
 /// Does work on one thread, and cancels it at its report number `last`. Returns all reports, and the outcome.
 fn reports<T: Send, E: Send>(
-    work: &(impl Fn(&Monitor) -> Result<T, E> + Sync),
+    work: &(impl Fn() -> Result<T, E> + Sync),
     last: usize,
 ) -> (Vec<[u64; 2]>, Result<T, E>) {
     let heard = Arc::new(Mutex::new(Vec::new()));
@@ -33,7 +32,7 @@ fn reports<T: Send, E: Send>(
     });
     this.set(monitor.clone()).unwrap();
     let one = ThreadPoolBuilder::new().num_threads(1).build().unwrap();
-    let outcome = one.install(|| work(&monitor));
+    let outcome = one.install(|| monitor.watch(work));
     let heard = heard.lock().unwrap().clone();
     (heard, outcome)
 }
@@ -42,7 +41,7 @@ fn reports<T: Send, E: Send>(
 /// reports, it ends there and says so.
 fn assert_moves<T: Send, E: Debug + Send>(
     least: usize,
-    work: impl Fn(&Monitor) -> Result<T, E> + Sync,
+    work: impl Fn() -> Result<T, E> + Sync,
     is_cancelled: impl Fn(&E) -> bool,
 ) {
     let (all, outcome) = reports(&work, usize::MAX);
@@ -74,9 +73,8 @@ fn case(on_grid: bool) -> Case {
 fn judgements_of_complexes_move() {
     let moves = |least, claim: Claim| {
         let is_cancelled = |error: &CertifyError| matches!(error, CertifyError::Cancelled(_));
-        assert_moves(least, |monitor| claim.findings_monitored(monitor), is_cancelled);
-        let visit =
-            |monitor: &Monitor| claim.visit_monitored(&mut |_| ControlFlow::Continue(()), monitor);
+        assert_moves(least, || claim.findings(), is_cancelled);
+        let visit = || claim.visit(&mut |_| ControlFlow::Continue(()));
         assert_moves(least, visit, is_cancelled);
     };
     for on_grid in [false, true] {
@@ -114,11 +112,7 @@ fn a_judgement_of_a_torus_moves() {
     file.vertices = Some(vec![0, 1, 2]);
     file.periodic = Some([4.0; 3]);
     let placed = PlacedComplex::try_from(file).unwrap();
-    assert_moves(
-        4,
-        |monitor| placed.findings_monitored(monitor),
-        |error| matches!(error, CertifyError::Cancelled(_)),
-    );
+    assert_moves(4, || placed.findings(), |error| matches!(error, CertifyError::Cancelled(_)));
 }
 
 /// A cube with pairs, which are wrong.
@@ -131,7 +125,7 @@ fn the_judgement_of_a_filtration_moves() {
     let file = filtration();
     assert_moves(
         40,
-        |monitor| certify_filtration_monitored(&file, monitor),
+        || certify_filtration(&file),
         |error| matches!(error, CertifyFiltrationError::Cancelled(_)),
     );
 }
@@ -141,7 +135,7 @@ fn an_enumeration_moves() {
     let case = case(false);
     assert_moves(
         200,
-        |monitor| enumerate_monitored(&case.positions, &case.weights, case.alpha(), monitor),
+        || enumerate(&case.positions, &case.weights, case.alpha()),
         |error| matches!(error, EnumerateError::Cancelled(_)),
     );
 }
@@ -151,9 +145,7 @@ fn comparisons_move() {
     let is_cancelled = |error: &CompareError| matches!(error, CompareError::Cancelled(_));
     let case = case(false);
     let [a, b] = [0.03, 0.05].map(|alpha| definition(&Case { alpha, ..case.clone() }).unwrap());
-    let different = |monitor: &Monitor| {
-        compare_monitored(case.placed(&a.complex), case.placed(&b.complex), monitor)
-    };
+    let different = || compare(case.placed(&a.complex), case.placed(&b.complex));
     assert_moves(100, different, is_cancelled);
     // The same region cut in another way, so that both are judged.
     let positions = mirrored_cube().points;
@@ -161,13 +153,12 @@ fn comparisons_move() {
     let mirrored = cube.positions.iter().map(|p| [-p[0], p[1], p[2]]).collect();
     let other = definition(&Case { positions: mirrored, ..cube.clone() }).unwrap().complex;
     let own = definition(&cube).unwrap().complex;
-    let tied =
-        |monitor: &Monitor| compare_monitored(cube.placed(&own), cube.placed(&other), monitor);
+    let tied = || compare(cube.placed(&own), cube.placed(&other));
     assert_moves(100, tied, is_cancelled);
     let (a, b) = (filtration(), filtration());
     assert_moves(
         100,
-        |monitor| compare_filtrations_monitored(&a, &b, monitor),
+        || compare_filtrations(&a, &b),
         |error| matches!(error, CompareFiltrationsError::Cancelled(_)),
     );
 }

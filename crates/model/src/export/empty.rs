@@ -5,8 +5,7 @@ use walpha_base::shown::number;
 use crate::pipeline::Parameter;
 use walpha_shape::ladder::Filtration;
 use walpha_shape::{
-    Alpha, AlphaShape, Balls, Class, Complex, Outline, OutlineError, ShapeOptions,
-    alpha_shape_monitored,
+    Alpha, AlphaShape, Balls, Class, Complex, Outline, OutlineError, ShapeOptions, alpha_shape,
 };
 use walpha_volume::annotation;
 
@@ -94,7 +93,7 @@ impl EmptyShape {
     ///
     /// # Errors
     /// [`EmptyShape`].
-    pub fn check(shape: &AlphaShape, needs: Needs, monitor: &Monitor) -> Result<(), Self> {
+    pub fn check(shape: &AlphaShape, needs: Needs) -> Result<(), Self> {
         if needs.met_by(shape) {
             return Ok(());
         }
@@ -102,7 +101,7 @@ impl EmptyShape {
         let extent = Extent::of(shape);
         let mut empty = Self { needs, alpha, suggested: None, balls, extent };
         if empty.can_have_it() {
-            empty.suggested = suggested(shape, needs, monitor);
+            empty.suggested = Monitor::current().unreported().watch(|| suggested(shape, needs));
         }
         Err(empty)
     }
@@ -146,18 +145,14 @@ impl EmptyShape {
 }
 
 /// The parameter of a shape of the same points that has what a file needs.
-fn suggested(shape: &AlphaShape, needs: Needs, monitor: &Monitor) -> Option<f64> {
+fn suggested(shape: &AlphaShape, needs: Needs) -> Option<f64> {
     let options = *shape.options();
     let points = shape.points();
     let spacing = || {
         let unit = shape.coordinates().unit;
         Some(Parameter::of_spacing(points, options.periodic, unit).ok()?.alpha)
     };
-    let connected = || {
-        let filtration =
-            Filtration::monitored(options.periodic, points.clone(), &monitor.unreported());
-        Some(filtration.ok()?.one_region())
-    };
+    let connected = || Some(Filtration::on(options.periodic, points.clone()).ok()?.one_region());
     let rules: [&dyn Fn() -> Option<Alpha>; 2] = [&spacing, &connected];
     rules.into_iter().find_map(|rule| {
         let parameter = three_digits_up(rule()?.radius()?);
@@ -167,7 +162,7 @@ fn suggested(shape: &AlphaShape, needs: Needs, monitor: &Monitor) -> Option<f64>
         };
         let mut larger = options;
         larger.alpha = alpha.ok()?;
-        let larger = alpha_shape_monitored(points.clone(), &larger, &monitor.unreported()).ok()?;
+        let larger = alpha_shape(points.clone(), &larger).ok()?;
         needs.met_by(&larger).then_some(parameter)
     })
 }
@@ -188,12 +183,11 @@ mod tests {
 
     fn shape(positions: Vec<[f64; 3]>, alpha: f64) -> AlphaShape {
         let options = ShapeOptions::new(Alpha::from_squared(alpha).unwrap());
-        walpha_shape::alpha_shape(walpha_shape::WeightedPoints::unweighted(positions), &options)
-            .unwrap()
+        alpha_shape(walpha_shape::WeightedPoints::unweighted(positions), &options).unwrap()
     }
 
     fn refused(shape: &AlphaShape, needs: Needs) -> (String, String) {
-        let error = EmptyShape::check(shape, needs, &Monitor::noop()).unwrap_err();
+        let error = EmptyShape::check(shape, needs).unwrap_err();
         (error.to_string(), error.advice().to_string())
     }
 
@@ -215,7 +209,7 @@ mod tests {
                 (0.001, Needs::RegularFacet),
             ] {
                 let nothing = shape(points.clone(), alpha);
-                let error = EmptyShape::check(&nothing, needs, &Monitor::noop()).unwrap_err();
+                let error = EmptyShape::check(&nothing, needs).unwrap_err();
                 let radius = error.suggested.expect("a radius is known");
                 let larger = shape(points.clone(), radius * radius);
                 assert!(needs.met_by(&larger), "{needs:?}: {radius}");

@@ -99,20 +99,7 @@ impl FiltrationFormat {
     /// # Errors
     /// Whatever `out` returns; not enough memory.
     pub fn write(&self, ordered: &Ordered<'_>, out: &mut dyn Write) -> io::Result<()> {
-        self.write_monitored(ordered, out, &Monitor::noop())
-    }
-
-    /// [`write`](Self::write) with progress and cancelling through `monitor`.
-    ///
-    /// # Errors
-    /// Those of [`write`](Self::write), and [`Cancelled`](crate::progress::Cancelled) wrapped in an error of the
-    /// kind `Other`.
-    pub fn write_monitored(
-        &self,
-        ordered: &Ordered<'_>,
-        out: &mut dyn Write,
-        monitor: &Monitor,
-    ) -> io::Result<()> {
+        let monitor = &*Monitor::current();
         (self.write)(ordered, out, monitor)
     }
 }
@@ -132,7 +119,7 @@ fn lasting(ordered: &Ordered<'_>, pairs: &[[u32; 2]]) -> Vec<[u32; 2]> {
 const DIMENSIONS: [&str; 4] = ["vertex", "edge", "facet", "cell"];
 
 fn write_npz(ordered: &Ordered<'_>, out: &mut dyn Write, monitor: &Monitor) -> io::Result<()> {
-    let loops = ordered.loops_monitored(monitor).map_err(io::Error::other)?;
+    let loops = monitor.watch(|| ordered.loops()).map_err(io::Error::other)?;
     let pairs = ordered.pairs();
     let mut archive = Archive::compressed(ZipWriter::new_stream(out));
     let whole = ordered.filtration().whole();
@@ -177,7 +164,7 @@ fn write_npz(ordered: &Ordered<'_>, out: &mut dyn Write, monitor: &Monitor) -> i
 }
 
 fn write_json(ordered: &Ordered<'_>, out: &mut dyn Write, monitor: &Monitor) -> io::Result<()> {
-    let loops = ordered.loops_monitored(monitor).map_err(io::Error::other)?;
+    let loops = monitor.watch(|| ordered.loops()).map_err(io::Error::other)?;
     // Per simplex at most four vertices, three numbers, and its position in the order.
     let each = size_of::<[u32; 4]>() + size_of::<[f64; 3]>() + size_of::<u32>();
     let bytes = ordered.len().saturating_mul(each);
@@ -293,7 +280,7 @@ fn write_vertices(ordered: &Ordered<'_>, number: u32, out: &mut dyn Write) -> io
 
 /// The intervals of each dimension: of points of space there are none of dimension 3.
 fn persistence(ordered: &Ordered<'_>, monitor: &Monitor) -> io::Result<[Vec<Interval>; 4]> {
-    ordered.loops_monitored(monitor).map_err(io::Error::other)?;
+    monitor.watch(|| ordered.loops()).map_err(io::Error::other)?;
     let mut all = [const { Vec::new() }; 4];
     for (dimension, intervals) in all.iter_mut().enumerate() {
         *intervals = ordered.persistence(dimension).map_err(io::Error::other)?;

@@ -1,6 +1,5 @@
 use std::path::Path;
 
-use walpha_base::Monitor;
 use walpha_base::advice::Advice;
 
 #[cfg(doc)]
@@ -24,7 +23,7 @@ impl Save for AlphaShape {
     fn save(&self, path: impl AsRef<Path>) -> Result<(), SaveError> {
         let path = path.as_ref();
         let exporter = Format::of(path)?.exporter(&ExportOptions::default());
-        EmptyShape::check(self, exporter.needs(), &Monitor::noop())?;
+        EmptyShape::check(self, exporter.needs())?;
         Ok(Target::open(path)?.write(|out| exporter.write(self, out))?)
     }
 }

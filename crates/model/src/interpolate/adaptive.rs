@@ -72,19 +72,7 @@ pub fn adaptive_voxels(
     goal: &Adaptive,
     units: Units,
 ) -> Result<Vec<u32>, InterpolateError> {
-    adaptive_voxels_monitored(volume, goal, units, &Monitor::noop())
-}
-
-/// [`adaptive_voxels`] with progress and cancelling through `monitor`.
-///
-/// # Errors
-/// Those of [`adaptive_voxels`], and [`InterpolateError::Cancelled`].
-pub fn adaptive_voxels_monitored(
-    volume: &Volume,
-    goal: &Adaptive,
-    units: Units,
-    monitor: &Monitor,
-) -> Result<Vec<u32>, InterpolateError> {
+    let monitor = &*Monitor::current();
     let available = volume.dims().samples() as u64;
     let mut voxels = corners(volume);
     if goal.count < voxels.len().max(8) as u64 || goal.count > available {

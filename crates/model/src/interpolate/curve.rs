@@ -6,15 +6,12 @@ use serde::{Deserialize, Serialize};
 use walpha_base::Monitor;
 use walpha_regular::TriangulationError;
 
-use super::{
-    Adaptive, Deviation, Grid, Interpolant, InterpolateError, adaptive_voxels_monitored,
-    fill_monitored,
-};
+use super::{Adaptive, Deviation, Grid, Interpolant, InterpolateError, adaptive_voxels, fill};
 use walpha_points::haar::{HaarOptions, Tolerance, smooth};
 use walpha_points::{
     Points, Selection, SelectionRule, Units, Weighting, difference, points_at, select, weigh,
 };
-use walpha_shape::{Alpha, Engine, ShapeError, ShapeOptions, alpha_shape_monitored};
+use walpha_shape::{Alpha, Engine, ShapeError, ShapeOptions, alpha_shape};
 use walpha_volume::Volume;
 
 /// Where the numbers of an error curve come from.
@@ -95,8 +92,8 @@ pub fn error_curve(
     volume: &Volume,
     smoothed: &Volume,
     options: &CurveOptions,
-    monitor: &Monitor,
 ) -> Result<Vec<CurvePoint>, InterpolateError> {
+    let monitor = &*Monitor::current();
     let differences = difference(smoothed);
     let bench =
         CurveBuilder { volume, smoothed, differences, options, monitor: monitor.unreported() };
@@ -162,12 +159,9 @@ impl CurveBuilder<'_> {
                     return Ok(Vec::new());
                 };
                 let goal = Adaptive::new(most);
-                let voxels = adaptive_voxels_monitored(
-                    self.volume,
-                    &goal,
-                    self.options.units,
-                    &self.monitor,
-                )?;
+                let voxels = self
+                    .monitor
+                    .watch(|| adaptive_voxels(self.volume, &goal, self.options.units))?;
                 let first = |count: u64| voxels.get(..count as usize);
                 Ok(self.counts().filter_map(first).map(|voxels| self.at(voxels)).collect())
             }
@@ -214,11 +208,11 @@ impl CurveBuilder<'_> {
         let Self { volume, options: &CurveOptions { alpha, units, .. }, .. } = *self;
         let weighted = weigh(points.clone(), weighting, alpha)?;
         let solid = ShapeOptions::new(alpha).refuse_flat(true).engine(Engine::Native);
-        let shape = match alpha_shape_monitored(weighted, &solid, &self.monitor) {
+        let shape = match self.monitor.watch(|| alpha_shape(weighted, &solid)) {
             Err(ShapeError::Triangulation(TriangulationError::Sites(_))) => return Ok(None),
             other => other?,
         };
-        let whole = fill_monitored(&shape, Some(volume), units, &self.monitor)?;
+        let whole = self.monitor.watch(|| fill(&shape, Some(volume), units))?;
         let grid = Grid::of(volume, units);
         let deviation = |shape| -> Result<Deviation, InterpolateError> {
             Ok(Deviation::of(volume, &Interpolant::new(shape)?.resample(&grid)?))

@@ -51,19 +51,7 @@ pub fn exchange(
     voxels: &[u32],
     units: Units,
 ) -> Result<Vec<u32>, InterpolateError> {
-    exchange_monitored(volume, voxels, units, &Monitor::noop())
-}
-
-/// [`exchange()`] with progress and cancelling through `monitor`.
-///
-/// # Errors
-/// Those of [`exchange`], and [`InterpolateError::Cancelled`].
-pub fn exchange_monitored(
-    volume: &Volume,
-    voxels: &[u32],
-    units: Units,
-    monitor: &Monitor,
-) -> Result<Vec<u32>, InterpolateError> {
+    let monitor = &*Monitor::current();
     if volume.has_missing() {
         return Err(InterpolateError::Missing);
     }

@@ -1,8 +1,6 @@
-use walpha_base::Monitor;
-
 use super::InterpolateError;
 use walpha_points::{Units, WeightedPoints};
-use walpha_shape::{Alpha, AlphaShape, ShapeOptions, alpha_shape_monitored};
+use walpha_shape::{Alpha, AlphaShape, ShapeOptions, alpha_shape};
 use walpha_volume::Volume;
 
 /// The whole regular triangulation of a shape's points (α = ∞) and, given their volume, of its
@@ -15,25 +13,11 @@ use walpha_volume::Volume;
 /// for the α of the shape.
 ///
 /// # Errors
-/// Points without values, and what [`alpha_shape`](walpha_shape::alpha_shape) refuses.
+/// Points without values, and what [`alpha_shape`] refuses.
 pub fn fill(
     shape: &AlphaShape,
     volume: Option<&Volume>,
     units: Units,
-) -> Result<AlphaShape, InterpolateError> {
-    fill_monitored(shape, volume, units, &Monitor::noop())
-}
-
-/// [`fill()`] with progress and cancelling through `monitor`.
-///
-/// # Errors
-/// Those of [`fill`], and [`InterpolateError::Cancelled`].
-#[expect(clippy::missing_panics_doc, reason = "an invariant, never met")]
-pub fn fill_monitored(
-    shape: &AlphaShape,
-    volume: Option<&Volume>,
-    units: Units,
-    monitor: &Monitor,
 ) -> Result<AlphaShape, InterpolateError> {
     let (mut positions, _, mut values) = shape.points().clone().into_parts();
     let mut weights = shape.power_weights().to_vec();
@@ -47,13 +31,13 @@ pub fn fill_monitored(
             values.push(value);
         }
     }
-    let points = WeightedPoints::new(positions, weights)
-        .and_then(|points| points.with_values(values))
-        .expect("columns that grow together");
+    let columns = WeightedPoints::new(positions, weights);
+    let columns = columns.and_then(|points| points.with_values(values));
+    let Ok(points) = columns else { unreachable!("columns that grow together") };
     let ShapeOptions { engine, classifier, .. } = *shape.options();
     let options =
         ShapeOptions::new(Alpha::INFINITE).engine(engine).classifier(classifier).hidden(true);
-    Ok(alpha_shape_monitored(points, &options, monitor)?)
+    Ok(alpha_shape(points, &options)?)
 }
 
 /// The corner samples of a volume that are not among these positions, and their values.

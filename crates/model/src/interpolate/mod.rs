@@ -53,15 +53,15 @@ mod refit;
 mod resample;
 mod sampled;
 
-pub use adaptive::{Adaptive, adaptive_voxels, adaptive_voxels_monitored};
+pub use adaptive::{Adaptive, adaptive_voxels};
 #[cfg(feature = "render")]
 pub use chart::error_figure;
 pub use curve::{CurveOptions, CurvePoint, Method, error_curve, write_curve_csv};
 pub use error::InterpolateError;
-pub use exchange::{exchange, exchange_monitored};
-pub use fill::{fill, fill_monitored};
+pub use exchange::exchange;
+pub use fill::fill;
 pub use grid::Grid;
 pub use interpolant::{Interpolant, Location};
-pub use refit::{Fit, Refit, Refitted, refit, refit_monitored};
+pub use refit::{Fit, Refit, Refitted, refit};
 pub use resample::Deviation;
 pub use resample::Resampled;

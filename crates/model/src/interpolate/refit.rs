@@ -2,7 +2,7 @@ use serde::{Deserialize, Serialize};
 use walpha_base::Monitor;
 
 use super::least_squares::{Normal, Solved};
-use super::{Grid, Interpolant, InterpolateError, fill_monitored};
+use super::{Grid, Interpolant, InterpolateError, fill};
 use walpha_points::Units;
 use walpha_shape::AlphaShape;
 use walpha_volume::Volume;
@@ -59,22 +59,9 @@ pub fn refit(
     units: Units,
     to: Refit,
 ) -> Result<Refitted, InterpolateError> {
-    refit_monitored(shape, volume, units, to, &Monitor::noop())
-}
-
-/// [`refit()`] with progress and cancelling through `monitor`.
-///
-/// # Errors
-/// Those of [`refit`], and [`InterpolateError::Cancelled`].
-pub fn refit_monitored(
-    shape: &AlphaShape,
-    volume: &Volume,
-    units: Units,
-    to: Refit,
-    monitor: &Monitor,
-) -> Result<Refitted, InterpolateError> {
+    let monitor = &*Monitor::current();
     let filled = match to {
-        Refit::Whole => Some(fill_monitored(shape, Some(volume), units, &monitor.unreported())?),
+        Refit::Whole => Some(monitor.unreported().watch(|| fill(shape, Some(volume), units))?),
         Refit::Shape => None,
     };
     let interpolant = Interpolant::new(filled.as_ref().unwrap_or(shape))?;

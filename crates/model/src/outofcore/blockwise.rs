@@ -89,7 +89,7 @@ impl BlockwiseFormat {
         path: &Path,
         team: &dyn Team,
     ) -> Result<(), BlocksError> {
-        let Written { new, files } = self.fill(plan, merged, path, team, &Monitor::noop())?;
+        let Written { new, files } = self.fill(plan, merged, path, team)?;
         // The first process has the file that names the others.
         team.barrier();
         let put = || -> Result<(), BlocksError> {
@@ -117,8 +117,8 @@ impl BlockwiseFormat {
         merged: Option<&Merged>,
         path: &Path,
         team: &dyn Team,
-        monitor: &Monitor,
     ) -> Result<Written, BlocksError> {
+        let monitor = &*Monitor::current();
         match self {
             Self::Grid => VtkFormat::Grid.fill(plan, merged, path, team, monitor),
             Self::Surface => VtkFormat::Surface.fill(plan, merged, path, team, monitor),

@@ -60,14 +60,7 @@ pub(super) struct MergedNumbers {
 /// # Errors
 /// Blocks are missing, belong to another plan, or what is read of them does not verify.
 pub fn merge(plan: &Plan) -> Result<Merged, BlocksError> {
-    merge_monitored(plan, &Monitor::noop())
-}
-
-/// [`merge`] with progress and cancelling through `monitor`.
-///
-/// # Errors
-/// Those of [`merge`], and [`BlocksError::Cancelled`].
-pub fn merge_monitored(plan: &Plan, monitor: &Monitor) -> Result<Merged, BlocksError> {
+    let monitor = &*Monitor::current();
     let all = plan.blocks.len();
     let mut missing = Vec::new();
     let mut union = Union::default();

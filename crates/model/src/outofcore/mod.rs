@@ -88,7 +88,7 @@ pub use blockwise::BlockwiseFormat;
 pub use cost::{CostEstimate, estimate_cost};
 pub use error::{BlocksError, Finding};
 pub use job::Job;
-pub use merge::{Merged, merge, merge_monitored};
+pub use merge::{Merged, merge};
 pub use plan::{BlockPlan, Cutting, Plan};
 pub use plan_files::Checked;
 pub use run::{run, run_all, run_missing};

@@ -97,7 +97,7 @@ impl Plan {
     /// What a stage refuses; what is not local ([`Job::check`]); a folder that cannot be written to.
     pub fn make(job: Job, cutting: Cutting, folder: impl AsRef<Path>) -> Result<Self, BlocksError> {
         let folder = folder.as_ref();
-        Self::make_with(job, cutting, folder, &Alone, &Monitor::noop())
+        Self::make_with(job, cutting, folder, &Alone)
     }
 
     /// The same as one of a team: each process surveys its share of the volume, the first writes the plan, and
@@ -110,8 +110,8 @@ impl Plan {
         cutting: Cutting,
         folder: &Path,
         team: &dyn Team,
-        monitor: &Monitor,
     ) -> Result<Self, BlocksError> {
+        let monitor = &*Monitor::current();
         job.check()?;
         // Before it is read, so that what is written while it is read is newer.
         let stamp = Stamp::of(&job);

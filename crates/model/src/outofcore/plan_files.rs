@@ -196,7 +196,7 @@ impl Plan {
         folder: impl AsRef<Path>,
     ) -> Result<Self, BlocksError> {
         let folder = folder.as_ref();
-        Self::resume_with(job, cutting, folder, &Alone, &Monitor::noop())
+        Self::resume_with(job, cutting, folder, &Alone)
     }
 
     /// [`Plan::resume`] as one of a team, which may be of another size than the one that was interrupted.
@@ -208,7 +208,6 @@ impl Plan {
         cutting: Cutting,
         folder: &Path,
         team: &dyn Team,
-        monitor: &Monitor,
     ) -> Result<Self, BlocksError> {
         // An input whose files look otherwise is planned again. Where it is what it was, that is the same plan,
         // and the blocks that are there are its.
@@ -219,7 +218,7 @@ impl Plan {
         if team.broadcast(there.as_ref().map(Option::is_some)) {
             Self::broadcast(there.flatten(), folder, team)
         } else {
-            Self::make_with(job, cutting, folder, team, monitor)
+            Self::make_with(job, cutting, folder, team)
         }
     }
 

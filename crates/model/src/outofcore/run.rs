@@ -272,7 +272,8 @@ fn arrays(
 ///
 /// # Errors
 /// The error of [`run()`] for the first block that fails; [`BlocksError::Cancelled`]. Finished blocks stay.
-pub fn run_all(plan: &Plan, blocks: &[usize], monitor: &Monitor) -> Result<(), BlocksError> {
+pub fn run_all(plan: &Plan, blocks: &[usize]) -> Result<(), BlocksError> {
+    let monitor = &*Monitor::current();
     let size =
         |&block: &usize| plan.blocks.get(block).map_or(0, |planned| planned.points + planned.halo);
     let work = monitor.units(blocks.iter().map(size).sum());
@@ -306,11 +307,11 @@ pub fn run_all(plan: &Plan, blocks: &[usize], monitor: &Monitor) -> Result<(), B
 ///
 /// # Errors
 /// The errors of [`run_all`]. A process that returns an error leaves the rest of the team waiting.
-pub fn run_missing(plan: &Plan, team: &dyn Team, monitor: &Monitor) -> Result<(), BlocksError> {
+pub fn run_missing(plan: &Plan, team: &dyn Team) -> Result<(), BlocksError> {
     let missing = if team.is_first() { Some(plan.missing()?) } else { None };
     let missing = team.broadcast(missing);
     let size = |block: usize| plan.blocks[block].points + plan.blocks[block].halo;
-    run_all(plan, &shared(missing, size, team.size())[team.rank()], monitor)?;
+    run_all(plan, &shared(missing, size, team.size())[team.rank()])?;
     team.barrier();
     Ok(())
 }

@@ -125,7 +125,7 @@ mod tests {
     use super::*;
     use crate::Recipe;
     use crate::outofcore::{BlockwiseFormat, Cutting, Job, Plan, merge, run_all, run_missing};
-    use crate::progress::Monitor;
+
     use walpha_points::Weighting;
     use walpha_volume::GrayRange;
 
@@ -196,7 +196,7 @@ mod tests {
         let cutting = Cutting { blocks: Some(3), ..Cutting::default() };
         let folder = tempfile::tempdir().unwrap();
         let expected = Plan::make(job.clone(), cutting, folder.path()).unwrap();
-        run_all(&expected, &[0, 1, 2], &Monitor::noop()).unwrap();
+        run_all(&expected, &[0, 1, 2]).unwrap();
         let merged = merge(&expected).unwrap();
         let bytes = |at: &Path, file: &str| std::fs::read(at.join(file)).unwrap();
         for size in [2, 3, 5] {
@@ -206,15 +206,10 @@ mod tests {
                     let (job, at, expected) = (job.clone(), other.path(), &expected);
                     scope.spawn(move || {
                         let team: &dyn Team = &member;
-                        let plan =
-                            Plan::resume_with(job.clone(), cutting, at, team, &Monitor::noop())
-                                .unwrap();
+                        let plan = Plan::resume_with(job.clone(), cutting, at, team).unwrap();
                         assert_eq!(plan.digest(), expected.digest());
-                        assert_eq!(
-                            Plan::resume_with(job, cutting, at, team, &Monitor::noop()).unwrap(),
-                            plan
-                        );
-                        run_missing(&plan, team, &Monitor::noop()).unwrap();
+                        assert_eq!(Plan::resume_with(job, cutting, at, team).unwrap(), plan);
+                        run_missing(&plan, team).unwrap();
                         let merged = team.is_first().then(|| merge(&plan).unwrap());
                         let (kind, path) = (BlockwiseFormat::Surface, at.join("out.pvtp"));
                         kind.write_with(&plan, merged.as_ref(), &path, team).unwrap();

@@ -1,9 +1,8 @@
 use serde::{Deserialize, Serialize};
-use walpha_base::Monitor;
 
 use super::PipelineError;
 use super::weighed::Importance;
-use crate::interpolate::{Adaptive, adaptive_voxels_monitored, exchange_monitored};
+use crate::interpolate::{Adaptive, adaptive_voxels, exchange};
 use walpha_points::{
     Points, PointsError, Selection, SelectionRule, Units, difference, points_at, select,
 };
@@ -104,7 +103,6 @@ impl Choice {
         volume: &Volume,
         smoothed: &Volume,
         units: Units,
-        monitor: &Monitor,
     ) -> Result<Chosen, PipelineError> {
         let differences = difference(smoothed);
         let goal = match self {
@@ -118,9 +116,9 @@ impl Choice {
                 goal.of(volume.dims().samples() as u64)?
             }
         };
-        let mut voxels = adaptive_voxels_monitored(volume, &goal, units, monitor)?;
+        let mut voxels = adaptive_voxels(volume, &goal, units)?;
         if matches!(self, Self::Exchanged(_)) {
-            voxels = exchange_monitored(volume, &voxels, units, monitor)?;
+            voxels = exchange(volume, &voxels, units)?;
         }
         // Points are in the order of their voxels; the order of importance is stored separately.
         let chosen = voxels.clone();

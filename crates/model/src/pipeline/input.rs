@@ -1,7 +1,5 @@
 use std::path::Path;
 
-use walpha_base::Monitor;
-
 use super::{PipelineError, Recipe};
 use walpha_points::read_model_file;
 use walpha_points::{ModelMetadata, Points, PointsError, Units, hard};
@@ -69,8 +67,8 @@ impl Recipe {
     ///
     /// # Errors
     /// [`PipelineError::Points`] if the input cannot be read.
-    pub fn open(&self, input: &Path, monitor: &Monitor) -> Result<Input, PipelineError> {
-        self.clone().open_suited(input, monitor, |_, _| None)
+    pub fn open(&self, input: &Path) -> Result<Input, PipelineError> {
+        self.clone().open_suited(input, |_, _| None)
     }
 
     /// Reads a file or a sample. For a volume `suited` may change the recipe, before its values become gray levels.
@@ -80,11 +78,10 @@ impl Recipe {
     pub fn open_suited(
         &mut self,
         input: &Path,
-        monitor: &Monitor,
         suited: impl FnOnce(&Self, &Volume) -> Option<Self>,
     ) -> Result<Input, PipelineError> {
         let opened = self.opened(input)?;
-        self.read_suited(opened, monitor, suited)
+        self.read_suited(opened, suited)
     }
 
     /// Opens a file, or finds a sample or a set of points by its name.
@@ -112,7 +109,6 @@ impl Recipe {
     pub fn read_suited(
         &mut self,
         opened: Opened,
-        monitor: &Monitor,
         suited: impl FnOnce(&Self, &Volume) -> Option<Self>,
     ) -> Result<Input, PipelineError> {
         let volume = match opened {
@@ -121,9 +117,7 @@ impl Recipe {
                 let (points, metadata) = self.read_points(&file)?;
                 return Ok(Input::Points(points, metadata));
             }
-            Opened::Volume(volume) => {
-                volume.read(&self.read, monitor).map_err(PointsError::from)?
-            }
+            Opened::Volume(volume) => volume.read(&self.read).map_err(PointsError::from)?,
         };
         if let Some(suited) = suited(self, &volume) {
             *self = suited;

@@ -1,5 +1,5 @@
 //! All stages in one call: a [`Recipe`] holds their options, and turns a volume or points into a shape. The crate's
-//! first page has an example.
+//! first page has an example. Each stage is reported to the [`Monitor`] that watches.
 
 mod choice;
 mod error;
@@ -22,12 +22,12 @@ use choice::Chosen;
 use input::to_gray;
 use walpha_base::Monitor;
 
-use crate::interpolate::{Refit, refit_monitored};
+use crate::interpolate::{Refit, refit};
 use crate::labels::{self, LabelChoice, LabelSizes};
 use crate::progress::Stage;
-use walpha_points::haar::smooth_monitored;
+use walpha_points::haar::smooth;
 use walpha_points::{ModelMetadata, Points, SampleGrid};
-use walpha_shape::{AlphaShape, alpha_shape_monitored};
+use walpha_shape::{AlphaShape, alpha_shape};
 use walpha_volume::Volume;
 
 /// A shape, and how it was made.
@@ -49,21 +49,13 @@ impl Recipe {
     /// gray levels first if needed.
     ///
     /// # Errors
-    /// The errors of its stages.
-    pub fn run(&self, volume: Volume) -> Result<Model, PipelineError> {
-        self.run_monitored(volume, &Monitor::noop())
-    }
-
-    /// With a monitor, which receives the progress of each stage and can cancel the work.
-    ///
-    /// # Errors
     /// The errors of its stages, and [`PipelineError::Cancelled`].
-    pub fn run_monitored(&self, volume: Volume, monitor: &Monitor) -> Result<Model, PipelineError> {
+    pub fn run(&self, volume: Volume) -> Result<Model, PipelineError> {
         if self.labels.is_some() {
-            return self.solid(&volume, monitor);
+            return self.solid(&volume);
         }
         let source = self.source(self.grays(volume)?)?;
-        self.finish(self.weighed(&source, Values::Written, monitor)?, monitor)
+        self.finish(self.weighed(&source, Values::Written)?)
     }
 
     /// The solid of the labels that the recipe names, of all but 0 if it names none: its cells fill their voxels
@@ -71,9 +63,9 @@ impl Recipe {
     ///
     /// # Errors
     /// [`PipelineError::Labels`], and the errors of [`Recipe::place`].
-    pub fn solid(&self, volume: &Volume, monitor: &Monitor) -> Result<Model, PipelineError> {
+    pub fn solid(&self, volume: &Volume) -> Result<Model, PipelineError> {
         let counts = labels::chosen(volume, self.labels.as_ref().unwrap_or(&LabelChoice::All))?;
-        self.solid_of(volume, counts, monitor)
+        self.solid_of(volume, counts)
     }
 
     /// The solid of these labels, which have these numbers of voxels.
@@ -82,12 +74,11 @@ impl Recipe {
         &self,
         volume: &Volume,
         counts: Vec<(i32, u64)>,
-        monitor: &Monitor,
     ) -> Result<Model, PipelineError> {
-        Stage::Shape.begin(monitor)?;
+        Stage::Shape.begin()?;
         let (frame, units) = self.place(*volume.frame())?;
         let chosen: Vec<i32> = counts.iter().map(|&(label, _)| label).collect();
-        let shape = labels::solid(volume, &frame, units, &chosen, monitor)?;
+        let shape = labels::solid(volume, &frame, units, &chosen)?;
         let sizes = LabelSizes::new(counts, &frame, units);
         let parameter = Parameter::of_labels(sizes.unit);
         let origin = Origin::of_labels(units.coordinates_of(&frame));
@@ -97,26 +88,13 @@ impl Recipe {
     /// The shape of scattered points.
     ///
     /// # Errors
-    /// The errors of its stages.
-    pub fn run_points(&self, points: Points) -> Result<Model, PipelineError> {
-        self.run_points_monitored(points, &Monitor::noop())
-    }
-
-    /// With a monitor, which receives the progress of each stage and can cancel the work.
-    ///
-    /// # Errors
     /// The errors of its stages, and [`PipelineError::Cancelled`].
-    pub fn run_points_monitored(
-        &self,
-        points: Points,
-        monitor: &Monitor,
-    ) -> Result<Model, PipelineError> {
+    pub fn run_points(&self, points: Points) -> Result<Model, PipelineError> {
         let metadata = ModelMetadata::default();
-        self.finish(self.weighed_points(points, &metadata, Values::Written, monitor)?, monitor)
+        self.finish(self.weighed_points(points, &metadata, Values::Written)?)
     }
 
-    /// The weighted points of an input, and the volume that they come from, if any. Each stage is reported to the
-    /// monitor.
+    /// The weighted points of an input, and the volume that they come from, if any.
     ///
     /// # Errors
     /// The errors of its stages.
@@ -124,42 +102,35 @@ impl Recipe {
         &self,
         input: Input,
         values: Values,
-        monitor: &Monitor,
     ) -> Result<(Weighed, Option<Source>), PipelineError> {
         match input {
             Input::Points(points, metadata) => {
-                Ok((self.weighed_points(points, &metadata, values, monitor)?, None))
+                Ok((self.weighed_points(points, &metadata, values)?, None))
             }
             Input::Labels(_) => Err(PipelineError::OfLabels),
             Input::Volume(grays) => {
                 let source = self.source(grays)?;
-                Ok((self.weighed(&source, values, monitor)?, Some(source)))
+                Ok((self.weighed(&source, values)?, Some(source)))
             }
         }
     }
 
-    /// The weighted points of a volume. Each stage is reported to the monitor.
+    /// The weighted points of a volume.
     ///
     /// # Errors
     /// The errors of its stages.
-    pub fn weighed(
-        &self,
-        source: &Source,
-        values: Values,
-        monitor: &Monitor,
-    ) -> Result<Weighed, PipelineError> {
+    pub fn weighed(&self, source: &Source, values: Values) -> Result<Weighed, PipelineError> {
         let Source { volume, units, range, written } = source;
         let (dims, frame, units) = (volume.dims(), *volume.frame(), *units);
         let parameter = self.alpha.of_frame(&frame, units)?;
-        Stage::Haar.begin(monitor)?;
-        let (smoothed, truncation) = smooth_monitored(volume, &self.haar, monitor)?;
-        Stage::Points.begin(monitor)?;
+        Stage::Haar.begin()?;
+        let (smoothed, truncation) = smooth(volume, &self.haar)?;
+        Stage::Points.begin()?;
         let choice = self.choice.at_least(self.value_min.map(|value| range.gray(value)));
-        let chosen =
-            choice.points(volume, &smoothed, units, monitor).map_err(|error| match error {
-                PipelineError::Points(error) => self.in_its_terms(error, range).into(),
-                other => other,
-            })?;
+        let chosen = choice.points(volume, &smoothed, units).map_err(|error| match error {
+            PipelineError::Points(error) => self.in_its_terms(error, range).into(),
+            other => other,
+        })?;
         let Chosen { points, importance, ended } = chosen;
         let origin = Origin {
             coordinates: units.coordinates(volume),
@@ -172,11 +143,10 @@ impl Recipe {
             folded: None,
             fit: None,
         };
-        let mut weighed =
-            Weighed::new(points, origin, self.alpha, parameter, monitor)?.ordered(importance);
+        let mut weighed = Weighed::new(points, origin, self.alpha, parameter)?.ordered(importance);
         weighed.recipe = Some(self.to_json());
         if let Some(to) = self.refit {
-            self.fit(&mut weighed, source, to, monitor)?;
+            self.fit(&mut weighed, source, to)?;
         }
         if let (Values::Written, Some(values)) = (values, weighed.points.values_mut()) {
             values.iter_mut().for_each(|value| *value = written.value(*value));
@@ -184,8 +154,7 @@ impl Recipe {
         Ok(weighed)
     }
 
-    /// The weighted points of a file with this metadata. The default α is the stored one, if any. Each stage is
-    /// reported to the monitor.
+    /// The weighted points of a file with this metadata. The default α is the stored one, if any.
     ///
     /// # Errors
     /// The errors of its stages.
@@ -194,7 +163,6 @@ impl Recipe {
         mut points: Points,
         metadata: &ModelMetadata,
         values: Values,
-        monitor: &Monitor,
     ) -> Result<Weighed, PipelineError> {
         if let (Values::Gray, Some(range)) = (values, &metadata.range) {
             to_gray(&mut points, range);
@@ -219,39 +187,34 @@ impl Recipe {
         let stored = metadata.alpha.filter(|_| self.alpha == AlphaRule::Default);
         let stored = stored.map(|alpha| Parameter { alpha, unit, origin: ParameterOrigin::Stored });
         let parameter = stored.or_else(|| self.alpha.given(unit));
-        let mut weighed = Weighed::new(points, origin, self.alpha, parameter, monitor)?;
+        let mut weighed = Weighed::new(points, origin, self.alpha, parameter)?;
         weighed.recipe = Some(metadata.recipe.clone().unwrap_or_else(|| self.to_json()));
         Ok(weighed)
     }
 
-    /// The shape of weighted points. Each stage is reported to the monitor.
+    /// The shape of weighted points.
     ///
     /// # Errors
     /// The errors of its stages, and [`PipelineError::Radii`].
-    pub fn finish(&self, mut weighed: Weighed, monitor: &Monitor) -> Result<Model, PipelineError> {
+    pub fn finish(&self, mut weighed: Weighed) -> Result<Model, PipelineError> {
         weighed.on_torus(self.periodic)?;
-        let parameter = weighed.find_parameter_on(self.periodic, monitor)?;
+        let parameter = weighed.find_parameter_on(self.periodic)?;
         let options = self.shape_of(parameter)?;
-        Stage::Shape.begin(monitor)?;
+        Stage::Shape.begin()?;
         let Weighed { points, origin, .. } = weighed;
-        let shape =
-            alpha_shape_monitored(points, &options, monitor)?.with_coordinates(origin.coordinates);
+        let shape = alpha_shape(points, &options)?.with_coordinates(origin.coordinates);
         Ok(Model { shape, parameter, origin, labels: None })
     }
 
     /// Fits the values of weighted points to their volume.
-    fn fit(
-        &self,
-        weighed: &mut Weighed,
-        source: &Source,
-        to: Refit,
-        monitor: &Monitor,
-    ) -> Result<(), PipelineError> {
-        let parameter = weighed.find_parameter(monitor)?;
-        Stage::Refit.begin(monitor)?;
+    fn fit(&self, weighed: &mut Weighed, source: &Source, to: Refit) -> Result<(), PipelineError> {
+        let parameter = weighed.find_parameter()?;
+        Stage::Refit.begin()?;
         let options = self.shape_of(parameter)?;
-        let shape = alpha_shape_monitored(weighed.points.clone(), &options, &monitor.unreported())?;
-        let fitted = refit_monitored(&shape, &source.volume, source.units, to, monitor)?;
+        let shape = Monitor::current()
+            .unreported()
+            .watch(|| alpha_shape(weighed.points.clone(), &options))?;
+        let fitted = refit(&shape, &source.volume, source.units, to)?;
         let points = std::mem::take(&mut weighed.points);
         weighed.points = points.with_values(fitted.values).expect("a value for each point");
         weighed.origin.fit = Some(fitted.fit);

@@ -2,7 +2,6 @@ use std::fmt::{self, Display};
 use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
-use walpha_base::Monitor;
 use walpha_base::number_or_null_or_name;
 use walpha_base::shown::{number, six_digits};
 
@@ -200,12 +199,11 @@ impl Parameter {
         points: &WeightedPoints,
         torus: Option<Torus>,
         unit: LengthUnit,
-        monitor: &Monitor,
     ) -> Result<Self, ShapeError> {
         if rule != AlphaRule::Connected {
             return Self::of_spacing(points, torus, unit);
         }
-        Ok(Self::of_filtration(&Filtration::monitored(torus, points.clone(), monitor)?, unit))
+        Ok(Self::of_filtration(&Filtration::on(torus, points.clone())?, unit))
     }
 
     /// Finds the α that weights will be proportional to: that of the points without weights.
@@ -213,10 +211,9 @@ impl Parameter {
         rule: AlphaRule,
         points: &Points,
         unit: LengthUnit,
-        monitor: &Monitor,
     ) -> Result<Self, PipelineError> {
         let unweighted = WeightedPoints::unweighted(points.positions.clone());
-        let found = Self::find(rule, &unweighted, None, unit, monitor)?;
+        let found = Self::find(rule, &unweighted, None, unit)?;
         let origin = match found.origin {
             ParameterOrigin::Connected => ParameterOrigin::ConnectedUnweighted,
             _ => ParameterOrigin::AutoUnweighted,

@@ -1,5 +1,4 @@
 use rayon::prelude::*;
-use walpha_base::Monitor;
 
 use super::{AlphaRule, Parameter, PipelineError};
 use crate::interpolate::{Adaptive, Fit};
@@ -87,9 +86,8 @@ impl Weighed {
         origin: Origin,
         rule: AlphaRule,
         mut parameter: Option<Parameter>,
-        monitor: &Monitor,
     ) -> Result<Self, PipelineError> {
-        Stage::Points.begin(monitor)?;
+        Stage::Points.begin()?;
         let Origin { weighting, coordinates, .. } = origin;
         let scattered = points.differences.is_none() && points.values.is_some();
         if scattered && weighting.needs_differences() {
@@ -98,9 +96,9 @@ impl Weighed {
         if parameter.is_none() && weighting.needs_differences() {
             // Checks the weights before the costly search for α.
             weights(&points, weighting, Alpha::ZERO)?;
-            Stage::Alpha.begin(monitor)?;
-            parameter = Some(Parameter::find_unweighted(rule, &points, coordinates.unit, monitor)?);
-            Stage::Points.begin(monitor)?;
+            Stage::Alpha.begin()?;
+            parameter = Some(Parameter::find_unweighted(rule, &points, coordinates.unit)?);
+            Stage::Points.begin()?;
         }
         // Weights that do not depend on α are the same at ∞.
         let alpha = parameter.map_or(Alpha::INFINITE, |parameter| parameter.alpha);
@@ -138,22 +136,21 @@ impl Weighed {
     ///
     /// # Errors
     /// For [`AlphaRule::Connected`], the errors of a [`Filtration`](walpha_shape::ladder::Filtration).
-    pub fn find_parameter(&mut self, monitor: &Monitor) -> Result<Parameter, PipelineError> {
-        self.find_parameter_on(None, monitor)
+    pub fn find_parameter(&mut self) -> Result<Parameter, PipelineError> {
+        self.find_parameter_on(None)
     }
 
     /// [`find_parameter`](Self::find_parameter), on a torus if there is one.
     pub(super) fn find_parameter_on(
         &mut self,
         torus: Option<Torus>,
-        monitor: &Monitor,
     ) -> Result<Parameter, PipelineError> {
         if let Some(parameter) = self.parameter {
             return Ok(parameter);
         }
-        Stage::Alpha.begin(monitor)?;
+        Stage::Alpha.begin()?;
         let unit = self.origin.coordinates.unit;
-        let found = Parameter::find(self.rule, &self.points, torus, unit, monitor)?;
+        let found = Parameter::find(self.rule, &self.points, torus, unit)?;
         self.parameter = Some(found);
         Ok(found)
     }

@@ -3,18 +3,18 @@
 use std::sync::{Arc, Mutex};
 
 use walpha_model::Recipe;
-use walpha_model::interpolate::{Adaptive, InterpolateError, adaptive_voxels_monitored};
+use walpha_model::interpolate::{Adaptive, InterpolateError, adaptive_voxels};
 use walpha_model::pipeline::{Choice, Goal, PipelineError, Values};
 use walpha_model::progress::{Listener, Monitor, Stage};
 use walpha_points::haar::HaarOptions;
-use walpha_points::haar::{HaarError, smooth_monitored};
+use walpha_points::haar::{HaarError, smooth};
 use walpha_points::{Points, Units};
 use walpha_shape::ladder::Filtration;
 use walpha_shape::{Alpha, WeightedPoints};
-use walpha_shape::{Engine, ShapeError, ShapeOptions, alpha_shape_monitored};
+use walpha_shape::{Engine, ShapeError, ShapeOptions, alpha_shape};
 use walpha_volume as volume;
 use walpha_volume::{Gray, Volume};
-use walpha_volume::{ReadOptions, VolumeError, VolumeWriter, open_monitored};
+use walpha_volume::{ReadOptions, VolumeError, VolumeWriter, open};
 
 /// Keeps what is reported.
 #[derive(Clone, Default)]
@@ -30,11 +30,11 @@ impl Listener for Heard {
 /// ends with that.
 fn assert_moves<T, E: std::fmt::Debug>(
     least: usize,
-    work: impl Fn(&Monitor) -> Result<T, E>,
+    work: impl Fn() -> Result<T, E>,
     cancelled: impl Fn(&E) -> bool,
 ) {
     let heard = Heard::default();
-    work(&Monitor::new(heard.clone())).map(drop).unwrap();
+    Monitor::new(heard.clone()).watch(&work).map(drop).unwrap();
     let reports = heard.0.lock().unwrap();
     assert!(reports.len() >= least, "{reports:?}");
     assert!(reports.iter().all(|[_, total]| *total == reports[0][1]), "{reports:?}");
@@ -52,7 +52,7 @@ fn assert_moves<T, E: std::fmt::Debug>(
         }
     });
     *this.lock().unwrap() = Some(monitor.clone());
-    let error = work(&monitor).map(drop).unwrap_err();
+    let error = monitor.watch(&work).map(drop).unwrap_err();
     assert!(cancelled(&error), "{error:?}");
 }
 
@@ -66,7 +66,7 @@ fn the_wavelet_stage_moves() {
     let options = HaarOptions::default();
     assert_moves(
         2,
-        |monitor| smooth_monitored(&phantom(), &options, monitor),
+        || smooth(&phantom(), &options),
         |error| matches!(error, HaarError::Cancelled(_)),
     );
 }
@@ -85,10 +85,10 @@ fn is_cancelled(error: &ShapeError) -> bool {
 #[test]
 fn a_filtration_moves() {
     let points = lattice(5);
-    assert_moves(5, |monitor| Filtration::monitored(None, points.clone(), monitor), is_cancelled);
+    assert_moves(5, || Filtration::on(None, points.clone()), is_cancelled);
     let filtration = Filtration::new(points).unwrap();
     // Two threads sort side by side; the first report is the first that is heard of.
-    assert_moves(3, |monitor| filtration.simplices_monitored(monitor), is_cancelled);
+    assert_moves(3, || filtration.simplices(), is_cancelled);
 }
 
 #[test]
@@ -97,7 +97,7 @@ fn a_shape_moves_within_its_blocks() {
     for blocks in [1, 3] {
         let blocks = std::num::NonZeroUsize::new(blocks);
         let options = ShapeOptions::new(alpha).engine(engine).blocks(blocks);
-        let work = |monitor: &Monitor| alpha_shape_monitored(lattice(27), &options, monitor);
+        let work = || alpha_shape(lattice(27), &options);
         // On one thread, as others may be in the middle of a report.
         let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
         one.install(|| assert_moves(4 + 2 * blocks.unwrap().get(), work, is_cancelled));
@@ -109,7 +109,7 @@ fn adaptive_selection_moves() {
     let goal = Adaptive::new(300);
     assert_moves(
         4,
-        |monitor| adaptive_voxels_monitored(&phantom(), &goal, Units::Voxel, monitor),
+        || adaptive_voxels(&phantom(), &goal, Units::Voxel),
         |error| matches!(error, InterpolateError::Cancelled(_)),
     );
 }
@@ -124,7 +124,7 @@ fn reading_moves() {
     format.write(&volume, &mut std::fs::File::create(&path).unwrap()).unwrap();
     assert_moves(
         2,
-        |monitor| open_monitored(&path, &ReadOptions::default(), monitor),
+        || open(&path, &ReadOptions::default()),
         |error| matches!(error, VolumeError::Cancelled(_)),
     );
 }
@@ -148,7 +148,7 @@ fn a_pipeline_announces_its_stages_until_it_is_cancelled() {
         let heard = Arc::default();
         let monitor = Monitor::new(Until(last, Arc::clone(&heard)));
         heard.lock().unwrap().1 = Some(monitor.clone());
-        let model = recipe.run_monitored(phantom(), &monitor);
+        let model = monitor.watch(|| recipe.run(phantom()));
         assert_eq!(model.is_ok(), last.is_empty());
         if let Err(error) = model {
             assert!(matches!(error, PipelineError::Cancelled(_)), "{error:?}");
@@ -164,19 +164,19 @@ fn a_pipeline_announces_its_stages_until_it_is_cancelled() {
 fn a_pipeline_that_is_cancelled_within_a_stage_says_so() {
     let recipe = Recipe::new().choice(Choice::Adaptive(Goal::of_count(300)));
     let source = recipe.source(recipe.grays(phantom()).unwrap()).unwrap();
-    assert_ends(|monitor| recipe.weighed(&source, Values::Written, monitor).map(drop));
+    assert_ends(|| recipe.weighed(&source, Values::Written).map(drop));
     let alpha = Alpha::from_squared(1.0).unwrap();
     let recipe = Recipe::new().alpha(alpha).engine(Engine::Native);
     let points = || Points::new(lattice(27).into_parts().0);
-    assert_ends(|monitor| recipe.run_points_monitored(points(), monitor).map(drop));
+    assert_ends(|| recipe.run_points(points()).map(drop));
 }
 
 /// Cancels work at its first report.
-fn assert_ends(work: impl FnOnce(&Monitor) -> Result<(), PipelineError>) {
+fn assert_ends(work: impl FnOnce() -> Result<(), PipelineError>) {
     let this = Arc::new(Mutex::new(None::<Monitor>));
     let inside = Arc::clone(&this);
     let monitor = Monitor::new(move |_, _| inside.lock().unwrap().as_ref().unwrap().cancel());
     *this.lock().unwrap() = Some(monitor.clone());
-    let error = work(&monitor).unwrap_err();
+    let error = monitor.watch(work).unwrap_err();
     assert!(matches!(error, PipelineError::Cancelled(_)), "{error:?}");
 }

@@ -61,20 +61,9 @@ impl HaarOptions {
 ///
 /// # Errors
 /// A tolerance that is none (see [`Coefficients::truncate`]), samples so large that f̂ passes
-/// the range of `f32`, or no memory.
+/// the range of `f32`, or no memory; cancelled by a [`Monitor`] that watches.
 pub fn smooth(volume: &Volume, options: &HaarOptions) -> Result<(Volume, Truncation), HaarError> {
-    smooth_monitored(volume, options, &Monitor::noop())
-}
-
-/// [`smooth`] with progress and cancelling through `monitor`.
-///
-/// # Errors
-/// Those of [`smooth`], and [`HaarError::Cancelled`].
-pub fn smooth_monitored(
-    volume: &Volume,
-    options: &HaarOptions,
-    monitor: &Monitor,
-) -> Result<(Volume, Truncation), HaarError> {
+    let monitor = &*Monitor::current();
     options.tolerance.check()?;
     let dims = volume.dims();
     let bytes = dims.samples().saturating_mul(size_of::<f64>() + size_of::<f32>());

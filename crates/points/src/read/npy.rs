@@ -1,7 +1,6 @@
 use std::io::Read;
 use std::path::Path;
 
-use walpha_base::Monitor;
 use walpha_base::advice::{Setting, advice};
 use walpha_base::npy::Header;
 
@@ -46,7 +45,7 @@ fn plain(file: &OpenFile, columns: Option<&Columns>) -> Result<Points, PointsErr
     };
     let (fortran, rows, width) = (file.fortran, rows as usize, width as usize);
     let dtype = file.dtype;
-    let numbers: Vec<f64> = file.values(path, &Monitor::noop())?;
+    let numbers: Vec<f64> = file.values(path)?;
     let at = |row: usize, column: usize| {
         numbers[if fortran { column * rows + row } else { row * width + column }]
     };

@@ -404,6 +404,6 @@ fn the_same_on_any_number_of_threads_and_errors() {
     ));
     let cancelled = Monitor::new(|_, _| ());
     cancelled.cancel();
-    let stopped = PowerDiagram::of_monitored(&made, None, &cancelled);
+    let stopped = cancelled.watch(|| PowerDiagram::of(&made, None));
     assert!(matches!(stopped, Err(TriangulationError::Cancelled(_))));
 }

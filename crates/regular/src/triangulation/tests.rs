@@ -178,13 +178,13 @@ fn work_is_reported_and_cancelled() {
     let points: Vec<[f64; 3]> = (0..20_000).map(|_| [0; 3].map(|_| random.unit())).collect();
     let (reports, of) = std::sync::mpsc::channel();
     let monitor = Monitor::new(move |done, total| reports.send((done, total)).unwrap());
-    triangulate_monitored(&points, None, &monitor).unwrap();
+    monitor.watch(|| triangulate(&points, None)).unwrap();
     drop(monitor);
     let reports: Vec<_> = of.iter().collect();
     assert!(reports.len() > 3 && reports.is_sorted());
     assert!(reports.last().is_some_and(|(done, total)| done == total));
     let monitor = Monitor::new(|_, _| ());
     monitor.cancel();
-    let cancelled = triangulate_monitored(&points, None, &monitor);
+    let cancelled = monitor.watch(|| triangulate(&points, None));
     assert_eq!(cancelled.unwrap_err(), TriangulationError::Cancelled(Cancelled));
 }

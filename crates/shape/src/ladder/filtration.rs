@@ -5,7 +5,7 @@ use super::build::incidence_and_radii;
 use super::incidence::Incidence;
 use super::radii::{Radii, Radius};
 use crate::WeightedPoints;
-use crate::{Alpha, AlphaShape, Complex, Engine, ShapeError, ShapeOptions, alpha_shape_monitored};
+use crate::{Alpha, AlphaShape, Complex, Engine, ShapeError, ShapeOptions, alpha_shape};
 
 /// All alpha shapes of a set of points: the regular triangulation, and for each simplex the α at which it enters.
 ///
@@ -42,25 +42,14 @@ impl Filtration {
     /// # Errors
     /// As [`alpha_shape`](crate::alpha_shape()) at α = ∞; so no edge of the whole triangulation may span half of the box.
     pub fn on(torus: Option<Torus>, points: impl Into<WeightedPoints>) -> Result<Self, ShapeError> {
-        Self::monitored(torus, points, &Monitor::noop())
-    }
-
-    /// The same, which reports its progress and can be cancelled.
-    ///
-    /// # Errors
-    /// Those of [`on`](Self::on), and [`ShapeError::Cancelled`].
-    pub fn monitored(
-        torus: Option<Torus>,
-        points: impl Into<WeightedPoints>,
-        monitor: &Monitor,
-    ) -> Result<Self, ShapeError> {
+        let monitor = &*Monitor::current();
         let options = ShapeOptions {
             engine: Engine::Native,
             exterior: true,
             periodic: torus,
             ..ShapeOptions::new(Alpha::INFINITE)
         };
-        let whole = alpha_shape_monitored(points, &options, &monitor.part(0, 4, 8))?;
+        let whole = monitor.part(0, 4, 8).watch(|| alpha_shape(points, &options))?;
         let complex = whole.complex();
         memory::afford(Self::bytes(complex), || {
             format!("the filtration of {} cells", complex.cells.len())

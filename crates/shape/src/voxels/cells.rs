@@ -4,7 +4,7 @@ use rayon::prelude::*;
 use walpha_base::Monitor;
 use walpha_base::memory::try_with_capacity;
 use walpha_complex::canonical::{outward_facets, smallest_even, sorted};
-use walpha_regular::triangulate_monitored;
+use walpha_regular::triangulate;
 
 use super::VoxelsError;
 use super::bits::{Bits, Numbered};
@@ -47,7 +47,7 @@ impl Lattice {
         drop(lining);
         let mut points = try_with_capacity(corners.len(), what)?;
         points.extend(corners.iter().map(|corner| corner.map(|i| i as f64)));
-        let filling = triangulate_monitored(&points, None, monitor)?;
+        let filling = monitor.watch(|| triangulate(&points, None))?;
         drop(points);
         let is_deep = |cell: &[u32; 4]| {
             let corners = cell.map(|v| corners[v as usize]);

@@ -89,12 +89,12 @@ impl VoxelsError {
 /// the surface of the region, not with its volume.
 ///
 /// ```
-/// use walpha_shape::{Monitor, Voxels, voxel_shape};
+/// use walpha_shape::{Voxels, voxel_shape};
 ///
 /// // Two voxels of a row of three, each 2 × 1 × 1.
 /// let axes = [[2.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 /// let voxels = Voxels { dims: [3, 1, 1], origin: [0.0; 3], axes, runs: vec![[1, 2]] };
-/// let shape = voxel_shape(voxels, |_| 1.0, &Monitor::noop())?;
+/// let shape = voxel_shape(voxels, |_| 1.0)?;
 /// assert_eq!(shape.measures().volume, 4.0);
 /// assert_eq!(shape.points().positions()[0], [1.0, -0.5, -0.5]);
 /// # Ok::<(), walpha_shape::ShapeError>(())
@@ -105,8 +105,8 @@ impl VoxelsError {
 pub fn voxel_shape(
     voxels: Voxels,
     value: impl Fn([u32; 3]) -> f64,
-    monitor: &Monitor,
 ) -> Result<AlphaShape, ShapeError> {
+    let monitor = &*Monitor::current();
     if !voxels.is_sound() {
         return Err(VoxelsError::Runs.into());
     }

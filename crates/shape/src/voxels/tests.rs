@@ -20,7 +20,7 @@ fn voxels(dims: [u32; 3], inside: impl Fn([i64; 3]) -> bool) -> Voxels {
 }
 
 fn shape(voxels: &Voxels) -> AlphaShape {
-    voxel_shape(voxels.clone(), |at| f64::from(at[0]), &Monitor::noop()).unwrap()
+    voxel_shape(voxels.clone(), |at| f64::from(at[0])).unwrap()
 }
 
 /// A ball of radius r in voxels, with much that is deep.
@@ -235,7 +235,7 @@ fn grids_lie_anywhere_in_the_world() {
 
 #[test]
 fn what_has_no_solid_is_refused() {
-    let solid = |voxels: Voxels| voxel_shape(voxels, |_| 0.0, &Monitor::noop()).unwrap_err();
+    let solid = |voxels: Voxels| voxel_shape(voxels, |_| 0.0).unwrap_err();
     assert_eq!(solid(voxels([3; 3], |_| false)), VoxelsError::Empty.into());
     let one = voxels([3; 3], |at| at == [1; 3]);
     assert_eq!(solid(Voxels { runs: vec![[26, 2]], ..one.clone() }), VoxelsError::Runs.into());

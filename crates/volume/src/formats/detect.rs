@@ -40,23 +40,12 @@ const DICOM_EXTENSIONS: [&str; 4] = ["dcm", "dicom", "dic", "ima"];
 /// # Errors
 /// The file cannot be read, is of no format known, is truncated, longer than it claims or
 /// otherwise not what it says, has an empty axis or too many samples, or holds a NaN or infinity.
-/// Every message names the file.
+/// Every message names the file. [`VolumeError::Cancelled`], once a [`Monitor`] that watches is cancelled.
 pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Volume, VolumeError> {
-    let path = path.as_ref();
-    read_monitored(path, options, &Monitor::noop())
-}
-
-/// The same, which says how far it is and can be cancelled.
-///
-/// # Errors
-/// Those of [`read`], and [`VolumeError::Cancelled`].
-pub fn read_monitored(
-    path: &Path,
-    options: &ReadOptions,
-    monitor: &Monitor,
-) -> Result<Volume, VolumeError> {
+    let (path, monitor) = (path.as_ref(), &*Monitor::current());
     if !is_folder(path, options) {
-        return read_file(&OpenFile::open(path)?, options, monitor);
+        let file = OpenFile::open(path)?;
+        return monitor.watch(|| read_file(&file, options));
     }
     let volume = format_of_folder(path).and_then(|format| {
         accept(format, path, options)?;
@@ -69,12 +58,9 @@ pub fn read_monitored(
 /// The same for a file that is open. What is made coarser is read in parts, where its format allows that.
 ///
 /// # Errors
-/// Those of [`read_monitored`].
-pub fn read_file(
-    file: &OpenFile,
-    options: &ReadOptions,
-    monitor: &Monitor,
-) -> Result<Volume, VolumeError> {
+/// Those of [`read`].
+pub fn read_file(file: &OpenFile, options: &ReadOptions) -> Result<Volume, VolumeError> {
+    let monitor = &*Monitor::current();
     if let Some(n) = options.downsample
         && options.region.is_none()
         && let Ok(source) = source_of(file, options)

@@ -28,9 +28,7 @@ pub use __built as built;
 pub(crate) use detect::decoded;
 #[cfg(feature = "dicom")]
 pub(crate) use detect::recognised;
-pub use detect::{
-    begins_as_volume, data_files, files_of, format_name, read, read_file, read_monitored, series,
-};
+pub use detect::{begins_as_volume, data_files, files_of, format_name, read, read_file, series};
 pub(crate) use detect::{data_files_of, format_name_of, source, source_of};
 pub(crate) use magic::{NIFTI_HEADERS, nifti_version};
 #[cfg(feature = "dicom")]

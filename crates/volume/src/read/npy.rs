@@ -105,8 +105,8 @@ pub(super) fn volume<R: Read>(
     let dtype = file.dtype;
     let gray_levels = dtype == Dtype::U8 && !file.boolean;
     let shape = dims.shape().set_f(file.fortran);
-    let samples =
-        Array3::from_shape_vec(shape, file.values(path, monitor)?).expect("count was checked");
+    let samples = Array3::from_shape_vec(shape, monitor.watch(|| file.values(path))?)
+        .expect("count was checked");
     let volume = Volume::of_file(samples, Frame::VOXEL)?;
     // Booleans are bytes, and no gray levels.
     Ok(volume.with_dtype(if gray_levels || dtype != Dtype::U8 { dtype } else { Dtype::I8 }))
@@ -165,7 +165,8 @@ impl<R: Read> NpyFile<R> {
     ///
     /// # Errors
     /// [`VolumeError`]: what cannot be read, and why.
-    pub fn values<T: Element>(self, path: &Path, monitor: &Monitor) -> Result<Vec<T>, VolumeError> {
+    pub fn values<T: Element>(self, path: &Path) -> Result<Vec<T>, VolumeError> {
+        let monitor = &*Monitor::current();
         let count = self.shape.iter().fold(1u64, |product, &n| product.saturating_mul(n));
         let claim = format!("an array of shape {:?} and type {}", self.shape, self.dtype);
         self.payload

@@ -122,23 +122,13 @@ impl CertifyFiltrationError {
 pub fn certify_filtration(
     file: &FiltrationFile,
 ) -> Result<(Vec<FiltrationFinding>, FiltrationCertificate), CertifyFiltrationError> {
-    certify_filtration_monitored(file, &Monitor::noop())
-}
-
-/// The same, as one stage under a monitor, which can cancel it.
-///
-/// # Errors
-/// [`CertifyFiltrationError`].
-pub fn certify_filtration_monitored(
-    file: &FiltrationFile,
-    monitor: &Monitor,
-) -> Result<(Vec<FiltrationFinding>, FiltrationCertificate), CertifyFiltrationError> {
+    let monitor = &*Monitor::current();
     file.check()?;
     if file.periodic.is_some() {
         return Err(CertifyFiltrationError::Periodic);
     }
     let placed = whole(file)?;
-    let (found, triangulation) = placed.claim().findings_monitored(&monitor.part(0, 40, 100))?;
+    let (found, triangulation) = monitor.part(0, 40, 100).watch(|| placed.claim().findings())?;
     let mut findings: Vec<_> = found.into_iter().map(FiltrationFinding::Triangulation).collect();
     let mut not_judged = Vec::new();
     let mut values = 0;

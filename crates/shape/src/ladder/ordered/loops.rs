@@ -44,14 +44,7 @@ impl Ordered<'_> {
     /// # Errors
     /// Out of memory.
     pub fn loops(&self) -> Result<&Loops, ShapeError> {
-        self.loops_monitored(&Monitor::noop())
-    }
-
-    /// The same, which reports its progress and can be cancelled.
-    ///
-    /// # Errors
-    /// Those of [`loops`](Self::loops), and [`ShapeError::Cancelled`].
-    pub fn loops_monitored(&self, monitor: &Monitor) -> Result<&Loops, ShapeError> {
+        let monitor = &*Monitor::current();
         if let Some(loops) = self.loops.get() {
             return Ok(loops);
         }

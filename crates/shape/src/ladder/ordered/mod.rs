@@ -97,14 +97,7 @@ impl Filtration {
     /// # Errors
     /// Out of memory; more simplices than 32-bit numbers.
     pub fn simplices(&self) -> Result<Ordered<'_>, ShapeError> {
-        self.simplices_monitored(&Monitor::noop())
-    }
-
-    /// The same, which reports its progress and can be cancelled.
-    ///
-    /// # Errors
-    /// Those of [`simplices`](Self::simplices), and [`ShapeError::Cancelled`].
-    pub fn simplices_monitored(&self, monitor: &Monitor) -> Result<Ordered<'_>, ShapeError> {
+        let monitor = &*Monitor::current();
         let complex = self.whole.complex();
         let numbers = Numbers::of(complex).ok_or(TriangulationError::TooManyCells)?;
         memory::afford(Ordered::bytes(numbers), || {
