@@ -74,8 +74,8 @@ pub use walpha_check as check;
 /// The recipe and what runs it, interpolation, files and work in blocks: a crate of its own, `walpha-model`, for use in other
 /// programs.
 pub use walpha_model::{
-    Interpolant, LabelChoice, Recipe, Save, export, interpolate, labels, outofcore, pipeline,
-    progress,
+    Interpolant, LabelChoice, Recipe, Save, Settings, export, interpolate, labels, outofcore,
+    pipeline, progress, settings,
 };
 
 pub use haar::{Coefficients, Decomposition, HaarOptions, Tolerance, Truncation};

@@ -10,14 +10,14 @@ use walpha_base::memory::readable;
 use walpha_base::shown::shown;
 use walpha_files::{Working, fill_all, keep_input};
 
-use super::args::{InputArgs, PipelineArgs, ShapeArgs};
 use super::errors::{CommandError, fail_usage};
 use super::global::{DIFFERENT, Global};
 use super::offsets::{FileOffset, offsets};
+use super::options::{Declared, InputArgs, OfShape, PipelineArgs, preset};
 use super::output::{name, print_summary};
 use super::progress::Progress;
 use super::report::Report;
-use super::{folder, outline, pipeline, preset};
+use super::{folder, outline, pipeline};
 use crate::Recipe;
 use crate::export::{Content, ExportOptions, Exporter, Format, NewFolder, Target};
 use crate::outofcore::{
@@ -67,7 +67,7 @@ struct PlanStep {
     #[command(flatten)]
     pipeline: PipelineArgs,
     #[command(flatten)]
-    shape: ShapeArgs,
+    shape: Declared<OfShape>,
 }
 
 /// Compute blocks; finished ones are kept, damaged ones are computed again.
@@ -142,7 +142,7 @@ impl CheckStep {
 impl PlanStep {
     fn run(self, global: Global) -> anyhow::Result<()> {
         let mut progress = Progress::new(global);
-        let recipe = self.pipeline.recipe_of(&self.shape, None)?;
+        let recipe = self.pipeline.recipe()?;
         let cutting = Cutting::of(&recipe);
         let job = job(&self.pipeline.input, recipe)?;
         let Some(folder) = self.output else {

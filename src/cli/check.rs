@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
 
-use clap::{Args, Command, ValueEnum};
+use clap::{Args, ValueEnum};
 use serde::{Serialize, Serializer};
 use walpha_base::shown::shown;
 
@@ -26,14 +26,15 @@ use crate::shape::placed_complex;
 use crate::volume::{OpenFile, OpenVolume};
 use walpha_points::internal::{cells_of_file, read_complex_file};
 
-use super::args::{LabelArgs, PeriodicArgs, PipelineArgs, ShapeArgs};
 use super::compare;
 use super::errors::{CommandError, command_error, fail, fail_usage};
 use super::global::{DIFFERENT, Global, UNDECIDED};
+use super::options::{Declared, OfShape, Periodic, PipelineArgs, preset, refuse_gray_levels};
 use super::output::{name, print_summary};
 use super::pipeline;
 use super::progress::Progress;
 use super::report::SCHEMA_VERSION;
+use crate::settings::Settings;
 
 /// Check a complex exactly: one computed here, or one that another program wrote.
 ///
@@ -78,9 +79,9 @@ pub(super) struct Check {
     #[command(flatten)]
     pipeline: PipelineArgs,
     #[command(flatten)]
-    shape: ShapeArgs,
+    shape: Declared<OfShape>,
     #[command(flatten)]
-    periodic: PeriodicArgs,
+    periodic: Declared<Periodic>,
 }
 
 /// Which ways to break ties are right.
@@ -168,13 +169,14 @@ impl Check {
                 }
             };
         }
-        let open = || self.pipeline.input.recipe().opened(path).map_err(pipeline::unread);
+        let recipe = self.pipeline.input.recipe()?;
+        let open = || recipe.opened(path).map_err(pipeline::unread);
         // What the options contradict is said even if there is no such file.
         let opened =
             progress.stage(Stage::Read, open).or_else(|error| self.recipe().and(Err(error)))?;
         match &opened {
             Opened::Points(file) => {
-                let cells = cells_of_file(file, &self.pipeline.input.point_options())?;
+                let cells = cells_of_file(file, &self.pipeline.input.point_options()?)?;
                 if !cells.is_empty() {
                     return self.mesh(global, input, file, &cells, progress);
                 }
@@ -207,7 +209,7 @@ impl Check {
     ) -> anyhow::Result<ExitCode> {
         let listed = cells.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
         let read = || {
-            read_complex_file(file, &self.pipeline.input.point_options()).map_err(|error| {
+            read_complex_file(file, &self.pipeline.input.point_options()?).map_err(|error| {
                 let CommandError { why, next, usage } = CommandError::from(error);
                 let csv = "write its points by `walpha points INPUT -o points.csv` to judge our own shape of them";
                 let next = next.map_or(csv.to_owned(), |next| format!("{next}, or {csv}"));
@@ -228,7 +230,7 @@ impl Check {
         progress: Progress,
     ) -> anyhow::Result<ExitCode> {
         let Mesh { complex: mut file, attribute, notes, .. } = mesh;
-        let alpha = match self.pipeline.weights.alpha() {
+        let alpha = match self.pipeline.settings().parameter() {
             AlphaRule::Given(alpha) => Some(alpha),
             _ => None,
         };
@@ -237,7 +239,7 @@ impl Check {
                 if file.voxels.is_some() { "is of labels, without α" } else { "states its α" };
             fail_usage!("--alpha has no effect: {} {states}", name(input) => "omit it");
         }
-        let takes_column = self.pipeline.weights.weights == Some(Weighting::Column);
+        let takes_column = self.pipeline.settings().weights() == Some(&Weighting::Column);
         let mut used = vec!["alpha", "alpha_radius"];
         if attribute.is_some() && takes_column {
             file.weights = attribute;
@@ -295,17 +297,14 @@ impl Check {
 
     /// Refuses the options that control how a shape is computed, except `except`.
     fn refuse_shape_options(&self, except: &[&str], why: String) -> Result<(), CommandError> {
-        let ours = ShapeArgs::augment_args(<PipelineArgs>::augment_args(Command::new("check")));
-        let ours = PeriodicArgs::augment_args(ours);
-        let options = ours.get_arguments().filter(|arg| !arg.is_positional());
-        let names = options.map(|arg| arg.get_id().as_str());
-        let names: Vec<&str> = names.filter(|name| !except.contains(name)).collect();
+        let settings = Settings::NAMES.iter().map(|(name, _)| *name).chain([preset::OPTION]);
+        let names: Vec<&str> = settings.filter(|name| !except.contains(name)).collect();
         self.pipeline.input.typed.refuse(&names, why)
     }
 
     /// The recipe for the shape of INPUT.
     fn recipe(&self) -> anyhow::Result<Recipe> {
-        Ok(self.pipeline.recipe_of(&self.shape, self.periodic.periodic)?)
+        Ok(self.pipeline.recipe()?)
     }
 
     /// Computes the shape of INPUT.
@@ -323,7 +322,7 @@ impl Check {
         input.typed.refuse(&["refit"], "values are not judged")?;
         let read = pipeline::read_opened(opened, input, &mut recipe, progress)?;
         if let Input::Labels(volume) = read {
-            LabelArgs::refuse_others(&input.typed)?;
+            refuse_gray_levels(input)?;
             let model = progress.watch(|| recipe.solid(&volume))?;
             return Ok(placed_complex(&model.shape));
         }

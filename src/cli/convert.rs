@@ -9,9 +9,9 @@ use walpha_base::shown::{counted, shown};
 use crate::progress::Stage;
 use crate::volume::{OpenVolume, Source, convert};
 
-use super::args::InputArgs;
 use super::errors::fail_usage;
 use super::global::Global;
+use super::options::InputArgs;
 use super::output::{name, print_summary};
 use super::pipeline::{with_file, with_points};
 use super::progress::Progress;

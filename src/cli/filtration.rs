@@ -15,9 +15,9 @@ use crate::pipeline::{Parameter, Weighed};
 use crate::progress::Stage;
 use crate::shape::ShapeError;
 
-use super::args::{FrozenPipelineArgs, OutputArgs, PeriodicArgs};
 use super::formats::filtration_output;
 use super::global::Global;
+use super::options::{Declared, FrozenPipelineArgs, OutputArgs, Periodic};
 use super::output::{name, print_summary};
 use super::pipeline;
 use super::progress::Progress;
@@ -48,7 +48,7 @@ pub(super) struct Filtration {
     #[command(flatten)]
     pipeline: FrozenPipelineArgs,
     #[command(flatten)]
-    periodic: PeriodicArgs,
+    periodic: Declared<Periodic>,
     #[command(flatten)]
     format: OutputArgs,
 }
@@ -111,8 +111,8 @@ impl Filtration {
         }
         let mut progress = Progress::new(global);
         input.typed.refuse(&["refit"], "a filtration has no values")?;
-        let torus = self.periodic.periodic;
-        let recipe = self.pipeline.recipe()?.periodic(torus);
+        let recipe = self.pipeline.recipe()?;
+        let torus = recipe.periodic;
         let (mut weighed, _) = pipeline::weighted_points(input, &recipe, &mut progress)?;
         weighed.on_torus(torus)?;
         let filtration = progress.watch(|| pipeline::filtration(torus, &weighed))?;

@@ -11,10 +11,10 @@ use crate::pipeline::{Grays, Input};
 use crate::progress::Stage;
 use crate::volume::VolumeWriter;
 
-use super::args::{HaarArgs, InputArgs, OutputArgs};
 use super::errors::fail;
 use super::formats::volume_output;
 use super::global::Global;
+use super::options::{Declared, InputArgs, OutputArgs, Wavelets};
 use super::output::print_summary;
 use super::pipeline::{accept, read};
 use super::progress::Progress;
@@ -34,7 +34,7 @@ pub(super) struct Haar {
     #[command(flatten)]
     input: InputArgs,
     #[command(flatten)]
-    haar: HaarArgs,
+    haar: Declared<Wavelets>,
     #[command(flatten)]
     format: OutputArgs,
 }
@@ -54,14 +54,14 @@ impl Haar {
             Some(path) => Some((VolumeWriter::of(&self.format.named(path)?)?, Target::open(path)?)),
         };
         let mut progress = Progress::new(global);
-        let read = read(&self.input, &self.input.recipe(), &mut progress)?;
+        let read = read(&self.input, &self.input.recipe()?, &mut progress)?;
         if matches!(read, Input::Volume(..)) {
             accept(&read, &self.input)?;
         }
         let Input::Volume(Grays { volume, range, written, .. }) = read else {
             fail!("{} holds points", self.input.input => "name a volume");
         };
-        let options = self.haar.options();
+        let options = self.input.settings().transform();
         let (smoothed, truncation) = progress.stage(Stage::Haar, || smooth(&volume, &options))?;
         if let Some((format, target)) = target {
             let smoothed = smoothed.into_values(&written);

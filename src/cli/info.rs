@@ -17,14 +17,14 @@ use crate::{Alpha, Coordinates, Dims, Frame, LengthUnit, Units, VolumeError};
 use walpha_points::internal::cells_of_file;
 use walpha_points::read_model_file;
 
-use super::args::InputArgs;
 use super::check::{mesh_format, read_mesh};
 use super::global::Global;
+use super::options::InputArgs;
 use super::output::{name, print_summary};
 use super::pipeline;
-use super::preset;
 use super::progress::Progress;
 use super::report::SCHEMA_VERSION;
+use crate::settings::{CT_BONE, LABELS};
 
 /// Describe a file, without computing anything.
 ///
@@ -205,12 +205,12 @@ impl Info {
     }
 
     fn describe(&self, input: &Path) -> anyhow::Result<Content> {
-        match self.input.recipe().opened(input).map_err(pipeline::unread)? {
+        match self.input.recipe()?.opened(input).map_err(pipeline::unread)? {
             Opened::Made(points) => {
                 Ok(Content::of_points(&points, ModelMetadata::default(), Vec::new()))
             }
             Opened::Points(file) => {
-                let options = self.input.point_options();
+                let options = self.input.point_options()?;
                 let (points, metadata) = read_model_file(&file, &options)?;
                 Ok(Content::of_points(&points, metadata, cells_of_file(&file, &options)?))
             }
@@ -270,10 +270,7 @@ impl Info {
             max: stats.range.map(|(_, max)| max),
             missing: stats.missing,
             padding,
-            preset: labels
-                .as_ref()
-                .map(|_| preset::OF_LABELS)
-                .or(stats.hounsfield.map(|_| preset::OF_CT)),
+            preset: labels.as_ref().map(|_| LABELS).or(stats.hounsfield.map(|_| CT_BONE)),
             labels,
             volumes,
             gray_levels,

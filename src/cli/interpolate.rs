@@ -8,11 +8,11 @@ use clap::Args;
 use serde::Serialize;
 use walpha_base::number_or_null_or_name;
 
-use super::args::{OutputArgs, PipelineArgs, SelectArgs, ShapeArgs, one_alpha};
 use super::errors::{fail, fail_usage};
 use super::folder;
 use super::formats::volume_output;
 use super::global::Global;
+use super::options::{Declared, OfShape, OutputArgs, PipelineArgs, one_alpha};
 use super::output::{name, print_summary};
 use super::pipeline::{self, VolumeSummary, read};
 use super::progress::Progress;
@@ -75,7 +75,7 @@ pub(super) struct Interpolate {
     #[command(flatten)]
     pipeline: PipelineArgs,
     #[command(flatten)]
-    shape: ShapeArgs,
+    shape: Declared<OfShape>,
     #[command(flatten)]
     format: OutputArgs,
 }
@@ -135,14 +135,14 @@ fn output_help() -> String {
 impl Interpolate {
     pub(super) fn run(self, global: Global) -> anyhow::Result<()> {
         if self.curve {
-            if self.pipeline.input.raw.grid().is_some() {
+            if self.pipeline.input.grid().is_some() {
                 fail_usage!("--curve measures on the samples of INPUT" => "omit --dims");
             }
             let base = self.output.as_deref().expect("clap requires it");
             return run_curve(global, &self.pipeline, base);
         }
         self.format.check(self.output.iter())?;
-        let recipe = self.pipeline.recipe_of(&self.shape, None)?;
+        let recipe = self.pipeline.recipe()?;
         let output = match &self.output {
             None => None,
             Some(path) => Some((VolumeWriter::of(&self.format.named(path)?)?, Target::open(path)?)),
@@ -198,7 +198,7 @@ impl Interpolate {
 
     /// The grid asked for.
     fn grid(&self, original: Option<&Source>, weighed: &Weighed) -> anyhow::Result<Grid> {
-        let asked = self.pipeline.input.raw.grid();
+        let asked = self.pipeline.input.grid();
         asked.map(Dims::bounded).transpose()?;
         match (original, weighed.origin.grid, asked) {
             (Some(&Source { ref volume, units, .. }), _, None) => Ok(Grid::of(volume, units)),
@@ -309,7 +309,7 @@ pub(super) fn run_curve(
     pipeline: &PipelineArgs,
     base: &Path,
 ) -> anyhow::Result<()> {
-    let PipelineArgs { input, select, .. } = pipeline;
+    let PipelineArgs { input, .. } = pipeline;
     let recipe = pipeline.recipe()?;
     let (new, paths) = paths(base)?;
     let targets = paths.iter().map(Target::open).collect::<Result<Vec<_>, _>>()?;
@@ -321,7 +321,7 @@ pub(super) fn run_curve(
     let Source { ref volume, units, range, .. } = source;
     let (smoothed, _) = progress.stage(Stage::Haar, || smooth(volume, &recipe.haar))?;
     let options = CurveOptions {
-        counts: counts(volume, select)?,
+        counts: counts(volume, input.settings().rule())?,
         weightings: vec![Weighting::Common(0.0), Weighting::MinMax, Weighting::Barycentric],
         alpha: one_alpha(recipe.alpha, &source)?.alpha,
         units,
@@ -360,8 +360,8 @@ pub(super) fn run_curve(
 }
 
 /// From a sixteenth to twice the points that would be selected.
-fn counts(volume: &Volume, select: &SelectArgs) -> anyhow::Result<Vec<u64>> {
-    let whole = match select.rule() {
+fn counts(volume: &Volume, rule: SelectionRule) -> anyhow::Result<Vec<u64>> {
+    let whole = match rule {
         SelectionRule::Count(count) => count as f64,
         SelectionRule::Ratio(ratio) | SelectionRule::AtMost(ratio) => {
             ratio * volume.dims().samples() as f64

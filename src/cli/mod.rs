@@ -1,12 +1,9 @@
 //! The command. It parses, calls the library, prints, and chooses an exit code.
 
-mod args;
 mod blocks;
 mod check;
-mod command_line;
 mod compare;
 mod completions;
-mod config;
 #[cfg(feature = "zarr")]
 mod convert;
 mod errors;
@@ -15,7 +12,6 @@ mod folder;
 mod formats;
 mod global;
 mod haar;
-mod help;
 mod info;
 mod interpolate;
 mod ladder;
@@ -23,15 +19,14 @@ mod man;
 #[cfg(feature = "mpi")]
 mod mpi;
 mod offsets;
+mod options;
 mod outline;
 mod output;
 #[cfg_attr(not(feature = "render"), path = "no_picture.rs")]
 mod picture;
 mod pipeline;
 mod points;
-mod preset;
 mod progress;
-mod ranges;
 mod ranks;
 mod report;
 #[cfg(feature = "paper")]
@@ -56,6 +51,7 @@ use tracing_subscriber::util::SubscriberInitExt;
 use crate::export::Target;
 
 use global::{Global, INTERRUPTED, USAGE};
+use options::{config, help, typed};
 use output::{print, print_with};
 use ranks::Ranks;
 
@@ -149,7 +145,7 @@ fn lead(
         if matches.get_flag(config::PRINT) {
             return Ok(Err(matches));
         }
-        kept = command_line::protect_inputs(&command, &matches);
+        kept = typed::protect_inputs(&command, &matches);
         Cli::from_arg_matches(&matches).map(|cli| Ok((cli, is_piped(&matches))))
     });
     let done = match parsed {

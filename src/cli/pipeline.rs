@@ -5,9 +5,9 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use super::args::{self, InputArgs};
 use super::errors::{CommandError, command_error, is_usage, reasons};
-use super::preset;
+use super::options::preset;
+use super::options::{self, InputArgs};
 use super::progress::Progress;
 use crate::export::Scratch;
 use crate::interpolate::{InterpolateError, fill};
@@ -208,7 +208,7 @@ pub(super) fn accept(input: &Input, args: &InputArgs) -> Result<(), CommandError
             if facts.range.is_none() {
                 args.typed.refuse(&["gray_out"], &what)?;
             }
-            args.typed.refuse(&args::volume_options(), what)
+            args.typed.refuse(&options::of_volumes(), what)
         }
     }
 }

@@ -8,10 +8,10 @@ use crate::export::Target;
 use crate::points::{Packing, PointWriter};
 use crate::progress::Stage;
 
-use super::args::{OutputArgs, PipelineArgs, not_negative};
 use super::errors::fail_usage;
 use super::formats::points_output;
 use super::global::Global;
+use super::options::{OutputArgs, PipelineArgs, not_negative};
 use super::output::print_summary;
 use super::pipeline;
 use super::progress::Progress;

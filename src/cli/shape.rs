@@ -7,11 +7,11 @@ use clap::Args;
 use walpha_base::shown::shown;
 use walpha_files::Working;
 
-use super::args::{OutputArgs, PeriodicArgs, PipelineArgs, ShapeArgs};
 use super::errors::{CommandError, fail_usage, option};
 use super::formats::shape_output;
 use super::global::Global;
 use super::offsets::offsets;
+use super::options::{Declared, OfShape, OutputArgs, Periodic, PipelineArgs};
 use super::output::{print_summary, remark};
 use super::picture::PictureArgs;
 use super::pipeline::VolumeSummary;
@@ -87,9 +87,9 @@ pub(super) struct Shape {
     #[command(flatten)]
     pub(super) pipeline: PipelineArgs,
     #[command(flatten)]
-    shape: ShapeArgs,
+    shape: Declared<OfShape>,
     #[command(flatten)]
-    periodic: PeriodicArgs,
+    periodic: Declared<Periodic>,
     #[command(flatten)]
     format: OutputArgs,
     #[command(flatten)]
@@ -128,10 +128,10 @@ impl Shape {
                 _ => names.concat(),
             }
         };
-        if self.solid && self.periodic.periodic.is_some() {
+        if self.solid && self.pipeline.settings().periodic().is_some() {
             fail_usage!("--solid is for shapes in space, and the boundary of one of a torus is cut open at the sides of the box" => "omit it, or omit --periodic");
         }
-        if self.periodic.periodic.is_some() {
+        if self.pipeline.settings().periodic().is_some() {
             outline::refuse(formats.iter().copied(), "a periodic box is a torus and no plane")?;
         }
         if self.require_3d {
@@ -152,7 +152,7 @@ impl Shape {
         if !written(|format| format.boundary) {
             unused("--solid", self.solid, "no output holds a boundary alone")?;
         }
-        let recipe = self.pipeline.recipe_of(&self.shape, self.periodic.periodic)?;
+        let recipe = self.pipeline.recipe()?;
         Ok(recipe.refuse_flat(self.require_3d))
     }
 

@@ -8,11 +8,11 @@ use walpha_base::memory;
 use walpha_base::shown::shown;
 use walpha_files::Lock;
 
-use super::args::InputArgs;
 use super::blocks::{Outputs, job};
 use super::errors::fail;
 use super::global::Global;
 use super::offsets::FileOffset;
+use super::options::InputArgs;
 use super::progress::Progress;
 use super::report::Report;
 use super::{folder, threads};

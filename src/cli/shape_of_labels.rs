@@ -7,12 +7,12 @@ use std::path::Path;
 use serde::Serialize;
 use walpha_base::shown::number;
 
-use super::args::LabelArgs;
 use super::errors::fail_usage;
 use super::folder::Folder;
 use super::global::Global;
 use super::ladder::{Mesh, meshes};
 use super::offsets::FileOffset;
+use super::options::refuse_gray_levels;
 use super::output::print_summary;
 use super::pipeline;
 use super::progress::Progress;
@@ -40,7 +40,7 @@ impl Shape {
         progress: &mut Progress,
     ) -> anyhow::Result<Report> {
         let input = &self.pipeline.input;
-        LabelArgs::refuse_others(&input.typed)?;
+        refuse_gray_levels(input)?;
         refuse_points_alone(&outputs)?;
         let dims = volume.dims().xyz();
         let model = progress.watch(|| recipe.solid(&volume))?;
@@ -58,7 +58,7 @@ impl Shape {
         let meshes = self.meshes()?;
         let choice = recipe.labels.clone().unwrap_or(LabelChoice::All);
         let recipe = recipe.clone().labels(Some(choice.clone()));
-        LabelArgs::refuse_others(&self.pipeline.input.typed)?;
+        refuse_gray_levels(&self.pipeline.input)?;
         let mut folder = Folder::open(folder, "--output", &[])?;
         let mut progress = Progress::new(global);
         let input = &self.pipeline.input;

@@ -10,9 +10,9 @@ use clap::Args;
 use serde::Serialize;
 use walpha_base::shown::{number, shown};
 
-use super::args::{self, Alphas, FrozenPipelineArgs};
 use super::errors::{fail, fail_usage};
 use super::global::Global;
+use super::options::{self, Alphas, FrozenPipelineArgs};
 use super::output::{name, print_summary, remark};
 use super::pipeline::{self, VolumeSummary, filled_in};
 use super::progress::Progress;
@@ -368,7 +368,7 @@ impl FromStr for Isovalue {
             Some(value) => (value, Self::Value),
             None => (text, Self::Gray),
         };
-        match args::number(number)? {
+        match options::number(number)? {
             number if number.is_finite() => Ok(level(number)),
             _ => bail!(
                 "a finite number is needed; give a gray level as in 50, or a value as in 300v"

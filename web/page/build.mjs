@@ -14,7 +14,7 @@ const here = new URL(".", import.meta.url).pathname;
 async function bundle(entry, wrap) {
   const { outputFiles: [{ text }] } = await build({
     entryPoints: [here + entry], bundle: true, minify: true, write: false, format: "esm", target: "es2022",
-    legalComments: "inline", loader: { ".toml": "text" }, charset: "utf8",
+    legalComments: "inline", charset: "utf8",
   });
   // Nothing in a script may end its element.
   const inert = text.replaceAll("</script", "<\\/script");

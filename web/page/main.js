@@ -1,11 +1,5 @@
 // The page: what the user does, what the worker answers, and what is seen of it.
 
-import ctBone from "../../presets/ct-bone.toml";
-import ctSkin from "../../presets/ct-skin.toml";
-import molecule from "../../presets/molecule.toml";
-import mri from "../../presets/mri.toml";
-import paper from "../../presets/paper.toml";
-import scattered from "../../presets/points.toml";
 import { AlphaScale, Diagram, Histogram } from "./charts.js";
 import { short } from "./colours.js";
 import { byId, download, element, remark, rows, showNotices, shown, unpacked } from "./dom.js";
@@ -14,20 +8,14 @@ import { EXAMPLES } from "./examples.js";
 import { ShapePanel } from "./shape.js";
 import { Slices } from "./slices.js";
 
-// The presets of the command. A volume's have numbers, or a range of values.
-const PRESETS = Object.fromEntries(
-  Object.entries({ "ct-bone": ctBone, "ct-skin": ctSkin, mri, paper, points: scattered, molecule }).map(([name, toml]) => {
-    const lines = toml.split("\n").filter((line) => line.includes("=") && !line.startsWith("#"));
-    return [name, Object.fromEntries(lines.map((line) => line.split(" = ").map((word) => word.replaceAll('"', ""))))];
-  }),
-);
+// The presets of the command for volumes, and for points.
 const OF_VOLUMES = ["ct-bone", "ct-skin", "mri", "paper"];
 const OF_POINTS = ["points", "molecule"];
 const FORMATS = [
   ["ply", "PLY"], ["stl", "STL, solid"], ["glb", "GLB"], ["vtu", "VTU"], ["npz", "NPZ"], ["csv", "points, CSV"], ["wvm", "points, WVM"],
 ];
 
-const state = { input: null, facts: null, grayMin: null, opened: null };
+const state = { input: null, facts: null, grayMin: null, opened: null, presets: {} };
 let engine = null;
 const panel = new ShapePanel({
   at: (alpha) => engine.call({ do: "at", alpha }),
@@ -195,6 +183,7 @@ async function open() {
     facts = await engine.open({ input: state.input, options });
   }
   state.facts = facts;
+  ({ presets: state.presets } = await engine.call({ do: "presets" }));
   state.opened = JSON.stringify(reading());
   offer(facts.kind);
   const isVolume = facts.kind === "volume";
@@ -235,7 +224,7 @@ function suit(facts) {
 // Fills the form with a preset.
 function apply(name) {
   byId("preset").value = name;
-  const preset = PRESETS[name] ?? {};
+  const preset = state.presets[name] ?? {};
   const [low, high] = preset.gray?.split("..") ?? ["", ""];
   [byId("gray-low").value, byId("gray-high").value] = [low, high];
   state.grayMin = preset["gray-min"] ? Number(preset["gray-min"]) : null;
@@ -299,15 +288,15 @@ function optionsOfForm() {
   const number = (id) => (given(id) === undefined ? undefined : Number(given(id)));
   const options = { ...reading(), weights: given("weights"), alpha: given("alpha-ref") };
   if (state.facts.kind === "points") return options;
-  if (ofLabels()) return { ...reading(), labels: byId("labels").value };
-  if (given("gray-low") !== undefined || given("gray-high") !== undefined) options.gray = grayRange();
-  if (state.grayMin !== null) options.grayMin = state.grayMin;
-  else options.valueMin = number("value-min");
+  if (ofLabels()) return { ...reading(), label: byId("labels").value };
+  if (given("gray-low") !== undefined || given("gray-high") !== undefined) options.gray = grayRange().join("..");
+  if (state.grayMin !== null) options["gray-min"] = state.grayMin;
+  else options["value-min"] = number("value-min");
   options[byId("rule").value] = number("rule-value");
   options.rms = number("rms");
   // Of a CT the command selects bone, unless something is stated.
-  const stated = ["gray", "grayMin", "valueMin", "threshold", "count", "ratio"].some((name) => options[name] !== undefined);
-  if (state.facts.hounsfield && !stated) options.gray = grayRange();
+  const stated = ["gray", "gray-min", "value-min", "threshold", "count", "ratio"].some((name) => options[name] !== undefined);
+  if (state.facts.hounsfield && !stated) options.gray = grayRange().join("..");
   return options;
 }
 

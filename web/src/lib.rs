@@ -5,9 +5,9 @@
 //! the worker copies out of this memory.
 
 mod answer;
-mod options;
 mod request;
 mod session;
+mod shell;
 
 use std::sync::{Mutex, PoisonError};
 

@@ -3,19 +3,20 @@
 use std::path::PathBuf;
 
 use serde::Deserialize;
-
-use crate::options::Options;
+use walpha_model::Settings;
 
 /// A request; fields are named as in JavaScript.
 #[derive(Debug, Deserialize)]
 #[serde(tag = "do", rename_all = "camelCase", rename_all_fields = "camelCase")]
 pub(crate) enum Request {
+    /// The presets of the command.
+    Presets,
     /// Reads a file, a folder or a sample, and says what it is.
-    Open { input: String, options: Options },
+    Open { input: String, options: Settings },
     /// The samples of a plane of the volume: across an axis (x, y, z), at an index.
     Plane { axis: usize, index: usize },
     /// Selects and weighs the points, and computes the shape to look at first.
-    Shape { options: Options },
+    Shape { options: Settings },
     /// Computes the shapes at all other α, which the requests below need.
     Filtration,
     /// The simplices to draw at an α.

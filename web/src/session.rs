@@ -3,13 +3,14 @@
 use std::path::Path;
 
 use serde_json::json;
-use walpha_model::Recipe;
 use walpha_model::export::{EmptyShape, ExportOptions, Format};
 use walpha_model::pipeline::{
-    Input, Model, Opened as OpenInput, Origin, Parameter, ParameterOrigin, PipelineError, Values,
-    Weighed,
+    AlphaRule, Input, Model, Opened as OpenInput, Origin, Parameter, ParameterOrigin,
+    PipelineError, Values, Weighed,
 };
 use walpha_model::progress::{Listener, Monitor, Stage};
+use walpha_model::settings::{PRESETS, SettingError};
+use walpha_model::{Recipe, Settings};
 use walpha_points::{
     ModelMetadata, Packing, PointOptions, PointWriter, Points, PointsError, SampleGrid,
     bounding_box, read_model_file,
@@ -21,8 +22,8 @@ use walpha_volume::{
 };
 
 use crate::answer::{Answer, Array};
-use crate::options::{Options, Setting, Written, quoted};
 use crate::request::Request;
+use crate::shell::{argument, quoted};
 
 /// Bars of the histogram.
 const BARS: usize = 256;
@@ -47,7 +48,7 @@ enum Opened {
 
 /// Points, and their shapes.
 struct Made {
-    options: Options,
+    settings: Settings,
     recipe: Recipe,
     what: What,
     metadata: ModelMetadata,
@@ -196,6 +197,7 @@ failures! {
     PointsError: PointsError::advice,
     VolumeError: VolumeError::advice,
     ShapeError: ShapeError::advice,
+    SettingError: SettingError::advice,
     volume::UnknownFormat: |error: &volume::UnknownFormat| Some(error.advice()),
 }
 
@@ -265,6 +267,7 @@ impl Session {
 
     fn carry_out(&mut self, request: Request) -> Result<Answer, Failure> {
         match request {
+            Request::Presets => Ok(presets()),
             Request::Open { input, options } => self.open(input, &options),
             Request::Plane { axis, index } => self.plane(axis, index),
             Request::Shape { options } => self.shape(options),
@@ -278,7 +281,7 @@ impl Session {
                 self.made()?.save(&self.input, &name, alpha, solid)
             }
             Request::Command { name, alpha, solid } => {
-                Ok(self.made()?.command(&self.input, &name, alpha, solid))
+                self.made()?.command(&self.input, &name, alpha, solid)
             }
         }
     }
@@ -287,12 +290,12 @@ impl Session {
         self.made.as_ref().ok_or_else(|| "there is no shape yet".to_owned().into())
     }
 
-    fn open(&mut self, input: String, options: &Options) -> Result<Answer, Failure> {
+    fn open(&mut self, input: String, settings: &Settings) -> Result<Answer, Failure> {
         *self = Self { input, ..Self::EMPTY };
         let input = Path::new(&self.input);
         Stage::Read.begin().map_err(PipelineError::from)?;
-        let recipe = options.recipe()?;
-        if input.is_dir() && options.series.is_none() {
+        let recipe = settings.recipe()?;
+        if input.is_dir() && settings.series().is_none() {
             let series: Vec<Series> = volume::series(input)?;
             if series.len() > 1 {
                 return Ok(Answer::of(json!({ "kind": "series", "series": series }), Vec::new()));
@@ -348,14 +351,17 @@ impl Session {
         Ok(Answer::of(head, vec![Array::F32("values", values)]))
     }
 
-    fn shape(&mut self, options: Options) -> Result<Answer, Failure> {
+    fn shape(&mut self, settings: Settings) -> Result<Answer, Failure> {
         self.made = None;
-        let recipe = options.recipe()?;
+        let recipe = settings.recipe()?;
+        if matches!(recipe.alpha, AlphaRule::Given(alpha) if alpha.squared().is_infinite()) {
+            return Err("α of the weights has to be finite here".to_owned().into());
+        }
         let input = match self.opened.as_ref().ok_or("nothing has been opened".to_owned())? {
             Opened::Points(points, metadata) => Input::Points(points.clone(), metadata.clone()),
             Opened::Volume(volume) if recipe.labels.is_some() => {
                 let model = recipe.solid(volume)?;
-                return Ok(self.made_of_labels(options, recipe, model));
+                return Ok(self.made_of_labels(settings, recipe, model));
             }
             Opened::Volume(volume) => Input::Volume(recipe.grays(volume.clone())?),
         };
@@ -370,7 +376,7 @@ impl Session {
         let reference = weighed.find_parameter()?;
         let shape = recipe.finish(weighed.clone())?.shape;
         let made = Made {
-            options,
+            settings,
             recipe,
             metadata,
             reference,
@@ -385,13 +391,13 @@ impl Session {
     }
 
     /// Keeps the solid of labels, and describes it.
-    fn made_of_labels(&mut self, options: Options, recipe: Recipe, model: Model) -> Answer {
+    fn made_of_labels(&mut self, settings: Settings, recipe: Recipe, model: Model) -> Answer {
         let [low, high] = bounding_box(model.shape.points().positions());
         let shape = model.shape.clone();
         let mut reference = model.parameter;
         reference.alpha = Alpha::from_squared(0.0).unwrap_or(reference.alpha);
         let made = Made {
-            options,
+            settings,
             recipe,
             metadata: ModelMetadata::default(),
             reference,
@@ -426,6 +432,14 @@ impl Session {
 
 /// What to say of a volume of more samples than a page works on, if nothing is said of making it coarser: how many samples along
 /// each axis should become one.
+/// The settings of each preset, by their names.
+fn presets() -> Answer {
+    let settings = |name| json!(Settings::preset(name));
+    let presets: serde_json::Map<_, _> =
+        PRESETS.iter().map(|(name, _)| ((*name).to_owned(), settings(name))).collect();
+    Answer::of(json!({ "presets": presets }), Vec::new())
+}
+
 fn too_large(dims: Dims, options: &ReadOptions) -> Option<Answer> {
     let samples: f64 = dims.xyz().map(|n| n as f64).iter().product();
     let downsample = (samples / MOST_SAMPLES).cbrt().ceil();
@@ -721,8 +735,11 @@ impl Made {
         Ok(Answer::of(json!({ "remarks": remarks }), vec![Array::U8("bytes", bytes)]))
     }
 
-    fn command(&self, input: &str, name: &str, alpha: f64, solid: bool) -> Answer {
-        let mut settings = self.options.settings();
+    fn command(&self, input: &str, name: &str, alpha: f64, solid: bool) -> Result<Answer, Failure> {
+        let mut settings = self.settings.clone();
+        settings.unset("alpha");
+        let mut set = |name, alpha: f64| settings.set(name, &alpha.to_string());
+        let mut stops = None;
         let input = quoted(input);
         let points = point_writer(Path::new(name));
         let is_shape = self.is_shape(alpha);
@@ -731,22 +748,25 @@ impl Made {
             ("shape", format!("{solid} -o {}", quoted(name)))
         } else if is_shape || points.is_some() {
             let alpha = if is_shape { alpha } else { self.reference.alpha.squared() };
-            settings.push(Setting { name: "alpha", value: Written::number(alpha) });
+            set("alpha", alpha)?;
             let solid = if solid { " --solid" } else { "" };
             // A format that does not store how the points were made is that of `walpha points`.
             let is_table = points.is_some_and(|writer| !writer.packs);
             let program = if is_table { "points" } else { "shape" };
             (program, format!("{solid} -o {}", quoted(name)))
         } else {
-            let reference = Written::number(self.reference.alpha.squared());
-            settings.push(Setting { name: "alpha-ref", value: reference });
-            settings.push(Setting { name: "alphas", value: Written::Text(alpha.to_string()) });
+            set("alpha_ref", self.reference.alpha.squared())?;
+            stops = Some(alpha);
             let extension = Path::new(name).extension().unwrap_or_default().display().to_string();
             ("ladder", format!(" --mesh={} -o ladder", quoted(&extension)))
         };
-        let arguments: String =
-            settings.iter().map(|setting| format!(" {}", setting.argument())).collect();
-        let lines: String = settings.iter().map(|setting| setting.line() + "\n").collect();
+        let mut arguments: String =
+            settings.arguments().iter().map(|given| format!(" {}", argument(given))).collect();
+        let mut lines = settings.to_toml();
+        if let Some(alpha) = stops {
+            arguments += &format!(" --alphas={alpha}");
+            lines += &format!("alphas = \"{alpha}\"\n");
+        }
         let toml = format!(
             "# walpha {program} {input} --config=recipe.toml{output}\n[{program}]\n{lines}"
         );
@@ -754,7 +774,7 @@ impl Made {
             "command": format!("walpha {program} {input}{arguments}{output}"),
             "toml": toml,
         });
-        Answer::of(head, Vec::new())
+        Ok(Answer::of(head, Vec::new()))
     }
 }
 

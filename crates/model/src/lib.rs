@@ -23,8 +23,10 @@ pub mod labels;
 pub mod outofcore;
 pub mod pipeline;
 pub mod progress;
+pub mod settings;
 
 pub use export::Save;
 pub use interpolate::Interpolant;
 pub use labels::LabelChoice;
 pub use pipeline::Recipe;
+pub use settings::Settings;

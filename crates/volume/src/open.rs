@@ -2,7 +2,6 @@
 
 use std::path::{Path, PathBuf};
 
-use walpha_base::Monitor;
 use walpha_base::advice::Setting;
 
 use crate::formats;
@@ -145,7 +144,7 @@ impl Source {
 /// `folder` is there already or cannot be made; the volume cannot be read. Nothing is left behind then.
 #[cfg(feature = "zarr")]
 pub fn convert(source: &Source, folder: impl AsRef<Path>) -> Result<(), VolumeError> {
-    let monitor = &*Monitor::current();
+    let monitor = &*walpha_base::Monitor::current();
     crate::write::zarr(source, folder.as_ref(), monitor)
 }
 

@@ -8,11 +8,11 @@ use std::path::Path;
 use serde::Serialize;
 
 use super::{Ladder, LevelErrors, Mesh, short};
-use crate::cli::args::one_alpha;
 use crate::cli::errors::{fail, fail_usage};
 use crate::cli::folder::Folder;
 use crate::cli::global::Global;
 use crate::cli::offsets::FileOffset;
+use crate::cli::options::one_alpha;
 use crate::cli::outline;
 use crate::cli::output::{name, print_summary};
 use crate::cli::pipeline::{Domain, read};

@@ -9,15 +9,15 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use serde::Serialize;
 
-use super::args::{Alphas, FrozenPipelineArgs};
 use super::errors::{CommandError, fail_usage};
 use super::folder::Folder;
 use super::global::Global;
 use super::offsets::FileOffset;
+use super::options::{Alphas, FrozenPipelineArgs};
+use super::outline;
 use super::output::print_summary;
 use super::pipeline::{self, filled_in};
 use super::progress::Progress;
-use super::{outline, ranges};
 use crate::export::{ExportOptions, Exporter, Format};
 use crate::interpolate::{Deviation, Grid, Interpolant, InterpolateError};
 use crate::ladder::{Ladder as Levels, Level};
@@ -64,11 +64,11 @@ pub(super) struct Ladder {
     counts: Vec<u64>,
     /// Levels of detail: L² norms of the error allowed in the wavelet stage, in gray levels.
     #[arg(long, value_name = "E,E,…", value_delimiter = ',', group = "levels",
-          value_parser = super::args::not_negative)]
+          value_parser = super::options::not_negative)]
     epsilons: Vec<f64>,
     /// A region that keeps full detail (the points of --count, --ratio or --threshold, besides those
     /// of the level) at every level of detail; borders included. In the units of the points.
-    #[arg(long, value_name = "X0:X1,Y0:Y1,Z0:Z1", value_parser = ranges::places,
+    #[arg(long, value_name = "X0:X1,Y0:Y1,Z0:Z1", value_parser = super::options::places,
           allow_hyphen_values = true)]
     focus: Option<Region>,
     /// Meshes to write for each level, by extension, as in ply,vtu [default: none for α, ply for

@@ -8,11 +8,10 @@ use walpha_base::setters;
 use super::{AlphaRule, Choice, Parameter, PipelineError};
 use crate::interpolate::Refit;
 use crate::labels::LabelChoice;
+use crate::settings::Settings;
 use walpha_points::haar::{HaarOptions, Tolerance};
 use walpha_points::internal::LEAST_GRAY;
-use walpha_points::{
-    Columns, PointOptions, Points, PointsError, Selection, SelectionRule, Units, Weighting,
-};
+use walpha_points::{Columns, PointOptions, Points, PointsError, Selection, Units, Weighting};
 use walpha_shape::{Alpha, Balls, Classifier, Engine, ShapeError, ShapeOptions, Torus};
 use walpha_volume::{Coordinates, Frame, Gray, GrayRange, LengthUnit, ReadOptions, Space};
 
@@ -110,12 +109,12 @@ impl Recipe {
 
     /// The paper's experiment on any volume: its share of the samples, lengths in voxels, weights by its equation 4.1, and
     /// α = 10, which is the default for voxels. The command calls this `--preset paper`, and `reproduce` starts from it.
+    ///
+    /// # Panics
+    /// Never: it is a preset.
     pub fn paper() -> Self {
-        let share = SelectionRule::Ratio(paper::POINTS as f64 / paper::SAMPLES as f64);
-        Self::new()
-            .choice(Choice::Difference(Selection::default().rule(share)))
-            .units(Units::Voxel)
-            .weighting(Weighting::MinMax)
+        let settings = Settings::preset("paper").expect("a preset");
+        settings.recipe().expect("presets do not contradict themselves")
     }
 
     setters! {

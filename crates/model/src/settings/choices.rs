@@ -1,24 +1,30 @@
-//! Options that take one of a few names, for types of the libraries, which know nothing of the command.
-
-use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+//! Settings that are one of a few names.
 
 use crate::interpolate::Refit;
-use crate::shape::Engine;
-use crate::{Balls, Decomposition, Space, Units};
+use walpha_points::Units;
+use walpha_points::haar::Decomposition;
+use walpha_shape::{Balls, Engine};
+use walpha_volume::Space;
 
-/// A type whose values have names on the command line.
-pub(super) trait Named: Copy + Send + Sync + 'static {
+/// A type whose values have names.
+pub(super) trait Named: Copy + 'static {
     /// The values, each with its name and its help.
     const NAMES: &'static [(Self, &'static str, &'static str)];
 }
 
-/// Parses one of the names.
-pub(super) fn choice<T: Named>() -> impl TypedValueParser<Value = T> {
-    let names = T::NAMES.iter().map(|(_, name, help)| PossibleValue::new(*name).help(*help));
-    PossibleValuesParser::new(names).map(|given| {
-        let named = T::NAMES.iter().find(|(_, name, _)| *name == given);
-        named.expect("the parser lets only these names through").0
-    })
+/// How samples are chosen as points.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Select {
+    /// Those of largest gray difference.
+    #[default]
+    Difference,
+    /// One after another, where the interpolant of those before is worst.
+    Adaptive,
+}
+
+impl Named for Select {
+    const NAMES: &'static [(Self, &'static str, &'static str)] =
+        &[(Self::Difference, "difference", ""), (Self::Adaptive, "adaptive", "")];
 }
 
 impl Named for Engine {
@@ -91,4 +97,21 @@ impl Named for Space {
         (Self::Lps, "lps", "x to the left, y to the back, z to the head, as in DICOM and ITK"),
         (Self::Ras, "ras", "x to the right, y to the front, z to the head, as in NIfTI"),
     ];
+}
+
+/// The names of a setting that is one of a few, with their help.
+pub(super) fn of(setting: &str) -> Option<Vec<[&'static str; 2]>> {
+    fn names<T: Named>() -> Vec<[&'static str; 2]> {
+        T::NAMES.iter().map(|&(_, name, help)| [name, help]).collect()
+    }
+    Some(match setting {
+        "balls" => names::<Balls>(),
+        "engine" => names::<Engine>(),
+        "haar" => names::<Decomposition>(),
+        "refit" => names::<Refit>(),
+        "select" => names::<Select>(),
+        "space" => names::<Space>(),
+        "units" => names::<Units>(),
+        _ => return None,
+    })
 }

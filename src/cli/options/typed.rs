@@ -8,8 +8,8 @@ use clap::parser::ValueSource;
 use clap::{ArgMatches, Args, Command, FromArgMatches};
 use walpha_files::keep_input;
 
-use super::config;
-use super::errors::{CommandError, fail_usage};
+use super::config::CONFIGURED;
+use crate::cli::errors::{CommandError, fail_usage};
 use crate::volume::files_of;
 
 /// The names of the options that the user typed. Those from the file of `--config` are left out: they are for all
@@ -17,16 +17,11 @@ use crate::volume::files_of;
 ///
 /// It must be the first field that a command parses: the others remove their values from the matches.
 #[derive(Clone, Debug, Default)]
-pub(super) struct TypedOptions(Vec<String>);
+pub(crate) struct TypedOptions(Vec<String>);
 
 impl TypedOptions {
-    /// Whether the user typed this option.
-    pub(super) fn has(&self, name: &str) -> bool {
-        self.0.iter().any(|given| given == name)
-    }
-
     /// Refuses options that would have no effect; `why` follows their names.
-    pub(super) fn refuse(
+    pub(crate) fn refuse(
         &self,
         names: &[impl AsRef<str>],
         why: impl fmt::Display,
@@ -45,13 +40,17 @@ impl TypedOptions {
     }
 }
 
+/// Whether an option stands on the command line, not in the file of `--config`.
+fn is_typed(matches: &ArgMatches, name: &str) -> bool {
+    let configured = || matches.get_many::<String>(CONFIGURED).into_iter().flatten();
+    matches.value_source(name) == Some(ValueSource::CommandLine)
+        && !configured().any(|known| known == name)
+}
+
 impl FromArgMatches for TypedOptions {
     fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
-        let typed = |name: &str| {
-            matches.value_source(name) == Some(ValueSource::CommandLine) && !config::has_set(name)
-        };
         let names = matches.ids().map(|id| id.as_str().to_owned());
-        Ok(Self(names.filter(|name| typed(name)).collect()))
+        Ok(Self(names.filter(|name| is_typed(matches, name)).collect()))
     }
 
     fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
@@ -78,7 +77,7 @@ const WRITTEN: [&str; 3] = ["output", "out", "mask"];
 const IN_PLACE: &str = "in_place";
 
 /// Protects all inputs that a command line names from being replaced by an output.
-pub(super) fn protect_inputs(command: &Command, matches: &ArgMatches) -> anyhow::Result<()> {
+pub(crate) fn protect_inputs(command: &Command, matches: &ArgMatches) -> anyhow::Result<()> {
     let (mut command, mut matches, mut name) = (command, matches, String::from("walpha"));
     while let Some((of, inner)) = matches.subcommand()
         && let Some(subcommand) = command.find_subcommand(of)
@@ -88,9 +87,8 @@ pub(super) fn protect_inputs(command: &Command, matches: &ArgMatches) -> anyhow:
     }
     let args = || command.get_arguments();
     if matches.get_flag(IN_PLACE) {
-        let typed = matches.value_source(IN_PLACE) == Some(ValueSource::CommandLine);
         let writes = args().any(|arg| WRITTEN.contains(&arg.get_id().as_str()));
-        if typed && !config::has_set(IN_PLACE) && !writes {
+        if is_typed(matches, IN_PLACE) && !writes {
             fail_usage!("--in-place has no effect: `{name}` writes no file that it is given" => "omit it");
         }
         return Ok(());

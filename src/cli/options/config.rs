@@ -7,32 +7,36 @@ use std::ffi::{OsStr, OsString};
 use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
-use std::sync::OnceLock;
 
 use anyhow::Context;
 use clap::parser::ValueSource;
-use clap::{Arg, ArgAction, ArgGroup, ArgMatches, Command};
+use clap::{Arg, ArgAction, ArgGroup, ArgMatches, Command, FromArgMatches};
 use toml::{Table, Value};
 
 use walpha_base::near::nearest;
 use walpha_base::shown::shown;
 
-use super::errors::{CommandError, command_error, fail};
 use super::preset;
+use super::settings::Given;
+use crate::cli::errors::{CommandError, command_error, fail};
+use crate::cli::global::EVERY_COMMAND;
+use crate::settings::EXCLUSIVE;
 
 /// The option that names the file.
 const FILE: &str = "config";
 /// The option that prints one.
-pub(super) const PRINT: &str = "print-config";
+pub(crate) const PRINT: &str = "print-config";
 /// Bytes of a file with settings, at most: there are a hundred options.
 const LONGEST: u64 = 1 << 20;
+/// The hidden option that names the options which the file set.
+pub(crate) const CONFIGURED: &str = "configured";
 /// Options that a file cannot set: they concern the configuration itself, or only this call.
-const NOT_CONFIGURED: [&str; 5] = [FILE, PRINT, preset::OPTION, "help", "version"];
+const NOT_CONFIGURED: [&str; 6] = [FILE, PRINT, CONFIGURED, preset::OPTION, "help", "version"];
 
 /// `--config` and `--print-config`, for every command.
-pub(super) fn config_options() -> [Arg; 2] {
-    let option =
-        |name| Arg::new(name).long(name).global(true).help_heading(super::global::EVERY_COMMAND);
+pub(crate) fn config_options() -> [Arg; 3] {
+    let option = |name| Arg::new(name).long(name).global(true).help_heading(EVERY_COMMAND);
+    let configured = option(CONFIGURED).hide(true).action(ArgAction::Append);
     let file = option(FILE).value_name("FILE");
     let print = option(PRINT).action(ArgAction::SetTrue);
     [
@@ -40,51 +44,30 @@ pub(super) fn config_options() -> [Arg; 2] {
             "TOML file with options by their long names, as in alpha = 4; the command line takes precedence",
         ),
         print.help("Print the options in effect as a file for --config, and do nothing else"),
+        configured,
     ]
 }
 
-/// The arguments, with those from the file that `--config` names and from the preset that `--preset` names.
+/// The arguments, with those from the file that `--config` names.
 ///
 /// Keys are the long names of options. Those at the top level are for every command that has the option;
 /// a table named after a command is for that command, and takes precedence. The command line takes
-/// precedence over the file, the file over the preset, and settings that conflict with what takes precedence are ignored.
-pub(super) fn with_settings(
-    command: &Command,
-    args: Vec<OsString>,
-) -> anyhow::Result<Vec<OsString>> {
-    let mut set = Vec::new();
-    let args = with_layer(command, args, FILE, &mut set, |given, name| {
-        let Some(file) = path(given) else { return Ok(None) };
-        Ok(Some((shown(&file), read(command, &file, name)?)))
-    })?;
-    let args = with_layer(command, args, preset::OPTION, &mut set, |given, _| {
-        let name = given.try_get_one::<String>(preset::OPTION).ok().flatten();
-        let text = name.and_then(|name| Some((name.clone(), preset::text(name)?)));
-        Ok(text.map(|(name, text)| (name, preset_table(text))))
-    })?;
-    SET.get_or_init(|| set);
-    Ok(args)
-}
-
-/// The arguments, with those that an option names; `set` collects what they set.
-fn with_layer(
+/// precedence over the file, and settings that conflict with it are ignored.
+pub(crate) fn with_settings(
     command: &Command,
     mut args: Vec<OsString>,
-    option_name: &str,
-    set: &mut Vec<String>,
-    settings: impl Fn(&ArgMatches, &str) -> anyhow::Result<Option<(String, Table)>>,
 ) -> anyhow::Result<Vec<OsString>> {
-    let long = format!("--{option_name}");
+    let long = format!("--{FILE}");
     if !args.iter().any(|arg| arg.to_string_lossy().starts_with(&long)) {
         return Ok(args);
     }
-    // A first, lenient pass finds out what the settings may not set. Errors in the arguments are reported when all of
+    // A first, lenient pass finds out what the file may not set. Errors in the arguments are reported when all of
     // them are parsed.
     let lenient = command.clone().ignore_errors(true).try_get_matches_from(&args);
     let Ok(given) = lenient else { return Ok(args) };
     // `blocks plan` is a command of a command.
     let (mut subcommand, mut of_command, mut name) = (command, &given, "");
-    let mut found = settings(&given, name)?;
+    let mut file = path(&given);
     while let Some((inner_name, inner)) = of_command.subcommand()
         && let Some(inner_command) = subcommand.find_subcommand(inner_name)
     {
@@ -92,64 +75,53 @@ fn with_layer(
             name = inner_name;
         }
         (subcommand, of_command) = (inner_command, inner);
-        found = settings(of_command, name)?.or(found);
+        file = path(of_command).or(file);
     }
-    let Some((source, settings)) = found else { return Ok(args) };
+    let Some(file) = file else { return Ok(args) };
     let is_typed = |arg: &Arg| {
         of_command.value_source(arg.get_id().as_str()) == Some(ValueSource::CommandLine)
     };
     let mut more = Vec::new();
-    for (key, value) in settings {
+    for (key, value) in read(command, &file, name)? {
         let Some(arg) = option(subcommand, &key) else { continue };
         if is_typed(arg) || conflicting(subcommand, arg).into_iter().any(is_typed) {
             continue;
         }
         let text = arguments(arg, &value)
-            .with_context(|| format!("{source}: {key} = {value} makes no sense"))?;
+            .with_context(|| format!("{}: {key} = {value} makes no sense", shown(&file)))?;
         // A default need not be passed, and must not be where its option requires another.
         let defaults = arg.get_default_values();
         if matches!((&text[..], defaults), ([one], [default]) if *one == default_text(arg, default))
         {
             continue;
         }
-        more.extend(text.into_iter().map(OsString::from));
-        set.push(arg.get_id().to_string());
+        more.extend(text);
+        more.push(format!("--{CONFIGURED}={}", arg.get_id()));
     }
     let end = args.iter().position(|arg| arg == "--").unwrap_or(args.len());
-    args.splice(end..end, more);
+    args.splice(end..end, more.into_iter().map(OsString::from));
     Ok(args)
 }
 
-/// The settings of a preset.
-fn preset_table(text: &str) -> Table {
-    text.parse().expect("presets are TOML")
-}
-
-/// The settings of a preset as arguments of a command that has all of them.
-pub(super) fn settings_as_arguments(command: &Command, preset: &str) -> Vec<String> {
-    let all = preset_table(preset).into_iter().map(|(key, value)| {
-        let arg = option(command, &key).expect("an option of the command");
-        arguments(arg, &value).expect("a value of the option")
-    });
-    all.flatten().collect()
-}
-
-/// The names of the options that the file set, for this process.
-static SET: OnceLock<Vec<String>> = OnceLock::new();
-
-/// Whether the file or the preset set this option.
-pub(super) fn has_set(name: &str) -> bool {
-    SET.get().is_some_and(|set| set.iter().any(|known| known == name))
-}
-
 /// The options in force as a file for `--config`: what was given, and defaults.
-pub(super) fn print(subcommand: &Command, matches: &ArgMatches) -> String {
+pub(crate) fn print(subcommand: &Command, matches: &ArgMatches) -> String {
     let mut text = format!("# walpha {}\n", subcommand.get_name());
+    let of_preset = of_preset(matches);
     let is_default =
         |arg: &Arg| matches.value_source(arg.get_id().as_str()) == Some(ValueSource::DefaultValue);
     let is_given = |arg: &Arg| matches!(matches.value_source(arg.get_id().as_str()), Some(source) if source != ValueSource::DefaultValue);
     for arg in options(subcommand) {
+        let id = arg.get_id().as_str();
+        if let Some((_, value)) = of_preset.iter().find(|(name, _)| *name == id) {
+            text +=
+                &format!("{} = {}\n", arg.get_long().unwrap_or_default(), self::value(arg, value));
+            continue;
+        }
         // A default that conflicts with a given option is not in force.
+        let is_excluded = of_preset.iter().any(|(name, _)| excludes(name, id));
+        if is_default(arg) && is_excluded {
+            continue;
+        }
         if is_default(arg) && conflicting(subcommand, arg).into_iter().any(is_given) {
             continue;
         }
@@ -160,6 +132,19 @@ pub(super) fn print(subcommand: &Command, matches: &ArgMatches) -> String {
         text += &format!("{key} = {value}\n");
     }
     text
+}
+
+/// The settings that the preset adds to those given.
+fn of_preset(matches: &ArgMatches) -> Vec<(&'static str, String)> {
+    let all = Given::from_arg_matches(matches).expect("all have parsers");
+    let is_given = |name| matches.value_source(name) == Some(ValueSource::CommandLine);
+    let added = all.settings.iter().filter(|(name, _)| !is_given(name));
+    added.map(|(name, text)| (name, text.to_owned())).collect()
+}
+
+/// Whether one setting excludes another.
+fn excludes(one: &str, other: &str) -> bool {
+    EXCLUSIVE.iter().any(|names| names.contains(&one) && names.contains(&other))
 }
 
 fn path(matches: &ArgMatches) -> Option<PathBuf> {

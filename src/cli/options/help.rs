@@ -2,8 +2,8 @@
 
 use clap::{Arg, Command};
 
-use super::global::EVERY_COMMAND;
 use super::preset;
+use crate::cli::global::EVERY_COMMAND;
 
 /// Heading of outputs, and the options of commands that belong there.
 const OUTPUT: &str = "Output";
@@ -30,7 +30,7 @@ const COMMON: [&str; 12] = [
 ];
 
 /// The command with its options in the order of use, of which `-h` shows the common ones.
-pub(super) fn arranged(command: Command) -> Command {
+pub(crate) fn arranged(command: Command) -> Command {
     let mut command = command.mut_subcommands(arranged);
     let mut order: Vec<(usize, String)> = command
         .get_arguments()

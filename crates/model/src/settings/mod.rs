@@ -1,0 +1,559 @@
+//! The options of a [`Recipe`] as users write them: on the command line, in a file for `--config`, as a preset, in the page.
+//!
+//! One vocabulary for all of these: a setting has one name and one parser, which stand here. [`Settings::recipe`] says what it
+//! means; the command adds its help.
+
+mod choices;
+pub mod parse;
+
+use std::error::Error;
+use std::fmt;
+use std::num::NonZeroUsize;
+
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use serde_json::{Map, Value};
+use walpha_base::advice::{Advice, Setting, advice};
+use walpha_points::haar::{Decomposition, HaarOptions, Tolerance};
+use walpha_points::{Columns, Selection, SelectionRule, Units, Weighting};
+use walpha_shape::{Alpha, Balls, Engine, Torus};
+use walpha_volume::{Dims, Dtype, Endian, GrayRange, Nan, RawLayout, ReadOptions, Region, Space};
+
+use crate::Recipe;
+use crate::interpolate::Refit;
+use crate::labels::LabelChoice;
+use crate::pipeline::{AlphaRule, Choice, Goal};
+pub use choices::Select;
+
+/// What is wrong with a setting, and what to do about it. Both may name settings.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SettingError {
+    /// What is wrong.
+    pub why: Advice,
+    /// What to do about it.
+    pub next: Option<Advice>,
+}
+
+impl SettingError {
+    fn new(why: impl Into<Advice>, next: impl Into<Advice>) -> Self {
+        Self { why: why.into(), next: Some(next.into()) }
+    }
+
+    fn of(error: &impl ToString, next: Option<Advice>) -> Self {
+        Self { why: error.to_string().into(), next }
+    }
+
+    /// What to do about it.
+    pub fn advice(&self) -> Option<Advice> {
+        self.next.clone()
+    }
+}
+
+impl fmt::Display for SettingError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.why.fmt(f)
+    }
+}
+
+impl Error for SettingError {}
+
+/// A preset: its name, and its settings in TOML.
+pub type Preset = (&'static str, &'static str);
+
+/// Bone in a CT.
+pub const CT_BONE: &str = "ct-bone";
+/// The solid of all labels.
+pub const LABELS: &str = "labels";
+/// All presets.
+pub const PRESETS: [Preset; 7] = [
+    (CT_BONE, include_str!("../../presets/ct-bone.toml")),
+    ("ct-skin", include_str!("../../presets/ct-skin.toml")),
+    (LABELS, include_str!("../../presets/labels.toml")),
+    ("mri", include_str!("../../presets/mri.toml")),
+    ("points", include_str!("../../presets/points.toml")),
+    ("molecule", include_str!("../../presets/molecule.toml")),
+    ("paper", include_str!("../../presets/paper.toml")),
+];
+
+/// Settings of which only one is used.
+pub const EXCLUSIVE: &[&[&str]] = &[
+    &["rms", "epsilon", "coefficients"],
+    &["count", "ratio", "threshold"],
+    &["gray_min", "value_min"],
+    &["max_error", "target_rmse"],
+    &["max_error", "exchange"],
+    &["alpha", "alpha_radius"],
+    &["blocks", "memory"],
+    &["dims", "input_format"],
+    &["dims", "level"],
+    &["dims", "array"],
+    &["dims", "frame"],
+    &["dims", "series"],
+    &["dims", "skip_damaged"],
+    &["dims", "no_resample"],
+];
+
+macro_rules! settings {
+    ($($group:ident { $($(#[$doc:meta])* $name:ident: $kind:ty = $parse:expr,)* })*) => {
+        /// A group of settings, which a command has as a whole.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        #[allow(missing_docs, reason = "their settings say what they are about")]
+        pub enum Group {
+            $($group),*
+        }
+
+        /// Settings that were given; the others have their defaults. Names are those of the methods; in files and on the command line
+        /// they have hyphens.
+        ///
+        /// ```
+        /// use walpha_model::settings::Settings;
+        ///
+        /// let bone = Settings::preset("ct-bone").expect("a preset");
+        /// let mut mine = Settings::default();
+        /// mine.set("count", "1000")?;
+        /// let both = mine.over(&bone);
+        /// assert_eq!((both.count(), both.threshold(), both.rms()), (Some(&1000), None, Some(&4.0)));
+        /// let recipe = both.recipe()?;
+        /// # Ok::<(), walpha_model::settings::SettingError>(())
+        /// ```
+        #[derive(Clone, Debug, Default)]
+        pub struct Settings {
+            $($($name: Option<$kind>,)*)*
+            /// All of them as they were written, in this order.
+            written: Vec<(&'static str, String)>,
+        }
+
+        impl Settings {
+            /// The names of all settings with their groups.
+            pub const NAMES: &[(&str, Group)] = &[$($((stringify!($name), Group::$group),)*)*];
+
+            $($($(#[$doc])* pub fn $name(&self) -> Option<&$kind> {
+                self.$name.as_ref()
+            })*)*
+
+            /// Parses a setting and stores it. Returns whether there is one of this name.
+            fn store(&mut self, name: &str, text: &str) -> Result<bool, SettingError> {
+                match name {
+                    $($(stringify!($name) => self.$name = Some($parse(text)?),)*)*
+                    _ => return Ok(false),
+                }
+                Ok(true)
+            }
+
+            fn forget(&mut self, name: &str) {
+                match name {
+                    $($(stringify!($name) => self.$name = None,)*)*
+                    _ => {}
+                }
+                self.written.retain(|(known, _)| *known != name);
+            }
+        }
+    };
+}
+
+settings! {
+    Input {
+        /// Format of the input, as an extension.
+        input_format: String = parse::input_format,
+        /// Values that become gray 0 and 255.
+        gray: GrayRange = parse::gray_range,
+        /// Whether gray levels are written.
+        gray_out: bool = parse::switch,
+        /// Columns of a table of points.
+        columns: Columns = parse::columns,
+        /// Classes of points in LAS.
+        class: Vec<u8> = parse::classes,
+        /// Whether withheld points in LAS are read.
+        withheld: bool = parse::switch,
+        /// Side of the cubes of which one point is kept.
+        thin: f64 = parse::positive,
+    }
+    Part {
+        /// Level of a pyramid.
+        level: u32 = parse::plain,
+        /// Name of an array.
+        array: String = parse::plain,
+        /// Number of a volume.
+        frame: u64 = parse::plain,
+        /// Series of a folder.
+        series: String = parse::plain,
+        /// Whether damaged slices are skipped.
+        skip_damaged: bool = parse::switch,
+        /// Whether uneven slices are refused.
+        no_resample: bool = parse::switch,
+        /// What replaces NaN.
+        nan: Nan = parse::nan,
+        /// Part of the volume.
+        roi: Region = parse::samples,
+        /// Samples along each axis that become one.
+        downsample: NonZeroUsize = parse::plain,
+    }
+    Raw {
+        /// Sizes of a raw file.
+        dims: Dims = parse::dims,
+        /// Type of a sample.
+        dtype: Dtype = parse::plain,
+        /// Byte order of a sample.
+        endian: Endian = parse::plain,
+        /// Bytes before the samples.
+        offset: u64 = parse::plain,
+    }
+    Labels {
+        /// Labels whose solid the shape is.
+        label: LabelChoice = parse::plain,
+    }
+    Haar {
+        /// Kind of decomposition.
+        haar: Decomposition = parse::named,
+        /// Root mean square error.
+        rms: f64 = parse::not_negative,
+        /// L² norm of the error.
+        epsilon: f64 = parse::not_negative,
+        /// Number of coefficients.
+        coefficients: u64 = parse::plain,
+    }
+    Points {
+        /// How samples are chosen.
+        select: Select = parse::named,
+        /// RMSE that is good enough.
+        target_rmse: f64 = parse::not_negative,
+        /// Largest error that is good enough.
+        max_error: f64 = parse::not_negative,
+        /// Whether points are exchanged.
+        exchange: bool = parse::switch,
+        /// Number of points.
+        count: u64 = parse::count,
+        /// Share of the samples.
+        ratio: f64 = parse::share,
+        /// Least gray difference.
+        threshold: f64 = parse::not_nan,
+        /// Least gray level.
+        gray_min: f64 = parse::not_nan,
+        /// Least value.
+        value_min: f64 = parse::plain,
+    }
+    Coordinates {
+        /// Units of coordinates.
+        units: Units = parse::named,
+        /// Directions of world coordinates.
+        space: Space = parse::named,
+    }
+    Refit {
+        /// What values are fitted to.
+        refit: Refit = parse::named,
+    }
+    Weights {
+        /// The parameter, or how it is found.
+        alpha: AlphaRule = parse::alpha,
+        /// The parameter as a radius.
+        alpha_radius: Alpha = parse::alpha_radius,
+    }
+    Frozen {
+        /// The parameter at which weights are computed.
+        alpha_ref: AlphaRule = parse::alpha,
+    }
+    Weighting {
+        /// Where weights come from.
+        weights: Weighting = parse::weighting,
+    }
+    Shape {
+        /// How α and ω define balls.
+        balls: Balls = parse::named,
+        /// Which engine computes the shape.
+        engine: Engine = parse::named,
+        /// Number of blocks.
+        blocks: NonZeroUsize = parse::plain,
+        /// Bound on memory.
+        memory: u64 = parse::bytes,
+        /// Whether exterior simplices are kept.
+        exterior: bool = parse::switch,
+        /// Whether hidden points are listed.
+        hidden: bool = parse::switch,
+    }
+    Periodic {
+        /// Sides of a periodic box.
+        periodic: Torus = parse::torus,
+    }
+}
+
+impl Settings {
+    /// A preset.
+    ///
+    /// # Panics
+    /// Never: presets are settings.
+    pub fn preset(name: &str) -> Option<Self> {
+        let (_, text) = PRESETS.iter().find(|(known, _)| *known == name)?;
+        Some(toml::from_str(text).expect("presets are settings"))
+    }
+
+    /// The names of the settings of a group.
+    pub fn names(group: Group) -> impl Iterator<Item = &'static str> {
+        Self::NAMES.iter().filter(move |(_, of)| *of == group).map(|(name, _)| *name)
+    }
+
+    /// The values of a setting that has names for them, each with its help.
+    pub fn choices(name: &str) -> Option<Vec<[&'static str; 2]>> {
+        choices::of(name)
+    }
+
+    /// Sets one, given as text. What excludes it is unset.
+    ///
+    /// # Errors
+    /// A name that no setting has, or text that does not parse.
+    pub fn set(&mut self, name: &str, text: &str) -> Result<(), SettingError> {
+        let name = name.replace('-', "_");
+        let Some(&(name, _)) = Self::NAMES.iter().find(|(known, _)| *known == name) else {
+            return Err(SettingError::new(
+                format!("no option has the name {name}"),
+                "see the help of the command",
+            ));
+        };
+        self.store(name, text)?;
+        let excluded = EXCLUSIVE.iter().filter(|names| names.contains(&name)).copied().flatten();
+        excluded.filter(|other| **other != name).for_each(|other| self.forget(other));
+        self.written.retain(|(known, _)| *known != name);
+        self.written.push((name, text.to_owned()));
+        Ok(())
+    }
+
+    /// Unsets one, which then has its default.
+    pub fn unset(&mut self, name: &str) {
+        self.forget(&name.replace('-', "_"));
+    }
+
+    /// These, and of others those that these leave open.
+    ///
+    /// # Panics
+    /// Never: what parsed once parses again.
+    #[must_use]
+    pub fn over(&self, others: &Self) -> Self {
+        let mut all = others.clone();
+        for (name, text) in &self.written {
+            all.set(name, text).expect("it was parsed before");
+        }
+        all
+    }
+
+    /// Those given, each with its text.
+    pub fn iter(&self) -> impl Iterator<Item = (&'static str, &str)> {
+        self.written.iter().map(|(name, text)| (*name, text.as_str()))
+    }
+
+    /// Whether one was given.
+    pub fn has(&self, name: &str) -> bool {
+        self.written.iter().any(|(known, _)| *known == name)
+    }
+
+    /// Those given as arguments of the command.
+    pub fn arguments(&self) -> Vec<String> {
+        let argument = |(name, text): &(&str, String)| {
+            let name = name.replace('_', "-");
+            if text == "true" { format!("--{name}") } else { format!("--{name}={text}") }
+        };
+        self.written.iter().filter(|(_, text)| text != "false").map(argument).collect()
+    }
+
+    /// Those given as TOML, a line for each.
+    pub fn to_toml(&self) -> String {
+        let value = |text: &str| match text.parse::<f64>() {
+            Ok(number) if number.is_finite() => text.to_owned(),
+            _ if ["true", "false"].contains(&text) => text.to_owned(),
+            // JSON's escapes are among TOML's.
+            _ => Value::from(text).to_string(),
+        };
+        self.iter()
+            .map(|(name, text)| format!("{} = {}\n", name.replace('_', "-"), value(text)))
+            .collect()
+    }
+
+    /// How a volume is read.
+    pub fn reading(&self) -> ReadOptions {
+        ReadOptions::default()
+            .raw(self.layout())
+            .format(self.input_format.clone())
+            .level(self.level)
+            .array(self.array.clone())
+            .frame(self.frame)
+            .series(self.series.clone())
+            .skip_damaged(self.skip_damaged == Some(true))
+            .no_resample(self.no_resample == Some(true))
+            .nan(self.nan)
+            .region(self.roi)
+            .downsample(self.downsample)
+    }
+
+    /// The layout of the samples, if the file is raw.
+    fn layout(&self) -> Option<RawLayout> {
+        let layout =
+            |(dims, dtype)| RawLayout::new(dims, dtype).endian(self.endian.unwrap_or_default());
+        self.dims.zip(self.dtype).map(|of| layout(of).offset(self.offset.unwrap_or_default()))
+    }
+
+    /// How a volume is transformed.
+    pub fn transform(&self) -> HaarOptions {
+        let tolerance = match (self.epsilon, self.coefficients, self.rms) {
+            (Some(epsilon), ..) => Tolerance::Epsilon(epsilon),
+            (_, Some(count), _) => Tolerance::Coefficients(count),
+            (.., Some(rms)) => Tolerance::Rms(rms),
+            _ => HaarOptions::default().tolerance,
+        };
+        let decomposition = self.haar.unwrap_or(HaarOptions::default().decomposition);
+        HaarOptions::default().decomposition(decomposition).tolerance(tolerance)
+    }
+
+    /// By which rule samples are selected.
+    pub fn rule(&self) -> SelectionRule {
+        match (self.count, self.threshold, self.ratio) {
+            (Some(count), ..) => SelectionRule::Count(count),
+            (_, Some(threshold), _) => SelectionRule::Threshold(threshold),
+            (.., Some(ratio)) => SelectionRule::Ratio(ratio),
+            _ => SelectionRule::default(),
+        }
+    }
+
+    /// α, or how it is found.
+    pub fn parameter(&self) -> AlphaRule {
+        let given = self.alpha_radius.map(AlphaRule::Given);
+        given.or(self.alpha).or(self.alpha_ref).unwrap_or_default()
+    }
+
+    fn choice(&self) -> Result<Choice, SettingError> {
+        let exchange = self.exchange == Some(true);
+        if self.select != Some(Select::Adaptive) {
+            let belongs = |what: &[Setting], next: Advice| {
+                let names = listed(what);
+                Err(SettingError::new(
+                    names.and(advice![
+                        if what.len() == 1 { " belongs" } else { " belong" },
+                        " to ",
+                        Setting::Select,
+                        " adaptive"
+                    ]),
+                    next,
+                ))
+            };
+            if self.target_rmse.is_some() {
+                return belongs(&[Setting::TargetRmse], advice!["add it, or use ", Setting::Count]);
+            }
+            if self.max_error.is_some() || exchange {
+                return belongs(&[Setting::MaxError, Setting::Exchange], advice!["add it"]);
+            }
+            return Ok(Choice::Difference(
+                Selection::default().rule(self.rule()).gray_min(self.gray_min),
+            ));
+        }
+        if self.threshold.is_some() || self.gray_min.or(self.value_min).is_some() {
+            let why =
+                listed(&[Setting::Threshold, Setting::GrayMin, Setting::ValueMin]).and(advice![
+                    " choose by gray levels, which ",
+                    Setting::Select,
+                    " adaptive does not"
+                ]);
+            let next =
+                advice!["use ", Setting::Count, ", ", Setting::Ratio, " or ", Setting::TargetRmse];
+            return Err(SettingError::new(why, next));
+        }
+        let goal = Goal {
+            count: self.count,
+            ratio: self.ratio,
+            rmse: self.target_rmse,
+            max_error: self.max_error,
+        };
+        Ok(if exchange { Choice::Exchanged(goal) } else { Choice::Adaptive(goal) })
+    }
+
+    /// The recipe with these settings.
+    ///
+    /// # Errors
+    /// Settings that contradict each other.
+    pub fn recipe(&self) -> Result<Recipe, SettingError> {
+        let is_set = |switch: Option<bool>| switch == Some(true);
+        let recipe = Recipe::new()
+            .read(self.reading())
+            .columns(self.columns.clone())
+            .classes(self.class.clone())
+            .withheld(is_set(self.withheld))
+            .thin(self.thin)
+            .labels(self.label.clone())
+            .gray(self.gray)
+            .gray_out(is_set(self.gray_out))
+            .units(self.units)
+            .space(self.space)
+            .haar(self.transform())
+            .choice(self.choice()?)
+            .value_min(self.value_min)
+            .refit(self.refit)
+            .weighting(self.weights)
+            .alpha(self.parameter())
+            .balls(self.balls.unwrap_or_default())
+            .engine(self.engine.unwrap_or_default())
+            .exterior(is_set(self.exterior))
+            .hidden(is_set(self.hidden))
+            .blocks(self.blocks)
+            .memory(self.memory)
+            .periodic(self.periodic);
+        if recipe.engine == Engine::Cgal && recipe.blocks.is_some_and(|blocks| blocks.get() > 1) {
+            return Err(SettingError::new(
+                advice![Setting::Blocks, " has no effect: the engine cgal does not work in blocks"],
+                advice!["omit it, or take ", Setting::Engine, " native"],
+            ));
+        }
+        recipe.check().map_err(|error| SettingError {
+            why: error.to_string().into(),
+            next: error.advice(),
+        })?;
+        if recipe.refit == Some(Refit::Whole) && recipe.memory.is_some() {
+            return Err(SettingError::new(
+                advice![
+                    Setting::Memory,
+                    " has no effect: ",
+                    Setting::Refit,
+                    " fits values on the whole triangulation"
+                ],
+                advice!["omit it, or give ", Setting::Refit, "=shape"],
+            ));
+        }
+        Ok(recipe)
+    }
+}
+
+/// Names of settings as a list.
+fn listed(settings: &[Setting]) -> Advice {
+    let mut parts = Vec::new();
+    for (k, setting) in settings.iter().enumerate() {
+        if k > 0 {
+            parts.push(if k + 1 == settings.len() { " and " } else { ", " }.into());
+        }
+        parts.push((*setting).into());
+    }
+    Advice::new(parts)
+}
+
+/// By their names with hyphens; values are text, numbers, `true`, or lists of these.
+impl<'de> Deserialize<'de> for Settings {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let mut settings = Self::default();
+        for (name, value) in Map::deserialize(deserializer)? {
+            let text = match &value {
+                Value::Null => continue,
+                Value::Array(items) => items.iter().map(plain_text).collect::<Vec<_>>().join(","),
+                value => plain_text(value),
+            };
+            settings
+                .set(&name, &text)
+                .map_err(|error| D::Error::custom(format_args!("{name} = {value}: {error}")))?;
+        }
+        Ok(settings)
+    }
+}
+
+fn plain_text(value: &Value) -> String {
+    value.as_str().map_or_else(|| value.to_string(), str::to_owned)
+}
+
+impl Serialize for Settings {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer
+            .collect_map(self.written.iter().map(|(name, text)| (name.replace('_', "-"), text)))
+    }
+}

@@ -1,0 +1,282 @@
+//! Settings from text. Each parser says what is wrong, and how a value looks.
+
+use std::fmt::Display;
+use std::str::FromStr;
+
+use walpha_points::Columns;
+use walpha_points::Weighting;
+use walpha_shape::{Alpha, Torus};
+use walpha_volume::{Dims, GrayRange, Nan, Region};
+
+use super::SettingError;
+use super::choices::Named;
+use crate::pipeline::AlphaRule;
+
+/// An error: what is wrong, and after `=>` what to do.
+macro_rules! fail {
+    ($why:literal $(, $of_why:expr)* => $next:literal $(, $of_next:expr)*) => {
+        return Err(error!($why $(, $of_why)* => $next $(, $of_next)*))
+    };
+}
+
+macro_rules! error {
+    ($why:literal $(, $of_why:expr)* => $next:literal $(, $of_next:expr)*) => {
+        SettingError::new(format!($why $(, $of_why)*), format!($next $(, $of_next)*))
+    };
+}
+
+/// A type whose own parser says all that there is to say.
+pub(super) fn plain<T: FromStr<Err: Display>>(text: &str) -> Result<T, SettingError> {
+    text.parse().map_err(|error: T::Err| SettingError { why: error.to_string().into(), next: None })
+}
+
+/// One of a few names.
+pub(super) fn named<T: Named>(text: &str) -> Result<T, SettingError> {
+    let known = || T::NAMES.iter().map(|(_, name, _)| *name).collect::<Vec<_>>().join(", ");
+    let found = T::NAMES.iter().find(|(_, name, _)| *name == text);
+    found
+        .map(|(value, ..)| *value)
+        .ok_or_else(|| error!("{text:?} is unknown" => "give one of {}", known()))
+}
+
+/// A switch.
+pub(super) fn switch(text: &str) -> Result<bool, SettingError> {
+    text.parse().map_err(|_| error!("{text:?} is neither true nor false" => "give true or false"))
+}
+
+pub(super) fn columns(text: &str) -> Result<Columns, SettingError> {
+    text.parse().map_err(|error: walpha_points::UnknownColumns| {
+        SettingError::of(&error, Some(error.advice()))
+    })
+}
+
+pub(super) fn weighting(text: &str) -> Result<Weighting, SettingError> {
+    text.parse().map_err(|error: walpha_points::UnknownWeighting| {
+        SettingError::of(&error, Some(error.advice()))
+    })
+}
+
+pub(super) fn alpha(text: &str) -> Result<AlphaRule, SettingError> {
+    text.parse().map_err(|error: walpha_shape::AlphaError| {
+        SettingError::of(&error, Some(error.advice().into()))
+    })
+}
+
+pub(super) fn input_format(text: &str) -> Result<String, SettingError> {
+    let named = text.trim_start_matches('.').to_lowercase();
+    let volumes = walpha_volume::FORMATS.iter().flat_map(|format| format.extensions);
+    let known: Vec<&str> = volumes
+        .chain(walpha_points::FORMATS.iter().flat_map(|format| format.extensions))
+        .copied()
+        .collect();
+    if !known.contains(&named.as_str()) {
+        fail!("no format that is read has the extension {text:?}" => "give one of {}", known.join(", "));
+    }
+    Ok(named)
+}
+
+pub(super) fn dims(text: &str) -> Result<Dims, SettingError> {
+    let size = |size: &str| {
+        let whole = size.trim().parse::<u64>();
+        whole.map_err(|_| error!("{size:?} is not a whole number" => "give sizes as in 64,64,64"))
+    };
+    let sizes: Vec<u64> = text.split(',').map(size).collect::<Result<_, _>>()?;
+    let [x, y, z] = sizes[..] else {
+        fail!("three sizes are needed" => "give those along x, y and z, as in 64,64,64");
+    };
+    Dims::unbounded(x, y, z).map_err(|error| SettingError::of(&error, error.advice()))
+}
+
+pub(super) fn nan(text: &str) -> Result<Nan, SettingError> {
+    if text == "mask" {
+        return Ok(Nan::Mask);
+    }
+    let value = number(text)? as f32;
+    if !value.is_finite() {
+        fail!("a finite number is needed" => "give it as in -1000, or give none");
+    }
+    Ok(Nan::Value(value))
+}
+
+pub(super) fn gray_range(text: &str) -> Result<GrayRange, SettingError> {
+    let Some((low, high)) = text.split_once("..") else {
+        fail!("two numbers are needed" => "give them as in -1000..2000");
+    };
+    let range = GrayRange { low: number(low)?, high: number(high)? };
+    if !(range.low < range.high && range.low.is_finite() && range.high.is_finite()) {
+        fail!("LO must be less than HI, and both finite" => "give them as in -1000..2000");
+    }
+    Ok(range)
+}
+
+pub(super) fn bytes(text: &str) -> Result<u64, SettingError> {
+    let units = [("K", 10), ("M", 20), ("G", 30), ("T", 40)];
+    let unit = units.iter().find_map(|(name, bits)| Some((text.strip_suffix(name)?, bits)));
+    let (number, bits) = unit.unwrap_or((text, &0));
+    let Some(bytes) = number.parse().ok().and_then(|n: u64| n.checked_mul(1 << bits)) else {
+        fail!("a whole number of bytes is needed" => "give it as in 2G, 500M or 1073741824");
+    };
+    Ok(bytes)
+}
+
+/// A number, infinite or NaN ones included.
+///
+/// # Errors
+/// Text that is not a number.
+pub fn number(text: &str) -> Result<f64, SettingError> {
+    text.trim()
+        .parse()
+        .map_err(|_| error!("{text:?} is not a number" => "give one as in 10 or 2.5"))
+}
+
+pub(super) fn count(text: &str) -> Result<u64, SettingError> {
+    match text.trim().parse() {
+        Ok(0) => fail!("a count from 1 up is needed" => "give it as in 15956"),
+        count => {
+            count.map_err(|_| error!("{text:?} is not a whole number" => "give one as in 15956"))
+        }
+    }
+}
+
+pub(super) fn share(text: &str) -> Result<f64, SettingError> {
+    let share = number(text)?;
+    if !(share > 0.0 && share <= 1.0) {
+        fail!("a share above 0 and up to 1 is needed" => "give it as in 0.0609 for 6.09 %");
+    }
+    Ok(share)
+}
+
+pub(super) fn not_nan(text: &str) -> Result<f64, SettingError> {
+    let number = number(text)?;
+    if number.is_nan() {
+        fail!("a gray level is needed" => "give it as in 50 or 12.5");
+    }
+    Ok(number)
+}
+
+/// A number from 0 up.
+///
+/// # Errors
+/// Another number, or text that is not a number.
+pub fn not_negative(text: &str) -> Result<f64, SettingError> {
+    let number = number(text)?;
+    if number.is_nan() || number < 0.0 {
+        fail!("a number from 0 up is needed" => "give it as in 1 or 2.5");
+    }
+    Ok(number)
+}
+
+pub(super) fn positive(text: &str) -> Result<f64, SettingError> {
+    let number = number(text)?;
+    if !(number > 0.0 && number.is_finite()) {
+        fail!("a positive number is needed" => "give it as in 0.5");
+    }
+    Ok(number)
+}
+
+/// Codes of classes in LAS, by name or number, separated by commas (ASPRS LAS 1.4, table 17).
+pub(super) fn classes(text: &str) -> Result<Vec<u8>, SettingError> {
+    let codes = text.split(',').map(class).collect::<Result<Vec<_>, _>>()?;
+    Ok(codes.concat())
+}
+
+fn class(text: &str) -> Result<Vec<u8>, SettingError> {
+    Ok(match text.trim() {
+        "unclassified" => vec![0, 1],
+        "ground" => vec![2],
+        "vegetation" => vec![3, 4, 5],
+        "building" => vec![6],
+        "water" => vec![9],
+        number => match number.parse() {
+            Ok(number) => vec![number],
+            Err(_) => {
+                fail!("{number:?} is not a class of points" => "give ground, vegetation, building, water, unclassified, or a number from 0 to 255")
+            }
+        },
+    })
+}
+
+pub(super) fn alpha_radius(text: &str) -> Result<Alpha, SettingError> {
+    Alpha::from_radius(number(text)?)
+        .map_err(|error| SettingError::of(&error, Some(error.advice().into())))
+}
+
+pub(super) fn torus(text: &str) -> Result<Torus, SettingError> {
+    let sides: Vec<f64> = text.split(',').map(number).collect::<Result<_, _>>()?;
+    let &[x, y, z] = &sides[..] else {
+        fail!("three sides are needed" => "give those along x, y and z, as in 10,10,20");
+    };
+    Torus::new([x, y, z]).map_err(|error| SettingError::of(&error, Some(error.advice())))
+}
+
+/// The ends of three ranges as text, without surrounding white space.
+fn ends(text: &str) -> Result<[[&str; 2]; 3], SettingError> {
+    let ranges: Vec<&str> = text.split(',').collect();
+    let &[x, y, z] = ranges.as_slice() else {
+        fail!("three ranges are needed" => "give those of x, y and z, as in 20:40,20:40,10:30");
+    };
+    let mut ends = [[""; 2]; 3];
+    for (range, ends) in [x, y, z].into_iter().zip(&mut ends) {
+        let Some((first, end)) = range.split_once(':') else {
+            fail!("`{range}` is not a range" => "give two numbers, as in 20:40");
+        };
+        *ends = [first.trim(), end.trim()];
+    }
+    Ok(ends)
+}
+
+/// Samples from one index up to, and without, another; ends may be omitted.
+pub(super) fn samples(text: &str) -> Result<Region, SettingError> {
+    let mut region = Region::default();
+    for (k, [first, end]) in ends(text)?.into_iter().enumerate() {
+        let index = |text: &str| {
+            match text {
+            "" => Ok(None),
+            text => text.parse().map(Some).map_err(
+                |_| error!("`{text}` is not an index of a sample" => "give whole numbers, as in 20:40"),
+            ),
+        }
+        };
+        (region.first[k], region.end[k]) = (index(first)?.unwrap_or(0), index(end)?);
+    }
+    Ok(region)
+}
+
+/// A box in the units of the points, borders included: `X0:X1,Y0:Y1,Z0:Z1`.
+///
+/// # Errors
+/// Text that is not three ranges of finite numbers.
+pub fn places(text: &str) -> Result<walpha_points::Region, SettingError> {
+    let mut region = walpha_points::Region { low: [0.0; 3], high: [0.0; 3] };
+    for (k, [low, high]) in ends(text)?.into_iter().enumerate() {
+        let finite = |text: &str| match text.parse() {
+            Ok(number) if f64::is_finite(number) => Ok(number),
+            _ => Err(error!("`{text}` is not a finite number" => "give one, as in 20 or 2.5")),
+        };
+        (region.low[k], region.high[k]) = (finite(low)?, finite(high)?);
+        if region.low[k] > region.high[k] {
+            fail!("`{low}:{high}` is not a range" => "give the smaller number first, as in 20:40");
+        }
+    }
+    Ok(region)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn both_kinds_of_ranges_are_read() {
+        let region = samples("20:40, : ,10:").unwrap();
+        assert_eq!((region.first, region.end), ([20, 0, 10], [Some(40), None, None]));
+        let region = places("-1:2.5,0:0, 1e3 :2e3").unwrap();
+        assert_eq!((region.low, region.high), ([-1.0, 0.0, 1e3], [2.5, 0.0, 2e3]));
+        for text in ["1:2,3:4", "1:2,3:4,5", "1:2,3:4,5:x", "1:2,3:4,5:6,7:8"] {
+            assert!(samples(text).is_err() && places(text).is_err(), "{text}");
+        }
+        for text in ["1:2,3:4,:", "1:2,3:4,6:5", "1:2,3:4,5:inf"] {
+            assert!(places(text).is_err(), "{text}");
+        }
+        assert!(samples("1.5:2,3:4,5:6").is_err());
+    }
+}

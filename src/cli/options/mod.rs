@@ -1,0 +1,163 @@
+//! Options that several commands share, and how they become a recipe: help and syntax stand here, meaning in
+//! [`Settings`](crate::settings::Settings).
+
+mod alphas;
+pub(super) mod config;
+pub(super) mod help;
+mod input;
+mod output_format;
+pub(super) mod preset;
+mod settings;
+pub(super) mod typed;
+
+use std::marker::PhantomData;
+
+use clap::Args;
+
+pub(super) use alphas::{Alphas, one_alpha};
+pub(super) use input::InputArgs;
+pub(super) use output_format::OutputArgs;
+use preset::PresetArgs;
+pub(super) use settings::{Declared, Groups};
+
+use super::errors::CommandError;
+use crate::Recipe;
+use crate::points::Region;
+use crate::settings::{Group, SettingError, Settings, parse};
+
+/// From an input to weighted points.
+#[derive(Args, Clone)]
+pub(super) struct PipelineArgs<W: Groups = WithAlpha> {
+    #[command(flatten)]
+    pub input: InputArgs,
+    #[command(flatten)]
+    preset: PresetArgs,
+    #[command(flatten)]
+    selection: Declared<Selection>,
+    #[command(flatten)]
+    weights: Declared<W>,
+    #[arg(skip)]
+    of: PhantomData<W>,
+}
+
+/// From an input to points with weights that stay fixed while α varies.
+pub(super) type FrozenPipelineArgs = PipelineArgs<Frozen>;
+
+/// The options of the wavelet stage.
+pub(super) struct Wavelets;
+/// Which samples become points, with which values.
+pub(super) struct Selection;
+/// α and the weights in proportion to it.
+#[derive(Clone)]
+pub(super) struct WithAlpha;
+/// Weights in proportion to an α at which they are frozen.
+#[derive(Clone)]
+pub(super) struct Frozen;
+/// How the shape is computed.
+pub(super) struct OfShape;
+/// A periodic box.
+pub(super) struct Periodic;
+
+impl Groups for Wavelets {
+    const GROUPS: &[(Group, &str)] = &[(Group::Haar, "Wavelet stage")];
+}
+
+impl Groups for Selection {
+    const GROUPS: &[(Group, &str)] = &[
+        (Group::Labels, "Labels"),
+        (Group::Haar, "Wavelet stage"),
+        (Group::Points, "Points"),
+        (Group::Coordinates, "Coordinates"),
+        (Group::Refit, "Points"),
+    ];
+}
+
+impl Groups for WithAlpha {
+    const GROUPS: &[(Group, &str)] =
+        &[(Group::Weights, "Weights and α"), (Group::Weighting, "Weights and α")];
+}
+
+impl Groups for Frozen {
+    const GROUPS: &[(Group, &str)] =
+        &[(Group::Frozen, "Weights, frozen"), (Group::Weighting, "Weights, frozen")];
+}
+
+impl Groups for OfShape {
+    const GROUPS: &[(Group, &str)] = &[(Group::Shape, "Shape")];
+}
+
+impl Groups for Periodic {
+    const GROUPS: &[(Group, &str)] = &[(Group::Periodic, "Shape")];
+}
+
+impl<W: Groups> PipelineArgs<W> {
+    /// The settings that the command was given.
+    pub(super) fn settings(&self) -> &Settings {
+        self.input.settings()
+    }
+
+    /// The recipe with the settings that were given.
+    pub(super) fn recipe(&self) -> Result<Recipe, CommandError> {
+        let typed = &self.input.typed;
+        if self.settings().label().is_some() {
+            refuse_gray_levels(&self.input)?;
+        }
+        let recipe = self.input.recipe()?;
+        if recipe.periodic.is_some() {
+            typed.refuse(&["refit"], "a periodic box repeats, and F is fitted in space")?;
+        }
+        Ok(recipe)
+    }
+}
+
+/// The names of the settings of some groups.
+pub(super) fn names(groups: &[Group]) -> Vec<&'static str> {
+    groups.iter().flat_map(|group| Settings::names(*group)).collect()
+}
+
+/// The names of the settings that say how points are selected by gray levels and weighted, and what α is: with one of them, a
+/// volume is not taken for labels.
+pub(super) fn of_gray_levels() -> Vec<&'static str> {
+    let groups = [Group::Haar, Group::Points, Group::Refit, Group::Weights, Group::Weighting];
+    names(&groups).into_iter().chain(["gray"]).collect()
+}
+
+/// The names of the settings that apply to volumes only. `--level` and `--gray-out` apply to some files of points, too.
+pub(super) fn of_volumes() -> Vec<&'static str> {
+    let groups =
+        [Group::Part, Group::Labels, Group::Haar, Group::Points, Group::Coordinates, Group::Refit];
+    let names = names(&groups).into_iter().chain(["gray"]);
+    names.filter(|name| !["frame", "level"].contains(name)).collect()
+}
+
+/// Refuses typed options that have no effect on the solid of labels.
+pub(super) fn refuse_gray_levels(input: &InputArgs) -> Result<(), CommandError> {
+    let mut refused = of_gray_levels();
+    refused.extend(names(&[Group::Frozen, Group::Shape, Group::Periodic]));
+    refused.extend(["gray_out", "require_3d"]);
+    let why = "the solid of labels fills their voxels, without gray levels, weights and α";
+    input.typed.refuse(&refused, why)
+}
+
+/// A number from 0 up.
+pub(super) fn not_negative(text: &str) -> Result<f64, CommandError> {
+    Ok(parse::not_negative(text)?)
+}
+
+/// A number.
+#[cfg(feature = "render")]
+pub(super) fn number(text: &str) -> Result<f64, CommandError> {
+    Ok(parse::number(text)?)
+}
+
+/// A box in the units of the points.
+pub(super) fn places(text: &str) -> Result<Region, CommandError> {
+    Ok(parse::places(text)?)
+}
+
+impl From<SettingError> for CommandError {
+    fn from(error: SettingError) -> Self {
+        let named = |advice: crate::advice::Advice| advice.with_names(super::errors::option);
+        Self { why: named(error.why), next: error.next.map(named), usage: true }
+    }
+}

@@ -1,0 +1,43 @@
+//! The format of outputs.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use crate::cli::errors::fail_usage;
+use crate::export::Target;
+
+/// The format of outputs without an extension.
+#[derive(Args, Clone)]
+#[command(next_help_heading = "Output")]
+pub(crate) struct OutputArgs {
+    /// Format of an output whose name has no extension, such as standard output (-), given as an
+    /// extension, as in --output-format nrrd.
+    #[arg(long, value_name = "EXTENSION")]
+    output_format: Option<String>,
+}
+
+impl OutputArgs {
+    /// A path whose extension names the format of an output: its own path, if that has an extension.
+    pub(crate) fn named(&self, path: &Path) -> anyhow::Result<PathBuf> {
+        match &self.output_format {
+            _ if path.extension().is_some() => Ok(path.to_owned()),
+            Some(format) => Ok(format!("output.{}", format.trim_start_matches('.')).into()),
+            None if path == Path::new(Target::STDOUT) => {
+                fail_usage!("standard output has no extension" => "name the format, as in --output-format nrrd")
+            }
+            None => Ok(path.to_owned()),
+        }
+    }
+
+    /// Refuses `--output-format` if no output needs it.
+    pub(crate) fn check<'a>(
+        &self,
+        mut outputs: impl Iterator<Item = &'a PathBuf>,
+    ) -> anyhow::Result<()> {
+        if self.output_format.is_some() && !outputs.any(|path| path.extension().is_none()) {
+            fail_usage!("--output-format has no effect: each output has an extension, which says its format" => "omit it");
+        }
+        Ok(())
+    }
+}

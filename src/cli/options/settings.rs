@@ -1,0 +1,353 @@
+//! The settings of a recipe as options: their help, and how they are given. What they mean stands in [`Settings`].
+
+use std::marker::PhantomData;
+
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use clap::parser::ValueSource;
+use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches};
+
+use super::preset;
+use crate::Weighting;
+use crate::cli::errors::CommandError;
+use crate::settings::{EXCLUSIVE, Group, Settings};
+use crate::volume::Dtype;
+
+/// Name on the command line, name of the value (none for a switch), and help.
+const HELP: &[(&str, &str, &str)] = &[
+    (
+        "input-format",
+        "EXTENSION",
+        "Format of INPUT where neither its content nor its name shows it, given as a file extension, as in --input-format xyz",
+    ),
+    (
+        "gray",
+        "LO..HI",
+        "Values mapped to gray 0 and 255 [default: unchanged for unsigned 8-bit samples, otherwise min..max]",
+    ),
+    ("gray-out", "", "Write gray levels 0..255 instead of the values of INPUT"),
+    (
+        "columns",
+        "NAME,NAME,…",
+        "Columns of a table of points (CSV, XYZ, PTS, NPY): x, y, z, optionally weight (or radius) and value, others under any name, as in x,y,z,nx,ny,nz; without z and others, points lie in the plane z = 0 [default: from its header, otherwise from its numbers, of which a fourth is a value]",
+    ),
+    (
+        "class",
+        "CLASS,…",
+        "Classes of points to read from LAS and LAZ: ground, vegetation, building, water, unclassified, or their numbers, as in 2,9 [default: all]",
+    ),
+    (
+        "withheld",
+        "",
+        "Also take points of LAS and LAZ that are flagged as withheld, which are not to be processed",
+    ),
+    ("thin", "SIDE", "Keep the first point in each cube of this side, in the unit of the points"),
+    (
+        "level",
+        "N",
+        "Level of a pyramid (OME-Zarr), or of points in layers (WVM); 0 is the finest [default: 0]",
+    ),
+    (
+        "array",
+        "NAME",
+        "Array to read from a file with several (VTK, NPZ) [default for VTK: the first point array]",
+    ),
+    (
+        "frame",
+        "K",
+        "Volume to read from a file with several (a fourth axis; times, echoes or stacks of DICOM), or scan or step of points (PTS, XYZ), counted from 0",
+    ),
+    (
+        "series",
+        "N",
+        "Series to read from a folder with several (DICOM): its number in walpha info, or the end of its UID",
+    ),
+    ("skip-damaged", "", "Skip damaged slices of a series (DICOM), with a warning for each"),
+    (
+        "no-resample",
+        "",
+        "Refuse slices at several distances (DICOM), instead of resampling them linearly to the finest",
+    ),
+    (
+        "nan",
+        "VALUE",
+        "Value that replaces samples that are NaN or infinite, or padding (DICOM); without a value they are masked: no points, no errors. Padding is masked anyway",
+    ),
+    (
+        "roi",
+        "X0:X1,Y0:Y1,Z0:Z1",
+        "Crop to a range of indices along x, y and z, each end exclusive; ends may be omitted, as in 20:40,:,10:",
+    ),
+    ("downsample", "N", "Average blocks of N×N×N samples; of labels take the most frequent one"),
+    ("dims", "X,Y,Z", "Sizes of a raw file along x, y and z (x fastest)"),
+    ("dtype", "TYPE", ""),
+    ("endian", "ORDER", "Byte order of a sample: little or big"),
+    ("offset", "BYTES", "Bytes to skip at the start of the file"),
+    (
+        "label",
+        "N,N,…",
+        "Make the solid of labels of a segmentation, as in 3 or 3,5, or of all that are not 0 (all): its cells fill their voxels, without α [default: all, where values are labels and no option says what to look for]",
+    ),
+    ("haar", "KIND", "Decomposition: all axes once per level, or each axis fully"),
+    ("rms", "E", "Root mean square error allowed, in gray levels"),
+    ("epsilon", "E", "L² norm of the error allowed, in gray levels"),
+    ("coefficients", "N", "Coefficients to keep"),
+    (
+        "select",
+        "HOW",
+        "Select the samples of largest gray difference, or adaptively: starting from the corners of the volume, those where the interpolant of the previous ones is worst",
+    ),
+    (
+        "target-rmse",
+        "E",
+        "Adaptive: stop when the RMSE of the interpolant over all samples is at most E gray levels (--rms belongs to the wavelet stage). With --count or --ratio: at whichever comes first",
+    ),
+    (
+        "max-error",
+        "E",
+        "Adaptive: stop when no sample is further than E gray levels from the interpolant, choosing points by that error. With --count or --ratio: at whichever comes first",
+    ),
+    (
+        "exchange",
+        "",
+        "Adaptive: exchange points that contribute little for samples that contribute more, until no exchange gains anything. The error is that of fitted values: give --refit, too",
+    ),
+    ("count", "N", "Keep N samples"),
+    (
+        "ratio",
+        "R",
+        "Keep this share of all samples, 0 < R ≤ 1 [default: 0.0609, or all samples that differ from a neighbour if these are fewer]",
+    ),
+    ("threshold", "T", "Keep the samples whose gray difference is at least T gray levels"),
+    ("gray-min", "G", "Drop samples below this gray level after truncation"),
+    (
+        "value-min",
+        "V",
+        "Drop samples below this value of INPUT, as in --value-min 300 for Hounsfield units",
+    ),
+    (
+        "units",
+        "UNITS",
+        "Coordinates, α, weights and sizes in voxels, or in the unit of the file [default: world where the file states a spacing or an origin, otherwise voxel]",
+    ),
+    (
+        "space",
+        "SPACE",
+        "Direction of world coordinates, where the file states the patient's orientation: x to the left and y to the back (lps), or to the right and the front (ras) [default: lps]",
+    ),
+    (
+        "refit",
+        "TO",
+        "Fit the values of points to the volume by least squares: to all its samples, on the triangulation that interpolate --fill uses, or to those that the shape covers. Otherwise points have the values of their samples",
+    ),
+    (
+        "alpha",
+        "A",
+        "The parameter α, a squared length in the units of the points: auto takes it from the spacing of the points, auto:connected is the smallest at which all points lie in one solid component, and inf gives the convex hull [default: auto for scattered points; 10·h² for a volume, where h³ is the volume of a voxel]",
+    ),
+    ("alpha-radius", "R", "The parameter as a radius: α = R²"),
+    (
+        "alpha-ref",
+        "A",
+        "The α, a squared length, for which weights are computed; they are the same at every level, so that levels are nested [default: as --alpha of walpha shape]",
+    ),
+    (
+        "weights",
+        "KIND",
+        "Weights ω: common=C, min-max, barycentric, barycentric-n or column; none unless the input has a column",
+    ),
+    (
+        "balls",
+        "READING",
+        "A point is a ball of squared radius α + ω (power) or of radius α + ω (radius)",
+    ),
+    ("engine", "ENGINE", "Engine that computes the shape; both give the same answer"),
+    ("blocks", "N", "Number of blocks [default: from threads and memory]"),
+    (
+        "memory",
+        "SIZE",
+        "Memory limit to size blocks for, as in 2G or 500M; not with options that need the whole triangulation (α = inf, --exterior, --hidden, --engine cgal)",
+    ),
+    ("exterior", "", "Keep the simplices outside the shape, too: the whole triangulation"),
+    ("hidden", "", "Count and list the points that heavier ones hide: the whole triangulation"),
+    (
+        "periodic",
+        "X,Y,Z",
+        "Sides of a periodic box along x, y and z, in the unit of the points, which then lie on a torus. No edge may span half of the box; with 4·√(α + largest weight) less than each side none does",
+    ),
+];
+
+/// Defaults that help and `--print-config` show.
+const DEFAULTS: [(&str, &str); 7] = [
+    ("haar", "non-standard"),
+    ("rms", "1"),
+    ("select", "difference"),
+    ("endian", "little"),
+    ("offset", "0"),
+    ("balls", "power"),
+    ("engine", "auto"),
+];
+
+/// The option of a setting.
+fn option(name: &'static str, heading: &'static str) -> Arg {
+    let long = name.replace('_', "-");
+    let described = HELP.iter().find(|(known, ..)| *known == long);
+    let (long, value, help) = described.expect("a test looks for all of them");
+    let arg = Arg::new(name).long(*long).help_heading(heading).help(*help);
+    if value.is_empty() {
+        return arg.action(ArgAction::SetTrue);
+    }
+    let default = DEFAULTS.iter().find(|(known, _)| *known == name).map(|(_, default)| *default);
+    let arg = arg.value_name(*value).allow_negative_numbers(true).default_value(default);
+    let arg = match Settings::choices(name) {
+        Some(names) => {
+            arg.value_parser(PossibleValuesParser::new(names.into_iter().map(|[name, help]| {
+                let value = PossibleValue::new(name);
+                if help.is_empty() { value } else { value.help(help) }
+            })))
+        }
+        None => arg.value_parser(checked(name)),
+    };
+    match name {
+        "gray" | "label" => arg.allow_hyphen_values(true),
+        "weights" => arg.allow_hyphen_values(true).long_help(weights_help()),
+        "class" => arg.action(ArgAction::Append).value_delimiter(','),
+        "nan" => arg.num_args(0..=1).default_missing_value("mask"),
+        "refit" => arg.num_args(0..=1).require_equals(true).default_missing_value("whole"),
+        "dims" => arg.requires("dtype"),
+        "dtype" => arg
+            .requires("dims")
+            .help(format!("Type of a sample: {}", Dtype::ALL.map(Dtype::name).join(", "))),
+        "endian" | "offset" => arg.requires("dims"),
+        _ => arg,
+    }
+}
+
+/// Text that is a value of a setting.
+fn checked(name: &'static str) -> impl TypedValueParser<Value = String> {
+    clap::builder::StringValueParser::new().try_map(move |text| {
+        Settings::default().set(name, &text).map(|()| text).map_err(CommandError::from)
+    })
+}
+
+fn weights_help() -> String {
+    format!(
+        "Weights ω (squared lengths): {} [default: column where the input has weights, else common=0]; where \
+         column is asked for and no column is called weight or radius, its values are taken",
+        Weighting::known()
+    )
+}
+
+/// Groups of settings that a command takes.
+pub(crate) trait Groups {
+    /// The groups, each with the heading that its options have in the help.
+    const GROUPS: &[(Group, &str)];
+}
+
+/// Declares the options of some groups. [`Given`] has their values.
+pub(crate) struct Declared<G>(PhantomData<G>);
+
+impl<G> Clone for Declared<G> {
+    fn clone(&self) -> Self {
+        Self(PhantomData)
+    }
+}
+
+impl<G: Groups> Args for Declared<G> {
+    fn augment_args(mut command: Command) -> Command {
+        for &(group, heading) in G::GROUPS {
+            for name in Settings::names(group) {
+                let mut arg = option(name, heading);
+                for other in
+                    EXCLUSIVE.iter().filter(|names| names.contains(&name)).copied().flatten()
+                {
+                    if command.get_arguments().any(|known| known.get_id() == other) {
+                        arg = arg.conflicts_with(other);
+                    }
+                }
+                command = command.arg(arg);
+            }
+        }
+        command
+    }
+
+    fn augment_args_for_update(command: Command) -> Command {
+        Self::augment_args(command)
+    }
+}
+
+impl<G: Groups> FromArgMatches for Declared<G> {
+    fn from_arg_matches(_: &ArgMatches) -> Result<Self, clap::Error> {
+        Ok(Self(PhantomData))
+    }
+
+    fn update_from_arg_matches(&mut self, _: &ArgMatches) -> Result<(), clap::Error> {
+        Ok(())
+    }
+}
+
+/// The settings that a command was given: those typed, over those of the file of `--config`, over those of the preset.
+#[derive(Clone, Default)]
+pub(crate) struct Given {
+    pub settings: Settings,
+    /// Whether a preset was named.
+    pub preset: bool,
+}
+
+impl FromArgMatches for Given {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
+        let mut settings = Settings::default();
+        let is_declared = |name: &str| matches.try_contains_id(name).is_ok();
+        for &(name, _) in Settings::NAMES {
+            if is_declared(name) && matches.value_source(name) == Some(ValueSource::CommandLine) {
+                let values = matches.get_raw(name).into_iter().flatten();
+                let text: Vec<_> = values.map(|value| value.to_string_lossy()).collect();
+                settings.set(name, &text.join(",")).expect("its parser let it through");
+            }
+        }
+        let preset = matches.try_get_one::<String>(preset::OPTION).ok().flatten();
+        if let Some(name) = preset {
+            let mut of_command = Settings::default();
+            for (name, text) in Settings::preset(name).expect("the parser knows it").iter() {
+                if is_declared(name) {
+                    of_command.set(name, text).expect("presets are settings");
+                }
+            }
+            settings = settings.over(&of_command);
+        }
+        Ok(Self { settings, preset: preset.is_some() })
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
+        *self = Self::from_arg_matches(matches)?;
+        Ok(())
+    }
+}
+
+impl Args for Given {
+    fn augment_args(command: Command) -> Command {
+        command
+    }
+
+    fn augment_args_for_update(command: Command) -> Command {
+        command
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Recipe;
+
+    /// What help calls a default is one: given, it changes nothing.
+    #[test]
+    fn every_setting_has_help_and_defaults_are_those_of_the_recipe() {
+        let of_help: Vec<String> = HELP.iter().map(|(name, ..)| name.replace('-', "_")).collect();
+        let names: Vec<&str> = Settings::NAMES.iter().map(|(name, _)| *name).collect();
+        assert_eq!(of_help, names);
+        for (name, default) in DEFAULTS {
+            let mut settings = Settings::default();
+            settings.set(name, default).unwrap();
+            assert_eq!(settings.recipe().unwrap(), Recipe::default(), "{name}");
+        }
+    }
+}
