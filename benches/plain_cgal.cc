@@ -1,5 +1,5 @@
 // What a CGAL user writes: one triangulation, one Fixed_alpha_shape_3, and one pass over each kind of
-// simplex that copies input indices and classes. The baseline of examples/race, which compiles it
+// simplex that copies input indices and classes. The baseline of benches/race, which compiles it
 // with -O3 -DNDEBUG, and once more with CGAL_LINKED_WITH_TBB: then the triangulation is CGAL's parallel one.
 //
 //   plain_cgal POINTS ALPHA THREADS                   POINTS: x, y, z, ω of each point as little-endian doubles

@@ -1,4 +1,4 @@
-// Geogram's regular triangulation, for examples/race: sequential on one thread, its parallel one on several.
+// Geogram's regular triangulation, for benches/race: sequential on one thread, its parallel one on several.
 //
 //   race_geogram POINTS THREADS [CELLS]     POINTS: x, y, z, ω of each point as little-endian doubles
 //

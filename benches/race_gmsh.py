@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Times Gmsh's Delaunay triangulation (HXT, arXiv:1805.08831) of the points in a file: race_gmsh.py POINTS THREADS
 
-For examples/race; needs the package `gmsh` from PyPI. Prints seconds, peak KiB, and no counts: HXT breaks ties
+For benches/race; needs the package `gmsh` from PyPI. Prints seconds, peak KiB, and no counts: HXT breaks ties
 otherwise, so its cells are not ours.
 """
 

@@ -1,5 +1,5 @@
 //! Each stage alone: `cargo bench`. The front end on the phantom at 128³, the engines on the points
-//! of the phantom at 64³. `cargo run --release --example race` compares the engines on large sets,
+//! of the phantom at 64³. `cargo run --release -p walpha-benches` compares the engines on large sets,
 //! `benches/race_wavelets.py` the front end with `PyWavelets`.
 
 use divan::Bencher;

@@ -16,6 +16,7 @@ use walpha::interpolate::InterpolateError;
 use walpha::labels::LabelsError;
 use walpha::pipeline::PipelineError;
 use walpha::points::{PointsError, UnknownColumns, UnknownWeighting};
+use walpha::settings::SettingError;
 use walpha::shape::{OutlineError, ShapeError, TorusError};
 use walpha::triangulation::TriangulationError;
 use walpha::volume::VolumeError;
@@ -41,7 +42,7 @@ fn message(error: &impl ToString, advice: impl Into<Option<Advice>>) -> String {
 }
 
 /// A setting as an argument of Python.
-fn name(setting: Setting) -> String {
+pub fn name(setting: Setting) -> String {
     match setting {
         Setting::NoResample => "`resample=False`".into(),
         Setting::Region => "`roi`".into(),
@@ -62,6 +63,7 @@ macro_rules! wrong_value {
 }
 
 wrong_value! {
+    SettingError, |error| error.advice();
     AlphaError, |error| Some(error.advice().into());
     CompareError, |error| error.advice().map(Into::into);
     OutlineError, |error| error.advice().into();

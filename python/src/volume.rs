@@ -5,19 +5,15 @@ use std::path::PathBuf;
 use numpy::ndarray::Array3;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArray3, PyReadonlyArray1, PyReadonlyArray3};
 use pyo3::prelude::*;
-use walpha::haar::{Decomposition, HaarOptions, Tolerance, smooth};
-use walpha::interpolate::Refit;
-use walpha::pipeline::{Choice, Goal};
+use walpha::haar::smooth;
 use walpha::points::{self, PointsError, Weighting};
 use walpha::progress::Stage;
-use walpha::volume::{
-    Coordinates, Frame, GrayRange, Nan, ReadOptions, Space, Volume, VolumeError, open,
-};
-use walpha::{Alpha, LabelChoice, Points, Recipe, Selection, SelectionRule, Units};
+use walpha::volume::{Coordinates, Frame, Nan, ReadOptions, Space, Volume, VolumeError, open};
+use walpha::{Alpha, LabelChoice, Points, Recipe, Selection, Units};
 
 use crate::arrays::{numbers, samples as owned};
 use crate::errors::{Told, wrong};
-use crate::shape::{AlphaArgument, Options, Shape, alpha_rule, json, unknown, with_options};
+use crate::shape::{Shape, Written, json, recipe_of, settings_of};
 use crate::work::{Task, run};
 
 /// A file or sample, read with options as JSON: its samples, whether they are gray levels, and its frame as JSON, in LPS
@@ -63,11 +59,10 @@ pub fn haar<'py>(
     py: Python<'py>,
     samples: PyReadonlyArray3<'_, f32>,
     masked: bool,
-    tolerance: (String, f64),
-    decomposition: &str,
+    settings: Written,
     task: Task<'_>,
 ) -> PyResult<(Bound<'py, PyArray3<f32>>, String)> {
-    let options = haar_options(&tolerance, decomposition)?;
+    let options = settings_of(settings)?.transform();
     let samples = owned(samples)?;
     let (smoothed, truncation) = run(py, &task, move || {
         Stage::Haar.begin()?;
@@ -102,8 +97,7 @@ pub fn select<'py>(
     masked: bool,
     smoothed: PyReadonlyArray3<'_, f32>,
     frame: Option<&str>,
-    rule: (String, f64),
-    gray_min: Option<f64>,
+    settings: Written,
 ) -> PyResult<Selected<'py>> {
     let (given, other) = (samples.as_array(), smoothed.as_array());
     if given.dim() != other.dim() {
@@ -114,7 +108,9 @@ pub fn select<'py>(
     }
     let (samples, smoothed) = (owned(samples)?, owned(smoothed)?);
     let (frame, units) = place(frame)?;
-    let selection = Selection::default().rule(selection_rule(&rule)?).gray_min(gray_min);
+    let settings = settings_of(settings)?;
+    let selection =
+        Selection::default().rule(settings.rule()).gray_min(settings.gray_min().copied());
     let found = run(py, &Task::default(), move || {
         let _ = Stage::Points.begin();
         let (volume, smoothed) =
@@ -152,61 +148,22 @@ pub fn weigh<'py>(
     Ok(weights.into_pyarray(py))
 }
 
-/// All stages. `nan` is what replaces samples that are NaN or infinite, which NaN itself masks; `gray` is the range of
-/// values that becomes 0 to 255, `frame` JSON; without one, coordinates are indices; `least` is the smallest sample that
-/// takes part, in gray levels and in values; `adaptive`, instead of `rule`, how many points at most, an RMSE and a largest error that are good
-/// enough, and whether points are exchanged.
+/// All stages. `frame` is JSON; without one, coordinates are indices.
 #[pyfunction]
-#[expect(clippy::too_many_arguments, reason = "they have names in Python")]
 pub fn pipeline(
     py: Python<'_>,
     samples: PyReadonlyArray3<'_, f32>,
     is_gray: bool,
-    nan: Option<f32>,
-    gray: Option<(f64, f64)>,
     frame: Option<&str>,
-    haar: ((String, f64), String),
-    rule: (String, f64),
-    least: (Option<f64>, Option<f64>),
-    adaptive: Option<(u64, f64, Option<f64>, bool)>,
-    weighting: &str,
-    alpha: Option<AlphaArgument>,
-    how: Options,
-    refit: Option<&str>,
+    settings: Written,
     task: Task<'_>,
 ) -> PyResult<Shape> {
     let (frame, units) = place(frame)?;
-    let (gray_min, value_min) = least;
-    let choice = match adaptive {
-        None => {
-            Choice::Difference(Selection::default().rule(selection_rule(&rule)?).gray_min(gray_min))
-        }
-        Some((count, rmse, max_error, exchange)) => {
-            let mut goal = Goal::of_count(count);
-            (goal.rmse, goal.max_error) = (Some(rmse), max_error);
-            if exchange { Choice::Exchanged(goal) } else { Choice::Adaptive(goal) }
-        }
-    };
-    let refit = match refit {
-        None => None,
-        Some("whole") => Some(Refit::Whole),
-        Some("shape") => Some(Refit::Shape),
-        Some(other) => return Err(unknown("refit", other, "'whole' and 'shape'")),
-    };
-    let recipe = Recipe::new()
-        .classifier(walpha::shape::CGAL)
-        .gray(gray.map(|(low, high)| GrayRange { low, high }))
-        .haar(haar_options(&haar.0, &haar.1)?)
-        .choice(choice)
-        .value_min(value_min)
+    let recipe = recipe_of(settings)?
         .units(units)
         // Coordinates stay in the space that the frame is in.
-        .space(Some(frame.coordinates.space).filter(|space| space.is_known()))
-        .weighting(weighting.parse::<Weighting>().map_err(Told::told)?)
-        .alpha(alpha_rule(alpha)?)
-        .refit(refit);
-    let recipe = with_options(recipe, &how)?;
-    let nan = nan.map(|value| if value.is_nan() { Nan::Mask } else { Nan::Value(value) });
+        .space(Some(frame.coordinates.space).filter(|space| space.is_known()));
+    let nan = recipe.read.nan;
     let samples = owned(samples)?;
     let model = run(py, &task, move || {
         let volume = Volume::of_file(samples, frame).and_then(|volume| volume.resolve_nan(nan));
@@ -255,39 +212,4 @@ fn place(frame: Option<&str>) -> PyResult<(Frame, Units)> {
         ));
     }
     Ok((frame, Units::World))
-}
-
-fn haar_options(tolerance: &(String, f64), decomposition: &str) -> PyResult<HaarOptions> {
-    let number = tolerance.1;
-    let tolerance = match tolerance.0.as_str() {
-        "rms" => Tolerance::Rms(number),
-        "epsilon" => Tolerance::Epsilon(number),
-        "coefficients" => Tolerance::Coefficients(whole("coefficients", number)?),
-        other => return Err(unknown("tolerance", other, "'rms', 'epsilon' and 'coefficients'")),
-    };
-    let decomposition = match decomposition {
-        "nonstandard" => Decomposition::NonStandard,
-        "standard" => Decomposition::Standard,
-        other => return Err(unknown("decomposition", other, "'nonstandard' and 'standard'")),
-    };
-    Ok(HaarOptions::default().decomposition(decomposition).tolerance(tolerance))
-}
-
-fn selection_rule(rule: &(String, f64)) -> PyResult<SelectionRule> {
-    Ok(match rule.0.as_str() {
-        "count" => SelectionRule::Count(whole("count", rule.1)?),
-        "ratio" => SelectionRule::Ratio(rule.1),
-        "at_most" => SelectionRule::AtMost(rule.1),
-        "threshold" => SelectionRule::Threshold(rule.1),
-        other => return Err(unknown("rule", other, "'count', 'ratio' and 'threshold'")),
-    })
-}
-
-/// A count.
-fn whole(name: &str, number: f64) -> PyResult<u64> {
-    if number >= 0.0 && number.fract() == 0.0 && number < 2f64.powi(53) {
-        Ok(number as u64)
-    } else {
-        Err(wrong(format!("{name}={number} is not a count: give a whole number from 0 up")))
-    }
 }

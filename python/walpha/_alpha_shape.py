@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from . import _alpha, _arrays, _walpha
+from . import _alpha, _arrays, _settings, _walpha
 from ._shape import AlphaShape
 from ._typing import Arrays, Balls, Engine, Progress, Rule
 from ._work import task
@@ -97,12 +97,14 @@ def alpha_shape(
     Betti(b0=1, b1=0, b2=1)
     """
     cloud = _arrays.cloud(points, weights, values)
+    settings = _settings.written(
+        alpha=_alpha.rule(alpha, alpha_radius),
+        engine=engine,
+        balls=balls,
+        exterior=exterior,
+        hidden=hidden,
+        periodic=_arrays.sides(periodic),
+    )
     with task(progress, threads) as how:
-        shape = _walpha.alpha_shape(
-            *cloud,
-            _alpha.rule(alpha, alpha_radius),
-            (engine, balls, exterior, hidden),
-            _arrays.sides(periodic),
-            how,
-        )
+        shape = _walpha.alpha_shape(*cloud, settings, how)
     return AlphaShape._of(shape)

@@ -1,21 +1,20 @@
 from __future__ import annotations
 
 import json
-import math
 import operator
 from collections.abc import Sequence
 from typing import Any, Literal, NamedTuple, TypeAlias
 
 import numpy as np
 
-from . import _alpha, _arrays, _walpha
+from . import _alpha, _arrays, _settings, _walpha
 from ._shape import AlphaShape
 from ._typing import Arrays, Balls, Engine, Floats, Place, Progress, Rule, Samples
 from ._volume import Volume
 from ._work import task
 
-# The share of all voxels that the paper selects.
-_RATIO = 0.0609
+# Names of the library, which has a hyphen.
+_DECOMPOSITIONS = {"nonstandard": "non-standard"}
 
 Decomposition: TypeAlias = Literal["nonstandard", "standard"]
 
@@ -79,9 +78,12 @@ def haar(
     >>> truncation["kept"], truncation["total"]
     (100, 32768)
     """
-    tolerance = _tolerance(rms, epsilon, coefficients)
+    settings = _settings.written(
+        haar=_DECOMPOSITIONS.get(decomposition, decomposition),
+        **_settings.one_of(rms=rms, epsilon=epsilon, coefficients=coefficients),
+    )
     with task(progress, threads) as how:
-        samples, facts = _walpha.haar(_grid(volume)[0], _masked(volume), tolerance, decomposition, how)
+        samples, facts = _walpha.haar(_grid(volume)[0], _masked(volume), settings, how)
     return samples, json.loads(facts)
 
 
@@ -155,8 +157,8 @@ def select(
     """
     samples, _, frame = _grid(volume, spacing, origin)
     judged = samples if smoothed is None else _grid(smoothed)[0]
-    rule = _rule(count, ratio, threshold)
-    return Selected(*_walpha.select(samples, _masked(volume), judged, frame, rule, gray_min))
+    settings = _settings.written(**_settings.one_of(count=count, ratio=ratio, threshold=threshold), gray_min=gray_min)
+    return Selected(*_walpha.select(samples, _masked(volume), judged, frame, settings))
 
 
 def weigh(differences: Arrays, weighting: str = "min-max", *, alpha: float) -> Floats:
@@ -288,34 +290,32 @@ def pipeline(
     1
     """
     samples, is_gray, frame = _grid(volume, spacing, origin)
-    tolerance = _tolerance(rms, epsilon, coefficients)
-    rule = _rule(count, ratio, threshold)
-    adaptive = _adaptive(samples.size, select, count, ratio, target_rmse, max_error, exchange)
     if gray_min is not None and value_min is not None:
         raise ValueError("gray_min and value_min are one bound in two units: give one")
-    if adaptive is not None and not threshold is gray_min is value_min is None:
-        raise ValueError(
-            "threshold, gray_min and value_min choose by levels, which select='adaptive' does not: give a count"
-        )
-    if nan is None and _masked(volume):
-        nan = math.nan
+    if exchange and max_error is not None:
+        raise ValueError("exchange=True may raise the largest error: leave max_error out")
+    settings = _settings.written(
+        nan=_settings.replacement(nan, _masked(volume)),
+        gray=_settings.window(gray),
+        haar=_DECOMPOSITIONS.get(decomposition, decomposition),
+        **_settings.one_of(rms=rms, epsilon=epsilon, coefficients=coefficients),
+        **_settings.one_of(count=count, ratio=ratio, threshold=threshold),
+        gray_min=gray_min,
+        value_min=value_min,
+        select=select,
+        target_rmse=target_rmse,
+        max_error=max_error,
+        exchange=exchange,
+        weights=weighting,
+        alpha=_alpha.rule(alpha, alpha_radius),
+        engine=engine,
+        balls=balls,
+        exterior=exterior,
+        hidden=hidden,
+        refit=refit,
+    )
     with task(progress, threads) as how:
-        shape = _walpha.pipeline(
-            samples,
-            is_gray,
-            nan,
-            None if gray is None else _window(gray),
-            frame,
-            (tolerance, decomposition),
-            rule,
-            (gray_min, value_min),
-            adaptive,
-            weighting,
-            _alpha.rule(alpha, alpha_radius),
-            (engine, balls, exterior, hidden),
-            refit,
-            how,
-        )
+        shape = _walpha.pipeline(samples, is_gray, frame, settings, how)
     return AlphaShape._of(shape)
 
 
@@ -380,39 +380,6 @@ def label_shape(
     return AlphaShape._of(shape)
 
 
-def _window(gray: tuple[float, float]) -> tuple[float, float]:
-    low, high = map(float, gray)
-    return low, high
-
-
-def _adaptive(
-    samples: int,
-    select: str,
-    count: int | None,
-    ratio: float | None,
-    target_rmse: float | None,
-    max_error: float | None,
-    exchange: bool,
-) -> tuple[int, float, float | None, bool] | None:
-    """How many voxels at most, the errors that are good enough, and whether points are exchanged."""
-    if select == "difference":
-        if target_rmse is not None or max_error is not None or exchange:
-            raise ValueError("target_rmse, max_error and exchange belong to select='adaptive'")
-        return None
-    if select != "adaptive":
-        raise ValueError(f"select={select!r} is unknown: 'difference' and 'adaptive' are known")
-    if exchange and max_error is not None:
-        raise ValueError("exchange=True may raise the largest error: leave max_error out")
-    if count is None and ratio is None and (target_rmse is not None or max_error is not None):
-        count = samples
-    elif count is None:
-        if ratio is not None and not 0 < ratio <= 1:
-            raise ValueError(f"ratio={ratio} makes no sense: give a share above 0 and up to 1")
-        count = round((_RATIO if ratio is None else ratio) * samples)
-    optional = None if max_error is None else float(max_error)
-    return int(count), float(target_rmse or 0), optional, bool(exchange)
-
-
 def _grid(
     volume: Arrays | Volume, spacing: Place | None = None, origin: Place | None = None
 ) -> tuple[Samples, bool, str | None]:
@@ -433,20 +400,3 @@ def _grid(
 def _masked(volume: Arrays | Volume) -> bool:
     """Whether NaN among the samples are not data."""
     return volume.masked if isinstance(volume, Volume) else bool(np.ma.is_masked(volume))
-
-
-def _tolerance(
-    rms: float | None, epsilon: float | None, coefficients: int | None
-) -> tuple[str, float]:
-    return _one_of({"rms": rms, "epsilon": epsilon, "coefficients": coefficients}, ("rms", 1.0))
-
-
-def _rule(count: int | None, ratio: float | None, threshold: float | None) -> tuple[str, float]:
-    return _one_of({"count": count, "ratio": ratio, "threshold": threshold}, ("at_most", _RATIO))
-
-
-def _one_of(options: dict[str, float | None], default: tuple[str, float]) -> tuple[str, float]:
-    given = [(name, float(value)) for name, value in options.items() if value is not None]
-    if len(given) > 1:
-        raise ValueError(f"{' and '.join(name for name, _ in given)} contradict each other: give one")
-    return given[0] if given else default

@@ -15,7 +15,7 @@ _Task: TypeAlias = tuple[int | None, Listener | None]
 # Rows of one dimension, and their classes.
 _Listed: TypeAlias = tuple[_Rows | None, Classes | None]
 # Engine, balls, exterior, hidden.
-_Options: TypeAlias = tuple[str, str, bool, bool]
+_Settings: TypeAlias = list[tuple[str, str]]
 _State: TypeAlias = tuple[str, str, str]
 # Polygons of a ring and holes, edges, vertices, area, perimeter, axes.
 Outline: TypeAlias = tuple[list[tuple[_Rows, list[_Rows]]], _Rows, _Rows, float, float, list[int]]
@@ -152,9 +152,7 @@ def alpha_shape(
     points: Floats,
     weights: Floats | None,
     values: Floats | None,
-    alpha: float | str | None,
-    how: _Options,
-    periodic: list[float] | None,
+    settings: _Settings,
     task: _Task,
 ) -> Shape: ...
 def restored(
@@ -181,7 +179,7 @@ def write_points(
     value_error: float,
 ) -> None: ...
 def haar(
-    samples: Samples, masked: bool, tolerance: tuple[str, float], decomposition: str, task: _Task
+    samples: Samples, masked: bool, settings: _Settings, task: _Task
 ) -> tuple[Samples, str]: ...
 def difference(samples: Samples, masked: bool) -> Floats: ...
 def select(
@@ -189,24 +187,14 @@ def select(
     masked: bool,
     smoothed: Samples,
     frame: str | None,
-    rule: tuple[str, float],
-    gray_min: float | None,
+    settings: _Settings,
 ) -> tuple[Floats, Floats, Floats]: ...
 def weigh(differences: Floats, weighting: str, alpha: float) -> Floats: ...
 def pipeline(
     samples: Samples,
     is_gray: bool,
-    nan: float | None,
-    gray: tuple[float, float] | None,
     frame: str | None,
-    haar: tuple[tuple[str, float], str],
-    rule: tuple[str, float],
-    least: tuple[float | None, float | None],
-    adaptive: tuple[int, float, float | None, bool] | None,
-    weighting: str,
-    alpha: float | str | None,
-    how: _Options,
-    refit: str | None,
+    settings: _Settings,
     task: _Task,
 ) -> Shape: ...
 def label_shape(

@@ -54,7 +54,7 @@ fn no_option_is_without_effect() {
         ("shape sample:phantom@8 --output-format ply -o a.ply", "--output-format has no effect"),
         (
             "shape sample:phantom@8 --input-format nrrd",
-            "--input-format has no effect: a sample is no file",
+            "--input-format has no effect: a sample is not a file",
         ),
         ("shape cube.csv --input-format foo", "no format that is read has the extension"),
         ("shape sample:phantom@8 --engine cgal --blocks 2", "--blocks has no effect"),

@@ -410,7 +410,7 @@ fn labels_that_are_rounded_are_none() {
     // Where the file states labels, and nobody asks for them.
     fs::write(f.join("large.seg.nrrd"), file(1 << 24)).unwrap();
     let (_, _, told) = run(f, &["shape", "large.seg.nrrd", "-o", "a.ply"]);
-    names(&told, &["no whole numbers below 16777216", "taken for gray levels"]);
+    names(&told, &["not whole numbers below 16777216", "taken for gray levels"]);
     let labels =
         json(f, &["shape", "small.nrrd", "--label", "all", "-o", "a.ply"])["labels"].to_string();
     assert!(labels.contains("16777214") && labels.contains("16777215"), "{labels}");

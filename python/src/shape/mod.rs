@@ -23,9 +23,7 @@ use crate::arrays::{column, copied, lend, numbers, rows};
 use crate::errors::{Told, wrong};
 use crate::work::{Task, run};
 use boundary::{Boundary, boundary};
-pub use make::{
-    AlphaArgument, Options, alpha_rule, alpha_shape, torus, unknown, weighted, with_options,
-};
+pub use make::{Written, alpha_shape, recipe_of, settings_of, torus, weighted};
 use outline::{Outline, outline};
 pub use state::restored;
 use state::{State, state};

@@ -557,3 +557,110 @@ impl Serialize for Settings {
             .collect_map(self.written.iter().map(|(name, text)| (name.replace('_', "-"), text)))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(given: &[(&str, &str)]) -> Settings {
+        let mut settings = Settings::default();
+        for (name, text) in given {
+            settings.set(name, text).unwrap();
+        }
+        settings
+    }
+
+    #[test]
+    fn presets_are_recipes() {
+        for (name, _) in PRESETS {
+            assert!(Settings::preset(name).unwrap().recipe().is_ok(), "{name}");
+        }
+        let paper = Recipe::paper();
+        let share = SelectionRule::Ratio(15956.0 / 262_144.0);
+        assert_eq!(paper.choice, Choice::Difference(Selection::default().rule(share)));
+        assert_eq!((paper.weighting, paper.units), (Some(Weighting::MinMax), Some(Units::Voxel)));
+        let bone = Settings::preset(CT_BONE).unwrap().recipe().unwrap();
+        assert_eq!(bone.gray, Some(GrayRange { low: 0.0, high: 1000.0 }));
+        let selection = Selection::default().rule(SelectionRule::Threshold(30.0));
+        assert_eq!(bone.choice, Choice::Difference(selection.gray_min(Some(64.0))));
+        assert_eq!(
+            Settings::preset(LABELS).unwrap().recipe().unwrap().labels,
+            Some(LabelChoice::All)
+        );
+        assert!(Settings::preset("no such").is_none());
+    }
+
+    /// What is given later, or over another, takes the place of what it excludes, and of nothing else.
+    #[test]
+    fn one_of_those_that_exclude_each_other_is_kept() {
+        let bone = Settings::preset(CT_BONE).unwrap();
+        let mine = of(&[("ratio", "0.5"), ("value-min", "-10")]).over(&bone);
+        let kept: Vec<_> = mine.iter().collect();
+        assert_eq!(
+            kept,
+            [("gray", "0..1000"), ("rms", "4"), ("ratio", "0.5"), ("value_min", "-10")]
+        );
+        assert_eq!((mine.threshold(), mine.gray_min(), mine.ratio()), (None, None, Some(&0.5)));
+        assert_eq!(
+            mine.arguments(),
+            ["--gray=0..1000", "--rms=4", "--ratio=0.5", "--value-min=-10"]
+        );
+    }
+
+    #[test]
+    fn files_and_pages_have_the_same_settings() {
+        let given = of(&[
+            ("gray", "-1..2.5"),
+            ("nan", "mask"),
+            ("count", "12"),
+            ("exterior", "true"),
+            ("alpha", "auto:connected"),
+            ("class", "ground,7"),
+            ("columns", "x,y,\"z"),
+            ("hidden", "false"),
+        ]);
+        let entries = |settings: &Settings| -> Vec<(&str, String)> {
+            settings.iter().map(|(name, text)| (name, text.to_owned())).collect()
+        };
+        let (toml, json) = (given.to_toml(), serde_json::to_string(&given).unwrap());
+        let mut of_toml: Settings = toml::from_str(&toml).unwrap();
+        let of_json: Settings = serde_json::from_str(&json).unwrap();
+        assert_eq!(entries(&of_json), entries(&given));
+        // TOML's tables may be in another order.
+        of_toml.written.sort_by_key(|(name, _)| given.iter().position(|(known, _)| known == *name));
+        assert_eq!(entries(&of_toml), entries(&given), "{toml}");
+        assert_eq!(of_toml.recipe().unwrap(), given.recipe().unwrap());
+        let lists: Settings =
+            serde_json::from_str(r#"{"class": [2, 9], "gray-min": 3.5, "alpha": null}"#).unwrap();
+        assert_eq!(
+            (lists.class(), lists.gray_min(), lists.alpha()),
+            (Some(&vec![2, 9]), Some(&3.5), None)
+        );
+    }
+
+    #[test]
+    fn what_cannot_be_is_an_error() {
+        for text in [r#"{"no-such": 1}"#, r#"{"count": "many"}"#, r#"{"ratio": 2}"#] {
+            assert!(serde_json::from_str::<Settings>(text).is_err(), "{text}");
+        }
+        let refused = |given: &[(&str, &str)]| of(given).recipe().unwrap_err();
+        let error = refused(&[("max_error", "3")]);
+        assert_eq!(error.to_string(), "`max_error` and `exchange` belong to `select` adaptive");
+        let error = refused(&[("select", "adaptive"), ("threshold", "3")]);
+        assert!(
+            error.to_string().starts_with("`threshold`, `gray_min` and `value_min` choose"),
+            "{error}"
+        );
+        let error = refused(&[("engine", "cgal"), ("blocks", "2")]);
+        assert!(error.advice().unwrap().to_string().contains("take `engine` native"), "{error}");
+        refused(&[("refit", "whole"), ("memory", "1G")]);
+        refused(&[("exterior", "true"), ("blocks", "3")]);
+        let taken = of(&[
+            ("select", "adaptive"),
+            ("target_rmse", "3"),
+            ("refit", "shape"),
+            ("memory", "1G"),
+        ]);
+        assert!(taken.recipe().is_ok());
+    }
+}

@@ -46,7 +46,7 @@ const LOCATIONS: u64 = 16;
 /// Buckets in which rows are merged where memory is bounded: only one bucket is in memory twice.
 const BUCKETS: usize = 32;
 /// The speed-up of one mesh on 2ᵏ threads, as a fraction of 2ᵏ, is 2⁻ᵏ to this power. Measured on two threads
-/// (`benches/threads.rs`): 0.72 to 0.88.
+/// (`benches/shapes.rs`): 0.72 to 0.88.
 const LOSS: f64 = 0.32;
 /// The least number of points of a block that is cut for the sake of threads: with smaller blocks, halos cost more
 /// than another thread gains.

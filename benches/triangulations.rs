@@ -1,6 +1,6 @@
-//! Whole triangulations on one thread and on two, medians of five in turn: `cargo bench -p walpha-regular`.
+//! Whole triangulations on one thread and on two, medians of five in turn: `cargo bench -p walpha-benches --bench triangulations`.
 //!
-//! `cargo bench -p walpha-regular -- 1000000 4` takes a million points and four threads.
+//! `… -- 1000000 4` takes a million points and four threads.
 
 use std::time::Instant;
 

@@ -1,6 +1,6 @@
-//! Shapes on one thread and on two, medians of five in turn: `cargo bench -p walpha-shape`.
+//! Shapes on one thread and on two, medians of five in turn: `cargo bench -p walpha-benches --bench shapes`.
 //!
-//! `cargo bench -p walpha-shape -- 1000000 4` takes a million points and four threads.
+//! `… -- 1000000 4` takes a million points and four threads.
 
 mod sets;
 

@@ -1,7 +1,7 @@
 //! Filtrations, their order and pairs on one thread and on two, medians of five in turn:
-//! `cargo bench -p walpha-shape --bench filtration`.
+//! `cargo bench -p walpha-benches --bench filtrations`.
 //!
-//! `cargo bench -p walpha-shape --bench filtration -- 1000000 4` takes a million points and four threads.
+//! `… -- 1000000 4` takes a million points and four threads.
 
 mod sets;
 

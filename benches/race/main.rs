@@ -1,9 +1,9 @@
 //! Races our engine against other programs on the same points, and prints tables:
 //!
 //! ```text
-//! cargo build --release && cargo run --release --example race -- shapes
-//! cargo run --release --example race -- triangulations
-//! cargo run --release --example race -- filtrations
+//! cargo build --release && cargo run --release -p walpha-benches -- shapes
+//! cargo run --release -p walpha-benches -- triangulations
+//! cargo run --release -p walpha-benches -- filtrations
 //! ```
 //!
 //! Sets follow, of those in `sets.rs`; without any, those of the README. `alpha` races shapes at growing α, `scale` our
