@@ -16,7 +16,7 @@ use walpha::volume::{
 use walpha::{Alpha, LabelChoice, Points, Recipe, Selection, SelectionRule, Units};
 
 use crate::arrays::{numbers, samples as owned};
-use crate::errors::{Told, wrong};
+use crate::errors::{told, wrong};
 use crate::shape::{AlphaArgument, Options, Shape, alpha_rule, json, unknown, with_options};
 use crate::work::{Task, run};
 
@@ -140,9 +140,9 @@ pub fn weigh<'py>(
     weighting: &str,
     alpha: f64,
 ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-    let weighting: Weighting = weighting.parse().map_err(Told::told)?;
+    let weighting: Weighting = weighting.parse().map_err(told)?;
     let differences = numbers(differences)?;
-    let alpha = Alpha::from_squared(alpha).map_err(Told::told)?;
+    let alpha = Alpha::from_squared(alpha).map_err(told)?;
     let weights = run(py, &Task::default(), move || {
         // Places do not count here.
         let positions = vec![[0.0; 3]; differences.len()];
@@ -202,7 +202,7 @@ pub fn pipeline(
         .units(units)
         // Coordinates stay in the space that the frame is in.
         .space(Some(frame.coordinates.space).filter(|space| space.is_known()))
-        .weighting(weighting.parse::<Weighting>().map_err(Told::told)?)
+        .weighting(weighting.parse::<Weighting>().map_err(told)?)
         .alpha(alpha_rule(alpha)?)
         .refit(refit);
     let recipe = with_options(recipe, &how)?;

@@ -8,7 +8,7 @@ use walpha::{Alpha, Points, Recipe};
 
 use super::Shape;
 use crate::arrays::{numbers, rows};
-use crate::errors::{Told, wrong};
+use crate::errors::{told, wrong};
 use crate::work::{Task, run};
 
 /// Engine and balls by the names that Python has, and whether exterior simplices and hidden points are wanted.
@@ -35,7 +35,7 @@ pub fn with_options(
 
 /// The periodic box by its sides.
 pub fn torus(sides: Option<[f64; 3]>) -> PyResult<Option<Torus>> {
-    sides.map(|sides| Torus::new(sides).map_err(Told::told)).transpose()
+    sides.map(|sides| Torus::new(sides).map_err(told)).transpose()
 }
 
 /// A name that is none of those an option has.
@@ -104,10 +104,10 @@ pub fn weighted(
 ) -> PyResult<Points> {
     let mut points = Points::new(rows("points", points)?);
     if let Some(weights) = weights {
-        points = points.with_weights(numbers(weights)?).map_err(Told::told)?;
+        points = points.with_weights(numbers(weights)?).map_err(told)?;
     }
     if let Some(values) = values {
-        points = points.with_values(numbers(values)?).map_err(Told::told)?;
+        points = points.with_values(numbers(values)?).map_err(told)?;
     }
     Ok(points)
 }
