@@ -11,7 +11,7 @@ use walpha::progress::Stage;
 use walpha::shape::placed_complex;
 
 use crate::arrays::{column, lend, numbers, rows};
-use crate::errors::{Told, wrong};
+use crate::errors::{told, wrong};
 use crate::shape::{Shape, all_classes, json};
 use crate::work::{Task, run};
 
@@ -45,7 +45,7 @@ impl Complex {
         periodic: Option<[f64; 3]>,
         task: Task<'_>,
     ) -> PyResult<Self> {
-        let alpha = Alpha::from_squared(alpha).map_err(Told::told)?;
+        let alpha = Alpha::from_squared(alpha).map_err(told)?;
         let mut file = ComplexFile::of_points(rows("points", points)?, alpha);
         file.weights = weights.map(numbers).transpose()?;
         file.cells = table("cells", cells.0)?;

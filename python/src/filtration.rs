@@ -13,7 +13,7 @@ use walpha::shape::ShapeError;
 use walpha::{Alpha, WeightedPoints};
 
 use crate::arrays::{column, lend, numbers};
-use crate::errors::{Told, wrong};
+use crate::errors::{told, wrong};
 use crate::shape::{Shape, json, torus, weighted};
 use crate::work::{Task, run};
 
@@ -57,7 +57,7 @@ impl Filtration {
 
     /// The shape at an α.
     fn shape(&self, py: Python<'_>, alpha: f64, exterior: bool, task: Task<'_>) -> PyResult<Shape> {
-        let alpha = Alpha::from_squared(alpha).map_err(Told::told)?;
+        let alpha = Alpha::from_squared(alpha).map_err(told)?;
         let filtration = Arc::clone(&self.0);
         let shape = run(py, &task, move || {
             Stage::Ladder.begin()?;
@@ -75,7 +75,7 @@ impl Filtration {
         task: Task<'_>,
     ) -> PyResult<String> {
         let alphas = numbers(alphas)?.into_iter().map(Alpha::from_squared);
-        let alphas: Vec<Alpha> = alphas.collect::<Result<_, _>>().map_err(Told::told)?;
+        let alphas: Vec<Alpha> = alphas.collect::<Result<_, _>>().map_err(told)?;
         let filtration = Arc::clone(&self.0);
         run(py, &task, move || {
             Stage::Ladder.begin()?;
@@ -238,7 +238,7 @@ impl Simplices {
     /// Those of dimension 1.
     fn loops(&self, py: Python<'_>) -> PyResult<&ladder::Loops> {
         self.work(py, |ordered| ordered.loops().map(|_| ()))?;
-        self.ordered().loops().map_err(Told::told)
+        self.ordered().loops().map_err(told)
     }
 
     /// Does long work on the simplices.

@@ -9,7 +9,7 @@ use walpha::points::{Columns, ModelMetadata, Packing, PointOptions, PointWriter,
 use walpha::progress::Stage;
 use walpha::{Alpha, WeightedPoints};
 
-use crate::errors::{Told, wrong};
+use crate::errors::{told, wrong};
 use crate::shape::{json, weighted};
 use crate::work::{Task, run};
 
@@ -37,7 +37,7 @@ pub fn read_points<'py>(
     withheld: bool,
     thin: Option<f64>,
 ) -> PyResult<Read<'py>> {
-    let columns = columns.map(str::parse::<Columns>).transpose().map_err(Told::told)?;
+    let columns = columns.map(str::parse::<Columns>).transpose().map_err(told)?;
     let options = PointOptions::default()
         .level(level)
         .columns(columns)
@@ -65,7 +65,7 @@ pub fn read_points<'py>(
 #[pyfunction]
 pub fn columns(names: Vec<String>) -> PyResult<Vec<Option<String>>> {
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
-    let columns = String::from(Columns::named(&names).map_err(Told::told)?);
+    let columns = String::from(Columns::named(&names).map_err(told)?);
     Ok(columns.split(',').map(|name| (name != "-").then(|| name.to_owned())).collect())
 }
 
@@ -80,18 +80,18 @@ pub fn write_points(
     alpha: Option<f64>,
     value_error: f64,
 ) -> PyResult<()> {
-    let writer = PointWriter::of(&path).map_err(Told::told)?;
+    let writer = PointWriter::of(&path).map_err(told)?;
     if !writer.packs && (alpha.is_some() || value_error != 0.0) {
         return Err(wrong("alpha and value_error are for .wvm; omit them"));
     }
     if value_error.is_nan() || value_error < 0.0 {
         return Err(wrong("value_error must be a number from 0 up"));
     }
-    let alpha = alpha.map(Alpha::from_squared).transpose().map_err(Told::told)?;
+    let alpha = alpha.map(Alpha::from_squared).transpose().map_err(told)?;
     let points = weighted(points, weights, values)?;
     let facts = ModelMetadata::default().alpha(alpha);
     let packing = Packing::default().value_error(value_error);
-    let target = Target::open(&path).map_err(Told::told)?;
+    let target = Target::open(&path).map_err(told)?;
     run(py, &Task::default(), move || {
         let weights = points.weights.unwrap_or_else(|| vec![0.0; points.positions.len()]);
         let weighted = WeightedPoints::new(points.positions, weights)

@@ -12,7 +12,7 @@ use walpha::volume::{Coordinates, Frame, Nan, ReadOptions, Space, Volume, Volume
 use walpha::{Alpha, LabelChoice, Points, Recipe, Selection, Units};
 
 use crate::arrays::{numbers, samples as owned};
-use crate::errors::{Told, wrong};
+use crate::errors::{told, wrong};
 use crate::shape::{Shape, Written, json, recipe_of, settings_of};
 use crate::work::{Task, run};
 
@@ -136,9 +136,9 @@ pub fn weigh<'py>(
     weighting: &str,
     alpha: f64,
 ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-    let weighting: Weighting = weighting.parse().map_err(Told::told)?;
+    let weighting: Weighting = weighting.parse().map_err(told)?;
     let differences = numbers(differences)?;
-    let alpha = Alpha::from_squared(alpha).map_err(Told::told)?;
+    let alpha = Alpha::from_squared(alpha).map_err(told)?;
     let weights = run(py, &Task::default(), move || {
         // Places do not count here.
         let positions = vec![[0.0; 3]; differences.len()];

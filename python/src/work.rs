@@ -10,11 +10,12 @@ use std::time::{Duration, Instant};
 use pyo3::exceptions::PyMemoryError;
 use pyo3::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
+use walpha::advice::Advise;
 use walpha::threads;
 
 use crate::allocator::starting;
 use crate::call::Call;
-use crate::errors::Told;
+use crate::errors::told;
 
 /// How often the interpreter is asked for an interrupt and progress is passed on.
 const TICK: Duration = Duration::from_millis(50);
@@ -40,7 +41,7 @@ pub fn run<T, E>(
 ) -> PyResult<T>
 where
     T: Send + 'static,
-    E: Told + Send + 'static,
+    E: Advise + Send + 'static,
 {
     let call = Arc::new(Call::new());
     let wanted = Wanted(Arc::clone(&call));
@@ -70,7 +71,7 @@ where
         }
         match received {
             Ok(Ok(Err(_)) | Err(_)) if wanted.0.is_starved() => return Err(no_memory()),
-            Ok(Ok(result)) => return result.map_err(Told::told),
+            Ok(Ok(result)) => return result.map_err(told),
             Ok(Err(panic)) => resume_unwind(panic),
             Err(RecvTimeoutError::Timeout) => {
                 py.check_signals()?;

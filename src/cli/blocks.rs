@@ -10,7 +10,7 @@ use walpha_base::memory::readable;
 use walpha_base::shown::shown;
 use walpha_files::{Working, fill_all, keep_input};
 
-use super::errors::{CommandError, fail_usage};
+use super::errors::{CommandError, Result, fail_usage};
 use super::global::{DIFFERENT, Global};
 use super::offsets::{FileOffset, offsets};
 use super::options::{Declared, InputArgs, OfShape, PipelineArgs, preset};
@@ -106,7 +106,7 @@ struct CheckStep {
 }
 
 impl Blocks {
-    pub(super) fn run(self, global: Global) -> anyhow::Result<ExitCode> {
+    pub(super) fn run(self, global: Global) -> Result<ExitCode> {
         match self.step {
             Step::Plan(step) => step.run(global)?,
             Step::Run(step) => step.run(global)?,
@@ -118,7 +118,7 @@ impl Blocks {
 }
 
 impl CheckStep {
-    fn run(self, global: Global) -> anyhow::Result<ExitCode> {
+    fn run(self, global: Global) -> Result<ExitCode> {
         let mut progress = Progress::new(global);
         let folder = &self.folder;
         let facts = match Plan::open(folder) {
@@ -140,7 +140,7 @@ impl CheckStep {
 }
 
 impl PlanStep {
-    fn run(self, global: Global) -> anyhow::Result<()> {
+    fn run(self, global: Global) -> Result<()> {
         let mut progress = Progress::new(global);
         let recipe = self.pipeline.recipe()?;
         let cutting = Cutting::of(&recipe);
@@ -162,7 +162,7 @@ impl PlanStep {
 }
 
 impl RunStep {
-    fn run(self, global: Global) -> anyhow::Result<()> {
+    fn run(self, global: Global) -> Result<()> {
         let mut progress = Progress::new(global);
         let plan = Plan::open(&self.folder)?;
         keep_input_of(&plan.job, global);
@@ -183,7 +183,7 @@ impl RunStep {
 }
 
 impl MergeStep {
-    fn run(self, global: Global) -> anyhow::Result<()> {
+    fn run(self, global: Global) -> Result<()> {
         let mut progress = Progress::new(global);
         let plan = Plan::open(&self.folder)?;
         let input = Some(plan.job.input.clone());
@@ -240,7 +240,7 @@ impl Outputs {
         plan: &Plan,
         merged: Option<&Merged>,
         team: &dyn Team,
-    ) -> anyhow::Result<Vec<FileOffset>> {
+    ) -> Result<Vec<FileOffset>> {
         // Dropped in reverse order: a folder can be removed only once it is empty.
         let (mut folders, mut files) = (Vec::new(), Vec::new());
         for (pieces, path) in &self.pieces {
@@ -283,7 +283,7 @@ impl Outputs {
 }
 
 /// A shape of INPUT in blocks.
-pub(super) fn job(args: &InputArgs, recipe: Recipe) -> anyhow::Result<Job> {
+pub(super) fn job(args: &InputArgs, recipe: Recipe) -> Result<Job> {
     let input = &args.input;
     if input.is_stdin() {
         fail_usage!("standard input cannot be read in parts, as blocks are" => "name a file");
@@ -309,7 +309,7 @@ pub(super) fn job(args: &InputArgs, recipe: Recipe) -> anyhow::Result<Job> {
     let found = || Hounsfield::of(&source).ok()?;
     let recipe = preset::suited(args, &recipe, found).unwrap_or(recipe);
     Job::of_source(input, recipe, &source).map_err(|error| match error {
-        error @ BlocksError::NotLocal { .. } => CommandError::usage_of(&error).into(),
+        error @ BlocksError::NotLocal { .. } => CommandError::usage_of(error),
         other => other.into(),
     })
 }

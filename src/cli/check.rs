@@ -9,7 +9,6 @@ use clap::{Args, ValueEnum};
 use serde::{Serialize, Serializer};
 use walpha_base::shown::shown;
 
-use crate::Recipe;
 use crate::check::meshes::{Mesh, MeshFormat};
 use crate::check::schema::{
     AnyFile, Classes, ComplexFile, FiltrationFile, PlacedComplex, SchemaError,
@@ -27,7 +26,7 @@ use crate::volume::{OpenFile, OpenVolume};
 use walpha_points::internal::{cells_of_file, read_complex_file};
 
 use super::compare;
-use super::errors::{CommandError, command_error, fail, fail_usage};
+use super::errors::{CommandError, Result, command_error, fail, fail_usage};
 use super::global::{DIFFERENT, Global, UNDECIDED};
 use super::options::{Declared, OfShape, Periodic, PipelineArgs, preset, refuse_gray_levels};
 use super::output::{name, print_summary};
@@ -142,7 +141,7 @@ fn as_map<S: Serializer>(pairs: &[(&str, usize)], serializer: S) -> Result<S::Ok
 }
 
 impl Check {
-    pub(super) fn run(self, global: Global) -> anyhow::Result<ExitCode> {
+    pub(super) fn run(self, global: Global) -> Result<ExitCode> {
         let input = self.pipeline.input.clone();
         // All steps read one file; standard input is copied to a temporary one.
         pipeline::with_file(&input, |file| {
@@ -153,7 +152,7 @@ impl Check {
     }
 
     /// Judges INPUT, reported under the name `input`.
-    fn judge(self, global: Global, input: &str) -> anyhow::Result<ExitCode> {
+    fn judge(self, global: Global, input: &str) -> Result<ExitCode> {
         let file = self.pipeline.input.input.clone();
         let path = file.path();
         let mut progress = Progress::new(global);
@@ -172,8 +171,9 @@ impl Check {
         let recipe = self.pipeline.input.recipe()?;
         let open = || recipe.opened(path).map_err(pipeline::unread);
         // What the options contradict is said even if there is no such file.
-        let opened =
-            progress.stage(Stage::Read, open).or_else(|error| self.recipe().and(Err(error)))?;
+        let opened = progress
+            .stage(Stage::Read, open)
+            .or_else(|error| self.pipeline.recipe().and(Err(error)))?;
         match &opened {
             Opened::Points(file) => {
                 let cells = cells_of_file(file, &self.pipeline.input.point_options()?)?;
@@ -206,14 +206,14 @@ impl Check {
         file: &OpenFile,
         cells: &[CellCount],
         mut progress: Progress,
-    ) -> anyhow::Result<ExitCode> {
+    ) -> Result<ExitCode> {
         let listed = cells.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
         let read = || {
             read_complex_file(file, &self.pipeline.input.point_options()?).map_err(|error| {
-                let CommandError { why, next, usage } = CommandError::from(error);
+                let CommandError { why, next, .. } = CommandError::from(error);
                 let csv = "write its points by `walpha points INPUT -o points.csv` to judge our own shape of them";
                 let next = next.map_or(csv.to_owned(), |next| format!("{next}, or {csv}"));
-                CommandError { why: format!("{} lists {listed}: {why}", name(input)), next: Some(next), usage }
+                command_error!("{} lists {listed}: {why}", name(input) => "{next}")
             })
         };
         let mesh = progress.stage(Stage::Read, read)?;
@@ -228,7 +228,7 @@ impl Check {
         Source { input, kind, why }: Source,
         mesh: Mesh,
         progress: Progress,
-    ) -> anyhow::Result<ExitCode> {
+    ) -> Result<ExitCode> {
         let Mesh { complex: mut file, attribute, notes, .. } = mesh;
         let alpha = match self.pipeline.settings().parameter() {
             AlphaRule::Given(alpha) => Some(alpha),
@@ -279,7 +279,7 @@ impl Check {
         input: &str,
         mut file: FiltrationFile,
         progress: Progress,
-    ) -> anyhow::Result<ExitCode> {
+    ) -> Result<ExitCode> {
         self.refuse_shape_options(&[], format!("{} is a filtration, made already", name(input)))?;
         if self.output.is_some() {
             fail_usage!("--output is for findings on a complex or mesh, and {} is a filtration", name(input) => "omit it, or check a complex");
@@ -296,15 +296,10 @@ impl Check {
     }
 
     /// Refuses the options that control how a shape is computed, except `except`.
-    fn refuse_shape_options(&self, except: &[&str], why: String) -> Result<(), CommandError> {
+    fn refuse_shape_options(&self, except: &[&str], why: String) -> Result<()> {
         let settings = Settings::NAMES.iter().map(|(name, _)| *name).chain([preset::OPTION]);
         let names: Vec<&str> = settings.filter(|name| !except.contains(name)).collect();
         self.pipeline.input.typed.refuse(&names, why)
-    }
-
-    /// The recipe for the shape of INPUT.
-    fn recipe(&self) -> anyhow::Result<Recipe> {
-        Ok(self.pipeline.recipe()?)
     }
 
     /// Computes the shape of INPUT.
@@ -313,8 +308,8 @@ impl Check {
         path: &Path,
         opened: Opened,
         progress: &mut Progress,
-    ) -> anyhow::Result<PlacedComplex> {
-        let mut recipe = self.recipe()?;
+    ) -> Result<PlacedComplex> {
+        let mut recipe = self.pipeline.recipe()?;
         if self.points.is_some() {
             fail_usage!("--points belongs to a complex or a mesh, and {} is neither", shown(path) => "omit it");
         }
@@ -343,7 +338,7 @@ impl Check {
         Subject { input, judged: subject, notes, is_cells_alone }: Subject,
         judged: &PlacedComplex,
         mut progress: Progress,
-    ) -> anyhow::Result<ExitCode> {
+    ) -> Result<ExitCode> {
         let n = judged.positions.len();
         if self.enumerate && judged.periodic.is_some() {
             fail!("--enumerate does not support a periodic box" => "omit it");
@@ -423,7 +418,7 @@ impl Check {
         input: &str,
         file: &FiltrationFile,
         mut progress: Progress,
-    ) -> anyhow::Result<ExitCode> {
+    ) -> Result<ExitCode> {
         let started = Instant::now();
         let (mut findings, certificate) = progress.watch(|| {
             Stage::Certify.begin()?;
@@ -480,23 +475,21 @@ pub(super) fn mesh_format(path: &Path) -> Option<&'static MeshFormat> {
 }
 
 /// The file for findings.
-fn findings_target(path: &Path) -> anyhow::Result<Target> {
+fn findings_target(path: &Path) -> Result<Target> {
     if !path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("vtu")) {
-        anyhow::bail!(UnknownFormat::new(path, "findings", ["vtu"]));
+        return Err(UnknownFormat::new(path, "findings", ["vtu"]).into());
     }
     Ok(Target::open(path)?)
 }
 
 /// Reads a mesh.
-pub(super) fn read_mesh(format: &MeshFormat, file: &OpenFile) -> Result<Mesh, CommandError> {
-    format.read_bytes(file.path(), &file.bytes()?).map_err(|error| {
-        let next = error.advice().map(Into::into);
-        CommandError { next, ..command_error!("{}: {error}", shown(file.path())) }
-    })
+pub(super) fn read_mesh(format: &MeshFormat, file: &OpenFile) -> Result<Mesh> {
+    let mesh = format.read_bytes(file.path(), &file.bytes()?);
+    mesh.map_err(|error| CommandError::from(error).context(shown(file.path())))
 }
 
 /// Compares a complex (A) with the one built from the definition (B).
-fn by_definition(judged: &PlacedComplex) -> anyhow::Result<Comparison> {
+fn by_definition(judged: &PlacedComplex) -> Result<Comparison> {
     Stage::Enumerate.begin()?;
     let claim = judged.claim();
     let judged = claim.placed;
@@ -545,7 +538,7 @@ fn differs_from_definition(comparison: &Comparison) -> String {
 
 impl<F: Serialize + Display, C: Serialize> CheckSummary<F, C> {
     /// Prints the summary, and returns the exit code.
-    fn print(mut self, global: Global) -> anyhow::Result<ExitCode> {
+    fn print(mut self, global: Global) -> Result<ExitCode> {
         self.findings.truncate(MOST_LISTED);
         print_summary(global, &self)?;
         Ok(match self.verdict {

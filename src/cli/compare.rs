@@ -5,12 +5,11 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use anyhow::Context;
 use clap::Args;
 use serde::Serialize;
 use walpha_base::shown::shown;
 
-use super::errors::{CommandError, command_error, fail};
+use super::errors::{CommandError, Result, command_error, fail};
 use super::global::{DIFFERENT, Global};
 use super::output::{name, print_summary};
 use super::progress::Progress;
@@ -54,7 +53,7 @@ struct CompareSummary<C> {
 }
 
 impl Compare {
-    pub(super) fn run(self, global: Global) -> anyhow::Result<ExitCode> {
+    pub(super) fn run(self, global: Global) -> Result<ExitCode> {
         let mut progress = Progress::new(global);
         let mut read = |path: &Path| progress.stage(Stage::Read, || read(path));
         match (read(&self.a)?, read(&self.b)?) {
@@ -88,7 +87,7 @@ impl Compare {
         global: Global,
         equal: bool,
         comparison: impl Serialize + Display,
-    ) -> anyhow::Result<ExitCode> {
+    ) -> Result<ExitCode> {
         let [a, b] = [&self.a, &self.b].map(|path| path.display().to_string());
         print_summary(
             global,
@@ -122,7 +121,7 @@ pub(super) fn is_named(path: &Path) -> bool {
 }
 
 /// Reads a complex or filtration.
-fn read(path: &Path) -> anyhow::Result<CheckFile> {
+fn read(path: &Path) -> Result<CheckFile> {
     let judged = match opened(path)? {
         AnyFile::Complex(file) => PlacedComplex::try_from(file).map(CheckFile::Complex),
         AnyFile::Filtration(file) => file.check().map(|()| CheckFile::Filtration(file)),
@@ -135,7 +134,7 @@ pub(super) fn replace_points(
     positions: &mut Vec<[f64; 3]>,
     weights: &mut Option<Vec<f64>>,
     path: &Path,
-) -> anyhow::Result<()> {
+) -> Result<()> {
     let points = read_points(path, None)?;
     let (own, given) = (positions.len(), points.positions.len());
     if own > 0 && own != given {
@@ -147,7 +146,7 @@ pub(super) fn replace_points(
 }
 
 /// Opens a file; the error says why it cannot be opened.
-pub(super) fn opened(path: &Path) -> anyhow::Result<AnyFile> {
+pub(super) fn opened(path: &Path) -> Result<AnyFile> {
     match AnyFile::open(path) {
         Ok(file) => Ok(file),
         Err(SchemaError::Extension) => {
@@ -156,21 +155,19 @@ pub(super) fn opened(path: &Path) -> anyhow::Result<AnyFile> {
         Err(SchemaError::Io(error)) => {
             let missing = error.kind() == ErrorKind::NotFound;
             let next = missing.then(|| "check the path".to_owned());
-            Err(CommandError { next, ..command_error!("cannot read {}: {error}", shown(path)) }
-                .into())
+            Err(CommandError { next, ..command_error!("cannot read {}: {error}", shown(path)) })
         }
-        Err(other) => Err(other).with_context(|| shown(path)),
+        Err(other) => Err(CommandError::from(other).context(shown(path))),
     }
 }
 
 /// The error for a file whose fields are inconsistent.
-pub(super) fn refusal(path: &Path, error: SchemaError) -> anyhow::Error {
+pub(super) fn refusal(path: &Path, error: SchemaError) -> CommandError {
     match error {
         SchemaError::NoPoints => command_error!(
             "{}: the file lists no points", shown(path) =>
             "add `points`, or give them in a file of their own with --points"
-        )
-        .into(),
-        other => anyhow::Error::new(other).context(shown(path)),
+        ),
+        other => CommandError::from(other).context(shown(path)),
     }
 }

@@ -1,11 +1,14 @@
 //! `walpha completions`: shell completion of commands and options.
 
+use std::io::Write;
+
 use clap::Args;
 use clap_complete::{Shell, generate};
 
 use super::build_command;
+use super::errors::Result;
 use super::global::Global;
-use super::output::print;
+use super::output::print_with;
 
 /// Print the script with which a shell completes `walpha` commands.
 ///
@@ -18,9 +21,9 @@ pub(super) struct Completions {
 }
 
 impl Completions {
-    pub(super) fn run(self, _: Global) -> anyhow::Result<()> {
+    pub(super) fn run(self, _: Global) -> Result<()> {
         let mut script = Vec::new();
         generate(self.shell, &mut build_command(), "walpha", &mut script);
-        Ok(print(&String::from_utf8(script)?)?)
+        print_with(|out| out.write_all(&script))
     }
 }

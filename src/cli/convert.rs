@@ -9,7 +9,7 @@ use walpha_base::shown::{counted, shown};
 use crate::progress::Stage;
 use crate::volume::{OpenVolume, Source, convert};
 
-use super::errors::fail_usage;
+use super::errors::{Result, fail_usage};
 use super::global::Global;
 use super::options::InputArgs;
 use super::output::{name, print_summary};
@@ -50,7 +50,7 @@ impl std::fmt::Display for ConvertSummary {
 }
 
 impl Convert {
-    pub(super) fn run(self, global: Global) -> anyhow::Result<()> {
+    pub(super) fn run(self, global: Global) -> Result<()> {
         if self.output.extension().is_none_or(|extension| extension != "zarr") {
             let path = shown(&self.output);
             fail_usage!("{path} does not end with .zarr, the one format written" => "give it a name that does");

@@ -8,6 +8,7 @@ use std::path::PathBuf;
 use clap::Args;
 use serde::Serialize;
 
+use super::errors::Result;
 use crate::Coordinates;
 use crate::export::{Content, FiltrationFormat, Target, write_all};
 use crate::ladder::Ordered;
@@ -101,7 +102,7 @@ struct Persistence {
 }
 
 impl Filtration {
-    pub(super) fn run(self, global: Global) -> anyhow::Result<()> {
+    pub(super) fn run(self, global: Global) -> Result<()> {
         let input = &self.pipeline.input;
         self.format.check(self.output.iter())?;
         let mut targets = Vec::new();

@@ -9,7 +9,7 @@ use walpha_base::shown::shown;
 use crate::export::{self, Filled, NewFolder, Target, put_all};
 use crate::points;
 
-use super::errors::{CommandError, command_error, fail_usage};
+use super::errors::{Result, command_error, fail_usage};
 
 /// An output folder, checked to be writable before the long work. At the end either all files appear in it,
 /// or none.
@@ -33,7 +33,7 @@ fn is_of_file(extension: &OsStr) -> bool {
 }
 
 /// Creates a folder if needed; `instead` tells the user how to choose another.
-pub(super) fn make(path: &Path, instead: &str) -> Result<Option<NewFolder>, CommandError> {
+pub(super) fn make(path: &Path, instead: &str) -> Result<Option<NewFolder>> {
     NewFolder::make(path).map_err(|error| {
         command_error!("cannot make the folder {}: {error}", shown(path) => "choose another {instead}")
     })
@@ -42,7 +42,7 @@ pub(super) fn make(path: &Path, instead: &str) -> Result<Option<NewFolder>, Comm
 impl Folder {
     /// Creates the folder if needed. `option` is the option that it was given by, `names` are files that are
     /// certain to be written.
-    pub(super) fn open(path: &Path, option: &str, names: &[&str]) -> anyhow::Result<Self> {
+    pub(super) fn open(path: &Path, option: &str, names: &[&str]) -> Result<Self> {
         if let Some(extension) = path.extension().filter(|_| !path.is_dir())
             && is_of_file(extension)
         {
@@ -62,7 +62,7 @@ impl Folder {
         &mut self,
         name: &str,
         content: impl FnOnce(&mut dyn Write) -> io::Result<()>,
-    ) -> anyhow::Result<u64> {
+    ) -> Result<u64> {
         let path = self.path.join(name);
         let filled = Target::open(&path)?.fill(content)?;
         let bytes = filled.bytes();
@@ -77,7 +77,7 @@ impl Folder {
     }
 
     /// Moves all files into place.
-    pub(super) fn finish(self) -> anyhow::Result<()> {
+    pub(super) fn finish(self) -> Result<()> {
         put_all(self.files)?;
         if let Some(new) = self.new {
             new.keep();

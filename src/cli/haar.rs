@@ -11,7 +11,7 @@ use crate::pipeline::{Grays, Input};
 use crate::progress::Stage;
 use crate::volume::VolumeWriter;
 
-use super::errors::fail;
+use super::errors::{Result, fail};
 use super::formats::volume_output;
 use super::global::Global;
 use super::options::{Declared, InputArgs, OutputArgs, Wavelets};
@@ -47,7 +47,7 @@ struct HaarSummary {
 }
 
 impl Haar {
-    pub(super) fn run(self, global: Global) -> anyhow::Result<()> {
+    pub(super) fn run(self, global: Global) -> Result<()> {
         self.format.check(self.output.iter())?;
         let target = match &self.output {
             None => None,

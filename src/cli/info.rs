@@ -7,6 +7,7 @@ use serde::Serialize;
 use serde_json::Value;
 use walpha_base::shown::number;
 
+use super::errors::Result;
 use crate::check::meshes::Mesh;
 use crate::labels::{LabelSize, LabelSizes};
 use crate::pipeline::Opened;
@@ -190,7 +191,7 @@ impl From<Cell> for CellSummary {
 }
 
 impl Info {
-    pub(super) fn run(self, global: Global) -> anyhow::Result<()> {
+    pub(super) fn run(self, global: Global) -> Result<()> {
         let mut progress = Progress::new(global);
         let describe = || pipeline::with_file(&self.input, |input| self.describe(input));
         let content = progress.stage(Stage::Read, describe)?;
@@ -204,7 +205,7 @@ impl Info {
         )
     }
 
-    fn describe(&self, input: &Path) -> anyhow::Result<Content> {
+    fn describe(&self, input: &Path) -> Result<Content> {
         match self.input.recipe()?.opened(input).map_err(pipeline::unread)? {
             Opened::Made(points) => {
                 Ok(Content::of_points(&points, ModelMetadata::default(), Vec::new()))
@@ -219,7 +220,7 @@ impl Info {
     }
 
     /// Describes a volume, or a file that holds nothing but a mesh.
-    fn describe_volume(&self, input: &Path, volume: &OpenVolume) -> anyhow::Result<Content> {
+    fn describe_volume(&self, input: &Path, volume: &OpenVolume) -> Result<Content> {
         if let (OpenVolume::File(file), Some(format)) = (volume, mesh_format(input)) {
             let Mesh { complex, notes, .. } = read_mesh(format, file)?;
             return Ok(Content::Mesh {

@@ -8,7 +8,7 @@ use clap::Args;
 use serde::Serialize;
 use walpha_base::number_or_null_or_name;
 
-use super::errors::{fail, fail_usage};
+use super::errors::{CommandError, Result, fail, fail_usage};
 use super::folder;
 use super::formats::volume_output;
 use super::global::Global;
@@ -133,7 +133,7 @@ fn output_help() -> String {
 }
 
 impl Interpolate {
-    pub(super) fn run(self, global: Global) -> anyhow::Result<()> {
+    pub(super) fn run(self, global: Global) -> Result<()> {
         if self.curve {
             if self.pipeline.input.grid().is_some() {
                 fail_usage!("--curve measures on the samples of INPUT" => "omit --dims");
@@ -167,7 +167,9 @@ impl Interpolate {
                 "no sample of the grid lies on the shape: give a larger --alpha, or --fill"
             );
         }
-        let mask = mask.map(|open| anyhow::Ok((open, sampled.resampled.mask()?))).transpose()?;
+        let mask = mask
+            .map(|open| Ok::<_, CommandError>((open, sampled.resampled.mask()?)))
+            .transpose()?;
         let (inside, filled, resampled) = if self.fill {
             let units = original.map_or(Units::Voxel, |original| original.units);
             let whole = progress.stage(Stage::Fill, || {
@@ -197,7 +199,7 @@ impl Interpolate {
     }
 
     /// The grid asked for.
-    fn grid(&self, original: Option<&Source>, weighed: &Weighed) -> anyhow::Result<Grid> {
+    fn grid(&self, original: Option<&Source>, weighed: &Weighed) -> Result<Grid> {
         let asked = self.pipeline.input.grid();
         asked.map(Dims::bounded).transpose()?;
         match (original, weighed.origin.grid, asked) {
@@ -229,7 +231,7 @@ struct Sampled {
     error: Option<Error>,
 }
 
-fn sample(shape: &AlphaShape, grid: &Grid, original: Option<&Source>) -> anyhow::Result<Sampled> {
+fn sample(shape: &AlphaShape, grid: &Grid, original: Option<&Source>) -> Result<Sampled> {
     let interpolant = Interpolant::new(shape)?;
     let resampled = interpolant.resample(grid)?;
     let error = match original {
@@ -249,7 +251,7 @@ fn sample(shape: &AlphaShape, grid: &Grid, original: Option<&Source>) -> anyhow:
 /// The destination of a volume.
 type Output = (&'static VolumeWriter, Target);
 
-fn open(path: &Path) -> anyhow::Result<Output> {
+fn open(path: &Path) -> Result<Output> {
     Ok((VolumeWriter::of(path)?, Target::open(path)?))
 }
 
@@ -304,11 +306,7 @@ struct CurveSummary {
 }
 
 /// Measures the curve and writes it as CSV, PNG and SVG.
-pub(super) fn run_curve(
-    global: Global,
-    pipeline: &PipelineArgs,
-    base: &Path,
-) -> anyhow::Result<()> {
+pub(super) fn run_curve(global: Global, pipeline: &PipelineArgs, base: &Path) -> Result<()> {
     let PipelineArgs { input, .. } = pipeline;
     let recipe = pipeline.recipe()?;
     let (new, paths) = paths(base)?;
@@ -360,7 +358,7 @@ pub(super) fn run_curve(
 }
 
 /// From a sixteenth to twice the points that would be selected.
-fn counts(volume: &Volume, rule: SelectionRule) -> anyhow::Result<Vec<u64>> {
+fn counts(volume: &Volume, rule: SelectionRule) -> Result<Vec<u64>> {
     let whole = match rule {
         SelectionRule::Count(count) => count as f64,
         SelectionRule::Ratio(ratio) | SelectionRule::AtMost(ratio) => {
@@ -384,7 +382,7 @@ const EXTENSIONS: &[&str] = &[
 
 /// `curve.csv`, `.png` and `.svg` in a folder, created if its name ends with a slash, or files with the given
 /// prefix.
-fn paths(base: &Path) -> anyhow::Result<(Option<NewFolder>, Vec<PathBuf>)> {
+fn paths(base: &Path) -> Result<(Option<NewFolder>, Vec<PathBuf>)> {
     let asked = base.to_string_lossy().ends_with(['/', std::path::MAIN_SEPARATOR]);
     let new = if asked { folder::make(base, "with --curve")? } else { None };
     let stem = if base.is_dir() {

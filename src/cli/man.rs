@@ -9,8 +9,9 @@ use walpha_base::shown::shown;
 use crate::export::Target;
 
 use super::build_command;
+use super::errors::Result;
 use super::global::Global;
-use super::output::print;
+use super::output::{print, print_with};
 
 /// Print the manual page, or write one for each command.
 ///
@@ -24,13 +25,11 @@ pub(super) struct Man {
 }
 
 impl Man {
-    pub(super) fn run(self, global: Global) -> anyhow::Result<()> {
+    pub(super) fn run(self, global: Global) -> Result<()> {
         // The long version also names the licence, which belongs elsewhere in a page.
         let command = build_command().version(env!("CARGO_PKG_VERSION"));
         let Some(folder) = self.output else {
-            let mut page = Vec::new();
-            Page::new(command).render(&mut page)?;
-            return Ok(print(&String::from_utf8(page)?)?);
+            return print_with(|mut out| Page::new(command).render(&mut out));
         };
         let documented = command.get_subcommands().filter(|sub| sub.get_name() != "help");
         for command in std::iter::once(&command).chain(documented) {

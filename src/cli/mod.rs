@@ -50,6 +50,7 @@ use tracing_subscriber::util::SubscriberInitExt;
 
 use crate::export::Target;
 
+use errors::Result;
 use global::{Global, INTERRUPTED, USAGE};
 use options::{config, help, typed};
 use output::{print, print_with};
@@ -156,7 +157,7 @@ fn lead(
         // Help and version are not errors.
         Err(error) if !error.use_stderr() => {
             let printed = print_with(|_| error.print());
-            printed.map(|()| ExitCode::SUCCESS).map_err(Into::into)
+            printed.map(|()| ExitCode::SUCCESS)
         }
         Err(error) => {
             errors::print_usage_error(name, &error, args.len() > typed.len());
@@ -195,7 +196,7 @@ fn is_piped(matches: &ArgMatches) -> bool {
     output.is_some_and(|mut paths| paths.any(|path| path == Target::STDOUT))
 }
 
-fn print_config(command: &clap::Command, matches: &ArgMatches) -> anyhow::Result<ExitCode> {
+fn print_config(command: &clap::Command, matches: &ArgMatches) -> Result<ExitCode> {
     if let Some((name, matches)) = matches.subcommand()
         && let Some(command) = command.find_subcommand(name)
     {
@@ -204,7 +205,7 @@ fn print_config(command: &clap::Command, matches: &ArgMatches) -> anyhow::Result
     Ok(ExitCode::SUCCESS)
 }
 
-fn execute(global: Global, command: Command, ranks: &Ranks) -> anyhow::Result<ExitCode> {
+fn execute(global: Global, command: Command, ranks: &Ranks) -> Result<ExitCode> {
     let level = match global {
         Global { quiet: true, .. } => LevelFilter::ERROR,
         Global { verbose: true, .. } => LevelFilter::DEBUG,

@@ -1,6 +1,6 @@
 //! Outputs that hold outlines, which only points in a plane have: what cannot be written is refused before the work.
 
-use super::errors::{CommandError, fail_usage};
+use super::errors::{CommandError, Result, fail_usage};
 use crate::export::Format;
 use crate::shape::Outline;
 
@@ -8,19 +8,15 @@ use crate::shape::Outline;
 pub(super) fn check<'a>(
     formats: impl IntoIterator<Item = &'a Format>,
     positions: &[[f64; 3]],
-) -> Result<(), CommandError> {
+) -> Result<()> {
     let Some(format) = formats.into_iter().find(|format| format.outline) else { return Ok(()) };
     Outline::check(positions).map_err(|error| {
-        let error = CommandError::from(error);
-        CommandError { why: format!("{} needs an outline: {}", format.name, error.why), ..error }
+        CommandError::from(error).context(format!("{} needs an outline", format.name))
     })
 }
 
 /// Refuses formats of outlines for shapes that have none, whatever the points; `why` says so.
-pub(super) fn refuse<'a>(
-    formats: impl IntoIterator<Item = &'a Format>,
-    why: &str,
-) -> Result<(), CommandError> {
+pub(super) fn refuse<'a>(formats: impl IntoIterator<Item = &'a Format>, why: &str) -> Result<()> {
     if let Some(format) = formats.into_iter().find(|format| format.outline) {
         let name = format.name;
         fail_usage!("{name} holds the outline of points in a plane: {why}" => "name another format");

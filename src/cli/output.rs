@@ -9,18 +9,16 @@ use tracing::field::{Field, Visit};
 use tracing::{Event, Level, Subscriber};
 use tracing_subscriber::Layer;
 use tracing_subscriber::layer::Context;
-use walpha_base::advice::Advice;
+use walpha_base::advice::Category;
 use walpha_base::shown::escaped;
 use walpha_base::standard_output;
 
+use super::errors::{CommandError, Result, command_error};
 use super::global::Global;
 
 /// Prints facts as the options ask for: as JSON, as text, or not at all; to standard error if a file goes to
 /// standard output (`-o -`).
-pub(super) fn print_summary<T: Serialize + Display>(
-    global: Global,
-    facts: &T,
-) -> anyhow::Result<()> {
+pub(super) fn print_summary<T: Serialize + Display>(global: Global, facts: &T) -> Result<()> {
     if global.json {
         let warnings = warnings();
         let text =
@@ -45,7 +43,7 @@ pub(super) fn name(name: &str) -> String {
     escaped(name, |_| false)
 }
 
-fn write_text(global: Global, text: &str) -> anyhow::Result<()> {
+fn write_text(global: Global, text: &str) -> Result<()> {
     if global.piped {
         io::stderr().lock().write_all(text.as_bytes())?;
     } else {
@@ -55,34 +53,31 @@ fn write_text(global: Global, text: &str) -> anyhow::Result<()> {
 }
 
 /// Standard output is closed, full, or no longer read: what was to be printed is lost.
-#[derive(Debug, thiserror::Error)]
-#[error("cannot write to standard output: {0}")]
-pub(super) struct OutputError(#[from] io::Error);
-
-impl OutputError {
-    pub(super) fn advice(&self) -> Advice {
-        match self.0.kind() {
-            ErrorKind::BrokenPipe => {
-                "let the reading program read to the end, if all is needed".into()
-            }
-            _ => "check where standard output goes, or give --quiet to print nothing".into(),
-        }
-    }
+fn unprinted(error: &io::Error) -> CommandError {
+    let next = match error.kind() {
+        ErrorKind::BrokenPipe => "let the reading program read to the end, if all is needed",
+        _ => "check where standard output goes, or give --quiet to print nothing",
+    };
+    let said = command_error!("cannot write to standard output: {error}" => "{next}");
+    CommandError { category: Category::System(error.kind()), unprinted: true, ..said }
 }
 
 /// Prints text; a failure is an error, not a panic as in `println!`.
-pub(super) fn print(text: &str) -> Result<(), OutputError> {
+pub(super) fn print(text: &str) -> Result<()> {
     print_with(|out| out.write_all(text.as_bytes()))
 }
 
 /// Prints what `write` writes, and flushes it.
 pub(super) fn print_with(
     write: impl FnOnce(&mut io::StdoutLock<'static>) -> io::Result<()>,
-) -> Result<(), OutputError> {
-    standard_output::check()?;
-    let mut out = io::stdout().lock();
-    write(&mut out)?;
-    Ok(out.flush()?)
+) -> Result<()> {
+    let print = || {
+        standard_output::check()?;
+        let mut out = io::stdout().lock();
+        write(&mut out)?;
+        out.flush()
+    };
+    print().map_err(|error| unprinted(&error))
 }
 
 /// Prints a remark to standard error. A failure is ignored, where `eprintln!` would panic.
@@ -90,16 +85,8 @@ pub(super) fn remark(text: &str) {
     let _ = writeln!(io::stderr().lock(), "{text}");
 }
 
-fn json(value: &impl Serialize) -> serde_json::Result<String> {
+pub(super) fn json(value: &impl Serialize) -> io::Result<String> {
     Ok(serde_json::to_string_pretty(value)? + "\n")
-}
-
-/// Whether an error means that the reader of our output is gone.
-pub(super) fn is_broken_pipe(error: &anyhow::Error) -> bool {
-    let broken = |cause: &(dyn std::error::Error + 'static)| {
-        cause.downcast_ref::<io::Error>().is_some_and(|e| e.kind() == ErrorKind::BrokenPipe)
-    };
-    error.chain().any(broken)
 }
 
 /// Distinct warnings so far.

@@ -1,8 +1,10 @@
 //! A shape as a picture: the options, and the writer for `.png`.
 
 use std::ffi::OsStr;
+use std::fmt::Display;
 use std::io::{self, Write};
 use std::path::Path;
+use std::str::FromStr;
 
 use clap::{Args, ValueEnum};
 
@@ -14,7 +16,7 @@ use crate::render::{
     View,
 };
 
-use super::errors::fail;
+use super::errors::{Result, command_error, fail};
 
 /// How a shape is drawn.
 #[derive(Args, Clone, Copy)]
@@ -125,9 +127,8 @@ impl Exporter for PictureArgs {
     }
 }
 
-fn camera(text: &str) -> anyhow::Result<Camera> {
-    let numbers: Vec<f64> =
-        text.split(',').map(|number| number.trim().parse()).collect::<Result<_, _>>()?;
+fn camera(text: &str) -> Result<Camera> {
+    let numbers: Vec<f64> = text.split(',').map(parsed).collect::<Result<_>>()?;
     let [ex, ey, ez, tx, ty, tz] = numbers[..] else {
         fail!("six numbers are needed" => "give where the eye is and what it looks at, as in 99,0,9,0,0,0");
     };
@@ -138,9 +139,13 @@ fn camera(text: &str) -> anyhow::Result<Camera> {
     Ok(Camera::portrait(eye, target))
 }
 
-fn size(text: &str) -> anyhow::Result<Size> {
+fn size(text: &str) -> Result<Size> {
     let Some((width, height)) = text.split_once(['x', '×']) else {
         fail!("two numbers are needed" => "give them as in 1600x1360");
     };
-    Ok(Size::new(width.trim().parse()?, height.trim().parse()?)?)
+    Ok(Size::new(parsed(width)?, parsed(height)?)?)
+}
+
+fn parsed<T: FromStr<Err: Display>>(number: &str) -> Result<T> {
+    number.trim().parse().map_err(|error| command_error!("{error}"))
 }

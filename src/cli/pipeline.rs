@@ -5,7 +5,7 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use super::errors::{CommandError, command_error, is_usage, reasons};
+use super::errors::{CommandError, Result, command_error};
 use super::options::preset;
 use super::options::{self, InputArgs};
 use super::progress::Progress;
@@ -44,7 +44,7 @@ pub(super) fn weighted_points(
     args: &InputArgs,
     recipe: &Recipe,
     progress: &mut Progress,
-) -> anyhow::Result<(Weighed, Option<VolumeSummary>)> {
+) -> Result<(Weighed, Option<VolumeSummary>)> {
     let (weighed, source) = points_and_volume(args, recipe, Values::Written, progress)?;
     Ok((weighed, source.as_ref().map(VolumeSummary::of)))
 }
@@ -55,7 +55,7 @@ pub(super) fn points_and_volume(
     recipe: &Recipe,
     values: Values,
     progress: &mut Progress,
-) -> anyhow::Result<(Weighed, Option<Source>)> {
+) -> Result<(Weighed, Option<Source>)> {
     let mut recipe = recipe.clone();
     let read = read_suited(args, &mut recipe, progress)?;
     weigh(read, args, &recipe, values, progress)
@@ -68,19 +68,15 @@ pub(super) fn weigh(
     recipe: &Recipe,
     values: Values,
     progress: &mut Progress,
-) -> anyhow::Result<(Weighed, Option<Source>)> {
+) -> Result<(Weighed, Option<Source>)> {
     accept(&read, args)?;
     Ok(progress.watch(|| recipe.weigh(read, values))?)
 }
 
 /// The shape of weighted points.
-pub(super) fn shape(
-    weighed: Weighed,
-    recipe: &Recipe,
-    progress: &mut Progress,
-) -> anyhow::Result<Model> {
-    progress.watch(|| recipe.finish(weighed)).map_err(|error| match &error {
-        PipelineError::Radii { .. } => CommandError::usage_of(&error).into(),
+pub(super) fn shape(weighed: Weighed, recipe: &Recipe, progress: &mut Progress) -> Result<Model> {
+    progress.watch(|| recipe.finish(weighed)).map_err(|error| match error {
+        PipelineError::Radii { .. } => CommandError::usage_of(error),
         _ => error.into(),
     })
 }
@@ -116,11 +112,7 @@ pub(super) fn suggested(filtration: &Filtration, curve: &Curve) -> Vec<Alpha> {
 }
 
 /// Reads INPUT.
-pub(super) fn read(
-    args: &InputArgs,
-    recipe: &Recipe,
-    progress: &mut Progress,
-) -> anyhow::Result<Input> {
+pub(super) fn read(args: &InputArgs, recipe: &Recipe, progress: &mut Progress) -> Result<Input> {
     read_with(args, progress, |input| recipe.open(input))
 }
 
@@ -130,7 +122,7 @@ pub(super) fn read_suited(
     args: &InputArgs,
     recipe: &mut Recipe,
     progress: &mut Progress,
-) -> anyhow::Result<Input> {
+) -> Result<Input> {
     let suited = |recipe: &Recipe, volume: &Volume| preset::suited_to(args, recipe, volume);
     read_with(args, progress, |input| recipe.open_suited(input, suited))
 }
@@ -141,7 +133,7 @@ pub(super) fn read_opened(
     args: &InputArgs,
     recipe: &mut Recipe,
     progress: &mut Progress,
-) -> anyhow::Result<Input> {
+) -> Result<Input> {
     let suited = |recipe: &Recipe, volume: &Volume| preset::suited_to(args, recipe, volume);
     let read = || recipe.read_suited(opened, suited).map_err(unread);
     progress.stage(Stage::Read, read)
@@ -151,12 +143,12 @@ fn read_with(
     args: &InputArgs,
     progress: &mut Progress,
     open: impl FnOnce(&Path) -> Result<Input, PipelineError>,
-) -> anyhow::Result<Input> {
+) -> Result<Input> {
     progress.stage(Stage::Read, || with_file(args, |input| open(input).map_err(unread)))
 }
 
 /// The error for INPUT that cannot be opened or read.
-pub(super) fn unread(error: PipelineError) -> anyhow::Error {
+pub(super) fn unread(error: PipelineError) -> CommandError {
     match error {
         PipelineError::Points(PointsError::File(error)) => with_points(error),
         error => error.into(),
@@ -164,21 +156,18 @@ pub(super) fn unread(error: PipelineError) -> anyhow::Error {
 }
 
 /// Adds the formats of points to the error about an unknown format.
-pub(super) fn with_points(error: VolumeError) -> anyhow::Error {
+pub(super) fn with_points(error: VolumeError) -> CommandError {
     if !matches!(error, VolumeError::Format { reason: Reason::Unknown { .. }, .. }) {
         return error.into();
     }
     let names: Vec<&str> = crate::points::FORMATS.iter().map(|format| format.name).collect();
     let said = CommandError::from(error);
-    CommandError { why: format!("{}, {} as points", said.why, names.join(", ")), ..said }.into()
+    CommandError { why: format!("{}, {} as points", said.why, names.join(", ")), ..said }
 }
 
 /// Runs `work` on INPUT, a file or the name of a sample. Standard input is copied to a temporary file, because
 /// formats are read in several passes.
-pub(super) fn with_file<T>(
-    args: &InputArgs,
-    work: impl FnOnce(&Path) -> anyhow::Result<T>,
-) -> anyhow::Result<T> {
+pub(super) fn with_file<T>(args: &InputArgs, work: impl FnOnce(&Path) -> Result<T>) -> Result<T> {
     args.check_format()?;
     if !args.input.is_stdin() {
         return work(args.input.path());
@@ -189,15 +178,13 @@ pub(super) fn with_file<T>(
     let path = file.path().to_string_lossy().into_owned();
     // The user does not know the name of the temporary file.
     work(file.path()).map_err(|error| {
-        let (why, next) = reasons(&error);
         let named = |text: String| text.replace(&path, "standard input");
-        let usage = is_usage(&error);
-        CommandError { why: named(why), next: next.map(named), usage }.into()
+        CommandError { why: named(error.why), next: error.next.map(named), ..error }
     })
 }
 
 /// Refuses options that have no effect on this kind of INPUT.
-pub(super) fn accept(input: &Input, args: &InputArgs) -> Result<(), CommandError> {
+pub(super) fn accept(input: &Input, args: &InputArgs) -> Result<()> {
     let holds = |what| format!("{} holds {what}", args.input);
     match input {
         Input::Volume(..) | Input::Labels(..) => {

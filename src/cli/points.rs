@@ -8,7 +8,7 @@ use crate::export::Target;
 use crate::points::{Packing, PointWriter};
 use crate::progress::Stage;
 
-use super::errors::fail_usage;
+use super::errors::{Result, fail_usage};
 use super::formats::points_output;
 use super::global::Global;
 use super::options::{OutputArgs, PipelineArgs, not_negative};
@@ -50,7 +50,7 @@ pub(super) struct Points {
 }
 
 impl Points {
-    pub(super) fn run(self, global: Global) -> anyhow::Result<()> {
+    pub(super) fn run(self, global: Global) -> Result<()> {
         self.format.check(self.output.iter())?;
         let target = match &self.output {
             None => None,

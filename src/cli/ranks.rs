@@ -4,7 +4,9 @@ use std::ffi::OsString;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process::ExitCode;
 
-use super::errors::{self, CommandError, command_error};
+use walpha_base::advice::Category;
+
+use super::errors::{self, CommandError, Result, command_error};
 use super::global::{PANICKED, USAGE};
 use crate::outofcore::{Alone, Team};
 
@@ -61,7 +63,7 @@ impl Launched {
         } else {
             command_error!("{size} processes were started, and this walpha was built without MPI, so that all would write the same files" => "build it with `cargo install --features mpi`, or start one process; {each}")
         };
-        CommandError { usage: true, ..said }
+        CommandError { category: Category::Usage, ..said }
     }
 }
 
@@ -108,14 +110,14 @@ impl Ranks {
         &self,
         command: &str,
         lead: impl FnOnce() -> Result<ExitCode, u8>,
-        serve: impl FnOnce() -> anyhow::Result<()>,
+        serve: impl FnOnce() -> Result<()>,
     ) -> ExitCode {
         let is_first = self.team().rank() == 0;
         if let Self::Unconnected(launched) = self {
             if launched.rank > 0 {
                 return ExitCode::SUCCESS;
             }
-            errors::print_error(command, &launched.refusal(command).into());
+            errors::print_error(command, &launched.refusal(command));
             return ExitCode::from(USAGE);
         }
         let done = if is_first {
@@ -136,7 +138,7 @@ impl Ranks {
     }
 
     /// Reports a failure in a process that is not the first, and returns its exit code.
-    fn report_failure(&self, command: &str, error: &anyhow::Error) -> u8 {
+    fn report_failure(&self, command: &str, error: &CommandError) -> u8 {
         /// A failure in all processes is reported by the first, which ends the others within this time.
         const PATIENCE: std::time::Duration = std::time::Duration::from_secs(2);
         std::thread::sleep(PATIENCE);

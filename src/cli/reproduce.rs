@@ -14,9 +14,10 @@ use crate::reproduce::{
 use crate::volume::{ReadOptions, open};
 use crate::{Gray, Volume, VolumeError};
 
+use super::errors::Result;
 use super::folder::Folder;
 use super::global::Global;
-use super::output::{print, remark};
+use super::output::{json, print, remark};
 use super::progress::Progress;
 
 /// Reproduce the paper: Table 1, the figures, and a report on its claims.
@@ -56,7 +57,7 @@ const SKULL: &str = "sample:skull";
 const PHANTOM: &str = "sample:phantom";
 
 impl Reproduce {
-    pub(super) fn run(self, global: Global) -> anyhow::Result<()> {
+    pub(super) fn run(self, global: Global) -> Result<()> {
         let mut progress = Progress::new(global);
         // Before the long work.
         let mut folder =
@@ -81,9 +82,9 @@ impl Reproduce {
             name: "reproduction.md".into(),
             bytes: markdown(&made.report).into_bytes(),
         });
-        let json = serde_json::to_string_pretty(&made.report)? + "\n";
+        let json = json(&made.report)?;
         files.push(File { name: "report.json".into(), bytes: json.clone().into_bytes() });
-        progress.stage(Stage::Write, || -> anyhow::Result<()> {
+        progress.stage(Stage::Write, || -> Result<()> {
             for file in &files {
                 folder.write(&file.name, |out| out.write_all(&file.bytes))?;
             }
@@ -98,7 +99,7 @@ impl Reproduce {
         Ok(())
     }
 
-    fn volume(&self, global: Global) -> anyhow::Result<(String, Volume)> {
+    fn volume(&self, global: Global) -> Result<(String, Volume)> {
         if let Some(name) = &self.input {
             return Ok((name.clone(), open(name, &ReadOptions::default())?));
         }

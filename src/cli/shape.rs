@@ -7,7 +7,7 @@ use clap::Args;
 use walpha_base::shown::shown;
 use walpha_files::Working;
 
-use super::errors::{CommandError, fail_usage, option};
+use super::errors::{CommandError, Result, fail_usage, option};
 use super::formats::shape_output;
 use super::global::Global;
 use super::offsets::offsets;
@@ -102,7 +102,7 @@ fn formats(names: &[PathBuf]) -> impl Iterator<Item = &'static Format> {
 }
 
 /// Refuses a switch that has no effect.
-fn unused(name: &str, given: bool, why: &str) -> anyhow::Result<()> {
+fn unused(name: &str, given: bool, why: &str) -> Result<()> {
     if given {
         fail_usage!("{name} has no effect: {why}" => "omit it");
     }
@@ -111,7 +111,7 @@ fn unused(name: &str, given: bool, why: &str) -> anyhow::Result<()> {
 
 impl Shape {
     /// The options of all stages; refuses those that no output uses.
-    fn recipe(&self) -> anyhow::Result<Recipe> {
+    fn recipe(&self) -> Result<Recipe> {
         let input = &self.pipeline.input;
         self.format.check(self.output.iter())?;
         let names = self.names()?;
@@ -166,11 +166,11 @@ impl Shape {
     }
 
     /// The outputs, under names whose extensions say their formats.
-    fn names(&self) -> anyhow::Result<Vec<PathBuf>> {
+    fn names(&self) -> Result<Vec<PathBuf>> {
         self.output.iter().map(|path| self.format.named(path)).collect()
     }
 
-    pub(super) fn run(self, global: Global, team: &dyn Team) -> anyhow::Result<()> {
+    pub(super) fn run(self, global: Global, team: &dyn Team) -> Result<()> {
         // Before the long work, a bad option, extension or path costs nothing yet.
         let recipe = self.recipe()?;
         if self.each_label {
@@ -206,7 +206,7 @@ impl Shape {
         global: Global,
         progress: &mut Progress,
         team: &dyn Team,
-    ) -> anyhow::Result<Report> {
+    ) -> Result<Report> {
         let flat = "a block may be flat where the whole is not";
         unused("--require-3d", self.require_3d, flat)?;
         outline::refuse(formats(&self.names()?), "there are blocks, which span a volume")?;
@@ -230,7 +230,7 @@ impl Shape {
         outputs: Outputs,
         global: Global,
         progress: &mut Progress,
-    ) -> anyhow::Result<Report> {
+    ) -> Result<Report> {
         let input = &self.pipeline.input;
         let names = self.names()?;
         // A CT may tell the recipe what to look for.
@@ -273,7 +273,7 @@ impl Shape {
         outputs: Outputs,
         global: Global,
         progress: &mut Progress,
-    ) -> anyhow::Result<Report> {
+    ) -> Result<Report> {
         if self.solid {
             progress.stage(Stage::Measure, || report.add_solid(shape.solid().1));
         }
@@ -300,7 +300,7 @@ pub(super) struct Outputs {
 
 impl Outputs {
     /// Opens the outputs that the options name.
-    pub(super) fn open(shape: &Shape) -> anyhow::Result<Self> {
+    pub(super) fn open(shape: &Shape) -> Result<Self> {
         let export = shape.export();
         let mut outputs = Self::default();
         for path in &shape.output {
@@ -322,15 +322,13 @@ impl Outputs {
     }
 
     /// Refuses a shape of which a file would hold nothing, and without files one of nothing.
-    fn refuse_empty(&self, shape: &AlphaShape) -> Result<(), CommandError> {
+    fn refuse_empty(&self, shape: &AlphaShape) -> Result<()> {
         if self.whole.is_empty() && self.models.is_empty() {
             EmptyShape::check(shape, Needs::Simplex).map_err(or_allowed)?;
         }
         for (target, exporter) in &self.whole {
-            EmptyShape::check(shape, exporter.needs()).map_err(|error| {
-                let error = or_allowed(error);
-                CommandError { why: format!("{}: {}", shown(target.path()), error.why), ..error }
-            })?;
+            EmptyShape::check(shape, exporter.needs())
+                .map_err(|error| or_allowed(error).context(shown(target.path())))?;
         }
         Ok(())
     }

@@ -9,7 +9,7 @@ use walpha_base::shown::shown;
 use walpha_files::Lock;
 
 use super::blocks::{Outputs, job};
-use super::errors::fail;
+use super::errors::{Result, fail};
 use super::global::Global;
 use super::offsets::FileOffset;
 use super::options::InputArgs;
@@ -42,7 +42,7 @@ impl SharedWork {
         pieces: Vec<(BlockwiseFormat, PathBuf)>,
         folder: PathBuf,
         global: Global,
-    ) -> anyhow::Result<Self> {
+    ) -> Result<Self> {
         let threads = global.threads.unwrap_or(1);
         let cutting = Cutting::of(&recipe);
         Ok(Self { job: job(input, recipe)?, cutting, folder, pieces, threads })
@@ -54,10 +54,10 @@ impl SharedWork {
         outputs: Outputs,
         progress: &mut Progress,
         team: &dyn Team,
-    ) -> anyhow::Result<Report> {
+    ) -> Result<Report> {
         let working = AtWork::in_folder(&self.folder)?;
         if team.size() > 1 {
-            order(team, Some(serde_json::to_string(&self)?));
+            order(team, Some(serde_json::to_string(&self).map_err(io::Error::from)?));
         }
         let Shared { plan, merged, offsets, working } =
             self.share(Some(working), outputs, progress, team)?;
@@ -75,7 +75,7 @@ impl SharedWork {
         outputs: Outputs,
         progress: &mut Progress,
         team: &dyn Team,
-    ) -> anyhow::Result<Shared> {
+    ) -> Result<Shared> {
         let plan = progress.stage(Stage::Points, || {
             Plan::resume_with(self.job.clone(), self.cutting, &self.folder, team)
         })?;
@@ -101,7 +101,7 @@ impl AtWork {
 
     /// Makes the folder, or takes the one that is there up again. A folder of others is refused, as its files could be
     /// replaced.
-    fn in_folder(folder: &Path) -> anyhow::Result<Self> {
+    fn in_folder(folder: &Path) -> Result<Self> {
         const INSTEAD: &str = "by naming another output";
         let new = folder::make(folder, INSTEAD)?;
         let path = folder.join(Self::FILE);
@@ -152,9 +152,9 @@ fn order(team: &dyn Team, work: Option<String>) {
 }
 
 /// Does what the first process orders, until it [dismisses](dismiss) this one.
-pub(super) fn serve(team: &dyn Team) -> anyhow::Result<()> {
+pub(super) fn serve(team: &dyn Team) -> Result<()> {
     while let Some(work) = team.broadcast::<Option<String>>(None) {
-        let work: SharedWork = serde_json::from_str(&work)?;
+        let work: SharedWork = serde_json::from_str(&work).map_err(io::Error::from)?;
         threads::start(Some(work.threads))?;
         let quiet = Global { quiet: true, ..Global::default() };
         let outputs = Outputs { pieces: work.pieces.clone(), whole: Vec::new() };

@@ -7,7 +7,7 @@ use std::path::Path;
 use serde::Serialize;
 use walpha_base::shown::number;
 
-use super::errors::fail_usage;
+use super::errors::{Result, fail_usage};
 use super::folder::Folder;
 use super::global::Global;
 use super::ladder::{Mesh, meshes};
@@ -38,7 +38,7 @@ impl Shape {
         outputs: Outputs,
         global: Global,
         progress: &mut Progress,
-    ) -> anyhow::Result<Report> {
+    ) -> Result<Report> {
         let input = &self.pipeline.input;
         refuse_gray_levels(input)?;
         refuse_points_alone(&outputs)?;
@@ -51,7 +51,7 @@ impl Shape {
     }
 
     /// Makes the solid of each label, in files of their own.
-    pub(super) fn each_label(&self, recipe: &Recipe, global: Global) -> anyhow::Result<()> {
+    pub(super) fn each_label(&self, recipe: &Recipe, global: Global) -> Result<()> {
         let [folder] = &self.output[..] else {
             fail_usage!("--each-label writes a file for each label to one folder" => "name it, as in -o labels");
         };
@@ -101,13 +101,13 @@ impl Shape {
     }
 
     /// The formats that `--each-label` writes.
-    pub(super) fn meshes(&self) -> anyhow::Result<Vec<Mesh>> {
+    pub(super) fn meshes(&self) -> Result<Vec<Mesh>> {
         meshes(&self.mesh, &[DEFAULT_MESH], &self.export())
     }
 }
 
 /// Refuses outputs that hold points alone, from which a shape is made by α.
-fn refuse_points_alone(outputs: &Outputs) -> anyhow::Result<()> {
+fn refuse_points_alone(outputs: &Outputs) -> Result<()> {
     if let Some((target, _)) = outputs.models.first() {
         let name = walpha_base::shown::shown(target.path());
         fail_usage!("{name} holds points, of which shapes are made by α, and this is the solid of labels" => "write a mesh, .json or .npz");

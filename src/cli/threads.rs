@@ -2,11 +2,11 @@
 
 use crate::threads;
 
-use super::errors::command_error;
+use super::errors::{Result, command_error};
 use super::global::STACK;
 
 /// Starts the threads asked for, or the default number; fewer if the system allows no more.
-pub(super) fn start(asked: Option<u16>) -> anyhow::Result<()> {
+pub(super) fn start(asked: Option<u16>) -> Result<()> {
     let asked = asked.map(usize::from);
     let (wanted, most) = (threads::wanted(asked), threads::most());
     if let Some(count) = asked.filter(|&count| count > most) {
@@ -25,7 +25,7 @@ pub(super) fn start(asked: Option<u16>) -> anyhow::Result<()> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(count.max(1));
     // If no thread can be started, this one does the work.
     let pool = if count == 0 { pool.use_current_thread() } else { pool };
-    pool.build_global().map_err(|error| {
-        command_error!("threads cannot be started: {error}" => "give fewer with --threads").into()
-    })
+    pool.build_global().map_err(
+        |error| command_error!("threads cannot be started: {error}" => "give fewer with --threads"),
+    )
 }

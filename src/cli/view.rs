@@ -5,12 +5,11 @@ use std::fmt::{self, Display};
 use std::path::PathBuf;
 use std::str::FromStr;
 
-use anyhow::bail;
 use clap::Args;
 use serde::Serialize;
 use walpha_base::shown::{number, shown};
 
-use super::errors::{fail, fail_usage};
+use super::errors::{CommandError, Result, fail, fail_usage};
 use super::global::Global;
 use super::options::{self, Alphas, FrozenPipelineArgs};
 use super::output::{name, print_summary, remark};
@@ -63,10 +62,10 @@ pub(super) struct View {
 }
 
 impl View {
-    pub(super) fn run(self, global: Global) -> anyhow::Result<()> {
+    pub(super) fn run(self, global: Global) -> Result<()> {
         let html = self.output.extension().is_some_and(|e| e.eq_ignore_ascii_case("html"));
         if !html {
-            bail!(UnknownFormat::new(&self.output, "a page", ["html"]));
+            return Err(UnknownFormat::new(&self.output, "a page", ["html"]).into());
         }
         let target = Target::open(&self.output)?;
         let mut progress = Progress::new(global);
@@ -97,7 +96,7 @@ impl View {
 
     /// The weighted points of each level of detail, the fewest first and those of the shape last, and the
     /// volume that they come from.
-    fn weighed(&self, progress: &mut Progress) -> anyhow::Result<(Vec<Weighed>, Option<Source>)> {
+    fn weighed(&self, progress: &mut Progress) -> Result<(Vec<Weighed>, Option<Source>)> {
         let input = &self.pipeline.input;
         let mut recipe = self.pipeline.recipe()?;
         let read = pipeline::read_suited(input, &mut recipe, progress)?;
@@ -134,7 +133,7 @@ impl View {
         details: &[Detail],
         source: Option<&Source>,
         progress: &mut Progress,
-    ) -> anyhow::Result<(Page, Vec<DetailSummary>)> {
+    ) -> Result<(Page, Vec<DetailSummary>)> {
         let last = details.last().expect("the level of the shape");
         let facts = source.map(VolumeSummary::of);
         let facts = facts.as_ref();
@@ -249,7 +248,7 @@ impl Detail {
         weighed: Weighed,
         source: Option<&Source>,
         progress: &mut Progress,
-    ) -> anyhow::Result<Self> {
+    ) -> Result<Self> {
         let filtration = progress.watch(|| pipeline::filtration(None, &weighed))?;
         let differences = match source {
             Some(source) => {
@@ -292,7 +291,7 @@ fn differences(
     weighed: &Weighed,
     source: &Source,
     filtration: &Filtration,
-) -> anyhow::Result<Option<Differences>> {
+) -> Result<Option<Differences>> {
     let Source { volume, units, written, .. } = source;
     let Some(values) = weighed.points.values() else { return Ok(None) };
     let grays: Vec<f64> = values.iter().map(|&value| written.gray(value)).collect();
@@ -361,16 +360,16 @@ impl Display for Isovalue {
 }
 
 impl FromStr for Isovalue {
-    type Err = anyhow::Error;
+    type Err = CommandError;
 
-    fn from_str(text: &str) -> anyhow::Result<Self> {
+    fn from_str(text: &str) -> Result<Self> {
         let (number, level): (_, fn(f64) -> Self) = match text.strip_suffix('v') {
             Some(value) => (value, Self::Value),
             None => (text, Self::Gray),
         };
         match options::number(number)? {
             number if number.is_finite() => Ok(level(number)),
-            _ => bail!(
+            _ => fail!(
                 "a finite number is needed; give a gray level as in 50, or a value as in 300v"
             ),
         }

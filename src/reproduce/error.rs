@@ -1,5 +1,5 @@
 use walpha_base::Cancelled;
-use walpha_base::advice::Advice;
+use walpha_base::advice::{Advise, wrapped};
 use walpha_base::monitor::wraps;
 
 use super::OffError;
@@ -52,23 +52,18 @@ pub enum ReproduceError {
 
 wraps! { ReproduceError: Haar(HaarError), Shape(ShapeError), Interpolate(InterpolateError) }
 
-impl ReproduceError {
-    /// Advice on what to do, if there is any.
-    pub fn advice(&self) -> Option<Advice> {
-        match self {
-            Self::Volume(error) => error.advice(),
-            Self::Haar(error) => error.advice(),
-            Self::Points(error) => error.advice(),
-            Self::Shape(error) => error.advice(),
-            Self::Plane(PlaneError::Sites(error)) => error.advice(),
-            Self::Plane(PlaneError::Cgal(error)) => Some(error.advice()),
-            Self::Interpolate(error) => error.advice(),
-            Self::Off(_) => Some("this is a fault of walpha, please report it".into()),
-            Self::Plane(_)
-            | Self::Curvature(_)
-            | Self::Render(_)
-            | Self::Io(_)
-            | Self::Cancelled(_) => None,
-        }
-    }
+impl Advise for ReproduceError {
+    wrapped!(
+        Volume,
+        Haar,
+        Points,
+        Shape,
+        Plane,
+        Curvature,
+        Interpolate,
+        Render,
+        Off,
+        Cancelled,
+        Io
+    );
 }

@@ -1,3 +1,5 @@
+use walpha_base::advice::{Advice, Advise, Category};
+
 use crate::render::{Colours, Mesh, Rgb, Scene, Shading};
 
 /// The triangles of an OFF file.
@@ -18,6 +20,17 @@ pub struct OffError {
     line: usize,
     expected: &'static str,
     got: String,
+}
+
+/// walpha reads only files of its own.
+impl Advise for OffError {
+    fn advice(&self) -> Option<Advice> {
+        Some("this is a fault of walpha, please report it".into())
+    }
+
+    fn category(&self) -> Category {
+        Category::Program
+    }
 }
 
 impl OffMesh {

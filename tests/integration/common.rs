@@ -9,11 +9,8 @@ use std::process::{Command, Output};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use proptest::prelude::*;
-use walpha::advice::Advice;
-use walpha::points::UnknownColumns;
-use walpha::shape::ShapeError;
-use walpha::volume::UnknownFormat;
-use walpha::{PointsError, VolumeError, WeightedPoints};
+use walpha::WeightedPoints;
+use walpha::advice::Advise;
 
 /// Whether `sample:skull` can be read. It comes with CGAL's demo package, which a machine need
 /// not have; where `WALPHA_REQUIRE_SKULL` is set, its absence is a failure and not an excuse.
@@ -181,19 +178,11 @@ pub fn lattice(height: i32, count: Range<usize>) -> impl Strategy<Value = Weight
     prop::collection::vec(site, count).prop_map(weighted)
 }
 
-pub trait Told {
-    /// The message and the advice in one text.
-    fn told(&self) -> String;
+/// The message and the advice in one text.
+pub trait Told: Advise {
+    fn told(&self) -> String {
+        self.advice().map_or(self.to_string(), |advice| format!("{self}; {advice}"))
+    }
 }
 
-macro_rules! told {
-    ($($error:ty),*) => {
-        $(impl Told for $error {
-            fn told(&self) -> String {
-                let advice: Option<Advice> = self.advice().into();
-                advice.map_or(self.to_string(), |advice| format!("{self}; {advice}"))
-            }
-        })*
-    };
-}
-told![PointsError, ShapeError, UnknownColumns, UnknownFormat, VolumeError];
+impl<E: Advise> Told for E {}

@@ -1,24 +1,26 @@
 //! What has been opened and computed, and the answers to requests.
 
+use std::io;
 use std::path::Path;
 
 use serde_json::json;
+use walpha_base::advice::{Advise, told};
 use walpha_model::export::{EmptyShape, ExportOptions, Format};
 use walpha_model::pipeline::{
-    AlphaRule, Input, Model, Opened as OpenInput, Origin, Parameter, ParameterOrigin,
-    PipelineError, Values, Weighed,
+    AlphaRule, Input, Model, Opened as OpenInput, Origin, Parameter, ParameterOrigin, Values,
+    Weighed,
 };
 use walpha_model::progress::{Listener, Monitor, Stage};
-use walpha_model::settings::{PRESETS, SettingError};
+use walpha_model::settings::PRESETS;
 use walpha_model::{Recipe, Settings};
 use walpha_points::{
-    ModelMetadata, Packing, PointOptions, PointWriter, Points, PointsError, SampleGrid,
-    bounding_box, read_model_file,
+    ModelMetadata, Packing, PointOptions, PointWriter, Points, SampleGrid, bounding_box,
+    read_model_file,
 };
 use walpha_shape::ladder::{Filtration, Span};
-use walpha_shape::{Alpha, AlphaShape, Betti, ByClass, Class, ShapeError, WeightedPoints};
+use walpha_shape::{Alpha, AlphaShape, Betti, ByClass, Class, WeightedPoints};
 use walpha_volume::{
-    self as volume, Dims, Hounsfield, Labels, ReadOptions, SampleStats, Series, Volume, VolumeError,
+    self as volume, Dims, Hounsfield, Labels, ReadOptions, SampleStats, Series, Volume,
 };
 
 use crate::answer::{Answer, Array};
@@ -96,7 +98,7 @@ struct All {
 
 impl All {
     fn filtration(&self) -> Result<&Filtration, Failure> {
-        let none = || "the solid of labels is the same at all α".to_owned().into();
+        let none = || Failure::new("the solid of labels is the same at all α");
         self.filtration.as_ref().ok_or_else(none)
     }
 }
@@ -139,12 +141,14 @@ impl Shown {
             }
         };
         Ok(Self {
-            alphas: vec![Alpha::from_squared(0.0).map_err(PipelineError::from)?],
+            alphas: vec![Alpha::from_squared(0.0)?],
             facets: complex.facets.iter().map(|(&row, class)| (row, span(class))).collect(),
             edges: complex.edges.iter().map(|(&row, class)| (row, span(class))).collect(),
             vertices: complex.vertices.iter().map(|(row, class)| (row[0], span(class))).collect(),
             cells: complex.cells.rows().iter().map(|&row| (row, 0)).collect(),
-            betti: vec![shape.betti().ok_or("its Betti numbers are not known".to_owned())?],
+            betti: vec![
+                shape.betti().ok_or_else(|| Failure::new("its Betti numbers are not known"))?,
+            ],
         })
     }
 }
@@ -172,58 +176,29 @@ struct Failure {
     next: Option<String>,
 }
 
-impl From<String> for Failure {
-    fn from(why: String) -> Self {
-        Self { why, next: None }
+impl Failure {
+    fn new(why: impl Into<String>) -> Self {
+        Self { why: why.into(), next: None }
     }
-}
 
-/// Errors of the library, with their causes and their advice.
-macro_rules! failures {
-    ($($error:ty: $advice:expr),+ $(,)?) => { $(
-        impl From<$error> for Failure {
-            fn from(error: $error) -> Self {
-                let advice: Option<walpha_base::advice::Advice> = $advice(&error);
-                // The page's fields have the names of settings.
-                let next = advice.map(|advice| advice.with_names(|setting| format!("“{}”", setting.name())));
-                Self { why: with_causes(&error), next }
+    /// The page moves α by its slider.
+    fn of_empty(error: EmptyShape) -> Self {
+        match error.suggested {
+            Some(radius) => {
+                let next = Some(format!("move α up, to √α = {radius} say"));
+                Self { why: error.to_string(), next }
             }
+            None => error.into(),
         }
-    )+ };
-}
-
-failures! {
-    PipelineError: PipelineError::advice,
-    PointsError: PointsError::advice,
-    VolumeError: VolumeError::advice,
-    ShapeError: ShapeError::advice,
-    SettingError: SettingError::advice,
-    volume::UnknownFormat: |error: &volume::UnknownFormat| Some(error.advice()),
-}
-
-/// The page moves α by its slider.
-impl From<EmptyShape> for Failure {
-    fn from(error: EmptyShape) -> Self {
-        let next = match error.suggested {
-            Some(radius) => format!("move α up, to √α = {radius} say"),
-            None => error.advice().to_string(),
-        };
-        Self { why: error.to_string(), next: Some(next) }
     }
 }
 
-/// An error and its causes, where it does not already contain them.
-fn with_causes(error: &dyn std::error::Error) -> String {
-    let mut text = error.to_string();
-    let mut cause = error.source();
-    while let Some(error) = cause {
-        let more = error.to_string();
-        if !text.contains(&more) {
-            text = format!("{text}: {more}");
-        }
-        cause = error.source();
+/// An error of the library, with its causes and its advice. The page's fields have the names of settings.
+impl<E: Advise> From<E> for Failure {
+    fn from(error: E) -> Self {
+        let (why, next) = told(&error, |setting| format!("“{}”", setting.name()));
+        Self { why, next }
     }
-    text
 }
 
 /// Passes progress on to the page.
@@ -287,13 +262,13 @@ impl Session {
     }
 
     fn made(&self) -> Result<&Made, Failure> {
-        self.made.as_ref().ok_or_else(|| "there is no shape yet".to_owned().into())
+        self.made.as_ref().ok_or_else(|| Failure::new("there is no shape yet"))
     }
 
     fn open(&mut self, input: String, settings: &Settings) -> Result<Answer, Failure> {
         *self = Self { input, ..Self::EMPTY };
         let input = Path::new(&self.input);
-        Stage::Read.begin().map_err(PipelineError::from)?;
+        Stage::Read.begin()?;
         let recipe = settings.recipe()?;
         if input.is_dir() && settings.series().is_none() {
             let series: Vec<Series> = volume::series(input)?;
@@ -336,11 +311,11 @@ impl Session {
 
     fn plane(&self, axis: usize, index: usize) -> Result<Answer, Failure> {
         let Some(Opened::Volume(volume)) = &self.opened else {
-            return Err("points have no planes".to_owned().into());
+            return Err(Failure::new("points have no planes"));
         };
         let dims = volume.dims().xyz();
         if axis > 2 || index >= dims[axis] {
-            return Err(format!("there is no plane {index} across axis {axis}").into());
+            return Err(Failure::new(format!("there is no plane {index} across axis {axis}")));
         }
         // The array is [z, y, x].
         let samples = volume.samples();
@@ -355,16 +330,17 @@ impl Session {
         self.made = None;
         let recipe = settings.recipe()?;
         if matches!(recipe.alpha, AlphaRule::Given(alpha) if alpha.squared().is_infinite()) {
-            return Err("α of the weights has to be finite here".to_owned().into());
+            return Err(Failure::new("α of the weights has to be finite here"));
         }
-        let input = match self.opened.as_ref().ok_or("nothing has been opened".to_owned())? {
-            Opened::Points(points, metadata) => Input::Points(points.clone(), metadata.clone()),
-            Opened::Volume(volume) if recipe.labels.is_some() => {
-                let model = recipe.solid(volume)?;
-                return Ok(self.made_of_labels(settings, recipe, model));
-            }
-            Opened::Volume(volume) => Input::Volume(recipe.grays(volume.clone())?),
-        };
+        let input =
+            match self.opened.as_ref().ok_or_else(|| Failure::new("nothing has been opened"))? {
+                Opened::Points(points, metadata) => Input::Points(points.clone(), metadata.clone()),
+                Opened::Volume(volume) if recipe.labels.is_some() => {
+                    let model = recipe.solid(volume)?;
+                    return Ok(self.made_of_labels(settings, recipe, model));
+                }
+                Opened::Volume(volume) => Input::Volume(recipe.grays(volume.clone())?),
+            };
         let (mut weighed, source) = recipe.weigh(input, Values::Written)?;
         let metadata = weighed.metadata(source.as_ref().map(|source| source.written));
         let [low, high] = bounding_box(weighed.points.positions());
@@ -412,8 +388,8 @@ impl Session {
     }
 
     fn filtration(&mut self) -> Result<Answer, Failure> {
-        let made = self.made.as_mut().ok_or("there is no shape yet".to_owned())?;
-        Stage::Filtration.begin().map_err(PipelineError::from)?;
+        let made = self.made.as_mut().ok_or_else(|| Failure::new("there is no shape yet"))?;
+        Stage::Filtration.begin()?;
         let weighed = match &made.what {
             What::Weighed(weighed) => weighed,
             What::Labels(model) => {
@@ -422,7 +398,7 @@ impl Session {
             }
         };
         let filtration = Filtration::on(None, weighed.points.clone())?;
-        Stage::Curve.begin().map_err(PipelineError::from)?;
+        Stage::Curve.begin()?;
         let mut alphas = filtration.coarse_alphas(STOPS);
         alphas.push(made.reference.alpha);
         let stops = Shown::at(&filtration, &alphas);
@@ -498,9 +474,7 @@ fn describe_volume(volume: &Volume) -> Answer {
 
 impl Made {
     fn all(&self) -> Result<&All, Failure> {
-        self.all
-            .as_ref()
-            .ok_or_else(|| "the shapes at other α are not computed yet".to_owned().into())
+        self.all.as_ref().ok_or_else(|| Failure::new("the shapes at other α are not computed yet"))
     }
 
     /// The points, the shape to look at first, and what is known besides.
@@ -553,7 +527,7 @@ impl Made {
 
     /// The simplices to draw at an α, and their level: of the stops, or else computed now.
     fn shown(&self, alpha: f64) -> Result<(Lent<'_>, u32), Failure> {
-        let alpha = Alpha::from_squared(alpha).map_err(PipelineError::from)?;
+        let alpha = Alpha::from_squared(alpha)?;
         let all = self.all()?;
         let stops = &all.stops;
         Ok(match stops.alphas.binary_search(&alpha) {
@@ -590,9 +564,9 @@ impl Made {
         if let What::Labels(model) = &self.what {
             return Ok(Answer::of(self.measured(&model.shape), Vec::new()));
         }
-        let alpha = Alpha::from_squared(alpha).map_err(PipelineError::from)?;
+        let alpha = Alpha::from_squared(alpha)?;
         let ladder = self.all()?.filtration()?.ladder(&[alpha], self.domain);
-        let level = serde_json::to_value(&ladder.levels[0]).map_err(|error| error.to_string())?;
+        let level = serde_json::to_value(&ladder.levels[0]).map_err(io::Error::from)?;
         Ok(Answer::of(level, Vec::new()))
     }
 
@@ -667,14 +641,14 @@ impl Made {
     fn suggest(&self) -> Result<Answer, Failure> {
         let filtration = self.all()?.filtration()?;
         let suggested = filtration.suggest(&filtration.coarse_curve(STOPS));
-        let suggested = serde_json::to_value(suggested).map_err(|error| error.to_string())?;
+        let suggested = serde_json::to_value(suggested).map_err(io::Error::from)?;
         Ok(Answer::of(suggested, Vec::new()))
     }
 
     fn diagram(&self) -> Result<Answer, Failure> {
-        Stage::Order.begin().map_err(PipelineError::from)?;
+        Stage::Order.begin()?;
         let simplices = self.all()?.filtration()?.simplices()?;
-        Stage::Pairs.begin().map_err(PipelineError::from)?;
+        Stage::Pairs.begin()?;
         simplices.loops()?;
         let mut arrays = Vec::new();
         for (dimension, name) in ["pairs0", "pairs1", "pairs2"].into_iter().enumerate() {
@@ -693,9 +667,8 @@ impl Made {
 
     fn save(&self, input: &str, name: &Path, alpha: f64, solid: bool) -> Result<Answer, Failure> {
         let is_shape = self.is_shape(alpha);
-        let alpha = Alpha::from_squared(alpha).map_err(PipelineError::from)?;
+        let alpha = Alpha::from_squared(alpha)?;
         let (mut bytes, mut remarks) = (Vec::new(), Vec::new());
-        let failed = |error: std::io::Error| error.to_string();
         if let Some(writer) = point_writer(name) {
             // Weights that are frozen belong to their own α.
             let alpha = if is_shape { alpha } else { self.reference.alpha };
@@ -705,11 +678,9 @@ impl Made {
                 metadata.recipe = Some(self.recipe.clone().alpha(alpha).to_json());
             }
             let What::Weighed(weighed) = &self.what else {
-                return Err("the corners of voxels are not points to select".to_owned().into());
+                return Err(Failure::new("the corners of voxels are not points to select"));
             };
-            writer
-                .write_model(&weighed.points, &metadata, &Packing::default(), &mut bytes)
-                .map_err(failed)?;
+            writer.write_model(&weighed.points, &metadata, &Packing::default(), &mut bytes)?;
         } else {
             let exporter = Format::of(name)?.exporter(
                 &ExportOptions::default().solid(solid && is_shape).input(Some(input.to_owned())),
@@ -724,13 +695,13 @@ impl Made {
                     self.recipe.finish(weighed)?.shape
                 }
             };
-            EmptyShape::check(&shape, exporter.needs())?;
+            EmptyShape::check(&shape, exporter.needs()).map_err(Failure::of_empty)?;
             if let Some(remark) =
                 exporter.single_precision(&shape).and_then(|single| single.remark())
             {
                 remarks.push(format!("{}: {remark}", name.display()));
             }
-            exporter.write(&shape, &mut bytes).map_err(failed)?;
+            exporter.write(&shape, &mut bytes)?;
         }
         Ok(Answer::of(json!({ "remarks": remarks }), vec![Array::U8("bytes", bytes)]))
     }

@@ -1,7 +1,85 @@
-//! Advice on how to resolve errors: text, and the settings of the library that it mentions.
+//! What all errors of the library have: advice on how to resolve them, and a category.
 
 use std::borrow::Cow;
-use std::fmt;
+use std::error::Error;
+use std::{fmt, io};
+
+/// An error of the library. It says what is wrong by `Display`, what to do by its advice, and its category tells a program how
+/// to pass it on: as which exception, or with which exit code.
+///
+/// An error that wraps another has its advice and its category: such a type defines [`wrapped`](Self::wrapped), and the other
+/// methods only for what does not come from there.
+pub trait Advise: Error {
+    /// The error that this one wraps, if it wraps one of the library or the system.
+    fn wrapped(&self) -> Option<&dyn Advise> {
+        None
+    }
+
+    /// What is wrong, as `Display` says, with the settings that it names.
+    fn message(&self) -> Advice {
+        self.to_string().into()
+    }
+
+    /// How to resolve the error, if there is a way.
+    fn advice(&self) -> Option<Advice> {
+        self.wrapped()?.advice()
+    }
+
+    /// What the error is about.
+    fn category(&self) -> Category {
+        self.wrapped().map_or(Category::Input, Advise::category)
+    }
+}
+
+/// An error in the words of a program that calls settings by other names: its message and those of its causes in one line, each
+/// once, and its advice.
+pub fn told(
+    error: &impl Advise,
+    name: impl Copy + Fn(Setting) -> String,
+) -> (String, Option<String>) {
+    let one_line = |text: String| text.replace('\n', " ");
+    let mut why = one_line(error.message().with_names(name));
+    let mut cause = error.source();
+    while let Some(error) = cause {
+        let text = one_line(error.to_string());
+        if !why.contains(&text) {
+            why = format!("{why}: {text}");
+        }
+        cause = error.source();
+    }
+    (why, error.advice().map(|advice| advice.with_names(name)))
+}
+
+/// What an error is about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Category {
+    /// The input or an option: a value, or the content of a file.
+    Input,
+    /// The call itself, whatever the input contains, such as the name of an output that no format has.
+    Usage,
+    /// Memory: there is not enough.
+    Memory,
+    /// Nothing: the caller cancelled the work.
+    Cancelled,
+    /// A file, folder or stream, which the operating system refuses.
+    System(io::ErrorKind),
+    /// The program: the error is a fault of walpha or of a library that it uses.
+    Program,
+}
+
+impl<E: Advise> Advise for Box<E> {
+    fn wrapped(&self) -> Option<&dyn Advise> {
+        Some(&**self)
+    }
+}
+
+/// An error of the operating system.
+impl Advise for io::Error {
+    fn category(&self) -> Category {
+        Category::System(self.kind())
+    }
+}
 
 /// How to resolve an error. Settings have their names in the library; a program with other names
 /// for them, such as options of a command, substitutes these ([`with_names`](Self::with_names)).
@@ -197,9 +275,29 @@ macro_rules! __advice {
 #[doc(inline)]
 pub use __advice as advice;
 
+/// [`Advise::wrapped`] of an enum, by the variants that hold an error alone and, after a semicolon, those that hold one in a
+/// field: `wrapped!(Memory, Volume; Io { source })`.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! __wrapped {
+    ($($variant:ident),* $(; $($with:ident { $field:ident }),+)?) => {
+        fn wrapped(&self) -> Option<&dyn $crate::advice::Advise> {
+            #[allow(unreachable_patterns, reason = "all variants may be named")]
+            match self {
+                $(Self::$variant(error) => Some(error),)*
+                $($(Self::$with { $field: error, .. } => Some(error),)+)?
+                _ => None,
+            }
+        }
+    };
+}
+#[doc(inline)]
+pub use __wrapped as wrapped;
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::memory::{NoMemory, try_with_capacity};
 
     #[test]
     fn settings_have_the_names_of_the_program() {
@@ -207,5 +305,28 @@ mod tests {
         assert_eq!(advice.to_string(), "omit `gray_min`, or give 3");
         let flag = |setting: Setting| format!("--{}", setting.name().replace('_', "-"));
         assert_eq!(advice.with_names(flag), "omit --gray-min, or give 3");
+    }
+
+    #[derive(Debug, thiserror::Error)]
+    #[error("outer")]
+    enum Outer {
+        File { source: io::Error },
+        Memory(NoMemory),
+        Other,
+    }
+
+    impl Advise for Outer {
+        wrapped!(Memory; File { source });
+    }
+
+    #[test]
+    fn an_error_has_the_advice_and_category_of_what_it_wraps() {
+        let lack = try_with_capacity::<u64>(usize::MAX, String::new).unwrap_err();
+        let advice = lack.advice();
+        let error = Outer::Memory(lack);
+        assert_eq!((error.advice(), error.category()), (advice, Category::Memory));
+        let error = Outer::File { source: io::ErrorKind::NotFound.into() };
+        assert_eq!(error.category(), Category::System(io::ErrorKind::NotFound));
+        assert_eq!((Outer::Other.advice(), Outer::Other.category()), (None, Category::Input));
     }
 }

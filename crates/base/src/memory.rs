@@ -3,7 +3,7 @@
 use std::cell::Cell;
 use std::collections::TryReserveError;
 
-use crate::advice::Advice;
+use crate::advice::{Advice, Advise, Category};
 
 /// The peak memory of this process in bytes; `None` where the system does not report it (only
 /// Linux does).
@@ -77,12 +77,17 @@ pub struct NoMemory {
     bytes: u128,
 }
 
-impl NoMemory {
-    /// How to resolve the error.
-    pub fn advice(&self) -> Advice {
-        "crop or downsample the input, or ask for a smaller result".into()
+impl Advise for NoMemory {
+    fn advice(&self) -> Option<Advice> {
+        Some("crop or downsample the input, or ask for a smaller result".into())
     }
 
+    fn category(&self) -> Category {
+        Category::Memory
+    }
+}
+
+impl NoMemory {
     /// What the memory was for.
     pub fn what(&self) -> &str {
         &self.what

@@ -7,6 +7,8 @@ use std::ops::Deref;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
+use crate::advice::{Advise, Category};
+
 /// Receives the progress of long work, and can cancel it.
 ///
 /// Every long function of walpha reports to the monitor that [watches](Self::watch) its call, and ends with [`Cancelled`]
@@ -63,6 +65,12 @@ impl<F: Fn(u64, u64) + Send + Sync + 'static> Listener for F {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("cancelled")]
 pub struct Cancelled;
+
+impl Advise for Cancelled {
+    fn category(&self) -> Category {
+        Category::Cancelled
+    }
+}
 
 /// `From` for the errors that another one wraps: each becomes its variant, except that [`Cancelled`] stays
 /// [`Cancelled`] at every depth. Every type named must have a variant `Cancelled`.

@@ -13,6 +13,8 @@
 
 use std::io::{self, ErrorKind, Read};
 
+use crate::advice::{Advise, wrapped};
+
 /// The first bytes of every NPY file.
 pub const MAGIC: &[u8] = b"\x93NUMPY";
 /// `NumPy` itself refuses longer headers as unsafe.
@@ -55,6 +57,10 @@ pub enum NpyError {
     /// The header is not the dictionary it should be.
     #[error("has an NPY header that is not understood: {0:?}")]
     Dictionary(String),
+}
+
+impl Advise for NpyError {
+    wrapped!(Io);
 }
 
 impl Header {

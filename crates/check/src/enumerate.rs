@@ -2,6 +2,7 @@ use std::cmp::Ordering;
 use std::collections::{BTreeMap, HashMap};
 
 use rayon::prelude::*;
+use walpha_base::advice::{Advise, wrapped};
 use walpha_base::{Cancelled, Monitor};
 use walpha_complex::canonical::{outward_facets, smallest_even, sort, sorted};
 
@@ -43,6 +44,10 @@ pub enum EnumerateError {
     /// The work was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
+}
+
+impl Advise for EnumerateError {
+    wrapped!(Cancelled);
 }
 
 /// The regular triangulation of weighted points, its hidden points and the α-complex in it,

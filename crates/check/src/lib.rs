@@ -53,6 +53,7 @@ pub use enumerate::{EnumerateError, Enumeration, enumerate};
 pub use exact::Exact;
 pub use rules::{count_by_rule, keep_causes};
 /// Progress and cancelling of long work.
+pub use walpha_base::advice::Advise;
 pub use walpha_base::{Cancelled, Monitor};
 pub use walpha_complex::{
     Alpha, AlphaError, ByClass, Class, Complex, Placed, Simplices, SimplicesError, Voxels,

@@ -8,6 +8,7 @@ use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
 use clap::{Parser, ValueEnum};
+use walpha_base::advice::{Advice, Advise, wrapped};
 use walpha_base::{standard_output, threads};
 use walpha_check::meshes::{MeshError, MeshFormat, open_weights};
 use walpha_check::schema::{AnyFile, ComplexFile, PlacedComplex, SchemaError};
@@ -180,21 +181,20 @@ enum Failure {
     Output(#[from] io::Error),
 }
 
-impl Failure {
-    fn advice(&self) -> Option<&str> {
-        match self {
-            Self::Schema(error) => error.advice(),
-            Self::Mesh(error) => error.advice(),
+impl Advise for Failure {
+    wrapped!(Schema, Mesh, Certify, Filtration, Output);
+
+    fn advice(&self) -> Option<Advice> {
+        let advice = match self {
             Self::Extension { by_walpha: true } => {
-                Some("use `walpha check`, which reads .vtu and .ply, too")
+                "use `walpha check`, which reads .vtu and .ply, too"
             }
-            Self::Extension { by_walpha: false } => Some("convert it to one of these"),
-            Self::Option { .. } => Some("omit it"),
-            Self::Attribute => Some("give a file with the weights"),
-            Self::Certify(error) => error.advice(),
-            Self::Filtration(error) => error.advice(),
-            Self::Output(_) => None,
-        }
+            Self::Extension { by_walpha: false } => "convert it to one of these",
+            Self::Option { .. } => "omit it",
+            Self::Attribute => "give a file with the weights",
+            _ => return self.wrapped()?.advice(),
+        };
+        Some(advice.into())
     }
 }
 

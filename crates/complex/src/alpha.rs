@@ -4,6 +4,7 @@ use std::hash::{Hash, Hasher};
 use std::str::FromStr;
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
+use walpha_base::advice::{Advice, Advise};
 
 /// The parameter α of a shape: a **squared** length, as in CGAL and in Edelsbrunner 1992.
 ///
@@ -103,15 +104,15 @@ pub enum AlphaError {
     Text(String),
 }
 
-impl AlphaError {
-    /// What to do about it.
-    pub fn advice(&self) -> &'static str {
-        match self {
+impl Advise for AlphaError {
+    fn advice(&self) -> Option<Advice> {
+        let advice = match self {
             Self::NaN => "give a number (a squared length), or `inf` for the convex hull",
             Self::Radius(_) => "give a length from 0 up, or α itself",
             Self::Square(_) => "rescale the input, or give `inf` for the convex hull",
             Self::Text(_) => "give a squared length, as in 10, or `inf` for the convex hull",
-        }
+        };
+        Some(advice.into())
     }
 }
 

@@ -30,6 +30,7 @@ pub use class::{ByClass, Class};
 pub use complex::{Complex, Placed};
 pub use simplices::{Simplices, SimplicesError};
 pub use voxels::Voxels;
+pub use walpha_base::advice::Advise;
 
 /// The example in the README runs.
 #[cfg(doctest)]

@@ -1,3 +1,5 @@
+use walpha_base::advice::Advise;
+
 use super::{ByClass, Class};
 
 /// Simplices of one dimension: rows of `N` vertices each, by input index, and their classes, as
@@ -31,6 +33,8 @@ pub struct SimplicesError {
     /// Number of classes.
     pub classes: usize,
 }
+
+impl Advise for SimplicesError {}
 
 impl<const N: usize> Simplices<N> {
     /// Rows of input indices, and the class of each.

@@ -1,7 +1,7 @@
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
-use walpha_base::advice::Advice;
+use walpha_base::advice::{Advice, Advise};
 use walpha_base::shown::shown;
 
 use crate::inputs::Refused;
@@ -16,16 +16,22 @@ pub struct TargetError {
     left: String,
 }
 
-impl TargetError {
-    /// The state that the outputs are left in, and how to resolve the error.
-    pub fn advice(&self) -> Advice {
-        let refused = self.source.get_ref().and_then(|error| error.downcast_ref::<Refused>());
-        if refused.is_some() {
-            return Refused::advice();
-        }
-        format!("{}{}", self.left, next_step(&self.source)).into()
+impl Advise for TargetError {
+    fn wrapped(&self) -> Option<&dyn Advise> {
+        Some(&self.source)
     }
 
+    /// The state that the outputs are left in, and how to resolve the error.
+    fn advice(&self) -> Option<Advice> {
+        let refused = self.source.get_ref().and_then(|error| error.downcast_ref::<Refused>());
+        Some(match refused {
+            Some(_) => Refused::advice(),
+            None => format!("{}{}", self.left, next_step(&self.source)).into(),
+        })
+    }
+}
+
+impl TargetError {
     pub(super) const NOTHING_LEFT: &str = "nothing was left behind, ";
 
     pub(super) fn of(path: &Path, left: impl Into<String>) -> impl FnOnce(io::Error) -> Self {

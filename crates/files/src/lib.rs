@@ -40,6 +40,7 @@ pub use ordinary::open_ordinary;
 pub use scratch::Scratch;
 pub use target::{Content, FilledAll, Target, fill_all, write_all};
 pub use unfinished::{NewFolder, abandon, sweep};
+pub use walpha_base::advice::Advise;
 
 /// The example in the README runs.
 #[cfg(doctest)]

@@ -192,6 +192,8 @@ fn write_stream(
 mod tests {
     use std::io::ErrorKind;
 
+    use walpha_base::advice::Advise;
+
     use super::*;
 
     #[test]
@@ -200,7 +202,7 @@ mod tests {
         let path = folder.path().join("shape.ply");
         let target = Target::open(&path).unwrap();
         let error = target.write(|_| Err(ErrorKind::StorageFull.into())).unwrap_err();
-        let text = format!("{error}; {}", error.advice());
+        let text = format!("{error}; {}", error.advice().unwrap());
         assert!(text.contains("shape.ply") && !text.contains(".part"), "{text}");
         assert!(
             text.contains("nothing was left behind, choose a disk with enough space"),
@@ -228,7 +230,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let said = |name: &str| {
             let error = Target::open(folder.path().join(name)).unwrap_err();
-            format!("{error}; {}", error.advice())
+            format!("{error}; {}", error.advice().unwrap())
         };
         let text = said("no/a.ply");
         assert!(

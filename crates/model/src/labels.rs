@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 use walpha_base::Cancelled;
-use walpha_base::advice::Advice;
+use walpha_base::advice::{Advice, Advise, wrapped};
 use walpha_base::memory::{NoMemory, try_reserve};
 use walpha_base::monitor::wraps;
 use walpha_base::shown::number;
@@ -32,6 +32,8 @@ pub enum LabelChoice {
     "{0:?} is not a label: labels are whole numbers with commas between them, as in 3,5, or all"
 )]
 pub struct UnknownLabels(String);
+
+impl Advise for UnknownLabels {}
 
 impl FromStr for LabelChoice {
     type Err = UnknownLabels;
@@ -177,17 +179,18 @@ fn there_are(labels: &[i32]) -> String {
     }
 }
 
-impl LabelsError {
-    /// How to resolve the error, if there is a way.
-    pub fn advice(&self) -> Option<Advice> {
-        match self {
-            Self::NotWhole => Some("select by gray levels, without naming labels".into()),
-            Self::TooLarge => Some("number them anew, below 16777216".into()),
-            Self::Absent { .. } => Some("name labels that are there, or all".into()),
-            Self::Background => Some("name a volume with a segmentation".into()),
-            Self::Shape(error) => error.advice(),
-            Self::Cancelled(_) => None,
-        }
+impl Advise for LabelsError {
+    wrapped!(Shape, Cancelled);
+
+    fn advice(&self) -> Option<Advice> {
+        let advice = match self {
+            Self::NotWhole => "select by gray levels, without naming labels",
+            Self::TooLarge => "number them anew, below 16777216",
+            Self::Absent { .. } => "name labels that are there, or all",
+            Self::Background => "name a volume with a segmentation",
+            Self::Shape(_) | Self::Cancelled(_) => return self.wrapped()?.advice(),
+        };
+        Some(advice.into())
     }
 }
 

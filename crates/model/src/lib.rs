@@ -30,3 +30,4 @@ pub use interpolate::Interpolant;
 pub use labels::LabelChoice;
 pub use pipeline::Recipe;
 pub use settings::Settings;
+pub use walpha_base::advice::Advise;

@@ -1,6 +1,6 @@
 use std::path::PathBuf;
 
-use walpha_base::advice::{Advice, Setting, advice};
+use walpha_base::advice::{Advice, Advise, Setting, advice, wrapped};
 use walpha_base::memory::NoMemory;
 use walpha_base::shown::shown;
 use walpha_complex::Alpha;
@@ -143,12 +143,12 @@ pub enum PointsError {
     File(#[from] VolumeError),
 }
 
-impl PointsError {
-    /// What to do about it, if anything.
-    pub fn advice(&self) -> Option<Advice> {
+impl Advise for PointsError {
+    wrapped!(Lengths, Neighbours, Memory, File);
+
+    fn advice(&self) -> Option<Advice> {
         Some(match self {
             Self::Number { need, .. } => format!("give {need}").into(),
-            Self::Lengths(_) => return None,
             Self::Count { ratio: Some(ratio), .. } => {
                 format!("give a ratio of at most {ratio}, or omit it to take all that differ")
                     .into()
@@ -182,10 +182,8 @@ impl PointsError {
             Self::NoValues => "add it".into(),
             Self::NoColumn => "add it, or use common=C".into(),
             Self::Weight { .. } => "correct the input".into(),
-            Self::Neighbours(error) => return error.advice(),
             Self::Format { reason, .. } => reason.advice(),
-            Self::Memory(lack) => lack.advice(),
-            Self::File(error) => return error.advice(),
+            _ => return self.wrapped()?.advice(),
         })
     }
 }

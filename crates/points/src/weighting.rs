@@ -7,7 +7,7 @@ use std::str::FromStr;
 use serde::{Deserialize, Serialize};
 
 use walpha_base::Sum;
-use walpha_base::advice::Advice;
+use walpha_base::advice::{Advice, Advise};
 
 /// Where the weights ω of points come from. Weights are **squared** lengths, as α is.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -193,10 +193,9 @@ impl fmt::Display for Weighting {
 #[error("{0:?} names no weights")]
 pub struct UnknownWeighting(String);
 
-impl UnknownWeighting {
-    /// What to do about it.
-    pub fn advice(&self) -> Advice {
-        format!("give {}; C is a squared length", Weighting::known()).into()
+impl Advise for UnknownWeighting {
+    fn advice(&self) -> Option<Advice> {
+        Some(format!("give {}; C is a squared length", Weighting::known()).into())
     }
 }
 

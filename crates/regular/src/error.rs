@@ -1,5 +1,5 @@
 use walpha_base::Cancelled;
-use walpha_base::advice::Advice;
+use walpha_base::advice::{Advice, Advise, Category, wrapped};
 
 use super::Triangulation;
 
@@ -83,28 +83,37 @@ pub enum TriangulationError {
     },
 }
 
-impl SitesError {
-    /// How to resolve the error, if there is a way.
-    pub fn advice(&self) -> Option<Advice> {
-        Some(match self {
+impl Advise for SitesError {
+    fn advice(&self) -> Option<Advice> {
+        let advice = match self {
             Self::Lengths { .. } => return None,
-            Self::TooMany(_) => "select fewer".into(),
-            Self::Value { .. } => "clean or rescale the input".into(),
-            Self::Empty => "select some".into(),
-            Self::TooFew { .. } => "select more points".into(),
-            Self::Flat { .. } => "select more points, or perturb them knowingly".into(),
-        })
+            Self::TooMany(_) => "select fewer",
+            Self::Value { .. } => "clean or rescale the input",
+            Self::Empty => "select some",
+            Self::TooFew { .. } => "select more points",
+            Self::Flat { .. } => "select more points, or perturb them knowingly",
+        };
+        Some(advice.into())
     }
 }
 
-impl TriangulationError {
-    /// How to resolve the error, if there is a way.
-    pub fn advice(&self) -> Option<Advice> {
-        Some(match self {
-            Self::Sites(error) => return error.advice(),
-            Self::Cancelled(_) => return None,
-            Self::TooManyCells => "use more blocks, or select fewer points".into(),
-            Self::Memory { .. } => "allow more, use more blocks, or select fewer points".into(),
-        })
+impl Advise for TriangulationError {
+    wrapped!(Sites, Cancelled);
+
+    fn advice(&self) -> Option<Advice> {
+        match self {
+            Self::TooManyCells => Some("use more blocks, or select fewer points".into()),
+            Self::Memory { .. } => {
+                Some("allow more, use more blocks, or select fewer points".into())
+            }
+            Self::Sites(_) | Self::Cancelled(_) => self.wrapped()?.advice(),
+        }
+    }
+
+    fn category(&self) -> Category {
+        match self {
+            Self::Memory { .. } => Category::Memory,
+            _ => self.wrapped().map_or(Category::Input, Advise::category),
+        }
     }
 }

@@ -58,6 +58,7 @@ pub use power_diagram::PowerDiagram;
 pub use sites::{MAX_COORDINATE, MAX_WEIGHT};
 pub use torus::{Torus, TorusError};
 pub use triangulation::{Triangulation, triangulate};
+pub use walpha_base::advice::Advise;
 pub use walpha_base::{Cancelled, Monitor};
 
 // For the other crates of walpha: not covered by semantic versioning.

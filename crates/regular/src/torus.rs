@@ -1,6 +1,6 @@
 //! Periodic boxes: sets of points that repeat along the axes.
 
-use walpha_base::advice::{Advice, Setting, advice};
+use walpha_base::advice::{Advice, Advise, Setting, advice};
 
 /// A box whose opposite faces are identified: a flat three-dimensional torus. A point stands for all its
 /// copies, which are displaced along the axes by multiples of the sides.
@@ -45,15 +45,14 @@ pub enum TorusError {
     },
 }
 
-impl TorusError {
-    /// What to do about it.
-    pub fn advice(&self) -> Advice {
-        match self {
+impl Advise for TorusError {
+    fn advice(&self) -> Option<Advice> {
+        Some(match self {
             Self::Side { .. } => {
                 advice!["give ", Setting::Periodic, " three sides, in the unit of the points"]
             }
             Self::Elongated { .. } => "repeat the points along the shortest side".into(),
-        }
+        })
     }
 }
 

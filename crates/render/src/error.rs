@@ -1,3 +1,4 @@
+use walpha_base::advice::{Advise, wrapped};
 use walpha_base::memory::NoMemory;
 
 /// Pixels along each side of a picture, at most.
@@ -94,4 +95,8 @@ pub enum RenderError {
     /// A drawing that the rasteriser refuses.
     #[error("cannot rasterise the figure: {0}")]
     Svg(#[from] resvg::usvg::Error),
+}
+
+impl Advise for RenderError {
+    wrapped!(Memory);
 }

@@ -1,6 +1,7 @@
 //! Points in arrays of `ndarray`.
 
 use ndarray::{ArrayView1, ArrayView2};
+use walpha_base::advice::{Advise, wrapped};
 
 use crate::{LengthsError, WeightedPoints};
 
@@ -19,6 +20,10 @@ pub enum ArrayError {
     /// Another number of weights than of points.
     #[error(transparent)]
     Lengths(#[from] LengthsError),
+}
+
+impl Advise for ArrayError {
+    wrapped!(Lengths);
 }
 
 /// Copies of points without weights: rows (x, y, z) of an n×3 array.

@@ -1,6 +1,7 @@
 use std::fmt;
 
 use serde::{Deserialize, Serialize};
+use walpha_base::advice::Advise;
 use walpha_base::shown::counted;
 
 /// The Betti numbers of a shape: components, tunnels, voids. Written `[b0, b1, b2]`, of a torus
@@ -66,6 +67,8 @@ pub struct BettiError {
     /// How many numbers there are.
     pub given: usize,
 }
+
+impl Advise for BettiError {}
 
 impl TryFrom<Vec<u64>> for Betti {
     type Error = BettiError;

@@ -1,5 +1,5 @@
 use walpha_base::Cancelled;
-use walpha_base::advice::{Advice, Setting, advice};
+use walpha_base::advice::{Advice, Advise, Category, Setting, advice, wrapped};
 use walpha_base::memory::{self, NoMemory};
 use walpha_base::monitor::wraps;
 use walpha_regular::{MAX_COORDINATE, SitesError, TriangulationError, is_flat};
@@ -107,10 +107,11 @@ impl PlanError {
     pub fn new(asked: u64, needed: u64, blocks: usize) -> Self {
         Self { asked, needed, blocks }
     }
+}
 
-    /// How to resolve the error.
-    pub fn advice(&self) -> Advice {
-        "allow more, or select fewer points".into()
+impl Advise for PlanError {
+    fn advice(&self) -> Option<Advice> {
+        Some("allow more, or select fewer points".into())
     }
 }
 
@@ -139,16 +140,12 @@ impl Whole {
     }
 }
 
-impl ShapeError {
-    /// How to resolve the error, if there is a way.
-    pub fn advice(&self) -> Option<Advice> {
+impl Advise for ShapeError {
+    wrapped!(Triangulation, Cgal, Plan, Cancelled, Memory, Voxels);
+
+    fn advice(&self) -> Option<Advice> {
         Some(match self {
-            Self::Triangulation(error) => return error.advice(),
-            Self::Cgal(error) => error.advice(),
             Self::Radius { .. } => advice!["raise α, or use ", Setting::Balls, " power"],
-            Self::Plan(error) => error.advice(),
-            Self::Cancelled(_) => return None,
-            Self::Memory(lack) => lack.advice(),
             Self::Unbounded { by: Whole::Exterior } => {
                 advice!["omit ", Setting::Memory, ", or omit ", Setting::Exterior]
             }
@@ -175,13 +172,15 @@ impl ShapeError {
             Self::Divided { by: Whole::Hidden, .. } => {
                 advice!["give ", Setting::Blocks, " 1, or omit ", Setting::Hidden]
             }
-            Self::Voxels(error) => error.advice(),
             Self::Divided { .. } => {
                 advice!["give ", Setting::Blocks, " 1, or omit ", Setting::Exterior]
             }
+            _ => return self.wrapped()?.advice(),
         })
     }
+}
 
+impl ShapeError {
     /// Whether the reason is that points span no volume, though there is at least one.
     pub fn is_flat(&self) -> bool {
         matches!(self, Self::Triangulation(error) if is_flat(error))
@@ -219,15 +218,14 @@ pub enum OutlineError {
     Torus,
 }
 
-impl OutlineError {
-    /// How to resolve the error.
-    pub fn advice(self) -> Advice {
-        match self {
+impl Advise for OutlineError {
+    fn advice(&self) -> Option<Advice> {
+        Some(match self {
             Self::Space => "take its boundary, a surface, or leave out a coordinate".into(),
             Self::Line => "take its edges and vertices".into(),
             Self::Coordinate { .. } => "clean or rescale the input".into(),
             Self::Torus => advice!["omit ", Setting::Periodic],
-        }
+        })
     }
 }
 
@@ -254,14 +252,23 @@ pub enum CgalError {
     Absent,
 }
 
-impl CgalError {
-    /// How to resolve the error.
-    pub fn advice(&self) -> Advice {
-        match self {
+impl Advise for CgalError {
+    fn advice(&self) -> Option<Advice> {
+        let advice = match self {
             Self::Memory { .. } => "allow more, use the native engine, or select fewer points",
             Self::Thrown { .. } => "please report this with the input",
-            Self::Absent => "use the native engine, which gives the same, or build walpha with the feature `cgal`",
+            Self::Absent => {
+                "use the native engine, which gives the same, or build walpha with the feature `cgal`"
+            }
+        };
+        Some(advice.into())
+    }
+
+    fn category(&self) -> Category {
+        match self {
+            Self::Memory { .. } => Category::Memory,
+            Self::Thrown { .. } => Category::Program,
+            Self::Absent => Category::Input,
         }
-        .into()
     }
 }

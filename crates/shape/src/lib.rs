@@ -69,6 +69,7 @@ pub use sums::{Component, Enclosed};
 pub use surface::Surface;
 pub use voids::Void;
 pub use voxels::{VoxelsError, voxel_shape};
+pub use walpha_base::advice::Advise;
 pub use walpha_base::{Cancelled, Coordinates, LengthUnit, Monitor, Space};
 pub use walpha_complex::{Alpha, AlphaError, ByClass, Class, Complex, Placed, Simplices, Voxels};
 pub use walpha_regular::{Torus, TorusError};

@@ -1,5 +1,6 @@
 use serde::{Deserialize, Serialize};
 use walpha_base::Sum;
+use walpha_base::advice::Advise;
 
 /// Weighted points, with values where they are known; as many weights, and values, as positions.
 ///
@@ -49,6 +50,8 @@ pub struct WeightSummary {
     /// The largest.
     pub max: f64,
 }
+
+impl Advise for LengthsError {}
 
 impl LengthsError {
     /// Checks that a column has as many entries as there are points.

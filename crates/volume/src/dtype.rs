@@ -3,7 +3,7 @@ use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 
-use walpha_base::advice::Advice;
+use walpha_base::advice::{Advice, Advise};
 
 /// How a file stores one sample.
 ///
@@ -47,10 +47,9 @@ pub struct UnknownName {
     known: String,
 }
 
-impl UnknownName {
-    /// What to do about it.
-    pub fn advice(&self) -> Advice {
-        format!("give one of {}", self.known).into()
+impl Advise for UnknownName {
+    fn advice(&self) -> Option<Advice> {
+        Some(format!("give one of {}", self.known).into())
     }
 }
 
@@ -214,7 +213,7 @@ mod tests {
         }
         let error = "f16".parse::<Dtype>().unwrap_err();
         assert!(error.to_string().contains("f16"), "{error}");
-        assert!(error.advice().to_string().contains("u8, i8"));
+        assert!(error.advice().unwrap().to_string().contains("u8, i8"));
         assert!("middle".parse::<Endian>().is_err());
     }
 }

@@ -4,7 +4,7 @@ use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
 use walpha_base::Cancelled;
-use walpha_base::advice::{Advice, Setting, advice};
+use walpha_base::advice::{Advice, Advise, Category, Setting, advice, wrapped};
 use walpha_base::memory::NoMemory;
 use walpha_base::shown::shown;
 
@@ -137,11 +137,13 @@ impl VolumeError {
             _ => false,
         }
     }
+}
 
-    /// What to do about it, where there is something.
-    pub fn advice(&self) -> Option<Advice> {
+impl Advise for VolumeError {
+    wrapped!(Cancelled, Memory; Io { source }, Written { source }, InFile { source });
+
+    fn advice(&self) -> Option<Advice> {
         Some(match self {
-            Self::EmptyAxis { .. } | Self::Cancelled(_) => return None,
             Self::TooManySamples { .. } => "crop or downsample first".into(),
             Self::NotFinite { .. } => {
                 advice![
@@ -168,8 +170,6 @@ impl VolumeError {
                 "nothing was left behind, choose a place with room that you may write to".into()
             }
             Self::Format { reason, .. } => reason.advice(),
-            Self::InFile { source, .. } => return source.advice(),
-            Self::Memory(lack) => lack.advice(),
             Self::UnknownSample { advice, .. } => advice.clone(),
             Self::NoSkull { .. } => {
                 "on Debian and Ubuntu `sudo apt-get install libcgal-demo` brings \
@@ -177,7 +177,16 @@ impl VolumeError {
                                      sample:phantom needs nothing"
                     .into()
             }
+            _ => return self.wrapped()?.advice(),
         })
+    }
+
+    fn category(&self) -> Category {
+        match self {
+            // The file of a sample that is not installed.
+            Self::NoSkull { .. } => Category::System(ErrorKind::Other),
+            _ => self.wrapped().map_or(Category::Input, Advise::category),
+        }
     }
 }
 

@@ -53,6 +53,7 @@ pub use reason::Reason;
 pub use sample::{SAMPLES, SKULL_SHA256, ct, phantom, sample, skull_sha256};
 pub use source::{SampleStats, Source};
 pub use volume::{Nan, Volume};
+pub use walpha_base::advice::Advise;
 pub use walpha_base::{Conversion, Coordinates, LengthUnit, Space};
 
 // For walpha's readers of points; not part of the stable API.

@@ -150,6 +150,8 @@ pub fn convert(source: &Source, folder: impl AsRef<Path>) -> Result<(), VolumeEr
 
 #[cfg(test)]
 mod tests {
+    use walpha_base::advice::Advise;
+
     use super::*;
 
     #[test]

@@ -7,7 +7,7 @@ use walpha::{Points, Recipe, Settings};
 
 use super::Shape;
 use crate::arrays::{numbers, rows};
-use crate::errors::{Told, name as python_name, wrong};
+use crate::errors::{name as python_name, told, wrong};
 use crate::work::{Task, run};
 
 /// Settings by their names, as text.
@@ -33,13 +33,13 @@ pub fn settings_of(written: Written) -> PyResult<Settings> {
 /// # Errors
 /// Settings that contradict each other, besides.
 pub fn recipe_of(written: Written) -> PyResult<Recipe> {
-    let recipe = settings_of(written)?.recipe().map_err(Told::told)?;
+    let recipe = settings_of(written)?.recipe().map_err(told)?;
     Ok(recipe.classifier(walpha::shape::CGAL))
 }
 
 /// The periodic box by its sides.
 pub fn torus(sides: Option<[f64; 3]>) -> PyResult<Option<Torus>> {
-    sides.map(|sides| Torus::new(sides).map_err(Told::told)).transpose()
+    sides.map(|sides| Torus::new(sides).map_err(told)).transpose()
 }
 
 /// The shape of scattered points.
@@ -66,10 +66,10 @@ pub fn weighted(
 ) -> PyResult<Points> {
     let mut points = Points::new(rows("points", points)?);
     if let Some(weights) = weights {
-        points = points.with_weights(numbers(weights)?).map_err(Told::told)?;
+        points = points.with_weights(numbers(weights)?).map_err(told)?;
     }
     if let Some(values) = values {
-        points = points.with_values(numbers(values)?).map_err(Told::told)?;
+        points = points.with_values(numbers(values)?).map_err(told)?;
     }
     Ok(points)
 }

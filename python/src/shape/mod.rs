@@ -20,7 +20,7 @@ use walpha::volume::Dims;
 use walpha::{AlphaShape, Complex, PointsError, Simplices, Weighting};
 
 use crate::arrays::{column, copied, lend, numbers, rows};
-use crate::errors::{Told, wrong};
+use crate::errors::{Refused, told, wrong};
 use crate::work::{Task, run};
 use boundary::{Boundary, boundary};
 pub use make::{Written, alpha_shape, recipe_of, settings_of, torus, weighted};
@@ -74,7 +74,7 @@ impl Shape {
             Some(given) => {
                 let (values, points) = (numbers(given)?, self.shape.points().len());
                 LengthsError::unless_equal("values", values.len(), points)
-                    .map_err(|error| Told::told(PointsError::from(error)))?;
+                    .map_err(|error| told(PointsError::from(error)))?;
                 Ok(values)
             }
             None => copied(self.shape.points().values().ok_or_else(|| {
@@ -290,8 +290,8 @@ impl Shape {
         task: Task<'_>,
     ) -> PyResult<Bound<'py, PyArray3<f32>>> {
         let [nx, ny, nz] = sizes;
-        let dims = Dims::new(nx, ny, nz).map_err(Told::told)?;
-        let grid = Grid::spanning(low, high, dims).map_err(Told::told)?;
+        let dims = Dims::new(nx, ny, nz).map_err(told)?;
+        let grid = Grid::spanning(low, high, dims).map_err(told)?;
         let (values, shape) = (self.values(values)?, Arc::clone(&self.shape));
         let samples = run(py, &task, move || {
             Stage::Interpolate.begin()?;
@@ -309,7 +309,7 @@ impl Shape {
         solid: bool,
         allow_empty: bool,
     ) -> PyResult<Option<String>> {
-        let format = Format::of(&path).map_err(Told::told)?;
+        let format = Format::of(&path).map_err(told)?;
         if solid && !format.boundary {
             return Err(wrong(
                 "solid=True is for formats of boundaries: this one holds all simplices; omit it",
@@ -321,15 +321,16 @@ impl Shape {
             ));
         }
         if format.outline {
-            self.check_outline().map_err(Told::told)?;
+            self.check_outline().map_err(told)?;
         }
         let exporter = move || format.exporter(&ExportOptions::default().solid(solid));
         let shape = Arc::clone(&self.shape);
         if !allow_empty {
             let shape = Arc::clone(&shape);
-            run(py, &Task::default(), move || EmptyShape::check(&shape, exporter().needs()))?;
+            let check = move || EmptyShape::check(&shape, exporter().needs()).map_err(Refused);
+            run(py, &Task::default(), check)?;
         }
-        let target = Target::open(&path).map_err(Told::told)?;
+        let target = Target::open(&path).map_err(told)?;
         run(py, &Task::default(), move || {
             let exporter = exporter();
             target.write(|out| exporter.write(&shape, out))?;

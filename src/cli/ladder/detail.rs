@@ -8,7 +8,7 @@ use std::path::Path;
 use serde::Serialize;
 
 use super::{Ladder, LevelErrors, Mesh, short};
-use crate::cli::errors::{fail, fail_usage};
+use crate::cli::errors::{Result, fail, fail_usage};
 use crate::cli::folder::Folder;
 use crate::cli::global::Global;
 use crate::cli::offsets::FileOffset;
@@ -43,7 +43,7 @@ impl Ladder {
         global: Global,
         meshes: &[Mesh],
         mut folder: Folder,
-    ) -> anyhow::Result<()> {
+    ) -> Result<()> {
         let given = &self.pipeline.input.typed;
         given.refuse(&["refit"], "levels of detail keep the values of the samples")?;
         let mut progress = Progress::new(global);
@@ -111,7 +111,7 @@ impl Ladder {
         front_end: &mut FrontEnd<'_>,
         recipe: &Recipe,
         selection: Selection,
-    ) -> anyhow::Result<Option<(Points, &Region)>> {
+    ) -> Result<Option<(Points, &Region)>> {
         let Some(region) = &self.focus else { return Ok(None) };
         let (points, _) = front_end.points(&recipe.haar, &selection)?;
         if inside(&points, region) == 0 {
@@ -148,7 +148,7 @@ fn write_meshes(
     meshes: &[Mesh],
     folder: &mut Folder,
     row: &mut Row,
-) -> anyhow::Result<()> {
+) -> Result<()> {
     for mesh in meshes {
         let name = format!("detail-{level}.{}", mesh.extension);
         row.bytes += folder.write(&name, |out| mesh.exporter.write(shape, out))?;
@@ -170,7 +170,7 @@ impl FrontEnd<'_> {
         &mut self,
         options: &HaarOptions,
         selection: &Selection,
-    ) -> anyhow::Result<(Points, Truncation)> {
+    ) -> Result<(Points, Truncation)> {
         let Source { ref volume, units, ref range, .. } = *self.source;
         let (_, smoothed, truncation) =
             if let Some(known) = self.smoothed.take().filter(|s| s.0 == *options) {

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use serde::Serialize;
 
-use super::errors::{CommandError, fail_usage};
+use super::errors::{CommandError, Result, fail_usage};
 use super::folder::Folder;
 use super::global::Global;
 use super::offsets::FileOffset;
@@ -83,7 +83,7 @@ pub(super) struct Ladder {
 const AUTO_LEVELS: usize = 24;
 
 impl Ladder {
-    pub(super) fn run(self, global: Global) -> anyhow::Result<()> {
+    pub(super) fn run(self, global: Global) -> Result<()> {
         let detail = !(self.counts.is_empty() && self.epsilons.is_empty());
         if self.focus.is_some() && !detail {
             fail_usage!("--focus belongs to levels of detail" => "give --counts or --epsilons too");
@@ -112,12 +112,7 @@ impl Ladder {
         self.over_alpha(global, &meshes, folder)
     }
 
-    fn over_alpha(
-        &self,
-        global: Global,
-        meshes: &[Mesh],
-        mut folder: Folder,
-    ) -> anyhow::Result<()> {
+    fn over_alpha(&self, global: Global, meshes: &[Mesh], mut folder: Folder) -> Result<()> {
         let mut progress = Progress::new(global);
         let recipe = self.pipeline.recipe()?;
         let input = &self.pipeline.input;
@@ -145,7 +140,7 @@ impl Ladder {
             let title = format!("Ladder of {}, ω frozen", self.pipeline.input.input);
             ladder_figure(&title, &ladder, &curve, &suggested, domain.volume)?
         };
-        progress.stage(Stage::Write, || -> anyhow::Result<()> {
+        progress.stage(Stage::Write, || -> Result<()> {
             folder.write("ladder.csv", |out| write_levels(&ladder, out))?;
             folder.write("voids.csv", |out| write_voids(&ladder, out))?;
             #[cfg(feature = "render")]
@@ -174,7 +169,7 @@ fn write_meshes(
     coordinates: Coordinates,
     meshes: &[Mesh],
     folder: &mut Folder,
-) -> anyhow::Result<Vec<FileOffset>> {
+) -> Result<Vec<FileOffset>> {
     let mut offsets = Vec::new();
     if meshes.is_empty() {
         return Ok(offsets);
@@ -205,7 +200,7 @@ fn short(number: impl Display + LowerExp) -> String {
 }
 
 /// Refuses values that are given twice, because one file would replace the other.
-fn refuse_repeated<T: PartialEq + Display>(option: &str, values: &[T]) -> anyhow::Result<()> {
+fn refuse_repeated<T: PartialEq + Display>(option: &str, values: &[T]) -> Result<()> {
     match values.iter().enumerate().find(|(k, value)| values[..*k].contains(value)) {
         Some((_, value)) => {
             fail_usage!("{option} names {value} twice" => "each level has a file of its own")
@@ -226,7 +221,7 @@ pub(super) fn meshes(
     asked: &[String],
     default: &[&str],
     export: &ExportOptions,
-) -> anyhow::Result<Vec<Mesh>> {
+) -> Result<Vec<Mesh>> {
     let plain = |extension: &str| extension.trim().trim_start_matches('.').to_ascii_lowercase();
     let mut extensions: Vec<String> = asked.iter().map(|extension| plain(extension)).collect();
     refuse_repeated("--mesh", &extensions)?;
@@ -235,10 +230,8 @@ pub(super) fn meshes(
     }
     let mesh = |extension: String| {
         let name = format!("level.{extension}");
-        let format = Format::of(Path::new(&name)).map_err(|unknown| {
-            let unknown = CommandError::usage_of(&unknown);
-            CommandError { why: format!("--mesh: {}", unknown.why), ..unknown }
-        })?;
+        let format = Format::of(Path::new(&name))
+            .map_err(|unknown| CommandError::from(unknown).context("--mesh".into()))?;
         Ok(Mesh { exporter: format.exporter(export), format, extension })
     };
     extensions.into_iter().map(mesh).collect()

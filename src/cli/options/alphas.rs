@@ -3,17 +3,16 @@
 use std::str::FromStr;
 
 use crate::Alpha;
-use crate::cli::errors::{CommandError, command_error};
+use crate::cli::errors::{CommandError, Result, command_error};
 use crate::pipeline::{AlphaRule, Parameter, Source};
 
 /// α for a command that makes several sets of points from a volume. `auto` is refused, because each set would have its own.
-pub(crate) fn one_alpha(rule: AlphaRule, source: &Source) -> anyhow::Result<Parameter> {
+pub(crate) fn one_alpha(rule: AlphaRule, source: &Source) -> Result<Parameter> {
     rule.of_volume(&source.volume, source.units)?.ok_or_else(|| {
         command_error!(
             "there are several sets of points, each with an `auto` of its own" => "give α as a \
              number"
         )
-        .into()
     })
 }
 
@@ -29,7 +28,7 @@ pub(crate) enum Alphas {
 impl FromStr for Alphas {
     type Err = CommandError;
 
-    fn from_str(text: &str) -> Result<Self, CommandError> {
+    fn from_str(text: &str) -> Result<Self> {
         if text == "auto" {
             return Ok(Self::Auto);
         }

@@ -8,7 +8,6 @@ use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use anyhow::Context;
 use clap::parser::ValueSource;
 use clap::{Arg, ArgAction, ArgGroup, ArgMatches, Command, FromArgMatches};
 use toml::{Table, Value};
@@ -18,7 +17,7 @@ use walpha_base::shown::shown;
 
 use super::preset;
 use super::settings::Given;
-use crate::cli::errors::{CommandError, command_error, fail};
+use crate::cli::errors::{CommandError, Result, command_error, fail};
 use crate::cli::global::EVERY_COMMAND;
 use crate::settings::EXCLUSIVE;
 
@@ -53,10 +52,7 @@ pub(crate) fn config_options() -> [Arg; 3] {
 /// Keys are the long names of options. Those at the top level are for every command that has the option;
 /// a table named after a command is for that command, and takes precedence. The command line takes
 /// precedence over the file, and settings that conflict with it are ignored.
-pub(crate) fn with_settings(
-    command: &Command,
-    mut args: Vec<OsString>,
-) -> anyhow::Result<Vec<OsString>> {
+pub(crate) fn with_settings(command: &Command, mut args: Vec<OsString>) -> Result<Vec<OsString>> {
     let long = format!("--{FILE}");
     if !args.iter().any(|arg| arg.to_string_lossy().starts_with(&long)) {
         return Ok(args);
@@ -87,8 +83,9 @@ pub(crate) fn with_settings(
         if is_typed(arg) || conflicting(subcommand, arg).into_iter().any(is_typed) {
             continue;
         }
-        let text = arguments(arg, &value)
-            .with_context(|| format!("{}: {key} = {value} makes no sense", shown(&file)))?;
+        let text = arguments(arg, &value).map_err(|error| {
+            error.context(format!("{}: {key} = {value} makes no sense", shown(&file)))
+        })?;
         // A default need not be passed, and must not be where its option requires another.
         let defaults = arg.get_default_values();
         if matches!((&text[..], defaults), ([one], [default]) if *one == default_text(arg, default))
@@ -152,7 +149,7 @@ fn path(matches: &ArgMatches) -> Option<PathBuf> {
 }
 
 /// The file's settings for this command.
-fn read(command: &Command, file: &Path, name: &str) -> anyhow::Result<Table> {
+fn read(command: &Command, file: &Path, name: &str) -> Result<Table> {
     let mut text = String::new();
     let read = File::open(file).and_then(|open| open.take(LONGEST + 1).read_to_string(&mut text));
     read.map_err(|error| {
@@ -174,7 +171,7 @@ fn read(command: &Command, file: &Path, name: &str) -> anyhow::Result<Table> {
                 if let Some(key) = of_command.keys().find(|key| option(subcommand, key).is_none()) {
                     let known = options(subcommand).filter_map(Arg::get_long).collect();
                     let name = format!("[{}] {key}", subcommand.get_name());
-                    return Err(unknown(file, &name, key, known).into());
+                    return Err(unknown(file, &name, key, known));
                 }
                 if key == name {
                     own = of_command;
@@ -185,7 +182,7 @@ fn read(command: &Command, file: &Path, name: &str) -> anyhow::Result<Table> {
                     let names = command.get_subcommands().map(Command::get_name);
                     let options = command.get_subcommands().flat_map(options);
                     let known = options.filter_map(Arg::get_long).chain(names).collect();
-                    return Err(unknown(file, &key, &key, known).into());
+                    return Err(unknown(file, &key, &key, known));
                 }
                 settings.insert(key, value);
             }
@@ -242,7 +239,7 @@ fn takes_many(arg: &Arg) -> bool {
 }
 
 /// The command-line arguments for a key and its value.
-fn arguments(arg: &Arg, value: &Value) -> anyhow::Result<Vec<String>> {
+fn arguments(arg: &Arg, value: &Value) -> Result<Vec<String>> {
     let long = arg.get_long().unwrap_or_default();
     let one = |value: &Value| match value {
         Value::String(text) => Ok(text.clone()),
@@ -257,7 +254,7 @@ fn arguments(arg: &Arg, value: &Value) -> anyhow::Result<Vec<String>> {
         };
     }
     let values = match value {
-        Value::Array(values) => values.iter().map(one).collect::<anyhow::Result<Vec<_>>>()?,
+        Value::Array(values) => values.iter().map(one).collect::<Result<Vec<_>>>()?,
         value => vec![one(value)?],
     };
     if takes_many(arg) && arg.get_value_delimiter().is_none() {

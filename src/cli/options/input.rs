@@ -9,7 +9,7 @@ use clap::Args;
 
 use super::settings::{Declared, Given, Groups};
 use super::typed::TypedOptions;
-use crate::cli::errors::CommandError;
+use crate::cli::errors::Result;
 use crate::export::Target;
 use crate::points::PointOptions;
 use crate::settings::{Group, Settings};
@@ -63,17 +63,17 @@ impl InputArgs {
     }
 
     /// The recipe with the settings that were given.
-    pub(crate) fn recipe(&self) -> Result<Recipe, CommandError> {
+    pub(crate) fn recipe(&self) -> Result<Recipe> {
         Ok(self.settings().recipe()?.classifier(shape::CGAL))
     }
 
     /// Options for reading points.
-    pub(crate) fn point_options(&self) -> Result<PointOptions, CommandError> {
+    pub(crate) fn point_options(&self) -> Result<PointOptions> {
         Ok(self.recipe()?.of_points())
     }
 
     /// Refuses `--input-format` for a sample or a folder.
-    pub(crate) fn check_format(&self) -> Result<(), CommandError> {
+    pub(crate) fn check_format(&self) -> Result<()> {
         if self.input.starts_with("sample:") {
             self.typed.refuse(&["input_format"], "a sample is not a file")?;
         } else if self.input.path().is_dir() {

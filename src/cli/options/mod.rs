@@ -20,10 +20,10 @@ pub(super) use output_format::OutputArgs;
 use preset::PresetArgs;
 pub(super) use settings::{Declared, Groups};
 
-use super::errors::CommandError;
+use super::errors::Result;
 use crate::Recipe;
 use crate::points::Region;
-use crate::settings::{Group, SettingError, Settings, parse};
+use crate::settings::{Group, Settings, parse};
 
 /// From an input to weighted points.
 #[derive(Args, Clone)]
@@ -97,7 +97,7 @@ impl<W: Groups> PipelineArgs<W> {
     }
 
     /// The recipe with the settings that were given.
-    pub(super) fn recipe(&self) -> Result<Recipe, CommandError> {
+    pub(super) fn recipe(&self) -> Result<Recipe> {
         let typed = &self.input.typed;
         if self.settings().label().is_some() {
             refuse_gray_levels(&self.input)?;
@@ -131,7 +131,7 @@ pub(super) fn of_volumes() -> Vec<&'static str> {
 }
 
 /// Refuses typed options that have no effect on the solid of labels.
-pub(super) fn refuse_gray_levels(input: &InputArgs) -> Result<(), CommandError> {
+pub(super) fn refuse_gray_levels(input: &InputArgs) -> Result<()> {
     let mut refused = of_gray_levels();
     refused.extend(names(&[Group::Frozen, Group::Shape, Group::Periodic]));
     refused.extend(["gray_out", "require_3d"]);
@@ -140,24 +140,17 @@ pub(super) fn refuse_gray_levels(input: &InputArgs) -> Result<(), CommandError> 
 }
 
 /// A number from 0 up.
-pub(super) fn not_negative(text: &str) -> Result<f64, CommandError> {
+pub(super) fn not_negative(text: &str) -> Result<f64> {
     Ok(parse::not_negative(text)?)
 }
 
 /// A number.
 #[cfg(feature = "render")]
-pub(super) fn number(text: &str) -> Result<f64, CommandError> {
+pub(super) fn number(text: &str) -> Result<f64> {
     Ok(parse::number(text)?)
 }
 
 /// A box in the units of the points.
-pub(super) fn places(text: &str) -> Result<Region, CommandError> {
+pub(super) fn places(text: &str) -> Result<Region> {
     Ok(parse::places(text)?)
-}
-
-impl From<SettingError> for CommandError {
-    fn from(error: SettingError) -> Self {
-        let named = |advice: crate::advice::Advice| advice.with_names(super::errors::option);
-        Self { why: named(error.why), next: error.next.map(named), usage: true }
-    }
 }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use crate::cli::errors::fail_usage;
+use crate::cli::errors::{Result, fail_usage};
 use crate::export::Target;
 
 /// The format of outputs without an extension.
@@ -19,7 +19,7 @@ pub(crate) struct OutputArgs {
 
 impl OutputArgs {
     /// A path whose extension names the format of an output: its own path, if that has an extension.
-    pub(crate) fn named(&self, path: &Path) -> anyhow::Result<PathBuf> {
+    pub(crate) fn named(&self, path: &Path) -> Result<PathBuf> {
         match &self.output_format {
             _ if path.extension().is_some() => Ok(path.to_owned()),
             Some(format) => Ok(format!("output.{}", format.trim_start_matches('.')).into()),
@@ -31,10 +31,7 @@ impl OutputArgs {
     }
 
     /// Refuses `--output-format` if no output needs it.
-    pub(crate) fn check<'a>(
-        &self,
-        mut outputs: impl Iterator<Item = &'a PathBuf>,
-    ) -> anyhow::Result<()> {
+    pub(crate) fn check<'a>(&self, mut outputs: impl Iterator<Item = &'a PathBuf>) -> Result<()> {
         if self.output_format.is_some() && !outputs.any(|path| path.extension().is_none()) {
             fail_usage!("--output-format has no effect: each output has an extension, which says its format" => "omit it");
         }

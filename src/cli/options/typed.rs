@@ -9,7 +9,7 @@ use clap::{ArgMatches, Args, Command, FromArgMatches};
 use walpha_files::keep_input;
 
 use super::config::CONFIGURED;
-use crate::cli::errors::{CommandError, fail_usage};
+use crate::cli::errors::{Result, fail_usage};
 use crate::volume::files_of;
 
 /// The names of the options that the user typed. Those from the file of `--config` are left out: they are for all
@@ -21,11 +21,7 @@ pub(crate) struct TypedOptions(Vec<String>);
 
 impl TypedOptions {
     /// Refuses options that would have no effect; `why` follows their names.
-    pub(crate) fn refuse(
-        &self,
-        names: &[impl AsRef<str>],
-        why: impl fmt::Display,
-    ) -> Result<(), CommandError> {
+    pub(crate) fn refuse(&self, names: &[impl AsRef<str>], why: impl fmt::Display) -> Result<()> {
         let wanted = self.0.iter().filter(|given| names.iter().any(|name| name.as_ref() == *given));
         let options: Vec<String> =
             wanted.map(|name| format!("--{}", name.replace('_', "-"))).collect();
@@ -77,7 +73,7 @@ const WRITTEN: [&str; 3] = ["output", "out", "mask"];
 const IN_PLACE: &str = "in_place";
 
 /// Protects all inputs that a command line names from being replaced by an output.
-pub(crate) fn protect_inputs(command: &Command, matches: &ArgMatches) -> anyhow::Result<()> {
+pub(crate) fn protect_inputs(command: &Command, matches: &ArgMatches) -> Result<()> {
     let (mut command, mut matches, mut name) = (command, matches, String::from("walpha"));
     while let Some((of, inner)) = matches.subcommand()
         && let Some(subcommand) = command.find_subcommand(of)

@@ -1,3 +1,4 @@
+use walpha_base::advice::Advise;
 use walpha_regular::Sites;
 
 use super::PlaneError;
@@ -72,6 +73,8 @@ pub struct NotACurvature {
     given: f64,
 }
 
+impl Advise for NotACurvature {}
+
 /// The α-shape of a set of points in the plane after Edelsbrunner, Kirkpatrick and Seidel, "On the
 /// shape of a set of points in the plane", 1983, doi:10.1109/TIT.1983.1056714.
 #[derive(Clone, Debug, PartialEq)]
@@ -103,6 +106,8 @@ pub struct NoDisc {
     /// Number of distinct positions in the input.
     pub points: usize,
 }
+
+impl Advise for NoDisc {}
 
 /// The α-shape of points (x, y): which of them, and which pairs, lie on the boundary of one
 /// generalised disc of radius 1/α that contains all points.

@@ -1,5 +1,6 @@
 use std::collections::HashMap;
 
+use walpha_base::advice::{Advise, wrapped};
 use walpha_regular::{Sites, SitesError};
 
 use crate::{CgalError, cgal};
@@ -99,4 +100,8 @@ pub enum PlaneError {
         /// The α given.
         given: f64,
     },
+}
+
+impl Advise for PlaneError {
+    wrapped!(Sites, Cgal);
 }

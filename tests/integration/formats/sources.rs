@@ -6,6 +6,7 @@ use std::num::NonZeroUsize;
 use std::path::Path;
 
 use ndarray::Array3;
+use walpha::advice::Advise;
 use walpha::volume::{
     Dtype, Endian, Nan, RawLayout, ReadOptions, Region, Source, VolumeWriter, downsample, open,
 };

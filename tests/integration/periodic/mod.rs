@@ -4,6 +4,7 @@
 mod command;
 mod oracle;
 
+use walpha::advice::Advise;
 use walpha::ladder::Filtration;
 use walpha::shape::{Betti, Engine, ShapeError, ShapeOptions, Torus, Void};
 use walpha::{Alpha, AlphaShape, WeightedPoints, alpha_shape};

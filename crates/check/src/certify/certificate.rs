@@ -1,5 +1,6 @@
 use serde::Serialize;
 use walpha_base::Cancelled;
+use walpha_base::advice::{Advice, Advise, Category, wrapped};
 
 use super::missing::Declined;
 use super::structure::MAX_CELLS;
@@ -205,14 +206,24 @@ pub enum CertifyError {
     Cancelled(#[from] Cancelled),
 }
 
-impl CertifyError {
-    /// How to resolve the error, if there is a way.
-    pub fn advice(&self) -> Option<&'static str> {
-        Some(match self {
+impl Advise for CertifyError {
+    wrapped!(Cancelled);
+
+    fn advice(&self) -> Option<Advice> {
+        let advice = match self {
             Self::NotFinite(_) => "remove such points from the input",
             Self::NotInBox(_) => "give coordinates from 0 to less than the sides of the box",
             Self::Memory { .. } => "judge a part of it",
             _ => return None,
-        })
+        };
+        Some(advice.into())
+    }
+
+    fn category(&self) -> Category {
+        match self {
+            Self::Memory { .. } => Category::Memory,
+            Self::Cancelled(error) => error.category(),
+            _ => Category::Input,
+        }
     }
 }

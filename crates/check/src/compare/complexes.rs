@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::fmt::{self, Display};
 
 use serde::Serialize;
+use walpha_base::advice::{Advice, Advise, wrapped};
 use walpha_base::monitor::Units;
 use walpha_base::{Cancelled, Monitor};
 use walpha_complex::canonical::sorted;
@@ -95,10 +96,12 @@ pub enum CompareError {
     Cancelled(#[from] Cancelled),
 }
 
-impl CompareError {
-    /// How to resolve the error, if there is a way.
-    pub fn advice(&self) -> Option<&'static str> {
-        matches!(self, Self::NotFinite { .. }).then_some("remove such points from the input")
+impl Advise for CompareError {
+    wrapped!(Cancelled);
+
+    fn advice(&self) -> Option<Advice> {
+        let advice = "remove such points from the input";
+        matches!(self, Self::NotFinite { .. }).then(|| advice.into())
     }
 }
 

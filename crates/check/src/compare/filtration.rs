@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use std::fmt::{self, Display};
 
 use serde::Serialize;
+use walpha_base::advice::{Advise, wrapped};
 use walpha_base::monitor::Units;
 use walpha_base::{Cancelled, Monitor};
 use walpha_complex::canonical::sorted;
@@ -78,14 +79,8 @@ pub enum CompareFiltrationsError {
     Cancelled(#[from] Cancelled),
 }
 
-impl CompareFiltrationsError {
-    /// How to resolve the error, if there is a way.
-    pub fn advice(&self) -> Option<&'static str> {
-        match self {
-            Self::Schema(error) => error.advice(),
-            Self::Cancelled(_) => None,
-        }
-    }
+impl Advise for CompareFiltrationsError {
+    wrapped!(Schema, Cancelled);
 }
 
 /// Compares two filtrations, matching points by their positions, so that the two may number them

@@ -1,6 +1,7 @@
 use std::io;
 use std::path::Path;
 
+use walpha_base::advice::{Advice, Advise};
 use walpha_base::memory::NoMemory;
 
 /// Why a mesh cannot be read: where in the file, what is wrong, and what to do.
@@ -10,7 +11,7 @@ pub struct MeshError {
     /// The file, if it is not the one that was named, and the line or byte; empty for the whole file.
     place: String,
     why: String,
-    next: Option<String>,
+    next: Option<Advice>,
 }
 
 impl MeshError {
@@ -25,7 +26,7 @@ impl MeshError {
     }
 
     /// The same error with what to do about it.
-    pub(super) fn with_advice(self, next: impl Into<String>) -> Self {
+    pub(super) fn with_advice(self, next: impl Into<Advice>) -> Self {
         Self { next: Some(next.into()), ..self }
     }
 
@@ -40,10 +41,11 @@ impl MeshError {
         };
         Self { place, ..self }
     }
+}
 
-    /// How to resolve the error, if there is a way.
-    pub fn advice(&self) -> Option<&str> {
-        self.next.as_deref()
+impl Advise for MeshError {
+    fn advice(&self) -> Option<Advice> {
+        self.next.clone()
     }
 }
 

@@ -1,7 +1,9 @@
 //! Comparison of complexes.
 
 use walpha_base::random::Random;
-use walpha_check::{Alpha, Class, CompareError, Comparison, Domain, Placed, Verdict, compare};
+use walpha_check::{
+    Advise, Alpha, Class, CompareError, Comparison, Domain, Placed, Verdict, compare,
+};
 
 use crate::common::{Answer, Case, closed, definition, drop_row, grid, shape_of};
 
@@ -253,7 +255,7 @@ fn numbers_are_finite() {
     ] {
         let error = compare(right, wrong).unwrap_err();
         assert!(matches!(error, CompareError::NotFinite { which: 'B', point } if point == number));
-        assert_eq!(error.advice(), Some("remove such points from the input"));
+        assert_eq!(error.advice(), Some("remove such points from the input".into()));
     }
     let short = compare(right, weighted(&case.positions, &weights[1..], &shape)).unwrap_err();
     assert!(matches!(short, CompareError::Lengths { which: 'B', positions: 8, weights: 7 }));

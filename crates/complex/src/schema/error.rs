@@ -1,5 +1,6 @@
 use std::io;
 
+use walpha_base::advice::{Advice, Advise, Category, wrapped};
 use walpha_base::npy::NpyError;
 
 /// Why a file does not hold a complex.
@@ -117,10 +118,13 @@ impl SchemaError {
             None => Ok(()),
         }
     }
+}
 
-    /// How to resolve the error, if there is a way.
-    pub fn advice(&self) -> Option<&'static str> {
-        Some(match self {
+impl Advise for SchemaError {
+    wrapped!(Io; Npy { source });
+
+    fn advice(&self) -> Option<Advice> {
+        let advice = match self {
             Self::Zip(_) => "write it with numpy.savez",
             Self::Memory { .. } => "reduce its size",
             Self::Missing("alpha") => {
@@ -129,7 +133,15 @@ impl SchemaError {
             Self::Index { .. } => "number points from 0 in all rows",
             Self::NoPoints => "add `points`",
             Self::NoSimplices => "give at least one of cells, facets, edges, vertices",
-            _ => return None,
-        })
+            _ => return self.wrapped()?.advice(),
+        };
+        Some(advice.into())
+    }
+
+    fn category(&self) -> Category {
+        match self {
+            Self::Memory { .. } => Category::Memory,
+            _ => self.wrapped().map_or(Category::Input, Advise::category),
+        }
     }
 }

@@ -1,5 +1,5 @@
 use walpha_base::Monitor;
-use walpha_base::advice::{Advice, Setting, advice};
+use walpha_base::advice::{Advice, Advise, Setting, advice};
 use walpha_base::shown::number;
 
 use crate::pipeline::Parameter;
@@ -124,10 +124,11 @@ impl EmptyShape {
             _ => "at any α, as its points lie in one plane, where no facet bounds a volume".into(),
         }
     }
+}
 
-    /// What to do about it.
-    pub fn advice(&self) -> Advice {
-        match self.suggested {
+impl Advise for EmptyShape {
+    fn advice(&self) -> Option<Advice> {
+        Some(match self.suggested {
             None if !self.can_have_it() => match self.extent {
                 Extent::Place | Extent::Line => {
                     "write a format that has vertices and edges, as VTU does".into()
@@ -140,7 +141,7 @@ impl EmptyShape {
                     if self.balls == Balls::Radius { Setting::Alpha } else { Setting::AlphaRadius };
                 advice!["give a larger α, as in ", setting, format!(" {}", number(suggested))]
             }
-        }
+        })
     }
 }
 
@@ -188,7 +189,7 @@ mod tests {
 
     fn refused(shape: &AlphaShape, needs: Needs) -> (String, String) {
         let error = EmptyShape::check(shape, needs).unwrap_err();
-        (error.to_string(), error.advice().to_string())
+        (error.to_string(), error.advice().unwrap().to_string())
     }
 
     /// What is suggested has what was asked for, and is no more than needed for it to be a round number.
@@ -213,7 +214,7 @@ mod tests {
                 let radius = error.suggested.expect("a radius is known");
                 let larger = shape(points.clone(), radius * radius);
                 assert!(needs.met_by(&larger), "{needs:?}: {radius}");
-                assert!(error.advice().to_string().contains("`alpha_radius`"));
+                assert!(error.advice().unwrap().to_string().contains("`alpha_radius`"));
             }
         }
     }

@@ -1,6 +1,6 @@
 use std::path::Path;
 
-use walpha_base::advice::Advice;
+use walpha_base::advice::{Advise, wrapped};
 
 #[cfg(doc)]
 use super::Exporter;
@@ -43,13 +43,6 @@ pub enum SaveError {
     Target(#[from] TargetError),
 }
 
-impl SaveError {
-    /// How to resolve the error.
-    pub fn advice(&self) -> Advice {
-        match self {
-            Self::Format(error) => error.advice(),
-            Self::Empty(error) => error.advice(),
-            Self::Target(error) => error.advice(),
-        }
-    }
+impl Advise for SaveError {
+    wrapped!(Format, Empty, Target);
 }

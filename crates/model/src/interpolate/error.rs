@@ -1,5 +1,5 @@
 use walpha_base::Cancelled;
-use walpha_base::advice::{Advice, Setting, advice};
+use walpha_base::advice::{Advice, Advise, Setting, advice, wrapped};
 use walpha_base::memory::NoMemory;
 use walpha_base::monitor::wraps;
 
@@ -91,9 +91,10 @@ pub enum InterpolateError {
 
 wraps! { InterpolateError: Shape(ShapeError), Haar(HaarError) }
 
-impl InterpolateError {
-    /// What to do about it, where there is something.
-    pub fn advice(&self) -> Option<Advice> {
+impl Advise for InterpolateError {
+    wrapped!(Shape, Points, Haar, Cancelled, Memory, Volume);
+
+    fn advice(&self) -> Option<Advice> {
         Some(match self {
             Self::NoValues => "add a column `value` to the input, or start from a volume".into(),
             Self::Missing => advice!["give ", Setting::Nan, " a value, or select by difference"],
@@ -105,12 +106,7 @@ impl InterpolateError {
             Self::Fit { .. } => "keep the samples' own values".into(),
             Self::Target { .. } => "give a number from 0 up".into(),
             Self::Periodic => "lay the shape out in space first (AlphaShape::unwrapped)".into(),
-            Self::Shape(error) => return error.advice(),
-            Self::Points(error) => return error.advice(),
-            Self::Haar(error) => return error.advice(),
-            Self::Memory(lack) => lack.advice(),
-            Self::Cancelled(_) => return None,
-            Self::Volume(error) => return error.advice(),
+            _ => return self.wrapped()?.advice(),
         })
     }
 }

@@ -1,8 +1,9 @@
 use std::fmt::{self, Display};
+use std::io::ErrorKind;
 use std::path::PathBuf;
 
 use walpha_base::Cancelled;
-use walpha_base::advice::Advice;
+use walpha_base::advice::{Advice, Advise, wrapped};
 use walpha_base::memory::NoMemory;
 use walpha_base::shown::shown;
 
@@ -172,36 +173,31 @@ impl BlocksError {
     pub(super) fn not_local(what: &str, next: &'static str) -> Self {
         Self::NotLocal { what: what.to_owned(), next }
     }
+}
 
-    /// What to do about it, where there is something.
-    pub fn advice(&self) -> Option<Advice> {
-        match self {
-            Self::Volume(error) => error.advice(),
-            Self::Haar(error) => error.advice(),
-            Self::Points(error) => error.advice(),
-            Self::Pipeline(error) => error.advice(),
-            Self::Shape(error) => error.advice(),
-            Self::Target(error) => Some(error.advice()),
-            Self::Memory(lack) => Some(lack.advice()),
-            Self::Io { .. } => Some("name a folder that `walpha blocks plan` made".into()),
-            Self::Written { source, .. } => match source.kind() {
-                std::io::ErrorKind::AlreadyExists => Some("remove it, or name another".into()),
-                _ => None,
-            },
-            Self::NoPlan { .. } => Some(
-                "plan again, by `walpha blocks plan` or the command that was interrupted".into(),
-            ),
-            Self::Damaged { .. } | Self::OtherPlan { .. } | Self::Unsound { .. } => {
-                Some("compute it again by `walpha blocks run`, then merge again".into())
+impl Advise for BlocksError {
+    wrapped!(Volume, Haar, Points, Pipeline, Shape, Target, Cancelled, Memory; Io { source }, Written { source });
+
+    fn advice(&self) -> Option<Advice> {
+        let advice = match self {
+            Self::Io { .. } => "name a folder that `walpha blocks plan` made",
+            Self::Written { source, .. } if source.kind() == ErrorKind::AlreadyExists => {
+                "remove it, or name another"
             }
-            Self::Missing { .. } => Some("run these, then merge again".into()),
-            Self::NoBlock { .. } | Self::Cancelled(_) => None,
-            Self::Changed { .. } => Some(
+            Self::NoPlan { .. } => {
+                "plan again, by `walpha blocks plan` or the command that was interrupted"
+            }
+            Self::Damaged { .. } | Self::OtherPlan { .. } | Self::Unsound { .. } => {
+                "compute it again by `walpha blocks run`, then merge again"
+            }
+            Self::Missing { .. } => "run these, then merge again",
+            Self::Changed { .. } => {
                 "plan again: of `walpha shape`, remove the folder `.blocks` beside the output first"
-                    .into(),
-            ),
-            Self::NotLocal { next, .. } => Some((*next).into()),
-            Self::TooLarge { .. } => Some("write .pvtu or .pvtp".into()),
-        }
+            }
+            Self::NotLocal { next, .. } => next,
+            Self::TooLarge { .. } => "write .pvtu or .pvtp",
+            _ => return self.wrapped()?.advice(),
+        };
+        Some(advice.into())
     }
 }

@@ -1,5 +1,5 @@
 use walpha_base::Cancelled;
-use walpha_base::advice::{Advice, Setting, advice};
+use walpha_base::advice::{Advice, Advise, Setting, advice, wrapped};
 use walpha_base::monitor::wraps;
 
 use crate::interpolate::InterpolateError;
@@ -68,29 +68,24 @@ wraps! {
     Shape(ShapeError)
 }
 
-impl PipelineError {
-    /// What to do about it, if anything.
-    pub fn advice(&self) -> Option<Advice> {
-        match self {
-            Self::Haar(error) => error.advice(),
-            Self::Points(error) => error.advice(),
-            Self::Interpolate(error) => error.advice(),
-            Self::Labels(error) => error.advice(),
-            Self::OfLabels => Some(advice![
+impl Advise for PipelineError {
+    wrapped!(Haar, Points, Interpolate, Labels, Shape, Alpha, Cancelled);
+
+    fn advice(&self) -> Option<Advice> {
+        Some(match self {
+            Self::OfLabels => advice![
                 "take their solid by `walpha shape`, or say what to look for in gray levels, as in ",
                 Setting::Threshold,
                 " 30"
-            ]),
-            Self::Shape(error) => error.advice(),
-            Self::Alpha(error) => Some(error.advice().into()),
-            Self::Cancelled(_) => None,
-            Self::SpaceOfVoxels | Self::UnknownSpace => Some(advice!["omit ", Setting::Space]),
+            ],
+            Self::SpaceOfVoxels | Self::UnknownSpace => advice!["omit ", Setting::Space],
             Self::PeriodicWeights => {
-                Some(advice!["give weights as a column of the input, or omit ", Setting::Periodic])
+                advice!["give weights as a column of the input, or omit ", Setting::Periodic]
             }
             Self::Radii { radius } => {
-                Some(advice!["give a number, as in ", Setting::Alpha, format!(" {radius}")])
+                advice!["give a number, as in ", Setting::Alpha, format!(" {radius}")]
             }
-        }
+            _ => return self.wrapped()?.advice(),
+        })
     }
 }

@@ -6,14 +6,12 @@
 mod choices;
 pub mod parse;
 
-use std::error::Error;
-use std::fmt;
 use std::num::NonZeroUsize;
 
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use serde_json::{Map, Value};
-use walpha_base::advice::{Advice, Setting, advice};
+use walpha_base::advice::{Advice, Advise, Category, Setting, advice};
 use walpha_points::haar::{Decomposition, HaarOptions, Tolerance};
 use walpha_points::{Columns, Selection, SelectionRule, Units, Weighting};
 use walpha_shape::{Alpha, Balls, Engine, Torus};
@@ -26,7 +24,8 @@ use crate::pipeline::{AlphaRule, Choice, Goal};
 pub use choices::Select;
 
 /// What is wrong with a setting, and what to do about it. Both may name settings.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{why}")]
 pub struct SettingError {
     /// What is wrong.
     pub why: Advice,
@@ -39,23 +38,24 @@ impl SettingError {
         Self { why: why.into(), next: Some(next.into()) }
     }
 
-    fn of(error: &impl ToString, next: Option<Advice>) -> Self {
-        Self { why: error.to_string().into(), next }
+    fn of(error: &impl Advise) -> Self {
+        Self { why: error.message(), next: error.advice() }
+    }
+}
+
+impl Advise for SettingError {
+    fn message(&self) -> Advice {
+        self.why.clone()
     }
 
-    /// What to do about it.
-    pub fn advice(&self) -> Option<Advice> {
+    fn advice(&self) -> Option<Advice> {
         self.next.clone()
     }
-}
 
-impl fmt::Display for SettingError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.why.fmt(f)
+    fn category(&self) -> Category {
+        Category::Usage
     }
 }
-
-impl Error for SettingError {}
 
 /// A preset: its name, and its settings in TOML.
 pub type Preset = (&'static str, &'static str);
@@ -160,7 +160,7 @@ settings! {
         /// Whether gray levels are written.
         gray_out: bool = parse::switch,
         /// Columns of a table of points.
-        columns: Columns = parse::columns,
+        columns: Columns = parse::own,
         /// Classes of points in LAS.
         class: Vec<u8> = parse::classes,
         /// Whether withheld points in LAS are read.
@@ -192,15 +192,15 @@ settings! {
         /// Sizes of a raw file.
         dims: Dims = parse::dims,
         /// Type of a sample.
-        dtype: Dtype = parse::plain,
+        dtype: Dtype = parse::own,
         /// Byte order of a sample.
-        endian: Endian = parse::plain,
+        endian: Endian = parse::own,
         /// Bytes before the samples.
         offset: u64 = parse::plain,
     }
     Labels {
         /// Labels whose solid the shape is.
-        label: LabelChoice = parse::plain,
+        label: LabelChoice = parse::own,
     }
     Haar {
         /// Kind of decomposition.
@@ -244,17 +244,17 @@ settings! {
     }
     Weights {
         /// The parameter, or how it is found.
-        alpha: AlphaRule = parse::alpha,
+        alpha: AlphaRule = parse::own,
         /// The parameter as a radius.
         alpha_radius: Alpha = parse::alpha_radius,
     }
     Frozen {
         /// The parameter at which weights are computed.
-        alpha_ref: AlphaRule = parse::alpha,
+        alpha_ref: AlphaRule = parse::own,
     }
     Weighting {
         /// Where weights come from.
-        weights: Weighting = parse::weighting,
+        weights: Weighting = parse::own,
     }
     Shape {
         /// How α and ω define balls.
@@ -498,10 +498,7 @@ impl Settings {
                 advice!["omit it, or take ", Setting::Engine, " native"],
             ));
         }
-        recipe.check().map_err(|error| SettingError {
-            why: error.to_string().into(),
-            next: error.advice(),
-        })?;
+        recipe.check().map_err(|error| SettingError::of(&error))?;
         if recipe.refit == Some(Refit::Whole) && recipe.memory.is_some() {
             return Err(SettingError::new(
                 advice![

@@ -3,14 +3,12 @@
 use std::fmt::Display;
 use std::str::FromStr;
 
-use walpha_points::Columns;
-use walpha_points::Weighting;
+use walpha_base::advice::Advise;
 use walpha_shape::{Alpha, Torus};
 use walpha_volume::{Dims, GrayRange, Nan, Region};
 
 use super::SettingError;
 use super::choices::Named;
-use crate::pipeline::AlphaRule;
 
 /// An error: what is wrong, and after `=>` what to do.
 macro_rules! fail {
@@ -25,9 +23,14 @@ macro_rules! error {
     };
 }
 
-/// A type whose own parser says all that there is to say.
+/// A type whose parser's errors say nothing but what is wrong.
 pub(super) fn plain<T: FromStr<Err: Display>>(text: &str) -> Result<T, SettingError> {
     text.parse().map_err(|error: T::Err| SettingError { why: error.to_string().into(), next: None })
+}
+
+/// A type whose parser's errors have advice.
+pub(super) fn own<T: FromStr<Err: Advise>>(text: &str) -> Result<T, SettingError> {
+    text.parse().map_err(|error| SettingError::of(&error))
 }
 
 /// One of a few names.
@@ -42,24 +45,6 @@ pub(super) fn named<T: Named>(text: &str) -> Result<T, SettingError> {
 /// A switch.
 pub(super) fn switch(text: &str) -> Result<bool, SettingError> {
     text.parse().map_err(|_| error!("{text:?} is neither true nor false" => "give true or false"))
-}
-
-pub(super) fn columns(text: &str) -> Result<Columns, SettingError> {
-    text.parse().map_err(|error: walpha_points::UnknownColumns| {
-        SettingError::of(&error, Some(error.advice()))
-    })
-}
-
-pub(super) fn weighting(text: &str) -> Result<Weighting, SettingError> {
-    text.parse().map_err(|error: walpha_points::UnknownWeighting| {
-        SettingError::of(&error, Some(error.advice()))
-    })
-}
-
-pub(super) fn alpha(text: &str) -> Result<AlphaRule, SettingError> {
-    text.parse().map_err(|error: walpha_shape::AlphaError| {
-        SettingError::of(&error, Some(error.advice().into()))
-    })
 }
 
 pub(super) fn input_format(text: &str) -> Result<String, SettingError> {
@@ -84,7 +69,7 @@ pub(super) fn dims(text: &str) -> Result<Dims, SettingError> {
     let [x, y, z] = sizes[..] else {
         fail!("three sizes are needed" => "give those along x, y and z, as in 64,64,64");
     };
-    Dims::unbounded(x, y, z).map_err(|error| SettingError::of(&error, error.advice()))
+    Dims::unbounded(x, y, z).map_err(|error| SettingError::of(&error))
 }
 
 pub(super) fn nan(text: &str) -> Result<Nan, SettingError> {
@@ -197,8 +182,7 @@ fn class(text: &str) -> Result<Vec<u8>, SettingError> {
 }
 
 pub(super) fn alpha_radius(text: &str) -> Result<Alpha, SettingError> {
-    Alpha::from_radius(number(text)?)
-        .map_err(|error| SettingError::of(&error, Some(error.advice().into())))
+    Alpha::from_radius(number(text)?).map_err(|error| SettingError::of(&error))
 }
 
 pub(super) fn torus(text: &str) -> Result<Torus, SettingError> {
@@ -206,7 +190,7 @@ pub(super) fn torus(text: &str) -> Result<Torus, SettingError> {
     let &[x, y, z] = &sides[..] else {
         fail!("three sides are needed" => "give those along x, y and z, as in 10,10,20");
     };
-    Torus::new([x, y, z]).map_err(|error| SettingError::of(&error, Some(error.advice())))
+    Torus::new([x, y, z]).map_err(|error| SettingError::of(&error))
 }
 
 /// The ends of three ranges as text, without surrounding white space.

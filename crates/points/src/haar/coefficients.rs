@@ -4,7 +4,7 @@ use ndarray::{Array3, ArrayView3, Zip};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use walpha_base::Cancelled;
-use walpha_base::advice::Advice;
+use walpha_base::advice::{Advice, Advise, wrapped};
 use walpha_base::memory::NoMemory;
 
 use super::{nonstandard, standard};
@@ -165,14 +165,13 @@ pub enum HaarError {
     Memory(#[from] NoMemory),
 }
 
-impl HaarError {
-    /// What to do about it, where there is something.
-    pub fn advice(&self) -> Option<Advice> {
+impl Advise for HaarError {
+    wrapped!(Volume, Cancelled, Memory);
+
+    fn advice(&self) -> Option<Advice> {
         match self {
             Self::Tolerance { .. } => Some("give a number from 0 up".into()),
-            Self::Volume(error) => error.advice(),
-            Self::Cancelled(_) => None,
-            Self::Memory(lack) => Some(lack.advice()),
+            _ => self.wrapped()?.advice(),
         }
     }
 }

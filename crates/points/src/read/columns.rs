@@ -2,7 +2,7 @@ use std::path::Path;
 use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
-use walpha_base::advice::{Advice, Setting, advice};
+use walpha_base::advice::{Advice, Advise, Setting, advice};
 use walpha_base::shown::shown;
 
 use walpha_volume::Reason;
@@ -41,13 +41,12 @@ pub struct Columns(pub(super) Vec<Option<usize>>);
 pub struct UnknownColumns {
     names: String,
     what: String,
-    next: &'static str,
+    pub(super) next: &'static str,
 }
 
-impl UnknownColumns {
-    /// What to do about it.
-    pub fn advice(&self) -> Advice {
-        self.next.into()
+impl Advise for UnknownColumns {
+    fn advice(&self) -> Option<Advice> {
+        Some(self.next.into())
     }
 }
 

@@ -135,7 +135,7 @@ impl Header {
 
 /// The error for names that do not identify x, y and z.
 fn unknown(path: &Path, error: &UnknownColumns) -> PointsError {
-    format(path, Reason::content(format!("{FIRST_LINE}: {error}"), error.advice()))
+    format(path, Reason::content(format!("{FIRST_LINE}: {error}"), error.next))
 }
 
 /// The names in a line.

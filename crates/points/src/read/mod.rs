@@ -29,6 +29,7 @@ pub use columns::{Columns, UnknownColumns};
 
 use std::path::Path;
 
+use walpha_base::advice::Advise;
 use walpha_base::shown::shown;
 use walpha_check::meshes::MeshError;
 
@@ -43,7 +44,7 @@ pub(super) fn format(path: &Path, reason: Reason) -> PointsError {
 
 /// The error for a mesh that the checker's reader refuses.
 fn mesh_error(path: &Path, error: &MeshError) -> PointsError {
-    let advice = error.advice().unwrap_or("write the file again").to_owned();
+    let advice = error.advice().unwrap_or_else(|| "write the file again".into());
     format(path, Reason::content(error.to_string(), advice))
 }
 

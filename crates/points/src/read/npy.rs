@@ -147,7 +147,7 @@ fn structured(
         Some(columns) if columns.len() == fields.len() => columns.clone(),
         Some(columns) => return Err(format(path, wrong_width(fields.len(), columns.len()))),
         None => Columns::named(&names)
-            .map_err(|error| format(path, Reason::content(error.to_string(), error.advice())))?,
+            .map_err(|error| format(path, Reason::content(error.to_string(), error.next)))?,
     };
     let mut bytes = Vec::new();
     let mut reader = file.reader_at(header.length)?;

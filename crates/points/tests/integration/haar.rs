@@ -3,6 +3,7 @@
 use ndarray::{Array3, ArrayView3};
 use proptest::prelude::*;
 use walpha_base::Sum;
+use walpha_base::advice::Advise;
 use walpha_base::random::Random;
 use walpha_points::haar::{Decomposition, HaarError, HaarOptions, Tolerance, forward, smooth};
 use walpha_volume::{Frame, Volume};

@@ -4,22 +4,13 @@ mod haar;
 mod points;
 mod wvm;
 
-use walpha_base::advice::Advice;
-use walpha_points::{PointsError, UnknownColumns, UnknownWeighting};
+use walpha_base::advice::Advise;
 
-trait Told {
-    /// The message and the advice in one text.
-    fn told(&self) -> String;
+/// The message and the advice in one text.
+trait Told: Advise {
+    fn told(&self) -> String {
+        self.advice().map_or(self.to_string(), |advice| format!("{self}; {advice}"))
+    }
 }
 
-macro_rules! told {
-    ($($error:ty),*) => {
-        $(impl Told for $error {
-            fn told(&self) -> String {
-                let advice: Option<Advice> = self.advice().into();
-                advice.map_or(self.to_string(), |advice| format!("{self}; {advice}"))
-            }
-        })*
-    };
-}
-told![PointsError, UnknownColumns, UnknownWeighting];
+impl<E: Advise> Told for E {}

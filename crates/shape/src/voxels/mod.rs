@@ -26,7 +26,7 @@ mod tests;
 
 use std::sync::Arc;
 
-use walpha_base::advice::Advice;
+use walpha_base::advice::{Advice, Advise};
 use walpha_base::memory::try_with_capacity;
 use walpha_base::{Coordinates, Monitor};
 use walpha_complex::Voxels;
@@ -68,15 +68,15 @@ pub enum VoxelsError {
     },
 }
 
-impl VoxelsError {
-    /// How to resolve the error.
-    pub fn advice(&self) -> Advice {
-        match self {
-            Self::Empty => "name labels that are there".into(),
-            Self::Runs => "list runs in ascending order".into(),
-            Self::TooMany { .. } => "crop or downsample the input".into(),
-            Self::Rounded { .. } => "use voxels as units".into(),
-        }
+impl Advise for VoxelsError {
+    fn advice(&self) -> Option<Advice> {
+        let advice = match self {
+            Self::Empty => "name labels that are there",
+            Self::Runs => "list runs in ascending order",
+            Self::TooMany { .. } => "crop or downsample the input",
+            Self::Rounded { .. } => "use voxels as units",
+        };
+        Some(advice.into())
     }
 }
 

@@ -1,6 +1,6 @@
 use std::path::Path;
 
-use walpha_base::advice::Advice;
+use walpha_base::advice::{Advice, Advise, Category};
 
 use walpha_base::near::nearest;
 use walpha_base::shown::shown;
@@ -52,12 +52,17 @@ impl UnknownFormat {
             known: dotted.join(", "),
         }
     }
+}
 
-    /// What to do about it.
-    pub fn advice(&self) -> Advice {
-        match &self.near {
+impl Advise for UnknownFormat {
+    fn advice(&self) -> Option<Advice> {
+        Some(match &self.near {
             Some(near) => format!("did you mean .{near}?").into(),
             None => "choose one of these".into(),
-        }
+        })
+    }
+
+    fn category(&self) -> Category {
+        Category::Usage
     }
 }

@@ -4,6 +4,7 @@ use std::io::{self, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
 use walpha_base::Monitor;
+use walpha_base::advice::Advise;
 use walpha_base::shown::shown;
 
 use super::layout::Layout;

@@ -56,6 +56,8 @@ fn unknown(name: &str, advice: Advice) -> VolumeError {
 
 #[cfg(test)]
 mod tests {
+    use walpha_base::advice::Advise;
+
     use super::*;
 
     #[test]

@@ -116,6 +116,8 @@ fn in_archive<T>(
 
 #[cfg(test)]
 mod tests {
+    use walpha_base::advice::Advise;
+
     use super::*;
 
     #[test]

@@ -10,6 +10,7 @@ pub use finding::{Bound, FiltrationFinding};
 use finding::differences;
 use serde::Serialize;
 use values::{ATTACHED, Ranks, RowNumbers, Span, Spans};
+use walpha_base::advice::{Advice, Advise, wrapped};
 use walpha_base::monitor::wraps;
 use walpha_base::{Cancelled, Monitor};
 
@@ -92,14 +93,13 @@ pub enum CertifyFiltrationError {
 
 wraps! { CertifyFiltrationError: Triangulation(CertifyError) }
 
-impl CertifyFiltrationError {
-    /// How to resolve the error, if there is a way.
-    pub fn advice(&self) -> Option<&'static str> {
+impl Advise for CertifyFiltrationError {
+    wrapped!(Schema, Triangulation, Cancelled);
+
+    fn advice(&self) -> Option<Advice> {
         match self {
-            Self::Schema(error) => error.advice(),
-            Self::Triangulation(error) => error.advice(),
-            Self::Cancelled(_) => None,
-            Self::Periodic => Some("judge its complexes at single values of α instead"),
+            Self::Periodic => Some("judge its complexes at single values of α instead".into()),
+            _ => self.wrapped()?.advice(),
         }
     }
 }

@@ -1,6 +1,7 @@
 //! Damaged, truncated and hostile files: errors that say what, where and what to do, never a panic or much memory.
 
 use walpha_base::random::Random;
+use walpha_check::Advise;
 
 use super::writers::{File, Form, all, gmsh_2, gmsh_4, medit, tetgen, vtk};
 use super::{folder, read};
@@ -25,7 +26,7 @@ fn error_of(files: Vec<File>, from: &[u8], to: &[u8]) -> String {
     assert!(replaced > 0, "{:?} is not there", String::from_utf8_lossy(from));
     let files: Vec<(&str, &[u8])> = files.iter().map(|(name, bytes)| (*name, &bytes[..])).collect();
     let error = read(&folder("damaged"), &files).unwrap_err();
-    assert!(error.advice().is_some_and(|advice| !advice.is_empty()), "{error}");
+    assert!(error.advice().is_some_and(|advice| !advice.to_string().is_empty()), "{error}");
     error.to_string()
 }
 

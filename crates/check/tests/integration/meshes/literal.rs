@@ -1,5 +1,7 @@
 //! Small files in the form that each format documents: a right one, one whose cells overlap, and one with a flat cell.
 
+use walpha_check::Advise;
+
 use super::{folder, judge, read};
 
 /// Five points: the corners of a tetrahedron and one beyond its largest facet.
@@ -233,7 +235,7 @@ fn the_points_find_their_cells() {
     assert_eq!(read(&folder, &[node, ele]).unwrap(), read(&folder, &[ele, node]).unwrap());
     let error = read(&folder, &[("b.node", NODE.as_bytes())]).unwrap_err();
     assert!(error.to_string().starts_with("b.ele: the mesh cannot be read: "), "{error}");
-    assert_eq!(error.advice(), Some("put b.node and b.ele into one folder"));
+    assert_eq!(error.advice(), Some("put b.node and b.ele into one folder".into()));
 }
 
 /// Numbers from 0, where both files have them so.

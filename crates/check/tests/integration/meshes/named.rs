@@ -1,5 +1,6 @@
 //! JSON and NPZ with the names that others use.
 
+use walpha_check::Advise;
 use walpha_check::schema::{AnyFile, ComplexFile, SchemaError};
 use zip::CompressionMethod;
 

@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use walpha_model::Advise;
 use walpha_model::export::{ExportOptions, Format};
 use walpha_model::outofcore::{BlocksError, Job, Plan, merge, run, whole};
 use walpha_points::Weighting;

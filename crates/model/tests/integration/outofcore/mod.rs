@@ -7,11 +7,11 @@ use std::num::NonZeroUsize;
 use std::path::Path;
 
 use walpha_base::random::Random;
-use walpha_model::Recipe;
 use walpha_model::export::{ExportOptions, Format};
 use walpha_model::interpolate::Refit;
 use walpha_model::outofcore::{BlocksError, Cutting, Job, Merged, Plan, merge, run, whole};
 use walpha_model::pipeline::{AlphaRule, Choice, Goal, Model};
+use walpha_model::{Advise, Recipe};
 use walpha_points::haar::{Decomposition, Tolerance};
 use walpha_points::{Selection, SelectionRule, Units, Weighting};
 use walpha_shape::{Alpha, AlphaShape, Balls};
