@@ -4,7 +4,7 @@
 //! flat slices or a copy into slices that Rust made; input indices come back everywhere; every entry
 //! returns `Result`, and C++ catches whatever is thrown there. Rust refuses what CGAL cannot stand
 //! (NaN, infinities, duplicates, fewer than four points) before the call, in
-//! [`Sites`](walpha_regular::Sites). C++ never calls back into Rust, because CGAL changes the
+//! [`Sites`](walpha_regular::internals::Sites). C++ never calls back into Rust, because CGAL changes the
 //! rounding mode while it works.
 
 #[allow(unused_qualifications, reason = "in what the macro writes")]

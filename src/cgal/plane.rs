@@ -1,5 +1,5 @@
 use bridge::{PlaneTriangulation, farthest_plane as farthest, regular_plane as regular};
-use walpha_regular::Sites;
+use walpha_regular::internals::Sites;
 
 use super::thrown;
 use walpha_shape::CgalError;

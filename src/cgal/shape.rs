@@ -2,7 +2,8 @@
 
 use rayon::prelude::*;
 use walpha_complex::canonical::{smallest_even, sorted};
-use walpha_regular::{Sites, SitesError};
+use walpha_regular::SitesError;
+use walpha_regular::internals::Sites;
 
 use super::ffi::bridge;
 use super::thrown;

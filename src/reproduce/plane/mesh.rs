@@ -1,6 +1,7 @@
 use std::collections::HashMap;
 
-use walpha_regular::{Sites, SitesError};
+use walpha_regular::SitesError;
+use walpha_regular::internals::Sites;
 
 use crate::{CgalError, cgal};
 

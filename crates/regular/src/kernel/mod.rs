@@ -83,6 +83,11 @@ impl<'a> Predicates<'a> {
         Self { positions, weights, lattice, exact, torus: None }
     }
 
+    /// Predicates on a few points, each of them asked once: to look for a lattice would take longer.
+    pub(crate) fn of_few(positions: &'a [[f64; 3]], weights: &'a [f64]) -> Self {
+        Self { positions, weights, lattice: Lattice::NONE, exact: [0.0; 8], torus: None }
+    }
+
     /// Predicates on points of a torus, if one is given. The other corners of a simplex, and a point tested against
     /// it, must be nearer to its first corner than half a side along each axis. O(n).
     pub fn on_torus(positions: &'a [[f64; 3]], weights: &'a [f64], torus: Option<Torus>) -> Self {
