@@ -319,7 +319,11 @@ impl<'a> Predicates<'a> {
     /// Whether a squared length is a multiple of the squared step.
     fn on_lattice(&self, square: f64) -> bool {
         let multiple = square / (self.lattice.step * self.lattice.step);
-        self.lattice.step != 0.0 && multiple.abs() < MAX_INTEGER && multiple.round() == multiple
+        let underflows = multiple == 0.0 && square != 0.0;
+        self.lattice.step != 0.0
+            && multiple.abs() < MAX_INTEGER
+            && multiple.round() == multiple
+            && !underflows
     }
 }
 

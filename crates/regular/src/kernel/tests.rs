@@ -273,3 +273,16 @@ fn centres_are_near() {
     }
     assert!(rounded > 2000 && exact_ones > 2000, "{rounded} {exact_ones}");
 }
+
+/// A quotient by the squared step that underflows is not 0, and its number no multiple.
+#[test]
+fn the_smallest_alpha_is_not_a_multiple_of_a_large_step() {
+    // The two balls touch: the squared radius of the smallest orthogonal sphere is 0.
+    let step = 2f64.powi(26);
+    let positions = [[0.0; 3], [2.0 * step, 0.0, 0.0]];
+    let weights = [step * step; 2];
+    let predicates = Predicates::new(&positions, &weights);
+    assert_eq!(predicates.first_alpha([0, 1]), 0.0);
+    assert!(predicates.fits([0, 1], 0.0) && predicates.fits([0, 1], 5e-324));
+    assert!(!predicates.fits([0, 1], -5e-324));
+}
