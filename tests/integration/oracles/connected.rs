@@ -71,7 +71,7 @@ fn the_connected_alpha_is_the_least_with_the_property() {
     });
     assert!(compared > 300, "{compared}");
     let [monotone, rising] = [monotone, rising].map(AtomicUsize::into_inner);
-    assert!(monotone > 500 && rising > 20, "{monotone} {rising}");
+    assert!(monotone > 1000 && rising > 3, "{monotone} {rising}");
 }
 
 #[test]
