@@ -37,8 +37,7 @@ mod bridge {
 /// Weights, squared lengths, are at least 0 and less than 1/64 of the squared side, as CGAL wants them. Ties between cospherical
 /// points may be broken in another way than in [`walpha_shape::Filtration::on`](walpha_shape::ladder::Filtration::on).
 ///
-/// CGAL begins with 27 copies of the cube until one is enough, so that small sets take longest for each point: some
-/// milliseconds for a hundred points.
+/// CGAL works on 27 copies of the cube until one is enough, so that small sets take longest for each point.
 ///
 /// # Errors
 /// [`Error::Side`], [`Error::Outside`], [`Error::Weight`]; [`Error::Sites`]: other numbers of weights than of points, no point.

@@ -51,7 +51,7 @@ pub struct RegularTriangulation {
 /// Weights are squared lengths. Ties between cospherical points are broken as CGAL does it, by a perturbation in the order of
 /// (x, y, z), so that the answer is a function of the set of points; [`triangulate`](walpha_regular::triangulate) gives the same one.
 ///
-/// Expected O(n log n) for points of even density; memory about 1 kB a point.
+/// Expected O(n log n) for points of even density.
 ///
 /// ```
 /// use walpha::cgal::{INFINITE_CELL, regular_triangulation_3};
