@@ -20,18 +20,42 @@ mod bridge {
 
     /// What the macro of cxx is written in.
     const BRIDGES: &[&str] = &[
+        #[cfg(feature = "cgal-oracles")]
+        "src/cgal/alpha.rs",
         "src/cgal/ffi.rs",
-        #[cfg(feature = "paper")]
+        #[cfg(feature = "cgal-oracles")]
+        "src/cgal/periodic.rs",
+        #[cfg(any(feature = "paper", feature = "cgal-oracles"))]
         "src/cgal/plane.rs",
+        #[cfg(feature = "cgal-oracles")]
+        "src/cgal/regular.rs",
     ];
+    /// The slowest first, as the feature `cgal-oracles` compiles several at a time.
     const SOURCES: &[&str] = &[
-        "cpp/bridge.cc",
-        #[cfg(feature = "paper")]
+        #[cfg(feature = "cgal-oracles")]
+        "cpp/periodic.cc",
+        #[cfg(feature = "cgal-oracles")]
+        "cpp/alpha.cc",
+        #[cfg(feature = "cgal-oracles")]
+        "cpp/regular.cc",
+        #[cfg(any(feature = "paper", feature = "cgal-oracles"))]
         "cpp/plane.cc",
         "cpp/shape.cc",
+        "cpp/bridge.cc",
     ];
-    const HEADERS: &[&str] =
-        &["cpp/bridge.h", "cpp/classes.h", "cpp/kernel.h", "cpp/plane.h", "cpp/shape.h"];
+    const HEADERS: &[&str] = &[
+        "cpp/alpha.h",
+        "cpp/bridge.h",
+        "cpp/classes.h",
+        "cpp/copy.h",
+        "cpp/kernel.h",
+        "cpp/nearest.h",
+        "cpp/periodic.h",
+        "cpp/plane.h",
+        "cpp/points.h",
+        "cpp/regular.h",
+        "cpp/shape.h",
+    ];
 
     pub(crate) fn build() {
         for file in SOURCES.iter().chain(HEADERS).chain(BRIDGES) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "rust/cxx.h"
+#include "walpha/cpp/points.h"
 
 namespace walpha {
 
@@ -20,11 +21,6 @@ class PlaneTriangulation {
   std::vector<std::uint32_t> triangles_;  // 3 per triangle; empty for points on one line
   std::vector<std::uint32_t> edges_;      // 2 per edge
   std::vector<std::uint32_t> vertices_;
-
- private:
-  static rust::Slice<const std::uint32_t> lend(const std::vector<std::uint32_t> &values) {
-    return {values.data(), values.size()};
-  }
 };
 
 // `positions` holds x, y of each point, `weights` one number per point; all finite, no two

@@ -15,7 +15,9 @@
 
 #include "walpha/cpp/bridge.h"
 #include "walpha/cpp/classes.h"
+#include "walpha/cpp/copy.h"
 #include "walpha/cpp/kernel.h"
+#include "walpha/cpp/points.h"
 
 namespace walpha {
 namespace {
@@ -28,14 +30,6 @@ using Cell = CGAL::Fixed_alpha_shape_cell_base_3<Kernel, Regular_cell>;
 using Structure = CGAL::Triangulation_data_structure_3<Vertex, Cell>;
 using Triangulation = CGAL::Regular_triangulation_3<Kernel, Structure>;
 using Alpha_shape = CGAL::Fixed_alpha_shape_3<Triangulation>;
-using Utilities = CGAL::Triangulation_utils_3;
-
-Class number(Alpha_shape::Classification_type type) {
-  if (type == Alpha_shape::INTERIOR) return INTERIOR;
-  if (type == Alpha_shape::REGULAR) return REGULAR;
-  if (type == Alpha_shape::SINGULAR) return SINGULAR;
-  return EXTERIOR;
-}
 
 // α = ∞ or −∞: a question CGAL must not be asked, and one whose answer needs no arithmetic.
 class Infinite_alpha {
@@ -84,50 +78,12 @@ struct Infinite_classes {
   }
 };
 
-template <typename Classify>
-std::unique_ptr<Complex> copy(const Triangulation &triangulation, const Classify &classify) {
-  auto complex = std::make_unique<Complex>();
-  for (auto cell : triangulation.finite_cell_handles()) {
-    complex->cells_.push({cell->vertex(0)->info(), cell->vertex(1)->info(),
-                          cell->vertex(2)->info(), cell->vertex(3)->info()},
-                         classify(cell));
-  }
-  for (auto facet : triangulation.finite_facets()) {
-    const Class facet_class = classify(facet);
-    // vertex_triple_index turns counter-clockwise seen from inside facet.first, so a regular
-    // facet is taken from the cell that is not in the shape.
-    if (facet_class == REGULAR && !triangulation.is_infinite(facet.first) &&
-        classify(facet.first) == INTERIOR) {
-      facet = triangulation.mirror_facet(facet);
-    }
-    const auto vertex = [&](int i) {
-      return facet.first->vertex(Utilities::vertex_triple_index(facet.second, i))->info();
-    };
-    complex->facets_.push({vertex(0), vertex(1), vertex(2)}, facet_class);
-  }
-  for (const auto &edge : triangulation.finite_edges()) {
-    complex->edges_.push(
-        {edge.first->vertex(edge.second)->info(), edge.first->vertex(edge.third)->info()},
-        classify(edge));
-  }
-  for (auto vertex : triangulation.finite_vertex_handles()) {
-    complex->vertices_.push({vertex->info()}, classify(vertex));
-  }
-  return complex;
-}
-
 }  // namespace
 
 std::unique_ptr<Complex> shape(rust::Slice<const double> positions,
                                rust::Slice<const double> weights, double alpha) {
   throw_quietly();
-  std::vector<std::pair<Triangulation::Weighted_point, std::uint32_t>> points;
-  points.reserve(weights.size());
-  for (std::size_t i = 0; i < weights.size(); ++i) {
-    const double *p = positions.data() + 3 * i;
-    points.emplace_back(Triangulation::Weighted_point({p[0], p[1], p[2]}, weights[i]),
-                        static_cast<std::uint32_t>(i));
-  }
+  auto points = numbered<Triangulation>(positions, weights);
   Triangulation triangulation(points.begin(), points.end());
   decltype(points)().swap(points);
   // Fixed_alpha_shape_3 leaves its classes uninitialised in lower dimensions.
@@ -140,7 +96,7 @@ std::unique_ptr<Complex> shape(rust::Slice<const double> positions,
     return copy(triangulation, Infinite_classes{triangulation, {triangulation, alpha > 0}});
   }
   const Alpha_shape shape(triangulation, alpha);  // takes the triangulation over
-  return copy(shape, [&](const auto &simplex) { return number(shape.classify(simplex)); });
+  return copy(shape, [&](const auto &simplex) { return number<Alpha_shape>(shape.classify(simplex)); });
 }
 
 }  // namespace walpha

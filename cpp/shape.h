@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "rust/cxx.h"
+#include "walpha/cpp/points.h"
 
 namespace walpha {
 
@@ -42,12 +43,6 @@ class Complex {
   Simplices<3> facets_;
   Simplices<2> edges_;
   Simplices<1> vertices_;
-
- private:
-  template <typename T>
-  static rust::Slice<const T> lend(const std::vector<T> &values) {
-    return {values.data(), values.size()};
-  }
 };
 
 // `positions` holds x, y, z of each point, `weights` one number per point; all finite, no

@@ -30,7 +30,8 @@
 //!
 //! | feature | default | what it adds |
 //! |---|---|---|
-//! | `cgal` | yes | CGAL's engine, through a bridge to C++; without it the crate is Rust alone |
+//! | `cgal` | yes | CGAL's engine, through a bridge to C++: the module `cgal`; without it the crate is Rust alone |
+//! | `cgal-oracles` | no | more of CGAL to check against: triangulations, all alpha shapes, periodic triangulations |
 //! | `gmp` | yes | CGAL computes with GMP and MPFR where they are installed |
 //! | `render` | yes | pictures, charts and the interactive page: the module `render` |
 //! | `paper` | yes | `walpha reproduce`: the paper's figures and its table |
@@ -46,7 +47,7 @@
 pub use ndarray;
 
 #[cfg(feature = "cgal")]
-mod cgal;
+pub mod cgal;
 pub mod cli;
 #[cfg(feature = "paper")]
 pub mod reproduce;

@@ -7,7 +7,8 @@ use pyo3::prelude::*;
 use rayon::prelude::*;
 use walpha::Points;
 use walpha::progress::Monitor;
-use walpha::triangulation::{self, TriangulationError, along_curve, triangulate};
+use walpha::triangulation::internals::along_curve;
+use walpha::triangulation::{self, TriangulationError, triangulate};
 
 use crate::arrays::{column, lend, rows};
 use crate::shape::weighted;

@@ -1,10 +1,12 @@
-use bridge::{PlaneTriangulation, farthest_plane as farthest, regular_plane as regular};
-use walpha_regular::Sites;
+//! Triangulations of the plane: `Regular_triangulation_2`.
 
-use super::thrown;
+use bridge::{farthest_plane as farthest, regular_plane as regular};
+use walpha_regular::internals::Sites;
+
+use super::{Error, or_zeros, thrown};
 use walpha_shape::CgalError;
 
-/// The entries of `cpp/plane.cc`, compiled with the feature `paper` alone.
+/// The entries of `cpp/plane.cc`, compiled with the features `paper` and `cgal-oracles` alone.
 #[allow(unused_qualifications, reason = "in what the macro writes")]
 #[cxx::bridge(namespace = "walpha")]
 mod bridge {
@@ -27,8 +29,87 @@ mod bridge {
     }
 }
 
+/// A triangulation of points in the plane, by their indices.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct PlaneTriangulation {
+    /// Triangles, counter-clockwise from their smallest vertex, in lexicographic order. None for points on one line.
+    pub triangles: Vec<[u32; 3]>,
+    /// Edges, the smaller vertex first, in lexicographic order. None for one point.
+    pub edges: Vec<[u32; 2]>,
+    /// The points that are vertices, ascending: those that are neither hidden nor duplicates.
+    pub vertices: Vec<u32>,
+}
+
+/// CGAL's `Regular_triangulation_2` of points in the plane: the Delaunay triangulation when all weights are equal.
+///
+/// Weights are squared lengths. Any number of points from one up will do, and they may lie on one line. The answer is a function of
+/// the set of points, ties included: CGAL inserts them in the order of (x, y), which decides how cocircular points are divided.
+///
+/// Expected O(n log n).
+///
+/// ```
+/// use walpha::cgal::regular_triangulation_2;
+///
+/// // A square, whose middle is so light that the corners hide it.
+/// let points = [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0], [1.0, 1.0]];
+/// let plane = regular_triangulation_2(&points, Some(&[0.0, 0.0, 0.0, 0.0, -3.0]))?;
+/// assert_eq!((plane.triangles.len(), plane.edges.len()), (2, 5));
+/// assert_eq!(plane.vertices, [0, 1, 2, 3]);
+/// # Ok::<(), walpha::cgal::Error>(())
+/// ```
+///
+/// # Errors
+/// [`Error::Sites`]: other numbers of weights than of points; a number that is not finite or is too large; no point.
+/// [`Error::Cgal`]: out of memory, or a fault of the program.
+pub fn regular_triangulation_2(
+    positions: &[[f64; 2]],
+    weights: Option<&[f64]>,
+) -> Result<PlaneTriangulation, Error> {
+    let weights = or_zeros(weights, positions.len());
+    let sites = Sites::in_plane(positions, &weights)?;
+    Ok(named(&regular_plane(&sites)?, sites.input()))
+}
+
+/// The farthest-point Delaunay triangulation: each of its triangles has a circumscribed disc that contains every point. All points
+/// but the corners of the convex hull are hidden. It is a regular triangulation with the weights 2|p|², which CGAL compares exactly.
+///
+/// Expected O(n log n), in numbers of any length.
+///
+/// # Errors
+/// Those of [`regular_triangulation_2`].
+pub fn farthest_point_triangulation_2(positions: &[[f64; 2]]) -> Result<PlaneTriangulation, Error> {
+    let weights = or_zeros(None, positions.len());
+    let sites = Sites::in_plane(positions, &weights)?;
+    Ok(named(&farthest_plane(&sites)?, sites.input()))
+}
+
+/// By input indices, in order.
+fn named(raw: &RawTriangulation, input: &[u32]) -> PlaneTriangulation {
+    let point = |site: u32| input[site as usize];
+    let from_smallest = |triangle: &[u32; 3]| {
+        let mut triangle = triangle.map(point);
+        let first = (0..3).min_by_key(|&i| triangle[i]).unwrap_or(0);
+        triangle.rotate_left(first);
+        triangle
+    };
+    let ascending = |edge: &[u32; 2]| {
+        let [a, b] = edge.map(point);
+        [a.min(b), a.max(b)]
+    };
+    let mut plane = PlaneTriangulation {
+        triangles: raw.triangles().iter().map(from_smallest).collect(),
+        edges: raw.edges().iter().map(ascending).collect(),
+        vertices: raw.vertices().iter().map(|&site| point(site)).collect(),
+    };
+    plane.triangles.sort_unstable();
+    plane.edges.sort_unstable();
+    plane.vertices.sort_unstable();
+    plane
+}
+
 /// A triangulation of the plane as C++ lends it: rows of *site* indices in no particular order.
-pub(crate) struct RawTriangulation(cxx::UniquePtr<PlaneTriangulation>);
+pub(crate) struct RawTriangulation(cxx::UniquePtr<bridge::PlaneTriangulation>);
 
 /// CGAL's `Regular_triangulation_2` of the sites: the Delaunay triangulation when all weights are
 /// equal. A function of the set of sites: which of several triangulations of cocircular points

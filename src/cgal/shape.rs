@@ -2,32 +2,54 @@
 
 use rayon::prelude::*;
 use walpha_complex::canonical::{smallest_even, sorted};
-use walpha_regular::{Sites, SitesError};
+use walpha_regular::internals::Sites;
 
 use super::ffi::bridge;
-use super::thrown;
-use walpha_shape::{Class, Complex, ShapeError, Simplices};
+use super::{Error, or_zeros, spanning, thrown};
+use walpha_shape::{Alpha, CgalError, Class, Complex, ShapeError, Simplices};
 
 /// A classified complex as C++ lends it: rows of *site* indices and class numbers (0 exterior,
 /// 1 interior, 2 regular, 3 singular), in no particular order. Cells are positively oriented,
 /// regular facets turn counter-clockwise seen from outside.
-pub(super) struct RawComplex(cxx::UniquePtr<bridge::Complex>);
+pub(super) struct RawComplex(pub(super) cxx::UniquePtr<bridge::Complex>);
 
-/// Triangulates sites with CGAL's `Regular_triangulation_3` and classifies every simplex of the
-/// triangulation with `Fixed_alpha_shape_3` at `alpha`, a squared length or ±∞: the complex, by input indices.
+/// CGAL's `Fixed_alpha_shape_3`: the classes of all simplices of the regular triangulation at one α.
 ///
-/// Expected O(n log n) for points of even density; memory about 1.5 kB a site.
+/// Simplices outside the shape are there, too, as [`Class::Exterior`]. Rows name points by index and are in the order that
+/// [`Complex`] documents, so that equal complexes are equal byte by byte. At α = ∞ and −∞, which CGAL does not take, all cells or
+/// none are in the shape. α is a squared length, as weights are; it is compared exactly.
+///
+/// Expected O(n log n) for points of even density; memory about 1.5 kB a point.
 ///
 /// # Errors
-/// [`SitesError::Flat`] when the sites span no volume.
+/// [`Error::Sites`]: other numbers of weights than of points; a number that is not finite or is too large; fewer than four distinct
+/// points; all points in one plane. [`Error::Cgal`]: out of memory, or a fault of the program.
+pub fn fixed_alpha_shape(
+    positions: &[[f64; 3]],
+    weights: Option<&[f64]>,
+    alpha: Alpha,
+) -> Result<Complex, Error> {
+    let weights = or_zeros(weights, positions.len());
+    let sites = Sites::new(positions, &weights)?;
+    let found = classified(&sites, alpha.squared())?;
+    spanning(&sites, found.dimension())?;
+    Ok(canonical(&RawComplex(found), sites.input()))
+}
+
+/// [`fixed_alpha_shape`] of sites, at a squared length or ±∞: the engine cgal.
+///
+/// # Errors
+/// [`SitesError::Flat`](walpha_regular::SitesError::Flat) when the sites span no volume.
 pub(crate) fn complex(sites: &Sites<'_>, alpha: f64) -> Result<Complex, ShapeError> {
+    let found = classified(sites, alpha)?;
+    spanning(sites, found.dimension())?;
+    Ok(canonical(&RawComplex(found), sites.input()))
+}
+
+fn classified(sites: &Sites<'_>, alpha: f64) -> Result<cxx::UniquePtr<bridge::Complex>, CgalError> {
     assert!(!alpha.is_nan(), "Alpha is never NaN");
     let (positions, weights) = (sites.positions().as_flattened(), sites.weights());
-    let found = bridge::shape(positions, weights, alpha).map_err(thrown("alpha shape"))?;
-    match found.dimension() {
-        3 => Ok(canonical(&RawComplex(found), sites.input())),
-        flat => Err(SitesError::flat(sites.positions().len(), flat).into()),
-    }
+    bridge::shape(positions, weights, alpha).map_err(thrown("alpha shape"))
 }
 
 impl RawComplex {

@@ -1,5 +1,7 @@
 //! All integration tests in one program: each program links everything once more.
 
+#[cfg(feature = "cgal")]
+mod binding;
 mod blocks_command;
 mod check_command;
 mod check_engine;
@@ -29,6 +31,8 @@ mod mpi;
 #[cfg(target_os = "linux")]
 mod nothing;
 mod opened_once;
+#[cfg(feature = "cgal-oracles")]
+mod oracles;
 mod outline;
 #[cfg(unix)]
 mod outputs;

@@ -12,7 +12,7 @@ use walpha_base::random::Random;
 use crate::common::weighted;
 
 /// What a set is made of, by its number.
-const FAMILIES: [fn(&mut Random) -> WeightedPoints; 9] = [
+pub const FAMILIES: [fn(&mut Random) -> WeightedPoints; 9] = [
     |r| lattice(r, |r| r.whole(0, 3)),
     |r| lattice(r, |r| r.whole(-4, 4) / 2.0),
     |r| lattice(r, |r| if r.below(3) == 0 { r.unit() } else { 0.1 }),
@@ -114,7 +114,7 @@ fn whole(points: &WeightedPoints) -> Result<AlphaShape, ShapeError> {
 }
 
 /// Finite cells, whatever their order: from the smallest corner on, oriented.
-fn cells(triangulation: &Triangulation) -> Vec<[u32; 4]> {
+pub fn cells(triangulation: &Triangulation) -> Vec<[u32; 4]> {
     let canonical = |(_, cell): (u32, [u32; 4])| {
         let mut sorted = cell;
         sorted.sort_unstable();

@@ -36,21 +36,28 @@ mod arrays;
 mod error;
 mod flat;
 mod incremental;
+pub mod internals;
+mod kernel;
 mod lattice;
 mod locate;
 mod merging;
-#[doc(hidden)]
-pub mod number;
 mod order;
 mod power_diagram;
-mod predicates;
+pub mod predicates;
 mod scaled;
 mod sites;
 mod torus;
 mod triangulation;
 
-use rayon::prelude::*;
 use walpha_base::memory::asking;
+
+use arrays::CellArrays;
+use incremental::{Cell, insert_all};
+use internals::number;
+use kernel::Predicates;
+use lattice::Lattice;
+use scaled::Scaled;
+use sites::Sites;
 
 pub use error::{SitesError, TriangulationError};
 pub use locate::Location;
@@ -61,38 +68,10 @@ pub use triangulation::{Triangulation, triangulate};
 pub use walpha_base::advice::Advise;
 pub use walpha_base::{Cancelled, Monitor};
 
-// For the other crates of walpha: not covered by semantic versioning.
-#[doc(hidden)]
-pub use arrays::CellArrays;
-#[doc(hidden)]
-pub use flat::{Flat, auxiliary_positions, check_span, is_flat, spanning, triangulate_flat};
-#[doc(hidden)]
-pub use incremental::{Growing, Workspace, insert_all};
-#[doc(hidden)]
-pub use lattice::{BitRange, Lattice};
-#[doc(hidden)]
-pub use merging::triangulate_along;
-#[doc(hidden)]
-pub use predicates::{
-    Interval, Predicates, Ratio, Screen, Share, SmallRadius, centre_shares, lattice,
-};
-#[doc(hidden)]
-pub use scaled::Scaled;
-#[doc(hidden)]
-pub use sites::{Sites, check as check_numbers};
-#[doc(hidden)]
-pub use torus::AXES;
-
 /// Compiles and runs the example in the README.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;
-
-/// The points along a Hilbert curve, hidden and equal ones included. O(n log n).
-#[doc(hidden)]
-pub fn along_curve(positions: &[[f64; 3]]) -> Vec<u32> {
-    order::along_curve(positions).into_par_iter().map(|(_, point)| point).collect()
-}
 
 /// An empty vector with capacity for `count` elements.
 fn with_capacity<T>(count: usize) -> Result<Vec<T>, TriangulationError> {
@@ -112,14 +91,6 @@ fn filled<T: Clone>(count: usize, element: T) -> Result<Vec<T>, TriangulationErr
 
 fn no_memory(bytes: usize) -> TriangulationError {
     TriangulationError::Memory { bytes }
-}
-
-/// A cell under construction: its corners, and 4·cell + corner across the facet opposite each.
-#[doc(hidden)]
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Cell {
-    pub corners: [u32; 4],
-    pub neighbors: [u32; 4],
 }
 
 /// The facets opposite the corners of a cell, oriented so that facet and corner are the positively oriented cell. Two

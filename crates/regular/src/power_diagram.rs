@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use walpha_base::vector::{add, cross, dot, length, sub, unit};
 use walpha_base::{Monitor, UnionFind};
 
-use crate::predicates::Predicates;
+use crate::kernel::Predicates;
 use crate::sites::check;
 use crate::{CellArrays, Triangulation, TriangulationError, facets, filled, with_capacity};
 

@@ -2,7 +2,8 @@ use walpha_base::Cancelled;
 use walpha_base::advice::{Advice, Advise, Category, Setting, advice, wrapped};
 use walpha_base::memory::{self, NoMemory};
 use walpha_base::monitor::wraps;
-use walpha_regular::{MAX_COORDINATE, SitesError, TriangulationError, is_flat};
+use walpha_regular::internals::is_flat;
+use walpha_regular::{MAX_COORDINATE, SitesError, TriangulationError};
 
 use super::VoxelsError;
 

@@ -4,7 +4,7 @@
 //! simplex of the shape, else regular; none is interior, as space is on both sides.
 
 use walpha_base::Monitor;
-use walpha_regular::{Predicates, Sites, triangulate_flat};
+use walpha_regular::internals::{Predicates, Sites, triangulate_flat};
 
 use super::topology::flat_betti;
 use super::{Betti, Class, Complex, ShapeError, Simplices};

@@ -2,7 +2,8 @@ use std::num::NonZeroUsize;
 
 use rayon::prelude::*;
 use walpha_base::{Coordinates, Monitor};
-use walpha_regular::{Scaled, Sites, SitesError, check_numbers, lattice};
+use walpha_regular::SitesError;
+use walpha_regular::internals::{Scaled, Sites, check_numbers, lattice};
 
 use super::blocks::{self, BlockParams, Limits, Plan, Reach};
 use super::derived::Derived;

@@ -3,7 +3,7 @@ use std::num::NonZeroUsize;
 
 use serde::{Deserialize, Serialize};
 use walpha_base::setters;
-use walpha_regular::Sites;
+use walpha_regular::internals::Sites;
 
 use super::{Alpha, Complex, ShapeError, Torus, Whole};
 

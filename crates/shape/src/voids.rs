@@ -1,7 +1,8 @@
 use std::cmp::Ordering;
 
 use serde::{Deserialize, Serialize};
-use walpha_regular::{Interval, Predicates, Torus};
+use walpha_regular::Torus;
+use walpha_regular::internals::{Interval, Predicates};
 
 use super::complement::{Complement, complement_on};
 use super::measure::six_volumes;

@@ -1,5 +1,5 @@
 use walpha_base::advice::Advise;
-use walpha_regular::Sites;
+use walpha_regular::internals::Sites;
 
 use super::PlaneError;
 use super::contact::{self, Contacts, Diagram};

@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 
 use dashu_int::{IBig, ops::BitTest};
 
-use walpha_regular::number::{integer, lowest_bit};
+use walpha_regular::internals::number::{integer, lowest_bit};
 
 /// Points, and weights if there are any, as integers: a coordinate is its integer times 2^exponent
 /// and a weight its integer times 4^exponent. Nothing is rounded.

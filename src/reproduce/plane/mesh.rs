@@ -1,7 +1,8 @@
 use std::collections::HashMap;
 
 use walpha_base::advice::{Advise, wrapped};
-use walpha_regular::{Sites, SitesError};
+use walpha_regular::SitesError;
+use walpha_regular::internals::Sites;
 
 use crate::{CgalError, cgal};
 

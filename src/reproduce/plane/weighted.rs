@@ -1,4 +1,4 @@
-use walpha_regular::Sites;
+use walpha_regular::internals::Sites;
 
 use super::PlaneError;
 use super::exact::Exact;

@@ -4,7 +4,7 @@
 use std::cmp::Ordering;
 
 use dashu_int::IBig;
-use walpha_regular::number::{Number, cross, dot, integer, lowest_bit};
+use walpha_regular::internals::number::{Number, cross, dot, integer, lowest_bit};
 
 /// The coordinates of a place in a simplex of one to four corners, or `None` where it lies outside;
 /// its boundary is inside. Four corners turn positively: det(b−a, c−a, d−a) > 0. Coordinates beyond
@@ -172,7 +172,7 @@ fn magnitudes(u: &[f64; 3], v: &[f64; 3]) -> [f64; 3] {
 }
 
 /// A number of which barycentric coordinates are made; doubles are exact only where a
-/// [`BitRange`](walpha_regular::BitRange) says that no operation rounds.
+/// [`BitRange`](walpha_regular::internals::BitRange) says that no operation rounds.
 pub(super) trait Scalar: Number + Clone {
     fn zero() -> Self;
     fn sign(&self) -> Ordering;
@@ -220,7 +220,7 @@ pub(super) fn integer_offsets(corners: &[[f64; 3]], from: [f64; 3]) -> Vec<[IBig
 
 #[cfg(test)]
 mod tests {
-    use walpha_regular::BitRange;
+    use walpha_regular::internals::BitRange;
 
     use super::*;
 

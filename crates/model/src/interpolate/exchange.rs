@@ -5,8 +5,8 @@ use std::collections::HashSet;
 use rayon::prelude::*;
 use walpha_base::Monitor;
 use walpha_base::memory::NoMemory;
-use walpha_regular::number::{cross, dot};
-use walpha_regular::{Growing, Screen, Workspace};
+use walpha_regular::internals::number::{cross, dot};
+use walpha_regular::internals::{Growing, Screen, Workspace};
 
 use super::InterpolateError;
 use super::adaptive::worst;

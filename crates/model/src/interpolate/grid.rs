@@ -1,8 +1,8 @@
 use std::ops::Range;
 
 use rayon::prelude::*;
-use walpha_regular::number::{cross, dot};
-use walpha_regular::{AXES, BitRange};
+use walpha_regular::internals::number::{cross, dot};
+use walpha_regular::internals::{AXES, BitRange};
 
 use super::InterpolateError;
 use walpha_points::{SampleGrid, Units};

@@ -3,7 +3,7 @@ use std::cmp::Ordering;
 use std::sync::OnceLock;
 
 use rayon::prelude::*;
-use walpha_regular::BitRange;
+use walpha_regular::internals::BitRange;
 
 use super::barycentric::coordinates;
 use super::least_squares::PiecewiseLinear;

@@ -7,7 +7,7 @@ use std::sync::atomic::Ordering::Relaxed;
 
 use rayon::prelude::*;
 use walpha_base::memory::{NoMemory, try_with_capacity};
-use walpha_regular::number::{cross, dot};
+use walpha_regular::internals::number::{cross, dot};
 
 use super::barycentric::Planes;
 use super::grid::OUTSIDE;

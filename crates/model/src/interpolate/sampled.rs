@@ -7,7 +7,7 @@ use std::sync::atomic::Ordering::Relaxed;
 use rayon::prelude::*;
 use walpha_base::Monitor;
 use walpha_complex::canonical::smallest_even;
-use walpha_regular::{Cell, Growing};
+use walpha_regular::internals::{Cell, Growing};
 
 use super::barycentric::coordinates;
 use super::grid::OUTSIDE;

@@ -3,7 +3,7 @@ use std::collections::hash_map::Entry;
 
 use serde::{Deserialize, Serialize};
 use walpha_base::{Monitor, Sum, UnionFind};
-use walpha_regular::spanning;
+use walpha_regular::internals::spanning;
 
 use super::block_file::BlockFile;
 use super::block_file::{BlockComponent, BlockSheet, BlockSummary, Met, Weights};

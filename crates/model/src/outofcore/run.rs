@@ -6,7 +6,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use walpha_base::Monitor;
-use walpha_regular::spanning;
+use walpha_regular::internals::spanning;
 
 use super::block_file::{
     Arrays, BlockComponent, BlockFile, BlockSheet, BlockSummary, Met, Weights,

@@ -4,7 +4,7 @@ use rayon::prelude::*;
 use rstar::RTree;
 use rstar::primitives::GeomWithData;
 use walpha_base::random::Random;
-use walpha_regular::check_numbers;
+use walpha_regular::internals::check_numbers;
 
 use walpha_points::WeightedPoints;
 use walpha_shape::{Alpha, ShapeError, Torus};

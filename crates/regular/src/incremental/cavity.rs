@@ -1,7 +1,7 @@
 //! The cavity of a new point: the cells in conflict with it, and the new cells that replace them.
 
 use super::{Builder, Mesh};
-use crate::predicates::Screen;
+use crate::kernel::Screen;
 use crate::{Cell, Triangulation, TriangulationError, filled};
 
 /// Side of [`Cavity::table`]: the largest number of distinct vertices of the boundary of a cavity, the infinite vertex

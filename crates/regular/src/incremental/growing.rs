@@ -5,8 +5,8 @@ use std::ops::Range;
 
 use super::Builder;
 use super::removal::{Hole, Workspace};
+use crate::kernel::{Predicates, Screen};
 use crate::order::{position_bits, rounds};
-use crate::predicates::{Predicates, Screen};
 use crate::{Cell, DELETED, Sites, TriangulationError, order};
 
 /// The regular triangulation of a set of points that grows by batches, and from which points may be removed.

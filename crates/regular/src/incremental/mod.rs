@@ -17,12 +17,21 @@ use std::cmp::Ordering;
 use walpha_base::Cancelled;
 use walpha_base::memory::asking;
 
+use super::kernel::{Predicates, Screen};
 use super::order::rounds;
-use super::predicates::{Predicates, Screen};
-use super::{Cell, CellArrays, DELETED, SitesError, TriangulationError, no_memory};
+use super::{CellArrays, DELETED, SitesError, TriangulationError, no_memory};
 use cavity::Cavity;
 pub use growing::Growing;
 pub use removal::Workspace;
+
+/// A cell under construction.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Cell {
+    /// Its corners.
+    pub corners: [u32; 4],
+    /// 4·cell + corner across the facet opposite each.
+    pub neighbors: [u32; 4],
+}
 
 /// Insertions between two reports of progress: some milliseconds.
 const REPORT_EVERY: usize = 4096;

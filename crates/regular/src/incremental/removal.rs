@@ -2,7 +2,7 @@
 
 use super::Builder;
 use super::growing::{AT_INFINITY, NO_CELL, State};
-use crate::predicates::Screen;
+use crate::kernel::Screen;
 use crate::{Cell, DELETED, Triangulation, TriangulationError, facets, smallest_first};
 
 /// The star of a vertex, and the cells that would replace it.

@@ -5,7 +5,7 @@ use walpha_base::vector::{cross, dot, sub as minus};
 use super::Points;
 use super::slots::{Marks, Slots};
 use crate::facets;
-use crate::predicates::extent;
+use crate::kernel::extent;
 
 /// Where points are, and how heavy: their bounding box and largest weight.
 #[derive(Clone, Copy)]

@@ -3,9 +3,8 @@
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use walpha_base::monitor::Units;
-use walpha_regular::{
-    CellArrays, Lattice, Torus, TriangulationError, insert_all, triangulate_along,
-};
+use walpha_regular::internals::{CellArrays, Lattice, insert_all, triangulate_along};
+use walpha_regular::{Torus, TriangulationError};
 
 use crate::Complex;
 

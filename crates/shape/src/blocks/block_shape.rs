@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 use walpha_base::{Monitor, UnionFind};
-use walpha_regular::{Lattice, Sites};
+use walpha_regular::internals::{Lattice, Sites};
 
 use super::block::{Block, BlockParams};
 use super::classify::{Buckets, Owned, RANGE, classify};

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 use walpha_base::UnionFind;
-use walpha_regular::Sites;
+use walpha_regular::internals::Sites;
 
 use super::block::{BlockParams, MergedComplex};
 use super::classify::{Buckets, Owned, RANGE, Records, Side};

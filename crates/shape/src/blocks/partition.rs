@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use rayon::prelude::*;
-use walpha_regular::Sites;
+use walpha_regular::internals::Sites;
 
 use super::block::{Block, Copies};
 

@@ -1,7 +1,7 @@
 //! The number of blocks, from the number of threads and the memory allowed.
 
 use walpha_base::memory::{self, NoMemory};
-use walpha_regular::Sites;
+use walpha_regular::internals::Sites;
 
 use super::partition::{Partition, Reach};
 use crate::PlanError;

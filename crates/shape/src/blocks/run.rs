@@ -1,7 +1,8 @@
 use rayon::prelude::*;
 use walpha_base::Monitor;
 use walpha_base::monitor::Units;
-use walpha_regular::{CellArrays, Lattice, Sites, TriangulationError, check_span};
+use walpha_regular::TriangulationError;
+use walpha_regular::internals::{CellArrays, Lattice, Sites, check_span};
 
 use super::block::{Block, BlockParams, MergedComplex, WORK};
 use super::classify::{Buckets, Owned, classify};

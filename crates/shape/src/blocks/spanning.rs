@@ -1,7 +1,8 @@
 //! Triangulation of blocks whose points may span no volume; along a line of points, most do not.
 
 use walpha_base::monitor::Units;
-use walpha_regular::{CellArrays, SitesError, TriangulationError, auxiliary_positions};
+use walpha_regular::internals::{CellArrays, auxiliary_positions};
+use walpha_regular::{SitesError, TriangulationError};
 
 use super::block::{Block, triangulate};
 
@@ -29,8 +30,8 @@ pub(super) fn spanning(
 #[cfg(test)]
 mod tests {
     use walpha_base::Monitor;
-    use walpha_regular::Lattice;
-    use walpha_regular::Sites;
+    use walpha_regular::internals::Lattice;
+    use walpha_regular::internals::Sites;
 
     use crate::blocks::block::BlockParams;
     use crate::blocks::partition::Partition;

@@ -2,8 +2,9 @@
 
 use rayon::prelude::*;
 use walpha_base::monitor::Units;
-use walpha_regular::Lattice;
-use walpha_regular::{AXES, CellArrays, Predicates, Sites, SitesError, Torus, TriangulationError};
+use walpha_regular::internals::Lattice;
+use walpha_regular::internals::{AXES, CellArrays, Predicates, Sites};
+use walpha_regular::{SitesError, Torus, TriangulationError};
 
 use super::block::{Block, BlockParams, triangulate};
 use super::classify::Long;

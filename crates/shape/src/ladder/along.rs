@@ -2,7 +2,7 @@ use std::ops::Range;
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use rayon::prelude::*;
-use walpha_regular::along_curve;
+use walpha_regular::internals::along_curve;
 
 use crate::Complex;
 

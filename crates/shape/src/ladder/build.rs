@@ -6,7 +6,7 @@
 
 use rayon::prelude::*;
 use walpha_base::Cancelled;
-use walpha_regular::Predicates;
+use walpha_regular::internals::Predicates;
 
 use super::along::{Along, Table, is_before, starts};
 use super::incidence::{Faces, Incidence, sorted_facets};

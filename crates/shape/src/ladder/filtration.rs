@@ -1,5 +1,6 @@
 use walpha_base::{Monitor, memory};
-use walpha_regular::{Predicates, Torus};
+use walpha_regular::Torus;
+use walpha_regular::internals::Predicates;
 
 use super::build::incidence_and_radii;
 use super::incidence::Incidence;

@@ -1,7 +1,7 @@
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use rayon::prelude::*;
-use walpha_regular::{Interval, Predicates};
+use walpha_regular::internals::{Interval, Predicates};
 
 use super::Filtration;
 use super::incidence::Incidence;

@@ -7,7 +7,8 @@
 use std::collections::BTreeMap;
 
 use walpha_base::UnionFind;
-use walpha_regular::{Interval, Predicates, Torus};
+use walpha_regular::Torus;
+use walpha_regular::internals::{Interval, Predicates};
 
 use super::Levels;
 use super::incidence::Incidence;

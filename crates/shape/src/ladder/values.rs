@@ -3,8 +3,9 @@
 use std::collections::HashMap;
 
 use rayon::prelude::*;
-use walpha_regular::number::lowest_bit;
-use walpha_regular::{Interval, Predicates, Torus};
+use walpha_regular::Torus;
+use walpha_regular::internals::number::lowest_bit;
+use walpha_regular::internals::{Interval, Predicates};
 
 use super::Filtration;
 use super::radii::Radius;

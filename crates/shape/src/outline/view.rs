@@ -1,7 +1,7 @@
 //! A plane as it is seen along an axis of space. That drops a coordinate and rounds nothing, so what turns which way is
 //! decided exactly, by the predicates of space.
 
-use walpha_regular::{Predicates, spanning};
+use walpha_regular::internals::{Predicates, spanning};
 
 use crate::OutlineError;
 

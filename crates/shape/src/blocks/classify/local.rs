@@ -1,4 +1,4 @@
-use walpha_regular::Predicates;
+use walpha_regular::internals::Predicates;
 
 use crate::blocks::block::Block;
 

@@ -21,7 +21,7 @@ use std::sync::Mutex;
 use rayon::prelude::*;
 use walpha_base::monitor::Units;
 use walpha_base::{Cancelled, UnionFind};
-use walpha_regular::{CellArrays, Predicates};
+use walpha_regular::internals::{CellArrays, Predicates};
 
 use super::block::{Block, BlockParams, TRIANGULATION, WORK};
 use around::{Walker, Worker};

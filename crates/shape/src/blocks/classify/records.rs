@@ -257,8 +257,8 @@ impl Owned {
 #[cfg(test)]
 mod tests {
     use walpha_base::Monitor;
-    use walpha_regular::Lattice;
-    use walpha_regular::Sites;
+    use walpha_regular::internals::Lattice;
+    use walpha_regular::internals::Sites;
 
     use super::*;
     use crate::blocks::block::BlockParams;

@@ -1,6 +1,6 @@
 //! Plans against all that there are, and runs that do not keep to theirs.
 
-use walpha_regular::Lattice;
+use walpha_regular::internals::Lattice;
 
 use super::*;
 use crate::ShapeError;

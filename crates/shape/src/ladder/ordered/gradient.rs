@@ -1,6 +1,6 @@
 //! How values change with the points.
 
-use walpha_regular::centre_shares;
+use walpha_regular::internals::centre_shares;
 
 use super::rank::NONE;
 use super::{Filtration, Ordered};

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 use walpha_base::memory::{self, NoMemory};
-use walpha_regular::{Predicates, Ratio, SmallRadius};
+use walpha_regular::internals::{Predicates, Ratio, SmallRadius};
 
 use super::numbers::Numbers;
 use crate::ladder::Filtration;

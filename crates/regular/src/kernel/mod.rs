@@ -83,6 +83,11 @@ impl<'a> Predicates<'a> {
         Self { positions, weights, lattice, exact, torus: None }
     }
 
+    /// Predicates on a few points, each of them asked once: to look for a lattice would take longer.
+    pub(crate) fn of_few(positions: &'a [[f64; 3]], weights: &'a [f64]) -> Self {
+        Self { positions, weights, lattice: Lattice::NONE, exact: [0.0; 8], torus: None }
+    }
+
     /// Predicates on points of a torus, if one is given. The other corners of a simplex, and a point tested against
     /// it, must be nearer to its first corner than half a side along each axis. O(n).
     pub fn on_torus(positions: &'a [[f64; 3]], weights: &'a [f64], torus: Option<Torus>) -> Self {
@@ -314,7 +319,11 @@ impl<'a> Predicates<'a> {
     /// Whether a squared length is a multiple of the squared step.
     fn on_lattice(&self, square: f64) -> bool {
         let multiple = square / (self.lattice.step * self.lattice.step);
-        self.lattice.step != 0.0 && multiple.abs() < MAX_INTEGER && multiple.round() == multiple
+        let underflows = multiple == 0.0 && square != 0.0;
+        self.lattice.step != 0.0
+            && multiple.abs() < MAX_INTEGER
+            && multiple.round() == multiple
+            && !underflows
     }
 }
 

@@ -1,0 +1,23 @@
+//! Predicates and mesh internals, for the other crates of walpha: **no promise of semantic versioning**. What other programs
+//! need of exact predicates is in [`predicates`](crate::predicates).
+
+pub mod number;
+
+use rayon::prelude::*;
+
+pub use crate::arrays::CellArrays;
+pub use crate::flat::{Flat, auxiliary_positions, check_span, is_flat, spanning, triangulate_flat};
+pub use crate::incremental::{Cell, Growing, Workspace, insert_all};
+pub use crate::kernel::{
+    Interval, Predicates, Ratio, Screen, Share, SmallRadius, centre_shares, lattice,
+};
+pub use crate::lattice::{BitRange, Lattice};
+pub use crate::merging::triangulate_along;
+pub use crate::scaled::Scaled;
+pub use crate::sites::{Sites, check as check_numbers};
+pub use crate::torus::AXES;
+
+/// The points along a Hilbert curve, hidden and equal ones included. O(n log n).
+pub fn along_curve(positions: &[[f64; 3]]) -> Vec<u32> {
+    crate::order::along_curve(positions).into_par_iter().map(|(_, point)| point).collect()
+}
