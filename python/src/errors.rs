@@ -23,7 +23,7 @@ pub fn told(error: impl Advise) -> PyErr {
     };
     match error.category() {
         Category::Memory => PyMemoryError::new_err(text),
-        Category::Program => PyRuntimeError::new_err(text),
+        Category::Program | Category::Different => PyRuntimeError::new_err(text),
         Category::System(ErrorKind::NotFound) => PyFileNotFoundError::new_err(text),
         Category::System(ErrorKind::PermissionDenied) => PyPermissionError::new_err(text),
         Category::System(ErrorKind::IsADirectory) => PyIsADirectoryError::new_err(text),

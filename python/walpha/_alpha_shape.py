@@ -46,9 +46,10 @@ def alpha_shape(
         ω, squared lengths: at α a point is a ball of squared radius α + ω. By default 0.
     values : array_like, (n,), optional
         Values that :meth:`AlphaShape.at` interpolates.
-    engine : {"auto", "cgal", "native"}
+    engine : {"auto", "cgal", "native", "both"}
         Which program computes it; both give the same answer. "auto" takes CGAL for up to 20 000 points, and
         our own, the fastest, beyond and for periodic boxes: :attr:`AlphaShape.engine` says which one it was.
+        "both" computes it twice, and raises an error where a simplex differs.
     exterior : bool
         Keep the simplices outside the shape: the whole triangulation. Voids then know what fills
         them, and hidden points are known.

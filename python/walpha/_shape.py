@@ -111,8 +111,8 @@ class AlphaShape(Classified):
         return cast(dict[str, Any] | None, self._facts["truncation"])
 
     @property
-    def engine(self) -> Literal["cgal", "native"]:
-        """str: which program computed it, "cgal" or "native"."""
+    def engine(self) -> Literal["cgal", "native", "both"]:
+        """str: which program computed it: "cgal", "native", or "both"."""
         return self._shape.engine
 
     @functools.cached_property

@@ -29,7 +29,7 @@ Classes: TypeAlias = NDArray[np.uint8]
 Place: TypeAlias = tuple[float, float, float]
 
 Rule: TypeAlias = Literal["auto", "auto:connected"]
-Engine: TypeAlias = Literal["auto", "cgal", "native"]
+Engine: TypeAlias = Literal["auto", "cgal", "native", "both"]
 Balls: TypeAlias = Literal["power", "radius"]
 
 Listener: TypeAlias = Callable[[str, int, int], object]

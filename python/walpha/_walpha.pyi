@@ -32,7 +32,7 @@ class Shape:
     vertices: _Rows
     alpha: float
     voxels: int | None
-    engine: Literal["cgal", "native"]
+    engine: Literal["cgal", "native", "both"]
     exterior: bool
     measures: tuple[float, float, float]
     betti: tuple[int, int, int, int | None]

@@ -7,7 +7,7 @@ use clap::error::ErrorKind;
 use walpha_base::advice::{Advise, Category, Setting, told};
 use walpha_base::shown::escaped;
 
-use super::global::{FAILURE, UNREAD, USAGE};
+use super::global::{DIFFERENT, FAILURE, UNREAD, USAGE};
 use super::output::remark;
 use super::progress;
 
@@ -122,6 +122,7 @@ pub(super) fn print_error(command: &str, error: &CommandError) {
 pub(super) fn exit_code(error: &CommandError) -> u8 {
     match error.category {
         Category::Usage => USAGE,
+        Category::Different => DIFFERENT,
         Category::System(io::ErrorKind::BrokenPipe) => UNREAD,
         _ => FAILURE,
     }

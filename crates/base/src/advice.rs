@@ -64,6 +64,8 @@ pub enum Category {
     Cancelled,
     /// A file, folder or stream, which the operating system refuses.
     System(io::ErrorKind),
+    /// Two results that must be equal, and differ.
+    Different,
     /// The program: the error is a fault of walpha or of a library that it uses.
     Program,
 }

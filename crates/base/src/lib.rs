@@ -24,8 +24,6 @@ pub mod foreign;
 mod infinite;
 pub mod memory;
 pub mod monitor;
-#[cfg(feature = "near")]
-pub mod near;
 pub mod npy;
 #[doc(hidden)]
 pub mod random;

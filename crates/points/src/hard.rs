@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use walpha_base::advice::Advice;
-use walpha_base::near::nearest;
+use walpha_volume::near::nearest;
 
 use super::{Points, PointsError};
 use walpha_volume::VolumeError;

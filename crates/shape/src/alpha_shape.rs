@@ -7,7 +7,7 @@ use super::derived::Derived;
 use super::measure::together;
 use super::solid::Cuts;
 use super::{
-    Alpha, Betti, Complex, ComponentSums, Measures, Outline, OutlineError, ShapeError,
+    Alpha, Betti, Complex, ComponentSums, Engine, Measures, Outline, OutlineError, ShapeError,
     ShapeOptions, Sheets, Surface, WeightedPoints,
 };
 
@@ -101,6 +101,12 @@ impl AlphaShape {
     #[must_use]
     pub fn with_coordinates(self, coordinates: Coordinates) -> Self {
         Self { coordinates, ..self }
+    }
+
+    /// The same shape, computed by this engine.
+    pub(crate) fn by(mut self, engine: Engine) -> Self {
+        self.options.engine = engine;
+        self
     }
 
     /// The axes and the unit of the coordinates, as far as they are known.

@@ -24,6 +24,7 @@
 #![forbid(unsafe_code)]
 #![warn(missing_debug_implementations, unreachable_pub)]
 
+mod agreement;
 mod alpha_shape;
 mod arrays;
 mod betti;
@@ -51,6 +52,7 @@ mod voids;
 mod voxels;
 mod winding;
 
+pub use agreement::Disagreement;
 pub use alpha_shape::AlphaShape;
 pub use arrays::ArrayError;
 pub use betti::{Betti, BettiError};

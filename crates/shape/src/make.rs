@@ -5,6 +5,7 @@ use walpha_base::{Coordinates, Monitor};
 use walpha_regular::SitesError;
 use walpha_regular::internals::{Scaled, Sites, check_numbers, lattice};
 
+use super::agreement::agree;
 use super::blocks::{self, BlockParams, Limits, Plan, Reach};
 use super::derived::Derived;
 use super::flat::{self, flat};
@@ -45,6 +46,16 @@ pub fn alpha_shape(
     let monitor = &*Monitor::current();
     let points = points.into();
     let options = options.engine(options.engine_for(points.len()));
+    if options.engine == Engine::Both {
+        options.check()?;
+        let by = |engine| {
+            let options = options.engine(engine);
+            monitor.watch(|| alpha_shape(points.clone(), &options))
+        };
+        let (native, cgal) = (by(Engine::Native)?, by(Engine::Cgal)?);
+        agree(cgal.complex(), native.complex())?;
+        return Ok(native.by(Engine::Both));
+    }
     if options.engine == Engine::Cgal {
         options.check()?;
         let Classifier(classify) = options.classifier.ok_or(CgalError::Absent)?;

@@ -42,6 +42,16 @@ pub enum Engine {
     Cgal,
     /// Triangulation and classes in Rust: without C++, on all cores, in bounded memory, and the fastest.
     Native,
+    /// Both, one after the other: the shape of the native engine, and an error where a simplex differs
+    /// ([`Disagreement`](super::Disagreement)).
+    Both,
+}
+
+impl Engine {
+    /// Whether CGAL runs.
+    pub fn asks_cgal(self) -> bool {
+        matches!(self, Self::Cgal | Self::Both)
+    }
 }
 
 /// Which ball a point of weight ω is at parameter α.
@@ -184,7 +194,7 @@ impl ShapeOptions {
     /// [`ShapeError::Unbounded`] and [`ShapeError::Divided`]: blocks, or a bound on memory, for what
     /// takes the whole triangulation; [`ShapeError::Unrepeated`].
     pub fn check(&self) -> Result<(), ShapeError> {
-        if self.periodic.is_some() && self.engine == Engine::Cgal {
+        if self.periodic.is_some() && self.engine.asks_cgal() {
             return Err(ShapeError::Unrepeated);
         }
         let listed = match self {
@@ -200,7 +210,7 @@ impl ShapeOptions {
         }
         let unbounded = |by| Err(ShapeError::Unbounded { by });
         match self.memory {
-            Some(_) if self.engine == Engine::Cgal => unbounded(Whole::Cgal),
+            Some(_) if self.engine.asks_cgal() => unbounded(Whole::Cgal),
             Some(_) if self.power_alpha() == Alpha::INFINITE => unbounded(Whole::Hull),
             Some(_) => listed.map_or(Ok(()), unbounded),
             None => Ok(()),

@@ -25,6 +25,8 @@ mod gray;
 mod grid;
 mod hounsfield;
 mod labels;
+#[doc(hidden)]
+pub mod near;
 mod open;
 mod read;
 mod reason;

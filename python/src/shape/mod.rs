@@ -168,6 +168,7 @@ impl Shape {
     fn engine(&self) -> &'static str {
         match self.shape.options().engine {
             Engine::Cgal => "cgal",
+            Engine::Both => "both",
             _ => "native",
         }
     }

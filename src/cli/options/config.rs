@@ -12,8 +12,8 @@ use clap::parser::ValueSource;
 use clap::{Arg, ArgAction, ArgGroup, ArgMatches, Command, FromArgMatches};
 use toml::{Table, Value};
 
-use walpha_base::near::nearest;
 use walpha_base::shown::shown;
+use walpha_volume::near::nearest;
 
 use super::preset;
 use super::settings::Given;

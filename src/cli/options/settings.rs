@@ -160,7 +160,7 @@ const HELP: &[(&str, &str, &str)] = &[
         "READING",
         "A point is a ball of squared radius α + ω (power) or of radius α + ω (radius)",
     ),
-    ("engine", "ENGINE", "Engine that computes the shape; both give the same answer"),
+    ("engine", "ENGINE", "Engine that computes the shape; all give the same answer"),
     ("blocks", "N", "Number of blocks [default: from threads and memory]"),
     (
         "memory",

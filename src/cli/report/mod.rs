@@ -227,6 +227,7 @@ impl Display for Report {
         match self.engine {
             None => {}
             Some(Engine::Cgal) => writeln!(f, "engine    cgal; native gives the same")?,
+            Some(Engine::Both) => writeln!(f, "engine    both: cgal and native give the same")?,
             Some(_) => writeln!(f, "engine    native; cgal gives the same")?,
         }
         if let Some(shape) = &self.shape {

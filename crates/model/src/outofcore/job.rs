@@ -10,7 +10,7 @@ use super::BlocksError;
 use crate::Recipe;
 use crate::pipeline::{Choice, Parameter};
 use walpha_points::{Selection, Units, Weighting};
-use walpha_shape::{Alpha, Engine};
+use walpha_shape::Alpha;
 use walpha_volume::{Dims, Frame, GrayRange, Source, any_size, files_of};
 
 /// An input, and the recipe for its shape. Plans hold it.
@@ -77,7 +77,7 @@ impl Job {
         if periodic.is_some() {
             return not_local("--periodic", "omit it");
         }
-        if *engine == Engine::Cgal {
+        if engine.asks_cgal() {
             return not_local("the engine cgal", "use the engine native");
         }
         if self.recipe.weighting == Some(Weighting::Column) {

@@ -44,6 +44,11 @@ impl Named for Engine {
             "native",
             "Triangulation and classes in Rust: without C++, on all cores, in bounded memory, and the fastest",
         ),
+        (
+            Self::Both,
+            "both",
+            "Both, one after the other, to cross-check: the exit code is 3 where a simplex differs",
+        ),
     ];
 }
 

@@ -3,10 +3,10 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
+use crate::near::nearest;
 use walpha_base::Monitor;
 use walpha_base::advice::Setting;
 use walpha_base::foreign::decode;
-use walpha_base::near::nearest;
 
 use super::magic::{is_dicom, is_gzip};
 #[cfg(feature = "dicom")]

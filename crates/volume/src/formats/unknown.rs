@@ -2,7 +2,7 @@ use std::path::Path;
 
 use walpha_base::advice::{Advice, Advise, Category};
 
-use walpha_base::near::nearest;
+use crate::near::nearest;
 use walpha_base::shown::shown;
 
 /// No writer has this extension.

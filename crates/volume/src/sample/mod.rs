@@ -4,8 +4,8 @@ mod ct;
 mod phantom;
 mod skull;
 
+use crate::near::nearest;
 use walpha_base::advice::Advice;
-use walpha_base::near::nearest;
 
 pub use ct::ct;
 pub(super) use phantom::PhantomBoxes;
