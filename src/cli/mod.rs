@@ -1,43 +1,9 @@
 //! The command. It parses, calls the library, prints, and chooses an exit code.
 
-mod blocks;
-mod check;
-mod compare;
-mod completions;
-#[cfg(feature = "zarr")]
-mod convert;
-mod errors;
-mod filtration;
-mod folder;
-mod formats;
-mod global;
-mod haar;
-mod info;
-mod interpolate;
-mod ladder;
-mod man;
-#[cfg(feature = "mpi")]
-mod mpi;
-mod offsets;
+mod commands;
 mod options;
-mod outline;
-mod output;
-#[cfg_attr(not(feature = "render"), path = "no_picture.rs")]
-mod picture;
-mod pipeline;
-mod points;
-mod progress;
-mod ranks;
+mod process;
 mod report;
-#[cfg(feature = "paper")]
-mod reproduce;
-mod shape;
-mod shape_in_blocks;
-mod shape_of_labels;
-mod signals;
-mod threads;
-#[cfg(feature = "render")]
-mod view;
 
 use std::ffi::OsString;
 use std::process::ExitCode;
@@ -50,11 +16,22 @@ use tracing_subscriber::util::SubscriberInitExt;
 
 use crate::export::Target;
 
-use errors::Result;
-use global::{Global, INTERRUPTED, USAGE};
-use options::{config, help, typed};
-use output::{print, print_with};
-use ranks::Ranks;
+#[cfg(feature = "zarr")]
+use commands::convert;
+#[cfg(feature = "paper")]
+use commands::reproduce;
+#[cfg(feature = "render")]
+use commands::view;
+use commands::{
+    blocks, check, compare, completions, filtration, haar, info, interpolate, ladder, man, points,
+    shape, shape_in_blocks,
+};
+use options::global::{Global, INTERRUPTED, USAGE};
+use options::{config, formats, help, typed};
+use process::errors::{self, Result};
+use process::output::{self, print, print_with};
+use process::ranks::Ranks;
+use process::{progress, signals, threads};
 
 /// Volume modelling of scattered data with wavelet-weighted alpha shapes.
 #[derive(Parser)]

@@ -3,7 +3,7 @@
 use std::str::FromStr;
 
 use crate::Alpha;
-use crate::cli::errors::{CommandError, Result, command_error};
+use crate::cli::process::errors::{CommandError, Result, command_error};
 use crate::pipeline::{AlphaRule, Parameter, Source};
 
 /// α for a command that makes several sets of points from a volume. `auto` is refused, because each set would have its own.

@@ -17,8 +17,8 @@ use walpha_volume::near::nearest;
 
 use super::preset;
 use super::settings::Given;
-use crate::cli::errors::{CommandError, Result, command_error, fail};
-use crate::cli::global::EVERY_COMMAND;
+use crate::cli::options::global::EVERY_COMMAND;
+use crate::cli::process::errors::{CommandError, Result, command_error, fail};
 use crate::settings::EXCLUSIVE;
 
 /// The option that names the file.

@@ -3,7 +3,7 @@
 use clap::{Arg, Command};
 
 use super::preset;
-use crate::cli::global::EVERY_COMMAND;
+use crate::cli::options::global::EVERY_COMMAND;
 
 /// Heading of outputs, and the options of commands that belong there.
 const OUTPUT: &str = "Output";

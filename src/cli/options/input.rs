@@ -9,7 +9,7 @@ use clap::Args;
 
 use super::settings::{Declared, Given, Groups};
 use super::typed::TypedOptions;
-use crate::cli::errors::Result;
+use crate::cli::process::errors::Result;
 use crate::export::Target;
 use crate::points::PointOptions;
 use crate::settings::{Group, Settings};

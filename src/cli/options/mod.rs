@@ -3,9 +3,13 @@
 
 mod alphas;
 pub(super) mod config;
+pub(super) mod formats;
+pub(super) mod global;
 pub(super) mod help;
 mod input;
 mod output_format;
+#[cfg_attr(not(feature = "render"), path = "no_picture.rs")]
+pub(super) mod picture;
 pub(super) mod preset;
 mod settings;
 pub(super) mod typed;

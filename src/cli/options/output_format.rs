@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use crate::cli::errors::{Result, fail_usage};
+use crate::cli::process::errors::{Result, fail_usage};
 use crate::export::Target;
 
 /// The format of outputs without an extension.

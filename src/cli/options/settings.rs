@@ -8,7 +8,7 @@ use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches};
 
 use super::preset;
 use crate::Weighting;
-use crate::cli::errors::CommandError;
+use crate::cli::process::errors::CommandError;
 use crate::settings::{EXCLUSIVE, Group, Settings};
 use crate::volume::Dtype;
 

@@ -9,7 +9,7 @@ use clap::{ArgMatches, Args, Command, FromArgMatches};
 use walpha_files::keep_input;
 
 use super::config::CONFIGURED;
-use crate::cli::errors::{Result, fail_usage};
+use crate::cli::process::errors::{Result, fail_usage};
 use crate::volume::files_of;
 
 /// The names of the options that the user typed. Those from the file of `--config` are left out: they are for all

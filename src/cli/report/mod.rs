@@ -1,5 +1,6 @@
 //! The facts a command prints, as JSON or as text.
 
+pub(super) mod offsets;
 mod parts;
 mod plane;
 
@@ -17,9 +18,9 @@ use crate::points::WeightSummary;
 use crate::shape::{Cuts, Engine};
 use crate::{Coordinates, GrayRange};
 
-use super::offsets::FileOffset;
-use super::output::name;
-use super::pipeline::VolumeSummary;
+use crate::cli::commands::pipeline::VolumeSummary;
+use crate::cli::process::output::name;
+use crate::cli::report::offsets::FileOffset;
 use parts::ShapeReport;
 use parts::{EndedEarly, InputReport, PointsReport};
 pub(super) use parts::{HaarReport, MovedIntoBox, WeightsReport};

@@ -6,7 +6,7 @@ use serde::Serialize;
 use walpha_base::shown::number;
 
 use super::plane::PlaneReport;
-use crate::cli::output::name;
+use crate::cli::process::output::name;
 use crate::outofcore::Merged;
 use crate::pipeline::Weighed;
 use crate::points::WeightSummary;

@@ -1,0 +1,211 @@
+//! `walpha filtration`: every simplex, and the α at which it enters the shape.
+
+use std::collections::BTreeMap;
+use std::fmt::{self, Display};
+use std::io::Write;
+use std::path::PathBuf;
+
+use clap::Args;
+use serde::Serialize;
+
+use crate::Coordinates;
+use crate::cli::process::errors::Result;
+use crate::export::{Content, FiltrationFormat, Target, write_all};
+use crate::ladder::Ordered;
+use crate::pipeline::{Parameter, Weighed};
+use crate::progress::Stage;
+use crate::shape::ShapeError;
+
+use crate::cli::commands::pipeline;
+use crate::cli::options::formats::filtration_output;
+use crate::cli::options::global::Global;
+use crate::cli::options::{Declared, FrozenPipelineArgs, OutputArgs, Periodic};
+use crate::cli::process::output::{name, print_summary};
+use crate::cli::process::progress::Progress;
+use crate::cli::report::{MovedIntoBox, SCHEMA_VERSION, WeightsReport, ending};
+
+/// List every simplex of the regular triangulation with the α at which it enters the shape.
+///
+/// For each simplex: its value, the α from which it is in the shape, as the double nearest to the exact
+/// number; whether its own smallest sphere is empty (Gabriel; otherwise it enters with a simplex that
+/// it is a face of); and the α from which it is regular and interior. Simplices are ordered by exact
+/// value, then by dimension and vertices, so that faces come before the simplices that they bound.
+/// Persistence pairs of components, loops and voids are in .npz, .json and the output of --json; .csv has
+/// them alone, as a table, and .svg and .png draw the persistence diagram. Weights are frozen.
+///
+/// Examples:
+///
+/// walpha filtration scan.xyz -o scan.npz
+///
+/// walpha filtration scan.xyz -o pairs.csv diagram.svg
+///
+/// walpha filtration sample:skull --weights min-max -o skull.json skull.txt
+///
+/// walpha check skull.json
+#[derive(Args)]
+pub(crate) struct Filtration {
+    #[arg(short, long, value_name = "FILE", num_args = 1.., help = filtration_output())]
+    output: Vec<PathBuf>,
+    #[command(flatten)]
+    pipeline: FrozenPipelineArgs,
+    #[command(flatten)]
+    periodic: Declared<Periodic>,
+    #[command(flatten)]
+    format: OutputArgs,
+}
+
+#[derive(Serialize)]
+struct FiltrationSummary {
+    schema_version: u32,
+    input: String,
+    points: usize,
+    hidden: usize,
+    duplicates: usize,
+    /// Points outside the periodic box that were moved into it; absent without a box.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    folded: Option<usize>,
+    /// Unit of points and all lengths; values are in its square.
+    coordinates: Coordinates,
+    /// The α that weights are in proportion to; null where they need none.
+    alpha_ref: Option<Parameter>,
+    weights: WeightsReport,
+    cells: Count,
+    facets: Count,
+    edges: Count,
+    vertices: Count,
+    /// Number of distinct values.
+    values: usize,
+    persistence: Option<Persistence>,
+    files: Vec<String>,
+    seconds: BTreeMap<&'static str, f64>,
+}
+
+/// Simplices of a dimension.
+#[derive(Clone, Copy, Serialize)]
+struct Count {
+    gabriel: usize,
+    attached: usize,
+}
+
+/// Persistence intervals of components, loops and voids, without empty ones.
+#[derive(Serialize)]
+struct Persistence {
+    components: Vec<[f64; 2]>,
+    /// Values at which the components begin that never end.
+    lasting_components: Vec<f64>,
+    loops: Vec<[f64; 2]>,
+    /// Values at which the loops begin that never end: three in a periodic box, otherwise none.
+    lasting_loops: Vec<f64>,
+    voids: Vec<[f64; 2]>,
+    /// Values at which the voids begin that never end: three in a periodic box, otherwise none.
+    lasting_voids: Vec<f64>,
+}
+
+impl Filtration {
+    pub(crate) fn run(self, global: Global) -> Result<()> {
+        let input = &self.pipeline.input;
+        self.format.check(self.output.iter())?;
+        let mut targets = Vec::new();
+        for path in &self.output {
+            let format = FiltrationFormat::of(&self.format.named(path)?)?;
+            targets.push((Target::open(path)?, format));
+        }
+        let mut progress = Progress::new(global);
+        input.typed.refuse(&["refit"], "a filtration has no values")?;
+        let recipe = self.pipeline.recipe()?;
+        let torus = recipe.periodic;
+        let (mut weighed, _) = pipeline::weighted_points(input, &recipe, &mut progress)?;
+        weighed.on_torus(torus)?;
+        let filtration = progress.watch(|| pipeline::filtration(torus, &weighed))?;
+        let ordered = progress.stage(Stage::Order, || filtration.simplices())?;
+        if global.json || targets.iter().any(|(_, format)| format.pairs) {
+            progress.stage(Stage::Pairs, || ordered.loops())?;
+        }
+        progress.stage(Stage::Write, || {
+            write_all(targets.into_iter().map(|(target, format)| {
+                let ordered = &ordered;
+                let content = move |out: &mut dyn Write| format.write(ordered, out);
+                (target, Box::new(content) as Content<'_>)
+            }))
+        })?;
+        let mut facts = FiltrationSummary::new(&input.input, &weighed, &ordered);
+        if global.json {
+            facts.persistence = Some(Persistence::of(&ordered)?);
+        }
+        facts.files = self.output.iter().map(|path| path.display().to_string()).collect();
+        facts.seconds = progress.finish().into_iter().collect();
+        print_summary(global, &facts)
+    }
+}
+
+impl FiltrationSummary {
+    fn new(input: &str, weighed: &Weighed, ordered: &Ordered<'_>) -> Self {
+        let whole = ordered.filtration().whole();
+        let [vertices, edges, facets, cells] = [0, 1, 2, 3].map(|dimension| {
+            let gabriel = ordered.gabriel(dimension);
+            Count { gabriel, attached: ordered.count(dimension) - gabriel }
+        });
+        Self {
+            schema_version: SCHEMA_VERSION,
+            input: input.to_owned(),
+            points: whole.points().len(),
+            hidden: whole.hidden().map_or(0, <[u32]>::len),
+            duplicates: whole.duplicates().len(),
+            folded: weighed.origin.folded,
+            coordinates: weighed.origin.coordinates,
+            alpha_ref: weighed.parameter,
+            weights: WeightsReport::of(weighed),
+            cells,
+            facets,
+            edges,
+            vertices,
+            values: ordered.values().len(),
+            persistence: None,
+            files: Vec::new(),
+            seconds: BTreeMap::new(),
+        }
+    }
+}
+
+impl Persistence {
+    fn of(ordered: &Ordered<'_>) -> Result<Self, ShapeError> {
+        let split = |dimension| -> Result<(Vec<[f64; 2]>, Vec<f64>), ShapeError> {
+            let intervals = ordered.persistence(dimension)?;
+            let (ended, lasting): (Vec<_>, Vec<_>) =
+                intervals.into_iter().partition(|interval| interval.ends.is_some());
+            let ended = ended.into_iter().map(|interval| [interval.birth, interval.death]);
+            Ok((ended.collect(), lasting.into_iter().map(|interval| interval.birth).collect()))
+        };
+        let (components, lasting_components) = split(0)?;
+        let (loops, lasting_loops) = split(1)?;
+        let (voids, lasting_voids) = split(2)?;
+        Ok(Self { components, lasting_components, loops, lasting_loops, voids, lasting_voids })
+    }
+}
+
+impl Display for Count {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:>9} Gabriel {:>9} attached", self.gabriel, self.attached)
+    }
+}
+
+impl Display for FiltrationSummary {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "input     {}", name(&self.input))?;
+        let Self { points, duplicates, hidden, .. } = self;
+        write!(f, "points    {points}, {duplicates} duplicates, {hidden} hidden")?;
+        writeln!(f, "{}", MovedIntoBox(self.folded))?;
+        writeln!(f, "lengths   in {}", self.coordinates)?;
+        writeln!(f, "weights   {} (squared lengths), frozen", self.weights)?;
+        if let Some(alpha_ref) = &self.alpha_ref {
+            writeln!(f, "          for {alpha_ref}")?;
+        }
+        writeln!(f, "cells     {}", self.cells)?;
+        writeln!(f, "facets    {}", self.facets)?;
+        writeln!(f, "edges     {}", self.edges)?;
+        writeln!(f, "vertices  {}", self.vertices)?;
+        writeln!(f, "values    {} different numbers", self.values)?;
+        let stages = ["read", "haar", "points", "filtration", "order", "pairs", "write", "total"];
+        ending(f, &self.files, &stages, &self.seconds)
+    }
+}

@@ -1,0 +1,544 @@
+//! `walpha info`: what a file holds.
+
+use std::path::Path;
+
+use clap::Args;
+use serde::Serialize;
+use serde_json::Value;
+use walpha_base::shown::number;
+
+use crate::check::meshes::Mesh;
+use crate::cli::process::errors::Result;
+use crate::labels::{LabelSize, LabelSizes};
+use crate::pipeline::Opened;
+use crate::points::{Cell, CellCount, ModelMetadata, Points};
+use crate::progress::Stage;
+use crate::volume::{self, Dtype, Nan, OpenVolume, ReadOptions, Reason, SampleStats, Series};
+use crate::{Alpha, Coordinates, Dims, Frame, LengthUnit, Units, VolumeError};
+use walpha_points::internal::cells_of_file;
+use walpha_points::read_model_file;
+
+use crate::cli::commands::check::{mesh_format, read_mesh};
+use crate::cli::commands::pipeline;
+use crate::cli::options::InputArgs;
+use crate::cli::options::global::Global;
+use crate::cli::process::output::{name, print_summary};
+use crate::cli::process::progress::Progress;
+use crate::cli::report::SCHEMA_VERSION;
+use crate::settings::{CT_BONE, LABELS};
+
+/// Describe a file, without computing anything.
+///
+/// Examples:
+///
+/// walpha info ct.nii.gz
+///
+/// walpha info scan.xyz --columns x,y,z,nx,ny,nz
+///
+/// walpha info sample:skull --json
+#[derive(Args)]
+pub(crate) struct Info {
+    #[command(flatten)]
+    input: InputArgs,
+}
+
+#[derive(Serialize)]
+struct InfoSummary {
+    schema_version: u32,
+    input: String,
+    #[serde(flatten)]
+    content: Content,
+}
+
+#[derive(Serialize)]
+#[serde(tag = "kind", rename_all = "lowercase")]
+enum Content {
+    Volume {
+        format: String,
+        /// Type of a stored sample.
+        samples: String,
+        dims: [usize; 3],
+        spacing: [f64; 3],
+        origin: [f64; 3],
+        /// Columns are the grid's axes.
+        direction: [[f64; 3]; 3],
+        #[serde(flatten)]
+        coordinates: Coordinates,
+        /// Range of the finite values; null where there is none.
+        min: Option<f32>,
+        max: Option<f32>,
+        /// Samples that are NaN, infinite or padding.
+        missing: u64,
+        /// Whether these are padding, and masked without an option.
+        #[serde(skip)]
+        padding: bool,
+        /// The preset that `walpha shape` uses where no option says what to look for. Absent if there is none.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        preset: Option<&'static str>,
+        /// The labels of a segmentation, with their voxels. Absent if the values are not labels.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        labels: Option<LabelSummary>,
+        /// Volumes in the file, of which --frame reads one; the first is described. Absent if there is only one.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        volumes: Option<u64>,
+        gray_levels: bool,
+        /// Where the samples are, if not in INPUT itself.
+        #[serde(skip_serializing_if = "Vec::is_empty")]
+        data_files: Vec<String>,
+    },
+    /// A volume with several values in each voxel, which is not read.
+    Unread {
+        format: String,
+        /// Content of a voxel.
+        voxels: String,
+        /// Null if only reading the samples would tell.
+        dims: Option<[u64; 3]>,
+    },
+    /// A mesh of tetrahedra, which `walpha check` judges.
+    Mesh {
+        format: &'static str,
+        points: usize,
+        tetrahedra: usize,
+        /// How numbers were read, and what was left out.
+        notes: Vec<String>,
+    },
+    /// Several series in a folder, of which --series reads one.
+    Series { series: Vec<Series> },
+    Points {
+        count: usize,
+        low: [f64; 3],
+        high: [f64; 3],
+        weights: bool,
+        /// Whether the weights are squares of radii, which the file has instead of weights.
+        of_radii: bool,
+        values: bool,
+        /// Cells that the file lists.
+        #[serde(skip_serializing_if = "Vec::is_empty")]
+        cells: Vec<CellCount>,
+        /// The cell in which the points repeat; absent if the file states none.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        cell: Option<CellSummary>,
+        /// What the file says of some of its points: how many are synthetic, say.
+        #[serde(skip_serializing_if = "Vec::is_empty")]
+        notes: Vec<String>,
+        /// Samples along x, y and z of their grid; null where the file states none.
+        grid: Option<[usize; 3]>,
+        coordinates: Coordinates,
+        /// The α intended for their shape, a squared length.
+        alpha: Option<Alpha>,
+        /// The values that were gray 0 and 255.
+        gray_range: Option<[f64; 2]>,
+        /// The options that made them, where they differ from the default.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        recipe: Option<Value>,
+    },
+}
+
+/// The labels of a segmentation.
+#[derive(Serialize)]
+struct LabelSummary {
+    /// Whether the file states that its values are labels.
+    stated: bool,
+    #[serde(flatten)]
+    sizes: LabelSizes,
+}
+
+/// Most labels listed as text.
+const MOST_LABELS: usize = 30;
+
+impl std::fmt::Display for LabelSummary {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let LabelSizes { labels, unit, .. } = &self.sizes;
+        let how =
+            if self.stated { "the file states labels" } else { "the values look like labels" };
+        writeln!(
+            f,
+            "labels    {how}: `walpha shape` makes the solid of all but 0; --label N takes one"
+        )?;
+        let unit = unit.symbol();
+        for LabelSize { label, voxels, volume, .. } in labels.iter().take(MOST_LABELS) {
+            writeln!(f, "          {label}: {voxels} voxels, {} {unit}³", number(*volume))?;
+        }
+        match labels.len().saturating_sub(MOST_LABELS) {
+            0 => Ok(()),
+            more => writeln!(f, "          and {more} more, which --json lists"),
+        }
+    }
+}
+
+/// A cell in which points repeat.
+#[derive(Serialize)]
+struct CellSummary {
+    vectors: [[f64; 3]; 3],
+    repeats: [bool; 3],
+    /// Value for --periodic; null if the cell is not a box along the axes.
+    sides: Option<[f64; 3]>,
+    #[serde(skip)]
+    sides_text: String,
+}
+
+impl From<Cell> for CellSummary {
+    fn from(cell: Cell) -> Self {
+        let sides_text = match cell.sides() {
+            Some(sides) => {
+                let sides = sides.map(number).join(",");
+                format!("a box of sides {sides}, and --periodic {sides} makes its torus")
+            }
+            None => cell.to_string(),
+        };
+        Self { vectors: cell.vectors, repeats: cell.repeats, sides: cell.sides(), sides_text }
+    }
+}
+
+impl Info {
+    pub(crate) fn run(self, global: Global) -> Result<()> {
+        let mut progress = Progress::new(global);
+        let describe = || pipeline::with_file(&self.input, |input| self.describe(input));
+        let content = progress.stage(Stage::Read, describe)?;
+        print_summary(
+            global,
+            &InfoSummary {
+                schema_version: SCHEMA_VERSION,
+                input: self.input.input.to_string(),
+                content,
+            },
+        )
+    }
+
+    fn describe(&self, input: &Path) -> Result<Content> {
+        match self.input.recipe()?.opened(input).map_err(pipeline::unread)? {
+            Opened::Made(points) => {
+                Ok(Content::of_points(&points, ModelMetadata::default(), Vec::new()))
+            }
+            Opened::Points(file) => {
+                let options = self.input.point_options()?;
+                let (points, metadata) = read_model_file(&file, &options)?;
+                Ok(Content::of_points(&points, metadata, cells_of_file(&file, &options)?))
+            }
+            Opened::Volume(volume) => self.describe_volume(input, &volume),
+        }
+    }
+
+    /// Describes a volume, or a file that holds nothing but a mesh.
+    fn describe_volume(&self, input: &Path, volume: &OpenVolume) -> Result<Content> {
+        if let (OpenVolume::File(file), Some(format)) = (volume, mesh_format(input)) {
+            let Mesh { complex, notes, .. } = read_mesh(format, file)?;
+            return Ok(Content::Mesh {
+                format: format.name,
+                points: complex.points.len(),
+                tetrahedra: complex.cells.map_or(0, |cells| cells.len()),
+                notes,
+            });
+        }
+        let options = self.input.options();
+        if options.series.is_none() && input.is_dir() {
+            let series = volume::series(input)?;
+            if series.len() > 1 {
+                return Ok(Content::Series { series });
+            }
+        }
+        let summary = match VolumeSummary::of(volume, &options) {
+            Ok(summary) => summary,
+            Err(error) => match error.reason() {
+                Some(Reason::NotScalar { what, dims }) => {
+                    let format = volume.format_name(&options)?;
+                    return Ok(Content::Unread { format, voxels: what.clone(), dims: *dims });
+                }
+                Some(&Reason::Several { count }) if options.frame.is_none() => {
+                    let first = options.clone().frame(0);
+                    VolumeSummary { volumes: Some(count), ..VolumeSummary::of(volume, &first)? }
+                }
+                _ => return Err(pipeline::with_points(error)),
+            },
+        };
+        let (format, data_files) = (volume.format_name(&options)?, volume.data_files(&options)?);
+        let VolumeSummary { dims, frame, dtype, gray_levels, stats, padding, volumes } = summary;
+        let unit = frame.coordinates.unit;
+        let units = if unit == LengthUnit::Voxel { Units::Voxel } else { Units::World };
+        let labels = stats.labels.map(|found| LabelSummary {
+            stated: found.stated,
+            sizes: LabelSizes::new(found.foreground(), &frame, units),
+        });
+        Ok(Content::Volume {
+            format,
+            samples: dtype.to_string(),
+            dims: dims.xyz(),
+            spacing: frame.spacing,
+            origin: frame.origin,
+            direction: frame.direction,
+            coordinates: frame.coordinates,
+            min: stats.range.map(|(min, _)| min),
+            max: stats.range.map(|(_, max)| max),
+            missing: stats.missing,
+            padding,
+            preset: labels.as_ref().map(|_| LABELS).or(stats.hounsfield.map(|_| CT_BONE)),
+            labels,
+            volumes,
+            gray_levels,
+            data_files: data_files.iter().map(|file| file.display().to_string()).collect(),
+        })
+    }
+}
+
+/// Statistics of a volume.
+struct VolumeSummary {
+    dims: Dims,
+    frame: Frame,
+    dtype: Dtype,
+    gray_levels: bool,
+    stats: SampleStats,
+    padding: bool,
+    volumes: Option<u64>,
+}
+
+impl VolumeSummary {
+    /// Summarises a volume: part by part if its format allows that, otherwise at once.
+    fn of(volume: &OpenVolume, options: &ReadOptions) -> Result<Self, VolumeError> {
+        if let Ok(source) = volume.source(options) {
+            let stats = SampleStats::of(&source, options.nan)?;
+            let (dims, frame, dtype) = (source.dims(), *source.frame(), source.dtype());
+            let gray_levels = source.has_gray_levels();
+            return Ok(Self {
+                dims,
+                frame,
+                dtype,
+                gray_levels,
+                stats,
+                padding: false,
+                volumes: None,
+            });
+        }
+        // Reading the whole volume also reports what is wrong with it.
+        let read = |nan| volume.read(&options.clone().nan(nan));
+        let (volume, padding) = match read(options.nan) {
+            Err(error) if error.is_not_finite() => (read(Some(Nan::Mask)), false),
+            read => (read, options.nan.is_none()),
+        };
+        let (volume, stats) = match volume {
+            Ok(volume) => {
+                let stats = SampleStats::of_volume(&volume);
+                (volume, stats)
+            }
+            Err(error) if error.is_not_finite() => {
+                let volume = read(Some(Nan::Value(0.0)))?;
+                let missing = volume.dims().samples() as u64;
+                (volume, SampleStats { range: None, missing, hounsfield: None, labels: None })
+            }
+            Err(error) => return Err(error),
+        };
+        let (dims, frame, dtype) = (volume.dims(), *volume.frame(), volume.dtype());
+        let gray_levels = volume.has_gray_levels();
+        Ok(Self { dims, frame, dtype, gray_levels, stats, padding, volumes: None })
+    }
+}
+
+impl std::fmt::Display for InfoSummary {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        self.content.fmt(f)
+    }
+}
+
+impl Content {
+    /// Describes points.
+    fn of_points(points: &Points, metadata: ModelMetadata, cells: Vec<CellCount>) -> Self {
+        let extreme = |pick: fn(f64, f64) -> f64, start: f64, axis: usize| {
+            points.positions.iter().fold(start, |so_far, p| pick(so_far, p[axis]))
+        };
+        let ModelMetadata { grid, coordinates, alpha, range, recipe, cell, notes, .. } = metadata;
+        Self::Points {
+            count: points.len(),
+            low: [0, 1, 2].map(|i| extreme(f64::min, f64::INFINITY, i)),
+            high: [0, 1, 2].map(|i| extreme(f64::max, f64::NEG_INFINITY, i)),
+            weights: points.weights.is_some(),
+            of_radii: points.of_radii,
+            values: points.values.is_some(),
+            cells,
+            cell: cell.map(Into::into),
+            notes,
+            grid: grid.map(|grid| grid.dims.xyz()),
+            coordinates,
+            alpha,
+            gray_range: range.map(|range| [range.low, range.high]),
+            recipe: recipe.map(|text| serde_json::from_str(&text).unwrap_or(text.into())),
+        }
+    }
+
+    /// What the file says of its points, how they were made, and are meant to be used: notes, unit, recipe, α and gray range.
+    fn fmt_usage(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self::Points { alpha, gray_range, grid, coordinates, recipe, notes, .. } = self else {
+            return Ok(());
+        };
+        if !notes.is_empty() {
+            writeln!(f, "of these  {}", notes.join(", "))?;
+        }
+        if grid.is_none() && coordinates.unit.is_known() {
+            writeln!(f, "unit      {}", coordinates.unit.symbol())?;
+        }
+        if let Some(recipe) = recipe {
+            writeln!(f, "recipe    {recipe}")?;
+        }
+        if let Some(alpha) = alpha {
+            writeln!(f, "α         {} {}²", number(alpha.squared()), coordinates.unit.symbol())?;
+        }
+        match gray_range {
+            Some([low, high]) => {
+                writeln!(f, "gray      values {} to {} were 0 to 255", number(*low), number(*high))
+            }
+            None => Ok(()),
+        }
+    }
+}
+
+/// Position and orientation of the samples in world coordinates.
+fn fmt_frame(
+    f: &mut std::fmt::Formatter<'_>,
+    spacing: [f64; 3],
+    origin: [f64; 3],
+    direction: &[[f64; 3]; 3],
+    Coordinates { space, unit }: Coordinates,
+) -> std::fmt::Result {
+    let stated = match (space.is_known(), unit) {
+        (true, _) => space.name(),
+        (false, LengthUnit::Voxel) => "none, the file places no grid",
+        (false, _) => "unknown, the file does not say how its axes lie in a patient",
+    };
+    writeln!(f, "space     {stated}")?;
+    let unit = unit.symbol();
+    writeln!(f, "spacing   {} {unit}", spacing.map(number).join(" "))?;
+    writeln!(f, "origin    {} {unit}", origin.map(number).join(" "))?;
+    if *direction != Frame::VOXEL.direction {
+        for (i, axis) in ["x", "y", "z"].iter().enumerate() {
+            let steps = direction.map(|row| number(row[i]));
+            writeln!(f, "axis {axis}    {}", steps.join(" "))?;
+        }
+    }
+    Ok(())
+}
+
+/// The range of the values that are finite, if there are any.
+fn fmt_values(
+    f: &mut std::fmt::Formatter<'_>,
+    range: Option<(f32, f32)>,
+    gray_levels: bool,
+) -> std::fmt::Result {
+    let Some((min, max)) = range else {
+        return writeln!(f, "values    none that is a finite number");
+    };
+    let (min, max) = (number(f64::from(min)), number(f64::from(max)));
+    let gray = if gray_levels { ", gray levels as they are" } else { "" };
+    writeln!(f, "values    {min} to {max}{gray}")
+}
+
+/// The files that hold the samples of a volume, if they are not in the file that describes it.
+fn fmt_data_files(f: &mut std::fmt::Formatter<'_>, files: &[String]) -> std::fmt::Result {
+    match files {
+        [] => Ok(()),
+        [file] => writeln!(f, "samples   in {}", name(file)),
+        [first, .., last] => {
+            let ends = [first, last].map(|file| name(file)).join(" to ");
+            writeln!(f, "samples   in {} files, {ends}", files.len())
+        }
+    }
+}
+
+impl std::fmt::Display for Content {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Volume {
+                format,
+                samples,
+                dims: [x, y, z],
+                spacing,
+                origin,
+                direction,
+                coordinates,
+                min,
+                max,
+                missing,
+                padding,
+                preset,
+                labels,
+                volumes,
+                gray_levels,
+                data_files,
+            } => {
+                writeln!(f, "format    {format}, samples of type {samples}")?;
+                writeln!(f, "volume    {x}×{y}×{z} samples (x, y, z)")?;
+                fmt_frame(f, *spacing, *origin, direction, *coordinates)?;
+                fmt_values(f, min.zip(*max), *gray_levels)?;
+                if let Some(labels) = labels {
+                    write!(f, "{labels}")?;
+                } else if let Some(preset) = preset {
+                    writeln!(
+                        f,
+                        "units     the values look like Hounsfield units: `walpha shape` selects bone unless told \
+                         otherwise, as by --preset {preset}"
+                    )?;
+                }
+                if *missing > 0 {
+                    let what = if *padding {
+                        "padding, and masked; --nan VALUE replaces them"
+                    } else {
+                        "NaN or infinite; --nan masks or replaces them"
+                    };
+                    writeln!(f, "missing   {missing} samples are {what}")?;
+                }
+                if let Some(volumes) = volumes {
+                    writeln!(
+                        f,
+                        "volumes   {volumes} in the file; --frame K reads one, and 0 is described here"
+                    )?;
+                }
+                fmt_data_files(f, data_files)
+            }
+            Self::Unread { format, voxels, dims } => {
+                writeln!(f, "volume    {format}")?;
+                if let Some([x, y, z]) = dims {
+                    writeln!(f, "size      {x}×{y}×{z}")?;
+                }
+                writeln!(f, "samples   {voxels}; extract one first")
+            }
+            Self::Mesh { format, points, tetrahedra, notes } => {
+                writeln!(f, "format    {format}, a mesh that `walpha check` judges")?;
+                writeln!(f, "points    {points}\ncells     {tetrahedra} tetrahedra")?;
+                notes.iter().try_for_each(|note| writeln!(f, "note      {note}"))
+            }
+            Self::Series { series } => {
+                writeln!(f, "series    {} in the folder; --series N reads one", series.len())?;
+                series.iter().try_for_each(|one| writeln!(f, "          {one}"))
+            }
+            Self::Points {
+                count,
+                low,
+                high,
+                weights,
+                of_radii,
+                values,
+                cells,
+                cell,
+                grid,
+                coordinates,
+                ..
+            } => {
+                writeln!(f, "points    {count}")?;
+                if !cells.is_empty() {
+                    let cells: Vec<String> = cells.iter().map(ToString::to_string).collect();
+                    writeln!(f, "cells     {}", cells.join(", "))?;
+                }
+                for (i, axis) in ["x", "y", "z"].iter().enumerate() {
+                    writeln!(f, "{axis}         {} to {}", number(low[i]), number(high[i]))?;
+                }
+                let has = |there: bool| if there { "yes" } else { "no" };
+                let squares = if *of_radii { ", squares of its radii" } else { "" };
+                writeln!(f, "weights   {}{squares}\nvalues    {}", has(*weights), has(*values))?;
+                if let Some(CellSummary { sides_text, .. }) = cell {
+                    writeln!(f, "cell      {sides_text}")?;
+                }
+                if let Some([x, y, z]) = grid {
+                    writeln!(f, "grid      {x}×{y}×{z} samples, coordinates in {coordinates}")?;
+                }
+                self.fmt_usage(f)
+            }
+        }
+    }
+}

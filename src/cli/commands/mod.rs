@@ -1,0 +1,25 @@
+//! The commands, and the steps that several of them share.
+
+pub(super) mod blocks;
+pub(super) mod check;
+pub(super) mod compare;
+pub(super) mod completions;
+#[cfg(feature = "zarr")]
+pub(super) mod convert;
+pub(super) mod filtration;
+mod folder;
+pub(super) mod haar;
+pub(super) mod info;
+pub(super) mod interpolate;
+pub(super) mod ladder;
+pub(super) mod man;
+mod outline;
+pub(super) mod pipeline;
+pub(super) mod points;
+#[cfg(feature = "paper")]
+pub(super) mod reproduce;
+pub(super) mod shape;
+pub(super) mod shape_in_blocks;
+mod shape_of_labels;
+#[cfg(feature = "render")]
+pub(super) mod view;

@@ -1,0 +1,251 @@
+//! The steps from INPUT to weighted points and shapes, which commands share.
+
+use std::fmt::{self, Display};
+use std::path::Path;
+
+use serde::Serialize;
+
+use crate::cli::options::preset;
+use crate::cli::options::{self, InputArgs};
+use crate::cli::process::errors::{CommandError, Result, command_error};
+use crate::cli::process::progress::Progress;
+use crate::export::Scratch;
+use crate::interpolate::{InterpolateError, fill};
+use crate::ladder::{Curve, Filtration};
+use crate::pipeline::{Input, Model, Opened, PipelineError, Source, Values, Weighed};
+use crate::points::bounding_box;
+use crate::progress::Stage;
+use crate::shape::{ShapeError, Torus};
+use crate::volume::Reason;
+use crate::{
+    Alpha, AlphaShape, GrayRange, LengthUnit, PointsError, Recipe, Units, Volume, VolumeError,
+};
+
+/// Reported numbers of a volume.
+#[derive(Clone, Copy)]
+pub(crate) struct VolumeSummary {
+    pub dims: [usize; 3],
+    /// The volume of the box between the outermost samples.
+    pub extent: f64,
+    pub range: GrayRange,
+    pub written: GrayRange,
+}
+
+impl VolumeSummary {
+    pub(crate) fn of(source: &Source) -> Self {
+        let Source { volume, units, range, written, .. } = source;
+        let extent = units.box_volume(volume);
+        Self { dims: volume.dims().xyz(), extent, range: *range, written: *written }
+    }
+}
+
+/// Steps 1 to 7: reads INPUT and makes weighted points of it, with the values that are written.
+pub(crate) fn weighted_points(
+    args: &InputArgs,
+    recipe: &Recipe,
+    progress: &mut Progress,
+) -> Result<(Weighed, Option<VolumeSummary>)> {
+    let (weighed, source) = points_and_volume(args, recipe, Values::Written, progress)?;
+    Ok((weighed, source.as_ref().map(VolumeSummary::of)))
+}
+
+/// Weighted points, and the volume they were selected from.
+pub(crate) fn points_and_volume(
+    args: &InputArgs,
+    recipe: &Recipe,
+    values: Values,
+    progress: &mut Progress,
+) -> Result<(Weighed, Option<Source>)> {
+    let mut recipe = recipe.clone();
+    let read = read_suited(args, &mut recipe, progress)?;
+    weigh(read, args, &recipe, values, progress)
+}
+
+/// Weighted points of what has been read, and the volume they were selected from.
+pub(crate) fn weigh(
+    read: Input,
+    args: &InputArgs,
+    recipe: &Recipe,
+    values: Values,
+    progress: &mut Progress,
+) -> Result<(Weighed, Option<Source>)> {
+    accept(&read, args)?;
+    Ok(progress.watch(|| recipe.weigh(read, values))?)
+}
+
+/// The shape of weighted points.
+pub(crate) fn shape(weighed: Weighed, recipe: &Recipe, progress: &mut Progress) -> Result<Model> {
+    progress.watch(|| recipe.finish(weighed)).map_err(|error| match error {
+        PipelineError::Radii { .. } => CommandError::usage_of(error),
+        _ => error.into(),
+    })
+}
+
+/// The filtration of weighted points with the weights that they have; on a torus, if one is given.
+pub(crate) fn filtration(
+    torus: Option<Torus>,
+    weighed: &Weighed,
+) -> Result<Filtration, ShapeError> {
+    Stage::Filtration.begin()?;
+    Filtration::on(torus, weighed.points.clone())
+}
+
+/// The α of a ladder: at most `count` critical values, the suggested ones, and the one that the weights are computed for.
+pub(crate) fn readable(
+    filtration: &Filtration,
+    curve: &Curve,
+    count: usize,
+    reference: Alpha,
+) -> Vec<Alpha> {
+    let mut alphas = filtration.readable(curve, count);
+    alphas.push(reference);
+    alphas.extend(suggested(filtration, curve));
+    alphas
+}
+
+/// The suggested values of α that are finite.
+pub(crate) fn suggested(filtration: &Filtration, curve: &Curve) -> Vec<Alpha> {
+    let suggested = filtration.suggest(curve);
+    let [low, high] = suggested.plateau;
+    let also = [suggested.all_points, suggested.one_region, suggested.no_void, low, high];
+    also.into_iter().filter(|alpha| alpha.squared().is_finite()).collect()
+}
+
+/// Reads INPUT.
+pub(crate) fn read(args: &InputArgs, recipe: &Recipe, progress: &mut Progress) -> Result<Input> {
+    read_with(args, progress, |input| recipe.open(input))
+}
+
+/// Reads INPUT for selecting points of it. If it is a CT, and no option says what to look for, the recipe is made
+/// to ([`preset::suited`]).
+pub(crate) fn read_suited(
+    args: &InputArgs,
+    recipe: &mut Recipe,
+    progress: &mut Progress,
+) -> Result<Input> {
+    let suited = |recipe: &Recipe, volume: &Volume| preset::suited_to(args, recipe, volume);
+    read_with(args, progress, |input| recipe.open_suited(input, suited))
+}
+
+/// [`read_suited`] for INPUT that is open.
+pub(crate) fn read_opened(
+    opened: Opened,
+    args: &InputArgs,
+    recipe: &mut Recipe,
+    progress: &mut Progress,
+) -> Result<Input> {
+    let suited = |recipe: &Recipe, volume: &Volume| preset::suited_to(args, recipe, volume);
+    let read = || recipe.read_suited(opened, suited).map_err(unread);
+    progress.stage(Stage::Read, read)
+}
+
+fn read_with(
+    args: &InputArgs,
+    progress: &mut Progress,
+    open: impl FnOnce(&Path) -> Result<Input, PipelineError>,
+) -> Result<Input> {
+    progress.stage(Stage::Read, || with_file(args, |input| open(input).map_err(unread)))
+}
+
+/// The error for INPUT that cannot be opened or read.
+pub(crate) fn unread(error: PipelineError) -> CommandError {
+    match error {
+        PipelineError::Points(PointsError::File(error)) => with_points(error),
+        error => error.into(),
+    }
+}
+
+/// Adds the formats of points to the error about an unknown format.
+pub(crate) fn with_points(error: VolumeError) -> CommandError {
+    if !matches!(error, VolumeError::Format { reason: Reason::Unknown { .. }, .. }) {
+        return error.into();
+    }
+    let names: Vec<&str> = crate::points::FORMATS.iter().map(|format| format.name).collect();
+    let said = CommandError::from(error);
+    CommandError { why: format!("{}, {} as points", said.why, names.join(", ")), ..said }
+}
+
+/// Runs `work` on INPUT, a file or the name of a sample. Standard input is copied to a temporary file, because
+/// formats are read in several passes.
+pub(crate) fn with_file<T>(args: &InputArgs, work: impl FnOnce(&Path) -> Result<T>) -> Result<T> {
+    args.check_format()?;
+    if !args.input.is_stdin() {
+        return work(args.input.path());
+    }
+    let file = Scratch::of(&mut std::io::stdin().lock(), &args.extension()).map_err(
+        |error| command_error!("cannot read standard input: {error}" => "name a file instead"),
+    )?;
+    let path = file.path().to_string_lossy().into_owned();
+    // The user does not know the name of the temporary file.
+    work(file.path()).map_err(|error| {
+        let named = |text: String| text.replace(&path, "standard input");
+        CommandError { why: named(error.why), next: error.next.map(named), ..error }
+    })
+}
+
+/// Refuses options that have no effect on this kind of INPUT.
+pub(crate) fn accept(input: &Input, args: &InputArgs) -> Result<()> {
+    let holds = |what| format!("{} holds {what}", args.input);
+    match input {
+        Input::Volume(..) | Input::Labels(..) => {
+            args.typed.refuse(&["columns", "class", "withheld", "thin"], holds("a volume"))
+        }
+        Input::Points(_, facts) => {
+            let what = holds("points, and no volume");
+            if facts.range.is_none() {
+                args.typed.refuse(&["gray_out"], &what)?;
+            }
+            args.typed.refuse(&options::of_volumes(), what)
+        }
+    }
+}
+
+/// The region that coverage is a share of, with its volume.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub(crate) struct Domain {
+    pub volume: f64,
+    /// Unit of length; the volume is in its cube.
+    pub unit: LengthUnit,
+    /// The region measured.
+    pub of: &'static str,
+}
+
+impl Domain {
+    /// The box between the outermost samples of a grid.
+    pub(crate) fn of_grid(volume: &Volume, units: Units) -> Self {
+        let unit = units.coordinates(volume).unit;
+        Self { volume: units.box_volume(volume), unit, of: "the box of the samples" }
+    }
+}
+
+impl Display for Domain {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}, volume {} {}³", self.of, self.volume, self.unit.symbol())
+    }
+}
+
+/// The domain of weighted points: that of the grid they come from, or their own box.
+pub(crate) fn domain(weighed: &Weighed, volume: Option<&VolumeSummary>) -> Domain {
+    let unit = weighed.origin.coordinates.unit;
+    if let Some(volume) = volume {
+        return Domain { volume: volume.extent, unit, of: "the box of the samples" };
+    }
+    let [low, high] = bounding_box(weighed.points.positions());
+    let volume = [0, 1, 2].map(|k| high[k] - low[k]).iter().product();
+    Domain { volume, unit, of: "the box of the points" }
+}
+
+/// The shape of a volume's points, filled in, and the gray levels of all its points. Those of the first points are
+/// given, because the shape may carry other values.
+pub(crate) fn filled_in(
+    shape: &AlphaShape,
+    grays: &[f64],
+    volume: &Volume,
+    units: Units,
+) -> Result<(AlphaShape, Vec<f64>), InterpolateError> {
+    let whole = fill(shape, Some(volume), units)?;
+    // The corners come after the points, and are in gray levels already.
+    let corners = whole.points().values().into_iter().flatten().skip(grays.len());
+    let all = grays.iter().chain(corners).copied().collect();
+    Ok((whole, all))
+}

@@ -1,0 +1,376 @@
+//! `walpha shape`: the whole pipeline, and its outputs.
+
+use std::io::Write;
+use std::path::PathBuf;
+
+use clap::Args;
+use walpha_base::shown::shown;
+use walpha_files::Working;
+
+use crate::cli::commands::blocks;
+use crate::cli::commands::outline;
+use crate::cli::commands::pipeline;
+use crate::cli::commands::pipeline::VolumeSummary;
+use crate::cli::commands::shape_in_blocks::{self, SharedWork};
+use crate::cli::options::formats::shape_output;
+use crate::cli::options::global::Global;
+use crate::cli::options::picture::PictureArgs;
+use crate::cli::options::{Declared, OfShape, OutputArgs, Periodic, PipelineArgs};
+use crate::cli::process::errors::{CommandError, Result, fail_usage, option};
+use crate::cli::process::output::{print_summary, remark};
+use crate::cli::process::progress::Progress;
+use crate::cli::report::Report;
+use crate::cli::report::offsets::offsets;
+use crate::export::{
+    Content, EmptyShape, ExportOptions, Exporter, FORMATS, Format, Needs, Target, TargetError,
+    write_all,
+};
+use crate::outofcore::{BlockwiseFormat, Team};
+use crate::pipeline::{Input, Values};
+use crate::points::{ModelMetadata, Packing, PointWriter};
+use crate::progress::Stage;
+use crate::volume::UnknownFormat;
+use crate::{AlphaShape, Recipe};
+
+/// Compute the weighted alpha shape of a volume or of points.
+///
+/// Examples:
+///
+/// walpha shape ct.nii.gz --gray 0..1000 --gray-min 64 --threshold 30 -o bone.ply
+///
+/// walpha shape sample:skull --weights min-max --alpha 10 -o skull.ply skull.vtu
+///
+/// walpha shape scan.xyz --alpha auto --solid -o scan.stl
+///
+/// walpha shape trees.csv --alpha-radius 50 -o forest.geojson forest.svg
+///
+/// walpha shape foam.xyz --periodic 20,20,20 --alpha 1.5 -o foam.npz foam.vtu
+///
+/// walpha shape labels.nrrd --label 3,5 --solid -o organ.stl
+///
+/// walpha shape labels.nrrd --each-label --solid -o organs
+#[derive(Args)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a switch of its own")]
+pub(crate) struct Shape {
+    #[arg(short, long, value_name = "FILE", num_args = 1.., help = "Files to write, as in bone.ply; --help lists the formats",
+          long_help = shape_output())]
+    pub(crate) output: Vec<PathBuf>,
+    /// Write PLY as text instead of binary.
+    #[arg(long)]
+    pub(crate) ascii: bool,
+    /// Write boundaries as solids, for 3D printing or meshing: only regular facets, closed, oriented, and
+    /// cut apart where parts touch along edges or at vertices.
+    #[arg(long)]
+    pub(crate) solid: bool,
+    /// Distinguish regular and singular facets, which some programs do not expect: by groups (OBJ),
+    /// colours (OFF) or numbers (PLY, with components and sheets).
+    #[arg(long)]
+    pub(crate) groups: bool,
+    /// Refuse points that span no volume. Otherwise points in one plane or on one line get the shape that
+    /// they have there: triangles or edges, and no cells.
+    #[arg(long)]
+    require_3d: bool,
+    /// Go on with a shape of nothing, which otherwise is an error: write files that hold nothing of it, such as an
+    /// STL without a facet.
+    #[arg(long)]
+    allow_empty: bool,
+    /// Write the solid of each label of a segmentation to a file of its own, label-N, in the folder that --output names.
+    #[arg(long, help_heading = "Labels")]
+    each_label: bool,
+    /// With --each-label: formats to write, by extension, as in ply,vtu [default: stl].
+    #[arg(
+        long,
+        value_name = "EXT,EXT,…",
+        value_delimiter = ',',
+        requires = "each_label",
+        help_heading = "Labels"
+    )]
+    pub(crate) mesh: Vec<String>,
+    #[command(flatten)]
+    pub(crate) pipeline: PipelineArgs,
+    #[command(flatten)]
+    shape: Declared<OfShape>,
+    #[command(flatten)]
+    periodic: Declared<Periodic>,
+    #[command(flatten)]
+    format: OutputArgs,
+    #[command(flatten)]
+    picture: PictureArgs,
+}
+
+/// The formats of shapes among the outputs with these names.
+fn formats(names: &[PathBuf]) -> impl Iterator<Item = &'static Format> {
+    names.iter().filter_map(|name| Format::of(name).ok())
+}
+
+/// Refuses a switch that has no effect.
+fn unused(name: &str, given: bool, why: &str) -> Result<()> {
+    if given {
+        fail_usage!("{name} has no effect: {why}" => "omit it");
+    }
+    Ok(())
+}
+
+impl Shape {
+    /// The options of all stages; refuses those that no output uses.
+    fn recipe(&self) -> Result<Recipe> {
+        let input = &self.pipeline.input;
+        self.format.check(self.output.iter())?;
+        let names = self.names()?;
+        let of_each = if self.each_label { self.meshes()? } else { Vec::new() };
+        let formats: Vec<&Format> =
+            formats(&names).chain(of_each.iter().map(|mesh| mesh.format)).collect();
+        let written = |has: fn(&Format) -> bool| formats.iter().any(|format| has(format));
+        let known = |has: fn(&Format) -> bool| {
+            let names = FORMATS.iter().filter(|format| has(format)).map(|format| format.name);
+            let mut names: Vec<&str> = names.collect();
+            names.sort_unstable();
+            match &names[..] {
+                [all @ .., last] if !all.is_empty() => format!("{} and {last}", all.join(", ")),
+                _ => names.concat(),
+            }
+        };
+        if self.solid && self.pipeline.settings().periodic().is_some() {
+            fail_usage!("--solid is for shapes in space, and the boundary of one of a torus is cut open at the sides of the box" => "omit it, or omit --periodic");
+        }
+        if self.pipeline.settings().periodic().is_some() {
+            outline::refuse(formats.iter().copied(), "a periodic box is a torus and no plane")?;
+        }
+        if self.require_3d {
+            outline::refuse(formats.iter().copied(), "--require-3d refuses these")?;
+        }
+        if !names.iter().any(|name| PictureArgs::wanted(name)) {
+            input.typed.refuse(&PictureArgs::NAMES, "no picture (.png) is written")?;
+        }
+        if !written(|format| format.ascii) {
+            let why = format!("only {} has a binary form and a text form", known(|f| f.ascii));
+            unused("--ascii", self.ascii, &why)?;
+        }
+        if !written(|format| format.groups) {
+            let why =
+                format!("only {} can separate regular and singular facets", known(|f| f.groups));
+            unused("--groups", self.groups, &why)?;
+        }
+        if !written(|format| format.boundary) {
+            unused("--solid", self.solid, "no output holds a boundary alone")?;
+        }
+        let recipe = self.pipeline.recipe()?;
+        Ok(recipe.refuse_flat(self.require_3d))
+    }
+
+    /// How outputs are written.
+    pub(crate) fn export(&self) -> ExportOptions {
+        ExportOptions::default()
+            .ascii(self.ascii)
+            .solid(self.solid)
+            .groups(self.groups)
+            .input(Some(self.pipeline.input.input.to_string()))
+    }
+
+    /// The outputs, under names whose extensions say their formats.
+    fn names(&self) -> Result<Vec<PathBuf>> {
+        self.output.iter().map(|path| self.format.named(path)).collect()
+    }
+
+    pub(crate) fn run(self, global: Global, team: &dyn Team) -> Result<()> {
+        // Before the long work, a bad option, extension or path costs nothing yet.
+        let recipe = self.recipe()?;
+        if self.each_label {
+            return self.each_label(&recipe, global);
+        }
+        let folder = shape_in_blocks::working_folder(&self.output, &self.pipeline.input.input);
+        let in_blocks =
+            team.size() > 1 || self.output.iter().any(|path| BlockwiseFormat::of(path).is_some());
+        let working = (in_blocks && !global.in_place).then(|| Working::folder(&folder));
+        let outputs = Outputs::open(&self)?;
+        // From here on, blocks are written to the working folder.
+        drop(working);
+        let mut progress = Progress::new(global);
+        let mut report = if in_blocks {
+            self.in_blocks(recipe, outputs, folder, global, &mut progress, team)?
+        } else {
+            self.at_once(&recipe, outputs, global, &mut progress)?
+        };
+        let files = self.output.iter().map(|path| path.display().to_string()).collect();
+        report.finish(progress.finish(), files);
+        if team.size() > 1 {
+            report.peak_memory_bytes = shape_in_blocks::peak(team);
+        }
+        print_summary(global, &report)
+    }
+
+    /// Makes the shape in blocks, which are kept in files.
+    fn in_blocks(
+        &self,
+        recipe: Recipe,
+        outputs: Outputs,
+        folder: PathBuf,
+        global: Global,
+        progress: &mut Progress,
+        team: &dyn Team,
+    ) -> Result<Report> {
+        let flat = "a block may be flat where the whole is not";
+        unused("--require-3d", self.require_3d, flat)?;
+        outline::refuse(formats(&self.names()?), "there are blocks, which span a volume")?;
+        let parts = "it takes the whole boundary, and there are blocks";
+        unused("--solid", self.solid, parts)?;
+        self.pipeline.input.typed.refuse(&["refit", "periodic"], "there are blocks")?;
+        if let Some((target, _)) = outputs.models.first() {
+            let name = shown(target.path());
+            fail_usage!("{name} takes all points at once, and there are blocks" => "write it by `walpha points`");
+        }
+        let outputs = blocks::Outputs { pieces: outputs.pieces, whole: outputs.whole };
+        let pieces = outputs.pieces.clone();
+        let work = SharedWork::new(&self.pipeline.input, recipe, pieces, folder, global)?;
+        work.lead(outputs, progress, team)
+    }
+
+    /// Makes the shape in memory.
+    fn at_once(
+        &self,
+        recipe: &Recipe,
+        outputs: Outputs,
+        global: Global,
+        progress: &mut Progress,
+    ) -> Result<Report> {
+        let input = &self.pipeline.input;
+        let names = self.names()?;
+        // A CT may tell the recipe what to look for.
+        let mut recipe = recipe.clone();
+        let read = pipeline::read_suited(input, &mut recipe, progress)?;
+        let recipe = &recipe;
+        pipeline::accept(&read, input)?;
+        let read = match read {
+            Input::Labels(volume) => {
+                return self.of_labels(volume, recipe, outputs, global, progress);
+            }
+            read => read,
+        };
+        if let Input::Points(points, _) = &read {
+            outline::check(formats(&names), &points.positions)?;
+        }
+        let (weighed, source) = pipeline::weigh(read, input, recipe, Values::Written, progress)?;
+        if source.is_some() {
+            outline::check(formats(&names), weighed.points.positions())?;
+        }
+        let volume = source.as_ref().map(VolumeSummary::of);
+        drop(source);
+        let mut report = Report::of_points(&input.input, &weighed, volume.as_ref());
+        let mut facts = weighed.metadata(volume.map(|volume| volume.written));
+        let model = pipeline::shape(weighed, recipe, progress)?;
+        if !self.allow_empty {
+            progress.watch(|| outputs.refuse_empty(&model.shape))?;
+        }
+        facts.alpha = Some(model.parameter.alpha);
+        progress.stage(Stage::Measure, || report.add_model(&model));
+        self.deliver(&model.shape, &facts, report, outputs, global, progress)
+    }
+
+    /// Writes a shape, and adds to its report what the files do to its boundary and its coordinates.
+    pub(crate) fn deliver(
+        &self,
+        shape: &AlphaShape,
+        facts: &ModelMetadata,
+        mut report: Report,
+        outputs: Outputs,
+        global: Global,
+        progress: &mut Progress,
+    ) -> Result<Report> {
+        if self.solid {
+            progress.stage(Stage::Measure, || report.add_solid(shape.solid().1));
+        }
+        let remarks = outputs.remarks(shape);
+        report.offsets = offsets(&outputs.whole, shape);
+        progress.stage(Stage::Write, || outputs.write(shape, facts))?;
+        if !global.quiet {
+            remarks.iter().for_each(|text| remark(&format!("walpha: {text}")));
+        }
+        Ok(report)
+    }
+}
+
+/// The outputs, by what they are made from.
+#[derive(Default)]
+pub(crate) struct Outputs {
+    /// The blocks: a file for each.
+    pub pieces: Vec<(BlockwiseFormat, PathBuf)>,
+    /// The shape.
+    pub whole: Vec<(Target, Box<dyn Exporter>)>,
+    /// The points, with all that is needed to make the shape again.
+    pub models: Vec<(Target, &'static PointWriter)>,
+}
+
+impl Outputs {
+    /// Opens the outputs that the options name.
+    pub(crate) fn open(shape: &Shape) -> Result<Self> {
+        let export = shape.export();
+        let mut outputs = Self::default();
+        for path in &shape.output {
+            let name = shape.format.named(path)?;
+            if let Some(pieces) = BlockwiseFormat::of(&name) {
+                pieces.check(path)?;
+                outputs.pieces.push((pieces, path.clone()));
+            } else if let Some(writer) = PointWriter::of(&name).ok().filter(|writer| writer.packs) {
+                outputs.models.push((Target::open(path)?, writer));
+            } else if PictureArgs::wanted(&name) {
+                outputs.whole.push((Target::open(path)?, shape.picture.exporter()));
+            } else {
+                let unknown = |_| UnknownFormat::new(path, "a shape", extensions());
+                let format = Format::of(&name).map_err(unknown)?;
+                outputs.whole.push((Target::open(path)?, format.exporter(&export)));
+            }
+        }
+        Ok(outputs)
+    }
+
+    /// Refuses a shape of which a file would hold nothing, and without files one of nothing.
+    fn refuse_empty(&self, shape: &AlphaShape) -> Result<()> {
+        if self.whole.is_empty() && self.models.is_empty() {
+            EmptyShape::check(shape, Needs::Simplex).map_err(or_allowed)?;
+        }
+        for (target, exporter) in &self.whole {
+            EmptyShape::check(shape, exporter.needs())
+                .map_err(|error| or_allowed(error).context(shown(target.path())))?;
+        }
+        Ok(())
+    }
+
+    /// Remarks of the chosen formats about the shape.
+    fn remarks(&self, shape: &AlphaShape) -> Vec<String> {
+        let remark = |(target, exporter): &(Target, Box<dyn Exporter>)| {
+            let remark = exporter.remark(shape)?.with_names(option);
+            Some(format!("{}: {remark}", shown(target.path())))
+        };
+        self.whole.iter().filter_map(remark).collect()
+    }
+
+    /// Writes all outputs that are made from a whole shape.
+    fn write(self, shape: &AlphaShape, facts: &ModelMetadata) -> Result<(), TargetError> {
+        let whole = self.whole.into_iter().map(|(target, exporter)| {
+            let content = move |out: &mut dyn Write| exporter.write(shape, out);
+            (target, Box::new(content) as Content<'_>)
+        });
+        let models = self.models.into_iter().map(|(target, writer)| {
+            let content = move |out: &mut dyn Write| {
+                writer.write_model(shape.points(), facts, &Packing::default(), out)
+            };
+            (target, Box::new(content) as Content<'_>)
+        });
+        write_all(whole.chain(models))
+    }
+}
+
+/// The error for a shape of nothing, which may be allowed.
+fn or_allowed(empty: EmptyShape) -> CommandError {
+    let error = CommandError::from(empty);
+    let next = error.next.map(|next| format!("{next}, or --allow-empty to go on all the same"));
+    CommandError { next, ..error }
+}
+
+/// Extensions of all formats that a shape is written in.
+fn extensions() -> impl Iterator<Item = &'static str> + Clone {
+    let pieces = BlockwiseFormat::ALL.iter().map(|(_, extension)| *extension);
+    let models = PointWriter::all().filter(|writer| writer.packs).map(|writer| writer.extension);
+    let shapes = FORMATS.iter().map(|format| format.extension);
+    shapes.chain(PictureArgs::EXTENSIONS).chain(models).chain(pieces)
+}

@@ -1,0 +1,164 @@
+//! `walpha shape` of a segmentation: the solid of its labels, in one file or in one for each label.
+
+use std::collections::BTreeMap;
+use std::fmt::{self, Display};
+use std::path::Path;
+
+use serde::Serialize;
+use walpha_base::shown::number;
+
+use crate::cli::commands::folder::Folder;
+use crate::cli::commands::ladder::{Mesh, meshes};
+use crate::cli::commands::pipeline;
+use crate::cli::commands::shape::{Outputs, Shape};
+use crate::cli::options::global::Global;
+use crate::cli::options::refuse_gray_levels;
+use crate::cli::process::errors::{Result, fail_usage};
+use crate::cli::process::output::print_summary;
+use crate::cli::process::progress::Progress;
+use crate::cli::report::offsets::FileOffset;
+use crate::cli::report::{Report, SCHEMA_VERSION, ending};
+use crate::labels::{LabelChoice, LabelSize, chosen};
+use crate::pipeline::Input;
+use crate::points::ModelMetadata;
+use crate::progress::Stage;
+use crate::shape::Betti;
+use crate::volume::Volume;
+use crate::{Coordinates, LengthUnit, Recipe};
+
+/// What the solids are written as unless told otherwise.
+const DEFAULT_MESH: &str = "stl";
+
+impl Shape {
+    /// Makes the solid of the labels that the recipe names.
+    pub(crate) fn of_labels(
+        &self,
+        volume: Volume,
+        recipe: &Recipe,
+        outputs: Outputs,
+        global: Global,
+        progress: &mut Progress,
+    ) -> Result<Report> {
+        let input = &self.pipeline.input;
+        refuse_gray_levels(input)?;
+        refuse_points_alone(&outputs)?;
+        let dims = volume.dims().xyz();
+        let model = progress.watch(|| recipe.solid(&volume))?;
+        drop(volume);
+        let mut report = Report::of_labels(&input.input, dims, &model);
+        progress.stage(Stage::Measure, || report.add_shape(&model));
+        self.deliver(&model.shape, &ModelMetadata::default(), report, outputs, global, progress)
+    }
+
+    /// Makes the solid of each label, in files of their own.
+    pub(crate) fn each_label(&self, recipe: &Recipe, global: Global) -> Result<()> {
+        let [folder] = &self.output[..] else {
+            fail_usage!("--each-label writes a file for each label to one folder" => "name it, as in -o labels");
+        };
+        let meshes = self.meshes()?;
+        let choice = recipe.labels.clone().unwrap_or(LabelChoice::All);
+        let recipe = recipe.clone().labels(Some(choice.clone()));
+        refuse_gray_levels(&self.pipeline.input)?;
+        let mut folder = Folder::open(folder, "--output", &[])?;
+        let mut progress = Progress::new(global);
+        let input = &self.pipeline.input;
+        let read = pipeline::read(input, &recipe, &mut progress)?;
+        pipeline::accept(&read, input)?;
+        let Input::Labels(volume) = read else {
+            fail_usage!("{} holds points, which have no labels", input.input => "omit --each-label");
+        };
+        let mut solids = Vec::new();
+        let mut coordinates = volume.frame().coordinates;
+        for (label, voxels) in chosen(&volume, &choice)? {
+            let one = vec![(label, voxels)];
+            let model = progress.watch(|| recipe.solid_of(&volume, one))?;
+            coordinates = model.origin.coordinates;
+            let shape = &model.shape;
+            let (mut files, mut offsets) = (Vec::new(), Vec::new());
+            for mesh in &meshes {
+                let name = format!("label-{label}.{}", mesh.extension);
+                offsets.extend(FileOffset::of(Path::new(&name), mesh.exporter.as_ref(), shape));
+                progress.stage(Stage::Write, || {
+                    folder.write(&name, |out| mesh.exporter.write(shape, out))
+                })?;
+                files.extend(folder.written().last().cloned());
+            }
+            let size = model.labels.as_ref().and_then(|sizes| sizes.labels.first().copied());
+            let size = size.expect("a label that is there");
+            solids.push(SolidSummary { size, betti: shape.betti(), files, offsets });
+        }
+        folder.finish()?;
+        print_summary(
+            global,
+            &EachLabel {
+                schema_version: SCHEMA_VERSION,
+                input: input.input.to_string(),
+                coordinates,
+                labels: solids,
+                seconds: progress.finish().into_iter().collect(),
+            },
+        )
+    }
+
+    /// The formats that `--each-label` writes.
+    pub(crate) fn meshes(&self) -> Result<Vec<Mesh>> {
+        meshes(&self.mesh, &[DEFAULT_MESH], &self.export())
+    }
+}
+
+/// Refuses outputs that hold points alone, from which a shape is made by α.
+fn refuse_points_alone(outputs: &Outputs) -> Result<()> {
+    if let Some((target, _)) = outputs.models.first() {
+        let name = walpha_base::shown::shown(target.path());
+        fail_usage!("{name} holds points, of which shapes are made by α, and this is the solid of labels" => "write a mesh, .json or .npz");
+    }
+    Ok(())
+}
+
+/// Summary printed after writing a solid for each label.
+#[derive(Serialize)]
+struct EachLabel {
+    schema_version: u32,
+    input: String,
+    coordinates: Coordinates,
+    labels: Vec<SolidSummary>,
+    seconds: BTreeMap<&'static str, f64>,
+}
+
+/// The solid of a label.
+#[derive(Serialize)]
+struct SolidSummary {
+    #[serde(flatten)]
+    size: LabelSize,
+    betti: Option<Betti>,
+    files: Vec<String>,
+    /// What files in single precision have subtracted from coordinates, where they have.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    offsets: Vec<FileOffset>,
+}
+
+impl Display for EachLabel {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let unit: LengthUnit = self.coordinates.unit;
+        writeln!(f, "input     {}", crate::cli::process::output::name(&self.input))?;
+        writeln!(f, "lengths   in {}", self.coordinates)?;
+        for SolidSummary { size: LabelSize { label, voxels, volume, .. }, betti, .. } in
+            &self.labels
+        {
+            write!(
+                f,
+                "label     {label}: {voxels} voxels, {} {}³",
+                number(*volume),
+                unit.symbol()
+            )?;
+            match betti {
+                Some(betti) => writeln!(f, "; {betti}")?,
+                None => writeln!(f)?,
+            }
+        }
+        let offsets = self.labels.iter().flat_map(|solid| &solid.offsets);
+        offsets.into_iter().try_for_each(|offset| offset.fmt(f))?;
+        let files: Vec<String> = self.labels.iter().flat_map(|solid| solid.files.clone()).collect();
+        ending(f, &files, &["read", "shape", "write", "total"], &self.seconds)
+    }
+}

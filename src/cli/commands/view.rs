@@ -1,0 +1,428 @@
+//! `walpha view`: an interactive page.
+
+use std::collections::BTreeMap;
+use std::fmt::{self, Display};
+use std::path::PathBuf;
+use std::str::FromStr;
+
+use clap::Args;
+use serde::Serialize;
+use walpha_base::shown::{number, shown};
+
+use crate::cli::commands::pipeline::{self, VolumeSummary, filled_in};
+use crate::cli::options::global::Global;
+use crate::cli::options::{self, Alphas, FrozenPipelineArgs};
+use crate::cli::process::errors::{CommandError, Result, fail, fail_usage};
+use crate::cli::process::output::{name, print_summary, remark};
+use crate::cli::process::progress::Progress;
+use crate::cli::report::{SCHEMA_VERSION, WeightsReport};
+use crate::export::Target;
+use crate::interpolate::{Deviation, Grid, Interpolant};
+use crate::ladder::Filtration;
+use crate::pipeline::{AlphaRule, Input, Parameter, PipelineError, Source, Values, Weighed};
+use crate::progress::Stage;
+use crate::render::{self, Differences, Original, Page, Subject};
+use crate::volume::UnknownFormat;
+use crate::{Alpha, Frame, GrayRange, Recipe, Units};
+
+/// Write an interactive page for the browser: self-contained, no network needed.
+///
+/// A slider moves through α with the weights frozen. Colours show classes, F, weights, or how far the
+/// interpolant is from the volume there. Singular facets and edges, points sized by weight, their balls
+/// and an isosurface of the volume can be shown or hidden, and a plane cuts the shape open.
+///
+/// Examples:
+///
+/// walpha view ct.nii.gz --gray 0..1000 --gray-min 64 --threshold 30 -o bone.html
+///
+/// walpha view sample:skull --weights min-max --counts 1000,4000 -o skull.html
+///
+/// walpha view scan.xyz -o scan.html
+#[derive(Args)]
+pub(crate) struct View {
+    /// Page to write (.html); an existing file is replaced.
+    #[arg(short, long, value_name = "FILE")]
+    output: PathBuf,
+    /// The α, a squared length, that the page opens at, given as for `walpha shape` [default: --alpha-ref].
+    #[arg(long, value_name = "A", allow_negative_numbers = true)]
+    alpha: Option<AlphaRule>,
+    /// Stops of the slider: squared lengths, as in 1,2,5,inf; or auto, critical values that each change
+    /// the picture.
+    #[arg(long, value_name = "A,A,…", default_value = "auto", allow_hyphen_values = true)]
+    alphas: Alphas,
+    /// Further levels of detail to switch between: numbers of points, chosen as those of the shape are.
+    #[arg(long, value_name = "N,N,…", value_delimiter = ',', value_parser = clap::value_parser!(u64).range(1..))]
+    counts: Vec<u64>,
+    /// Level of the isosurface, for volumes: a gray level, as in 50, or a value of INPUT, as in 300v
+    /// [default: 50].
+    #[arg(long, value_name = "G", allow_negative_numbers = true)]
+    isovalue: Option<Isovalue>,
+    #[command(flatten)]
+    pipeline: FrozenPipelineArgs,
+}
+
+impl View {
+    pub(crate) fn run(self, global: Global) -> Result<()> {
+        let html = self.output.extension().is_some_and(|e| e.eq_ignore_ascii_case("html"));
+        if !html {
+            return Err(UnknownFormat::new(&self.output, "a page", ["html"]).into());
+        }
+        let target = Target::open(&self.output)?;
+        let mut progress = Progress::new(global);
+        let (weighed, source) = self.weighed(&mut progress)?;
+        let details =
+            weighed.into_iter().map(|weighed| Detail::new(weighed, source.as_ref(), &mut progress));
+        let details = details.collect::<Result<Vec<_>, _>>()?;
+        let (page, facts) = self.page(&details, source.as_ref(), &mut progress)?;
+        if !global.quiet {
+            let size = page.html.len() as f64 / 1e6;
+            remark(&format!("walpha: {} takes {size:.1} MB", shown(&self.output)));
+            if let Some(simplified) = &page.simplified {
+                remark(&format!("walpha: {simplified}"));
+            }
+        }
+        progress.stage(Stage::Write, || target.write(|out| out.write_all(page.html.as_bytes())))?;
+        let facts = ViewSummary {
+            schema_version: SCHEMA_VERSION,
+            input: self.pipeline.input.input.to_string(),
+            details: facts,
+            bytes: page.html.len(),
+            simplified: page.simplified,
+            file: self.output.display().to_string(),
+            seconds: progress.finish().into_iter().collect(),
+        };
+        print_summary(global, &facts)
+    }
+
+    /// The weighted points of each level of detail, the fewest first and those of the shape last, and the
+    /// volume that they come from.
+    fn weighed(&self, progress: &mut Progress) -> Result<(Vec<Weighed>, Option<Source>)> {
+        let input = &self.pipeline.input;
+        let mut recipe = self.pipeline.recipe()?;
+        let read = pipeline::read_suited(input, &mut recipe, progress)?;
+        pipeline::accept(&read, input)?;
+        let grays = match read {
+            Input::Points(..) => {
+                if self.isovalue.is_some() {
+                    fail_usage!("--isovalue has no effect: points have no isosurface" => "omit it");
+                }
+                if !self.counts.is_empty() {
+                    fail_usage!("--counts chooses samples of a volume, and {} holds points", input.input => "omit it");
+                }
+                let weigh = || recipe.weigh(read, Values::Written);
+                let (weighed, _) = progress.watch(weigh)?;
+                return Ok((vec![weighed], None));
+            }
+            Input::Labels(..) => return Err(PipelineError::OfLabels.into()),
+            Input::Volume(grays) => grays,
+        };
+        let source = recipe.source(grays)?;
+        let mut counts = self.counts.clone();
+        counts.sort_unstable();
+        counts.dedup();
+        let selected = |count| recipe.clone().choice(recipe.choice.with_count(count));
+        let coarse: Vec<Recipe> = counts.into_iter().map(selected).collect();
+        let weigh = |recipe: &Recipe| progress.watch(|| recipe.weighed(&source, Values::Written));
+        let details = coarse.iter().chain([&recipe]).map(weigh).collect::<Result<_, _>>()?;
+        Ok((details, Some(source)))
+    }
+
+    /// Makes the page of the shapes, and the summary of each level of detail.
+    fn page(
+        &self,
+        details: &[Detail],
+        source: Option<&Source>,
+        progress: &mut Progress,
+    ) -> Result<(Page, Vec<DetailSummary>)> {
+        let last = details.last().expect("the level of the shape");
+        let facts = source.map(VolumeSummary::of);
+        let facts = facts.as_ref();
+        let facts_shown = self.page_facts(&last.weighed, facts, last.reference());
+        let isovalue = self.isovalue.unwrap_or_default();
+        let original = source.map(|Source { volume, units, range, .. }| Original {
+            volume,
+            isovalue: isovalue.gray(range),
+            frame: match units {
+                Units::Voxel => &Frame::VOXEL,
+                Units::World => volume.frame(),
+            },
+        });
+        if let Some(source) = source {
+            isovalue.check(source);
+        }
+        let mut shown = Vec::new();
+        for detail in details {
+            let opening = detail.opening(self.alpha);
+            let alphas = match &self.alphas {
+                Alphas::Given(alphas) => {
+                    [&alphas[..], self.alpha.map(|_| opening).as_slice()].concat()
+                }
+                Alphas::Auto => progress.stage(Stage::Curve, || detail.stops(opening)),
+            };
+            let levels = detail.filtration.levels(&alphas);
+            let count = levels.len() as u32;
+            if levels.vertices().iter().all(|(_, span)| span.first >= count) {
+                fail!("no shape has a simplex up to {}", levels.alphas()[levels.len() - 1] => "give larger values of α to --alphas, or omit it");
+            }
+            if levels.len() > Page::MOST_LEVELS {
+                let (levels, most) = (levels.len(), Page::MOST_LEVELS);
+                fail_usage!("{levels} levels are too many for a page" => "give at most {most} values in --alphas");
+            }
+            let domain = pipeline::domain(&detail.weighed, facts).volume;
+            let ladder = progress.stage(Stage::Ladder, || levels.ladder(domain));
+            // The level at this α, or the last below it.
+            let first = levels.alphas().partition_point(|alpha| *alpha <= opening);
+            shown.push((levels, ladder, first.saturating_sub(1)));
+        }
+        let rendered = details.iter().zip(&shown).map(|(detail, (levels, ladder, first))| {
+            let differences = detail.differences.as_ref();
+            render::Detail { levels, ladder, first: *first, differences }
+        });
+        let rendered: Vec<_> = rendered.collect();
+        let title = format!("Alpha shapes of {}", name(&self.pipeline.input.input));
+        let grays = facts.is_some_and(|facts| facts.written == GrayRange::IDENTITY);
+        let subject = Subject {
+            title: &title,
+            facts: &facts_shown,
+            unit: last.weighed.origin.coordinates.unit.symbol(),
+            value: match facts {
+                Some(_) if grays => "value of the original volume, in gray levels",
+                Some(_) => "value of the original volume",
+                None => "the column value of the input",
+            },
+            difference: if grays { "gray levels" } else { "values of the file" },
+            details: &rendered,
+            original,
+        };
+        let page = progress.stage(Stage::Page, || Page::new(&subject))?;
+        Ok((page, rendered.iter().map(DetailSummary::of).collect()))
+    }
+
+    /// The facts that the page lists besides the numbers of levels.
+    fn page_facts(
+        &self,
+        weighed: &Weighed,
+        volume: Option<&VolumeSummary>,
+        reference: Parameter,
+    ) -> Vec<(String, String)> {
+        let mut facts_shown = vec![("input".to_owned(), name(&self.pipeline.input.input))];
+        if let Some((volume, t)) = volume.zip(weighed.origin.truncation.as_ref()) {
+            let [x, y, z] = volume.dims;
+            let (low, high) = (number(volume.range.low), number(volume.range.high));
+            facts_shown.push((
+                "volume".into(),
+                format!("{x}×{y}×{z} samples, values {low} to {high} are gray 0 to 255"),
+            ));
+            facts_shown.push((
+                "Haar".into(),
+                format!(
+                    "{} of {} coefficients kept, rms {:.4} gray levels",
+                    t.kept, t.total, t.rms
+                ),
+            ));
+        }
+        facts_shown.push(("lengths in".into(), weighed.origin.coordinates.to_string()));
+        facts_shown.push((
+            "weights ω".into(),
+            format!("{}, frozen at {reference}", WeightsReport::of(weighed)),
+        ));
+        facts_shown.push(("made by".into(), format!("walpha {}", env!("CARGO_PKG_VERSION"))));
+        facts_shown
+    }
+}
+
+/// Number of levels that `--alphas auto` chooses, besides the suggested ones.
+const STOPS: usize = 28;
+/// Critical values among which it chooses: all of them would take longer than the shape.
+const CANDIDATES: usize = 1024;
+
+pub(crate) struct Detail {
+    pub weighed: Weighed,
+    pub filtration: Filtration,
+    /// Difference of F from the volume, in the values that are written.
+    pub differences: Option<Differences>,
+}
+
+impl Detail {
+    pub(crate) fn new(
+        weighed: Weighed,
+        source: Option<&Source>,
+        progress: &mut Progress,
+    ) -> Result<Self> {
+        let filtration = progress.watch(|| pipeline::filtration(None, &weighed))?;
+        let differences = match source {
+            Some(source) => {
+                let measure = || differences(&weighed, source, &filtration);
+                progress.stage(Stage::Interpolate, measure)?
+            }
+            None => None,
+        };
+        Ok(Self { weighed, filtration, differences })
+    }
+
+    /// The α that the weights are computed for, or else the one that is found.
+    pub(crate) fn reference(&self) -> Parameter {
+        self.weighed.parameter.unwrap_or_else(|| self.by_rule(self.weighed.rule))
+    }
+
+    /// The α that the page opens at.
+    pub(crate) fn opening(&self, asked: Option<AlphaRule>) -> Alpha {
+        asked.map_or_else(|| self.reference(), |rule| self.by_rule(rule)).alpha
+    }
+
+    fn by_rule(&self, rule: AlphaRule) -> Parameter {
+        rule.on(&self.filtration, self.weighed.origin.coordinates.unit)
+    }
+
+    /// Stops of the slider that each show something, and something other than the one before: the one to open at,
+    /// suggested ones, and others between.
+    pub(crate) fn stops(&self, opening: Alpha) -> Vec<Alpha> {
+        let curve = self.filtration.coarse_curve(CANDIDATES);
+        let mut alphas = self.filtration.stops(&curve, STOPS);
+        alphas.push(opening);
+        alphas.extend(pipeline::suggested(&self.filtration, &curve));
+        let distinct = self.filtration.levels(&alphas).distinct(opening);
+        if distinct.is_empty() { vec![opening] } else { distinct }
+    }
+}
+
+/// Difference of the interpolant, filled in, from the volume; `None` if the points have no values.
+fn differences(
+    weighed: &Weighed,
+    source: &Source,
+    filtration: &Filtration,
+) -> Result<Option<Differences>> {
+    let Source { volume, units, written, .. } = source;
+    let Some(values) = weighed.points.values() else { return Ok(None) };
+    let grays: Vec<f64> = values.iter().map(|&value| written.gray(value)).collect();
+    let (whole, grays) = filled_in(filtration.whole(), &grays, volume, *units)?;
+    let interpolant = Interpolant::with_values(&whole, &grays)?;
+    let grid = Grid::of(volume, *units);
+    let resampled = interpolant.resample(&grid)?;
+    let mut local = interpolant.local_deviations(volume, &grid, &resampled);
+    local.truncate(weighed.points.len());
+    let step = written.step();
+    local.iter_mut().for_each(|difference| *difference *= step);
+    let rmse = Deviation::of(volume, &resampled).rmse.unwrap_or_default() * step;
+    Ok(Some(Differences { local, rmse }))
+}
+
+/// A gray level, or a value of the file: `50` or `300v`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Isovalue {
+    /// A gray level.
+    Gray(f64),
+    /// A value of the file.
+    Value(f64),
+}
+
+impl Default for Isovalue {
+    fn default() -> Self {
+        Self::Gray(50.0)
+    }
+}
+
+impl Isovalue {
+    /// Says where no sample reaches it, or all do: there is no isosurface then.
+    fn check(self, Source { volume, range, .. }: &Source) {
+        let (low, high) = volume.value_range();
+        let [low, high] = [low, high].map(f64::from);
+        let gray = self.gray(range);
+        if low < gray && gray <= high {
+            return;
+        }
+        let ends = match self {
+            Self::Gray(_) => format!("gray levels go from {} to {}", number(low), number(high)),
+            Self::Value(_) => {
+                let [low, high] = [low, high].map(|gray| number(range.value(gray)));
+                format!("values go from {low} to {high}")
+            }
+        };
+        tracing::warn!("there is no isosurface at {self}, as {ends}; --isovalue chooses another");
+    }
+
+    /// The gray level, where values `range` are gray 0..255.
+    pub(crate) fn gray(self, range: &GrayRange) -> f64 {
+        match self {
+            Self::Gray(gray) => gray,
+            Self::Value(value) => range.gray(value),
+        }
+    }
+}
+
+impl Display for Isovalue {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Gray(gray) => write!(f, "gray {}", number(*gray)),
+            Self::Value(value) => write!(f, "{}", number(*value)),
+        }
+    }
+}
+
+impl FromStr for Isovalue {
+    type Err = CommandError;
+
+    fn from_str(text: &str) -> Result<Self> {
+        let (number, level): (_, fn(f64) -> Self) = match text.strip_suffix('v') {
+            Some(value) => (value, Self::Value),
+            None => (text, Self::Gray),
+        };
+        match options::number(number)? {
+            number if number.is_finite() => Ok(level(number)),
+            _ => fail!(
+                "a finite number is needed; give a gray level as in 50, or a value as in 300v"
+            ),
+        }
+    }
+}
+
+#[derive(Serialize)]
+pub(crate) struct ViewSummary {
+    pub schema_version: u32,
+    pub input: String,
+    /// The coarsest first; the shape's own is the last.
+    pub details: Vec<DetailSummary>,
+    pub bytes: usize,
+    /// What the page leaves out, if anything.
+    pub simplified: Option<String>,
+    pub file: String,
+    pub seconds: BTreeMap<&'static str, f64>,
+}
+
+/// A level of detail.
+#[derive(Serialize)]
+pub(crate) struct DetailSummary {
+    points: usize,
+    levels: usize,
+    /// RMSE of F, filled in, on all samples, in written values; null without a volume.
+    rmse_filled: Option<f64>,
+}
+
+impl DetailSummary {
+    pub(crate) fn of(detail: &render::Detail<'_>) -> Self {
+        Self {
+            points: detail.levels.points().len(),
+            levels: detail.levels.len(),
+            rmse_filled: detail.differences.map(|differences| differences.rmse),
+        }
+    }
+}
+
+impl Display for ViewSummary {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "input     {}", name(&self.input))?;
+        for DetailSummary { points, levels, rmse_filled } in &self.details {
+            write!(f, "detail    {points} points, {levels} levels")?;
+            match rmse_filled {
+                Some(rmse) => writeln!(f, ", RMSE of F {rmse:.4} (filled in)")?,
+                None => writeln!(f)?,
+            }
+        }
+        if let Some(simplified) = &self.simplified {
+            writeln!(f, "page      {simplified}")?;
+        }
+        writeln!(f, "wrote     {}, {:.1} MB", name(&self.file), self.bytes as f64 / 1e6)?;
+        let total = self.seconds.get("total").copied().unwrap_or_default();
+        writeln!(f, "time      total {total:.2} s")
+    }
+}

@@ -1,0 +1,48 @@
+//! Options and exit codes that all commands share.
+
+use clap::Args;
+
+/// Options of every command.
+#[derive(Args, Clone, Copy, Default)]
+#[command(next_help_heading = EVERY_COMMAND)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a switch of its own")]
+pub(crate) struct Global {
+    /// Print one JSON object instead of text.
+    #[arg(long, global = true)]
+    pub(crate) json: bool,
+    /// Print nothing but errors (and JSON, if asked for).
+    #[arg(short, long, global = true)]
+    pub(crate) quiet: bool,
+    /// Log to standard error what is being done.
+    #[arg(short, long, global = true, conflicts_with = "quiet")]
+    pub(crate) verbose: bool,
+    /// Number of threads, at most four per processor; results do not depend on it [default: one per
+    /// processor, or one for each process that mpirun starts].
+    #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub(crate) threads: Option<u16>,
+    /// Let outputs replace inputs, or what is in the working folder of a plan.
+    #[arg(long, global = true)]
+    pub(crate) in_place: bool,
+    /// Whether a file goes to standard output.
+    #[arg(skip)]
+    pub(crate) piped: bool,
+}
+
+/// Heading of the options that all commands share.
+pub(crate) const EVERY_COMMAND: &str = "Every command";
+/// Exit code of a failure.
+pub(crate) const FAILURE: u8 = 1;
+/// Exit code of wrong arguments.
+pub(crate) const USAGE: u8 = 2;
+/// Exit code of a panic, as in Rust.
+pub(crate) const PANICKED: u8 = 101;
+/// Exit code after a broken pipe, as in shells after SIGPIPE.
+pub(crate) const UNREAD: u8 = 141;
+/// Exit code of a check or comparison that found differences.
+pub(crate) const DIFFERENT: u8 = 3;
+/// Exit code of a check that found nothing wrong and could not judge everything.
+pub(crate) const UNDECIDED: u8 = 4;
+/// Stack size of a thread in bytes, as in rayon.
+pub(crate) const STACK: usize = 2 << 20;
+/// Exit code after Ctrl-C, as in shells.
+pub(crate) const INTERRUPTED: i32 = 130;

@@ -1,0 +1,24 @@
+//! Stands in for pictures if the command is built without them: no options, no files.
+
+use std::path::Path;
+
+use clap::Args;
+
+use crate::export::Exporter;
+
+#[derive(Args, Clone, Copy)]
+pub(crate) struct PictureArgs {}
+
+impl PictureArgs {
+    pub(crate) const NAMES: [&str; 0] = [];
+    pub(crate) const EXTENSIONS: [&str; 0] = [];
+
+    pub(crate) fn wanted(_: &Path) -> bool {
+        false
+    }
+
+    #[expect(clippy::unused_self, reason = "there are no options")]
+    pub(crate) fn exporter(self) -> Box<dyn Exporter> {
+        unreachable!("no path asks for a picture")
+    }
+}

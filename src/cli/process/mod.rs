@@ -1,0 +1,10 @@
+//! The process: its threads and ranks, signals, progress, what it prints, and how it fails.
+
+pub(super) mod errors;
+#[cfg(feature = "mpi")]
+mod mpi;
+pub(super) mod output;
+pub(super) mod progress;
+pub(super) mod ranks;
+pub(super) mod signals;
+pub(super) mod threads;

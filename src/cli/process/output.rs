@@ -1,0 +1,130 @@
+//! Standard output, and the warnings of a run, which JSON reports repeat.
+
+use std::fmt::{self, Debug, Display};
+use std::io::{self, ErrorKind, Write};
+use std::sync::{Mutex, PoisonError};
+
+use serde::Serialize;
+use tracing::field::{Field, Visit};
+use tracing::{Event, Level, Subscriber};
+use tracing_subscriber::Layer;
+use tracing_subscriber::layer::Context;
+use walpha_base::advice::Category;
+use walpha_base::shown::escaped;
+use walpha_base::standard_output;
+
+use crate::cli::options::global::Global;
+use crate::cli::process::errors::{CommandError, Result, command_error};
+
+/// Prints facts as the options ask for: as JSON, as text, or not at all; to standard error if a file goes to
+/// standard output (`-o -`).
+pub(crate) fn print_summary<T: Serialize + Display>(global: Global, facts: &T) -> Result<()> {
+    if global.json {
+        let warnings = warnings();
+        let text =
+            if warnings.is_empty() { json(facts) } else { json(&WithWarnings { facts, warnings }) };
+        write_text(global, &text?)?;
+    } else if !global.quiet {
+        write_text(global, &escaped(&facts.to_string(), |c| c == '\n'))?;
+    }
+    Ok(())
+}
+
+/// Facts, with the warnings of the run.
+#[derive(Serialize)]
+struct WithWarnings<'a, T> {
+    #[serde(flatten)]
+    facts: &'a T,
+    warnings: Vec<String>,
+}
+
+/// A name escaped for use within a line of text.
+pub(crate) fn name(name: &str) -> String {
+    escaped(name, |_| false)
+}
+
+fn write_text(global: Global, text: &str) -> Result<()> {
+    if global.piped {
+        io::stderr().lock().write_all(text.as_bytes())?;
+    } else {
+        print(text)?;
+    }
+    Ok(())
+}
+
+/// Standard output is closed, full, or no longer read: what was to be printed is lost.
+fn unprinted(error: &io::Error) -> CommandError {
+    let next = match error.kind() {
+        ErrorKind::BrokenPipe => "let the reading program read to the end, if all is needed",
+        _ => "check where standard output goes, or give --quiet to print nothing",
+    };
+    let said = command_error!("cannot write to standard output: {error}" => "{next}");
+    CommandError { category: Category::System(error.kind()), unprinted: true, ..said }
+}
+
+/// Prints text; a failure is an error, not a panic as in `println!`.
+pub(crate) fn print(text: &str) -> Result<()> {
+    print_with(|out| out.write_all(text.as_bytes()))
+}
+
+/// Prints what `write` writes, and flushes it.
+pub(crate) fn print_with(
+    write: impl FnOnce(&mut io::StdoutLock<'static>) -> io::Result<()>,
+) -> Result<()> {
+    let print = || {
+        standard_output::check()?;
+        let mut out = io::stdout().lock();
+        write(&mut out)?;
+        out.flush()
+    };
+    print().map_err(|error| unprinted(&error))
+}
+
+/// Prints a remark to standard error. A failure is ignored, where `eprintln!` would panic.
+pub(crate) fn remark(text: &str) {
+    let _ = writeln!(io::stderr().lock(), "{text}");
+}
+
+pub(crate) fn json(value: &impl Serialize) -> io::Result<String> {
+    Ok(serde_json::to_string_pretty(value)? + "\n")
+}
+
+/// Distinct warnings so far.
+static WARNINGS: Mutex<Vec<String>> = Mutex::new(Vec::new());
+
+/// Collects warnings, and lets each through once: a file that is looked at before it is read would be warned about twice.
+pub(crate) struct WarningCollector;
+
+impl<S: Subscriber> Layer<S> for WarningCollector {
+    fn event_enabled(&self, event: &Event<'_>, _: Context<'_, S>) -> bool {
+        if *event.metadata().level() != Level::WARN {
+            return true;
+        }
+        let mut message = Message::default();
+        event.record(&mut message);
+        let mut warnings = WARNINGS.lock().unwrap_or_else(PoisonError::into_inner);
+        let is_new = !warnings.contains(&message.0);
+        if is_new {
+            warnings.push(message.0);
+        }
+        is_new
+    }
+}
+
+/// The text of an event.
+#[derive(Default)]
+struct Message(String);
+
+impl Visit for Message {
+    fn record_debug(&mut self, field: &Field, value: &dyn Debug) {
+        if field.name() == "message" {
+            fmt::write(&mut self.0, format_args!("{value:?}"))
+                .expect("writing to a string cannot fail");
+        }
+    }
+}
+
+/// The warnings so far.
+pub(crate) fn warnings() -> Vec<String> {
+    WARNINGS.lock().unwrap_or_else(PoisonError::into_inner).clone()
+}
