@@ -130,7 +130,7 @@ def upright(check, glb):
 
 
 def solids(check):
-    """Closed, oriented, manifold: as trimesh and MeshLab judge it, on shapes that are no manifold."""
+    """Closed, oriented, manifold: as trimesh and MeshLab judge it, on shapes that are not manifold."""
     for alpha in ["2", "2.5", "3", "5"]:
         file = check.path("solid.ply")
         run = check.run("shape", "sample:phantom@32", "--alpha", alpha, "--solid", "--json", "-o", file, check.path("solid.stl"))

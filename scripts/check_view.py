@@ -245,7 +245,7 @@ def legend_faults(browser, exact):
     image = picture(browser)
     # Points are listed where they are drawn.
     kinds = [kind for kind in COLOUR_OF if kind.split()[1] != "points" or browser.evaluate("document.getElementById('show-points').checked")]
-    wrong = [f"{name} is no class" for name in entries if name not in kinds]
+    wrong = [f"{name} is not a class" for name in entries if name not in kinds]
     for kind in kinds:
         count, colour = entries.get(kind, (0, None))
         # What is simplified may lose some of a class.

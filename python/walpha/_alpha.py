@@ -26,7 +26,7 @@ def rule(alpha: Any, alpha_radius: Any) -> float | Rule | None:
         return radius * radius
     if isinstance(alpha, str):
         if alpha not in ("auto", "auto:connected"):
-            raise ValueError(f"alpha={alpha!r} is no rule: {_GIVE}")
+            raise ValueError(f"alpha={alpha!r} is not a rule: {_GIVE}")
         return cast(Rule, alpha)
     return None if alpha is None else _number("alpha", alpha, _GIVE)
 

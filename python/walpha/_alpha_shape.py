@@ -32,7 +32,7 @@ def alpha_shape(
         x, y, z, or the points of a plane: whatever numpy takes or has DLPack, tensors among
         them, contiguous or not. Of frames and structured arrays the columns x, y, z, weight or radius, and
         value are taken by these names, as from CSV; others are skipped, with a warning. Rows that are masked
-        are no points: they are left out, and indices count those that stay. Points in one plane or on one line get the shape that they have there:
+        are not points: they are left out, and indices count those that stay. Points in one plane or on one line get the shape that they have there:
         triangles or edges, no cells. Taken as float64; float32 is widened without error, so that the shape
         is exactly that of the places that float32 can hold.
     alpha : float, "auto" or "auto:connected"

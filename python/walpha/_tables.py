@@ -27,7 +27,7 @@ def names(given: Any) -> list[Any] | None:
 
 def columns(name: str, given: Any, wanted: tuple[str, ...]) -> dict[str, Any] | None:
     """What a table has under x, y, z and the other names that are wanted, by the rule for the columns of files; None of what
-    is no table. A warning names what is skipped."""
+    is not a table. A warning names what is skipped."""
     labels = names(given)
     if labels is None:
         return None

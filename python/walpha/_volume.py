@@ -48,7 +48,7 @@ class Volume:
     Raises
     ------
     ValueError
-        Samples that are no array of three axes; spacing that is not above 0.
+        Samples that are not an array of three axes; spacing that is not above 0.
 
     Examples
     --------
@@ -223,7 +223,7 @@ def _raw(shape: Any, dtype: DTypeLike | None, offset: int) -> dict[str, Any] | N
     nz, ny, nx = map(operator.index, shape)
     of = np.dtype(dtype)
     if of.kind not in "iuf" or of == np.float16 or of.itemsize > 8:
-        raise ValueError(f"dtype={of} is no type of samples: give integers of 8 to 64 bits, float32 or float64")
+        raise ValueError(f"dtype={of} is not a type of samples: give integers of 8 to 64 bits, float32 or float64")
     order = sys.byteorder if of.byteorder in "=|" else "big" if of.byteorder == ">" else "little"
     return {
         "dims": {"x": nx, "y": ny, "z": nz},

@@ -89,7 +89,7 @@ class AlphaPersistence:
         """
         for name, value in parameters.items():
             if name not in vars(self):
-                raise ValueError(f"{name} is no parameter: there are {', '.join(vars(self))}")
+                raise ValueError(f"{name} is not a parameter: there are {', '.join(vars(self))}")
             setattr(self, name, value)
         return self
 

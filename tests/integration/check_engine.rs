@@ -23,7 +23,7 @@ fn agree(case: &Case) -> bool {
             }
         }
     }
-    // Flat sets must agree, too, but are no triangulations of space.
+    // Flat sets must agree, too, but are not triangulations of space.
     expected.is_ok_and(|answer| !answer.complex.cells.is_empty())
 }
 

@@ -232,7 +232,7 @@ fn what_a_file_says_wrongly_is_told() {
         ("[shape]\ninput = 'a.nrrd'", "[shape] input", ""),
         ("[shap]\nalpha = 4", "shap", "did you mean shape?"),
         ("config = 'b.toml'", "config", ""),
-        ("alpha = ", "is no TOML file", "--print-config"),
+        ("alpha = ", "is not a TOML file", "--print-config"),
         ("exterior = 3", "exterior = 3 makes no sense", "give true or false"),
         ("alpha = true", "alpha = true makes no sense", "give a text or a number"),
     ];
@@ -360,7 +360,7 @@ fn a_standard_output_that_is_closed_is_an_error() {
     assert!(shell.status().unwrap().success());
 }
 
-/// As in `walpha … 2>&1 >/dev/null | true`: nobody hears it, and that is no fault of the program.
+/// As in `walpha … 2>&1 >/dev/null | true`: nobody hears it, and that is not a fault of the program.
 #[test]
 fn nobody_hears_standard_error() {
     let folder = folder();

@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use crate::common::{fails, json as told, names, ok, run};
 
 /// A square of 5×5 small squares of side 1/3 without the middle 3×3 but for the halves at their corners, and far off an
-/// edge and a point alone, as a table. Coordinates are no short decimals, and z has this value.
+/// edge and a point alone, as a table. Coordinates are not short decimals, and z has this value.
 fn table(folder: &Path, name: &str, z: Option<f64>) -> Vec<[f64; 2]> {
     let square = (0..36).map(|i| [i % 6, i / 6]).filter(|p| !p.iter().all(|x| (2..4).contains(x)));
     let mut points: Vec<[f64; 2]> = square.map(|p| p.map(|x| f64::from(x) / 3.0)).collect();

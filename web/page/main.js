@@ -348,7 +348,7 @@ function suggestions(others) {
     element("button", { type: "button", textContent: `${text} ${short(alpha)}`, onclick: () => panel.moveTo(alpha) })));
 }
 
-// What ends with a task that was cancelled is no failure of its own.
+// What ends with a task that was cancelled is not a failure of its own.
 function quietly(error) {
   if (!(error instanceof Cancelled)) show(error);
 }

@@ -545,7 +545,7 @@ impl Made {
         let (regular, singular) = (of(Class::Regular), of(Class::Singular));
         let edges = shown.edges.iter().filter(|(_, span)| span.class(level) == Class::Singular);
         let edges: Vec<u32> = edges.flat_map(|(row, _)| *row).collect();
-        // Points that are no vertices are hidden.
+        // Points that are not vertices are hidden.
         let mut classes = vec![HIDDEN; self.what.points().len()];
         for (v, span) in &shown.vertices {
             classes[*v as usize] = number(span.class(level));

@@ -220,7 +220,7 @@ fn read(path: &Path, arguments: &Arguments) -> Result<(AnyFile, Vec<String>), Fa
             complete(file, &mut attribute, arguments)?;
             if attribute.is_some() {
                 notes.push(
-                    "attributes of points are no weights; --weights column takes the first".into(),
+                    "attributes of points are not weights; --weights column takes the first".into(),
                 );
             }
             if file.states_no_alpha() {

@@ -83,7 +83,7 @@ impl Target {
         Ok((Sink::PartialFile(PartialFile::for_destination(destination)?.into()), Some(claim)))
     }
 
-    /// Checks, also for folders, that a destination is no input and not in a working folder, as [`open`](Self::open) does.
+    /// Checks, also for folders, that a destination is not an input and not in a working folder, as [`open`](Self::open) does.
     ///
     /// # Errors
     /// It is.

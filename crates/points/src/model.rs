@@ -46,7 +46,7 @@ impl fmt::Display for Cell {
                 let [a, b, c] = self.vectors.map(list);
                 write!(
                     f,
-                    "the vectors ({a}), ({b}), ({c}), which are no box along the axes: it is not supported"
+                    "the vectors ({a}), ({b}), ({c}), which are not a box along the axes: it is not supported"
                 )
             }
             None => {

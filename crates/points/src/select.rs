@@ -118,7 +118,7 @@ impl Units {
 /// [`difference`](super::difference)s. O(n), parallel, independent of the number of threads.
 ///
 /// # Errors
-/// A truncated volume whose values are no gray levels ([`Volume::into_gray`] makes them), a rule whose number is out of range,
+/// A truncated volume whose values are not gray levels ([`Volume::into_gray`] makes them), a rule whose number is out of range,
 /// more voxels asked for than differ from a neighbour, no voxel left, or not enough memory.
 ///
 /// # Panics

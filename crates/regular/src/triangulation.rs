@@ -15,7 +15,7 @@ use crate::{CellArrays, Scaled, Sites, TriangulationError, facets, filled, with_
 /// neither the number of threads, all of the current rayon pool, nor the order of the points, but for these indices.
 ///
 /// Of points at one position the heaviest takes part, of equally heavy ones the first
-/// ([`duplicates`](Triangulation::duplicates)). A point that heavier ones hide is no vertex
+/// ([`duplicates`](Triangulation::duplicates)). A point that heavier ones hide is not a vertex
 /// ([`hidden`](Triangulation::hidden)). The triangulation keeps a copy of the points, 24 bytes each.
 ///
 /// ```
@@ -186,7 +186,7 @@ impl Triangulation {
     }
 
     /// The cells at a vertex, infinite ones included, in no particular order; of the infinite vertex, all infinite cells. Empty for
-    /// points that are no vertices. Linear in their number.
+    /// points that are not vertices. Linear in their number.
     pub fn star(&self, vertex: u32) -> Vec<u32> {
         let mut star = match self.cell_at.get(vertex as usize) {
             None | Some(&NO_CELL) => return Vec::new(),

@@ -7,7 +7,7 @@ use super::sums::{ByNumber, ComponentSums, SheetSums, by_number, components_of_s
 use super::topology::{connected, connected_on_torus};
 use super::{AlphaShape, Class, Component, Measures, Sheets};
 
-/// Stands in [`AlphaShape::component_numbers`] for points that are no vertices of the shape.
+/// Stands in [`AlphaShape::component_numbers`] for points that are not vertices of the shape.
 pub const NO_COMPONENT: u32 = u32::MAX;
 
 impl AlphaShape {

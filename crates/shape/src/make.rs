@@ -224,7 +224,7 @@ fn by_blocks(
     Ok(Found { complex: merged.complex, boundary, hidden: merged.hidden, duplicates, betti: None })
 }
 
-/// The sites that are no vertices. Both lists ascend.
+/// The sites that are not vertices. Both lists ascend.
 fn hidden(sites: &[u32], vertices: &Simplices<1>) -> Vec<u32> {
     let mut vertices = vertices.rows().iter().peekable();
     sites.iter().copied().filter(|&site| vertices.next_if(|v| v[0] == site).is_none()).collect()

@@ -106,7 +106,7 @@ impl Hollow {
 impl AlphaShape {
     /// The voids of the shape, as many as its second Betti number: largest first, ties by box. Of a torus those
     /// components of the complement that do not go round it, so that they are bounded in space, too; each lies
-    /// where one of its copies does. Components that go round it are no voids, so there the second Betti number differs.
+    /// where one of its copies does. Components that go round it are not voids, so there the second Betti number differs.
     /// `None` unless the shape was made with its exterior simplices
     /// ([`ShapeOptions::exterior`](super::ShapeOptions::exterior)): voids are made of them.
     ///

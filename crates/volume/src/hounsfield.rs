@@ -17,7 +17,7 @@ pub struct Hounsfield {
 }
 
 impl Hounsfield {
-    /// Of a volume in memory; `None` if its values are no Hounsfield units. One pass.
+    /// Of a volume in memory; `None` if its values are not Hounsfield units. One pass.
     pub fn of_volume(volume: &Volume) -> Option<Self> {
         if volume.has_gray_levels() {
             return None;

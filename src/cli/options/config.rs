@@ -162,7 +162,7 @@ fn read(command: &Command, file: &Path, name: &str) -> Result<Table> {
         let message = error.to_string();
         let lines = message.lines().map(str::trim).filter(|line| !line.is_empty());
         let words: Vec<&str> = lines.collect();
-        command_error!("{} is no TOML file: {}", shown(file), words.join(" ") => "walpha {name} --print-config shows how one looks")
+        command_error!("{} is not a TOML file: {}", shown(file), words.join(" ") => "walpha {name} --print-config shows how one looks")
     })?;
     let (mut settings, mut own) = (Table::new(), Table::new());
     for (key, value) in table {

@@ -1,4 +1,4 @@
-//! `info` on what is not read as it is: several volumes, samples that are no numbers, colours.
+//! `info` on what is not read as it is: several volumes, samples that are not numbers, colours.
 
 use ndarray::{Array3, Array4};
 use walpha::volume::{Nan, ReadOptions, Space, read};

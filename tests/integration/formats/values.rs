@@ -190,7 +190,7 @@ fn whole_numbers_that_are_rounded_are_said() {
             assert_eq!(said(name), times, "{name}: {first}");
         }
     }
-    // Scaled numbers are no whole ones.
+    // Scaled numbers are not whole ones.
     save(f, "d.npy", npy_of("<f8", &[16777217.5f64; 12].map(f64::to_le_bytes).concat()));
     assert_eq!(said("d.npy"), 0);
     // In parts, too, and once.

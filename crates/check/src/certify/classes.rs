@@ -316,7 +316,7 @@ enum State {
 
 impl<const N: usize, const M: usize> Faces<'_, N, M> {
     /// The class of each lower simplex; findings where given ones differ, on simplices that are missing and, in a whole triangulation,
-    /// on those that are no faces.
+    /// on those that are not faces.
     pub(super) fn judge(
         &self,
         judge: &Judge,

@@ -241,7 +241,7 @@ pub(super) fn hiddenness_in_cells(
     })
 }
 
-/// Calls `visit` with every point of the grid that lies in a cell, its surface included, and is no corner of it, until it returns a
+/// Calls `visit` with every point of the grid that lies in a cell, its surface included, and is not a corner of it, until it returns a
 /// value.
 pub(super) fn in_cell<T>(
     grid: &Grid,

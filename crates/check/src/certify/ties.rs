@@ -214,7 +214,7 @@ fn spanned<const N: usize>(simplex: [u32; N], on: &[u32]) -> Finding {
 }
 
 /// Findings on flat simplices as a whole triangulation of the points `on` a sphere: each other choice among
-/// ties, or a single finding if they are no triangulation. `simplex` is the first of them.
+/// ties, or a single finding if they are not a triangulation. `simplex` is the first of them.
 fn flat_findings(
     on: &[u32],
     complex: &Complex,

@@ -49,7 +49,7 @@ impl fmt::Display for Domain {
             Self::SameRegion { six_volumes, verdicts, .. } => {
                 let why = match verdicts {
                     None => {
-                        "which are not on the same spheres: this is no tie, and at most one of A and B is regular"
+                        "which are not on the same spheres: this is not a tie, and at most one of A and B is regular"
                     }
                     Some([Verdict::Wrong, Verdict::Wrong]) => {
                         "but A and B are wrong by themselves (check them)"

@@ -10,7 +10,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Mesh, MeshError> {
     let mut scan = Scan::new(bytes);
     let Some(b"$MeshFormat") = scan.word() else {
         let error = MeshError::new(
-            "the file does not begin with $MeshFormat: it is no mesh of Gmsh from version 2 on",
+            "the file does not begin with $MeshFormat: it is not a mesh of Gmsh from version 2 on",
         );
         return Err(error.with_advice("save it with Gmsh as version 4.1 or 2.2"));
     };

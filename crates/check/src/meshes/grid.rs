@@ -57,7 +57,7 @@ impl Grid {
     /// The grid as a mesh.
     ///
     /// # Errors
-    /// Cells that are not simplices, arrays that do not fit together, and numbers that are no indices or classes.
+    /// Cells that are not simplices, arrays that do not fit together, and numbers that are not indices or classes.
     pub fn mesh(self) -> Result<Mesh, MeshError> {
         let Self { points, weights, types, ends, corners, alpha, classes } = self;
         if ends.len() != types.len() {

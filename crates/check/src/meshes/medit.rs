@@ -4,7 +4,7 @@
 use super::scan::{Scan, shown};
 use super::{Mesh, MeshError, no_such_point, not_tetrahedra};
 
-/// Keywords of cells that are no tetrahedra of four nodes.
+/// Keywords of cells that are not tetrahedra of four nodes.
 const OTHER_CELLS: [&str; 5] = ["Hexahedra", "Hexaedra", "Prisms", "Pyramids", "TetrahedraP2"];
 /// Keywords of simplices and surfaces of less than three dimensions.
 const IGNORED: [&str; 3] = ["Triangles", "Quadrilaterals", "Edges"];
@@ -18,7 +18,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Mesh, MeshError> {
             return Err(error.with_advice("write it as text (.mesh)"));
         }
         let error = MeshError::new(
-            "the file does not begin with MeshVersionFormatted: it is no mesh of Medit",
+            "the file does not begin with MeshVersionFormatted: it is not a mesh of Medit",
         );
         return Err(error.with_advice("convert it to .mesh of Medit, .msh of Gmsh or .vtk"));
     }

@@ -203,7 +203,7 @@ fn not_tetrahedra(what: &str) -> MeshError {
         .with_advice("cut other cells into tetrahedra, and write them in first order")
 }
 
-/// The error for a corner that is no point.
+/// The error for a corner that is not a point.
 fn no_such_point(
     scan: &scan::Scan,
     corner: impl std::fmt::Display,

@@ -15,8 +15,9 @@ pub(super) fn read(bytes: &[u8]) -> Result<Mesh, MeshError> {
     let mut scan = Scan::new(bytes);
     let first = scan.line();
     if !first.starts_with(b"# vtk DataFile") {
-        let error =
-            MeshError::new("the file does not begin with # vtk DataFile: it is no legacy VTK file");
+        let error = MeshError::new(
+            "the file does not begin with # vtk DataFile: it is not a legacy VTK file",
+        );
         return Err(error.with_advice("give another format its own extension"));
     }
     let version = first.rsplit(u8::is_ascii_whitespace).next().unwrap_or_default();

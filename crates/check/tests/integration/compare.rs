@@ -58,7 +58,7 @@ fn other_diagonals_cover_the_same() {
     assert!(comparison.to_string().contains("as cospherical points allow"), "{comparison}");
 }
 
-/// Flat cells beside the others cover nothing, but what has them is no triangulation.
+/// Flat cells beside the others cover nothing, but what has them is not a triangulation.
 #[test]
 fn flat_cells_are_not_excused() {
     let positions = grid(2);

@@ -106,7 +106,7 @@ fn damage_is_found() {
     }
 }
 
-/// A flip of a diagonal that is no tie, a hull with a corner cut off, a point that is not hidden.
+/// A flip of a diagonal that is not a tie, a hull with a corner cut off, a point that is not hidden.
 #[test]
 fn rules_of_the_plane() {
     let flat = |facets: &[[u32; 3]], weight: f64| {

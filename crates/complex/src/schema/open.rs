@@ -54,7 +54,7 @@ impl AnyFile {
     /// α = ∞ if it states no α, and has nothing but points, cells and weights, or calls its cells `simplices`, `tetra`
     /// or `t`, as others do, and its points `points`, `p` or `vertices`.
     ///
-    /// The file is opened once, and what is no complex is read again from its first byte on: a pipe can bring only
+    /// The file is opened once, and what is not a complex is read again from its first byte on: a pipe can bring only
     /// complexes.
     ///
     /// # Errors

@@ -107,7 +107,7 @@ impl Grid {
         Self { world: None, ..self.clone() }
     }
 
-    /// The indices of positions in the world, all of which are samples of the volume; `None` where one is no sample, or
+    /// The indices of positions in the world, all of which are samples of the volume; `None` where one is not a sample, or
     /// positions are indices already.
     pub(super) fn indices(&self, positions: &[[f64; 3]]) -> Option<Vec<[f64; 3]>> {
         let world = self.world.as_ref()?;

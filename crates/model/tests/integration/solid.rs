@@ -142,5 +142,5 @@ fn any_shape_of_a_volume_is_a_solid() {
             seen.midpoints += cuts.midpoints;
         }
     }
-    assert!(seen.edges > 0 && seen.vertices > 0, "the shapes tried are no manifolds: {seen:?}");
+    assert!(seen.edges > 0 && seen.vertices > 0, "the shapes tried are not manifolds: {seen:?}");
 }

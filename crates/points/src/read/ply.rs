@@ -209,7 +209,9 @@ impl Header {
         let fail = |reason: Reason| format(path, reason);
         let mut line = || lines.read().map_err(io_error(path));
         if line()?.as_deref().map(str::trim_end) != Some("ply") {
-            return Err(fail(Reason::other("is no PLY file: it does not begin with a line ply")));
+            return Err(fail(Reason::other(
+                "is not a PLY file: it does not begin with a line ply",
+            )));
         }
         let mut endian = None;
         let mut elements: Vec<Element> = Vec::new();

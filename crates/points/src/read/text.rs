@@ -45,7 +45,7 @@ fn decoded(bytes: Vec<u8>) -> Result<String, Undecodable> {
         },
     };
     if text.contains('\0') {
-        return Err(Undecodable::Reason(Reason::other("is no text: it holds bytes that are 0")));
+        return Err(Undecodable::Reason(Reason::other("is not text: it holds bytes that are 0")));
     }
     let text = match text.strip_prefix('\u{feff}') {
         Some(rest) => rest.to_owned(),

@@ -195,7 +195,7 @@ fn table_index(x: u32, y: u32) -> usize {
 
 impl Cavity {
     /// Adds the boundary facets of a cell in conflict: bit k of `kept` says whether the neighbour opposite corner k
-    /// is not in conflict. All four facets are written, and those that are no boundary facets are overwritten by
+    /// is not in conflict. All four facets are written, and those that are not boundary facets are overwritten by
     /// the next: branches would be mispredicted half the time.
     #[inline(always)]
     fn add_boundary(&mut self, cell: [u32; 4], across: [u32; 4], kept: usize) {

@@ -187,7 +187,7 @@ impl Growing {
         self.state.hole(screen, v, workspace)
     }
 
-    /// What the insertion of a registered point would change, which is no vertex and lies in the cell `cell`.
+    /// What the insertion of a registered point would change, which is not a vertex and lies in the cell `cell`.
     pub fn insertion(&self, screen: &Screen<'_>, v: u32, cell: u32) -> Insertion {
         let mesh = &self.state.builder.mesh;
         let (mut removed, mut kept, mut cells) = (vec![cell], Vec::new(), Vec::new());

@@ -199,7 +199,7 @@ impl Rest<'_> {
     }
 
     /// Writes the simplices of the next points, on all threads: where each is recorded, and its input index, in the
-    /// order of these. Returns those that are no vertices of the triangulation.
+    /// order of these. Returns those that are not vertices of the triangulation.
     pub(super) fn write(
         &mut self,
         records: &[Records],

@@ -4,7 +4,7 @@ use rayon::prelude::*;
 use walpha_regular::internals::{Interval, Predicates};
 
 use super::Filtration;
-use super::incidence::Incidence;
+use super::build::Incidence;
 use crate::{Alpha, AlphaShape, Betti, Class, Complex, WeightedPoints};
 
 /// The levels at which the class of a simplex changes. Levels count from 0; the number of levels stands for never.
@@ -184,6 +184,18 @@ pub(super) struct OwnLevels<F, E, V> {
 }
 
 impl Levels<'_> {
+    /// The first level of each maximal simplex, by row. Maximal simplices are cells or, where points span no volume,
+    /// triangles, edges, or one vertex.
+    pub(super) fn firsts_of_maximal(&self) -> Vec<u32> {
+        let firsts = |spans: &[Span]| spans.iter().map(|span| span.first).collect();
+        match self.filtration.dimension() {
+            3 => self.cells.clone(),
+            2 => firsts(&self.facets),
+            1 => firsts(&self.edges),
+            _ => firsts(&self.vertices),
+        }
+    }
+
     /// The points and their frozen weights.
     pub fn points(&self) -> &WeightedPoints {
         self.filtration.points()

@@ -11,7 +11,7 @@ use walpha_regular::Torus;
 use walpha_regular::internals::{Interval, Predicates};
 
 use super::Levels;
-use super::incidence::Incidence;
+use super::build::Incidence;
 use super::levels::ByLevel;
 use crate::{Betti, Directions, Hollow, United, Void, WindingSets, between};
 

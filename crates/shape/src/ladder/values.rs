@@ -8,7 +8,7 @@ use walpha_regular::internals::number::lowest_bit;
 use walpha_regular::internals::{Interval, Predicates};
 
 use super::Filtration;
-use super::radii::Radius;
+use super::build::Radius;
 use crate::Alpha;
 use crate::WeightedPoints;
 

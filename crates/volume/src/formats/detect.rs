@@ -329,7 +329,7 @@ fn accept(format: &VolumeFormat, path: &Path, options: &ReadOptions) -> Result<(
                 Setting::Level => "is not a pyramid",
                 Setting::Array => "has no arrays with names",
                 Setting::Frame => "is of a format of one volume",
-                _ => "is no DICOM series",
+                _ => "is not a DICOM series",
             };
             return Err(format_error(path, Reason::needless(setting, what)));
         }

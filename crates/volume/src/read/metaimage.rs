@@ -83,8 +83,9 @@ impl Header {
             }
             let Some((key, value)) = line.split_once(['=', ':']) else {
                 let line: String = line.chars().take(40).collect();
-                let reason =
-                    Reason::other(format!("is no MetaImage file: its header has a line {line:?}"));
+                let reason = Reason::other(format!(
+                    "is not a MetaImage file: its header has a line {line:?}"
+                ));
                 return Err(format_error(path, reason));
             };
             let (key, value) = (key.trim().to_owned(), value.trim().to_owned());

@@ -73,7 +73,7 @@ fn layout(path: &Path, reader: &mut dyn Read, asked: Option<u64>) -> Result<Layo
     };
     let version = whole(0);
     if version != 1 {
-        let what = format!("is no MGH file: its version is {version}, and not 1");
+        let what = format!("is not an MGH file: its version is {version}, and not 1");
         return Err(format_error(path, Reason::other(what)));
     }
     let sizes = [4, 8, 12, 16].map(whole);

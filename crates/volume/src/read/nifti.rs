@@ -163,7 +163,7 @@ impl Header {
         fill(NIFTI_HEADERS[0], &mut bytes)?;
         let Some((version, endian)) = nifti_version(&bytes) else {
             let reason = Reason::other(
-                "is no NIfTI file: it begins with neither 348 nor 540, the length of its header",
+                "is not a NIfTI file: it begins with neither 348 nor 540, the length of its header",
             );
             return Err(format_error(path, reason));
         };
@@ -314,7 +314,7 @@ impl Header {
         self.code(68, 504) == 1002
     }
 
-    /// Slope and intercept; a slope of 0, or none, means neither. An intercept that is no number is 0, as for `NIfTI`'s own library,
+    /// Slope and intercept; a slope of 0, or none, means neither. An intercept that is not a number is 0, as for `NIfTI`'s own library,
     /// which is said.
     fn scaling(&self, path: &Path) -> (f64, f64) {
         let (slope, inter) = (self.real(112, 176, 0), self.real(116, 184, 0));

@@ -125,7 +125,7 @@ fn damaged(path: &Path) -> impl Fn(ZipError) -> VolumeError {
         }
         other => format_error(
             path,
-            Reason::other(format!("is no NPZ archive that can be read: {other}")),
+            Reason::other(format!("is not an NPZ archive that can be read: {other}")),
         ),
     }
 }

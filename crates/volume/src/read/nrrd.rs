@@ -150,7 +150,7 @@ impl Header {
         let fail = |reason: Reason| format_error(path, reason);
         let first = lines.read_line().map_err(io_error(path))?.unwrap_or_default();
         if !first.as_bytes().starts_with(MAGIC) {
-            return Err(fail(Reason::other("is no NRRD file: it does not begin with NRRD000")));
+            return Err(fail(Reason::other("is not an NRRD file: it does not begin with NRRD000")));
         }
         let mut header =
             Self { fields: HashMap::new(), files: None, labels: is_segmentation(path) };

@@ -87,7 +87,7 @@ pub(super) fn files(folder: &Path, nested: bool) -> Result<Files, VolumeError> {
     Ok(Files { dicom, suspects })
 }
 
-/// So many entries that are no DICOM files, one after the other, are looked at: a folder may be that of the
+/// So many entries that are not DICOM files, one after the other, are looked at: a folder may be that of the
 /// whole disk.
 const MOST_OTHERS: usize = 10_000;
 

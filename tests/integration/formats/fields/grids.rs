@@ -210,7 +210,7 @@ fn arrays_behind_texts_are_found() {
     assert_eq!(warnings(&path), "null");
 }
 
-/// Texts beside samples are no samples.
+/// Texts beside samples are not samples.
 #[test]
 fn texts_are_passed_by_in_a_volume() {
     use crate::formats::files::{VTK, open, save};

@@ -98,7 +98,7 @@ fn each_field_of_the_table() {
                 fate: Fate::Read(same),
             },
             Field {
-                name: "`scl_inter` that is no number",
+                name: "`scl_inter` that is not a number",
                 file: |f| with(f, &[(112, &float(2.0)), (116, &float(f32::NAN))]),
                 fate: Fate::PassedOver(&["scl_inter is NaN, and taken as 0; scl_slope is 2"]),
             },

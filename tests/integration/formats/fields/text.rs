@@ -268,7 +268,7 @@ fn each_field_of_xyz() {
                 Fate::Refused(&["counts 2 points, and \"1 2 3\" behind", "or one more of them"])
             ),
             row!(
-                "numbers that are no atomic numbers",
+                "numbers that are not atomic numbers",
                 "a.xyz",
                 "2\n# cloud\n0 2 3 7\n4 5 6 8\n",
                 Fate::Read(|path| {

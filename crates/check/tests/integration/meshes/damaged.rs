@@ -114,7 +114,7 @@ fn errors_of_medit_say_what_and_where() {
             mesh(),
             "MeshVersionFormatted",
             "MFEM",
-            "the file does not begin with MeshVersionFormatted: it is no mesh of Medit",
+            "the file does not begin with MeshVersionFormatted: it is not a mesh of Medit",
         ),
         (
             mesh(),
@@ -172,7 +172,7 @@ fn errors_of_gmsh_say_what_and_where() {
             two(),
             "$MeshFormat",
             "$NOD",
-            "the file does not begin with $MeshFormat: it is no mesh of Gmsh from version 2 on",
+            "the file does not begin with $MeshFormat: it is not a mesh of Gmsh from version 2 on",
         ),
         (two(), "2.2 0 8", "4.0 0 8", "line 2: the version is \"4.0\", and 2.2 and 4.1 are read"),
         (two(), "2.2 0 8", "2.2 0 4", "line 2: numbers have 4 bytes, and 8 are read"),
@@ -236,7 +236,7 @@ fn errors_of_vtk_say_what_and_where() {
             old(),
             "# vtk",
             "# what",
-            "the file does not begin with # vtk DataFile: it is no legacy VTK file",
+            "the file does not begin with # vtk DataFile: it is not a legacy VTK file",
         ),
         (old(), "ASCII", "XML", "line 3: \"XML\" is neither ASCII nor BINARY"),
         (

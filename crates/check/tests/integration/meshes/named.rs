@@ -14,7 +14,7 @@ fn open(name: &str, bytes: &[u8]) -> Result<ComplexFile, SchemaError> {
     std::fs::write(&path, bytes).unwrap();
     match AnyFile::open(path)? {
         AnyFile::Complex(file) => Ok(file),
-        AnyFile::Filtration(_) => panic!("{name} is no filtration"),
+        AnyFile::Filtration(_) => panic!("{name} is not a filtration"),
     }
 }
 

@@ -60,7 +60,7 @@ fn weights_are_taken_where_they_are_asked_for() {
     assert!(text.contains("point 4 is not hidden"), "{text}");
     assert!(
         text.contains(
-            "note: attributes of points are no weights; --weights column takes the first"
+            "note: attributes of points are not weights; --weights column takes the first"
         ),
         "{text}"
     );

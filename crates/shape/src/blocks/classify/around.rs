@@ -55,7 +55,7 @@ impl Worker {
     pub(super) fn new(points: usize, buckets: Buckets) -> Self {
         Self {
             stars: RangeStars::default(),
-            // u32::MAX / 4 is no vertex.
+            // u32::MAX / 4 is not a vertex.
             edge_flags: vec![u32::MAX; points],
             neighbours: Vec::new(),
             degree: 0,

@@ -75,7 +75,7 @@ pub(in crate::blocks) struct Records {
 /// A point, and how many simplices it is the smallest vertex of.
 #[derive(Clone, Copy)]
 pub(in crate::blocks) struct PointRows {
-    /// The class of the point, `None` if it is no vertex.
+    /// The class of the point, `None` if it is not a vertex.
     pub class: Option<Class>,
     pub cells: u32,
     pub facets: u32,

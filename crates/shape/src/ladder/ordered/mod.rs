@@ -13,8 +13,8 @@ use rayon::prelude::*;
 use walpha_base::{Monitor, memory};
 use walpha_regular::TriangulationError;
 
+use super::build::{Radii, Radius};
 use super::levels::OwnLevels;
-use super::radii::{Radii, Radius};
 use super::{Filtration, Levels};
 use crate::derived::Derived;
 use crate::{Alpha, Betti, ShapeError};

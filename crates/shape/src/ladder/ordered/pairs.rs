@@ -6,7 +6,7 @@ use walpha_base::UnionFind;
 
 use super::{Ordered, Pairs};
 use crate::ladder::Filtration;
-use crate::ladder::incidence::Incidence;
+use crate::ladder::build::Incidence;
 use crate::{Directions, Torus, United, WindingSets, between};
 
 impl Ordered<'_> {

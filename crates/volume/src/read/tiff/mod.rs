@@ -189,7 +189,7 @@ impl<'a> Pages<'a> {
         Ok(Self { path, decoder, directories, slices, at: 0, most, rounding })
     }
 
-    /// Says which of the pages are no slices.
+    /// Says which of the pages are not slices.
     fn say_what_is_left_out(&self) {
         let copies = self.directories.pages.len() - self.slices.len();
         if copies > 0 {

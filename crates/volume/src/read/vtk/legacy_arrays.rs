@@ -58,7 +58,7 @@ pub(super) struct Array {
 
 /// Finds the arrays; `line` begins the data of points or cells.
 ///
-/// The scan ends at whatever cannot be parsed after the first array, which is said. Texts are no samples, and found where there
+/// The scan ends at whatever cannot be parsed after the first array, which is said. Texts are not samples, and found where there
 /// is nothing else.
 pub(super) fn find(
     path: &Path,

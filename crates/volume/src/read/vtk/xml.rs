@@ -77,7 +77,7 @@ impl<'a> VtkXml<'a> {
         // Before a search for the first element, which may go through all of a huge file.
         if !begins_as_xml(reader.fill_buf().map_err(io_error(path))?) {
             return Err(
-                this.fail(Reason::other("is no VTK file: it does not begin with an element"))
+                this.fail(Reason::other("is not a VTK file: it does not begin with an element"))
             );
         }
         this.scan(reader)?;
@@ -206,7 +206,7 @@ impl<'a> VtkXml<'a> {
     fn root(&mut self) -> Result<(), VolumeError> {
         let Some(root) = self.elements.first().filter(|root| root.name == "VTKFile") else {
             return Err(
-                self.fail(Reason::other("is no VTK file: its first element is not VTKFile"))
+                self.fail(Reason::other("is not a VTK file: its first element is not VTKFile"))
             );
         };
         let attribute = |name: &str| root.attributes.get(name).map(String::as_str);

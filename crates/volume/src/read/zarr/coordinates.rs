@@ -44,7 +44,7 @@ pub(super) fn frame(
         let Some((first, step, unit)) = even(&beside, shape[axis]) else {
             let path = shown(path);
             tracing::warn!(
-                "{path}: the coordinates {name} beside it are passed over: they are no evenly spaced row of numbers"
+                "{path}: the coordinates {name} beside it are passed over: they are not an evenly spaced row of numbers"
             );
             continue;
         };

@@ -68,7 +68,7 @@ impl Packing {
                 None => value.as_f64(),
             };
             all.iter().map(number).collect::<Option<_>>().ok_or_else(|| {
-                let what = format!("has the attribute {name} = {value}, which is no number");
+                let what = format!("has the attribute {name} = {value}, which is not a number");
                 format_error(path, Reason::header(what))
             })
         };
