@@ -1,4 +1,5 @@
-// From an exact number to the nearest double: CGAL's to_double may round it in another way.
+// From an exact number to the nearest double: CGAL's to_double cuts digits off for some of its exact
+// types (Gmpq), which depend on CGAL, Boost and GMP.
 #pragma once
 
 #include <cmath>

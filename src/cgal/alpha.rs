@@ -96,24 +96,29 @@ pub struct Intervals<const N: usize> {
 /// CGAL's `Alpha_shape_3` of weighted points, with exact comparisons (`Tag_true`): all alpha shapes of the points, by the values of α at
 /// which classes change.
 ///
-/// Points are named by their indices. Weights and α are squared lengths. Expected O(n log n) for points of even density, and exact
-/// arithmetic for each simplex. [`Filtration`](walpha_shape::ladder::Filtration) has the same values in a fraction of the time. CGAL's numbers keep caches, so that a shape stays on one thread.
+/// Points are named by their indices. Weights and α are squared lengths. CGAL's numbers keep caches, so that a shape stays on one
+/// thread.
+///
+/// Expected O(n log n) for points of even density, and exact fractions for each value: of random points 1.3 ms and 20 kB a point,
+/// of a grid, which has few values, 0.1 ms and 15 kB. [`Filtration`](walpha_shape::ladder::Filtration) has the same values in a
+/// hundredth of the time, or a tenth on a grid.
 ///
 /// ```
 /// use std::num::NonZeroUsize;
 /// use walpha::cgal::{AlphaShape3, Mode};
 /// use walpha::{Alpha, Class};
 ///
-/// let points = [[0.0, 0.0, 0.0], [3.0, 0.0, 0.0], [0.0, 3.0, 0.0], [1.0, 1.0, 2.0], [1.0, 1.0, -2.0]];
+/// let points = [[0.0, 0.0, 0.0], [3.0, 0.0, 0.0], [0.0, 3.0, 0.0], [1.0, 1.0, 4.0], [1.0, 1.0, -4.0]];
 /// let shapes = AlphaShape3::new(&points, None, Mode::General)?;
 /// assert_eq!(shapes.cells().0.len(), 2);
 /// // Each vertex is there from α = 0 on, and on the hull.
 /// assert!(shapes.vertices().spans.iter().all(|span| span.min.is_some_and(|min| min.nearest == 0.0)));
 /// assert!(shapes.vertices().spans.iter().all(|span| span.max.is_none()));
 ///
-/// // Both cells have one sphere, by symmetry: from there on they are one solid.
+/// // Both cells have spheres of one size: from there on they are one solid.
 /// let solid = shapes.find_optimal_alpha(NonZeroUsize::MIN)?;
 /// assert_eq!(solid, shapes.cells().1[0]);
+/// assert_eq!(solid.nearest, 6.75);
 /// assert_eq!(shapes.number_of_solid_components(Alpha::from_squared(solid.nearest)?)?, 1);
 /// assert_eq!(shapes.complex(Alpha::ZERO)?.vertices.counts()[Class::Singular], 5);
 /// # Ok::<(), Box<dyn std::error::Error>>(())

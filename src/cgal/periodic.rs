@@ -37,7 +37,7 @@ mod bridge {
 /// Weights, squared lengths, are at least 0 and less than 1/64 of the squared side, as CGAL wants them. Ties between cospherical
 /// points may be broken in another way than in [`walpha_shape::Filtration::on`](walpha_shape::ladder::Filtration::on).
 ///
-/// CGAL works on 27 copies of the cube until one is enough, so that small sets take longest for each point.
+/// CGAL works on 27 copies of the cube until one is enough: about a millisecond and 20 to 50 kB a point for some thousand points.
 ///
 /// # Errors
 /// [`Error::Side`], [`Error::Outside`], [`Error::Weight`]; [`Error::Sites`]: other numbers of weights than of points, no point.

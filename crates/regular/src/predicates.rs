@@ -36,9 +36,9 @@
 //!
 //! # Cost
 //!
-//! Without allocation some 10 ns where doubles decide, 100 to 200 ns in numbers of two doubles or 128-bit integers; about a
-//! microsecond where integers are longer, and they grow with the ratio of the largest to the smallest number: up to some 10 000
-//! bits, and tens of microseconds, where both ends of the range of doubles meet.
+//! On one core of a server 16 ns for the orientation and 40 ns for the power test where doubles decide; 0.1 to 0.5 µs in numbers of two
+//! doubles or short integers. Integers grow with the ratio of the largest to the smallest number: 10 to 80 µs where 10³⁰⁰ and 10⁻³⁰⁰
+//! meet.
 //!
 //! Ties are ties here. [`triangulate`](crate::triangulate) breaks them, and decides the tests of a whole set faster than one by one.
 

@@ -92,26 +92,27 @@ fn signs_are_those_of_the_definition() {
 }
 
 #[test]
-fn a_sign_that_doubles_get_wrong() {
-    // Near a plane whose normal is not along an axis.
+fn signs_that_doubles_get_wrong() {
+    // Tenths on the plane z = x + y, which are rounded: their determinants are about one rounding.
     let naive = |[a, b, c, d]: [[f64; 3]; 4]| {
         let [u, v, w] = [b, c, d].map(|q| [0, 1, 2].map(|k| q[k] - a[k]));
         let minor = |i: usize, j: usize| v[i] * w[j] - v[j] * w[i];
         u[0] * minor(1, 2) + u[1] * minor(2, 0) + u[2] * minor(0, 1)
     };
-    let steps = |x: f64, n: usize| (0..n).fold(x, |x, _| x.next_up());
-    let mut wrong = 0;
-    for i in 0..64 {
-        for j in 0..64 {
-            let d = [steps(0.5, i), steps(0.5, j), 1.0];
-            let points = [[12.0, 12.0, 24.0], [24.0, 24.0, 48.0], [24.0, 6.0, 30.0], d];
-            let [a, b, c, _] = points;
-            let truth = orientation(a, b, c, d);
-            assert_eq!(truth, (i + j).cmp(&0), "{i} {j}");
-            wrong += usize::from(naive(points).partial_cmp(&0.0).unwrap() != truth);
-        }
+    let mut random = Random::new(7);
+    let mut reversed = 0;
+    for _ in 0..2000 {
+        let points: [[f64; 3]; 4] = std::array::from_fn(|_| {
+            let [x, y] = [0; 2].map(|_| random.below(100));
+            [x, y, x + y].map(|tenths| tenths as f64 / 10.0)
+        });
+        let [a, b, c, d] = points;
+        let truth = orientation_by_definition(points);
+        assert_eq!(orientation(a, b, c, d), truth, "{points:?}");
+        let sign = naive(points).partial_cmp(&0.0).unwrap();
+        reversed += usize::from(sign.is_ne() && sign == truth.reverse());
     }
-    assert!(wrong > 100, "{wrong}");
+    assert!(reversed > 100, "{reversed}");
 }
 
 #[test]
