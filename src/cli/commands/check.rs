@@ -159,8 +159,11 @@ impl Check {
         if compare::is_named(path) {
             return match progress.stage(Stage::Read, || compare::opened(path))? {
                 AnyFile::Complex(complex) => {
-                    let of =
-                        Source { input, kind: "the complex", why: "is a complex, made already" };
+                    let of = JudgedInput {
+                        input,
+                        kind: "the complex",
+                        why: "is a complex, made already",
+                    };
                     self.given(global, of, complex.into(), progress)
                 }
                 AnyFile::Filtration(filtration) => {
@@ -187,7 +190,12 @@ impl Check {
                     let count = mesh.complex.cells.as_ref().map_or(0, Vec::len);
                     let kind = format!("the {count} tetrahedra");
                     let why = "lists tetrahedra, which are judged";
-                    return self.given(global, Source { input, kind: &kind, why }, mesh, progress);
+                    return self.given(
+                        global,
+                        JudgedInput { input, kind: &kind, why },
+                        mesh,
+                        progress,
+                    );
                 }
             }
             Opened::Made(_) | Opened::Volume(OpenVolume::Named(_)) => {}
@@ -218,14 +226,14 @@ impl Check {
         };
         let mesh = progress.stage(Stage::Read, read)?;
         let (kind, why) = (format!("the {listed}"), format!("lists {listed}, which are judged"));
-        self.given(global, Source { input, kind: &kind, why: &why }, mesh, progress)
+        self.given(global, JudgedInput { input, kind: &kind, why: &why }, mesh, progress)
     }
 
     /// Judges a complex or mesh of a file, with what the options add.
     fn given(
         self,
         global: Global,
-        Source { input, kind, why }: Source,
+        JudgedInput { input, kind, why }: JudgedInput,
         mesh: Mesh,
         progress: Progress,
     ) -> Result<ExitCode> {
@@ -453,7 +461,7 @@ impl Check {
 }
 
 /// The name of INPUT, what of it is judged, and why it takes no options of a shape.
-struct Source<'a> {
+struct JudgedInput<'a> {
     input: &'a str,
     kind: &'a str,
     why: &'a str,

@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use crate::export::Target;
 use crate::haar::smooth;
-use crate::pipeline::{Grays, Input};
+use crate::pipeline::{GrayVolume, Input};
 use crate::progress::Stage;
 use crate::volume::VolumeWriter;
 
@@ -58,7 +58,7 @@ impl Haar {
         if matches!(read, Input::Volume(..)) {
             accept(&read, &self.input)?;
         }
-        let Input::Volume(Grays { volume, range, written, .. }) = read else {
+        let Input::Volume(GrayVolume { volume, range, written, .. }) = read else {
             fail!("{} holds points", self.input.input => "name a volume");
         };
         let options = self.input.settings().transform();

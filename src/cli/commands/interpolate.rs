@@ -25,7 +25,7 @@ use crate::interpolate::{
     CurveOptions, CurvePoint, Deviation, Grid, Interpolant, Resampled, error_curve, fill,
     write_curve_csv,
 };
-use crate::pipeline::{Input, Source, Values, Weighed};
+use crate::pipeline::{Input, PlacedVolume, Values, Weighed};
 use crate::progress::Stage;
 use crate::volume::VolumeWriter;
 use crate::{AlphaShape, Dims, GrayRange, LengthUnit, SelectionRule, Units, Volume, Weighting};
@@ -199,12 +199,12 @@ impl Interpolate {
     }
 
     /// The grid asked for.
-    fn grid(&self, original: Option<&Source>, weighed: &Weighed) -> Result<Grid> {
+    fn grid(&self, original: Option<&PlacedVolume>, weighed: &Weighed) -> Result<Grid> {
         let asked = self.pipeline.input.grid();
         asked.map(Dims::bounded).transpose()?;
         match (original, weighed.origin.grid, asked) {
-            (Some(&Source { ref volume, units, .. }), _, None) => Ok(Grid::of(volume, units)),
-            (Some(&Source { ref volume, units, .. }), _, Some(dims)) => {
+            (Some(&PlacedVolume { ref volume, units, .. }), _, None) => Ok(Grid::of(volume, units)),
+            (Some(&PlacedVolume { ref volume, units, .. }), _, Some(dims)) => {
                 Ok(Grid::over(volume, dims, units)?)
             }
             (None, Some(samples), asked) => {
@@ -231,12 +231,12 @@ struct Sampled {
     error: Option<Error>,
 }
 
-fn sample(shape: &AlphaShape, grid: &Grid, original: Option<&Source>) -> Result<Sampled> {
+fn sample(shape: &AlphaShape, grid: &Grid, original: Option<&PlacedVolume>) -> Result<Sampled> {
     let interpolant = Interpolant::new(shape)?;
     let resampled = interpolant.resample(grid)?;
     let error = match original {
         None => None,
-        Some(&Source { ref volume, units, range, .. }) => {
+        Some(&PlacedVolume { ref volume, units, range, .. }) => {
             let deviation = if volume.dims() == grid.dims() {
                 Deviation::of(volume, &resampled)
             } else {
@@ -316,7 +316,7 @@ pub(crate) fn run_curve(global: Global, pipeline: &PipelineArgs, base: &Path) ->
         fail!("{} holds points, and --curve needs a volume", input.input);
     };
     let source = recipe.source(grays)?;
-    let Source { ref volume, units, range, .. } = source;
+    let PlacedVolume { ref volume, units, range, .. } = source;
     let (smoothed, _) = progress.stage(Stage::Haar, || smooth(volume, &recipe.haar))?;
     let options = CurveOptions {
         counts: counts(volume, input.settings().rule())?,

@@ -12,7 +12,7 @@ use crate::cli::process::progress::Progress;
 use crate::export::Scratch;
 use crate::interpolate::{InterpolateError, fill};
 use crate::ladder::{Curve, Filtration};
-use crate::pipeline::{Input, Model, Opened, PipelineError, Source, Values, Weighed};
+use crate::pipeline::{Input, Model, Opened, PipelineError, PlacedVolume, Values, Weighed};
 use crate::points::bounding_box;
 use crate::progress::Stage;
 use crate::shape::{ShapeError, Torus};
@@ -32,8 +32,8 @@ pub(crate) struct VolumeSummary {
 }
 
 impl VolumeSummary {
-    pub(crate) fn of(source: &Source) -> Self {
-        let Source { volume, units, range, written, .. } = source;
+    pub(crate) fn of(source: &PlacedVolume) -> Self {
+        let PlacedVolume { volume, units, range, written, .. } = source;
         let extent = units.box_volume(volume);
         Self { dims: volume.dims().xyz(), extent, range: *range, written: *written }
     }
@@ -55,7 +55,7 @@ pub(crate) fn points_and_volume(
     recipe: &Recipe,
     values: Values,
     progress: &mut Progress,
-) -> Result<(Weighed, Option<Source>)> {
+) -> Result<(Weighed, Option<PlacedVolume>)> {
     let mut recipe = recipe.clone();
     let read = read_suited(args, &mut recipe, progress)?;
     weigh(read, args, &recipe, values, progress)
@@ -68,7 +68,7 @@ pub(crate) fn weigh(
     recipe: &Recipe,
     values: Values,
     progress: &mut Progress,
-) -> Result<(Weighed, Option<Source>)> {
+) -> Result<(Weighed, Option<PlacedVolume>)> {
     accept(&read, args)?;
     Ok(progress.watch(|| recipe.weigh(read, values))?)
 }

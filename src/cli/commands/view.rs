@@ -19,7 +19,7 @@ use crate::cli::report::{SCHEMA_VERSION, WeightsReport};
 use crate::export::Target;
 use crate::interpolate::{Deviation, Grid, Interpolant};
 use crate::ladder::Filtration;
-use crate::pipeline::{AlphaRule, Input, Parameter, PipelineError, Source, Values, Weighed};
+use crate::pipeline::{AlphaRule, Input, Parameter, PipelineError, PlacedVolume, Values, Weighed};
 use crate::progress::Stage;
 use crate::render::{self, Differences, Original, Page, Subject};
 use crate::volume::UnknownFormat;
@@ -96,7 +96,7 @@ impl View {
 
     /// The weighted points of each level of detail, the fewest first and those of the shape last, and the
     /// volume that they come from.
-    fn weighed(&self, progress: &mut Progress) -> Result<(Vec<Weighed>, Option<Source>)> {
+    fn weighed(&self, progress: &mut Progress) -> Result<(Vec<Weighed>, Option<PlacedVolume>)> {
         let input = &self.pipeline.input;
         let mut recipe = self.pipeline.recipe()?;
         let read = pipeline::read_suited(input, &mut recipe, progress)?;
@@ -131,7 +131,7 @@ impl View {
     fn page(
         &self,
         details: &[Detail],
-        source: Option<&Source>,
+        source: Option<&PlacedVolume>,
         progress: &mut Progress,
     ) -> Result<(Page, Vec<DetailSummary>)> {
         let last = details.last().expect("the level of the shape");
@@ -139,7 +139,7 @@ impl View {
         let facts = facts.as_ref();
         let facts_shown = self.page_facts(&last.weighed, facts, last.reference());
         let isovalue = self.isovalue.unwrap_or_default();
-        let original = source.map(|Source { volume, units, range, .. }| Original {
+        let original = source.map(|PlacedVolume { volume, units, range, .. }| Original {
             volume,
             isovalue: isovalue.gray(range),
             frame: match units {
@@ -246,7 +246,7 @@ pub(crate) struct Detail {
 impl Detail {
     pub(crate) fn new(
         weighed: Weighed,
-        source: Option<&Source>,
+        source: Option<&PlacedVolume>,
         progress: &mut Progress,
     ) -> Result<Self> {
         let filtration = progress.watch(|| pipeline::filtration(None, &weighed))?;
@@ -289,10 +289,10 @@ impl Detail {
 /// Difference of the interpolant, filled in, from the volume; `None` if the points have no values.
 fn differences(
     weighed: &Weighed,
-    source: &Source,
+    source: &PlacedVolume,
     filtration: &Filtration,
 ) -> Result<Option<Differences>> {
-    let Source { volume, units, written, .. } = source;
+    let PlacedVolume { volume, units, written, .. } = source;
     let Some(values) = weighed.points.values() else { return Ok(None) };
     let grays: Vec<f64> = values.iter().map(|&value| written.gray(value)).collect();
     let (whole, grays) = filled_in(filtration.whole(), &grays, volume, *units)?;
@@ -324,7 +324,7 @@ impl Default for Isovalue {
 
 impl Isovalue {
     /// Says where no sample reaches it, or all do: there is no isosurface then.
-    fn check(self, Source { volume, range, .. }: &Source) {
+    fn check(self, PlacedVolume { volume, range, .. }: &PlacedVolume) {
         let (low, high) = volume.value_range();
         let [low, high] = [low, high].map(f64::from);
         let gray = self.gray(range);

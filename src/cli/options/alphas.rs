@@ -4,10 +4,10 @@ use std::str::FromStr;
 
 use crate::Alpha;
 use crate::cli::process::errors::{CommandError, Result, command_error};
-use crate::pipeline::{AlphaRule, Parameter, Source};
+use crate::pipeline::{AlphaRule, Parameter, PlacedVolume};
 
 /// α for a command that makes several sets of points from a volume. `auto` is refused, because each set would have its own.
-pub(crate) fn one_alpha(rule: AlphaRule, source: &Source) -> Result<Parameter> {
+pub(crate) fn one_alpha(rule: AlphaRule, source: &PlacedVolume) -> Result<Parameter> {
     rule.of_volume(&source.volume, source.units)?.ok_or_else(|| {
         command_error!(
             "there are several sets of points, each with an `auto` of its own" => "give α as a \

@@ -14,7 +14,7 @@ use crate::common::{Told, alone, largest};
 #[test]
 fn a_damaged_nrrd_says_what_is_wrong() {
     let n = |from: &'static str, to: &'static str| nrrd(move |h| h.replace(from, to), &shorts());
-    refuses("v.nrrd", "hello", &["no NRRD file"]);
+    refuses("v.nrrd", "hello", &["not an NRRD file"]);
     refuses("v.nrrd", NRRD, &["truncated"]);
     refuses("v.nrrd", nrrd(|h| h, &shorts()[1..]), &["24 bytes, but 23 follow", "truncated"]);
     refuses("v.nrrd", nrrd(|h| h, &[&shorts()[..], b"x"].concat()), &["25 follow", "too long"]);
@@ -52,7 +52,7 @@ fn a_damaged_metaimage_says_what_is_wrong() {
         [MHA.replace(from, to).as_bytes(), tail.as_bytes(), &shorts()].concat()
     };
     let local = "ElementDataFile = LOCAL\n";
-    refuses("v.mha", "hello", &["no MetaImage"]);
+    refuses("v.mha", "hello", &["not a MetaImage"]);
     refuses("v.mha", MHA, &["ElementDataFile"]);
     refuses("v.mha", m("Image", "Tube", local), &["type Tube"]);
     refuses("v.mha", m("NDims = 3", "NDims = 4", local), &["4 sizes"]);
@@ -124,7 +124,7 @@ fn a_damaged_nifti_says_what_is_wrong() {
         bytes
     };
     refuses("v.nii", "hello", &["truncated"]);
-    refuses("v.nii", vec![1; 400], &["no NIfTI file"]);
+    refuses("v.nii", vec![1; 400], &["not a NIfTI file"]);
     refuses("v.nii", &nifti[..nifti.len() - 1], &["48 bytes, but 47 follow"]);
     refuses("v.nii", [&nifti[..], b"x"].concat(), &["too long"]);
     refuses("v.nii", with(344, b"\0\0\0\0"), &["Analyze"]);

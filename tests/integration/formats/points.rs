@@ -102,7 +102,7 @@ fn damaged_points_say_what_is_wrong() {
     };
     let rows = "2 0 1\n1 2 3 0 7\n4 5 6 0 8\n";
     let ply = |from: &str, to: &str| (PLY.to_owned() + rows).replace(from, to);
-    refuses("a.ply", "hello", "no PLY file");
+    refuses("a.ply", "hello", "not a PLY file");
     refuses("a.ply", &ply("format ascii 1.0\n", ""), "no format");
     refuses("a.ply", &ply("end_header", "end"), "not understood");
     refuses("a.ply", &ply("float x", "float q"), "properties x");

@@ -99,7 +99,7 @@ fn extended_xyz_states_columns_and_a_cell() {
     );
     assert_eq!(read("plain title").unwrap().1.cell, None);
     for (oblique, words) in [
-        ("Lattice='1 0 0 0.5 1 0 0 0 1'", "no box along the axes: it is not supported"),
+        ("Lattice='1 0 0 0.5 1 0 0 0 1'", "not a box along the axes: it is not supported"),
         (
             "Lattice=\"1 0 0 0 1 0 0 0 1\" pbc=\"T T F\"",
             "some of its vectors only: it is not supported",

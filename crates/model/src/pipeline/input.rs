@@ -9,7 +9,7 @@ use walpha_volume::{GrayRange, OpenFile, OpenVolume, Volume};
 #[derive(Debug)]
 pub enum Input {
     /// A grid of gray levels.
-    Volume(Grays),
+    Volume(GrayVolume),
     /// A segmentation, whose labels the recipe [asks for](Recipe::labels).
     Labels(Volume),
     /// Points, perhaps with weights and values, and the metadata of their file.
@@ -30,7 +30,7 @@ pub enum Opened {
 /// A volume in gray levels, and the values that they stand for.
 #[derive(Debug)]
 #[non_exhaustive]
-pub struct Grays {
+pub struct GrayVolume {
     /// Gray levels.
     pub volume: Volume,
     /// The values that became gray 0 and 255.
@@ -42,7 +42,7 @@ pub struct Grays {
 /// A volume in gray levels, in the coordinates of its points.
 #[derive(Debug)]
 #[non_exhaustive]
-pub struct Source {
+pub struct PlacedVolume {
     /// Gray levels.
     pub volume: Volume,
     /// Units of the coordinates.
@@ -145,19 +145,19 @@ impl Recipe {
     ///
     /// # Errors
     /// A range that is empty, or too narrow for a sample.
-    pub fn grays(&self, volume: Volume) -> Result<Grays, PipelineError> {
+    pub fn grays(&self, volume: Volume) -> Result<GrayVolume, PipelineError> {
         let (volume, range) = volume.into_gray(self.gray_levels()).map_err(PointsError::from)?;
-        Ok(Grays { volume, range, written: self.written(range) })
+        Ok(GrayVolume { volume, range, written: self.written(range) })
     }
 
     /// The volume in the coordinates that its points will have.
     ///
     /// # Errors
     /// The errors of [`Recipe::place`].
-    pub fn source(&self, grays: Grays) -> Result<Source, PipelineError> {
-        let Grays { volume, range, written } = grays;
+    pub fn source(&self, grays: GrayVolume) -> Result<PlacedVolume, PipelineError> {
+        let GrayVolume { volume, range, written } = grays;
         let (frame, units) = self.place(*volume.frame())?;
-        Ok(Source { volume: volume.with_frame(frame), units, range, written })
+        Ok(PlacedVolume { volume: volume.with_frame(frame), units, range, written })
     }
 }
 

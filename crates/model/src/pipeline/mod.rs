@@ -11,7 +11,7 @@ mod weighed;
 
 pub use choice::{Choice, Goal};
 pub use error::PipelineError;
-pub use input::{Grays, Input, Opened, Source, Values};
+pub use input::{GrayVolume, Input, Opened, PlacedVolume, Values};
 pub use parameter::{AlphaRule, Parameter, ParameterOrigin};
 pub use recipe::Recipe;
 #[doc(hidden)]
@@ -102,7 +102,7 @@ impl Recipe {
         &self,
         input: Input,
         values: Values,
-    ) -> Result<(Weighed, Option<Source>), PipelineError> {
+    ) -> Result<(Weighed, Option<PlacedVolume>), PipelineError> {
         match input {
             Input::Points(points, metadata) => {
                 Ok((self.weighed_points(points, &metadata, values)?, None))
@@ -119,8 +119,8 @@ impl Recipe {
     ///
     /// # Errors
     /// The errors of its stages.
-    pub fn weighed(&self, source: &Source, values: Values) -> Result<Weighed, PipelineError> {
-        let Source { volume, units, range, written } = source;
+    pub fn weighed(&self, source: &PlacedVolume, values: Values) -> Result<Weighed, PipelineError> {
+        let PlacedVolume { volume, units, range, written } = source;
         let (dims, frame, units) = (volume.dims(), *volume.frame(), *units);
         let parameter = self.alpha.of_frame(&frame, units)?;
         Stage::Haar.begin()?;
@@ -207,7 +207,12 @@ impl Recipe {
     }
 
     /// Fits the values of weighted points to their volume.
-    fn fit(&self, weighed: &mut Weighed, source: &Source, to: Refit) -> Result<(), PipelineError> {
+    fn fit(
+        &self,
+        weighed: &mut Weighed,
+        source: &PlacedVolume,
+        to: Refit,
+    ) -> Result<(), PipelineError> {
         let parameter = weighed.find_parameter()?;
         Stage::Refit.begin()?;
         let options = self.shape_of(parameter)?;

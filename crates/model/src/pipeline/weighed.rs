@@ -121,7 +121,7 @@ impl Weighed {
     }
 
     /// What a file of these points states besides them, except their order. `written` is the mapping of the volume
-    /// that they were selected from to written values ([`Source::written`](super::Source::written)).
+    /// that they were selected from to written values ([`PlacedVolume::written`](super::PlacedVolume::written)).
     pub fn metadata(&self, written: Option<GrayRange>) -> ModelMetadata {
         let origin = self.origin;
         ModelMetadata::default()

@@ -19,7 +19,7 @@ use crate::cli::process::progress::Progress;
 use crate::cli::report::SCHEMA_VERSION;
 use crate::cli::report::offsets::FileOffset;
 use crate::haar::smooth;
-use crate::pipeline::{Input, Parameter, Source};
+use crate::pipeline::{Input, Parameter, PlacedVolume};
 use crate::points::{Points, Region, difference, focus, select, weigh};
 use crate::progress::Stage;
 use crate::shape::{AlphaShape, Betti, Measures, ShapeOptions, Surface, alpha_shape};
@@ -54,7 +54,7 @@ impl Ladder {
         let weighting = recipe.weighting.unwrap_or(Weighting::Common(0.0));
         let source = recipe.source(grays)?;
         let parameter = one_alpha(recipe.alpha, &source)?;
-        let Source { ref volume, units, written, .. } = source;
+        let PlacedVolume { ref volume, units, written, .. } = source;
         let alpha = parameter.alpha;
         let coordinates = units.coordinates(volume);
         let domain = Domain::of_grid(volume, units);
@@ -160,7 +160,7 @@ fn write_meshes(
 
 /// The stages before the weights; the truncated volume is kept for the next level.
 struct FrontEnd<'a> {
-    source: &'a Source,
+    source: &'a PlacedVolume,
     recipe: &'a Recipe,
     smoothed: Option<(HaarOptions, Volume, Truncation)>,
 }
@@ -171,7 +171,7 @@ impl FrontEnd<'_> {
         options: &HaarOptions,
         selection: &Selection,
     ) -> Result<(Points, Truncation)> {
-        let Source { ref volume, units, ref range, .. } = *self.source;
+        let PlacedVolume { ref volume, units, ref range, .. } = *self.source;
         let (_, smoothed, truncation) =
             if let Some(known) = self.smoothed.take().filter(|s| s.0 == *options) {
                 self.smoothed.insert(known)
