@@ -13,8 +13,8 @@ from ._typing import Arrays, Balls, Engine, Floats, Place, Progress, Rule, Sampl
 from ._volume import Volume
 from ._work import task
 
-# Names of the library, which has a hyphen.
-_DECOMPOSITIONS = {"nonstandard": "non-standard"}
+# Decompositions by the names that the library has for them.
+_DECOMPOSITIONS = {"nonstandard": "non-standard", "standard": "standard"}
 
 Decomposition: TypeAlias = Literal["nonstandard", "standard"]
 
@@ -79,7 +79,7 @@ def haar(
     (100, 32768)
     """
     settings = _settings.written(
-        haar=_DECOMPOSITIONS.get(decomposition, decomposition),
+        haar=_decomposition(decomposition),
         **_settings.one_of(rms=rms, epsilon=epsilon, coefficients=coefficients),
     )
     with task(progress, threads) as how:
@@ -297,7 +297,7 @@ def pipeline(
     settings = _settings.written(
         nan=_settings.replacement(nan, _masked(volume)),
         gray=_settings.window(gray),
-        haar=_DECOMPOSITIONS.get(decomposition, decomposition),
+        haar=_decomposition(decomposition),
         **_settings.one_of(rms=rms, epsilon=epsilon, coefficients=coefficients),
         **_settings.one_of(count=count, ratio=ratio, threshold=threshold),
         gray_min=gray_min,
@@ -378,6 +378,13 @@ def label_shape(
     with task(progress, threads) as how:
         shape = _walpha.label_shape(samples, frame, asked, how)
     return AlphaShape._of(shape)
+
+
+def _decomposition(name: str) -> str:
+    """The name that the library has for a decomposition."""
+    if name not in _DECOMPOSITIONS:
+        raise ValueError(f"decomposition={name!r} is unknown: give 'nonstandard' or 'standard'")
+    return _DECOMPOSITIONS[name]
 
 
 def _grid(

@@ -22,7 +22,7 @@ pub fn settings_of(written: Written) -> PyResult<Settings> {
     for (name, text) in written {
         settings.set(&name, &text).map_err(|error| {
             let next = error.next.map(|next| format!("; {}", next.with_names(python_name)));
-            wrong(format!("{name}={text:?}: {}{}", error.why, next.unwrap_or_default()))
+            wrong(format!("{name}={text}: {}{}", error.why, next.unwrap_or_default()))
         })?;
     }
     Ok(settings)
