@@ -200,7 +200,7 @@ impl AlphaShape {
     /// of its ends are in one fan, two of them get a vertex at its midpoint. No vertex moves; only such midpoints
     /// are rounded. O(n log n) for the first call; the shape keeps it.
     pub fn solid(&self) -> (&Surface, Cuts) {
-        let (surface, cuts) = self.solid.get(|| Surface::solid(&self.complex));
+        let (surface, cuts) = self.solid.get(|| Surface::solid(self));
         (surface, *cuts)
     }
 }

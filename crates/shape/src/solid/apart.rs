@@ -1,0 +1,274 @@
+//! Moves the copies of vertices apart, so that the boundary is a manifold also for whoever takes equal coordinates for one vertex.
+//!
+//! The boundary of the cut solid touches itself, but does not cross itself: facets meet in common faces alone, if copies at one place count as one
+//! vertex. Vertices are moved one after another, and this stays so with each step:
+//!
+//! - **Into the cells of its fan.** Let S be the union of the cells around a copy v. Its boundary consists of the fan at v and of
+//!   the facets opposite v. A point p that is strictly inside the planes of all these facets sees all of S: it is in the interior of the kernel, and S is
+//!   star-shaped about it. So the facets from p to the border of the fan are in S, meet its boundary in the border alone, and do not cross each other. No
+//!   other part of the boundary is in the interior of S. The cells with p for v are positively oriented, as p is inside the opposite
+//!   facets, and fill what is left of S. S may touch itself at places where other copies have not been moved yet;
+//!   moved apart by less than any number, these do not change on which sides p is.
+//! - **Out of the cells**, where cavities touch at a vertex: between them are the same cells, so that all fans but one must retreat into
+//!   their cavities. If p is strictly outside the planes of the fan, the tetrahedra v–p–a–b over its facets v–a–b are
+//!   positively oriented and lie side by side around the line v–p. They become cells, if no other facet of the boundary enters them, which is decided for
+//!   all facets near.
+//!
+//! One fan at each place stays. When all others have moved, no two vertices are at the same place. Orientation is decided
+//! exactly for the doubles that are written.
+
+use std::cmp::Ordering::{Greater, Less};
+use std::collections::HashMap;
+
+use walpha_regular::predicates::orientation;
+
+use super::boxes::{Boxes, bounds};
+use super::crossing::{cross, inside};
+use super::direction::{axis, length, normal};
+use super::tiling::{Place, Tiling, opposite};
+use super::{Middle, Surface};
+
+type Point = [f64; 3];
+
+/// The share of the shortest edge of a fan that its vertex is moved by, or else half of that, and so on.
+const STEP: f64 = 1.0 / 1024.0;
+/// Steps that are tried.
+const TRIES: i32 = 24;
+
+pub(super) struct Moved {
+    /// Vertices that were moved, ascending, and where they are.
+    pub moved: Vec<(u32, Point)>,
+    pub largest: f64,
+    /// Vertices that are still where another one is.
+    pub together: usize,
+}
+
+pub(super) struct Apart<'a> {
+    surface: &'a Surface,
+    of_input: &'a [Point],
+    positions: Vec<Point>,
+    tiling: Tiling,
+    /// The facets at each vertex whose place is in question.
+    fans: HashMap<u32, Vec<u32>>,
+    /// All facets, if they have been asked for.
+    facets: Option<Boxes>,
+}
+
+impl<'a> Apart<'a> {
+    pub(super) fn new(surface: &'a Surface, of_input: &'a [Point], tiling: Tiling) -> Self {
+        let positions = surface.positions(of_input).collect();
+        let (fans, facets) = (HashMap::new(), None);
+        Self { surface, of_input, positions, tiling, fans, facets }
+    }
+
+    /// Moves what is together.
+    pub(super) fn moved(mut self, middles: &[Middle], places: &[Place]) -> Moved {
+        self.collect_fans(places);
+        self.orient();
+        let before = self.positions.clone();
+        let mut together = 0;
+        for middle in middles {
+            together += usize::from(!self.move_middle(middle));
+        }
+        for place in places {
+            together += self.separate(place);
+        }
+        let pairs = (0..).zip(before.iter().zip(&self.positions));
+        let moved: Vec<_> = pairs.filter(|(_, (old, new))| old != new).collect();
+        let largest = moved
+            .iter()
+            .map(|(_, (old, new))| length([0, 1, 2].map(|k| old[k] - new[k])))
+            .fold(0.0, f64::max);
+        Moved { moved: moved.iter().map(|(v, (_, new))| (*v, **new)).collect(), largest, together }
+    }
+
+    fn collect_fans(&mut self, places: &[Place]) {
+        let copies = places.iter().flat_map(|place| place.copies.clone());
+        self.fans = copies.map(|v| (v, Vec::new())).collect();
+        for (row, facet) in self.surface.regular.iter().zip(0..) {
+            for v in row {
+                if let Some(fan) = self.fans.get_mut(v) {
+                    fan.push(facet);
+                }
+            }
+        }
+    }
+
+    /// Makes all cells positively oriented.
+    fn orient(&mut self) {
+        for i in 0..self.tiling.cells.len() {
+            let [a, b, c, d] = self.tiling.cells[i].map(|v| self.at(v));
+            if orientation(a, b, c, d) == Less {
+                self.tiling.cells[i].swap(0, 1);
+            }
+        }
+    }
+
+    fn at(&self, v: u32) -> Point {
+        match v.checked_sub(self.tiling.vertices) {
+            Some(input) => self.of_input[input as usize],
+            None => self.positions[v as usize],
+        }
+    }
+
+    /// The facets at a vertex, counter-clockwise seen from outside, by their other corners.
+    fn fan(&self, v: u32) -> Vec<[u32; 2]> {
+        let turned = |&facet: &u32| {
+            let [a, b, c] = self.surface.regular[facet as usize];
+            match v {
+                _ if v == a => [b, c],
+                _ if v == b => [c, a],
+                _ => [a, b],
+            }
+        };
+        self.fans[&v].iter().map(turned).collect()
+    }
+
+    /// Moves a midpoint into the cells between its facets. Returns whether there is a step that does.
+    fn move_middle(&mut self, middle: &Middle) -> bool {
+        let Middle { vertex, ends: [u, v], thirds: [from, to] } = *middle;
+        let cells = self.tiling.between([u, v], [from, to]);
+        let (Some(&first), Some(&last)) = (cells.first(), cells.last()) else { return false };
+        let tiling = &self.tiling;
+        let side = |cell: u32, third: u32| {
+            let row = tiling.cells[cell as usize];
+            let fourth = row.into_iter().find(|w| ![u, v, third].contains(w));
+            opposite(row, fourth.expect("a fourth corner"))
+        };
+        let fan = [side(first, from), side(last, to)];
+        let ends = |&cell: &u32| [u, v].map(|end| opposite(tiling.cells[cell as usize], end));
+        let others: Vec<[u32; 3]> = cells.iter().flat_map(ends).collect();
+        let step = STEP * self.shortest(vertex, [u, v, from, to]);
+        let found = self.step(vertex, &fan, &others, step, |_| true);
+        self.tiling.divide(&cells, [u, v], vertex);
+        found
+    }
+
+    /// Moves all copies but one away from a place. Returns the number of further ones that stay.
+    fn separate(&mut self, place: &Place) -> usize {
+        let mut whole = Vec::new();
+        let mut staying = place.copies.len();
+        for group in &place.groups {
+            let left = self.retreat(group);
+            staying -= group.len() - left.len();
+            if let [v] = left[..] {
+                whole.push(v);
+            }
+        }
+        whole.sort_by_key(|v| (self.fans[v].len(), *v));
+        for v in whole {
+            if staying > 1 && self.move_inside(v) {
+                staying -= 1;
+            }
+        }
+        staying - 1
+    }
+
+    /// Moves a copy into the cells of its fan.
+    fn move_inside(&mut self, v: u32) -> bool {
+        let fan = self.fan(v);
+        let others: Vec<[u32; 3]> = self.tiling.opposite(v).collect();
+        let step = STEP * self.shortest(v, fan.iter().map(|side| side[0]));
+        let fan: Vec<_> = fan.into_iter().map(|[a, b]| [v, b, a]).collect();
+        self.step(v, &fan, &others, step, |_| true)
+    }
+
+    /// Moves copies between which are the same cells out of these, but for one, which gets the cells. Returns those that stay.
+    fn retreat(&mut self, group: &[u32]) -> Vec<u32> {
+        let mut order = group.to_vec();
+        order.sort_by_key(|v| (self.fans[v].len(), *v));
+        let (mut left, mut filled) = (group.to_vec(), Vec::new());
+        for v in order {
+            if left.len() > 1 && self.move_outside(v) {
+                left.retain(|&other| other != v);
+                filled.extend(self.fan(v).into_iter().map(|[a, b]| [a, b, v]));
+            }
+        }
+        let stays = left[0];
+        if stays != group[0] {
+            self.tiling.rename(group[0], stays);
+        }
+        for [a, b, v] in filled {
+            self.tiling.push([stays, a, b, v]);
+        }
+        left
+    }
+
+    /// Moves a copy out of the cells behind its fan.
+    fn move_outside(&mut self, v: u32) -> bool {
+        let sides = self.fan(v);
+        let fan: Vec<_> = sides.iter().map(|&[a, b]| [v, a, b]).collect();
+        let step = STEP * self.shortest(v, sides.iter().map(|side| side[0]));
+        let around = fan.iter().flatten().map(|&w| self.at(w));
+        let [low, high] = bounds(around);
+        let place = [low.map(|x| x - step), high.map(|x| x + step)];
+        let facets = self.facets.get_or_insert_with(|| {
+            let row = |row: &[u32; 3]| row.map(|w| self.positions[w as usize]);
+            Boxes::new(self.surface.regular.iter().map(|facet| {
+                // Wide enough for what its corners move by.
+                let [low, high] = bounds(row(facet));
+                let margin = 2.0 * STEP * length([0, 1, 2].map(|k| high[k] - low[k]));
+                [low.map(|x| x - margin), high.map(|x| x + margin)]
+            }))
+        });
+        let own = &self.fans[&v];
+        let near: Vec<[Point; 3]> = facets
+            .near(place)
+            .into_iter()
+            .filter(|facet| own.binary_search(facet).is_err())
+            .map(|facet| self.surface.regular[facet as usize].map(|w| self.positions[w as usize]))
+            .collect();
+        let from = self.at(v);
+        let sides: Vec<[Point; 2]> = sides.iter().map(|side| side.map(|w| self.at(w))).collect();
+        let empty = |p: Point| {
+            near.iter().all(|facet| {
+                sides.iter().all(|&[a, b]| {
+                    !cross(*facet, [p, a, b])
+                        && !cross(*facet, [from, p, a])
+                        && !facet.iter().any(|&corner| inside([from, a, b, p], corner))
+                })
+            })
+        };
+        self.step(v, &fan, &[], step, empty)
+    }
+
+    /// The length of the shortest edge from a vertex to one of these.
+    fn shortest(&self, v: u32, to: impl IntoIterator<Item = u32>) -> f64 {
+        let from = self.at(v);
+        let lengths = to.into_iter().map(|w| {
+            let to = self.at(w);
+            length([0, 1, 2].map(|k| from[k] - to[k]))
+        });
+        lengths.fold(f64::INFINITY, f64::min)
+    }
+
+    /// Moves a vertex to where it is seen from as the counter-clockwise side of the facets of its fan and of others, and is accepted.
+    fn step(
+        &mut self,
+        v: u32,
+        fan: &[[u32; 3]],
+        others: &[[u32; 3]],
+        step: f64,
+        accept: impl Fn(Point) -> bool,
+    ) -> bool {
+        let corners = |facet: &[u32; 3]| facet.map(|w| self.at(w));
+        let fan: Vec<[Point; 3]> = fan.iter().map(corners).collect();
+        let others: Vec<[Point; 3]> = others.iter().map(corners).collect();
+        let normals: Option<Vec<Point>> = fan.iter().map(|&facet| normal(facet)).collect();
+        let Some(direction) = normals.and_then(|normals| axis(&normals)) else { return false };
+        let from = self.at(v);
+        let sees = |[a, b, c]: &[Point; 3], p: Point| orientation(*a, *b, *c, p) == Greater;
+        let places = (0..TRIES).map(|k| {
+            let step = step * 0.5f64.powi(k);
+            [0, 1, 2].map(|k| from[k] + step * direction[k])
+        });
+        let mut places = places.take_while(|&p| p != from);
+        let found =
+            places.find(|&p| fan.iter().chain(&others).all(|facet| sees(facet, p)) && accept(p));
+        match found {
+            Some(place) => self.positions[v as usize] = place,
+            None => return false,
+        }
+        true
+    }
+}
