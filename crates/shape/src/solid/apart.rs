@@ -126,7 +126,9 @@ impl<'a> Apart<'a> {
 
     /// Moves a midpoint into the cells between its facets. Returns whether there is a step that does.
     fn move_middle(&mut self, middle: &Middle) -> bool {
-        let Middle { vertex, ends: [u, v], thirds: [from, to] } = *middle;
+        let vertex = middle.vertex;
+        let [u, v] = middle.ends.map(|v| self.tiling.corner(v));
+        let [from, to] = middle.thirds.map(|v| self.tiling.corner(v));
         let cells = self.tiling.between([u, v], [from, to]);
         let (Some(&first), Some(&last)) = (cells.first(), cells.last()) else { return false };
         let tiling = &self.tiling;

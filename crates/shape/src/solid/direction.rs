@@ -25,7 +25,11 @@ pub(super) fn axis(directions: &[Vector]) -> Option<Vector> {
             }
         }
     }
-    (cone.cosine > 0.0).then_some(cone.axis)
+    // Directions all around leave a cone that does not hold all.
+    directions
+        .iter()
+        .all(|direction| holds(&cone, direction) && dot(cone.axis, *direction) > 0.0)
+        .then_some(cone.axis)
 }
 
 struct Cone {

@@ -214,3 +214,6 @@ fn last(links: &[[u32; 2]], from: u32) -> u32 {
         before = Some(k);
     }
 }
+
+#[cfg(test)]
+mod tests;

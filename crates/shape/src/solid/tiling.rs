@@ -22,6 +22,8 @@ pub(super) struct Tiling {
     pub cells: Vec<[u32; 4]>,
     /// The cells at each vertex whose place is in question.
     at: HashMap<u32, Vec<u32>>,
+    /// The first of its group for each copy that is not.
+    firsts: HashMap<u32, u32>,
     /// The number of vertices of the solid, midpoints included.
     pub vertices: u32,
 }
@@ -42,7 +44,8 @@ impl Tiling {
             if solid.vertices.get(id) == Some(&v) { id as u32 } else { vertices + v }
         };
         let touched = touched(solid, middles);
-        let mut tiling = Self { cells: Vec::new(), at: HashMap::new(), vertices };
+        let (cells, at, firsts) = (Vec::new(), HashMap::new(), HashMap::new());
+        let mut tiling = Self { cells, at, firsts, vertices };
         let mut around: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
         let mut rows: Vec<[u32; 4]> = Vec::new();
         for &row in complex.cells.of(Class::Interior) {
@@ -66,6 +69,7 @@ impl Tiling {
             }
             let groups = groups(v, &cells, &rows, &fans);
             for (cells, copies) in &groups {
+                tiling.firsts.extend(copies[1..].iter().map(|&copy| (copy, copies[0])));
                 for &cell in cells {
                     let corner = tiling.cells[cell as usize].iter_mut().find(|w| **w == from);
                     *corner.expect("a corner there") = copies[0];
@@ -81,6 +85,11 @@ impl Tiling {
             tiling.enter(cell);
         }
         (tiling, places)
+    }
+
+    /// The corner of cells that a vertex is.
+    pub(super) fn corner(&self, v: u32) -> u32 {
+        self.firsts.get(&v).copied().unwrap_or(v)
     }
 
     fn enter(&mut self, cell: u32) {
