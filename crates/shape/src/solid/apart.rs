@@ -14,6 +14,10 @@
 //!   positively oriented and lie side by side around the line v–p. They become cells, if no other facet of the boundary enters them, which is decided for
 //!   all facets near.
 //!
+//! - **Anywhere near**, for what is still together after all of that, as no point sees a fan that is a saddle. A number of directions are
+//!   tried: a new fan crosses neither itself nor a facet near, opposite facets of its cells included, and these cells stay positively
+//!   oriented. So they fill what is inside the new fan, as their boundary does not cross itself and goes around them once.
+//!
 //! One fan at each place stays. When all others have moved, no two vertices are at the same place. Orientation is decided
 //! exactly for the doubles that are written.
 
@@ -33,7 +37,19 @@ type Point = [f64; 3];
 /// The share of the shortest edge of a fan that its vertex is moved by, or else half of that, and so on.
 const STEP: f64 = 1.0 / 1024.0;
 /// Steps that are tried.
-const TRIES: i32 = 24;
+const TRIES: usize = 24;
+/// The share of the extent of the boundary that a vertex is moved by at least, if it can: several steps of single precision, so that
+/// files in it have different places, too.
+const LEAST: f64 = 4.0 * f32::EPSILON as f64;
+/// The largest share of the shortest edge for that.
+const MOST: f64 = 1.0 / 16.0;
+
+/// The largest share of a coordinate for steps that are longer only because doubles are no nearer to each other.
+const ROUNDING: f64 = 32.0 * f64::EPSILON;
+/// Steps that are tried in all directions.
+const FAR: usize = 4;
+/// Half the width of the grid of these directions.
+const GRID: u32 = 3;
 
 pub(super) struct Moved {
     /// Vertices that were moved, ascending, and where they are.
@@ -48,6 +64,8 @@ pub(super) struct Apart<'a> {
     of_input: &'a [Point],
     positions: Vec<Point>,
     tiling: Tiling,
+    /// Half of the extent of the boundary along the axis where it is largest.
+    extent: f64,
     /// The facets at each vertex whose place is in question.
     fans: HashMap<u32, Vec<u32>>,
     /// All facets, if they have been asked for.
@@ -56,22 +74,39 @@ pub(super) struct Apart<'a> {
 
 impl<'a> Apart<'a> {
     pub(super) fn new(surface: &'a Surface, of_input: &'a [Point], tiling: Tiling) -> Self {
-        let positions = surface.positions(of_input).collect();
+        let positions: Vec<Point> = surface.positions(of_input).collect();
+        let [low, high] = bounds(positions.iter().copied());
+        let extent = (0..3).map(|k| high[k] / 2.0 - low[k] / 2.0).fold(0.0, f64::max);
         let (fans, facets) = (HashMap::new(), None);
-        Self { surface, of_input, positions, tiling, fans, facets }
+        Self { surface, of_input, positions, tiling, extent, fans, facets }
     }
 
     /// Moves what is together.
     pub(super) fn moved(mut self, middles: &[Middle], places: &[Place]) -> Moved {
-        self.collect_fans(places);
+        self.collect_fans(middles, places);
         self.orient();
         let before = self.positions.clone();
-        let mut together = 0;
+        let mut left = Vec::new();
         for middle in middles {
-            together += usize::from(!self.move_middle(middle));
+            if !self.move_middle(middle) {
+                left.push((middle.vertex..middle.vertex + 1, 1));
+            }
         }
         for place in places {
-            together += self.separate(place);
+            let staying = self.separate(place);
+            if staying > 0 {
+                left.push((place.copies.clone(), staying));
+            }
+        }
+        let mut together = 0;
+        for (vertices, mut count) in left {
+            for v in vertices {
+                let stays = self.positions[v as usize] == before[v as usize];
+                if count > 0 && stays && self.move_anywhere(v) {
+                    count -= 1;
+                }
+            }
+            together += count;
         }
         let pairs = (0..).zip(before.iter().zip(&self.positions));
         let moved: Vec<_> = pairs.filter(|(_, (old, new))| old != new).collect();
@@ -82,9 +117,10 @@ impl<'a> Apart<'a> {
         Moved { moved: moved.iter().map(|(v, (_, new))| (*v, **new)).collect(), largest, together }
     }
 
-    fn collect_fans(&mut self, places: &[Place]) {
+    fn collect_fans(&mut self, middles: &[Middle], places: &[Place]) {
         let copies = places.iter().flat_map(|place| place.copies.clone());
-        self.fans = copies.map(|v| (v, Vec::new())).collect();
+        let vertices = copies.chain(middles.iter().map(|middle| middle.vertex));
+        self.fans = vertices.map(|v| (v, Vec::new())).collect();
         for (row, facet) in self.surface.regular.iter().zip(0..) {
             for v in row {
                 if let Some(fan) = self.fans.get_mut(v) {
@@ -140,8 +176,8 @@ impl<'a> Apart<'a> {
         let fan = [side(first, from), side(last, to)];
         let ends = |&cell: &u32| [u, v].map(|end| opposite(tiling.cells[cell as usize], end));
         let others: Vec<[u32; 3]> = cells.iter().flat_map(ends).collect();
-        let step = STEP * self.shortest(vertex, [u, v, from, to]);
-        let found = self.step(vertex, &fan, &others, step, |_| true);
+        let steps = self.steps(vertex, [u, v, from, to]);
+        let found = self.step(vertex, &fan, &others, &steps, |_| true);
         self.tiling.divide(&cells, [u, v], vertex);
         found
     }
@@ -170,9 +206,9 @@ impl<'a> Apart<'a> {
     fn move_inside(&mut self, v: u32) -> bool {
         let fan = self.fan(v);
         let others: Vec<[u32; 3]> = self.tiling.opposite(v).collect();
-        let step = STEP * self.shortest(v, fan.iter().map(|side| side[0]));
+        let steps = self.steps(v, fan.iter().map(|side| side[0]));
         let fan: Vec<_> = fan.into_iter().map(|[a, b]| [v, b, a]).collect();
-        self.step(v, &fan, &others, step, |_| true)
+        self.step(v, &fan, &others, &steps, |_| true)
     }
 
     /// Moves copies between which are the same cells out of these, but for one, which gets the cells. Returns those that stay.
@@ -200,26 +236,8 @@ impl<'a> Apart<'a> {
     fn move_outside(&mut self, v: u32) -> bool {
         let sides = self.fan(v);
         let fan: Vec<_> = sides.iter().map(|&[a, b]| [v, a, b]).collect();
-        let step = STEP * self.shortest(v, sides.iter().map(|side| side[0]));
-        let around = fan.iter().flatten().map(|&w| self.at(w));
-        let [low, high] = bounds(around);
-        let place = [low.map(|x| x - step), high.map(|x| x + step)];
-        let facets = self.facets.get_or_insert_with(|| {
-            let row = |row: &[u32; 3]| row.map(|w| self.positions[w as usize]);
-            Boxes::new(self.surface.regular.iter().map(|facet| {
-                // Wide enough for what its corners move by.
-                let [low, high] = bounds(row(facet));
-                let margin = 2.0 * STEP * length([0, 1, 2].map(|k| high[k] - low[k]));
-                [low.map(|x| x - margin), high.map(|x| x + margin)]
-            }))
-        });
-        let own = &self.fans[&v];
-        let near: Vec<[Point; 3]> = facets
-            .near(place)
-            .into_iter()
-            .filter(|facet| own.binary_search(facet).is_err())
-            .map(|facet| self.surface.regular[facet as usize].map(|w| self.positions[w as usize]))
-            .collect();
+        let steps = self.steps(v, sides.iter().map(|side| side[0]));
+        let near = self.near(v, &steps);
         let from = self.at(v);
         let sides: Vec<[Point; 2]> = sides.iter().map(|side| side.map(|w| self.at(w))).collect();
         let empty = |p: Point| {
@@ -231,17 +249,67 @@ impl<'a> Apart<'a> {
                 })
             })
         };
-        self.step(v, &fan, &[], step, empty)
+        self.step(v, &fan, &[], &steps, empty)
     }
 
-    /// The length of the shortest edge from a vertex to one of these.
-    fn shortest(&self, v: u32, to: impl IntoIterator<Item = u32>) -> f64 {
+    /// Moves a vertex in one of many directions, if it leads to where nothing crosses anything.
+    fn move_anywhere(&mut self, v: u32) -> bool {
+        let sides = self.fan(v);
+        let steps = self.steps(v, sides.iter().map(|side| side[0]));
+        let corners = |facet: [u32; 3]| facet.map(|w| self.at(w));
+        let opposite: Vec<[Point; 3]> = self.tiling.opposite(v).map(corners).collect();
+        let others = [self.near(v, &steps), opposite.clone()].concat();
+        let from = self.at(v);
+        let sides: Vec<[Point; 2]> = sides.iter().map(|side| side.map(|w| self.at(w))).collect();
+        let fits = |p: &Point| {
+            let fan: Vec<[Point; 3]> =
+                sides.iter().map(|&[a, b]| [p, &a, &b].map(|&x| x)).collect();
+            opposite.iter().all(|[a, b, c]| orientation(*a, *b, *c, *p) == Greater)
+                && fan.iter().enumerate().all(|(i, &facet)| {
+                    others.iter().chain(&fan[..i]).all(|&other| !cross(facet, other))
+                })
+        };
+        let to = |direction: Point, step: f64| [0, 1, 2].map(|k| from[k] + step * direction[k]);
+        let places = steps.iter().take(FAR).flat_map(|&step| around().map(move |d| to(d, step)));
+        let found = places.filter(|&p| p != from).find(fits);
+        found.inspect(|&place| self.positions[v as usize] = place).is_some()
+    }
+
+    /// The facets that a vertex may meet when it is moved, without those of its fan.
+    fn near(&mut self, v: u32, steps: &[f64]) -> Vec<[Point; 3]> {
+        let own = &self.fans[&v];
+        let row =
+            |facet: u32| self.surface.regular[facet as usize].map(|w| self.positions[w as usize]);
+        let facets = self.facets.get_or_insert_with(|| {
+            Boxes::new((0..self.surface.regular.len() as u32).map(|facet| {
+                // Wide enough for what its corners move by.
+                let [low, high] = bounds(row(facet));
+                let margin = 2.0 * MOST * length([0, 1, 2].map(|k| high[k] - low[k]));
+                [low.map(|x| x - margin), high.map(|x| x + margin)]
+            }))
+        });
+        let [low, high] = bounds(own.iter().flat_map(|&facet| row(facet)));
+        let margin = steps.iter().copied().fold(0.0, f64::max);
+        let near = facets.near([low.map(|x| x - margin), high.map(|x| x + margin)]);
+        near.into_iter().filter(|facet| own.binary_search(facet).is_err()).map(row).collect()
+    }
+
+    /// The steps to try from a vertex that has edges to these: halved from the first on, and where that leads nowhere, as an edge is hardly
+    /// longer than doubles are apart, doubled.
+    fn steps(&self, v: u32, to: impl IntoIterator<Item = u32>) -> Vec<f64> {
         let from = self.at(v);
         let lengths = to.into_iter().map(|w| {
             let to = self.at(w);
             length([0, 1, 2].map(|k| from[k] - to[k]))
         });
-        lengths.fold(f64::INFINITY, f64::min)
+        let lengths = lengths.filter(|&length| length > 0.0);
+        let shortest = lengths.fold(f64::INFINITY, f64::min);
+        let first = (LEAST * self.extent).clamp(STEP * shortest, MOST * shortest);
+        let times =
+            |factor: f64| std::iter::successors(Some(first), move |step| Some(factor * step));
+        let most = ROUNDING * from.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+        let larger = times(2.0).skip(1).take_while(|&step| step > 0.0 && step <= most);
+        times(0.5).take(TRIES).chain(larger).collect()
     }
 
     /// Moves a vertex to where it is seen from as the counter-clockwise side of the facets of its fan and of others, and is accepted.
@@ -250,7 +318,7 @@ impl<'a> Apart<'a> {
         v: u32,
         fan: &[[u32; 3]],
         others: &[[u32; 3]],
-        step: f64,
+        steps: &[f64],
         accept: impl Fn(Point) -> bool,
     ) -> bool {
         let corners = |facet: &[u32; 3]| facet.map(|w| self.at(w));
@@ -260,11 +328,8 @@ impl<'a> Apart<'a> {
         let Some(direction) = normals.and_then(|normals| axis(&normals)) else { return false };
         let from = self.at(v);
         let sees = |[a, b, c]: &[Point; 3], p: Point| orientation(*a, *b, *c, p) == Greater;
-        let places = (0..TRIES).map(|k| {
-            let step = step * 0.5f64.powi(k);
-            [0, 1, 2].map(|k| from[k] + step * direction[k])
-        });
-        let mut places = places.take_while(|&p| p != from);
+        let places = steps.iter().map(|step| [0, 1, 2].map(|k| from[k] + step * direction[k]));
+        let mut places = places.filter(|&p| p != from);
         let found =
             places.find(|&p| fan.iter().chain(&others).all(|facet| sees(facet, p)) && accept(p));
         match found {
@@ -273,4 +338,12 @@ impl<'a> Apart<'a> {
         }
         true
     }
+}
+
+/// Directions all around: those of a grid, not of unit length.
+fn around() -> impl Iterator<Item = Point> {
+    let side = 2 * GRID + 1;
+    let all = (0..side * side * side).map(move |i| [i % side, i / side % side, i / side / side]);
+    let centred = all.map(|at| at.map(|k| f64::from(k) / f64::from(GRID) - 1.0));
+    centred.filter(|direction| *direction != [0.0; 3])
 }

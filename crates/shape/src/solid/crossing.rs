@@ -7,7 +7,8 @@ use walpha_regular::predicates::orientation;
 type Point = [f64; 3];
 
 /// Whether two triangles have a point in common that is not in a corner or an edge of both, where corners are equal if their
-/// coordinates are. Of a mesh without such pairs the facets meet in common faces alone. The triangles are not degenerate.
+/// coordinates are. Of a mesh without such pairs the facets meet in common faces alone. A triangle without
+/// area crosses what it is in a plane with.
 pub(super) fn cross(one: [Point; 3], other: [Point; 3]) -> bool {
     let own = |of: [Point; 3], not: [Point; 3]| of.into_iter().filter(move |p| !not.contains(p));
     let common: Vec<Point> = one.into_iter().filter(|p| other.contains(p)).collect();
@@ -21,9 +22,9 @@ pub(super) fn cross(one: [Point; 3], other: [Point; 3]) -> bool {
         // Each is the cone of the side opposite the common corner: the nearer of two sides on a ray is in the other triangle.
         [_] => meets([a[0], a[1]], other) || meets([b[0], b[1]], one),
         [p, q] => {
-            let above = above([p, q, a[0]]);
-            orientation(p, q, a[0], b[0]) == Equal
-                && orientation(above, p, q, a[0]) == orientation(above, p, q, b[0])
+            let same_side =
+                |above| orientation(above, p, q, a[0]) == orientation(above, p, q, b[0]);
+            orientation(p, q, a[0], b[0]) == Equal && above([p, q, a[0]]).is_none_or(same_side)
         }
         _ => true,
     }
@@ -48,7 +49,7 @@ fn meets([p, q]: [Point; 2], [a, b, c]: [Point; 3]) -> bool {
 
 /// Whether a segment and a triangle in one plane have a point in common.
 fn meets_in_plane([p, q]: [Point; 2], [a, b, c]: [Point; 3]) -> bool {
-    let above = above([a, b, c]);
+    let Some(above) = above([a, b, c]) else { return true };
     let side = |x, y, z| orientation(above, x, y, z);
     let holds = |point| {
         let around = [[a, b], [b, c], [c, a]].map(|[x, y]| side(x, y, point));
@@ -62,16 +63,15 @@ fn meets_in_plane([p, q]: [Point; 2], [a, b, c]: [Point; 3]) -> bool {
     holds(p) || holds(q) || [[a, b], [b, c], [c, a]].into_iter().any(passes)
 }
 
-/// A point outside the plane of a triangle.
-fn above([a, b, c]: [Point; 3]) -> Point {
+/// A point outside the plane of a triangle, if it has one.
+fn above([a, b, c]: [Point; 3]) -> Option<Point> {
     let moved = |axis: usize| {
         let mut place = a;
         place[axis] = if a[axis] == 0.0 { 1.0 } else { a[axis] / 2.0 };
         place
     };
     let places = [0, 1, 2].map(moved);
-    let off = places.into_iter().find(|&place| orientation(a, b, c, place) != Equal);
-    off.expect("three directions are in no plane")
+    places.into_iter().find(|&place| orientation(a, b, c, place) != Equal)
 }
 
 #[cfg(test)]

@@ -63,8 +63,14 @@ pub(super) fn normal([a, b, c]: [[f64; 3]; 3]) -> Option<Vector> {
     unit(cross(u, v))
 }
 
+/// The length of a vector. Roots are rounded alike on every machine, which `hypot` is not.
 pub(super) fn length(v: Vector) -> f64 {
-    v.into_iter().fold(0.0, f64::hypot)
+    let most = v.into_iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+    if most == 0.0 {
+        return 0.0;
+    }
+    let [x, y, z] = v.map(|x| x / most);
+    most * (x * x + y * y + z * z).sqrt()
 }
 
 fn unit(v: Vector) -> Option<Vector> {

@@ -7,8 +7,9 @@ use walpha_complex::Voxels;
 
 use super::boxes::{Boxes, bounds};
 use super::crossing::cross;
+use super::direction::length;
 use super::*;
-use crate::{Alpha, ShapeOptions, alpha_shape, voxel_shape};
+use crate::{Alpha, ShapeOptions, SinglePrecision, WeightedPoints, alpha_shape, voxel_shape};
 
 type Point = [f64; 3];
 
@@ -62,46 +63,149 @@ fn points(points: &[Point], alpha: f64) -> AlphaShape {
     alpha_shape(points, &ShapeOptions::new(Alpha::from_squared(alpha).unwrap())).unwrap()
 }
 
+const UNIT: [Point; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+
+/// The solid of the voxels for which `inside` holds.
+fn voxels(side: u32, mut inside: impl FnMut([u32; 3]) -> bool) -> AlphaShape {
+    let at = |i: u32| [i % side, i / side % side, i / side / side];
+    let chosen = (0..side.pow(3)).filter(|&i| inside(at(i)));
+    let runs = chosen.map(|i| [u64::from(i), 1]).collect();
+    let voxels = Voxels { dims: [side; 3], origin: [0.5; 3], axes: UNIT, runs };
+    voxel_shape(voxels, |_| 0.0).unwrap()
+}
+
+/// Some shape of scattered points, of points of a lattice, with weights or without, or of voxels.
+fn some_shape(seed: u64) -> AlphaShape {
+    let mut random = Random::new(seed);
+    let share = random.unit();
+    match seed % 4 {
+        0 => {
+            let places: Vec<Point> = (0..300).map(|_| [0; 3].map(|_| random.unit())).collect();
+            points(&places, 0.004 + 0.02 * share)
+        }
+        1 => {
+            let grid = (0..729).map(|i| [i % 9, i / 9 % 9, i / 81].map(f64::from));
+            let chosen: Vec<Point> = grid.filter(|_| random.unit() < share.max(0.05)).collect();
+            points(&chosen, random.pick(&[0.75, 0.8, 1.0, 1.5]))
+        }
+        2 => {
+            let places: Vec<Point> =
+                (0..250).map(|_| [0; 3].map(|_| random.below(7) as f64)).collect();
+            let weights = places.iter().map(|_| random.below(6) as f64 / 2.0).collect();
+            let alpha = Alpha::from_squared(random.pick(&[0.25, 0.5, 0.75, 1.5])).unwrap();
+            let weighted = WeightedPoints::new(places, weights).unwrap();
+            alpha_shape(weighted, &ShapeOptions::new(alpha)).unwrap()
+        }
+        _ => voxels(8, |at| at == [0; 3] || random.unit() < share),
+    }
+}
+
+/// The solid is a manifold for whoever takes equal coordinates for one vertex, in doubles and in single precision, and crosses
+/// itself nowhere; what was not cut apart is where it was.
+fn is_apart(shape: &AlphaShape) -> (Cuts, f64) {
+    let (solid, cuts) = shape.solid();
+    let of_input = shape.points().positions();
+    let before: Vec<Point> = solid.unmoved(of_input).collect();
+    let after: Vec<Point> = solid.positions(of_input).collect();
+    let facets = &solid.regular;
+    assert_eq!((cuts.together, cuts.moved), (0, cuts.vertices + cuts.midpoints), "{cuts:?}");
+    assert!(is_manifold(&merged(facets, &after)), "{cuts:?}");
+    let single = SinglePrecision::of_surface(solid, of_input);
+    let rounded: Vec<Point> = after.iter().map(|&p| single.round(p).map(f64::from)).collect();
+    assert!(!single.is_lossy && is_manifold(&merged(facets, &rounded)), "{cuts:?} {single:?}");
+    assert_eq!(crossings(facets, &after), 0, "{cuts:?}");
+    for (v, (old, new)) in before.iter().zip(&after).enumerate() {
+        let copies = solid.vertices.iter().filter(|&&w| solid.vertices.get(v) == Some(&w));
+        assert!(old == new || copies.count() != 1, "{v} has no copies");
+        let distance = length([0, 1, 2].map(|k| old[k] - new[k]));
+        assert!(distance <= cuts.largest_move);
+    }
+    let [old, new] = [&before, &after].map(|places| volume(facets, places));
+    (cuts, if old == new { 0.0 } else { new / old - 1.0 })
+}
+
 #[test]
-fn statistics() {
-    let mut random = Random::new(1);
-    let mut sum = Cuts::default();
-    for i in 0..60 {
-        let kind = i % 3;
-        let shape = match kind {
-            0 => {
-                let places: Vec<Point> = (0..300).map(|_| [0; 3].map(|_| random.unit())).collect();
-                points(&places, 0.002 + 0.001 * (i / 3) as f64)
-            }
-            1 => {
-                let share = 0.2 + 0.03 * (i / 3) as f64;
-                let grid = (0..729).map(|i| [i % 9, i / 9 % 9, i / 81].map(f64::from));
-                let chosen: Vec<Point> = grid.filter(|_| random.unit() < share).collect();
-                points(&chosen, random.pick(&[0.75, 0.8, 1.0, 1.5]))
-            }
-            _ => {
-                let share = 0.05 + 0.045 * (i / 3) as f64;
-                let runs = (0..512).filter(|_| random.unit() < share).map(|v| [v, 1]).collect();
-                let axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-                let voxels = Voxels { dims: [8; 3], origin: [0.5; 3], axes, runs };
-                voxel_shape(voxels, |_| 0.0).unwrap()
-            }
-        };
+fn solids_are_manifolds_by_their_coordinates() {
+    let mut seen = Cuts::default();
+    for seed in 0..80 {
+        let (cuts, change) = is_apart(&some_shape(seed));
+        assert!(change.abs() < 2e-3, "{seed}: {change}");
+        seen.vertices += cuts.vertices;
+        seen.midpoints += cuts.midpoints;
+    }
+    assert!(seen.vertices > 2000 && seen.midpoints > 50, "{seen:?}");
+}
+
+#[test]
+fn find_saddles() {
+    for seed in 0..4000 {
+        let cuts = some_shape(4 * seed).solid().1;
+        if cuts.together > 0 {
+            println!("SADDLE {} {cuts:?}", 4 * seed);
+        }
+    }
+}
+
+/// Two cubes that share an edge or a corner, a chessboard in space, and a cross of bars that ends in a chessboard.
+#[test]
+fn voxels_that_touch_are_moved_apart() {
+    let (along_an_edge, less) = is_apart(&voxels(2, |[x, y, z]| x == y && z == 0));
+    assert_eq!((along_an_edge.moved, along_an_edge.largest_move < 1e-3), (2, true));
+    assert!(less < 0.0 && less > -2e-3, "{less}");
+    let (at_a_corner, _) = is_apart(&voxels(2, |[x, y, z]| x == y && y == z));
+    assert_eq!(at_a_corner.moved, 1);
+    let (board, _) = is_apart(&voxels(5, |[x, y, z]| (x + y + z) % 2 == 0));
+    assert!(board.edges > 100 && board.moved > 100, "{board:?}");
+}
+
+/// Cavities that touch each other, or the outside, at a vertex: between them are the same cells.
+#[test]
+fn cavities_that_touch_retreat() {
+    let two = |at: [u32; 3]| at == [1; 3] || at == [2; 3];
+    let (cuts, more) = is_apart(&voxels(4, |at| !two(at)));
+    assert_eq!(cuts.moved, 1);
+    assert!(more > 0.0 && more < 1e-4, "the solid grows: {more}");
+    // The second is open to the outside.
+    let open = |[x, y, z]: [u32; 3]| two([x, y, z]) || (x >= 2 && y == 2 && z == 2);
+    assert_eq!(is_apart(&voxels(4, |at| !open(at))).0.moved, 1);
+    // Along an edge, with facets to both sides at both ends.
+    let beside = |at: [u32; 3]| at == [1, 1, 1] || at == [2, 2, 1];
+    let (cuts, _) = is_apart(&voxels(4, |at| !beside(at)));
+    assert_eq!((cuts.edges, cuts.moved), (1, cuts.vertices + cuts.midpoints));
+}
+
+/// Points as near to each other as doubles can be leave no room: what stays together is counted.
+#[test]
+fn what_cannot_be_moved_apart_is_counted() {
+    let mut random = Random::new(3);
+    let mut left = 0;
+    for round in 0..20 {
+        let mut places: Vec<Point> = Vec::new();
+        while places.len() < 200 {
+            let p = [0; 3].map(|_| 1.0 + random.unit());
+            places.extend([p, [p[0].next_up(), p[1], p[2]], [p[0], p[1], p[2] + 1e-6]]);
+        }
+        let shape = points(&places, 0.02 + 0.002 * f64::from(round));
         let (solid, cuts) = shape.solid();
         let places: Vec<Point> = solid.positions(shape.points().positions()).collect();
-        let before: Vec<Point> = solid.unmoved(shape.points().positions()).collect();
-        let merged = merged(&solid.regular, &places);
-        let [old, new] = [&before, &places].map(|places| volume(&solid.regular, places));
-        println!(
-            "{kind} {cuts:?} manifold {} crossings {} -> {} volume {:.5}%",
-            is_manifold(&merged),
-            crossings(&solid.regular, &before),
-            crossings(&solid.regular, &places),
-            100.0 * (new / old - 1.0)
-        );
-        sum.vertices += cuts.vertices;
-        sum.together += cuts.together;
-        sum.midpoints += cuts.midpoints;
+        let distinct = merged(&solid.regular, &places).vertices.len();
+        assert!(places.len() - distinct <= cuts.together, "{cuts:?}");
+        left += cuts.together;
     }
-    println!("{sum:?}");
+    assert!(left > 0, "there was room for all");
+}
+
+#[test]
+fn solids_are_the_same_on_any_number_of_threads() {
+    for seed in [0, 5, 7] {
+        let of = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| {
+                let shape = some_shape(seed);
+                let (solid, cuts) = shape.solid();
+                (solid.clone(), cuts)
+            })
+        };
+        assert_eq!(of(1), of(3));
+    }
 }
