@@ -251,11 +251,22 @@ impl Display for Report {
             Some(cuts) if cuts == Cuts::default() => {
                 writeln!(f, "solid     the boundary is a manifold as it is")?;
             }
-            Some(Cuts { edges, vertices, midpoints, .. }) => writeln!(
-                f,
-                "solid     the boundary is not a manifold: cut apart at {edges} edges, with {vertices} more \
-                 vertices and {midpoints} midpoints of edges"
-            )?,
+            Some(cuts) => {
+                let Cuts { edges, vertices, midpoints, moved, largest_move, together, .. } = cuts;
+                let unit = self.coordinates.unit.symbol();
+                writeln!(
+                    f,
+                    "solid     the boundary is not a manifold: cut apart at {edges} edges, with {vertices} more \
+                     vertices and {midpoints} midpoints of edges; {moved} vertices moved apart, by {} {unit} at most",
+                    number(six_digits(largest_move))
+                )?;
+                if together > 0 {
+                    writeln!(
+                        f,
+                        "          {together} vertices stay where others are, as there is no room to move them"
+                    )?;
+                }
+            }
         }
         self.offsets.iter().try_for_each(|offset| offset.fmt(f))?;
         ending(f, &self.files, &STAGES, &self.seconds)

@@ -231,8 +231,12 @@ fn the_report_says_where_a_solid_was_cut() {
     let args = ["shape", "two.xyz", "--alpha", "0.75", "--solid", "-o", "two.stl", "two.ply"];
     let said = common::ok(folder.path(), &args);
     assert!(said.contains("cut apart at 0 edges, with 1 more vertices"), "{said}");
+    assert!(said.contains("; 1 vertices moved apart, by 0.000976562 unit at most"), "{said}");
     let made = common::json(folder.path(), &args);
-    assert_eq!(made["solid"], serde_json::json!({ "edges": 0, "vertices": 1, "midpoints": 0 }));
+    let solid = &made["solid"];
+    let counts = ["edges", "vertices", "midpoints", "moved", "together"].map(|name| &solid[name]);
+    assert_eq!(counts, [0, 1, 0, 1, 0]);
+    assert!((solid["largest_move"].as_f64().unwrap() - 1.0 / 1024.0).abs() < 1e-9, "{solid}");
     assert_eq!(read_points(folder.path().join("two.ply"), None).unwrap().len(), 8);
     let (_, _, stderr) = common::run(folder.path(), &args);
     assert!(!stderr.contains("manifold"), "{stderr}");

@@ -82,7 +82,7 @@ impl<'a> Apart<'a> {
     }
 
     /// Moves what is together.
-    pub(super) fn moved(mut self, middles: &[Middle], places: &[Place]) -> Moved {
+    pub(super) fn separate(&mut self, middles: &[Middle], places: &[Place]) -> Moved {
         self.collect_fans(middles, places);
         self.orient();
         let before = self.positions.clone();
@@ -93,7 +93,7 @@ impl<'a> Apart<'a> {
             }
         }
         for place in places {
-            let staying = self.separate(place);
+            let staying = self.separate_copies(place);
             if staying > 0 {
                 left.push((place.copies.clone(), staying));
             }
@@ -140,7 +140,14 @@ impl<'a> Apart<'a> {
         }
     }
 
-    fn at(&self, v: u32) -> Point {
+    /// The cells around what is moved.
+    #[cfg(test)]
+    pub(super) fn cells(&self) -> &[[u32; 4]] {
+        &self.tiling.cells
+    }
+
+    /// Where a vertex is now.
+    pub(super) fn at(&self, v: u32) -> Point {
         match v.checked_sub(self.tiling.vertices) {
             Some(input) => self.of_input[input as usize],
             None => self.positions[v as usize],
@@ -183,7 +190,7 @@ impl<'a> Apart<'a> {
     }
 
     /// Moves all copies but one away from a place. Returns the number of further ones that stay.
-    fn separate(&mut self, place: &Place) -> usize {
+    fn separate_copies(&mut self, place: &Place) -> usize {
         let mut whole = Vec::new();
         let mut staying = place.copies.len();
         for group in &place.groups {

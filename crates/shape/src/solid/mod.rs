@@ -14,7 +14,7 @@ use walpha_base::UnionFind;
 use super::surface::Side;
 use super::{AlphaShape, Class, Complex, Surface};
 use apart::Apart;
-use tiling::Tiling;
+use tiling::{Place, Tiling};
 
 /// Where a boundary was cut apart to become a manifold, and how far its vertices moved.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
@@ -45,11 +45,19 @@ struct Middle {
     thirds: [u32; 2],
 }
 
-impl Surface {
-    /// As [`AlphaShape::solid`](crate::AlphaShape::solid) says.
-    pub(super) fn solid(shape: &AlphaShape) -> (Self, Cuts) {
+/// A boundary that is cut apart, and not moved yet.
+struct Cut {
+    solid: Surface,
+    cuts: Cuts,
+    middles: Vec<Middle>,
+    /// What is to be moved, if there is anything, and the cells there.
+    around: Option<(Tiling, Vec<Place>)>,
+}
+
+impl Cut {
+    fn of(shape: &AlphaShape) -> Self {
         let complex = &shape.complex;
-        let whole = Self::of_complex(complex);
+        let whole = Surface::of_complex(complex);
         let fans = UnionFind::new(3 * whole.regular.len());
         let mut touching = Vec::new();
         whole.each_edge(|sides| match sides {
@@ -61,7 +69,7 @@ impl Surface {
             join(&fans, *a, *b);
         }
         // Fans are numbered in the order of their vertices; each gets a vertex.
-        let mut solid = Self { regular: whole.regular.clone(), ..Self::default() };
+        let mut solid = Surface { regular: whole.regular.clone(), ..Surface::default() };
         let mut cuts = Cuts { edges: touching.len(), ..Cuts::default() };
         let (starts, corners) = whole.corners_by_vertex();
         for (v, around) in starts.windows(2).enumerate() {
@@ -78,16 +86,26 @@ impl Surface {
             }
             cuts.vertices += roots.len().saturating_sub(1);
         }
-        let cut = solid.regular.clone();
+        let facets = solid.regular.clone();
         let middles = solid.insert_midpoints(&pairs);
         cuts.midpoints = middles.len();
         // Where a torus is cut open, its cells are not beside each other in space.
         let in_space = shape.options.periodic.is_none() && shape.copies.is_empty();
-        if in_space && cuts.vertices + cuts.midpoints > 0 {
-            let positions = &shape.points.positions;
+        let around = (in_space && cuts.vertices + cuts.midpoints > 0).then(|| {
             let corners = (&whole, &starts[..], &corners[..]);
-            let (tiling, places) = Tiling::new(complex, corners, &solid, &middles, &cut);
-            let found = Apart::new(&solid, positions, tiling).moved(&middles, &places);
+            Tiling::new(complex, corners, &solid, &middles, &facets)
+        });
+        Self { solid, cuts, middles, around }
+    }
+}
+
+impl Surface {
+    /// As [`AlphaShape::solid`](crate::AlphaShape::solid) says.
+    pub(super) fn solid(shape: &AlphaShape) -> (Self, Cuts) {
+        let Cut { mut solid, mut cuts, middles, around } = Cut::of(shape);
+        if let Some((tiling, places)) = around {
+            let of_input = &shape.points.positions;
+            let found = Apart::new(&solid, of_input, tiling).separate(&middles, &places);
             cuts.moved = found.moved.len();
             cuts.largest_move = found.largest;
             cuts.together = found.together;

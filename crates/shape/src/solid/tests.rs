@@ -1,13 +1,16 @@
 //! Solids as a reader sees them who takes equal coordinates for one vertex.
 
-use std::collections::BTreeMap;
+use std::cmp::Ordering;
+use std::collections::{BTreeMap, BTreeSet};
 
 use walpha_base::random::Random;
 use walpha_complex::Voxels;
+use walpha_regular::predicates::orientation;
 
 use super::boxes::{Boxes, bounds};
 use super::crossing::cross;
 use super::direction::length;
+use super::tiling::opposite;
 use super::*;
 use crate::{Alpha, ShapeOptions, SinglePrecision, WeightedPoints, alpha_shape, voxel_shape};
 
@@ -136,14 +139,90 @@ fn solids_are_manifolds_by_their_coordinates() {
     assert!(seen.vertices > 2000 && seen.midpoints > 50, "{seen:?}");
 }
 
-#[test]
-fn find_saddles() {
-    for seed in 0..4000 {
-        let cuts = some_shape(4 * seed).solid().1;
-        if cuts.together > 0 {
-            println!("SADDLE {} {cuts:?}", 4 * seed);
+/// The cells around what was moved stay positively oriented, and each facet there is on one.
+fn is_tiled(shape: &AlphaShape) {
+    let Cut { solid, middles, around, .. } = Cut::of(shape);
+    let Some((tiling, places)) = around else { return };
+    let of_input = shape.points().positions();
+    let mut apart = Apart::new(&solid, of_input, tiling);
+    apart.separate(&middles, &places);
+    let mut facets: BTreeMap<[u32; 3], u32> = BTreeMap::new();
+    for &cell in apart.cells() {
+        let [a, b, c, d] = cell.map(|v| apart.at(v));
+        assert_eq!(orientation(a, b, c, d), Ordering::Greater, "{cell:?}");
+        for corner in cell {
+            *facets.entry(sorted(opposite(cell, corner))).or_default() += 1;
         }
     }
+    let copies = places.iter().flat_map(|place| place.copies.clone());
+    let moved: BTreeSet<u32> = copies.chain(middles.iter().map(|middle| middle.vertex)).collect();
+    for row in solid.regular.iter().filter(|row| row.iter().any(|v| moved.contains(v))) {
+        assert_eq!(facets.get(&sorted(*row)), Some(&1), "{row:?}");
+    }
+}
+
+#[test]
+fn cells_stay_positively_oriented() {
+    // What is moved anywhere near may leave its cells, and of voxels nothing has to be.
+    (3..160).step_by(4).for_each(|seed| is_tiled(&some_shape(seed)));
+}
+
+fn sorted(mut row: [u32; 3]) -> [u32; 3] {
+    row.sort_unstable();
+    row
+}
+
+/// The shape that has these cells, whatever α would say.
+fn of_cells(places: &[Point], cells: &[[u32; 4]]) -> AlphaShape {
+    let mut facets: BTreeMap<[u32; 3], Vec<[u32; 3]>> = BTreeMap::new();
+    for &cell in cells {
+        let [a, b, c, d] = cell.map(|v| places[v as usize]);
+        let inward = orientation(a, b, c, d) == Ordering::Greater;
+        for corner in cell {
+            let [a, b, c] = opposite(cell, corner);
+            let outward = if inward { [a, c, b] } else { [a, b, c] };
+            facets.entry(sorted(outward)).or_default().push(outward);
+        }
+    }
+    let mut shape = points(places, 0.0);
+    let class = |rows: &[[u32; 3]]| if rows.len() == 1 { Class::Regular } else { Class::Interior };
+    shape.complex.cells = cells.iter().map(|&row| (row, Class::Interior)).collect();
+    shape.complex.facets = facets.values().map(|rows| (rows[0], class(rows))).collect();
+    shape
+}
+
+/// The opposite facet is nearer than the first step is long.
+#[test]
+fn steps_stay_in_flat_cells() {
+    let height = 1e-5;
+    let at = |x: f64, y: f64, up: f64| [x, y, up * height];
+    let places = [
+        [0.0; 3],
+        at(1.0, 0.0, -1.0),
+        at(-1.0, 1.0, -1.0),
+        at(-1.0, -1.0, -1.0),
+        at(-1.0, 0.0, 1.0),
+        at(1.0, 1.0, 1.0),
+        at(1.0, -1.0, 1.0),
+    ];
+    let (cuts, _) = is_apart(&of_cells(&places, &[[0, 1, 2, 3], [0, 4, 5, 6]]));
+    assert_eq!(cuts.moved, 1);
+    assert!(cuts.largest_move < height, "{cuts:?}");
+}
+
+/// In a wide shape the first step is longer, so that single precision has it.
+#[test]
+fn places_differ_in_single_precision() {
+    let tetrahedron = |[x, y, z]: Point, size: f64| {
+        [[x, y, z], [x + size, y, z], [x, y + size, z], [x, y, z + size]]
+    };
+    let far = 1000.0;
+    let mut places = tetrahedron([0.0; 3], 0.02).to_vec();
+    places.extend(&tetrahedron([0.0; 3], -0.02)[1..]);
+    places.extend(tetrahedron([far; 3], 1.0));
+    let (cuts, _) = is_apart(&of_cells(&places, &[[0, 1, 2, 3], [0, 4, 5, 6], [7, 8, 9, 10]]));
+    assert_eq!(cuts.moved, 1);
+    assert!(cuts.largest_move > 1e-4, "{cuts:?}");
 }
 
 /// Two cubes that share an edge or a corner, a chessboard in space, and a cross of bars that ends in a chessboard.
@@ -162,8 +241,10 @@ fn voxels_that_touch_are_moved_apart() {
 #[test]
 fn cavities_that_touch_retreat() {
     let two = |at: [u32; 3]| at == [1; 3] || at == [2; 3];
+    is_tiled(&voxels(4, |at| !two(at)));
     let (cuts, more) = is_apart(&voxels(4, |at| !two(at)));
     assert_eq!(cuts.moved, 1);
+    assert!((cuts.largest_move * 1024.0 - 1.0).abs() < 1e-9, "straight into one: {cuts:?}");
     assert!(more > 0.0 && more < 1e-4, "the solid grows: {more}");
     // The second is open to the outside.
     let open = |[x, y, z]: [u32; 3]| two([x, y, z]) || (x >= 2 && y == 2 && z == 2);
@@ -172,6 +253,24 @@ fn cavities_that_touch_retreat() {
     let beside = |at: [u32; 3]| at == [1, 1, 1] || at == [2, 2, 1];
     let (cuts, _) = is_apart(&voxels(4, |at| !beside(at)));
     assert_eq!((cuts.edges, cuts.moved), (1, cuts.vertices + cuts.midpoints));
+}
+
+/// Lattices in which doubles are few: what is between them is tried by the places that there are.
+#[test]
+fn rounded_steps_cross_nothing() {
+    let mut random = Random::new(4);
+    for round in 0..40 {
+        let step = f64::EPSILON * random.pick(&[2.0, 4.0, 16.0, 64.0]);
+        let grid = (0..343).map(|i| [i % 7, i / 7 % 7, i / 49].map(f64::from));
+        let chosen: Vec<Point> = grid.filter(|_| random.unit() < 0.6).collect();
+        let places: Vec<Point> = chosen.iter().map(|p| p.map(|x| 1.0 + step * x)).collect();
+        let shape = points(&places, step * step * 0.8);
+        let (solid, _) = shape.solid();
+        let places: Vec<Point> = solid.positions(shape.points().positions()).collect();
+        let before: Vec<Point> = solid.unmoved(shape.points().positions()).collect();
+        let [old, new] = [&before, &places].map(|places| crossings(&solid.regular, places));
+        assert!(new <= old, "{round}: {old} before, {new} after");
+    }
 }
 
 /// Points as near to each other as doubles can be leave no room: what stays together is counted.
