@@ -14,7 +14,7 @@ import numpy as np
 from . import _arrays, _meshes, _parts, _walpha
 from ._class import Class
 from ._classified import Classified
-from ._parts import Betti, Boundary, Component, Outline, TorusBetti, Void
+from ._parts import Betti, Boundary, Component, Cuts, Outline, TorusBetti, Void
 from ._typing import Arrays, Classes, Floats, Indices, Progress, Samples
 from ._work import task
 

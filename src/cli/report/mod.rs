@@ -9,6 +9,7 @@ use std::fmt::{self, Display};
 
 use serde::Serialize;
 use walpha_base::memory;
+use walpha_base::shown::{number, six_digits};
 
 use crate::interpolate::{Adaptive, Fit, Refit};
 use crate::labels::LabelSizes;
@@ -257,7 +258,7 @@ impl Display for Report {
                 writeln!(
                     f,
                     "solid     the boundary is not a manifold: cut apart at {edges} edges, with {vertices} more \
-                     vertices and {midpoints} midpoints of edges; {moved} vertices moved apart, by {} {unit} at most",
+                     vertices and {midpoints} midpoints of edges; {moved} are moved, by {} {unit} at most",
                     number(six_digits(largest_move))
                 )?;
                 if together > 0 {
