@@ -1,25 +1,24 @@
 //! Moves the copies of vertices apart, so that the boundary is a manifold also for whoever takes equal coordinates for one vertex.
 //!
-//! The boundary of the cut solid touches itself, but does not cross itself: facets meet in common faces alone, if copies at one place count as one
-//! vertex. Vertices are moved one after another, and this stays so with each step:
+//! The boundary of the cut solid touches itself, but does not cross itself: facets meet in common faces alone, if copies at one place
+//! count as one vertex. Vertices are moved one after another, and this stays so with each step:
 //!
 //! - **Into the cells of its fan.** Let S be the union of the cells around a copy v. Its boundary consists of the fan at v and of
-//!   the facets opposite v. A point p that is strictly inside the planes of all these facets sees all of S: it is in the interior of the kernel, and S is
-//!   star-shaped about it. So the facets from p to the border of the fan are in S, meet its boundary in the border alone, and do not cross each other. No
-//!   other part of the boundary is in the interior of S. The cells with p for v are positively oriented, as p is inside the opposite
-//!   facets, and fill what is left of S. S may touch itself at places where other copies have not been moved yet;
-//!   moved apart by less than any number, these do not change on which sides p is.
-//! - **Out of the cells**, where cavities touch at a vertex: between them are the same cells, so that all fans but one must retreat into
-//!   their cavities. If p is strictly outside the planes of the fan, the tetrahedra v–p–a–b over its facets v–a–b are
-//!   positively oriented and lie side by side around the line v–p. They become cells, if no other facet of the boundary enters them, which is decided for
-//!   all facets near.
+//!   the facets opposite v. A point p that is strictly inside the planes of all these facets sees all of S: it is in the interior of
+//!   the kernel, and S is star-shaped about it. So the facets from p to the border of the fan are in S, meet its boundary in the border
+//!   alone, and do not cross each other. No other part of the boundary is in the interior of S. The cells with p for v are positively
+//!   oriented, as p is inside the opposite facets, and fill what is left of S. Where S touches itself, at places whose copies have not
+//!   been moved yet, this holds for S with these copies a little apart, as being strictly inside of planes does.
+//! - **Out of the cells**, where cavities touch at a vertex: between them are the same cells, so that all fans but one must retreat
+//!   into their cavities. If p is strictly outside the planes of the fan, the tetrahedra v–p–a–b over its facets v–a–b are positively
+//!   oriented, and lie side by side around the line v–p. They become cells, if no other facet of the boundary enters them, which is
+//!   decided for all facets near.
+//! - **Anywhere near**, for what is still together after all of that, as a fan that is a saddle is seen from no point. A number of
+//!   directions are tried: a new fan crosses neither itself nor a facet near, opposite facets of its cells included, and these cells
+//!   stay positively oriented. So these fill what the fan and the opposite facets bound, a sphere that does not cross itself.
 //!
-//! - **Anywhere near**, for what is still together after all of that, as no point sees a fan that is a saddle. A number of directions are
-//!   tried: a new fan crosses neither itself nor a facet near, opposite facets of its cells included, and these cells stay positively
-//!   oriented. So they fill what is inside the new fan, as their boundary does not cross itself and goes around them once.
-//!
-//! One fan at each place stays. When all others have moved, no two vertices are at the same place. Orientation is decided
-//! exactly for the doubles that are written.
+//! One fan at each place stays. When all others have moved, no two vertices are at the same place. All is decided exactly for
+//! the doubles that are written. Single precision rounds them once more, by a fraction of the steps ([`LEAST`]).
 
 use std::cmp::Ordering::{Greater, Less};
 use std::collections::HashMap;
@@ -43,7 +42,6 @@ const TRIES: usize = 24;
 const LEAST: f64 = 4.0 * f32::EPSILON as f64;
 /// The largest share of the shortest edge for that.
 const MOST: f64 = 1.0 / 16.0;
-
 /// The largest share of a coordinate for steps that are longer only because doubles are no nearer to each other.
 const ROUNDING: f64 = 32.0 * f64::EPSILON;
 /// Steps that are tried in all directions.
@@ -249,11 +247,12 @@ impl<'a> Apart<'a> {
         let sides: Vec<[Point; 2]> = sides.iter().map(|side| side.map(|w| self.at(w))).collect();
         let empty = |p: Point| {
             near.iter().all(|facet| {
-                sides.iter().all(|&[a, b]| {
-                    !cross(*facet, [p, a, b])
-                        && !cross(*facet, [from, p, a])
-                        && !facet.iter().any(|&corner| inside([from, a, b, p], corner))
-                })
+                !facet.contains(&p)
+                    && sides.iter().all(|&[a, b]| {
+                        !cross(*facet, [p, a, b])
+                            && !cross(*facet, [from, p, a])
+                            && !facet.iter().any(|&corner| inside([from, a, b, p], corner))
+                    })
             })
         };
         self.step(v, &fan, &[], &steps, empty)
@@ -272,13 +271,14 @@ impl<'a> Apart<'a> {
             let fan: Vec<[Point; 3]> =
                 sides.iter().map(|&[a, b]| [p, &a, &b].map(|&x| x)).collect();
             opposite.iter().all(|[a, b, c]| orientation(*a, *b, *c, *p) == Greater)
+                && !others.iter().any(|facet| facet.contains(p))
                 && fan.iter().enumerate().all(|(i, &facet)| {
                     others.iter().chain(&fan[..i]).all(|&other| !cross(facet, other))
                 })
         };
         let to = |direction: Point, step: f64| [0, 1, 2].map(|k| from[k] + step * direction[k]);
         let places = steps.iter().take(FAR).flat_map(|&step| around().map(move |d| to(d, step)));
-        let found = places.filter(|&p| p != from).find(fits);
+        let found = places.filter(|&p| is_elsewhere(p, from)).find(fits);
         found.inspect(|&place| self.positions[v as usize] = place).is_some()
     }
 
@@ -291,13 +291,11 @@ impl<'a> Apart<'a> {
             Boxes::new((0..self.surface.regular.len() as u32).map(|facet| {
                 // Wide enough for what its corners move by.
                 let [low, high] = bounds(row(facet));
-                let margin = 2.0 * MOST * length([0, 1, 2].map(|k| high[k] - low[k]));
-                [low.map(|x| x - margin), high.map(|x| x + margin)]
+                wider([low, high], MOST * length([0, 1, 2].map(|k| high[k] - low[k])))
             }))
         });
-        let [low, high] = bounds(own.iter().flat_map(|&facet| row(facet)));
-        let margin = steps.iter().copied().fold(0.0, f64::max);
-        let near = facets.near([low.map(|x| x - margin), high.map(|x| x + margin)]);
+        let place = bounds(own.iter().flat_map(|&facet| row(facet)));
+        let near = facets.near(wider(place, steps.iter().copied().fold(0.0, f64::max)));
         near.into_iter().filter(|facet| own.binary_search(facet).is_err()).map(row).collect()
     }
 
@@ -336,7 +334,7 @@ impl<'a> Apart<'a> {
         let from = self.at(v);
         let sees = |[a, b, c]: &[Point; 3], p: Point| orientation(*a, *b, *c, p) == Greater;
         let places = steps.iter().map(|step| [0, 1, 2].map(|k| from[k] + step * direction[k]));
-        let mut places = places.filter(|&p| p != from);
+        let mut places = places.filter(|&p| is_elsewhere(p, from));
         let found =
             places.find(|&p| fan.iter().chain(&others).all(|facet| sees(facet, p)) && accept(p));
         match found {
@@ -345,6 +343,17 @@ impl<'a> Apart<'a> {
         }
         true
     }
+}
+
+/// Whether a place that a step leads to is another one.
+fn is_elsewhere(place: Point, from: Point) -> bool {
+    place != from && place.iter().all(|x| x.is_finite())
+}
+
+/// A box that is wider by what corners move by in steps of this length, in any direction and rounded.
+fn wider([low, high]: [Point; 2], step: f64) -> [Point; 2] {
+    let margin = |x: f64| 2.0 * (step + ROUNDING * x.abs());
+    [low.map(|x| x - margin(x)), high.map(|x| x + margin(x))]
 }
 
 /// Directions all around: those of a grid, not of unit length.
