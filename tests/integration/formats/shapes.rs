@@ -282,7 +282,7 @@ fn a_3mf_is_a_solid_with_its_unit() {
         model.lines().filter(|line| line.starts_with("<vertex ")).collect();
     assert_eq!(vertices.len(), 8, "at different places: {vertices:?}");
     assert_eq!(model.matches("<triangle ").count(), 8);
-    let placed = "transform=\"1 0 0 0 1 0 0 0 1 434000 5412000 0\"";
+    let placed = "transform=\"1 0 0 0 1 0 0 0 1 430000 5410000 0\"";
     assert!(model.contains(placed) && model.contains("type=\"model\""), "{model}");
     // A unit that is not known is said to be, and taken for millimetres.
     assert!(model.contains("unit=\"millimeter\""));
