@@ -252,7 +252,7 @@ CALLS = {
 }  # fmt: skip
 #: What nobody calls: the results of others.
 RESULTS = {
-    "Betti", "BettiCurve", "Boundary", "Class", "Comparison", "Component", "Finding", "Level", "Outline", "PointFile", "Polygon",
+    "Betti", "BettiCurve", "Boundary", "Class", "Comparison", "Component", "Cuts", "Finding", "Level", "Outline", "PointFile", "Polygon",
     "PowerDiagram", "Selected", "Simplices", "Suggestions", "TorusBetti", "TorusBettiCurve", "Verdict", "Void",
 }  # fmt: skip
 

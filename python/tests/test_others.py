@@ -70,8 +70,10 @@ def test_pyvista_has_a_closed_surface_of_the_same_volume(hollow, cloud):
         mesh = shape.to_pyvista()
         assert mesh.n_cells == len(shape.boundary().triangles) > 0
         assert mesh.is_manifold and mesh.n_open_edges == 0
-        assert np.isclose(mesh.volume, shape.volume) and np.isclose(mesh.area, shape.area)
-        assert np.allclose(mesh["value"], mesh.points[:, 0], atol=0.51 if shape.boundary().cuts[2] else 1e-12)
+        # Copies of vertices are moved apart.
+        cuts = shape.boundary().cuts
+        assert np.isclose(mesh.volume, shape.volume, rtol=2e-3) and np.isclose(mesh.area, shape.area, rtol=2e-3)
+        assert np.allclose(mesh["value"], mesh.points[:, 0], atol=0.51 if cuts.midpoints else 1e-12 + cuts.largest_move)
         cells = shape.to_pyvista("cells")
         assert cells.n_cells == (shape.cell_classes == Class.INTERIOR).sum()
         sizes = cells.compute_cell_sizes()["Volume"]
@@ -87,7 +89,7 @@ def test_trimesh_has_a_closed_oriented_surface(hollow, cloud):
         mesh = shape.to_trimesh()
         assert mesh.is_watertight and mesh.is_winding_consistent and mesh.is_volume
         # Positive: outward.
-        assert np.isclose(mesh.volume, shape.volume) and mesh.volume > 0
+        assert np.isclose(mesh.volume, shape.volume, rtol=2e-3) and mesh.volume > 0
         assert len(mesh.faces) == len(shape.boundary().triangles)
 
 
@@ -154,4 +156,4 @@ def test_a_boundary_is_closed_and_oriented(cloud):
         assert len(sides) == len(set(sides)) and {(b, a) for a, b in sides} == set(sides)
         a, b, c = (boundary.points[boundary.triangles[:, k]] for k in range(3))
         volume = np.einsum("ij,ij->", a, np.cross(b, c)) / 6
-        assert np.isclose(volume, walpha.alpha_shape(cloud, alpha=alpha).volume)
+        assert np.isclose(volume, walpha.alpha_shape(cloud, alpha=alpha).volume, rtol=2e-3)

@@ -29,7 +29,7 @@ from ._check import Comparison, Complex, Finding, Verdict, check, compare
 from ._class import Class
 from ._curves import BettiCurve, Level, Suggestions, TorusBettiCurve
 from ._filtration import Filtration, filtration
-from ._parts import Betti, Boundary, Component, Outline, Polygon, TorusBetti, Void
+from ._parts import Betti, Boundary, Component, Cuts, Outline, Polygon, TorusBetti, Void
 from ._pipeline import Selected, difference, haar, label_shape, pipeline, select, weigh
 from ._points import PointFile, read_points, write_points
 from ._shape import AlphaShape
@@ -48,6 +48,7 @@ __all__ = [
     "Comparison",
     "Complex",
     "Component",
+    "Cuts",
     "Filtration",
     "Finding",
     "Level",

@@ -63,7 +63,7 @@ def to_trimesh(shape: AlphaShape) -> Any:
     trimesh = wanted("trimesh", "to_trimesh")
     shape = shape.unwrapped()
     points, triangles, indices, _ = shape.boundary(solid=not len(shape.copies))
-    # Processed, it would unite the vertices at which parts of the solid were cut apart.
+    # Processed, its vertices would be in another order than their indices.
     mesh = trimesh.Trimesh(points, triangles, process=False)
     mesh.vertex_attributes["index"] = indices
     return mesh

@@ -193,6 +193,33 @@ class Outline(NamedTuple):
         return cls(rings, _arrays.int64(edges), _arrays.int64(points), area, perimeter, (one, other))
 
 
+class Cuts(NamedTuple):
+    """Where a boundary was cut apart to become a manifold.
+
+    Attributes
+    ----------
+    edges : int
+        At which parts of the solid touched.
+    vertices : int
+        Copies of vertices that were added.
+    midpoints : int
+        Vertices that were added on edges.
+    moved : int
+        Vertices that were moved away from others at the same place.
+    largest_move : float
+        The largest distance that one was moved.
+    together : int
+        Vertices that are still where another one is, for lack of room.
+    """
+
+    edges: int
+    vertices: int
+    midpoints: int
+    moved: int
+    largest_move: float
+    together: int
+
+
 class Boundary(NamedTuple):
     """A triangle mesh.
 
@@ -204,12 +231,11 @@ class Boundary(NamedTuple):
         Rows of ``points``, counter-clockwise seen from outside the solid.
     indices : ndarray of int64, (m,)
         The input index of each vertex; of a midpoint, that of one end of its edge.
-    cuts : tuple of int
-        Edges at which parts of the solid touched, vertices that occur there more than once, and
-        midpoints added; all 0 unless the boundary was cut apart into a manifold.
+    cuts : Cuts
+        Where the boundary was cut apart; all 0 unless it was, to become a manifold.
     """
 
     points: Floats
     triangles: Indices
     indices: Indices
-    cuts: tuple[int, int, int]
+    cuts: Cuts

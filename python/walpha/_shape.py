@@ -14,7 +14,7 @@ import numpy as np
 from . import _arrays, _meshes, _parts, _walpha
 from ._class import Class
 from ._classified import Classified
-from ._parts import Betti, Boundary, Component, Outline, TorusBetti, Void
+from ._parts import Betti, Boundary, Component, Cuts, Outline, TorusBetti, Void
 from ._typing import Arrays, Classes, Floats, Indices, Progress, Samples
 from ._work import task
 
@@ -218,14 +218,15 @@ class AlphaShape(Classified):
         ----------
         solid : bool
             Cut the boundary apart where parts of the solid only touch, so that it is a closed,
-            oriented manifold: every edge is on two triangles. No place moves. With False the
+            oriented manifold: every edge is on two triangles. Copies of a vertex are moved apart, by
+            a thousandth of an edge or so, and the triangles cross nowhere. With False the
             regular facets are given as they are.
 
         Returns
         -------
         Boundary
             Its triangles turn counter-clockwise seen from outside; the volume they enclose is
-            :attr:`volume`.
+            :attr:`volume`, but for what copies of vertices were moved by.
 
         Raises
         ------
@@ -245,7 +246,7 @@ class AlphaShape(Classified):
                 )
             return self.unwrapped().boundary(solid=False)
         points, triangles, indices, cuts = self._shape.boundary(solid)
-        return Boundary(points, _arrays.int64(triangles), _arrays.int64(indices), cuts)
+        return Boundary(points, _arrays.int64(triangles), _arrays.int64(indices), Cuts(*cuts))
 
     def outline(self) -> Outline:
         """The shape of points in one plane as polygons with holes.
@@ -360,7 +361,7 @@ class AlphaShape(Classified):
         Parameters
         ----------
         path : str or path-like
-            Its extension says the format: ``.ply .off .obj .stl .glb .vtp`` (the boundary),
+            Its extension says the format: ``.ply .off .obj .stl .3mf .glb .vtp`` (the boundary),
             ``.vtu .npz .json`` (all simplices), ``.geojson .wkt .svg`` (the :meth:`outline` of points
             in a plane).
         solid : bool
@@ -372,9 +373,10 @@ class AlphaShape(Classified):
         Warns
         -----
         UserWarning
-            STL and GLB have coordinates in single precision. Where that would move them by more than a
+            STL, 3MF and GLB have coordinates in single precision. Where that would move them by more than a
             thousandth of the shortest edge, a round number is subtracted, which the file states, too: the
-            header of an STL as ``OFFSET=x,y,z``, a GLB as the translation of its node.
+            header of an STL as ``OFFSET=x,y,z``, a GLB as the translation of its node,
+            a 3MF as that of its item.
 
         Raises
         ------

@@ -197,10 +197,12 @@ impl AlphaShape {
     /// along it in opposite directions, and the facets around a vertex are one fan. Where the shape
     /// is not a manifold, its parts are cut apart: facets that bound the same cells stay together, and
     /// vertices between others occur once for each fan. Where that leaves an edge on four facets, as both
-    /// of its ends are in one fan, two of them get a vertex at its midpoint. No vertex moves; only such midpoints
-    /// are rounded. O(n log n) for the first call; the shape keeps it.
+    /// of its ends are in one fan, two of them get a vertex at its midpoint. Copies are then moved apart ([`Surface::moved`]), so that the
+    /// boundary is a manifold also for readers that take equal coordinates for one vertex, and crosses itself nowhere, which is decided
+    /// exactly; one of them, and all other vertices, stay. On a torus none moves.
+    /// O(n log n) for the first call; the shape keeps it.
     pub fn solid(&self) -> (&Surface, Cuts) {
-        let (surface, cuts) = self.solid.get(|| Surface::solid(&self.complex));
+        let (surface, cuts) = self.solid.get(|| Surface::solid(self));
         (surface, *cuts)
     }
 }

@@ -15,6 +15,8 @@ pub struct SinglePrecision {
     pub offset: [f64; 3],
     /// The largest error of a coordinate after that, in the unit of the coordinates.
     pub error: f64,
+    /// The number of different places that become equal to others even so.
+    pub merged: usize,
     /// Whether even so a mesh is not what it was: the error is more than a thousandth of its shortest edge, or different
     /// vertices have become one.
     pub is_lossy: bool,
@@ -42,7 +44,7 @@ impl SinglePrecision {
         }
         let shortest = edges.map(|edge| length(edge.map(|v| places[v as usize])));
         let tolerated = TOLERATED * shortest.fold(f64::INFINITY, f64::min);
-        let suffices = |found: &Self| found.error <= tolerated && !found.merges(places);
+        let suffices = |found: &Self| found.error <= tolerated && found.merges(places) == 0;
         let plain = exact.measured(places);
         if suffices(&plain) {
             return plain;
@@ -67,7 +69,10 @@ impl SinglePrecision {
         // Where vertices that no edge joins are nearer to each other than any edge is long, as near as can be.
         let found = [tolerated, 0.0].map(around);
         let best = found.into_iter().find(suffices);
-        best.unwrap_or(Self { is_lossy: true, ..found[1] })
+        best.unwrap_or_else(|| {
+            let merged = found[1].merges(places);
+            Self { merged, is_lossy: true, ..found[1] }
+        })
     }
 
     /// A place in single precision.
@@ -83,6 +88,11 @@ impl SinglePrecision {
     /// What a user of the mesh has to know, if anything.
     pub fn remark(&self) -> Option<String> {
         let [x, y, z] = self.offset.map(number);
+        let merged = match self.merged {
+            0 => String::new(),
+            1 => " and lets 1 vertex fall onto another".to_owned(),
+            merged => format!(" and lets {merged} vertices fall onto others"),
+        };
         let error = number(six_digits(self.error));
         match (self.has_offset(), self.is_lossy) {
             (false, false) => None,
@@ -92,10 +102,10 @@ impl SinglePrecision {
             )),
             (true, true) => Some(format!(
                 "its coordinates are single precision: {x}, {y}, {z} is subtracted from x, y, z, and even so they are \
-                 rounded by up to {error}, which changes the mesh; other formats hold doubles"
+                 rounded by up to {error}, which changes the mesh{merged}; other formats hold doubles"
             )),
             (false, true) => Some(format!(
-                "its coordinates are single precision, rounded by up to {error}, which changes the mesh; other formats \
+                "its coordinates are single precision, rounded by up to {error}, which changes the mesh{merged}; other formats \
                  hold doubles"
             )),
         }
@@ -119,12 +129,14 @@ impl SinglePrecision {
         places.par_iter().map(error).reduce(|| [0.0; 3], larger)
     }
 
-    /// Whether different places become one.
-    fn merges(&self, places: &[[f64; 3]]) -> bool {
+    /// How many different places become equal to others.
+    fn merges(&self, places: &[[f64; 3]]) -> usize {
         // Adding 0 turns −0 into 0.
         let rounded = distinct(places, |place| self.round(place).map(|x| (x + 0.0).to_bits()));
-        rounded < places.len()
-            && rounded < distinct(places, |place| place.map(|x| (x + 0.0).to_bits()))
+        if rounded == places.len() {
+            return 0;
+        }
+        distinct(places, |place| place.map(|x| (x + 0.0).to_bits())) - rounded
     }
 }
 
@@ -234,6 +246,8 @@ mod tests {
             lossy.is_lossy && lossy.remark().unwrap().contains("changes the mesh"),
             "{lossy:?}"
         );
+        assert_eq!(lossy.merged, 1);
+        assert!(lossy.remark().unwrap().contains("lets 1 vertex fall onto another"));
     }
 
     #[test]

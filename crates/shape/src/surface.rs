@@ -13,13 +13,15 @@ const AT_ONCE: usize = 1 << 24;
 ///
 /// If the boundary has the points 4, 7, 8 and 9, `vertices` is `[4, 7, 8, 9]` and a facet
 /// over the points 4, 9 and 8 is the row `[0, 3, 2]`.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Surface {
     /// Input indices of the vertices used below, ascending.
     pub vertices: Vec<u32>,
     /// Further vertices, each the midpoint of two of those; of a [solid](crate::AlphaShape::solid) only.
     pub midpoints: Vec<[u32; 2]>,
+    /// Vertices that are not at the positions of their input, ascending, and where they are; of a solid only.
+    pub moved: Vec<(u32, [f64; 3])>,
     /// Regular facets, counter-clockwise seen from outside.
     pub regular: Vec<[u32; 3]>,
     /// Singular facets, which have no orientation.
@@ -55,6 +57,7 @@ impl Surface {
             points: points.into_iter().map(|[v]| number(v)).collect(),
             vertices,
             midpoints: Vec::new(),
+            moved: Vec::new(),
         }
     }
 
@@ -83,6 +86,14 @@ impl Surface {
 
     /// Positions of all vertices, from those of the input.
     pub fn positions(&self, of_input: &[[f64; 3]]) -> impl Iterator<Item = [f64; 3]> {
+        let mut moved = self.moved.iter().peekable();
+        (0..).zip(self.unmoved(of_input)).map(move |(v, place)| {
+            moved.next_if(|moved| moved.0 == v).map_or(place, |moved| moved.1)
+        })
+    }
+
+    /// Positions of all vertices before any moved.
+    pub(super) fn unmoved(&self, of_input: &[[f64; 3]]) -> impl Iterator<Item = [f64; 3]> {
         let at = |v: u32| of_input[self.vertices[v as usize] as usize];
         let mean = move |ends: &[u32; 2]| {
             let (a, b) = (at(ends[0]), at(ends[1]));

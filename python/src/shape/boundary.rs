@@ -6,16 +6,17 @@ use numpy::{IntoPyArray, PyArray1, PyArray2};
 use pyo3::prelude::*;
 use walpha::AlphaShape;
 use walpha::interpolate::InterpolateError;
-use walpha::shape::Surface;
+use walpha::shape::{Cuts, Surface};
 
 use crate::work::{Task, run};
 
-/// Places, triangles over them, and the input index of each; then edges cut, vertices doubled, midpoints.
+/// Places, triangles over them, and the input index of each; then edges cut, vertices doubled, midpoints, vertices
+/// moved, the largest move, vertices that are still together.
 pub type Boundary<'py> = (
     Bound<'py, PyArray2<f64>>,
     Bound<'py, PyArray2<u32>>,
     Bound<'py, PyArray1<u32>>,
-    (usize, usize, usize),
+    (usize, usize, usize, usize, f64, usize),
 );
 
 /// The boundary as it is, or as [`AlphaShape::solid`] makes it.
@@ -34,7 +35,8 @@ pub fn boundary<'py>(
         };
         let places: Vec<[f64; 3]> = surface.positions(shape.points().positions()).collect();
         let indices: Vec<u32> = surface.indices().collect();
-        let cuts = (cuts.edges, cuts.vertices, cuts.midpoints);
+        let Cuts { edges, vertices, midpoints, moved, largest_move, together, .. } = cuts;
+        let cuts = (edges, vertices, midpoints, moved, largest_move, together);
         Ok::<_, InterpolateError>((places, surface.regular, indices, cuts))
     })?;
     let table = |n: usize| (n, 3);

@@ -253,7 +253,8 @@ impl Shape {
         })
     }
 
-    /// Places, triangles over them, and the input index of each; then edges cut, vertices doubled, midpoints.
+    /// Places, triangles over them, and the input index of each; then edges cut, vertices doubled, midpoints, vertices
+    /// moved, the largest move, vertices that are still together.
     fn boundary<'py>(&self, py: Python<'py>, solid: bool) -> PyResult<Boundary<'py>> {
         boundary(py, Arc::clone(&self.shape), solid)
     }

@@ -9,6 +9,7 @@ use std::fmt::{self, Display};
 
 use serde::Serialize;
 use walpha_base::memory;
+use walpha_base::shown::{number, six_digits};
 
 use crate::interpolate::{Adaptive, Fit, Refit};
 use crate::labels::LabelSizes;
@@ -251,11 +252,22 @@ impl Display for Report {
             Some(cuts) if cuts == Cuts::default() => {
                 writeln!(f, "solid     the boundary is a manifold as it is")?;
             }
-            Some(Cuts { edges, vertices, midpoints, .. }) => writeln!(
-                f,
-                "solid     the boundary is not a manifold: cut apart at {edges} edges, with {vertices} more \
-                 vertices and {midpoints} midpoints of edges"
-            )?,
+            Some(cuts) => {
+                let Cuts { edges, vertices, midpoints, moved, largest_move, together, .. } = cuts;
+                let unit = self.coordinates.unit.symbol();
+                writeln!(
+                    f,
+                    "solid     the boundary is not a manifold: cut apart at {edges} edges, with {vertices} more \
+                     vertices and {midpoints} midpoints of edges; {moved} are moved, by {} {unit} at most",
+                    number(six_digits(largest_move))
+                )?;
+                if together > 0 {
+                    writeln!(
+                        f,
+                        "          {together} vertices stay where others are, as there is no room to move them"
+                    )?;
+                }
+            }
         }
         self.offsets.iter().try_for_each(|offset| offset.fmt(f))?;
         ending(f, &self.files, &STAGES, &self.seconds)

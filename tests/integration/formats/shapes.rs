@@ -1,12 +1,14 @@
 //! Scattered values: how they differ, and weights from them.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
+use std::io::{Cursor, Read};
 use std::path::Path;
 
-use walpha::Points;
 use walpha::export::{ExportOptions, Format};
 use walpha::points::{PointsError, WeightedPoints, read_points, scattered_difference};
 use walpha::shape::{Alpha, ShapeOptions, alpha_shape};
+use walpha::{Coordinates, LengthUnit, Points};
 
 use super::files::save;
 use crate::common::{self, Told};
@@ -231,9 +233,62 @@ fn the_report_says_where_a_solid_was_cut() {
     let args = ["shape", "two.xyz", "--alpha", "0.75", "--solid", "-o", "two.stl", "two.ply"];
     let said = common::ok(folder.path(), &args);
     assert!(said.contains("cut apart at 0 edges, with 1 more vertices"), "{said}");
+    assert!(said.contains("; 1 are moved, by 0.000976562 unit at most"), "{said}");
     let made = common::json(folder.path(), &args);
-    assert_eq!(made["solid"], serde_json::json!({ "edges": 0, "vertices": 1, "midpoints": 0 }));
+    let solid = &made["solid"];
+    let counts = ["edges", "vertices", "midpoints", "moved", "together"].map(|name| &solid[name]);
+    assert_eq!(counts, [0, 1, 0, 1, 0]);
+    assert!((solid["largest_move"].as_f64().unwrap() - 1.0 / 1024.0).abs() < 1e-9, "{solid}");
     assert_eq!(read_points(folder.path().join("two.ply"), None).unwrap().len(), 8);
     let (_, _, stderr) = common::run(folder.path(), &args);
     assert!(!stderr.contains("manifold"), "{stderr}");
+}
+
+/// The parts of a 3MF file, by their names.
+fn parts(bytes: Vec<u8>) -> BTreeMap<String, String> {
+    let mut archive = zip::ZipArchive::new(Cursor::new(bytes)).unwrap();
+    let part = |i| {
+        let mut member = archive.by_index(i).unwrap();
+        let mut text = String::new();
+        member.read_to_string(&mut text).unwrap();
+        (member.name().to_owned(), text)
+    };
+    (0..3).map(part).collect()
+}
+
+#[test]
+fn a_3mf_is_a_solid_with_its_unit() {
+    // Two tetrahedra that touch at a vertex, far from the origin.
+    let corners = [[1, 0, 0], [0, 1, 0], [0, 0, 1], [-1, -1, 0], [-1, 0, -1], [0, -1, -1]];
+    let far = [434_000.0, 5_412_000.0, 0.0];
+    let places = [[0; 3]].iter().chain(&corners);
+    let places: Vec<[f64; 3]> =
+        places.map(|p| [0, 1, 2].map(|k| far[k] + f64::from(p[k]) / 3.0)).collect();
+    let options = ShapeOptions::new(Alpha::from_squared(0.0834).unwrap());
+    let shape = alpha_shape(&places, &options).unwrap();
+    let exporter = format("3mf").exporter(&ExportOptions::default());
+    let write = |shape: &walpha::AlphaShape| {
+        let mut bytes = Vec::new();
+        exporter.write(shape, &mut bytes).unwrap();
+        bytes
+    };
+    assert_eq!(write(&shape), write(&shape));
+    let files = parts(write(&shape));
+    let names: Vec<&str> = files.keys().map(String::as_str).collect();
+    assert_eq!(names, ["3D/3dmodel.model", "[Content_Types].xml", "_rels/.rels"]);
+    assert!(files["_rels/.rels"].contains("Target=\"/3D/3dmodel.model\""));
+    let model = &files["3D/3dmodel.model"];
+    let vertices: BTreeSet<&str> =
+        model.lines().filter(|line| line.starts_with("<vertex ")).collect();
+    assert_eq!(vertices.len(), 8, "at different places: {vertices:?}");
+    assert_eq!(model.matches("<triangle ").count(), 8);
+    let placed = "transform=\"1 0 0 0 1 0 0 0 1 430000 5410000 0\"";
+    assert!(model.contains(placed) && model.contains("type=\"model\""), "{model}");
+    // A unit that is not known is said to be, and taken for millimetres.
+    assert!(model.contains("unit=\"millimeter\""));
+    assert!(exporter.remark(&shape).unwrap().to_string().contains("not known"));
+    let micrometres = Coordinates { unit: LengthUnit::Micrometre, ..Coordinates::default() };
+    let small = shape.with_coordinates(micrometres);
+    assert!(parts(write(&small))["3D/3dmodel.model"].contains("unit=\"micron\""));
+    assert!(exporter.remark(&small).is_none());
 }

@@ -2,7 +2,8 @@ use std::fmt;
 use std::path::Path;
 
 use super::{
-    ExportOptions, Exporter, GeoJson, Glb, Json, Npz, Obj, Off, Ply, Stl, Svg, Vtp, Vtu, Wkt,
+    ExportOptions, Exporter, GeoJson, Glb, Json, Npz, Obj, Off, Ply, Stl, Svg, ThreeMf, Vtp, Vtu,
+    Wkt,
 };
 use walpha_volume::UnknownFormat;
 
@@ -40,7 +41,7 @@ const PLAIN: Format = Format {
 };
 
 /// All formats.
-pub static FORMATS: [Format; 12] = [
+pub static FORMATS: [Format; 13] = [
     Format {
         name: "PLY",
         extension: "ply",
@@ -75,6 +76,14 @@ pub static FORMATS: [Format; 12] = [
         about: "Stereolithography: regular facets.",
         boundary: true,
         exporter: |options| Box::new(Stl(options)),
+        ..PLAIN
+    },
+    Format {
+        name: "3MF",
+        extension: "3mf",
+        about: "3D Manufacturing Format: the boundary as that of a solid, with its unit.",
+        boundary: true,
+        exporter: |options| Box::new(ThreeMf(options)),
         ..PLAIN
     },
     Format {

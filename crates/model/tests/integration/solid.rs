@@ -50,7 +50,9 @@ fn is_solid(shape: &AlphaShape) -> Cuts {
         })
         .sum();
     let expected = shape.measures().volume;
-    assert!((volume - expected).abs() <= 1e-9 * expected, "{volume}, not {expected}");
+    // Copies of vertices are moved apart.
+    let tolerated = if cuts.moved == 0 { 1e-9 } else { 4e-3 };
+    assert!((volume - expected).abs() <= tolerated * expected, "{volume}, not {expected}");
     cuts
 }
 

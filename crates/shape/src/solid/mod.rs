@@ -1,15 +1,23 @@
 //! The boundary of a shape as a closed, oriented manifold, which other programs accept as the boundary of a solid.
 
+mod apart;
+mod boxes;
+mod crossing;
+mod direction;
+mod tiling;
+
 use std::collections::{BTreeMap, HashMap, HashSet};
 
 use serde::Serialize;
 use walpha_base::UnionFind;
 
 use super::surface::Side;
-use super::{Class, Complex, Surface};
+use super::{AlphaShape, Class, Complex, Surface};
+use apart::Apart;
+use tiling::{Place, Tiling};
 
-/// Where a boundary was cut apart to become a manifold.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+/// Where a boundary was cut apart to become a manifold, and how far its vertices moved.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct Cuts {
     /// Edges on more than two facets, along which parts of the shape touch.
@@ -18,15 +26,38 @@ pub struct Cuts {
     pub vertices: usize,
     /// Vertices inserted at midpoints of edges, to separate facets along an edge whose both ends are in one fan.
     pub midpoints: usize,
+    /// Vertices that were moved away from others at the same place.
+    pub moved: usize,
+    /// The largest distance that one was moved, in the unit of the coordinates.
+    pub largest_move: f64,
+    /// Vertices that are still where another one is, as no step was found that keeps the boundary from crossing itself.
+    pub together: usize,
 }
 
 /// A corner of a facet: 3·row + corner.
 type Corner = u32;
 
-impl Surface {
-    /// As [`AlphaShape::solid`](crate::AlphaShape::solid) says.
-    pub(super) fn solid(complex: &Complex) -> (Self, Cuts) {
-        let whole = Self::of_complex(complex);
+/// A vertex inserted at the midpoint of an edge between two facets.
+struct Middle {
+    vertex: u32,
+    ends: [u32; 2],
+    /// The third corners of the two facets.
+    thirds: [u32; 2],
+}
+
+/// A boundary that is cut apart, and not moved yet.
+struct Cut {
+    solid: Surface,
+    cuts: Cuts,
+    middles: Vec<Middle>,
+    /// What is to be moved, if there is anything, and the cells there.
+    around: Option<(Tiling, Vec<Place>)>,
+}
+
+impl Cut {
+    fn of(shape: &AlphaShape) -> Self {
+        let complex = &shape.complex;
+        let whole = Surface::of_complex(complex);
         let fans = UnionFind::new(3 * whole.regular.len());
         let mut touching = Vec::new();
         whole.each_edge(|sides| match sides {
@@ -38,8 +69,8 @@ impl Surface {
             join(&fans, *a, *b);
         }
         // Fans are numbered in the order of their vertices; each gets a vertex.
-        let mut solid = Self { regular: whole.regular.clone(), ..Self::default() };
-        let mut cuts = Cuts { edges: touching.len(), vertices: 0, midpoints: 0 };
+        let mut solid = Surface { regular: whole.regular.clone(), ..Surface::default() };
+        let mut cuts = Cuts { edges: touching.len(), ..Cuts::default() };
         let (starts, corners) = whole.corners_by_vertex();
         for (v, around) in starts.windows(2).enumerate() {
             let mut roots: Vec<Corner> = Vec::new();
@@ -55,8 +86,31 @@ impl Surface {
             }
             cuts.vertices += roots.len().saturating_sub(1);
         }
-        solid.insert_midpoints(&pairs);
-        cuts.midpoints = solid.midpoints.len();
+        let facets = solid.regular.clone();
+        let middles = solid.insert_midpoints(&pairs);
+        cuts.midpoints = middles.len();
+        // Where a torus is cut open, its cells are not beside each other in space.
+        let in_space = shape.options.periodic.is_none() && shape.copies.is_empty();
+        let around = (in_space && cuts.vertices + cuts.midpoints > 0).then(|| {
+            let corners = (&whole, &starts[..], &corners[..]);
+            Tiling::new(complex, corners, &solid, &middles, &facets)
+        });
+        Self { solid, cuts, middles, around }
+    }
+}
+
+impl Surface {
+    /// As [`AlphaShape::solid`](crate::AlphaShape::solid) says.
+    pub(super) fn solid(shape: &AlphaShape) -> (Self, Cuts) {
+        let Cut { mut solid, mut cuts, middles, around } = Cut::of(shape);
+        if let Some((tiling, places)) = around {
+            let of_input = &shape.points.positions;
+            let found = Apart::new(&solid, of_input, tiling).separate(&middles, &places);
+            cuts.moved = found.moved.len();
+            cuts.largest_move = found.largest;
+            cuts.together = found.together;
+            solid.moved = found.moved;
+        }
         (solid, cuts)
     }
 
@@ -75,46 +129,44 @@ impl Surface {
     }
 
     /// Separates pairs of facets at an edge whose ends they share, by vertices at its midpoint.
-    fn insert_midpoints(&mut self, pairs: &[[[Corner; 2]; 2]]) {
+    fn insert_midpoints(&mut self, pairs: &[[[Corner; 2]; 2]]) -> Vec<Middle> {
         let mut sheets: BTreeMap<[u32; 2], Vec<[Corner; 2]>> = BTreeMap::new();
         for [[a, other], [b, _]] in pairs {
             let ends = [a, other].map(|&corner| self.regular.as_flattened()[corner as usize]);
             let key = [ends[0].min(ends[1]), ends[0].max(ends[1])];
             sheets.entry(key).or_default().push([a / 3, b / 3]);
         }
-        // By facet, the edges that get a midpoint, by their ends.
-        let mut middles: BTreeMap<u32, Vec<([u32; 2], u32)>> = BTreeMap::new();
-        for (ends, sheets) in &sheets {
+        // The rows that a facet has been divided into.
+        let mut rows: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
+        let mut middles = Vec::new();
+        for (ends, sheets) in sheets {
             for facets in &sheets[1..] {
-                let middle = (self.vertices.len() + self.midpoints.len()) as u32;
-                self.midpoints.push(*ends);
-                for &facet in facets {
-                    middles.entry(facet).or_default().push((*ends, middle));
-                }
+                let vertex = (self.vertices.len() + self.midpoints.len()) as u32;
+                self.midpoints.push(ends);
+                let thirds = facets.map(|facet| {
+                    let rows = rows.entry(facet).or_insert_with(|| vec![facet]);
+                    self.divide(rows, ends, vertex)
+                });
+                middles.push(Middle { vertex, ends, thirds });
             }
         }
-        for (facet, edges) in middles {
-            let row = self.regular[facet as usize];
-            let middle = |i: usize| {
-                let ends = [row[i].min(row[(i + 1) % 3]), row[i].max(row[(i + 1) % 3])];
-                edges.iter().find(|edge| edge.0 == ends).map(|edge| edge.1)
-            };
-            let mut pieces = divided(row, [middle(0), middle(1), middle(2)]);
-            self.regular[facet as usize] = pieces.pop().expect("one at least");
-            self.regular.extend(pieces);
-        }
+        middles
     }
-}
 
-/// A triangle divided into triangles by midpoints of some of its edges; `middles[i]` is on the edge that starts at
-/// corner i.
-fn divided(row: [u32; 3], middles: [Option<u32>; 3]) -> Vec<[u32; 3]> {
-    let around: Vec<u32> = (0..3).flat_map(|i| [Some(row[i]), middles[i]]).flatten().collect();
-    // As a fan from a midpoint, none is degenerate: only its two neighbours are collinear with it.
-    let Some(from) = (0..3).find_map(|i| middles[i]) else { return vec![row] };
-    let at = around.iter().position(|&v| v == from).expect("it is one of them");
-    let turned: Vec<u32> = around[at..].iter().chain(&around[..at]).copied().collect();
-    turned[1..].windows(2).map(|pair| [from, pair[0], pair[1]]).collect()
+    /// Divides the one of these rows that has an edge by a vertex on it; returns the third corner.
+    fn divide(&mut self, rows: &mut Vec<u32>, ends: [u32; 2], vertex: u32) -> u32 {
+        let has_edge = |row: &&u32| {
+            let row = &self.regular[**row as usize];
+            ends.iter().all(|end| row.contains(end))
+        };
+        let at = *rows.iter().find(has_edge).expect("one has the edge");
+        let row = self.regular[at as usize];
+        let with = |end: u32| row.map(|v| if v == end { vertex } else { v });
+        self.regular[at as usize] = with(ends[1]);
+        rows.push(self.regular.len() as u32);
+        self.regular.push(with(ends[0]));
+        *row.iter().find(|v| !ends.contains(v)).expect("a third corner")
+    }
 }
 
 /// Joins two facets at the ends of an edge.
@@ -180,3 +232,6 @@ fn last(links: &[[u32; 2]], from: u32) -> u32 {
         before = Some(k);
     }
 }
+
+#[cfg(test)]
+mod tests;
