@@ -23,7 +23,7 @@ RECORD = ROOT / "tests" / "golden.txt"
 # What differs from run to run: measured, not computed.
 MEASURED = {"seconds", "peak_memory_bytes"}
 
-SHAPES = "ply off obj stl glb vtp vtu npz json png wvm".split()
+SHAPES = "ply off obj stl glb vtp vtu npz json png wvm 3mf".split()
 VOLUMES = "nrrd nii nii.gz mha vti tif npy raw".split()
 POINTS = "csv npy wvm".split()
 INPUTS = {"phantom": "sample:phantom@64", "ct": "sample:ct", "skull": "sample:skull"}
@@ -38,7 +38,7 @@ def commands():
     """A name, and lines of the shell, in which `walpha` is the program: each line's output and all files are compared."""
     for name, source in INPUTS.items():
         yield f"{name} shape", f"walpha shape {source} -o {named('a', SHAPES)} --json"
-        yield f"{name} solid", f"walpha shape {source} --solid -o {named('a', 'ply off obj stl glb vtp'.split())} --json"
+        yield f"{name} solid", f"walpha shape {source} --solid -o {named('a', 'ply off obj stl glb vtp 3mf'.split())} --json"
         yield f"{name} text", f"walpha shape {source} --ascii --groups -o {named('a', 'ply off obj'.split())} --json"
         yield f"{name} native", f"walpha shape {source} --engine native --weights min-max -o a.json --json"
         yield f"{name} blocks", f"walpha shape {source} --blocks 3 -o a.pvtu a.pvtp --json"
