@@ -19,7 +19,7 @@ use super::preset;
 use super::settings::Given;
 use crate::cli::options::global::EVERY_COMMAND;
 use crate::cli::process::errors::{CommandError, Result, command_error, fail};
-use crate::settings::EXCLUSIVE;
+use crate::settings::Settings;
 
 /// The option that names the file.
 const FILE: &str = "config";
@@ -115,11 +115,11 @@ pub(crate) fn print(subcommand: &Command, matches: &ArgMatches) -> String {
             continue;
         }
         // A default that conflicts with a given option is not in force.
-        let is_excluded = of_preset.iter().any(|(name, _)| excludes(name, id));
-        if is_default(arg) && is_excluded {
-            continue;
-        }
-        if is_default(arg) && conflicting(subcommand, arg).into_iter().any(is_given) {
+        let is_excluded = || {
+            Settings::excluded_by(id).any(|other| of_preset.iter().any(|(name, _)| *name == other))
+                || conflicting(subcommand, arg).into_iter().any(is_given)
+        };
+        if is_default(arg) && is_excluded() {
             continue;
         }
         let Some(values) = matches.get_raw(arg.get_id().as_str()) else { continue };
@@ -137,11 +137,6 @@ fn of_preset(matches: &ArgMatches) -> Vec<(&'static str, String)> {
     let is_given = |name| matches.value_source(name) == Some(ValueSource::CommandLine);
     let added = all.settings.iter().filter(|(name, _)| !is_given(name));
     added.map(|(name, text)| (name, text.to_owned())).collect()
-}
-
-/// Whether one setting excludes another.
-fn excludes(one: &str, other: &str) -> bool {
-    EXCLUSIVE.iter().any(|names| names.contains(&one) && names.contains(&other))
 }
 
 fn path(matches: &ArgMatches) -> Option<PathBuf> {

@@ -9,7 +9,7 @@ use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches};
 use super::preset;
 use crate::Weighting;
 use crate::cli::process::errors::CommandError;
-use crate::settings::{EXCLUSIVE, Group, Settings};
+use crate::settings::{Group, Settings};
 use crate::volume::Dtype;
 
 /// Name on the command line, name of the value (none for a switch), and help.
@@ -257,9 +257,7 @@ impl<G: Groups> Args for Declared<G> {
         for &(group, heading) in G::GROUPS {
             for name in Settings::names(group) {
                 let mut arg = option(name, heading);
-                for other in
-                    EXCLUSIVE.iter().filter(|names| names.contains(&name)).copied().flatten()
-                {
+                for other in Settings::excluded_by(name) {
                     if command.get_arguments().any(|known| known.get_id() == other) {
                         arg = arg.conflicts_with(other);
                     }

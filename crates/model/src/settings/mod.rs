@@ -76,7 +76,7 @@ pub const PRESETS: [Preset; 7] = [
 ];
 
 /// Settings of which only one is used.
-pub const EXCLUSIVE: &[&[&str]] = &[
+const EXCLUSIVE: &[&[&str]] = &[
     &["rms", "epsilon", "coefficients"],
     &["count", "ratio", "threshold"],
     &["gray_min", "value_min"],
@@ -131,13 +131,13 @@ macro_rules! settings {
                 self.$name.as_ref()
             })*)*
 
-            /// Parses a setting and stores it. Returns whether there is one of this name.
-            fn store(&mut self, name: &str, text: &str) -> Result<bool, SettingError> {
+            /// Parses a setting of this name and stores it.
+            fn store(&mut self, name: &str, text: &str) -> Result<(), SettingError> {
                 match name {
                     $($(stringify!($name) => self.$name = Some($parse(text)?),)*)*
-                    _ => return Ok(false),
+                    _ => unreachable!("{name} is among the names"),
                 }
-                Ok(true)
+                Ok(())
             }
 
             fn forget(&mut self, name: &str) {
@@ -291,6 +291,20 @@ impl Settings {
         Self::NAMES.iter().filter(move |(_, of)| *of == group).map(|(name, _)| *name)
     }
 
+    /// The names of the settings that one excludes, and is excluded by.
+    pub fn excluded_by(name: &str) -> impl Iterator<Item = &'static str> {
+        let groups = EXCLUSIVE.iter().filter(move |names| names.contains(&name));
+        groups.copied().flatten().copied().filter(move |other| *other != name)
+    }
+
+    /// The settings given that this one excludes. A switch that is off excludes none, nor is it excluded.
+    fn rivals(&self, name: &str, text: &str) -> Vec<&'static str> {
+        const OFF: &str = "false";
+        let is_given =
+            |other: &&str| self.iter().any(|(known, value)| known == *other && value != OFF);
+        if text == OFF { Vec::new() } else { Self::excluded_by(name).filter(is_given).collect() }
+    }
+
     /// The values of a setting that has names for them, each with its help.
     pub fn choices(name: &str) -> Option<Vec<[&'static str; 2]>> {
         choices::of(name)
@@ -309,8 +323,7 @@ impl Settings {
             ));
         };
         self.store(name, text)?;
-        let excluded = EXCLUSIVE.iter().filter(|names| names.contains(&name)).copied().flatten();
-        excluded.filter(|other| **other != name).for_each(|other| self.forget(other));
+        self.rivals(name, text).into_iter().for_each(|other| self.forget(other));
         self.written.retain(|(known, _)| *known != name);
         self.written.push((name, text.to_owned()));
         Ok(())
@@ -526,7 +539,7 @@ fn listed(settings: &[Setting]) -> Advice {
     Advice::new(parts)
 }
 
-/// By their names with hyphens; values are text, numbers, `true`, or lists of these.
+/// By their names with hyphens; values are text, numbers, `true`, or lists of these. Settings that exclude each other are an error.
 impl<'de> Deserialize<'de> for Settings {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let mut settings = Self::default();
@@ -536,6 +549,12 @@ impl<'de> Deserialize<'de> for Settings {
                 Value::Array(items) => items.iter().map(plain_text).collect::<Vec<_>>().join(","),
                 value => plain_text(value),
             };
+            if let Some(other) = settings.rivals(&name.replace('-', "_"), &text).first() {
+                let other = other.replace('_', "-");
+                return Err(D::Error::custom(format_args!(
+                    "{name} and {other} exclude each other"
+                )));
+            }
             settings
                 .set(&name, &text)
                 .map_err(|error| D::Error::custom(format_args!("{name} = {value}: {error}")))?;
@@ -640,6 +659,12 @@ mod tests {
         for text in [r#"{"no-such": 1}"#, r#"{"count": "many"}"#, r#"{"ratio": 2}"#] {
             assert!(serde_json::from_str::<Settings>(text).is_err(), "{text}");
         }
+        let both = serde_json::from_str::<Settings>(r#"{"count": 3, "gray-min": 4, "ratio": 0.5}"#);
+        let both = both.unwrap_err().to_string();
+        assert!(both.contains("ratio and count exclude each other"), "{both}");
+        let off = r#"{"select": "adaptive", "max-error": 3, "exchange": false}"#;
+        let off: Settings = serde_json::from_str(off).unwrap();
+        assert_eq!((off.max_error(), off.exchange()), (Some(&3.0), Some(&false)));
         let refused = |given: &[(&str, &str)]| of(given).recipe().unwrap_err();
         let error = refused(&[("max_error", "3")]);
         assert_eq!(error.to_string(), "`max_error` and `exchange` belong to `select` adaptive");
