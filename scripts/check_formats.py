@@ -18,26 +18,13 @@ import pathlib
 import subprocess
 import sys
 import tempfile
-import venv
+
+from environment import enter
 
 PACKAGES = ["numpy", "vtk", "nibabel", "pynrrd", "tifffile", "imagecodecs", "SimpleITK", "pillow", "trimesh", "scipy"]
 PACKAGES += ["pydicom", "zarr", "meshio", "open3d", "pymeshlab", "laspy[lazrs]"]
 # Seconds for the installation of all of them.
 PATIENCE = 600
-
-
-def enter(folder):
-    """Runs this script again with the Python of an environment that has the packages."""
-    python = pathlib.Path(folder) / "bin" / "python"
-    install = [python, "-m", "pip", "install", "--quiet", "--retries", "1", "--timeout", "20", *PACKAGES]
-    try:
-        if not python.exists():
-            venv.create(folder, with_pip=True)
-        subprocess.run(install, check=True, timeout=PATIENCE)
-    except (OSError, subprocess.SubprocessError) as error:
-        print(f"skipped: the Python packages cannot be had ({error})")
-        sys.exit(77)
-    os.execv(python, [str(python), __file__, "--inside", *sys.argv[1:]])
 
 
 class Checker:
@@ -940,7 +927,7 @@ def main():
     arguments.add_argument("--inside", action="store_true", help=argparse.SUPPRESS)
     arguments = arguments.parse_args()
     if not arguments.inside:
-        enter(arguments.env)
+        enter(arguments.env, PACKAGES, PATIENCE)
     with tempfile.TemporaryDirectory() as folder:
         check = Checker(arguments.walpha, folder)
         for part in PARTS:

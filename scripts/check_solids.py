@@ -11,14 +11,14 @@ anything is, and with 77 when the packages cannot be had.
 
 import argparse
 import json
-import os
 import pathlib
 import re
 import shutil
 import subprocess
 import sys
 import tempfile
-import venv
+
+from environment import enter
 
 PACKAGES = ["numpy", "scipy", "trimesh", "networkx", "lxml"]
 # Seconds for the installation of all of them.
@@ -28,20 +28,6 @@ FORMATS = ["stl", "ply", "obj", "3mf"]
 CLOSE = 2e-3
 # What admesh counts of a mesh that is fine, in the words of its report.
 NOTHING = ["Facets reversed", "Backwards edges", "Total disconnected facets"]
-
-
-def enter(folder):
-    """Runs this script again with the Python of an environment that has the packages."""
-    python = pathlib.Path(folder) / "bin" / "python"
-    install = [python, "-m", "pip", "install", "--quiet", "--retries", "1", "--timeout", "20", *PACKAGES]
-    try:
-        if not python.exists():
-            venv.create(folder, with_pip=True)
-        subprocess.run(install, check=True, timeout=PATIENCE)
-    except (OSError, subprocess.SubprocessError) as error:
-        print(f"skipped: the Python packages cannot be had ({error})")
-        sys.exit(77)
-    os.execv(python, [str(python), __file__, "--inside", *sys.argv[1:]])
 
 
 def sources(folder, shapes):
@@ -85,7 +71,7 @@ def main():
     options = parser.parse_args([word for word in sys.argv[1:] if word != "--inside"])
     walpha = str(pathlib.Path(options.walpha).resolve())
     if "--inside" not in sys.argv:
-        enter(options.env)
+        enter(options.env, PACKAGES, PATIENCE)
     done = wrong = pinched = moved = 0
     with tempfile.TemporaryDirectory() as folder:
         folder = pathlib.Path(folder)
