@@ -25,7 +25,7 @@ fn error_of(files: Vec<File>, from: &[u8], to: &[u8]) -> String {
         .collect();
     assert!(replaced > 0, "{:?} is not there", String::from_utf8_lossy(from));
     let files: Vec<(&str, &[u8])> = files.iter().map(|(name, bytes)| (*name, &bytes[..])).collect();
-    let error = read(&folder("damaged"), &files).unwrap_err();
+    let error = read(&folder(), &files).unwrap_err();
     assert!(error.advice().is_some_and(|advice| !advice.to_string().is_empty()), "{error}");
     error.to_string()
 }
@@ -356,7 +356,7 @@ fn counts_beyond_the_file_are_refused() {
 /// Files cut anywhere, and bytes changed anywhere.
 #[test]
 fn damage_makes_errors_or_meshes() {
-    let folder = folder("cut");
+    let folder = folder();
     let mut random = Random::new(342);
     let (mut good, mut refused) = (0, 0);
     for files in all(&POINTS, &CELLS) {

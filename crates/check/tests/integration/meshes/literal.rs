@@ -204,7 +204,7 @@ fn replaced(
 fn each_format_is_read() {
     for (name, files, ..) in files() {
         let files: Vec<_> = files.iter().map(|(name, text)| (*name, text.as_bytes())).collect();
-        let mesh = read(&folder("literal"), &files).unwrap_or_else(|e| panic!("{name}: {e}"));
+        let mesh = read(&folder(), &files).unwrap_or_else(|e| panic!("{name}: {e}"));
         let mut points = mesh.complex.points.clone();
         let mut cells = mesh.complex.cells.clone().unwrap();
         if name == "gmsh 4.1" {
@@ -230,7 +230,7 @@ fn each_format_is_read() {
 /// The two files of `TetGen` find each other.
 #[test]
 fn the_points_find_their_cells() {
-    let folder = folder("pair");
+    let folder = folder();
     let [ele, node] = [("a.1.ele", ELE.as_bytes()), ("a.1.node", NODE.as_bytes())];
     assert_eq!(read(&folder, &[node, ele]).unwrap(), read(&folder, &[ele, node]).unwrap());
     let error = read(&folder, &[("b.node", NODE.as_bytes())]).unwrap_err();
@@ -253,19 +253,18 @@ fn points_are_numbered_from_0_or_1() {
         rows.collect()
     };
     let (node, ele) = (lower(NODE, 0..1), lower(ELE, 0..5));
-    let mesh =
-        read(&folder("from_0"), &[("a.node", node.as_bytes()), ("a.ele", ele.as_bytes())]).unwrap();
+    let mesh = read(&folder(), &[("a.node", node.as_bytes()), ("a.ele", ele.as_bytes())]).unwrap();
     assert_eq!(mesh.complex.cells, Some(CELLS.to_vec()));
     assert_eq!(mesh.notes.len(), 1, "{:?}", mesh.notes);
     for (node, ele) in [(NODE, &ele[..]), (&node[..], ELE)] {
         let files = [("a.ele", ele.as_bytes()), ("a.node", node.as_bytes())];
-        let error = read(&folder("mixed"), &files).unwrap_err();
+        let error = read(&folder(), &files).unwrap_err();
         assert!(error.to_string().contains("points are numbered from"), "{error}");
     }
     // Cells that begin with the number of a 0-based file's first cell, and corners from 1.
     let shifted = lower(ELE, 0..1);
     let files = [("a.ele", shifted.as_bytes()), ("a.node", node.as_bytes())];
-    let error = read(&folder("mixed"), &files).unwrap_err();
+    let error = read(&folder(), &files).unwrap_err();
     assert_eq!(
         error.to_string(),
         "line 3: corner 5 of a cell is not the number of a point: they are 0 to 4"
@@ -280,7 +279,7 @@ fn overlaps_are_found() {
         let space = if name == "tetgen" { "     " } else { " " };
         let other = [0, 1, 2, 4].map(|corner| (corner + from).to_string()).join(space);
         let files = replaced(&files, second, &other);
-        let (verdict, rules) = judge(read(&folder("overlap"), &bytes(&files)).unwrap());
+        let (verdict, rules) = judge(read(&folder(), &bytes(&files)).unwrap());
         assert!(verdict.starts_with("wrong: "), "{name}: {verdict}");
         assert!(rules.iter().any(|(rule, _)| *rule == "overlap"), "{name}: {rules:?}");
     }
@@ -292,7 +291,7 @@ fn flat_cells_are_found() {
     for (name, files, _, fifth) in files() {
         let flat = fifth.replacen("2.0e0  2  2", "1 1 -1", 1).replacen("2 2 2", "1 1 -1", 1);
         let files = replaced(&files, fifth, &flat);
-        let (verdict, rules) = judge(read(&folder("flat"), &bytes(&files)).unwrap());
+        let (verdict, rules) = judge(read(&folder(), &bytes(&files)).unwrap());
         assert!(verdict.starts_with("wrong: "), "{name}: {verdict}");
         assert!(rules.contains(&("orientation", 1)), "{name}: {rules:?}");
     }
@@ -303,7 +302,7 @@ fn flat_cells_are_found() {
 fn text_is_taken_to_the_nearest_double() {
     // Half way between 1 and the next double, and a little more.
     let half = "1.00000000000000011102230246251565404236316680908203125";
-    let folder = folder("nearest");
+    let folder = folder();
     for (digits, expected) in [(half.to_owned(), 1.0), (format!("{half}001"), 1f64.next_up())] {
         let text = MEDIT.replace("1 0 0 1", &format!("{digits} 0 0 1"));
         let mesh = read(&folder, &[("a.mesh", text.as_bytes())]).unwrap();
@@ -314,7 +313,7 @@ fn text_is_taken_to_the_nearest_double() {
 /// Weights, α and classes of VTK, whose simplices are then all taken.
 #[test]
 fn vtk_states_weights_alpha_and_classes() {
-    let folder = folder("vtk");
+    let folder = folder();
     let weighted = VTK_4.replace("0 0 0 0 0\n", "0 0 0 0 0.5\n");
     let mesh = read(&folder, &[("a.vtk", weighted.as_bytes())]).unwrap();
     assert_eq!(mesh.complex.weights, Some(vec![0.0, 0.0, 0.0, 0.0, 0.5]));

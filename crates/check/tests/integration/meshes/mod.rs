@@ -7,26 +7,24 @@ mod options;
 mod round_trip;
 mod writers;
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
+use tempfile::TempDir;
 use walpha_check::meshes::{Mesh, MeshError};
 use walpha_check::schema::PlacedComplex;
 use walpha_check::{Finding, count_by_rule};
 
-/// An empty folder of its own for each test, below Cargo's for tests.
-fn folder(name: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("meshes").join(name);
-    let _ = std::fs::remove_dir_all(&folder);
-    std::fs::create_dir_all(&folder).unwrap();
-    folder
+/// An empty folder, removed when it goes out of scope. Each call makes its own, since tests run at the same time.
+fn folder() -> TempDir {
+    tempfile::tempdir_in(env!("CARGO_TARGET_TMPDIR")).unwrap()
 }
 
 /// Writes files into a folder, and reads the first of them.
-fn read(folder: &Path, files: &[(&str, &[u8])]) -> Result<Mesh, MeshError> {
+fn read(folder: impl AsRef<Path>, files: &[(&str, &[u8])]) -> Result<Mesh, MeshError> {
     for (name, bytes) in files {
-        std::fs::write(folder.join(name), bytes).unwrap();
+        std::fs::write(folder.as_ref().join(name), bytes).unwrap();
     }
-    Mesh::open(folder.join(files[0].0))
+    Mesh::open(folder.as_ref().join(files[0].0))
 }
 
 /// The verdict on a mesh, and what is found by rule.

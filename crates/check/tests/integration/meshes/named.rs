@@ -10,7 +10,8 @@ use crate::archive::{archive, npy};
 const POINTS: &str = "[[0,0,0],[1,0,0],[0,1,0],[0,0,1]]";
 
 fn open(name: &str, bytes: &[u8]) -> Result<ComplexFile, SchemaError> {
-    let path = folder("named").join(name);
+    let folder = folder();
+    let path = folder.path().join(name);
     std::fs::write(&path, bytes).unwrap();
     match AnyFile::open(path)? {
         AnyFile::Complex(file) => Ok(file),

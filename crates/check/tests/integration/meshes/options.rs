@@ -1,7 +1,8 @@
 //! α and weights from the command line, and what the command says of a mesh.
 
-use std::path::Path;
 use std::process::Command;
+
+use tempfile::TempDir;
 
 use super::folder;
 use super::writers::{medit, tetgen};
@@ -13,19 +14,19 @@ const POINTS: [[f64; 3]; 5] =
 const CELLS: [[u32; 4]; 1] = [[0, 1, 2, 3]];
 
 /// Exit code, and standard output with standard error behind it.
-fn run(folder: &Path, arguments: &[&str]) -> (i32, String) {
+fn run(folder: &TempDir, arguments: &[&str]) -> (i32, String) {
     let mut command = Command::new(env!("CARGO_BIN_EXE_walpha-check"));
     let output = command.args(arguments).current_dir(folder).output().unwrap();
     let text = String::from_utf8([output.stdout, output.stderr].concat()).unwrap();
     (output.status.code().unwrap(), text)
 }
 
-fn write(folder: &Path, files: &[(&str, Vec<u8>)]) {
-    files.iter().for_each(|(name, bytes)| std::fs::write(folder.join(name), bytes).unwrap());
+fn write(folder: &TempDir, files: &[(&str, Vec<u8>)]) {
+    files.iter().for_each(|(name, bytes)| std::fs::write(folder.path().join(name), bytes).unwrap());
 }
 
 /// The same files with a weight for each point, as `TetGen` has it.
-fn with_attributes(folder: &Path) {
+fn with_attributes(folder: &TempDir) {
     let [(_, node), (_, ele)] = tetgen(&POINTS, &CELLS, 0).try_into().unwrap();
     let node = String::from_utf8(node).unwrap().replace("5 3 0 0", "5 3 2 1");
     let rows = node.lines().enumerate().map(|(row, line)| match row {
@@ -38,7 +39,7 @@ fn with_attributes(folder: &Path) {
 
 #[test]
 fn weights_are_taken_where_they_are_asked_for() {
-    let folder = folder("weights");
+    let folder = folder();
     with_attributes(&folder);
     write(&folder, &tetgen(&POINTS, &CELLS, 1));
     write(
@@ -88,7 +89,7 @@ fn weights_are_taken_where_they_are_asked_for() {
 /// With an α the cells are a shape; a file that states one keeps it.
 #[test]
 fn alpha_makes_a_shape() {
-    let folder = folder("alpha");
+    let folder = folder();
     write(&folder, &medit(&POINTS[..4], &CELLS));
     let stated = r#"{"points":[[0,0,0],[1,0,0],[0,1,0],[0,0,1]],"alpha":0.75,"cells":[[0,1,2,3]]}"#;
     write(&folder, &[("c.json", stated.into())]);
@@ -110,7 +111,7 @@ fn alpha_makes_a_shape() {
 /// All findings are counted, by the rule that is broken.
 #[test]
 fn findings_are_counted_by_rule() {
-    let folder = folder("rules");
+    let folder = folder();
     write(&folder, &medit(&POINTS[..4], &[[0, 1, 2, 3], [0, 1, 2, 3], [3, 2, 1, 0]]));
     let (code, text) = run(&folder, &["t.mesh"]);
     let lines: Vec<&str> = text.lines().collect();
@@ -123,7 +124,7 @@ fn findings_are_counted_by_rule() {
 
 #[test]
 fn what_is_not_read_is_refused_by_name() {
-    let folder = folder("refused");
+    let folder = folder();
     write(
         &folder,
         &[

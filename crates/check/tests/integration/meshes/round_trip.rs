@@ -10,7 +10,7 @@ use crate::common::{Case, definition};
 #[test]
 fn triangulations_come_back() {
     let mut random = Random::new(34);
-    let folder = folder("round_trip");
+    let folder = folder();
     let mut read_back = 0;
     for round in 0..40 {
         // Points in general position, and of a lattice, whose digits are few and whose ties are many.
