@@ -25,7 +25,7 @@ fn error_of(files: Vec<File>, from: &[u8], to: &[u8]) -> String {
         .collect();
     assert!(replaced > 0, "{:?} is not there", String::from_utf8_lossy(from));
     let files: Vec<(&str, &[u8])> = files.iter().map(|(name, bytes)| (*name, &bytes[..])).collect();
-    let error = read(&folder(), &files).unwrap_err();
+    let error = read(folder(), &files).unwrap_err();
     assert!(error.advice().is_some_and(|advice| !advice.to_string().is_empty()), "{error}");
     error.to_string()
 }

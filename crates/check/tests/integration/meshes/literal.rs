@@ -204,7 +204,7 @@ fn replaced(
 fn each_format_is_read() {
     for (name, files, ..) in files() {
         let files: Vec<_> = files.iter().map(|(name, text)| (*name, text.as_bytes())).collect();
-        let mesh = read(&folder(), &files).unwrap_or_else(|e| panic!("{name}: {e}"));
+        let mesh = read(folder(), &files).unwrap_or_else(|e| panic!("{name}: {e}"));
         let mut points = mesh.complex.points.clone();
         let mut cells = mesh.complex.cells.clone().unwrap();
         if name == "gmsh 4.1" {
@@ -253,18 +253,18 @@ fn points_are_numbered_from_0_or_1() {
         rows.collect()
     };
     let (node, ele) = (lower(NODE, 0..1), lower(ELE, 0..5));
-    let mesh = read(&folder(), &[("a.node", node.as_bytes()), ("a.ele", ele.as_bytes())]).unwrap();
+    let mesh = read(folder(), &[("a.node", node.as_bytes()), ("a.ele", ele.as_bytes())]).unwrap();
     assert_eq!(mesh.complex.cells, Some(CELLS.to_vec()));
     assert_eq!(mesh.notes.len(), 1, "{:?}", mesh.notes);
     for (node, ele) in [(NODE, &ele[..]), (&node[..], ELE)] {
         let files = [("a.ele", ele.as_bytes()), ("a.node", node.as_bytes())];
-        let error = read(&folder(), &files).unwrap_err();
+        let error = read(folder(), &files).unwrap_err();
         assert!(error.to_string().contains("points are numbered from"), "{error}");
     }
     // Cells that begin with the number of a 0-based file's first cell, and corners from 1.
     let shifted = lower(ELE, 0..1);
     let files = [("a.ele", shifted.as_bytes()), ("a.node", node.as_bytes())];
-    let error = read(&folder(), &files).unwrap_err();
+    let error = read(folder(), &files).unwrap_err();
     assert_eq!(
         error.to_string(),
         "line 3: corner 5 of a cell is not the number of a point: they are 0 to 4"
@@ -279,7 +279,7 @@ fn overlaps_are_found() {
         let space = if name == "tetgen" { "     " } else { " " };
         let other = [0, 1, 2, 4].map(|corner| (corner + from).to_string()).join(space);
         let files = replaced(&files, second, &other);
-        let (verdict, rules) = judge(read(&folder(), &bytes(&files)).unwrap());
+        let (verdict, rules) = judge(read(folder(), &bytes(&files)).unwrap());
         assert!(verdict.starts_with("wrong: "), "{name}: {verdict}");
         assert!(rules.iter().any(|(rule, _)| *rule == "overlap"), "{name}: {rules:?}");
     }
@@ -291,7 +291,7 @@ fn flat_cells_are_found() {
     for (name, files, _, fifth) in files() {
         let flat = fifth.replacen("2.0e0  2  2", "1 1 -1", 1).replacen("2 2 2", "1 1 -1", 1);
         let files = replaced(&files, fifth, &flat);
-        let (verdict, rules) = judge(read(&folder(), &bytes(&files)).unwrap());
+        let (verdict, rules) = judge(read(folder(), &bytes(&files)).unwrap());
         assert!(verdict.starts_with("wrong: "), "{name}: {verdict}");
         assert!(rules.contains(&("orientation", 1)), "{name}: {rules:?}");
     }
