@@ -41,9 +41,9 @@ mod rules;
 pub mod schema;
 
 pub use certify::{
-    Bound, Certificate, CertifyError, CertifyFiltrationError, Claim, Declined, Extent,
-    FiltrationCertificate, FiltrationFinding, Finding, NotJudged, Simplex, Unjudged, Verdict,
-    certify_filtration,
+    Bound, Cause, Certificate, CertifyError, CertifyFiltrationError, Claim, Declined, Extent,
+    FiltrationCertificate, FiltrationFinding, Finding, LikelyCause, NotJudged, Simplex, Unjudged,
+    Verdict, certify_filtration, likely_cause, likely_cause_of_values,
 };
 pub use compare::{
     ClassDifference, CompareError, CompareFiltrationsError, Comparison, Differences, Domain,

@@ -13,8 +13,9 @@ use walpha_base::{standard_output, threads};
 use walpha_check::meshes::{MeshError, MeshFormat, open_weights};
 use walpha_check::schema::{AnyFile, ComplexFile, PlacedComplex, SchemaError};
 use walpha_check::{
-    Alpha, CertifyError, CertifyFiltrationError, FiltrationFinding, Finding, Monitor, Unjudged,
-    Verdict, certify_filtration, count_by_rule, keep_causes,
+    Alpha, CertifyError, CertifyFiltrationError, FiltrationFinding, Finding, LikelyCause, Monitor,
+    Unjudged, Verdict, certify_filtration, count_by_rule, keep_causes, likely_cause,
+    likely_cause_of_values,
 };
 
 /// Judge weighted alpha shapes and meshes of tetrahedra exactly.
@@ -49,6 +50,9 @@ struct Arguments {
     /// a finding.
     #[arg(long, value_enum, default_value_t, value_name = "CHOICE")]
     ties: Ties,
+    /// Print exact numbers as fractions, instead of six digits of them.
+    #[arg(short = 'v', long = "verbose")]
+    fractions: bool,
 }
 
 /// Which choices at ties are accepted.
@@ -282,7 +286,9 @@ fn judge(path: &Path, arguments: &Arguments) -> Result<Judgement, Failure> {
             let report = Report {
                 certificate: &certificate,
                 by_rule: count_by_rule(findings.iter().map(Finding::rule)),
+                likely_cause: likely_cause(&findings, complex.alpha),
                 findings: &findings,
+                as_fractions: arguments.fractions,
                 rules: &certificate.not_judged,
                 parts: &[],
                 notes: &notes,
@@ -296,7 +302,9 @@ fn judge(path: &Path, arguments: &Arguments) -> Result<Judgement, Failure> {
             let report = Report {
                 certificate: &certificate,
                 by_rule: count_by_rule(findings.iter().map(FiltrationFinding::rule)),
+                likely_cause: likely_cause_of_values(&findings, &file),
                 findings: &findings,
+                as_fractions: arguments.fractions,
                 rules: &certificate.triangulation.not_judged,
                 parts: &certificate.not_judged,
                 notes: &notes,
@@ -331,7 +339,10 @@ fn watched<T>(work: impl FnOnce() -> T) -> T {
 struct Report<'a, C, F, R> {
     certificate: &'a C,
     by_rule: Vec<(&'static str, usize)>,
+    likely_cause: Option<LikelyCause>,
     findings: &'a [F],
+    /// Whether exact numbers are printed as fractions.
+    as_fractions: bool,
     /// Rules and parts that were not judged.
     rules: &'a [R],
     parts: &'a [Unjudged],
@@ -342,7 +353,7 @@ impl<C: Display, F: Display, R: Display> Report<'_, C, F, R> {
     /// Prints the verdict, the findings, what was not judged, and what to know.
     #[expect(clippy::unnecessary_debug_formatting, reason = "it escapes control characters")]
     fn print(&self, path: &Path) -> io::Result<()> {
-        let Self { certificate, by_rule, findings, rules, parts, notes } = self;
+        let Self { certificate, by_rule, findings, rules, parts, notes, .. } = self;
         standard_output::check()?;
         let mut out = io::stdout().lock();
         // As Debug prints a path, control characters in its name cannot reach the terminal.
@@ -352,8 +363,15 @@ impl<C: Display, F: Display, R: Display> Report<'_, C, F, R> {
                 by_rule.iter().map(|(rule, count)| format!("{count} {rule}")).collect();
             writeln!(out, "  by rule: {}", counts.join(", "))?;
         }
+        if let Some(cause) = &self.likely_cause {
+            writeln!(out, "  likely: {cause}")?;
+        }
         for finding in findings.iter().take(MOST_PRINTED) {
-            writeln!(out, "  {finding}")?;
+            if self.as_fractions {
+                writeln!(out, "  {finding:#}")?;
+            } else {
+                writeln!(out, "  {finding}")?;
+            }
         }
         if findings.len() > MOST_PRINTED {
             writeln!(out, "  and {} more", findings.len() - MOST_PRINTED)?;

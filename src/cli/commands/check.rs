@@ -14,8 +14,9 @@ use crate::check::schema::{
     AnyFile, Classes, ComplexFile, FiltrationFile, PlacedComplex, SchemaError,
 };
 use crate::check::{
-    Claim, Comparison, Complex, Extent, FiltrationFinding, Finding, Placed, Verdict,
-    certify_filtration, compare, count_by_rule, enumerate, keep_causes,
+    Claim, Comparison, Complex, Extent, FiltrationFinding, Finding, LikelyCause, Placed, Verdict,
+    certify_filtration, compare, count_by_rule, enumerate, keep_causes, likely_cause,
+    likely_cause_of_values,
 };
 use crate::export::{Target, UnknownFormat, write_findings};
 use crate::pipeline::{AlphaRule, Input, Opened, Values};
@@ -120,8 +121,13 @@ struct CheckSummary<F, C> {
     /// How many there are by each rule.
     #[serde(rename = "findings_by_rule", serialize_with = "as_map")]
     by_rule: Vec<(&'static str, usize)>,
+    /// One mistake that explains many findings; null if none is known that does.
+    likely_cause: Option<LikelyCause>,
     /// The first findings.
     findings: Vec<F>,
+    /// Whether exact numbers are printed as fractions.
+    #[serde(skip)]
+    as_fractions: bool,
     certificate: C,
     /// What to know about the verdict: how numbers were read, and what was left out.
     notes: Vec<String>,
@@ -408,7 +414,9 @@ impl Check {
             valid: findings.is_empty() && differing.is_none() && verdict.is_complete(),
             findings_total: findings.len(),
             by_rule: count_by_rule(findings.iter().map(Finding::rule)),
+            likely_cause: likely_cause(&findings, claim.placed.alpha),
             findings,
+            as_fractions: global.verbose,
             notes,
             not_judged: rules.collect(),
             words,
@@ -448,7 +456,9 @@ impl Check {
             valid: findings.is_empty(),
             findings_total: findings.len(),
             by_rule: count_by_rule(findings.iter().map(FiltrationFinding::rule)),
+            likely_cause: likely_cause_of_values(&findings, file),
             findings,
+            as_fractions: global.verbose,
             notes: Vec::new(),
             not_judged: of_triangulation.chain(of_values).collect(),
             words: certificate.to_string(),
@@ -578,8 +588,15 @@ impl<F: Display, C> Display for CheckSummary<F, C> {
                 self.by_rule.iter().map(|(rule, count)| format!("{count} {rule}")).collect();
             writeln!(f, "by rule   {}", counts.join(", "))?;
         }
+        if let Some(cause) = &self.likely_cause {
+            writeln!(f, "likely    {cause}")?;
+        }
         for finding in self.findings.iter().take(MOST_PRINTED) {
-            writeln!(f, "found     {finding}")?;
+            if self.as_fractions {
+                writeln!(f, "found     {finding:#}")?;
+            } else {
+                writeln!(f, "found     {finding}")?;
+            }
         }
         if self.findings_total > MOST_PRINTED {
             writeln!(f, "          and {} more", self.findings_total - MOST_PRINTED)?;

@@ -1,4 +1,4 @@
-//! Findings as text, one line each.
+//! Findings as text, one line each. Exact numbers are rounded to six digits; the alternate form (`{:#}`) has them as fractions.
 
 use std::fmt::{self, Formatter};
 
@@ -106,7 +106,19 @@ impl fmt::Display for Finding {
     }
 }
 
+/// A number in the form that is asked for.
+pub(super) fn number(exact: &Exact, f: &Formatter<'_>) -> String {
+    if f.alternate() { format!("{exact:#}") } else { exact.to_string() }
+}
+
+/// Two numbers that differ: exact where six digits do not tell them apart.
+pub(super) fn apart(numbers: [&Exact; 2], f: &Formatter<'_>) -> [String; 2] {
+    let [a, b] = numbers.map(|exact| number(exact, f));
+    if a == b { numbers.map(|exact| format!("{exact:#}")) } else { [a, b] }
+}
+
 fn orientation(f: &mut Formatter<'_>, cell: &Simplex, six_volumes: &Exact) -> fmt::Result {
+    let six_volumes = number(six_volumes, f);
     write!(f, "{cell} must be positively oriented, but six times its volume is {six_volumes}")
 }
 
@@ -121,6 +133,7 @@ fn not_regular(f: &mut Formatter<'_>, cell: &Simplex, point: u32, power: &Exact)
 }
 
 fn beyond(f: &mut Formatter<'_>, facet: &Simplex, six_volumes: &Exact) -> fmt::Result {
+    let six_volumes = number(six_volumes, f);
     write!(f, " beyond {facet} (six times the volume between them is {six_volumes})")
 }
 
@@ -132,6 +145,7 @@ fn wraps(f: &mut Formatter<'_>, first: &Simplex, facet: &Simplex) -> fmt::Result
 }
 
 fn volume(f: &mut Formatter<'_>, cells: &Exact, hull: &Exact) -> fmt::Result {
+    let [cells, hull] = apart([cells, hull], f);
     write!(
         f,
         "the cells do not fill the hull: six times their volume is {cells}, six times the hull's {hull}"
@@ -145,12 +159,12 @@ fn reason(
     refuted_by: Option<&(u32, Exact)>,
 ) -> fmt::Result {
     match radius_squared {
-        Some(radius) => write!(f, " (squared radius {radius})")?,
+        Some(radius) => write!(f, " (squared radius {})", number(radius, f))?,
         None => write!(f, " (its corners are at one position, or on one line or plane)")?,
     }
     match refuted_by {
         Some((point, power)) => {
-            write!(f, "; point {point} is inside its sphere (power {power})")
+            write!(f, "; point {point} is inside its sphere (power {})", number(power, f))
         }
         None => Ok(()),
     }
@@ -177,6 +191,7 @@ fn missing_cell(
     class: Class,
     radius_squared: &Exact,
 ) -> fmt::Result {
+    let radius_squared = number(radius_squared, f);
     write!(
         f,
         "{cell} is missing: all its faces are listed, and it is {class} (squared radius {radius_squared})"
@@ -189,7 +204,7 @@ fn missing_simplex(
     points: &[u32],
     radius: &Exact,
 ) -> fmt::Result {
-    let more = points.len() - simplex.vertices().len();
+    let (more, radius) = (points.len() - simplex.vertices().len(), number(radius, f));
     if more == 0 {
         write!(
             f,
@@ -205,6 +220,7 @@ fn missing_simplex(
 }
 
 fn missing_vertex(f: &mut Formatter<'_>, point: u32, radius_squared: &Exact) -> fmt::Result {
+    let radius_squared = number(radius_squared, f);
     write!(
         f,
         "point {point} is missing: it is a vertex of the shape (squared radius {radius_squared}, and no other point inside)"
@@ -241,6 +257,6 @@ fn by_power(f: &mut Formatter<'_>, power: &Exact) -> fmt::Result {
     if power.is_zero() {
         write!(f, " (on the sphere, and inside by the perturbation)")
     } else {
-        write!(f, " (power {power})")
+        write!(f, " (power {})", number(power, f))
     }
 }

@@ -1,5 +1,6 @@
 //! Certification: judging a complex that some engine or program made, without making one.
 
+mod causes;
 mod certificate;
 mod claim;
 mod classes;
@@ -23,6 +24,7 @@ mod torus;
 mod verify;
 mod voxels;
 
+pub use causes::{Cause, LikelyCause, likely_cause, likely_cause_of_values};
 pub use certificate::{Certificate, CertifyError, NotJudged, Verdict};
 pub use claim::{Claim, Extent};
 pub use filtration::{

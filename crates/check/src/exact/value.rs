@@ -6,6 +6,7 @@ use std::fmt;
 use dashu_int::IBig;
 use dashu_int::ops::{BitTest, DivRem, Gcd, UnsignedAbs};
 use serde::{Serialize, Serializer};
+use walpha_base::shown::{number, six_digits};
 
 use super::formulas::{Power1, Power2, Power3, Power4, Radius2, Radius3, Radius4, Volume};
 use super::frame::{Digits, Formula, Frame, WeightedPoint, cross, dot};
@@ -43,6 +44,18 @@ impl Exact {
         self.numerator.is_zero()
     }
 
+    /// Whether it is this decimal number, of few digits, and not only the double nearest to it.
+    fn is(&self, rounded: f64) -> bool {
+        let text = format!("{rounded:e}");
+        let (digits, power) = text.split_once('e').unwrap_or((&text, "0"));
+        let power: i64 = power.parse().unwrap_or_default();
+        let after = digits.split_once('.').map_or(0, |(_, after)| after.len() as i64);
+        let Ok(digits) = digits.replace('.', "").parse::<i64>() else { return false };
+        let ten = |power: i64| IBig::from(10).pow(power.max(0) as usize);
+        let (up, down) = (ten(power - after), ten(after - power));
+        self.compare(&Self::new(IBig::from(digits) * up, down, 0)).is_eq()
+    }
+
     pub(crate) fn integer(value: IBig, exponent: i64) -> Self {
         Self::new(value, IBig::ONE, exponent)
     }
@@ -58,8 +71,14 @@ impl Default for Exact {
 /// Beyond this exponent a power of two is not multiplied out when printed.
 const PRINTED_EXPONENT: i64 = 128;
 
+/// Rounded to six digits, with ≈ where that is another number; `{:#}` writes the fraction.
 impl fmt::Display for Exact {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if !f.alternate() {
+            let rounded = six_digits(self.nearest());
+            let about = if self.is(rounded) { "" } else { "≈" };
+            return write!(f, "{about}{}", number(rounded));
+        }
         let Self { numerator, denominator, exponent } = self;
         let factor = IBig::ONE << exponent.unsigned_abs().min(PRINTED_EXPONENT as u64) as usize;
         let one = IBig::ONE;
@@ -79,7 +98,7 @@ impl fmt::Display for Exact {
 impl Serialize for Exact {
     /// As text: JSON numbers would round it.
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_str(self)
+        serializer.collect_str(&format_args!("{self:#}"))
     }
 }
 

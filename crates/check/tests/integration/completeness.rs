@@ -208,7 +208,7 @@ fn a_cube_that_is_left_out_is_named_by_its_corners() {
     assert_eq!(findings.iter().map(of).collect::<Vec<_>>(), [corners, vec![64, 65], vec![66]]);
     assert_eq!(
         findings[1].to_string(),
-        "edge [64, 65] is missing: it is in the shape (squared radius 1/16, and no point inside)"
+        "edge [64, 65] is missing: it is in the shape (squared radius 0.0625, and no point inside)"
     );
 }
 

@@ -5,6 +5,8 @@
 #[path = "../../../complex/tests/integration/archive.rs"]
 mod archive;
 mod base;
+#[cfg(feature = "json")]
+mod causes;
 #[cfg(feature = "cli")]
 mod command;
 mod common;

@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use crate::Alpha;
 use crate::certify::finding::{Finding, Simplex};
+use crate::certify::message::{apart, number};
 use crate::exact::Exact;
 
 /// An error of a filtration: the rule that is broken, the simplex that breaks it, and the exact
@@ -107,7 +108,8 @@ impl fmt::Display for FiltrationFinding {
                 let [expected, given] = [expected, given].map(|alpha| alpha.squared());
                 write!(f, "{simplex} {what} at {expected:?}, not {given:?}")?;
                 match exact {
-                    Some(exact) => write!(f, " (exactly {exact})"),
+                    Some(exact) if f.alternate() => write!(f, " (exactly {exact:#})"),
+                    Some(_) => Ok(()),
                     None => write!(f, " (never)"),
                 }
             }
@@ -138,10 +140,13 @@ impl fmt::Display for FiltrationFinding {
                     "the components that never end begin with vertices {expected:?}, not {given:?}"
                 )
             }
-            Self::Order { before, after, values: [a, b] } => write!(
-                f,
-                "{before} must come after {after}: by value ({a}, {b}), then dimension, then vertices"
-            ),
+            Self::Order { before, after, values: [a, b] } => {
+                let [a, b] = if a == b { [number(a, f), number(b, f)] } else { apart([a, b], f) };
+                write!(
+                    f,
+                    "{before} must come after {after}: by value ({a}, {b}), then dimension, then vertices"
+                )
+            }
         }
     }
 }

@@ -98,7 +98,7 @@ fn alpha_makes_a_shape() {
     let (code, text) = run(&folder, &["t.mesh", "--alpha", "0.75"]);
     assert!(code == 0 && !text.contains("α = ∞"), "{text}");
     let (code, text) = run(&folder, &["t.mesh", "--alpha", "0.7"]);
-    assert!(code == 3 && text.contains("squared radius 3/4"), "{text}");
+    assert!(code == 3 && text.contains("squared radius 0.75"), "{text}");
     let (code, text) = run(&folder, &["c.json", "--alpha", "0.75"]);
     assert!(code == 1 && text.contains("--alpha has no effect: the file states its α"), "{text}");
     let order = r#"{"points":[[0,0,0],[1,0,0]],"vertices":[0,1],"edges":[[0,1]],"facets":[],"cells":[],
