@@ -12,7 +12,7 @@ use walpha_check::meshes::Mesh;
 use super::model::MODEL;
 use super::read::xyz::{self, TextLayout};
 use super::read::{format, npy};
-use super::read::{obj, off, pcd, ply, stl, vtk};
+use super::read::{obj, off, pcd, ply, stated, stl, vtk};
 use super::write;
 use super::wvm;
 use super::{CellCount, ModelMetadata, Packing, PointOptions, Points, PointsError, WeightedPoints};
@@ -146,7 +146,9 @@ pub static FORMATS: [PointFormat; 15] = [
             start.starts_with(b"ply") && start.get(3).is_some_and(u8::is_ascii_whitespace)
         },
         is_packed: true,
-        read: Some(|file, _| plain(ply::read(file))),
+        read: Some(|file, _| {
+            Ok(stated::in_comments(file, ply::read(file)?, &["comment", "obj_info"]))
+        }),
         cells: Some(ply::cells),
         read_complex: Some(ply::read_complex),
         ..PLAIN
@@ -156,7 +158,7 @@ pub static FORMATS: [PointFormat; 15] = [
         extensions: &["off"],
         fuzzed_by: "off",
         is_packed: true,
-        read: Some(|file, _| plain(off::read(file))),
+        read: Some(|file, _| Ok(stated::in_comments(file, off::read(file)?, &["#"]))),
         cells: Some(off::cells),
         ..PLAIN
     },
@@ -165,7 +167,7 @@ pub static FORMATS: [PointFormat; 15] = [
         extensions: &["obj"],
         fuzzed_by: "obj",
         is_packed: true,
-        read: Some(|file, _| plain(obj::read(file))),
+        read: Some(|file, _| Ok(stated::in_comments(file, obj::read(file)?, &["#"]))),
         cells: Some(obj::cells),
         ..PLAIN
     },
@@ -174,7 +176,7 @@ pub static FORMATS: [PointFormat; 15] = [
         extensions: &["stl"],
         fuzzed_by: "stl",
         is_packed: true,
-        read: Some(|file, _| plain(stl::read(file))),
+        read: Some(|file, _| Ok(stated::in_stl(file, stl::read(file)?))),
         cells: Some(stl::cells),
         ..PLAIN
     },
@@ -193,7 +195,7 @@ pub static FORMATS: [PointFormat; 15] = [
         fuzzed_by: "vtk_geometry",
         begins: is_vtk_xml,
         holds_points: vtk::holds_points,
-        read: Some(|file, _| plain(vtk::read(file))),
+        read: Some(|file, _| stated::in_vtk(file, vtk::read(file)?)),
         cells: Some(vtk::cells),
         read_complex: Some(vtk::read_complex),
         ..PLAIN

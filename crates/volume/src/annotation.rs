@@ -2,7 +2,7 @@
 
 use walpha_base::shown::{number, six_digits};
 
-use crate::{Coordinates, LengthUnit};
+use crate::{Coordinates, LengthUnit, Space};
 use walpha_complex::Alpha;
 
 /// For a comment: α as a squared length, and as a radius where it is one.
@@ -53,9 +53,53 @@ pub fn pairs(Coordinates { space, unit }: Coordinates) -> Vec<(&'static str, &'s
     space.into_iter().chain(unit).collect()
 }
 
+/// What a file states: the name of a space and of a unit, each empty if there is none.
+pub(crate) fn coordinates(space: &str, unit: &str) -> Coordinates {
+    let space = match space {
+        "LPS" => Space::Lps,
+        "RAS" => Space::Ras,
+        _ => Space::Unknown,
+    };
+    Coordinates {
+        space,
+        unit: if unit.is_empty() { LengthUnit::Unstated } else { LengthUnit::named(unit) },
+    }
+}
+
+/// What [`comment`] wrote, anywhere in a text.
+pub fn read(text: &str) -> Coordinates {
+    let stated = |name| text.split_whitespace().find_map(|word| word.strip_prefix(name));
+    coordinates(stated("SPACE=").unwrap_or_default(), stated("UNIT=").unwrap_or_default())
+}
+
+/// What was subtracted from the coordinates of a file in single precision, as its text states it: ` OFFSET=x,y,z`.
+pub fn offset(text: &str) -> Option<[f64; 3]> {
+    let stated = text.split_whitespace().find_map(|word| word.strip_prefix("OFFSET="))?;
+    let numbers: Vec<f64> = stated.split(',').map(str::parse).collect::<Result<_, _>>().ok()?;
+    numbers.try_into().ok().filter(|offset: &[f64; 3]| offset.iter().all(|x| x.is_finite()))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_is_written_is_read() {
+        for coordinates in [
+            Coordinates::default(),
+            Coordinates::PATIENT,
+            Coordinates { space: Space::Ras, unit: LengthUnit::Unstated },
+            Coordinates { space: Space::Unknown, unit: LengthUnit::Angstrom },
+            Coordinates { space: Space::Unknown, unit: LengthUnit::Micrometre },
+        ] {
+            assert_eq!(read(&format!("made by{}", comment(coordinates))), coordinates);
+        }
+        assert_eq!(read("SPACE=up UNIT= UNITS=mm"), Coordinates::default());
+        assert_eq!(offset("walpha OFFSET=1e3,-2.5,0 UNIT=m"), Some([1000.0, -2.5, 0.0]));
+        for text in ["", "OFFSET=1,2", "OFFSET=1,2,3,4", "OFFSET=1,2,inf", "OFFSET=a,2,3"] {
+            assert_eq!(offset(text), None, "{text}");
+        }
+    }
 
     #[test]
     fn alpha_is_a_squared_length() {

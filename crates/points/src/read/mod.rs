@@ -18,6 +18,7 @@ pub(super) mod off;
 pub(super) mod pcd;
 pub(super) mod ply;
 mod rows;
+pub(super) mod stated;
 pub(super) mod stl;
 mod text;
 pub(super) mod vtk;

@@ -7,7 +7,7 @@ use crate::error::format_error;
 use crate::read::OpenFile;
 use crate::read::frames::FrameChoice;
 use crate::read::layout::{Encoding, Layout, frame};
-use crate::{Coordinates, Dims, Endian, LengthUnit, Reason, Space, Volume, VolumeError};
+use crate::{Dims, Endian, Reason, Volume, VolumeError};
 use walpha_base::Monitor;
 
 /// Reads VTI, VTK's image data in XML, in one piece: the array of this name; or else the active scalars of
@@ -63,8 +63,7 @@ pub(crate) fn read(
         return Err(fail(Reason::not_scalar(format!("{components} values a voxel"), Some(dims))));
     }
     let dims = Dims::new(dims[0], dims[1], dims[2])?;
-    let (frame, dtype) =
-        (frame(path, corner, axes, coordinates(&file, image)?)?, file.dtype(array)?);
+    let (frame, dtype) = (frame(path, corner, axes, file.coordinates(image)?)?, file.dtype(array)?);
     let mut samples = file.values(array, dims.samples() as u64)?;
     let siblings =
         file.elements[array].parent.into_iter().flat_map(|data| file.children(data, "DataArray"));
@@ -99,15 +98,4 @@ fn choose(file: &VtkXml, piece: usize, wanted: Option<&str>) -> Result<(usize, b
         arrays.iter().map(|&(array, cells)| (name(array), cells)).collect();
     let place = choice(&names, wanted)?;
     Ok(arrays[place])
-}
-
-/// What the field data `SPACE` and `UNIT` say, as our own files have them.
-fn coordinates(file: &VtkXml, image: usize) -> Result<Coordinates, VolumeError> {
-    let space = match file.field_text(image, "SPACE")?.as_deref() {
-        Some("LPS") => Space::Lps,
-        Some("RAS") => Space::Ras,
-        _ => Space::Unknown,
-    };
-    let unit = file.field_text(image, "UNIT")?.map(|name| LengthUnit::named(&name));
-    Ok(Coordinates { space, unit: unit.unwrap_or_default() })
 }

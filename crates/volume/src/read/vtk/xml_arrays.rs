@@ -8,7 +8,7 @@ use flate2::read::ZlibDecoder;
 use super::xml::{Appended, Compressor, VtkXml, XmlElement};
 use crate::read::payload::{Element, Length, MOST_EXPANSION, Payload, payload_error_of};
 use crate::read::text;
-use crate::{Endian, Reason, VolumeError};
+use crate::{Coordinates, Endian, Reason, VolumeError, annotation};
 
 impl VtkXml<'_> {
     /// Reads an array, which must have exactly `count` numbers.
@@ -37,15 +37,7 @@ impl VtkXml<'_> {
                 self.decoded(array, text, (end - start) / 4 * 3, count)
             }
             Some("appended") => {
-                let Some(Appended { start, base64 }) = self.appended else {
-                    return Err(of_array(Reason::header(
-                        "is appended, but there are no appended data",
-                    )));
-                };
-                let offset = self.attribute(array, "offset").and_then(|text| text.parse().ok());
-                let Some(from) = offset.and_then(|offset: u64| start.checked_add(offset)) else {
-                    return Err(of_array(Reason::header("has no offset in the appended data")));
-                };
+                let (from, base64) = self.appended_at(array).map_err(of_array)?;
                 let left = self.file.length().saturating_sub(from);
                 let data = self.part(from, self.file.length())?;
                 if base64 {
@@ -63,30 +55,79 @@ impl VtkXml<'_> {
         }
     }
 
-    /// A text of the field data of a dataset: the first string of an array of strings, which VTK writes
-    /// as the numbers of its characters, up to a 0.
+    /// Axes and unit of a dataset, as its field data `SPACE` and `UNIT` state them; our own files have these, and those of 3D Slicer.
     ///
     /// # Errors
     /// [`VolumeError`]: what cannot be read, and why.
-    pub fn field_text(&self, dataset: usize, name: &str) -> Result<Option<String>, VolumeError> {
+    pub fn coordinates(&self, dataset: usize) -> Result<Coordinates, VolumeError> {
+        let text = |name| Ok::<_, VolumeError>(self.field_text(dataset, name)?.unwrap_or_default());
+        Ok(annotation::coordinates(&text("SPACE")?, &text("UNIT")?))
+    }
+
+    /// Where the data of an appended array begin, and whether they are base64.
+    fn appended_at(&self, array: usize) -> Result<(u64, bool), Reason> {
+        let Some(Appended { start, base64 }) = self.appended else {
+            return Err(Reason::header("is appended, but there are no appended data"));
+        };
+        let offset = self.attribute(array, "offset").and_then(|text| text.parse().ok());
+        let from = offset.and_then(|offset: u64| start.checked_add(offset));
+        let from = from.ok_or_else(|| Reason::header("has no offset in the appended data"))?;
+        Ok((from, base64))
+    }
+
+    /// A text of the field data of a dataset: the first string of an array of strings, or an array of bytes. VTK writes
+    /// the numbers of its characters, up to a 0. `None` if there is none, or it is compressed or longer than what is looked for.
+    ///
+    /// # Errors
+    /// [`VolumeError`]: what cannot be read, and why.
+    fn field_text(&self, dataset: usize, name: &str) -> Result<Option<String>, VolumeError> {
         /// Nothing that is looked for is longer.
         const LONGEST: u64 = 1000;
         let Some(fields) = self.children(dataset, "FieldData").next() else { return Ok(None) };
         let named = |&array: &usize| self.attribute(array, "Name") == Some(name);
-        let Some(array) = self.children(fields, "Array").find(named) else { return Ok(None) };
-        if self.attribute(array, "format") != Some("ascii") {
-            return Ok(None);
-        }
+        let mut arrays =
+            ["Array", "DataArray"].into_iter().flat_map(|element| self.children(fields, element));
+        let Some(array) = arrays.find(named) else { return Ok(None) };
         let XmlElement { text: start, text_end, .. } = self.elements[array];
-        let end = text_end.unwrap_or(start).min(start + LONGEST);
-        let mut text = String::new();
-        let read = self.part(start, end)?.read_to_string(&mut text);
-        read.map_err(|error| {
+        let end = text_end.unwrap_or(start);
+        let damaged = |error: io::Error| {
             self.fail(Reason::damaged(format!("has damaged field data {name}: {error}")))
-        })?;
-        let bytes: Vec<u8> = text.split_whitespace().map_while(|byte| byte.parse().ok()).collect();
+        };
+        let bytes = match self.attribute(array, "format") {
+            Some("ascii") => {
+                let mut text = String::new();
+                let part = self.part(start, end.min(start + LONGEST))?;
+                part.take(LONGEST).read_to_string(&mut text).map_err(damaged)?;
+                Some(text.split_whitespace().map_while(|byte| byte.parse().ok()).collect())
+            }
+            Some("binary") => {
+                self.short(Base64::new(self.part(start, end)?), LONGEST).map_err(damaged)?
+            }
+            Some("appended") => {
+                let (from, base64) = self.appended_at(array).map_err(|reason| self.fail(reason))?;
+                let data = self.part(from, self.file.length())?;
+                if base64 {
+                    self.short(Base64::new(data), LONGEST).map_err(damaged)?
+                } else {
+                    self.short(data, LONGEST).map_err(damaged)?
+                }
+            }
+            _ => None,
+        };
+        let Some(bytes): Option<Vec<u8>> = bytes else { return Ok(None) };
         let first = bytes.split(|&byte| byte == 0).next().unwrap_or_default();
         Ok(Some(String::from_utf8_lossy(first).into_owned()))
+    }
+
+    /// The bytes of an array that follow its length; `None` if they are compressed, or more than `most`.
+    fn short(&self, mut data: impl Read, most: u64) -> io::Result<Option<Vec<u8>>> {
+        let length = self.word(&mut data)?;
+        if self.compressor.is_some() || length > most {
+            return Ok(None);
+        }
+        let mut bytes = vec![0; length as usize];
+        data.read_exact(&mut bytes)?;
+        Ok(Some(bytes))
     }
 
     /// Reads an array that follows its length, or the lengths of its compressed blocks; there are
