@@ -21,5 +21,5 @@ print(f"all points in one solid from α = {suggested.one_region:.4g} on")
 print(f"the topology stays longest from α = {suggested.plateau[0]:.4g} to {suggested.plateau[1]:.4g}")
 
 shape = filtration.shape((low * high) ** 0.5)
-print(f"between: {tuple(shape.betti)}, area {shape.area + 2 * shape.singular_area:.4g}")
+print(f"between: {tuple(shape.betti)}, area {shape.regular_area + 2 * shape.singular_area:.4g}")
 assert shape.betti == (1, 2, 1)

@@ -8,12 +8,14 @@ use pyo3::prelude::*;
 use walpha::haar::smooth;
 use walpha::points::{self, PointsError, Weighting};
 use walpha::progress::Stage;
-use walpha::volume::{Coordinates, Frame, Nan, ReadOptions, Space, Volume, VolumeError, open};
+use walpha::volume::{
+    Coordinates, Frame, Hounsfield, Nan, ReadOptions, Space, Volume, VolumeError, open,
+};
 use walpha::{Alpha, LabelChoice, Points, Recipe, Selection, Units};
 
 use crate::arrays::{numbers, samples as owned};
 use crate::errors::{told, wrong};
-use crate::shape::{Shape, Written, json, recipe_of, settings_of};
+use crate::shape::{Shape, Written, json, recipe_from, settings_of};
 use crate::work::{Task, run};
 
 /// A file or sample, read with options as JSON: its samples, whether they are gray levels, and its frame as JSON, in LPS
@@ -159,7 +161,8 @@ pub fn pipeline(
     task: Task<'_>,
 ) -> PyResult<Shape> {
     let (frame, units) = place(frame)?;
-    let recipe = recipe_of(settings)?
+    let settings = settings_of(settings)?;
+    let recipe = recipe_from(&settings)?
         .units(units)
         // Coordinates stay in the space that the frame is in.
         .space(Some(frame.coordinates.space).filter(|space| space.is_known()));
@@ -169,9 +172,13 @@ pub fn pipeline(
         let volume = Volume::of_file(samples, frame).and_then(|volume| volume.resolve_nan(nan));
         let volume = volume.map_err(PointsError::from)?;
         let volume = if is_gray { volume.with_gray_levels() } else { volume };
-        recipe.run(volume)
+        let bone = settings.for_ct(&recipe);
+        let bone = bone.and_then(|bone| Some((bone, Hounsfield::of_volume(&volume)?)));
+        let (recipe, found) = bone.map_or((recipe, None), |(bone, found)| (bone, Some(found)));
+        recipe.run(volume).map(|model| (model, found))
     })?;
-    Ok(Shape::of(model))
+    let (model, found) = model;
+    Ok(Shape::of(model).with_ct(found))
 }
 
 /// The solid of labels: of all that are not 0, or of these. `frame` is JSON; without one, coordinates are indices. Samples that are NaN have

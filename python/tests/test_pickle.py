@@ -40,6 +40,9 @@ def test_shapes(cloud, weights, how, tmp_path):
         assert getattr(back, name) == getattr(shape, name), name
     for name in ("points", "weights", "values", "hidden", "duplicates", "component_numbers"):
         assert np.array_equal(getattr(back, name), getattr(shape, name)), name
+    if not how.get("periodic"):
+        part = shape.keep("largest")
+        assert same(again(part), part) and again(part).kept == part.kept
     if how.get("periodic"):
         flat = shape.unwrapped()
         assert len(flat.copies) > 0

@@ -110,3 +110,17 @@ def test_shapely_in_tilted_planes(ring):
     assert vertical.outline().area == 18.0 and vertical.outline().axes == (0, 2)
     with pytest.raises(ValueError, match="vertical"):
         vertical.to_shapely()
+
+
+def test_sizes_make_sense_in_every_dimension(ring):
+    shape = walpha.alpha_shape(ring, alpha=0.5)
+    assert (shape.dimension, shape.volume, shape.area, shape.perimeter) == (2, 0, 18, 24 + 4 * math.sqrt(2))
+    assert shape.bounds.tolist() == [[0, 0, 0], [5, 5, 0]]
+    assert shape.contains([[0.5, 0.5], [2.5, 2.5]]).tolist() == [True, False]
+    assert "facets in a plane, area 18" in repr(shape)
+    line = walpha.alpha_shape([[0, 0], [1, 1], [3, 3]], alpha=1)
+    assert (line.dimension, line.area, line.perimeter) == (1, 0, 0) and "edges on a line" in repr(line)
+    assert line.contains([[0.5, 0.5], [2, 2]]).tolist() == [True, False]
+    point = walpha.alpha_shape([[1, 2, 3]], alpha=1)
+    assert (point.dimension, point.perimeter) == (0, 0) and "at one place" in repr(point)
+    assert walpha.alpha_shape(ring, alpha=0.5).keep(1).outline().area == 18

@@ -96,12 +96,13 @@ def test_duplicates_and_hidden_points():
 @pytest.mark.parametrize("engine", ["cgal", "native"])
 def test_hidden_points_and_the_engine_that_ran(engine):
     points, weights = np.concatenate([CUBE, [[0.5, 0.5, 0.5]]]), np.array([0.0] * 8 + [-5.0])
-    # Few points go to CGAL, where there is one; a torus has no other engine than ours.
-    for asked in {"cgal": ("auto", "cgal"), "native": ("native",)}[engine]:
+    # Points go to our own engine, and those selected from a volume to CGAL, as in the paper.
+    for asked in {"cgal": ("cgal",), "native": ("auto", "native")}[engine]:
         assert walpha.alpha_shape(points, 1.0, weights=weights, engine=asked).hidden is None
         shape = walpha.alpha_shape(points, 1.0, weights=weights, engine=asked, hidden=True)
         assert shape.hidden.tolist() == [8] and shape.engine == engine
     assert walpha.alpha_shape(CUBE + 0.25, alpha=0.1, periodic=4).engine == "native"
+    assert walpha.pipeline(walpha.read("sample:phantom@16"), count=100).engine == "cgal"
 
 
 def test_what_is_lent_cannot_be_written_and_outlives_the_shape(cloud):
@@ -124,3 +125,68 @@ def test_html_has_the_counts(cloud):
     text = shape._repr_html_()
     assert f"<td>{shape.counts()['cells']['interior']}</td>" in text and "&lt;walpha.AlphaShape" in text
     assert sum(shape.counts()["facets"].values()) == len(shape.facets)
+
+
+def test_components_are_kept():
+    sizes = (1, 3, 2)
+    cubes = [
+        [20 * k + x, y, z]
+        for k, side in enumerate(sizes)
+        for x in range(side + 1)
+        for y in range(side + 1)
+        for z in range(side + 1)
+    ]
+    shape = walpha.alpha_shape(np.array([*cubes, [90, 0, 0]], float), 0.75, exterior=True)
+    assert shape.kept is None and shape.volume == 36 and shape.betti.b0 == 4
+    largest = shape.keep("largest")
+    assert (largest.volume, largest.area, largest.betti, largest.kept) == (27.0, 54.0, (1, 0, 0), (1, 4))
+    assert np.array_equal(largest.points, shape.points) and "1 of 4 components" in repr(largest)
+    assert (largest.facet_classes != walpha.Class.EXTERIOR).all() and not largest.exterior
+    assert shape.keep(2).volume == 35 and shape.keep(min_volume=8).volume == 35
+    assert shape.keep(3, min_volume=9).volume == 27 and shape.keep(min_volume=28).volume == 0
+    assert largest.keep(1).kept == (1, 1)
+    one, other = shape.boundary(keep="largest"), largest.boundary()
+    assert np.array_equal(one.triangles, other.triangles) and len(one.points) == 56
+    for wrong in ({}, {"largest": 0}, {"largest": "most"}, {"min_volume": -1}):
+        with pytest.raises(ValueError):
+            shape.keep(**wrong)
+    with pytest.raises(ValueError, match="torus"):
+        walpha.alpha_shape(CUBE + 0.25, alpha=0.1, periodic=4).keep(1)
+
+
+def test_a_part_is_not_saved_as_the_whole(tmp_path):
+    shape = walpha.alpha_shape(CUBE, 0.75).keep(1)
+    for name in ("a.json", "a.npz"):
+        with pytest.raises(ValueError, match="states the whole shape"):
+            shape.save(tmp_path / name)
+    shape.save(tmp_path / "a.vtu")
+
+
+def test_the_area_is_that_of_the_surface():
+    rng = np.random.default_rng(1)
+    sphere = rng.normal(size=(4000, 3))
+    sphere /= np.linalg.norm(sphere, axis=1, keepdims=True)
+    scan = walpha.alpha_shape(sphere, alpha=0.02)
+    assert abs(scan.area / (4 * np.pi) - 1) < 0.05
+    assert scan.area == pytest.approx(scan.regular_area + scan.singular_area, rel=1e-14)
+    parts = scan.components
+    assert sum(part.area for part in parts) == pytest.approx(scan.area, rel=1e-12)
+    assert sum(part.regular_area for part in parts) == pytest.approx(scan.regular_area, rel=1e-12)
+
+
+def test_bounds_and_contains():
+    shape = walpha.alpha_shape(np.concatenate([CUBE, [[9.0, 0, 0]]]), 0.75)
+    assert shape.bounds.tolist() == [[0, 0, 0], [9, 1, 1]] and shape.dimension == 3 and shape.perimeter is None
+    places = [[0.5, 0.5, 0.5], [1, 1, 1], [9, 0, 0], [9, 0, 1e-300], [1.0000000000000002, 0.5, 0.5]]
+    assert shape.contains(places).tolist() == [True, True, True, False, False]
+    empty = walpha.alpha_shape(CUBE, -1.0)
+    assert empty.bounds is None and not empty.contains(CUBE).any()
+
+
+def test_different_alphas_are_told_once(monkeypatch):
+    monkeypatch.setattr(walpha._alpha, "_first", None)
+    monkeypatch.setattr(walpha._alpha, "_told", False)
+    with pytest.warns(UserWarning, match="volumes and areas do not compare") as told:
+        for scale in (1, 1, 2, 3):
+            walpha.alpha_shape(scale * CUBE, alpha="auto")
+    assert len(told) == 1

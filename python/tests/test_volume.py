@@ -276,3 +276,14 @@ def test_labels_that_are_none_are_refused():
         walpha.label_shape(np.full((2, 2, 2), 1 << 25))
     with pytest.raises(TypeError):
         walpha.label_shape(np.ones((2, 2, 2)), 1.5)
+
+
+def test_a_ct_is_taken_as_the_command_takes_it():
+    ct = walpha.read("sample:ct")
+    with pytest.warns(UserWarning, match="look like Hounsfield units"):
+        shape = walpha.pipeline(ct)
+    stated = walpha.pipeline(ct, gray=(0, 1000), gray_min=64, threshold=30, rms=4)
+    assert same(shape, stated) and abs(shape.volume - 709169.34) < 0.01
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert walpha.pipeline(ct, count=2000).volume != shape.volume

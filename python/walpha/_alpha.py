@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import sys
+import warnings
 from typing import Any, cast
 
 import numpy as np
@@ -40,6 +41,25 @@ def squared(alpha: Any, alpha_radius: Any, otherwise: str) -> float:
             f"alpha{given} must be a squared length here: give it as alpha or its root as alpha_radius{otherwise}"
         )
     return found
+
+
+# The first α that a rule found for a shape, and whether it was said that another one differs.
+_first: float | None = None
+_told = False
+
+
+def compared(found: float, stacklevel: int) -> None:
+    """Says once that shapes for each of which a rule found another α do not compare."""
+    global _first, _told
+    if _first is None:
+        _first = found
+    elif found != _first and not _told:
+        _told = True
+        warnings.warn(
+            f"alpha was found for each shape by itself, {_first:g} for one and {found:g} for another: their volumes "
+            "and areas do not compare; to compare objects, give one number for all of them",
+            stacklevel=stacklevel,
+        )
 
 
 def _number(name: str, given: Any, advice: str) -> float:

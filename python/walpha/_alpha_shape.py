@@ -47,8 +47,7 @@ def alpha_shape(
     values : array_like, (n,), optional
         Values that :meth:`AlphaShape.at` interpolates.
     engine : {"auto", "cgal", "native", "both"}
-        Which program computes it; both give the same answer. "auto" takes CGAL for up to 20 000 points, and
-        our own, the fastest, beyond and for periodic boxes: :attr:`AlphaShape.engine` says which one it was.
+        Which program computes it; both give the same answer. "auto" is "native", the fastest; "cgal" is CGAL.
         "both" computes it twice, and raises an error where a simplex differs.
     exterior : bool
         Keep the simplices outside the shape: the whole triangulation. Voids then know what fills
@@ -82,6 +81,11 @@ def alpha_shape(
     MemoryError
         The system gives no more.
 
+    Warns
+    -----
+    UserWarning
+        Once, where "auto" found another α than for an earlier shape: their volumes do not compare.
+
     References
     ----------
     H. Edelsbrunner and E. P. Mücke, Three-dimensional alpha shapes, ACM Transactions on Graphics
@@ -98,8 +102,9 @@ def alpha_shape(
     Betti(b0=1, b1=0, b2=1)
     """
     cloud = _arrays.cloud(points, weights, values)
+    rule = _alpha.rule(alpha, alpha_radius)
     settings = _settings.written(
-        alpha=_alpha.rule(alpha, alpha_radius),
+        alpha=rule,
         engine=engine,
         balls=balls,
         exterior=exterior,
@@ -107,5 +112,7 @@ def alpha_shape(
         periodic=_arrays.sides(periodic),
     )
     with task(progress, threads) as how:
-        shape = _walpha.alpha_shape(*cloud, settings, how)
-    return AlphaShape._of(shape)
+        shape = AlphaShape._of(_walpha.alpha_shape(*cloud, settings, how))
+    if not isinstance(rule, float):
+        _alpha.compared(shape.alpha, stacklevel=3)
+    return shape

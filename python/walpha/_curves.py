@@ -64,7 +64,7 @@ class Level(NamedTuple):
         Of a torus TorusBetti.
     solid_components : int
         Components of the cells, joined through facets.
-    volume, area, singular_area : float
+    volume, area, regular_area, singular_area : float
         As those of :class:`AlphaShape`.
     coverage : float
         The share of the volume of the convex hull that the cells fill; 0 of points that span no volume.
@@ -81,6 +81,7 @@ class Level(NamedTuple):
     solid_components: int
     volume: float
     area: float
+    regular_area: float
     singular_area: float
     coverage: float
     voids: list[Void]

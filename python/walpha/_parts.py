@@ -97,7 +97,9 @@ class Component(NamedTuple):
     volume : float
         Of its cells, in cubed units of the points.
     area : float
-        Of its regular facets, the boundary of its solid part, in squared units.
+        Of its regular and singular facets, in squared units.
+    regular_area : float
+        Of its regular facets, the boundary of its solid part.
     singular_area : float
         Of its singular facets, one side of each.
     low, high : tuple of float
@@ -114,6 +116,7 @@ class Component(NamedTuple):
     cells: int
     volume: float
     area: float
+    regular_area: float
     singular_area: float
     low: Place
     high: Place
@@ -129,6 +132,7 @@ class Component(NamedTuple):
             facts["cells"],
             facts["volume"],
             facts["area"],
+            facts["regular_area"],
             facts["singular_area"],
             cast(Place, tuple(facts["low"])),
             cast(Place, tuple(facts["high"])),

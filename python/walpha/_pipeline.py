@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import json
 import operator
+import warnings
 from collections.abc import Sequence
 from typing import Any, Literal, NamedTuple, TypeAlias
 
@@ -230,7 +231,9 @@ def pipeline(
     ----------
     volume : array_like or Volume, (nz, ny, nx)
         ``[z, y, x]``, as scikit-image has it. Masked samples become no points. Unsigned bytes are gray levels; anything else is
-        mapped to gray levels 0 to 255 from its minimum to its maximum, or from ``gray``.
+        mapped to gray levels 0 to 255 from its minimum to its maximum, or from ``gray``. Of values that look like
+        Hounsfield units (a CT) bone is selected, as `walpha shape` does, unless ``gray`` or an option of the
+        selection is given.
     spacing : tuple of float, optional
         Distances between samples along x, y and z. Without, and for a :class:`Volume` without a
         unit, coordinates are indices (voxels).
@@ -283,6 +286,11 @@ def pipeline(
     MemoryError
         The system gives no more.
 
+    Warns
+    -----
+    UserWarning
+        Bone is selected, as the values look like Hounsfield units.
+
     Examples
     --------
     >>> shape = walpha.pipeline(walpha.read("sample:phantom@32"), weighting="min-max")
@@ -302,7 +310,7 @@ def pipeline(
         **_settings.one_of(count=count, ratio=ratio, threshold=threshold),
         gray_min=gray_min,
         value_min=value_min,
-        select=select,
+        select=select if select != "difference" else None,
         target_rmse=target_rmse,
         max_error=max_error,
         exchange=exchange,
@@ -315,8 +323,15 @@ def pipeline(
         refit=refit,
     )
     with task(progress, threads) as how:
-        shape = _walpha.pipeline(samples, is_gray, frame, settings, how)
-    return AlphaShape._of(shape)
+        shape = AlphaShape._of(_walpha.pipeline(samples, is_gray, frame, settings, how))
+    found = shape._facts.get("hounsfield")
+    if found is not None:
+        warnings.warn(
+            f"the values look like Hounsfield units ({found['air']:.0%} air, {found['soft_tissue']:.0%} soft tissue), so bone is "
+            "selected, as by gray=(0, 1000), gray_min=64, threshold=30, rms=4: give these, or other ones, to say what to look for",
+            stacklevel=2,
+        )
+    return shape
 
 
 def label_shape(

@@ -10,6 +10,7 @@ import warnings
 from typing import TYPE_CHECKING, Any, Literal, cast, overload
 
 import numpy as np
+from numpy.typing import NDArray
 
 from . import _arrays, _meshes, _parts, _walpha
 from ._class import Class
@@ -50,21 +51,26 @@ class AlphaShape(Classified):
     """
 
     _shape: _walpha.Shape
-    #: The shape of a torus that this one lays out.
-    _wrapped: AlphaShape | None
+    #: How it was made of another shape, if it was: the call that makes it, and the other.
+    _made: tuple[operator.methodcaller[AlphaShape], AlphaShape] | None
 
     def __init__(self) -> None:
         raise TypeError("an AlphaShape is made by walpha.alpha_shape(points, alpha)")
 
     @classmethod
-    def _of(cls, shape: _walpha.Shape, wrapped: AlphaShape | None = None) -> AlphaShape:
-        made = cls.__new__(cls)
-        made._shape, made._wrapped = shape, wrapped
-        return made
+    def _of(
+        cls,
+        shape: _walpha.Shape,
+        made: tuple[operator.methodcaller[AlphaShape], AlphaShape] | None = None,
+    ) -> AlphaShape:
+        one = cls.__new__(cls)
+        one._shape, one._made = shape, made
+        return one
 
     def __reduce__(self) -> tuple[Any, ...]:
-        if self._wrapped is not None:
-            return operator.methodcaller("unwrapped"), (self._wrapped,)
+        if self._made is not None:
+            call, other = self._made
+            return call, (other,)
         return _restored, (self.points, self.weights, self.values, self._shape.state())
 
     @property
@@ -139,13 +145,42 @@ class AlphaShape(Classified):
 
     @property
     def area(self) -> float:
-        """float: the area of the regular facets, the boundary of the solid part, in squared units."""
+        """float: the area of the surface, in squared units: of its regular and singular facets.
+
+        Of points in a plane the area of the region that they cover.
+        """
         return self._shape.measures[1]
 
     @property
-    def singular_area(self) -> float:
-        """float: the area of the singular facets, one side of each, in squared units."""
+    def regular_area(self) -> float:
+        """float: the area of the regular facets, the boundary of the solid part."""
         return self._shape.measures[2]
+
+    @property
+    def singular_area(self) -> float:
+        """float: the area of the singular facets, one side of each."""
+        return self._shape.measures[3]
+
+    @property
+    def dimension(self) -> int:
+        """int: that of what the points span: 3, or 2 in one plane, 1 on one line, 0 at one place; decided exactly."""
+        return self._shape.dimension
+
+    @functools.cached_property
+    def perimeter(self) -> float | None:
+        """float or None: of points in one plane the length of the :meth:`outline`, holes included; 0 on a line or at one
+        place; None for points that span a volume, whose boundary has an :attr:`area`."""
+        if self.dimension == 3 or self.periodic:
+            return None
+        return self.outline().perimeter if self.dimension == 2 else 0.0
+
+    @functools.cached_property
+    def bounds(self) -> Floats | None:
+        """ndarray of float64, (2, 3), or None: the lowest and highest x, y and z of the shape; None of an empty one."""
+        if not len(self.vertices):
+            return None
+        places = self.points[self.vertices[self.vertex_classes != Class.EXTERIOR].ravel()]
+        return _arrays.frozen(np.array([places.min(axis=0), places.max(axis=0)]))
 
     @property
     def betti(self) -> Betti | TorusBetti:
@@ -209,9 +244,63 @@ class AlphaShape(Classified):
             Classes, sizes, components and Betti numbers are those of the torus. The layout is cut
             open along the sides of the box, so its boundary is not closed.
         """
-        return AlphaShape._of(self._shape.unwrapped(), wrapped=self) if self.periodic else self
+        if not self.periodic:
+            return self
+        return AlphaShape._of(self._shape.unwrapped(), (operator.methodcaller("unwrapped"), self))
 
-    def boundary(self, *, solid: bool = True) -> Boundary:
+    def keep(
+        self, largest: int | Literal["largest"] | None = None, *, min_volume: float | None = None
+    ) -> AlphaShape:
+        """The shape with some of its components.
+
+        Parameters
+        ----------
+        largest : int or "largest", optional
+            Keep this many of the largest components, or the largest one. They are compared by their
+            volumes, those of equal volume by area, then by vertices.
+        min_volume : float, optional
+            Keep components of at least this volume, in cubed units of the points.
+
+        Returns
+        -------
+        AlphaShape
+            Over the same points; :attr:`kept` says how many components there were. Simplices keep their classes;
+            exterior ones are left out.
+
+        Raises
+        ------
+        ValueError
+            Neither is given; a number of components below 1; a shape of a torus.
+
+        Examples
+        --------
+        >>> two = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [9, 0, 0]]
+        >>> largest = walpha.alpha_shape(two, alpha=1).keep("largest")
+        >>> largest.kept, largest.betti.b0
+        ((1, 2), 1)
+        """
+        if largest is None and min_volume is None:
+            raise ValueError('say what to keep: "largest", a number of components, or min_volume=')
+        if self.periodic:
+            raise ValueError("components are kept of shapes in space, and this is one of a torus")
+        if min_volume is not None and not min_volume >= 0:
+            raise ValueError(f"min_volume={min_volume} is not a volume: give a number from 0 up")
+        count = None if largest is None else str(largest if isinstance(largest, str) else operator.index(largest))
+        call = operator.methodcaller("keep", largest, min_volume=min_volume)
+        return AlphaShape._of(self._shape.keep(count, min_volume), (call, self))
+
+    @property
+    def kept(self) -> tuple[int, int] | None:
+        """tuple of int or None: how many components were kept, and of how many; None where all were."""
+        return self._shape.kept
+
+    def boundary(
+        self,
+        *,
+        solid: bool = True,
+        keep: int | Literal["largest"] | None = None,
+        min_volume: float | None = None,
+    ) -> Boundary:
         """The boundary of the solid part, as a triangle mesh.
 
         Parameters
@@ -221,6 +310,8 @@ class AlphaShape(Classified):
             oriented manifold: every edge is on two triangles. Copies of a vertex are moved apart, by
             a thousandth of an edge or so, and the triangles cross nowhere. With False the
             regular facets are given as they are.
+        keep, min_volume : int or "largest", float; optional
+            Of which components; as in :meth:`keep`.
 
         Returns
         -------
@@ -239,6 +330,8 @@ class AlphaShape(Classified):
         >>> walpha.alpha_shape(cube, 0.75).boundary().triangles.shape
         (12, 3)
         """
+        if keep is not None or min_volume is not None:
+            return self.keep(keep, min_volume=min_volume).boundary(solid=solid)
         if self.periodic:
             if solid:
                 raise ValueError(
@@ -271,6 +364,32 @@ class AlphaShape(Classified):
         1.0
         """
         return Outline._of(self._shape.outline())
+
+    def contains(self, places: Arrays) -> NDArray[np.bool_]:
+        """Whether places are in the shape.
+
+        Parameters
+        ----------
+        places : array_like, (m, 3) or (m, 2)
+            x, y, z, in the units of the points; of a plane x and y.
+
+        Returns
+        -------
+        ndarray of bool, (m,)
+            Decided exactly. Boundary and dangling simplices belong to the shape.
+
+        Raises
+        ------
+        ValueError
+            The shape is one of a torus.
+
+        Examples
+        --------
+        >>> square = walpha.alpha_shape([[0, 0], [1, 0], [1, 1], [0, 1]], alpha=0.5)
+        >>> square.contains([[0.5, 0.25], [2, 0]])
+        array([ True, False])
+        """
+        return ~np.isnan(self.at(places, values=np.zeros(len(self.points))))
 
     # The interpolant.
 
@@ -508,10 +627,19 @@ class AlphaShape(Classified):
     def __repr__(self) -> str:
         alpha = f"alpha={self.alpha:g} (radius {self.alpha_radius:g})"
         made = alpha if self.voxels is None else f"of labels ({self.voxels} voxels)"
+        kept = "" if self.kept is None else f", {self.kept[0]} of {self.kept[1]} components"
         return (
-            f"<walpha.AlphaShape {made}: {len(self.points)} points, "
-            f"{len(self.cells)} cells, volume {self.volume:g}, betti {tuple(self.betti)}>"
+            f"<walpha.AlphaShape {made}: {len(self.points)} points{kept}, "
+            f"{self._size()}, betti {tuple(self.betti)}>"
         )
+
+    def _size(self) -> str:
+        """What fills the space that the points span."""
+        if self.dimension == 3:
+            return f"{len(self.cells)} cells, volume {self.volume:g}"
+        if self.dimension == 2:
+            return f"{len(self.facets)} facets in a plane, area {self.area:g}"
+        return f"{len(self.edges)} edges on a line" if self.dimension == 1 else "at one place"
 
     def _repr_html_(self) -> str:
         head = "".join(f"<th>{c.name.lower()}</th>" for c in Class)

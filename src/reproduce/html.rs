@@ -280,7 +280,7 @@ fn shapes(html: &mut String, shapes: &[ShapeNumbers]) {
     row("volume of the voids", &|s| number(s.void_volume));
     row("largest void", &|s| s.largest_voids.first().map_or("–".into(), |v| number(v.volume)));
     row("volume (voxels³)", &|s| number(s.volume));
-    row("area of regular facets (voxels²)", &|s| number(s.area));
+    row("area of regular facets (voxels²)", &|s| number(s.regular_area));
     row("area of singular facets", &|s| number(s.singular_area));
     html.push_str("</tbody></table></div>\n");
 }

@@ -227,8 +227,10 @@ pub struct ShapeNumbers {
     pub largest_voids: Vec<Void>,
     /// Volume, in cubed voxels.
     pub volume: f64,
-    /// Area of the regular facets, in squared voxels.
+    /// Area of the surface, in squared voxels: of regular and singular facets.
     pub area: f64,
+    /// Area of the regular facets.
+    pub regular_area: f64,
     /// Area of the singular facets.
     pub singular_area: f64,
 }
@@ -260,6 +262,7 @@ impl ShapeNumbers {
             largest_voids: voids.into_iter().take(Self::VOIDS).collect(),
             volume: shape.measures().volume,
             area: shape.measures().area,
+            regular_area: shape.measures().regular_area,
             singular_area: shape.measures().singular_area,
         }
     }

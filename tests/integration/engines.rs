@@ -83,6 +83,7 @@ fn check_parts(shape: &AlphaShape) {
     let close = |a: f64, b: f64| assert!((a - b).abs() <= 1e-9 * (1.0 + a.abs()), "{a} {b}");
     close(components.iter().map(|c| c.volume).sum(), shape.measures().volume);
     close(components.iter().map(|c| c.area).sum(), shape.measures().area);
+    close(components.iter().map(|c| c.regular_area).sum(), shape.measures().regular_area);
     close(components.iter().map(|c| c.singular_area).sum(), shape.measures().singular_area);
     let shut_in: Vec<_> = components.iter().flat_map(|c| c.voids.iter().flatten()).collect();
     assert_eq!(shut_in.len() as u64, betti.b2);

@@ -117,7 +117,7 @@ fn a_turn_changes_nothing_but_places() {
         let other = shape(&with(Vec::clone(&turned)), 2.0 * alpha, Engine::Native, false);
         assert_eq!(one.betti(), other.betti());
         let close = |a: f64, b: f64| (a - b).abs() < 1e-9;
-        assert!(close(2.0 * one.measures().singular_area, other.measures().singular_area));
+        assert!(close(2.0 * one.measures().area, other.measures().area));
     }
 }
 
@@ -131,7 +131,7 @@ fn one_piece_of_a_plane_and_of_a_line() {
     let found = one_region(&grid);
     assert_eq!(found, 0.5);
     assert_eq!(at(found, &grid).betti().unwrap(), Betti::in_space(1, 0, 0));
-    assert_eq!(at(found, &grid).measures().singular_area, 12.0);
+    assert_eq!(at(found, &grid).measures().area, 12.0);
     assert!(at(found.next_down(), &grid).complex().facets.is_empty());
     let line = with([0.0, 1.0, 3.0, 4.0].map(|x| [x, 2.0 * x, -x]).into());
     assert_eq!(one_region(&line), 6.0);
@@ -164,7 +164,7 @@ fn the_command_takes_tables_of_the_plane() {
     let rule = ["shape", "plane.csv", "--alpha", "auto:connected"];
     let told = common::json(f, &[&rule[..], &outputs].concat());
     assert_eq!(told["alpha"]["squared"], 0.5);
-    assert_eq!(told["shape"]["singular_area"], 9.0);
+    assert_eq!(told["shape"]["area"], 9.0);
     assert_eq!(told["shape"]["facets"]["singular"], 18);
     assert_eq!(told["shape"]["betti"], serde_json::json!([1, 0, 0]));
     common::ok(f, &["compare", "a.json", "a.json"]);
@@ -197,7 +197,7 @@ fn all_commands_take_what_lies_in_a_plane_on_a_line_or_at_a_point() {
             (last["cells"].as_u64(), &last["betti"]),
             (Some(0), &serde_json::json!([1, 0, 0]))
         );
-        assert!((last["singular_area"].as_f64().unwrap() - area).abs() < 1e-9, "{last}");
+        assert!((last["area"].as_f64().unwrap() - area).abs() < 1e-9, "{last}");
         common::ok(f, &["view", &table, "-o", "a.html"]);
         let told = common::json(f, &["shape", &table, "--alpha", "auto:connected"]);
         assert!((told["alpha"]["squared"].as_f64().unwrap() - one_region).abs() < 1e-9, "{name}");

@@ -21,6 +21,7 @@ mod flat;
 mod formats;
 mod hard;
 mod interpolate;
+mod keep;
 mod labels;
 mod ladder;
 #[cfg(feature = "las")]

@@ -12,7 +12,7 @@ import { Slices } from "./slices.js";
 const OF_VOLUMES = ["ct-bone", "ct-skin", "mri", "paper"];
 const OF_POINTS = ["points", "molecule"];
 const FORMATS = [
-  ["ply", "PLY"], ["stl", "STL, solid"], ["glb", "GLB"], ["vtu", "VTU"], ["npz", "NPZ"], ["csv", "points, CSV"], ["wvm", "points, WVM"],
+  ["ply", "PLY"], ["stl", "STL, solid"], ["3mf", "3MF"], ["glb", "GLB"], ["vtu", "VTU"], ["npz", "NPZ"], ["csv", "points, CSV"], ["wvm", "points, WVM"],
 ];
 
 const state = { input: null, facts: null, grayMin: null, opened: null, presets: {} };
@@ -286,9 +286,10 @@ function marks() {
 function optionsOfForm() {
   const given = (id) => (byId(id).value.trim() === "" ? undefined : byId(id).value.trim());
   const number = (id) => (given(id) === undefined ? undefined : Number(given(id)));
-  const options = { ...reading(), weights: given("weights"), alpha: given("alpha-ref") };
+  const keep = byId("keep-largest").checked ? "largest" : undefined;
+  const options = { ...reading(), weights: given("weights"), alpha: given("alpha-ref"), keep };
   if (state.facts.kind === "points") return options;
-  if (ofLabels()) return { ...reading(), label: byId("labels").value };
+  if (ofLabels()) return { ...reading(), label: byId("labels").value, keep };
   if (given("gray-low") !== undefined || given("gray-high") !== undefined) options.gray = grayRange().join("..");
   if (state.grayMin !== null) options["gray-min"] = state.grayMin;
   else options["value-min"] = number("value-min");
@@ -325,9 +326,12 @@ async function compute() {
   byId("compute-diagram").hidden = Boolean(made.labels);
   for (const id of ["alpha-row", "marks"]) byId(id).hidden = Boolean(made.labels);
   for (const extension of ["csv", "wvm"]) byId(`save-${extension}`).hidden = Boolean(made.labels);
+  // It states the whole shape, so that it can be checked.
+  byId("save-npz").hidden = byId("keep-largest").checked;
   const kept = made.truncation ? `; ${made.truncation.kept} of ${made.truncation.total} Haar coefficients kept` : "";
   byId("status").textContent = `${made.points} points, ${all.cells} cells in all${kept}.`;
   if (made.labels) byId("status").textContent = `${made.labels}.`;
+  if (made.kept) byId("status").textContent += ` ${made.kept}.`;
   await panel.open(all, diagram.scale);
   if (made.labels) return;
   // Nobody waits for these.
@@ -373,7 +377,7 @@ async function save(extension) {
   const name = nameOf(extension);
   return task(`Writing ${shown(name)} …`, async () => {
     const { alpha } = panel;
-    const solid = extension === "stl";
+    const solid = extension === "stl" || extension === "3mf";
     const { bytes, remarks } = await engine.call({ do: "save", name, alpha, solid });
     download(bytes, name);
     remarks.forEach(remark);

@@ -140,7 +140,7 @@ export class ShapePanel {
       ["cells", level.cells], ["facets", classes(level.facets)], ["edges", classes(level.edges)], ["vertices", classes(level.vertices)],
       ["components", b0], ["tunnels", b1], ["voids", b2],
       ["volume", `${short(level.volume)} ${unit}³, ${(100 * level.coverage).toFixed(1)} % of ${domain}`],
-      ["boundary", `${short(level.area)} ${unit}²`],
+      ["area", `${short(level.area)} ${unit}²`],
       ...(this.made.rows ?? []),
     ]);
     document.body.dataset.cells = level.cells;

@@ -18,7 +18,7 @@ use walpha_points::{
     read_model_file,
 };
 use walpha_shape::ladder::{Filtration, Span};
-use walpha_shape::{Alpha, AlphaShape, Betti, ByClass, Class, WeightedPoints};
+use walpha_shape::{Alpha, AlphaShape, Betti, ByClass, Class, NO_COMPONENT, WeightedPoints};
 use walpha_volume::{
     self as volume, Dims, Hounsfield, Labels, ReadOptions, SampleStats, Series, Volume,
 };
@@ -492,16 +492,7 @@ impl Made {
         if let Some(samples) = samples {
             arrays.push(Array::U32("samples", samples));
         }
-        let complex = shape.complex();
-        let of = |class| complex.facets.of(class).flatten().copied().collect();
-        arrays.push(Array::U32("regular", of(Class::Regular)));
-        arrays.push(Array::U32("singular", of(Class::Singular)));
-        let edges = complex.edges.of(Class::Singular).flatten().copied().collect();
-        arrays.push(Array::U32("edges", edges));
-        // Which of the others are hidden is not known yet.
-        let mut classes = vec![number(Class::Exterior); points.len()];
-        complex.vertices.iter().for_each(|(row, class)| classes[row[0] as usize] = number(class));
-        arrays.push(Array::U8("classes", classes));
+        arrays.extend(drawn(shape));
         let truncation = origin.truncation.map(|t| json!({ "kept": t.kept, "total": t.total }));
         let labels = match &self.what {
             What::Labels(model) => model.labels.as_ref().map(ToString::to_string),
@@ -516,6 +507,7 @@ impl Made {
             "largestWeight": points.weights().iter().copied().fold(f64::NEG_INFINITY, f64::max),
             "truncation": truncation,
             "labels": labels,
+            "kept": shape.kept().map(|kept| format!("{kept} kept")),
         });
         Answer::of(head, arrays)
     }
@@ -536,7 +528,20 @@ impl Made {
         })
     }
 
+    /// The components that are to be kept of the shape at an α, if not all are.
+    fn kept(&self, alpha: f64) -> Result<Option<AlphaShape>, Failure> {
+        if self.recipe.keep.is_all() || matches!(self.what, What::Labels(_)) {
+            return Ok(None);
+        }
+        let levels = self.all()?.filtration()?.levels(&[Alpha::from_squared(alpha)?]);
+        let [betti] = levels.betti()[..] else { unreachable!("one level") };
+        Ok(Some(levels.shape(0, true, betti).keep(&self.recipe.keep)))
+    }
+
     fn at(&self, alpha: f64) -> Result<Answer, Failure> {
+        if let Some(shape) = self.kept(alpha)? {
+            return Ok(Answer::of(json!({ "betti": shape.betti() }), drawn(&shape)));
+        }
         let (shown, level) = self.shown(alpha)?;
         let of = |wanted: Class| -> Vec<u32> {
             let rows = shown.facets.iter().filter(|(_, span)| span.class(level) == wanted);
@@ -563,6 +568,9 @@ impl Made {
     fn measure(&self, alpha: f64) -> Result<Answer, Failure> {
         if let What::Labels(model) = &self.what {
             return Ok(Answer::of(self.measured(&model.shape), Vec::new()));
+        }
+        if let Some(shape) = self.kept(alpha)? {
+            return Ok(Answer::of(self.measured(&shape), Vec::new()));
         }
         let alpha = Alpha::from_squared(alpha)?;
         let ladder = self.all()?.filtration()?.ladder(&[alpha], self.domain);
@@ -599,8 +607,11 @@ impl Made {
         let points = self.what.points();
         let (positions, values) = (points.positions(), points.values());
         let (mut corners, mut shades) = (Vec::new(), Vec::new());
+        let kept = self.kept(alpha)?.map(|shape| shape.component_numbers());
+        let is_kept =
+            |v: u32| kept.as_ref().is_none_or(|numbers| numbers[v as usize] != NO_COMPONENT);
         for (cell, first) in &shown.cells {
-            if *first > level {
+            if *first > level || !is_kept(cell[0]) {
                 continue;
             }
             let side = cell.map(|v| positions[v as usize][axis] - place);
@@ -682,7 +693,15 @@ impl Made {
             };
             writer.write_model(&weighed.points, &metadata, &Packing::default(), &mut bytes)?;
         } else {
-            let exporter = Format::of(name)?.exporter(
+            let format = Format::of(name)?;
+            if format.whole && !self.recipe.keep.is_all() {
+                let why = format!(
+                    "{} states the whole shape, and a part of it is to be kept",
+                    format.name
+                );
+                return Err(Failure::new(why));
+            }
+            let exporter = format.exporter(
                 &ExportOptions::default().solid(solid && is_shape).input(Some(input.to_owned())),
             );
             let shape = match &self.what {
@@ -762,6 +781,22 @@ impl All {
         ];
         Answer::of(json!({ "cells": cells.len() }), arrays)
     }
+}
+
+/// The simplices of a shape that are drawn.
+fn drawn(shape: &AlphaShape) -> Vec<Array> {
+    let complex = shape.complex();
+    let of = |class| complex.facets.of(class).flatten().copied().collect();
+    let edges = complex.edges.of(Class::Singular).flatten().copied().collect();
+    // Which of the others are hidden is not known.
+    let mut classes = vec![number(Class::Exterior); shape.points().len()];
+    complex.vertices.iter().for_each(|(row, class)| classes[row[0] as usize] = number(class));
+    vec![
+        Array::U32("regular", of(Class::Regular)),
+        Array::U32("singular", of(Class::Singular)),
+        Array::U32("edges", edges),
+        Array::U8("classes", classes),
+    ]
 }
 
 /// The class of hidden points, after those of vertices.

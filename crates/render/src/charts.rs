@@ -15,7 +15,7 @@ const BETTI: [(&str, Rgb); 3] =
 const SIZES: [(&str, Rgb); 4] = [
     ("coverage", PALETTE[2]),
     ("volume of voids", PALETTE[4]),
-    ("area", PALETTE[5]),
+    ("area of regular facets", PALETTE[5]),
     ("area of singular facets", PALETTE[7]),
 ];
 
@@ -127,13 +127,13 @@ impl<'a> Chart<'a> {
         let levels = &self.ladder.levels;
         let largest =
             |of: fn(&Level) -> f64| levels.iter().map(of).fold(f64::MIN_POSITIVE, f64::max);
-        let area = largest(|level| level.measures.area);
+        let regular = largest(|level| level.measures.regular_area);
         let singular = largest(|level| level.measures.singular_area);
         let sizes = |level: &Level| {
             [
                 level.coverage,
                 level.void_volume() / domain,
-                level.measures.area / area,
+                level.measures.regular_area / regular,
                 level.measures.singular_area / singular,
             ]
         };

@@ -7,8 +7,8 @@ use super::derived::Derived;
 use super::measure::together;
 use super::solid::Cuts;
 use super::{
-    Alpha, Betti, Complex, ComponentSums, Engine, Measures, Outline, OutlineError, ShapeError,
-    ShapeOptions, Sheets, Surface, WeightedPoints,
+    Alpha, Betti, Complex, ComponentSums, Engine, Kept, Measures, Outline, OutlineError,
+    ShapeError, ShapeOptions, Sheets, Surface, WeightedPoints,
 };
 
 /// The weighted alpha shape of a set of points: a classified subcomplex of their regular
@@ -25,6 +25,8 @@ pub struct AlphaShape {
     pub(super) copies: Vec<u32>,
     /// The voxels that the cells fill, if the shape is of labels.
     pub(super) voxels: Option<Arc<Voxels>>,
+    /// What was kept of it, if not all.
+    pub(super) kept: Option<Kept>,
     pub(super) duplicates: Vec<[u32; 2]>,
     pub(super) hidden: Option<Vec<u32>>,
     pub(super) betti: Option<Betti>,
@@ -66,6 +68,7 @@ impl AlphaShape {
             complex,
             copies: Vec::new(),
             voxels: None,
+            kept: None,
             duplicates: Vec::new(),
             hidden,
             betti: Some(parts.betti),
@@ -87,6 +90,7 @@ impl AlphaShape {
             complex,
             copies: Vec::new(),
             voxels: None,
+            kept: None,
             duplicates: self.duplicates.clone(),
             hidden: self.hidden.clone(),
             betti: Some(betti),
@@ -134,6 +138,11 @@ impl AlphaShape {
     /// The voxels that the shape fills, if it [is of labels](super::voxel_shape()) and not of α.
     pub fn voxels(&self) -> Option<&Voxels> {
         self.voxels.as_deref()
+    }
+
+    /// How many of its components the shape consists of, if only [some were kept](Self::keep).
+    pub fn kept(&self) -> Option<Kept> {
+        self.kept
     }
 
     /// The options that the shape was computed with.
@@ -186,6 +195,17 @@ impl AlphaShape {
     /// Volume and areas, summed exactly and rounded once. O(n) for the first call; the shape keeps them.
     pub fn measures(&self) -> Measures {
         self.sums.get(|| self.summed(&self.component_numbers())).1
+    }
+
+    /// The dimension of what the points span: 3, or 2 in one plane, 1 on one line, 0 at one place. Decided exactly. O(n).
+    pub fn dimension(&self) -> usize {
+        let positions = self.points.positions();
+        match Outline::check(positions) {
+            _ if positions.windows(2).all(|pair| pair[0] == pair[1]) => 0,
+            Err(OutlineError::Line) => 1,
+            Ok(()) => 2,
+            Err(_) => 3,
+        }
     }
 
     /// Number of points that are vertices of the shape.

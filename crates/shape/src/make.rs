@@ -45,7 +45,10 @@ pub fn alpha_shape(
 ) -> Result<AlphaShape, ShapeError> {
     let monitor = &*Monitor::current();
     let points = points.into();
-    let options = options.engine(options.engine_for(points.len()));
+    let options = match options.engine {
+        Engine::Auto => options.engine(Engine::Native),
+        _ => *options,
+    };
     if options.engine == Engine::Both {
         options.check()?;
         let by = |engine| {
@@ -146,6 +149,7 @@ fn shape_by(
         complex,
         copies: Vec::new(),
         voxels: None,
+        kept: None,
         duplicates,
         hidden,
         betti: betti.or(counted),

@@ -8,8 +8,10 @@ use walpha_regular::Torus;
 pub struct Measures {
     /// Volume of the interior cells.
     pub volume: f64,
-    /// Area of the regular facets: the boundary of the solid part, once.
+    /// Area of the shape's surface: of its regular and singular facets. In a plane, where all facets are singular, the area of the shape.
     pub area: f64,
+    /// Area of the regular facets: the boundary of the solid part.
+    pub regular_area: f64,
     /// Area of the singular facets, one side of each.
     pub singular_area: f64,
 }

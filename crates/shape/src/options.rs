@@ -7,10 +7,6 @@ use walpha_regular::internals::Sites;
 
 use super::{Alpha, Complex, ShapeError, Torus, Whole};
 
-/// The largest number of points for which [`Engine::Auto`] takes the engine of another crate: about the paper's size,
-/// which takes CGAL a third of a second.
-pub const MOST_FOR_CGAL: usize = 20_000;
-
 /// An engine of another crate. From sites and α, a squared length, it computes the whole triangulation with the class of each
 /// simplex at α, in canonical order, by input indices. It is not called for points in one plane or on one line.
 #[derive(Clone, Copy)]
@@ -34,8 +30,7 @@ impl fmt::Debug for Classifier {
 #[serde(rename_all = "lowercase")]
 #[non_exhaustive]
 pub enum Engine {
-    /// CGAL, if it is at hand ([`ShapeOptions::classifier`]), for up to [`MOST_FOR_CGAL`] points; native for more, and for
-    /// what only it can do: blocks, a limit on memory, periodic boxes.
+    /// Native. A recipe takes CGAL for what the paper computes, up to 20 000 points selected from a volume.
     #[default]
     Auto,
     /// CGAL's `Regular_triangulation_3` and `Fixed_alpha_shape_3`, as in the paper, on one thread: the crate `walpha` has them.
@@ -141,7 +136,7 @@ pub struct ShapeOptions {
     pub refuse_flat: bool,
     /// The periodic box, if there is one: points and shape are those of a torus.
     pub periodic: Option<Torus>,
-    /// The engine of another crate, which [`Engine::Cgal`] asks for and [`Engine::Auto`] may take.
+    /// The engine of another crate, which [`Engine::Cgal`] and [`Engine::Both`] ask for.
     pub classifier: Option<Classifier>,
 }
 
@@ -159,19 +154,6 @@ impl ShapeOptions {
             refuse_flat: false,
             periodic: None,
             classifier: None,
-        }
-    }
-
-    /// The engine that runs for this number of points.
-    pub(crate) fn engine_for(&self, points: usize) -> Engine {
-        let needs_native = self.periodic.is_some()
-            || self.memory.is_some()
-            || self.blocks.is_some_and(|blocks| blocks.get() > 1);
-        match self.engine {
-            Engine::Auto if self.classifier.is_none() || needs_native => Engine::Native,
-            Engine::Auto if points > MOST_FOR_CGAL => Engine::Native,
-            Engine::Auto => Engine::Cgal,
-            asked => asked,
         }
     }
 
@@ -228,24 +210,6 @@ mod tests {
     use super::*;
 
     /// A ball may be a point, and no less.
-    #[test]
-    fn the_engine_suits_the_size_and_what_is_asked_for() {
-        let native = ShapeOptions::new(Alpha::ZERO);
-        assert_eq!(native.engine_for(9), Engine::Native);
-        let options = native.classifier(Some(Classifier(|_, _| Ok(Complex::default()))));
-        assert_eq!(options.engine_for(MOST_FOR_CGAL), Engine::Cgal);
-        assert_eq!(options.engine_for(MOST_FOR_CGAL + 1), Engine::Native);
-        let blocks = |count| options.blocks(NonZeroUsize::new(count)).engine_for(9);
-        assert_eq!((blocks(1), blocks(2)), (Engine::Cgal, Engine::Native));
-        assert_eq!(options.memory(1 << 30).engine_for(9), Engine::Native);
-        let torus = Torus::new([1.0; 3]).unwrap();
-        assert_eq!(options.periodic(torus).engine_for(9), Engine::Native);
-        for engine in [Engine::Cgal, Engine::Native] {
-            assert_eq!(options.engine(engine).engine_for(9), engine);
-            assert_eq!(options.engine(engine).engine_for(1 << 20), engine);
-        }
-    }
-
     #[test]
     fn weights_of_radii_are_their_squares() {
         let alpha = Alpha::from_squared(1.0).unwrap();

@@ -19,8 +19,10 @@ pub struct Component {
     pub cells: usize,
     /// The volume of its cells, in cubed units of the points.
     pub volume: f64,
-    /// The area of its regular facets, the boundary of its solid part.
+    /// The area of its regular and singular facets, in squared units of the points.
     pub area: f64,
+    /// The area of its regular facets, the boundary of its solid part.
+    pub regular_area: f64,
     /// The area of its singular facets, one side of each.
     pub singular_area: f64,
     /// The smallest coordinates of its box, (x, y, z).
@@ -58,10 +60,17 @@ pub struct ComponentSums {
     /// Number of cells.
     pub cells: usize,
     six_volumes: Sum,
-    area: Sum,
+    regular_area: Sum,
     singular_area: Sum,
     low: [f64; 3],
     high: [f64; 3],
+}
+
+/// The sum of two.
+fn joined(a: &Sum, b: &Sum) -> Sum {
+    let mut sum = a.clone();
+    sum.join(b);
+    sum
 }
 
 impl ComponentSums {
@@ -71,7 +80,7 @@ impl ComponentSums {
             vertices: 1,
             cells: 0,
             six_volumes: Sum::default(),
-            area: Sum::default(),
+            regular_area: Sum::default(),
             singular_area: Sum::default(),
             low: point,
             high: point,
@@ -93,7 +102,7 @@ impl ComponentSums {
     /// Adds a facet, if it is regular or singular.
     pub fn add_facet(&mut self, corners: [[f64; 3]; 3], class: Class) {
         match class {
-            Class::Regular => self.area.add(facet_area(corners)),
+            Class::Regular => self.regular_area.add(facet_area(corners)),
             Class::Singular => self.singular_area.add(facet_area(corners)),
             _ => {}
         }
@@ -104,7 +113,7 @@ impl ComponentSums {
         self.vertices += other.vertices;
         self.cells += other.cells;
         self.six_volumes.join(&other.six_volumes);
-        self.area.join(&other.area);
+        self.regular_area.join(&other.regular_area);
         self.singular_area.join(&other.singular_area);
         enclose(&mut self.low, &mut self.high, other.low, other.high);
     }
@@ -114,12 +123,14 @@ impl ComponentSums {
         let sum = |of: fn(&Self) -> &Sum| {
             let mut sum = Sum::default();
             all.clone().for_each(|sums| sum.join(of(sums)));
-            sum.value()
+            sum
         };
+        let (regular, singular) = (sum(|sums| &sums.regular_area), sum(|sums| &sums.singular_area));
         Measures {
-            volume: sum(|sums| &sums.six_volumes) / 6.0,
-            area: sum(|sums| &sums.area),
-            singular_area: sum(|sums| &sums.singular_area),
+            volume: sum(|sums| &sums.six_volumes).value() / 6.0,
+            area: joined(&regular, &singular).value(),
+            regular_area: regular.value(),
+            singular_area: singular.value(),
         }
     }
 
@@ -130,7 +141,8 @@ impl ComponentSums {
             cells,
             // Divided last: on a lattice, determinants and their sums are integers.
             volume: self.six_volumes.value() / 6.0,
-            area: self.area.value(),
+            area: joined(&self.regular_area, &self.singular_area).value(),
+            regular_area: self.regular_area.value(),
             singular_area: self.singular_area.value(),
             low,
             high,

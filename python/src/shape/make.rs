@@ -33,8 +33,12 @@ pub fn settings_of(written: Written) -> PyResult<Settings> {
 /// # Errors
 /// Settings that contradict each other, besides.
 pub fn recipe_of(written: Written) -> PyResult<Recipe> {
-    let recipe = settings_of(written)?.recipe().map_err(told)?;
-    Ok(recipe.classifier(walpha::shape::CGAL))
+    recipe_from(&settings_of(written)?)
+}
+
+/// Like [`recipe_of`], of settings that were read.
+pub fn recipe_from(settings: &Settings) -> PyResult<Recipe> {
+    Ok(settings.recipe().map_err(told)?.classifier(walpha::shape::CGAL))
 }
 
 /// The periodic box by its sides.

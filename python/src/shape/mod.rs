@@ -11,19 +11,20 @@ use std::sync::Arc;
 use numpy::ndarray::Array3;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArray3, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
+use serde_json::Value;
 use walpha::export::{EmptyShape, ExportOptions, Format, Target, TargetError};
 use walpha::interpolate::{Grid, Interpolant, InterpolateError};
 use walpha::pipeline::Model;
 use walpha::progress::Stage;
-use walpha::shape::{Engine, LengthsError, OutlineError};
-use walpha::volume::Dims;
+use walpha::shape::{Engine, Keep, Largest, LengthsError, Measures, OutlineError};
+use walpha::volume::{Dims, Hounsfield};
 use walpha::{AlphaShape, Complex, PointsError, Simplices, Weighting};
 
 use crate::arrays::{column, copied, lend, numbers, rows};
 use crate::errors::{Refused, told, wrong};
 use crate::work::{Task, run};
 use boundary::{Boundary, boundary};
-pub use make::{Written, alpha_shape, recipe_of, settings_of, torus, weighted};
+pub use make::{Written, alpha_shape, recipe_from, settings_of, torus, weighted};
 use outline::{Outline, outline};
 pub use state::restored;
 use state::{State, state};
@@ -45,6 +46,14 @@ impl Shape {
             "truncation": model.origin.truncation,
         });
         Self { shape: Arc::new(model.shape), facts: facts.to_string() }
+    }
+
+    /// The same shape, of a volume whose values look like Hounsfield units, by which bone was selected.
+    pub fn with_ct(self, found: Option<Hounsfield>) -> Self {
+        let Some(Hounsfield { air, soft_tissue, .. }) = found else { return self };
+        let mut facts: Value = serde_json::from_str(&self.facts).expect("facts are JSON");
+        facts["hounsfield"] = serde_json::json!({ "air": air, "soft_tissue": soft_tissue });
+        Self { facts: facts.to_string(), ..self }
     }
 
     pub fn at_level(shape: AlphaShape) -> Self {
@@ -178,12 +187,44 @@ impl Shape {
         self.shape.options().exterior
     }
 
-    /// Volume, area of regular facets, area of singular ones.
+    /// Volume, area, area of regular facets, area of singular ones.
     #[getter]
-    fn measures(&self, py: Python<'_>) -> (f64, f64, f64) {
+    fn measures(&self, py: Python<'_>) -> (f64, f64, f64, f64) {
         // The first call goes over all simplices.
         let measures = py.detach(|| self.shape.measures());
-        (measures.volume, measures.area, measures.singular_area)
+        let Measures { volume, area, regular_area, singular_area } = measures;
+        (volume, area, regular_area, singular_area)
+    }
+
+    /// The dimension of what the points span.
+    #[getter]
+    fn dimension(&self) -> usize {
+        self.shape.dimension()
+    }
+
+    /// The number of components that were kept, and how many there were.
+    #[getter]
+    fn kept(&self) -> Option<(usize, usize)> {
+        self.shape.kept().map(|kept| (kept.components, kept.of))
+    }
+
+    /// The shape with some of its components.
+    fn keep(
+        &self,
+        py: Python<'_>,
+        largest: Option<&str>,
+        min_volume: Option<f64>,
+    ) -> PyResult<Self> {
+        let largest = largest.map(|text| text.parse::<Largest>().map_err(told)).transpose()?;
+        let keep = Keep::default().largest(largest).min_volume(min_volume);
+        let shape = Arc::clone(&self.shape);
+        let kept = run(py, &Task::default(), move || Ok::<_, InterpolateError>(shape.keep(&keep)))?;
+        if kept.betti().is_none() {
+            return Err(wrong(
+                "the Betti numbers of a part of this shape cannot be counted: make it with exterior=True",
+            ));
+        }
+        Ok(Self { shape: Arc::new(kept), facts: self.facts.clone() })
     }
 
     #[getter]
@@ -321,6 +362,13 @@ impl Shape {
             return Err(wrong(
                 "solid=True is for shapes in space: the boundary of one of a torus is cut open; omit it",
             ));
+        }
+        if format.whole && self.shape.kept().is_some() {
+            return Err(wrong(format!(
+                "{} states the whole shape, so that it can be checked, and this one has some of its components: write \
+                 another format, as .vtu",
+                format.name
+            )));
         }
         if format.outline {
             self.check_outline().map_err(told)?;

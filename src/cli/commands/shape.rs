@@ -15,7 +15,7 @@ use crate::cli::commands::shape_in_blocks::{self, SharedWork};
 use crate::cli::options::formats::shape_output;
 use crate::cli::options::global::Global;
 use crate::cli::options::picture::PictureArgs;
-use crate::cli::options::{Declared, OfShape, OutputArgs, Periodic, PipelineArgs};
+use crate::cli::options::{Declared, Kept, OfShape, OutputArgs, Periodic, PipelineArgs};
 use crate::cli::process::errors::{CommandError, Result, fail_usage, option};
 use crate::cli::process::output::{print_summary, remark};
 use crate::cli::process::progress::Progress;
@@ -40,7 +40,7 @@ use crate::{AlphaShape, Recipe};
 ///
 /// walpha shape sample:skull --weights min-max --alpha 10 -o skull.ply skull.vtu
 ///
-/// walpha shape scan.xyz --alpha auto --solid -o scan.stl
+/// walpha shape scan.xyz --alpha auto --solid --keep largest -o scan.stl
 ///
 /// walpha shape trees.csv --alpha-radius 50 -o forest.geojson forest.svg
 ///
@@ -93,6 +93,8 @@ pub(crate) struct Shape {
     #[command(flatten)]
     periodic: Declared<Periodic>,
     #[command(flatten)]
+    kept: Declared<Kept>,
+    #[command(flatten)]
     format: OutputArgs,
     #[command(flatten)]
     picture: PictureArgs,
@@ -135,6 +137,13 @@ impl Shape {
         }
         if self.pipeline.settings().periodic().is_some() {
             outline::refuse(formats.iter().copied(), "a periodic box is a torus and no plane")?;
+        }
+        let settings = self.pipeline.settings();
+        if let Some(format) = formats.iter().find(|format| format.whole)
+            && (settings.keep().is_some() || settings.min_volume().is_some())
+        {
+            let name = format.name;
+            fail_usage!("{name} states the whole shape, so that it can be checked, and --keep and --min-volume take a part of it" => "omit them, or write another format, as VTU");
         }
         if self.require_3d {
             outline::refuse(formats.iter().copied(), "--require-3d refuses these")?;
@@ -214,7 +223,8 @@ impl Shape {
         outline::refuse(formats(&self.names()?), "there are blocks, which span a volume")?;
         let parts = "it takes the whole boundary, and there are blocks";
         unused("--solid", self.solid, parts)?;
-        self.pipeline.input.typed.refuse(&["refit", "periodic"], "there are blocks")?;
+        let given = &self.pipeline.input.typed;
+        given.refuse(&["refit", "periodic", "keep", "min_volume"], "there are blocks")?;
         if let Some((target, _)) = outputs.models.first() {
             let name = shown(target.path());
             fail_usage!("{name} takes all points at once, and there are blocks" => "write it by `walpha points`");

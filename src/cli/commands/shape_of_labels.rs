@@ -17,14 +17,14 @@ use crate::cli::process::errors::{Result, fail_usage};
 use crate::cli::process::output::print_summary;
 use crate::cli::process::progress::Progress;
 use crate::cli::report::offsets::FileOffset;
-use crate::cli::report::{Report, SCHEMA_VERSION, ending};
+use crate::cli::report::{Report, SCHEMA_VERSION, ending, print_cuts, print_kept};
 use crate::labels::{LabelChoice, LabelSize, chosen};
 use crate::pipeline::Input;
 use crate::points::ModelMetadata;
 use crate::progress::Stage;
-use crate::shape::Betti;
+use crate::shape::{Betti, Cuts, Kept};
 use crate::volume::Volume;
-use crate::{Coordinates, LengthUnit, Recipe};
+use crate::{Coordinates, Recipe};
 
 /// What the solids are written as unless told otherwise.
 const DEFAULT_MESH: &str = "stl";
@@ -85,7 +85,9 @@ impl Shape {
             }
             let size = model.labels.as_ref().and_then(|sizes| sizes.labels.first().copied());
             let size = size.expect("a label that is there");
-            solids.push(SolidSummary { size, betti: shape.betti(), files, offsets });
+            let solid = self.solid.then(|| shape.solid().1);
+            let (betti, kept) = (shape.betti(), shape.kept());
+            solids.push(SolidSummary { size, betti, kept, solid, files, offsets });
         }
         folder.finish()?;
         print_summary(
@@ -131,6 +133,12 @@ struct SolidSummary {
     #[serde(flatten)]
     size: LabelSize,
     betti: Option<Betti>,
+    /// How many of its components were kept, if not all were to be.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    kept: Option<Kept>,
+    /// Where the boundary was cut apart, if it is written as that of a solid.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    solid: Option<Cuts>,
     files: Vec<String>,
     /// What files in single precision have subtracted from coordinates, where they have.
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -139,21 +147,21 @@ struct SolidSummary {
 
 impl Display for EachLabel {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let unit: LengthUnit = self.coordinates.unit;
+        let unit = self.coordinates.unit.symbol();
         writeln!(f, "input     {}", crate::cli::process::output::name(&self.input))?;
         writeln!(f, "lengths   in {}", self.coordinates)?;
-        for SolidSummary { size: LabelSize { label, voxels, volume, .. }, betti, .. } in
-            &self.labels
-        {
-            write!(
-                f,
-                "label     {label}: {voxels} voxels, {} {}³",
-                number(*volume),
-                unit.symbol()
-            )?;
+        for SolidSummary { size, betti, kept, solid, .. } in &self.labels {
+            let LabelSize { label, voxels, volume, .. } = size;
+            write!(f, "label     {label}: {voxels} voxels, {} {unit}³", number(*volume))?;
             match betti {
                 Some(betti) => writeln!(f, "; {betti}")?,
                 None => writeln!(f)?,
+            }
+            if let Some(kept) = kept {
+                print_kept(f, kept, unit)?;
+            }
+            if let Some(cuts) = solid {
+                print_cuts(f, cuts, unit)?;
             }
         }
         let offsets = self.labels.iter().flat_map(|solid| &solid.offsets);

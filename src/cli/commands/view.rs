@@ -11,7 +11,7 @@ use walpha_base::shown::{number, shown};
 
 use crate::cli::commands::pipeline::{self, VolumeSummary, filled_in};
 use crate::cli::options::global::Global;
-use crate::cli::options::{self, Alphas, FrozenPipelineArgs};
+use crate::cli::options::{self, Alphas, Declared, FrozenPipelineArgs};
 use crate::cli::process::errors::{CommandError, Result, fail, fail_usage};
 use crate::cli::process::output::{name, print_summary, remark};
 use crate::cli::process::progress::Progress;
@@ -22,6 +22,7 @@ use crate::ladder::Filtration;
 use crate::pipeline::{AlphaRule, Input, Parameter, PipelineError, PlacedVolume, Values, Weighed};
 use crate::progress::Stage;
 use crate::render::{self, Differences, Original, Page, Subject};
+use crate::shape::Kept;
 use crate::volume::UnknownFormat;
 use crate::{Alpha, Frame, GrayRange, Recipe, Units};
 
@@ -59,6 +60,9 @@ pub(crate) struct View {
     isovalue: Option<Isovalue>,
     #[command(flatten)]
     pipeline: FrozenPipelineArgs,
+    /// The page shows their points alone.
+    #[command(flatten)]
+    kept: Declared<options::Kept>,
 }
 
 impl View {
@@ -70,9 +74,16 @@ impl View {
         let target = Target::open(&self.output)?;
         let mut progress = Progress::new(global);
         let (weighed, source) = self.weighed(&mut progress)?;
-        let details =
-            weighed.into_iter().map(|weighed| Detail::new(weighed, source.as_ref(), &mut progress));
-        let details = details.collect::<Result<Vec<_>, _>>()?;
+        let recipe = self.pipeline.recipe()?;
+        let details = weighed.into_iter().map(|weighed| {
+            let detail = Detail::new(weighed, source.as_ref(), &mut progress)?;
+            if recipe.keep.is_all() {
+                Ok(detail)
+            } else {
+                detail.part(&recipe, self.alpha, &mut progress)
+            }
+        });
+        let details = details.collect::<Result<Vec<_>>>()?;
         let (page, facts) = self.page(&details, source.as_ref(), &mut progress)?;
         if !global.quiet {
             let size = page.html.len() as f64 / 1e6;
@@ -137,7 +148,7 @@ impl View {
         let last = details.last().expect("the level of the shape");
         let facts = source.map(VolumeSummary::of);
         let facts = facts.as_ref();
-        let facts_shown = self.page_facts(&last.weighed, facts, last.reference());
+        let facts_shown = self.page_facts(&last.weighed, facts, last.reference(), last.kept);
         let isovalue = self.isovalue.unwrap_or_default();
         let original = source.map(|PlacedVolume { volume, units, range, .. }| Original {
             volume,
@@ -195,7 +206,11 @@ impl View {
             original,
         };
         let page = progress.stage(Stage::Page, || Page::new(&subject))?;
-        Ok((page, rendered.iter().map(DetailSummary::of).collect()))
+        let facts = rendered.iter().zip(details).map(|(rendered, detail)| DetailSummary {
+            kept: detail.kept,
+            ..DetailSummary::of(rendered)
+        });
+        Ok((page, facts.collect()))
     }
 
     /// The facts that the page lists besides the numbers of levels.
@@ -204,6 +219,7 @@ impl View {
         weighed: &Weighed,
         volume: Option<&VolumeSummary>,
         reference: Parameter,
+        kept: Option<Kept>,
     ) -> Vec<(String, String)> {
         let mut facts_shown = vec![("input".to_owned(), name(&self.pipeline.input.input))];
         if let Some((volume, t)) = volume.zip(weighed.origin.truncation.as_ref()) {
@@ -226,6 +242,9 @@ impl View {
             "weights ω".into(),
             format!("{}, frozen at {reference}", WeightsReport::of(weighed)),
         ));
+        if let Some(kept) = kept {
+            facts_shown.push(("kept".into(), kept.to_string()));
+        }
         facts_shown.push(("made by".into(), format!("walpha {}", env!("CARGO_PKG_VERSION"))));
         facts_shown
     }
@@ -241,6 +260,8 @@ pub(crate) struct Detail {
     pub filtration: Filtration,
     /// Difference of F from the volume, in the values that are written.
     pub differences: Option<Differences>,
+    /// How many components it consists of, if not all were to be kept.
+    pub kept: Option<Kept>,
 }
 
 impl Detail {
@@ -257,7 +278,27 @@ impl Detail {
             }
             None => None,
         };
-        Ok(Self { weighed, filtration, differences })
+        Ok(Self { weighed, filtration, differences, kept: None })
+    }
+
+    /// The components that are to be kept at the α that the page opens at: shapes of their points alone.
+    fn part(
+        self,
+        recipe: &Recipe,
+        asked: Option<AlphaRule>,
+        progress: &mut Progress,
+    ) -> Result<Self> {
+        let opening = self.opening(asked);
+        let parameter = Some(self.reference());
+        let part = || recipe.part(&self.weighed, opening);
+        let (mut weighed, kept, is_kept) = progress.watch(part)?;
+        weighed.parameter = parameter;
+        let filtration = progress.watch(|| pipeline::filtration(None, &weighed))?;
+        let differences = self.differences.map(|Differences { local, rmse }| {
+            let rows = local.into_iter().zip(is_kept).filter(|(_, is_kept)| *is_kept);
+            Differences { local: rows.map(|(difference, _)| difference).collect(), rmse }
+        });
+        Ok(Self { weighed, filtration, differences, kept })
     }
 
     /// The α that the weights are computed for, or else the one that is found.
@@ -396,6 +437,9 @@ pub(crate) struct DetailSummary {
     levels: usize,
     /// RMSE of F, filled in, on all samples, in written values; null without a volume.
     rmse_filled: Option<f64>,
+    /// How many components the points are of, if not all were to be kept.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    kept: Option<Kept>,
 }
 
 impl DetailSummary {
@@ -404,6 +448,7 @@ impl DetailSummary {
             points: detail.levels.points().len(),
             levels: detail.levels.len(),
             rmse_filled: detail.differences.map(|differences| differences.rmse),
+            kept: None,
         }
     }
 }
@@ -411,8 +456,11 @@ impl DetailSummary {
 impl Display for ViewSummary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "input     {}", name(&self.input))?;
-        for DetailSummary { points, levels, rmse_filled } in &self.details {
+        for DetailSummary { points, levels, rmse_filled, kept } in &self.details {
             write!(f, "detail    {points} points, {levels} levels")?;
+            if let Some(kept) = kept {
+                write!(f, ", {kept}")?;
+            }
             match rmse_filled {
                 Some(rmse) => writeln!(f, ", RMSE of F {rmse:.4} (filled in)")?,
                 None => writeln!(f)?,

@@ -61,6 +61,8 @@ pub(super) struct Frozen;
 pub(super) struct OfShape;
 /// A periodic box.
 pub(super) struct Periodic;
+/// Which components of the shape are kept.
+pub(super) struct Kept;
 
 impl Groups for Wavelets {
     const GROUPS: &[(Group, &str)] = &[(Group::Haar, "Wavelet stage")];
@@ -92,6 +94,10 @@ impl Groups for OfShape {
 
 impl Groups for Periodic {
     const GROUPS: &[(Group, &str)] = &[(Group::Periodic, "Shape")];
+}
+
+impl Groups for Kept {
+    const GROUPS: &[(Group, &str)] = &[(Group::Keep, "Shape")];
 }
 
 impl<W: Groups> PipelineArgs<W> {

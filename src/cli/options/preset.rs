@@ -3,11 +3,11 @@
 use clap::builder::PossibleValuesParser;
 use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
 
-use super::{InputArgs, names, of_gray_levels};
+use super::{InputArgs, of_gray_levels};
+use crate::Recipe;
 use crate::labels::{self, LabelChoice};
-use crate::settings::{CT_BONE, Group, LABELS, PRESETS, Settings};
+use crate::settings::{CT_BONE, LABELS, PRESETS, Settings};
 use crate::volume::{Hounsfield, Labels, Volume};
-use crate::{HaarOptions, Recipe};
 
 /// The name of the option.
 pub(crate) const OPTION: &str = "preset";
@@ -46,14 +46,12 @@ pub(crate) fn suited(
     recipe: &Recipe,
     found: impl FnOnce() -> Option<Hounsfield>,
 ) -> Option<Recipe> {
-    let given = args.settings();
-    let states = |name: &str| name == "gray" || names(&[Group::Points]).contains(&name);
-    if args.given.preset || given.iter().any(|(name, _)| states(name)) {
+    if args.given.preset {
         return None;
     }
+    let bone = args.settings().for_ct(recipe)?;
     let Hounsfield { air, soft_tissue, .. } = found()?;
     let settings = Settings::preset(CT_BONE).expect("a preset");
-    let bone = settings.recipe().expect("presets do not contradict themselves");
     tracing::warn!(
         "the values look like Hounsfield units ({:.0} % air, {:.0} % soft tissue), so bone is selected, as by \
          --preset {CT_BONE}. The same, stated: {}",
@@ -61,8 +59,7 @@ pub(crate) fn suited(
         100.0 * soft_tissue,
         stated(&settings),
     );
-    let haar = if recipe.haar == HaarOptions::default() { bone.haar } else { recipe.haar };
-    Some(recipe.clone().gray(bone.gray).choice(bone.choice).haar(haar))
+    Some(bone)
 }
 
 /// The command line with these settings.

@@ -16,7 +16,7 @@ use crate::labels::LabelSizes;
 use crate::outofcore::{Merged, Plan};
 use crate::pipeline::{Model, Parameter, Weighed};
 use crate::points::WeightSummary;
-use crate::shape::{Cuts, Engine};
+use crate::shape::{Cuts, Engine, Kept};
 use crate::{Coordinates, GrayRange};
 
 use crate::cli::commands::pipeline::VolumeSummary;
@@ -67,6 +67,9 @@ pub(super) struct Report {
     shape: Option<ShapeReport>,
     #[serde(skip_serializing_if = "Option::is_none")]
     engine: Option<Engine>,
+    /// How many components were kept, if not all were to be; `shape` is what is kept.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    kept: Option<Kept>,
     /// Where the boundary was cut apart, if it is written as that of a solid.
     #[serde(skip_serializing_if = "Option::is_none")]
     solid: Option<Cuts>,
@@ -93,6 +96,7 @@ impl Report {
             weights: None,
             shape: None,
             engine: None,
+            kept: None,
             solid: None,
             files: Vec::new(),
             offsets: Vec::new(),
@@ -149,6 +153,7 @@ impl Report {
         self.points.hidden = shape.hidden().map(<[u32]>::len);
         self.points.in_shape = Some(shape.points_in_shape());
         self.shape = Some(ShapeReport::of(shape));
+        self.kept = shape.kept();
     }
 
     /// The report on a shape made in blocks.
@@ -232,6 +237,9 @@ impl Display for Report {
             Some(Engine::Both) => writeln!(f, "engine    both: cgal and native give the same")?,
             Some(_) => writeln!(f, "engine    native; cgal gives the same")?,
         }
+        if let Some(kept) = &self.kept {
+            print_kept(f, kept, unit)?;
+        }
         if let Some(shape) = &self.shape {
             shape.print(f, unit)?;
         }
@@ -247,31 +255,39 @@ impl Display for Report {
         if self.points.in_shape == Some(0) {
             writeln!(f, "the shape is empty: every α + ω is negative; raise --alpha")?;
         }
-        match self.solid {
-            None => {}
-            Some(cuts) if cuts == Cuts::default() => {
-                writeln!(f, "solid     the boundary is a manifold as it is")?;
-            }
-            Some(cuts) => {
-                let Cuts { edges, vertices, midpoints, moved, largest_move, together, .. } = cuts;
-                let unit = self.coordinates.unit.symbol();
-                writeln!(
-                    f,
-                    "solid     the boundary is not a manifold: cut apart at {edges} edges, with {vertices} more \
-                     vertices and {midpoints} midpoints of edges; {moved} are moved, by {} {unit} at most",
-                    number(six_digits(largest_move))
-                )?;
-                if together > 0 {
-                    writeln!(
-                        f,
-                        "          {together} vertices stay where others are, as there is no room to move them"
-                    )?;
-                }
-            }
+        if let Some(cuts) = &self.solid {
+            print_cuts(f, cuts, unit)?;
         }
         self.offsets.iter().try_for_each(|offset| offset.fmt(f))?;
         ending(f, &self.files, &STAGES, &self.seconds)
     }
+}
+
+/// Where a boundary was cut apart.
+pub(super) fn print_cuts(f: &mut fmt::Formatter<'_>, cuts: &Cuts, unit: &str) -> fmt::Result {
+    if *cuts == Cuts::default() {
+        return writeln!(f, "solid     the boundary is a manifold as it is");
+    }
+    let Cuts { edges, vertices, midpoints, moved, largest_move, together, .. } = cuts;
+    writeln!(
+        f,
+        "solid     the boundary is not a manifold: cut apart at {edges} edges, with {vertices} more \
+         vertices and {midpoints} midpoints of edges; {moved} are moved, by {} {unit} at most",
+        number(six_digits(*largest_move))
+    )?;
+    if *together > 0 {
+        writeln!(
+            f,
+            "          {together} vertices stay where others are, as there is no room to move them"
+        )?;
+    }
+    Ok(())
+}
+
+/// What was kept of a shape.
+pub(super) fn print_kept(f: &mut fmt::Formatter<'_>, kept: &Kept, unit: &str) -> fmt::Result {
+    let volume = number(six_digits(kept.of_volume));
+    writeln!(f, "kept      {kept}, which had a volume of {volume} {unit}³ together")
 }
 
 /// The last lines of a report: the files written, and how long each stage took.

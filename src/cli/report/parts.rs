@@ -197,6 +197,7 @@ pub(super) struct ShapeReport {
     pub(super) betti: Option<Betti>,
     pub(super) volume: f64,
     pub(super) area: f64,
+    pub(super) regular_area: f64,
     pub(super) singular_area: f64,
     /// Points of the shape outside the component that has the most.
     pub(super) apart: usize,
@@ -238,6 +239,7 @@ impl ShapeReport {
             betti: shape.betti(),
             volume: shape.measures().volume,
             area: shape.measures().area,
+            regular_area: shape.measures().regular_area,
             singular_area: shape.measures().singular_area,
             plane: PlaneReport::of(shape),
             components: largest(components),
@@ -256,6 +258,7 @@ impl ShapeReport {
             betti: Some(merged.betti),
             volume: merged.measures.volume,
             area: merged.measures.area,
+            regular_area: merged.measures.regular_area,
             singular_area: merged.measures.singular_area,
             plane: None,
             components: largest(merged.components.clone()),
@@ -285,7 +288,15 @@ impl ShapeReport {
         }
         writeln!(f, "volume    {:.6} {unit}³", self.volume)?;
         let (area, singular) = (self.area, self.singular_area);
-        writeln!(f, "area      {area:.6} {unit}², singular facets {singular:.6} {unit}²")?;
+        write!(f, "area      {area:.6} {unit}²")?;
+        if singular > 0.0 {
+            let regular = self.regular_area;
+            write!(
+                f,
+                ": regular facets {regular:.6} {unit}², singular facets {singular:.6} {unit}²"
+            )?;
+        }
+        writeln!(f)?;
         if let [largest, _, ..] = &self.components[..] {
             let Component { vertices, volume, .. } = largest;
             writeln!(f, "largest   component: {vertices} vertices, volume {volume:.6} {unit}³")?;

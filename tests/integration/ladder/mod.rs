@@ -65,6 +65,7 @@ fn check_numbers(level: &Level, shape: &AlphaShape) {
     let measures = shape.measures();
     assert!(close(level.measures.volume, measures.volume));
     assert!(close(level.measures.area, measures.area));
+    assert!(close(level.measures.regular_area, measures.regular_area));
     assert!(close(level.measures.singular_area, measures.singular_area));
     assert!(close(2.0 * level.coverage, measures.volume));
     let voids = shape.voids().unwrap();

@@ -128,7 +128,7 @@ fn of_item(item: &Value) -> Vec<Shown> {
     for path in ["/betti/0", "/betti/1", "/betti/2", "/void_volume", "/largest_voids/0/volume"] {
         rows(&[path]);
     }
-    for path in ["/volume", "/area", "/singular_area"] {
+    for path in ["/volume", "/regular_area", "/singular_area"] {
         rows(&[path]);
     }
     all.extend(each(&item["facts"], |f| [words(&f["label"]), rounded(&f["value"])].concat()));

@@ -4,9 +4,7 @@ use walpha_base::shown::number;
 
 use crate::pipeline::Parameter;
 use walpha_shape::ladder::Filtration;
-use walpha_shape::{
-    Alpha, AlphaShape, Balls, Class, Complex, Outline, OutlineError, ShapeOptions, alpha_shape,
-};
+use walpha_shape::{Alpha, AlphaShape, Balls, Class, Complex, ShapeOptions, alpha_shape};
 use walpha_volume::annotation;
 
 /// What a shape must have for a file of it to hold something.
@@ -77,12 +75,11 @@ enum Extent {
 
 impl Extent {
     fn of(shape: &AlphaShape) -> Self {
-        let positions = shape.points().positions();
-        match Outline::check(positions) {
-            _ if positions.windows(2).all(|pair| pair[0] == pair[1]) => Self::Place,
-            Ok(()) => Self::Plane,
-            Err(OutlineError::Line) => Self::Line,
-            Err(_) => Self::Space,
+        match shape.dimension() {
+            0 => Self::Place,
+            1 => Self::Line,
+            2 => Self::Plane,
+            _ => Self::Space,
         }
     }
 }

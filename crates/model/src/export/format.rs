@@ -21,6 +21,8 @@ pub struct Format {
     pub boundary: bool,
     /// Whether it holds the outline of points in a plane, and nothing else.
     pub outline: bool,
+    /// Whether it states the whole complex, for [`walpha_check`] to judge.
+    pub whole: bool,
     /// Whether it has both a text form and a binary form.
     pub ascii: bool,
     /// Whether it can separate regular and singular facets in a way that some programs do not expect.
@@ -35,6 +37,7 @@ const PLAIN: Format = Format {
     about: "",
     boundary: false,
     outline: false,
+    whole: false,
     ascii: false,
     groups: false,
     exporter: |_| Box::new(Json),
@@ -113,6 +116,7 @@ pub static FORMATS: [Format; 13] = [
         name: "NPZ",
         extension: "npz",
         about: "NumPy arrays of indices and classes of simplices of all dimensions.",
+        whole: true,
         exporter: |_| Box::new(Npz),
         ..PLAIN
     },
@@ -120,6 +124,7 @@ pub static FORMATS: [Format; 13] = [
         name: "JSON",
         extension: "json",
         about: "The whole complex, for `walpha check` and other programs.",
+        whole: true,
         ..PLAIN
     },
     Format {

@@ -1,6 +1,7 @@
-use walpha_base::Cancelled;
 use walpha_base::advice::{Advice, Advise, Setting, advice, wrapped};
 use walpha_base::monitor::wraps;
+use walpha_base::shown::{number, six_digits};
+use walpha_base::{Cancelled, LengthUnit};
 
 use crate::interpolate::InterpolateError;
 use crate::labels::LabelsError;
@@ -54,6 +55,21 @@ pub enum PipelineError {
         "the input does not state the orientation of its axes in a patient, so no space can be chosen"
     )]
     UnknownSpace,
+    /// No component of the shape has the volume of those to keep.
+    #[error(
+        "no component of the shape has a volume of {} {symbol}³: the largest has {} {symbol}³",
+        number(*.least),
+        number(six_digits(*.largest)),
+        symbol = .unit.symbol()
+    )]
+    NoComponent {
+        /// The least volume, in cubes of the unit.
+        least: f64,
+        /// That of the largest component.
+        largest: f64,
+        /// The unit of lengths.
+        unit: LengthUnit,
+    },
     /// Weights from differences to neighbours, for scattered points on a torus.
     #[error(
         "these weights come from differences to neighbours, and neighbours across the sides of a periodic box are not considered"
@@ -79,6 +95,7 @@ impl Advise for PipelineError {
                 " 30"
             ],
             Self::SpaceOfVoxels | Self::UnknownSpace => advice!["omit ", Setting::Space],
+            Self::NoComponent { .. } => advice!["give ", Setting::MinVolume, " less, or omit it"],
             Self::PeriodicWeights => {
                 advice!["give weights as a column of the input, or omit ", Setting::Periodic]
             }

@@ -20,14 +20,14 @@ pub use weighed::{Origin, Weighed};
 
 use choice::Chosen;
 use input::to_gray;
-use walpha_base::Monitor;
+use walpha_base::{LengthUnit, Monitor};
 
 use crate::interpolate::{Refit, refit};
 use crate::labels::{self, LabelChoice, LabelSizes};
 use crate::progress::Stage;
 use walpha_points::haar::smooth;
 use walpha_points::{ModelMetadata, Points, SampleGrid};
-use walpha_shape::{AlphaShape, alpha_shape};
+use walpha_shape::{Alpha, AlphaShape, Engine, Kept, NO_COMPONENT, alpha_shape};
 use walpha_volume::Volume;
 
 /// A shape, and how it was made.
@@ -82,6 +82,7 @@ impl Recipe {
         let sizes = LabelSizes::new(counts, &frame, units);
         let parameter = Parameter::of_labels(sizes.unit);
         let origin = Origin::of_labels(units.coordinates_of(&frame));
+        let shape = self.kept(shape, parameter.unit)?;
         Ok(Model { shape, parameter, origin, labels: Some(sizes) })
     }
 
@@ -199,11 +200,45 @@ impl Recipe {
     pub fn finish(&self, mut weighed: Weighed) -> Result<Model, PipelineError> {
         weighed.on_torus(self.periodic)?;
         let parameter = weighed.find_parameter_on(self.periodic)?;
-        let options = self.shape_of(parameter)?;
+        let options = self.shape_of(&weighed, parameter)?;
         Stage::Shape.begin()?;
         let Weighed { points, origin, .. } = weighed;
         let shape = alpha_shape(points, &options)?.with_coordinates(origin.coordinates);
+        let shape = self.kept(shape, parameter.unit)?;
         Ok(Model { shape, parameter, origin, labels: None })
+    }
+
+    /// The points of the components that are [to be kept](Recipe::keep) of the shape at α, with α as their parameter: at α and below, their shapes consist of
+    /// these components. Returns how many were kept, too, and for each point whether it was.
+    ///
+    /// # Errors
+    /// The errors of the shape, and [`PipelineError::NoComponent`].
+    pub fn part(
+        &self,
+        weighed: &Weighed,
+        alpha: Alpha,
+    ) -> Result<(Weighed, Option<Kept>, Vec<bool>), PipelineError> {
+        let options = self.shape_at(alpha).engine(Engine::Native).exterior(false);
+        let shape = alpha_shape(weighed.points.clone(), &options)?;
+        let shape = self.kept(shape, weighed.origin.coordinates.unit)?;
+        // A ball that meets one of a component's simplices is in the component, so no other point decides its simplices.
+        let numbers = shape.component_numbers().into_iter();
+        let is_kept: Vec<bool> = numbers.map(|number| number != NO_COMPONENT).collect();
+        Ok((weighed.only(&is_kept), shape.kept(), is_kept))
+    }
+
+    /// The components of a shape that are to be kept.
+    fn kept(&self, shape: AlphaShape, unit: LengthUnit) -> Result<AlphaShape, PipelineError> {
+        if self.keep.is_all() {
+            return Ok(shape);
+        }
+        let part = shape.keep(&self.keep);
+        match (self.keep.min_volume, part.kept()) {
+            (Some(least), Some(Kept { components: 0, of: 1.., largest_volume: largest, .. })) => {
+                Err(PipelineError::NoComponent { least, largest, unit })
+            }
+            _ => Ok(part),
+        }
     }
 
     /// Fits the values of weighted points to their volume.
@@ -215,7 +250,7 @@ impl Recipe {
     ) -> Result<(), PipelineError> {
         let parameter = weighed.find_parameter()?;
         Stage::Refit.begin()?;
-        let options = self.shape_of(parameter)?;
+        let options = self.shape_of(weighed, parameter)?;
         let shape = Monitor::current()
             .unreported()
             .watch(|| alpha_shape(weighed.points.clone(), &options))?;

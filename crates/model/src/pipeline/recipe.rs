@@ -5,15 +5,19 @@ use serde_json::Value;
 use walpha_base::advice::Setting;
 use walpha_base::setters;
 
-use super::{AlphaRule, Choice, Parameter, PipelineError};
+use super::{AlphaRule, Choice, Parameter, PipelineError, Weighed};
 use crate::interpolate::Refit;
 use crate::labels::LabelChoice;
 use crate::settings::Settings;
 use walpha_points::haar::{HaarOptions, Tolerance};
 use walpha_points::internal::LEAST_GRAY;
 use walpha_points::{Columns, PointOptions, Points, PointsError, Selection, Units, Weighting};
-use walpha_shape::{Alpha, Balls, Classifier, Engine, ShapeError, ShapeOptions, Torus};
+use walpha_shape::{Alpha, Balls, Classifier, Engine, Keep, ShapeError, ShapeOptions, Torus};
 use walpha_volume::{Coordinates, Frame, Gray, GrayRange, LengthUnit, ReadOptions, Space};
+
+/// The largest number of points for which [`Engine::Auto`] takes CGAL: about the paper's size, which takes CGAL a third of
+/// a second.
+const MOST_FOR_CGAL: usize = 20_000;
 
 /// The numbers of the paper's experiment.
 pub mod paper {
@@ -95,6 +99,9 @@ pub struct Recipe {
     /// The periodic box, if there is one; serialised as its sides.
     #[serde(with = "sides")]
     pub periodic: Option<Torus>,
+    /// Which components of the shape are kept.
+    #[serde(skip_serializing_if = "Keep::is_all")]
+    pub keep: Keep,
     /// The engine of another crate ([`ShapeOptions::classifier`]): in the crate `walpha`, CGAL. It is not stored with the
     /// other options.
     #[serde(skip)]
@@ -136,6 +143,7 @@ impl Recipe {
         memory: Option<u64>,
         refuse_flat: bool,
         periodic: Option<Torus>,
+        keep: Keep,
         classifier: Option<Classifier>,
     }
 
@@ -303,12 +311,32 @@ impl Recipe {
         self.shape_at(alpha).check()
     }
 
-    /// The options of the shape at an α that was given or found.
-    pub(super) fn shape_of(&self, parameter: Parameter) -> Result<ShapeOptions, PipelineError> {
+    /// The options of the shape of weighted points at an α that was given or found.
+    pub(super) fn shape_of(
+        &self,
+        weighed: &Weighed,
+        parameter: Parameter,
+    ) -> Result<ShapeOptions, PipelineError> {
         if self.balls == Balls::Radius && parameter.is_found() {
             return Err(PipelineError::Radii { radius: parameter.alpha.squared().abs().sqrt() });
         }
-        Ok(self.shape_at(parameter.alpha))
+        Ok(self.shape_at(parameter.alpha).engine(self.engine_for(weighed)))
+    }
+
+    /// The engine that computes the shape of weighted points. [`Engine::Auto`] takes CGAL, if it is at hand, for what the paper
+    /// computes, and native for everything else and for what only it can do: blocks, a limit on memory, periodic boxes.
+    fn engine_for(&self, weighed: &Weighed) -> Engine {
+        let needs_native = self.periodic.is_some()
+            || self.memory.is_some()
+            || self.blocks.is_some_and(|blocks| blocks.get() > 1);
+        let is_of_paper = weighed.origin.grid.is_some() && weighed.points.len() <= MOST_FOR_CGAL;
+        match self.engine {
+            Engine::Auto if self.classifier.is_some() && is_of_paper && !needs_native => {
+                Engine::Cgal
+            }
+            Engine::Auto => Engine::Native,
+            asked => asked,
+        }
     }
 }
 
@@ -345,7 +373,7 @@ mod sides {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::pipeline::Goal;
+    use crate::pipeline::{Goal, Values};
     use walpha_points::SelectionRule;
 
     /// Including an infinite α, which JSON has no number for, and one that is to be found.
@@ -383,6 +411,38 @@ mod tests {
         let wrong = [r#"{"alfa": "1"}"#, r#"{"alpha": "nan"}"#, r#"{"periodic": [1, 0, 1]}"#];
         for text in wrong {
             assert!(serde_json::from_str::<Recipe>(text).is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn cgal_computes_what_the_paper_does() {
+        let classifier = Classifier(|_, _| unreachable!("no shape is made"));
+        let recipe = Recipe::new().alpha(Alpha::ZERO).classifier(Some(classifier));
+        let volume = walpha_volume::phantom(64).unwrap();
+        let source = recipe.source(recipe.grays(volume).unwrap()).unwrap();
+        let weighed = |count: usize| {
+            let rule = SelectionRule::Count(count as u64);
+            let recipe = recipe.clone().choice(Choice::Difference(Selection::default().rule(rule)));
+            recipe.weighed(&source, Values::Gray).unwrap()
+        };
+        let selected = weighed(MOST_FOR_CGAL);
+        assert_eq!(recipe.engine_for(&selected), Engine::Cgal);
+        assert_eq!(recipe.engine_for(&weighed(MOST_FOR_CGAL + 1)), Engine::Native);
+        let mut scattered = selected.clone();
+        scattered.origin.grid = None;
+        assert_eq!(recipe.engine_for(&scattered), Engine::Native);
+        let torus = Torus::new([64.0; 3]).unwrap();
+        for other in [
+            recipe.clone().classifier(None),
+            recipe.clone().blocks(NonZeroUsize::new(2)),
+            recipe.clone().memory(1 << 30),
+            recipe.clone().periodic(torus),
+        ] {
+            assert_eq!(other.engine_for(&selected), Engine::Native);
+        }
+        assert_eq!(recipe.clone().blocks(NonZeroUsize::new(1)).engine_for(&selected), Engine::Cgal);
+        for engine in [Engine::Cgal, Engine::Native, Engine::Both] {
+            assert_eq!(recipe.clone().engine(engine).engine_for(&scattered), engine);
         }
     }
 }

@@ -79,6 +79,12 @@ impl Origin {
     }
 }
 
+/// Keeps the items that are marked.
+fn retain<T>(items: &mut Vec<T>, is_kept: &[bool]) {
+    let mut marks = is_kept.iter();
+    items.retain(|_| marks.next() == Some(&true));
+}
+
 impl Weighed {
     /// Gives points their weights, and finds α first if the weights are proportional to it.
     pub(super) fn new(
@@ -109,6 +115,26 @@ impl Weighed {
     /// The same points with their order of importance.
     pub(super) fn ordered(self, importance: Importance) -> Self {
         Self { importance: Some(importance), ..self }
+    }
+
+    /// Some of the points, without their order of importance.
+    pub(super) fn only(&self, is_kept: &[bool]) -> Self {
+        let (mut positions, mut weights, mut values) = self.points.clone().into_parts();
+        retain(&mut positions, is_kept);
+        retain(&mut weights, is_kept);
+        values.iter_mut().for_each(|values| retain(values, is_kept));
+        let points = WeightedPoints::new(positions, weights);
+        let points = points.and_then(|points| points.with_values(values));
+        let points = points.expect("a weight and a value for each point");
+        let recipe = self.recipe.clone();
+        Self {
+            points,
+            origin: self.origin,
+            parameter: self.parameter,
+            rule: self.rule,
+            recipe,
+            importance: None,
+        }
     }
 
     /// The indices of the points, the most important first, if they were selected from a volume. The first k are

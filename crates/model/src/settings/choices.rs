@@ -32,7 +32,7 @@ impl Named for Engine {
         (
             Self::Auto,
             "auto",
-            "CGAL for up to 20 000 points; native for more, and for what only it can do",
+            "CGAL for up to 20 000 points selected from a volume, as in the paper; native for everything else",
         ),
         (
             Self::Cgal,

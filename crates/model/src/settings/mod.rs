@@ -14,7 +14,7 @@ use serde_json::{Map, Value};
 use walpha_base::advice::{Advice, Advise, Category, Setting, advice};
 use walpha_points::haar::{Decomposition, HaarOptions, Tolerance};
 use walpha_points::{Columns, Selection, SelectionRule, Units, Weighting};
-use walpha_shape::{Alpha, Balls, Engine, Torus};
+use walpha_shape::{Alpha, Balls, Engine, Keep, Largest, Torus};
 use walpha_volume::{Dims, Dtype, Endian, GrayRange, Nan, RawLayout, ReadOptions, Region, Space};
 
 use crate::Recipe;
@@ -274,6 +274,12 @@ settings! {
         /// Sides of a periodic box.
         periodic: Torus = parse::torus,
     }
+    Keep {
+        /// How many of the largest components are kept.
+        keep: Largest = parse::own,
+        /// The least volume of components that are kept.
+        min_volume: f64 = parse::positive,
+    }
 }
 
 impl Settings {
@@ -475,6 +481,23 @@ impl Settings {
         Ok(if exchange { Choice::Exchanged(goal) } else { Choice::Adaptive(goal) })
     }
 
+    /// The recipe for a CT, the values of whose volume are Hounsfield units, where these settings do not say which samples to select: it selects bone, as
+    /// [`CT_BONE`] does. `None` where they do.
+    ///
+    /// # Panics
+    /// Never: presets are settings.
+    pub fn for_ct(&self, recipe: &Recipe) -> Option<Recipe> {
+        let selects =
+            |name: &str| name == "gray" || Self::names(Group::Points).any(|known| known == name);
+        if self.iter().any(|(name, _)| selects(name)) {
+            return None;
+        }
+        let bone = Self::preset(CT_BONE).expect("a preset").recipe();
+        let bone = bone.expect("presets do not contradict themselves");
+        let haar = if recipe.haar == HaarOptions::default() { bone.haar } else { recipe.haar };
+        Some(recipe.clone().gray(bone.gray).choice(bone.choice).haar(haar))
+    }
+
     /// The recipe with these settings.
     ///
     /// # Errors
@@ -504,7 +527,24 @@ impl Settings {
             .hidden(is_set(self.hidden))
             .blocks(self.blocks)
             .memory(self.memory)
-            .periodic(self.periodic);
+            .periodic(self.periodic)
+            .keep(Keep::default().largest(self.keep).min_volume(self.min_volume));
+        if !recipe.keep.is_all() && recipe.exterior {
+            return Err(SettingError::new(
+                advice![
+                    Setting::Exterior,
+                    " has no effect: simplices outside the shape belong to no component that could be kept"
+                ],
+                advice!["omit it, or omit ", Setting::Keep, " and ", Setting::MinVolume],
+            ));
+        }
+        if !recipe.keep.is_all() && recipe.periodic.is_some() {
+            return Err(SettingError::new(
+                listed(&[Setting::Keep, Setting::MinVolume])
+                    .and(advice![" are for shapes in space, and a periodic box is a torus"]),
+                advice!["omit them, or omit ", Setting::Periodic],
+            ));
+        }
         if recipe.engine == Engine::Cgal && recipe.blocks.is_some_and(|blocks| blocks.get() > 1) {
             return Err(SettingError::new(
                 advice![Setting::Blocks, " has no effect: the engine cgal does not work in blocks"],

@@ -120,9 +120,10 @@ impl Levels<'_> {
             }
         });
         let mut six = 0.0;
-        let level = |(volume, area): (&[f64; 2], &[f64; 2])| {
+        let level = |(volume, &[regular_area, singular_area]): (&[f64; 2], &[f64; 2])| {
             six += volume[0];
-            Measures { volume: six / 6.0, area: area[0], singular_area: area[1] }
+            let area = regular_area + singular_area;
+            Measures { volume: six / 6.0, area, regular_area, singular_area }
         };
         volumes.iter().zip(&areas).map(level).collect()
     }

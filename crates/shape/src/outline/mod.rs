@@ -110,7 +110,7 @@ impl AlphaShape {
                 return Err(OutlineError::Torus);
             }
             // In space each triangle of a flat shape is singular.
-            Outline::of(&self.complex, &self.points.positions, self.measures().singular_area)
+            Outline::of(&self.complex, &self.points.positions, self.measures().area)
         };
         self.outline.get(compute).as_ref().map_err(|&error| error)
     }

@@ -239,6 +239,7 @@ pub(super) fn write_levels(ladder: &Ladder, out: &mut dyn io::Write) -> io::Resu
         "solid_components",
         "volume",
         "area",
+        "regular_area",
         "singular_area",
         "coverage",
         "void_volume",
@@ -250,8 +251,9 @@ pub(super) fn write_levels(ladder: &Ladder, out: &mut dyn io::Write) -> io::Resu
             .map(|c| [c.interior, c.regular, c.singular]);
         let counts = std::iter::once(level.cells).chain(classes.into_iter().flatten());
         let topology = <[u64; 3]>::from(level.betti).into_iter().chain([level.solid_components]);
-        let Measures { volume, area, singular_area } = level.measures;
-        let sizes = [volume, area, singular_area, level.coverage, level.void_volume()];
+        let Measures { volume, area, regular_area, singular_area } = level.measures;
+        let sizes =
+            [volume, area, regular_area, singular_area, level.coverage, level.void_volume()];
         // Without a void both fields are empty.
         let largest = level.voids.first().map(|void| [void.volume, void.filling_alpha.squared()]);
         let field = |k: usize| largest.map_or(String::new(), |largest| largest[k].to_string());

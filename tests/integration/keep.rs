@@ -1,0 +1,105 @@
+//! Some components of a shape: `--keep` and `--min-volume`.
+
+use std::fs;
+use std::path::Path;
+
+use crate::common::{fails, json, names, ok};
+
+/// Cubes of side 1, 2 and 3, which stand apart, and a point.
+fn cubes(folder: &Path) {
+    let mut rows = String::from("x,y,z\n");
+    for (from, side) in [(0, 1), (10, 3), (20, 2)] {
+        for corner in 0..(side + 1) * (side + 1) * (side + 1) {
+            let n = side + 1;
+            let at = [from + corner % n, corner / n % n, corner / (n * n)];
+            rows += &format!("{},{},{}\n", at[0], at[1], at[2]);
+        }
+    }
+    fs::write(folder.join("cubes.csv"), rows + "40,0,0\n").unwrap();
+}
+
+#[test]
+fn the_largest_components_are_kept() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    cubes(f);
+    let shape = |options: &str| {
+        let mut args = vec!["shape", "cubes.csv", "--alpha", "0.75", "-o", "a.vtu", "a.ply"];
+        args.extend(options.split_whitespace());
+        json(f, &args)
+    };
+    let all = shape("");
+    assert_eq!((&all["shape"]["volume"], &all["kept"]), (&36.0.into(), &serde_json::Value::Null));
+    for (options, volume, components) in [
+        ("--keep largest", 27.0, 1),
+        ("--keep 2", 35.0, 2),
+        ("--keep 9", 36.0, 4),
+        ("--min-volume 8", 35.0, 2),
+        ("--min-volume 9 --keep 3", 27.0, 1),
+    ] {
+        let facts = shape(options);
+        assert_eq!(facts["shape"]["volume"], volume, "{options}");
+        assert_eq!(facts["shape"]["betti"][0], components, "{options}");
+        assert_eq!(
+            (&facts["kept"]["components"], &facts["kept"]["of"], &facts["kept"]["of_volume"]),
+            (&components.into(), &4.into(), &36.0.into()),
+            "{options}"
+        );
+        let ply = fs::read(f.join("a.ply")).unwrap();
+        let header = String::from_utf8_lossy(&ply[..ply.len().min(600)]).into_owned();
+        let vertices = facts["shape"]["vertices"].clone();
+        let boundary =
+            vertices["regular"].as_u64().unwrap() + vertices["singular"].as_u64().unwrap();
+        assert!(header.contains(&format!("element vertex {boundary}\n")), "{options}: {header}");
+    }
+    let text = ok(f, &["shape", "cubes.csv", "--alpha", "0.75", "--keep", "largest"]);
+    names(&text, &["kept      1 of 4 components, which had a volume of 36 unit³ together"]);
+}
+
+#[test]
+fn what_cannot_be_kept_is_an_error() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    cubes(f);
+    let shape = "shape cubes.csv --alpha 0.75";
+    fails(f, 2, &format!("{shape} --keep 0"), &["\"0\" is not a number of components", "largest"]);
+    fails(f, 2, &format!("{shape} --keep all"), &["\"all\" is not a number of components"]);
+    fails(
+        f,
+        1,
+        &format!("{shape} --min-volume 28"),
+        &["no component of the shape has a volume of 28 unit³: the largest has 27", "--min-volume"],
+    );
+    for format in ["json", "npz"] {
+        let words = ["states the whole shape", "--keep", "VTU"];
+        fails(f, 2, &format!("{shape} --keep 1 -o a.{format}"), &words);
+        assert!(!f.join(format!("a.{format}")).exists());
+    }
+    fails(f, 2, &format!("{shape} --keep 1 --exterior -o a.vtu"), &["--exterior has no effect"]);
+    fails(f, 2, &format!("{shape} --keep 1 --periodic 99,9,9"), &["--keep", "--periodic"]);
+    fails(f, 2, &format!("{shape} --keep 1 -o a.pvtu"), &["--keep", "there are blocks"]);
+}
+
+/// Voxels that touch at a corner are one component.
+#[test]
+fn components_of_labels_are_kept() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    let mut labels = vec![0u8; 12 * 12 * 12];
+    let mut fill = |x: usize, y: usize, z: usize| labels[x + 12 * (y + 12 * z)] = 1;
+    for at in 0..8 {
+        fill(1 + (at & 1), 1 + (at >> 1 & 1), 1 + (at >> 2));
+    }
+    fill(3, 3, 3);
+    fill(8, 8, 8);
+    fs::write(f.join("l.raw"), labels).unwrap();
+    let raw = ["--dims", "12,12,12", "--dtype", "uint8"];
+    let label = ["shape", "l.raw", "--label", "1", "--keep", "largest"];
+    let facts = json(f, &[&label[..], &raw, &["--solid", "-o", "l.stl"]].concat());
+    assert_eq!((&facts["shape"]["volume"], &facts["kept"]["of"]), (&9.0.into(), &2.into()));
+    assert_eq!(facts["solid"]["vertices"], 1);
+    let each = ["shape", "l.raw", "--each-label", "--keep", "largest", "--solid", "-o", "each"];
+    let facts = json(f, &[&each[..], &raw].concat());
+    let one = &facts["labels"][0];
+    assert_eq!((&one["kept"]["components"], &one["solid"]["vertices"]), (&1.into(), &1.into()));
+}
