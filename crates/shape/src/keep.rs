@@ -4,10 +4,12 @@ use std::cmp::Reverse;
 use std::fmt;
 use std::str::FromStr;
 
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use walpha_base::advice::{Advice, Advise};
 use walpha_base::setters;
 use walpha_base::shown::counted;
+use walpha_complex::canonical::sorted;
 
 use super::components::NO_COMPONENT;
 use super::topology::{direct_betti, flat_betti, sheet_betti};
@@ -172,20 +174,25 @@ fn of_points<const N: usize>(all: &Simplices<N>, is_kept: &[bool]) -> Simplices<
     all.iter().filter(|&(row, class)| stays(row, class)).map(|(row, class)| (*row, class)).collect()
 }
 
-/// A whole triangulation in which the components over the other points are exterior.
+/// A whole triangulation in which the components over the other points are exterior, in canonical order.
 fn within(whole: &Complex, is_kept: &[bool]) -> Complex {
-    fn drop_others<const N: usize>(simplices: &mut Simplices<N>, is_kept: &[bool]) {
-        let drops: Vec<bool> =
-            simplices.rows().iter().map(|row| !is_kept[row[0] as usize]).collect();
-        let classes = simplices.classes_mut().iter_mut().zip(drops);
-        classes.filter(|(_, drops)| *drops).for_each(|(class, _)| *class = Class::Exterior);
+    let class = |v: u32, class| if is_kept[v as usize] { class } else { Class::Exterior };
+    let mut facets: Vec<([u32; 3], Class)> = whole
+        .facets
+        .iter()
+        .map(|(&row, given)| match class(row[0], given) {
+            // Regular ones alone have an orientation.
+            Class::Exterior => (sorted(row), Class::Exterior),
+            class => (row, class),
+        })
+        .collect();
+    facets.par_sort_unstable_by_key(|facet| facet.0);
+    Complex {
+        cells: whole.cells.iter().map(|(&row, given)| (row, class(row[0], given))).collect(),
+        facets: facets.into_iter().collect(),
+        edges: whole.edges.iter().map(|(&row, given)| (row, class(row[0], given))).collect(),
+        vertices: whole.vertices.iter().map(|(&row, given)| (row, class(row[0], given))).collect(),
     }
-    let mut whole = whole.clone();
-    drop_others(&mut whole.cells, is_kept);
-    drop_others(&mut whole.facets, is_kept);
-    drop_others(&mut whole.edges, is_kept);
-    drop_others(&mut whole.vertices, is_kept);
-    whole
 }
 
 impl Sheets {

@@ -245,6 +245,32 @@ mod tests {
     use super::*;
 
     #[test]
+    fn numbers_are_rounded_to_six_digits_or_fractions() {
+        let exact = |numerator: i64, denominator: i64, exponent| {
+            Exact::new(IBig::from(numerator), IBig::from(denominator), exponent)
+        };
+        for (number, decimals, fraction) in [
+            (exact(0, 1, 0), "0", "0"),
+            (exact(3, 4, 0), "0.75", "3/4"),
+            (exact(-2, 3, 0), "≈-0.666667", "-2/3"),
+            (exact(2, 1, 0), "2", "2"),
+            (exact(1_234_567, 1, 0), "≈1234570", "1234567"),
+            (exact(1_234_560, 1, 0), "1234560", "1234560"),
+            (exact(1, 10, 0), "0.1", "1/10"),
+            // The double nearest to 1/10.
+            (exact(3602879701896397, 1, -55), "≈0.1", "3602879701896397/36028797018963968"),
+            (exact(1, 1, -30), "≈9.31323e-10", "1/1073741824"),
+            (exact(1, 1_000_000, 0), "1e-6", "1/1000000"),
+            (exact(3, 1, 200), "≈4.82081e60", "3·2^200"),
+        ] {
+            assert_eq!(
+                (number.to_string().as_str(), format!("{number:#}").as_str()),
+                (decimals, fraction)
+            );
+        }
+    }
+
+    #[test]
     fn values_are_in_units_of_length() {
         let at = |position: [f64; 3]| WeightedPoint { position, weight: 0.0 };
         let [a, b, c, d] = [[0.0; 3], [0.5, 0.0, 0.0], [0.0, 0.5, 0.0], [0.0, 0.0, 0.5]].map(at);
