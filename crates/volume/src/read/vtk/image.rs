@@ -10,8 +10,8 @@ use crate::read::layout::{Encoding, Layout, frame};
 use crate::{Coordinates, Dims, Endian, LengthUnit, Reason, Space, Volume, VolumeError};
 use walpha_base::Monitor;
 
-/// Reads VTI, VTK's image data in XML, in one piece: the array of this name; or else the active scalars of
-/// its points, its first array of points, or of cells, whose samples are at the cells' centres.
+/// Reads VTI, VTK's image data in XML, in one piece: the array with this name; or else the active scalars of its points, the
+/// first array of points, or one of cells, whose samples are at the cells' centres.
 pub(crate) fn read(
     file: &OpenFile,
     wanted: Option<&str>,
@@ -81,8 +81,8 @@ pub(crate) fn read(
     Ok(volume.with_missing(hidden))
 }
 
-/// The array to read, and whether it is one of cells. Those of points come first; which one was taken is
-/// said where there are others.
+/// Chooses the array to read, and returns whether it belongs to cells. Arrays of points come first. If there are others, the
+/// choice is reported.
 fn choose(file: &VtkXml, piece: usize, wanted: Option<&str>) -> Result<(usize, bool), Reason> {
     let name = |array: usize| file.attribute(array, "Name").unwrap_or_default();
     let mut arrays = Vec::new();
@@ -101,7 +101,7 @@ fn choose(file: &VtkXml, piece: usize, wanted: Option<&str>) -> Result<(usize, b
     Ok(arrays[place])
 }
 
-/// What the field data `SPACE` and `UNIT` say, as our own files have them.
+/// The coordinates that the field data `SPACE` and `UNIT` state, as in our own files.
 fn coordinates(file: &VtkXml, image: usize) -> Result<Coordinates, VolumeError> {
     let space = match file.field_text(image, "SPACE")?.as_deref() {
         Some("LPS") => Space::Lps,
