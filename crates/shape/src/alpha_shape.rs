@@ -97,13 +97,13 @@ impl AlphaShape {
         }
     }
 
-    /// The same shape, declared to be in these coordinates; no number changes.
+    /// Declares this shape to be in the given coordinates. No number changes.
     #[must_use]
     pub fn with_coordinates(self, coordinates: Coordinates) -> Self {
         Self { coordinates, ..self }
     }
 
-    /// The same shape, computed by this engine.
+    /// Records this engine as the one that computed the shape.
     pub(crate) fn by(mut self, engine: Engine) -> Self {
         self.options.engine = engine;
         self

@@ -78,7 +78,7 @@ impl WeightedPoints {
         Self { weights: vec![0.0; positions.len()], positions, values: None }
     }
 
-    /// The same points with values F, or without values.
+    /// Sets the values F of the points, or removes them.
     ///
     /// # Errors
     /// The numbers of points and values differ.

@@ -28,15 +28,15 @@ const TOLERATED: f64 = 1e-3;
 const HALF_STEP: f64 = f32::EPSILON as f64 / 2.0;
 
 impl SinglePrecision {
-    /// That of a surface, from the positions of the input. O(n log n) where coordinates are not those of single precision
-    /// already, else O(n).
+    /// Chooses the conversion of a surface to single precision, from the positions of the input. O(n log n) if coordinates are
+    /// not in single precision already, otherwise O(n).
     pub fn of_surface(surface: &Surface, of_input: &[[f64; 3]]) -> Self {
         let places: Vec<[f64; 3]> = surface.positions(of_input).collect();
         let sides = surface.facets().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
         Self::of(&places, sides.chain(surface.edges.iter().copied()))
     }
 
-    /// That of places, and of edges between them.
+    /// Chooses the conversion of positions, and of edges between them.
     pub fn of(places: &[[f64; 3]], edges: impl Iterator<Item = [u32; 2]>) -> Self {
         let exact = Self::default();
         if exact.errors(places) == [0.0; 3] {
@@ -111,7 +111,7 @@ impl SinglePrecision {
         }
     }
 
-    /// The same with the error that it makes.
+    /// Returns this conversion with the error that it makes.
     fn measured(self, places: &[[f64; 3]]) -> Self {
         Self { error: self.errors(places).into_iter().fold(0.0, f64::max), ..self }
     }

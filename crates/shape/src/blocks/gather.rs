@@ -28,7 +28,7 @@ pub(super) struct Counts {
 }
 
 impl Counts {
-    /// Those of some points. Vertices that are exterior count only if exterior simplices are wanted.
+    /// The counts for some points. Exterior vertices count only if exterior simplices are wanted.
     fn of<'a>(points: impl Iterator<Item = &'a PointRows>, exterior: bool) -> Self {
         points.fold(Self::default(), |sum, point| {
             sum.plus(Self {
@@ -42,7 +42,7 @@ impl Counts {
         })
     }
 
-    /// Those of all points in some records.
+    /// The counts for all points in some records.
     pub(super) fn of_all<'a>(
         records: impl ParallelIterator<Item = &'a Records>,
         exterior: bool,

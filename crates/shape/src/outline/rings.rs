@@ -34,7 +34,7 @@ const NONE: u32 = u32::MAX;
 /// Triangles of a plane that turn counter-clockwise, and what is beside them.
 pub(super) struct Triangles {
     rows: Vec<[u32; 3]>,
-    /// The same edge as a side of the triangle beside, or [`NONE`].
+    /// For each side, the same edge as a side of the neighbouring triangle, or [`NONE`].
     across: Vec<Side>,
     /// Each side by the ends of its edge, smaller end first. Sorted.
     sides: Vec<([u32; 2], Side)>,

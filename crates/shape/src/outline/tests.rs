@@ -173,7 +173,7 @@ fn lattices_at_several_alphas() {
     }
 }
 
-/// The same outline, whatever the plane, as it is seen in two of the coordinates.
+/// The outline does not depend on the plane, except for how it is seen in two of the coordinates.
 #[test]
 fn tilted_planes() {
     let places = lattice(6, |x, y| (2..4).contains(&x) && (2..4).contains(&y));

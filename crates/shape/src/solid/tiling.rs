@@ -29,8 +29,8 @@ pub(super) struct Tiling {
 }
 
 impl Tiling {
-    /// That of a solid before its edges get midpoints: `whole` is the surface as it was before it was cut, with corners by vertex, and
-    /// `ends` are further vertices whose cells are wanted.
+    /// Creates the tiling of a solid before its edges get midpoints: `whole` is the surface before it was cut, with corners by
+    /// vertex, and `ends` are further vertices whose cells are needed.
     pub(super) fn new(
         complex: &Complex,
         (whole, starts, corners): (&Surface, &[u32], &[u32]),

@@ -198,7 +198,7 @@ fn add<const N: usize>(to: &mut Gathered<N>, octant: u32, row: [u32; N]) {
     }
 }
 
-/// Those whose smallest vertex is the corner.
+/// The patterns whose smallest vertex is the corner [`HERE`].
 fn only<const N: usize>(gathered: Gathered<N>) -> Vec<Pattern<N>> {
     let smallest = gathered.into_iter().filter(|(row, _)| row[0] == HERE);
     let pattern = |(sorted, seen): ([u32; N], Vec<(u8, [u32; N])>)| Pattern {

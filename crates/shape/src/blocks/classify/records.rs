@@ -91,7 +91,7 @@ pub(in crate::blocks) struct Record<'a> {
     pub cells: &'a [[u32; 3]],
     pub facets: &'a [[u32; 2]],
     pub edges: &'a [[u32; 1]],
-    /// Those of the cells, then of the facets, then of the edges.
+    /// The classes of the cells, then of the facets, then of the edges.
     pub classes: Classes<'a>,
     pub facet_sheets: &'a [u32],
     pub edge_sheets: &'a [u32],
