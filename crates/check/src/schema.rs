@@ -39,13 +39,13 @@ impl PlacedComplex {
         Placed::new(&self.positions, &self.weights, self.alpha, &self.complex)
     }
 
-    /// The same complex in a periodic box with these sides, or in space.
+    /// Returns this complex in a periodic box with these sides, or in space.
     #[must_use]
     pub fn with_periodic(self, periodic: Option<[f64; 3]>) -> Self {
         Self { periodic, ..self }
     }
 
-    /// The same complex as one of labels, whose cells fill these voxels, or as one of α.
+    /// Returns this complex as one of labels, whose cells fill these voxels, or as one of α.
     #[must_use]
     pub fn with_voxels(self, voxels: Option<Voxels>) -> Self {
         Self { voxels, ..self }

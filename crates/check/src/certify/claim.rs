@@ -42,26 +42,26 @@ impl<'a> Claim<'a> {
         Self { placed, extent, hidden: None, duplicates: None, lowest: 0 }
     }
 
-    /// The same claim with another extent.
+    /// Returns this claim with another extent.
     #[must_use]
     pub fn with_extent(self, extent: Extent) -> Self {
         Self { extent, ..self }
     }
 
-    /// The same claim with these points listed as hidden.
+    /// Returns this claim with these points listed as hidden.
     #[must_use]
     pub fn with_hidden(self, hidden: impl Into<Option<&'a [u32]>>) -> Self {
         Self { hidden: hidden.into(), ..self }
     }
 
-    /// The same claim of a shape that lists, of the simplices below this dimension, only the faces of others: that further ones are
-    /// missing is not a finding.
+    /// Returns this claim for a shape that lists, of the simplices below this dimension, only the faces of others: further
+    /// missing ones are not a finding.
     #[must_use]
     pub fn with_lowest(self, lowest: usize) -> Self {
         Self { lowest, ..self }
     }
 
-    /// The same claim with these pairs (removed, kept) listed as duplicates.
+    /// Returns this claim with these pairs (removed, kept) listed as duplicates.
     #[must_use]
     pub fn with_duplicates(self, duplicates: impl Into<Option<&'a [[u32; 2]]>>) -> Self {
         Self { duplicates: duplicates.into(), ..self }

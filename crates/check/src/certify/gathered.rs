@@ -1,4 +1,4 @@
-//! The same claim with its points in another order, in which those that are near are beside each other in memory.
+//! Reorders the points of a claim so that points near each other are also close in memory.
 
 use rayon::prelude::*;
 use walpha_complex::canonical::{smallest_even, sorted};

@@ -110,7 +110,7 @@ impl Search<'_> {
         Polytope::new(self.spheres.points, on).is_covered(self.structure)
     }
 
-    /// The same, unless simplices listed cover their hull.
+    /// Like [`polytope`](Self::polytope); `None` also if the listed simplices cover the hull of the points.
     fn uncovered(&self, corners: Corners, near: &mut Vec<u32>) -> Option<Found> {
         self.polytope(corners, near).filter(|(on, _)| !self.is_covered(on))
     }
@@ -221,7 +221,7 @@ impl Search<'_> {
         })
     }
 
-    /// The same of facets with an edge that was found.
+    /// Unlisted facets of the shape that contain an edge that was found.
     fn further_triples(&self, known: &Known, monitor: &Monitor) -> Result<Vec<Found>, Cancelled> {
         let edges: Vec<[u32; 2]> = known.edges().collect();
         of_each(edges.len(), monitor, |i| {

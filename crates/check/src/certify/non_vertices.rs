@@ -219,7 +219,7 @@ pub(super) fn hiddenness(
     })
 }
 
-/// The same of hidden points in cells that fill all of space around a box: by each cell, of the points in it.
+/// Like [`hiddenness`], for hidden points in cells that fill all of space around a box: each cell tests the points in it.
 pub(super) fn hiddenness_in_cells(
     structure: &Structure,
     points: Points,

@@ -19,9 +19,9 @@ use crate::{Class, Placed};
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum Domain {
-    /// The same cells.
+    /// The cells are the same.
     SameCells,
-    /// The same region, cut into other cells.
+    /// The region is the same, but cut into other cells.
     SameRegion {
         /// Six times the volume of the region.
         six_volumes: Exact,

@@ -41,7 +41,7 @@ impl<'a> Scan<'a> {
         Self { bytes, at: 0, last: 0, form: Form::Text, comments: false }
     }
 
-    /// The same of a file with comments.
+    /// Like [`new`](Self::new), for a file with comments.
     pub(super) fn with_comments(bytes: &'a [u8]) -> Self {
         Self { comments: true, ..Self::new(bytes) }
     }

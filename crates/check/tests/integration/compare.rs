@@ -38,7 +38,7 @@ fn the_order_of_points_does_not_count() {
     assert_eq!(comparison.domain, Domain::SameCells);
 }
 
-/// The same cube cut along other diagonals, also on its faces.
+/// Compares a cube with the same cube cut along other diagonals, also on its faces.
 #[test]
 fn other_diagonals_cover_the_same() {
     let positions = grid(2);

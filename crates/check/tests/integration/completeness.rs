@@ -50,7 +50,7 @@ fn shape(case: &Case) -> Complex {
     complex
 }
 
-/// Those that are faces of no other.
+/// The simplices that are not faces of others.
 fn maximal(rows: &BTreeSet<Row>) -> Vec<Row> {
     let bounds = |row: &Row, other: &Row| {
         other.len() == row.len() + 1 && row.iter().all(|v| other.contains(v))

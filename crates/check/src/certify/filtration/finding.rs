@@ -47,9 +47,9 @@ pub enum FiltrationFinding {
     /// A simplex precedes another that must come first: the order is by value, then dimension, then
     /// vertices.
     Order {
-        /// The one that precedes in the file.
+        /// The simplex that precedes in the file.
         before: Simplex,
-        /// The one right after it.
+        /// The simplex right after it.
         after: Simplex,
         /// Their values.
         values: [Exact; 2],

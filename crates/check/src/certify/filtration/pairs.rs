@@ -62,7 +62,7 @@ struct Pairing<'a> {
 
 /// Pairs of dimension 0.
 struct Components {
-    /// Those whose simplices have different values.
+    /// The pairs whose simplices have different values.
     pairs: BTreeSet<[u32; 2]>,
     /// Vertices whose components never end.
     lasting: BTreeSet<u32>,

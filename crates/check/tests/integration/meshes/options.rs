@@ -25,7 +25,7 @@ fn write(folder: &TempDir, files: &[(&str, Vec<u8>)]) {
     files.iter().for_each(|(name, bytes)| std::fs::write(folder.path().join(name), bytes).unwrap());
 }
 
-/// The same files with a weight for each point, as `TetGen` has it.
+/// Writes the files with a weight for each point, in the form of `TetGen`.
 fn with_attributes(folder: &TempDir) {
     let [(_, node), (_, ele)] = tetgen(&POINTS, &CELLS, 0).try_into().unwrap();
     let node = String::from_utf8(node).unwrap().replace("5 3 0 0", "5 3 2 1");
