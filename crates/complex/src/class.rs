@@ -82,7 +82,7 @@ impl ByClass<usize> {
     /// the whole triangulation is. For `#[serde(serialize_with)]`.
     ///
     /// # Errors
-    /// Those of the serializer.
+    /// Errors of the serializer.
     pub fn serialize_shape<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         #[derive(Serialize)]
         struct Shape {

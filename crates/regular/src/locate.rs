@@ -76,8 +76,8 @@ impl Triangulation {
         self.locate_from(point, self.cell_near(point))
     }
 
-    /// The same by a walk from a cell; `None` also where there is no such cell. Fast where the cell is near the
-    /// point: that of the last point, say, of points along a curve.
+    /// Like [`locate`](Self::locate), by a walk from a cell; `None` also if that cell does not exist. This is fast if the cell is
+    /// near the point, such as the cell of the previous point along a curve.
     pub fn locate_from(&self, point: [f64; 3], cell: u32) -> Option<Location> {
         let mut cell = match self.infinite_corner(*self.cells().get(cell as usize)?) {
             Some(corner) => self.adjacency()[cell as usize][corner] / 4,

@@ -38,7 +38,7 @@ pub(super) struct Cavity {
 struct Facet {
     /// Its vertices; with the new point as fourth corner they are a positively oriented cell.
     corners: [u32; 3],
-    /// The same facet as 4·cell + corner of the cell outside the cavity.
+    /// The facet as 4·cell + corner of the cell outside the cavity.
     outside: u32,
 }
 
@@ -226,8 +226,8 @@ impl Cavity {
         }
     }
 
-    /// The same for more vertices than the table holds: sorting by edge brings the two facets at each edge
-    /// together.
+    /// Makes new cells the neighbours of each other, for more vertices than the table holds: sorting by edge brings the two
+    /// facets at each edge together.
     fn join_by_sorting(&mut self, mesh: &mut Mesh) {
         let mut edges = Vec::with_capacity(3 * self.facets);
         for (facet, &new) in self.boundary[..self.facets].iter().zip(&self.new_cells) {

@@ -51,7 +51,7 @@ pub fn insert_all(
     CellArrays::of_cells(cells, at_infinity)
 }
 
-/// The same, with cells in the order in which they were made. The corner 0 of free slots is [`DELETED`].
+/// Like [`insert_all`], with cells in the order of their creation. The corner 0 of free slots is [`DELETED`].
 pub(crate) fn insert_cells(
     positions: &[[f64; 3]],
     weights: &[f64],

@@ -78,7 +78,7 @@ impl Predicates<'_> {
         exact::squared_radius(self.sites(simplex))
     }
 
-    /// The same as a ratio of 64-bit integers, where a lattice allows.
+    /// The squared radius of the smallest orthogonal sphere as a ratio of 64-bit integers, if a lattice allows that.
     pub fn small_radius<const N: usize>(&self, simplex: [u32; N]) -> Option<SmallRadius> {
         let sites = self.sites(simplex);
         let weight = sites[0].weight;

@@ -14,7 +14,7 @@ pub(super) struct Slots {
 }
 
 impl Slots {
-    /// Those of a triangulation in one piece.
+    /// The slots of a triangulation in one piece.
     pub(super) fn of_one(cells: Vec<Cell>) -> Self {
         Self { chunks: vec![cells], first: 0, bits: Triangulation::MAX_CELLS.ilog2() }
     }

@@ -45,7 +45,7 @@ impl Pen {
         Self { stroke: None, width: 0.0, dashed: false, fill, fill_opacity: opacity }
     }
 
-    /// The same pen, with a dashed line.
+    /// Returns this pen with a dashed line.
     #[must_use]
     pub fn dashed(self) -> Self {
         Self { dashed: true, ..self }

@@ -71,7 +71,7 @@ impl Mesh {
 /// The colour of a mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Colours {
-    /// The same everywhere.
+    /// One colour everywhere.
     Uniform(Rgb),
     /// One for each vertex, blended over the triangles.
     Vertex(Vec<Rgb>),
