@@ -23,7 +23,7 @@ pub(super) struct Set {
 enum Kind {
     /// The points of the skull, upsampled to so many samples along each axis.
     Skull,
-    /// The same in the millimetres of a tilted scan, where coordinates are rounded.
+    /// The points of the skull in the millimetres of a tilted scan, where coordinates are rounded.
     Scan,
     /// So many random points in a cube, one in each unit of volume.
     Random,

@@ -141,7 +141,7 @@ impl Complex {
         self.0.lowest
     }
 
-    /// The same complex with another lowest dimension.
+    /// Returns this complex with another lowest dimension.
     fn with_lowest(&self, lowest: usize) -> Self {
         Self(Arc::new(PlacedComplex { lowest, ..PlacedComplex::clone(&self.0) }))
     }

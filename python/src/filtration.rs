@@ -235,7 +235,7 @@ impl Simplices {
         Ok(self.ordered().pairs())
     }
 
-    /// Those of dimension 1.
+    /// The persistence pairs of dimension 1.
     fn loops(&self, py: Python<'_>) -> PyResult<&ladder::Loops> {
         self.work(py, |ordered| ordered.loops().map(|_| ()))?;
         self.ordered().loops().map_err(told)

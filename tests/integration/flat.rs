@@ -105,7 +105,7 @@ fn flat_shapes_are_those_of_the_definition() {
     );
 }
 
-/// The same points in a plane of the axes and in a tilted one, a turn by a right angle apart.
+/// Compares points in a plane of the axes with the same points in another plane, turned and scaled by √2.
 #[test]
 fn a_turn_changes_nothing_but_places() {
     let flat: Vec<[f64; 3]> =

@@ -67,7 +67,7 @@ fn files(folder: &Path) -> Vec<(String, Vec<u8>)> {
     files
 }
 
-/// The same pieces, files and numbers from any number of ranks.
+/// Asserts that any number of ranks gives the same pieces, files and numbers.
 fn same(options: &str) {
     let one = tempfile::tempdir().unwrap();
     let command = format!("shape {options} --blocks 11 -o out.pvtu out.pvtp out.vtu");

@@ -56,7 +56,7 @@ fn points_come_through_a_pipe_that_is_opened_once() {
     }
 }
 
-/// The same for commands that ask more of a file than its points: they read a pipe once, or say why they cannot.
+/// Commands that need more of a file than its points read a pipe once, or say why they cannot.
 #[test]
 #[cfg(unix)]
 fn commands_open_a_pipe_once() {

@@ -22,7 +22,7 @@ fn limited(folder: &Path, resource: Resource, limit: u64, args: &[&str]) -> Outp
     limited_with(&[], folder, resource, limit, args)
 }
 
-/// The same with variables of the environment.
+/// Like [`limited`], with environment variables.
 fn limited_with(
     variables: &[(&str, &str)],
     folder: &Path,
@@ -44,7 +44,7 @@ fn refused(folder: &Path, args: &str, words: &[&str]) {
     refused_as(1, folder, args, words);
 }
 
-/// The same with another code.
+/// Like [`refused`], with another exit code.
 fn refused_as(expected: i32, folder: &Path, args: &str, words: &[&str]) {
     let names = || -> Vec<_> {
         let mut names: Vec<_> =

@@ -376,7 +376,7 @@ fn filtrations_hold_all_shapes_of_the_torus() {
     }
 }
 
-/// The same voids, but for the rounding of their volumes.
+/// Asserts that voids are equal, except for the rounding of their volumes.
 fn assert_same_voids(some: &[Void], others: &[Void]) {
     let sorted = |voids: &[Void]| {
         let mut voids = voids.to_vec();

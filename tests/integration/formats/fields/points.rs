@@ -31,7 +31,7 @@ pub fn places(path: &Path) {
     assert_eq!((points.weights, points.values), (None, None), "{}", path.display());
 }
 
-/// The same, and nothing is said about them.
+/// Like [`places`]; also asserts that there are no warnings.
 pub fn without_a_word(path: &Path) {
     places(path);
     let told = json(path.parent().unwrap(), &["info", path.to_str().unwrap()]);
