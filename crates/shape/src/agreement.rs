@@ -8,7 +8,7 @@ use walpha_complex::canonical::sorted;
 
 use crate::{Class, Complex, Simplices};
 
-/// How the complexes of two engines differ, which is a fault of one of them.
+/// A difference between the complexes of two engines, which is a fault of one of them.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "the engines differ in {count} simplices: {} {simplex:?} is {} by cgal and {} by native",
@@ -21,9 +21,9 @@ pub struct Disagreement {
     pub count: u64,
     /// The input indices of the first of these, of the highest dimension.
     pub simplex: Vec<u32>,
-    /// Its class by CGAL; `None` if that does not list it.
+    /// Its class by CGAL; `None` if CGAL does not list it.
     pub cgal: Option<Class>,
-    /// Its class by the native engine; `None` if that does not list it.
+    /// Its class by the native engine; `None` if that engine does not list it.
     pub native: Option<Class>,
 }
 

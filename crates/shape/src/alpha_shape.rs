@@ -157,7 +157,7 @@ impl AlphaShape {
         Placed::new(positions, weights, self.power_alpha(), &self.complex)
     }
 
-    /// The simplices and their classes, in canonical order; exterior ones only if they were asked for.
+    /// The simplices and their classes, in canonical order. Exterior ones are listed only if they were requested.
     pub fn complex(&self) -> &Complex {
         &self.complex
     }
@@ -167,7 +167,7 @@ impl AlphaShape {
         &self.duplicates
     }
 
-    /// Points that are not vertices of the regular triangulation, ascending; `None` unless they were asked for
+    /// Points that are not vertices of the regular triangulation, ascending; `None` unless they were requested
     /// ([`ShapeOptions::hidden`], [`ShapeOptions::exterior`]).
     pub fn hidden(&self) -> Option<&[u32]> {
         self.hidden.as_deref()

@@ -17,11 +17,11 @@ pub struct Betti {
     /// nothing: of a shape that leaves something out, those around the parts of the complement, one less than
     /// there are, and one for each direction in which the complement does not go round.
     pub b2: u64,
-    /// On a torus: 1 for the whole of it, else 0. `None` in space, where it is always 0.
+    /// On a torus: 1 for the whole torus, otherwise 0. `None` in space, where it is always 0.
     pub b3: Option<u64>,
 }
 
-/// In words in space, by letters on a torus.
+/// Writes words in space and letters on a torus.
 impl fmt::Display for Betti {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { b0, b1, b2, b3 } = *self;
@@ -64,7 +64,7 @@ impl From<Betti> for Vec<u64> {
 #[error("{given} Betti numbers: there must be three, or four of a torus")]
 #[non_exhaustive]
 pub struct BettiError {
-    /// How many numbers there are.
+    /// The number of numbers that were given.
     pub given: usize,
 }
 

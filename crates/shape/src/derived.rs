@@ -8,8 +8,8 @@ use std::sync::{Arc, OnceLock};
 pub(crate) struct Derived<T>(OnceLock<Arc<T>>);
 
 impl<T> Derived<T> {
-    /// The value, computed at the first call; of calls at once each may compute it. No lock is held meanwhile: a thread that waits for
-    /// its share of parallel work takes up other work, and that may ask for the same value.
+    /// Returns the value, which the first call computes; simultaneous calls may each compute it. No lock is held meanwhile: a
+    /// thread that waits for its share of parallel work takes other work, which may need the same value.
     pub(crate) fn get(&self, compute: impl FnOnce() -> T) -> &T {
         if let Some(value) = self.0.get() {
             return value;

@@ -3,8 +3,8 @@ use walpha_base::UnionFind;
 use super::Surface;
 use super::solid::join;
 
-/// Numbers of edges and vertices where the boundary of a shape is not a manifold. Other programs expect of a solid
-/// that there are none; alpha shapes often have some.
+/// Numbers of edges and vertices where the boundary of a shape is not a manifold. Other programs expect that a solid has none;
+/// alpha shapes often have some.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct ManifoldDefects {
@@ -16,7 +16,7 @@ pub struct ManifoldDefects {
 }
 
 impl ManifoldDefects {
-    /// Whether there are none.
+    /// Whether there are no defects.
     pub fn is_empty(&self) -> bool {
         *self == Self::default()
     }

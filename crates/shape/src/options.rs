@@ -16,7 +16,7 @@ pub const MOST_FOR_CGAL: usize = 20_000;
 #[derive(Clone, Copy)]
 pub struct Classifier(pub fn(&Sites<'_>, f64) -> Result<Complex, ShapeError>);
 
-/// Engines give one answer, so options are equal whichever of them is at hand.
+/// Engines give the same answer, so options are equal regardless of the available engine.
 impl PartialEq for Classifier {
     fn eq(&self, _: &Self) -> bool {
         true
@@ -108,7 +108,7 @@ impl Balls {
     }
 }
 
-/// How to compute the shape of weighted points.
+/// Options for the computation of the shape of weighted points.
 ///
 /// ```
 /// use walpha_shape::{Alpha, Engine, ShapeOptions};
@@ -121,7 +121,7 @@ impl Balls {
 pub struct ShapeOptions {
     /// The parameter α.
     pub alpha: Alpha,
-    /// What α + ω means.
+    /// The meaning of α + ω.
     pub balls: Balls,
     /// The implementation that computes the shape.
     pub engine: Engine,

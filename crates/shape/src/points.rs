@@ -4,8 +4,8 @@ use walpha_base::advice::Advise;
 
 /// Weighted points, with values where they are known; as many weights, and values, as positions.
 ///
-/// They are made of what is at hand: a `Vec` of positions is taken over, borrowed positions are copied, 24 bytes each.
-/// Without weights all are 0. The numbers are checked where they are used.
+/// They are made from the available data: a `Vec` of positions is taken over, borrowed positions are copied, 24 bytes each.
+/// Without weights all are 0. The numbers are checked when they are used.
 ///
 /// ```
 /// use walpha_shape::{Alpha, ShapeOptions, WeightedPoints, alpha_shape};
@@ -32,7 +32,7 @@ pub struct WeightedPoints {
 #[error("{given} {column} for {points} points: each point needs one")]
 #[non_exhaustive]
 pub struct LengthsError {
-    /// What the column contains.
+    /// The content of the column.
     pub column: &'static str,
     /// Its number of entries.
     pub given: usize,
@@ -40,7 +40,7 @@ pub struct LengthsError {
     pub points: usize,
 }
 
-/// The range of weights. Open, as they are plain numbers.
+/// The range of weights. This struct is not `#[non_exhaustive]` because it consists of plain numbers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct WeightSummary {
     /// The smallest.

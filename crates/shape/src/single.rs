@@ -5,13 +5,13 @@ use walpha_base::shown::{number, six_digits};
 
 use super::Surface;
 
-/// How coordinates become single precision. Far from the origin rounding moves them, up to letting vertices fall onto one
-/// another; an offset that is subtracted first keeps them apart.
+/// The conversion of coordinates to single precision. Far from the origin rounding moves them, and vertices may even coincide; an
+/// offset that is subtracted first keeps them apart.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct SinglePrecision {
-    /// What is subtracted along x, y and z: a multiple of a power of ten, the roundest that suffices. 0 along axes that can do
-    /// without.
+    /// The offset that is subtracted along x, y and z: a multiple of the largest power of ten that suffices. 0 along axes that
+    /// need no offset.
     pub offset: [f64; 3],
     /// The largest error of a coordinate after that, in the unit of the coordinates.
     pub error: f64,
@@ -60,13 +60,13 @@ impl SinglePrecision {
                 }
             };
             let shifted = Self { offset: [0, 1, 2].map(of_axis), ..exact };
-            // An axis on which it gains nothing stays as it is.
+            // Leaves an axis unchanged if the offset gains nothing there.
             let gains = shifted.errors(places);
             let kept =
                 |axis: usize| if gains[axis] < errors[axis] { shifted.offset[axis] } else { 0.0 };
             Self { offset: [0, 1, 2].map(kept), ..exact }.measured(places)
         };
-        // Where vertices that no edge joins are nearer to each other than any edge is long, as near as can be.
+        // If vertices that no edge joins are nearer to each other than any edge is long, the error is made as small as possible.
         let found = [tolerated, 0.0].map(around);
         let best = found.into_iter().find(suffices);
         best.unwrap_or_else(|| {
@@ -85,7 +85,7 @@ impl SinglePrecision {
         self.offset != [0.0; 3]
     }
 
-    /// What a user of the mesh has to know, if anything.
+    /// The remark that a user of the mesh needs, if any.
     pub fn remark(&self) -> Option<String> {
         let [x, y, z] = self.offset.map(number);
         let merged = match self.merged {
@@ -129,7 +129,7 @@ impl SinglePrecision {
         places.par_iter().map(error).reduce(|| [0.0; 3], larger)
     }
 
-    /// How many different places become equal to others.
+    /// The number of different positions that become equal to others.
     fn merges(&self, places: &[[f64; 3]]) -> usize {
         // Adding 0 turns −0 into 0.
         let rounded = distinct(places, |place| self.round(place).map(|x| (x + 0.0).to_bits()));
@@ -164,7 +164,7 @@ fn length([a, b]: [[f64; 3]; 2]) -> f64 {
 fn offset(low: f64, high: f64, tolerated: f64) -> f64 {
     let (middle, half) = (f64::midpoint(low, high), high / 2.0 - low / 2.0);
     let first = middle.abs().log10().floor();
-    // What is smaller than all numbers of single precision is none of these elsewhere either.
+    // An offset does not help numbers that are smaller than all numbers of single precision.
     if first < -45.0 {
         return 0.0;
     }
@@ -221,7 +221,7 @@ mod tests {
         let (places, edges) = roof([0.0; 3]);
         let near = single(&places, &edges);
         assert!(!near.has_offset() && near.error > 0.0 && near.remark().is_none());
-        // Whole numbers below 2²⁴, wherever they are.
+        // Whole numbers below 2²⁴, anywhere.
         let whole: Vec<[f64; 3]> =
             (0..9).map(|i| [16_000_000.0 + f64::from(i), 0.0, -1.0]).collect();
         assert_eq!(single(&whole, &[[0, 1]]), SinglePrecision::default());

@@ -140,7 +140,7 @@ impl ComponentSums {
     }
 }
 
-/// No vertex yet.
+/// A component without vertices.
 impl Default for ComponentSums {
     fn default() -> Self {
         Self { vertices: 0, low: [f64::MAX; 3], high: [f64::MIN; 3], ..Self::at([0.0; 3]) }

@@ -5,7 +5,7 @@ use super::{Class, Complex};
 /// The side of a facet at an edge: the ends of the edge, the smaller one first, and the corners of the facet there, as 3·row + corner.
 pub(super) type Side = ([u32; 2], [u32; 2]);
 
-/// Sides that are sorted at once, 256 MiB.
+/// Number of sides that are sorted at the same time, 256 MiB.
 const AT_ONCE: usize = 1 << 24;
 
 /// The visible part of a shape: regular facets and all singular simplices, with a compact numbering of their

@@ -53,9 +53,9 @@ fn cross(a: Winding, b: Winding) -> [i128; 3] {
 /// another copy of their start: the set winds round the torus.
 #[derive(Debug)]
 pub struct WindingSets {
-    /// By member: its parent, and its winding relative to the parent.
+    /// For each member, its parent, and its winding relative to the parent.
     parents: Vec<(u32, Winding)>,
-    /// By root, the directions in which a set winds round, if it does.
+    /// For each root, the directions in which its set winds round, if it does.
     rounds: BTreeMap<u32, Directions>,
 }
 
@@ -117,7 +117,7 @@ impl WindingSets {
 /// The result of uniting two members of [`WindingSets`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum United {
-    /// They were in two sets, which are one now.
+    /// They were in two sets, which are now one.
     Two,
     /// They were in one set, which is now known to wind round in a new direction.
     Round(Winding),

@@ -26,7 +26,7 @@ pub(crate) struct MergedComplex {
     pub b0: u64,
     /// One sheet for each regular facet and two for each singular one, in the order of the facets.
     pub facet_sheets: Vec<u32>,
-    /// The sheet of each singular edge, in their order.
+    /// The sheet of each singular edge, in the order of the edges.
     pub edge_sheets: Vec<u32>,
     /// Input indices of hidden sites, where the whole triangulation was made.
     pub hidden: Option<Vec<u32>>,
@@ -44,7 +44,7 @@ pub(crate) struct Block {
     pub input: Vec<u32>,
     /// Number of the block's own points.
     pub own: u32,
-    /// On a torus: how the points of the halo were moved.
+    /// On a torus: the shifts of the points of the halo.
     pub copies: Option<Copies>,
 }
 

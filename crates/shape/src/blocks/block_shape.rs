@@ -18,7 +18,7 @@ pub struct Own<'a> {
     pub positions: &'a [[f64; 3]],
     /// Power weights.
     pub weights: &'a [f64],
-    /// Which points are the block's own. The others are a superset of its halo.
+    /// Marks the points that are the block's own. The others are a superset of its halo.
     pub own: &'a [bool],
 }
 
@@ -30,7 +30,7 @@ pub struct BlockShape {
     pub complex: Complex,
     /// One sheet for each regular facet and two for each singular one, in the order of the facets.
     pub facet_sheets: Vec<u32>,
-    /// The sheet of each singular edge, in their order.
+    /// The sheet of each singular edge, in the order of the edges.
     pub edge_sheets: Vec<u32>,
     /// Number of sheets.
     pub sheets: u32,

@@ -8,7 +8,7 @@ use crate::{Class, Complex, Simplices};
 /// Points whose records one thread gathers at a time.
 const CHUNK: usize = 1 << 12;
 
-/// Where the record of a point is.
+/// The location of the record of a point.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Location {
     pub records: u32,
@@ -62,7 +62,7 @@ impl Counts {
         }
     }
 
-    /// Bytes of so many rows, classes and sheets once gathered.
+    /// The bytes of these rows, classes and sheets after they are gathered.
     pub(super) fn bytes(self) -> u64 {
         let rows = |vertices: usize, count: usize| {
             (vertices * size_of::<u32>() + size_of::<Class>()) as u64 * count as u64
@@ -107,7 +107,7 @@ impl<const N: usize> List<N> {
 }
 
 impl Gathered {
-    /// Lists of so many elements, which are to be written.
+    /// Allocates lists for this number of elements, which are then written.
     pub(super) fn new(counts: Counts) -> Self {
         Self {
             cells: List::new(counts.cells),
@@ -119,7 +119,7 @@ impl Gathered {
         }
     }
 
-    /// All that is to be written.
+    /// Everything that has to be written.
     pub(super) fn rest(&mut self) -> Rest<'_> {
         Rest {
             cells: self.cells.rest(),
@@ -144,7 +144,7 @@ impl Gathered {
     }
 }
 
-/// What is not written yet of gathered lists.
+/// The part of gathered lists that is not written yet.
 pub(super) struct Rest<'a> {
     cells: Part<'a, 4>,
     facets: Part<'a, 3>,

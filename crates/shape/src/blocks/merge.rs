@@ -53,7 +53,7 @@ pub(super) fn merge(
     }
 }
 
-/// Where each site is recorded, among the records of its bucket in all blocks.
+/// The location of the record of each site, among the records of its bucket in all blocks.
 fn locations(sites: &Sites<'_>, partition: &Partition, buckets: Buckets) -> Vec<Location> {
     let mut locations = vec![Location::default(); sites.input().len()];
     let mut first = 0;

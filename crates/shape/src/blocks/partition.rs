@@ -188,7 +188,7 @@ impl Partition {
 pub(crate) enum Reach {
     /// The points whose balls at this α meet a ball of the block's points: they decide the shape at α.
     Balls(f64),
-    /// The points within this distance, whatever their balls.
+    /// The points within this distance, for balls of any size.
     Distance(f64),
 }
 
@@ -280,7 +280,7 @@ impl Node {
 
     fn longest_side(&self) -> usize {
         let side = |k: usize| self.high[k] - self.low[k];
-        // Of equal sides the last, along which the samples of a volume are farthest apart in memory.
+        // Of equal sides, choose the last, along which the samples of a volume are farthest apart in memory.
         (0..3).max_by(|&a, &b| side(a).total_cmp(&side(b))).unwrap_or(2)
     }
 

@@ -6,14 +6,14 @@ use walpha_regular::internals::Sites;
 use super::partition::{Partition, Reach};
 use crate::PlanError;
 
-/// The blocks, and how many of them are computed at once.
+/// The blocks, and how many of them are computed at the same time.
 pub(crate) struct Plan {
     pub partition: Partition,
     pub at_once: usize,
-    /// Points in the blocks worked on at once, their halos' included.
+    /// The number of points, including those of halos, in the blocks that are computed at the same time.
     at_work: u64,
-    /// The bound on memory, if there is one. Freed memory is then returned to the system at once, which costs a tenth
-    /// of the time, as it must be requested again.
+    /// The bound on memory, if there is one. With a bound, freed memory is returned to the system immediately, which costs a
+    /// tenth of the time because it must be requested again.
     bound: Option<Bound>,
 }
 
@@ -22,16 +22,16 @@ pub(crate) struct Plan {
 struct Bound {
     /// Allowed.
     asked: u64,
-    /// In use when the plan was made.
+    /// The bytes in use when the plan was made.
     resident: u64,
 }
 
 /// The limits of a plan.
 #[derive(Clone, Copy)]
 pub(crate) struct Limits {
-    /// Blocks asked for.
+    /// The requested number of blocks.
     pub blocks: Option<usize>,
-    /// Bytes allowed.
+    /// The allowed number of bytes.
     pub memory: Option<u64>,
 }
 
@@ -70,14 +70,14 @@ fn fewest(points: usize, threads: usize) -> usize {
 }
 
 impl Plan {
-    /// All sites as one block.
+    /// Plans one block with all sites.
     pub(crate) fn whole(sites: &Sites<'_>) -> Self {
         let at_work = sites.input().len() as u64;
         Self { partition: Partition::new(sites, 1), at_once: 1, at_work, bound: None }
     }
 
-    /// As many blocks as there are threads; with a bound on memory, those that keep it and take the
-    /// least time. O(n log n).
+    /// Plans as many blocks as there are threads; with a bound on memory, the blocks that respect it and take the least time. O(n
+    /// log n).
     ///
     /// # Errors
     /// [`PlanError`] when the bound cannot be kept.
@@ -97,7 +97,7 @@ impl Plan {
         }
     }
 
-    /// As many blocks as there are threads, or the whole on all threads where halos would cost more than that loses.
+    /// Plans as many blocks as there are threads, or a single block on all threads if halos would cost more than that loses.
     fn fast(sites: &Sites<'_>, reach: Reach, threads: usize) -> Self {
         let points = sites.input().len();
         let at_once = fewest(points, threads);

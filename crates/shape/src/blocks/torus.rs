@@ -92,7 +92,7 @@ mod tests {
         (0..512).map(|i| std::array::from_fn(|k| cube(i)[k] + within(i)[k])).collect()
     }
 
-    /// As many, all in one corner of an eighth of the box.
+    /// The same number of points, all in one corner of an eighth of the box.
     fn corner() -> Vec<[f64; 3]> {
         even().into_iter().map(|point| point.map(|x| x / 2.0)).collect()
     }

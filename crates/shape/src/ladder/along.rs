@@ -53,8 +53,8 @@ pub(super) fn rows(starts: &[u32], group: u32) -> Range<usize> {
     starts[group as usize] as usize..starts[group as usize + 1] as usize
 }
 
-/// Where the rows of each group start, and where the last ones end. Groups ascend; `before` says whether a row belongs to
-/// one before this.
+/// The start of the rows of each group, and the end of the last ones. Groups ascend; `before` says whether a row belongs to a
+/// group before this one.
 pub(super) fn starts<T: Sync>(
     rows: &[T],
     groups: usize,

@@ -27,9 +27,9 @@ impl Radius {
 /// Squared radii of the smallest orthogonal spheres, each the nearest double, by row.
 #[derive(Debug)]
 pub(super) struct Radii {
-    /// Of all cells, …
+    /// The radii of all cells, …
     pub cells: Vec<f64>,
-    /// … and of what is Gabriel among lower simplices.
+    /// … and those of the Gabriel simplices among the lower ones.
     pub facets: Vec<Radius>,
     pub edges: Vec<Radius>,
     pub vertices: Vec<Radius>,
@@ -220,8 +220,8 @@ pub(super) fn incidence_and_radii(
     Ok((incidence, radii))
 }
 
-/// On which side of the facet opposite each corner a cell lies: its corners are positively oriented, and those of the facet
-/// ascend. Two cells at a facet are on different sides, so that each is written to a place of its own.
+/// The side of the facet opposite each corner on which a cell lies. The corners of the cell are positively oriented, and those of
+/// the facet ascend. Two cells at a facet are on different sides, so each is written to its own place.
 fn sides([_, _, c, d]: [u32; 4]) -> [usize; 4] {
     // An exchange of two corners changes the side: (a, b, c, d) is on side 0 of (a, b, c), so (a, b, d, c) is on
     // side 1 of (a, b, d); (b, c, d, a) takes three exchanges and (a, c, d, b) two, and one more where c > d.

@@ -95,8 +95,8 @@ impl Filtration {
         self.optimal_alpha(NonZeroU64::MIN)
     }
 
-    /// The smallest α at which all points are in at most so many solid components; as
-    /// [`Filtration::one_region`], of CGAL's `Alpha_shape_3::find_optimal_alpha`. O(n log n).
+    /// The smallest α at which all points are in at most this many solid components; like [`Filtration::one_region`], the
+    /// counterpart of CGAL's `Alpha_shape_3::find_optimal_alpha`. O(n log n).
     #[expect(clippy::missing_panics_doc, reason = "an invariant")]
     pub fn optimal_alpha(&self, components: NonZeroU64) -> Alpha {
         let values = self.values();
@@ -151,9 +151,8 @@ impl Filtration {
         Suggestions { all_points, one_region, no_void, plateau: [low, high] }
     }
 
-    /// At most `count` critical values at which Betti numbers change, as evenly spaced as possible in the
-    /// logarithm of the squared radius α + max ω of the largest balls. Each is the least double
-    /// at which the shape is the new one. O(n·count).
+    /// At most `count` critical values at which Betti numbers change, as evenly spaced as possible in the logarithm of the
+    /// squared radius α + max ω of the largest balls. Each is the smallest double at which the shape is the new one. O(n·count).
     ///
     /// # Panics
     /// When `count` is less than 2.
@@ -234,7 +233,7 @@ impl Curve {
 pub(super) struct Visible {
     /// Their number.
     pub count: u64,
-    /// How many appear, disappear, or turn from singular to regular at this level.
+    /// The number of simplices that appear, disappear, or turn from singular to regular at this level.
     pub changed: u64,
 }
 
@@ -268,8 +267,8 @@ impl Levels<'_> {
         change.into_iter().map(sight).collect()
     }
 
-    /// The levels with visible simplices that differ from those of the level before. Of several equal levels, `wanted`
-    /// is kept if it is one of them, else the first. O(n).
+    /// The levels with visible simplices that differ from those of the level before. Of several equal levels, `wanted` is kept if
+    /// it is one of them, otherwise the first. O(n).
     pub fn distinct(&self, wanted: Alpha) -> Vec<Alpha> {
         let mut kept: Vec<Alpha> = Vec::new();
         let mut has_visible = false;
@@ -288,13 +287,12 @@ impl Levels<'_> {
 }
 
 impl Filtration {
-    /// At most `count` critical values for pictures, ascending: each has visible simplices, and others than the one
+    /// At most `count` critical values for pictures, ascending: each has visible simplices, and different ones from the value
     /// before.
     ///
-    /// They are evenly spaced in the mean of three measures, so that neither few large simplices nor many small ones
-    /// dominate: the logarithm of the squared radius of the largest balls, the
-    /// facets and edges that appear and disappear, and the Betti numbers that change. The last two put most
-    /// levels where the shape takes form. O(n).
+    /// They are evenly spaced in the mean of three measures, so that neither few large simplices nor many small ones dominate:
+    /// the logarithm of the squared radius of the largest balls, the facets and edges that appear and disappear, and the Betti
+    /// numbers that change. The last two put most levels where the shape forms. O(n).
     pub fn stops(&self, curve: &Curve, count: usize) -> Vec<Alpha> {
         let shows = |&k: &usize| {
             let Visible { count, changed } = curve.visible[k];

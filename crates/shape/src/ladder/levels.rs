@@ -11,11 +11,11 @@ use crate::{Alpha, AlphaShape, Betti, Class, Complex, WeightedPoints};
 /// Its fields are public: this is plain data.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Span {
-    /// From here on it is in the shape.
+    /// The first level at which it is in the shape.
     pub first: u32,
-    /// From here on it is a face of another simplex of the shape; singular before.
+    /// The first level at which it is a face of another simplex of the shape; it is singular before.
     pub regular: u32,
-    /// From here on it is not on the boundary.
+    /// The first level at which it is not on the boundary.
     pub interior: u32,
 }
 
@@ -176,7 +176,7 @@ impl Cofaces {
     }
 }
 
-/// By row, the level at which a simplex enters by its own sphere, if that is empty.
+/// For each row, the level at which a simplex enters by its own sphere, if that sphere is empty.
 pub(super) struct OwnLevels<F, E, V> {
     pub facets: F,
     pub edges: E,
@@ -266,7 +266,7 @@ impl Levels<'_> {
     /// simplices outside are kept. `betti` is the level's, of [`Levels::betti`]. O(n log n).
     ///
     /// # Panics
-    /// If there is no such level.
+    /// If the level does not exist.
     pub fn shape(&self, level: usize, exterior: bool, betti: Betti) -> AlphaShape {
         let alpha = self.alphas[level];
         self.filtration.whole.at(alpha, exterior, self.complex(level, exterior), betti)
@@ -288,7 +288,7 @@ impl Levels<'_> {
         edges.filter(|(_, span)| span.first < span.regular).collect()
     }
 
-    /// All cells of the triangulation, and the level from which on each is in the shape. O(n).
+    /// All cells of the triangulation, each with the level at which it enters the shape. O(n).
     pub fn cells(&self) -> Vec<([u32; 4], u32)> {
         let rows = self.filtration.whole.complex().cells.rows();
         rows.iter().copied().zip(self.cells.iter().copied()).collect()

@@ -25,10 +25,10 @@ pub struct Level {
     /// Its facets, and those of the triangulation outside it.
     #[serde(serialize_with = "ByClass::serialize_shape")]
     pub facets: ByClass<usize>,
-    /// Its edges, likewise.
+    /// Its edges, and those of the triangulation outside it.
     #[serde(serialize_with = "ByClass::serialize_shape")]
     pub edges: ByClass<usize>,
-    /// Its vertices, likewise.
+    /// Its vertices, and those of the triangulation outside it.
     #[serde(serialize_with = "ByClass::serialize_shape")]
     pub vertices: ByClass<usize>,
     /// Components, tunnels, voids.

@@ -47,7 +47,7 @@ impl Levels<'_> {
         let sets = UnionFind::new(firsts.len());
         let mut count = 0;
         let grow = |level| {
-            // All of them first: one may be united with others that enter at the same level.
+            // Count all of them first, because one may be united with others that enter at the same level.
             count += simplices.at(level).len() as u64;
             for &joint in by_level.at(level) {
                 let [a, b] = adjacent_pairs[joint as usize];
@@ -94,14 +94,14 @@ pub(super) struct LevelComplement<'a> {
     levels: &'a Levels<'a>,
     spheres: Predicates<'a>,
     sets: Sets,
-    /// By root, the sums over each component.
+    /// For each root, the sums over its component.
     hollows: Vec<Hollow>,
-    /// A superset of the roots: those, and cells that were roots once.
+    /// A superset of the roots: the roots, and cells that were roots before.
     roots: Vec<u32>,
     count: u64,
     /// The cells of each component as a circular list: the next of each cell.
     next: Vec<u32>,
-    /// By root, the α that fills a component and its number of cells then, where it has been computed.
+    /// For each root, the α that fills its component and its number of cells then, if it was computed.
     known: BTreeMap<u32, (usize, f64)>,
 }
 
@@ -114,9 +114,9 @@ pub(super) struct UpperBetti {
 
 /// The union-find over cells.
 enum Sets {
-    /// With the outside, which is one past the last cell.
+    /// Includes the outside, whose number follows that of the last cell.
     InSpace(UnionFind),
-    /// With the directions in which all of them together wind round.
+    /// Includes the directions in which all of them together wind round.
     OnTorus(Torus, WindingSets, Directions),
 }
 

@@ -40,8 +40,8 @@ impl Value {
 }
 
 impl Filtration {
-    /// All critical values, ascending; those between the same two doubles are one. Radii whose intervals meet no other
-    /// are sorted by interval, all others by exact arithmetic.
+    /// All critical values, ascending; values between the same two doubles are one. Radii whose intervals overlap no other are
+    /// sorted by interval, all others by exact arithmetic.
     pub(super) fn values(&self) -> Vec<Value> {
         let radii = self.sorted_radii();
         let spheres = self.spheres();
@@ -166,7 +166,7 @@ impl Firsts<'_> {
 /// The numbers that determine the squared radius of a simplex. Exact on a small lattice only.
 pub(super) fn key<const N: usize>(filtration: &Filtration, mut simplex: [u32; N]) -> Key {
     let weights = &filtration.points().weights;
-    // By weight: congruent simplices may have their vertices in another order.
+    // Sort by weight, because congruent simplices may have their vertices in another order.
     simplex.sort_unstable_by(|&a, &b| weights[a as usize].total_cmp(&weights[b as usize]));
     let corners = filtration.whole.corners(simplex);
     let pairs = (0..N).flat_map(|i| (0..i).map(move |j| (i, j)));
@@ -199,7 +199,7 @@ pub(super) fn is_small_lattice(points: &WeightedPoints, torus: Option<Torus>) ->
 mod tests {
     use super::*;
 
-    /// Also where a product of ranks passes 32 bits.
+    /// Ranks are even also if a product of ranks exceeds 32 bits.
     #[test]
     fn ranks_are_even() {
         assert_eq!(even_ranks(6, 3), [0, 3, 6]);

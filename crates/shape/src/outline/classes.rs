@@ -22,7 +22,7 @@ pub(super) fn in_plane(complex: &Complex, triangles: &Triangles) -> Complex {
         (_, Some(_)) => (row, Class::Interior),
     });
     let edges: Simplices<2> = edges.collect();
-    // What a vertex is on counts in this order.
+    // The simplices that a vertex may be on take precedence in this order.
     let largest = complex.vertices.rows().iter().map(|&[v]| v).max();
     let mut classes = vec![Class::Singular; largest.map_or(0, |v| v as usize + 1)];
     triangles.rows().as_flattened().iter().for_each(|&v| classes[v as usize] = Class::Interior);

@@ -28,10 +28,10 @@ pub struct Polygon {
 /// An edge of a triangle: 3·triangle + corner.
 type Side = u32;
 
-/// On the other side of a side of the boundary: no triangle. Among vertices: none.
+/// Stands for a missing triangle on the other side of a side of the boundary, or for a missing vertex.
 const NONE: u32 = u32::MAX;
 
-/// Triangles of a plane that turn counter-clockwise, and what is beside them.
+/// Triangles of a plane that turn counter-clockwise, and their neighbours.
 pub(super) struct Triangles {
     rows: Vec<[u32; 3]>,
     /// For each side, the same edge as a side of the neighbouring triangle, or [`NONE`].
@@ -145,7 +145,7 @@ fn next(side: Side) -> Side {
 struct Cutter {
     /// The vertices passed that are in no ring yet.
     path: Vec<u32>,
-    /// For each vertex its place in the path, or [`NONE`].
+    /// The place of each vertex in the path, or [`NONE`].
     place: Vec<u32>,
 }
 

@@ -17,7 +17,7 @@ fn flat(places: &[Place]) -> Vec<[f64; 3]> {
     places.iter().map(|&[x, y]| [x, y, 0.0]).collect()
 }
 
-/// Places of the lattice with both coordinates in 0..n, but for some.
+/// Places of the lattice with both coordinates in 0..n, except some.
 fn lattice(n: i32, is_left_out: impl Fn(i32, i32) -> bool) -> Vec<Place> {
     let all = (0..n * n).map(|i| (i % n, i / n));
     all.filter(|&(x, y)| !is_left_out(x, y)).map(|(x, y)| [x.into(), y.into()]).collect()
@@ -99,7 +99,7 @@ fn a_square_with_a_hole() {
     assert_eq!(made.betti().unwrap().b1, 1);
 }
 
-/// With exterior simplices listed, too.
+/// Edges and points outside of polygons, also with exterior simplices listed.
 #[test]
 fn edges_and_points_beside_polygons() {
     let places = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [2.1, 0.0], [9.0, 9.0], [3.2, 0.0]];
@@ -149,7 +149,7 @@ fn an_annulus_pinched_at_a_vertex() {
 #[test]
 fn islands_in_holes() {
     let distance = |x: i32, y: i32| x.min(y).min(13 - x).min(13 - y);
-    // From the rim inwards: a band of two rows of points, and a row left out.
+    // From the rim inwards: a band of two rows of points, then a row left out.
     let places = lattice(14, |x, y| distance(x, y) % 3 == 2);
     let outline = shape(flat(&places), 0.5).outline().cloned().unwrap();
     assert_eq!(summary(&outline, &places), [(1, 50.0), (1, 26.0), (0, 1.0)]);
@@ -182,7 +182,7 @@ fn tilted_planes() {
         shape(flat(&places), 0.5).outline().cloned().unwrap().polygons
     });
     assert_ne!(wanted, mirrored);
-    // Each turns the plane without stretching it, but for a factor.
+    // Each turns the plane and scales it evenly.
     type Turn = fn(f64, f64) -> [f64; 3];
     let turns: [(Turn, f64, [usize; 2], bool); 7] = [
         (|x, y| [x, y, 7.0], 1.0, [0, 1], true),

@@ -66,7 +66,7 @@ pub(super) struct Apart<'a> {
     extent: f64,
     /// The facets at each vertex whose place is in question.
     fans: HashMap<u32, Vec<u32>>,
-    /// All facets, if they have been asked for.
+    /// All facets, if they were requested.
     facets: Option<Boxes>,
 }
 
@@ -144,7 +144,7 @@ impl<'a> Apart<'a> {
         &self.tiling.cells
     }
 
-    /// Where a vertex is now.
+    /// The current position of a vertex.
     pub(super) fn at(&self, v: u32) -> Point {
         match v.checked_sub(self.tiling.vertices) {
             Some(input) => self.of_input[input as usize],
@@ -216,7 +216,7 @@ impl<'a> Apart<'a> {
         self.step(v, &fan, &others, &steps, |_| true)
     }
 
-    /// Moves copies between which are the same cells out of these, but for one, which gets the cells. Returns those that stay.
+    /// Moves copies that share the same cells out of these, except for one, which gets the cells. Returns the copies that stay.
     fn retreat(&mut self, group: &[u32]) -> Vec<u32> {
         let mut order = group.to_vec();
         order.sort_by_key(|v| (self.fans[v].len(), *v));

@@ -63,7 +63,7 @@ pub(super) fn normal([a, b, c]: [[f64; 3]; 3]) -> Option<Vector> {
     unit(cross(u, v))
 }
 
-/// The length of a vector. Roots are rounded alike on every machine, which `hypot` is not.
+/// The length of a vector. Its roots are rounded equally on every machine, unlike those of `hypot`.
 pub(super) fn length(v: Vector) -> f64 {
     let most = v.into_iter().fold(0.0, |most: f64, x| most.max(x.abs()));
     if most == 0.0 {
@@ -98,7 +98,7 @@ mod tests {
         let corner = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
         near(axis(&corner).unwrap(), unit([1.0; 3]).unwrap());
         near(axis(&corner[..2]).unwrap(), unit([1.0, 1.0, 0.0]).unwrap());
-        // One between the others changes nothing.
+        // A direction between the others changes nothing.
         let between = [corner[0], unit([1.0, 1.0, 0.2]).unwrap(), corner[1], corner[0]];
         let found = axis(&between).unwrap();
         assert!(between.iter().all(|&d| dot(found, d) > 0.7), "{found:?}");

@@ -16,7 +16,7 @@ use super::{AlphaShape, Class, Complex, Surface};
 use apart::Apart;
 use tiling::{Place, Tiling};
 
-/// Where a boundary was cut apart to become a manifold, and how far its vertices moved.
+/// The cuts that made a boundary a manifold, and the distances by which its vertices moved.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct Cuts {
@@ -50,7 +50,7 @@ struct Cut {
     solid: Surface,
     cuts: Cuts,
     middles: Vec<Middle>,
-    /// What is to be moved, if there is anything, and the cells there.
+    /// The vertices to move, if there are any, and the cells there.
     around: Option<(Tiling, Vec<Place>)>,
 }
 
@@ -89,7 +89,7 @@ impl Cut {
         let facets = solid.regular.clone();
         let middles = solid.insert_midpoints(&pairs);
         cuts.midpoints = middles.len();
-        // Where a torus is cut open, its cells are not beside each other in space.
+        // Where a torus is cut open, its cells are not adjacent in space.
         let in_space = shape.options.periodic.is_none() && shape.copies.is_empty();
         let around = (in_space && cuts.vertices + cuts.midpoints > 0).then(|| {
             let corners = (&whole, &starts[..], &corners[..]);
@@ -100,7 +100,7 @@ impl Cut {
 }
 
 impl Surface {
-    /// As [`AlphaShape::solid`](crate::AlphaShape::solid) says.
+    /// See [`AlphaShape::solid`](crate::AlphaShape::solid).
     pub(super) fn solid(shape: &AlphaShape) -> (Self, Cuts) {
         let Cut { mut solid, mut cuts, middles, around } = Cut::of(shape);
         if let Some((tiling, places)) = around {
@@ -182,7 +182,7 @@ fn pairs(complex: &Complex, surface: &Surface, edges: &[Vec<Side>]) -> Vec<[[Cor
     let wedges = wedges(complex, edges.iter().map(|sides| sides[0].0.map(number)).collect());
     let mut pairs = Vec::new();
     for sides in edges {
-        // By the third corner of each facet, which is also one of the first or last cell between two facets.
+        // The key is the third corner of each facet, which is also a corner of the first or last cell between two facets.
         let third = |corners: &[Corner; 2]| {
             let row = surface.regular[corners[0] as usize / 3];
             let ends = sides[0].0;
@@ -202,7 +202,7 @@ fn pairs(complex: &Complex, surface: &Surface, edges: &[Vec<Side>]) -> Vec<[[Cor
     pairs
 }
 
-/// By edge, the third and fourth corners of the cells of the shape around it: the link of the edge in the shape.
+/// For each edge, the third and fourth corners of the cells of the shape around it: the link of the edge in the shape.
 fn wedges(complex: &Complex, edges: HashSet<[u32; 2]>) -> HashMap<[u32; 2], Vec<[u32; 2]>> {
     let mut wedges: HashMap<[u32; 2], Vec<[u32; 2]>> = HashMap::new();
     if edges.is_empty() {

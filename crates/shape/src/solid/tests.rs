@@ -163,7 +163,7 @@ fn is_tiled(shape: &AlphaShape) {
 
 #[test]
 fn cells_stay_positively_oriented() {
-    // What is moved anywhere near may leave its cells, and of voxels nothing has to be.
+    // Vertices that are moved near others may leave their cells; in voxels no vertex has to be moved.
     (3..160).step_by(4).for_each(|seed| is_tiled(&some_shape(seed)));
 }
 
@@ -172,7 +172,7 @@ fn sorted(mut row: [u32; 3]) -> [u32; 3] {
     row
 }
 
-/// The shape that has these cells, whatever α would say.
+/// The shape that has these cells, for any α.
 fn of_cells(places: &[Point], cells: &[[u32; 4]]) -> AlphaShape {
     let mut facets: BTreeMap<[u32; 3], Vec<[u32; 3]>> = BTreeMap::new();
     for &cell in cells {
@@ -210,7 +210,7 @@ fn steps_stay_in_flat_cells() {
     assert!(cuts.largest_move < height, "{cuts:?}");
 }
 
-/// In a wide shape the first step is longer, so that single precision has it.
+/// In a wide shape the first step is longer, so that single precision resolves it.
 #[test]
 fn places_differ_in_single_precision() {
     let tetrahedron = |[x, y, z]: Point, size: f64| {

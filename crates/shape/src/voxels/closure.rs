@@ -77,14 +77,14 @@ const CUBE: [[u32; 3]; 8] =
 /// The place of a corner in the 3 × 3 × 3 around it. These places, in the order of z, y and x, are in the order of the numbers of corners.
 const HERE: u32 = 13;
 
-/// What one of the cubes around a corner has of a simplex whose smallest vertex the corner is.
+/// A simplex whose smallest vertex is the corner, as it is contained in the cubes around the corner.
 #[derive(Clone, Debug)]
 struct Pattern<const N: usize> {
     /// The cubes that the simplex is in, a bit for each octant.
     around: u8,
-    /// By cube, a bit, the places of its vertices, of a facet as it is seen from outside of the cube.
+    /// For each cube, as a bit, the places of the vertices; those of a facet as seen from outside of the cube.
     seen: Vec<(u8, [u32; N])>,
-    /// Its places where no side of it is outside: ascending, but for a cell, which keeps its orientation.
+    /// Its places if no side of it is outside: ascending, except that a cell keeps its orientation.
     inner: [u32; N],
 }
 
@@ -188,7 +188,7 @@ fn place(octant: u32, step: [u32; 3]) -> u32 {
     along(0) + 3 * along(1) + 9 * along(2)
 }
 
-/// Patterns as they are gathered, by their places.
+/// Patterns during their collection, by their places.
 type Gathered<const N: usize> = BTreeMap<[u32; N], Vec<(u8, [u32; N])>>;
 
 fn add<const N: usize>(to: &mut Gathered<N>, octant: u32, row: [u32; N]) {

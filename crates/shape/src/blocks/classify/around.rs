@@ -22,10 +22,10 @@ pub(super) struct Walker<'a> {
     pub buckets: Buckets,
 }
 
-/// What walks around the points of a range find.
+/// The results of walking around the points of a range.
 #[derive(Default)]
 pub(super) struct Walked {
-    /// By bucket.
+    /// One element for each bucket.
     pub records: Vec<Records>,
     pub shared: Vec<Side>,
     pub border: Vec<u32>,
@@ -35,7 +35,7 @@ pub(super) struct Walked {
 /// The memory of a thread, used again for the next range.
 pub(super) struct Worker {
     stars: RangeStars,
-    /// By vertex u: 4·v + flags of the facets at the edge uv ([`COVERED`], [`OPEN`]), where v is the last point visited
+    /// For each vertex u: 4·v + flags of the facets at the edge uv ([`COVERED`], [`OPEN`]), where v is the last visited point
     /// that has u as a neighbour.
     edge_flags: Vec<u32>,
     /// The neighbours of the point visited, followed by unused elements.
@@ -47,7 +47,7 @@ pub(super) struct Worker {
     facets: Vec<FacetRow>,
     edges: Vec<EdgeRow>,
     draft: Draft,
-    /// By bucket.
+    /// One element for each bucket.
     records: Vec<Records>,
 }
 
@@ -254,7 +254,7 @@ struct FacetRow {
 struct EdgeRow {
     to: u32,
     class: Class,
-    /// Of a singular edge: 4·cell + corner at the point visited.
+    /// For a singular edge: 4·cell + corner at the visited point.
     corner: Option<u32>,
 }
 

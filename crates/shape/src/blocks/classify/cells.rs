@@ -70,8 +70,8 @@ impl Local<'_> {
         (states, boundary, shared)
     }
 
-    /// Of the facets of a cell, given by 4·cell + corner on both sides, those for which it is the lower side: the bits
-    /// of the singular ones. Unites the corners of exterior cells that they show to be on one sheet.
+    /// Returns the singular facets of a cell as bits. `facets` are its facets as 4·cell + corner on both sides; only those for
+    /// which the cell is the lower side count. Also unites the corners of exterior cells that the facets show to be on one sheet.
     fn unite_and_find_singular(
         &self,
         facets: impl Iterator<Item = (u32, u32)>,

@@ -69,7 +69,7 @@ pub(super) fn classify(
         components: &components,
         buckets,
     };
-    // As many as there are threads at work.
+    // Idle workers. There are as many workers as threads at work.
     let idle: Mutex<Vec<Worker>> = Mutex::default();
     let lock = || idle.lock().expect("no thread panics while it holds the lock");
     let walked = (0..stars.ranges()).into_par_iter().map(|range| {

@@ -49,7 +49,7 @@ impl Sheets {
     }
 }
 
-/// For each item the number of items before it that are counted; and the number of all that are.
+/// For each item, the number of counted items before it; and the number of all counted items.
 fn ranks<T: Sync>(items: &[T], is_counted: impl Fn(&T) -> bool + Sync) -> (Vec<u32>, u32) {
     let count = |items: &[T]| items.iter().filter(|item| is_counted(item)).count() as u32;
     let mut starts: Vec<u32> = items.par_chunks(CELLS).map(count).collect();

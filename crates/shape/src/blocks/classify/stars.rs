@@ -5,7 +5,7 @@ use super::state::State;
 /// Points whose stars one thread walks at a time: they fit its cache.
 pub(in crate::blocks) const RANGE: usize = 1 << 12;
 
-/// At most this many chunks of cells are searched for stars side by side.
+/// The maximum number of chunks of cells that are searched for stars in parallel.
 const CHUNKS: usize = 64;
 
 /// The corners of cells, as 4·cell + corner, at the vertices of each range of points.
@@ -14,7 +14,7 @@ pub(super) struct Stars<'a> {
     own: u32,
     /// Grouped by range.
     corners: Vec<u32>,
-    /// Where each range starts, and where the last one ends.
+    /// The start of each range, and the end of the last one.
     starts: Vec<usize>,
 }
 
@@ -23,7 +23,7 @@ pub(super) struct Stars<'a> {
 pub(super) struct RangeStars {
     first: u32,
     corners: Vec<u32>,
-    /// Where the star of each vertex starts, and where the last one ends.
+    /// The start of the star of each vertex, and the end of the last one.
     starts: Vec<u32>,
 }
 

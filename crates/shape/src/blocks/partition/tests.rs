@@ -13,7 +13,7 @@ fn points() -> (Vec<[f64; 3]>, Vec<f64>) {
     (positions, weights)
 }
 
-/// How far apart a point is from a box.
+/// The distance of a point from a box.
 fn apart(at: [f64; 3], own: &[[f64; 3]]) -> f64 {
     let away = (0..3).map(|k| {
         let low = own.iter().map(|p| p[k]).fold(f64::INFINITY, f64::min);

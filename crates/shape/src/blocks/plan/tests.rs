@@ -60,7 +60,7 @@ fn the_fastest_plan_within_the_bound_is_found() {
     let (positions, weights) = grid();
     let sites = Sites::new(&positions, &weights).unwrap();
     let (reach, threads, resident) = (Reach::Balls(0.75), 3, 1_000_000);
-    // Bytes, time, blocks, blocks at once: the fastest first, of equals the one with fewer blocks.
+    // Bytes, time, blocks, blocks at the same time: the fastest plan first, and of equal ones the plan with fewer blocks.
     let mut plans = Vec::new();
     for blocks in (0..12).map(|step| 3 << step).take_while(|&blocks| blocks <= MAX_BLOCKS) {
         let largest = Partition::new(&sites, blocks).largest(&sites, reach);
@@ -97,7 +97,7 @@ fn the_fastest_plan_within_the_bound_is_found() {
 
 #[test]
 fn a_block_at_work_has_room_for_its_cells() {
-    // Of uniformly random points there are 6.77 cells to a point, of four vertices and four neighbours.
+    // Uniformly random points have 6.77 cells per point, each with four vertices and four neighbours.
     assert!(AT_WORK as f64 > 6.77 * 32.0);
 }
 

@@ -38,7 +38,7 @@ const NONE: u32 = u32::MAX;
 impl Ordered<'_> {
     /// Persistence pairs of dimension 1. Computed once.
     ///
-    /// On one thread. No bound below O(n³) is known; on alpha filtrations it takes about as long as
+    /// This takes one thread. No bound below O(n³) is known; for alpha filtrations it takes about as long as
     /// [`Filtration::simplices`](crate::ladder::Filtration::simplices).
     ///
     /// # Errors
@@ -103,7 +103,7 @@ impl Ordered<'_> {
 
 /// Reduced columns by their last rows.
 struct Columns {
-    /// By last row, the range of the column among the members; empty if there is none.
+    /// For each last row, the range of the column among the members; empty if there is none.
     ranges: Vec<Range<usize>>,
     /// The rows of all columns with their coefficients: those of each descending, the first coefficient 1.
     members: Vec<(u32, u32)>,
@@ -187,7 +187,7 @@ impl Column {
 
 /// A set of numbers. Each bit of a level says whether a word of the level below has bits.
 struct BitTree {
-    /// From the numbers up to a single word.
+    /// The levels of the tree, from the numbers up to a single word.
     levels: Vec<Vec<u64>>,
 }
 

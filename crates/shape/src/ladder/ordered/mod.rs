@@ -24,8 +24,8 @@ pub use loops::Loops;
 use numbers::Numbers;
 use rank::{NONE, Ranks};
 
-/// All simplices of a regular triangulation with their values of α: where each enters the shape, becomes regular, and
-/// becomes interior.
+/// All simplices of a regular triangulation with their values of α: each simplex has the values at which it enters the shape,
+/// becomes regular, and becomes interior.
 ///
 /// A *value* is a squared radius, given as the double nearest to the exact number (of two equally near ones, the
 /// even one). The order is by the exact number, then by dimension, then by vertices;
@@ -63,9 +63,9 @@ pub struct Entry<'a> {
     /// Whether no point lies inside its smallest orthogonal sphere, so that the value is the squared
     /// radius of this; else it enters with a coface, and is *attached*.
     pub gabriel: bool,
-    /// From which on it is a face of another simplex of the shape; singular before. Of cells, ∞.
+    /// The value from which on it is a face of another simplex of the shape; it is singular before. ∞ for cells.
     pub regular: f64,
-    /// From which on it is off the boundary; ∞ on the convex hull. Of cells, the value.
+    /// The value from which on it is not on the boundary; ∞ on the convex hull. For cells, this equals `value`.
     pub interior: f64,
 }
 
@@ -91,8 +91,7 @@ pub struct Pairs {
 }
 
 impl Filtration {
-    /// All simplices with their values, in order. O(n log n), and exact arithmetic where two values
-    /// are, or nearly are, equal.
+    /// All simplices with their values, in order. O(n log n), plus exact arithmetic for values that are equal or nearly equal.
     ///
     /// # Errors
     /// Out of memory; more simplices than 32-bit numbers.
@@ -159,7 +158,7 @@ fn sorted_cells(rows: &[[u32; 4]]) -> (Vec<[u32; 4]>, Vec<u32>) {
 }
 
 impl Ordered<'_> {
-    /// Bytes that are needed at once.
+    /// The number of bytes that are needed at the same time.
     fn bytes(numbers: Numbers) -> usize {
         let span = 3 * size_of::<u32>();
         let parts = [
@@ -241,7 +240,7 @@ impl Ordered<'_> {
     /// A simplex by its number.
     ///
     /// # Panics
-    /// If there is no such number.
+    /// If no simplex has this number.
     pub fn simplex(&self, number: u32) -> Entry<'_> {
         let value = |rank: u32| {
             self.values().get(rank as usize).map_or(f64::INFINITY, |value| value.squared())
@@ -293,7 +292,7 @@ impl Ordered<'_> {
     }
 }
 
-/// Number of ranges of ranks, which are sorted separately: few enough to be written to at once.
+/// Number of ranges of ranks, which are sorted separately. They are few enough to be written to at the same time.
 const PARTS: usize = 256;
 /// Numbers that one task distributes to the ranges.
 const CHUNK: usize = 1 << 20;

@@ -124,7 +124,7 @@ struct ElderSets {
     sets: UnionFind,
     /// When each was added.
     ages: Vec<u32>,
-    /// By root, the eldest member of its set.
+    /// For each root, the eldest member of its set.
     eldest: Vec<u32>,
 }
 
