@@ -201,7 +201,7 @@ struct Cofaces {
     all_interior: bool,
 }
 
-/// Rows and classes of a dimension: those of the file where it has them, else derived from the dimension above.
+/// Rows and classes of a dimension: those of the file if it has them, otherwise derived from the dimension above.
 fn complete<const N: usize, const M: usize, const F: usize>(
     given: Given<M>,
     faces: impl Fn(&[u32; N]) -> [[u32; M]; F] + Sync,

@@ -1,6 +1,6 @@
 use crate::{Alpha, Complex, Placed};
 
-/// How much of the triangulation a complex claims to list.
+/// The part of the triangulation that a complex claims to list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Extent {
     /// The whole regular triangulation, with the simplices that are not in the shape.
@@ -24,7 +24,7 @@ impl Extent {
 pub struct Claim<'a> {
     /// The complex with its points.
     pub placed: Placed<'a>,
-    /// How much of the triangulation the complex lists.
+    /// The part of the triangulation that the complex lists.
     pub extent: Extent,
     /// The points listed as hidden, if they are listed.
     pub hidden: Option<&'a [u32]>,

@@ -60,7 +60,7 @@ impl<'a> Linked<'a> {
     }
 }
 
-/// All findings on cells as a whole triangulation of some points, such as those on one sphere.
+/// All findings for cells as a whole triangulation of some points, such as those on one sphere.
 pub(super) fn triangulation_findings(
     cells: &Complex,
     points: Points,

@@ -14,7 +14,7 @@ use crate::parallel::of_each;
 use crate::schema::orient;
 use crate::{Class, Placed};
 
-/// How the regions that the cells of two shapes cover are related.
+/// The relation between the regions that the cells of two shapes cover.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]

@@ -16,9 +16,9 @@ pub enum FiltrationFinding {
     When {
         /// The simplex.
         simplex: Simplex,
-        /// Which of these three.
+        /// Which of the three values is wrong.
         bound: Bound,
-        /// As given.
+        /// The given value.
         given: Alpha,
         /// The double nearest to the exact number; ∞ for never.
         expected: Alpha,
@@ -82,13 +82,13 @@ impl FiltrationFinding {
     }
 }
 
-/// What a simplex becomes at an α.
+/// A change of a simplex at an α.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Bound {
-    /// In the shape.
+    /// It enters the shape.
     Value,
-    /// A face of another simplex of the shape.
+    /// It becomes a face of another simplex of the shape.
     Regular,
     /// Off the boundary.
     Interior,
