@@ -13,9 +13,9 @@ use walpha_base::Cancelled;
 /// The maximal simplices of a flat triangulation, all of one dimension; site indices ascend within each.
 #[derive(Debug, Default)]
 pub struct Flat {
-    /// Of points in a plane.
+    /// The triangles of points in a plane.
     pub triangles: Vec<[u32; 3]>,
-    /// Of points on a line.
+    /// The edges of points on a line.
     pub edges: Vec<[u32; 2]>,
     /// A point alone.
     pub vertices: Vec<[u32; 1]>,
@@ -68,8 +68,8 @@ pub fn check_span(sites: &Sites<'_>) -> Result<(), SitesError> {
     }
 }
 
-/// At most four of the positions, affinely independent, with the same affine hull as all: four where they span a volume,
-/// three in a plane, two on a line. Exact. O(n) where they span no volume, usually less where they do.
+/// At most four of the positions, affinely independent, with the same affine hull as all: four if they span a volume, three in a
+/// plane, two on a line. Exact. O(n) if they span no volume, usually less if they do.
 pub fn spanning(all: &[[f64; 3]]) -> Vec<[f64; 3]> {
     let mut spanning = Vec::new();
     for &position in all {

@@ -14,8 +14,8 @@ pub struct Lattice {
 }
 
 impl Lattice {
-    /// By how many bits the step may be refined so that it holds the weights. A bit of the step takes, from the 53
-    /// bits of a double, as many as the degree of the polynomial, up to 8.
+    /// The number of bits by which the step may be refined to hold the weights. A bit of the step takes, from the 53 bits of a
+    /// double, as many bits as the degree of the polynomial, up to 8.
     const MAX_REFINEMENT: i32 = 2;
     /// The largest magnitude of the exponent of the step: its powers up to the eighth are doubles.
     const MAX_EXPONENT: i32 = 100;

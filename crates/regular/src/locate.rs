@@ -1,34 +1,34 @@
-//! Where a point lies in a triangulation, decided exactly.
+//! The location of a point in a triangulation, decided exactly.
 
 use std::cmp::Ordering;
 
 use crate::triangulation::NO_CELL;
 use crate::{Lattice, MAX_COORDINATE, Predicates, Triangulation};
 
-/// Where a point lies in a [`Triangulation`]: in the interior of which face. The cases are those of CGAL's
+/// The location of a point in a [`Triangulation`]: the face whose interior contains the point. The cases are those of CGAL's
 /// `Triangulation_3::Locate_type`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Location {
-    /// In the interior of a cell.
+    /// The point is in the interior of a cell.
     InCell {
         /// The cell.
         cell: u32,
     },
-    /// In the interior of a facet.
+    /// The point is in the interior of a facet.
     OnFacet {
         /// A finite cell with this facet.
         cell: u32,
         /// Its vertices, ascending.
         facet: [u32; 3],
     },
-    /// In the interior of an edge.
+    /// The point is in the interior of an edge.
     OnEdge {
         /// A finite cell with this edge.
         cell: u32,
         /// Its ends, ascending.
         edge: [u32; 2],
     },
-    /// At a vertex.
+    /// The point is at a vertex.
     OnVertex {
         /// A finite cell with this vertex.
         cell: u32,
@@ -56,11 +56,11 @@ impl Location {
 }
 
 impl Triangulation {
-    /// Where a point lies, exactly; `None` if a coordinate is NaN or larger in magnitude than [`MAX_COORDINATE`]. Of the
-    /// cells that share a face, any is named.
+    /// The exact location of a point; `None` if a coordinate is NaN or larger in magnitude than [`MAX_COORDINATE`]. The named
+    /// cell is any of the cells that share the face.
     ///
-    /// A walk from the nearest of a few vertices (Mücke, Saias and Zhu 1999, doi:10.1016/S0925-7721(98)00035-2):
-    /// expected O(n^¼) for evenly distributed points.
+    /// This walks from the nearest of a few vertices (Mücke, Saias and Zhu 1999, doi:10.1016/S0925-7721(98)00035-2): expected
+    /// O(n^¼) for evenly distributed points.
     ///
     /// ```
     /// use walpha_regular::{Location, triangulate};

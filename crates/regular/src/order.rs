@@ -131,7 +131,7 @@ fn round_of(v: u32) -> u32 {
 mod tests {
     use super::*;
 
-    /// On a grid of a power of two, each step along the curve is one step in space.
+    /// On a grid whose size is a power of two, each step along the curve is one step in space.
     #[test]
     fn neighbours_in_order_are_neighbours_in_space() {
         let corner = |i: u32| [i % 8, i / 8 % 8, i / 64];

@@ -64,7 +64,7 @@ impl PowerDiagram {
         let weights = weights.unwrap_or(&zeros);
         check(positions, weights)?;
         let arrays = &triangulation.arrays;
-        // What threads allocate piece by piece.
+        // The threads allocate this memory piece by piece.
         with_capacity::<u8>(arrays.cells.len().saturating_mul(BYTES_OF_A_CELL))?;
         let predicates = Predicates::new(positions, weights);
         let spheres = Spheres::of(arrays, &predicates, &monitor.part(0, 1, 3))?;
@@ -136,10 +136,11 @@ impl PowerDiagram {
 
 /// Memory for a cell: its sphere, its part of about 1.2 edges, and what collecting both takes.
 const BYTES_OF_A_CELL: usize = 96;
-/// So many cells are looked at by one thread in one piece.
+/// The number of cells that one thread handles in one piece.
 const CHUNK: usize = 1 << 12;
 
-/// Which cells have the same orthogonal sphere. Infinite cells have the same if their facets of the hull lie in one plane.
+/// The cells that have the same orthogonal sphere. Infinite cells have the same sphere if their facets of the hull lie in one
+/// plane.
 struct Spheres {
     /// The number of the sphere of each cell; those of finite cells come first.
     of: Vec<u32>,
@@ -302,7 +303,7 @@ fn largest(numbers: &[f64]) -> f64 {
     numbers.iter().fold(0.0, |most: f64, x| if x.is_nan() { *x } else { most.max(x.abs()) })
 }
 
-/// How many facets the power cell of each point has, by which one knows whether it has a volume.
+/// The number of facets of the power cell of each point, which shows whether the cell has a volume.
 ///
 /// A cell with a volume has a vertex, as points span a volume, and so three facets at least. A cell that is a polygon has two: the polygon,
 /// seen from the one and the other side, where the next points are in line with its own. Segments and places have none.

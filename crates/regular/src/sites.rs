@@ -186,7 +186,7 @@ fn duplicates<const D: usize>(
         for equal in same_index.chunk_by(|a, b| bits(a.1) == bits(b.1)) {
             let mut best = equal[0].1;
             for &(_, i) in equal {
-                // Of equal weights the lowest index, which comes first.
+                // Of equal weights, the lowest index, which comes first.
                 if weights[i as usize] > weights[best as usize] {
                     best = i;
                 }

@@ -31,8 +31,7 @@ pub enum TorusError {
         /// The side.
         side: f64,
     },
-    /// One side is far longer than another: rounding along the long side would be too coarse for the short
-    /// one.
+    /// One side is far longer than another: rounding along the long side would be too coarse for the short side.
     #[error(
         "the sides of a periodic box go from {shortest} to {longest}: none may be more than {} times another",
         Torus::MAX_ASPECT_RATIO
@@ -144,8 +143,8 @@ impl Torus {
         near
     }
 
-    /// How often the way from one position in the box to the nearest copy of another crosses its faces: along each
-    /// axis the multiple of the side by which that copy differs from `to`.
+    /// The number of times the way from one position in the box to the nearest copy of another crosses its faces: along each
+    /// axis, the multiple of the side by which that copy differs from `to`.
     #[inline]
     pub fn windings(&self, from: [f64; 3], to: [f64; 3]) -> [i32; 3] {
         [0, 1, 2].map(|k| -self.winding(k, from[k], to[k]))

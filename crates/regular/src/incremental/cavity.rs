@@ -25,8 +25,8 @@ pub(super) struct Cavity {
     base: u32,
     /// Number of distinct vertices of the boundary.
     vertices: u32,
-    /// By the local numbers of two vertices x, y: 4·cell + corner of the new facet with vertices v, x, y, where v
-    /// is the new point.
+    /// For the local numbers of two vertices x, y: 4·cell + corner of the new facet with vertices v, x, y, where v is the new
+    /// point.
     table: Box<[u32; TABLE_SIDE * TABLE_SIDE]>,
     /// Stamp of cells that this insertion visited and that are not in conflict; `stamp + 1` is that of cells in
     /// conflict. All older stamps are smaller.
@@ -36,7 +36,7 @@ pub(super) struct Cavity {
 /// A boundary facet of the cavity.
 #[derive(Clone, Copy, Debug, Default)]
 struct Facet {
-    /// Its vertices; with the new point as fourth corner they are a positively oriented cell.
+    /// Its vertices; with the new point as fourth corner they form a positively oriented cell.
     corners: [u32; 3],
     /// The facet as 4·cell + corner of the cell outside the cavity.
     outside: u32,
@@ -46,7 +46,7 @@ struct Facet {
 const APEX: u32 = 3;
 
 impl Cavity {
-    /// For vertices with numbers below `below`.
+    /// Creates the work space for vertices with numbers below `below`.
     pub(super) fn new(below: usize) -> Result<Self, TriangulationError> {
         let local_numbers = filled(below, 0)?;
         Ok(Self {

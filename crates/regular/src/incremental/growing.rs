@@ -23,7 +23,7 @@ pub struct Growing {
     state: State,
 }
 
-/// What the insertion of a point would change; see [`Growing::insertion`].
+/// The changes that the insertion of a point would make; see [`Growing::insertion`].
 #[derive(Debug)]
 pub struct Insertion {
     /// The cells in conflict with the point, infinite ones included.
@@ -174,7 +174,7 @@ impl Growing {
         Screen::with_infinite(predicates, AT_INFINITY)
     }
 
-    /// What the removal of a vertex would change; `None` where all others span no volume.
+    /// The changes that the removal of a vertex would make; `None` if all others span no volume.
     ///
     /// # Errors
     /// Out of memory.
@@ -187,7 +187,7 @@ impl Growing {
         self.state.hole(screen, v, workspace)
     }
 
-    /// What the insertion of a registered point would change, which is not a vertex and lies in the cell `cell`.
+    /// The changes that the insertion of a registered point would make. It must not be a vertex, and must lie in the cell `cell`.
     pub fn insertion(&self, screen: &Screen<'_>, v: u32, cell: u32) -> Insertion {
         let mesh = &self.state.builder.mesh;
         let (mut removed, mut kept, mut cells) = (vec![cell], Vec::new(), Vec::new());
@@ -219,7 +219,7 @@ impl Growing {
         self.state.cell_at[v as usize] != NO_CELL
     }
 
-    /// All cells, infinite and deleted ones included; see [`Self::is_cell`].
+    /// All cells, including infinite and deleted ones; see [`Self::is_cell`].
     pub fn cells(&self) -> &[Cell] {
         &self.state.builder.mesh.cells
     }

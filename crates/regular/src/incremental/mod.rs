@@ -84,7 +84,7 @@ pub(crate) struct Built {
 /// Memory is reserved for this many cells per point, and 1/16 more. A Poisson–Delaunay triangulation has
 /// about 6.8; some more exist during construction.
 const CELLS_PER_POINT: usize = 7;
-/// At least this many cells are reserved.
+/// The minimum number of cells that are reserved.
 const MIN_CELLS: usize = 64;
 /// Memory of a cell: itself and its visit stamp.
 const CELL_BYTES: usize = size_of::<Cell>() + size_of::<u32>();
@@ -100,7 +100,7 @@ struct Builder {
     free_slots: Vec<u32>,
     /// The corners of the cell that construction started from.
     first_cell: [u32; 4],
-    /// Where the next walk starts: a cell at the last vertex.
+    /// The start of the next walk: a cell at the last vertex.
     hint: u32,
     cavity: Cavity,
 }
@@ -257,7 +257,7 @@ impl Mesh {
         }
     }
 
-    /// Which corner of a cell is the infinite vertex; `None` for finite cells.
+    /// The corner of a cell that is the infinite vertex; `None` for finite cells.
     #[inline(always)]
     fn infinite_corner(&self, cell: u32) -> Option<usize> {
         self.cells[cell as usize].corners.iter().position(|&v| v == self.at_infinity)

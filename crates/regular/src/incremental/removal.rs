@@ -22,10 +22,10 @@ pub struct Hole {
 pub struct Workspace {
     /// The triangulation of the neighbours.
     builder: Builder,
-    /// All facets of its cells, sorted: the vertices, in the orientation of [`facets`] with the smallest first, and
-    /// 4·cell + corner.
+    /// All facets of its cells, sorted: the vertices, in the orientation of [`facets`] with the smallest first, and 4·cell +
+    /// corner.
     facets: Vec<([u32; 3], u32)>,
-    /// By 4·cell + corner: for a facet of the boundary, 4·cell + corner outside the hole; else [`NO_CELL`].
+    /// For each 4·cell + corner: for a facet of the boundary, 4·cell + corner outside the hole; otherwise [`NO_CELL`].
     outside: Vec<u32>,
     /// The index of each cell in the filling, or [`NO_CELL`].
     index_of: Vec<u32>,
@@ -36,7 +36,7 @@ pub struct Workspace {
 const TYPICAL_DEGREE: usize = 32;
 
 impl Workspace {
-    /// For vertices with numbers below `below`.
+    /// Creates the work space for vertices with numbers below `below`.
     ///
     /// # Errors
     /// Out of memory.

@@ -60,8 +60,8 @@ fn of_facet(a: &Ray<f64>, b: &Ray<f64>, size: Size) -> Option<Centre<2>> {
     let twice = 0.5 / gram;
     let factors = [(a.power * bb - b.power * ab) * twice, (b.power * aa - a.power * ab) * twice];
     let at = [0, 1, 2].map(|k| factors[0] * a.vector[k] + factors[1] * b.vector[k]);
-    // In the plane, δ = −½ Σ rᵢaᵢ* in the dual basis: |a*| = |b| / |a×b|, and |b| ≤ √3 times the size. Across the
-    // plane it is that of s.
+    // In the plane, δ = −½ Σ rᵢaᵢ* in the dual basis: |a*| = |b| / |a×b|, and |b| ≤ √3 times the size. Across the plane, δ is
+    // that of s.
     let per_residual = 0.9 * size.length / least.sqrt();
     Some(Centre { at, factors, per_residual, in_plane: true })
 }
@@ -97,12 +97,12 @@ fn around<const M: usize>(
 ) -> Option<f64> {
     let Centre { at, factors, per_residual, in_plane } = centre;
     let far = at.iter().fold(0f64, |most, x| most.max(x.abs()));
-    // What underflows is far below the errors of what does not; NaN is refused, too.
+    // Terms that underflow are far below the errors of the others; NaN is refused, too.
     if !(far > Size::SHORTEST && far < Size::LONGEST) {
         return None;
     }
     let twice = at.map(|x| 2.0 * x);
-    // Of one residual; the magnitudes of its terms are aₖ(aₖ + 2c̃ₖ) and the weights, which are summed exactly.
+    // The error of one residual; the magnitudes of its terms are aₖ(aₖ + 2c̃ₖ) and the weights, which are summed exactly.
     let off = Twofold::ROUNDING * (size.power + 6.0 * size.length * far);
     let (mut missed, mut correction, mut wrong) = (0.0, 0.0, 0.0);
     let mut sum_of_factors = 0.0;

@@ -112,7 +112,7 @@ fn across<const N: usize>(k: usize, sites: &[Site; N]) -> [[f64; 2]; N] {
     sites.each_ref().map(|site| [site.position[(k + 1) % 3], site.position[(k + 2) % 3]])
 }
 
-/// Whether there are at most so many different values.
+/// Whether there are at most this many different values.
 fn has_values<T: PartialEq, const N: usize>(most: usize, values: [T; N]) -> bool {
     let is_new = |&i: &usize| !values[..i].contains(&values[i]);
     (0..N).filter(is_new).count() <= most

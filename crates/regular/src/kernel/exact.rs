@@ -1,5 +1,5 @@
-//! The predicates in integers, without any rounding. 128 bits suffice on most lattices, whatever the weights;
-//! otherwise integers are of arbitrary length.
+//! The predicates in integers, without any rounding. 128 bits suffice on most lattices, for any weights; otherwise integers are
+//! of arbitrary length.
 
 use std::cmp::Ordering;
 
@@ -174,7 +174,7 @@ impl Units {
         self.coordinate
     }
 
-    /// By how many bits the unit of squares is finer than the square of that of coordinates.
+    /// The number of bits by which the unit of squares is finer than the square of the unit of coordinates.
     pub(super) fn finer(&self) -> usize {
         self.finer
     }

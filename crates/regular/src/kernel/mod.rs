@@ -57,8 +57,8 @@ pub struct Predicates<'a> {
     positions: &'a [[f64; 3]],
     weights: &'a [f64],
     lattice: Lattice,
-    /// By degree less 1: the largest sum of magnitudes of terms for which a polynomial in coordinates is exact in
-    /// doubles; 0 without a lattice.
+    /// For each degree less 1, the largest sum of magnitudes of terms for which a polynomial in coordinates is exact in doubles;
+    /// 0 without a lattice.
     exact: [f64; 8],
     /// On a torus, points stand for all their copies: a simplex has the copies nearest to its first corner.
     torus: Option<Torus>,
@@ -68,7 +68,7 @@ pub struct Predicates<'a> {
 /// error is less than this times the sum of the magnitudes of its terms.
 const ROUNDING: f64 = 1.0 / (1u64 << 48) as f64;
 
-/// From here on not all integers are doubles: 2⁵³.
+/// Not all integers from here on are doubles: 2⁵³.
 const MAX_INTEGER: f64 = (1u64 << f64::MANTISSA_DIGITS) as f64;
 
 impl<'a> Predicates<'a> {
@@ -271,7 +271,7 @@ impl<'a> Predicates<'a> {
     /// The centre of the orthogonal sphere of a positively oriented cell, seen from its first corner: each coordinate to 2⁻³⁰ of the
     /// cell's largest difference of coordinates and of the distance; where doubles do not give that, the nearest double.
     pub fn centre(&self, cell: [u32; 4]) -> [f64; 3] {
-        /// How many times the error bound of its terms a determinant must be, for a quotient by it to be right to 2⁻³⁰.
+        /// The ratio of a determinant to the error bound of its terms for which a quotient by it is right to 2⁻³⁰.
         const WELL_ABOVE: f64 = (1u64 << 32) as f64;
         let sites = self.sites(cell);
         let View { rays: [_, b, c, d], size } = View::of(sites[0], sites);

@@ -18,8 +18,7 @@ pub struct Screen<'a> {
     /// are adjacent in memory, and a difference of two points is not shuffled. After the last point comes the infinite vertex,
     /// all NaN: no comparison accepts a sign that it takes part in.
     points: Vec<[f64; 4]>,
-    /// Where every orientation is exact: factors of x and y for which `x·fx + y·fy + z` orders points by (x, y, z),
-    /// exactly.
+    /// If every orientation is exact: factors of x and y for which `x·fx + y·fy + z` orders points by (x, y, z), exactly.
     order: Option<[f64; 2]>,
     /// Error bounds of the determinants: beyond them a sign is certain. 0 where they are exact.
     orientation: f64,
@@ -144,7 +143,7 @@ impl<'a> Screen<'a> {
     /// point is raised by an infinitesimal height, which is larger the later the point comes in the order of (x, y, z)
     /// (Devillers and Teillaud 2011, doi:10.1016/j.comgeo.2010.09.010; CGAL's `Regular_triangulation_3` does the same).
     pub fn conflicts_exactly(&self, cell: [u32; 4], t: u32) -> bool {
-        // Where the filter is exact, it has found a 0.
+        // An exact filter has found a 0.
         let sign = match self.power {
             0.0 => Ordering::Equal,
             _ => self.predicates.power(cell, t),

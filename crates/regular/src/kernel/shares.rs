@@ -10,7 +10,7 @@ use super::twofold::Twofold;
 use super::{Ratio, Site, exact};
 use crate::number::{Number, dot};
 
-/// What a corner of a simplex has of the centre c of its smallest orthogonal sphere.
+/// The share of a corner of a simplex in the centre c of its smallest orthogonal sphere.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Share {
     /// Its barycentric coordinate b of c.
@@ -35,10 +35,10 @@ pub fn centre_shares<const N: usize>(places: [[f64; 3]; N], weights: [f64; N]) -
 
 /// Numerators and denominators of shares and of the centre.
 struct Shares<T> {
-    /// Of the barycentric coordinates, but the first one's.
+    /// The numerators of the barycentric coordinates, except the first one's.
     others: Vec<T>,
     of_others: T,
-    /// Of the centre, seen from the first corner.
+    /// The numerators of the centre, as seen from the first corner.
     centre: [T; 3],
     of_centre: T,
 }
@@ -73,7 +73,7 @@ impl<T: Number + Clone> Shares<T> {
 const ALONE: Share = Share { share: 1.0, moment: [0.0; 3] };
 const NONE: Share = Share { share: f64::NAN, moment: [f64::NAN; 3] };
 
-/// By numbers of two doubles; `None` where their error bounds are too large.
+/// Computes in numbers of two doubles; `None` if their error bounds are too large.
 fn closely<const N: usize>(sites: &[Site; N]) -> Option<[Share; N]> {
     /// The error of a quotient is at most a few times that of its parts.
     const PRECISE: f64 = 1.0 / (1u64 << 53) as f64;
@@ -119,7 +119,7 @@ fn closely<const N: usize>(sites: &[Site; N]) -> Option<[Share; N]> {
     Some(shares)
 }
 
-/// By integers, each number the nearest double.
+/// Computes in integers, and rounds each number to the nearest double.
 fn exactly<const N: usize>(sites: [Site; N]) -> [Share; N] {
     if N == 1 {
         return [ALONE; N];
@@ -213,7 +213,7 @@ mod tests {
         let shares = centre_shares(corner, [0.0; 4]);
         assert_eq!(shares.map(|share| share.share), [-0.5, 0.5, 0.5, 0.5]);
         assert_eq!(shares[1].moment, [0.5, -1.0, -1.5]);
-        // With other weights in front of the same.
+        // An edge whose ends have different weights.
         let edge = centre_shares([[1.0; 3], [5.0, 1.0, 1.0]], [0.0, 8.0]);
         assert_eq!(edge.map(|share| share.share), [0.75, 0.25]);
         assert_eq!(edge[1].moment, [0.75, 0.0, 0.0]);

@@ -91,7 +91,7 @@ fn a_radius_on_a_lattice_is_a_round_number() {
     assert_eq!(predicates.squared_radius([3]), Interval { low: 0.0, high: 0.0 });
 }
 
-/// What the corners of simplices that are not flat say of the faces opposite them, against the predicate for each alone.
+/// Compares the tests of the faces opposite the corners of simplices that are not flat with the predicate for each face alone.
 #[test]
 fn corners_inside_opposite_faces() {
     let mut random = Random::new(5);
@@ -179,7 +179,7 @@ fn draw_on_grid(random: &mut Random) -> (Vec<[f64; 3]>, Vec<f64>) {
     (positions, (0..5).map(|_| if weighted { random.below(3) as f64 / 3.0 } else { 0.0 }).collect())
 }
 
-/// On rounded grids, where doubles leave much open, against integers; and these have little left to do.
+/// Compares with integers on rounded grids, where doubles leave much undecided; little remains for integers.
 #[test]
 fn rounded_grids_agree_with_integers() {
     // Signs, zeros and what is left open, of orientation, power, points inside an edge and a facet, and radii.

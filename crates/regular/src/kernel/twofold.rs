@@ -102,7 +102,7 @@ mod tests {
     use super::*;
     use crate::number::integer;
 
-    /// In units of 2⁻²⁰⁰.
+    /// The number in units of 2⁻²⁰⁰.
     fn exactly(number: Twofold) -> IBig {
         integer(number.high, -200) + integer(number.low, -200)
     }

@@ -134,12 +134,12 @@ fn what_cannot_be_found() {
     assert_eq!(made.locate_from([0.1; 3], 5), None);
     let far = made.locate([MAX_COORDINATE, 0.1, -MAX_COORDINATE]);
     assert!(matches!(far, Some(Location::Outside { .. })));
-    // From a cell beyond the hull, too.
+    // A walk also starts from a cell beyond the hull.
     let beyond = far.unwrap().cell();
     assert!(matches!(made.locate_from([0.1; 3], beyond), Some(Location::InCell { .. })));
 }
 
-/// Where most points are hidden, none of those that a walk might start from need be a vertex.
+/// If most points are hidden, none of the possible starts of a walk need be a vertex.
 #[test]
 fn walks_start_among_hidden_points() {
     let mut points: Vec<Place> = (1..600).map(|i| [i % 7 + 1, i % 5 + 1, i % 3 + 1]).collect();

@@ -63,7 +63,7 @@ pub(super) fn merge(
 
 /// A facet between an open cell and one that is kept.
 struct Facet {
-    /// Its vertices, which with a point on the side of the open cell are a positively oriented cell.
+    /// Its vertices, which with a point on the side of the open cell form a positively oriented cell.
     corners: [u32; 3],
     /// 4·slot + corner of the cell that is kept.
     kept: u32,
@@ -85,7 +85,7 @@ fn boundary_of(slots: &Slots, open: &[u32], marks: &mut Marks) -> Vec<Facet> {
 /// The corners of open cells, numbered along the curve.
 struct Corners {
     first: usize,
-    /// By point of both halves: 1 for corners, and, once they are numbered, their number.
+    /// For each point of both halves: 1 for corners, and, after they are numbered, their number.
     numbers: Vec<u32>,
     list: Vec<u32>,
     at_infinity: u32,
@@ -132,11 +132,11 @@ impl Corners {
 struct Filling<'a> {
     built: Built,
     corners: &'a Corners,
-    /// By 4·cell + corner of `built`: 4·slot + corner of the cell that is kept, at facets of the boundary.
+    /// For each 4·cell + corner of `built`: 4·slot + corner of the cell that is kept, at facets of the boundary.
     kept: Vec<u32>,
     /// The cells that are taken.
     taken: Vec<u32>,
-    /// By cell, its index among those; [`NONE`] for others.
+    /// For each cell, its index among those; [`NONE`] for others.
     index: Vec<u32>,
 }
 
@@ -228,7 +228,7 @@ impl<'a> Filling<'a> {
 
 /// The facets of a boundary by their smallest corner.
 struct FacetTable {
-    /// By corner, where its facets start.
+    /// For each corner, the start of its facets.
     starts: Vec<u32>,
     /// The other two vertices, in the order of the facet, and 4·slot + corner of the cell that is kept.
     rest: Vec<([u32; 2], u32)>,

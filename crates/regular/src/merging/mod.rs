@@ -29,16 +29,16 @@ use crate::{CellArrays, TriangulationError};
 use open::Extent;
 use slots::Mesh;
 
-/// With fewer points than this in all, one thread is as fast.
+/// With fewer points than this in total, one thread is as fast.
 const MIN_POINTS: usize = 1 << 16;
 /// Number of leaves per thread, about: threads that finish early find work, and more would be more to merge.
 const LEAVES_PER_THREAD: usize = 2;
 /// Halves are not equal: a leaf may have a quarter more points than its share before it is divided.
 const MAX_SHARE: f64 = 1.25;
-/// No leaf is divided that has at most this many points.
+/// A leaf with at most this many points is not divided.
 const MIN_LEAF: usize = 1 << 12;
-/// Where more than this part of the points of two small leaves are corners of open cells, as on a sphere or a smooth
-/// surface (1), merging costs more than threads gain. At random it is 0.2, of lattices 0.3, of noisy surfaces 0.5.
+/// If more than this part of the points of two small leaves are corners of open cells, as on a sphere or a smooth surface (1),
+/// merging costs more than threads gain. The part is 0.2 for random points, 0.3 for lattices, 0.5 for noisy surfaces.
 const MAX_OPEN: f64 = 0.7;
 /// Number of places along the curve where this is tried.
 const TRIALS: usize = 3;
@@ -121,7 +121,7 @@ impl<'a> Along<'a> {
     }
 }
 
-/// How points are divided.
+/// The division of points into leaves.
 struct Tree {
     points: Range<usize>,
     /// The number of its first leaf, in the order of the curve.
@@ -153,7 +153,7 @@ impl Tree {
     }
 }
 
-/// Where the first bit in which indices differ becomes 1.
+/// The position where the first bit in which indices differ becomes 1.
 fn middle(range: &Range<usize>, indices: &[u64]) -> Option<usize> {
     let indices = &indices[range.clone()];
     let bit = (indices.first()? ^ indices.last()?).checked_ilog2()?;
@@ -175,7 +175,7 @@ struct Half {
     mesh: Mesh,
 }
 
-/// What all calls have in common.
+/// The data that all calls share.
 struct Work<'a, I> {
     points: Points<'a>,
     /// Number of leaves.

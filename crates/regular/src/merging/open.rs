@@ -1,4 +1,4 @@
-//! Which cells of one half may be in conflict with a point of the other.
+//! Finds the cells of one half that may be in conflict with a point of the other half.
 
 use walpha_base::vector::{cross, dot, sub as minus};
 
@@ -7,7 +7,7 @@ use super::slots::{Marks, Slots};
 use crate::facets;
 use crate::kernel::extent;
 
-/// Where points are, and how heavy: their bounding box and largest weight.
+/// The extent of points: their bounding box and largest weight.
 #[derive(Clone, Copy)]
 pub(super) struct Extent {
     low: [f64; 3],

@@ -90,7 +90,7 @@ impl Mesh {
         self.count > 0
     }
 
-    /// The mesh of one of so many leaves, whose first point is given; `None` where it has more cells than slots.
+    /// The mesh of one of `leaves` leaves, whose first point is given; `None` if it has more cells than slots.
     pub(super) fn of_leaf(
         built: Built,
         leaf: usize,
@@ -130,7 +130,7 @@ impl Mesh {
     }
 }
 
-/// The bits that the numbers of so many leaves leave free.
+/// The number of bits that the numbers of this many leaves leave free.
 fn bits(leaves: usize) -> u32 {
     Triangulation::MAX_CELLS.ilog2().saturating_sub(leaves.next_power_of_two().ilog2())
 }

@@ -246,7 +246,7 @@ fn cells_without_volume_have_no_facets() {
         let mut weights = vec![0.0; 4];
         for &x in inner {
             points.push([x, 0.0, 0.0]);
-            // As high as the segment from 0 to 8 is there.
+            // The height of the segment from 0 to 8 at this position.
             weights.push(x * x - 8.0 * x);
         }
         PowerDiagram::of(&triangulate(&points, Some(&weights)).unwrap(), Some(&weights)).unwrap()
@@ -259,7 +259,7 @@ fn cells_without_volume_have_no_facets() {
         assert_eq!(made.volumes()[..4], *alone.volumes());
         assert!(made.volumes()[4..].iter().all(|&volume| volume == 0.0), "{inner:?}");
     }
-    // In the middle of a facet of the hull, and of the cell.
+    // A point in the middle of a facet of the hull, and one in the middle of the cell.
     let corners = [[0.0; 3], [6.0, 0.0, 0.0], [0.0, 6.0, 0.0], [0.0, 0.0, 8.0]];
     for (inner, weight) in [([2.0, 2.0, 0.0], 8.0 - 24.0), ([1.5, 1.5, 2.0], 8.5 - 34.0)] {
         let points = [&corners[..], &[inner]].concat();
@@ -312,7 +312,7 @@ fn a_lattice_has_facets_between_neighbours_alone() {
     assert_eq!(finite, 3 * 2 * 2 * 3);
 }
 
-/// Lengths scale by powers of two alone, so that they are the same but for these; also far from the origin.
+/// Lengths scale only by powers of two, so they are the same except for these; also far from the origin.
 #[test]
 fn tiny_huge_and_distant_cells_are_as_precise() {
     let mut random = Random::new(7);
@@ -342,7 +342,7 @@ fn tiny_huge_and_distant_cells_are_as_precise() {
     }
 }
 
-/// Where doubles do not hold areas or volumes, these are not numbers; what is unbounded is known to be.
+/// If doubles do not hold areas or volumes, these are NaN; unbounded ones are known.
 #[test]
 fn what_doubles_do_not_hold_is_nan() {
     let mut random = Random::new(8);
