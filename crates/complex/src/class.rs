@@ -54,13 +54,13 @@ impl fmt::Display for Class {
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize)]
 pub struct ByClass<T> {
-    /// Of [`Class::Interior`].
+    /// The value of [`Class::Interior`].
     pub interior: T,
-    /// Of [`Class::Regular`].
+    /// The value of [`Class::Regular`].
     pub regular: T,
-    /// Of [`Class::Singular`].
+    /// The value of [`Class::Singular`].
     pub singular: T,
-    /// Of [`Class::Exterior`].
+    /// The value of [`Class::Exterior`].
     pub exterior: T,
 }
 

@@ -59,7 +59,7 @@ pub enum Step {
     Line([f64; 2]),
     /// Along a circle to a point.
     Arc {
-        /// Where the arc ends.
+        /// The end of the arc.
         to: [f64; 2],
         /// The radius of the circle.
         radius: f64,
