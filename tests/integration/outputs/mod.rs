@@ -1,4 +1,4 @@
-//! What becomes of files: inputs, outputs that are replaced or cannot be written, and those left unfinished.
+//! The treatment of files: inputs, outputs that are replaced or cannot be written, and unfinished files.
 
 mod unfinished;
 
@@ -129,7 +129,7 @@ fn places_that_cannot_be_are_refused_at_the_start() {
     let name = format!("{}.npy", "b".repeat(400));
     refused(f, &format!("haar no.nrrd -o {name}"), &["too long", "choose a shorter name"]);
     refused(f, "ladder no.nrrd -o no/ladder", &["no/ladder", "--output"]);
-    // What a folder will hold is looked at before the work, too.
+    // The future content of a folder is checked before the work, too.
     fs::create_dir(f.join("ladder")).unwrap();
     fs::write(f.join("ladder/voids.csv"), "precious").unwrap();
     fs::set_permissions(f.join("ladder/voids.csv"), Permissions::from_mode(0o444)).unwrap();

@@ -208,7 +208,7 @@ fn each_field_of_the_table() {
     );
 }
 
-/// In 1.4 the number of 64 bits holds, whichever is larger, unless it is left out.
+/// In version 1.4 the 64-bit number counts, whichever is larger, unless it is left out.
 #[test]
 fn numbers_of_points_that_differ() {
     let folder = tempfile::tempdir().unwrap();
