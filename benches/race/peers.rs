@@ -1,4 +1,4 @@
-//! Who takes part.
+//! The contestants.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;

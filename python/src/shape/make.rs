@@ -1,4 +1,4 @@
-//! How a shape is made: of points, with options by the names that Python has.
+//! Makes a shape from points, with options by the names that Python has.
 
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
