@@ -1,5 +1,5 @@
-//! What the command says: help, and the errors of wrong arguments, as recorded in `tests/texts`. A changed text is recorded with
-//! `TRYCMD=overwrite cargo test --release --test texts`, and read in the diff.
+//! The output of the command: help, and the errors of wrong arguments, as recorded in `tests/texts`. A changed text is recorded
+//! with `TRYCMD=overwrite cargo test --release --test texts`, and reviewed in the diff.
 
 /// Only for the default features, because help lists the built-in ones.
 #[cfg(all(

@@ -53,7 +53,7 @@ impl Reserve {
         Self(AtomicPtr::new(unsafe { System.alloc(RESERVE) }))
     }
 
-    /// Gives it back; the second time there is none.
+    /// Gives it back; the second call has no effect.
     pub fn give_up(&self) {
         let block = self.0.swap(ptr::null_mut(), Ordering::Relaxed);
         if !block.is_null() {

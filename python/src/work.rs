@@ -1,4 +1,4 @@
-//! Long work beside the interpreter.
+//! Runs long work outside of the interpreter.
 
 use std::num::NonZeroUsize;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};

@@ -258,9 +258,9 @@ impl Index<Shared> for Shapes {
 /// The viewpoint on a head whose face is turned to −y and whose crown to +z.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Eye {
-    /// From the front and a little to its left: the portrait.
+    /// Seen from the front and a little to its left: the portrait.
     Portrait,
-    /// From its left.
+    /// Seen from its left.
     Side,
 }
 

@@ -1,4 +1,4 @@
-//! `mpirun walpha shape`: several processes, the same bytes as from one. Skipped where there is no mpirun.
+//! `mpirun walpha shape`: several processes write the same bytes as one. Skipped if mpirun is missing.
 
 use std::fs;
 use std::path::Path;

@@ -105,7 +105,7 @@ fn shape_by(
     }
     let squared = options.balls.power_weights(&points.weights, options.alpha)?;
     let weights = squared.as_deref().unwrap_or(&points.weights);
-    // What decides: the same at another scale, and with the power weights.
+    // The shape is computed from the points at another scale, with the power weights.
     let alpha = options.power_alpha();
     let scaled = Scaled::of(&points.positions, weights).filter(|_| options.periodic.is_none());
     let scaled = scaled.and_then(|scaled| {

@@ -240,7 +240,7 @@ mod tests {
         ];
         let found = single(&far, &[[0, 3]]);
         assert!(found.has_offset() && !found.is_lossy, "{found:?}");
-        // There is no offset for what is far apart and fine.
+        // No offset suffices for points that are far apart and fine.
         let lossy = single(&places, &[[0, 2]]);
         assert!(
             lossy.is_lossy && lossy.remark().unwrap().contains("changes the mesh"),

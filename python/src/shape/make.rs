@@ -16,7 +16,7 @@ pub type Written = Vec<(String, String)>;
 /// The settings that were given.
 ///
 /// # Errors
-/// What a setting does not take.
+/// The error for a wrong value of a setting.
 pub fn settings_of(written: Written) -> PyResult<Settings> {
     let mut settings = Settings::default();
     for (name, text) in written {

@@ -20,7 +20,7 @@ struct Evidence {
     samples: usize,
     /// Samples that marching cubes reads.
     read: usize,
-    /// Of these, those next to the surface.
+    /// The read samples that are next to the surface.
     beside: usize,
     vertices: usize,
     triangles: usize,

@@ -47,7 +47,7 @@ fn points_come_through_a_pipe_that_is_opened_once() {
         let input = path.clone();
         thread::spawn(move || {
             let read = Recipe::default().open(&input);
-            // Nobody listens where the test has ended.
+            // There is no receiver if the test has ended.
             drop(opened.send(read.map_err(|error| error.to_string())));
         });
         std::fs::write(&path, text).unwrap();

@@ -283,8 +283,8 @@ fn apply(
     let gaps = &monitor.part(summed, searched, 20);
     let missing = gaps::missing_cells(&listed.structure, points, alpha, judge.emptiness, gaps)?;
     let rest = monitor.part(searched, 20, 20);
-    // Cells that could be missing overlap where one holds points on its sphere, and parts of it could be missing, too.
-    // Those that the rule for ties makes do not.
+    // Cells that could be missing overlap if one has points on its sphere, and parts of it could be missing, too. Those that the
+    // tie rule makes do not overlap.
     let by_rule = gaps::by_rule(&missing, judge.emptiness);
     let choices = [missing, by_rule].into_iter().filter(|missing| !missing.is_empty());
     for (part, missing) in (0..).zip(choices) {

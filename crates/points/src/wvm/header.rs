@@ -33,7 +33,7 @@ pub(super) struct Header {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Values {
     None,
-    /// As `base` plus whole multiples of `step`.
+    /// The values are `base` plus whole multiples of `step`.
     Steps {
         base: f64,
         step: f64,

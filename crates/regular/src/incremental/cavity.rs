@@ -137,7 +137,7 @@ impl Builder {
     /// Assigns slots to the new cells: first those of the cells in conflict, then free ones, then new ones.
     fn assign_slots(&mut self) -> Result<(), TriangulationError> {
         let wanted = self.cavity.facets;
-        // Exchanged rather than copied: what the last insertion made is no longer needed.
+        // Exchanged rather than copied, because the result of the last insertion is no longer needed.
         std::mem::swap(&mut self.cavity.conflicts, &mut self.cavity.new_cells);
         self.cavity.conflicts.clear();
         let slots = &mut self.cavity.new_cells;

@@ -60,7 +60,7 @@ impl Figure {
     /// The figure as pixels.
     ///
     /// # Errors
-    /// As [`Figure::to_png`].
+    /// See [`Figure::to_png`].
     pub fn to_picture(&self) -> Result<Picture, RenderError> {
         let (svg, [width, height]) = self.compose()?;
         let scale = (f64::from(Self::MIN_WIDTH) / width).max(1.0);

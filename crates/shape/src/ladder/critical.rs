@@ -35,12 +35,11 @@ pub struct Suggestions {
     /// Every vertex of the triangulation is one of a cell: MATLAB's
     /// `criticalAlpha(shp, 'all-points')`, CGAL's `Alpha_shape_3::find_alpha_solid`.
     pub all_points: Alpha,
-    /// Besides, the cells are one solid component: MATLAB's `criticalAlpha(shp, 'one-region')`,
-    /// CGAL's `Alpha_shape_3::find_optimal_alpha(1)`, which bisects and may find a larger
-    /// one. This is the smallest α with the property, not one from which it lasts: the
-    /// number of components rises and falls.
+    /// In addition, the cells are one solid component: MATLAB's `criticalAlpha(shp, 'one-region')`, CGAL's
+    /// `Alpha_shape_3::find_optimal_alpha(1)`, which bisects and may find a larger one. This is the smallest α with the property,
+    /// not one from which it lasts: the number of components rises and falls.
     pub one_region: Alpha,
-    /// Besides, there are no voids.
+    /// In addition, there are no voids.
     pub no_void: Alpha,
     /// The longest interval from `all_points` on in which the Betti numbers do not change, measured by the ratio of the
     /// squared radii of the largest balls. The second is the α at which they change again; ∞, the string "inf" in

@@ -42,7 +42,7 @@ const TRIES: usize = 24;
 const LEAST: f64 = 4.0 * f32::EPSILON as f64;
 /// The largest share of the shortest edge for that.
 const MOST: f64 = 1.0 / 16.0;
-/// The largest share of a coordinate for steps that are longer only because doubles are no nearer to each other.
+/// The largest share of a coordinate for steps that are longer only because doubles are not denser.
 const ROUNDING: f64 = 32.0 * f64::EPSILON;
 /// Steps that are tried in all directions.
 const FAR: usize = 4;

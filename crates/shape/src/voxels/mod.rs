@@ -41,7 +41,7 @@ use cells::Lattice;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum VoxelsError {
-    /// There is no voxel in the region.
+    /// The region contains no voxel.
     #[error("the region holds no voxel")]
     Empty,
     /// Runs that overlap, are out of order or leave the grid.
