@@ -96,7 +96,7 @@ mod tests {
         WeightedPoints::unweighted((0..8).map(corner).collect())
     }
 
-    /// An engine: the native one, on sites in their own order, that calls all cells singular where α is 1.
+    /// An engine for tests: the native one, on sites in their own order, which calls all cells singular if α is 1.
     fn classify(sites: &Sites<'_>, alpha: f64) -> Result<Complex, ShapeError> {
         let points = WeightedPoints::unweighted(sites.positions().to_vec());
         let options = ShapeOptions::new(Alpha::from_squared(alpha).unwrap()).exterior(true);
@@ -131,7 +131,7 @@ mod tests {
         );
     }
 
-    /// A simplex less, another class, and a row more are each found, and counted.
+    /// A missing simplex, another class, and an extra row are each found and counted.
     #[test]
     fn what_differs_is_found() {
         let options = ShapeOptions::new(Alpha::from_squared(1.0).unwrap()).engine(Engine::Native);

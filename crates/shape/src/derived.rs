@@ -39,8 +39,8 @@ mod tests {
 
     use super::*;
 
-    /// The first of three threads waits for the second, which computes a part of the value; meanwhile the third asks for the value
-    /// twice, and the first takes up one of these.
+    /// The first of three threads waits for the second, which computes a part of the value; meanwhile the third requests the
+    /// value twice, and the first takes over one of these requests.
     #[test]
     fn values_may_be_computed_in_parallel_by_parallel_work() {
         let (done, wait) = channel();

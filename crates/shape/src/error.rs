@@ -37,7 +37,7 @@ pub enum ShapeError {
     /// Out of memory for data about the simplices.
     #[error(transparent)]
     Memory(#[from] NoMemory),
-    /// A bound on memory is kept by cutting the points into blocks, and this shape takes the whole triangulation.
+    /// A bound on memory requires cutting the points into blocks, but this shape requires the whole triangulation.
     #[error(
         "a bound on memory cannot be kept {}: that takes the whole triangulation at once",
         by.when()
@@ -52,7 +52,7 @@ pub enum ShapeError {
         /// The position.
         at: [f64; 3],
     },
-    /// Several blocks, and something that requires the whole triangulation.
+    /// There are several blocks, but an option requires the whole triangulation.
     #[error("a shape {} takes the whole triangulation, and {blocks} blocks were asked for", by.when())]
     Divided {
         /// The option that requires it.

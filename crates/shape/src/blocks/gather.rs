@@ -131,8 +131,8 @@ impl Gathered {
         }
     }
 
-    /// The complex; the sheets of each regular facet, one, and of each singular one, two, in the order of the facets;
-    /// and the sheet of each singular edge, in their order.
+    /// The complex; the one sheet of each regular facet and the two sheets of each singular facet, in the order of the facets;
+    /// and the sheet of each singular edge, in the order of the edges.
     pub(super) fn into_parts(self) -> (Complex, Vec<u32>, Vec<u32>) {
         let complex = Complex {
             cells: self.cells.simplices(),
@@ -198,8 +198,8 @@ impl Rest<'_> {
         }
     }
 
-    /// Writes the simplices of the next points, on all threads: where each is recorded, and its input index, in the
-    /// order of these. Returns those that are not vertices of the triangulation.
+    /// Writes the simplices of the next points, on all threads, given the location of their records and their ascending input
+    /// indices. Returns the points that are not vertices of the triangulation.
     pub(super) fn write(
         &mut self,
         records: &[Records],

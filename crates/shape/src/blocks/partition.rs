@@ -46,7 +46,7 @@ impl Partition {
             }
             let axis = nodes[at].longest_side();
             let left = blocks / 2;
-            // The product may pass what 32 bits hold.
+            // The product may exceed 32 bits.
             let middle = (here.len() as u64 * left as u64 / blocks as u64) as usize;
             let along =
                 |&rank: &u32| sites.positions()[sites.curve()[rank as usize] as usize][axis];
@@ -78,7 +78,7 @@ impl Partition {
         members.iter().map(|&rank| sites.curve()[rank as usize])
     }
 
-    /// The number of points of the largest block, its halo included.
+    /// The number of points of the largest block, including its halo.
     pub(crate) fn largest(&self, sites: &Sites<'_>, reach: Reach) -> usize {
         let size = |block: usize| self.size(sites, reach, block);
         (0..self.len()).into_par_iter().map(size).max().unwrap_or(0)
@@ -160,8 +160,8 @@ impl Partition {
         }
     }
 
-    /// The multiples of the sides by which points of the halo of a block may be moved: all that may be in reach, and
-    /// perhaps more.
+    /// The multiples of the sides by which points of the halo of a block may be moved: all that may be in reach, and possibly
+    /// more.
     fn windings(&self, sites: &Sites<'_>, own: &Node, reach: Reach) -> Vec<[i32; 3]> {
         let Some(torus) = sites.torus() else { return vec![[0; 3]] };
         let all = &self.nodes[0];

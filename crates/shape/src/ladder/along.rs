@@ -8,8 +8,8 @@ use crate::Complex;
 
 /// Vertices along a Hilbert curve, and the rows of the simplices of each dimension whose smallest vertex each is.
 ///
-/// Rows are in the order of input indices, which need not be close in space. Visited along the curve, most of what a
-/// simplex needs is in a cache still, from those before it.
+/// Rows are in the order of input indices, which need not be close in space. In visits along the curve, most of the data of a
+/// simplex is still in a cache from the simplices before it.
 pub(super) struct Along {
     order: Vec<u32>,
     /// The first row of each vertex, and the end.

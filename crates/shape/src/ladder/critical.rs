@@ -10,9 +10,8 @@ use crate::{Alpha, Betti};
 
 /// The topology of a filtration at every critical value: every α at which a simplex enters.
 ///
-/// Critical values are distinguished exactly; those with the same least double that is not below are
-/// one entry, as no double separates them. On a voxel grid, where values are equal by the thousand,
-/// that leaves few.
+/// Critical values are distinguished exactly; values with the same smallest double that is not below them are one entry, because
+/// no double separates them. On a voxel grid, where thousands of values are equal, this leaves few entries.
 #[derive(Clone, Debug)]
 pub struct Curve {
     pub(super) values: Vec<Value>,
@@ -20,20 +19,20 @@ pub struct Curve {
     pub betti: Vec<Betti>,
     /// The solid components from each value on.
     pub solid_components: Vec<u64>,
-    /// Number of vertices of the triangulation that are in no cell of the shape, from each value on; where points span
-    /// no volume, in no triangle, or in no edge.
+    /// Number of vertices of the triangulation that are in no cell of the shape, from each value on; if points span no volume, in
+    /// no triangle, or in no edge.
     pub loose: Vec<u64>,
     /// The visible simplices from each value on.
     pub(super) visible: Vec<Visible>,
     largest_weight: f64,
 }
 
-/// Suggested values of α, squared lengths, each the least double at which the shape has the property.
+/// Suggested values of α, squared lengths, each the smallest double at which the shape has the property.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct Suggestions {
-    /// Every vertex of the triangulation is one of a cell: MATLAB's
-    /// `criticalAlpha(shp, 'all-points')`, CGAL's `Alpha_shape_3::find_alpha_solid`.
+    /// Every vertex of the triangulation is a vertex of a cell: MATLAB's `criticalAlpha(shp, 'all-points')`, CGAL's
+    /// `Alpha_shape_3::find_alpha_solid`.
     pub all_points: Alpha,
     /// In addition, the cells are one solid component: MATLAB's `criticalAlpha(shp, 'one-region')`, CGAL's
     /// `Alpha_shape_3::find_optimal_alpha(1)`, which bisects and may find a larger one. This is the smallest α with the property,
@@ -53,9 +52,9 @@ impl Filtration {
         self.curve_of(self.values())
     }
 
-    /// The topology at about `most` of the critical values, spread evenly over their ranks, the first and the last among
-    /// them: for pictures, where all would take several times as long. Each value of α is a double just above the critical
-    /// one, and what is said of it holds exactly. O(n log n).
+    /// The topology at about `most` of the critical values, spread evenly over their ranks and including the first and the last.
+    /// It is meant for pictures, for which all values would take several times as long. Each value of α is a double just above
+    /// the critical value, and its topology is exact. O(n log n).
     ///
     /// # Panics
     /// When `most` is less than 2.
@@ -64,7 +63,7 @@ impl Filtration {
         self.curve_of(self.some_values(most))
     }
 
-    /// The α of [`coarse_curve`](Self::coarse_curve) alone, ascending, for about half of its time. O(n log n).
+    /// The α of [`coarse_curve`](Self::coarse_curve) alone, ascending, in about half of its time. O(n log n).
     ///
     /// # Panics
     /// When `most` is less than 2.
@@ -89,7 +88,7 @@ impl Filtration {
     }
 
     /// The smallest α at which all points are in one solid component ([`Levels::solid_components`]): [`Suggestions::one_region`],
-    /// for less than half of what a [`Curve`] costs. O(n log n).
+    /// in less than half of the time of a [`Curve`]. O(n log n).
     pub fn one_region(&self) -> Alpha {
         self.optimal_alpha(NonZeroU64::MIN)
     }

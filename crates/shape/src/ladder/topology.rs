@@ -34,9 +34,9 @@ impl Levels<'_> {
         (0..self.len()).map(grow).collect()
     }
 
-    /// Solid components of each level: cells joined through facets, as CGAL's
-    /// `Alpha_shape_3::number_of_solid_components` counts them; where points span no volume, triangles joined
-    /// through edges, or edges through vertices. O(n α(n)).
+    /// Solid components of each level: cells joined through facets, as counted by CGAL's
+    /// `Alpha_shape_3::number_of_solid_components`; if points span no volume, triangles joined through edges, or edges through
+    /// vertices. O(n α(n)).
     pub fn solid_components(&self) -> Vec<u64> {
         let firsts = self.firsts_of_maximal();
         let simplices = ByLevel::new(self.len(), firsts.iter().copied());
@@ -130,9 +130,8 @@ impl Sets {
 }
 
 impl Levels<'_> {
-    /// The voids of each level, in space as many as its second Betti number, largest
-    /// first as in [`AlphaShape::voids`](crate::AlphaShape::voids).
-    /// O(n α(n)), and the length of the result.
+    /// The voids of each level, in space as many as its second Betti number, largest first, like in
+    /// [`AlphaShape::voids`](crate::AlphaShape::voids). O(n α(n)), and the length of the result.
     pub fn voids(&self) -> Vec<Vec<Void>> {
         let mut voids = vec![Vec::new(); self.len()];
         self.descend(|level, complement| voids[level] = complement.voids());
@@ -256,7 +255,7 @@ impl LevelComplement<'_> {
         voids
     }
 
-    /// The least double at which all cells of a component fit.
+    /// The smallest double at which all cells of a component fit.
     fn filling(&mut self, root: u32) -> f64 {
         let hollow = self.hollows[root as usize];
         match self.known.get(&root) {

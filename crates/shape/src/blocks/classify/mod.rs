@@ -96,7 +96,7 @@ pub(super) fn classify(
     Ok(owned)
 }
 
-/// Each point that is not the representative of its component, with that, by input index.
+/// Each point that is not the representative of its component, with the representative, by input index.
 fn component_pairs(components: &UnionFind, input: &[u32]) -> Vec<[u32; 2]> {
     let pair = |v: u32| {
         let root = components.find(v);

@@ -1,4 +1,4 @@
-//! The simplices that a block owns, recorded by point, and what the merge of blocks needs besides.
+//! The simplices that a block owns, recorded by point, and further data for the merge of blocks.
 
 use std::ops::Range;
 
@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use crate::Class;
 use crate::blocks::gather::Counts;
 
-/// The simplices that a block owns, and what the merge of blocks needs besides.
+/// The simplices that a block owns, and further data for the merge of blocks.
 #[derive(Default)]
 pub(in crate::blocks) struct Owned {
     /// The records by the bucket of the smallest vertex, and by the range of points along the curve.
@@ -16,8 +16,8 @@ pub(in crate::blocks) struct Owned {
     pub sheets: u32,
     /// Sides of facets, and singular edges, with vertices in this block and in others.
     pub shared: Vec<Side>,
-    /// Points, each with another one of its component, none of which follows from others: uniting these pairs gives
-    /// the components.
+    /// Pairs of a point and another one of its component, none of which follows from others: uniting these pairs gives the
+    /// components.
     pub components: Vec<[u32; 2]>,
     /// The ends of edges of the shape between points of this block and of others, possibly repeated.
     pub border: Vec<u32>,
@@ -59,9 +59,9 @@ impl Buckets {
     }
 }
 
-/// The simplices whose smallest vertices are given points of one bucket. These vertices are left out of the rows, and
-/// classes take two bits each, which saves memory until blocks are merged. What belongs to a point is in one place, as
-/// points are merged in another order than that along the curve.
+/// The simplices whose smallest vertices are given points of one bucket. These vertices are left out of the rows, and classes
+/// take two bits each, which saves memory until blocks are merged. The data of a point is in one place, because points are merged
+/// in another order than that along the curve.
 #[derive(Clone, Default)]
 pub(in crate::blocks) struct Records {
     pub points: Vec<PointRows>,
@@ -72,7 +72,7 @@ pub(in crate::blocks) struct Records {
     sheets: Vec<u32>,
 }
 
-/// A point, and how many simplices it is the smallest vertex of.
+/// A point, and the number of simplices of which it is the smallest vertex.
 #[derive(Clone, Copy)]
 pub(in crate::blocks) struct PointRows {
     /// The class of the point, `None` if it is not a vertex.

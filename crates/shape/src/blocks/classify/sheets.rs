@@ -94,7 +94,7 @@ impl Local<'_> {
         let cell = self.cells[side as usize / 4];
         let mut corners = [1, 2, 3].map(|step| (side as usize + step) % 4);
         let own = corners.iter().filter(|&&k| self.owned(cell[k])).count();
-        // The cell has no owned vertex but the one opposite this facet, so the facet is other blocks' alone.
+        // The only owned vertex of the cell is opposite this facet, so the facet belongs to other blocks.
         if own == 0 {
             return None;
         }

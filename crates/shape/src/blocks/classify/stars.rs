@@ -2,7 +2,7 @@ use rayon::prelude::*;
 
 use super::state::State;
 
-/// Points whose stars one thread walks at a time: they fit its cache.
+/// The number of points whose stars one thread walks at a time: they fit its cache.
 pub(in crate::blocks) const RANGE: usize = 1 << 12;
 
 /// The maximum number of chunks of cells that are searched for stars in parallel.
@@ -80,7 +80,7 @@ impl<'a> Stars<'a> {
         let number = |corner: u32| {
             (self.cells[corner as usize / 4][corner as usize % 4] - vertices.start) as usize
         };
-        // `starts[v + 1]` is where the next corner of v is written; once all are, it is where the star of v ends.
+        // `starts[v + 1]` is the place of the next corner of v; after all are written, it is the end of the star of v.
         stars.first = vertices.start;
         stars.starts.clear();
         stars.starts.resize(vertices.len() + 2, 0);

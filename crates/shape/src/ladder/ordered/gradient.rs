@@ -51,10 +51,10 @@ impl Filtration {
     /// The derivatives of the squared radius of the smallest orthogonal sphere of a simplex with respect to its points, given by
     /// their input indices. This radius is its value if it is Gabriel: see [`Ordered::gabriel_simplices`].
     ///
-    /// Where c = Σ bᵢ pᵢ is the centre, with Σ bᵢ = 1, the squared radius is the stationary value of Σ bᵢ (|pᵢ|² − wᵢ) − |c|² in b,
-    /// so that its derivatives are 2 bᵢ (pᵢ − c) by pᵢ and −bᵢ by wᵢ (the envelope theorem). However flat the simplex is, each bᵢ is right
-    /// to 2⁻⁵⁰ of the largest, and each product to that times 2 |pᵢ − c|: they are computed in numbers of two doubles, or by integers
-    /// where these are too few. All are NaN for points that span no simplex.
+    /// If c = Σ bᵢ pᵢ is the centre, with Σ bᵢ = 1, the squared radius is the stationary value of Σ bᵢ (|pᵢ|² − wᵢ) − |c|² in b,
+    /// so its derivatives are 2 bᵢ (pᵢ − c) by pᵢ and −bᵢ by wᵢ (the envelope theorem). However flat the simplex is, each bᵢ is
+    /// correct to 2⁻⁵⁰ of the largest, and each product to that times 2 |pᵢ − c|: they are computed in numbers of two doubles, or
+    /// in integers if those are not precise enough. All are NaN for points that span no simplex.
     ///
     /// ```
     /// use walpha_shape::WeightedPoints;
@@ -69,7 +69,7 @@ impl Filtration {
     /// ```
     ///
     /// # Panics
-    /// If there are no points, more than four, or an index of none.
+    /// If there are no points, more than four, or an index without a point.
     pub fn derivatives(&self, vertices: &[u32]) -> Vec<Derivative> {
         match *vertices {
             [a] => self.of_simplex([a]).to_vec(),
@@ -130,7 +130,7 @@ mod tests {
         }
     }
 
-    /// A tilted cell of thickness 10⁻¹⁴, and what fractions of integers make of its derivatives.
+    /// A tilted cell of thickness 10⁻¹⁴, whose derivatives are compared with fractions of integers.
     #[test]
     fn derivatives_of_tilted_flat_cells_are_precise() {
         let positions = vec![
