@@ -8,10 +8,9 @@ use super::solid::join;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct ManifoldDefects {
-    /// Edges on more than two regular facets, where parts of the shape touch along a line.
+    /// Edges on more than two regular facets, along which parts of the shape touch.
     pub edges: usize,
-    /// Other vertices around which the regular facets make more than one fan, where parts touch at
-    /// a point.
+    /// Other vertices around which the regular facets form more than one fan, at which parts touch.
     pub vertices: usize,
 }
 

@@ -57,7 +57,7 @@ impl LengthsError {
     /// Checks that a column has as many entries as there are points.
     ///
     /// # Errors
-    /// [`LengthsError`] where it has not.
+    /// [`LengthsError`] if it does not.
     pub fn unless_equal(column: &'static str, given: usize, points: usize) -> Result<(), Self> {
         if given == points { Ok(()) } else { Err(Self { column, given, points }) }
     }
@@ -102,7 +102,7 @@ impl WeightedPoints {
         &self.weights
     }
 
-    /// Values F, one for each point, where they are known.
+    /// Values F, one for each point, if they are known.
     pub fn values(&self) -> Option<&[f64]> {
         self.values.as_deref()
     }
@@ -122,7 +122,7 @@ impl WeightedPoints {
         self.values.as_deref_mut()
     }
 
-    /// Positions, weights, and values where they are known.
+    /// Positions, weights, and values if they are known.
     pub fn into_parts(self) -> (Vec<[f64; 3]>, Vec<f64>, Option<Vec<f64>>) {
         (self.positions, self.weights, self.values)
     }
@@ -157,7 +157,7 @@ impl From<Vec<[f64; 3]>> for WeightedPoints {
     }
 }
 
-/// Copies of points without weights: of a slice, a `Vec` or an array.
+/// Copies points without weights from a slice, a `Vec` or an array.
 impl<P: AsRef<[[f64; 3]]> + ?Sized> From<&P> for WeightedPoints {
     fn from(positions: &P) -> Self {
         Self::unweighted(positions.as_ref().to_vec())

@@ -144,7 +144,7 @@ impl<'a> Outside<'a> {
     /// facets: first the side from which its sorted row turns clockwise. Unites corners across exterior facets.
     fn facets(&mut self) -> Vec<u32> {
         let (cells, facets) = (&self.whole.cells, &self.whole.facets);
-        // Facets as sorted rows, ascending as `sides` are: regular ones need not be listed so.
+        // Facets as sorted rows, ascending like `sides`; regular facets need not be listed in this order.
         let mut ascending: Vec<([u32; 3], usize)> = Vec::with_capacity(facets.len());
         ascending.extend(facets.rows().iter().enumerate().map(|(at, &row)| (sorted(row), at)));
         ascending.par_sort_unstable();

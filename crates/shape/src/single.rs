@@ -1,4 +1,4 @@
-//! Coordinates in single precision, in which some formats hold them and all pages draw them.
+//! Coordinates in single precision, which some formats use and in which all pages draw.
 
 use rayon::prelude::*;
 use walpha_base::shown::{number, six_digits};
@@ -15,14 +15,14 @@ pub struct SinglePrecision {
     pub offset: [f64; 3],
     /// The largest error of a coordinate after that, in the unit of the coordinates.
     pub error: f64,
-    /// The number of different places that become equal to others even so.
+    /// The number of different places that become equal to others with this offset.
     pub merged: usize,
-    /// Whether even so a mesh is not what it was: the error is more than a thousandth of its shortest edge, or different
-    /// vertices have become one.
+    /// Whether a mesh changes with this offset: the error is more than a thousandth of its shortest edge, or different vertices
+    /// have become one.
     pub is_lossy: bool,
 }
 
-/// The share of the shortest edge that rounding may move a coordinate by.
+/// The share of the shortest edge by which rounding may move a coordinate.
 const TOLERATED: f64 = 1e-3;
 /// The largest relative error of rounding to single precision, 2⁻²⁴.
 const HALF_STEP: f64 = f32::EPSILON as f64 / 2.0;
@@ -80,7 +80,7 @@ impl SinglePrecision {
         [0, 1, 2].map(|axis| (place[axis] - self.offset[axis]) as f32)
     }
 
-    /// Whether something is subtracted.
+    /// Whether an offset is subtracted.
     pub fn has_offset(&self) -> bool {
         self.offset != [0.0; 3]
     }
@@ -159,8 +159,8 @@ fn length([a, b]: [[f64; 3]; 2]) -> f64 {
     [0, 1, 2].map(|axis| a[axis] - b[axis]).into_iter().fold(0.0, f64::hypot)
 }
 
-/// The roundest number that leaves an error of no more than is tolerated where it is subtracted from numbers between two;
-/// or else one about in their middle.
+/// The roundest number that leaves at most the tolerated error after it is subtracted from numbers between two bounds; otherwise
+/// a number near their middle.
 fn offset(low: f64, high: f64, tolerated: f64) -> f64 {
     let (middle, half) = (f64::midpoint(low, high), high / 2.0 - low / 2.0);
     let first = middle.abs().log10().floor();
@@ -174,7 +174,7 @@ fn offset(low: f64, high: f64, tolerated: f64) -> f64 {
         let multiple =
             if power < 0 { (middle * step).round() / step } else { (middle / step).round() * step };
         let suffices = HALF_STEP * f64::max(high - multiple, multiple - low) <= tolerated;
-        // Beyond the digits of a double no number is rounder.
+        // No number beyond the digits of a double is rounder.
         let ends = 10f64.powi(power) <= half || f64::from(power) < first - 17.0;
         if suffices || ends {
             return multiple;
@@ -187,7 +187,7 @@ fn offset(low: f64, high: f64, tolerated: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// A square grid of points 5 cm apart, as far from the origin as UTM has them.
+    /// A square grid of points 5 cm apart, as far from the origin as in UTM coordinates.
     fn roof(at: [f64; 3]) -> (Vec<[f64; 3]>, Vec<[u32; 2]>) {
         let place =
             |i: u32| [at[0] + 0.05 * f64::from(i % 20), at[1] + 0.05 * f64::from(i / 20), at[2]];

@@ -18,9 +18,9 @@ const AT_ONCE: usize = 1 << 24;
 pub struct Surface {
     /// Input indices of the vertices used below, ascending.
     pub vertices: Vec<u32>,
-    /// Further vertices, each the midpoint of two of those; of a [solid](crate::AlphaShape::solid) only.
+    /// Further vertices, each the midpoint of two of those; only in a [solid](crate::AlphaShape::solid).
     pub midpoints: Vec<[u32; 2]>,
-    /// Vertices that are not at the positions of their input, ascending, and where they are; of a solid only.
+    /// Vertices that are not at the positions of their input, ascending, with their positions; only in a solid.
     pub moved: Vec<(u32, [f64; 3])>,
     /// Regular facets, counter-clockwise seen from outside.
     pub regular: Vec<[u32; 3]>,

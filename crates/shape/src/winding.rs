@@ -32,7 +32,7 @@ impl Directions {
         independent
     }
 
-    /// Adds those of others that are independent.
+    /// Adds the independent ones of other directions.
     pub fn extend(&mut self, others: &Self) {
         others.0.iter().for_each(|&way| _ = self.add(way));
     }
@@ -82,8 +82,8 @@ impl WindingSets {
         }
     }
 
-    /// Unites the sets of `a` and `b`, where `b`, moved by `moved`, meets `a`. Returns whether they were two sets, or
-    /// else the new direction in which their set winds round, if there is one.
+    /// Unites the sets of `a` and `b`, where `b`, moved by `moved`, meets `a`. Returns whether they were two sets, or otherwise
+    /// the new direction in which their set winds round, if there is one.
     pub fn unite(&mut self, a: u32, b: u32, moved: Winding) -> United {
         let ((root, to_a), (other, to_b)) = (self.find(a), self.find(b));
         // The winding of the root of b relative to that of a.

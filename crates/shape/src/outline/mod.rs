@@ -24,11 +24,11 @@ use view::{View, spanning_plane};
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Outline {
-    /// The two coordinates in which the plane is seen, 0 for x, 1 for y and 2 for z: the first of (x, y), (x, z) and
-    /// (y, z) that tell its points apart. Counter-clockwise is the way from the first axis to the second.
+    /// The two coordinates in which the plane is seen, 0 for x, 1 for y and 2 for z: the first of (x, y), (x, z) and (y, z) in
+    /// which its points differ. Counter-clockwise is the way from the first axis to the second.
     pub axes: [usize; 2],
-    /// The polygons: triangles that are joined through edges make one. Polygons touch each other at vertices
-    /// at most. In the order of their outer rings.
+    /// The polygons: triangles that are joined through edges make one. Polygons touch each other only at vertices. They are in
+    /// the order of their outer rings.
     pub polygons: Vec<Polygon>,
     /// The singular edges, those on no triangle, in the order of the complex.
     pub edges: Vec<[u32; 2]>,
@@ -62,7 +62,7 @@ impl Outline {
         self.polygons.iter().map(|polygon| polygon.holes.len()).sum()
     }
 
-    /// The outline of a complex in a plane, whose triangles have this area in all.
+    /// The outline of a complex in a plane, whose triangles have this total area.
     fn of(complex: &Complex, positions: &[[f64; 3]], area: f64) -> Result<Self, OutlineError> {
         let view = View::of(positions)?;
         let seen = view.seen();
@@ -86,9 +86,9 @@ impl AlphaShape {
     /// The outline of a shape whose points lie in one plane, which is decided exactly: polygons with holes, and the edges and
     /// points outside of them. The plane may be tilted. O(n log n) at the first call, and computed once.
     ///
-    /// Every ring is simple: it passes each vertex once. Rings of one polygon touch each other at vertices at most, and
-    /// its interior is connected, so polygons are valid in the sense of OGC Simple Features (ISO 19125-1). The result does
-    /// not depend on the engine.
+    /// Every ring is simple: it passes each vertex once. Rings of one polygon touch each other only at vertices, and its interior
+    /// is connected, so polygons are valid in the sense of OGC Simple Features (ISO 19125-1). The result does not depend on the
+    /// engine.
     ///
     /// ```
     /// use walpha_shape::{Alpha, ShapeOptions, WeightedPoints, alpha_shape};

@@ -83,7 +83,7 @@ impl Seen<'_> {
     }
 }
 
-/// The height of an eye: about the extent of the places, so that predicates need no integers where triangles are not far
+/// The height of an eye: approximately the extent of the places, so that predicates need no integers if triangles are not far
 /// smaller, and a power of two, which keeps places on their lattice.
 fn height(places: &[[f64; 3]]) -> f64 {
     // Cubes of shorter lengths leave the range of doubles.

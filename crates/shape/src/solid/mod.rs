@@ -28,9 +28,10 @@ pub struct Cuts {
     pub midpoints: usize,
     /// Vertices that were moved away from others at the same place.
     pub moved: usize,
-    /// The largest distance that one was moved, in the unit of the coordinates.
+    /// The largest distance by which a vertex was moved, in the unit of the coordinates.
     pub largest_move: f64,
-    /// Vertices that are still where another one is, as no step was found that keeps the boundary from crossing itself.
+    /// The number of vertices that are still at the place of another one, because no step was found that keeps the boundary from
+    /// crossing itself.
     pub together: usize,
 }
 
@@ -45,7 +46,7 @@ struct Middle {
     thirds: [u32; 2],
 }
 
-/// A boundary that is cut apart, and not moved yet.
+/// A boundary that is cut apart, before vertices move.
 struct Cut {
     solid: Surface,
     cuts: Cuts,
@@ -114,7 +115,7 @@ impl Surface {
         (solid, cuts)
     }
 
-    /// The corners of regular facets at each vertex: where those of a vertex start among all, and all.
+    /// The corners of regular facets at each vertex: the start of those of each vertex, and all corners.
     fn corners_by_vertex(&self) -> (Vec<u32>, Vec<Corner>) {
         let all = self.regular.as_flattened();
         let mut starts = vec![0; self.vertices.len() + 1];
@@ -136,7 +137,7 @@ impl Surface {
             let key = [ends[0].min(ends[1]), ends[0].max(ends[1])];
             sheets.entry(key).or_default().push([a / 3, b / 3]);
         }
-        // The rows that a facet has been divided into.
+        // The rows into which a facet was divided.
         let mut rows: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
         let mut middles = Vec::new();
         for (ends, sheets) in sheets {
@@ -153,7 +154,7 @@ impl Surface {
         middles
     }
 
-    /// Divides the one of these rows that has an edge by a vertex on it; returns the third corner.
+    /// Divides the row that has an edge at a vertex on the edge; returns the third corner.
     fn divide(&mut self, rows: &mut Vec<u32>, ends: [u32; 2], vertex: u32) -> u32 {
         let has_edge = |row: &&u32| {
             let row = &self.regular[**row as usize];
@@ -175,8 +176,8 @@ pub(super) fn join(fans: &UnionFind, a: [Corner; 2], b: [Corner; 2]) {
     fans.unite(a[1], b[1]);
 }
 
-/// Pairs of facets that stay joined along one of these edges, as they bound the same cells there: by their corners at the ends
-/// of the edge, in the same order.
+/// Pairs of facets that stay joined along one of these edges because they bound the same cells there. They are given by their
+/// corners at the ends of the edge, in the same order.
 fn pairs(complex: &Complex, surface: &Surface, edges: &[Vec<Side>]) -> Vec<[[Corner; 2]; 2]> {
     let number = |end: u32| surface.vertices[end as usize];
     let wedges = wedges(complex, edges.iter().map(|sides| sides[0].0.map(number)).collect());

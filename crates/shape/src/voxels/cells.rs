@@ -1,4 +1,4 @@
-//! A region of voxels by the part that each plays in its solid, and the simplices that fill what is deep.
+//! The parts that voxels of a region play in its solid, and the simplices that fill deep voxels.
 
 use rayon::prelude::*;
 use walpha_base::Monitor;
@@ -64,7 +64,7 @@ impl Lattice {
     }
 }
 
-/// A positively oriented cell in canonical form, turned over where `mirrored`.
+/// A positively oriented cell in canonical form, turned over if `mirrored`.
 pub(super) fn written(mut cell: [u32; 4], mirrored: bool) -> [u32; 4] {
     if mirrored {
         cell.swap(2, 3);

@@ -12,9 +12,9 @@ use super::bits::Bits;
 use super::cells::{Filling, Lattice, written};
 use crate::{Class, Complex, ShapeError, Simplices};
 
-/// The complex of a region: each corner lists the simplices whose smallest vertex it is. A facet of one cell is regular, as are its edges and
-/// vertices, and everything else is interior. The cells are positively oriented where the axes of the grid are right-handed; turned over where
-/// `mirrored`.
+/// The complex of a region: each corner lists the simplices whose smallest vertex it is. A facet of one cell is regular, and so
+/// are its edges and vertices; all other simplices are interior. The cells are positively oriented if the axes of the grid are
+/// right-handed, and turned over if `mirrored`.
 pub(super) fn complex(
     lattice: &Lattice,
     region: &Bits,
@@ -36,7 +36,7 @@ pub(super) fn complex(
         });
         Ok::<_, ShapeError>(())
     };
-    // Once to count, so that nothing larger than the result is ever needed.
+    // The first pass counts, so that nothing larger than the result is ever needed.
     let counted = planes().map(|plane| {
         let mut counts = [0; 4];
         each(plane, &mut |found| {
@@ -102,7 +102,8 @@ impl<const N: usize> Pattern<N> {
     }
 }
 
-/// The octants around a corner that are in a set, a bit each; bit k of an octant's number says that it is after the corner along axis k.
+/// The octants around a corner that are in a set, a bit for each; bit k of an octant's number says that it is after the corner
+/// along axis k.
 struct Octants {
     shell: u8,
     region: u8,
@@ -171,7 +172,7 @@ impl Patterns {
         found.facets.extend(starting(&filling.facets, number).map(|&row| (row, Class::Interior)));
         found.facets.sort_unstable();
         for &edge in starting(&filling.edges, number) {
-            // An edge of a cube is there already, with the class that the cubes around it give it.
+            // An edge of a cube exists already, with the class that the cubes around it give it.
             if !found.edges.iter().any(|(there, _)| *there == edge) {
                 found.edges.push((edge, Class::Interior));
             }
@@ -274,7 +275,7 @@ impl<const N: usize> Rows<N> {
     }
 }
 
-/// A part, as far as it has not been written.
+/// The part of the rows that has not been written.
 struct Place<'a, const N: usize> {
     rows: std::slice::IterMut<'a, [u32; N]>,
     classes: std::slice::IterMut<'a, Class>,
