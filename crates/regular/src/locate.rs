@@ -43,7 +43,7 @@ pub enum Location {
 }
 
 impl Location {
-    /// The cell where the point lies: finite, unless it is outside.
+    /// The cell that contains the point; finite, unless the point is outside.
     pub fn cell(self) -> u32 {
         match self {
             Self::InCell { cell }
@@ -86,7 +86,7 @@ impl Triangulation {
         if !point.iter().all(|x| x.abs() <= MAX_COORDINATE) {
             return None;
         }
-        // Across facets that separate the cell from the point: such a walk never returns to a cell of a regular
+        // The walk goes across facets that separate the cell from the point: such a walk never returns to a cell of a regular
         // triangulation (Edelsbrunner 1990, doi:10.1007/BF02122779).
         let (mut from, mut face) = (NO_CELL, Vec::with_capacity(4));
         'walk: loop {
@@ -94,7 +94,7 @@ impl Triangulation {
             face.clear();
             for (corner, side) in self.adjacency()[cell as usize].into_iter().enumerate() {
                 let next = side / 4;
-                // The point is strictly on this side of the facet that the walk came through.
+                // The point is strictly on this side of the facet through which the walk came.
                 let sign = if next == from {
                     Ordering::Greater
                 } else {

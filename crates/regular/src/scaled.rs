@@ -1,4 +1,4 @@
-//! Points at a size where doubles decide.
+//! Points scaled to a size for which doubles decide.
 
 use rayon::prelude::*;
 
@@ -50,8 +50,8 @@ impl<const D: usize> Scaled<D> {
         })
     }
 
-    /// A squared length at the same scale, as α is; `None` where it would lose bits or pass the range of doubles. An infinite one is
-    /// infinite.
+    /// A squared length, such as α, at the same scale; `None` if it would lose bits or exceed the range of doubles. An infinite
+    /// one is infinite.
     pub fn square(&self, squared: f64) -> Option<f64> {
         if squared.is_infinite() { Some(squared) } else { square(squared, self.factor) }
     }
@@ -96,7 +96,7 @@ mod tests {
         assert!(of(1e-100, 0.0, 1e200).is_none());
         assert_eq!(of(1e-100, 0.0, 0.0).unwrap().square(1e200), None);
         assert_eq!(of(1e100, 0.0, 0.0).unwrap().square(1e-200), None);
-        // The smallest double, as far as a factor goes.
+        // The smallest double, as large as a factor can make it.
         assert_eq!(of(5e-324, 0.0, 0.0).unwrap().positions[0][0], 2f64.powi(-52));
     }
 }

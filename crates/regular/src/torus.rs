@@ -108,8 +108,7 @@ impl Torus {
         self.sides.iter().product()
     }
 
-    /// The copy of a position that is in the box, rounded to the step. Along each axis it is at least 0 and
-    /// less than the side.
+    /// The copy of a position in the box, rounded to the step. Along each axis it is at least 0 and less than the side.
     pub fn wrap(&self, position: [f64; 3]) -> [f64; 3] {
         let mut position = position;
         for (x, side) in position.iter_mut().zip(self.sides) {
@@ -132,8 +131,8 @@ impl Torus {
         position.iter().zip(self.sides).all(|(x, side)| (0.0..side).contains(x))
     }
 
-    /// The copy of `to` that is nearest to `from` along each axis, for two positions in the box; where two
-    /// copies are equally near, `to` itself. Exact.
+    /// The copy of `to` that is nearest to `from` along each axis, for two positions in the box; if two copies are equally near,
+    /// `to` itself. Exact.
     #[inline]
     pub fn near(&self, from: [f64; 3], to: [f64; 3]) -> [f64; 3] {
         let mut near = to;
@@ -162,7 +161,7 @@ impl Torus {
         [0, 1, 2].map(|k| position[k] + f64::from(windings[k]) * self.sides[k])
     }
 
-    /// The corners of a simplex: the first one, and of each other the copy nearest to it.
+    /// The corners of a simplex: the first one, and for each other corner the copy nearest to it.
     #[inline]
     pub fn together<const N: usize>(&self, mut corners: [[f64; 3]; N]) -> [[f64; 3]; N] {
         let first = corners[0];

@@ -1,4 +1,4 @@
-//! The triangulation of points, and what one can ask it.
+//! The triangulation of points, and its queries.
 
 use std::collections::HashSet;
 

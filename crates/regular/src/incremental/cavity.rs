@@ -4,14 +4,14 @@ use super::{Builder, Mesh};
 use crate::kernel::Screen;
 use crate::{Cell, Triangulation, TriangulationError, filled};
 
-/// Side of [`Cavity::table`]: the largest number of distinct vertices of the boundary of a cavity, the infinite vertex
-/// included, whose cells are joined by table. A power of two.
+/// Side of [`Cavity::table`]: the largest number of distinct vertices of the boundary of a cavity, including the infinite vertex,
+/// whose cells are joined by table. A power of two.
 const TABLE_SIDE: usize = 64;
 
 /// Working memory of an insertion, kept so that the next one need not allocate.
 #[derive(Debug)]
 pub(super) struct Cavity {
-    /// The cells in conflict with the point. Empty once their slots belong to new cells.
+    /// The cells in conflict with the point. Empty after their slots are given to new cells.
     conflicts: Vec<u32>,
     /// The slots of the new cells, one for each facet of the boundary.
     new_cells: Vec<u32>,
@@ -19,8 +19,8 @@ pub(super) struct Cavity {
     boundary: Vec<Facet>,
     /// Number of facets of the boundary.
     facets: usize,
-    /// Vertices of the boundary have local numbers 0, 1, … in the order in which they are met. This is, by
-    /// vertex, `base` plus the local number; less than `base` for vertices not met in this insertion.
+    /// Vertices of the boundary have local numbers 0, 1, … in the order in which they are met. For each vertex this is `base`
+    /// plus the local number; less than `base` for vertices that were not met in this insertion.
     local_numbers: Vec<u32>,
     base: u32,
     /// Number of distinct vertices of the boundary.
@@ -28,8 +28,8 @@ pub(super) struct Cavity {
     /// For the local numbers of two vertices x, y: 4·cell + corner of the new facet with vertices v, x, y, where v is the new
     /// point.
     table: Box<[u32; TABLE_SIDE * TABLE_SIDE]>,
-    /// Stamp of cells that this insertion visited and that are not in conflict; `stamp + 1` is that of cells in
-    /// conflict. All older stamps are smaller.
+    /// Stamp of cells that this insertion visited and that are not in conflict; `stamp + 1` is the stamp of cells in conflict.
+    /// All older stamps are smaller.
     stamp: u32,
 }
 
@@ -186,8 +186,8 @@ impl Builder {
     }
 }
 
-/// The entry of an edge of the boundary, by the local numbers of its vertices. With too many vertices for the table
-/// it is within bounds all the same; what is entered then is not used.
+/// The entry of an edge of the boundary, by the local numbers of its vertices. If there are too many vertices for the table, the
+/// entry is still within bounds, but is not used.
 #[inline(always)]
 fn table_index(x: u32, y: u32) -> usize {
     (x as usize * TABLE_SIDE + y as usize) % (TABLE_SIDE * TABLE_SIDE)

@@ -36,9 +36,9 @@ pub struct Cell {
 /// Insertions between two reports of progress: some milliseconds.
 const REPORT_EVERY: usize = 4096;
 
-/// The regular triangulation of points, which satisfy the conditions of [`Sites`](super::Sites) and follow a
-/// space-filling curve. `inserted` is called now and then with the number of points inserted since. Expected
-/// O(n log n) for evenly distributed points.
+/// The regular triangulation of points, which satisfy the conditions of [`Sites`](super::Sites) and follow a space-filling curve.
+/// `inserted` is called from time to time with the number of points inserted since the last call. Expected O(n log n) for evenly
+/// distributed points.
 ///
 /// # Errors
 /// Points that span no volume; too many cells; out of memory; what `inserted` returns.
@@ -73,7 +73,7 @@ pub(crate) fn insert_cells(
     Ok(builder.finish())
 }
 
-/// A triangulation whose cells are in the slots that they were made in.
+/// A triangulation whose cells are in the slots of their creation.
 pub(crate) struct Built {
     pub cells: Vec<Cell>,
     /// Slots of deleted cells.
@@ -106,8 +106,8 @@ struct Builder {
 }
 
 impl Builder {
-    /// An empty triangulation with capacity for `points` points. All vertex numbers, the infinite vertex's included, are below
-    /// `below`.
+    /// An empty triangulation with capacity for `points` points. All vertex numbers, including that of the infinite vertex, are
+    /// below `below`.
     fn with_capacity(
         points: usize,
         below: usize,
@@ -126,8 +126,8 @@ impl Builder {
         Ok(builder)
     }
 
-    /// Starts with four of some points that span a volume: one cell and the four infinite cells around it. O(n)
-    /// where the first points span none.
+    /// Starts with four of some points that span a volume: one cell and the four infinite cells around it. O(n) if the first
+    /// points span none.
     fn start(
         &mut self,
         screen: &Screen<'_>,
@@ -236,8 +236,8 @@ impl Mesh {
         quick.unwrap_or_else(|| self.conflicts_exactly(screen, cell, v))
     }
 
-    /// The exact test. The sphere of an infinite cell is the open half-space beyond its facet of the hull; in the
-    /// plane of that facet the sphere of the finite cell behind it decides.
+    /// The exact test. The sphere of an infinite cell is the open half-space beyond its facet of the hull; in the plane of that
+    /// facet, the sphere of the finite cell behind it decides.
     #[inline(never)]
     fn conflicts_exactly(&self, screen: &Screen<'_>, cell: u32, v: u32) -> bool {
         let mut corners = self.cells[cell as usize].corners;

@@ -102,7 +102,7 @@ impl Workspace {
         Some(Hole { star, filling, boundary })
     }
 
-    /// The index of a cell in the filling; appends it where it has none.
+    /// The index of a cell in the filling; appends the cell if it has none.
     fn add(&mut self, cell: u32, inside: &mut Vec<u32>) -> u32 {
         let index = &mut self.index_of[cell as usize];
         if *index == NO_CELL {
@@ -114,7 +114,7 @@ impl Workspace {
 }
 
 impl State {
-    /// The star of a vertex and what would replace it; `None` if all other vertices span no volume.
+    /// The star of a vertex and the cells that would replace it; `None` if all other vertices span no volume.
     ///
     /// The orthogonal sphere of a cell that replaces part of the star is in conflict with no other vertex, in particular no neighbour of
     /// the vertex. So it is a cell of the triangulation of the neighbours, of which the part within the boundary
@@ -149,8 +149,8 @@ impl State {
         self.builder.mesh.cells[side as usize / 4].corners[side as usize % 4]
     }
 
-    /// The star of a vertex: its cells, and of each the facet opposite the vertex (its link) with 4·cell + corner
-    /// on the other side.
+    /// The star of a vertex: its cells, and for each the facet opposite the vertex (its link) with 4·cell + corner on the other
+    /// side.
     fn star(&self, v: u32) -> (Vec<u32>, Vec<([u32; 3], u32)>) {
         let (mut star, mut boundary) = (vec![self.cell_at[v as usize]], Vec::new());
         while let Some(&cell) = star.get(boundary.len()) {

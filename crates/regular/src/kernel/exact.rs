@@ -80,7 +80,8 @@ pub(super) fn squared_radius<const N: usize>(sites: [Site; N]) -> Ratio {
     Ratio::new(numerator, denominator, units.square())
 }
 
-/// The centre of the orthogonal sphere of a positively oriented cell, seen from its first corner: each coordinate the nearest double.
+/// The centre of the orthogonal sphere of a positively oriented cell, relative to its first corner: each coordinate is the
+/// nearest double.
 pub(super) fn centre_of(sites: [Site; 4]) -> [f64; 3] {
     let units = Units::of(&sites, 0.0);
     let [_, b, c, d] = sites.map(|q| units.ray::<IBig>(sites[0], q));

@@ -37,7 +37,7 @@ impl Ratio {
 
     /// The nearest double, of two equally near ones the even one; ±∞ beyond the largest. Never −0.
     pub fn nearest(self) -> f64 {
-        // The quotient has 53 or 54 bits, or fewer where the double is subnormal.
+        // The quotient has 53 or 54 bits, or fewer if the double is subnormal.
         let shift = self.shift_for(MANTISSA_BITS);
         let (numerator, denominator, exponent) = self.shifted(shift);
         let negative = numerator < IBig::ZERO;

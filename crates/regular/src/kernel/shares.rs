@@ -1,5 +1,5 @@
 //! The centre of the smallest orthogonal sphere of a simplex by its barycentric coordinates, in numbers with twice the digits of
-//! doubles, or by integers where these are too few: the flatter a simplex, the more digits are lost.
+//! doubles, or in integers if those have too few digits: the flatter a simplex, the more digits are lost.
 
 use dashu_int::IBig;
 
@@ -19,12 +19,12 @@ pub struct Share {
     pub moment: [f64; 3],
 }
 
-/// The shares of the corners of a simplex, at these places and with these weights. They are right to 2⁻⁵⁰ of the largest, and moments to
-/// as much of that times the way from c to the corner; where numbers of two doubles do not give that, they are the nearest doubles. NaN
-/// where the places span no simplex.
+/// The shares of the corners of a simplex, at these places and with these weights. They are correct to 2⁻⁵⁰ of the largest, and
+/// moments to that times the way from c to the corner; if numbers of two doubles do not achieve that, they are the nearest
+/// doubles. NaN if the places span no simplex.
 ///
 /// # Panics
-/// If there are not one to four corners.
+/// If the number of corners is not one to four.
 pub fn centre_shares<const N: usize>(places: [[f64; 3]; N], weights: [f64; N]) -> [Share; N] {
     let mut sites = [Site { position: [0.0; 3], weight: 0.0 }; N];
     for (site, (position, weight)) in sites.iter_mut().zip(places.into_iter().zip(weights)) {
@@ -87,7 +87,8 @@ fn closely<const N: usize>(sites: &[Site; N]) -> Option<[Share; N]> {
     }
     let rays = rays(sites[0], sites);
     let Shares { others, of_others, centre, of_centre } = Shares::of(&rays[1..]);
-    // Bounds of the terms of the way from the centre to a corner, and of its denominator, which three powers of the length are part of.
+    // Bounds of the terms of the way from the centre to a corner, and of its denominator, which contains three powers of the
+    // length.
     let Size { length, power } = size;
     let (way_terms, centre_terms) = match N {
         2 => (3.0 * power * length, 6.0 * length * length),
@@ -170,7 +171,7 @@ mod tests {
         sites
     }
 
-    /// The largest difference of shares, and of moments, as parts of what they are promised to.
+    /// The largest errors of shares, and of moments, relative to their guaranteed precision.
     fn off<const N: usize>(sites: [Site; N]) -> Option<f64> {
         let (found, wanted) = (closely(&sites)?, exactly(sites));
         let largest = |of: &dyn Fn(&Share) -> f64| wanted.iter().map(of).fold(0.0, f64::max);

@@ -8,8 +8,8 @@ use rayon::prelude::*;
 use super::slots::Slots;
 use crate::{Cell, CellArrays, DELETED, TriangulationError, with_capacity};
 
-/// The permutations that bring the smallest of four first and the smallest of the others second, and are even: entry
-/// 3·p + r where the smallest was at p, after which the other three are rotated r times. Where each comes from.
+/// The even permutations that bring the smallest of four first and the smallest of the others second. Entry 3·p + r is for a
+/// smallest one at p, after which the other three are rotated r times. Each entry lists the sources of the elements.
 const EVEN: [[u8; 4]; 12] = [
     [0, 1, 2, 3],
     [0, 2, 3, 1],
@@ -64,13 +64,13 @@ impl CellArrays {
     }
 }
 
-/// Slots that one task looks at.
+/// The number of slots that one task handles.
 const PIECE: usize = 1 << 16;
-/// Vertices whose cells one task puts in order: so few that its working memory stays in the cache.
+/// The number of vertices whose cells one task sorts: few enough for its working memory to stay in the cache.
 const VERTICES: usize = 1 << 11;
 
-/// The cells in canonical order: each as its lexicographically smallest even permutation, and these ascending. So cells
-/// of consecutive points are close in memory. O(cells) for bounded numbers of cells at a point.
+/// The cells in canonical order: each as its lexicographically smallest even permutation, and the cells ascending. So cells of
+/// consecutive points are close in memory. O(cells) for bounded numbers of cells at a point.
 pub(super) fn number(slots: Slots, at_infinity: u32) -> Result<CellArrays, TriangulationError> {
     let Slots { chunks: mut old, bits, .. } = slots;
     let ranges = at_infinity as usize / VERTICES + 1;
@@ -152,15 +152,15 @@ struct Moved {
 }
 
 impl Moved {
-    /// A cell that [`permute`] left.
+    /// A cell after [`permute`].
     fn of(cell: Cell) -> Self {
         let Cell { corners: [code, ..], neighbors } = cell;
         Self { neighbors, number: AtomicU32::new(0), code }
     }
 }
 
-/// Permutes the cells of consecutive slots, the first of which is given, and leaves the entry of [`EVEN`] in place of
-/// their first corner. By range of vertices, the cells whose smallest corner is there.
+/// Permutes the cells of consecutive slots, the first of which is given, and stores the entry of [`EVEN`] in place of their first
+/// corner. Returns for each range of vertices the cells whose smallest corner is there.
 fn permute(cells: &mut [Cell], start: u32, ranges: usize) -> Vec<Vec<Corners>> {
     let range = |cell: &Cell| cell.corners.into_iter().min().unwrap_or(0) as usize / VERTICES;
     let mut counts = vec![0; ranges];

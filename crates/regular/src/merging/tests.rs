@@ -59,7 +59,7 @@ fn set(random: &mut Random, case: usize) -> Vec<([f64; 3], f64)> {
                 6 => (p, if i % 17 == 0 { 0.3 } else { 0.0 }),
                 // The moment curve: all points are neighbours of all.
                 7 => ([t, t * t, t * t * t], 0.0),
-                // Two lines, which no leaf need span a volume with.
+                // Two lines; a leaf need not span a volume.
                 8 if i % 2 == 0 => ([t, 0.0, 0.0], 0.0),
                 8 => ([20.0, t - 30.0, 1.0], 0.0),
                 // Neighbours that differ in the last bit.

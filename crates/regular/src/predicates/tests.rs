@@ -1,4 +1,4 @@
-//! Against determinants of integers by their definition, which no code of the kernel computes.
+//! Compares with determinants of integers by their definition, which no code of the kernel computes.
 
 use std::collections::BTreeSet;
 
@@ -47,7 +47,7 @@ fn power_by_definition(points: [[f64; 3]; 5], weights: [f64; 5]) -> Ordering {
         [vec![IBig::ONE], p, vec![height]].concat()
     };
     let rows: Vec<_> = places(&points).into_iter().zip(weights).map(lifted).collect();
-    // Positive where the last point is outside a positively oriented cell.
+    // Positive if the last point is outside a positively oriented cell.
     determinant(&rows).cmp(&IBig::ZERO)
 }
 
