@@ -18,7 +18,7 @@ mod bridge {
     /// The first CGAL whose `Regular_triangulation_3` and `Fixed_alpha_shape_3` the bridge is written for.
     const OLDEST: (u32, u32) = (5, 3);
 
-    /// What the macro of cxx is written in.
+    /// The files that use the macro of cxx.
     const BRIDGES: &[&str] = &[
         #[cfg(feature = "cgal-oracles")]
         "src/cgal/alpha.rs",

@@ -14,8 +14,8 @@ use walpha_base::random::Random;
 use walpha_shape::ladder::Filtration;
 use walpha_shape::{Alpha, Engine, ShapeOptions, WeightedPoints, alpha_shape};
 
-/// What is timed: the shape of the whole triangulation alone, all of [`Filtration::new`], which begins with it, the
-/// order of its simplices, their pairs of dimensions 0 and 2, and those of dimension 1.
+/// The timed stages: the shape of the whole triangulation alone, all of [`Filtration::new`], which begins with it, the order of
+/// its simplices, their pairs of dimensions 0 and 2, and those of dimension 1.
 const STAGES: [&str; 5] = ["whole shape", "filtration", "order", "pairs", "loops"];
 
 fn main() {

@@ -93,7 +93,7 @@ fn whole(bencher: Bencher) {
     bencher.with_inputs(|| points.clone()).bench_local_values(whole_shape);
 }
 
-/// What judging it costs.
+/// The cost of judging it.
 #[divan::bench]
 fn certify(bencher: Bencher) {
     let shape = whole_shape(heavy());

@@ -1,4 +1,4 @@
-//! From a volume to a mesh: `cargo run --release --example pipeline -- ct.nii.gz ct.ply`.
+//! Makes a mesh from a volume: `cargo run --release --example pipeline -- ct.nii.gz ct.ply`.
 
 use walpha::export::Save;
 use walpha::volume::{ReadOptions, open};

@@ -97,12 +97,12 @@ fn search(volume: &Volume, points: &Points, steps: usize) -> Result<(), Box<dyn 
     Ok(())
 }
 
-/// What weights make of points.
+/// The interpolant that weights give for points.
 struct Judged {
     own: f64,
     fitted: f64,
     hidden: usize,
-    /// With fitted values, the squared error of each block.
+    /// The squared error of each block, with fitted values.
     blocks: Vec<f64>,
 }
 

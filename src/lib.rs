@@ -41,7 +41,7 @@
 //! | `mpi` | no | blocks on the processes of `mpirun` |
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
-// Not in Cargo.toml, where it would apply to tests too: their shared modules are `pub` in each test.
+// Not in Cargo.toml, where it would also apply to tests, whose shared modules are `pub` in each test.
 #![warn(unreachable_pub)]
 
 pub use ndarray;
@@ -55,24 +55,24 @@ pub mod shape;
 
 /// The advice of errors.
 pub use walpha_base::advice;
-/// From a volume to weighted points: a crate of its own, `walpha-points`, for use in other programs.
+/// Selects weighted points from a volume: the separate crate `walpha-points`, for use in other programs.
 pub use walpha_points as points;
 pub use walpha_points::haar;
-/// Exact regular triangulations: a crate of its own, `walpha-regular`, for use in other programs.
+/// Exact regular triangulations: the separate crate `walpha-regular`, for use in other programs.
 pub use walpha_regular as triangulation;
-/// Pictures, figures and the interactive page: a crate of its own, `walpha-render`, for use in other programs.
+/// Pictures, figures and the interactive page: the separate crate `walpha-render`, for use in other programs.
 #[cfg(feature = "render")]
 pub use walpha_render as render;
 /// Many α from one triangulation, and levels of detail.
 pub use walpha_shape::ladder;
-/// Volumes and their files: a crate of its own, `walpha-volume`, for use in other programs.
+/// Volumes and their files: the separate crate `walpha-volume`, for use in other programs.
 pub use walpha_volume as volume;
 
 pub use walpha_base::threads;
-/// The exact checker: a crate of its own, `walpha-check`, for use in other programs.
+/// The exact checker: the separate crate `walpha-check`, for use in other programs.
 pub use walpha_check as check;
 
-/// The recipe and what runs it, interpolation, files and work in blocks: a crate of its own, `walpha-model`, for use in other
+/// The recipe and its execution, interpolation, files and work in blocks: the separate crate `walpha-model`, for use in other
 /// programs.
 pub use walpha_model::{
     Interpolant, LabelChoice, Recipe, Save, Settings, export, interpolate, labels, outofcore,

@@ -4,7 +4,7 @@ pub use walpha_model::export::{claim, placed_complex};
 pub use walpha_shape::*;
 
 /// CGAL's engine, if it is built in (the feature `cgal`): for [`ShapeOptions::classifier`] and
-/// [`Recipe::classifier`](crate::Recipe::classifier). [`alpha_shape`] has it at hand anyway.
+/// [`Recipe::classifier`](crate::Recipe::classifier). [`alpha_shape`] uses it without that.
 pub const CGAL: Option<Classifier> = {
     #[cfg(feature = "cgal")]
     {
@@ -16,11 +16,11 @@ pub const CGAL: Option<Classifier> = {
     }
 };
 
-/// The alpha shape of weighted points, by the engine of the options; both give the same answer. See
-/// [`walpha_shape::alpha_shape`] for what a shape is; [`AlphaShape::options`] says which engine ran.
+/// Computes the alpha shape of weighted points with the engine of the options; both engines give the same result. See
+/// [`walpha_shape::alpha_shape`] for the definition of a shape; [`AlphaShape::options`] says which engine ran.
 ///
 /// # Errors
-/// The errors of that function; [`CgalError`] if CGAL fails.
+/// See [`walpha_shape::alpha_shape`]; and [`CgalError`] if CGAL fails.
 pub fn alpha_shape(
     points: impl Into<WeightedPoints>,
     options: &ShapeOptions,

@@ -1,7 +1,7 @@
-//! What the command says: help, and the errors of wrong arguments, as recorded in `tests/texts`. A changed text is recorded with
-//! `TRYCMD=overwrite cargo test --release --test texts`, and read in the diff.
+//! The output of the command: help, and the errors of wrong arguments, as recorded in `tests/texts`. A changed text is recorded
+//! with `TRYCMD=overwrite cargo test --release --test texts`, and reviewed in the diff.
 
-/// Of the default features, since help lists what is built in.
+/// Only for the default features, because help lists the built-in ones.
 #[cfg(all(
     feature = "paper",
     not(any(feature = "dicom", feature = "las", feature = "mpi", feature = "zarr"))

@@ -1,4 +1,4 @@
-//! Our engine in a process of its own.
+//! Our engine in a separate process.
 
 use std::time::Instant;
 

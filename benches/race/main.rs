@@ -15,10 +15,10 @@
 //! - *HXT* is Gmsh's triangulation, where `GMSH_PYTHON` names a Python that has Gmsh.
 //! - *walpha shape* is the command, where `target/release/walpha` was built.
 //!
-//! Every run is a process of its own that reads the points from a file. Its time is that of the process, by the clock, and
-//! in brackets that of the work alone: from points in memory to the result, for us with everything that a shape
-//! has (classes, canonical order, Betti numbers, sheets, measures). Where two give counts of simplices, these must agree.
-//! Runs are interleaved, times are medians of five, and peaks the most memory a process held, its input included.
+//! Every run is a separate process that reads the points from a file. The time is that of the process, by the clock, and in
+//! brackets the time of the work alone: from points in memory to the result, for us with everything that a shape has (classes,
+//! canonical order, Betti numbers, sheets, measures). If two contestants give counts of simplices, these must agree. Runs are
+//! interleaved, times are medians of five, and peaks the most memory of a process, including its input.
 
 mod engine;
 mod peers;
@@ -102,7 +102,7 @@ fn triangulations(sets: &[Set]) -> Result<()> {
     })
 }
 
-/// A filtration, and with it the order of all simplices, beside the shape of the whole triangulation.
+/// A filtration, and then the order of all simplices, compared with the shape of the whole triangulation.
 fn filtrations(sets: &[Set]) -> Result<()> {
     table(sets, |_, points| {
         ["whole", "filtration", "order"]

@@ -1,4 +1,4 @@
-//! Who takes part.
+//! The contestants.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -99,7 +99,7 @@ impl Peers {
         Self::cgal("plain CGAL", &self.plain, points, what, 1)
     }
 
-    /// The same on CGAL's parallel triangulation.
+    /// Plain CGAL with its parallel triangulation.
     pub(super) fn parallel(&self, points: &Path, what: &str, threads: usize) -> Option<Contestant> {
         let program = self.parallel.as_ref()?;
         Some(Self::cgal("plain CGAL with TBB", program, points, what, threads))

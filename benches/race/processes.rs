@@ -8,7 +8,7 @@ use super::peers::Contestant;
 
 const RUNS: usize = 5;
 
-/// What a process took and found.
+/// The resources and results of a process.
 #[derive(Clone)]
 pub(super) struct Run {
     /// Seconds from its start to its end.
@@ -57,7 +57,7 @@ pub(super) fn run(command: &mut Command) -> Result<Run> {
     Ok(Run { process, work, peak, counts: words.collect::<Vec<_>>().join(" ") })
 }
 
-/// What a process prints, and its seconds.
+/// The output of a process, and its seconds.
 pub(super) fn output(command: &mut Command) -> Result<(String, f64)> {
     let started = Instant::now();
     let output = command.output()?;

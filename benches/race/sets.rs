@@ -21,15 +21,15 @@ pub(super) struct Set {
 
 #[derive(Clone, Copy)]
 enum Kind {
-    /// The points of the skull, upsampled to so many samples along each axis.
+    /// The points of the skull, upsampled to this number of samples along each axis.
     Skull,
-    /// The same in the millimetres of a tilted scan, where coordinates are rounded.
+    /// The points of the skull in the millimetres of a tilted scan, where coordinates are rounded.
     Scan,
-    /// So many random points in a cube, one in each unit of volume.
+    /// This number of random points in a cube, one in each unit of volume.
     Random,
-    /// So many points of a hilly ground, as a laser scanner sees it from above.
+    /// This number of points of a hilly ground, as a laser scanner sees it from above.
     Terrain,
-    /// So many random points on a sphere: all spheres through four of them are nearly the same.
+    /// This number of random points on a sphere: all spheres through four of them are nearly equal.
     Sphere,
 }
 

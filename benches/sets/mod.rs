@@ -5,10 +5,10 @@ use walpha_base::random::Random;
 /// Weighted points.
 pub(crate) type Set = Vec<([f64; 3], f64)>;
 
-/// Makes a set of so many points.
+/// Makes a set of this many points.
 pub(crate) type Make = fn(&mut Random, usize) -> Set;
 
-/// Sets of so many points, each with a squared α.
+/// Sets of a given number of points, each with a squared α.
 pub(crate) const SETS: [(&str, f64, Make); 4] = [
     // A point in each unit of volume.
     ("random", 1.0, |random, count| {
@@ -20,12 +20,12 @@ pub(crate) const SETS: [(&str, f64, Make); 4] = [
     ("grid", 10.0, |random, count| {
         samples(count).map(|place| (place, f64::floor(10.0 * random.unit()))).collect()
     }),
-    // Without weights, in the millimetres of a scanner: coordinates are rounded.
+    // Points without weights, in the millimetres of a scanner: coordinates are rounded.
     ("millimetres", 1.0, |_, count| {
         let place = |[x, y, z]: [f64; 3]| [0.4883 * x - 111.1, 0.4883 * y - 76.86, 0.625 * z];
         samples(count).map(|index| (place(index), 0.0)).collect()
     }),
-    // The same of a tilted scan.
+    // The samples of a tilted scan.
     ("tilted", 10.0, |_, count| {
         let place = |[x, y, z]: [f64; 3]| {
             let (y, z) = (1.75 * y, 3.0 * z);

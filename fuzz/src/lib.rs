@@ -1,5 +1,5 @@
-//! What the fuzz targets share: bytes become a file of a name, and the file is read. Whatever comes
-//! out is right, as long as it comes out.
+//! The shared part of the fuzz targets: bytes become a file with a name, and the file is read. Any result is right if there is
+//! one.
 
 use std::io::Cursor;
 use std::path::{Path, PathBuf};

@@ -1,4 +1,4 @@
-//! What happens in the threads of this module when memory runs out: the interpreter lives on.
+//! Handles a lack of memory in the threads of this module, so that the interpreter survives.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::ptr;
@@ -10,12 +10,12 @@ use crate::call::Call;
 
 /// The system's allocator, with patience.
 ///
-/// What is large is asked for in ways that can be refused, and what the library can estimate is refused before it
-/// begins. Where any other allocation fails, Rust has no way back: the process ends, and with it the interpreter. An
-/// allocator may not unwind, but it may wait. So the call's [`Reserve`] is given up, and a thread that works for the call waits
-/// here until there is memory again, while the call raises `MemoryError` ([`crate::work::run`]); the call's other threads
-/// stop, what they held comes free, and so does what the caller gives up. Then this thread goes on to where it learns
-/// that nobody wants its work.
+/// Large requests are made in ways that can be refused, and what the library can estimate is refused before it begins. If any
+/// other allocation fails, Rust has no way back: the process ends, and the interpreter with it. An allocator may not unwind, but
+/// it may wait. So the call's [`Reserve`] is given up, and a thread that works for the call waits here until there is memory
+/// again, while the call raises `MemoryError` ([`crate::work::run`]). The call's other threads stop, which frees their memory, as
+/// does everything that the caller gives up. Then this thread continues to the point where it learns that its work is no longer
+/// needed.
 struct Patient;
 
 #[global_allocator]
@@ -26,7 +26,7 @@ const PAUSE: Duration = Duration::from_millis(20);
 /// After how many pauses a thread no longer lets those that start go first: one of them may wait for it.
 const PATIENCE: usize = 250;
 
-/// How many calls are starting their threads.
+/// The number of calls that are starting their threads.
 static STARTING: AtomicUsize = AtomicUsize::new(0);
 
 /// Starts threads, and meanwhile leaves all memory to them. A thread that starts takes memory for what is its own, and where there is none,
@@ -43,7 +43,7 @@ pub fn starting<T>(start: impl FnOnce() -> T) -> T {
 #[derive(Debug)]
 pub struct Reserve(AtomicPtr<u8>);
 
-/// Nobody writes to it, so it takes address space and hardly a page of memory.
+/// Its pages are never written, so it takes address space but hardly any memory.
 const RESERVE: Layout = Layout::new::<[u8; 8 << 20]>();
 
 impl Reserve {
@@ -53,11 +53,11 @@ impl Reserve {
         Self(AtomicPtr::new(unsafe { System.alloc(RESERVE) }))
     }
 
-    /// Gives it back; the second time there is none.
+    /// Gives it back; the second call has no effect.
     pub fn give_up(&self) {
         let block = self.0.swap(ptr::null_mut(), Ordering::Relaxed);
         if !block.is_null() {
-            // SAFETY: it came from there with this layout, and was given to nobody.
+            // SAFETY: it came from there with this layout, and nothing else uses it.
             unsafe { System.dealloc(block, RESERVE) };
         }
     }
@@ -69,7 +69,7 @@ impl Drop for Reserve {
     }
 }
 
-// SAFETY: all is the system's allocator; what it refuses is asked for again with the same arguments, or refused.
+// SAFETY: everything is the system's allocator; what it refuses is requested again with the same arguments, or refused.
 unsafe impl GlobalAlloc for Patient {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         // SAFETY: the caller's promise is passed on.

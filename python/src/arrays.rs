@@ -1,7 +1,7 @@
 //! Arrays of numpy as the library takes them, and back.
 //!
-//! What is read is given away by the caller: numpy keeps track of who reads an array, by its shape, and panics if that is another when the
-//! reader is done. So reading must be done before any code of Python runs, which a callback for progress is.
+//! The caller must release what is read: numpy keeps track of the readers of an array, by its shape, and panics if that is
+//! different when the reader is done. So reading must be done before any Python code runs, such as a callback for progress.
 
 use numpy::ndarray::{Array3, ArrayView2, Ix1, Ix2, Ix3};
 use numpy::{Element, IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray};
@@ -68,8 +68,8 @@ pub fn copied<T: Copy>(items: &[T]) -> PyResult<Vec<T>> {
     Ok(copy)
 }
 
-/// Room for so many items, or `MemoryError`: these copies are made in Python's own thread, where no other failure
-/// can be survived.
+/// Allocates room for this number of items, or fails with `MemoryError`. These copies are made in Python's own thread, where no
+/// other failure can be survived.
 fn room<T>(count: usize) -> PyResult<Vec<T>> {
     let mut items = Vec::new();
     let refused = |_| {
@@ -80,7 +80,7 @@ fn room<T>(count: usize) -> PyResult<Vec<T>> {
     Ok(items)
 }
 
-/// An array over rows that an object owns, without a copy; nobody can write to it.
+/// An array over rows that an object owns, without a copy. It cannot be written to.
 ///
 /// # Safety
 /// The rows must stay where they are, unchanged, as long as `owner` lives.

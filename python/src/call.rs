@@ -1,4 +1,4 @@
-//! One call from Python: how far it is, and whether it is still wanted.
+//! A call from Python: its progress, and whether its result is still needed.
 
 use std::cell::RefCell;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -13,7 +13,7 @@ thread_local! {
     static CALL: RefCell<Option<Arc<Call>>> = const { RefCell::new(None) };
 }
 
-/// How far one call from Python is, and whether it is still wanted.
+/// The progress of a call from Python, and whether its result is still needed.
 #[derive(Debug)]
 pub struct Call {
     steps: Arc<Steps>,
@@ -26,7 +26,7 @@ pub struct Call {
 #[derive(Debug, Default)]
 struct Steps(Mutex<Vec<Step>>);
 
-/// So many of so many equal parts of a stage; of a total of 0 nothing is known.
+/// The number of finished parts of a stage, and their total number; nothing is known if the total is 0.
 #[derive(Clone, Copy, Debug)]
 pub struct Step {
     pub stage: &'static str,
@@ -54,7 +54,7 @@ impl Call {
         self.reserve.get_or_init(Reserve::new);
     }
 
-    /// From now on this thread works for this call.
+    /// Makes this thread work for this call.
     pub fn enter(self: Arc<Self>) {
         CALL.set(Some(self));
     }

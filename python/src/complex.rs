@@ -62,7 +62,7 @@ impl Complex {
         Ok(Self(Arc::new(run(py, &task, move || PlacedComplex::try_from(file))?)))
     }
 
-    /// What a shape claims to be.
+    /// The complex that a shape claims to be.
     #[staticmethod]
     fn of(py: Python<'_>, shape: &Bound<'_, Shape>) -> PyResult<Self> {
         let shape = Arc::clone(shape.get().shape());
@@ -141,13 +141,13 @@ impl Complex {
         self.0.lowest
     }
 
-    /// The same complex with another lowest dimension.
+    /// Returns this complex with another lowest dimension.
     fn with_lowest(&self, lowest: usize) -> Self {
         Self(Arc::new(PlacedComplex { lowest, ..PlacedComplex::clone(&self.0) }))
     }
 
-    /// What is wrong with it; of the first `most` findings what they say and their fields. Other choices among
-    /// ties are findings if `ties_too`.
+    /// The faults of the complex: texts and fields of the first `most` findings. Other choices among ties are findings if
+    /// `ties_too`.
     fn check(
         &self,
         py: Python<'_>,
@@ -172,7 +172,7 @@ impl Complex {
     }
 }
 
-/// How B differs from A: whether they are equal, in words, and as JSON.
+/// The differences between B and A: whether they are equal, in words, and as JSON.
 #[pyfunction]
 pub fn compare(
     py: Python<'_>,

@@ -10,7 +10,7 @@ use pyo3::exceptions::{
 use walpha::advice::{Advice, Advise, Category, Setting};
 use walpha::export::EmptyShape;
 
-/// What was given is wrong.
+/// The error for a wrong argument.
 pub fn wrong(text: impl Into<String>) -> PyErr {
     PyValueError::new_err(text.into())
 }

@@ -67,7 +67,7 @@ impl Filtration {
         Ok(Shape::at_level(shape))
     }
 
-    /// What is measured at each of several α, ascending and distinct, as JSON; coverage is a share of the hull.
+    /// The measurements at each of several α, ascending and distinct, as JSON. Coverage is a share of the hull.
     fn ladder(
         &self,
         py: Python<'_>,
@@ -130,7 +130,8 @@ impl Filtration {
         })
     }
 
-    /// How the squared radii of simplices, whose points are one after the other, change with each of these: x, y, z and weight.
+    /// The derivatives of the squared radii of simplices with respect to their points, which are given one after the other: x, y,
+    /// z and weight of each.
     fn derivatives<'py>(
         &self,
         py: Python<'py>,
@@ -163,7 +164,7 @@ impl Filtration {
         })
     }
 
-    /// The smallest α at which all points are in at most so many solid components.
+    /// The smallest α at which all points are in at most this many solid components.
     fn optimal_alpha(&self, py: Python<'_>, components: u64, task: Task<'_>) -> PyResult<f64> {
         let components = NonZeroU64::new(components)
             .ok_or_else(|| wrong("components=0 makes no sense: give a number from 1 up"))?;
@@ -184,7 +185,8 @@ self_cell! {
     }
 }
 
-/// All simplices of a filtration by their numbers, which never change. What takes time is found when it is asked for.
+/// All simplices of a filtration by their numbers, which never change. Results that take time are computed when they are first
+/// requested.
 #[pyclass(frozen, module = "walpha._walpha")]
 pub struct Simplices {
     ordered: Arc<Owned>,
@@ -193,7 +195,7 @@ pub struct Simplices {
 
 /// When each simplex enters.
 struct Entries {
-    /// From which α on each is there, on the boundary of another, inside: a row each.
+    /// The α from which on each simplex is present, on the boundary of another, and inside: one row for each.
     intervals: Vec<[f64; 3]>,
     ranks: Vec<u32>,
     gabriel: Vec<bool>,
@@ -235,7 +237,7 @@ impl Simplices {
         Ok(self.ordered().pairs())
     }
 
-    /// Those of dimension 1.
+    /// The persistence pairs of dimension 1.
     fn loops(&self, py: Python<'_>) -> PyResult<&ladder::Loops> {
         self.work(py, |ordered| ordered.loops().map(|_| ()))?;
         self.ordered().loops().map_err(told)

@@ -1,8 +1,7 @@
 //! `walpha._walpha`: what the Python package `walpha` asks of the library.
 //!
-//! Arrays go in and out, options as numbers and names, and what is small and has many fields as JSON. Names,
-//! defaults and documentation for people are in Python (`walpha/*.py`). Long work runs in threads of its own,
-//! without the interpreter (`work`).
+//! Arrays go in and out, options are passed as numbers and names, and small data with many fields as JSON. Names, defaults and
+//! documentation for people are in Python (`walpha/*.py`). Long work runs in separate threads, without the interpreter (`work`).
 
 mod allocator;
 mod arrays;
@@ -18,10 +17,10 @@ mod work;
 
 /// The module.
 ///
-/// It needs no global lock. Every class is frozen and `Sync`, so the compiler has checked that threads may share its
-/// objects. The `unsafe` code lends memory of frozen objects to arrays that cannot be written to, and keeps the owner
-/// alive; the allocator passes on to the system's. What one call changes belongs to that call (`call`). An array that is
-/// given is copied before the work begins; as with numpy, nobody may write to it meanwhile.
+/// It needs no global lock. Every class is frozen and `Sync`, so the compiler has checked that threads may share its objects. The
+/// `unsafe` code lends memory of frozen objects to arrays that cannot be written to, and keeps the owner alive; the allocator
+/// passes requests on to the system's. Data that one call changes belongs to that call (`call`). A given array is copied before
+/// the work begins; as with numpy, it must not be written to meanwhile.
 #[pyo3::pymodule(gil_used = false)]
 mod _walpha {
     use pyo3::prelude::*;

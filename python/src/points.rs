@@ -23,8 +23,8 @@ type Read<'py> = (
     String,
 );
 
-/// A file of points: without so many of its last layers, with these columns of a table, one frame of several, of these
-/// classes, with those that are withheld, and thinned to one point in each cube of this side.
+/// A file of points: without this number of its last layers, with these columns of a table, one frame of several, of these
+/// classes, with the withheld ones, and thinned to one point in each cube of this side.
 #[pyfunction]
 #[expect(clippy::too_many_arguments, reason = "they have names in Python")]
 pub fn read_points<'py>(
@@ -61,7 +61,7 @@ pub fn read_points<'py>(
     ))
 }
 
-/// What each column of a table is by its name: x, y, z, weight, value, radius, or nothing that is read.
+/// The meaning of each column of a table by its name: x, y, z, weight, value, radius, or nothing that is read.
 #[pyfunction]
 pub fn columns(names: Vec<String>) -> PyResult<Vec<Option<String>>> {
     let names: Vec<&str> = names.iter().map(String::as_str).collect();

@@ -16,7 +16,7 @@ use crate::work::{Task, run};
 
 /// The number of a cell that is not there: what is outside the hull has none.
 const OUTSIDE: i64 = -1;
-/// So many places are located by one thread, each from where the last was found.
+/// The number of places that one thread locates, each from where the last was found.
 const CHUNK: usize = 1 << 10;
 
 /// The regular triangulation of weighted points, which is never changed. Points have their input indices, of 64 bits as
@@ -27,7 +27,7 @@ pub struct Triangulation(Arc<Arrays>);
 struct Arrays {
     made: triangulation::Triangulation,
     weights: Vec<f64>,
-    /// By cell of `made`, its row among the simplices, or [`OUTSIDE`].
+    /// For each cell of `made`, its row among the simplices, or [`OUTSIDE`].
     row: Vec<i64>,
     /// Finite cells, positively oriented.
     simplices: Vec<[i64; 4]>,

@@ -50,7 +50,7 @@ pub fn read<'py>(
     Ok((samples.into_pyarray(py), gray, json(&frame)))
 }
 
-/// A volume of these samples, of which NaN are masked if that is asked for.
+/// A volume of these samples. NaN are masked if `masked`.
 fn volume(samples: Array3<f32>, frame: Frame, masked: bool) -> Result<Volume, VolumeError> {
     Volume::of_file(samples, frame)?.resolve_nan(masked.then_some(Nan::Mask))
 }
@@ -150,7 +150,7 @@ pub fn weigh<'py>(
     Ok(weights.into_pyarray(py))
 }
 
-/// All stages. `frame` is JSON; without one, coordinates are indices.
+/// Computes all stages. `frame` is JSON; without it, coordinates are indices.
 #[pyfunction]
 pub fn pipeline(
     py: Python<'_>,
@@ -207,7 +207,7 @@ pub fn label_shape(
     Ok(Shape::of(model))
 }
 
-/// Where a grid lies, and what coordinates of its points are measured in.
+/// The location of a grid, and the units of the coordinates of its points.
 fn place(frame: Option<&str>) -> PyResult<(Frame, Units)> {
     let Some(frame) = frame else { return Ok((Frame::VOXEL, Units::Voxel)) };
     let frame: Frame =

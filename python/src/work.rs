@@ -1,4 +1,4 @@
-//! Long work beside the interpreter.
+//! Runs long work outside of the interpreter.
 
 use std::num::NonZeroUsize;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
@@ -17,19 +17,19 @@ use crate::allocator::starting;
 use crate::call::Call;
 use crate::errors::told;
 
-/// How often the interpreter is asked for an interrupt and progress is passed on.
+/// The period at which the interpreter is asked for an interrupt and progress is passed on.
 const TICK: Duration = Duration::from_millis(50);
-/// How long work that memory ran out for may take to end before the call returns without it.
+/// The time that work which ran out of memory may take to end before the call returns without it.
 const GRACE: Duration = Duration::from_secs(2);
-/// As a main thread has it; rayon's default is a quarter.
+/// The size of the stack of a main thread; rayon's default is a quarter of it.
 const STACK: usize = 8 << 20;
 
-/// How a call wants its work done: on how many threads, all that may be used if `None`; and what is called as
+/// Options for the work of a call: the number of threads, all available ones if `None`; and a function that is called as
 /// `progress(stage, done, total)`.
 #[derive(FromPyObject, Default)]
 pub struct Task<'py>(Option<NonZeroUsize>, Option<Bound<'py, PyAny>>);
 
-/// Does work in threads of its own while other threads of Python run, and returns its result.
+/// Does work in separate threads while other threads of Python run, and returns its result.
 ///
 /// This thread waits; it asks Python for interrupts and calls the task's `progress`. After an
 /// interrupt, or an exception of `progress`, it returns at once, and with `MemoryError` soon after memory ran out. The work is
@@ -53,7 +53,7 @@ where
     let started = waiting.spawn(move || {
         let outcome =
             catch_unwind(AssertUnwindSafe(|| threads.install(|| call.monitor().watch(work))));
-        // Nobody waits after an interrupt.
+        // After an interrupt there is no receiver.
         let _ = sender.send(outcome);
     });
     started.map_err(|_| no_threads())?;
@@ -94,8 +94,8 @@ fn no_memory() -> PyErr {
     )
 }
 
-/// Threads that work for one call: their progress reports belong to it. If the call does not say how many,
-/// `RAYON_NUM_THREADS` does, or else the cores; where not so many can be had, fewer.
+/// Threads that work for one call: their progress reports belong to it. If the call does not state their number,
+/// `RAYON_NUM_THREADS` or the number of cores does; if so many are not available, there are fewer.
 fn pool(call: &Arc<Call>, asked: Option<NonZeroUsize>) -> PyResult<ThreadPool> {
     let call = Arc::clone(call);
     // The last is for the thread that waits for them.
@@ -116,14 +116,14 @@ fn pool(call: &Arc<Call>, asked: Option<NonZeroUsize>) -> PyResult<ThreadPool> {
     Ok(pool)
 }
 
-/// What was free when threads were counted may be gone when they start.
+/// The memory that was free when threads were counted may be gone when they start.
 fn no_threads() -> PyErr {
     PyMemoryError::new_err(
         "no threads to work in: memory, or the number of processes, is limited too much",
     )
 }
 
-/// Stops the work of a call when nobody waits for it any more.
+/// Stops the work of a call when its result is no longer needed.
 struct Wanted(Arc<Call>);
 
 impl Drop for Wanted {

@@ -10,7 +10,7 @@ use walpha_shape::{Alpha, Complex};
 use super::shape::{RawComplex, canonical};
 use super::{Error, or_zeros, spanning, thrown};
 
-/// The entries of `cpp/alpha.cc`.
+/// The entry points of `cpp/alpha.cc`.
 #[allow(unused_qualifications, reason = "in what the macro writes")]
 #[cxx::bridge(namespace = "walpha")]
 mod bridge {
@@ -18,9 +18,9 @@ mod bridge {
         include!("walpha/cpp/bridge.h");
         include!("walpha/cpp/alpha.h");
 
-        /// A classified complex, as at one α.
+        /// A complex classified at one α.
         type Complex = crate::cgal::ffi::bridge::Complex;
-        /// The alpha shapes of all α.
+        /// The alpha shapes for all α.
         type AlphaShape;
 
         fn dimension(self: &AlphaShape) -> i32;
@@ -47,39 +47,41 @@ mod bridge {
     }
 }
 
-/// Which shapes [`AlphaShape3`] has: CGAL's modes of the same names.
+/// The kind of shapes that [`AlphaShape3`] contains: CGAL's modes of the same names.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mode {
-    /// The alpha complex: facets, edges and vertices that are faces of no cell of the shape may be in it, singular or regular.
+    /// The alpha complex: it may contain facets, edges and vertices that are not faces of a cell of the shape, singular or
+    /// regular.
     General,
-    /// Cells and their faces alone.
+    /// Only cells and their faces.
     Regularized,
 }
 
-/// A value of α at which the class of a simplex changes. CGAL has it as an exact number: the order is by `rank`.
+/// A value of α at which the class of a simplex changes. CGAL represents it as an exact number; values are ordered by `rank`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Critical {
-    /// Its place among all distinct values of the shape, in exact order, from 0: the index in [`AlphaShape3::values`].
+    /// The rank among all distinct values of the shape, in exact order, from 0: the index in [`AlphaShape3::values`].
     pub rank: u32,
-    /// The nearest double, of two equally near ones the even one; a squared length, ±∞ beyond the range of doubles. Different values
-    /// may have one.
+    /// The nearest double, or the even one of two equally near ones; a squared length, ±∞ beyond the range of doubles. Different
+    /// values may have the same nearest double.
     pub nearest: f64,
 }
 
 /// The values of α at which the class of a facet, an edge or a vertex changes: CGAL's `Alpha_status`.
 ///
-/// At α it is exterior below the first value that there is, singular from `min` on, regular from `mid` on, and interior from `max` on.
+/// At α, the simplex is exterior below the first existing value, singular from `min` on, regular from `mid` on, and interior from
+/// `max` on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Span {
-    /// CGAL's `alpha_min`: the squared radius of the smallest orthogonal sphere of the simplex, if no point lies inside it (the simplex
-    /// is *Gabriel*). `None` where one does, and in [`Mode::Regularized`]: it is never singular.
+    /// CGAL's `alpha_min`: the squared radius of the smallest orthogonal sphere of the simplex, if no point lies inside it (the
+    /// simplex is *Gabriel*). `None` if a point does, and in [`Mode::Regularized`]: the simplex is never singular.
     pub min: Option<Critical>,
-    /// CGAL's `alpha_mid`: from here on it is a face of another simplex of the shape.
+    /// CGAL's `alpha_mid`: from here on the simplex is a face of another one of the shape.
     pub mid: Critical,
-    /// CGAL's `alpha_max`: from here on all cells at it are in the shape. `None` on the convex hull (`is_on_chull`): it is never
-    /// interior.
+    /// CGAL's `alpha_max`: from here on all cells around the simplex are in the shape. `None` on the convex hull (`is_on_chull`):
+    /// the simplex is never interior.
     pub max: Option<Critical>,
 }
 
@@ -89,19 +91,19 @@ pub struct Span {
 pub struct Intervals<const N: usize> {
     /// Indices of points, ascending; rows are in lexicographic order.
     pub rows: Vec<[u32; N]>,
-    /// For each row, when its class changes.
+    /// For each row, the values at which its class changes.
     pub spans: Vec<Span>,
 }
 
-/// CGAL's `Alpha_shape_3` of weighted points, with exact comparisons (`Tag_true`): all alpha shapes of the points, by the values of α at
-/// which classes change.
+/// CGAL's `Alpha_shape_3` of weighted points, with exact comparisons (`Tag_true`): all alpha shapes of the points, given by the
+/// values of α at which classes change.
 ///
-/// Points are named by their indices. Weights and α are squared lengths. CGAL's numbers keep caches, so that a shape stays on one
-/// thread.
+/// Points are named by their indices. Weights and α are squared lengths. CGAL's numbers contain caches, so a shape must stay on
+/// one thread.
 ///
-/// Expected O(n log n) for points of even density, and exact fractions for each value: of random points 1.3 ms and 20 kB a point,
-/// of a grid, which has few values, 0.1 ms and 15 kB. [`Filtration`](walpha_shape::ladder::Filtration) has the same values in a
-/// hundredth of the time, or a tenth on a grid.
+/// Expected O(n log n) for points of even density, with exact fractions for each value: 1.3 ms and 20 kB a point for random
+/// points, 0.1 ms and 15 kB for a grid, which has few values. [`Filtration`](walpha_shape::ladder::Filtration) computes the same
+/// values in a hundredth of the time, or a tenth on a grid.
 ///
 /// ```
 /// use std::num::NonZeroUsize;
@@ -143,11 +145,11 @@ impl fmt::Debug for AlphaShape3 {
 }
 
 impl AlphaShape3 {
-    /// Triangulates points, and finds at which α the class of each simplex changes.
+    /// Triangulates points, and finds the values of α at which the class of each simplex changes.
     ///
     /// # Errors
-    /// [`Error::Sites`]: other numbers of weights than of points; a number that is not finite or is too large; fewer than four distinct
-    /// points; all points in one plane. [`Error::Cgal`]: out of memory, or a fault of the program.
+    /// [`Error::Sites`]: the numbers of weights and points differ; a number is not finite or is too large; there are fewer than
+    /// four distinct points; all points lie in one plane. [`Error::Cgal`]: out of memory, or a bug in the program.
     pub fn new(positions: &[[f64; 3]], weights: Option<&[f64]>, mode: Mode) -> Result<Self, Error> {
         let weights = or_zeros(weights, positions.len());
         let sites = Sites::new(positions, &weights)?;
@@ -172,19 +174,19 @@ impl AlphaShape3 {
         })
     }
 
-    /// General or regularized.
+    /// Returns whether the shapes are general or regularized.
     pub fn mode(&self) -> Mode {
         self.mode
     }
 
-    /// The distinct values of α at which classes change, by rank: ascending as exact numbers, of which these are the nearest doubles.
-    /// In [`Mode::Regularized`] those of cells alone. CGAL's spectrum.
+    /// The distinct values of α at which classes change, by rank: ascending as exact numbers, of which these are the nearest
+    /// doubles. In [`Mode::Regularized`] only those of cells. This is CGAL's spectrum.
     pub fn values(&self) -> &[f64] {
         self.made.values()
     }
 
-    /// The cells, as indices of points, ascending, in lexicographic order; and for each the α from which on it is interior. It is
-    /// exterior before.
+    /// The cells, as ascending indices of points, in lexicographic order; and for each cell the α from which on it is interior.
+    /// It is exterior before.
     pub fn cells(&self) -> (&[[u32; 4]], &[Critical]) {
         (&self.cells.0, &self.cells.1)
     }
@@ -199,52 +201,52 @@ impl AlphaShape3 {
         &self.edges
     }
 
-    /// The vertices and their spans, without points that are hidden or duplicates.
+    /// The vertices and their spans, without hidden points and duplicates.
     pub fn vertices(&self) -> &Intervals<1> {
         &self.vertices
     }
 
-    /// CGAL's `find_optimal_alpha`: an α at which all vertices are in cells of the shape, and the cells are at most so many solid
-    /// components.
+    /// CGAL's `find_optimal_alpha`: an α at which all vertices are in cells of the shape, and the cells form at most `components`
+    /// solid components.
     ///
-    /// CGAL bisects the values, but numbers of components rise and fall: it may find an α that is not the least with this property, nor
-    /// one from which on it lasts. [`Filtration::optimal_alpha`](walpha_shape::ladder::Filtration::optimal_alpha) is the least.
-    /// O(n log n).
+    /// CGAL bisects the values, but the number of components is not monotonic: the α found may not be the least with this
+    /// property, and the property may be lost again above it.
+    /// [`Filtration::optimal_alpha`](walpha_shape::ladder::Filtration::optimal_alpha) is the least. O(n log n).
     ///
     /// # Errors
-    /// [`Error::Cgal`]: out of memory, or a fault of the program.
+    /// [`Error::Cgal`]: out of memory, or a bug in the program.
     pub fn find_optimal_alpha(&self, components: NonZeroUsize) -> Result<Critical, Error> {
         let rank = self.made.find_optimal_alpha(components.get()).map_err(thrown(STAGE))?;
         Ok(self.critical(rank))
     }
 
-    /// CGAL's `number_of_solid_components` at α, which is compared exactly: parts of the cells in the shape, joined where they have a
-    /// facet in common. O(n).
+    /// CGAL's `number_of_solid_components` at α, which is compared exactly: the components of the cells in the shape, connected
+    /// by common facets. O(n).
     ///
     /// # Errors
-    /// [`Error::Cgal`]: out of memory, or a fault of the program.
+    /// [`Error::Cgal`]: out of memory, or a bug in the program.
     pub fn number_of_solid_components(&self, alpha: Alpha) -> Result<usize, Error> {
         Ok(self.made.solid_components(alpha.squared()).map_err(thrown(STAGE))?)
     }
 
-    /// [`Self::number_of_solid_components`] at one of the [`values`](Self::values), by its rank: at the exact number, from
-    /// which the nearest double may differ.
+    /// Like [`Self::number_of_solid_components`], at one of the [`values`](Self::values), given by its rank: at the exact number,
+    /// from which the nearest double may differ.
     ///
     /// # Errors
-    /// [`Error::Cgal`]: out of memory, or a fault of the program.
+    /// [`Error::Cgal`]: out of memory, or a bug in the program.
     ///
     /// # Panics
-    /// If there is no value of this rank.
+    /// There is no value of this rank.
     pub fn number_of_solid_components_at(&self, rank: u32) -> Result<usize, Error> {
         assert!((rank as usize) < self.values().len(), "no value has the rank {rank}");
         Ok(self.made.solid_components_of(rank).map_err(thrown(STAGE))?)
     }
 
-    /// The class that CGAL gives each simplex at α, which is compared exactly; as of
-    /// [`fixed_alpha_shape`](super::fixed_alpha_shape), exterior simplices included. O(n log n).
+    /// The class that CGAL gives each simplex at α, which is compared exactly; like
+    /// [`fixed_alpha_shape`](super::fixed_alpha_shape), including exterior simplices. O(n log n).
     ///
     /// # Errors
-    /// [`Error::Cgal`]: out of memory, or a fault of the program.
+    /// [`Error::Cgal`]: out of memory, or a bug in the program.
     pub fn complex(&self, alpha: Alpha) -> Result<Complex, Error> {
         let found = self.made.classify(alpha.squared()).map_err(thrown(STAGE))?;
         Ok(canonical(&RawComplex(found), &self.input))
@@ -255,17 +257,17 @@ impl AlphaShape3 {
     }
 }
 
-/// Of errors.
+/// The name of the stage in errors.
 const STAGE: &str = "alpha shape";
 
-/// Stands for the absence of a rank in what C++ lends.
+/// The value that C++ lends for a rank that does not exist.
 const NONE: u32 = u32::MAX;
 
 fn named<const N: usize>(row: [u32; N], input: &[u32]) -> [u32; N] {
     sorted(row.map(|site| input[site as usize]))
 }
 
-/// Rows and their spans, in order.
+/// The rows and their spans, in order.
 fn intervals<const N: usize>(
     rows: &[u32],
     ranks: &[u32],

@@ -1,17 +1,17 @@
-//! Why CGAL is not asked, or fails.
+//! Errors of the functions that call CGAL.
 
 use walpha_base::advice::{Advice, Advise};
 use walpha_regular::SitesError;
 use walpha_shape::CgalError;
 
-/// Why a function of [`cgal`](crate::cgal) has no answer.
+/// An error of a function of [`cgal`](crate::cgal).
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
-    /// CGAL cannot triangulate the points: it is not asked, or finds that they span no volume.
+    /// CGAL cannot triangulate the points: they are refused before the call, or CGAL finds that they span no volume.
     #[error(transparent)]
     Sites(#[from] SitesError),
-    /// CGAL failed, or memory is out.
+    /// CGAL failed, or there is not enough memory.
     #[error(transparent)]
     Cgal(#[from] CgalError),
     /// The side of a periodic cube is not a positive number of usual size.
@@ -29,7 +29,7 @@ pub enum Error {
         "point {index} has {axis} {value}: it must be at least 0 and less than the side of the cube, {side}"
     )]
     Outside {
-        /// Its index.
+        /// The index of the point.
         index: usize,
         /// x, y or z.
         axis: char,
@@ -47,7 +47,7 @@ pub enum Error {
         index: usize,
         /// Its weight.
         weight: f64,
-        /// What weights must be less than.
+        /// The exclusive limit of weights.
         limit: f64,
     },
 }

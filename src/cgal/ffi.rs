@@ -1,4 +1,4 @@
-//! What crosses to C++: flat slices in, an opaque complex that lends flat slices out.
+//! The interface to C++: flat slices in, and out an opaque complex that lends flat slices.
 
 #[cxx::bridge(namespace = "walpha")]
 pub(super) mod bridge {

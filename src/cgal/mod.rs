@@ -1,5 +1,5 @@
-//! CGAL's triangulations and alpha shapes of points in space: plain slices in, plain arrays out. To check other programs
-//! against, this one among them.
+//! CGAL's triangulations and alpha shapes of points in space: plain slices in, plain arrays out. They serve to check other
+//! programs, including this one.
 //!
 //! | function | CGAL's class | feature |
 //! |---|---|---|
@@ -9,14 +9,16 @@
 //! | [`AlphaShape3`] | `Alpha_shape_3<Dt, Tag_true>`, `GENERAL` or `REGULARIZED` | `cgal-oracles` |
 //! | [`periodic_regular_triangulation_3`] | `Periodic_3_regular_triangulation_3` | `cgal-oracles` |
 //!
-//! All over `Exact_predicates_inexact_constructions_kernel`, with CGAL 5.3 or later. CGAL's code is under the GPL, and so is what links it.
+//! All use `Exact_predicates_inexact_constructions_kernel`, with CGAL 5.3 or later. CGAL's code is under the GPL, and so is
+//! everything that links it.
 //!
 //! Points are (x, y, z), and results name them by index. Weights and α are **squared lengths**; without weights all are 0, and
-//! regular triangulations are Delaunay triangulations. Every combinatorial answer is exact.
+//! regular triangulations are Delaunay triangulations. Every combinatorial result is exact.
 //!
-//! CGAL does not see what it does not stand: numbers that are not finite or too large ([`MAX_COORDINATE`](walpha_regular::MAX_COORDINATE),
-//! [`MAX_WEIGHT`](walpha_regular::MAX_WEIGHT)) and too few points are an [`Error`], and of points at one position the heaviest takes
-//! part, of equally heavy ones the first. What CGAL throws is an error, too. CGAL works on the calling thread, and cannot be interrupted.
+//! Input that CGAL cannot process is refused before the call: numbers that are not finite or too large
+//! ([`MAX_COORDINATE`](walpha_regular::MAX_COORDINATE), [`MAX_WEIGHT`](walpha_regular::MAX_WEIGHT)) and too few points are an
+//! [`Error`]. Of several points at one position only the heaviest is used, or the first of equally heavy ones. Exceptions of CGAL
+//! are errors, too. CGAL runs on the calling thread, and cannot be interrupted.
 //!
 //! ```
 //! use walpha::{Alpha, Class, cgal};
@@ -33,10 +35,10 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-// Rules of the bridge: one call per stage; flat slices in, and out either an opaque result that lends flat slices or a copy into
-// slices that Rust made; input indices come back everywhere; every entry that computes returns `Result`, and C++ catches whatever is
-// thrown there. Rust refuses what CGAL cannot stand (NaN, infinities, duplicates, fewer than four points) before the call, in `Sites`.
-// C++ never calls back into Rust, because CGAL changes the rounding mode while it works.
+// Rules of the bridge: there is one call per stage. Flat slices go in; out comes either an opaque result that lends flat slices,
+// or a copy into slices that Rust allocated. All results contain input indices. Every function that computes returns `Result`,
+// and C++ catches all exceptions there. Rust refuses input that CGAL cannot process (NaN, infinities, duplicates, fewer than four
+// points) before the call, in `Sites`. C++ never calls back into Rust, because CGAL changes the rounding mode while it works.
 
 #[cfg(feature = "cgal-oracles")]
 #[expect(unreachable_pub, reason = "cxx writes `pub`")]
@@ -77,21 +79,21 @@ use walpha_regular::SitesError;
 use walpha_regular::internals::Sites;
 use walpha_shape::CgalError;
 
-/// What C++ threw in a stage.
+/// Converts an exception that C++ threw in a stage.
 fn thrown(stage: &'static str) -> impl Fn(cxx::Exception) -> CgalError {
     move |exception| match exception.what() {
-        // Said by cpp/bridge.h for std::bad_alloc.
+        // cpp/bridge.h writes this text for std::bad_alloc.
         "out of memory" => CgalError::Memory { stage },
         text => CgalError::Thrown { stage, text: text.into() },
     }
 }
 
-/// Weights 0 where none are given.
+/// The weights, or zeros if none are given.
 fn or_zeros(weights: Option<&[f64]>, points: usize) -> Cow<'_, [f64]> {
     weights.map_or_else(|| vec![0.0; points].into(), Cow::Borrowed)
 }
 
-/// Whether sites span a volume, by the dimension that CGAL found.
+/// Checks that sites span a volume, by the dimension that CGAL found.
 fn spanning(sites: &Sites<'_>, dimension: i32) -> Result<(), SitesError> {
     match dimension {
         3 => Ok(()),
@@ -104,7 +106,7 @@ mod tests {
     use super::ffi::bridge;
     use super::*;
 
-    /// Sites refuse an infinity, because CGAL throws where its exact numbers meet one.
+    /// This contains an infinity, which sites refuse, because CGAL throws if its exact numbers meet one.
     const INFINITE: [f64; 15] =
         [0., 0., 0., 1., 0., 0., 0., 1., 0., 0., 0., 1., f64::INFINITY, 0., 0.];
 

@@ -6,7 +6,7 @@ use walpha_regular::internals::{AXES, Sites};
 
 use super::{Error, or_zeros, thrown};
 
-/// The entry of `cpp/periodic.cc`.
+/// The entry point of `cpp/periodic.cc`.
 #[allow(unused_qualifications, reason = "in what the macro writes")]
 #[cxx::bridge(namespace = "walpha")]
 mod bridge {
@@ -28,20 +28,21 @@ mod bridge {
     }
 }
 
-/// The cells of CGAL's `Periodic_3_regular_triangulation_3` of points in a cube whose opposite faces are identified, from
-/// 0 to `side` along each axis. `None` where the points are so few or so uneven that CGAL needs several copies of the cube.
+/// The cells of CGAL's `Periodic_3_regular_triangulation_3` of points in a cube whose opposite faces are identified, from 0 to
+/// `side` along each axis. `None` if the points are so few or so uneven that CGAL needs several copies of the cube.
 ///
-/// Each cell is a row of point indices, ascending; rows are in lexicographic order. The corners meant are the copies that are nearest
-/// to each other. Without weights it is the periodic Delaunay triangulation.
+/// Each cell is a row of point indices, ascending; rows are in lexicographic order. The corners of a cell are the copies that are
+/// nearest to each other. Without weights it is the periodic Delaunay triangulation.
 ///
-/// Weights, squared lengths, are at least 0 and less than 1/64 of the squared side, as CGAL wants them. Ties between cospherical
-/// points may be broken in another way than in [`walpha_shape::Filtration::on`](walpha_shape::ladder::Filtration::on).
+/// Weights, squared lengths, must be at least 0 and less than 1/64 of the squared side, as CGAL requires. Ties between
+/// cospherical points may be broken differently from [`walpha_shape::Filtration::on`](walpha_shape::ladder::Filtration::on).
 ///
-/// CGAL works on 27 copies of the cube until one is enough: about a millisecond and 20 to 50 kB a point for some thousand points.
+/// CGAL works on 27 copies of the cube until one is enough: about a millisecond and 20 to 50 kB a point for a few thousand
+/// points.
 ///
 /// # Errors
-/// [`Error::Side`], [`Error::Outside`], [`Error::Weight`]; [`Error::Sites`]: other numbers of weights than of points, no point.
-/// [`Error::Cgal`]: out of memory, or a fault of the program.
+/// [`Error::Side`], [`Error::Outside`], [`Error::Weight`]; [`Error::Sites`]: the numbers of weights and points differ, or there
+/// is no point. [`Error::Cgal`]: out of memory, or a bug in the program.
 pub fn periodic_regular_triangulation_3(
     positions: &[[f64; 3]],
     weights: Option<&[f64]>,

@@ -6,7 +6,7 @@ use walpha_regular::internals::Sites;
 use super::{Error, or_zeros, thrown};
 use walpha_shape::CgalError;
 
-/// The entries of `cpp/plane.cc`, compiled with the features `paper` and `cgal-oracles` alone.
+/// The entry points of `cpp/plane.cc`, which is compiled only with the features `paper` and `cgal-oracles`.
 #[allow(unused_qualifications, reason = "in what the macro writes")]
 #[cxx::bridge(namespace = "walpha")]
 mod bridge {
@@ -33,9 +33,9 @@ mod bridge {
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct PlaneTriangulation {
-    /// Triangles, counter-clockwise from their smallest vertex, in lexicographic order. None for points on one line.
+    /// Triangles, counter-clockwise from their smallest vertex, in lexicographic order. There are none for points on one line.
     pub triangles: Vec<[u32; 3]>,
-    /// Edges, the smaller vertex first, in lexicographic order. None for one point.
+    /// Edges, the smaller vertex first, in lexicographic order. There are none for one point.
     pub edges: Vec<[u32; 2]>,
     /// The points that are vertices, ascending: those that are neither hidden nor duplicates.
     pub vertices: Vec<u32>,
@@ -43,8 +43,9 @@ pub struct PlaneTriangulation {
 
 /// CGAL's `Regular_triangulation_2` of points in the plane: the Delaunay triangulation when all weights are equal.
 ///
-/// Weights are squared lengths. Any number of points from one up will do, and they may lie on one line. The answer is a function of
-/// the set of points, ties included: CGAL inserts them in the order of (x, y), which decides how cocircular points are divided.
+/// Weights are squared lengths. There may be any number of points from one up, and they may lie on one line. The result depends
+/// only on the set of points, even for ties: CGAL inserts them in the order of (x, y), which decides how cocircular points are
+/// triangulated.
 ///
 /// Expected O(n log n).
 ///
@@ -60,8 +61,8 @@ pub struct PlaneTriangulation {
 /// ```
 ///
 /// # Errors
-/// [`Error::Sites`]: other numbers of weights than of points; a number that is not finite or is too large; no point.
-/// [`Error::Cgal`]: out of memory, or a fault of the program.
+/// [`Error::Sites`]: the numbers of weights and points differ; a number is not finite or is too large; there is no point.
+/// [`Error::Cgal`]: out of memory, or a bug in the program.
 pub fn regular_triangulation_2(
     positions: &[[f64; 2]],
     weights: Option<&[f64]>,
@@ -71,20 +72,21 @@ pub fn regular_triangulation_2(
     Ok(named(&regular_plane(&sites)?, sites.input()))
 }
 
-/// The farthest-point Delaunay triangulation: each of its triangles has a circumscribed disc that contains every point. All points
-/// but the corners of the convex hull are hidden. It is a regular triangulation with the weights 2|p|², which CGAL compares exactly.
+/// The farthest-point Delaunay triangulation: each of its triangles has a circumscribed disc that contains every point. All
+/// points except the corners of the convex hull are hidden. It is a regular triangulation with the weights 2|p|², which CGAL
+/// compares exactly.
 ///
-/// Expected O(n log n), in numbers of any length.
+/// Expected O(n log n) operations on numbers of any length.
 ///
 /// # Errors
-/// Those of [`regular_triangulation_2`].
+/// See [`regular_triangulation_2`].
 pub fn farthest_point_triangulation_2(positions: &[[f64; 2]]) -> Result<PlaneTriangulation, Error> {
     let weights = or_zeros(None, positions.len());
     let sites = Sites::in_plane(positions, &weights)?;
     Ok(named(&farthest_plane(&sites)?, sites.input()))
 }
 
-/// By input indices, in order.
+/// Converts a triangulation to input indices, and sorts it.
 fn named(raw: &RawTriangulation, input: &[u32]) -> PlaneTriangulation {
     let point = |site: u32| input[site as usize];
     let from_smallest = |triangle: &[u32; 3]| {
@@ -111,34 +113,31 @@ fn named(raw: &RawTriangulation, input: &[u32]) -> PlaneTriangulation {
 /// A triangulation of the plane as C++ lends it: rows of *site* indices in no particular order.
 pub(crate) struct RawTriangulation(cxx::UniquePtr<bridge::PlaneTriangulation>);
 
-/// CGAL's `Regular_triangulation_2` of the sites: the Delaunay triangulation when all weights are
-/// equal. A function of the set of sites: which of several triangulations of cocircular points
-/// comes out does not depend on their order.
+/// CGAL's `Regular_triangulation_2` of the sites: the Delaunay triangulation when all weights are equal. The result depends only
+/// on the set of sites: which of several triangulations of cocircular points it is does not depend on their order.
 ///
 /// Expected O(n log n).
 ///
 /// # Errors
-/// No memory, or a fault of the program.
+/// Out of memory, or a bug in the program.
 pub(crate) fn regular_plane(sites: &Sites<'_, 2>) -> Result<RawTriangulation, CgalError> {
     regular(sites.positions().as_flattened(), sites.weights())
         .map(RawTriangulation)
         .map_err(thrown("regular triangulation of the plane"))
 }
 
-/// The farthest-point Delaunay triangulation of the positions, weights left aside: its triangles
-/// have circumscribed discs that contain every point. All points but the corners of the convex
-/// hull are hidden.
+/// The farthest-point Delaunay triangulation of the positions, ignoring weights: its triangles have circumscribed discs that
+/// contain every point. All points except the corners of the convex hull are hidden.
 ///
-/// The power of a place x to a point p of weight ω is |x−p|² − ω. With ω = 2|p|² it is
-/// |x|² − 2x·p − |p|² = 2|x|² − |x+p|², least where p is *farthest* from −x: so the cells of the
-/// power diagram are those of the farthest-point diagram reflected at the origin, and the regular
-/// triangulation, which records only whose cells meet, is the farthest-point one. The weights are
+/// The power of a place x to a point p of weight ω is |x−p|² − ω. With ω = 2|p|² it is |x|² − 2x·p − |p|² = 2|x|² − |x+p|², which
+/// is least if p is *farthest* from −x. So the cells of the power diagram are those of the farthest-point diagram reflected at
+/// the origin, and the regular triangulation, which only records whose cells meet, is the farthest-point one. The weights are
 /// exact numbers, not doubles.
 ///
 /// Expected O(n log n).
 ///
 /// # Errors
-/// No memory, or a fault of the program.
+/// Out of memory, or a bug in the program.
 pub(crate) fn farthest_plane(sites: &Sites<'_, 2>) -> Result<RawTriangulation, CgalError> {
     farthest(sites.positions().as_flattened())
         .map(RawTriangulation)
@@ -146,7 +145,7 @@ pub(crate) fn farthest_plane(sites: &Sites<'_, 2>) -> Result<RawTriangulation, C
 }
 
 impl RawTriangulation {
-    /// Triangles, counter-clockwise; none for points on one line.
+    /// Triangles, counter-clockwise; there are none for points on one line.
     pub fn triangles(&self) -> &[[u32; 3]] {
         self.0.triangles().as_chunks().0
     }
@@ -168,7 +167,7 @@ mod tests {
 
     #[test]
     fn what_cgal_throws_is_an_error() {
-        // Sites refuse an infinity, because CGAL throws where its exact numbers meet one.
+        // This contains an infinity, which sites refuse, because CGAL throws if its exact numbers meet one.
         let infinite = [0., 0., 1., 0., 0., 1., f64::INFINITY, 0.];
         let Err(exception) = regular(&infinite, &[0.0; 4]) else { panic!("∞ was taken") };
         let CgalError::Thrown { stage, text } = thrown("tried")(exception) else {

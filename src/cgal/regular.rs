@@ -5,7 +5,7 @@ use walpha_regular::internals::Sites;
 
 use super::{Error, or_zeros, spanning, thrown};
 
-/// The entry of `cpp/regular.cc`.
+/// The entry point of `cpp/regular.cc`.
 #[allow(unused_qualifications, reason = "in what the macro writes")]
 #[cxx::bridge(namespace = "walpha")]
 mod bridge {
@@ -28,7 +28,7 @@ mod bridge {
     }
 }
 
-/// In [`RegularTriangulation::neighbours`], the outside of the convex hull: a facet of the hull has no finite cell beyond it.
+/// The outside of the convex hull in [`RegularTriangulation::neighbours`]: a facet of the hull has no finite cell beyond it.
 pub const INFINITE_CELL: u32 = u32::MAX;
 
 /// A regular triangulation of points in space, by their indices. Equal triangulations are equal byte by byte.
@@ -40,16 +40,16 @@ pub struct RegularTriangulation {
     pub cells: Vec<[u32; 4]>,
     /// For each corner of each cell, the number of the cell across the facet opposite that corner, or [`INFINITE_CELL`].
     pub neighbours: Vec<[u32; 4]>,
-    /// The points that heavier ones hide, ascending. Without weights there are none.
+    /// The points that heavier ones hide, ascending. There are none without weights.
     pub hidden: Vec<u32>,
-    /// Pairs of points at one position, the one left out and the one that takes part; ascending.
+    /// Pairs of points at one position, the ignored one and the one that is used; ascending.
     pub duplicates: Vec<[u32; 2]>,
 }
 
-/// CGAL's `Regular_triangulation_3` of weighted points: without weights the Delaunay triangulation.
+/// CGAL's `Regular_triangulation_3` of weighted points, which is the Delaunay triangulation without weights.
 ///
-/// Weights are squared lengths. Ties between cospherical points are broken as CGAL does it, by a perturbation in the order of
-/// (x, y, z), so that the answer is a function of the set of points; [`triangulate`](walpha_regular::triangulate) gives the same one.
+/// Weights are squared lengths. Ties between cospherical points are broken by CGAL's perturbation in the order of (x, y, z), so
+/// that the result depends only on the set of points; [`triangulate`](walpha_regular::triangulate) gives the same result.
 ///
 /// Expected O(n log n) for points of even density: 8 µs and 1.2 kB a point.
 ///
@@ -66,8 +66,8 @@ pub struct RegularTriangulation {
 /// ```
 ///
 /// # Errors
-/// [`Error::Sites`]: other numbers of weights than of points; a number that is not finite or is too large; fewer than four distinct
-/// points; all points in one plane. [`Error::Cgal`]: out of memory, or a fault of the program.
+/// [`Error::Sites`]: the numbers of weights and points differ; a number is not finite or is too large; there are fewer than four
+/// distinct points; all points lie in one plane. [`Error::Cgal`]: out of memory, or a bug in the program.
 pub fn regular_triangulation_3(
     positions: &[[f64; 3]],
     weights: Option<&[f64]>,
@@ -105,7 +105,7 @@ pub fn regular_triangulation_3(
     })
 }
 
-/// Where a cell has a corner.
+/// The index of a corner in a cell.
 fn position(corners: [u32; 4], corner: u32) -> usize {
     corners.iter().position(|&v| v == corner).expect("a corner of the cell")
 }

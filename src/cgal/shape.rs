@@ -1,4 +1,4 @@
-//! From rows as C++ lends them to the canonical order documented on [`Complex`].
+//! Converts rows that C++ lends to the canonical order documented on [`Complex`].
 
 use rayon::prelude::*;
 use walpha_complex::canonical::{smallest_even, sorted};
@@ -15,15 +15,15 @@ pub(super) struct RawComplex(pub(super) cxx::UniquePtr<bridge::Complex>);
 
 /// CGAL's `Fixed_alpha_shape_3`: the classes of all simplices of the regular triangulation at one α.
 ///
-/// Simplices outside the shape are there, too, as [`Class::Exterior`]. Rows name points by index and are in the order that
-/// [`Complex`] documents, so that equal complexes are equal byte by byte. At α = ∞ and −∞, which CGAL does not take, all cells or
-/// none are in the shape. α is a squared length, as weights are; it is compared exactly.
+/// Simplices outside the shape are included, as [`Class::Exterior`]. Rows name points by index and are in the order that
+/// [`Complex`] documents, so that equal complexes are equal byte by byte. At α = ∞ and −∞, which CGAL does not support, all cells
+/// or none are in the shape. α is a squared length, like weights; it is compared exactly.
 ///
 /// Expected O(n log n) for points of even density; memory about 1.5 kB a point.
 ///
 /// # Errors
-/// [`Error::Sites`]: other numbers of weights than of points; a number that is not finite or is too large; fewer than four distinct
-/// points; all points in one plane. [`Error::Cgal`]: out of memory, or a fault of the program.
+/// [`Error::Sites`]: the numbers of weights and points differ; a number is not finite or is too large; there are fewer than four
+/// distinct points; all points lie in one plane. [`Error::Cgal`]: out of memory, or a bug in the program.
 pub fn fixed_alpha_shape(
     positions: &[[f64; 3]],
     weights: Option<&[f64]>,
@@ -36,10 +36,10 @@ pub fn fixed_alpha_shape(
     Ok(canonical(&RawComplex(found), sites.input()))
 }
 
-/// [`fixed_alpha_shape`] of sites, at a squared length or ±∞: the engine cgal.
+/// Like [`fixed_alpha_shape`], for sites, at a squared length or ±∞: the engine cgal.
 ///
 /// # Errors
-/// [`SitesError::Flat`](walpha_regular::SitesError::Flat) when the sites span no volume.
+/// [`SitesError::Flat`](walpha_regular::SitesError::Flat) if the sites span no volume.
 pub(crate) fn complex(sites: &Sites<'_>, alpha: f64) -> Result<Complex, ShapeError> {
     let found = classified(sites, alpha)?;
     spanning(sites, found.dimension())?;
@@ -99,7 +99,7 @@ fn simplices<const N: usize>(
             (order(row.map(|site| input[site as usize]), class), class)
         })
         .collect();
-    // Rows are distinct, so an unstable sort has one answer.
+    // Rows are distinct, so an unstable sort has a unique result.
     pairs.par_sort_unstable_by_key(|pair| pair.0);
     pairs.into_iter().collect()
 }

@@ -1,4 +1,4 @@
-//! The command. It parses, calls the library, prints, and chooses an exit code.
+//! The command line: it parses arguments, calls the library, prints results, and chooses an exit code.
 
 mod commands;
 mod options;
@@ -43,7 +43,7 @@ struct Cli {
     command: Command,
 }
 
-/// What to type first.
+/// Commands for new users to try first.
 const FIRST: &str = "\
 To begin:
   walpha info sample:ct                what a built-in CT contains
@@ -156,7 +156,7 @@ fn lead(
     Ok(code)
 }
 
-/// The command as the user calls it: `walpha shape`.
+/// The command as the user types it: `walpha shape`.
 fn command_name(command: &clap::Command, args: &[OsString]) -> String {
     let names =
         |arg: &&OsString| arg.to_str().is_some_and(|arg| command.find_subcommand(arg).is_some());
@@ -189,7 +189,7 @@ fn execute(global: Global, command: Command, ranks: &Ranks) -> Result<ExitCode> 
         _ => LevelFilter::WARN,
     };
     let log = tracing_subscriber::fmt::layer().with_ansi(errors::coloured()).with_target(false);
-    // A message that cannot be logged does not end the command.
+    // A message that cannot be logged must not end the command.
     let log = log.log_internal_errors(false);
     let log = log.with_writer(std::io::stderr).without_time().with_filter(level);
     let warnings = output::WarningCollector.with_filter(LevelFilter::WARN);

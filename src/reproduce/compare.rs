@@ -1,4 +1,4 @@
-//! How much two shapes or pictures differ.
+//! Measures the differences of two shapes or pictures.
 
 use std::collections::BTreeSet;
 
@@ -58,8 +58,8 @@ pub(super) fn same_set(a: &AlphaShape, b: &AlphaShape) -> bool {
 /// A plane by its primitive normal and its offset along it.
 type Plane = ([i64; 3], i64);
 
-/// In each plane of the boundary, the edges that an odd number of its facets have. Planes of
-/// regular facets have an outer side, those of singular ones none.
+/// In each plane of the boundary, the edges that are on an odd number of its facets. Planes of regular facets have an outer side,
+/// those of singular facets do not.
 fn outlines(shape: &AlphaShape, class: Class) -> BTreeSet<(Plane, [u32; 2])> {
     let positions = shape.points().positions();
     let mut odd = BTreeSet::new();
@@ -93,7 +93,7 @@ fn gcd(a: i64, b: i64) -> i64 {
     if b == 0 { a } else { gcd(b, a % b) }
 }
 
-/// How much two pictures of one size differ.
+/// The differences of two pictures of the same size.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct PixelDifference {
     /// Pixels that are not the same.

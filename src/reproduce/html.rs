@@ -67,7 +67,7 @@ fn head(html: &mut String, report: &Report) {
     );
 }
 
-/// The conclusion of a whole report; of others, what is missing.
+/// The conclusion of a complete report; for others, a note on what is missing.
 fn conclusion(report: &Report) -> String {
     if report.complete {
         return in_plain_words(report);
@@ -137,7 +137,7 @@ fn summary(html: &mut String, report: &Report) {
     html.push_str("</tbody></table></div>\n");
 }
 
-/// Where the volume comes from.
+/// The origin of the volume.
 fn volume(html: &mut String, report: &Report) {
     let origin = &report.input.origin;
     let _ = writeln!(

@@ -4,8 +4,8 @@ use std::fmt::Write;
 
 use super::{Item, Report, Verdict};
 
-/// `reproduction.md`: each item with the paper's claims, the verdicts, its files and its command. It has nothing that
-/// depends on the day, the machine or the version, so that two of them differ only where verdicts or commands do.
+/// `reproduction.md`: each item with the paper's claims, the verdicts, its files and its command. Nothing in it depends on the
+/// day, the machine or the version, so that two of them differ only in verdicts or commands.
 pub fn markdown(report: &Report) -> String {
     let [x, y, z] = report.input.dims;
     let mut text = format!(
@@ -55,7 +55,7 @@ fn section(text: &mut String, item: &Item) {
     let _ = writeln!(text, "```sh\n{}\n```", item.command);
 }
 
-/// Text in which no sign is taken for markup.
+/// Escapes text so that no character is taken for markup.
 fn escape(text: &str) -> String {
     let mut escaped = String::new();
     for sign in text.chars() {

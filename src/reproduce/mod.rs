@@ -1,7 +1,7 @@
-//! Reproduction of the paper: Table 1, Figures 1 to 11, and a report on whether our numbers bear out
-//! each of its claims.
+//! Reproduction of the paper: Table 1, Figures 1 to 11, and a report on whether our numbers confirm each of its claims.
 //!
-//! Every verdict is a comparison of computed numbers, shown next to the paper's own numbers and words. Nothing is tuned to agree.
+//! Every verdict is a comparison of computed numbers, shown next to the paper's own numbers and words. Nothing is tuned to agree
+//! with the paper.
 
 mod compare;
 mod error;
@@ -63,22 +63,22 @@ impl ItemName {
 
 /// Makes the table and all figures, and judges the paper's claims.
 ///
-/// Stages are reported to the monitor. Everything but [`Report::seconds`] is a function of
-/// the subject alone. A quarter of a minute for 64³ samples on two cores; memory for one whole
-/// triangulation of the points for each thread, for the shapes and for the files.
+/// Stages are reported to the monitor. Everything except [`Report::seconds`] depends only on the subject. Takes a quarter of a
+/// minute for 64³ samples on two cores, and memory for a whole triangulation of the points for each thread, for the shapes and
+/// for the files.
 ///
 /// # Errors
-/// When the subject yields no points, or points that span no volume.
+/// The subject yields no points, or points that span no volume.
 pub fn reproduce(subject: &Subject<'_>) -> Result<Reproduction, ReproduceError> {
     let all: Vec<ItemName> = ItemName::all().collect();
     reproduce_only(subject, &all)
 }
 
-/// Makes the named items, each as [`reproduce`] makes it and with the same files, in its order. Shapes that none of
-/// them needs are not computed.
+/// Makes the named items, each in the same way as [`reproduce`] and with the same files, in its order. Shapes that none of them
+/// needs are not computed.
 ///
 /// # Errors
-/// When the subject yields no points, or points that span no volume.
+/// The subject yields no points, or points that span no volume.
 pub fn reproduce_only(
     subject: &Subject<'_>,
     names: &[ItemName],

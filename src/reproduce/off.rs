@@ -22,7 +22,7 @@ pub struct OffError {
     got: String,
 }
 
-/// walpha reads only files of its own.
+/// walpha reads only its own files.
 impl Advise for OffError {
     fn advice(&self) -> Option<Advice> {
         Some("this is a fault of walpha, please report it".into())

@@ -1,4 +1,4 @@
-//! Where the volume comes from, and whether it can be the paper's.
+//! The origin of the volume, and whether it can be the paper's volume.
 
 use serde::Serialize;
 
@@ -6,32 +6,32 @@ use super::{ReproduceError, Subject};
 use crate::pipeline::paper::SAMPLES;
 use crate::volume::{SKULL_SHA256, skull_sha256};
 
-/// Where the volume comes from, and whether it can be the paper's.
+/// The origin of the volume, and whether it can be the paper's volume.
 #[derive(Clone, Debug, Serialize)]
 pub struct Origin {
-    /// Where it comes from.
+    /// A description of its source.
     pub source: String,
-    /// The SHA-256 of the file, of CGAL's skull alone.
+    /// The SHA-256 of the file, for CGAL's skull only.
     pub sha256: Option<Checksum>,
     /// Whether it can be the paper's, and why.
     pub judgement: String,
 }
 
-/// A SHA-256 in hexadecimal: of the file that was read, and of the one that the judgement is about.
+/// A SHA-256 in hexadecimal: that of the file that was read, and that of the file that the judgement is about.
 #[derive(Clone, Debug, Serialize)]
 pub struct Checksum {
-    /// Of the file that was read.
+    /// The checksum of the file that was read.
     pub read: String,
-    /// Of `skull_2.9.inr` as CGAL 5.5 has it.
+    /// The checksum of `skull_2.9.inr` in CGAL 5.5.
     pub expected: &'static str,
 }
 
-/// What a user writes for the skull.
+/// The name of the skull on the command line.
 const SKULL: &str = "sample:skull";
 
 impl Origin {
     /// # Errors
-    /// When the file of the skull cannot be read again.
+    /// The file of the skull cannot be read again.
     pub(super) fn of(subject: &Subject<'_>) -> Result<Self, ReproduceError> {
         if subject.name != SKULL {
             return Ok(Self::other(subject));
@@ -68,7 +68,7 @@ impl Origin {
     }
 }
 
-/// Of the file with this checksum, so that its numbers are known.
+/// The judgement on the file with this checksum, whose numbers are known.
 const OF_THE_SKULL: &str = "It may show the paper's skull, but it is not known to, and it is not the same data if the \
      paper's gray levels were bytes. For it: it is a skull, has the paper's 64 × 64 × 64 samples, and comes with the \
      library that the paper used. Against it: the paper gives gray levels in the range from 0 to 255, and this file has \

@@ -14,23 +14,23 @@ pub struct Report {
     pub schema_version: u32,
     /// Title of the paper.
     pub paper: &'static str,
-    /// What is known of the paper's origin.
+    /// A note on the paper's origin, as far as it is known.
     pub source: &'static str,
     /// The version of this program.
     pub version: &'static str,
     /// The day on which the report was made.
     pub date: String,
-    /// The volume that it is reproduced on.
+    /// The volume on which the paper is reproduced.
     pub input: Input,
     /// The command line that makes all items.
     pub command: String,
-    /// Whether `items` are all.
+    /// Whether `items` contains all items.
     pub complete: bool,
-    /// Table and figures, in the paper's order: all, or those asked for.
+    /// Table and figures, in the paper's order: all, or those requested.
     pub items: Vec<Item>,
     /// Number of claims with each verdict.
     pub verdicts: BTreeMap<Verdict, usize>,
-    /// Seconds of each stage and in all: the only thing that differs between two runs.
+    /// The seconds of each stage and in all, which are the only difference between two runs.
     pub seconds: BTreeMap<&'static str, f64>,
 }
 
@@ -43,7 +43,7 @@ pub struct Input {
     pub dims: [usize; 3],
     /// Samples in all.
     pub samples: usize,
-    /// Where it comes from, and whether it can be the paper's.
+    /// The origin of the volume, and whether it can be the paper's volume.
     pub origin: Origin,
     /// The values that became gray 0 and 255.
     pub gray_range: [f64; 2],
@@ -60,19 +60,19 @@ pub struct Input {
 pub struct Item {
     /// `table-1`, `figure-01`, …
     pub id: &'static str,
-    /// Its name, and what it shows.
+    /// The name of the item, and what it shows.
     pub title: String,
-    /// What the paper shows or claims, in its words as far as possible.
+    /// The content or claim of the paper, in its words as far as possible.
     pub paper: String,
-    /// What ours shows.
+    /// The content of our item.
     pub ours: String,
     /// The picture, a PNG file beside the report.
     pub picture: Option<String>,
     /// Other files that belong to it.
     pub files: Vec<String>,
-    /// The command line that makes this item alone, with the same files.
+    /// The command line that makes only this item, with the same files.
     pub command: String,
-    /// Command lines that make its parts without this module: meshes among its files, shapes, points.
+    /// The command lines that make its parts without this module: meshes among its files, shapes, points.
     pub commands: Vec<String>,
     /// Shapes measured for it.
     pub shapes: Vec<ShapeNumbers>,
@@ -109,23 +109,23 @@ pub struct Table {
 pub struct Finding {
     /// The claim of the paper.
     pub claim: String,
-    /// Whether our numbers bear it out.
+    /// Whether our numbers confirm the claim.
     pub verdict: Verdict,
     /// The numbers that decide.
     pub reason: String,
 }
 
-/// Whether a claim holds on our numbers.
+/// Whether a claim holds for our numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[non_exhaustive]
 pub enum Verdict {
-    /// It does.
+    /// The claim holds.
     #[serde(rename = "reproduced")]
     Reproduced,
-    /// It does not.
+    /// The claim does not hold.
     #[serde(rename = "not reproduced")]
     NotReproduced,
-    /// The paper does not say enough to decide.
+    /// The paper does not give enough information to decide.
     #[serde(rename = "cannot be decided")]
     Undecided,
 }
@@ -196,7 +196,7 @@ pub struct ShapeNumbers {
     pub command: String,
     /// α, a squared length; the string "inf" where it is infinite.
     pub alpha: Alpha,
-    /// What α + ω means.
+    /// The meaning of α + ω.
     pub balls: Balls,
     /// The range of the weights ω, squared lengths.
     pub weights: WeightSummary,
@@ -267,7 +267,7 @@ impl ShapeNumbers {
         }
     }
 
-    /// Tunnels and voids together, both of which may be called holes.
+    /// The number of tunnels and voids together, both of which may be called holes.
     pub(super) fn holes(&self) -> u64 {
         self.betti.b1 + self.betti.b2
     }

@@ -25,7 +25,7 @@ pub struct Subject<'a> {
     pub volume: &'a Volume,
     /// The values that became gray 0 and 255.
     pub range: GrayRange,
-    /// What a user writes to get this volume: a sample's name, or a file.
+    /// The name that a user writes to get this volume: a sample's name, or a file.
     pub name: &'a str,
     /// The day to write into the report, as 2025-12-31.
     pub date: &'a str,
@@ -86,7 +86,7 @@ impl<'a> Study<'a> {
         100.0 * self.points.len() as f64 / self.subject.volume.dims().samples() as f64
     }
 
-    /// `walpha COMMAND INPUT` with the options that select our points, and the paper's weights.
+    /// The command `walpha COMMAND INPUT` with the options that select our points, and the paper's weights.
     pub(super) fn command(&self, command: &str) -> String {
         format!("walpha {command} {} --preset paper", text::shell(self.subject.name))
     }
@@ -96,7 +96,7 @@ impl<'a> Study<'a> {
         let Variant { weighting, alpha, balls } = variant;
         let alpha = Alpha::from_squared(alpha).expect("a variant's α is a number");
         let weighted = weigh(self.points.clone(), weighting, alpha)?;
-        // CGAL as the paper used it.
+        // This is CGAL's engine, as the paper used CGAL.
         let engine = Engine::Cgal;
         let options =
             ShapeOptions::new(alpha).balls(balls).engine(engine).exterior(true).refuse_flat(true);
@@ -113,7 +113,7 @@ impl<'a> Study<'a> {
     }
 }
 
-/// How a shape is made from the points.
+/// The parameters of a shape made from the points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Variant {
     weighting: Weighting,
@@ -157,7 +157,7 @@ impl Shaped {
     }
 }
 
-/// A shape that figures share, at α = 10 unless said otherwise.
+/// A shape that several figures use, at α = 10 unless stated otherwise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Shared {
     /// ω = 0.
@@ -174,7 +174,7 @@ pub(super) enum Shared {
     MinMaxMean,
     /// Equation 4.2 as printed.
     Barycentric,
-    /// N times that.
+    /// Equation 4.2 times N.
     BarycentricN,
     /// ω = 0 at α = 1, the square of a voxel's edge.
     Edge,
@@ -225,11 +225,11 @@ impl Shared {
     }
 }
 
-/// The shapes that the figures asked for need.
+/// The shapes that the requested figures need.
 pub(super) struct Shapes(BTreeMap<Shared, Shaped>);
 
 impl Shapes {
-    /// Computes them side by side: CGAL takes one thread for each.
+    /// Computes the shapes in parallel: CGAL takes one thread for each.
     pub(super) fn new(
         study: &Study<'_>,
         needed: &BTreeSet<Shared>,
@@ -249,7 +249,7 @@ impl Index<Shared> for Shapes {
     type Output = Shaped;
 
     /// # Panics
-    /// When the item does not list this shape among those it needs.
+    /// The item does not list this shape among those that it needs.
     fn index(&self, shared: Shared) -> &Shaped {
         &self.0[&shared]
     }
@@ -258,9 +258,9 @@ impl Index<Shared> for Shapes {
 /// The viewpoint on a head whose face is turned to −y and whose crown to +z.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Eye {
-    /// From the front and a little to its left: the portrait.
+    /// Seen from the front and a little to its left: the portrait.
     Portrait,
-    /// From its left.
+    /// Seen from its left.
     Side,
 }
 
@@ -268,7 +268,7 @@ pub(super) enum Eye {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Cameras {
     target: [f64; 3],
-    /// The longest axis over 64 samples.
+    /// The longest axis divided by 64 samples.
     scale: f64,
     /// The last sample.
     high: [f64; 3],
@@ -341,7 +341,7 @@ impl<'a> Clock<'a> {
         Self { monitor, running: None, started: Instant::now(), seconds: Vec::new() }
     }
 
-    /// Ends the running stage and starts another. Stages of the same name add up.
+    /// Ends the running stage and starts another. Times of stages with the same name add up.
     pub(super) fn enter(&mut self, name: &'static str) -> Result<(), Cancelled> {
         self.end();
         self.monitor.stage(name)?;

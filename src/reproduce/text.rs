@@ -1,6 +1,6 @@
 //! Numbers and names as the report writes them.
 
-/// At most three decimals, eight for magnitudes below 0.1, without trailing zeros.
+/// Writes at most three decimals, eight for magnitudes below 0.1, without trailing zeros.
 pub(super) fn number(value: f64) -> String {
     if value == 0.0 {
         return "0".into();

@@ -1,4 +1,4 @@
-//! What the module `cgal` has by default: shapes at one α, and what it does not hand to CGAL.
+//! The default content of the module `cgal`: shapes at one α, and the inputs that it does not pass to CGAL.
 
 use walpha::cgal::{Error, fixed_alpha_shape};
 use walpha::shape::{Engine, ShapeOptions};

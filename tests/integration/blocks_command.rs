@@ -22,7 +22,7 @@ fn args(text: &str) -> Vec<&str> {
     text.split_whitespace().collect()
 }
 
-/// All formats, written from one piece and from blocks: the same bytes.
+/// Asserts that all formats have the same bytes, written from one piece and from blocks.
 fn same_files(options: &str, blocks: usize) {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
@@ -192,7 +192,7 @@ fn damaged_files_are_named_and_mended() {
         fs::write(path, bytes).unwrap();
     };
     flip("work/block-00001.walpha", usize::MAX);
-    // In the header.
+    // A change in the header.
     flip("work/block-00003.walpha", 100);
     let (code, stdout, _) = run(at, &args("blocks check work --json"));
     let facts: Value = serde_json::from_str(&stdout).unwrap();
@@ -214,7 +214,7 @@ fn damaged_files_are_named_and_mended() {
     ok(at, &args("blocks check work"));
     ok(at, &args("blocks merge work -o after.vtu"));
     assert!(fs::read(at.join("after.vtu")).unwrap() == fs::read(at.join("before.vtu")).unwrap());
-    // What lies beside blocks that are all there is mended, too.
+    // A damaged file next to complete blocks is repaired, too.
     flip("work/sums.f64", 11);
     let (code, stdout, _) = run(at, &args("blocks check work"));
     assert!(code == 3 && stdout.contains("sums.f64"), "{stdout}");

@@ -36,7 +36,7 @@ pub fn engine_of(case: &Case, engine: Engine) -> Result<Answer, ShapeError> {
     })
 }
 
-/// What has no sphere is a finding, and an exit code of its own.
+/// Cells without a sphere are a finding, with a separate exit code.
 #[test]
 fn corners_in_one_place_are_a_finding() {
     let folder = tempfile::tempdir().unwrap();
@@ -157,7 +157,7 @@ fn cells_of_a_mesh_are_judged() {
     let info = common::json(folder, &["info", "bad.vtu"]);
     assert_eq!(info["cells"], serde_json::json!([{ "kind": "tetrahedra", "count": 158 }]));
 
-    // What is wrong, as a mesh to look at.
+    // The faults, as a mesh to look at.
     assert_eq!(judge(&["bad.vtu", "-o", "findings.vtu"]).0, 3);
     let parts = common::json(folder, &["info", "findings.vtu"])["cells"].clone();
     let count = |kind: &str| {
@@ -176,7 +176,7 @@ fn cells_of_a_mesh_are_judged() {
     assert_eq!(common::json(folder, &["info", "none.vtu"])["count"], 64);
     common::fails(folder, 2, "check bad.vtu -o findings.ply", &["findings.ply", ".vtu"]);
 
-    // With an α, all that is listed is in the shape: of cubes of side 1, from 3/4 on.
+    // With an α, all listed simplices are in the shape: those of cubes of side 1 from 3/4 on.
     assert_eq!(judge(&["cubes.vtu", "--alpha", "0.75"]).0, 0);
     assert_eq!(judge(&["cubes.vtu", "--alpha", "0.74"]).0, 3);
     let (code, _, stderr) = judge(&["cubes.vtu", "--weights", "common=0"]);
@@ -263,7 +263,7 @@ fn our_meshes_are_judged_as_the_shapes_they_are() {
     assert_eq!(code, 2, "{stderr}");
 }
 
-/// Whatever a shape is made of, by whichever engine and in however many blocks: what is written is exact, in each format.
+/// Exact output is written in each format, for any input of a shape, any engine, and any number of blocks.
 #[test]
 fn what_we_write_is_exact() {
     let folder = tempfile::tempdir().unwrap();
@@ -284,7 +284,7 @@ fn what_we_write_is_exact() {
             let options: &[&[&str]] =
                 &[&[], &["--blocks", "3"], &["--balls", "radius"], &["--engine", "native"]];
             for more in options.iter().filter(|more| alpha.len() < 4 || more.len() < 2) {
-                // With the other reading α is a length to add to weights, which are radii.
+                // With the other interpretation α is a length to add to weights, which are radii.
                 if more.contains(&"radius") && (alpha.starts_with('-') || weights == "column") {
                     continue;
                 }
@@ -344,7 +344,7 @@ fn a_shape_of_a_smaller_alpha_is_wrong() {
 fn what_a_mesh_cannot_list_is_not_missing() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
-    // Two cells apart, beside one of them a triangle, an edge and a point.
+    // Two cells that are apart, and a triangle, an edge and a point next to one of them.
     let points = "1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 20 0 0\n6 21 0 0\n7 20 1 0\n8 20 0 1\n\
                   9 40 0 0\n10 41 0 0\n11 40 1 0\n12 60 0 0\n13 61 0 0\n14 80 0 0\n";
     std::fs::write(folder.join("m.node"), format!("14 3 0 0\n{points}")).unwrap();
@@ -365,7 +365,7 @@ fn what_a_mesh_cannot_list_is_not_missing() {
     }
 }
 
-/// PLY as `VCGlib` lists tetrahedra, in text and in binary, beside a face.
+/// PLY with tetrahedra as `VCGlib` lists them, in text and in binary, with a face in addition.
 #[test]
 fn tetrahedra_of_ply_are_judged() {
     let folder = tempfile::tempdir().unwrap();
@@ -425,8 +425,8 @@ fn tetrahedra_of_ply_are_judged() {
     common::fails(folder, 1, "check short.ply", &["3 corners"]);
 }
 
-/// What lists cells that are not judged is refused, not judged by its points; a cloud of points is judged by
-/// our own shape of it.
+/// A file that lists cells which are not judged is refused, not judged by its points; a cloud of points is judged by our own
+/// shape of it.
 #[test]
 fn what_is_not_judged_is_refused() {
     let folder = tempfile::tempdir().unwrap();
@@ -477,7 +477,7 @@ fn flat_sets_are_judged() {
         for exterior in [&[][..], &["--exterior"]] {
             let make =
                 ["shape", "t.csv", "--weights", "common=0", "--alpha", alpha, "-o", "t.json"];
-            // At α = −1 nothing is in the shape.
+            // At α = −1 the shape is empty.
             let empty = if alpha == "-1" { &["--allow-empty"][..] } else { &[] };
             common::ok(folder, &[&make[..], exterior, empty].concat());
             let facts = common::json(folder, &["check", "t.json"]);

@@ -8,7 +8,7 @@ use walpha_base::random::Random;
 use crate::check_command::{Answer, Case, definition, engine, engine_of, grid};
 use crate::common;
 
-/// All answers must be equal, and so must be the decision that there is none.
+/// All answers must be equal, and the engines must agree whether there is one.
 #[track_caller]
 fn agree(case: &Case) -> bool {
     let expected = definition(case);
@@ -136,7 +136,7 @@ fn cube_corners_and_centres() {
     });
 }
 
-/// Most points in one plane or on one line, the others beside it.
+/// Most points lie in one plane or on one line, the others outside of it.
 #[test]
 fn coplanar_and_collinear_runs() {
     agree_on(600, |random| {
@@ -167,7 +167,7 @@ fn duplicates_and_heavy_points() {
     });
 }
 
-/// α exactly at R² of some simplex, and one ulp beside it: a facet with R² = 10 on the grid.
+/// α is exactly at R² of some simplex, and one ulp away from it: a facet with R² = 10 on the grid.
 #[test]
 fn critical_alpha() {
     let facet = [[0.0, 0.0, 0.0], [0.0, 2.0, 4.0], [0.0, 6.0, 0.0]];

@@ -154,7 +154,7 @@ fn threads_change_no_byte() {
     assert_eq!(bytes("1.vtu"), bytes("5.vtu"));
 }
 
-/// All differences are 0: the first voxels are taken, and those are coplanar or a slab.
+/// All differences are 0: the first voxels are taken, which are coplanar or a slab.
 #[test]
 fn a_constant_volume_is_no_accident() {
     let folder = tempfile::tempdir().unwrap();
@@ -163,7 +163,7 @@ fn a_constant_volume_is_no_accident() {
     let raw = ["flat.raw", "--dims", "4,4,4", "--dtype", "u8"];
     let flat = "shape flat.raw --dims 4,4,4 --dtype u8 --count 10";
     fails(f, 1, flat, &["none of the 64 that take part differs from a neighbour"]);
-    // Where all are asked for, none is chosen before another.
+    // If all are requested, none is chosen before another.
     let args = [&["shape"], &raw[..], &["--ratio", "1", "--weights", "min-max"]].concat();
     let report = json(f, &args);
     assert_eq!(report["weights"]["max"], 0.0);
@@ -195,7 +195,7 @@ fn a_stray_point_does_not_decide_alpha() {
     let told = ok(f, &["shape", "stray.xyz"]);
     assert!(told.contains("apart     1 of 5001 points"), "{told}");
     assert!(!ok(f, &["shape", "ball.xyz"]).contains("apart"));
-    // By the other rule the stray decides.
+    // By the other rule the stray point decides.
     let connected = json(f, &["shape", "stray.xyz", "--alpha", "auto:connected"]);
     assert!(alpha(&connected) > 100.0 * alpha(&stray) && numbers(&connected) == (Some(1), Some(0)));
     let ladder = json(f, &["ladder", "ball.xyz", "--alphas", "1", "-o", "ladder"]);
@@ -245,7 +245,7 @@ fn alpha_is_found_where_nobody_gives_it() {
     };
     assert!(solid(alpha));
     assert!(!solid(alpha.next_down()));
-    // The same number, given, gives the same shape; and every command finds it.
+    // The same number, given explicitly, gives the same shape; and every command computes it.
     let given = json(f, &["shape", "two.csv", "--alpha", &alpha.to_string()]);
     assert_eq!(given["shape"], connected["shape"]);
     assert_eq!(given["alpha"]["origin"], "given");
@@ -260,7 +260,7 @@ fn alpha_is_found_where_nobody_gives_it() {
         (&weighted["alpha"]["squared"], &weighted["weights"]["max"]),
         (&alpha.into(), &alpha.into())
     );
-    // A volume has a scale of its own.
+    // A volume has its own scale.
     let volume = json(f, &["shape", "sample:phantom@8"]);
     assert_eq!(
         (&volume["alpha"]["squared"], &volume["alpha"]["origin"]),

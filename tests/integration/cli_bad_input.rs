@@ -32,7 +32,7 @@ fn usage_errors_exit_with_2() {
     fails(f, 2, "view sample:phantom -o a.htm", &["did you mean .html?"]);
 }
 
-/// What has no effect on this input, or on these outputs, is refused, and what to do is said.
+/// An option without effect on this input, or on these outputs, is refused, with advice.
 #[test]
 fn no_option_is_without_effect() {
     let folder = tempfile::tempdir().unwrap();

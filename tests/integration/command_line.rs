@@ -1,5 +1,5 @@
-//! What people expect of a command: configuration, pipes, near misses, three lines of error, manual pages, names,
-//! and streams that take nothing.
+//! The expected features of a command: configuration, pipes, near misses, three lines of error, manual pages, names, and streams
+//! that do not accept output.
 
 use std::fs::{self, OpenOptions};
 use std::io::Read;
@@ -161,7 +161,7 @@ fn pages_and_completions_know_every_command() {
     }
 }
 
-/// Errors and help are plain where nobody can see colours.
+/// Errors and help are plain if the output cannot show colours.
 #[test]
 fn colours_stay_out_of_files() {
     let folder = tempfile::tempdir().unwrap();
@@ -214,7 +214,7 @@ fn a_file_sets_options_and_the_command_line_wins() {
     let points = with(&["points", "sample:phantom@16"]);
     assert_eq!(points["alpha"]["squared"], 4.0);
     assert_eq!(points["points"]["selected"], 100);
-    // What is given wins, over what it excludes, too.
+    // Given options take precedence, also over what they exclude.
     let given = with(&["points", "sample:phantom@16", "--alpha-radius", "3", "--ratio", "0.5"]);
     assert_eq!(given["alpha"]["squared"], 9.0);
     assert_eq!(given["points"]["selected"], 2048);
@@ -340,7 +340,7 @@ fn a_standard_output_that_is_full_is_an_error() {
     }
 }
 
-/// As after `>&-`: only a shell starts a process without one.
+/// A closed standard output, as after `>&-`: only a shell starts a process like this.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_standard_output_that_is_closed_is_an_error() {
@@ -353,14 +353,14 @@ fn a_standard_output_that_is_closed_is_an_error() {
         assert_eq!(done.status.code(), Some(1), "{args:?}: {said}");
         assert!(said.contains("standard output is closed"), "{args:?}: {said}");
     }
-    // Nothing is lost of what is not printed.
+    // Output that is not printed loses nothing.
     let quiet = "exec \"$0\" shape sample:phantom@12 -o b.json -q >&-";
     let mut shell = Command::new("sh");
     shell.args(["-c", quiet, env!("CARGO_BIN_EXE_walpha")]).current_dir(&folder);
     assert!(shell.status().unwrap().success());
 }
 
-/// As in `walpha … 2>&1 >/dev/null | true`: nobody hears it, and that is not a fault of the program.
+/// A closed standard error, as in `walpha … 2>&1 >/dev/null | true`, is not a fault of the program.
 #[test]
 fn nobody_hears_standard_error() {
     let folder = folder();
@@ -413,7 +413,7 @@ fn presets_are_options() {
     assert_eq!(shape(&["--preset", "ct-bone"]), bone);
     assert_ne!(shape(&["--preset", "ct-skin"]), bone);
     assert_eq!(json(f, &["info", "sample:ct"])["preset"], "ct-bone");
-    // What is stated takes precedence, and with it nothing is assumed.
+    // Stated options take precedence, and disable assumptions.
     assert!(shape(&["--preset", "ct-bone", "--threshold", "60"]).1 < bone.1);
     assert_eq!(shape(&["--count", "500"]), (serde_json::json!([-1105.0, 1863.0]), 500));
     fs::write(f.join("own.toml"), "threshold = 60\n").unwrap();

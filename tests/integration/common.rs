@@ -29,7 +29,7 @@ pub fn walpha(folder: &Path, args: &[&str]) -> Output {
     command.args(args).current_dir(folder).output().expect("the command starts")
 }
 
-/// Its exit code, standard output and standard error.
+/// Runs the command, and returns its exit code, standard output and standard error.
 pub fn run(folder: &Path, args: &[&str]) -> (i32, String, String) {
     let output = walpha(folder, args);
     let text = |bytes: Vec<u8>| String::from_utf8(bytes).expect("UTF-8");
@@ -100,7 +100,7 @@ pub fn alone<F: FnOnce()>(test: F) {
     if env::var_os(ALONE).is_some() {
         return test();
     }
-    // As `integration::module::test::{{closure}}`.
+    // The name is like `integration::module::test::{{closure}}`.
     let path = type_name::<F>();
     let name = path.split_once("::").and_then(|(_, rest)| rest.rsplit_once("::"));
     let (name, _) = name.expect("a closure of a test");
@@ -112,15 +112,15 @@ pub fn alone<F: FnOnce()>(test: F) {
     assert!(told.contains("1 passed"), "there is no test {name}: {told}{errors}");
 }
 
-/// In bytes, until now.
+/// The size of the largest request so far, in bytes.
 pub fn largest() -> usize {
     LARGEST.load(Ordering::Relaxed)
 }
 
-/// The system's allocator, which remembers the largest piece asked for.
+/// The system's allocator, which remembers the size of the largest request.
 struct Remembering;
 
-/// In bytes.
+/// The size of the largest request, in bytes.
 static LARGEST: AtomicUsize = AtomicUsize::new(0);
 
 impl Remembering {

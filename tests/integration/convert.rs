@@ -28,7 +28,7 @@ fn write(at: &Path, name: &str, volume: &Volume) {
     writer.write(volume, &mut File::create(&path).unwrap()).unwrap();
 }
 
-/// No multiple of a chunk along any axis, all samples different from their neighbours.
+/// An array whose size is not a multiple of a chunk along any axis, with samples that all differ from their neighbours.
 fn numbers<T>(number: impl Fn(usize) -> T) -> Array3<T> {
     let mut next = 0..;
     Array3::from_shape_simple_fn((67, 130, 71), || number(next.next().unwrap()))
@@ -127,7 +127,7 @@ fn nothing_is_written_over_or_left_half_written() {
     assert_eq!(names(at), ["in.zarr"]);
 }
 
-/// What a killed run left does not come into the next one's result.
+/// The remains of a killed run do not get into the result of the next run.
 #[test]
 fn leavings_of_a_killed_run_are_no_part_of_the_next() {
     let folder = tempfile::tempdir().unwrap();

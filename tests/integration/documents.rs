@@ -56,9 +56,9 @@ fn documents() -> Vec<PathBuf> {
     found
 }
 
-/// What a reader would bring.
+/// The files that a reader would have.
 fn reader_files(folder: &Path) {
-    // An eighth of the samples, as pages of the whole take long.
+    // An eighth of the samples, because pages of the whole take a long time.
     ok(folder, &["haar", "sample:ct", "--downsample", "2", "-o", "ct.nii.gz"]);
     for scan in ["scan.nrrd", "scan.nii.gz"] {
         ok(folder, &["haar", "sample:phantom@48", "-o", scan]);
@@ -91,7 +91,7 @@ fn reader_files(folder: &Path) {
     };
     let labels: Vec<u8> = header.bytes().chain((0..960).map(organ)).collect();
     fs::write(folder.join("labels.nrrd"), labels).expect("a file");
-    // What other programs would write.
+    // Files of other programs.
     let mesh = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n$EndNodes\n\
                 $Elements\n1\n1 4 0 1 2 3 4\n$EndElements";
     write("theirs.msh", &[mesh.to_owned()]);
@@ -159,10 +159,10 @@ fn shell_lines(document: &str) -> Vec<String> {
     lines.map(|line| line.split("  #").next().unwrap_or(line).trim().to_owned()).collect()
 }
 
-/// What sentences about the report quote of it, with `#` for each number.
+/// The quotes of the report in sentences about it, with `#` for each number.
 fn quoted_reports(document: &str) -> Vec<String> {
     let of_report = document.split(". ").filter(|sentence| sentence.contains("report"));
-    // Text and quotes take turns.
+    // Text and quotes alternate.
     let quotes = of_report.flat_map(|sentence| sentence.split('"').skip(1).step_by(2));
     quotes.filter(|quote| quote.split_whitespace().count() > 2).map(without_numbers).collect()
 }
@@ -220,7 +220,7 @@ fn printed_commands_work() {
     let folder = tempfile::tempdir().expect("a folder");
     let folder = folder.path();
     reader_files(folder);
-    // What is printed twice is run once.
+    // A line that is printed twice is run once.
     let mut seen = BTreeSet::new();
     for path in documents() {
         let lines = shell_lines(&fs::read_to_string(&path).expect("a document"));
@@ -266,7 +266,7 @@ fn examples_of_help_work() {
     let is_built_in = |command: &&str| *command != "convert" || cfg!(feature = "zarr");
     for command in COMMANDS.into_iter().filter(is_built_in) {
         if command == "compare" {
-            // What the text above its examples says how to make.
+            // The files that the text above its examples makes.
             let shape = ["shape", "sample:phantom@16", "--weights", "min-max", "-o"];
             ok(folder, &[&shape[..], &["skull.json", "theirs.json"]].concat());
             ok(folder, &[&shape[..], &["cgal.npz", "--engine", "cgal"]].concat());

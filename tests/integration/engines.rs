@@ -1,5 +1,4 @@
-//! Two engines, one answer: simplices and classes of all dimensions, Betti numbers and sheets, whatever
-//! the number of blocks.
+//! Two engines give the same answer: simplices and classes of all dimensions, Betti numbers and sheets, for any number of blocks.
 
 use std::num::NonZeroUsize;
 
@@ -47,7 +46,7 @@ fn check(points: &WeightedPoints, alpha: f64) {
     let cgal = match by(Engine::Cgal, points, alpha, None, false) {
         Ok(cgal) => cgal,
         Err(error) => {
-            // Flat and small sets are refused alike.
+            // Flat and small sets are refused in the same way.
             for blocks in BLOCKS {
                 assert_eq!(native(blocks).unwrap_err(), error);
             }
@@ -87,7 +86,7 @@ fn check_parts(shape: &AlphaShape) {
     close(components.iter().map(|c| c.singular_area).sum(), shape.measures().singular_area);
     let shut_in: Vec<_> = components.iter().flat_map(|c| c.voids.iter().flatten()).collect();
     assert_eq!(shut_in.len() as u64, betti.b2);
-    // What floats in a void counts to what the sheet shuts in, not to the cells outside the shape.
+    // Parts that float in a void belong to what the sheet encloses, not to the cells outside the shape.
     if components.len() == 1 {
         let voids = shape.voids().unwrap();
         assert_eq!(voids.len(), shut_in.len());
@@ -117,7 +116,7 @@ proptest! {
     }
 }
 
-/// Most blocks of a line span no volume, whatever their lattice.
+/// Most blocks of a line span no volume, on any lattice.
 #[test]
 fn lines_have_collinear_blocks() {
     for step in [1.0, 0.1, 1024.0, 1e-9] {

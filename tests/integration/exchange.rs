@@ -60,7 +60,7 @@ fn det([a, rest @ ..]: &[[i64; 3]; 4]) -> i64 {
     u[0] * minor(1, 2) + u[1] * minor(2, 0) + u[2] * minor(0, 1)
 }
 
-/// Adaptive selection as it is documented, triangulating from the start in each batch.
+/// The adaptive selection of the documentation, triangulating from the start in each batch.
 fn by_definition(volume: &Volume, goal: &Adaptive, units: Units) -> Vec<u32> {
     let [nx, ny, nz] = volume.dims().xyz();
     let at = |x: usize, y: usize, z: usize| (x + nx * (y + ny * z)) as u32;
@@ -81,7 +81,7 @@ fn by_definition(volume: &Volume, goal: &Adaptive, units: Units) -> Vec<u32> {
         if rmse <= goal.rmse || goal.max_error.is_some_and(|b| max <= b) || batch == 0 {
             return voxels;
         }
-        // By cell: the squared error of its samples, and its worst sample.
+        // For each cell, the squared error of its samples, and its worst sample.
         let mut cells: BTreeMap<[u32; 4], (u64, f32, u32)> = BTreeMap::new();
         for voxel in 0..volume.dims().samples() as u32 {
             let f = volume.as_slice()[voxel as usize];
@@ -152,7 +152,7 @@ fn exchanged_points_are_as_many_and_better() {
     assert!((0..8).all(|i| set.contains(&corner(i))));
     let [before, after] = [&chosen, &exchanged].map(|voxels| error_of(&volume, voxels));
     assert!(after < 0.95 * before, "{before} {after}");
-    // Those that stay come first, in their order.
+    // The voxels that stay come first, in their order.
     let kept = exchanged.iter().take_while(|voxel| chosen.contains(voxel)).count();
     let mut in_order = chosen.iter();
     assert!(exchanged[..kept].iter().all(|voxel| in_order.any(|v| v == voxel)), "{kept}");

@@ -34,7 +34,7 @@ fn shape(points: &WeightedPoints, alpha: f64, engine: Engine, exterior: bool) ->
     alpha_shape(points.clone(), &options).unwrap()
 }
 
-/// By flooding, and the Euler characteristic.
+/// Betti numbers by flooding, and the Euler characteristic.
 fn betti(shape: &AlphaShape) -> Betti {
     let complex = shape.complex();
     let inside = |class: Class| class != Class::Exterior;
@@ -105,7 +105,7 @@ fn flat_shapes_are_those_of_the_definition() {
     );
 }
 
-/// The same points in a plane of the axes and in a tilted one, a turn by a right angle apart.
+/// Compares points in a plane of the axes with the same points in another plane, turned and scaled by √2.
 #[test]
 fn a_turn_changes_nothing_but_places() {
     let flat: Vec<[f64; 3]> =
@@ -171,7 +171,7 @@ fn the_command_takes_tables_of_the_plane() {
     common::fails(f, 1, "shape plane.csv --require-3d --alpha 1", &["in one plane"]);
 }
 
-/// What makes all shapes at once, shows them, or interpolates on them takes what `shape` takes.
+/// Commands that make all shapes together, show them, or interpolate on them accept the same points as `shape`.
 #[test]
 fn all_commands_take_what_lies_in_a_plane_on_a_line_or_at_a_point() {
     let folder = tempfile::tempdir().unwrap();

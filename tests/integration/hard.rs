@@ -24,7 +24,7 @@ fn hard_sets_are_certified_and_engines_agree() {
     for set in HARD_SETS {
         let filtration = Filtration::new(weighted(set)).unwrap();
         let ordered = filtration.simplices().unwrap();
-        // At a critical value it is equality that decides.
+        // At a critical value, equality decides.
         let middle = ordered.values()[ordered.values().len() / 2];
         for alpha in [middle, Alpha::INFINITE] {
             let shape = made(set, alpha, Engine::Native);
@@ -37,7 +37,7 @@ fn hard_sets_are_certified_and_engines_agree() {
                 assert!(*theirs.complex() == *shape.complex(), "{} at {alpha}", set.name);
             }
         }
-        // What is born and has not died is what the Betti numbers count.
+        // Betti numbers count the classes that are born and have not died.
         let betti = ordered.betti_curve();
         for (rank, betti) in betti.iter().enumerate().step_by(1 + betti.len() / 20) {
             let alive = [0, 1, 2].map(|dimension| {
@@ -49,7 +49,7 @@ fn hard_sets_are_certified_and_engines_agree() {
         }
         sizes.push(filtration.whole().complex().cells.len());
     }
-    // All but the two that are flat have cells.
+    // All sets except the two flat ones have cells.
     assert_eq!(sizes.iter().filter(|&&cells| cells == 0).count(), 2, "{sizes:?}");
 }
 

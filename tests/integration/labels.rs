@@ -114,7 +114,7 @@ fn options_of_gray_levels_take_precedence() {
         let (code, stdout, stderr) =
             run(f, &["shape", "ball.nrrd", options[0], options[1], "--json"]);
         if code == 1 {
-            // Where gray levels are looked for, the wavelet stage leaves nothing of values up to 2.
+            // If gray levels are searched for, the wavelet stage leaves nothing of values up to 2.
             assert!(stderr.contains("nothing tells which samples to select"), "{stderr}");
             continue;
         }
@@ -126,7 +126,7 @@ fn options_of_gray_levels_take_precedence() {
     assert!(found >= 2, "{found}");
 }
 
-/// What single precision subtracts is reported of the solid of labels, and of each label.
+/// The offset of single precision is reported for the solid of labels, and for each label.
 #[test]
 fn solids_far_from_the_origin_report_their_offset() {
     let folder = tempfile::tempdir().unwrap();
@@ -378,7 +378,7 @@ fn solids_are_certified() {
         }),
         "unaccounted",
     );
-    // Without its voxels it is no α-shape.
+    // Without its voxels it is not an α-shape.
     has(
         changed("alpha.json", &|file| _ = file.as_object_mut().unwrap().remove("voxels")),
         "hull_bends",
@@ -391,7 +391,7 @@ fn solids_are_certified() {
     fails(f, 1, "check unsound.json", &["ascending runs of voxels"]);
 }
 
-/// From 2²⁴ on single precision does not tell labels apart.
+/// From 2²⁴ on, single precision does not distinguish labels.
 #[test]
 fn labels_that_are_rounded_are_none() {
     let folder = tempfile::tempdir().unwrap();
@@ -407,7 +407,7 @@ fn labels_that_are_rounded_are_none() {
     fs::write(f.join("small.nrrd"), file((1 << 24) - 2)).unwrap();
     let told = ["cannot be told apart", "16777216", "number them anew, below 16777216"];
     fails(f, 1, "shape large.nrrd --label all -o a.ply", &told);
-    // Where the file states labels, and nobody asks for them.
+    // The file states labels, but they are not requested.
     fs::write(f.join("large.seg.nrrd"), file(1 << 24)).unwrap();
     let (_, _, told) = run(f, &["shape", "large.seg.nrrd", "-o", "a.ply"]);
     names(&told, &["not whole numbers below 16777216", "taken for gray levels"]);

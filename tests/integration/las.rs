@@ -28,7 +28,7 @@ fn clouds_of_scanners_are_read() {
     for name in ["a.las", "a.laz"] {
         let path = folder.path().join(name);
         write(&path, (1, 2));
-        // By content, whatever its name is.
+        // The file is recognized by content, with any name.
         let other = folder.path().join("cloud.dat");
         std::fs::copy(&path, &other).unwrap();
         for path in [&path, &other] {
@@ -95,7 +95,7 @@ fn more_than_there_can_be_is_refused() {
     assert!(error.contains("claims a record of 4611686018427387904 bytes"), "{error}");
 }
 
-/// Of a class, and one in each cube: points 0, 1 and 4 are ground, and the first two share a cube of side 2.5.
+/// Points of a class, and one in each cube: points 0, 1 and 4 are ground, and the first two share a cube of side 2.5.
 #[test]
 fn classes_and_thinning() {
     let folder = tempfile::tempdir().unwrap();
@@ -136,7 +136,7 @@ fn packed(path: &std::path::Path, version: (u8, u8), format: u8) -> Vec<u8> {
     std::fs::read(path).unwrap()
 }
 
-/// Of 1.4 the number of 64 bits holds, also of chunks of layers.
+/// In version 1.4 the 64-bit number counts, also for chunks of layers.
 #[test]
 fn the_number_of_64_bits_holds_where_an_old_one_differs() {
     let folder = tempfile::tempdir().unwrap();
@@ -153,8 +153,8 @@ fn the_number_of_64_bits_holds_where_an_old_one_differs() {
     }
 }
 
-/// No change of a byte panics or asks for more memory than a file of this size can need: of items that make no point, of
-/// more chunks than there are bytes, of longer layers than the file.
+/// No change of a byte panics or requests more memory than a file of this size can need: for items that make no point, for more
+/// chunks than there are bytes, for longer layers than the file.
 #[test]
 fn damaged_compression_is_an_error() {
     alone(|| {

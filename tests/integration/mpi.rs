@@ -1,4 +1,4 @@
-//! `mpirun walpha shape`: several processes, the same bytes as from one. Skipped where there is no mpirun.
+//! `mpirun walpha shape`: several processes write the same bytes as one. Skipped if mpirun is missing.
 
 use std::fs;
 use std::path::Path;
@@ -19,7 +19,7 @@ fn has_mpirun() -> bool {
     there.is_ok()
 }
 
-/// The command with so many ranks, more than there are processors.
+/// The command with this number of ranks, more than there are processors.
 fn mpirun(at: &Path, ranks: usize, options: &str) -> Command {
     let mut command = Command::new("mpirun");
     let version = Command::new("mpirun").arg("--version").output().expect("mpirun");
@@ -67,7 +67,7 @@ fn files(folder: &Path) -> Vec<(String, Vec<u8>)> {
     files
 }
 
-/// The same pieces, files and numbers from any number of ranks.
+/// Asserts that any number of ranks gives the same pieces, files and numbers.
 fn same(options: &str) {
     let one = tempfile::tempdir().unwrap();
     let command = format!("shape {options} --blocks 11 -o out.pvtu out.pvtp out.vtu");
@@ -105,7 +105,7 @@ fn ranks_write_the_bytes_that_one_process_writes() {
     }
 }
 
-/// Without pieces, too: what one process says, and writes.
+/// Ranks report and write the same as a single process, also without pieces.
 #[test]
 fn ranks_work_for_any_output_or_none() {
     if !has_mpirun() {
@@ -157,11 +157,11 @@ fn errors_end_all_ranks_and_are_told_once() {
     let at = folder.path();
     fs::write(at.join("file"), "").unwrap();
     let cases = [
-        // Of the command line, of all ranks alike, of the first.
+        // Errors of the command line, of all ranks, and of the first rank.
         (2, "shape sample:phantom@20 --alpha x -o out.pvtu", "invalid value 'x'"),
         (1, "shape sample:phantom@20 --gray-min 999 -o out.pvtu", "no voxel reaches"),
         (1, "shape sample:phantom@20 -o file/out.pvtu", "cannot make the folder"),
-        // What several processes cannot do.
+        // Options that several processes do not support.
         (2, "shape sample:phantom@20 --alpha auto -o out.ply", "is not local"),
         (2, "points sample:phantom@20 -o out.xyz", "3 processes were started"),
     ];
@@ -232,7 +232,7 @@ fn a_killed_rank_loses_the_blocks_at_work_only() {
         assert!((3..24).contains(&done.len()), "{done:?}");
         assert!(!at.join("out.pvtu").exists());
 
-        // By another number of ranks; the blocks that are there are not touched.
+        // Another number of ranks continues the work, and does not touch existing blocks.
         let written = |name: &String| fs::metadata(work.join(name)).unwrap().modified().unwrap();
         let before: Vec<_> = done.iter().map(written).collect();
         let kept = at.join("kept");

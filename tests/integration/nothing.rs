@@ -38,7 +38,7 @@ fn split(args: &str) -> Vec<&str> {
     args.split(' ').collect()
 }
 
-/// A constant volume, and one whose contrast truncation takes away: at once, and in blocks.
+/// A constant volume, and one whose contrast is lost in truncation: as a whole, and in blocks.
 #[test]
 fn no_difference_selects_nothing() {
     let folder = tempfile::tempdir().unwrap();
@@ -56,7 +56,7 @@ fn no_difference_selects_nothing() {
     }
     // The advice names the option that was given.
     fails(f, 1, &format!("points {RAW} --gray 0..255 --epsilon 99 -o p.csv"), &[none, "--epsilon"]);
-    // Nothing is lost, or a threshold says what counts.
+    // Nothing is lost if a range or a threshold states what counts.
     ok(f, &split(&format!("points {RAW} --gray 0..255 --rms 0 -o p.csv")));
     ok(f, &split(&format!("points {RAW} --gray 0..255 --threshold 0 -o p.csv")));
     volume(f, &[]);
@@ -64,7 +64,7 @@ fn no_difference_selects_nothing() {
     fails(f, 1, &args, &[none, "--coefficients"]);
 }
 
-/// A sample and its six neighbours differ; what is asked for beyond that is not made up.
+/// A sample and its six neighbours differ; a request for more points than these does not invent any.
 #[test]
 fn no_more_places_than_differ() {
     let folder = tempfile::tempdir().unwrap();
@@ -83,7 +83,7 @@ fn no_more_places_than_differ() {
     for allowed in ["--count 7", "--ratio 0.0136", "--count 512", "--ratio 1"] {
         ok(f, &split(&format!("points {raw} {allowed} -o p.csv")));
     }
-    // By default those that differ, with a word.
+    // By default the differing samples are selected, with a message.
     for output in ["p.vtu", "p.pvtu"] {
         let report = json(f, &split(&format!("shape {raw} -o {output}")));
         assert_eq!(report["points"]["selected"], 7, "{output}");
@@ -155,15 +155,15 @@ fn files_that_would_hold_nothing_are_errors() {
         ok(f, &split(&format!("shape cube.csv --alpha -3 --exterior -o e.{extension}")));
         fs::remove_file(f.join(format!("e.{extension}"))).unwrap();
     }
-    // Without files, too; and of several none is written.
+    // An error occurs also without files; and if there are several outputs, none is written.
     fails(f, 1, "shape cube.csv --alpha -3", &["the shape has no simplex"]);
     ok(f, &["shape", "cube.csv", "--alpha", "0.001"]);
     fails(f, 1, "shape cube.csv --alpha 0.001 -o e.vtu e.stl e.json", &["e.stl: the shape has"]);
-    // The points of a model are there whatever α is.
+    // The points of a model exist for any α.
     ok(f, &["shape", "cube.csv", "--alpha", "-3", "-o", "e.wvm"]);
 }
 
-/// What is suggested does it.
+/// The suggested value works.
 #[test]
 fn the_suggested_radius_is_enough() {
     let folder = tempfile::tempdir().unwrap();
@@ -210,7 +210,7 @@ fn flat_points_are_told_of_formats_that_hold_them() {
         "shape place.csv --alpha 9 -o e.obj",
         &["as its points are at one place", "as VTU does"],
     );
-    // What they do have is written.
+    // The existing parts are written.
     ok(f, &split("shape square.csv --alpha 9 -o e.ply e.off e.obj e.glb e.vtp e.png"));
     ok(f, &split("shape line.csv --alpha 9 -o e.obj e.glb e.vtp e.png e.vtu"));
     ok(f, &split("shape place.csv --alpha 9 -o e.vtu e.json e.npz"));

@@ -1,5 +1,5 @@
-//! Commands open their input once: what they learn of it and what they read of it are of one file, whatever takes its
-//! place meanwhile.
+//! Commands open their input once: their information about it and their data are from one file, even if another takes its place
+//! meanwhile.
 
 use std::fs;
 use std::path::Path;
@@ -8,7 +8,7 @@ use nix::sys::inotify::{AddWatchFlags, InitFlags, Inotify};
 
 use crate::common::ok;
 
-/// How often a command opens a file.
+/// The number of times a command opens a file.
 fn openings(folder: &Path, file: &str, args: &[&str]) -> usize {
     let inotify = Inotify::init(InitFlags::IN_NONBLOCK).unwrap();
     // Equal events that follow each other are one. Whoever opens a file reads from it before it is opened again.

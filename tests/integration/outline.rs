@@ -7,8 +7,8 @@ use serde_json::{Value, json};
 
 use crate::common::{fails, json as told, names, ok, run};
 
-/// A square of 5×5 small squares of side 1/3 without the middle 3×3 but for the halves at their corners, and far off an
-/// edge and a point alone, as a table. Coordinates are not short decimals, and z has this value.
+/// A square of 5×5 small squares of side 1/3 without the middle 3×3, except for the halves at their corners, and an isolated edge
+/// and point far away, as a table. Coordinates are not short decimals, and z has this value.
 fn table(folder: &Path, name: &str, z: Option<f64>) -> Vec<[f64; 2]> {
     let square = (0..36).map(|i| [i % 6, i / 6]).filter(|p| !p.iter().all(|x| (2..4).contains(x)));
     let mut points: Vec<[f64; 2]> = square.map(|p| p.map(|x| f64::from(x) / 3.0)).collect();
@@ -76,7 +76,7 @@ fn one_command_makes_polygons_of_points() {
     let [outer, hole] = rings.as_array().unwrap().as_slice() else { panic!("one hole") };
     assert!((twice_area(outer) - 50.0 / 9.0).abs() < 1e-12, "counter-clockwise");
     assert!((twice_area(hole) + 14.0 / 9.0).abs() < 1e-12, "clockwise");
-    // The same doubles, and no z.
+    // The same doubles, without z.
     let places = |value: &Value| serde_json::from_value::<Vec<[f64; 2]>>(value.clone()).unwrap();
     assert!(places(outer).iter().chain(&places(hole)).all(|place| points.contains(place)));
     assert_eq!(edges["geometry"]["type"], "MultiLineString");
@@ -111,7 +111,7 @@ fn one_command_makes_polygons_of_points() {
             &format!(r#"<circle cx="{x}" cy="{}""#, 0.0 - y),
         ],
     );
-    // All of it is seen.
+    // All of it is visible.
     let (_, rest) = svg.split_once("viewBox=\"").unwrap();
     let view: Vec<f64> =
         rest.split('"').next().unwrap().split(' ').map(|x| x.parse().unwrap()).collect();
@@ -132,7 +132,7 @@ fn text_reports_say_that_points_are_in_a_plane() {
     assert!(!text.contains("volume") && !text.contains("cells"), "{text}");
 }
 
-/// With z in files, unless it is 0; a vertical plane is warned of.
+/// Files have z unless it is 0; there is a warning about a vertical plane.
 #[test]
 fn planes_in_space() {
     let folder = tempfile::tempdir().unwrap();
@@ -184,7 +184,7 @@ fn what_has_no_outline_is_refused() {
         let volume = format!("shape cube.xyz -o a.ply a.{extension}");
         fails(f, 1, &volume, &["needs an outline: the points span a volume", "boundary"]);
     }
-    // Of a volume it is known after its points are selected.
+    // For a volume it is known after its points are selected.
     let volume = "shape sample:phantom@8 --count 20 -o a.svg";
     fails(f, 1, volume, &["SVG needs an outline: the points span a volume"]);
     fails(f, 1, "shape line.csv -o a.wkt", &["WKT needs an outline: the points lie on one line"]);

@@ -43,7 +43,7 @@ fn different<const N: usize>(places: impl IntoIterator<Item = [u32; N]>) -> usiz
     places.into_iter().collect::<HashSet<_>>().len()
 }
 
-/// Each vertex stays apart from the others, and is where it was but for rounding, once the offset that file and report state
+/// Each vertex stays apart from the others, and is at its place except for rounding, after the offset that file and report state
 /// is added.
 #[test]
 fn an_offset_keeps_vertices_apart() {
@@ -90,7 +90,7 @@ fn an_offset_keeps_vertices_apart() {
     names(&said, &["r.stl: its coordinates are single precision"]);
 }
 
-/// What single precision holds is written as it always was.
+/// Coordinates that single precision can hold are written without an offset.
 #[test]
 fn near_the_origin_nothing_is_subtracted() {
     let folder = tempfile::tempdir().unwrap();

@@ -11,7 +11,7 @@ use walpha_base::random::Random;
 
 use crate::common::weighted;
 
-/// What a set is made of, by its number.
+/// Makes the points of a set, by its number.
 pub const FAMILIES: [fn(&mut Random) -> WeightedPoints; 9] = [
     |r| lattice(r, |r| r.whole(0, 3)),
     |r| lattice(r, |r| r.whole(-4, 4) / 2.0),
@@ -107,13 +107,13 @@ fn made(points: &WeightedPoints) -> Result<Triangulation, TriangulationError> {
     triangulate(points.positions(), Some(points.weights()))
 }
 
-/// All of CGAL's triangulation.
+/// The whole triangulation of CGAL.
 fn whole(points: &WeightedPoints) -> Result<AlphaShape, ShapeError> {
     let options = ShapeOptions::new(Alpha::INFINITE).engine(Engine::Cgal).refuse_flat(true);
     alpha_shape(points.clone(), &options.hidden(true))
 }
 
-/// Finite cells, whatever their order: from the smallest corner on, oriented.
+/// Finite cells in an order that does not depend on theirs: from the smallest corner on, oriented.
 pub fn cells(triangulation: &Triangulation) -> Vec<[u32; 4]> {
     let canonical = |(_, cell): (u32, [u32; 4])| {
         let mut sorted = cell;
@@ -129,7 +129,7 @@ pub fn cells(triangulation: &Triangulation) -> Vec<[u32; 4]> {
     cells
 }
 
-/// What lies across a facet has the same three corners, and knows of it.
+/// The neighbour across a facet has the same three corners, and refers back to it.
 fn check_neighbours(triangulation: &Triangulation) {
     let facet = |side: u32| {
         let mut facet = triangulation.cells()[side as usize / 4].to_vec();

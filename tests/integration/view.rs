@@ -1,5 +1,5 @@
-//! The page of `walpha view`: self-contained, whole, and safe whatever its input is called. What it
-//! looks like in a browser, `scripts/check_view.py` checks.
+//! The page of `walpha view`: self-contained, complete, and safe for any name of its input. Its look in a browser is checked by
+//! `scripts/check_view.py`.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -31,7 +31,7 @@ fn base64(text: &str) -> Vec<u8> {
     bytes
 }
 
-/// What an element holds: an object, and the bytes of its arrays.
+/// The content of an element: an object, and the bytes of its arrays.
 #[derive(Debug, PartialEq)]
 struct Unpacked {
     content: Value,
@@ -79,7 +79,7 @@ impl Unpacked {
     }
 }
 
-/// How many rows of three levels have this class at a level: 2 regular, 3 singular.
+/// The number of rows of three levels that have this class at a level: 2 regular, 3 singular.
 fn count(spans: &[u8], level: u8, class: u8) -> usize {
     let of = |span: &&[u8]| match class {
         2 => (span[1]..span[2]).contains(&level),
@@ -130,7 +130,7 @@ fn the_page_holds_every_level() {
     let facets = &page.arrays["facetSpans"];
     assert_eq!(page.arrays["facets"].len(), 4 * facets.len());
     for (k, level) in page.levels().iter().enumerate() {
-        // The same as the shapes that the ladder measures, which other tests hold against `shape`.
+        // The same as the shapes that the ladder measures, which other tests compare with `shape`.
         for (class, name) in [(2, "regular"), (3, "singular")] {
             assert_eq!(level["facets"][name], count(facets, k as u8, class), "{name}: {level}");
         }
@@ -214,7 +214,7 @@ fn stops_show_something_else_each() {
         let mut args = vec!["view", input, "-o", "page.html", "-q"];
         let text;
         if above {
-            // One sees what one sees at the α suggested, which must go then.
+            // The page shows the same as at the suggested α, which must be removed then.
             alpha = alpha.next_up();
             text = format!("--alpha={alpha}");
             args.push(&text);
@@ -239,7 +239,7 @@ fn stops_show_something_else_each() {
                 "{input}: level {k} is that before"
             );
         }
-        // Where it opens.
+        // The level at which it opens.
         let at = page.content["first"].as_u64().unwrap() as usize;
         let told = page.alphas()[at];
         assert!(
@@ -257,7 +257,7 @@ fn stops_show_something_else_each() {
     );
 }
 
-/// A level of detail is the page of so many points, but for what is the same at all levels.
+/// A level of detail is the page of that number of points, except for the parts that are the same at all levels.
 #[test]
 fn levels_of_detail_are_pages_of_fewer_points() {
     let folder = tempfile::tempdir().unwrap();

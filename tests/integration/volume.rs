@@ -101,7 +101,7 @@ fn sizes_are_checked_when_they_are_read() {
     }
 }
 
-/// None of these may allocate what it claims: 2³¹ per axis, and 4 GB in a few bytes.
+/// No file may allocate what it claims: 2³¹ per axis, and 4 GB in a few bytes.
 #[test]
 fn headers_that_claim_too_much_are_refused() {
     let folder = Folder::new();

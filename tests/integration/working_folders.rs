@@ -12,7 +12,7 @@ fn args(line: &str) -> Vec<&str> {
     line.split(' ').collect()
 }
 
-/// What the files of a folder hold, by their names, links as they are.
+/// The contents of the files of a folder, by their names, and links.
 fn contents(folder: &Path) -> Vec<(String, Vec<u8>)> {
     let entries = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
     let mut all: Vec<_> = entries
@@ -90,14 +90,14 @@ fn a_shape_in_blocks_takes_no_folder_of_others() {
     fs::create_dir(&work).unwrap();
     fails(at, 1, shape, &["did not make"]);
     assert!(work.exists(), "an empty folder of others stays");
-    // As a command that is at work there, and one that was interrupted.
+    // Like a command that works there, and one that was interrupted.
     let mut lock = Lock::make(&work.join("shape.lock")).unwrap();
     fails(at, 1, shape, &["another walpha shape is at work in out.blocks", "wait for it"]);
     lock.keep();
     drop(lock);
     ok(at, &args(shape));
     assert!(!work.exists());
-    // What fails leaves nothing.
+    // A failure leaves no files.
     fails(at, 1, "shape sample:phantom@24 --alpha 10 --blocks 2 --count 99999999 -o out.pvtp", &[]);
 }
 

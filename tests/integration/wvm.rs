@@ -91,7 +91,7 @@ fn options_without_effect_are_refused() {
     assert_eq!(told["points"]["selected"], 10);
 }
 
-/// Points of a volume lie in clusters, and near values are alike: that is what the model knows.
+/// Points of a volume lie in clusters, and near values are similar, which the model uses.
 #[test]
 fn points_of_a_volume_take_less_than_chance_would() {
     let folder = tempfile::tempdir().unwrap();
@@ -101,7 +101,7 @@ fn points_of_a_volume_take_less_than_chance_would() {
     let bytes = fs::metadata(folder.path().join("m.wvm")).unwrap().len() as f64 - recipe as f64;
     let share: f64 = 3000.0 / 48f64.powi(3);
     let chance = -(share * share.log2() + (1.0 - share) * (1.0 - share).log2()) / share;
-    // Of 43 steps of 6 in 0..255, any would take 5.4 bits.
+    // Any of 43 steps of 6 in 0..255 would take 5.4 bits.
     let bits = 8.0 * bytes / 3000.0;
     assert!(bits < 0.8 * (chance + 5.4), "{bits} bits a point, {chance} for places by chance");
 }

@@ -133,7 +133,7 @@ fn levels_outside_the_store_are_refused() {
         let text = open(&f, None).unwrap_err().told();
         assert!(text.contains("outside the store") && text.contains("secret"), "{text}");
     }
-    // What looks absolute is taken from the store's top.
+    // A path that looks absolute is relative to the top of the store.
     pyramid(&f, 2, json!([{"path": folder.path().join("secret")}]));
     assert!(open(&f, None).is_err());
 }

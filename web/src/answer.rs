@@ -21,7 +21,7 @@ pub(crate) enum Array {
 }
 
 impl Array {
-    /// Its name, type, place and length.
+    /// Its name, type, address and length.
     fn described(&self) -> (&'static str, Value) {
         fn at<T>(kind: &str, numbers: &[T]) -> Value {
             json!({ "kind": kind, "at": numbers.as_ptr() as usize, "length": numbers.len() })
@@ -44,12 +44,12 @@ impl Answer {
         Self { head, arrays, ..Self::EMPTY }
     }
 
-    /// What went wrong, and what to do next.
+    /// Tells what went wrong, and what to do next.
     pub(crate) fn failed(why: &str, next: Option<String>) -> Self {
         Self::of(json!({ "failed": why, "next": next }), Vec::new())
     }
 
-    /// Where the text of the answer lies: its address and length.
+    /// The address and length of the text of the answer.
     pub(crate) fn place(&mut self) -> *const u32 {
         let arrays: Map<String, Value> = (self.arrays.iter().map(Array::described))
             .map(|(name, array)| (name.to_owned(), array))

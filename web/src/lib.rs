@@ -1,4 +1,4 @@
-//! What `walpha.html` computes with: the library, called by the page's worker.
+//! The part that `walpha.html` computes with: the library, called by the page's worker.
 //!
 //! The page is built for WASI, so that files are read and written by name as everywhere else; its worker keeps those
 //! that the user chose in memory. Calls are JSON texts ([`Request`](request::Request)), answers are JSON and arrays, which

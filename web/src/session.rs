@@ -1,4 +1,4 @@
-//! What has been opened and computed, and the answers to requests.
+//! The opened and computed data, and the answers to requests.
 
 use std::io;
 use std::path::Path;
@@ -35,14 +35,14 @@ const STOPS: usize = 1024;
 /// Volumes of more samples than this are made coarser: a page has 4 GiB.
 const MOST_SAMPLES: f64 = (1u64 << 26) as f64;
 
-/// What the page works on.
+/// The data that the page works on.
 pub(crate) struct Session {
     input: String,
     opened: Option<Opened>,
     made: Option<Made>,
 }
 
-/// The content of the input, as it is.
+/// The content of the input, without changes.
 enum Opened {
     Volume(Volume),
     Points(Points, ModelMetadata),
@@ -56,15 +56,16 @@ struct Made {
     metadata: ModelMetadata,
     /// The α that weights are computed for, or else the suggested one.
     reference: Parameter,
-    /// All shapes, once they have been asked for.
+    /// All shapes, after they are requested.
     all: Option<All>,
     /// The volume that coverage is a share of.
     domain: f64,
-    /// What is subtracted from coordinates that the page gets: in single precision, those of a map would be metres apart.
+    /// The offset that is subtracted from coordinates for the page: in single precision, the coordinates of a map would be metres
+    /// apart.
     centre: [f64; 3],
 }
 
-/// What shapes are of.
+/// The data of which shapes are made.
 #[expect(clippy::large_enum_variant, reason = "there is one")]
 enum What {
     /// Points, which have a shape at each α.
@@ -153,7 +154,7 @@ impl Shown {
     }
 }
 
-/// Simplices of the stops, or of one α beside them.
+/// The simplices of a stop, or of another α.
 enum Lent<'a> {
     Stop(&'a Shown),
     Made(Shown),
@@ -170,7 +171,7 @@ impl std::ops::Deref for Lent<'_> {
     }
 }
 
-/// What cannot be done: why, and what to do next.
+/// A failure: its reason, and what to do next.
 struct Failure {
     why: String,
     next: Option<String>,
@@ -292,7 +293,7 @@ impl Session {
         {
             return Ok(answer);
         }
-        // Values as they are: gray levels follow the window, which changes.
+        // Values are not changed: gray levels follow the window, which changes.
         let volume = file.read(&recipe.read)?;
         if let Some(answer) = too_large(volume.dims(), &recipe.read) {
             return Ok(answer);
@@ -406,8 +407,6 @@ impl Session {
     }
 }
 
-/// What to say of a volume of more samples than a page works on, if nothing is said of making it coarser: how many samples along
-/// each axis should become one.
 /// The settings of each preset, by their names.
 fn presets() -> Answer {
     let settings = |name| json!(Settings::preset(name));
@@ -416,6 +415,8 @@ fn presets() -> Answer {
     Answer::of(json!({ "presets": presets }), Vec::new())
 }
 
+/// The answer for a volume with more samples than a page works on, if the request does not make it coarser: the number of samples
+/// along each axis that should become one.
 fn too_large(dims: Dims, options: &ReadOptions) -> Option<Answer> {
     let samples: f64 = dims.xyz().map(|n| n as f64).iter().product();
     let downsample = (samples / MOST_SAMPLES).cbrt().ceil();
@@ -802,7 +803,7 @@ fn drawn(shape: &AlphaShape) -> Vec<Array> {
 /// The class of hidden points, after those of vertices.
 const HIDDEN: u8 = 4;
 
-/// The class of a vertex, as the page has it.
+/// The class of a vertex, in the encoding of the page.
 fn number(class: Class) -> u8 {
     match class {
         Class::Exterior => 0,

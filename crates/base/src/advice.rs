@@ -1,21 +1,21 @@
-//! What all errors of the library have: advice on how to resolve them, and a category.
+//! What all errors of the library have in common: advice on how to resolve them, and a category.
 
 use std::borrow::Cow;
 use std::error::Error;
 use std::{fmt, io};
 
-/// An error of the library. It says what is wrong by `Display`, what to do by its advice, and its category tells a program how
-/// to pass it on: as which exception, or with which exit code.
+/// An error of the library. `Display` says what is wrong, the advice says what to do, and the category tells a program how to
+/// pass the error on: as which exception, or with which exit code.
 ///
-/// An error that wraps another has its advice and its category: such a type defines [`wrapped`](Self::wrapped), and the other
-/// methods only for what does not come from there.
+/// An error that wraps another has the advice and category of the wrapped one: such a type defines [`wrapped`](Self::wrapped),
+/// and the other methods only where it differs.
 pub trait Advise: Error {
-    /// The error that this one wraps, if it wraps one of the library or the system.
+    /// The wrapped error, if it is an error of the library or the system.
     fn wrapped(&self) -> Option<&dyn Advise> {
         None
     }
 
-    /// What is wrong, as `Display` says, with the settings that it names.
+    /// What is wrong, as `Display` says, with the settings that the text names.
     fn message(&self) -> Advice {
         self.to_string().into()
     }
@@ -31,8 +31,8 @@ pub trait Advise: Error {
     }
 }
 
-/// An error in the words of a program that calls settings by other names: its message and those of its causes in one line, each
-/// once, and its advice.
+/// Describes an error in the words of a program that has other names for settings. Returns one line, with its message and those
+/// of its causes, each once; and its advice.
 pub fn told(
     error: &impl Advise,
     name: impl Copy + Fn(Setting) -> String,
@@ -60,11 +60,11 @@ pub enum Category {
     Usage,
     /// Memory: there is not enough.
     Memory,
-    /// Nothing: the caller cancelled the work.
+    /// Nothing is wrong: the caller cancelled the work.
     Cancelled,
-    /// A file, folder or stream, which the operating system refuses.
+    /// A file, folder or stream that the operating system refuses.
     System(io::ErrorKind),
-    /// Two results that must be equal, and differ.
+    /// Two results that must be equal but differ.
     Different,
     /// The program: the error is a fault of walpha or of a library that it uses.
     Program,
@@ -159,7 +159,7 @@ pub enum Setting {
 }
 
 impl Setting {
-    /// Its name, in lower case, with underscores.
+    /// The name of the setting, in lower case, with underscores.
     pub fn name(self) -> &'static str {
         match self {
             Self::Alpha => "alpha",
@@ -217,7 +217,7 @@ impl Advice {
         Self(parts.into_iter().collect())
     }
 
-    /// This advice and another one after it.
+    /// This advice, followed by another one.
     #[must_use]
     pub fn and(mut self, other: Self) -> Self {
         self.0.extend(other.0);
@@ -281,8 +281,8 @@ macro_rules! __advice {
 #[doc(inline)]
 pub use __advice as advice;
 
-/// [`Advise::wrapped`] of an enum, by the variants that hold an error alone and, after a semicolon, those that hold one in a
-/// field: `wrapped!(Memory, Volume; Io { source })`.
+/// Implements [`Advise::wrapped`] for an enum. It takes the variants that hold an error alone and, after a semicolon, those that
+/// hold one in a field: `wrapped!(Memory, Volume; Io { source })`.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! __wrapped {

@@ -50,7 +50,7 @@ pub enum LengthUnit {
     Angstrom,
 }
 
-/// The meaning of coordinates: the directions of their axes, and their unit.
+/// The meaning of coordinates: the directions of their axes and their unit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Coordinates {
     /// The directions of the axes.
@@ -75,7 +75,7 @@ impl Space {
         self != Self::Unknown
     }
 
-    /// Three letters, or `unknown`.
+    /// The three letters, or `unknown`.
     pub fn name(self) -> &'static str {
         match self {
             Self::Lps => "LPS",
@@ -111,12 +111,12 @@ impl LengthUnit {
         }
     }
 
-    /// Whether it is a known length, so that others can be converted to it.
+    /// Whether the unit is a known length, so that others can be converted to it.
     pub fn is_known(self) -> bool {
         self.exponent().is_some()
     }
 
-    /// The symbol after a number: `mm`, `voxel`; `unit` if it is not known.
+    /// The symbol that follows a number: `mm`, `voxel`; `unit` if the unit is not known.
     pub fn symbol(self) -> &'static str {
         match self {
             Self::Voxel => "voxel",
@@ -130,7 +130,7 @@ impl LengthUnit {
         }
     }
 
-    /// The same in ASCII: `um`.
+    /// The symbol in ASCII: `um` for `µm`.
     pub fn ascii(self) -> &'static str {
         match self {
             Self::Micrometre => "um",
@@ -149,7 +149,7 @@ impl LengthUnit {
             "meter" | "metre" | "meters" | "metres" => Self::Metre,
             "centimeter" | "centimetre" | "centimeters" => Self::Centimetre,
             "millimeter" | "millimetre" | "millimeters" => Self::Millimetre,
-            // The Greek letter, the sign for "micro", and ImageJ's escape of it.
+            // The Greek letter, the sign for "micro", and ImageJ's escape for it.
             "um" | "μm" | "\\u00b5m" | "micron" | "microns" | "micrometer" | "micrometre"
             | "micrometers" => Self::Micrometre,
             "nanometer" | "nanometre" | "nanometers" => Self::Nanometre,
@@ -160,9 +160,9 @@ impl LengthUnit {
 }
 
 impl Coordinates {
-    /// Indices of samples.
+    /// Coordinates that are indices of samples.
     pub const VOXEL: Self = Self { space: Space::Unknown, unit: LengthUnit::Voxel };
-    /// A patient as in DICOM and ITK: LPS, in millimetres.
+    /// Coordinates in a patient as in DICOM and ITK: LPS, in millimetres.
     pub const PATIENT: Self = Self { space: Space::Lps, unit: LengthUnit::Millimetre };
 
     /// The conversion of these coordinates to others, as far as both are known; unknown properties do not
@@ -201,7 +201,7 @@ pub struct Conversion {
 }
 
 impl Conversion {
-    /// Converts a length. Rounded once: powers of ten are exact doubles, their inverses are not.
+    /// Converts a length. It is rounded only once, as powers of ten are exact doubles and their inverses are not.
     pub fn length(&self, length: f64) -> f64 {
         let factor = 10f64.powi(self.power.abs());
         if self.power < 0 { length / factor } else { length * factor }

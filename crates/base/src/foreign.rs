@@ -1,4 +1,4 @@
-//! The door to decoders that others wrote: a panic within becomes an error.
+//! Calls decoders of other authors, and turns their panics into errors.
 
 use std::any::Any;
 use std::cell::Cell;
@@ -6,11 +6,10 @@ use std::fmt;
 use std::panic::{AssertUnwindSafe, catch_unwind, set_hook, take_hook};
 use std::sync::Once;
 
-/// A decoder gave up in a way that it should not: by a panic. The file is damaged in a way that the decoder does not
-/// expect, or the decoder has a fault.
+/// A decoder panicked. The file is damaged in a way that the decoder does not expect, or the decoder has a bug.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Panicked {
-    /// What it said.
+    /// The message of the panic.
     pub message: String,
 }
 
@@ -18,7 +17,7 @@ impl Panicked {
     fn new(payload: &dyn Any) -> Self {
         let text = payload.downcast_ref::<&str>().copied().map(str::to_owned);
         let text = text.or_else(|| payload.downcast_ref::<String>().cloned());
-        // On one line, whatever it is.
+        // The message is put on one line.
         let message = text.unwrap_or_default().split_whitespace().collect::<Vec<_>>().join(" ");
         Self { message }
     }
@@ -32,14 +31,14 @@ impl fmt::Display for Panicked {
 }
 
 thread_local! {
-    /// Whether this thread is within a decoder.
+    /// Whether this thread is inside a decoder.
     static WITHIN: Cell<bool> = const { Cell::new(false) };
 }
 
-/// Calls a decoder. What it borrows must be left alone after a panic, as it may be half changed.
+/// Calls a decoder. What it borrows must not be used after a panic, as it may be half changed.
 ///
-/// The first call puts a hook before that of the process, so that such panics of this thread are not printed. A program that aborts on
-/// panics ends, and the hook prints the error, for whoever starts it again: so does the page that computes.
+/// The first call installs a panic hook before that of the process, so that such panics of this thread are not printed. In a
+/// program that aborts on panics, the hook prints the error, so that whoever restarts the program can show it, as the web page does.
 ///
 /// ```
 /// use walpha_base::foreign::decode;
@@ -50,7 +49,7 @@ thread_local! {
 /// ```
 ///
 /// # Errors
-/// It panicked.
+/// The decoder panicked.
 pub fn decode<T>(decoder: impl FnOnce() -> T) -> Result<T, Panicked> {
     static HOOK: Once = Once::new();
     HOOK.call_once(|| {
@@ -80,7 +79,7 @@ mod tests {
         assert_eq!(message(decode(|| panic!("a\n  b"))), "a b");
         assert_eq!(message(decode(|| panic!("{}", 1 + 1))), "2");
         assert_eq!(message(decode(|| std::panic::panic_any(7))), "");
-        // One within another, and the thread goes on.
+        // A decoder may call another, and the thread goes on.
         assert_eq!(
             decode(|| decode(|| panic!("inner")).map_err(|e| e.message)),
             Ok(Err::<(), _>("inner".into()))

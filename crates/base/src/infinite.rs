@@ -1,10 +1,10 @@
 use serde::Serializer;
 
-/// Serializes a number that may be infinite or missing in formats without ∞ (JSON): as the string
-/// "inf" or "-inf". For `#[serde(serialize_with)]`; an `Alpha` is serialized in the same way.
+/// Serializes a number that may be infinite or missing in formats without ∞ (JSON): an infinite one as the string "inf" or
+/// "-inf". For `#[serde(serialize_with)]`. An `Alpha` is serialized in the same way.
 ///
 /// # Errors
-/// Those of the serializer.
+/// Errors of the serializer.
 pub fn number_or_null_or_name<S: Serializer>(
     number: &Option<f64>,
     serializer: S,

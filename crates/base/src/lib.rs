@@ -1,7 +1,7 @@
-//! The common base of walpha's crates: advice of errors, allocations and threads that may be refused, sums of
-//! doubles that are rounded once, vectors, NPY headers, names and numbers in messages, progress.
+//! The common base of walpha's crates: advice for errors, allocations and threads that may be refused, sums of doubles that are
+//! rounded once, vectors, NPY headers, names and numbers in messages, and progress.
 //!
-//! For walpha's own crates only.
+//! It is for walpha's own crates only.
 //!
 //! ```
 //! use walpha_base::Sum;
@@ -12,7 +12,7 @@
 //! ```
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
-// Allowed in `standard_output`, and where `memory` calls the C library.
+// Unsafe code is allowed in `standard_output`, and where `memory` calls the C library.
 #![deny(unsafe_code)]
 #![warn(unreachable_pub)]
 

@@ -5,8 +5,7 @@ use std::collections::TryReserveError;
 
 use crate::advice::{Advice, Advise, Category};
 
-/// The peak memory of this process in bytes; `None` where the system does not report it (only
-/// Linux does).
+/// The peak memory of this process in bytes; `None` where the system does not report it (only Linux does).
 pub fn peak_bytes() -> Option<u64> {
     status("VmHWM:")
 }
@@ -35,13 +34,13 @@ pub fn give_back() {
     }
 }
 
-/// Lets threads share heaps where the address space of this process is limited: the GNU C library gives each thread a heap of its own,
-/// which takes 64 MiB of addresses even while it is empty (`M_ARENA_MAX` in mallopt(3)).
+/// Lets threads share heaps where the address space of this process is limited. The GNU C library gives each thread a heap of its
+/// own, which takes 64 MiB of addresses even while it is empty (`M_ARENA_MAX` in mallopt(3)).
 pub(crate) fn share_heaps() {
     #[cfg(all(target_os = "linux", target_env = "gnu"))]
     {
         const M_ARENA_MAX: std::ffi::c_int = -8;
-        /// A heap for each GiB takes a sixteenth of what is left.
+        /// One heap for each GiB takes a sixteenth of the remaining addresses.
         const EACH: u64 = 1 << 30;
         #[expect(unsafe_code, reason = "takes any numbers, at any time")]
         unsafe extern "C" {
@@ -53,7 +52,7 @@ pub(crate) fn share_heaps() {
     }
 }
 
-/// The bytes of address space that a limit (`RLIMIT_AS`) leaves; `None` without one.
+/// The bytes of address space that a limit (`RLIMIT_AS`) leaves; `None` without a limit.
 #[cfg(all(target_os = "linux", target_env = "gnu"))]
 fn address_space_left() -> Option<u64> {
     let limits = std::fs::read_to_string("/proc/self/limits").ok()?;
@@ -69,7 +68,7 @@ fn status(field: &str) -> Option<u64> {
     Some(kilobytes * 1024)
 }
 
-/// There is not enough memory for something large.
+/// The error for a large allocation that fails for lack of memory.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("not enough memory: {what} needs {}", readable(u64::try_from(*bytes).unwrap_or(u64::MAX)))]
 pub struct NoMemory {
@@ -93,7 +92,7 @@ impl NoMemory {
         &self.what
     }
 
-    /// The bytes that it needs.
+    /// The number of bytes needed.
     pub fn bytes(&self) -> u128 {
         self.bytes
     }
@@ -103,8 +102,8 @@ thread_local! {
     static ASKING: Cell<bool> = const { Cell::new(false) };
 }
 
-/// Whether this thread makes an allocation that may fail: a failure is then an error, and otherwise ends the
-/// process. For allocators of programs that must not end.
+/// Whether this thread is making an allocation that may fail. If such an allocation fails, the failure is an error; any other
+/// failure ends the process. For allocators of programs that must not end.
 pub fn is_asking() -> bool {
     ASKING.get()
 }
@@ -112,7 +111,7 @@ pub fn is_asking() -> bool {
 /// Makes an allocation that may fail, during which [`is_asking`] is true.
 ///
 /// # Errors
-/// Those of the allocation.
+/// Errors of the allocation.
 pub fn asking<T>(ask: impl FnOnce() -> Result<T, TryReserveError>) -> Result<T, TryReserveError> {
     let outer = ASKING.replace(true);
     let answer = ask();
@@ -120,8 +119,8 @@ pub fn asking<T>(ask: impl FnOnce() -> Result<T, TryReserveError>) -> Result<T, 
     answer
 }
 
-/// An empty vector with capacity for `count` items, or an error that names `what` they are for. For all
-/// allocations that grow with the request of a user.
+/// Returns an empty vector with capacity for `count` items, or an error that names `what` they are for. For all allocations whose
+/// size depends on a user's request.
 ///
 /// # Errors
 /// [`NoMemory`].
@@ -135,8 +134,7 @@ pub fn try_with_capacity<T>(
     Ok(items)
 }
 
-/// Makes room for `additional` more items in a vector that grows as it must, or returns an error that names `what`
-/// they are for.
+/// Makes room for `additional` more items in a growing vector, or returns an error that names `what` they are for.
 ///
 /// # Errors
 /// [`NoMemory`].
@@ -149,9 +147,9 @@ pub fn try_reserve<T>(
     asking(|| items.try_reserve(additional)).map_err(|_| NoMemory { what: what(), bytes })
 }
 
-/// Checks that `bytes` bytes are available at once, or returns an error that names `what` they are for, before
-/// work that takes them piece by piece. They are allocated and freed, and other threads may take them; so this
-/// detects what is impossible, but does not guarantee what is possible.
+/// Checks that `bytes` bytes are available at once before work that takes them piece by piece, or returns an error that names
+/// `what` they are for. They are allocated and freed, and other threads may then take them: this detects what is impossible, but
+/// does not guarantee what is possible.
 ///
 /// # Errors
 /// [`NoMemory`].

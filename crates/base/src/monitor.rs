@@ -11,9 +11,9 @@ use crate::advice::{Advise, Category};
 
 /// Receives the progress of long work, and can cancel it.
 ///
-/// Every long function of walpha reports to the monitor that [watches](Self::watch) its call, and ends with [`Cancelled`]
-/// once that is cancelled. Where nobody watches, nothing is reported and nothing can be cancelled. A clone, and a
-/// [part](Self::part), belong to the same work: cancelling one cancels all.
+/// Every long function of walpha reports to the monitor that [watches](Self::watch) its call, and ends with [`Cancelled`] once
+/// that monitor is cancelled. Without such a monitor, nothing is reported and nothing can be cancelled. Clones and
+/// [parts](Self::part) of a monitor belong to the same work: cancelling one cancels all.
 ///
 /// ```
 /// use walpha_base::{Cancelled, Monitor};
@@ -46,12 +46,12 @@ struct Shared {
 
 /// Receives the progress of work, from any of its threads.
 pub trait Listener: Send + Sync + 'static {
-    /// A stage with this name begins.
+    /// Called when a stage with this name begins.
     fn stage(&self, name: &'static str) {
         let _ = name;
     }
 
-    /// `done` of `total` equal parts of the stage are done. Threads may report out of order.
+    /// Called when `done` of `total` equal parts of the stage are done. Threads may report out of order.
     fn progress(&self, done: u64, total: u64);
 }
 
@@ -61,7 +61,7 @@ impl<F: Fn(u64, u64) + Send + Sync + 'static> Listener for F {
     }
 }
 
-/// The work was cancelled.
+/// The error of work that was cancelled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("cancelled")]
 pub struct Cancelled;
@@ -72,8 +72,8 @@ impl Advise for Cancelled {
     }
 }
 
-/// `From` for the errors that another one wraps: each becomes its variant, except that [`Cancelled`] stays
-/// [`Cancelled`] at every depth. Every type named must have a variant `Cancelled`.
+/// Implements `From` for the errors that another one wraps. Each becomes its variant, except that [`Cancelled`] stays
+/// [`Cancelled`] at every depth. Every named type must have a variant `Cancelled`.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! __wraps {
@@ -95,10 +95,10 @@ pub use __wraps as wraps;
 /// The scale of the reports of a monitor.
 #[derive(Clone, Copy, Default)]
 enum Scale {
-    /// Parts of the stage.
+    /// Reports count parts of the stage.
     #[default]
     Stage,
-    /// Parts of a section of the stage: from one step to another, of [`STEPS`].
+    /// Reports count parts of a section of the stage, from one step to another, of [`STEPS`].
     Part { from: u64, to: u64 },
     /// Progress is not reported.
     Unreported,
@@ -108,32 +108,32 @@ enum Scale {
 const STEPS: u64 = 1_000_000;
 
 impl Monitor {
-    /// A monitor that passes progress to a listener: a function of the number of equal parts of a stage that are done and
-    /// of all parts, or a [`Listener`].
+    /// Creates a monitor that passes progress to a listener: a [`Listener`], or a function of the number of equal parts of a
+    /// stage that are done and the number of all parts.
     pub fn new(listener: impl Listener) -> Self {
         let shared = Shared { cancelled: AtomicBool::new(false), listener: Box::new(listener) };
         Self { shared: Some(Arc::new(shared)), scale: Scale::Stage }
     }
 
-    /// A monitor without listener that is never cancelled. It costs nothing.
+    /// A monitor that has no listener and is never cancelled. It costs nothing.
     pub const fn noop() -> Self {
         Self { shared: None, scale: Scale::Stage }
     }
 
-    /// Watches the long functions that `work` calls on this thread, one after another. A function that it starts on another
-    /// thread is watched if that thread calls `watch` with a clone.
+    /// Watches the long functions that `work` calls on this thread, one after another. A function that `work` starts on another
+    /// thread is watched only if that thread calls `watch` with a clone.
     pub fn watch<T>(&self, work: impl FnOnce() -> T) -> T {
         let _before = Current::replacing(self.clone());
         work()
     }
 
-    /// The monitor that watches this call: what a long function begins with. Until what is returned is dropped, the
-    /// thread has none, so that other work which rayon gives to it meanwhile is not taken for a part of this.
+    /// Takes the monitor that watches this call. A long function begins with this. Until the returned value is dropped, the
+    /// thread has no monitor, so that other work which rayon gives to it meanwhile is not counted as part of this work.
     pub fn current() -> Current {
         Current::replacing(Self::noop())
     }
 
-    /// Ends the work with [`Cancelled`] at its next check. Without effect on a no-op monitor.
+    /// Ends the work with [`Cancelled`] at its next check. This has no effect on a no-op monitor.
     pub fn cancel(&self) {
         if let Some(shared) = &self.shared {
             shared.cancelled.store(true, Ordering::Relaxed);
@@ -143,7 +143,7 @@ impl Monitor {
     /// Checks whether the work was cancelled.
     ///
     /// # Errors
-    /// It was cancelled.
+    /// The work was cancelled.
     pub fn check(&self) -> Result<(), Cancelled> {
         match &self.shared {
             Some(shared) if shared.cancelled.load(Ordering::Relaxed) => Err(Cancelled),
@@ -154,7 +154,7 @@ impl Monitor {
     /// Reports that a stage begins.
     ///
     /// # Errors
-    /// It was cancelled.
+    /// The work was cancelled.
     pub fn stage(&self, name: &'static str) -> Result<(), Cancelled> {
         if let (Some(shared), Scale::Stage) = (&self.shared, self.scale) {
             shared.listener.stage(name);
@@ -162,10 +162,10 @@ impl Monitor {
         self.check()
     }
 
-    /// Reports that `done` of `total` equal parts are done. Work in one part reports nothing.
+    /// Reports that `done` of `total` equal parts are done. Nothing is reported if there is only one part.
     ///
     /// # Errors
-    /// It was cancelled.
+    /// The work was cancelled.
     pub fn report(&self, done: u64, total: u64) -> Result<(), Cancelled> {
         let Some(shared) = &self.shared else { return Ok(()) };
         match self.scale {
@@ -179,7 +179,7 @@ impl Monitor {
         self.check()
     }
 
-    /// A monitor for a section of this one's work: from part `from` to part `to` of `of` equal parts.
+    /// A monitor for a section of this monitor's work: from part `from` to part `to` of `of` equal parts.
     #[must_use]
     pub fn part(&self, from: u64, to: u64, of: u64) -> Self {
         let (low, high) = match self.scale {
@@ -194,7 +194,7 @@ impl Monitor {
         Self { shared: self.shared.clone(), scale: Scale::Part { from: at(from), to: at(to) } }
     }
 
-    /// A monitor for work whose progress is not reported, but which is cancelled with this one's.
+    /// A monitor for work whose progress is not reported, but which is cancelled with this monitor's work.
     #[must_use]
     pub fn unreported(&self) -> Self {
         Self { shared: self.shared.clone(), scale: Scale::Unreported }
@@ -207,15 +207,15 @@ impl Monitor {
 }
 
 thread_local! {
-    /// What watches the next long function that this thread calls.
+    /// The monitor of the next long function that this thread calls.
     static CURRENT: RefCell<Monitor> = const { RefCell::new(Monitor::noop()) };
 }
 
-/// A monitor that was taken from its thread ([`Monitor::current`]), which gets it back when this is dropped.
+/// A monitor that was taken from its thread ([`Monitor::current`]). The thread gets it back when this is dropped.
 #[derive(Debug)]
 pub struct Current {
     monitor: Monitor,
-    /// It is dropped on the thread that it was taken from.
+    /// Keeps this on the thread that the monitor was taken from.
     of_thread: PhantomData<*const ()>,
 }
 
@@ -251,7 +251,7 @@ impl fmt::Debug for Monitor {
 pub struct Units<'a> {
     monitor: &'a Monitor,
     total: u64,
-    /// Units that are done, and thousandths that have been reported.
+    /// The number of units that are done, and the number of thousandths that have been reported.
     done: Mutex<[u64; 2]>,
 }
 
@@ -267,7 +267,7 @@ impl Units<'_> {
         let thousandth = (1000 * u128::from(*all) / u128::from(self.total.max(1))) as u64;
         if thousandth > *reported {
             *reported = thousandth;
-            // While the lock is held, so that reports come in order.
+            // The lock is still held, so that reports come in order.
             self.monitor.report(*all, self.total)
         } else {
             self.monitor.check()
@@ -281,7 +281,7 @@ mod tests {
 
     use super::*;
 
-    /// A monitor, and what it hears.
+    /// A monitor, and the list of its reports.
     fn heard() -> (Monitor, Arc<Mutex<Vec<[u64; 2]>>>) {
         let heard = Arc::new(Mutex::new(Vec::new()));
         let list = Arc::clone(&heard);
@@ -316,7 +316,7 @@ mod tests {
             work(1).unwrap();
             inner.watch(|| work(2)).unwrap();
             work(3).unwrap();
-            // While a long function runs, what else its thread does is not watched, nor is another thread.
+            // While a long function runs, neither other work on its thread nor other threads are watched.
             let running = Monitor::current();
             work(4).unwrap();
             drop(running);

@@ -1,4 +1,4 @@
-//! NPY, `NumPy`'s file of one array (versions 1 to 3 of `numpy.lib.format`).
+//! NPY, `NumPy`'s file format for one array (versions 1 to 3 of `numpy.lib.format`).
 //!
 //! ```
 //! use walpha_base::npy::Header;
@@ -17,7 +17,7 @@ use crate::advice::{Advise, wrapped};
 
 /// The first bytes of every NPY file.
 pub const MAGIC: &[u8] = b"\x93NUMPY";
-/// `NumPy` itself refuses longer headers as unsafe.
+/// The longest header; `NumPy` refuses longer ones as unsafe.
 const MAX_HEADER: u64 = 10_000;
 
 /// The header of an NPY file.
@@ -29,9 +29,9 @@ pub struct Header {
     pub descr: String,
     /// Whether the first axis varies fastest in the file.
     pub fortran: bool,
-    /// Lengths of the axes; empty for a scalar.
+    /// The lengths of the axes; empty for a scalar.
     pub shape: Vec<u64>,
-    /// Length of the header in bytes; the elements follow.
+    /// The length of the header in bytes; the elements follow it.
     pub length: u64,
 }
 
@@ -48,10 +48,10 @@ pub enum NpyError {
     /// The first bytes are not [`MAGIC`].
     #[error("is not an NPY file: it does not begin with \\x93NUMPY")]
     Magic,
-    /// A version of the format that `NumPy` does not write.
+    /// The version of the format is one that `NumPy` does not write.
     #[error("is NPY version {0}: 1, 2 and 3 are read")]
     Version(u8),
-    /// A header longer than `NumPy` accepts.
+    /// The header is longer than `NumPy` accepts.
     #[error("has an NPY header of {0} bytes: it is damaged")]
     Length(u64),
     /// The header is not the dictionary it should be.
@@ -114,7 +114,7 @@ fn dictionary(text: &str) -> Option<(String, bool, Vec<u64>)> {
     let descr = after("descr")?;
     let descr = match descr.strip_prefix('\'') {
         Some(quoted) => quoted.split_once('\'')?.0,
-        // A structured type is a list: kept as it is, for readers to refuse.
+        // A structured type is a list. It is kept unchanged, for readers to refuse.
         None => descr.split_once(']').map_or(descr, |(list, _)| list),
     };
     let order = after("fortran_order")?;

@@ -1,4 +1,4 @@
-/// Builder methods: one for each field named, which accepts everything that converts into its type.
+/// Defines builder methods: one for each named field, which accepts everything that converts into its type.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! __setters {

@@ -1,15 +1,14 @@
-//! Names of files, and numbers, in messages.
+//! File names and numbers in messages.
 
 use std::path::Path;
 
-/// A path for messages: characters that are not seen are escaped, as those that could move a terminal's cursor, change
-/// its colours, or show letters in another order.
+/// A path for messages. Invisible characters are escaped, such as those that could move a terminal's cursor, change its colours,
+/// or show letters in another order.
 pub fn shown(path: &Path) -> String {
     escaped(&path.to_string_lossy(), |_| false)
 }
 
-/// A number for messages: as it is, or with an exponent where it would begin or end in many
-/// zeros.
+/// A number for messages. It gets an exponent where it would begin or end with many zeros.
 pub fn number(value: f64) -> String {
     let size = value.abs();
     if size != 0.0 && size.is_finite() && !(1e-4..1e15).contains(&size) {
@@ -29,7 +28,7 @@ pub fn six_digits(number: f64) -> f64 {
     format!("{number:.5e}").parse().unwrap_or(number)
 }
 
-/// A text with its [unseen](is_unseen) characters escaped, except those for which `kept` holds.
+/// Escapes the [unseen](is_unseen) characters of a text, except those for which `kept` holds.
 pub fn escaped(text: &str, kept: impl Fn(char) -> bool) -> String {
     let mut shown = String::with_capacity(text.len());
     for c in text.chars() {
@@ -42,9 +41,9 @@ pub fn escaped(text: &str, kept: impl Fn(char) -> bool) -> String {
     shown
 }
 
-/// Whether a character is not seen itself but may change how others are shown: Unicode's control characters (Cc), line and
-/// paragraph separators (Zl, Zp), and format characters (Cf), which include marks of direction and those without width;
-/// and variation selectors and fillers, which are not seen, either (Unicode 16, `DerivedGeneralCategory.txt` and
+/// Whether a character is invisible itself but may change how others are shown. These are Unicode's control characters (Cc), line
+/// and paragraph separators (Zl, Zp), and format characters (Cf), which include marks of direction and characters without width;
+/// and variation selectors and fillers, which are also invisible (Unicode 16, `DerivedGeneralCategory.txt` and
 /// `Default_Ignorable_Code_Point`).
 pub fn is_unseen(c: char) -> bool {
     c.is_control()
@@ -97,7 +96,7 @@ mod tests {
     fn nothing_reaches_the_terminal_but_text() {
         assert_eq!(shown(Path::new("häd\x1b[2J\n.nrrd")), "häd\\u{1b}[2J\\n.nrrd");
         assert_eq!(escaped("a\nb\u{9b}c", |c| c == '\n'), "a\nb\\u{9b}c");
-        // The name of a program that seems to be a picture, and names that seem to be equal.
+        // A program whose name looks like that of a picture, and names that look equal.
         let hidden = "a\u{202e}gpj.exe b\u{200b} c\u{2066} \u{feff}d e\u{e0041} f\u{2028}";
         let seen = "a\\u{202e}gpj.exe b\\u{200b} c\\u{2066} \\u{feff}d e\\u{e0041} f\\u{2028}";
         assert_eq!(shown(Path::new(hidden)), seen);

@@ -5,10 +5,10 @@
 
 use std::io;
 
-/// Checks that there was a standard output when the process began, which can be known only on Linux.
+/// Checks that there was a standard output when the process began. Only on Linux can this be known.
 ///
 /// # Errors
-/// It is closed.
+/// Standard output is closed.
 pub fn check() -> io::Result<()> {
     if began_without() { Err(io::Error::other("standard output is closed")) } else { Ok(()) }
 }
@@ -31,7 +31,7 @@ mod linux {
 
     #[used]
     #[expect(unsafe_code, reason = "nothing else runs before the null device is opened")]
-    // SAFETY: the linker's list of functions to call before `main`; this one needs nothing of Rust's runtime.
+    // SAFETY: this is the linker's list of functions to call before `main`, and the function needs nothing of Rust's runtime.
     #[unsafe(link_section = ".init_array")]
     static AT_START: extern "C" fn() = at_start;
 

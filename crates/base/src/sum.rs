@@ -1,8 +1,8 @@
 /// A sum of doubles that is rounded once, when it is read: the result is the same double for any order and
 /// grouping of the terms.
 ///
-/// The sum is kept as doubles that do not overlap, the smallest first, usually two or three of them (Shewchuk, "Adaptive Precision Floating-Point Arithmetic", 1997,
-/// doi:10.1007/PL00009321, section 2.4).
+/// The sum is stored as doubles that do not overlap, in ascending order, usually two or three of them (Shewchuk, "Adaptive
+/// Precision Floating-Point Arithmetic", 1997, doi:10.1007/PL00009321, section 2.4).
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Sum {
@@ -52,7 +52,7 @@ impl Sum {
         self.beyond += other.beyond;
     }
 
-    /// The double nearest to the sum, of two equally near ones the even one.
+    /// The double nearest to the sum; the even one if two are equally near.
     pub fn value(&self) -> f64 {
         if self.beyond != 0.0 {
             return self.beyond;
@@ -79,7 +79,7 @@ impl Sum {
         high
     }
 
-    /// Whether the sum is at most this, exactly.
+    /// Whether the exact sum is at most `limit`.
     pub fn is_at_most(&self, limit: f64) -> bool {
         if self.beyond != 0.0 || limit.is_infinite() {
             return self.beyond <= limit;
@@ -122,7 +122,7 @@ mod tests {
     fn sums_are_rounded_once() {
         let half = 2f64.powi(-53);
         let of = |terms: &[f64]| terms.iter().copied().collect::<Sum>().value();
-        // Half-way: to the even one, unless a smaller term decides.
+        // A value half-way between two doubles is rounded to the even one, unless a smaller term decides.
         assert_eq!(of(&[1.0, half]), 1.0);
         assert_eq!(of(&[1.0, half, 1e-300]), 1.0 + 2.0 * half);
         assert_eq!(of(&[1.0, half, -1e-300]), 1.0);

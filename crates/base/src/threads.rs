@@ -1,14 +1,14 @@
-//! The number of threads, and whether the system starts them.
+//! The number of threads, and whether the system can start them.
 
 use std::sync::mpsc;
 use std::thread;
 
 use crate::memory::{afford, share_heaps};
 
-/// The most threads for each processor; more would only wait for each other.
+/// The largest number of threads for each processor; more would only wait for each other.
 pub const MOST_EACH: usize = 4;
 
-/// The most threads that are started.
+/// The largest number of threads that are started.
 pub fn most() -> usize {
     MOST_EACH * processors()
 }
@@ -18,8 +18,8 @@ pub fn processors() -> usize {
     thread::available_parallelism().map_or(1, usize::from)
 }
 
-/// How many threads to start: as many as asked for, or as `RAYON_NUM_THREADS` says, or one for each
-/// processor; no more than [`most`].
+/// The number of threads to start: the number asked for, or else that in `RAYON_NUM_THREADS`, or else one for each processor; but
+/// no more than [`most`].
 pub fn wanted(asked: Option<usize>) -> usize {
     let stated = || std::env::var("RAYON_NUM_THREADS").ok()?.parse().ok();
     // As in rayon, 0 means no preference.
@@ -27,11 +27,11 @@ pub fn wanted(asked: Option<usize>) -> usize {
     stated.unwrap_or_else(processors).min(most())
 }
 
-/// How many of `wanted` threads, with stacks of `stack` bytes, the system starts at once: fewer where processes or
-/// memory are limited. They end before this returns.
+/// How many of `wanted` threads, with stacks of `stack` bytes, the system can start at once: fewer where processes or memory are
+/// limited. The threads have ended when this returns.
 ///
-/// rayon fails, or waits forever, if one of its threads does not start. And a thread that has started takes memory for what is its own: where
-/// there is none, the C library ends the process. So that room is looked for before each start.
+/// If one of its threads does not start, rayon fails or waits forever. A thread that has started allocates its own data; if there
+/// is no memory for it, the C library ends the process. So each start is preceded by a check for that memory.
 pub fn available(wanted: usize, stack: usize) -> usize {
     share_heaps();
     let (ready, started) = mpsc::channel();
@@ -41,7 +41,7 @@ pub fn available(wanted: usize, stack: usize) -> usize {
             let (gate, wait) = mpsc::channel::<()>();
             let ready = ready.clone();
             let work = move || {
-                // The caller waits until the last thread has started, and then drops the gates.
+                // The caller drops the gates after the last thread has started.
                 let _ = ready.send(());
                 let _ = wait.recv();
             };
@@ -57,8 +57,8 @@ pub fn available(wanted: usize, stack: usize) -> usize {
     })
 }
 
-/// Much more than what a thread has of its own beside its stack. So large a block comes from the system each time, as a thread's do, where the GNU C
-/// library would take one of up to 32 MiB from what it keeps (`M_MMAP_THRESHOLD` in mallopt(3)).
+/// Much more than a thread's own data besides its stack. So large a block comes from the system each time, as a thread's blocks
+/// do; the GNU C library would take one of up to 32 MiB from its own reserve (`M_MMAP_THRESHOLD` in mallopt(3)).
 const ROOM: usize = 33 << 20;
 
 #[cfg(test)]
@@ -68,7 +68,7 @@ mod tests {
     #[test]
     fn threads_are_counted_and_bounded() {
         assert_eq!(available(3, 1 << 16), 3);
-        // No system has the address space for the stack.
+        // No system has the address space for such stacks.
         assert_eq!(available(2, 1 << 60), 0);
         assert_eq!(wanted(Some(3)), 3.min(most()));
         assert_eq!(wanted(Some(100_000)), most());

@@ -1,21 +1,21 @@
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
-/// Disjoint sets over `0..n`, which several threads may unite at once. A set is a tree, compressed by path halving, whose
-/// root is its smallest member, whatever the order of unions (Anderson and Woll 1991, doi:10.1145/103418.103458).
+/// Disjoint sets over `0..n`, which several threads may unite at once. A set is a tree, compressed by path halving. Its root is
+/// its smallest member, whatever the order of unions (Anderson and Woll 1991, doi:10.1145/103418.103458).
 pub struct UnionFind {
     parent: Vec<AtomicU32>,
 }
 
-// A member's parent is never larger than the member, and only ever replaced by another of its ancestors; only a root
-// gets a parent that was no ancestor, by an exchange that fails if it is a root no longer. No other memory depends on
-// the order in which threads see these changes, so all of it is relaxed.
+// A member's parent is never larger than the member, and is only ever replaced by another of its ancestors. Only a root gets a
+// parent that was not an ancestor, by an exchange that fails if it is no longer a root. No other memory depends on the order in
+// which threads see these changes, so all of them are relaxed.
 impl UnionFind {
-    /// `n` sets of one member each.
+    /// Creates `n` sets of one member each.
     pub fn new(n: usize) -> Self {
         Self { parent: (0..n as u32).map(AtomicU32::new).collect() }
     }
 
-    /// The number of members of all sets.
+    /// The number of members of all sets together.
     pub fn members(&self) -> usize {
         self.parent.len()
     }
@@ -24,7 +24,7 @@ impl UnionFind {
         self.parent[member as usize].load(Relaxed)
     }
 
-    /// The smallest member of the set that holds `member`.
+    /// The smallest member of the set that contains `member`.
     pub fn find(&self, mut member: u32) -> u32 {
         let mut parent = self.parent(member);
         while parent != member {

@@ -1,6 +1,6 @@
 //! Three-dimensional vectors.
 
-/// x, y, z.
+/// A vector (x, y, z).
 pub type V3 = [f64; 3];
 
 /// a + b
@@ -39,7 +39,7 @@ pub fn length(a: V3) -> f64 {
     dot(a, a).sqrt()
 }
 
-/// The vector scaled to length 1; `None` when it has no direction.
+/// The vector scaled to length 1; `None` if it has no direction.
 pub fn unit(a: V3) -> Option<V3> {
     // Dividing by the largest component first keeps the squares in range.
     let largest = a[0].abs().max(a[1].abs()).max(a[2].abs());
@@ -50,7 +50,7 @@ pub fn unit(a: V3) -> Option<V3> {
     Some(scale(a, 1.0 / length(a)))
 }
 
-/// The number moved into 0..1; NaN becomes 0, where `clamp` would keep it.
+/// The number clamped to 0..1. NaN becomes 0, where `clamp` would keep it.
 #[expect(clippy::manual_clamp)]
 pub fn saturate(x: f64) -> f64 {
     x.max(0.0).min(1.0)

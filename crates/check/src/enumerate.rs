@@ -113,7 +113,7 @@ fn heaviest_at_each_position(points: &[WeightedPoint]) -> (Vec<u32>, Vec<[u32; 2
     (sites, duplicates)
 }
 
-/// All positively oriented quadruples that no other site refutes.
+/// All positively oriented quadruples that are not refuted by another site.
 fn regular_cells(
     points: &[WeightedPoint],
     sites: &[u32],
@@ -155,14 +155,14 @@ struct Definition<'a> {
     alpha: Alpha,
 }
 
-/// What is known of a simplex below cells from its star.
+/// The information about a simplex below cells that its star gives.
 #[derive(Default)]
 struct Star {
     /// Some incident cell is in the shape.
     touches_inside: bool,
     /// Some incident cell is not, or the simplex is on the hull.
     touches_outside: bool,
-    /// A higher simplex of the shape has it as a face.
+    /// It is a face of a higher simplex of the shape.
     covered: bool,
 }
 

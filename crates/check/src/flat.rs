@@ -15,11 +15,11 @@ pub(crate) struct Flat {
     pub vertices: Vec<[u32; 1]>,
 }
 
-/// All triples (pairs, single points) that no other site refutes.
+/// All triples (pairs, single points) that are not refuted by another site.
 ///
-/// Which points of a plane lie inside a circle is the same for every sphere through that circle; so an
-/// auxiliary apex outside the plane makes a cell of each triple, and the power test of space with its
-/// perturbation decides. The apex has no influence on the perturbation: its coefficient there is zero.
+/// The points of a plane that lie inside a circle are the same for every sphere through that circle. So an auxiliary apex outside
+/// the plane makes each triple a cell, and the power test of space with its perturbation decides. The apex has no influence on
+/// the perturbation: its coefficient there is zero.
 pub(crate) fn flat_simplices(points: &[WeightedPoint], sites: &[u32]) -> Flat {
     let Some(cones) = Cones::of(points, sites) else { return Flat::default() };
     let n = sites.len();

@@ -6,10 +6,11 @@ use std::ops::Range;
 use rayon::prelude::*;
 use walpha_complex::canonical::sorted;
 
-/// No row.
+/// Stands for a missing row.
 pub(crate) const NONE: u32 = u32::MAX;
 
-/// For entries sorted by a number below `count`, such as a vertex: where those of each number start, and where the last ones end.
+/// For entries sorted by a number below `count`, such as a vertex: the start of the entries of each number, and the end of the
+/// last ones.
 fn starts(numbers: impl Iterator<Item = u32>, count: usize) -> Vec<u32> {
     let mut starts = vec![0; count + 1];
     numbers.for_each(|number| starts[number as usize + 1] += 1);
@@ -24,8 +25,9 @@ pub(crate) fn of_bucket(starts: &[u32], number: u32) -> Range<usize> {
     starts[number as usize] as usize..starts[number as usize + 1] as usize
 }
 
-/// Where the entries of each number below `count` [start](starts), and all entries, given with their numbers, in that order; those of one
-/// number stay in their order. Each of so many threads goes through all entries, and keeps those of its share of the numbers.
+/// Sorts all entries, given with their numbers below `count`, by number, and returns the [starts] of each number, too. Entries of
+/// the same number stay in their order. Each of `threads` threads visits all entries, and keeps those of its share of the
+/// numbers.
 pub(crate) fn in_buckets<T: Copy + Send, I: Iterator<Item = (u32, T)>>(
     count: usize,
     threads: usize,
@@ -98,11 +100,11 @@ pub(crate) struct Index<'a, const N: usize> {
     rows: &'a [[u32; N]],
     /// The numbers of the rows, in the lexicographic order of their sorted vertices; nothing where the rows are in that order.
     order: Vec<u32>,
-    /// Where the rows with each smallest vertex start in that order.
+    /// The start of the rows with each smallest vertex in that order.
     starts: Vec<u32>,
 }
 
-/// Its vertices, sorted, as the digits of one number.
+/// The sorted vertices of a row as the digits of one number.
 #[inline]
 fn key<const N: usize>(row: [u32; N]) -> u128 {
     sorted(row).into_iter().fold(0, |key, v| key << 32 | u128::from(v))

@@ -104,7 +104,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// What a file is, as far as the exit code says it.
+/// The judgement of a file, as far as the exit code reflects it.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Judgement {
     Right,
@@ -317,7 +317,7 @@ fn judge(path: &Path, arguments: &Arguments) -> Result<Judgement, Failure> {
 
 /// Does long work, and shows on a terminal how far it is.
 fn watched<T>(work: impl FnOnce() -> T) -> T {
-    /// What takes no longer shows nothing.
+    /// Work that takes less time shows no progress.
     const QUICK: Duration = Duration::from_secs(1);
     if !io::stderr().is_terminal() {
         return work();
@@ -335,7 +335,7 @@ fn watched<T>(work: impl FnOnce() -> T) -> T {
     made
 }
 
-/// What is printed of a file.
+/// The printed report of a file.
 struct Report<'a, C, F, R> {
     certificate: &'a C,
     by_rule: Vec<(&'static str, usize)>,
@@ -356,7 +356,7 @@ impl<C: Display, F: Display, R: Display> Report<'_, C, F, R> {
         let Self { certificate, by_rule, findings, rules, parts, notes, .. } = self;
         standard_output::check()?;
         let mut out = io::stdout().lock();
-        // As Debug prints a path, control characters in its name cannot reach the terminal.
+        // Debug escapes the path, so control characters in a name cannot reach the terminal.
         writeln!(out, "{path:?}: {certificate}")?;
         if findings.len() > 1 {
             let counts: Vec<String> =

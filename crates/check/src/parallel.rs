@@ -27,7 +27,7 @@ pub(crate) fn one_for_each<T: Copy + Send + Sync>(
     Ok(results)
 }
 
-/// What `work` yields for each index below `count`, in the order of the indices.
+/// The results of `work` for each index below `count`, in the order of the indices.
 ///
 /// # Errors
 /// The work was cancelled.

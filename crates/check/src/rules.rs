@@ -1,4 +1,4 @@
-//! Which rule a finding is about, and how often each is broken.
+//! The rule that a finding is about, and the number of findings by rule.
 
 use std::cmp::Reverse;
 use std::collections::BTreeMap;
@@ -63,9 +63,9 @@ impl FiltrationFinding {
     }
 }
 
-/// Of a triangulation that is [given by its cells alone](crate::schema::ComplexFile::is_cells_alone): leaves out the
-/// findings on classes and windings if there are others. Its faces and their classes were derived from the cells, so they
-/// are wrong where these are.
+/// For a triangulation that is [given by its cells alone](crate::schema::ComplexFile::is_cells_alone): leaves out the findings on
+/// classes and windings if there are others. Its faces and their classes were derived from the cells, so they are wrong where the
+/// cells are.
 pub fn keep_causes(findings: &mut Vec<Finding>, certificate: &mut Certificate) {
     let is_derived =
         |finding: &Finding| matches!(finding, Finding::Class { .. } | Finding::Winding { .. });
@@ -76,7 +76,7 @@ pub fn keep_causes(findings: &mut Vec<Finding>, certificate: &mut Certificate) {
     }
 }
 
-/// How many findings there are by each rule, the most frequent first, then by name.
+/// The number of findings by each rule, the most frequent first, then by name.
 pub fn count_by_rule(rules: impl IntoIterator<Item = &'static str>) -> Vec<(&'static str, usize)> {
     let mut counts = BTreeMap::new();
     rules.into_iter().for_each(|rule| *counts.entry(rule).or_insert(0) += 1);

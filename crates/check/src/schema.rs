@@ -39,13 +39,13 @@ impl PlacedComplex {
         Placed::new(&self.positions, &self.weights, self.alpha, &self.complex)
     }
 
-    /// The same complex in a periodic box with these sides, or in space.
+    /// Returns this complex in a periodic box with these sides, or in space.
     #[must_use]
     pub fn with_periodic(self, periodic: Option<[f64; 3]>) -> Self {
         Self { periodic, ..self }
     }
 
-    /// The same complex as one of labels, whose cells fill these voxels, or as one of α.
+    /// Returns this complex as one of labels, whose cells fill these voxels, or as one of α.
     #[must_use]
     pub fn with_voxels(self, voxels: Option<Voxels>) -> Self {
         Self { voxels, ..self }
@@ -201,7 +201,7 @@ struct Cofaces {
     all_interior: bool,
 }
 
-/// Rows and classes of a dimension: those of the file where it has them, else derived from the dimension above.
+/// Rows and classes of a dimension: those of the file if it has them, otherwise derived from the dimension above.
 fn complete<const N: usize, const M: usize, const F: usize>(
     given: Given<M>,
     faces: impl Fn(&[u32; N]) -> [[u32; M]; F] + Sync,

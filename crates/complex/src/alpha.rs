@@ -10,7 +10,7 @@ use walpha_base::advice::{Advice, Advise};
 ///
 /// α = ∞ gives the convex hull; with weights a negative α is legal. It is never NaN, so any two compare; −0 is 0.
 ///
-/// As text, and in JSON, it is a number, `inf` or `-inf`:
+/// In text, and in JSON, it is a number, `inf` or `-inf`:
 ///
 /// ```
 /// use walpha_complex::Alpha;

@@ -5,7 +5,7 @@ use crate::{Complex, Simplices};
 /// The vertices in ascending order.
 #[inline]
 pub fn sorted<const N: usize>(mut row: [u32; N]) -> [u32; N] {
-    // Without branches, for rows of two to four.
+    // This has no branches, for rows of two to four.
     for end in (1..N).rev() {
         for i in 0..end {
             let (one, other) = (row[i], row[i + 1]);

@@ -54,13 +54,13 @@ impl fmt::Display for Class {
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize)]
 pub struct ByClass<T> {
-    /// Of [`Class::Interior`].
+    /// The value of [`Class::Interior`].
     pub interior: T,
-    /// Of [`Class::Regular`].
+    /// The value of [`Class::Regular`].
     pub regular: T,
-    /// Of [`Class::Singular`].
+    /// The value of [`Class::Singular`].
     pub singular: T,
-    /// Of [`Class::Exterior`].
+    /// The value of [`Class::Exterior`].
     pub exterior: T,
 }
 
@@ -82,7 +82,7 @@ impl ByClass<usize> {
     /// the whole triangulation is. For `#[serde(serialize_with)]`.
     ///
     /// # Errors
-    /// Those of the serializer.
+    /// Errors of the serializer.
     pub fn serialize_shape<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         #[derive(Serialize)]
         struct Shape {

@@ -54,7 +54,7 @@ impl<const N: usize> Simplices<N> {
         self.rows.len()
     }
 
-    /// Whether there are none.
+    /// Whether there are no simplices.
     pub fn is_empty(&self) -> bool {
         self.rows.is_empty()
     }

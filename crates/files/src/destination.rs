@@ -49,8 +49,8 @@ impl Destination {
         Ok(Self { path, existing })
     }
 
-    /// A destination at which whatever is not a folder is replaced: a link is not followed, and a file that has other
-    /// names is not written to.
+    /// Prepares a destination at which anything but a folder is replaced: links are not followed, and a file that has other names
+    /// is not overwritten.
     pub(super) fn replacing(path: &Path) -> io::Result<Self> {
         match fs::symlink_metadata(path) {
             Ok(existing) if existing.is_dir() => Err(ErrorKind::IsADirectory.into()),
@@ -59,7 +59,7 @@ impl Destination {
         }
     }
 
-    /// Whether it is a pipe, a device or the like, which is written directly.
+    /// Whether the destination is a pipe, a device or the like, which is written directly.
     pub(super) fn is_stream(&self) -> bool {
         self.existing.as_ref().is_some_and(|existing| !existing.is_file())
     }
@@ -81,7 +81,7 @@ impl Claim {
         Self::new(key)
     }
 
-    /// The same for standard output.
+    /// Claims standard output, like [`of`](Self::of) a destination.
     pub(super) fn of_stdout() -> io::Result<Self> {
         Self::new(Key::of_stdout())
     }

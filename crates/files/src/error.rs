@@ -6,7 +6,7 @@ use walpha_base::shown::shown;
 
 use crate::inputs::Refused;
 
-/// A file cannot be written.
+/// The error for a file that cannot be written.
 #[derive(Debug, thiserror::Error)]
 #[error("cannot write {}: {source}", shown(path))]
 pub struct TargetError {
@@ -39,7 +39,7 @@ impl TargetError {
     }
 }
 
-/// How to resolve an error of the system.
+/// How to resolve an error of the operating system.
 fn next_step(error: &io::Error) -> &'static str {
     #[cfg(unix)]
     if error.raw_os_error() == Some(rustix::io::Errno::MFILE.raw_os_error()) {

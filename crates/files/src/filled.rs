@@ -8,7 +8,7 @@ use crate::error::TargetError;
 use crate::partial::{CompleteFile, PartialFolder};
 use crate::unfinished::gate;
 
-/// A complete file or folder that has not been moved to its destination yet; dropped before that, it is removed.
+/// A complete file or folder that has not been moved to its destination yet. It is removed if it is dropped before that.
 #[derive(Debug)]
 pub struct Filled {
     path: PathBuf,
@@ -22,7 +22,7 @@ pub struct Filled {
 enum Output {
     File(CompleteFile),
     Folder(PartialFolder),
-    /// Written already.
+    /// A stream, which has been written already.
     Stream,
 }
 
@@ -53,7 +53,7 @@ impl Filled {
 /// Moves complete files to their destinations. An interrupt waits until all are there.
 ///
 /// # Errors
-/// Those of the system for the first that cannot be moved; the others after it are removed.
+/// Errors of the file system for the first file that cannot be moved; that file and all after it are removed.
 pub fn put_all(mut files: Vec<Filled>) -> Result<(), TargetError> {
     // Files that are dropped lock the gate themselves.
     let gate = gate();
@@ -74,11 +74,11 @@ pub fn put_all(mut files: Vec<Filled>) -> Result<(), TargetError> {
     Ok(())
 }
 
-/// Creates a folder: `fill` fills a temporary one next to it, which
-/// [`put_all`](crate::put_all) renames. `failed` converts errors of the system.
+/// Creates a folder. `fill` fills a temporary folder next to it, which [`put_all`](crate::put_all) renames. `failed` converts
+/// errors of the file system.
 ///
 /// # Errors
-/// The folder exists or cannot be created; errors of `fill`. Then nothing is left behind.
+/// The folder exists or cannot be created, or `fill` fails. Nothing is left behind then.
 pub fn fill_folder<E>(
     folder: &Path,
     failed: impl Fn(io::Error) -> E,
@@ -88,10 +88,10 @@ pub fn fill_folder<E>(
     Ok(Filled::folder(folder, part))
 }
 
-/// The same, renamed at once.
+/// Like [`fill_folder`], and renames the folder at once.
 ///
 /// # Errors
-/// As [`fill_folder`].
+/// See [`fill_folder`].
 pub fn make_folder<E>(
     folder: &Path,
     failed: impl Fn(io::Error) -> E,
@@ -110,7 +110,7 @@ fn filled_temporary<E>(
     }
     let name = folder.file_name().unwrap_or_default().to_string_lossy();
     let part: PathBuf = folder.with_file_name(format!(".walpha-{name}.part"));
-    // Left by a run that was killed.
+    // A run that was killed may have left one.
     let _ = std::fs::remove_dir_all(&part);
     std::fs::create_dir(&part).map_err(&failed)?;
     let made = PartialFolder::of(part.clone());

@@ -1,4 +1,4 @@
-//! Whether two paths name one file.
+//! Decides whether two paths name one file.
 
 use std::fs::{self, Metadata};
 use std::io::{self, ErrorKind};
@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 /// The path that means standard output.
 pub(super) const STDOUT: &str = "-";
 
-/// The folder that a file is in.
+/// The folder that contains a file.
 pub(super) fn folder(path: &Path) -> &Path {
     match path.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent,
@@ -15,9 +15,9 @@ pub(super) fn folder(path: &Path) -> &Path {
     }
 }
 
-/// The path that symbolic links lead to, whether it exists or not.
+/// The path that symbolic links lead to. The file itself need not exist.
 pub(super) fn behind_links(path: &Path) -> PathBuf {
-    /// The limit of Linux.
+    /// The limit of Linux on links in one path.
     const MOST_LINKS: usize = 40;
     let mut path = path.to_owned();
     for _ in 0..MOST_LINKS {
@@ -31,7 +31,7 @@ pub(super) fn behind_links(path: &Path) -> PathBuf {
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Key {
     pub path: PathBuf,
-    /// Device and inode of an existing file: hard links are one file.
+    /// The device and inode of an existing file. Hard links to one file share them.
     file: Option<(u64, u64)>,
 }
 

@@ -1,4 +1,4 @@
-//! What outputs must not replace: inputs, and the files in a working folder.
+//! Files that outputs must not replace: inputs, and everything in a working folder.
 
 use std::fs;
 use std::io;
@@ -9,10 +9,10 @@ use walpha_base::advice::{Advice, Setting};
 
 use crate::identity::Key;
 
-/// Lists the files that belong to an input: those that a header names, or those of a folder that are read.
+/// Lists the files that belong to an input: those that a header names, or those that are read from a folder.
 pub type FilesOf = fn(&Path) -> Vec<PathBuf>;
 
-/// A file or folder that is not to be replaced.
+/// A file or folder that must not be replaced.
 enum Protected {
     /// A file that is read.
     Input(Key),
@@ -20,7 +20,7 @@ enum Protected {
     Header(PathBuf, FilesOf),
     /// A folder that is read, and the function that lists the files read from it.
     Folder(PathBuf, FilesOf),
-    /// A folder that nothing else may be written to.
+    /// A folder that only its owner may write to.
     Working(PathBuf),
 }
 
@@ -46,9 +46,9 @@ impl Refused {
     }
 }
 
-/// Protects an input from being replaced by any [`Target`](crate::Target) from now on: a file, those that
-/// its header names, or the files of a volume in a folder; under all their names. `files_of` lists the files that
-/// belong to it. Files that do not exist are ignored.
+/// Protects an input from being replaced by any [`Target`](crate::Target) from now on, under all its names: a file and those that
+/// its header names, or the files of a volume in a folder. `files_of` lists the files that belong to the input. Files that do not
+/// exist are ignored.
 pub fn keep_input(path: &Path, files_of: FilesOf) {
     let mut found = Vec::new();
     match fs::canonicalize(path) {

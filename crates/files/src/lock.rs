@@ -1,4 +1,4 @@
-//! A lock on a folder, which other processes see.
+//! A lock on a folder that other processes can see.
 
 use std::fs::{self, File, OpenOptions};
 use std::io;
@@ -6,15 +6,15 @@ use std::path::{Path, PathBuf};
 
 use crate::unfinished::{Entry, gate};
 
-/// A file that says to other processes that this one is at work, by a lock on it which ends with the process, however that
-/// ends. On Unix it is `flock`, which network file systems may not pass on to other machines.
+/// A lock file: it tells other processes that this one is at work. The lock ends with the process, however that ends. On Unix it
+/// is `flock`, which network file systems may not pass on to other machines.
 ///
-/// Dropped before it is [kept](Self::keep), a new file is removed, as it is by an interrupt.
+/// If it is dropped before it is [kept](Self::keep), or the process is interrupted, a new file is removed.
 #[derive(Debug)]
 pub struct Lock {
     file: Option<File>,
     path: PathBuf,
-    /// Of a new file.
+    /// The entry of a new file.
     entry: Option<&'static Entry>,
 }
 
@@ -22,7 +22,7 @@ impl Lock {
     /// Makes a file and locks it.
     ///
     /// # Errors
-    /// Those of the system; the file is there already.
+    /// Errors of the file system; the file exists already.
     pub fn make(path: &Path) -> io::Result<Self> {
         let path = std::path::absolute(path)?;
         let mut gate = gate();
@@ -32,17 +32,17 @@ impl Lock {
         Ok(Self { file, path, entry: Some(entry) })
     }
 
-    /// Locks a file that is there; `None` if another process has locked it.
+    /// Locks an existing file; `None` if another process has locked it.
     ///
     /// # Errors
-    /// Those of the system; the file is not there.
+    /// Errors of the file system; the file does not exist.
     pub fn take(path: &Path) -> io::Result<Option<Self>> {
         let path = std::path::absolute(path)?;
         let locked = locked(OpenOptions::new().write(true), &path)?;
         Ok(locked.map(|file| Self { file: Some(file), path, entry: None }))
     }
 
-    /// Keeps the file when this is dropped.
+    /// Keeps the file instead of removing it when this is dropped.
     pub fn keep(&mut self) {
         if let Some(entry) = self.entry.take() {
             entry.finish();
@@ -52,10 +52,10 @@ impl Lock {
     /// Removes the file.
     ///
     /// # Errors
-    /// Those of the system.
+    /// Errors of the file system.
     pub fn remove(mut self) -> io::Result<()> {
         self.keep();
-        // Where files that are open cannot be removed.
+        // Some systems cannot remove a file while it is open.
         self.file = None;
         fs::remove_file(&self.path)
     }
@@ -87,7 +87,7 @@ fn locked(options: &mut OpenOptions, path: &Path) -> io::Result<Option<File>> {
 #[cfg(windows)]
 fn locked(options: &mut OpenOptions, path: &Path) -> io::Result<Option<File>> {
     use std::os::windows::fs::OpenOptionsExt;
-    /// Another process has the file open and shares it with nobody.
+    /// The error of opening a file that another process has open without sharing it.
     const SHARING_VIOLATION: i32 = 32;
     match options.share_mode(0).open(path) {
         Ok(file) => Ok(Some(file)),
@@ -96,7 +96,7 @@ fn locked(options: &mut OpenOptions, path: &Path) -> io::Result<Option<File>> {
     }
 }
 
-/// Where there are no other processes.
+/// For platforms without other processes.
 #[cfg(not(any(unix, windows)))]
 fn locked(options: &mut OpenOptions, path: &Path) -> io::Result<Option<File>> {
     options.open(path).map(Some)

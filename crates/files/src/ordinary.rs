@@ -2,18 +2,18 @@ use std::fs::{self, File, OpenOptions};
 use std::io;
 use std::path::Path;
 
-/// Opens a file of a folder that others may write to, too; `None` if it is not an ordinary file: a link, which might lead
-/// anywhere, a folder, a pipe or a device.
+/// Opens a file of a folder that others may write to, too. Returns `None` if it is not an ordinary file but a link (which might
+/// lead anywhere), a folder, a pipe or a device.
 ///
 /// # Errors
-/// Those of the system.
+/// Errors of the file system.
 pub fn open_ordinary(path: &Path) -> io::Result<Option<File>> {
     if !fs::symlink_metadata(path)?.is_file() {
         return Ok(None);
     }
     let mut options = OpenOptions::new();
     options.read(true);
-    // In case that it has become something else since.
+    // It may have been replaced by something else since it was checked.
     #[cfg(unix)]
     {
         use std::os::unix::fs::OpenOptionsExt;

@@ -25,10 +25,10 @@ pub(super) struct CompleteFile {
 /// How a file gets to its destination.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Method {
-    /// Atomically.
+    /// It is renamed, which is atomic.
     Renamed,
-    /// Byte by byte into the existing file, which has other names, an owner to whom we cannot give
-    /// a file, or an access control list: a new file under this name would be another file.
+    /// Its bytes are copied into the existing file, which has other names, an owner to whom we cannot give a file, or an access
+    /// control list. A new file under this name would be another file.
     #[cfg_attr(not(unix), expect(dead_code, reason = "only Unix has these"))]
     Copied,
 }
@@ -47,13 +47,13 @@ impl PartialFile {
         Ok(Self { file, whole: CompleteFile { temporary, destination, method } })
     }
 
-    /// Fills the file and closes it. Returns its number of bytes, too.
+    /// Fills the file and closes it. Also returns its number of bytes.
     pub(super) fn fill(
         self,
         content: impl FnOnce(&mut dyn Write) -> io::Result<()>,
     ) -> io::Result<(CompleteFile, u64)> {
         let Self { file, whole } = self;
-        // The file itself: its errors do not name it.
+        // The file itself is wrapped, as its errors do not contain its name.
         let mut buffered = BufWriter::new(file);
         content(&mut buffered)?;
         buffered.flush()?;
@@ -80,7 +80,7 @@ impl CompleteFile {
     }
 }
 
-/// A temporary folder. Dropped before it is renamed, it is removed with its contents.
+/// A temporary folder. If it is dropped before it is renamed, it is removed with its contents.
 #[derive(Debug)]
 pub(super) struct PartialFolder(Option<PathBuf>);
 
@@ -101,13 +101,13 @@ impl PartialFolder {
 impl Drop for PartialFolder {
     fn drop(&mut self) {
         if let Some(part) = &self.0 {
-            // An earlier error is reported.
+            // This error is not reported: an earlier one is.
             let _ = fs::remove_dir_all(part);
         }
     }
 }
 
-/// Replaces the content of a file. The part that could fail for lack of space comes first, and is undone then.
+/// Replaces the content of a file. The step that could fail for lack of space comes first, and is undone if it does.
 fn overwrite(file: &mut File, content: &mut File) -> io::Result<()> {
     let (old, new) = (file.metadata()?.len(), content.metadata()?.len());
     if new > old {
@@ -124,7 +124,7 @@ fn overwrite(file: &mut File, content: &mut File) -> io::Result<()> {
     file.set_len(new)
 }
 
-/// Creates a file. One that replaces another is private until it gets its permissions.
+/// Creates a file. A file that replaces another is private until it gets its permissions.
 #[cfg(unix)]
 fn create(path: &Path, private: bool) -> io::Result<File> {
     use std::os::unix::fs::OpenOptionsExt;

@@ -4,8 +4,7 @@ use std::path::Path;
 
 use crate::unfinished::Temporary;
 
-/// A temporary file with a name, removed when it is dropped, and also when the process is
-/// interrupted.
+/// A temporary file with a name. It is removed when this is dropped, and also when the process is interrupted.
 #[derive(Debug)]
 pub struct Scratch {
     temporary: Temporary,
@@ -16,7 +15,7 @@ impl Scratch {
     /// temporary files.
     ///
     /// # Errors
-    /// Those of the system.
+    /// Errors of the file system.
     pub fn of(reader: &mut dyn Read, ending: &str) -> io::Result<Self> {
         let mut builder = tempfile::Builder::new();
         builder.prefix("walpha-").suffix(ending);

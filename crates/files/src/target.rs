@@ -9,13 +9,12 @@ use crate::identity::{Key, STDOUT};
 use crate::inputs;
 use crate::partial::{CompleteFile, PartialFile};
 
-/// A future file: opened before the long work, so that a bad destination is reported at once, and moved to
-/// its name only when it is complete. Dropped before that, it leaves nothing behind.
+/// A future file. It is opened before the long work, so that a bad destination is reported at once, and moved to its name only
+/// when it is complete. If it is dropped before that, it leaves nothing behind.
 ///
-/// A file of this name is replaced, and the new file has its mode and owner; links are
-/// followed. A file that has other names, too, or whose owner cannot be kept, is not replaced but
-/// overwritten once all of the new content is on the disk, which is the only case that is not atomic. There
-/// are never two targets for one file at a time.
+/// A file of this name is replaced, and the new file has its mode and owner. Links are followed. A file that has other names, or
+/// whose owner cannot be kept, is not replaced but overwritten once all of the new content is on the disk; only this case is not
+/// atomic. No two targets are open for one file at the same time.
 ///
 /// `-` is standard output. It and everything else that is not an ordinary file (a pipe, a device) are written
 /// directly.
@@ -23,7 +22,7 @@ use crate::partial::{CompleteFile, PartialFile};
 pub struct Target {
     path: PathBuf,
     sink: Sink,
-    /// `None` for a device.
+    /// `None` for a device, which several targets may write to.
     claim: Option<Claim>,
 }
 
@@ -44,8 +43,8 @@ impl Target {
     /// Opens a temporary file in the folder of `path`.
     ///
     /// # Errors
-    /// When the folder does not exist or cannot be written to, `path` is a folder itself or a
-    /// write-protected file, its name is too long, or a target of the same file is open.
+    /// The folder does not exist or cannot be written to; `path` is a folder itself or a write-protected file; its name is too
+    /// long; or a target of the same file is open.
     pub fn open(path: impl AsRef<Path>) -> Result<Self, TargetError> {
         let path = path.as_ref();
         Self::sink(path)
@@ -53,11 +52,11 @@ impl Target {
             .map_err(TargetError::of(path, ""))
     }
 
-    /// As [`open`](Self::open), for a file of a folder that others may write to, too: whatever has its name, except a
-    /// folder, is replaced. Links are not followed, so that nothing outside the folder changes.
+    /// Like [`open`](Self::open), for a file of a folder that others may write to, too. Whatever has this name is replaced,
+    /// except a folder. Links are not followed, so that nothing outside the folder changes.
     ///
     /// # Errors
-    /// Those of [`open`](Self::open).
+    /// See [`open`](Self::open).
     pub fn replacing(path: impl AsRef<Path>) -> Result<Self, TargetError> {
         let path = path.as_ref();
         Destination::replacing(path)
@@ -83,17 +82,18 @@ impl Target {
         Ok((Sink::PartialFile(PartialFile::for_destination(destination)?.into()), Some(claim)))
     }
 
-    /// Checks, also for folders, that a destination is not an input and not in a working folder, as [`open`](Self::open) does.
+    /// Checks, as [`open`](Self::open) does, that a destination is neither an input nor in a working folder. The destination may
+    /// be a folder.
     ///
     /// # Errors
-    /// It is.
+    /// The destination is an input, or in a working folder.
     pub fn check(path: &Path) -> Result<(), TargetError> {
         // Nothing is read from a folder that does not exist.
         let checked = Key::of(path).map_or(Ok(()), |key| inputs::check(&key));
         checked.map_err(TargetError::of(path, ""))
     }
 
-    /// Where the file will be.
+    /// The path of the future file.
     pub fn path(&self) -> &Path {
         &self.path
     }
@@ -101,7 +101,7 @@ impl Target {
     /// Writes the content and moves the file to its destination, replacing what was there.
     ///
     /// # Errors
-    /// Those of the system, with the path; the destination is then unchanged, unless it is a stream.
+    /// Errors of the file system, with the path. The destination is then unchanged, unless it is a stream.
     pub fn write(
         self,
         content: impl FnOnce(&mut dyn Write) -> io::Result<()>,
@@ -112,7 +112,7 @@ impl Target {
     /// Writes the content, but leaves the destination unchanged until [`put_all`]. A stream is written now.
     ///
     /// # Errors
-    /// Those of the system, with the path.
+    /// Errors of the file system, with the path.
     pub fn fill(
         self,
         content: impl FnOnce(&mut dyn Write) -> io::Result<()>,
@@ -137,23 +137,23 @@ impl Target {
     }
 }
 
-/// Writes all of several files, or none of them; then the streams, whose readers may close them early.
+/// Writes all of several files or none of them, and then the streams, whose readers may close them early.
 ///
 /// # Errors
-/// Those of the system for the first file that cannot be written.
+/// Errors of the file system for the first file that cannot be written.
 pub fn write_all<'a>(
     files: impl IntoIterator<Item = (Target, Content<'a>)>,
 ) -> Result<(), TargetError> {
     fill_all(files)?.put(Vec::new())
 }
 
-/// Outputs whose files are complete, but not at their destinations yet.
+/// Outputs whose files are complete but not at their destinations yet.
 pub struct FilledAll<'a> {
     files: Vec<Filled>,
     streams: Vec<(Target, Content<'a>)>,
 }
 
-/// Fills all files; streams are written once these are at their destinations.
+/// Fills all files. Streams are written once the files are at their destinations.
 ///
 /// # Errors
 /// [`TargetError`].

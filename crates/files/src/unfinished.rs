@@ -10,8 +10,8 @@ use tempfile::TempPath;
 
 use crate::identity::Key;
 
-/// A file or folder that is removed unless it is finished. Entries are never freed, and their list
-/// is read without a lock: a signal handler may do so at any moment.
+/// A file or folder that is removed unless it is finished. Entries are never freed, and their list is read without a lock, as a
+/// signal handler may read it at any moment.
 #[derive(Debug)]
 pub(super) struct Entry {
     name: Name,
@@ -20,7 +20,7 @@ pub(super) struct Entry {
     next: OnceLock<&'static Entry>,
 }
 
-/// A path in the form of the system, so that removing it needs no memory.
+/// A path in the form that the system takes, so that removing it needs no memory.
 #[cfg(unix)]
 type Name = std::ffi::CString;
 #[cfg(not(unix))]
@@ -55,7 +55,7 @@ impl Gate {
 }
 
 impl Entry {
-    /// Marks it as complete or removed.
+    /// Marks the file or folder as complete or removed.
     pub(super) fn finish(&self) {
         self.unfinished.store(false, Ordering::Release);
     }
@@ -87,11 +87,10 @@ fn name(path: &Path) -> io::Result<Name> {
     Ok(path.to_owned())
 }
 
-/// Removes every file that is not complete, and every folder created for such files that contains no
-/// other. On Unix this takes no lock and no memory, and calls only `unlink` and `rmdir`: any signal
-/// handler may call it, if the process ends then.
+/// Removes every incomplete file, and every folder that was created for such files and contains no others. On Unix this takes no
+/// lock, allocates no memory, and calls only `unlink` and `rmdir`: any signal handler may call it if the process ends then.
 pub fn sweep() {
-    // Files first, so that their folders are empty.
+    // Files come first, so that their folders are empty.
     for folders in [false, true] {
         let mut next = FIRST.get();
         while let Some(entry) = next {
@@ -103,8 +102,8 @@ pub fn sweep() {
     }
 }
 
-/// Removes what is not complete, and ends the process before another file can appear. For the handler
-/// of an interrupt, in a separate thread: files under their final names are complete.
+/// Removes everything incomplete, and ends the process before another file can appear. This is for the handler of an interrupt,
+/// in a separate thread. Files under their final names are complete.
 pub fn abandon(code: i32) -> ! {
     let _never_unlocked = gate();
     sweep();
@@ -119,7 +118,7 @@ pub(super) struct Temporary {
 }
 
 impl Temporary {
-    /// Creates one in a folder by `create`. Errors do not contain its name, which means nothing to users.
+    /// Creates a temporary file in a folder by `create`. Errors do not contain its name, which means nothing to users.
     pub(super) fn make(
         names: &tempfile::Builder<'_, '_>,
         folder: &Path,
@@ -127,7 +126,7 @@ impl Temporary {
     ) -> io::Result<(fs::File, Self)> {
         let mut gate = gate();
         let mut entry = None;
-        // Entered before it exists, so that a signal handler never misses it.
+        // The entry is made before the file exists, so that a signal handler never misses it.
         let made = names.make_in(folder, |path| {
             let entered = gate.enter(path, false)?;
             let file = create(path).inspect_err(|_| entered.finish())?;
@@ -139,7 +138,7 @@ impl Temporary {
         Ok((file, Self { path: Some(path), entry }))
     }
 
-    /// Its path, until that is taken.
+    /// The path of the file, until it is taken.
     pub(super) fn path(&self) -> Option<&Path> {
         self.path.as_deref()
     }
@@ -163,7 +162,7 @@ impl Drop for Temporary {
     }
 }
 
-/// A folder created for outputs. Dropped before it is kept, it is removed if empty.
+/// A folder created for outputs. If it is dropped before it is kept, it is removed, provided that it is empty.
 #[derive(Debug)]
 pub struct NewFolder {
     path: PathBuf,
@@ -174,7 +173,7 @@ impl NewFolder {
     /// Creates a folder; `None` if it exists.
     ///
     /// # Errors
-    /// Those of the system: a file of that name exists, the parent folder is missing, and so on.
+    /// Errors of the file system: a file of that name exists, the parent folder is missing, and so on.
     pub fn make(path: &Path) -> io::Result<Option<Self>> {
         let path = std::path::absolute(path)?;
         let mut gate = gate();
@@ -199,7 +198,7 @@ impl Drop for NewFolder {
     fn drop(&mut self) {
         let _gate = gate();
         if self.entry.unfinished.swap(false, Ordering::AcqRel) {
-            // Only if it is empty.
+            // This fails if the folder is not empty.
             let _ = fs::remove_dir(&self.path);
         }
     }

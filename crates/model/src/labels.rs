@@ -1,4 +1,4 @@
-//! The solid of labels: a segmentation as a shape, by its voxels and without α.
+//! The solid of labels: a segmentation as a shape that consists of its voxels, without α.
 
 use std::fmt;
 use std::str::FromStr;
@@ -14,19 +14,19 @@ use walpha_points::Units;
 use walpha_shape::{AlphaShape, ShapeError, Voxels, voxel_shape};
 use walpha_volume::{Frame, Labels, LengthUnit, Volume};
 
-/// Which labels of a segmentation a solid is of.
+/// The labels of a segmentation whose solid is made.
 ///
-/// Serialised, and written on the command line, as `all` or as numbers with commas between them.
+/// It is serialised, and written on the command line, as `all` or as numbers with commas between them.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(into = "String", try_from = "String")]
 pub enum LabelChoice {
-    /// All that are not 0.
+    /// All labels that are not 0.
     All,
-    /// These.
+    /// These labels.
     These(Vec<i32>),
 }
 
-/// A list of labels that cannot be read.
+/// The error for a list of labels that cannot be read.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "{0:?} is not a label: labels are whole numbers with commas between them, as in 3,5, or all"
@@ -66,31 +66,31 @@ impl From<LabelChoice> for String {
     }
 }
 
-/// A label, and how much of a volume it fills.
+/// A label, and the part of a volume that it fills.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct LabelSize {
     /// The label.
     pub label: i32,
-    /// Its voxels.
+    /// The number of its voxels.
     pub voxels: u64,
-    /// Their volume.
+    /// The volume of its voxels.
     pub volume: f64,
 }
 
-/// Labels with what they fill.
+/// Labels with the parts of a volume that they fill.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct LabelSizes {
     /// Each label other than 0, ascending.
     pub labels: Vec<LabelSize>,
-    /// The voxels of all.
+    /// The number of voxels of all labels.
     pub voxels: u64,
     /// The volume of a voxel.
     pub voxel_volume: f64,
-    /// The volume of all: their number times that of one.
+    /// The volume of all labels: the number of voxels times the volume of one.
     pub volume: f64,
-    /// Unit of length; volumes are in its cube.
+    /// The unit of length; volumes are in its cube.
     pub unit: LengthUnit,
 }
 
@@ -109,7 +109,7 @@ impl LabelSizes {
     }
 }
 
-/// How many labels, and what they fill, in one line.
+/// Displays the number of labels and what they fill in one line.
 impl fmt::Display for LabelSizes {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { labels, voxels, voxel_volume, volume, unit } = self;
@@ -119,10 +119,10 @@ impl fmt::Display for LabelSizes {
     }
 }
 
-/// Most labels named in one line.
+/// The largest number of labels named in one line.
 const MOST_NAMED: usize = 12;
 
-/// Labels in words: the first ones, if there are many.
+/// Lists labels; only the first ones, if there are many.
 pub fn list(labels: impl ExactSizeIterator<Item = i32>) -> String {
     let more = labels.len().saturating_sub(MOST_NAMED);
     let named: Vec<String> = labels.take(MOST_NAMED).map(|label| label.to_string()).collect();
@@ -132,7 +132,7 @@ pub fn list(labels: impl ExactSizeIterator<Item = i32>) -> String {
     }
 }
 
-/// Why there is no solid of labels.
+/// An error of making the solid of labels.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum LabelsError {
@@ -145,12 +145,12 @@ pub enum LabelsError {
          one sample of single precision"
     )]
     TooLarge,
-    /// A label that no voxel has.
+    /// No voxel has the label.
     #[error("no voxel has the label {label}; {}", there_are(there))]
     Absent {
         /// The label.
         label: i32,
-        /// The labels that are there, without 0.
+        /// The labels that exist, except 0.
         there: Vec<i32>,
     },
     /// All voxels are background.
@@ -194,7 +194,7 @@ impl Advise for LabelsError {
     }
 }
 
-/// The labels of a volume that a choice names, each with its number of voxels.
+/// The labels of a volume that are chosen, each with its number of voxels.
 ///
 /// # Errors
 /// [`LabelsError::NotWhole`], [`LabelsError::TooLarge`], [`LabelsError::Absent`], [`LabelsError::Background`].
@@ -217,9 +217,9 @@ pub fn chosen(volume: &Volume, choice: &LabelChoice) -> Result<Vec<(i32, u64)>, 
     Ok(found.counts.into_iter().filter(|(label, _)| labels.contains(label)).collect())
 }
 
-/// The solid of the voxels that have one of some labels: see [`voxel_shape`]. The grid lies where `frame` says, whatever the
-/// volume's own frame is, unless the units are voxels. The value of a corner is the label that most of its voxels of the
-/// solid have, of equally frequent ones the least.
+/// The solid of the voxels that have one of these labels: see [`voxel_shape`]. The grid is placed by `frame`, whatever the
+/// volume's own frame is, unless the units are voxels. The value of a corner is the most frequent label of its voxels in the
+/// solid, or the least of equally frequent ones.
 ///
 /// # Errors
 /// [`LabelsError::Shape`] and [`LabelsError::Cancelled`]; no voxel has such a label.
@@ -253,7 +253,7 @@ pub fn solid(
         });
         let mut around: Vec<i32> = around.collect();
         around.sort_unstable();
-        // Of equally many the last is taken, so the least label comes last.
+        // `max_by_key` takes the last of equal counts, so the least label comes last.
         let most = around.chunk_by(|a, b| a == b).rev().max_by_key(|equal| equal.len());
         most.map_or(0.0, |equal| f64::from(equal[0]))
     };

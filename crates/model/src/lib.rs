@@ -1,5 +1,5 @@
-//! From a volume or points to an alpha shape, by one [`Recipe`]; and what is made of a shape: files, an interpolant, or the
-//! whole in blocks.
+//! Computes alpha shapes from volumes or points, by one [`Recipe`]; and derives files and interpolants from a shape, or computes
+//! it in blocks.
 //!
 //! ```
 //! use walpha_model::Recipe;
@@ -13,7 +13,7 @@
 //! ```
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
-// The macro of ndarray for slices allows it within itself, so it cannot be forbidden.
+// The slicing macro of ndarray allows unsafe code within itself, so it cannot be forbidden.
 #![deny(unsafe_code)]
 #![warn(unreachable_pub)]
 

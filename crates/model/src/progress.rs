@@ -1,4 +1,4 @@
-//! Progress and cancelling of long work: the [`Monitor`], and the stages reported to it.
+//! Progress and cancellation of long work: the [`Monitor`], and the stages reported to it.
 
 pub use walpha_base::monitor::{Cancelled, Listener, Monitor};
 
@@ -22,7 +22,7 @@ pub enum Stage {
     Measure,
     /// Computes all shapes at once.
     Filtration,
-    /// Counts what each critical α changes.
+    /// Counts the changes at each critical α.
     Curve,
     /// Sorts all simplices.
     Order,
@@ -55,7 +55,7 @@ impl Stage {
         Monitor::current().stage(self.name())
     }
 
-    /// Its name in reports.
+    /// The name of the stage in reports.
     pub fn name(self) -> &'static str {
         match self {
             Self::Read => "read",

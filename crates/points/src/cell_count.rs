@@ -1,20 +1,20 @@
-//! What `info` says of the cells of a file.
+//! The numbers of cells in a file, as `info` reports them.
 
 use std::fmt;
 
 use serde::Serialize;
 
-/// Number of cells of one kind in a file.
+/// The number of cells of one kind in a file.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 #[non_exhaustive]
 pub struct CellCount {
-    /// Name of the kind, in the plural: tetrahedra, faces.
+    /// The name of the kind, in the plural: tetrahedra, faces.
     pub kind: &'static str,
-    /// Number of cells.
+    /// The number of cells.
     pub count: usize,
 }
 
-/// For example `200 tetrahedra`.
+/// Displays the count, for example `200 tetrahedra`.
 impl fmt::Display for CellCount {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { kind, count } = self;

@@ -5,14 +5,14 @@ use walpha_regular::{Triangulation, triangulate};
 use super::{Points, PointsError};
 use walpha_volume::Volume;
 
-/// Minimum number of voxel rows in one parallel task.
+/// The minimum number of voxel rows in one parallel task.
 const ROWS: usize = 32;
 
 /// The difference L of each voxel, `[z, y, x]`: a sixth of the sum of |f(voxel) − f(neighbour)|
 /// over its neighbours in ±x, ±y and ±z, where a missing neighbour adds 0.
 ///
-/// In double precision: the six differences are exact unless samples differ 2²⁸-fold in magnitude, so
-/// voxels of equal L have the same double, and it is the one nearest to L. O(n), parallel.
+/// The result is in double precision: the six differences are exact unless samples differ 2²⁸-fold in magnitude, so voxels of
+/// equal L have the same double, which is the one nearest to L. O(n), parallel.
 #[expect(clippy::missing_panics_doc, reason = "an invariant, never met")]
 pub fn difference(volume: &Volume) -> Array3<f64> {
     let [nx, ny, nz] = volume.dims().xyz();
@@ -34,7 +34,7 @@ pub fn difference(volume: &Volume) -> Array3<f64> {
     Array3::from_shape_vec(volume.dims().shape(), differences).expect("one for each voxel")
 }
 
-/// Differences along a single row, with a given divisor: the worked example of the paper's Table 1.
+/// The differences along a single row, with a given divisor: the worked example of the paper's Table 1.
 ///
 /// ```
 /// use walpha_points::internal::difference_row;
@@ -80,14 +80,13 @@ fn row_differences(row: &[f32], neighbours: [&[f32]; 4], divisor: f64, differenc
 /// The difference L of each scattered point: the mean of |F(point) − F(neighbour)| over its
 /// neighbours in the Delaunay triangulation of the positions.
 ///
-/// Of several points at one position only the first is in the triangulation; all share its neighbours, and
-/// each uses its own value. On a regular grid, where many neighbours lie on one sphere, the symbolic
-/// perturbation chooses among them. Sums are in f64, in ascending order of the neighbours. Takes the time and
-/// memory of a triangulation.
+/// Of several points at one position, only the first is in the triangulation; all share its neighbours, and each uses its own
+/// value. On a regular grid, where many neighbours lie on one sphere, the symbolic perturbation chooses among them. Sums are
+/// doubles, in ascending order of the neighbours. Takes the time and memory of a triangulation.
 ///
 /// # Errors
-/// Points without values, and the errors of [`triangulate`]: numbers that are not finite, fewer than four distinct
-/// positions, or coplanar positions.
+/// The points have no values; and the errors of [`triangulate`]: numbers that are not finite, fewer than four distinct positions,
+/// or coplanar positions.
 pub fn scattered_difference(points: &Points) -> Result<Vec<f64>, PointsError> {
     let values = points.values.as_deref().ok_or(PointsError::NoValues)?;
     let delaunay = triangulate(&points.positions, None)?;
@@ -107,7 +106,7 @@ pub fn scattered_difference(points: &Points) -> Result<Vec<f64>, PointsError> {
 
 /// The neighbours of all points, ascending, in one list.
 struct Neighbours {
-    /// End of the neighbours of each point in `vertices`.
+    /// The end of the neighbours of each point in `vertices`.
     ends: Vec<usize>,
     vertices: Vec<u32>,
 }
@@ -124,14 +123,14 @@ impl Neighbours {
         for (i, &[vertex, _]) in pairs.iter().enumerate() {
             ends[vertex as usize] = i + 1;
         }
-        // Duplicates have none.
+        // Duplicates have no neighbours.
         for v in 1..ends.len() {
             ends[v] = ends[v].max(ends[v - 1]);
         }
         Self { ends, vertices: pairs.into_iter().map(|[_, neighbour]| neighbour).collect() }
     }
 
-    /// The neighbours of a vertex. Never empty: every position of an unweighted triangulation is a vertex.
+    /// The neighbours of a vertex. They are never empty: every position of an unweighted triangulation is a vertex.
     fn around(&self, vertex: u32) -> &[u32] {
         let vertex = vertex as usize;
         let start = if vertex == 0 { 0 } else { self.ends[vertex - 1] };

@@ -10,48 +10,48 @@ use super::Weighting;
 use walpha_shape::LengthsError;
 use walpha_volume::{Reason, VolumeError};
 
-/// Why points or their weights cannot be computed.
+/// An error of the computation of points or their weights.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum PointsError {
     /// A number of the selection is out of its range.
     #[error("{what} {given} makes no sense")]
     Number {
-        /// Which number.
+        /// The name of the number.
         what: &'static str,
         /// The number given.
         given: f64,
-        /// What is valid instead.
+        /// The valid numbers.
         need: &'static str,
     },
-    /// A column whose length differs from the number of points.
+    /// The length of a column differs from the number of points.
     #[error(transparent)]
     Lengths(#[from] LengthsError),
-    /// More voxels asked for than take part and differ from a neighbour, or none.
+    /// More voxels are requested than take part and differ from a neighbour.
     #[error(
         "{asked} points cannot be selected: {available} samples take part and differ from a neighbour after \
          truncation"
     )]
     Count {
-        /// Points asked for.
+        /// The number of points requested.
         asked: u64,
-        /// Voxels that take part and have a difference.
+        /// The number of voxels that take part and have a difference.
         available: u64,
-        /// These as a share of all, if a share was asked for.
+        /// The number available as a share of all voxels, if a share was requested.
         ratio: Option<f64>,
     },
-    /// No voxel that takes part differs from a neighbour: there is nothing to select by.
+    /// No voxel that takes part differs from a neighbour, so the selection has no criterion.
     #[error(
         "nothing tells which samples to select: after truncation none of the {available} that take part differs \
          from a neighbour"
     )]
     Flat {
-        /// Voxels that take part.
+        /// The number of voxels that take part.
         available: u64,
-        /// The setting that says how much truncation drops.
+        /// The setting that determines how much truncation drops.
         tolerance: Setting,
     },
-    /// A volume whose values have not become gray levels.
+    /// The values of a volume have not been converted to gray levels.
     #[error("the values of the volume, {low} to {high}, are not gray levels 0 to 255")]
     NotGray {
         /// The least value.
@@ -64,7 +64,7 @@ pub enum PointsError {
         "no voxel reaches the gray level {least}: after truncation gray levels end at {highest}"
     )]
     Masked {
-        /// The least gray level asked for.
+        /// The least gray level requested.
         least: f64,
         /// The highest gray level of the truncated volume.
         highest: f64,
@@ -72,7 +72,7 @@ pub enum PointsError {
     /// The mask, given as a value of the file, leaves no voxel.
     #[error("no voxel reaches the value {least}: after truncation values end at {highest}")]
     MaskedValues {
-        /// The least value asked for.
+        /// The least value requested.
         least: f64,
         /// The highest value of the truncated volume.
         highest: f64,
@@ -80,37 +80,37 @@ pub enum PointsError {
     /// All voxels are missing.
     #[error("none of {voxels} voxels takes part: all samples are missing")]
     Empty {
-        /// Voxels of the volume.
+        /// The number of voxels of the volume.
         voxels: u64,
     },
     /// The threshold leaves no voxel.
     #[error("no voxel that takes part has a difference of {least} gray levels{}", at_most(*largest))]
     Threshold {
-        /// The least difference asked for.
+        /// The least difference requested.
         least: f64,
         /// The largest difference, if it is known.
         largest: Option<f64>,
-        /// The setting that keeps voxels from taking part, if one was given.
+        /// The setting that excludes voxels, if one was given.
         mask: Option<Setting>,
     },
-    /// Weights in proportion to an infinite α.
+    /// Weights are to be proportional to an infinite α.
     #[error("{weighting} weights are proportional to α, which is {alpha}")]
     UnboundedAlpha {
-        /// The weights asked for.
+        /// The weights requested.
         weighting: Weighting,
         /// The α given.
         alpha: Alpha,
     },
-    /// Points without differences.
+    /// The points have no differences.
     #[error(
         "{weighting} weights need the differences of a volume's voxels, or of the values of scattered \
          points, which these come without"
     )]
     NoDifferences {
-        /// The weights asked for.
+        /// The weights requested.
         weighting: Weighting,
     },
-    /// Scattered points without values have no differences.
+    /// Scattered points have no values, and therefore no differences.
     #[error("differences of scattered points need a column `value` in the input")]
     NoValues,
     /// The neighbours of scattered points cannot be found.
@@ -119,10 +119,10 @@ pub enum PointsError {
     /// The input has no weights.
     #[error("column weights need a column `weight` or `radius` in the input")]
     NoColumn,
-    /// A weight that is not finite.
+    /// A weight is not finite.
     #[error("the weight of point {index} is {weight}: it must be finite")]
     Weight {
-        /// The point, counted from 0.
+        /// The number of the point, from 0.
         index: usize,
         /// Its weight.
         weight: f64,
@@ -135,7 +135,7 @@ pub enum PointsError {
         /// The problem.
         reason: Reason,
     },
-    /// Not enough memory for the samples.
+    /// There is not enough memory for the samples.
     #[error(transparent)]
     Memory(#[from] NoMemory),
     /// The file cannot be read.
@@ -188,7 +188,7 @@ impl Advise for PointsError {
     }
 }
 
-/// The largest difference, where it is known.
+/// The part of a message about the largest difference, if it is known.
 fn at_most(largest: Option<f64>) -> String {
     largest.map_or_else(String::new, |largest| format!(": the largest is {largest}"))
 }

@@ -1,6 +1,6 @@
 use super::Points;
 
-/// A box of full detail, borders included, in the units of the points.
+/// A box of full detail, including its boundary, in the units of the points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Region {
     /// The smallest coordinates, (x, y, z).
@@ -16,13 +16,12 @@ impl Region {
     }
 }
 
-/// Fine points in a region and coarse points everywhere, ascending in z, then y, then x, like selected
-/// voxels. Where both have a point at one position, the fine one is kept. The region also keeps its coarse
-/// points, so it is never coarser than its surroundings.
+/// Combines fine points in a region with coarse points everywhere, ascending in z, then y, then x, like selected voxels. If both
+/// have a point at one position, the fine one is kept. The region also keeps its coarse points, so it is never coarser than its
+/// surroundings.
 ///
-/// Only this one set is triangulated, so there is no seam between two meshes: cells across the border of
-/// the region join fine points to coarse ones. A column (values, differences,
-/// weights) is kept if both have it. O(n log n).
+/// Only this one set is triangulated, so there is no seam between two meshes: cells across the border of the region join fine
+/// points to coarse ones. A column (values, differences, weights) is kept if both sets have it. O(n log n).
 pub fn focus(fine: &Points, coarse: &Points, region: &Region) -> Points {
     let inside = (0..fine.len()).filter(|&i| region.contains(fine.positions[i]));
     let coarse_ones = (0..coarse.len()).map(|i| (coarse, i));
@@ -36,7 +35,7 @@ pub fn focus(fine: &Points, coarse: &Points, region: &Region) -> Points {
         let (a, b) = (key(a), key(b));
         a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])).then(a[2].total_cmp(&b[2]))
     });
-    // The sort is stable: of two points at one position the fine one comes first.
+    // The sort is stable: of two points at one position, the fine one comes first.
     chosen.dedup_by_key(|&mut (points, i)| points.positions[i]);
     let column = |of: fn(&Points) -> Option<&Vec<f64>>| {
         let both = of(fine).is_some() && of(coarse).is_some();

@@ -1,4 +1,4 @@
-//! Sets of points on which programs fail: full of ties, nearly tied, or at the ends of what doubles can hold.
+//! Sets of points on which programs fail: many ties, near ties, or coordinates at the limits of doubles.
 
 use std::path::Path;
 
@@ -8,19 +8,19 @@ use walpha_volume::near::nearest;
 use super::{Points, PointsError};
 use walpha_volume::VolumeError;
 
-/// A set of points that is hard to triangulate. `walpha points hard:NAME -o points.csv` writes it, and all commands that take points
-/// take its name.
+/// A set of points that is hard to triangulate. `walpha points hard:NAME -o points.csv` writes it, and all commands that take
+/// points accept its name.
 #[non_exhaustive]
 pub struct HardSet {
-    /// Its name, after `hard:`.
+    /// The name after `hard:`.
     pub name: &'static str,
-    /// What it is, and what makes it hard.
+    /// A description of the points, and what makes them hard.
     pub about: &'static str,
     make: fn() -> Points,
 }
 
 impl HardSet {
-    /// The points; those of `hidden`, `duplicates` and `radii` have weights.
+    /// The points. Those of `hidden`, `duplicates` and `radii` have weights.
     pub fn points(&self) -> Points {
         (self.make)()
     }
@@ -135,7 +135,8 @@ pub static HARD_SETS: &[HardSet] = &[
         about: "a lattice whose weights are multiples of 1/2: some points are hidden, others on the verge of it",
         make: || {
             let positions = lattice([8; 3], [1.0; 3]);
-            // Of neighbours along an axis, multiples modulo 4 put points on the verge, modulo 5 they hide them.
+            // For neighbours along an axis, multiples modulo 4 put points on the verge of being hidden, and multiples modulo 5
+            // hide them.
             let weight = |[x, y, z]: [f64; 3]| {
                 0.5 * ((3.0 * x + 4.0 * y + 7.0 * z) % if x < 4.0 { 4.0 } else { 5.0 })
             };
@@ -190,10 +191,10 @@ pub static HARD_SETS: &[HardSet] = &[
     },
 ];
 
-/// The set of this name, as in `hard:voxels`; `None` if the name does not begin with `hard:`.
+/// The set with this name, such as `hard:voxels`; `None` if the name does not begin with `hard:`.
 ///
 /// # Errors
-/// [`VolumeError::UnknownSample`], which names the known ones.
+/// [`VolumeError::UnknownSample`], which lists the known names.
 pub fn hard(name: impl AsRef<Path>) -> Result<Option<Points>, PointsError> {
     let Some(name) = name.as_ref().to_str().and_then(|name| name.strip_prefix("hard:")) else {
         return Ok(None);
@@ -212,7 +213,7 @@ pub fn hard(name: impl AsRef<Path>) -> Result<Option<Points>, PointsError> {
     })
 }
 
-/// Points of a lattice, x fastest, from the origin.
+/// The points of a lattice, x fastest, from the origin.
 fn lattice(counts: [usize; 3], step: [f64; 3]) -> Vec<[f64; 3]> {
     let [x, y, z] = counts;
     let index = |k: usize| [k % x, k / x % y, k / (x * y)];
@@ -231,11 +232,11 @@ fn squared(p: [f64; 3]) -> f64 {
     p.iter().map(|x| x * x).sum()
 }
 
-/// The k-th point of a spiral from pole to pole of the unit sphere. Its angle goes by rational numbers, so that no library of
-/// trigonometric functions decides the last bits.
+/// The k-th point of a spiral from pole to pole of the unit sphere. Its angle is computed with rational numbers, so that no
+/// trigonometric function of a library decides the last bits.
 fn on_sphere(k: u32, of: u32) -> [f64; 3] {
     let z = (2.0 * f64::from(k) + 1.0) / f64::from(of) - 1.0;
-    // A rational parametrisation of the circle, over all of it.
+    // This is a rational parametrisation of the whole circle.
     let turn = (f64::from(k) * 0.618_033_988_75).fract() * 4.0;
     let t = turn.fract() * 2.0 - 1.0;
     let (c, s) = ((1.0 - t * t) / (1.0 + t * t), 2.0 * t / (1.0 + t * t));

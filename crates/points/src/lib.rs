@@ -1,4 +1,4 @@
-//! From a volume to weighted points.
+//! Computes weighted points from a volume.
 //!
 //! Steps 5 to 7 of the paper: the difference L of each voxel of the truncated volume, the selection of the
 //! voxels of largest L, and their weights (equations 4.1 and 4.2).
@@ -19,7 +19,7 @@
 //! ```
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
-// The macro of ndarray for slices allows it within itself, so it cannot be forbidden.
+// The slicing macro of ndarray allows unsafe code within itself, so it cannot be forbidden.
 #![deny(unsafe_code)]
 #![warn(unreachable_pub)]
 
@@ -60,7 +60,7 @@ pub use walpha_shape::{WeightSummary, WeightedPoints};
 pub use weigh::{weigh, weights};
 pub use weighting::{UnknownWeighting, Weighting};
 
-/// What the other crates of walpha take beside the public items; not covered by semantic versioning.
+/// Items for the other crates of walpha besides the public ones; not covered by semantic versioning.
 #[doc(hidden)]
 pub mod internal {
     pub use crate::difference::difference_row;

@@ -1,4 +1,4 @@
-//! The mesh cells that a file of points may list: their counts, and reading them as a complex.
+//! The mesh cells that a file of points may list: counts them, and reads them as a complex.
 
 use std::path::Path;
 
@@ -11,7 +11,7 @@ use walpha_volume::{OpenFile, Reason};
 /// The cells that a file lists besides its points, by kind; empty for plain points.
 ///
 /// # Errors
-/// A file that cannot be read, or whose header is damaged.
+/// The file cannot be read, or its header is damaged.
 pub fn cells_of(
     path: impl AsRef<Path>,
     options: &PointOptions,
@@ -25,10 +25,10 @@ pub fn cells_of(
     cells_of_file(&OpenFile::open(path)?, options)
 }
 
-/// [`cells_of`] an open file.
+/// Like [`cells_of`], for an open file.
 ///
 /// # Errors
-/// Those of [`cells_of`].
+/// See [`cells_of`].
 pub fn cells_of_file(
     file: &OpenFile,
     options: &PointOptions,
@@ -43,20 +43,20 @@ pub fn cells_of_file(
     Ok(count(file)?.into_iter().filter(|cells| cells.count > 0).collect())
 }
 
-/// Reads the cells of a file as a complex for the checker. Of VTU, legacy VTK and PLY these are the tetrahedra, with the
-/// point data `weight`, and α is ∞. If a file of VTK states α, they are the simplices of all dimensions, with their classes.
-/// Formats whose files hold nothing but meshes are read by [`walpha_check::meshes`].
+/// Reads the cells of a file as a complex for the checker. In VTU, legacy VTK and PLY these are the tetrahedra, with the point
+/// data `weight`, and α is ∞. If a VTK file states α, they are the simplices of all dimensions, with their classes. Formats whose
+/// files contain nothing but meshes are read by [`walpha_check::meshes`].
 ///
 /// # Errors
-/// A format whose cells are not read, cells that are not simplices, and the errors of [`super::read_points`].
+/// The cells of the format are not read, or cells are not simplices; and the errors of [`super::read_points`].
 pub fn read_complex(path: impl AsRef<Path>, options: &PointOptions) -> Result<Mesh, PointsError> {
     read_complex_file(&OpenFile::open(path.as_ref())?, options)
 }
 
-/// [`read_complex`] from an open file.
+/// Like [`read_complex`], for an open file.
 ///
 /// # Errors
-/// Those of [`read_complex`].
+/// See [`read_complex`].
 pub fn read_complex_file(file: &OpenFile, options: &PointOptions) -> Result<Mesh, PointsError> {
     if let Some(read) = options.format_of(file).and_then(|format| format.read_complex) {
         return read(file);

@@ -9,25 +9,25 @@ use walpha_volume::{Coordinates, Dims, Frame, GrayRange};
 /// The grid that points are samples of.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SampleGrid {
-    /// Number of samples along each axis.
+    /// The number of samples along each axis.
     pub dims: Dims,
-    /// Position of the samples in the world.
+    /// The position of the samples in the world.
     pub frame: Frame,
-    /// Units of the coordinates of points.
+    /// The units of the coordinates of points.
     pub units: Units,
 }
 
 /// A unit cell that repeats, as in crystals.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cell {
-    /// Its edge vectors, in the unit of the points.
+    /// The edge vectors, in the unit of the points.
     pub vectors: [[f64; 3]; 3],
-    /// Along which of these vectors the points repeat.
+    /// Whether the points repeat along each of these vectors.
     pub repeats: [bool; 3],
 }
 
 impl Cell {
-    /// Its sides, if it is an axis-aligned box that repeats along all axes: the points then lie on a torus.
+    /// The sides, if the cell is an axis-aligned box that repeats along all axes: the points then lie on a torus.
     pub fn sides(&self) -> Option<[f64; 3]> {
         let [[x, a, b], [c, y, d], [e, f, z]] = self.vectors;
         let is_box = [a, b, c, d, e, f] == [0.0; 6] && [x, y, z].iter().all(|&side| side > 0.0);
@@ -56,14 +56,14 @@ impl fmt::Display for Cell {
     }
 }
 
-/// Metadata of weighted points. A `.wvm` stores all of it but the cell, which comes from extended XYZ, and the notes; of
-/// other formats, text may state a unit.
+/// The metadata of weighted points. A `.wvm` stores all of it except the cell, which comes from extended XYZ, and the notes. Of
+/// the other formats, text may state a unit.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct ModelMetadata {
     /// The grid whose samples the points are.
     pub grid: Option<SampleGrid>,
-    /// Axes and unit of the coordinates.
+    /// The axes and unit of the coordinates.
     pub coordinates: Coordinates,
     /// The α intended for their shape, which the weights may be proportional to.
     pub alpha: Option<Alpha>,
@@ -75,19 +75,19 @@ pub struct ModelMetadata {
     pub order: Option<Vec<u32>>,
     /// The unit cell of periodic points.
     pub cell: Option<Cell>,
-    /// What a file says of some of its points, for people: how many are synthetic, or noise.
+    /// Remarks of a file on some of its points, for people: how many are synthetic, or noise.
     pub notes: Vec<String>,
 }
 
-/// How a `.wvm` is packed.
+/// The options for packing a `.wvm`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Packing {
     /// The largest error of a value, in units of the values; it bounds the error of F everywhere. 0 keeps
     /// every value bit for bit.
     pub value_error: f64,
-    /// Number of layers of points, the most important first. A reader may stop after any layer: without the
-    /// last it has a quarter of the points, without the last two a sixteenth. One layer makes the smallest file.
+    /// The number of layers of points, the most important first. A reader may stop after any layer: without the last it has a
+    /// quarter of the points, without the last two a sixteenth. One layer makes the smallest file.
     pub layers: u8,
 }
 
@@ -111,7 +111,7 @@ impl Default for Packing {
 }
 
 impl Packing {
-    /// Maximum number of layers.
+    /// The maximum number of layers.
     pub const MOST_LAYERS: u8 = 8;
 
     setters! { value_error: f64, layers: u8 }
@@ -127,7 +127,7 @@ impl SampleGrid {
         }
     }
 
-    /// The sample exactly at a position, if there is one.
+    /// The sample exactly at a position, if it exists.
     pub fn sample_at(&self, position: [f64; 3]) -> Option<[u32; 3]> {
         let index = match self.units {
             Units::Voxel => position,
@@ -163,5 +163,5 @@ impl SampleGrid {
     }
 }
 
-/// Signature of a `.wvm`. As in PNG, a transfer that converts line endings damages it detectably.
+/// The signature of a `.wvm`. As in PNG, a transfer that converts line endings damages it detectably.
 pub(super) const MODEL: &[u8] = b"\x89wvm\r\n\x1a\n";

@@ -9,14 +9,14 @@ use super::{Points, PointsError};
 use crate::largest::{Budget, Cut};
 use walpha_volume::{Coordinates, Dims, Frame, Volume};
 
-/// Number of voxels in one parallel task.
+/// The number of voxels in one parallel task.
 const CHUNK: usize = 1 << 16;
 
-/// Which voxels become points.
+/// The choice of the voxels that become points.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Selection {
-    /// How many voxels, or which.
+    /// How many voxels are selected, or which.
     pub rule: SelectionRule,
     /// Voxels of the truncated volume below this gray level are left out.
     pub gray_min: Option<f64>,
@@ -30,13 +30,13 @@ impl Selection {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum SelectionRule {
-    /// This many voxels of the largest L, ties in order of the voxel index: an error if fewer take part and have
-    /// an L above 0, unless all that take part are asked for.
+    /// This many voxels of largest L, ties in order of the voxel index. It is an error if fewer voxels take part and have an L
+    /// above 0, unless all voxels that take part are requested.
     Count(u64),
-    /// This share of all voxels of the volume, above 0 and up to 1, rounded to the nearest count
-    /// (half up, and at least 1), then as `Count`.
+    /// This share of all voxels of the volume, above 0 and up to 1, rounded to the nearest count (half up, and at least 1), then
+    /// like `Count`.
     Ratio(f64),
-    /// As `Ratio`, but all voxels that take part and have an L above 0 if they are fewer.
+    /// Like `Ratio`, but selects all voxels that take part and have an L above 0 if they are fewer.
     AtMost(f64),
     /// All voxels with L of at least this, in gray levels. Ties count: as doubles, 5/6 is at least 5/6.
     Threshold(f64),
@@ -48,15 +48,15 @@ impl SelectionRule {
     pub const PAPER: f64 = 0.0609;
 }
 
-/// The paper's share.
+/// The default is the paper's share.
 impl Default for SelectionRule {
     fn default() -> Self {
         Self::AtMost(Self::PAPER)
     }
 }
 
-/// Units of the coordinates of points. There is no default but that of a `Recipe` of `walpha-model`, which goes by what
-/// the file states.
+/// The units of the coordinates of points. They have no default except that of a `Recipe` of `walpha-model`, which depends on
+/// what the file states.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Units {
@@ -67,12 +67,12 @@ pub enum Units {
 }
 
 impl Units {
-    /// Axes and unit of the coordinates of a volume's points.
+    /// The axes and unit of the coordinates of a volume's points.
     pub fn coordinates(self, volume: &Volume) -> Coordinates {
         self.coordinates_of(volume.frame())
     }
 
-    /// Axes and unit of the coordinates of a grid's points.
+    /// The axes and unit of the coordinates of a grid's points.
     pub fn coordinates_of(self, frame: &Frame) -> Coordinates {
         match self {
             Self::Voxel => Coordinates::VOXEL,
@@ -94,12 +94,12 @@ impl Units {
         }
     }
 
-    /// The position of a voxel, by its index x + X·(y + Y·z), in these units.
+    /// The position of a voxel, given by its index x + X·(y + Y·z), in these units.
     pub fn position(self, volume: &Volume, voxel: u32) -> [f64; 3] {
         self.place(volume.frame(), volume.dims(), voxel.into())
     }
 
-    /// [`position`](Self::position) for a grid of `dims` samples.
+    /// Like [`position`](Self::position), for a grid of `dims` samples.
     pub fn place(self, frame: &Frame, dims: Dims, voxel: u64) -> [f64; 3] {
         let [nx, ny, _] = dims.xyz();
         let voxel = voxel as usize;
@@ -113,16 +113,16 @@ impl Units {
 
 /// Selects voxels, in order of their index x + X·(y + Y·z).
 ///
-/// `volume` gives the grid and the values of the points, and its missing samples are left out. `smoothed` is
-/// the truncated volume, to which `gray_min` applies, and `differences` are its
-/// [`difference`](super::difference)s. O(n), parallel, independent of the number of threads.
+/// `volume` gives the grid and the values of the points, and its missing samples are left out. `smoothed` is the truncated
+/// volume, to which `gray_min` applies, and `differences` are its [`difference`](super::difference)s. O(n), parallel, independent
+/// of the number of threads.
 ///
 /// # Errors
-/// A truncated volume whose values are not gray levels ([`Volume::into_gray`] makes them), a rule whose number is out of range,
-/// more voxels asked for than differ from a neighbour, no voxel left, or not enough memory.
+/// The values of the truncated volume are not gray levels ([`Volume::into_gray`] makes them), a number in the rule is out of
+/// range, more voxels are requested than differ from a neighbour, no voxel is left, or there is not enough memory.
 ///
 /// # Panics
-/// If the three shapes differ.
+/// The three shapes differ.
 pub fn select(
     volume: &Volume,
     smoothed: &Volume,
@@ -132,7 +132,7 @@ pub fn select(
 ) -> Result<Points, PointsError> {
     assert_eq!(volume.dims(), smoothed.dims(), "one grid");
     assert_eq!(volume.dims().shape(), *differences.shape(), "one grid");
-    // Thresholds, errors and weights count in gray levels: Hounsfield units would be taken for them.
+    // Thresholds, errors and weights are in gray levels: Hounsfield units would be mistaken for them.
     if !smoothed.has_gray_levels() {
         let (low, high) = smoothed.value_range();
         return Err(PointsError::NotGray { low, high });
@@ -171,7 +171,7 @@ pub fn select(
 /// `volume` and their differences in `differences`.
 ///
 /// # Panics
-/// If the two shapes differ, or a voxel is out of range.
+/// The two shapes differ, or a voxel is out of range.
 pub fn points_at(
     volume: &Volume,
     differences: &Array3<f64>,
@@ -190,8 +190,7 @@ pub fn points_at(
     }
 }
 
-/// The indices that the rule selects, ascending. Voxels masked by the setting or missing are NaN, and the other `available`
-/// ones are not.
+/// The indices that the rule selects, ascending. Voxels that are masked or missing are NaN; the other `available` ones are not.
 fn chosen(
     differences: &[f64],
     available: u64,
@@ -228,18 +227,18 @@ pub enum Asked {
 #[derive(Clone, Copy)]
 pub struct Most {
     count: u64,
-    /// Whether all that differ are taken if these are fewer.
+    /// Whether all that differ are selected if they are fewer.
     or_fewer: bool,
-    /// The number of voxels that the count is a share of, if it was given as one.
+    /// The number of voxels that the count is a share of, if a share was given.
     of: Option<u64>,
 }
 
 impl Most {
-    /// Number of available voxels that are not selected, where so many of these differ from a neighbour. Of those that
-    /// do not differ none is selected before another, as only their indices would tell them apart.
+    /// The number of available voxels that are not selected, if `differing` of them differ from a neighbour. Voxels that do not
+    /// differ are never selected before one another, as only their indices would distinguish them.
     pub fn not_chosen(self, available: u64, differing: u64) -> Result<u64, PointsError> {
         let Self { count: asked, or_fewer, of } = self;
-        // All of them: nothing is chosen.
+        // All voxels are selected, so there is no choice.
         if asked == available && !or_fewer {
             return Ok(0);
         }
@@ -254,7 +253,7 @@ impl Most {
             return Ok(available - differing);
         }
         if asked == 0 || asked > differing {
-            // Rounded down, so that it can be met.
+            // The share is rounded down, so that it can be met.
             let share = |voxels: u64| (1e4 * differing as f64 / voxels as f64).floor() / 1e4;
             let ratio = of.map(share).filter(|&ratio| ratio > 0.0);
             return Err(PointsError::Count { asked, available: differing, ratio });
@@ -286,7 +285,7 @@ impl SelectionRule {
     }
 }
 
-/// What a least gray level is called in an error.
+/// The name of the least gray level in an error.
 pub const LEAST_GRAY: &str = "a least gray level of";
 
 /// Refuses NaN as the least gray level.

@@ -28,50 +28,50 @@ pub struct Points {
 }
 
 impl Points {
-    /// Points at these positions (x, y, z), without other data.
+    /// Creates points at these positions (x, y, z), without other data.
     pub fn new(positions: Vec<[f64; 3]>) -> Self {
         Self { positions, ..Self::default() }
     }
 
-    /// The same points with values F.
+    /// Sets the values F of the points.
     ///
     /// # Errors
-    /// [`PointsError::Lengths`] unless there is one for each point.
+    /// [`PointsError::Lengths`] unless there is one value for each point.
     pub fn with_values(self, values: Vec<f64>) -> Result<Self, PointsError> {
         let values = column("values", values, self.len())?;
         Ok(Self { values: Some(values), ..self })
     }
 
-    /// The same points with differences L.
+    /// Sets the differences L of the points.
     ///
     /// # Errors
-    /// As [`with_values`](Self::with_values).
+    /// See [`with_values`](Self::with_values).
     pub fn with_differences(self, differences: Vec<f64>) -> Result<Self, PointsError> {
         let differences = column("differences", differences, self.len())?;
         Ok(Self { differences: Some(differences), ..self })
     }
 
-    /// The same points with weights ω, squared lengths.
+    /// Sets the weights ω of the points, which are squared lengths.
     ///
     /// # Errors
-    /// As [`with_values`](Self::with_values).
+    /// See [`with_values`](Self::with_values).
     pub fn with_weights(self, weights: Vec<f64>) -> Result<Self, PointsError> {
         let weights = column("weights", weights, self.len())?;
         Ok(Self { weights: Some(weights), ..self })
     }
 
-    /// Keeps the first point in each cube of a grid of this side, in the order of the points. The grid starts at the
-    /// least coordinates. O(n).
+    /// Keeps the first point in each cube of a grid with this side, in the order of the points. The grid starts at the least
+    /// coordinates. O(n).
     ///
     /// # Errors
-    /// A side that is not a finite number above 0.
+    /// The side is not a finite number above 0.
     pub fn thin(&mut self, side: f64) -> Result<(), PointsError> {
         if !(side > 0.0 && side.is_finite()) {
             let (what, need) = ("cubes of side", "a length above 0");
             return Err(PointsError::Number { what, given: side, need });
         }
         let [least, _] = bounding_box(&self.positions);
-        // Floats, as a side may be so small that the number of a cube fits no integer.
+        // Floats are used, as a side may be so small that the number of a cube fits no integer.
         let cube = |place: &[f64; 3]| {
             [0, 1, 2].map(|axis| ((place[axis] - least[axis]) / side).floor().to_bits())
         };
@@ -82,7 +82,7 @@ impl Points {
         Ok(())
     }
 
-    /// Keeps the points that are marked.
+    /// Keeps only the marked points.
     pub(super) fn keep(&mut self, kept: &[bool]) {
         let mut columns = [&mut self.values, &mut self.differences, &mut self.weights];
         for column in columns.iter_mut().filter_map(|column| column.as_mut()) {

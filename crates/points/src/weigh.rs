@@ -8,7 +8,7 @@ use super::{Points, PointsError, WeightedPoints};
 /// Gives points their weights, as [`weights`] computes them.
 ///
 /// # Errors
-/// The errors of [`weights`].
+/// See [`weights`].
 pub fn weigh(
     mut points: Points,
     weighting: Weighting,
@@ -21,13 +21,13 @@ pub fn weigh(
     Ok(WeightedPoints::new(points.positions, weights)?.with_values(points.values)?)
 }
 
-/// The weights of points. `alpha` is the α of the shape, or the one at which weights are frozen; common and
-/// column weights do not depend on it. O(n).
+/// Computes the weights of points. `alpha` is the α of the shape, or the one at which weights are frozen; common and column
+/// weights do not depend on it. O(n).
 ///
 /// # Errors
-/// An infinite α where weights are proportional to it; missing differences (for scattered points they are
-/// [`scattered_difference`](super::scattered_difference)s) or a missing column of weights, if the weighting
-/// needs them; a weight that is not finite.
+/// α is infinite and weights are proportional to it; differences are missing (for scattered points they are
+/// [`scattered_difference`](super::scattered_difference)s), or a column of weights is missing, and the weighting needs them; or a
+/// weight is not finite.
 pub fn weights(
     points: &Points,
     weighting: Weighting,
@@ -57,7 +57,7 @@ impl Weighting {
     /// The formula of weights proportional to differences.
     ///
     /// # Errors
-    /// α is infinite; the weighting is of another kind.
+    /// α is infinite, or the weighting is of another kind.
     #[doc(hidden)]
     pub fn shares(self, differences: &Differences, alpha: Alpha) -> Result<Shares, PointsError> {
         let Rule::Proportional(rule) = self.kind().rule else { return Err(PointsError::NoColumn) };

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use walpha_base::Sum;
 use walpha_base::advice::{Advice, Advise};
 
-/// Where the weights ω of points come from. Weights are **squared** lengths, as α is.
+/// The source of the weights ω of points. Weights are **squared** lengths, as α is.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Weighting {
@@ -22,7 +22,7 @@ pub enum Weighting {
     Barycentric,
     /// N times the barycentric weights, so that the mean weight is α. Not in the paper.
     BarycentricN,
-    /// A column of the input.
+    /// The weights are a column of the input.
     Column,
 }
 
@@ -36,13 +36,13 @@ impl Weighting {
 /// Statistics of the differences, which weights proportional to them need.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Differences {
-    /// Number of points.
+    /// The number of points.
     pub count: u64,
     /// The smallest difference.
     pub min: f64,
     /// The largest difference.
     pub max: f64,
-    /// Their sum, independent of the order of summation.
+    /// The sum of the differences, which does not depend on the order of summation.
     pub sum: Sum,
 }
 
@@ -68,7 +68,7 @@ impl Differences {
     }
 }
 
-/// Weights factor·((L − base)/divisor), or all 0 if the divisor is 0.
+/// The formula of weights factor·((L − base)/divisor), or all 0 if the divisor is 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shares {
     factor: f64,
@@ -89,22 +89,22 @@ fn range(numbers: &[f64]) -> (f64, f64) {
     numbers.iter().fold((f64::INFINITY, f64::NEG_INFINITY), ends)
 }
 
-/// How weights of a kind are made.
+/// The rule by which weights of a kind are computed.
 pub(super) enum Rule {
-    /// The same weight for every point.
+    /// All points have the same weight.
     Common,
-    /// Taken from the input.
+    /// The weights are taken from the input.
     Column,
-    /// Computed from the differences L and α.
+    /// The weights are computed from the differences L and α.
     Proportional(fn(&Differences, f64) -> Shares),
 }
 
 /// A kind of weights.
 pub(super) struct WeightKind {
     weighting: Weighting,
-    /// Its name on the command line.
+    /// The name on the command line.
     name: &'static str,
-    /// Placeholder of the parameter that follows the name and a `=`.
+    /// The placeholder of the parameter that follows the name and a `=`.
     parameter: Option<&'static str>,
     /// A short explanation.
     about: &'static str,
@@ -165,8 +165,8 @@ impl Weighting {
         KINDS.iter().find(own).expect("each kind is in the table")
     }
 
-    /// The kinds as a user writes them, each with an explanation: `common=C, min-max (eq. 4.1), … or column
-    /// (from the input)`.
+    /// Lists the kinds as a user writes them, each with an explanation: `common=C, min-max (eq. 4.1), … or column (from the
+    /// input)`.
     pub fn known() -> String {
         let names = KINDS.map(|WeightKind { name, parameter, about, .. }| {
             let parameter = parameter.map(|p| format!("={p}")).unwrap_or_default();

@@ -1,4 +1,4 @@
-//! The Delaunay triangulation of points, and where a point lies in it.
+//! Computes the Delaunay triangulation of points, and locates points in it.
 
 use walpha_regular::{Location, TriangulationError, triangulate};
 

@@ -18,7 +18,7 @@ fn main() -> Result<(), TriangulationError> {
         assert!(!bounded(&volume) || (volume - expected).abs() < 1e-12);
     }
 
-    // Without weights the cells are unit cubes, those of the Voronoi diagram, with six facets each.
+    // Without weights the cells are unit cubes, the cells of the Voronoi diagram, with six facets each.
     let voronoi = PowerDiagram::of(&triangulate(&points, None)?, None)?;
     assert!(
         voronoi

@@ -1,4 +1,4 @@
-//! The cells of a triangulation as flat arrays, by the numbers of points alone.
+//! The cells of a triangulation as flat arrays, which name points only by number.
 
 /// Corners and adjacency of all cells. The infinite cells, one beyond each facet of the hull, have the infinite vertex as a corner;
 /// see [`Triangulation`](crate::Triangulation), whose arrays these become.
@@ -25,7 +25,7 @@ impl CellArrays {
         self.at_infinity
     }
 
-    /// Cells, adjacency and infinite vertex, by value, so that each can be dropped on its own.
+    /// Cells, adjacency and infinite vertex, by value, so that each can be dropped separately.
     pub fn into_parts(self) -> (Vec<[u32; 4]>, Vec<[u32; 4]>, u32) {
         (self.cells, self.adjacency, self.at_infinity)
     }

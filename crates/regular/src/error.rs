@@ -3,7 +3,7 @@ use walpha_base::advice::{Advice, Advise, Category, wrapped};
 
 use super::Triangulation;
 
-/// What is wrong with points.
+/// A fault in a set of points.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SitesError {
@@ -25,7 +25,7 @@ pub enum SitesError {
     Value {
         /// Input index of the point.
         index: usize,
-        /// Which number: x, y, z or weight.
+        /// The name of the number: x, y, z or weight.
         what: &'static str,
         /// Its value.
         value: f64,
@@ -41,7 +41,7 @@ pub enum SitesError {
         /// Number of distinct positions.
         distinct: usize,
     },
-    /// All points in one plane or on one line.
+    /// All points lie in one plane or on one line.
     #[error("all {points} points lie {on}: a 3D triangulation needs points that span a volume")]
     Flat {
         /// Number of distinct positions.
@@ -78,7 +78,7 @@ pub enum TriangulationError {
     /// Out of memory.
     #[error("no memory for the triangulation: {} MiB are needed at once", bytes >> 20)]
     Memory {
-        /// Bytes asked for.
+        /// The number of bytes that were requested.
         bytes: usize,
     },
 }

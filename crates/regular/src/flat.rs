@@ -13,16 +13,16 @@ use walpha_base::Cancelled;
 /// The maximal simplices of a flat triangulation, all of one dimension; site indices ascend within each.
 #[derive(Debug, Default)]
 pub struct Flat {
-    /// Of points in a plane.
+    /// The triangles of points in a plane.
     pub triangles: Vec<[u32; 3]>,
-    /// Of points on a line.
+    /// The edges of points on a line.
     pub edges: Vec<[u32; 2]>,
     /// A point alone.
     pub vertices: Vec<[u32; 1]>,
 }
 
-/// The triangulation of sites that span no volume. `inserted` is called now and then with the number of points
-/// inserted since. Expected O(n log n).
+/// The triangulation of sites that span no volume. `inserted` is called from time to time with the number of points inserted
+/// since the last call. Expected O(n log n).
 ///
 /// # Errors
 /// Out of memory.
@@ -35,7 +35,7 @@ pub fn triangulate_flat(
     let extra = auxiliary.len() as u32;
     let mut positions = auxiliary;
     positions.extend(along.iter().map(|&i| sites.positions()[i as usize]));
-    // Whatever their weights, they are vertices, as extreme points of the hull.
+    // With any weights, they are vertices, because they are extreme points of the hull.
     let mut weights = vec![0.0; extra as usize];
     weights.extend(along.iter().map(|&i| sites.weights()[i as usize]));
     let made = insert_all(&positions, &weights, inserted)?;
@@ -57,7 +57,7 @@ pub fn triangulate_flat(
     Ok(flat)
 }
 
-/// Checks that sites span a volume. O(n) where they do not, usually less where they do.
+/// Checks that sites span a volume. O(n) if they do not, usually less if they do.
 ///
 /// # Errors
 /// [`SitesError::Flat`].
@@ -68,8 +68,8 @@ pub fn check_span(sites: &Sites<'_>) -> Result<(), SitesError> {
     }
 }
 
-/// At most four of the positions, affinely independent, with the same affine hull as all: four where they span a volume,
-/// three in a plane, two on a line. Exact. O(n) where they span no volume, usually less where they do.
+/// At most four of the positions, affinely independent, with the same affine hull as all: four if they span a volume, three in a
+/// plane, two on a line. Exact. O(n) if they span no volume, usually less if they do.
 pub fn spanning(all: &[[f64; 3]]) -> Vec<[f64; 3]> {
     let mut spanning = Vec::new();
     for &position in all {
@@ -85,7 +85,7 @@ pub fn spanning(all: &[[f64; 3]]) -> Vec<[f64; 3]> {
 
 /// Whether a position is outside the affine hull of others. Exact.
 fn is_independent(spanning: &[[f64; 3]], position: [f64; 3]) -> bool {
-    // Most planes are those of a map or a slice, where comparing is enough.
+    // Most planes are those of a map or a slice, for which comparing is enough.
     let is_shared = |k: usize| spanning.iter().all(|other| other[k] == position[k]);
     if spanning.len() == 3 && (0..3).any(is_shared) {
         return false;
@@ -102,13 +102,13 @@ fn is_independent(spanning: &[[f64; 3]], position: [f64; 3]) -> bool {
     }
 }
 
-/// Positions of auxiliary points that span a volume with the given ones; empty if these span one. Each is displaced
+/// Positions of auxiliary points that span a volume with the given ones; empty if the given ones span a volume. Each is displaced
 /// from the first position along an axis, through the origin, by more than the largest coordinate.
 pub fn auxiliary_positions(all: &[[f64; 3]]) -> Vec<[f64; 3]> {
     let mut spanning = spanning(all);
     let given = spanning.len();
     let largest = all.as_flattened().iter().fold(0f64, |most, x| most.max(x.abs()));
-    // A power of two, so that coordinates stay on their lattice. Any distance will do for points at the origin alone.
+    // A power of two, so that coordinates stay on their lattice. For points at the origin alone, any distance is suitable.
     let exponent = largest.max(SHORTEST).log2().ceil() as i32;
     let distance = if largest > 0.0 { 2f64.powi(exponent + 1) } else { 1.0 };
     for axis in 0..3 {
@@ -129,7 +129,7 @@ pub fn is_flat(error: &TriangulationError) -> bool {
     )
 }
 
-/// Auxiliary points are at least about this far away: powers of shorter lengths leave the range of doubles.
+/// The approximate minimum distance of auxiliary points: powers of shorter lengths leave the range of doubles.
 const SHORTEST: f64 = 1e-150;
 
 #[cfg(test)]

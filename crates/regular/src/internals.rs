@@ -1,5 +1,5 @@
-//! Predicates and mesh internals, for the other crates of walpha: **no promise of semantic versioning**. What other programs
-//! need of exact predicates is in [`predicates`](crate::predicates).
+//! Predicates and mesh internals, for the other crates of walpha: **no promise of semantic versioning**. Exact predicates for
+//! other programs are in [`predicates`](crate::predicates).
 
 pub mod number;
 
@@ -17,7 +17,7 @@ pub use crate::scaled::Scaled;
 pub use crate::sites::{Sites, check as check_numbers};
 pub use crate::torus::AXES;
 
-/// The points along a Hilbert curve, hidden and equal ones included. O(n log n).
+/// The points along a Hilbert curve, including hidden and equal ones. O(n log n).
 pub fn along_curve(positions: &[[f64; 3]]) -> Vec<u32> {
     crate::order::along_curve(positions).into_par_iter().map(|(_, point)| point).collect()
 }

@@ -2,9 +2,9 @@ use super::number::{decode, lowest_bit};
 
 /// The lattice that contains all coordinates of a set of points.
 ///
-/// A polynomial of degree k in differences of coordinates (weights count as degree 2) is evaluated without
-/// rounding if the magnitudes of its terms sum to at most 2⁵³ stepᵏ. On voxel grids this decides every tie;
-/// otherwise the many cospherical and coplanar tuples there would all need integers.
+/// A polynomial of degree k in differences of coordinates (weights count as degree 2) is evaluated without rounding if the
+/// magnitudes of its terms sum to at most 2⁵³ stepᵏ. On voxel grids this decides every tie; otherwise the many cospherical and
+/// coplanar tuples there would all require integers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lattice {
     /// A power of two, between 2⁻¹⁰⁰ and 2¹⁰⁰, of which every coordinate is a multiple; 0 if there is none.
@@ -14,8 +14,8 @@ pub struct Lattice {
 }
 
 impl Lattice {
-    /// By how many bits the step may be refined so that it holds the weights. A bit of the step takes, from the 53
-    /// bits of a double, as many as the degree of the polynomial, up to 8.
+    /// The number of bits by which the step may be refined to hold the weights. A bit of the step takes, from the 53 bits of a
+    /// double, as many bits as the degree of the polynomial, up to 8.
     const MAX_REFINEMENT: i32 = 2;
     /// The largest magnitude of the exponent of the step: its powers up to the eighth are doubles.
     const MAX_EXPONENT: i32 = 100;
@@ -39,8 +39,8 @@ impl Lattice {
     }
 }
 
-/// The range of bits, from the lowest to the highest, of a set of coordinates. It decides whether triple products of
-/// differences, those with a position given later included, are exact in doubles.
+/// The range of bits, from the lowest to the highest, of a set of coordinates. It decides whether triple products of differences,
+/// including those with a position given later, are exact in doubles.
 #[derive(Clone, Copy, Debug)]
 pub struct BitRange {
     /// All coordinates are multiples of two to this power…

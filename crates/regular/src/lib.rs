@@ -1,16 +1,16 @@
-//! Exact regular triangulations of weighted points in space, in Rust alone.
+//! Exact regular triangulations of weighted points in space, written only in Rust.
 //!
 //! The regular triangulation of weighted points is their weighted Delaunay triangulation, the dual of the power
 //! diagram: no point lies inside the orthogonal sphere of a cell. With equal weights it is the Delaunay triangulation.
 //! Every predicate is evaluated exactly on the input doubles, so degenerate input (grids, cospherical, collinear and
 //! duplicate points) needs no special treatment.
 //!
-//! Ties are broken as in CGAL: each lifted point is raised by an infinitesimal height, which is larger the later the
-//! point comes in the order of (x, y, z) (Devillers and Teillaud 2011, doi:10.1016/j.comgeo.2010.09.010). The
-//! triangulation is therefore a function of the set of points, whatever their order.
+//! Ties are broken as in CGAL: each lifted point is raised by an infinitesimal height, which is larger the later the point comes
+//! in the order of (x, y, z) (Devillers and Teillaud 2011, doi:10.1016/j.comgeo.2010.09.010). The triangulation is therefore a
+//! function of the set of points, independent of their order.
 //!
-//! [`triangulate`] makes one, and [`Triangulation`] answers: which cells there are, which are neighbours, what the hull
-//! is, where a point lies. Points are named by their indices, and may be given in any order.
+//! [`triangulate`] makes a [`Triangulation`], which has the cells, their neighbours, the hull, and the location of points. Points
+//! are named by their indices, and may be given in any order.
 //!
 //! ```
 //! use walpha_regular::{Location, triangulate};
@@ -93,8 +93,8 @@ fn no_memory(bytes: usize) -> TriangulationError {
     TriangulationError::Memory { bytes }
 }
 
-/// The facets opposite the corners of a cell, oriented so that facet and corner are the positively oriented cell. Two
-/// cells on the same side of a facet therefore have it in the same orientation.
+/// The facets opposite the corners of a cell, oriented so that facet and corner form the positively oriented cell. Two cells on
+/// the same side of a facet therefore have it in the same orientation.
 pub(crate) fn facets([a, b, c, d]: [u32; 4]) -> [[u32; 3]; 4] {
     [[b, d, c], [a, c, d], [b, a, d], [a, b, c]]
 }

@@ -1,34 +1,34 @@
-//! Where a point lies in a triangulation, decided exactly.
+//! The location of a point in a triangulation, decided exactly.
 
 use std::cmp::Ordering;
 
 use crate::triangulation::NO_CELL;
 use crate::{Lattice, MAX_COORDINATE, Predicates, Triangulation};
 
-/// Where a point lies in a [`Triangulation`]: in the interior of which face. The cases are those of CGAL's
+/// The location of a point in a [`Triangulation`]: the face whose interior contains the point. The cases are those of CGAL's
 /// `Triangulation_3::Locate_type`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Location {
-    /// In the interior of a cell.
+    /// The point is in the interior of a cell.
     InCell {
         /// The cell.
         cell: u32,
     },
-    /// In the interior of a facet.
+    /// The point is in the interior of a facet.
     OnFacet {
         /// A finite cell with this facet.
         cell: u32,
         /// Its vertices, ascending.
         facet: [u32; 3],
     },
-    /// In the interior of an edge.
+    /// The point is in the interior of an edge.
     OnEdge {
         /// A finite cell with this edge.
         cell: u32,
         /// Its ends, ascending.
         edge: [u32; 2],
     },
-    /// At a vertex.
+    /// The point is at a vertex.
     OnVertex {
         /// A finite cell with this vertex.
         cell: u32,
@@ -43,7 +43,7 @@ pub enum Location {
 }
 
 impl Location {
-    /// The cell where the point lies: finite, unless it is outside.
+    /// The cell that contains the point; finite, unless the point is outside.
     pub fn cell(self) -> u32 {
         match self {
             Self::InCell { cell }
@@ -56,11 +56,11 @@ impl Location {
 }
 
 impl Triangulation {
-    /// Where a point lies, exactly; `None` if a coordinate is NaN or larger in magnitude than [`MAX_COORDINATE`]. Of the
-    /// cells that share a face, any is named.
+    /// The exact location of a point; `None` if a coordinate is NaN or larger in magnitude than [`MAX_COORDINATE`]. The named
+    /// cell is any of the cells that share the face.
     ///
-    /// A walk from the nearest of a few vertices (Mücke, Saias and Zhu 1999, doi:10.1016/S0925-7721(98)00035-2):
-    /// expected O(n^¼) for evenly distributed points.
+    /// This walks from the nearest of a few vertices (Mücke, Saias and Zhu 1999, doi:10.1016/S0925-7721(98)00035-2): expected
+    /// O(n^¼) for evenly distributed points.
     ///
     /// ```
     /// use walpha_regular::{Location, triangulate};
@@ -76,8 +76,8 @@ impl Triangulation {
         self.locate_from(point, self.cell_near(point))
     }
 
-    /// The same by a walk from a cell; `None` also where there is no such cell. Fast where the cell is near the
-    /// point: that of the last point, say, of points along a curve.
+    /// Like [`locate`](Self::locate), by a walk from a cell; `None` also if that cell does not exist. This is fast if the cell is
+    /// near the point, such as the cell of the previous point along a curve.
     pub fn locate_from(&self, point: [f64; 3], cell: u32) -> Option<Location> {
         let mut cell = match self.infinite_corner(*self.cells().get(cell as usize)?) {
             Some(corner) => self.adjacency()[cell as usize][corner] / 4,
@@ -86,7 +86,7 @@ impl Triangulation {
         if !point.iter().all(|x| x.abs() <= MAX_COORDINATE) {
             return None;
         }
-        // Across facets that separate the cell from the point: such a walk never returns to a cell of a regular
+        // The walk goes across facets that separate the cell from the point: such a walk never returns to a cell of a regular
         // triangulation (Edelsbrunner 1990, doi:10.1007/BF02122779).
         let (mut from, mut face) = (NO_CELL, Vec::with_capacity(4));
         'walk: loop {
@@ -94,7 +94,7 @@ impl Triangulation {
             face.clear();
             for (corner, side) in self.adjacency()[cell as usize].into_iter().enumerate() {
                 let next = side / 4;
-                // The point is strictly on this side of the facet that the walk came through.
+                // The point is strictly on this side of the facet through which the walk came.
                 let sign = if next == from {
                     Ordering::Greater
                 } else {

@@ -42,8 +42,8 @@ impl<const D: usize> Curve<D> {
         Self { low: ends.map(|(low, _)| low), scale }
     }
 
-    /// The index of the grid cell that a point is in. The points whose indices begin with the same bits are those in
-    /// a box; the next bit halves it, by a plane across one axis.
+    /// The index of the grid cell that contains a point. The points whose indices begin with the same bits are those in a box;
+    /// the next bit halves it, by a plane across one axis.
     pub(super) fn index(&self, position: &[f64; D]) -> u64 {
         let mut step = [0; 3];
         for k in 0..D {
@@ -104,8 +104,7 @@ fn spread(mut x: u64) -> u64 {
     x
 }
 
-/// The numbers 0..n in rounds, each about three times as large as all before it together; ascending within a
-/// round.
+/// The numbers 0..n in rounds, each about three times as large as all earlier ones together; ascending within a round.
 pub(super) fn rounds(n: u32) -> impl Iterator<Item = u32> {
     let last = n.checked_ilog2().unwrap_or(0).saturating_sub(FIRST_ROUND_BITS) / GROWTH_BITS;
     (0..=last).rev().flat_map(move |round| (0..n).filter(move |&v| round_of(v).min(last) == round))
@@ -131,7 +130,7 @@ fn round_of(v: u32) -> u32 {
 mod tests {
     use super::*;
 
-    /// On a grid of a power of two, each step along the curve is one step in space.
+    /// On a grid whose size is a power of two, each step along the curve is one step in space.
     #[test]
     fn neighbours_in_order_are_neighbours_in_space() {
         let corner = |i: u32| [i % 8, i / 8 % 8, i / 64];

@@ -13,16 +13,17 @@ use crate::{CellArrays, Triangulation, TriangulationError, facets, filled, with_
 
 /// The power diagram of weighted points: its vertices, the volumes of its cells, the areas of the facets between them.
 ///
-/// The power cell of a point is where no other point has a smaller power distance; without weights it is the Voronoi cell. Cells of
-/// points on the convex hull are unbounded, and hidden points and duplicates have none. A point that is only just not hidden, as its power
-/// distance is nowhere smaller than all others, has a cell without volume: a polygon, a segment or a place where cells of other points meet,
-/// which are then neighbours across it.
+/// The power cell of a point is the set where no other point has a smaller power distance; without weights it is the Voronoi
+/// cell. Cells of points on the convex hull are unbounded, and hidden points and duplicates have none. A point that is only just
+/// not hidden, because its power distance is nowhere smaller than all others, has a cell without volume: a polygon, a segment or
+/// a place where cells of other points meet, which are then neighbours across it.
 ///
-/// Which vertices and facets there are is decided exactly: cells of the triangulation with one orthogonal sphere are one vertex, however
-/// ties were broken, and a facet that degenerates to a point, a segment or a ray is not listed, nor is one of a cell without volume.
-/// Hence a point of a cubic lattice has six facets, and one of a face-centred lattice twelve. Coordinates, areas and volumes are rounded,
-/// areas and volumes of distances from points nearby. Where lengths are so large or small that a double does not hold a product of two or
-/// three of them, as it does from 10⁻¹⁰⁰ to 10¹⁰⁰, areas and volumes are not known, and NaN; a coordinate beyond the largest double is infinite.
+/// The vertices and facets are decided exactly: cells of the triangulation with one orthogonal sphere are one vertex, however
+/// ties were broken. A facet that degenerates to a point, a segment or a ray is not listed, and neither is a facet of a cell
+/// without volume. Hence a point of a cubic lattice has six facets, and one of a face-centred lattice has twelve. Coordinates,
+/// areas and volumes are rounded; areas and volumes are computed from distances to points nearby. If lengths are so large or
+/// small that a double does not hold a product of two or three of them, which it does from 10⁻¹⁰⁰ to 10¹⁰⁰, areas and volumes are
+/// not known, and NaN; a coordinate beyond the largest double is infinite.
 ///
 /// ```
 /// use walpha_regular::{PowerDiagram, triangulate};
@@ -48,12 +49,13 @@ pub struct PowerDiagram {
 }
 
 impl PowerDiagram {
-    /// The power diagram dual to a triangulation, whose weights these are; with others it means nothing.
+    /// The power diagram dual to a triangulation with these weights; with other weights it is meaningless.
     ///
-    /// O(cells) and about 96 bytes each, by all threads of the current rayon pool; the result does not depend on their number.
+    /// O(cells) and about 96 bytes for each cell, on all threads of the current rayon pool; the result does not depend on their
+    /// number.
     ///
     /// # Errors
-    /// Other numbers of weights than of points; a weight that is not finite or is too large. Out of memory.
+    /// The numbers of weights and points differ; a weight that is not finite or is too large. Out of memory.
     pub fn of(
         triangulation: &Triangulation,
         weights: Option<&[f64]>,
@@ -64,7 +66,7 @@ impl PowerDiagram {
         let weights = weights.unwrap_or(&zeros);
         check(positions, weights)?;
         let arrays = &triangulation.arrays;
-        // What threads allocate piece by piece.
+        // The threads allocate this memory piece by piece.
         with_capacity::<u8>(arrays.cells.len().saturating_mul(BYTES_OF_A_CELL))?;
         let predicates = Predicates::new(positions, weights);
         let spheres = Spheres::of(arrays, &predicates, &monitor.part(0, 1, 3))?;
@@ -82,8 +84,8 @@ impl PowerDiagram {
         for &([p, q], area) in facets.iter().filter(|(_, area)| *area != f64::INFINITY) {
             let [p, q] = [p, q].map(|v| v as usize);
             let distance = length(sub(positions[q], positions[p]));
-            // Six times the pyramids with this base and the one or the other point as apex: twice the height is the distance, and
-            // more for the heavier point.
+            // Six times the pyramids with this base and one of the two points as apex: twice the height is the distance, and more
+            // for the heavier point.
             let more = (weights[p] - weights[q]) / distance;
             let is_held = area == 0.0 || area * distance >= f64::MIN_POSITIVE;
             let area = if is_held { area } else { f64::NAN };
@@ -111,35 +113,37 @@ impl PowerDiagram {
         &self.vertices
     }
 
-    /// The vertex dual to each finite cell, in the order of [`Triangulation::finite_cells`]. Cells with the same number have the same
-    /// orthogonal sphere, exactly: together they are a polytope, which ties divide.
+    /// The vertex dual to each finite cell, in the order of [`Triangulation::finite_cells`]. Cells with the same number have
+    /// exactly the same orthogonal sphere: together they are a polytope, which ties divide.
     pub fn same_sphere(&self) -> &[u32] {
         &self.same_sphere
     }
 
-    /// The volume of the power cell of each point: ∞ if it is unbounded, 0 for points that have no cell or one without volume, NaN where
-    /// it is not known, as products of lengths are not held by doubles. Where weights make a cell tiny, rounding may leave 0 or less.
+    /// The volume of the power cell of each point: ∞ if it is unbounded, 0 for points that have no cell or one without volume,
+    /// NaN if it is not known because doubles do not hold products of lengths. If weights make a cell tiny, rounding may leave 0
+    /// or less.
     pub fn volumes(&self) -> &[f64] {
         &self.volumes
     }
 
-    /// The two points of each facet, ascending: those whose power cells share it, both of which have a volume.
+    /// The two points of each facet, ascending: points whose power cells share the facet and have a volume.
     pub fn facets(&self) -> &[[u32; 2]] {
         &self.facets
     }
 
-    /// The area of each facet: ∞ if it is unbounded, NaN where it is not known, as products of lengths are not held by doubles.
+    /// The area of each facet: ∞ if it is unbounded, NaN if it is not known because doubles do not hold products of lengths.
     pub fn areas(&self) -> &[f64] {
         &self.areas
     }
 }
 
-/// Memory for a cell: its sphere, its part of about 1.2 edges, and what collecting both takes.
+/// Memory for a cell: its sphere, its part of about 1.2 edges, and the memory for collecting both.
 const BYTES_OF_A_CELL: usize = 96;
-/// So many cells are looked at by one thread in one piece.
+/// The number of cells that one thread handles in one piece.
 const CHUNK: usize = 1 << 12;
 
-/// Which cells have the same orthogonal sphere. Infinite cells have the same if their facets of the hull lie in one plane.
+/// The cells that have the same orthogonal sphere. Infinite cells have the same sphere if their facets of the hull lie in one
+/// plane.
 struct Spheres {
     /// The number of the sphere of each cell; those of finite cells come first.
     of: Vec<u32>,
@@ -148,7 +152,8 @@ struct Spheres {
 }
 
 impl Spheres {
-    /// Cells that share a sphere are a convex polytope, so that one gets from any to any other across facets between two of them.
+    /// Cells that share a sphere form a convex polytope, so a path across facets between two of them leads from any cell to any
+    /// other.
     fn of(
         arrays: &CellArrays,
         predicates: &Predicates,
@@ -246,8 +251,8 @@ impl Dual<'_> {
         Ok(facets)
     }
 
-    /// Lists the spheres of the cells around the edge that a cell has besides these two corners, in order. Whether no cell with a smaller
-    /// number is among them, or else the list is not complete.
+    /// Lists the spheres of the cells around the edge that a cell has besides these two corners, in order. Returns whether no
+    /// cell with a smaller number is among them; otherwise the list is not complete.
     fn is_first_around(&self, first: u32, [r, s]: [usize; 2], spheres: &mut Vec<u32>) -> bool {
         let CellArrays { cells, adjacency, .. } = self.arrays;
         spheres.clear();
@@ -297,15 +302,15 @@ impl Dual<'_> {
 /// Lengths whose squares doubles hold, to the last bit and with room for sums.
 const SQUARED: RangeInclusive<f64> = 1e-140..=1e140;
 
-/// The largest magnitude; NaN where there is one.
+/// The largest magnitude; NaN if a number is NaN.
 fn largest(numbers: &[f64]) -> f64 {
     numbers.iter().fold(0.0, |most: f64, x| if x.is_nan() { *x } else { most.max(x.abs()) })
 }
 
-/// How many facets the power cell of each point has, by which one knows whether it has a volume.
+/// The number of facets of the power cell of each point, which shows whether the cell has a volume.
 ///
-/// A cell with a volume has a vertex, as points span a volume, and so three facets at least. A cell that is a polygon has two: the polygon,
-/// seen from the one and the other side, where the next points are in line with its own. Segments and places have none.
+/// A cell with a volume has a vertex, because points span a volume, and therefore at least three facets. A cell that is a polygon
+/// has two: the polygon from both sides, where the next points are in line with its own. Segments and places have none.
 struct Sides(Vec<u8>);
 
 impl Sides {
@@ -328,7 +333,7 @@ impl Sides {
         self.0[v as usize] > Self::OF_POLYGON
     }
 
-    /// The facets between cells with a volume: what is a facet of a polygon is that of the cells on either side of all polygons there.
+    /// The facets between cells with a volume: the facet of a polygon belongs to the cells on both sides of all polygons there.
     fn of_solid_cells(&self, facets: Vec<([u32; 2], f64)>) -> Vec<([u32; 2], f64)> {
         if !self.0.contains(&Self::OF_POLYGON) {
             return facets;
@@ -357,7 +362,7 @@ impl Sides {
                 [false, true] => (p, q),
                 [true, false] => (q, p),
             };
-            // Once, as one gets here from either end.
+            // Only once, because it is reached from both ends.
             let to = beyond(from, polygon).filter(|&to| from < to)?;
             Some(([from, to], area))
         };

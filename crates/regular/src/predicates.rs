@@ -1,7 +1,7 @@
 //! Exact predicates on points in space: orientation and power test, for any program.
 //!
-//! A predicate is the sign of a polynomial in the coordinates. Computed in doubles, the sign of a polynomial that is nearly 0 may be
-//! wrong; these functions give the sign of the exact number:
+//! A predicate is the sign of a polynomial in the coordinates. The sign of a polynomial that is nearly 0 may be wrong if it is
+//! computed in doubles; these functions give the sign of the exact number:
 //!
 //! ```
 //! use std::cmp::Ordering;
@@ -31,16 +31,17 @@
 //! 3. **In integers**: doubles are multiples of powers of two, so in a small enough unit all are integers, and so is the polynomial.
 //!    128 bits suffice on most lattices; otherwise integers are as long as needed.
 //!
-//! So signs are exact for **all finite doubles**, subnormal ones included; beyond the range of steps 1 and 2 they take step 3.
-//! A number that is infinite or NaN is a panic.
+//! So signs are exact for **all finite doubles**, including subnormal ones; beyond the range of steps 1 and 2 they take step 3. A
+//! number that is infinite or NaN causes a panic.
 //!
 //! # Cost
 //!
-//! On one core of a server 16 ns for the orientation and 40 ns for the power test where doubles decide; 0.1 to 0.5 µs in numbers of two
-//! doubles or short integers. Integers grow with the ratio of the largest to the smallest number: 10 to 80 µs where 10³⁰⁰ and 10⁻³⁰⁰
-//! meet.
+//! On one core of a server, 16 ns for the orientation and 40 ns for the power test if doubles decide; 0.1 to 0.5 µs in numbers of
+//! two doubles or short integers. Integers grow with the ratio of the largest to the smallest number: 10 to 80 µs for 10³⁰⁰ and
+//! 10⁻³⁰⁰ together.
 //!
-//! Ties are ties here. [`triangulate`](crate::triangulate) breaks them, and decides the tests of a whole set faster than one by one.
+//! These functions report ties as ties. [`triangulate`](crate::triangulate) breaks them, and decides the tests of a whole set
+//! faster than one by one.
 
 use std::cmp::Ordering;
 
@@ -48,8 +49,8 @@ use crate::kernel::Predicates;
 
 /// The side of the plane through a, b, c on which d lies: the sign of the determinant of b − a, c − a, d − a. Exact.
 ///
-/// `Greater` where a, b, c turn counter-clockwise seen from d, so that (a, b, c, d) is *positively oriented*; `Equal` where the four
-/// points lie in one plane. Two points exchanged reverse the sign.
+/// `Greater` if a, b, c turn counter-clockwise, as seen from d, so that (a, b, c, d) is *positively oriented*; `Equal` if the
+/// four points lie in one plane. An exchange of two points reverses the sign.
 ///
 /// ```
 /// use std::cmp::Ordering;
@@ -77,8 +78,8 @@ pub fn orientation(a: [f64; 3], b: [f64; 3], c: [f64; 3], d: [f64; 3]) -> Orderi
 /// triangulation that has q. With equal weights the sphere is the circumscribed one, and this is the in-sphere test, with q inside
 /// for `Less`.
 ///
-/// The result is the sign of the determinant of the four rows (p − q, |p − q|² + ω(q) − ω(p)). A cell whose corners lie in one plane
-/// has no orthogonal sphere, and the sign of its determinant says nothing about one.
+/// The result is the sign of the determinant of the four rows (p − q, |p − q|² + ω(q) − ω(p)). A cell whose corners lie in one
+/// plane has no orthogonal sphere, and the sign of its determinant has no meaning for one.
 ///
 /// ```
 /// use std::cmp::Ordering;

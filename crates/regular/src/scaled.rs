@@ -1,4 +1,4 @@
-//! Points at a size where doubles decide.
+//! Points scaled to a size for which doubles decide.
 
 use rayon::prelude::*;
 
@@ -7,9 +7,9 @@ use crate::{MAX_COORDINATE, MAX_WEIGHT};
 
 /// Weighted points whose coordinates were multiplied by a power of two, so that the largest is near 1, and weights by its square.
 ///
-/// All are exact, so that predicates have the same signs, and triangulations and shapes the same simplices. But polynomials of degree 8 in
-/// coordinates beyond 10³⁰, or below 10⁻³⁰, leave the range of doubles, and integers must decide: of weighted lattices that takes thirty
-/// times as long.
+/// All numbers are exact, so predicates have the same signs, and triangulations and shapes have the same simplices. But
+/// polynomials of degree 8 in coordinates beyond 10³⁰, or below 10⁻³⁰, leave the range of doubles, and integers must decide: for
+/// weighted lattices that takes thirty times as long.
 #[derive(Debug)]
 pub struct Scaled<const D: usize = 3> {
     /// The positions.
@@ -20,11 +20,11 @@ pub struct Scaled<const D: usize = 3> {
 }
 
 impl<const D: usize> Scaled<D> {
-    /// Coordinates up to 2 to this power, or its inverse, stay as they are.
+    /// Coordinates up to 2 to this power, or its inverse, are not changed.
     const NEAR: i32 = 64;
 
-    /// The points scaled; `None` where they are of a usual size, or a number is none that [`Sites`](crate::Sites) take, would lose bits, or
-    /// would pass the range of doubles. O(n).
+    /// Scales points. `None` if they are of a usual size, or if a number is not accepted by [`Sites`](crate::Sites), would lose
+    /// bits, or would exceed the range of doubles. O(n).
     pub fn of(positions: &[[f64; D]], weights: &[f64]) -> Option<Self> {
         let coordinates = positions.as_flattened();
         let largest = coordinates.par_iter().map(|x| x.abs()).reduce(|| 0.0, f64::max);
@@ -33,7 +33,7 @@ impl<const D: usize> Scaled<D> {
         if exponent.abs() <= Self::NEAR || !in_range {
             return None;
         }
-        // Of subnormal coordinates all powers of two that are needed are not doubles.
+        // For subnormal coordinates, not all powers of two that are needed are doubles.
         let factor = 2f64.powi((-exponent).min(f64::MAX_EXP - 2));
         let scale = |x: f64| exactly(x, factor);
         let place = |p: &[f64; D]| {
@@ -50,8 +50,8 @@ impl<const D: usize> Scaled<D> {
         })
     }
 
-    /// A squared length at the same scale, as α is; `None` where it would lose bits or pass the range of doubles. An infinite one is
-    /// infinite.
+    /// A squared length, such as α, at the same scale; `None` if it would lose bits or exceed the range of doubles. An infinite
+    /// one is infinite.
     pub fn square(&self, squared: f64) -> Option<f64> {
         if squared.is_infinite() { Some(squared) } else { square(squared, self.factor) }
     }
@@ -90,13 +90,13 @@ mod tests {
             assert_eq!(scaled.square(w), Some(scaled.weights[0]));
             assert_eq!(scaled.square(f64::INFINITY), Some(f64::INFINITY));
         }
-        // Of usual sizes, and where bits are lost or numbers pass the range.
+        // Usual sizes, and sizes for which bits are lost or numbers exceed the range.
         assert!(of(1000.0, 1e-9, 5.0).is_none() && of(0.0, 0.0, 1.0).is_none());
         assert!(of(1e100, 1e-310, 0.0).is_none() && of(1e100, 1.0, 1e-300).is_none());
         assert!(of(1e-100, 0.0, 1e200).is_none());
         assert_eq!(of(1e-100, 0.0, 0.0).unwrap().square(1e200), None);
         assert_eq!(of(1e100, 0.0, 0.0).unwrap().square(1e-200), None);
-        // The smallest double, as far as a factor goes.
+        // The smallest double, as large as a factor can make it.
         assert_eq!(of(5e-324, 0.0, 0.0).unwrap().positions[0][0], 2f64.powi(-52));
     }
 }

@@ -33,8 +33,8 @@ const fn power_of_two(exponent: u64) -> f64 {
 }
 
 impl<'a> Sites<'a> {
-    /// Checks points and removes duplicates. Of points with equal positions the one of largest weight is
-    /// kept, of equal weights the one of lowest index. −0 and 0 are equal. O(n log n).
+    /// Checks points and removes duplicates. Of points with equal positions, the one with the largest weight is kept, and of
+    /// equal weights the one with the lowest index. −0 and 0 are equal. O(n log n).
     ///
     /// # Errors
     /// See [`SitesError`]. Coplanar points are reported later, by the triangulation.
@@ -186,7 +186,7 @@ fn duplicates<const D: usize>(
         for equal in same_index.chunk_by(|a, b| bits(a.1) == bits(b.1)) {
             let mut best = equal[0].1;
             for &(_, i) in equal {
-                // Of equal weights the lowest index, which comes first.
+                // Of equal weights, the lowest index, which comes first.
                 if weights[i as usize] > weights[best as usize] {
                     best = i;
                 }

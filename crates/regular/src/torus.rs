@@ -31,8 +31,7 @@ pub enum TorusError {
         /// The side.
         side: f64,
     },
-    /// One side is far longer than another: rounding along the long side would be too coarse for the short
-    /// one.
+    /// One side is far longer than another: rounding along the long side would be too coarse for the short side.
     #[error(
         "the sides of a periodic box go from {shortest} to {longest}: none may be more than {} times another",
         Torus::MAX_ASPECT_RATIO
@@ -109,8 +108,7 @@ impl Torus {
         self.sides.iter().product()
     }
 
-    /// The copy of a position that is in the box, rounded to the step. Along each axis it is at least 0 and
-    /// less than the side.
+    /// The copy of a position in the box, rounded to the step. Along each axis it is at least 0 and less than the side.
     pub fn wrap(&self, position: [f64; 3]) -> [f64; 3] {
         let mut position = position;
         for (x, side) in position.iter_mut().zip(self.sides) {
@@ -133,8 +131,8 @@ impl Torus {
         position.iter().zip(self.sides).all(|(x, side)| (0.0..side).contains(x))
     }
 
-    /// The copy of `to` that is nearest to `from` along each axis, for two positions in the box; where two
-    /// copies are equally near, `to` itself. Exact.
+    /// The copy of `to` that is nearest to `from` along each axis, for two positions in the box; if two copies are equally near,
+    /// `to` itself. Exact.
     #[inline]
     pub fn near(&self, from: [f64; 3], to: [f64; 3]) -> [f64; 3] {
         let mut near = to;
@@ -144,8 +142,8 @@ impl Torus {
         near
     }
 
-    /// How often the way from one position in the box to the nearest copy of another crosses its faces: along each
-    /// axis the multiple of the side by which that copy differs from `to`.
+    /// The number of times the way from one position in the box to the nearest copy of another crosses its faces: along each
+    /// axis, the multiple of the side by which that copy differs from `to`.
     #[inline]
     pub fn windings(&self, from: [f64; 3], to: [f64; 3]) -> [i32; 3] {
         [0, 1, 2].map(|k| -self.winding(k, from[k], to[k]))
@@ -163,7 +161,7 @@ impl Torus {
         [0, 1, 2].map(|k| position[k] + f64::from(windings[k]) * self.sides[k])
     }
 
-    /// The corners of a simplex: the first one, and of each other the copy nearest to it.
+    /// The corners of a simplex: the first one, and for each other corner the copy nearest to it.
     #[inline]
     pub fn together<const N: usize>(&self, mut corners: [[f64; 3]; N]) -> [[f64; 3]; N] {
         let first = corners[0];

@@ -1,4 +1,4 @@
-//! The triangulation of points, and what one can ask it.
+//! The triangulation of points, and its queries.
 
 use std::collections::HashSet;
 
@@ -10,11 +10,11 @@ use crate::{CellArrays, Scaled, Sites, TriangulationError, facets, filled, with_
 
 /// The regular triangulation of points in space.
 ///
-/// Without weights it is the Delaunay triangulation. Weights are those of the power distance, squared lengths: a
-/// point p of weight ω is at |x − p|² − ω from x. Points are named by their indices everywhere. The result depends on
-/// neither the number of threads, all of the current rayon pool, nor the order of the points, but for these indices.
+/// Without weights it is the Delaunay triangulation. Weights are those of the power distance, squared lengths: a point p of
+/// weight ω is at |x − p|² − ω from x. Points are named by their indices everywhere. The result depends neither on the number of
+/// threads, which are all of the current rayon pool, nor on the order of the points, except for these indices.
 ///
-/// Of points at one position the heaviest takes part, of equally heavy ones the first
+/// Of points at one position, the heaviest takes part, and the first of equally heavy ones
 /// ([`duplicates`](Triangulation::duplicates)). A point that heavier ones hide is not a vertex
 /// ([`hidden`](Triangulation::hidden)). The triangulation keeps a copy of the points, 24 bytes each.
 ///
@@ -65,7 +65,7 @@ pub fn triangulate(
     Triangulation::new(positions, arrays, duplicates)
 }
 
-/// At least so many cells are renumbered by one thread in one piece.
+/// The minimum number of cells that one thread renumbers in one piece.
 const MIN_LEN: usize = 1 << 12;
 
 /// A regular triangulation of points; [`triangulate`] makes it.
@@ -166,7 +166,7 @@ impl Triangulation {
         point < self.infinite_vertex() && self.cell_at[point as usize] != NO_CELL
     }
 
-    /// The points that heavier ones hide, ascending. Without weights there are none.
+    /// The points that heavier points hide, ascending. There are none without weights.
     pub fn hidden(&self) -> &[u32] {
         &self.hidden
     }

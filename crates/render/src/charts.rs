@@ -158,7 +158,7 @@ pub fn persistence_figure(title: &str, intervals: [&[[f64; 2]]; 3]) -> Figure {
     let numbers = || intervals.iter().copied().flatten().flatten().filter(|x| x.is_finite());
     let low = numbers().copied().fold(f64::INFINITY, f64::min);
     let high = numbers().copied().fold(f64::NEG_INFINITY, f64::max);
-    // Without any interval, or with one value alone, there is no length to go by.
+    // Without any interval, or with only one value, no length is given.
     let (low, length) = match high - low {
         length if length > 0.0 => (low, length),
         _ if low.is_finite() => (low, low.abs().max(1.0)),

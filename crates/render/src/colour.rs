@@ -58,7 +58,7 @@ impl ColourMap {
         Self { low, high }
     }
 
-    /// The map over the range of these values; 0 to 1 when there are none.
+    /// The map over the range of these values; 0 to 1 if there are none.
     pub fn over(values: &[f64]) -> Self {
         let ends = values
             .iter()

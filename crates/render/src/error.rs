@@ -27,19 +27,19 @@ pub enum RenderError {
         MOST_PIXELS
     )]
     Size {
-        /// Pixels asked for along the rows.
+        /// The requested number of pixels along the rows.
         width: u32,
-        /// Pixels asked for along the columns.
+        /// The requested number of pixels along the columns.
         height: u32,
     },
     /// A triangle names a vertex that the mesh does not have.
     #[error("mesh {mesh}: triangle {triangle} names vertex {vertex}, but there are {vertices}")]
     Index {
-        /// Which mesh of the scene.
+        /// The index of the mesh in the scene.
         mesh: usize,
-        /// Which of its triangles.
+        /// The index of the triangle.
         triangle: usize,
-        /// The vertex named.
+        /// The vertex that the triangle names.
         vertex: u32,
         /// Number of vertices.
         vertices: usize,
@@ -47,7 +47,7 @@ pub enum RenderError {
     /// The number of normals or colours is not that of the vertices.
     #[error("mesh {mesh} has {got} {what} for {vertices} vertices: give one each, or none")]
     Attribute {
-        /// Which mesh of the scene.
+        /// The index of the mesh in the scene.
         mesh: usize,
         /// `normals` or `colours`.
         what: &'static str,
@@ -64,7 +64,7 @@ pub enum RenderError {
     OutOfRange {
         /// `mesh`, `ball` or `tube`.
         what: &'static str,
-        /// Which of them.
+        /// The index of the item.
         index: usize,
     },
     /// A field that has no isosurface.

@@ -52,7 +52,7 @@ pub use shape::{Colouring, ShapeStyle, class_colours, plain_colours};
 pub use view::{Detail, Differences, Original, Page, Subject};
 pub use walpha_base::advice::Advise;
 
-// For the figures and the report of walpha: not covered by semantic versioning.
+// For the figures and the report of walpha. Not covered by semantic versioning.
 #[doc(hidden)]
 #[doc(hidden)]
 pub use figure::{ColourBar, Content, Drawing, Panel, Pen, Step};

@@ -17,7 +17,7 @@ pub(crate) struct Studio {
     pub key: V3,
     /// Towards the weak lamp that keeps the shadow side readable.
     fill: V3,
-    /// Up in the picture, where the sky is brighter.
+    /// The direction up in the picture, where the sky is brighter.
     pub up: V3,
     eye: V3,
     back: V3,
@@ -105,7 +105,7 @@ pub(crate) struct Light {
     pub key: f64,
 }
 
-/// Which side of a mesh is seen.
+/// The side of a mesh that is seen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Side {
     Front,

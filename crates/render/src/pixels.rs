@@ -67,7 +67,7 @@ impl Picture {
     /// The pixel in column `x` and row `y`, counted from the top left.
     ///
     /// # Panics
-    /// When there is no such pixel.
+    /// If there is no such pixel.
     pub fn pixel(&self, x: u32, y: u32) -> [u8; 4] {
         assert!(x < self.size.width && y < self.size.height, "pixel ({x}, {y}) is outside");
         self.pixels[(y * self.size.width + x) as usize]
@@ -152,7 +152,7 @@ impl PixelBox {
     }
 }
 
-/// What one primitive covers of one pixel: its samples as bits, and how near each is.
+/// The part of one pixel that one primitive covers: its samples as bits, and the nearness of each.
 pub(crate) struct Patch {
     pub x: i32,
     pub y: i32,

@@ -8,7 +8,7 @@ use crate::scene::{Ball, Colours, Mesh, Scene, Shading, Tube};
 /// The meaning of the colours of a drawn shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Colouring<'a> {
-    /// Nothing: the boundary in the colour of bone, singular simplices in a tint of their own.
+    /// No values: the boundary in the colour of bone, singular simplices in another tint.
     Plain,
     /// A value at each input point, such as F, through a colour map.
     Values(&'a [f64], ColourMap),
@@ -55,7 +55,7 @@ pub fn class_colours() -> [(&'static str, Rgb); 4] {
     ]
 }
 
-/// What is drawn with [`Colouring::Plain`], with its colour: the boundary, and everything singular.
+/// The parts that are drawn with [`Colouring::Plain`], each with its colour: the boundary, and everything singular.
 pub fn plain_colours() -> [(&'static str, Rgb); 2] {
     [("boundary", Rgb::BONE), ("singular: part of no cell", SINGULAR_TINT)]
 }
@@ -134,7 +134,7 @@ impl ShapeStyle<'_> {
     }
 }
 
-/// The facets of one class over the points they use; `None` when there are none.
+/// The facets of one class over the points they use; `None` if there are none.
 fn surface(
     positions: &[[f64; 3]],
     facets: &Simplices<3>,

@@ -8,7 +8,7 @@ use walpha_complex::canonical::sorted;
 
 use crate::{Class, Complex, Simplices};
 
-/// How the complexes of two engines differ, which is a fault of one of them.
+/// A difference between the complexes of two engines, which is a fault of one of them.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "the engines differ in {count} simplices: {} {simplex:?} is {} by cgal and {} by native",
@@ -21,9 +21,9 @@ pub struct Disagreement {
     pub count: u64,
     /// The input indices of the first of these, of the highest dimension.
     pub simplex: Vec<u32>,
-    /// Its class by CGAL; `None` if that does not list it.
+    /// Its class by CGAL; `None` if CGAL does not list it.
     pub cgal: Option<Class>,
-    /// Its class by the native engine; `None` if that does not list it.
+    /// Its class by the native engine; `None` if that engine does not list it.
     pub native: Option<Class>,
 }
 
@@ -96,7 +96,7 @@ mod tests {
         WeightedPoints::unweighted((0..8).map(corner).collect())
     }
 
-    /// An engine: the native one, on sites in their own order, that calls all cells singular where α is 1.
+    /// An engine for tests: the native one, on sites in their own order, which calls all cells singular if α is 1.
     fn classify(sites: &Sites<'_>, alpha: f64) -> Result<Complex, ShapeError> {
         let points = WeightedPoints::unweighted(sites.positions().to_vec());
         let options = ShapeOptions::new(Alpha::from_squared(alpha).unwrap()).exterior(true);
@@ -131,7 +131,7 @@ mod tests {
         );
     }
 
-    /// A simplex less, another class, and a row more are each found, and counted.
+    /// A missing simplex, another class, and an extra row are each found and counted.
     #[test]
     fn what_differs_is_found() {
         let options = ShapeOptions::new(Alpha::from_squared(1.0).unwrap()).engine(Engine::Native);

@@ -101,13 +101,13 @@ impl AlphaShape {
         }
     }
 
-    /// The same shape, declared to be in these coordinates; no number changes.
+    /// Declares this shape to be in the given coordinates. No number changes.
     #[must_use]
     pub fn with_coordinates(self, coordinates: Coordinates) -> Self {
         Self { coordinates, ..self }
     }
 
-    /// The same shape, computed by this engine.
+    /// Records this engine as the one that computed the shape.
     pub(crate) fn by(mut self, engine: Engine) -> Self {
         self.options.engine = engine;
         self
@@ -118,7 +118,7 @@ impl AlphaShape {
         self.coordinates
     }
 
-    /// The points as they were given, duplicates and hidden ones included; of a torus, in its box.
+    /// The points as they were given, including duplicates and hidden ones; for a torus, moved into its box.
     pub fn points(&self) -> &WeightedPoints {
         &self.points
     }
@@ -160,13 +160,13 @@ impl AlphaShape {
         self.options.power_alpha()
     }
 
-    /// The complex with its points, power weights and α, to be compared and checked.
+    /// The complex with its points, power weights and α, for comparison and checking.
     pub fn placed(&self) -> Placed<'_> {
         let (positions, weights) = (&self.points.positions, self.power_weights());
         Placed::new(positions, weights, self.power_alpha(), &self.complex)
     }
 
-    /// The simplices and their classes, in canonical order; exterior ones only if they were asked for.
+    /// The simplices and their classes, in canonical order. Exterior ones are listed only if they were requested.
     pub fn complex(&self) -> &Complex {
         &self.complex
     }
@@ -176,13 +176,13 @@ impl AlphaShape {
         &self.duplicates
     }
 
-    /// Points that are not vertices of the regular triangulation, ascending; `None` unless they were asked for
+    /// Points that are not vertices of the regular triangulation, ascending; `None` unless they were requested
     /// ([`ShapeOptions::hidden`], [`ShapeOptions::exterior`]).
     pub fn hidden(&self) -> Option<&[u32]> {
         self.hidden.as_deref()
     }
 
-    /// Betti numbers of the shape; `None` where they have not been counted.
+    /// Betti numbers of the shape; `None` if they were not counted.
     pub fn betti(&self) -> Option<Betti> {
         self.betti
     }
@@ -213,14 +213,13 @@ impl AlphaShape {
         self.complex.vertices.counts().in_shape()
     }
 
-    /// The regular facets alone, as the boundary of a solid: each edge is on two facets, which go
-    /// along it in opposite directions, and the facets around a vertex are one fan. Where the shape
-    /// is not a manifold, its parts are cut apart: facets that bound the same cells stay together, and
-    /// vertices between others occur once for each fan. Where that leaves an edge on four facets, as both
-    /// of its ends are in one fan, two of them get a vertex at its midpoint. Copies are then moved apart ([`Surface::moved`]), so that the
-    /// boundary is a manifold also for readers that take equal coordinates for one vertex, and crosses itself nowhere, which is decided
-    /// exactly; one of them, and all other vertices, stay. On a torus none moves.
-    /// O(n log n) for the first call; the shape keeps it.
+    /// The regular facets alone, as the boundary of a solid: each edge is on two facets, which run along it in opposite
+    /// directions, and the facets around a vertex form one fan. Where the shape is not a manifold, its parts are cut apart:
+    /// facets that bound the same cells stay together, and vertices between others occur once for each fan. If an edge is still
+    /// on four facets because both of its ends are in one fan, two of the facets get a vertex at its midpoint. Copies are then
+    /// moved apart ([`Surface::moved`]), so that the boundary is a manifold also for readers that take equal coordinates for one
+    /// vertex, and nowhere crosses itself, which is decided exactly. One of the copies, and all other vertices, stay. On a torus
+    /// nothing moves. O(n log n) for the first call; the shape keeps the result.
     pub fn solid(&self) -> (&Surface, Cuts) {
         let (surface, cuts) = self.solid.get(|| Surface::solid(self));
         (surface, *cuts)

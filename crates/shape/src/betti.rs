@@ -4,24 +4,24 @@ use serde::{Deserialize, Serialize};
 use walpha_base::advice::Advise;
 use walpha_base::shown::counted;
 
-/// The Betti numbers of a shape: components, tunnels, voids. Written `[b0, b1, b2]`, of a torus
-/// `[b0, b1, b2, b3]`. Its fields are public: this is plain data.
+/// The Betti numbers of a shape: components, tunnels, voids. Written `[b0, b1, b2]`, and `[b0, b1, b2, b3]` for a torus. The
+/// fields are public because this is plain data.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(into = "Vec<u64>", try_from = "Vec<u64>")]
 pub struct Betti {
     /// Connected components.
     pub b0: u64,
-    /// Tunnels: independent loops that bound nothing. On a torus those that go round it, too.
+    /// Tunnels: independent loops that bound nothing; on a torus, also those that wind round it.
     pub b1: u64,
-    /// Voids: bounded components of the complement. On a torus independent closed surfaces that bound
-    /// nothing: of a shape that leaves something out, those around the parts of the complement, one less than
-    /// there are, and one for each direction in which the complement does not go round.
+    /// Voids: bounded components of the complement. On a torus, independent closed surfaces that bound nothing: if the shape does
+    /// not cover the torus, the surfaces around the parts of the complement, one fewer than there are, and one for each direction
+    /// in which the complement does not wind round.
     pub b2: u64,
-    /// On a torus: 1 for the whole of it, else 0. `None` in space, where it is always 0.
+    /// On a torus: 1 for the whole torus, otherwise 0. `None` in space, where it is always 0.
     pub b3: Option<u64>,
 }
 
-/// In words in space, by letters on a torus.
+/// Writes words in space and letters on a torus.
 impl fmt::Display for Betti {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { b0, b1, b2, b3 } = *self;
@@ -59,12 +59,12 @@ impl From<Betti> for Vec<u64> {
     }
 }
 
-/// A list that is not one of Betti numbers.
+/// A list with a wrong number of Betti numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{given} Betti numbers: there must be three, or four of a torus")]
 #[non_exhaustive]
 pub struct BettiError {
-    /// How many numbers there are.
+    /// The number of numbers that were given.
     pub given: usize,
 }
 

@@ -8,8 +8,8 @@ use walpha_regular::Torus;
 use super::winding::{Winding, WindingSets, minus};
 use super::{Class, Complex};
 
-/// The facets of the cells of some classes as sorted rows, each with its cell; ascending, so that the two
-/// cells of a facet are consecutive.
+/// The facets of the cells of some classes as sorted rows, each with its cell; ascending, so that the two cells of a facet are
+/// consecutive.
 pub(super) fn sides(whole: &Complex, of: impl Fn(Class) -> bool + Sync) -> Vec<([u32; 3], u32)> {
     let mut sides: Vec<([u32; 3], u32)> = whole
         .cells
@@ -58,12 +58,12 @@ pub fn between(torus: Torus, cells: [[u32; 4]; 2], vertex: u32, positions: &[[f6
 pub(super) struct Complement {
     sets: UnionFind,
     outside: u32,
-    /// The number of components, that of the outside included.
+    /// The number of components, including the outside.
     components: u64,
 }
 
 impl Complement {
-    /// The number of components, that of the outside included.
+    /// The number of components, including the outside.
     pub(super) fn components(&self) -> u64 {
         self.components
     }

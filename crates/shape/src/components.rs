@@ -117,7 +117,7 @@ impl AlphaShape {
         let both = singular.flat_map(|(&[clockwise, counter], &[a, b, c])| {
             [(clockwise, [a, c, b]), (counter, [a, b, c])]
         });
-        // Sheet by sheet, so that sums change hands as seldom as there are sheets.
+        // The sides are sorted by sheet, so that sums are exchanged only once for each sheet.
         let mut sides: Vec<(u32, [u32; 3])> = regular.chain(both).collect();
         sides.par_sort_unstable_by_key(|&(sheet, _)| sheet);
         let sums = by_number(sides.len(), |row, sums: &mut ByNumber<SheetSums>| {
@@ -148,7 +148,7 @@ mod tests {
     use crate::measure::{facet_area, six_volumes};
     use crate::{Alpha, ShapeOptions, WeightedPoints, alpha_shape};
 
-    /// Sums over ranges of rows, joined, against one sum over all rows, for components within a range and across them.
+    /// Compares joined sums over ranges of rows with one sum over all rows, for components within a range and across ranges.
     #[test]
     fn sums_of_ranges_are_those_of_all_rows() {
         let mut random = Random::new(7);

@@ -8,8 +8,8 @@ use std::sync::{Arc, OnceLock};
 pub(crate) struct Derived<T>(OnceLock<Arc<T>>);
 
 impl<T> Derived<T> {
-    /// The value, computed at the first call; of calls at once each may compute it. No lock is held meanwhile: a thread that waits for
-    /// its share of parallel work takes up other work, and that may ask for the same value.
+    /// Returns the value, which the first call computes; simultaneous calls may each compute it. No lock is held meanwhile: a
+    /// thread that waits for its share of parallel work takes other work, which may need the same value.
     pub(crate) fn get(&self, compute: impl FnOnce() -> T) -> &T {
         if let Some(value) = self.0.get() {
             return value;
@@ -39,8 +39,8 @@ mod tests {
 
     use super::*;
 
-    /// The first of three threads waits for the second, which computes a part of the value; meanwhile the third asks for the value
-    /// twice, and the first takes up one of these.
+    /// The first of three threads waits for the second, which computes a part of the value; meanwhile the third requests the
+    /// value twice, and the first takes over one of these requests.
     #[test]
     fn values_may_be_computed_in_parallel_by_parallel_work() {
         let (done, wait) = channel();

@@ -37,13 +37,13 @@ pub enum ShapeError {
     /// Out of memory for data about the simplices.
     #[error(transparent)]
     Memory(#[from] NoMemory),
-    /// A bound on memory is kept by cutting the points into blocks, and this shape takes the whole triangulation.
+    /// A bound on memory requires cutting the points into blocks, but this shape requires the whole triangulation.
     #[error(
         "a bound on memory cannot be kept {}: that takes the whole triangulation at once",
         by.when()
     )]
     Unbounded {
-        /// What requires the whole triangulation.
+        /// The option that requires the whole triangulation.
         by: Whole,
     },
     /// Two points at one position, in a set of points that is distributed over blocks.
@@ -52,12 +52,12 @@ pub enum ShapeError {
         /// The position.
         at: [f64; 3],
     },
-    /// Several blocks, and something that requires the whole triangulation.
+    /// There are several blocks, but an option requires the whole triangulation.
     #[error("a shape {} takes the whole triangulation, and {blocks} blocks were asked for", by.when())]
     Divided {
-        /// What requires it.
+        /// The option that requires it.
         by: Whole,
-        /// The number of blocks given.
+        /// The given number of blocks.
         blocks: usize,
     },
     /// CGAL has no weighted alpha shapes of periodic boxes.
@@ -76,7 +76,7 @@ pub enum ShapeError {
         edge: [u32; 2],
         /// The axis along which it spans most of the box.
         axis: char,
-        /// How much it spans.
+        /// The length that it spans.
         span: f64,
         /// The side of the box along that axis.
         side: f64,
@@ -107,7 +107,7 @@ pub struct PlanError {
 }
 
 impl PlanError {
-    /// With so many bytes allowed, and those that the most economical plan needs, in so many blocks.
+    /// Creates the error from the allowed bytes, and the bytes and the number of blocks of the most economical plan.
     pub fn new(asked: u64, needed: u64, blocks: usize) -> Self {
         Self { asked, needed, blocks }
     }
@@ -119,7 +119,7 @@ impl Advise for PlanError {
     }
 }
 
-/// What requires the whole triangulation.
+/// An option that requires the whole triangulation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Whole {
@@ -240,18 +240,18 @@ pub enum CgalError {
     /// C++ ran out of memory.
     #[error("no memory for the {stage}: C++ ran out of it")]
     Memory {
-        /// What was being computed.
+        /// The step of the computation.
         stage: &'static str,
     },
     /// CGAL threw. This is a fault of walpha or CGAL, not of the input.
     #[error("CGAL failed in the {stage} stage: {text}")]
     Thrown {
-        /// What was being computed.
+        /// The step of the computation.
         stage: &'static str,
         /// The message of the exception.
         text: String,
     },
-    /// No engine of another crate was handed over ([`ShapeOptions::classifier`](crate::ShapeOptions::classifier)).
+    /// No engine of another crate was given ([`ShapeOptions::classifier`](crate::ShapeOptions::classifier)).
     #[error("there is no engine cgal: this program was built without it, or does not hand it over")]
     Absent,
 }

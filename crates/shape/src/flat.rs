@@ -1,7 +1,7 @@
 //! Shapes of points that span no volume: in one plane, on one line, or a single point.
 //!
-//! There are no cells. Classes are those of space: a simplex of the shape is singular if it is a face of no other
-//! simplex of the shape, else regular; none is interior, as space is on both sides.
+//! There are no cells. Classes are those of space: a simplex of the shape is singular if it is not a face of another simplex of
+//! the shape, otherwise regular. None is interior, because space is on both sides.
 
 use walpha_base::Monitor;
 use walpha_regular::internals::{Predicates, Sites, triangulate_flat};

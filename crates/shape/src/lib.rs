@@ -78,7 +78,7 @@ pub use walpha_base::{Cancelled, Coordinates, LengthUnit, Monitor, Space};
 pub use walpha_complex::{Alpha, AlphaError, ByClass, Class, Complex, Placed, Simplices, Voxels};
 pub use walpha_regular::{Torus, TorusError};
 
-// For walpha, which computes shapes in blocks from file to file: not covered by semantic versioning.
+// For walpha, which computes shapes in blocks from file to file. Not covered by semantic versioning.
 #[doc(hidden)]
 pub use alpha_shape::Assembled;
 #[doc(hidden)]

@@ -19,19 +19,19 @@ use super::{
 ///
 /// The shape owns its points: a `Vec` or [`WeightedPoints`] are taken over, and borrowed points are copied, 24 bytes each.
 ///
-/// Of points with equal positions the heaviest is kept ([`AlphaShape::duplicates`]). An empty shape
-/// is a result, not an error. At α = ∞ the shape is the convex hull.
+/// Of points with equal positions, the heaviest is kept ([`AlphaShape::duplicates`]). An empty shape is a result, not an error.
+/// At α = ∞ the shape is the convex hull.
 ///
-/// Points in one plane or on one line, which is decided exactly, have their shape there: there are no cells, a
-/// simplex of the shape is singular if it is a face of no other one, else regular, and none is interior.
-/// Ties are broken as in space. [`AlphaShape::outline`] has the classes of the plane, and polygons. Such a shape is computed in one block, whatever the options say.
+/// Points in one plane or on one line, which is decided exactly, have their shape there: there are no cells, a simplex of the
+/// shape is singular if it is not a face of another one, otherwise regular, and none is interior. Ties are broken as in space.
+/// [`AlphaShape::outline`] has the classes of the plane, and polygons. Such a shape is computed in one block, regardless of the
+/// options.
 ///
-/// With [`ShapeOptions::periodic`] the shape is that of a torus. Its points are those given, moved into the
-/// box and rounded as [`Torus::wrap`](super::Torus::wrap) does. A simplex of the torus is listed once, by the input indices of
-/// its vertices; its copies in space are those that have all other vertices nearer to the first than half of
-/// the box, along each axis ([`AlphaShape::corners`]). Where an edge that is to be listed is longer, that
-/// would not be so: [`ShapeError::Wraps`]. With 4 √(α + max ω) less than the shortest side there is no
-/// such edge. At α = ∞ the shape is the whole torus.
+/// With [`ShapeOptions::periodic`] the shape is that of a torus. Its points are the given ones, moved into the box and rounded as
+/// in [`Torus::wrap`](super::Torus::wrap). A simplex of the torus is listed once, by the input indices of its vertices. Its
+/// copies in space are those in which all other vertices are nearer to the first than half of the box, along each axis
+/// ([`AlphaShape::corners`]). If a listed edge were longer, this would not hold: [`ShapeError::Wraps`]. If 4 √(α + max ω) is less
+/// than the shortest side, there is no such edge. At α = ∞ the shape is the whole torus.
 ///
 /// # Errors
 /// [`CgalError::Absent`] for [`Engine::Cgal`] without a [classifier](ShapeOptions::classifier), and other errors of that engine; numbers that are not finite or too large, no
@@ -108,7 +108,7 @@ fn shape_by(
     }
     let squared = options.balls.power_weights(&points.weights, options.alpha)?;
     let weights = squared.as_deref().unwrap_or(&points.weights);
-    // What decides: the same at another scale, and with the power weights.
+    // The shape is computed from the points at another scale, with the power weights.
     let alpha = options.power_alpha();
     let scaled = Scaled::of(&points.positions, weights).filter(|_| options.periodic.is_none());
     let scaled = scaled.and_then(|scaled| {

@@ -3,20 +3,19 @@ use walpha_base::UnionFind;
 use super::Surface;
 use super::solid::join;
 
-/// Numbers of edges and vertices where the boundary of a shape is not a manifold. Other programs expect of a solid
-/// that there are none; alpha shapes often have some.
+/// Numbers of edges and vertices where the boundary of a shape is not a manifold. Other programs expect that a solid has none;
+/// alpha shapes often have some.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct ManifoldDefects {
-    /// Edges on more than two regular facets, where parts of the shape touch along a line.
+    /// Edges on more than two regular facets, along which parts of the shape touch.
     pub edges: usize,
-    /// Other vertices around which the regular facets make more than one fan, where parts touch at
-    /// a point.
+    /// Other vertices around which the regular facets form more than one fan, at which parts touch.
     pub vertices: usize,
 }
 
 impl ManifoldDefects {
-    /// Whether there are none.
+    /// Whether there are no defects.
     pub fn is_empty(&self) -> bool {
         *self == Self::default()
     }

@@ -2,8 +2,8 @@ use serde::{Deserialize, Serialize};
 use walpha_base::vector::{cross, dot, length, sub};
 use walpha_regular::Torus;
 
-/// Volume and areas of a shape in the units of its points, summed exactly and rounded once. Open, as they are plain
-/// numbers.
+/// Volume and areas of a shape in the units of its points, summed exactly and rounded once. This struct is not
+/// `#[non_exhaustive]` because it consists of plain numbers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Measures {
     /// Volume of the interior cells.

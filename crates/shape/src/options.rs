@@ -12,7 +12,7 @@ use super::{Alpha, Complex, ShapeError, Torus, Whole};
 #[derive(Clone, Copy)]
 pub struct Classifier(pub fn(&Sites<'_>, f64) -> Result<Complex, ShapeError>);
 
-/// Engines give one answer, so options are equal whichever of them is at hand.
+/// Engines give the same answer, so options are equal regardless of the available engine.
 impl PartialEq for Classifier {
     fn eq(&self, _: &Self) -> bool {
         true
@@ -37,7 +37,7 @@ pub enum Engine {
     Cgal,
     /// Triangulation and classes in Rust: without C++, on all cores, in bounded memory, and the fastest.
     Native,
-    /// Both, one after the other: the shape of the native engine, and an error where a simplex differs
+    /// Both, one after the other: the shape of the native engine, and an error if a simplex differs
     /// ([`Disagreement`](super::Disagreement)).
     Both,
 }
@@ -49,15 +49,14 @@ impl Engine {
     }
 }
 
-/// Which ball a point of weight ω is at parameter α.
+/// The ball that a point of weight ω is at parameter α.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Balls {
     /// A ball of squared radius α + ω: the usual definition (Edelsbrunner 1992; CGAL), the default.
     #[default]
     Power,
-    /// A ball of radius α + ω, as a sentence of the paper's section 4.2 reads: the power weight
-    /// (α + ω)² at parameter 0.
+    /// A ball of radius α + ω, following a sentence of the paper's section 4.2: the power weight (α + ω)² at parameter 0.
     Radius,
 }
 
@@ -70,7 +69,7 @@ impl Balls {
         }
     }
 
-    /// The radius of the ball of a point with weight ω: 0 where a power ball is empty.
+    /// The radius of the ball of a point with weight ω: 0 if a power ball is empty.
     pub fn radius(self, alpha: Alpha, weight: f64) -> f64 {
         match self {
             Self::Power => (alpha.squared() + weight).max(0.0).sqrt(),
@@ -78,7 +77,7 @@ impl Balls {
         }
     }
 
-    /// Power weights in place of these: (α + ω)² for [`Balls::Radius`], else `None`.
+    /// Power weights that replace these: (α + ω)² for [`Balls::Radius`], otherwise `None`.
     ///
     /// # Errors
     /// [`ShapeError::Radius`] for a negative or infinite radius, with the position of its weight.
@@ -103,7 +102,7 @@ impl Balls {
     }
 }
 
-/// How to compute the shape of weighted points.
+/// Options for the computation of the shape of weighted points.
 ///
 /// ```
 /// use walpha_shape::{Alpha, Engine, ShapeOptions};
@@ -116,20 +115,19 @@ impl Balls {
 pub struct ShapeOptions {
     /// The parameter α.
     pub alpha: Alpha,
-    /// What α + ω means.
+    /// The meaning of α + ω.
     pub balls: Balls,
     /// The implementation that computes the shape.
     pub engine: Engine,
-    /// Whether the simplices outside the shape are listed, too: the whole triangulation, which takes one
-    /// block.
+    /// Whether the simplices outside the shape are listed, too: the whole triangulation, which requires one block.
     pub exterior: bool,
-    /// Whether hidden points are listed ([`AlphaShape::hidden`](super::AlphaShape::hidden)),
-    /// which takes the whole triangulation, too.
+    /// Whether hidden points are listed ([`AlphaShape::hidden`](super::AlphaShape::hidden)), which also requires the whole
+    /// triangulation.
     pub hidden: bool,
-    /// The number of blocks that the points are cut into, at most one per point; by default the fewest that keep all
-    /// threads busy and the bound on memory. One block is the whole triangulation.
+    /// The number of blocks that the points are cut into, at most one per point; by default the smallest number that keeps all
+    /// threads busy and respects the bound on memory. One block is the whole triangulation.
     pub blocks: Option<NonZeroUsize>,
-    /// A bound on memory in bytes, which the number of blocks is chosen for.
+    /// A bound on memory in bytes, for which the number of blocks is chosen.
     pub memory: Option<u64>,
     /// Whether points in one plane, on one line, or fewer than four are an error. Otherwise their shape
     /// is the one in their plane or on their line, without cells.
@@ -173,8 +171,8 @@ impl ShapeOptions {
     /// Checks that the options are compatible, as [`alpha_shape`](super::alpha_shape()) does first.
     ///
     /// # Errors
-    /// [`ShapeError::Unbounded`] and [`ShapeError::Divided`]: blocks, or a bound on memory, for what
-    /// takes the whole triangulation; [`ShapeError::Unrepeated`].
+    /// [`ShapeError::Unbounded`] and [`ShapeError::Divided`]: blocks, or a bound on memory, for options that require the whole
+    /// triangulation; [`ShapeError::Unrepeated`].
     pub fn check(&self) -> Result<(), ShapeError> {
         if self.periodic.is_some() && self.engine.asks_cgal() {
             return Err(ShapeError::Unrepeated);

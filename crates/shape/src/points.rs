@@ -4,8 +4,8 @@ use walpha_base::advice::Advise;
 
 /// Weighted points, with values where they are known; as many weights, and values, as positions.
 ///
-/// They are made of what is at hand: a `Vec` of positions is taken over, borrowed positions are copied, 24 bytes each.
-/// Without weights all are 0. The numbers are checked where they are used.
+/// They are made from the available data: a `Vec` of positions is taken over, borrowed positions are copied, 24 bytes each.
+/// Without weights all are 0. The numbers are checked when they are used.
 ///
 /// ```
 /// use walpha_shape::{Alpha, ShapeOptions, WeightedPoints, alpha_shape};
@@ -32,7 +32,7 @@ pub struct WeightedPoints {
 #[error("{given} {column} for {points} points: each point needs one")]
 #[non_exhaustive]
 pub struct LengthsError {
-    /// What the column contains.
+    /// The content of the column.
     pub column: &'static str,
     /// Its number of entries.
     pub given: usize,
@@ -40,7 +40,7 @@ pub struct LengthsError {
     pub points: usize,
 }
 
-/// The range of weights. Open, as they are plain numbers.
+/// The range of weights. This struct is not `#[non_exhaustive]` because it consists of plain numbers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct WeightSummary {
     /// The smallest.
@@ -57,7 +57,7 @@ impl LengthsError {
     /// Checks that a column has as many entries as there are points.
     ///
     /// # Errors
-    /// [`LengthsError`] where it has not.
+    /// [`LengthsError`] if it does not.
     pub fn unless_equal(column: &'static str, given: usize, points: usize) -> Result<(), Self> {
         if given == points { Ok(()) } else { Err(Self { column, given, points }) }
     }
@@ -78,7 +78,7 @@ impl WeightedPoints {
         Self { weights: vec![0.0; positions.len()], positions, values: None }
     }
 
-    /// The same points with values F, or without values.
+    /// Sets the values F of the points, or removes them.
     ///
     /// # Errors
     /// The numbers of points and values differ.
@@ -102,7 +102,7 @@ impl WeightedPoints {
         &self.weights
     }
 
-    /// Values F, one for each point, where they are known.
+    /// Values F, one for each point, if they are known.
     pub fn values(&self) -> Option<&[f64]> {
         self.values.as_deref()
     }
@@ -122,7 +122,7 @@ impl WeightedPoints {
         self.values.as_deref_mut()
     }
 
-    /// Positions, weights, and values where they are known.
+    /// Positions, weights, and values if they are known.
     pub fn into_parts(self) -> (Vec<[f64; 3]>, Vec<f64>, Option<Vec<f64>>) {
         (self.positions, self.weights, self.values)
     }
@@ -157,7 +157,7 @@ impl From<Vec<[f64; 3]>> for WeightedPoints {
     }
 }
 
-/// Copies of points without weights: of a slice, a `Vec` or an array.
+/// Copies points without weights from a slice, a `Vec` or an array.
 impl<P: AsRef<[[f64; 3]]> + ?Sized> From<&P> for WeightedPoints {
     fn from(positions: &P) -> Self {
         Self::unweighted(positions.as_ref().to_vec())

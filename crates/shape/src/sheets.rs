@@ -20,12 +20,12 @@ use super::{Class, Complex};
 /// Its fields are public: this is plain data.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Sheets {
-    /// For each regular facet, in their order, its sheet.
+    /// The sheet of each regular facet, in the order of the facets.
     pub regular: Vec<u32>,
-    /// For each singular facet, in their order, the sheet seen from which its sorted row turns
-    /// clockwise, and that on the other side.
+    /// For each singular facet, in the order of the facets, the sheet from which its sorted row is seen turning clockwise, and
+    /// the sheet on the other side.
     pub singular: Vec<[u32; 2]>,
-    /// For each singular edge, in their order, the sheet around it.
+    /// The sheet around each singular edge, in the order of the edges.
     pub edges: Vec<u32>,
     /// Number of numbered sheets.
     pub count: u32,
@@ -80,8 +80,8 @@ impl Sheets {
     /// Stands in files for the absence of a sheet.
     pub const NONE: i32 = -1;
 
-    /// For each regular and then each singular facet the sheet in front of it, seen from which its
-    /// row turns counter-clockwise, and that behind it: [`Sheets::NONE`] where the shape is solid.
+    /// For each regular and then each singular facet, the sheet in front of it, from which its row is seen turning
+    /// counter-clockwise, and the sheet behind it: [`Sheets::NONE`] where the shape is solid.
     pub fn sides(&self) -> impl Iterator<Item = [i32; 2]> + '_ {
         let regular = self.regular.iter().map(|&front| [front as i32, Self::NONE]);
         regular.chain(self.singular.iter().map(|&[behind, front]| [front as i32, behind as i32]))
@@ -144,7 +144,7 @@ impl<'a> Outside<'a> {
     /// facets: first the side from which its sorted row turns clockwise. Unites corners across exterior facets.
     fn facets(&mut self) -> Vec<u32> {
         let (cells, facets) = (&self.whole.cells, &self.whole.facets);
-        // Facets as sorted rows, ascending as `sides` are: regular ones need not be listed so.
+        // Facets as sorted rows, ascending like `sides`; regular facets need not be listed in this order.
         let mut ascending: Vec<([u32; 3], usize)> = Vec::with_capacity(facets.len());
         ascending.extend(facets.rows().iter().enumerate().map(|(at, &row)| (sorted(row), at)));
         ascending.par_sort_unstable();

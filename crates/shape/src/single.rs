@@ -1,42 +1,42 @@
-//! Coordinates in single precision, in which some formats hold them and all pages draw them.
+//! Coordinates in single precision, which some formats use and in which all pages draw.
 
 use rayon::prelude::*;
 use walpha_base::shown::{number, six_digits};
 
 use super::Surface;
 
-/// How coordinates become single precision. Far from the origin rounding moves them, up to letting vertices fall onto one
-/// another; an offset that is subtracted first keeps them apart.
+/// The conversion of coordinates to single precision. Far from the origin rounding moves them, and vertices may even coincide; an
+/// offset that is subtracted first keeps them apart.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct SinglePrecision {
-    /// What is subtracted along x, y and z: a multiple of a power of ten, the roundest that suffices. 0 along axes that can do
-    /// without.
+    /// The offset that is subtracted along x, y and z: a multiple of the largest power of ten that suffices. 0 along axes that
+    /// need no offset.
     pub offset: [f64; 3],
     /// The largest error of a coordinate after that, in the unit of the coordinates.
     pub error: f64,
-    /// The number of different places that become equal to others even so.
+    /// The number of different places that become equal to others with this offset.
     pub merged: usize,
-    /// Whether even so a mesh is not what it was: the error is more than a thousandth of its shortest edge, or different
-    /// vertices have become one.
+    /// Whether a mesh changes with this offset: the error is more than a thousandth of its shortest edge, or different vertices
+    /// have become one.
     pub is_lossy: bool,
 }
 
-/// The share of the shortest edge that rounding may move a coordinate by.
+/// The share of the shortest edge by which rounding may move a coordinate.
 const TOLERATED: f64 = 1e-3;
 /// The largest relative error of rounding to single precision, 2⁻²⁴.
 const HALF_STEP: f64 = f32::EPSILON as f64 / 2.0;
 
 impl SinglePrecision {
-    /// That of a surface, from the positions of the input. O(n log n) where coordinates are not those of single precision
-    /// already, else O(n).
+    /// Chooses the conversion of a surface to single precision, from the positions of the input. O(n log n) if coordinates are
+    /// not in single precision already, otherwise O(n).
     pub fn of_surface(surface: &Surface, of_input: &[[f64; 3]]) -> Self {
         let places: Vec<[f64; 3]> = surface.positions(of_input).collect();
         let sides = surface.facets().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
         Self::of(&places, sides.chain(surface.edges.iter().copied()))
     }
 
-    /// That of places, and of edges between them.
+    /// Chooses the conversion of positions, and of edges between them.
     pub fn of(places: &[[f64; 3]], edges: impl Iterator<Item = [u32; 2]>) -> Self {
         let exact = Self::default();
         if exact.errors(places) == [0.0; 3] {
@@ -60,13 +60,13 @@ impl SinglePrecision {
                 }
             };
             let shifted = Self { offset: [0, 1, 2].map(of_axis), ..exact };
-            // An axis on which it gains nothing stays as it is.
+            // Leaves an axis unchanged if the offset gains nothing there.
             let gains = shifted.errors(places);
             let kept =
                 |axis: usize| if gains[axis] < errors[axis] { shifted.offset[axis] } else { 0.0 };
             Self { offset: [0, 1, 2].map(kept), ..exact }.measured(places)
         };
-        // Where vertices that no edge joins are nearer to each other than any edge is long, as near as can be.
+        // If vertices that no edge joins are nearer to each other than any edge is long, the error is made as small as possible.
         let found = [tolerated, 0.0].map(around);
         let best = found.into_iter().find(suffices);
         best.unwrap_or_else(|| {
@@ -80,12 +80,12 @@ impl SinglePrecision {
         [0, 1, 2].map(|axis| (place[axis] - self.offset[axis]) as f32)
     }
 
-    /// Whether something is subtracted.
+    /// Whether an offset is subtracted.
     pub fn has_offset(&self) -> bool {
         self.offset != [0.0; 3]
     }
 
-    /// What a user of the mesh has to know, if anything.
+    /// The remark that a user of the mesh needs, if any.
     pub fn remark(&self) -> Option<String> {
         let [x, y, z] = self.offset.map(number);
         let merged = match self.merged {
@@ -111,7 +111,7 @@ impl SinglePrecision {
         }
     }
 
-    /// The same with the error that it makes.
+    /// Returns this conversion with the error that it makes.
     fn measured(self, places: &[[f64; 3]]) -> Self {
         Self { error: self.errors(places).into_iter().fold(0.0, f64::max), ..self }
     }
@@ -129,7 +129,7 @@ impl SinglePrecision {
         places.par_iter().map(error).reduce(|| [0.0; 3], larger)
     }
 
-    /// How many different places become equal to others.
+    /// The number of different positions that become equal to others.
     fn merges(&self, places: &[[f64; 3]]) -> usize {
         // Adding 0 turns −0 into 0.
         let rounded = distinct(places, |place| self.round(place).map(|x| (x + 0.0).to_bits()));
@@ -159,12 +159,12 @@ fn length([a, b]: [[f64; 3]; 2]) -> f64 {
     [0, 1, 2].map(|axis| a[axis] - b[axis]).into_iter().fold(0.0, f64::hypot)
 }
 
-/// The roundest number that leaves an error of no more than is tolerated where it is subtracted from numbers between two;
-/// or else one about in their middle.
+/// The roundest number that leaves at most the tolerated error after it is subtracted from numbers between two bounds; otherwise
+/// a number near their middle.
 fn offset(low: f64, high: f64, tolerated: f64) -> f64 {
     let (middle, half) = (f64::midpoint(low, high), high / 2.0 - low / 2.0);
     let first = middle.abs().log10().floor();
-    // What is smaller than all numbers of single precision is none of these elsewhere either.
+    // An offset does not help numbers that are smaller than all numbers of single precision.
     if first < -45.0 {
         return 0.0;
     }
@@ -174,7 +174,7 @@ fn offset(low: f64, high: f64, tolerated: f64) -> f64 {
         let multiple =
             if power < 0 { (middle * step).round() / step } else { (middle / step).round() * step };
         let suffices = HALF_STEP * f64::max(high - multiple, multiple - low) <= tolerated;
-        // Beyond the digits of a double no number is rounder.
+        // No number beyond the digits of a double is rounder.
         let ends = 10f64.powi(power) <= half || f64::from(power) < first - 17.0;
         if suffices || ends {
             return multiple;
@@ -187,7 +187,7 @@ fn offset(low: f64, high: f64, tolerated: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// A square grid of points 5 cm apart, as far from the origin as UTM has them.
+    /// A square grid of points 5 cm apart, as far from the origin as in UTM coordinates.
     fn roof(at: [f64; 3]) -> (Vec<[f64; 3]>, Vec<[u32; 2]>) {
         let place =
             |i: u32| [at[0] + 0.05 * f64::from(i % 20), at[1] + 0.05 * f64::from(i / 20), at[2]];
@@ -221,7 +221,7 @@ mod tests {
         let (places, edges) = roof([0.0; 3]);
         let near = single(&places, &edges);
         assert!(!near.has_offset() && near.error > 0.0 && near.remark().is_none());
-        // Whole numbers below 2²⁴, wherever they are.
+        // Whole numbers below 2²⁴, anywhere.
         let whole: Vec<[f64; 3]> =
             (0..9).map(|i| [16_000_000.0 + f64::from(i), 0.0, -1.0]).collect();
         assert_eq!(single(&whole, &[[0, 1]]), SinglePrecision::default());
@@ -240,7 +240,7 @@ mod tests {
         ];
         let found = single(&far, &[[0, 3]]);
         assert!(found.has_offset() && !found.is_lossy, "{found:?}");
-        // There is no offset for what is far apart and fine.
+        // No offset suffices for points that are far apart and fine.
         let lossy = single(&places, &[[0, 2]]);
         assert!(
             lossy.is_lossy && lossy.remark().unwrap().contains("changes the mesh"),

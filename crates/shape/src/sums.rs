@@ -15,7 +15,7 @@ use super::{Class, Measures};
 pub struct Component {
     /// Number of its vertices.
     pub vertices: usize,
-    /// Number of its cells; 0 for a component that is nowhere solid.
+    /// The number of its cells; 0 for a component without solid parts.
     pub cells: usize,
     /// The volume of its cells, in cubed units of the points.
     pub volume: f64,
@@ -29,11 +29,11 @@ pub struct Component {
     pub low: [f64; 3],
     /// The largest coordinates of its box, (x, y, z).
     pub high: [f64; 3],
-    /// The voids that its boundary encloses, largest first; `None` where sheets are not known, and on a torus,
-    /// where a sheet need not enclose anything ([`AlphaShape::voids`](crate::AlphaShape::voids)).
+    /// The voids that its boundary encloses, largest first; `None` if sheets are not known, and on a torus, where a sheet need
+    /// not enclose anything ([`AlphaShape::voids`](crate::AlphaShape::voids)).
     pub voids: Option<Vec<Enclosed>>,
-    /// On a torus: the number of independent directions in which it winds round. Its box is that of one of its copies,
-    /// and the whole side along axes that it winds along.
+    /// On a torus: the number of independent directions in which it winds round. Its box is the box of one of its copies, but the
+    /// whole side along axes along which it winds.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rounds: Option<usize>,
 }
@@ -152,20 +152,21 @@ impl ComponentSums {
     }
 }
 
-/// No vertex yet.
+/// A component without vertices.
 impl Default for ComponentSums {
     fn default() -> Self {
         Self { vertices: 0, low: [f64::MAX; 3], high: [f64::MIN; 3], ..Self::at([0.0; 3]) }
     }
 }
 
-/// Sums over rows by number (of a component, or of a sheet), on all threads: for each range of rows, those of the numbers
-/// that it meets. The caller joins them; the result does not depend on the ranges. `add` adds a row, given by its index.
+/// Sums over rows by number (of a component, or of a sheet), on all threads. For each range of rows, returns the sums of the
+/// numbers that occur in it. The caller joins them; the result does not depend on the ranges. `add` adds a row, given by its
+/// index.
 pub(crate) fn by_number<S: Default + Send>(
     rows: usize,
     add: impl Fn(usize, &mut ByNumber<S>) + Sync,
 ) -> Vec<HashMap<u32, S>> {
-    /// Rows that are worth a task.
+    /// The number of rows that are worth a task.
     const RANGE: usize = 1 << 15;
     let range = |first: usize| {
         let mut sums = ByNumber { last: None, others: HashMap::new() };
@@ -175,7 +176,7 @@ pub(crate) fn by_number<S: Default + Send>(
     (0..rows).into_par_iter().step_by(RANGE).map(range).collect()
 }
 
-/// Sums by number. Most rows have the number of the row before, whose sums are at hand.
+/// Sums by number. Most rows have the number of the row before, whose sums are kept ready.
 pub(crate) struct ByNumber<S> {
     last: Option<(u32, S)>,
     others: HashMap<u32, S>,
@@ -245,7 +246,8 @@ pub fn components_of_sums(
     let enclosed =
         |(sheet, component, sums): (u32, usize, SheetSums)| (component, sums.enclosed(sheet));
     let mut found: Vec<(usize, Enclosed)> = sheets.into_iter().map(enclosed).collect();
-    // The outer sheet of a component encloses minus the volume of it and its voids: the least, so it is the first.
+    // The outer sheet of a component encloses minus the volume of the component and its voids: the smallest value, so it is the
+    // first.
     found.sort_by(|(a, first), (b, second)| a.cmp(b).then(first.volume.total_cmp(&second.volume)));
     let voids = found.chunk_by(|a, b| a.0 == b.0).flat_map(|of_one| of_one[1..].iter().rev());
     for &(component, void) in voids {
@@ -259,7 +261,7 @@ fn widen(low: &mut [f64; 3], high: &mut [f64; 3], point: [f64; 3]) {
     enclose(low, high, point, point);
 }
 
-/// Widens a box so that it contains another one, which may be empty: the low corner is then above the high one.
+/// Widens a box so that it contains another box, which may be empty: the low corner is then above the high one.
 fn enclose(low: &mut [f64; 3], high: &mut [f64; 3], other_low: [f64; 3], other_high: [f64; 3]) {
     for k in 0..3 {
         low[k] = low[k].min(other_low[k]);

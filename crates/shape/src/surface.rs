@@ -5,7 +5,7 @@ use super::{Class, Complex};
 /// The side of a facet at an edge: the ends of the edge, the smaller one first, and the corners of the facet there, as 3·row + corner.
 pub(super) type Side = ([u32; 2], [u32; 2]);
 
-/// Sides that are sorted at once, 256 MiB.
+/// Number of sides that are sorted at the same time, 256 MiB.
 const AT_ONCE: usize = 1 << 24;
 
 /// The visible part of a shape: regular facets and all singular simplices, with a compact numbering of their
@@ -18,9 +18,9 @@ const AT_ONCE: usize = 1 << 24;
 pub struct Surface {
     /// Input indices of the vertices used below, ascending.
     pub vertices: Vec<u32>,
-    /// Further vertices, each the midpoint of two of those; of a [solid](crate::AlphaShape::solid) only.
+    /// Further vertices, each the midpoint of two of those; only in a [solid](crate::AlphaShape::solid).
     pub midpoints: Vec<[u32; 2]>,
-    /// Vertices that are not at the positions of their input, ascending, and where they are; of a solid only.
+    /// Vertices that are not at the positions of their input, ascending, with their positions; only in a solid.
     pub moved: Vec<(u32, [f64; 3])>,
     /// Regular facets, counter-clockwise seen from outside.
     pub regular: Vec<[u32; 3]>,

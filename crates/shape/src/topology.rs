@@ -8,10 +8,9 @@ use super::complement::Complement;
 use super::winding::WindingSets;
 use super::{Betti, Class, Complex, Sheets};
 
-/// The Betti numbers of a shape within its *whole* regular triangulation, exterior simplices
-/// included, by direct count: b0 is the number of components; b2 the number of components of the
-/// complement less one, counted over exterior cells joined through exterior facets, the outside
-/// of the convex hull being one more cell; b1 follows from the Euler characteristic.
+/// The Betti numbers of a shape within its *whole* regular triangulation, including exterior simplices, by direct count: b0 is
+/// the number of components; b2 is the number of components of the complement less one, counted over exterior cells joined
+/// through exterior facets, with the outside of the convex hull as one more cell; b1 follows from the Euler characteristic.
 ///
 /// An empty shape has no component, and its complement is one. O(n log n).
 pub fn direct_betti(whole: &Complex) -> Betti {
@@ -20,10 +19,9 @@ pub fn direct_betti(whole: &Complex) -> Betti {
     Betti::with_euler(b0, b2, None, whole.euler_characteristic())
 }
 
-/// The Betti numbers of a shape by its sheets, the components of the boundary of a thin neighbourhood of it. A
-/// component with k voids of its own has k + 1
-/// sheets (Alexander duality), so sheets = b0 + b2, and b1 follows from the Euler characteristic.
-/// Every isolated vertex has a sheet of its own. O(n).
+/// The Betti numbers of a shape from its sheets, the components of the boundary of a thin neighbourhood of it. A component with k
+/// voids has k + 1 sheets (Alexander duality), so sheets = b0 + b2, and b1 follows from the Euler characteristic. Every isolated
+/// vertex has one more sheet. O(n).
 pub(super) fn sheet_betti(complex: &Complex, b0: u64, sheets: &Sheets) -> Betti {
     let lone = complex.vertices.counts().singular;
     let b2 = (sheets.count as usize + lone) as u64 - b0;

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::{AlphaShape, Simplices, Torus};
 
-/// A copy of a point: the point, and the multiples of the sides that the copy is moved by.
+/// A copy of a point: the point, and the multiples of the sides by which the copy is moved.
 type Copied = (u32, [i32; 3]);
 
 /// The copies that are needed, numbered after the points in the order of their first use.
@@ -21,8 +21,8 @@ impl<'a> Layout<'a> {
         Self { torus, positions, numbers: BTreeMap::new(), copied: Vec::new() }
     }
 
-    /// Places each simplex in the copy whose lowest coordinates are in the box, so that simplices extend beyond
-    /// the upper faces of the box only.
+    /// Places each simplex in the copy whose lowest coordinates are in the box, so that simplices extend beyond only the upper
+    /// faces of the box.
     pub(super) fn lay_out<const N: usize>(&mut self, simplices: &Simplices<N>) -> Simplices<N> {
         simplices.iter().map(|(&row, class)| (self.row(row), class)).collect()
     }
@@ -51,10 +51,9 @@ impl<'a> Layout<'a> {
 
 impl AlphaShape {
     /// A shape of a torus unwrapped into space, for programs without periodic boxes: a row for each simplex, as in
-    /// [`AlphaShape::complex`], but where it crosses an upper side of the box with copies of points in place
-    /// of these. Copies come after all points. Along the sides the result is cut open, so it is not the α-complex
-    /// of its points; classes, sizes, components and sheets are those of the torus. A shape in space is
-    /// returned unchanged. O(n log n).
+    /// [`AlphaShape::complex`], except that simplices which cross an upper side of the box have copies of points in place of the
+    /// points. Copies come after all points. Along the sides the result is cut open, so it is not the α-complex of its points;
+    /// classes, sizes, components and sheets are those of the torus. A shape in space is returned unchanged. O(n log n).
     #[must_use]
     pub fn unwrapped(&self) -> Self {
         let Some(torus) = self.options.periodic else { return self.clone() };

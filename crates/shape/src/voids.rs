@@ -49,7 +49,7 @@ pub struct Hollow {
 }
 
 impl Hollow {
-    /// One cell, with its squared radius.
+    /// The sums of one cell, with its squared radius.
     pub fn of(radius: Interval, corners: [[f64; 3]; 4]) -> Self {
         let end = |choose: fn(f64, f64) -> f64| {
             [0, 1, 2]
@@ -155,7 +155,7 @@ fn voids(shape: &AlphaShape) -> Vec<Void> {
     let mut bounded = Bounded::of(shape);
     let (positions, weights) = (&shape.points().positions, shape.power_weights());
     let spheres = Predicates::on_torus(positions, weights, shape.options().periodic);
-    // By component, whose number is that of its smallest cell.
+    // Indexed by component, whose number is that of its smallest cell.
     let mut found: Vec<Option<Hollow>> = vec![None; cells.len() + 1];
     let mut inside = Vec::new();
     for (id, (&cell, class)) in cells.iter().enumerate() {

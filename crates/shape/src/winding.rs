@@ -32,7 +32,7 @@ impl Directions {
         independent
     }
 
-    /// Adds those of others that are independent.
+    /// Adds the independent ones of other directions.
     pub fn extend(&mut self, others: &Self) {
         others.0.iter().for_each(|&way| _ = self.add(way));
     }
@@ -53,9 +53,9 @@ fn cross(a: Winding, b: Winding) -> [i128; 3] {
 /// another copy of their start: the set winds round the torus.
 #[derive(Debug)]
 pub struct WindingSets {
-    /// By member: its parent, and its winding relative to the parent.
+    /// For each member, its parent, and its winding relative to the parent.
     parents: Vec<(u32, Winding)>,
-    /// By root, the directions in which a set winds round, if it does.
+    /// For each root, the directions in which its set winds round, if it does.
     rounds: BTreeMap<u32, Directions>,
 }
 
@@ -82,8 +82,8 @@ impl WindingSets {
         }
     }
 
-    /// Unites the sets of `a` and `b`, where `b`, moved by `moved`, meets `a`. Returns whether they were two sets, or
-    /// else the new direction in which their set winds round, if there is one.
+    /// Unites the sets of `a` and `b`, where `b`, moved by `moved`, meets `a`. Returns whether they were two sets, or otherwise
+    /// the new direction in which their set winds round, if there is one.
     pub fn unite(&mut self, a: u32, b: u32, moved: Winding) -> United {
         let ((root, to_a), (other, to_b)) = (self.find(a), self.find(b));
         // The winding of the root of b relative to that of a.
@@ -117,7 +117,7 @@ impl WindingSets {
 /// The result of uniting two members of [`WindingSets`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum United {
-    /// They were in two sets, which are one now.
+    /// They were in two sets, which are now one.
     Two,
     /// They were in one set, which is now known to wind round in a new direction.
     Round(Winding),

@@ -9,7 +9,7 @@ const SETS: usize = 2000;
 /// Positions and weights, and a periodic box if there is one.
 type Set = (Vec<[f64; 3]>, Vec<f64>, Option<Torus>);
 
-/// Makes a set of about so many points.
+/// Makes a set of approximately this many points.
 type Make = fn(&mut Random, usize) -> Set;
 
 const KINDS: [(&str, Make); 8] = [
@@ -21,7 +21,7 @@ const KINDS: [(&str, Make); 8] = [
     }),
     ("cospherical", |random, count| {
         let on_sphere = |_| {
-            // All integer points with one distance from the origin, and their halves.
+            // All integer points with the same distance from the origin, and their halves.
             let [x, y, z] = [random.below(41), random.below(41), random.below(41)];
             let p = [x, y, z].map(|x| x as f64 - 20.0);
             let radius = [5.0, 10.0, 15.0][random.below(3)];
@@ -78,7 +78,7 @@ fn without_weights(positions: Vec<[f64; 3]>) -> Set {
 #[derive(PartialEq)]
 struct Results {
     whole: AlphaShape,
-    /// At the median of the critical values, in or out decided by exact equality.
+    /// The shape at the median of the critical values, where exact equality decides about simplices.
     shape: AlphaShape,
     /// Vertices, ranks and bits of values of all simplices in order.
     simplices: Vec<(Vec<u32>, u32, [u64; 3], bool)>,

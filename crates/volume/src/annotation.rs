@@ -5,7 +5,7 @@ use walpha_base::shown::{number, six_digits};
 use crate::{Coordinates, LengthUnit, Space};
 use walpha_complex::Alpha;
 
-/// For a comment: α as a squared length, and as a radius where it is one.
+/// The text about α for a comment: as a squared length, and also as a radius if it has one.
 pub fn alpha(alpha: Alpha) -> String {
     let squared = number(alpha.squared());
     match alpha.radius().map(six_digits).map(number) {
@@ -14,14 +14,13 @@ pub fn alpha(alpha: Alpha) -> String {
     }
 }
 
-/// For the comments of a file, appended to what is there: ` SPACE=LPS UNIT=mm`, as 3D Slicer looks for
-/// it; `UNIT` alone where the space is not known, and nothing where nothing is.
+/// The text about coordinates to append to a comment: ` SPACE=LPS UNIT=mm`, as 3D Slicer looks for it. It is `UNIT` alone if the
+/// space is not known, and empty if nothing is known.
 pub fn comment(coordinates: Coordinates) -> String {
     pairs(coordinates).into_iter().map(|(name, value)| format!(" {name}={value}")).collect()
 }
 
-/// The same on a line of its own, after the word or sign that begins a comment; none where nothing is
-/// known.
+/// A line with [`comment`] after `sign`, the word or sign that begins a comment; empty if nothing is known.
 pub fn line(sign: &str, coordinates: Coordinates) -> String {
     match comment(coordinates) {
         comment if comment.is_empty() => comment,
@@ -29,7 +28,7 @@ pub fn line(sign: &str, coordinates: Coordinates) -> String {
     }
 }
 
-/// The same as VTK's field data in XML: arrays of one string each, in the numbers of its characters.
+/// The coordinates as VTK's field data in XML: arrays of one string each, given by the codes of its characters.
 pub fn field_data(coordinates: Coordinates) -> String {
     let pairs = pairs(coordinates);
     if pairs.is_empty() {
@@ -46,7 +45,7 @@ pub fn field_data(coordinates: Coordinates) -> String {
     format!("<FieldData>\n{}</FieldData>\n", pairs.iter().map(array).collect::<String>())
 }
 
-/// The names and texts of what is known.
+/// The names and texts of the properties that are known.
 pub fn pairs(Coordinates { space, unit }: Coordinates) -> Vec<(&'static str, &'static str)> {
     let space = space.is_known().then(|| ("SPACE", space.name()));
     let unit = (unit != LengthUnit::Unstated).then(|| ("UNIT", unit.ascii()));

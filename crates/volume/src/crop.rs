@@ -12,25 +12,24 @@ use walpha_base::Monitor;
 use super::source::AT_ONCE;
 use super::{Dims, Frame, Labels, Nan, Source, Volume, VolumeError};
 
-/// Samples from one index up to, and without, another along each axis (x, y, z); a missing
-/// end is that of the volume.
+/// A range of samples along each axis (x, y, z), from a first index to an exclusive end. A missing end is that of the volume.
 #[expect(
     clippy::unsafe_derive_deserialize,
     reason = "the unsafe code is that of a macro of ndarray"
 )]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Region {
-    /// The first of each axis.
+    /// The first index along each axis.
     pub first: [usize; 3],
     /// One past the last along each axis.
     pub end: [Option<usize>; 3],
 }
 
 impl Region {
-    /// The part of a volume, in its place.
+    /// Cuts this part out of a volume. Its samples stay where they are in the world.
     ///
     /// # Errors
-    /// [`VolumeError::Region`] where it holds no sample or reaches beyond the volume.
+    /// [`VolumeError::Region`] if the part contains no sample or reaches beyond the volume.
     pub fn of(&self, volume: &Volume) -> Result<Volume, VolumeError> {
         let sizes = volume.dims().xyz();
         let end = [0, 1, 2].map(|k| self.end[k].unwrap_or(sizes[k]));
@@ -46,9 +45,9 @@ impl Region {
     }
 }
 
-/// A coarser volume: the mean of each `n`×`n`×`n` samples is placed at their centre; of [labels](Labels) the one that most of them have, of equally
-/// many the least. What is left at the end of an axis is dropped; an axis of fewer samples becomes one. Missing samples are left out of the
-/// mean.
+/// Makes a volume coarser. The mean of each block of `n`×`n`×`n` samples is placed at their centre; for [labels](Labels) it is
+/// the most frequent value, or the least of equally frequent ones. Incomplete blocks at the end of an axis are dropped; an axis
+/// with fewer than `n` samples becomes one sample. Missing samples do not count.
 #[expect(clippy::missing_panics_doc, reason = "an invariant, never met")]
 pub fn downsample(volume: Volume, n: NonZeroUsize) -> Volume {
     let blocks = Blocks::of(volume.dims(), n);
@@ -61,8 +60,8 @@ pub fn downsample(volume: Volume, n: NonZeroUsize) -> Volume {
     volume.like(samples, frame).expect("no axis is longer").with_missing(missing)
 }
 
-/// The same of a volume that is read in parts, so that its memory does not grow with what is read; `nan` is the rule for
-/// samples that are not finite.
+/// Like [`downsample`], for a volume that is read in parts, so that memory does not grow with the size of the source. `nan` is
+/// the rule for samples that are not finite.
 ///
 /// # Errors
 /// The file cannot be read or is damaged, [`VolumeError::NotFinite`], and [`VolumeError::Cancelled`].
@@ -85,7 +84,7 @@ fn downsample_slabs(
     let blocks = Blocks::of(source.dims(), n);
     let pick = Pick::of(Labels::of(source)?.is_some());
     let [sx, sy, sz] = source.dims().xyz();
-    // Whole blocks of planes, as many as are read at once.
+    // Whole blocks of planes, as many as fit into one read.
     let step = blocks.step[2];
     let planes = (at_once / (sx * sy) / step * step).max(step);
     let mut means = Vec::with_capacity(blocks.count.iter().product());
@@ -116,7 +115,7 @@ fn downsample_slabs(
         means.extend(blocks.picked(&samples, pick, is_missing));
         monitor.report((z + planes).min(sz) as u64, sz as u64)?;
     }
-    // Where none is finite the least is not either, which is refused.
+    // If no sample is finite, neither is the least, and the volume is refused.
     let (samples, missing) = blocks.filled(means, least, is_any_missing);
     let volume = Volume::new(samples, blocks.frame(source.frame()))?.with_missing(missing);
     let volume = volume.with_dtype(source.dtype());
@@ -124,11 +123,11 @@ fn downsample_slabs(
     Ok(if source.has_gray_levels() { volume.with_gray_levels() } else { volume })
 }
 
-/// What a block of samples becomes.
+/// How a block of samples becomes one sample.
 #[derive(Clone, Copy, PartialEq)]
 enum Pick {
     Mean,
-    /// The value that most samples have, of equally many the least: labels do not mix.
+    /// The most frequent value, or the least of equally frequent ones: labels do not mix.
     Most,
 }
 
@@ -138,21 +137,21 @@ impl Pick {
     }
 }
 
-/// The most frequent of values, of equally many the least.
+/// The most frequent value, or the least of equally frequent ones.
 fn most_frequent(mut values: Vec<f32>) -> Option<f32> {
     values.sort_unstable_by(f32::total_cmp);
-    // Of equally many the last is taken.
+    // `max_by_key` takes the last of equal counts, which is the least value as the order is reversed.
     let equal = values.chunk_by(|a, b| a == b).rev().max_by_key(|equal| equal.len());
     equal.map(|equal| equal[0])
 }
 
-/// The blocks of samples that become one each.
+/// The blocks of samples, each of which becomes one sample.
 struct Blocks {
-    /// Samples of the volume along x and y.
+    /// The number of samples of the volume along x and y.
     row: [usize; 2],
-    /// Samples of a block along x, y and z.
+    /// The number of samples of a block along x, y and z.
     step: [usize; 3],
-    /// Blocks along x, y and z.
+    /// The number of blocks along x, y and z.
     count: [usize; 3],
 }
 
@@ -163,7 +162,8 @@ impl Blocks {
         Self { row: [sizes[0], sizes[1]], step, count: [0, 1, 2].map(|k| sizes[k] / step[k]) }
     }
 
-    /// What becomes of each block among planes that begin with one, x fastest; `None` where all samples are missing.
+    /// The sample that each block becomes, x fastest, for planes that begin with a block; `None` for a block whose samples are
+    /// all missing.
     fn picked(
         &self,
         samples: &[f32],
@@ -188,7 +188,8 @@ impl Blocks {
         (0..nx * ny * layers).into_par_iter().map(picked).collect()
     }
 
-    /// The coarse samples, of which missing ones are the least of all, and which are missing, if any sample is.
+    /// The coarse samples, in which missing ones get the least value of all; and which are missing, if any sample of the volume
+    /// is.
     fn filled(
         &self,
         means: Vec<Option<f32>>,
@@ -257,7 +258,7 @@ mod tests {
         let part = Region { first: [2, 0, 0], end: [None; 3] }.of(&volume).unwrap();
         assert!(part.is_missing(0) && !part.is_missing(2));
     }
-    /// Labels do not mix: of 27 samples the most, of equally many the least.
+    /// Labels do not mix: of 27 samples, the most frequent value is taken, or the least of equally frequent ones.
     #[test]
     fn labels_do_not_mix() {
         let label = |x: usize| [0.0, 0.0, 7.0, 7.0, 7.0, 0.0][x % 6];
@@ -273,7 +274,7 @@ mod tests {
         assert_eq!(in_parts.unwrap().as_slice(), coarse(2).as_slice());
     }
 
-    /// Whatever is missing, and where planes are left over.
+    /// The result does not depend on reading in parts, whichever samples are missing and where planes are left over.
     #[test]
     fn read_in_parts_it_is_the_same() {
         let mut samples = Array3::from_shape_fn((7, 5, 4), |(z, y, x)| (z * y * y + x) as f32);

@@ -7,9 +7,9 @@ use walpha_base::advice::{Advice, Advise};
 
 /// How a file stores one sample.
 ///
-/// Samples become `f32`. 8-bit and 16-bit integers and `f32` keep their exact value; `u32`, `i32`,
-/// `u64`, `i64` and `f64` are rounded to the nearest `f32` (24 significant bits), which readers say of whole numbers, and an `f64`
-/// beyond its range becomes infinite, which [`Volume::new`](super::Volume::new) refuses.
+/// Samples become `f32`. 8-bit and 16-bit integers and `f32` keep their exact value. `u32`, `i32`, `u64`, `i64` and `f64` are
+/// rounded to the nearest `f32` (24 significant bits); readers warn if that changes whole numbers. An `f64` beyond the range
+/// becomes infinite, which [`Volume::new`](super::Volume::new) refuses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 #[allow(missing_docs, reason = "the names say all")]
@@ -38,7 +38,7 @@ pub enum Endian {
     Big,
 }
 
-/// An unknown name of a sample type or byte order.
+/// The error for an unknown name of a sample type or byte order.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{given:?} is no {kind}")]
 pub struct UnknownName {
@@ -54,7 +54,7 @@ impl Advise for UnknownName {
 }
 
 impl Dtype {
-    /// All types.
+    /// All sample types.
     pub const ALL: [Self; 10] = [
         Self::U8,
         Self::I8,
@@ -68,7 +68,7 @@ impl Dtype {
         Self::F64,
     ];
 
-    /// Bytes of one sample.
+    /// The size of one sample in bytes.
     pub fn size(self) -> usize {
         match self {
             Self::U8 | Self::I8 => 1,
@@ -78,7 +78,7 @@ impl Dtype {
         }
     }
 
-    /// Whether a number read from text is one of this type.
+    /// Whether a number read from text is a value of this type.
     pub fn holds(self, value: f64) -> bool {
         let (low, high) = match self {
             Self::U8 => (0.0, f64::from(u8::MAX)),
@@ -87,7 +87,7 @@ impl Dtype {
             Self::I16 => (f64::from(i16::MIN), f64::from(i16::MAX)),
             Self::U32 => (0.0, f64::from(u32::MAX)),
             Self::I32 => (f64::from(i32::MIN), f64::from(i32::MAX)),
-            // The ends of 64 bits are rounded up to a power of two, as the text's number is.
+            // The limits of 64-bit types are rounded up to a power of two, like the number from the text.
             Self::U64 => (0.0, u64::MAX as f64),
             Self::I64 => (i64::MIN as f64, i64::MAX as f64),
             Self::F32 | Self::F64 => return true,
@@ -95,7 +95,7 @@ impl Dtype {
         (low..=high).contains(&value) && value.fract() == 0.0
     }
 
-    /// The short name, as in `u8`.
+    /// The short name, such as `u8`.
     pub fn name(self) -> &'static str {
         match self {
             Self::U8 => "u8",
@@ -112,13 +112,13 @@ impl Dtype {
     }
 }
 
-/// A type of numbers that [`Volume::of_samples`](super::Volume::of_samples) takes: those of [`Dtype`].
+/// A type of numbers that [`Volume::of_samples`](super::Volume::of_samples) takes: one of [`Dtype`].
 pub trait Sample: Copy + Send + Sync + sealed::Sealed {
-    /// Its name.
+    /// The sample type.
     const DTYPE: Dtype;
-    /// The number, rounded as [`Dtype`] says.
+    /// Converts the number, which is rounded as [`Dtype`] says.
     fn to_f32(self) -> f32;
-    /// Whether it is a whole number that `f32` does not hold, so that it becomes another one.
+    /// Whether the number is a whole number that `f32` cannot hold, so that it is rounded.
     fn is_rounded(self) -> bool;
 }
 
@@ -126,9 +126,9 @@ mod sealed {
     pub trait Sealed {}
 }
 
-/// Up to here `f32` holds every whole number.
+/// The largest number up to which `f32` holds every whole number.
 pub(crate) const HELD: f64 = 16777216.0;
-/// From here on all `f64` are whole numbers.
+/// The number from which on all `f64` are whole numbers.
 const ALL_WHOLE: f64 = 9007199254740992.0;
 
 macro_rules! samples {
@@ -145,7 +145,7 @@ macro_rules! samples {
                 let exact = self as f64;
                 size_of::<Self>() > 2
                     && exact.abs() > HELD
-                    // Doubles from 2⁵³ on are whole for want of bits, not by their meaning.
+                    // Doubles from 2⁵³ on are whole only because they have no bits for fractions.
                     && (Self::DTYPE != Dtype::F64
                         || exact.fract() == 0.0 && exact.abs() < ALL_WHOLE)
                     && self as f32 as i128 != self as i128

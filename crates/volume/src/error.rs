@@ -1,4 +1,4 @@
-//! What can be wrong with a volume.
+//! Errors of volumes.
 
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
@@ -10,11 +10,11 @@ use walpha_base::shown::shown;
 
 use crate::Reason;
 
-/// What can be wrong with a volume or the file it comes from.
+/// An error of a volume or of the file it comes from.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum VolumeError {
-    /// An axis without samples.
+    /// An axis has no samples.
     #[error("a volume of {x}×{y}×{z} samples is empty: every axis needs at least one")]
     EmptyAxis {
         /// Samples along x.
@@ -24,7 +24,7 @@ pub enum VolumeError {
         /// Samples along z.
         z: u64,
     },
-    /// More samples than indices.
+    /// There are more samples than indices.
     #[error("{x}×{y}×{z} samples are too many: at most {} fit a 32-bit index", u32::MAX)]
     TooManySamples {
         /// Samples along x.
@@ -34,15 +34,15 @@ pub enum VolumeError {
         /// Samples along z.
         z: u64,
     },
-    /// A NaN or an infinity among the samples.
+    /// A sample is NaN or infinite.
     #[error("sample (x, y, z) = {at:?} is {value}: every sample must be a finite number")]
     NotFinite {
         /// The offending value.
         value: f32,
-        /// Its voxel, (x, y, z).
+        /// Its voxel (x, y, z).
         at: [usize; 3],
     },
-    /// An empty gray range, or one whose ends are so close or so far that gray levels overflow.
+    /// The gray range is empty, or its ends are so close or so far apart that gray levels overflow.
     #[error("gray range {low}..{high} cannot be mapped to 0..255")]
     GrayRange {
         /// The value meant to become 0.
@@ -50,17 +50,17 @@ pub enum VolumeError {
         /// The value meant to become 255.
         high: f64,
     },
-    /// A region without samples, or beyond the volume.
+    /// A region contains no samples, or reaches beyond the volume.
     #[error(
         "the region {}:{},{}:{},{}:{} is not part of a volume of {}×{}×{} samples",
         first[0], end[0], first[1], end[1], first[2], end[2], dims[0], dims[1], dims[2]
     )]
     Region {
-        /// The first index of each axis.
+        /// The first index along each axis.
         first: [usize; 3],
         /// One past the last along each axis.
         end: [usize; 3],
-        /// Samples of the volume along each axis.
+        /// The number of samples of the volume along each axis.
         dims: [usize; 3],
     },
     /// Reading was cancelled.
@@ -71,7 +71,7 @@ pub enum VolumeError {
     Io {
         /// The file.
         path: PathBuf,
-        /// What the system said.
+        /// The error of the system.
         source: io::Error,
     },
     /// A folder of parts cannot be written.
@@ -79,7 +79,7 @@ pub enum VolumeError {
     Written {
         /// The folder.
         path: PathBuf,
-        /// What the system said.
+        /// The error of the system.
         source: io::Error,
     },
     /// The file is not what its name or header says.
@@ -90,7 +90,7 @@ pub enum VolumeError {
         /// What is wrong.
         reason: Reason,
     },
-    /// A file whose header or samples make no volume.
+    /// The header or the samples of a file do not make a volume.
     #[error("{}: {source}", shown(path))]
     InFile {
         /// The file.
@@ -106,7 +106,7 @@ pub enum VolumeError {
     UnknownSample {
         /// What was asked for.
         name: String,
-        /// The samples there are.
+        /// The samples that exist.
         known: String,
         /// What to do about it.
         advice: Advice,
@@ -120,7 +120,7 @@ pub enum VolumeError {
 }
 
 impl VolumeError {
-    /// Why the file cannot be read, if that is what is wrong.
+    /// Why the file cannot be read, if this is such an error.
     pub fn reason(&self) -> Option<&Reason> {
         match self {
             Self::Format { reason, .. } => Some(reason),
@@ -129,7 +129,7 @@ impl VolumeError {
         }
     }
 
-    /// Whether a sample that is not finite is what is wrong.
+    /// Whether the error is about a sample that is not finite.
     pub fn is_not_finite(&self) -> bool {
         match self {
             Self::NotFinite { .. } => true,
@@ -183,7 +183,7 @@ impl Advise for VolumeError {
 
     fn category(&self) -> Category {
         match self {
-            // The file of a sample that is not installed.
+            // The file of a sample is not installed.
             Self::NoSkull { .. } => Category::System(ErrorKind::Other),
             _ => self.wrapped().map_or(Category::Input, Advise::category),
         }

@@ -1,7 +1,7 @@
 use serde::{Deserialize, Serialize};
 
-/// The values of a file that become gray 0 and gray 255; the mapping between is linear, values
-/// outside are not clamped, and nothing is rounded.
+/// The values of a file that become gray 0 and gray 255. The mapping between them is linear; values outside are not clamped, and
+/// nothing is rounded.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct GrayRange {
     /// The value that becomes gray 0.
@@ -10,11 +10,11 @@ pub struct GrayRange {
     pub high: f64,
 }
 
-/// Which mapping turns the values of a file into gray levels.
+/// The mapping that turns the values of a file into gray levels.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub enum Gray {
-    /// Unsigned 8-bit samples as they are, anything else from its minimum to its maximum.
+    /// Keeps unsigned 8-bit samples, and maps all others from their minimum to their maximum.
     #[default]
     Automatic,
     /// A range given by the user.
@@ -25,18 +25,18 @@ impl GrayRange {
     /// The range that leaves values as they are.
     pub const IDENTITY: Self = Self { low: 0.0, high: 255.0 };
 
-    /// Whether values are gray levels unchanged.
+    /// Whether the mapping leaves values unchanged.
     pub fn is_identity(&self) -> bool {
         *self == Self::IDENTITY
     }
 
-    /// How much of a value a gray level is.
+    /// The difference of values that corresponds to one gray level.
     pub fn step(&self) -> f64 {
         (self.high - self.low) / 255.0
     }
 
-    /// The value that a gray level represents. Gray levels are `f32`: a value within their rounding error
-    /// of a whole number becomes that number, so that whole values of a file survive the round trip.
+    /// The value that a gray level represents. Gray levels are `f32`: a value within their rounding error of a whole number
+    /// becomes that number, so that whole values of a file survive the round trip.
     pub fn value(&self, gray: f64) -> f64 {
         if self.is_identity() {
             return gray;

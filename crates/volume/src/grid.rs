@@ -2,11 +2,11 @@ use serde::{Deserialize, Deserializer, Serialize};
 
 use super::{Conversion, Coordinates, VolumeError};
 
-/// The number of samples along each axis of a volume, checked once: none is zero, and the volume
-/// has at most [`Dims::MAX_SAMPLES`] samples, so a voxel index fits `u32` and a byte count `u64`; more where it
-/// is read [part by part](Dims::unbounded).
+/// The number of samples along each axis of a volume, checked once: no axis is empty, and the volume has at most
+/// [`Dims::MAX_SAMPLES`] samples, so that a voxel index fits `u32` and a byte count `u64`. A volume that is read [part by
+/// part](Dims::unbounded) may have more.
 ///
-/// Written (x, y, z), as points are; the underlying array is `[z, y, x]`.
+/// The order is (x, y, z), as for points; the underlying array is `[z, y, x]`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(try_from = "Unchecked")]
 pub struct Dims {
@@ -15,7 +15,7 @@ pub struct Dims {
     z: usize,
 }
 
-/// Sizes as they are read.
+/// Sizes before they are checked.
 #[derive(Deserialize)]
 struct Unchecked {
     x: u64,
@@ -31,25 +31,25 @@ impl TryFrom<Unchecked> for Dims {
     }
 }
 
-/// Reads sizes of a volume that is read part by part. For `#[serde(deserialize_with)]`.
+/// Deserializes the sizes of a volume that is read part by part. For `#[serde(deserialize_with)]`.
 ///
 /// # Errors
-/// Those of the deserializer.
+/// Errors of the deserializer.
 pub fn any_size<'de, D: Deserializer<'de>>(reader: D) -> Result<Dims, D::Error> {
     let Unchecked { x, y, z } = Unchecked::deserialize(reader)?;
     Dims::unbounded(x, y, z).map_err(serde::de::Error::custom)
 }
 
 impl Dims {
-    /// 2³² − 1: simplices name their vertices by `u32` indices, and a 1625³ volume is the most a
-    /// machine that could triangulate its points would hold.
+    /// The maximum is 2³² − 1: simplices name their vertices by `u32` indices, and a volume of 1625³ samples is the most that a
+    /// machine able to triangulate its points would hold.
     pub const MAX_SAMPLES: u64 = u32::MAX as u64;
 
-    /// Checks sizes along x, y and z as a file header or a user gives them.
+    /// Checks sizes along x, y and z that a file header or a user gives.
     ///
     /// # Errors
-    /// [`VolumeError::EmptyAxis`] when one is zero, [`VolumeError::TooManySamples`] when the
-    /// product passes [`Dims::MAX_SAMPLES`]. Nothing is allocated.
+    /// [`VolumeError::EmptyAxis`] if one is zero; [`VolumeError::TooManySamples`] if the product exceeds [`Dims::MAX_SAMPLES`].
+    /// Nothing is allocated.
     pub fn new(x: u64, y: u64, z: u64) -> Result<Self, VolumeError> {
         if x == 0 || y == 0 || z == 0 {
             return Err(VolumeError::EmptyAxis { x, y, z });
@@ -63,12 +63,13 @@ impl Dims {
         }
     }
 
-    /// The same without a limit to what can be read at once: for volumes that are read part by part.
+    /// Like [`new`](Self::new), without the limit on what can be read at once: for volumes that are read part by part.
     ///
     /// # Errors
-    /// [`VolumeError::EmptyAxis`]; [`VolumeError::TooManySamples`] when the bytes of the samples pass 2⁶³, or their number `usize`.
+    /// [`VolumeError::EmptyAxis`]; [`VolumeError::TooManySamples`] if the size of the samples exceeds 2⁶³ bytes, or their number
+    /// `usize`.
     pub fn unbounded(x: u64, y: u64, z: u64) -> Result<Self, VolumeError> {
-        /// No sample has more bytes.
+        /// The largest size of a sample in bytes.
         const WIDEST: u64 = 8;
         if x == 0 || y == 0 || z == 0 {
             return Err(VolumeError::EmptyAxis { x, y, z });
@@ -82,45 +83,45 @@ impl Dims {
         }
     }
 
-    /// The same sizes, if they are within [`Dims::MAX_SAMPLES`].
+    /// Checks these sizes against [`Dims::MAX_SAMPLES`], and returns them.
     ///
     /// # Errors
-    /// [`VolumeError`]: what cannot be read, and why.
+    /// [`VolumeError::TooManySamples`].
     pub fn bounded(self) -> Result<Self, VolumeError> {
         Self::new(self.x as u64, self.y as u64, self.z as u64)
     }
 
-    /// Samples along x, the fastest axis in memory.
+    /// The number of samples along x, the fastest axis in memory.
     pub fn x(self) -> usize {
         self.x
     }
 
-    /// Samples along y.
+    /// The number of samples along y.
     pub fn y(self) -> usize {
         self.y
     }
 
-    /// Samples along z, the slowest axis in memory.
+    /// The number of samples along z, the slowest axis in memory.
     pub fn z(self) -> usize {
         self.z
     }
 
-    /// Samples in all.
+    /// The number of samples in all.
     pub fn samples(self) -> usize {
         self.x * self.y * self.z
     }
 
-    /// Bytes of all samples, of so many each.
+    /// The size of all samples in bytes, if one has `each` bytes.
     pub fn bytes(self, each: usize) -> u64 {
         self.samples() as u64 * each as u64
     }
 
-    /// The array shape `[z, y, x]`.
+    /// The shape of the array, `[z, y, x]`.
     pub fn shape(self) -> [usize; 3] {
         [self.z, self.y, self.x]
     }
 
-    /// Sizes as (x, y, z).
+    /// The sizes as (x, y, z).
     pub fn xyz(self) -> [usize; 3] {
         [self.x, self.y, self.z]
     }
@@ -132,22 +133,22 @@ impl std::fmt::Display for Dims {
     }
 }
 
-/// Where a grid lies in the world: sample (i, j, k) along (x, y, z) is at
-/// `origin + direction · (spacing ∘ (i, j, k))`, in coordinates that say of themselves what they mean.
+/// The place of a grid in the world: sample (i, j, k) along (x, y, z) is at `origin + direction · (spacing ∘ (i, j, k))`, in
+/// coordinates whose meaning is stated.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Frame {
-    /// World position of the first sample, (x, y, z).
+    /// The world position of the first sample, (x, y, z).
     pub origin: [f64; 3],
-    /// Distance between neighbouring samples along the grid's x, y and z axes.
+    /// The distances between neighbouring samples along the grid's x, y and z axes.
     pub spacing: [f64; 3],
     /// Unit vectors of the grid's axes: `direction[r][c]` is world component r of grid axis c.
     pub direction: [[f64; 3]; 3],
-    /// What world positions mean; voxels where a file says nothing of its grid.
+    /// The meaning of world positions; voxels if a file states nothing about its grid.
     pub coordinates: Coordinates,
 }
 
 impl Frame {
-    /// Origin 0, spacing 1, axes along the world's: voxel units.
+    /// The grid with origin 0, spacing 1 and axes along the world's: voxel units.
     pub const VOXEL: Self = Self {
         origin: [0.0; 3],
         spacing: [1.0; 3],
@@ -155,14 +156,13 @@ impl Frame {
         coordinates: Coordinates::VOXEL,
     };
 
-    /// The frame whose grid axes step by these vectors from one sample to the next: `axes[c]` is
-    /// the step of grid axis c. Nothing is known of the space and the unit. `None` where an axis is
-    /// zero or not finite.
+    /// The frame whose grid axes step by these vectors from one sample to the next: `axes[c]` is the step of grid axis c. The
+    /// space and the unit are unknown. `None` if an axis is zero or not finite.
     pub fn from_axes(origin: [f64; 3], axes: [[f64; 3]; 3]) -> Option<Self> {
         let coordinates = Coordinates::default();
         let mut frame = Self { origin, coordinates, ..Self::VOXEL };
         for (c, axis) in axes.iter().enumerate() {
-            // Scaled, so that an axis along the world's has its length to the last bit.
+            // The axis is scaled, so that one along a world axis has its length to the last bit.
             let largest = axis.iter().fold(0f64, |so_far, v| so_far.max(v.abs()));
             let squares: f64 = axis.iter().map(|v| (v / largest).powi(2)).sum();
             frame.spacing[c] = largest * squares.sqrt();
@@ -170,19 +170,19 @@ impl Frame {
                 row[c] = component / frame.spacing[c];
             }
         }
-        // A zero axis has divided 0 by 0.
+        // For a zero axis, 0 has been divided by 0.
         let numbers = origin.iter().chain(&frame.spacing).chain(frame.direction.as_flattened());
         numbers.copied().all(f64::is_finite).then_some(frame)
     }
 
-    /// The same frame, declared to be in these coordinates; no number changes.
+    /// Declares this frame to be in the given coordinates. No number changes.
     #[must_use]
     pub fn with_coordinates(self, coordinates: Coordinates) -> Self {
         Self { coordinates, ..self }
     }
 
-    /// The same places in other coordinates, as far as both are known: axes are turned, and lengths
-    /// converted. What is not known stays as it is. Signs are exact, lengths rounded once.
+    /// Converts this frame to other coordinates, as far as both are known: axes are turned and lengths converted. Unknown
+    /// properties do not change. Signs are exact, lengths are rounded once.
     #[must_use]
     pub fn to(self, coordinates: Coordinates) -> Self {
         let conversion: Conversion = self.coordinates.to(coordinates);
@@ -195,8 +195,7 @@ impl Frame {
         }
     }
 
-    /// The grid of every `step`-th sample from the sample `first` on, both as (x, y, z); fractions
-    /// are places between samples.
+    /// The grid of every `step`-th sample from the sample `first` on, both as (x, y, z). Fractions are places between samples.
     #[must_use]
     pub fn part(self, first: [f64; 3], step: [f64; 3]) -> Self {
         let spacing = [0, 1, 2].map(|k| self.spacing[k] * step[k]);
@@ -224,8 +223,8 @@ impl Frame {
         })
     }
 
-    /// The (fractional) index of a world position, both as (x, y, z): what
-    /// [`to_world`](Self::to_world) does, undone up to rounding. Not finite where axes lie in a plane.
+    /// The (fractional) index of a world position, both as (x, y, z): the inverse of [`to_world`](Self::to_world), up to
+    /// rounding. Not finite if the axes lie in a plane.
     pub fn to_index(&self, position: [f64; 3]) -> [f64; 3] {
         let from = [0, 1, 2].map(|k| position[k] - self.origin[k]);
         let dot = |row: [f64; 3]| row[0] * from[0] + row[1] * from[1] + row[2] * from[2];
@@ -233,7 +232,7 @@ impl Frame {
     }
 }
 
-/// The inverse of the matrix with these columns. Not finite where there is none.
+/// The inverse of the matrix with these columns. Not finite if there is none.
 pub fn inverse([a, b, c]: [[f64; 3]; 3]) -> [[f64; 3]; 3] {
     let cross = |u: [f64; 3], v: [f64; 3]| {
         [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]

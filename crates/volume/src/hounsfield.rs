@@ -1,12 +1,12 @@
-//! Whether the values of a volume are Hounsfield units.
+//! Decides whether the values of a volume are Hounsfield units.
 
 use crate::{Source, Volume, VolumeError};
 
-/// The values of a volume that look like Hounsfield units (HU), in which air is −1000 and water 0.
+/// Statistics of a volume whose values look like Hounsfield units (HU), in which air is −1000 and water 0.
 ///
-/// Few formats state the unit of a value, so this is told from the histogram: values from −4096 to 32 767, some of
-/// 300 or more (bone), at least 2 % below −900 (air around the patient), at least 5 % between −200 and 200 (soft
-/// tissue), and both ranges at least twice as dense as that between −600 and −300, where hardly any tissue is.
+/// Few formats state the unit of a value, so the histogram decides: values are from −4096 to 32 767, some are 300 or more (bone),
+/// at least 2 % are below −900 (air around the patient), at least 5 % are between −200 and 200 (soft tissue), and both of these
+/// ranges are at least twice as dense as that between −600 and −300, where hardly any tissue is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Hounsfield {
@@ -17,7 +17,7 @@ pub struct Hounsfield {
 }
 
 impl Hounsfield {
-    /// Of a volume in memory; `None` if its values are not Hounsfield units. One pass.
+    /// Examines a volume in memory; `None` if its values are not Hounsfield units. One pass.
     pub fn of_volume(volume: &Volume) -> Option<Self> {
         if volume.has_gray_levels() {
             return None;
@@ -33,7 +33,8 @@ impl Hounsfield {
         counts.judge()
     }
 
-    /// Of a volume that is read for it, a part at a time. One pass.
+    /// Examines a volume that is read for this purpose, one part at a time; `None` if its values are not Hounsfield units. One
+    /// pass.
     ///
     /// # Errors
     /// The file cannot be read or is damaged.
@@ -50,7 +51,7 @@ impl Hounsfield {
     }
 }
 
-/// How many finite values there are, and how many of each kind.
+/// The number of finite values, and of those of each kind.
 #[derive(Default)]
 pub(crate) struct Counts {
     all: u64,
@@ -77,7 +78,7 @@ impl Counts {
         let share = |count: u64| count as f64 / self.all.max(1) as f64;
         let (air, between, soft_tissue) =
             (share(self.air), share(self.between), share(self.soft_tissue));
-        // Shares per HU, of ranges that are 200, 300 and 400 HU wide.
+        // These are shares per HU, of ranges that are 200, 300 and 400 HU wide.
         let most = 2.0 * between / 300.0;
         let dense = air / 200.0 >= most && soft_tissue / 400.0 >= most;
         let enough = air >= 0.02 && soft_tissue >= 0.05 && self.bone > 0 && self.outside == 0;

@@ -1,4 +1,4 @@
-//! Whether the values of a volume are labels, as those of a segmentation.
+//! Decides whether the values of a volume are labels, as in a segmentation.
 
 use std::collections::HashMap;
 
@@ -6,25 +6,27 @@ use crate::{Dtype, Source, Volume, VolumeError};
 
 /// The labels of a volume: whole numbers that say what a voxel is part of. 0 is the background.
 ///
-/// None reach 2²⁴, from where on single precision does not tell all of them apart.
+/// All are below 2²⁴; from there on single precision does not distinguish all whole numbers.
 ///
-/// A file may state it ([`Volume::states_labels`]). Otherwise values are taken for labels by this rule: all are whole numbers, none below 0, of 2 to 1000
-/// different ones, in flat regions. *Flat*: of the pairs of neighbours (along x, y and z) in which a value has a part, some are equal; for values at random that
-/// share would be e = p / (2 − p), p being the share of the value among all samples. Of the way from e to 1, the shares go a quarter or more
-/// in the mean over all values. And *regions*: where there are more than three values, at least a tenth of the unequal pairs
-/// skip a value in between, which ramps and smooth fields do not. So masks of 0 and 1, or of 0 and 255, are labels, and noise, photographs and CTs are not; nor is
-/// what is said to be gray levels without being stored as bytes ([`Volume::with_gray_levels`]).
+/// A file may state that it contains labels ([`Volume::states_labels`]). Otherwise values are taken for labels by this rule: all
+/// are whole numbers, none is below 0, there are 2 to 1000 different ones, and they form flat regions. *Flat*: consider the pairs
+/// of neighbours (along x, y and z) that contain a value, and the share of pairs whose two values are equal. For random values
+/// this share would be e = p / (2 − p), where p is the share of the value among all samples. On average over all values, the
+/// shares must cover at least a quarter of the way from e to 1. *Regions*: if there are more than three values, at least a tenth
+/// of the unequal pairs skip a value in between, which ramps and smooth fields do not. So masks of 0 and 1, or of 0 and 255, are
+/// labels; noise, photographs and CTs are not, nor are volumes that are declared to be gray levels without being stored as bytes
+/// ([`Volume::with_gray_levels`]).
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Labels {
-    /// Each value, and how many samples have it; ascending.
+    /// Each value with the number of samples that have it; ascending.
     pub counts: Vec<(i32, u64)>,
     /// Whether the file states that these are labels.
     pub stated: bool,
 }
 
 impl Labels {
-    /// Of a volume in memory; `None` if its values are not labels. One pass.
+    /// Examines a volume in memory; `None` if its values are not labels. One pass.
     pub fn of_volume(volume: &Volume) -> Option<Self> {
         let stated = volume.states_labels();
         if !stated && is_gray(volume.has_gray_levels(), volume.dtype()) {
@@ -33,14 +35,14 @@ impl Labels {
         Tally::of(volume, stated).judge(stated)
     }
 
-    /// Of a volume whose values are labels, whatever the rule says; `None` if some are not whole numbers, or reach 2²⁴, where single
-    /// precision no longer tells all of them apart. One pass.
+    /// The labels of a volume whose values are taken for labels whatever the rule says; `None` if some are not whole numbers, or
+    /// reach 2²⁴, from where on single precision does not distinguish all of them. One pass.
     pub fn of_any(volume: &Volume) -> Option<Self> {
         let stated = volume.states_labels();
         Tally::of(volume, true).labels(stated)
     }
 
-    /// Of a volume that is read for it, a part at a time. One pass.
+    /// Examines a volume that is read for this purpose, one part at a time; `None` if its values are not labels. One pass.
     ///
     /// # Errors
     /// The file cannot be read or is damaged.
@@ -59,31 +61,31 @@ impl Labels {
     }
 }
 
-/// Whether samples are said to be gray levels, and not only stored as bytes.
+/// Whether samples are declared to be gray levels, and not only stored as bytes.
 fn is_gray(gray_levels: bool, dtype: Dtype) -> bool {
     gray_levels && dtype != Dtype::U8
 }
 
-/// Most different values that the rule takes for labels.
+/// The largest number of different values that the rule takes for labels.
 const MOST: usize = 1000;
-/// Whole numbers up to this are looked up in a table.
+/// The whole numbers below this are looked up in a table.
 const SMALL: usize = 4096;
-/// From here on several whole numbers may be rounded to one `f32`: 2²⁴ + 1 to this.
+/// From here on, several whole numbers may be rounded to one `f32`: 2²⁴ + 1 is rounded to this.
 const TOO_LARGE: f32 = 16_777_216.0;
 /// Stands for a value that is not known yet, and for a missing sample.
 const NONE: u32 = u32::MAX;
 
-/// How many samples there are of each value, and how many pairs of neighbours.
+/// The number of samples of each value, and of pairs of neighbours.
 pub(crate) struct Tally {
     small: Vec<u32>,
     others: HashMap<i32, u32>,
-    /// The values in the order in which they came.
+    /// The values in the order of their first occurrence, with the number of samples of each.
     values: Vec<(i32, u64)>,
-    /// The number of pairs of two of the first [`MOST`] values: of value a before value b at MOST·a + b.
+    /// The numbers of pairs of the first [`MOST`] values; the pairs of value a before value b are at MOST·a + b.
     pairs: Vec<u64>,
-    /// Whether all values count, even if they are too many for the rule.
+    /// Whether all values are counted, even if there are too many for the rule.
     all: bool,
-    /// Whether there is nothing more to find out, as these are not labels.
+    /// Whether counting can stop, as the values are not labels.
     ended: bool,
 }
 
@@ -110,7 +112,7 @@ impl Tally {
         self.judge(source.states_labels())
     }
 
-    /// Adds a box of samples, x fastest.
+    /// Adds a box of samples, with x fastest.
     pub(crate) fn add(
         &mut self,
         samples: &[f32],
@@ -141,7 +143,7 @@ impl Tally {
                 }
                 slice[at] = number;
                 self.values[number as usize].1 += 1;
-                // Rows of the first slice have none before them.
+                // Rows of the first slice have no slice before them.
                 self.pair(before_z, number);
                 if column > 0 {
                     self.pair(slice[at - 1], number);
@@ -160,7 +162,7 @@ impl Tally {
         }
     }
 
-    /// The number of a value; none of one that is not finite.
+    /// The index of a value; [`NONE`] if it is not finite or not a label.
     fn number(&mut self, sample: f32) -> u32 {
         if !sample.is_finite() {
             return NONE;
@@ -250,7 +252,7 @@ mod tests {
         [x, y, z].iter().map(|&i| (i as f64 - 15.5).powi(2)).sum()
     }
 
-    /// Of a volume, and of the same as bytes.
+    /// Whether a volume has labels, which must be the same if it is stored as bytes.
     fn are_labels(volume: &Volume) -> bool {
         let found = Labels::of_volume(volume);
         let bytes = volume.clone().with_dtype(Dtype::U8);
@@ -270,7 +272,7 @@ mod tests {
             assert_eq!(found.foreground().collect::<Vec<_>>(), [(inside as i32, 3016)]);
             assert!(!found.stated);
         }
-        // As Hounsfield units are; a file may state that they are labels.
+        // Negative values, as in Hounsfield units, are not labels unless a file states that they are.
         assert_eq!(Labels::of_volume(&ball(-3.0)), None);
         assert!(Labels::of_volume(&ball(-3.0).with_labels()).is_some());
         let nested =
@@ -279,7 +281,7 @@ mod tests {
         let rod = volume([40, 40, 40], |[x, y, _]| f32::from([x, y] == [7, 9]));
         let cavity =
             volume([5; 3], |at| f32::from(at.iter().all(|i| (1..4).contains(i)) && at != [2; 3]));
-        // Organs that lie in many places, as 30 boxes.
+        // Thirty boxes, as organs that lie in many places.
         let organs = volume([40; 3], |[x, y, z]| match (x % 8, y % 10, z % 13) {
             (0..5, 0..7, 0..9) => (1 + x / 8 + 5 * (y / 10) + 20 * (z / 13)) as f32,
             _ => 0.0,
@@ -308,7 +310,7 @@ mod tests {
         for size in 1..40 {
             assert_eq!(Labels::of_volume(&phantom(size).unwrap()), None, "{size}");
         }
-        // A CT in a window of 8 bits, much of it black or white.
+        // A CT in a window of 8 bits, much of which is black or white.
         let window = ct()
             .samples()
             .mapv(|value| ((value + 160.0) / 400.0 * 255.0).clamp(0.0, 255.0).floor());
@@ -316,7 +318,7 @@ mod tests {
         assert!(!are_labels(&window));
     }
 
-    /// What the file says decides; what is missing has no label.
+    /// The statement of the file decides; missing samples have no label.
     #[test]
     fn what_is_stated_is_taken() {
         let one = volume([4; 3], |_| 7.0).with_labels();

@@ -1,4 +1,4 @@
-//! Grids of samples: the files they come from, where they lie, and how their values become gray levels.
+//! Grids of samples: the files they come from, their place in the world, and the mapping of their values to gray levels.
 //!
 //! ```
 //! use walpha_volume::{Gray, ReadOptions, open};
@@ -58,7 +58,7 @@ pub use volume::{Nan, Volume};
 pub use walpha_base::advice::Advise;
 pub use walpha_base::{Conversion, Coordinates, LengthUnit, Space};
 
-// For walpha's readers of points; not part of the stable API.
+// These are for walpha's readers of points and not part of the stable API.
 #[doc(hidden)]
 pub use error::io_error;
 #[doc(hidden)]

@@ -1,8 +1,8 @@
-//! The known name that a mistyped one was meant to be.
+//! Finds the known name that a mistyped one was meant to be.
 
-/// The known name most similar to `given`, if typing errors explain the difference: letters that are missing, extra,
-/// wrong, or exchanged with their neighbour, at most one for every three letters. Letter case is
-/// ignored; the first of equally similar names is returned. One comparison for each name.
+/// The known name most similar to `given`, if typing errors explain the difference: letters that are missing, extra, wrong, or
+/// exchanged with their neighbour, at most one for every three letters. Letter case is ignored. The first of equally similar
+/// names is returned. Makes one comparison for each name.
 pub fn nearest<'a>(given: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let given = given.to_lowercase();
     let errors = |name: &str| strsim::osa_distance(&given, &name.to_lowercase());

@@ -1,4 +1,4 @@
-//! Opening what a user names: a sample, or else a file or folder.
+//! Opens what a user names: a sample, or else a file or folder.
 
 use std::path::{Path, PathBuf};
 
@@ -9,10 +9,10 @@ use crate::read::OpenFile;
 use crate::sample::PhantomBoxes;
 use crate::{ReadOptions, Reason, Source, Volume, VolumeError, read, sample};
 
-/// Opens what a user names: a sample, or else a file.
+/// Opens what a user names: a sample, or else a file or folder.
 ///
 /// # Errors
-/// Those of [`sample`] and [`read()`](crate::read()).
+/// See [`sample`] and [`read()`](crate::read()).
 pub fn open(input: impl AsRef<Path>, options: &ReadOptions) -> Result<Volume, VolumeError> {
     let input = input.as_ref();
     match sample_name(input) {
@@ -21,13 +21,13 @@ pub fn open(input: impl AsRef<Path>, options: &ReadOptions) -> Result<Volume, Vo
     }
 }
 
-/// The name of a sample, if this is one.
+/// The name of a sample, if the input names one.
 fn sample_name(input: &Path) -> Option<&str> {
     input.to_str().filter(|name| name.starts_with("sample:"))
 }
 
-/// What a user names, of which more than one thing is asked. A file is opened once, and all answers come from that open
-/// file; samples and folders go by their names.
+/// An input that is asked for several things. A file is opened only once, and all answers come from the open file; samples and
+/// folders are opened by their names.
 #[derive(Debug)]
 pub enum OpenVolume {
     /// A sample or a folder.
@@ -40,7 +40,7 @@ impl OpenVolume {
     /// Opens a file, or keeps the name of a sample or folder.
     ///
     /// # Errors
-    /// [`VolumeError::Io`]: the file cannot be opened.
+    /// [`VolumeError::Io`] if the file cannot be opened.
     pub fn open(input: &Path) -> Result<Self, VolumeError> {
         Ok(if sample_name(input).is_some() || input.is_dir() {
             Self::Named(input.into())
@@ -49,10 +49,10 @@ impl OpenVolume {
         })
     }
 
-    /// Reads it.
+    /// Reads the volume.
     ///
     /// # Errors
-    /// As [`open`].
+    /// See [`open`].
     pub fn read(&self, options: &ReadOptions) -> Result<Volume, VolumeError> {
         match self {
             Self::Named(input) => open(input, options),
@@ -60,10 +60,10 @@ impl OpenVolume {
         }
     }
 
-    /// Prepares to read it part by part.
+    /// Prepares to read the volume part by part.
     ///
     /// # Errors
-    /// As [`Source::open`].
+    /// See [`Source::open`].
     pub fn source(&self, options: &ReadOptions) -> Result<Source, VolumeError> {
         match self {
             Self::Named(input) => Source::open(input, options),
@@ -73,10 +73,10 @@ impl OpenVolume {
         }
     }
 
-    /// What it is, as `NRRD` or `NIfTI, gzip`.
+    /// The name of its format, such as `NRRD` or `NIfTI, gzip`.
     ///
     /// # Errors
-    /// It is of no format known.
+    /// Its format is not known.
     pub fn format_name(&self, options: &ReadOptions) -> Result<String, VolumeError> {
         match self {
             Self::Named(input) if sample_name(input).is_some() => Ok("sample".into()),
@@ -85,7 +85,7 @@ impl OpenVolume {
         }
     }
 
-    /// The files that hold its samples, where its header is a file of its own.
+    /// The files that hold its samples, if its header is a file of its own.
     ///
     /// # Errors
     /// The header cannot be read.
@@ -98,11 +98,11 @@ impl OpenVolume {
 }
 
 impl Source {
-    /// Opens what a user names, a sample or a file: uncompressed NRRD, `MetaImage`, `NIfTI`, NPY and raw samples,
-    /// and Zarr (feature `zarr`). `nan` of the options is ignored: the caller handles NaN.
+    /// Opens what a user names, a sample or a file: uncompressed NRRD, `MetaImage`, `NIfTI`, NPY and raw samples, and Zarr
+    /// (feature `zarr`). The option `nan` is ignored: the caller handles NaN.
     ///
     /// # Errors
-    /// As [`read()`](crate::read()), and [`VolumeError::Format`] for what cannot be read in parts.
+    /// See [`read()`](crate::read()); and [`VolumeError::Format`] for a format that cannot be read in parts.
     pub fn open(input: impl AsRef<Path>, options: &ReadOptions) -> Result<Self, VolumeError> {
         let path = input.as_ref();
         Self::of_part(path, options, || {
@@ -117,7 +117,7 @@ impl Source {
         })
     }
 
-    /// The part that is asked for of what `open` opens.
+    /// The requested part of the source that `open` opens.
     fn of_part(
         path: &Path,
         options: &ReadOptions,
@@ -136,12 +136,12 @@ impl Source {
     }
 }
 
-/// Writes a volume as Zarr (feature `zarr`), part by part: OME-Zarr 0.5 with one level, in chunks of 64³
-/// samples, or an array alone where nothing is known of the grid. Bytes and 16-bit integers keep their type,
-/// others become `f32`; spacing, origin and unit are kept, directions are not.
+/// Writes a volume as Zarr (feature `zarr`), part by part: as OME-Zarr 0.5 with one level, in chunks of 64³ samples, or as an
+/// array alone if nothing is known about the grid. Bytes and 16-bit integers keep their type, others become `f32`. Spacing,
+/// origin and unit are kept, directions are not.
 ///
 /// # Errors
-/// `folder` is there already or cannot be made; the volume cannot be read. Nothing is left behind then.
+/// `folder` exists already or cannot be created, or the volume cannot be read. Nothing is left behind then.
 #[cfg(feature = "zarr")]
 pub fn convert(source: &Source, folder: impl AsRef<Path>) -> Result<(), VolumeError> {
     let monitor = &*walpha_base::Monitor::current();

@@ -8,16 +8,16 @@ use walpha_base::advice::{Advice, Setting, advice};
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Reason {
-    /// It is of no format known.
+    /// Its format is not known.
     Unknown {
-        /// The formats that would be read.
+        /// The formats that can be read.
         known: String,
-        /// An extension like its own.
+        /// A known extension that is similar to its own.
         near: Option<&'static str>,
     },
     /// Its content does not match the format that its extension, or the header that refers to it, implies.
     Other {
-        /// What it is not, and by what one sees that.
+        /// What it is not, and how this can be seen.
         what: String,
     },
     /// It ends too early.
@@ -27,13 +27,13 @@ pub enum Reason {
     },
     /// Its header claims more or fewer bytes than follow it.
     Length {
-        /// What is claimed.
+        /// The claim.
         claim: String,
-        /// The bytes that it takes.
+        /// The number of bytes that the claim needs.
         needed: u64,
-        /// The bytes there are.
+        /// The number of bytes that exist.
         found: u64,
-        /// "", "at most " or "at least ", where they are not counted.
+        /// "", "at most " or "at least "; the latter two if the bytes are not counted.
         bound: &'static str,
     },
     /// Its header misses something or contradicts itself.
@@ -43,45 +43,45 @@ pub enum Reason {
     },
     /// A line or number in it is invalid.
     Value {
-        /// Where it is, and what it is.
+        /// The place of the value, and the value.
         what: String,
     },
     /// Its content is damaged.
     Damaged {
-        /// What cannot be.
+        /// The contradiction.
         what: String,
     },
     /// It is valid, but its content is not supported.
     Unsupported {
-        /// What it holds, and what would be read.
+        /// What it contains, and what can be read.
         what: String,
         /// What to do instead.
         advice: Advice,
     },
-    /// The feature that reads it was left out when the program was built.
+    /// The feature that reads it was not built in.
     Without {
         /// What it is.
         what: &'static str,
         /// The feature's name.
         feature: &'static str,
     },
-    /// It holds no samples, no points, or ones that make no whole.
+    /// It contains no samples or no points, or samples or points that do not fit together.
     Content {
-        /// What it holds.
+        /// What it contains.
         what: String,
         /// What to do about it.
         advice: Advice,
     },
     /// It has several values in each voxel: colours, vectors or tensors.
     NotScalar {
-        /// Which, and what would be read.
+        /// The kind of values, and what can be read.
         what: String,
-        /// Samples along x, y and z, where they are known.
+        /// The number of samples along x, y and z, if they are known.
         dims: Option<[u64; 3]>,
     },
-    /// It holds several volumes, and `frame` is missing or out of range.
+    /// It contains several volumes, and `frame` is missing or out of range.
     Several {
-        /// How many.
+        /// The number of volumes.
         count: u64,
     },
     /// A setting does not apply to it, is missing, or names something that it does not have.
@@ -93,75 +93,75 @@ pub enum Reason {
         /// What to do with the setting.
         advice: Advice,
     },
-    /// The same for a part of it: an array, or the data files that a header names.
+    /// A part of it cannot be read: an array, or the data files that a header names.
     Within {
         /// The part.
         part: String,
         /// What is wrong with it.
         reason: Box<Reason>,
     },
-    /// There is not enough memory for what it holds.
+    /// There is not enough memory for its content.
     Memory {
-        /// What it holds.
+        /// What it contains.
         claim: String,
-        /// The bytes that it takes.
+        /// The number of bytes needed.
         needed: u64,
     },
 }
 
 impl Reason {
-    /// [`Reason::Other`].
+    /// Creates [`Reason::Other`].
     pub fn other(what: impl Into<String>) -> Self {
         Self::Other { what: what.into() }
     }
 
-    /// [`Reason::Truncated`].
+    /// Creates [`Reason::Truncated`].
     pub fn truncated(what: impl Into<String>) -> Self {
         Self::Truncated { what: what.into() }
     }
 
-    /// What is claimed is more than there is: it ends too early, or the claim is wrong.
+    /// The reason for a claim of more than exists: the file ends too early, or the claim is wrong.
     pub fn claims_more(what: impl Into<String>) -> Self {
         Self::content(what, "copy it again, or correct its header")
     }
 
-    /// [`Reason::Header`].
+    /// Creates [`Reason::Header`].
     pub fn header(what: impl Into<String>) -> Self {
         Self::Header { what: what.into() }
     }
 
-    /// [`Reason::Value`].
+    /// Creates [`Reason::Value`].
     pub fn value(what: impl Into<String>) -> Self {
         Self::Value { what: what.into() }
     }
 
-    /// [`Reason::Damaged`].
+    /// Creates [`Reason::Damaged`].
     pub fn damaged(what: impl Into<String>) -> Self {
         Self::Damaged { what: what.into() }
     }
 
-    /// [`Reason::Unsupported`].
+    /// Creates [`Reason::Unsupported`].
     pub fn unsupported(what: impl Into<String>, advice: impl Into<Advice>) -> Self {
         Self::Unsupported { what: what.into(), advice: advice.into() }
     }
 
-    /// [`Reason::Content`].
+    /// Creates [`Reason::Content`].
     pub fn content(what: impl Into<String>, advice: impl Into<Advice>) -> Self {
         Self::Content { what: what.into(), advice: advice.into() }
     }
 
-    /// Several values in each voxel.
+    /// The reason for a file with several values in each voxel.
     pub fn not_scalar(what: impl Into<String>, dims: Option<[u64; 3]>) -> Self {
         let what = format!("{}: only scalar volumes are read", what.into());
         Self::NotScalar { what, dims }
     }
 
-    /// A setting that has no meaning for the file.
+    /// The reason for a setting that does not apply to the file.
     pub fn needless(setting: Setting, what: impl Into<String>) -> Self {
         Self::Setting { setting, what: what.into(), advice: advice!["omit ", setting] }
     }
 
-    /// A setting that is missing or names nothing.
+    /// The reason for a setting that is missing or names something that does not exist.
     pub fn choice(setting: Setting, what: impl Into<String>, advice: Advice) -> Self {
         Self::Setting { setting, what: what.into(), advice }
     }

@@ -1,4 +1,4 @@
-//! Whole numbers that single precision does not hold, of which a reader says that they are rounded.
+//! Whole numbers that single precision does not hold: a reader reports that they are rounded.
 
 use std::path::Path;
 use std::sync::Once;
@@ -8,7 +8,7 @@ use walpha_base::shown::shown;
 
 use crate::Sample;
 
-/// What became of the whole numbers of a file.
+/// Records whether whole numbers of a file were rounded.
 #[derive(Debug)]
 pub(crate) struct Rounding {
     found: AtomicBool,
@@ -22,20 +22,20 @@ impl Default for Rounding {
 }
 
 impl Rounding {
-    /// A number as a sample.
+    /// Converts a number to a sample.
     pub(crate) fn sample(&self, number: impl Sample) -> f32 {
         self.note(number.is_rounded());
         number.to_f32()
     }
 
-    /// Takes note of numbers that are rounded.
+    /// Records whether a number is rounded.
     pub(crate) fn note(&self, is_rounded: bool) {
         if is_rounded {
             self.found.store(true, Ordering::Relaxed);
         }
     }
 
-    /// Says, once of a file, whether some were.
+    /// Reports rounding, once for each file.
     pub(crate) fn say(&self, path: &Path) {
         if self.found.load(Ordering::Relaxed) {
             self.said.call_once(|| tracing::warn!("{}: {ROUNDED}", shown(path)));
@@ -43,6 +43,6 @@ impl Rounding {
     }
 }
 
-/// What is said of them.
+/// The message about rounding.
 pub(crate) const ROUNDED: &str = "whole numbers beyond 16777216 (2²⁴) are rounded to samples of single precision: \
                                   different ones, as of labels, may become the same";

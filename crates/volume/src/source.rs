@@ -6,7 +6,7 @@ use crate::hounsfield::{Counts, Hounsfield};
 use crate::labels::{Labels, Tally};
 use crate::{Dims, Dtype, Frame, Nan, Reason, Region, Volume, VolumeError};
 
-/// What to do about volumes that cannot be read in parts.
+/// The advice for volumes that cannot be read in parts.
 pub(crate) const CONVERT: &str =
     "convert it to uncompressed NRRD, MetaImage, NIfTI or NPY, or to Zarr";
 
@@ -26,17 +26,17 @@ pub struct Source {
     dtype: Dtype,
     grain: [usize; 3],
     parts: Box<dyn BoxReader>,
-    /// Whether samples are gray levels as they are.
+    /// Whether the samples are gray levels already.
     gray_levels: bool,
     /// Whether the file states that its values are labels.
     labels: bool,
-    /// Where the volume begins in what is read.
+    /// The position of the volume's first sample in the underlying source.
     first: [usize; 3],
 }
 
-/// Where samples come from, box by box.
+/// Reads samples, box by box.
 pub(crate) trait BoxReader: Send + Sync {
-    /// The samples from `first` on, `size` along x, y and z, x fastest; NaN may be among them.
+    /// Reads the samples from `first` on, `size` along x, y and z, x fastest. They may include NaN.
     fn read(&self, first: [usize; 3], size: [usize; 3]) -> Result<Vec<f32>, VolumeError>;
 }
 
@@ -63,13 +63,13 @@ impl Source {
         Self { dims, frame, dtype, grain, parts, gray_levels, labels: false, first: [0; 3] }
     }
 
-    /// Sets whether samples are gray levels, whatever their type.
+    /// Sets whether the samples are gray levels, whatever their type.
     #[must_use]
     pub fn with_gray_levels(self, gray_levels: bool) -> Self {
         Self { gray_levels, ..self }
     }
 
-    /// Marks the values as [labels](crate::Labels), as a file states it.
+    /// Marks the values as [labels](crate::Labels), as a file may state.
     #[must_use]
     pub fn with_labels(self) -> Self {
         Self { labels: true, ..self }
@@ -80,7 +80,7 @@ impl Source {
         self.labels
     }
 
-    /// A part of it, in its place.
+    /// A part of the volume. Its samples stay where they are in the world.
     pub(crate) fn part(self, region: &Region) -> Result<Self, VolumeError> {
         let sizes = self.dims.xyz();
         let end = [0, 1, 2].map(|k| region.end[k].unwrap_or(sizes[k]));
@@ -92,7 +92,7 @@ impl Source {
         Ok(Self { dims: Dims::unbounded(x, y, z)?, frame, first: region.first, ..self })
     }
 
-    /// A volume in memory. Samples that are missing are read as NaN, and so are `f32`.
+    /// Creates a source from a volume in memory. Missing samples are read as NaN; the type is then `f32`.
     pub fn of_volume(volume: Volume) -> Self {
         let (dims, frame) = (volume.dims(), *volume.frame());
         let dtype = if volume.has_missing() { Dtype::F32 } else { volume.dtype() };
@@ -101,46 +101,47 @@ impl Source {
         Self { labels, ..source }.with_gray_levels(gray_levels)
     }
 
-    /// Samples along x, y and z.
+    /// The number of samples along x, y and z.
     pub fn dims(&self) -> Dims {
         self.dims
     }
 
-    /// Where the grid lies in the world.
+    /// The place of the grid in the world.
     pub fn frame(&self) -> &Frame {
         &self.frame
     }
 
-    /// How the file stores a sample.
+    /// The type of samples in the file.
     pub fn dtype(&self) -> Dtype {
         self.dtype
     }
 
-    /// Whether the samples are gray levels 0..255 as they are, as unsigned bytes are.
+    /// Whether the samples are gray levels 0..255 already, as unsigned bytes are.
     pub fn has_gray_levels(&self) -> bool {
         self.gray_levels
     }
 
-    /// The box of samples, along x, y and z, that is read as quickly as a single one: boxes made of such are
-    /// read best.
+    /// The size along x, y and z of a box that is read as quickly as a single sample. Boxes composed of such boxes are read most
+    /// efficiently.
     pub fn grain(&self) -> [usize; 3] {
         self.grain
     }
 
-    /// The samples of the box from `first` on, `size` along x, y and z, x fastest. NaN are given as they are.
+    /// Reads the samples of the box from `first` on, `size` along x, y and z, x fastest. NaN are returned unchanged.
     ///
     /// # Errors
     /// The file cannot be read or is damaged.
     ///
     /// # Panics
-    /// When the box reaches beyond the volume.
+    /// The box reaches beyond the volume.
     pub fn read(&self, first: [usize; 3], size: [usize; 3]) -> Result<Vec<f32>, VolumeError> {
         let sizes = self.dims.xyz();
         assert!((0..3).all(|k| first[k] + size[k] <= sizes[k]), "a box of the volume");
         self.parts.read([0, 1, 2].map(|k| self.first[k] + first[k]), size)
     }
 
-    /// Reads all samples, a part at a time, and hands over its size along x, y and z, too, as long as `look` wants more.
+    /// Reads all samples, one part at a time, and passes each part and its size along x, y and z to `look` as long as that
+    /// returns `true`.
     pub(crate) fn for_each_part(
         &self,
         mut look: impl FnMut(&[f32], [usize; 3]) -> bool,
@@ -181,25 +182,25 @@ pub(super) fn whole_only(path: &Path, name: &str) -> VolumeError {
     VolumeError::Format { path: path.into(), reason: Reason::unsupported(what, CONVERT) }
 }
 
-/// Samples read at a time at most, where the format allows it: 64 MiB.
+/// The largest number of samples read at a time, where the format allows it: 64 MiB.
 pub(crate) const AT_ONCE: usize = 1 << 24;
 
-/// Range of a volume's samples, the number of missing ones, and what they look like.
+/// The range of a volume's samples, the number of missing ones, and what they look like.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SampleStats {
-    /// The smallest and the largest finite value; `None` where there is none.
+    /// The smallest and the largest finite value; `None` if no value is finite.
     pub range: Option<(f32, f32)>,
-    /// How many samples are NaN, infinite or padding.
+    /// The number of samples that are NaN, infinite or padding.
     pub missing: u64,
     /// Whether the values look like Hounsfield units.
     pub hounsfield: Option<Hounsfield>,
-    /// The labels, if the values are some.
+    /// The labels, if the values are labels.
     pub labels: Option<Labels>,
 }
 
 impl SampleStats {
-    /// Of a volume that is read for it, a part at a time: its memory does not grow with the volume. `nan` may say
-    /// what replaces samples that are not finite. One pass.
+    /// Examines a volume that is read for this purpose, one part at a time, so that memory does not grow with the volume. `nan`
+    /// may replace samples that are not finite. One pass.
     ///
     /// # Errors
     /// The file cannot be read or is damaged.
@@ -227,7 +228,7 @@ impl SampleStats {
         Ok(Self { range: (low <= high).then_some((low, high)), missing, hounsfield, labels })
     }
 
-    /// Of a volume in memory, whose [missing](Volume::is_missing) samples are not finite in its file, or padding.
+    /// Examines a volume in memory. Its [missing](Volume::is_missing) samples are padding, or not finite in its file.
     pub fn of_volume(volume: &Volume) -> Self {
         let missing = volume.dims().samples() - volume.samples_there();
         Self {
@@ -239,7 +240,7 @@ impl SampleStats {
     }
 }
 
-/// How many samples along each axis are read at once: whole grains, and as many as may be.
+/// The numbers of samples along each axis that are read at once: whole grains, as many as the limit allows.
 fn step(source: &Source) -> [usize; 3] {
     let dims = source.dims().xyz();
     let mut step = [0, 1, 2].map(|k| source.grain()[k].clamp(1, dims[k]));

@@ -23,13 +23,13 @@ pub struct Volume {
     samples: Array3<f32>,
     dims: Dims,
     frame: Frame,
-    /// Whether values are gray levels already, as those of unsigned 8-bit files are.
+    /// Whether the values are gray levels already, as those of unsigned 8-bit files are.
     gray_levels: bool,
-    /// Whether the file states that values are labels.
+    /// Whether the file states that the values are labels.
     labels: bool,
-    /// How the file stores a sample; `f32` if there is no file.
+    /// The type of samples in the file; `f32` if there is no file.
     dtype: Dtype,
-    /// Samples that the file has no number for, if there are any.
+    /// The samples without a number in the file, if there are any.
     missing: Option<Vec<bool>>,
 }
 
@@ -37,25 +37,25 @@ pub struct Volume {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Nan {
-    /// This value replaces them, padding too.
+    /// This value replaces them, and padding as well.
     Value(f32),
-    /// They are masked: the least of the other values replaces them, and they take no part where
-    /// points are selected and errors measured.
+    /// They are masked: the least of the other values replaces them, and they are ignored in the selection of points and the
+    /// measurement of errors.
     Mask,
 }
 
 impl Volume {
-    /// Checks samples of any meaning. See [`Volume::with_gray_levels`] for 8-bit data.
+    /// Creates a volume from samples of any meaning, which are checked. See [`Volume::with_gray_levels`] for 8-bit data.
     ///
     /// # Errors
-    /// An axis of length zero, more than [`Dims::MAX_SAMPLES`] samples, or a NaN or infinity
+    /// An axis has length zero, there are more than [`Dims::MAX_SAMPLES`] samples, or one is NaN or infinite
     /// ([`VolumeError::NotFinite`] names the first).
     pub fn new(samples: Array3<f32>, frame: Frame) -> Result<Self, VolumeError> {
         Self::of_file(samples, frame)?.resolve_nan(None)
     }
 
-    /// A volume of samples of any type of numbers, `[z, y, x]`, in any layout; as [`Dtype`] says, they become `f32`, and unsigned
-    /// bytes are gray levels. They are copied.
+    /// Creates a volume from samples of any type of numbers, `[z, y, x]`, in any layout. They are copied and become `f32` as
+    /// [`Dtype`] says; unsigned bytes are gray levels.
     ///
     /// ```
     /// use ndarray::Array3;
@@ -68,7 +68,7 @@ impl Volume {
     /// ```
     ///
     /// # Errors
-    /// As [`new`](Self::new), and out of memory.
+    /// See [`new`](Self::new); or there is not enough memory.
     pub fn of_samples<T: Sample>(
         samples: ArrayView3<'_, T>,
         frame: Frame,
@@ -81,10 +81,10 @@ impl Volume {
         Ok(Self::new(samples.map(|&sample| sample.to_f32()), frame)?.with_dtype(T::DTYPE))
     }
 
-    /// The same for readers: samples may be NaN or infinite until [`Volume::resolve_nan`].
+    /// Like [`new`](Self::new), for readers: samples may be NaN or infinite until [`Volume::resolve_nan`].
     ///
     /// # Errors
-    /// [`VolumeError`]: what cannot be read, and why.
+    /// [`VolumeError`] says what cannot be read, and why.
     pub fn of_file(samples: Array3<f32>, frame: Frame) -> Result<Self, VolumeError> {
         let (z, y, x) = samples.dim();
         let dims = Dims::new(x as u64, y as u64, z as u64)?;
@@ -97,10 +97,10 @@ impl Volume {
         Ok(Self { samples, dims, frame, gray_levels, labels, dtype, missing })
     }
 
-    /// Applies the rule for samples that are not finite, and refuses what is left of them.
+    /// Applies the rule for samples that are not finite, and refuses any that remain.
     ///
     /// # Errors
-    /// [`VolumeError`]: what cannot be read, and why.
+    /// [`VolumeError`] says what cannot be read, and why.
     pub fn resolve_nan(mut self, nan: Option<Nan>) -> Result<Self, VolumeError> {
         let value = match nan {
             Some(Nan::Value(value)) => {
@@ -116,7 +116,7 @@ impl Volume {
                 let samples = self.as_slice().par_iter().enumerate();
                 let missing = samples.map(|(i, v)| !v.is_finite() || is_padded(i)).collect();
                 self.missing = Some(missing);
-                // Infinite where none is finite, which is refused below.
+                // If no sample is finite, this is infinite, which is refused below.
                 self.value_range().0
             }
             _ => f32::NAN,
@@ -128,7 +128,7 @@ impl Volume {
         Ok(self)
     }
 
-    /// Refuses samples that are wrong, with the place of the first.
+    /// Refuses samples for which `wrong` holds, with the place of the first.
     fn refuse(&self, wrong: impl Fn(f32) -> bool + Sync) -> Result<(), VolumeError> {
         let Some(index) = first(self.as_slice(), wrong) else { return Ok(()) };
         let [x, y, _] = self.dims.xyz();
@@ -136,24 +136,24 @@ impl Volume {
         Err(VolumeError::NotFinite { value: self.as_slice()[index], at })
     }
 
-    /// Sets how the file stores a sample. Unsigned 8-bit samples are gray levels.
+    /// Sets the type of samples in the file. Unsigned 8-bit samples are gray levels.
     #[must_use]
     pub fn with_dtype(self, dtype: Dtype) -> Self {
         Self { dtype, gray_levels: dtype == Dtype::U8, ..self }
     }
 
-    /// How the file stores a sample; `f32` if there is no file.
+    /// The type of samples in the file; `f32` if there is no file.
     pub fn dtype(&self) -> Dtype {
         self.dtype
     }
 
-    /// Whether a sample is missing, by its index in memory order: NaN, infinite or padding in the file, and replaced by the
-    /// least value here.
+    /// Whether a sample is missing, by its index in memory order. Missing samples are NaN, infinite or padding in the file, and
+    /// are replaced by the least value here.
     pub fn is_missing(&self, sample: usize) -> bool {
         self.missing.as_ref().is_some_and(|missing| missing[sample])
     }
 
-    /// Number of samples that are not missing.
+    /// The number of samples that are not missing.
     pub fn samples_there(&self) -> usize {
         let missing =
             self.missing.as_deref().map_or(0, |missing| missing.par_iter().filter(|&&m| m).count());
@@ -165,7 +165,7 @@ impl Volume {
         self.missing.is_some()
     }
 
-    /// Which samples are missing, if any are.
+    /// A mask of the missing samples, if there are any.
     #[expect(
         clippy::missing_panics_doc,
         reason = "a mask has as many entries as there are samples"
@@ -175,8 +175,7 @@ impl Volume {
         self.missing.as_deref().map(|missing| view(missing).expect("one for each sample"))
     }
 
-    /// The same volume where these samples are padding, and missing; the least of the others replaces them. `None` where
-    /// all are padding.
+    /// Marks these samples as padding, and therefore missing; the least of the others replaces them. `None` if all are padding.
     #[cfg(any(feature = "dicom", feature = "zarr"))]
     pub(crate) fn with_padding(mut self, padded: Vec<bool>) -> Option<Self> {
         if padded.par_iter().all(|&padded| padded) {
@@ -193,7 +192,7 @@ impl Volume {
         Some(self.with_missing(Some(padded)))
     }
 
-    /// Marks the values as [labels](crate::Labels), as a file states it.
+    /// Marks the values as [labels](crate::Labels), as a file may state.
     #[must_use]
     pub fn with_labels(self) -> Self {
         Self { labels: true, ..self }
@@ -204,16 +203,16 @@ impl Volume {
         self.labels
     }
 
-    /// Other samples of the same kind.
+    /// Creates a volume of other samples of the same kind.
     ///
     /// # Errors
-    /// [`VolumeError`]: what cannot be read, and why.
+    /// [`VolumeError`] says what cannot be read, and why.
     pub fn like(&self, samples: Array3<f32>, frame: Frame) -> Result<Self, VolumeError> {
         let Self { gray_levels, labels, dtype, .. } = *self;
         Ok(Self { gray_levels, labels, dtype, ..Self::new(samples, frame)? })
     }
 
-    /// The same volume where these samples are missing.
+    /// Sets which samples are missing.
     #[must_use]
     pub fn with_missing(self, missing: Option<Vec<bool>>) -> Self {
         Self { missing, ..self }
@@ -231,23 +230,23 @@ impl Volume {
         self.gray_levels
     }
 
-    /// Sizes along the axes.
+    /// The number of samples along each axis.
     pub fn dims(&self) -> Dims {
         self.dims
     }
 
-    /// Where the grid lies in the world.
+    /// The place of the grid in the world.
     pub fn frame(&self) -> &Frame {
         &self.frame
     }
 
-    /// The same samples on another grid, or in other coordinates.
+    /// Moves the samples to another grid, or to other coordinates.
     #[must_use]
     pub fn with_frame(self, frame: Frame) -> Self {
         Self { frame, ..self }
     }
 
-    /// The samples, `[z, y, x]`.
+    /// The samples as an array `[z, y, x]`.
     pub fn samples(&self) -> ArrayView3<'_, f32> {
         self.samples.view()
     }
@@ -258,7 +257,7 @@ impl Volume {
         self.samples.as_slice().expect("standard layout is an invariant of Volume")
     }
 
-    /// Gives the samples away, `[z, y, x]`.
+    /// Turns the volume into its samples, `[z, y, x]`.
     pub fn into_samples(self) -> Array3<f32> {
         self.samples
     }
@@ -268,17 +267,17 @@ impl Volume {
         let ends = |a: (f32, f32), b: (f32, f32)| (a.0.min(b.0), a.1.max(b.1));
         self.as_slice()
             .par_iter()
-            // Others are there until `resolve_nan`.
+            // Other values exist until `resolve_nan`.
             .filter(|v| v.is_finite())
             .map(|&v| (v, v))
             .reduce(|| (f32::INFINITY, f32::NEG_INFINITY), ends)
     }
 
-    /// The volume with gray levels 0..255 as samples, and the range they came from. In place.
+    /// Converts the samples to gray levels 0..255, in place, and returns the range that they came from.
     ///
     /// # Errors
-    /// [`VolumeError::GrayRange`] when the given range is empty, reversed or not finite, or so narrow
-    /// that the gray level of a sample passes the range of `f32`.
+    /// [`VolumeError::GrayRange`] if the given range is empty, reversed or not finite, or so narrow that the gray level of a
+    /// sample exceeds the range of `f32`.
     pub fn into_gray(mut self, gray: Gray) -> Result<(Self, GrayRange), VolumeError> {
         let range = match gray {
             Gray::Automatic if self.gray_levels => GrayRange::IDENTITY,
@@ -304,8 +303,7 @@ impl Volume {
 }
 
 impl Volume {
-    /// The volume with the values that its gray levels represent: the inverse of [`Volume::into_gray`].
-    /// In place.
+    /// Converts gray levels to the values that they represent, in place: the inverse of [`Volume::into_gray`].
     #[must_use]
     pub fn into_values(mut self, range: &GrayRange) -> Self {
         if !range.is_identity() {
@@ -316,8 +314,7 @@ impl Volume {
     }
 }
 
-/// The first index of a wrong value: whole chunks are judged at once, and only one with such a value is
-/// searched.
+/// The first index of a wrong value. Whole chunks are tested at once, and only the first chunk with such a value is searched.
 fn first(values: &[f32], wrong: impl Fn(f32) -> bool + Sync) -> Option<usize> {
     const CHUNK: usize = 1 << 14;
     let has_one = |chunk: &[f32]| chunk.iter().fold(false, |found, &v| found | wrong(v));

@@ -19,7 +19,7 @@ pub type Boundary<'py> = (
     (usize, usize, usize, usize, f64, usize),
 );
 
-/// The boundary as it is, or as [`AlphaShape::solid`] makes it.
+/// The boundary without changes, or as [`AlphaShape::solid`] makes it.
 pub fn boundary<'py>(
     py: Python<'py>,
     shape: Arc<AlphaShape>,

@@ -1,4 +1,4 @@
-//! How a shape is made: of points, with options by the names that Python has.
+//! Makes a shape from points, with options by the names that Python has.
 
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
@@ -16,7 +16,7 @@ pub type Written = Vec<(String, String)>;
 /// The settings that were given.
 ///
 /// # Errors
-/// What a setting does not take.
+/// The error for a wrong value of a setting.
 pub fn settings_of(written: Written) -> PyResult<Settings> {
     let mut settings = Settings::default();
     for (name, text) in written {

@@ -33,7 +33,7 @@ use state::{State, state};
 #[pyclass(frozen, module = "walpha._walpha")]
 pub struct Shape {
     shape: Arc<AlphaShape>,
-    /// What is known of it besides, as JSON: where its α and its points come from.
+    /// Further facts about it, as JSON: the origin of its α and of its points.
     #[pyo3(get)]
     facts: String,
 }
@@ -239,7 +239,7 @@ impl Shape {
         self.shape.options().periodic.map(|torus| torus.sides())
     }
 
-    /// How it was made, for [`restored`].
+    /// The data from which [`restored`] makes it again.
     fn state(&self) -> State {
         state(&self.shape, &self.facts)
     }
@@ -252,7 +252,7 @@ impl Shape {
         Ok(Self { shape: Arc::new(unwrapped), facts: self.facts.clone() })
     }
 
-    /// What the last points are copies of.
+    /// The points that the last points are copies of.
     #[getter]
     fn copies<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<u32>>> {
         column(py, self.shape.copies().iter().copied())
@@ -404,7 +404,7 @@ fn with_nan(found: walpha::interpolate::Resampled) -> Array3<f32> {
     samples
 }
 
-/// What is small, for Python to read.
+/// The JSON of small data, for Python to read.
 pub fn json(of: &impl serde::Serialize) -> String {
     serde_json::to_string(of).expect("plain numbers and names")
 }

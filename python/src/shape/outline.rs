@@ -23,7 +23,7 @@ pub type Outline<'py> = (
     [usize; 2],
 );
 
-/// As [`AlphaShape::outline`] makes it.
+/// The outline that [`AlphaShape::outline`] makes.
 pub fn outline<'py>(py: Python<'py>, shape: Arc<AlphaShape>) -> PyResult<Outline<'py>> {
     let outline = run(py, &Task::default(), move || shape.outline().cloned())?;
     let polygon = |Polygon { outer, holes, .. }| {

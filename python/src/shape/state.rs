@@ -1,4 +1,4 @@
-//! How a shape was made, to be made again from its points: what a pickle holds.
+//! The data from which a shape is made again, with its points: the content of a pickle.
 
 use std::cell::Cell;
 
@@ -20,8 +20,8 @@ pub type State = (String, String, String);
 /// The fact that the solid of labels fills these voxels.
 const VOXELS: &str = "voxels";
 
-/// How a shape was made. Hidden points are asked for again if they are known.
-/// Of the solid of labels the facts have its voxels, too.
+/// The data from which a shape is made again. Hidden points are requested again if they are known. For the solid of labels, the
+/// facts also have its voxels.
 pub fn state(shape: &AlphaShape, facts: &str) -> State {
     let facts = match shape.voxels() {
         None => facts.to_owned(),

@@ -1,4 +1,4 @@
-//! `walpha blocks`: a shape in blocks that other processes or machines compute, and what each step prints.
+//! `walpha blocks`: computes a shape in blocks, on other processes or machines, and prints a summary of each step.
 
 use std::fmt::{self, Display};
 use std::path::{Path, PathBuf};
@@ -218,32 +218,32 @@ impl MergeStep {
     }
 }
 
-/// Protects the input, which may lie in the folder of a plan under the name of a block, say.
+/// Protects the input, which may be a file in the folder of a plan with the name of a block.
 fn keep_input_of(job: &Job, global: Global) {
     if !global.in_place {
         keep_input(Path::new(&job.input), files_of);
     }
 }
 
-/// Where merged blocks go.
+/// The destinations of merged blocks.
 #[derive(Default)]
 pub(crate) struct Outputs {
-    /// With a file for each block.
+    /// The outputs with a file for each block.
     pub pieces: Vec<(BlockwiseFormat, PathBuf)>,
-    /// In one file.
+    /// The outputs in one file.
     pub whole: Vec<(Target, Box<dyn Exporter>)>,
 }
 
 impl Outputs {
-    /// Writes all outputs or none, as one process of a team. Only the first process has the merged shape, and targets. Says
-    /// what files in single precision have subtracted.
+    /// Writes all outputs or none, as one process of a team. Only the first process has the merged shape and targets. Returns the
+    /// offsets that files in single precision have subtracted.
     pub(crate) fn write(
         self,
         plan: &Plan,
         merged: Option<&Merged>,
         team: &dyn Team,
     ) -> Result<Vec<FileOffset>> {
-        // Dropped in reverse order: a folder can be removed only once it is empty.
+        // They are dropped in reverse order: a folder can be removed only after it is empty.
         let (mut folders, mut files) = (Vec::new(), Vec::new());
         for (pieces, path) in &self.pieces {
             let written = pieces.fill(plan, merged, path, team)?;
@@ -270,7 +270,7 @@ impl Outputs {
             Some((target, Box::new(content) as Content<'_>))
         });
         let whole = fill_all(whole)?;
-        // No file gets its final name before all are written, and files that refer to others come after them.
+        // No file gets its final name before all are written, and files that refer to others come after these.
         team.barrier();
         if team.is_first() {
             team.barrier();
@@ -284,7 +284,7 @@ impl Outputs {
     }
 }
 
-/// A shape of INPUT in blocks.
+/// The job for a shape of INPUT in blocks.
 pub(crate) fn job(args: &InputArgs, recipe: Recipe) -> Result<Job> {
     let input = &args.input;
     if input.is_stdin() {
@@ -316,7 +316,7 @@ pub(crate) fn job(args: &InputArgs, recipe: Recipe) -> Result<Job> {
     })
 }
 
-/// Summary printed after planning.
+/// The summary printed after planning.
 #[derive(Serialize)]
 pub(crate) struct PlanSummary {
     folder: String,
@@ -326,7 +326,7 @@ pub(crate) struct PlanSummary {
     points: u64,
     blocks: usize,
     largest_block: u64,
-    /// Points in halos, summed over all blocks, as a share of all points.
+    /// The points in halos, summed over all blocks, as a share of all points.
     halo_share: f64,
     seconds: f64,
 }
@@ -364,7 +364,7 @@ impl Display for PlanSummary {
     }
 }
 
-/// The cost of the work, estimated.
+/// The estimated cost of the work.
 #[derive(Serialize)]
 #[serde(transparent)]
 pub(crate) struct CostSummary(pub CostEstimate);
@@ -393,7 +393,7 @@ impl Display for CostSummary {
     }
 }
 
-/// Summary printed after running blocks.
+/// The summary printed after running blocks.
 #[derive(Serialize)]
 pub(crate) struct RunSummary {
     pub folder: String,
@@ -409,13 +409,13 @@ impl Display for RunSummary {
     }
 }
 
-/// Summary printed after checking the files of a plan.
+/// The summary printed after checking the files of a plan.
 #[derive(Serialize)]
 pub(crate) struct CheckSummary {
     folder: String,
-    /// Digest of the plan; null if the plan cannot be read.
+    /// The digest of the plan; null if the plan cannot be read.
     plan: Option<String>,
-    /// Number of blocks of the plan; null if the plan cannot be read.
+    /// The number of blocks of the plan; null if the plan cannot be read.
     blocks: Option<usize>,
     missing: Vec<usize>,
     findings: Vec<FileFinding>,

@@ -1,4 +1,4 @@
-//! `walpha check`: whether a complex is the α-complex of its points.
+//! `walpha check`: checks whether a complex is the α-complex of its points.
 
 use std::fmt::{self, Display};
 use std::path::{Path, PathBuf};
@@ -94,31 +94,31 @@ enum Ties {
     Exact,
 }
 
-/// Most points that `--enumerate` accepts: more would take hours.
+/// The largest number of points for `--enumerate`: more would take hours.
 const MOST_ENUMERATED: usize = 200;
-/// Most findings printed as text; all are counted.
+/// The largest number of findings printed as text; all are counted.
 const MOST_PRINTED: usize = 20;
-/// Most findings listed in JSON.
+/// The largest number of findings listed in JSON.
 const MOST_LISTED: usize = 1000;
 
-/// Summary printed after checking a complex or filtration.
+/// The summary printed after checking a complex or filtration.
 #[derive(Serialize)]
 struct CheckSummary<F, C> {
     schema_version: u32,
     input: String,
-    /// What was judged, in words: the complex of a file, or our own shape.
+    /// The subject in words: the complex of a file, or our own shape.
     judged: String,
     points: usize,
-    /// Cells, facets, edges, vertices.
+    /// The numbers of cells, facets, edges and vertices.
     simplices: [usize; 4],
-    /// Extent of a complex; absent for a filtration.
+    /// The extent of a complex; absent for a filtration.
     #[serde(skip_serializing_if = "Option::is_none")]
     extent: Option<&'static str>,
     verdict: Verdict,
-    /// Whether the verdict counts as right: with --ties exact, whether it is exact. What was not judged in full is not.
+    /// Whether the verdict counts as right; with --ties exact, whether it is exact. It is false if not everything was judged.
     valid: bool,
     findings_total: usize,
-    /// How many there are by each rule.
+    /// The number of findings for each rule.
     #[serde(rename = "findings_by_rule", serialize_with = "as_map")]
     by_rule: Vec<(&'static str, usize)>,
     /// One mistake that explains many findings; null if none is known that does.
@@ -129,9 +129,9 @@ struct CheckSummary<F, C> {
     #[serde(skip)]
     as_fractions: bool,
     certificate: C,
-    /// What to know about the verdict: how numbers were read, and what was left out.
+    /// Notes on the verdict: how numbers were read, and what was left out.
     notes: Vec<String>,
-    /// Rules and points that were not judged, in words.
+    /// The rules and points that were not judged, in words.
     #[serde(skip)]
     not_judged: Vec<String>,
     /// The verdict with its reason.
@@ -157,7 +157,7 @@ impl Check {
         })
     }
 
-    /// Judges INPUT, reported under the name `input`.
+    /// Judges INPUT, and reports it under the name `input`.
     fn judge(self, global: Global, input: &str) -> Result<ExitCode> {
         let file = self.pipeline.input.input.clone();
         let path = file.path();
@@ -179,7 +179,7 @@ impl Check {
         }
         let recipe = self.pipeline.input.recipe()?;
         let open = || recipe.opened(path).map_err(pipeline::unread);
-        // What the options contradict is said even if there is no such file.
+        // Contradicting options are reported even if the file does not exist.
         let opened = progress
             .stage(Stage::Read, open)
             .or_else(|error| self.pipeline.recipe().and(Err(error)))?;
@@ -235,7 +235,7 @@ impl Check {
         self.given(global, JudgedInput { input, kind: &kind, why: &why }, mesh, progress)
     }
 
-    /// Judges a complex or mesh of a file, with what the options add.
+    /// Judges a complex or mesh in a file, together with the data that options add.
     fn given(
         self,
         global: Global,
@@ -286,7 +286,7 @@ impl Check {
         self.complex(global, subject, &complex, progress)
     }
 
-    /// Judges a filtration of a file.
+    /// Judges a filtration in a file.
     fn given_filtration(
         self,
         global: Global,
@@ -336,8 +336,8 @@ impl Check {
             return Ok(placed_complex(&model.shape));
         }
         let (weighed, _) = pipeline::weigh(read, input, &recipe, Values::Written, progress)?;
-        // With the whole triangulation every rule can be judged. Shapes made in several blocks are judged as
-        // they are; and on a torus the whole may have an edge that is too long where the shape has none.
+        // In the whole triangulation every rule can be judged. Shapes made in several blocks are judged as they are; and on a
+        // torus the whole triangulation may have an edge that is too long, unlike the shape.
         recipe.exterior |= recipe.blocks.is_none_or(|blocks| blocks.get() == 1)
             && recipe.memory.is_none()
             && recipe.periodic.is_none();
@@ -383,7 +383,7 @@ impl Check {
             if self.enumerate { Some(progress.watch(|| by_definition(judged))?) } else { None };
         progress.finish();
         let rules = certificate.not_judged.iter().map(ToString::to_string);
-        // Enumeration breaks ties by CGAL's rule, so it may differ where other ways are right, too.
+        // Enumeration breaks ties by CGAL's rule, so it may differ if other ways are right, too.
         let differing = enumeration.as_ref().filter(|comparison| {
             let is_excused = self.ties == Ties::Any && certificate.verdict == Verdict::Valid;
             !(comparison.is_equal() || is_excused)
@@ -470,24 +470,24 @@ impl Check {
     }
 }
 
-/// The name of INPUT, what of it is judged, and why it takes no options of a shape.
+/// The name of INPUT, the kind of its content that is judged, and the reason why it takes no options of a shape.
 struct JudgedInput<'a> {
     input: &'a str,
     kind: &'a str,
     why: &'a str,
 }
 
-/// The name of INPUT, what of it is judged, in words, and what to know about the verdict.
+/// The name of INPUT, the subject in words, and notes on the verdict.
 struct Subject<'a> {
     input: &'a str,
     judged: String,
     notes: Vec<String>,
-    /// Whether it is a triangulation of which only the cells are listed.
+    /// Whether only the cells of a triangulation are listed.
     is_cells_alone: bool,
 }
 
-/// The format of a file that holds nothing but a mesh. `.vtk` is excluded: such a file may also hold points or a
-/// volume, so its content decides.
+/// The format of a file that contains nothing but a mesh. `.vtk` is excluded: such a file may also contain points or a volume, so
+/// its content decides.
 pub(crate) fn mesh_format(path: &Path) -> Option<&'static MeshFormat> {
     MeshFormat::of(path).filter(|format| !format.extensions.contains(&"vtk"))
 }
@@ -519,7 +519,7 @@ fn by_definition(judged: &PlacedComplex) -> Result<Comparison> {
     Ok(compare(judged, judged.with_complex(&made))?)
 }
 
-/// A complex without the simplices below a dimension that are faces of none of that dimension.
+/// A complex without those simplices below a dimension that are not faces of one of that dimension.
 fn listed_from(
     lowest: usize,
     judged: Placed,
@@ -534,7 +534,7 @@ fn listed_from(
     Ok(PlacedComplex::try_from(file)?.complex)
 }
 
-/// The verdict on a complex (A) that breaks no rule and differs from that of the definition (B), and in what.
+/// The verdict on a complex (A) that breaks no rule but differs from that of the definition (B), with the differences.
 fn differs_from_definition(comparison: &Comparison) -> String {
     let names = ["vertices", "edges", "facets", "cells"].into_iter().zip(&comparison.dimensions);
     let counts = names.map(|(name, differences)| {
@@ -615,7 +615,7 @@ mod tests {
     use crate::Alpha;
     use crate::check::enumerate;
 
-    /// What the enumeration alone finds is named in the verdict.
+    /// The verdict names the findings of the enumeration alone.
     #[test]
     fn the_verdict_says_in_what_the_definition_differs() {
         let positions = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];

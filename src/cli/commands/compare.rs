@@ -1,4 +1,4 @@
-//! `walpha compare`: how two complexes or filtrations differ; and how such files are read.
+//! `walpha compare`: compares two complexes or filtrations; and reads such files.
 
 use std::fmt::{self, Display};
 use std::io::ErrorKind;
@@ -115,7 +115,7 @@ enum CheckFile {
     Filtration(FiltrationFile),
 }
 
-/// Whether a file is a complex or filtration by its name: `.json` or `.npz`.
+/// Whether the name of a file is that of a complex or filtration: `.json` or `.npz`.
 pub(crate) fn is_named(path: &Path) -> bool {
     ComplexFile::is_named(path)
 }
@@ -129,7 +129,7 @@ fn read(path: &Path) -> Result<CheckFile> {
     judged.map_err(|error| refusal(path, error))
 }
 
-/// Puts the points of a file, and its weights if it has any, in place of those of a complex.
+/// Replaces the points of a complex by those of a file, and its weights if the file has any.
 pub(crate) fn replace_points(
     positions: &mut Vec<[f64; 3]>,
     weights: &mut Option<Vec<f64>>,

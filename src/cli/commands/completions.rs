@@ -1,4 +1,4 @@
-//! `walpha completions`: shell completion of commands and options.
+//! `walpha completions`: prints shell completions of commands and options.
 
 use std::io::Write;
 

@@ -1,4 +1,4 @@
-//! `walpha convert`: a volume as Zarr.
+//! `walpha convert`: converts a volume to Zarr.
 
 use std::path::PathBuf;
 

@@ -1,4 +1,4 @@
-//! `walpha filtration`: every simplex, and the α at which it enters the shape.
+//! `walpha filtration`: lists every simplex with the α at which it enters the shape.
 
 use std::collections::BTreeMap;
 use std::fmt::{self, Display};
@@ -61,43 +61,43 @@ struct FiltrationSummary {
     points: usize,
     hidden: usize,
     duplicates: usize,
-    /// Points outside the periodic box that were moved into it; absent without a box.
+    /// The number of points outside the periodic box that were moved into it; absent without a box.
     #[serde(skip_serializing_if = "Option::is_none")]
     folded: Option<usize>,
-    /// Unit of points and all lengths; values are in its square.
+    /// The unit of points and all lengths; values are in its square.
     coordinates: Coordinates,
-    /// The α that weights are in proportion to; null where they need none.
+    /// The α to which weights are proportional; null if they do not depend on α.
     alpha_ref: Option<Parameter>,
     weights: WeightsReport,
     cells: Count,
     facets: Count,
     edges: Count,
     vertices: Count,
-    /// Number of distinct values.
+    /// The number of distinct values.
     values: usize,
     persistence: Option<Persistence>,
     files: Vec<String>,
     seconds: BTreeMap<&'static str, f64>,
 }
 
-/// Simplices of a dimension.
+/// The numbers of simplices of a dimension.
 #[derive(Clone, Copy, Serialize)]
 struct Count {
     gabriel: usize,
     attached: usize,
 }
 
-/// Persistence intervals of components, loops and voids, without empty ones.
+/// The persistence intervals of components, loops and voids, without empty ones.
 #[derive(Serialize)]
 struct Persistence {
     components: Vec<[f64; 2]>,
-    /// Values at which the components begin that never end.
+    /// The values at which the components begin that never end.
     lasting_components: Vec<f64>,
     loops: Vec<[f64; 2]>,
-    /// Values at which the loops begin that never end: three in a periodic box, otherwise none.
+    /// The values at which the loops begin that never end: three in a periodic box, otherwise none.
     lasting_loops: Vec<f64>,
     voids: Vec<[f64; 2]>,
-    /// Values at which the voids begin that never end: three in a periodic box, otherwise none.
+    /// The values at which the voids begin that never end: three in a periodic box, otherwise none.
     lasting_voids: Vec<f64>,
 }
 

@@ -11,8 +11,7 @@ use crate::points;
 
 use crate::cli::process::errors::{Result, command_error, fail_usage};
 
-/// An output folder, checked to be writable before the long work. At the end either all files appear in it,
-/// or none.
+/// An output folder, checked to be writable before the long work. At the end all files appear in it, or none.
 pub(crate) struct Folder {
     path: PathBuf,
     files: Vec<Filled>,
@@ -21,10 +20,10 @@ pub(crate) struct Folder {
     new: Option<NewFolder>,
 }
 
-/// Extensions of pages and pictures, which no table of formats lists.
+/// The extensions of pages and pictures, which no table of formats lists.
 const PAGES_AND_PICTURES: [&str; 2] = ["html", "png"];
 
-/// Whether a folder has the extension of a file by mistake: of a shape, of points, or of what else commands write.
+/// Whether a folder has the extension of a file by mistake: of a shape, of points, or of another output of commands.
 fn is_of_file(extension: &OsStr) -> bool {
     let of_shapes = export::FORMATS.iter().map(|format| format.extension);
     let of_points = points::FORMATS.iter().flat_map(|format| format.extensions).copied();
@@ -40,8 +39,7 @@ pub(crate) fn make(path: &Path, instead: &str) -> Result<Option<NewFolder>> {
 }
 
 impl Folder {
-    /// Creates the folder if needed. `option` is the option that it was given by, `names` are files that are
-    /// certain to be written.
+    /// Creates the folder if needed. `option` is the option that names it; `names` are files that are certain to be written.
     pub(crate) fn open(path: &Path, option: &str, names: &[&str]) -> Result<Self> {
         if let Some(extension) = path.extension().filter(|_| !path.is_dir())
             && is_of_file(extension)
@@ -57,7 +55,7 @@ impl Folder {
         Ok(folder)
     }
 
-    /// Writes a file, which appears when all are finished; returns its size in bytes.
+    /// Writes a file, which appears when all files are complete; returns its size in bytes.
     pub(crate) fn write(
         &mut self,
         name: &str,

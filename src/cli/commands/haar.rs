@@ -1,4 +1,4 @@
-//! `walpha haar`: steps 1 to 5 alone.
+//! `walpha haar`: performs only steps 1 to 5.
 
 use std::path::PathBuf;
 

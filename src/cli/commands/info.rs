@@ -1,4 +1,4 @@
-//! `walpha info`: what a file holds.
+//! `walpha info`: describes the content of a file.
 
 use std::path::Path;
 
@@ -55,43 +55,43 @@ struct InfoSummary {
 enum Content {
     Volume {
         format: String,
-        /// Type of a stored sample.
+        /// The type of a stored sample.
         samples: String,
         dims: [usize; 3],
         spacing: [f64; 3],
         origin: [f64; 3],
-        /// Columns are the grid's axes.
+        /// The columns are the grid's axes.
         direction: [[f64; 3]; 3],
         #[serde(flatten)]
         coordinates: Coordinates,
-        /// Range of the finite values; null where there is none.
+        /// The range of the finite values; null if there are none.
         min: Option<f32>,
         max: Option<f32>,
-        /// Samples that are NaN, infinite or padding.
+        /// The number of samples that are NaN, infinite or padding.
         missing: u64,
-        /// Whether these are padding, and masked without an option.
+        /// Whether these samples are padding, and are masked without an option.
         #[serde(skip)]
         padding: bool,
-        /// The preset that `walpha shape` uses where no option says what to look for. Absent if there is none.
+        /// The preset that `walpha shape` uses if no option says what to look for. Absent if there is none.
         #[serde(skip_serializing_if = "Option::is_none")]
         preset: Option<&'static str>,
-        /// The labels of a segmentation, with their voxels. Absent if the values are not labels.
+        /// The labels of a segmentation, with their numbers of voxels. Absent if the values are not labels.
         #[serde(skip_serializing_if = "Option::is_none")]
         labels: Option<LabelSummary>,
-        /// Volumes in the file, of which --frame reads one; the first is described. Absent if there is only one.
+        /// The number of volumes in the file, of which --frame reads one; the first is described. Absent if there is only one.
         #[serde(skip_serializing_if = "Option::is_none")]
         volumes: Option<u64>,
         gray_levels: bool,
-        /// Where the samples are, if not in INPUT itself.
+        /// The files with the samples, if these are not in INPUT itself.
         #[serde(skip_serializing_if = "Vec::is_empty")]
         data_files: Vec<String>,
     },
     /// A volume with several values in each voxel, which is not read.
     Unread {
         format: String,
-        /// Content of a voxel.
+        /// A description of the content of a voxel.
         voxels: String,
-        /// Null if only reading the samples would tell.
+        /// Null if only reading the samples would show them.
         dims: Option<[u64; 3]>,
     },
     /// A mesh of tetrahedra, which `walpha check` judges.
@@ -99,7 +99,7 @@ enum Content {
         format: &'static str,
         points: usize,
         tetrahedra: usize,
-        /// How numbers were read, and what was left out.
+        /// Notes on how numbers were read, and what was left out.
         notes: Vec<String>,
     },
     /// Several series in a folder, of which --series reads one.
@@ -112,23 +112,23 @@ enum Content {
         /// Whether the weights are squares of radii, which the file has instead of weights.
         of_radii: bool,
         values: bool,
-        /// Cells that the file lists.
+        /// The numbers of cells that the file lists.
         #[serde(skip_serializing_if = "Vec::is_empty")]
         cells: Vec<CellCount>,
         /// The cell in which the points repeat; absent if the file states none.
         #[serde(skip_serializing_if = "Option::is_none")]
         cell: Option<CellSummary>,
-        /// What the file says of some of its points: how many are synthetic, say.
+        /// Remarks of the file on some of its points, for example how many are synthetic.
         #[serde(skip_serializing_if = "Vec::is_empty")]
         notes: Vec<String>,
-        /// Samples along x, y and z of their grid; null where the file states none.
+        /// The number of samples along x, y and z of their grid; null if the file states none.
         grid: Option<[usize; 3]>,
         coordinates: Coordinates,
         /// The α intended for their shape, a squared length.
         alpha: Option<Alpha>,
         /// The values that were gray 0 and 255.
         gray_range: Option<[f64; 2]>,
-        /// The options that made them, where they differ from the default.
+        /// The options that made the points, as far as they differ from the defaults.
         #[serde(skip_serializing_if = "Option::is_none")]
         recipe: Option<Value>,
     },
@@ -143,7 +143,7 @@ struct LabelSummary {
     sizes: LabelSizes,
 }
 
-/// Most labels listed as text.
+/// The largest number of labels listed as text.
 const MOST_LABELS: usize = 30;
 
 impl std::fmt::Display for LabelSummary {
@@ -166,12 +166,12 @@ impl std::fmt::Display for LabelSummary {
     }
 }
 
-/// A cell in which points repeat.
+/// A unit cell with which points repeat.
 #[derive(Serialize)]
 struct CellSummary {
     vectors: [[f64; 3]; 3],
     repeats: [bool; 3],
-    /// Value for --periodic; null if the cell is not a box along the axes.
+    /// The value for --periodic; null if the cell is not a box along the axes.
     sides: Option<[f64; 3]>,
     #[serde(skip)]
     sides_text: String,
@@ -219,7 +219,7 @@ impl Info {
         }
     }
 
-    /// Describes a volume, or a file that holds nothing but a mesh.
+    /// Describes a volume, or a file that contains nothing but a mesh.
     fn describe_volume(&self, input: &Path, volume: &OpenVolume) -> Result<Content> {
         if let (OpenVolume::File(file), Some(format)) = (volume, mesh_format(input)) {
             let Mesh { complex, notes, .. } = read_mesh(format, file)?;
@@ -363,7 +363,8 @@ impl Content {
         }
     }
 
-    /// What the file says of its points, how they were made, and are meant to be used: notes, unit, recipe, α and gray range.
+    /// Displays the file's remarks on its points, and how they were made and are meant to be used: notes, unit, recipe, α and
+    /// gray range.
     fn fmt_usage(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let Self::Points { alpha, gray_range, grid, coordinates, recipe, notes, .. } = self else {
             return Ok(());
@@ -389,7 +390,7 @@ impl Content {
     }
 }
 
-/// Position and orientation of the samples in world coordinates.
+/// Displays the position and orientation of the samples in world coordinates.
 fn fmt_frame(
     f: &mut std::fmt::Formatter<'_>,
     spacing: [f64; 3],
@@ -415,7 +416,7 @@ fn fmt_frame(
     Ok(())
 }
 
-/// The range of the values that are finite, if there are any.
+/// Displays the range of the finite values, if there are any.
 fn fmt_values(
     f: &mut std::fmt::Formatter<'_>,
     range: Option<(f32, f32)>,
@@ -429,7 +430,7 @@ fn fmt_values(
     writeln!(f, "values    {min} to {max}{gray}")
 }
 
-/// The files that hold the samples of a volume, if they are not in the file that describes it.
+/// Displays the files with the samples of a volume, if these are not in the file that describes it.
 fn fmt_data_files(f: &mut std::fmt::Formatter<'_>, files: &[String]) -> std::fmt::Result {
     match files {
         [] => Ok(()),

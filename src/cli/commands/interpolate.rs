@@ -1,4 +1,5 @@
-//! `walpha interpolate`: F on a grid and its error, or with `--curve` the error against the number of points.
+//! `walpha interpolate`: samples F on a grid and measures its error; or, with `--curve`, measures the error against the number of
+//! points.
 
 use std::fmt::{self, Display};
 use std::io::Write;
@@ -87,16 +88,16 @@ struct InterpolateSummary {
     interpolation: Interpolation,
 }
 
-/// The samples, and their error where there is a volume to compare with.
+/// The samples, and their error if there is a volume to compare with.
 #[derive(Serialize)]
 struct Interpolation {
-    /// Samples written, along x, y and z.
+    /// The number of samples written along x, y and z.
     grid: [usize; 3],
-    /// Samples on the shape.
+    /// The number of samples on the shape.
     on_shape: usize,
-    /// Error on the samples of INPUT that the shape covers; null for points.
+    /// The error on the samples of INPUT that the shape covers; null for points.
     inside: Option<Error>,
-    /// Error on all samples of INPUT; null without `--fill`.
+    /// The error on all samples of INPUT; null without `--fill`.
     filled: Option<Error>,
 }
 
@@ -104,12 +105,12 @@ struct Interpolation {
 struct Error {
     #[serde(flatten)]
     deviation: Deviation,
-    /// In values of INPUT; null where these are gray levels.
+    /// The error in values of INPUT; null if these are gray levels.
     rmse_in_values: Option<f64>,
     max_in_values: Option<f64>,
     /// The share of samples on the shape.
     covered_share: f64,
-    /// Decibels; "inf" if nothing differs.
+    /// The PSNR in decibels; "inf" if nothing differs.
     #[serde(serialize_with = "number_or_null_or_name")]
     psnr: Option<f64>,
 }
@@ -198,7 +199,7 @@ impl Interpolate {
         )
     }
 
-    /// The grid asked for.
+    /// The requested grid.
     fn grid(&self, original: Option<&PlacedVolume>, weighed: &Weighed) -> Result<Grid> {
         let asked = self.pipeline.input.grid();
         asked.map(Dims::bounded).transpose()?;
@@ -225,7 +226,7 @@ impl Interpolate {
     }
 }
 
-/// F on the grid asked for, and its error on the grid of INPUT.
+/// The values of F on the requested grid, and their error on the grid of INPUT.
 struct Sampled {
     resampled: Resampled,
     error: Option<Error>,
@@ -297,7 +298,7 @@ impl Display for Error {
 struct CurveSummary {
     schema_version: u32,
     input: String,
-    /// A squared length, in the square of `unit`.
+    /// α as a squared length, in the square of `unit`.
     alpha: f64,
     unit: LengthUnit,
     curve: Vec<CurvePoint>,
@@ -357,7 +358,7 @@ pub(crate) fn run_curve(global: Global, pipeline: &PipelineArgs, base: &Path) ->
     print_summary(global, &facts)
 }
 
-/// From a sixteenth to twice the points that would be selected.
+/// The numbers of points: from a sixteenth to twice those that would be selected.
 fn counts(volume: &Volume, rule: SelectionRule) -> Result<Vec<u64>> {
     let whole = match rule {
         SelectionRule::Count(count) => count as f64,
@@ -371,7 +372,7 @@ fn counts(volume: &Volume, rule: SelectionRule) -> Result<Vec<u64>> {
     Ok([0.0625, 0.125, 0.25, 0.5, 1.0, 2.0].map(|f| (f * whole).round() as u64).into())
 }
 
-/// Formats of the curve.
+/// The formats of the curve.
 const EXTENSIONS: &[&str] = &[
     "csv",
     #[cfg(feature = "render")]
@@ -380,8 +381,8 @@ const EXTENSIONS: &[&str] = &[
     "svg",
 ];
 
-/// `curve.csv`, `.png` and `.svg` in a folder, created if its name ends with a slash, or files with the given
-/// prefix.
+/// The paths of `curve.csv`, `.png` and `.svg` in a folder, which is created if its name ends with a slash; or of files with the
+/// given prefix.
 fn paths(base: &Path) -> Result<(Option<NewFolder>, Vec<PathBuf>)> {
     let asked = base.to_string_lossy().ends_with(['/', std::path::MAIN_SEPARATOR]);
     let new = if asked { folder::make(base, "with --curve")? } else { None };

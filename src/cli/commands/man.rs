@@ -1,4 +1,4 @@
-//! `walpha man`: pages for `man`.
+//! `walpha man`: writes manual pages.
 
 use std::path::PathBuf;
 
@@ -26,7 +26,7 @@ pub(crate) struct Man {
 
 impl Man {
     pub(crate) fn run(self, global: Global) -> Result<()> {
-        // The long version also names the licence, which belongs elsewhere in a page.
+        // The long version also names the licence, which belongs elsewhere in a manual page.
         let command = build_command().version(env!("CARGO_PKG_VERSION"));
         let Some(folder) = self.output else {
             return print_with(|mut out| Page::new(command).render(&mut out));

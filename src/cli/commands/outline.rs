@@ -1,4 +1,5 @@
-//! Outputs that hold outlines, which only points in a plane have: what cannot be written is refused before the work.
+//! Checks outputs that contain outlines, which only points in a plane have: they are refused before the work if they cannot be
+//! written.
 
 use crate::cli::process::errors::{CommandError, Result, fail_usage};
 use crate::export::Format;
@@ -15,7 +16,7 @@ pub(crate) fn check<'a>(
     })
 }
 
-/// Refuses formats of outlines for shapes that have none, whatever the points; `why` says so.
+/// Refuses formats of outlines for shapes that never have one; `why` gives the reason.
 pub(crate) fn refuse<'a>(formats: impl IntoIterator<Item = &'a Format>, why: &str) -> Result<()> {
     if let Some(format) = formats.into_iter().find(|format| format.outline) {
         let name = format.name;

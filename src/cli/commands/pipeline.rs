@@ -1,4 +1,4 @@
-//! The steps from INPUT to weighted points and shapes, which commands share.
+//! The steps from INPUT to weighted points and shapes, which several commands share.
 
 use std::fmt::{self, Display};
 use std::path::Path;
@@ -21,7 +21,7 @@ use crate::{
     Alpha, AlphaShape, GrayRange, LengthUnit, PointsError, Recipe, Units, Volume, VolumeError,
 };
 
-/// Reported numbers of a volume.
+/// Numbers of a volume that are reported.
 #[derive(Clone, Copy)]
 pub(crate) struct VolumeSummary {
     pub dims: [usize; 3],
@@ -39,7 +39,7 @@ impl VolumeSummary {
     }
 }
 
-/// Steps 1 to 7: reads INPUT and makes weighted points of it, with the values that are written.
+/// Steps 1 to 7: reads INPUT and computes weighted points, with the values that are written.
 pub(crate) fn weighted_points(
     args: &InputArgs,
     recipe: &Recipe,
@@ -49,7 +49,7 @@ pub(crate) fn weighted_points(
     Ok((weighed, source.as_ref().map(VolumeSummary::of)))
 }
 
-/// Weighted points, and the volume they were selected from.
+/// Computes weighted points, and returns the volume that they were selected from.
 pub(crate) fn points_and_volume(
     args: &InputArgs,
     recipe: &Recipe,
@@ -61,7 +61,7 @@ pub(crate) fn points_and_volume(
     weigh(read, args, &recipe, values, progress)
 }
 
-/// Weighted points of what has been read, and the volume they were selected from.
+/// Computes weighted points of an input that has been read, and returns the volume that they were selected from.
 pub(crate) fn weigh(
     read: Input,
     args: &InputArgs,
@@ -73,7 +73,7 @@ pub(crate) fn weigh(
     Ok(progress.watch(|| recipe.weigh(read, values))?)
 }
 
-/// The shape of weighted points.
+/// Computes the shape of weighted points.
 pub(crate) fn shape(weighed: Weighed, recipe: &Recipe, progress: &mut Progress) -> Result<Model> {
     progress.watch(|| recipe.finish(weighed)).map_err(|error| match error {
         PipelineError::Radii { .. } => CommandError::usage_of(error),
@@ -81,7 +81,7 @@ pub(crate) fn shape(weighed: Weighed, recipe: &Recipe, progress: &mut Progress) 
     })
 }
 
-/// The filtration of weighted points with the weights that they have; on a torus, if one is given.
+/// Computes the filtration of weighted points with their weights; on a torus, if one is given.
 pub(crate) fn filtration(
     torus: Option<Torus>,
     weighed: &Weighed,
@@ -90,7 +90,7 @@ pub(crate) fn filtration(
     Filtration::on(torus, weighed.points.clone())
 }
 
-/// The α of a ladder: at most `count` critical values, the suggested ones, and the one that the weights are computed for.
+/// The α of a ladder: at most `count` critical values, the suggested ones, and the α of the weights.
 pub(crate) fn readable(
     filtration: &Filtration,
     curve: &Curve,
@@ -103,7 +103,7 @@ pub(crate) fn readable(
     alphas
 }
 
-/// The suggested values of α that are finite.
+/// The suggested values of α, if they are finite.
 pub(crate) fn suggested(filtration: &Filtration, curve: &Curve) -> Vec<Alpha> {
     let suggested = filtration.suggest(curve);
     let [low, high] = suggested.plateau;
@@ -116,8 +116,8 @@ pub(crate) fn read(args: &InputArgs, recipe: &Recipe, progress: &mut Progress) -
     read_with(args, progress, |input| recipe.open(input))
 }
 
-/// Reads INPUT for selecting points of it. If it is a CT, and no option says what to look for, the recipe is made
-/// to ([`preset::suited`]).
+/// Reads INPUT to select points from it. If it is a CT, and no option says what to look for, the recipe is replaced by the one
+/// for it ([`preset::suited`]).
 pub(crate) fn read_suited(
     args: &InputArgs,
     recipe: &mut Recipe,
@@ -127,7 +127,7 @@ pub(crate) fn read_suited(
     read_with(args, progress, |input| recipe.open_suited(input, suited))
 }
 
-/// [`read_suited`] for INPUT that is open.
+/// Like [`read_suited`], for an INPUT that is already open.
 pub(crate) fn read_opened(
     opened: Opened,
     args: &InputArgs,
@@ -200,13 +200,13 @@ pub(crate) fn accept(input: &Input, args: &InputArgs) -> Result<()> {
     }
 }
 
-/// The region that coverage is a share of, with its volume.
+/// The region whose share is called coverage, with its volume.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub(crate) struct Domain {
     pub volume: f64,
-    /// Unit of length; the volume is in its cube.
+    /// The unit of length; the volume is in its cube.
     pub unit: LengthUnit,
-    /// The region measured.
+    /// The name of the region.
     pub of: &'static str,
 }
 
@@ -224,7 +224,7 @@ impl Display for Domain {
     }
 }
 
-/// The domain of weighted points: that of the grid they come from, or their own box.
+/// The domain of weighted points: that of their grid, or their own box.
 pub(crate) fn domain(weighed: &Weighed, volume: Option<&VolumeSummary>) -> Domain {
     let unit = weighed.origin.coordinates.unit;
     if let Some(volume) = volume {
@@ -235,8 +235,8 @@ pub(crate) fn domain(weighed: &Weighed, volume: Option<&VolumeSummary>) -> Domai
     Domain { volume, unit, of: "the box of the points" }
 }
 
-/// The shape of a volume's points, filled in, and the gray levels of all its points. Those of the first points are
-/// given, because the shape may carry other values.
+/// Computes the filled shape of a volume's points, and the gray levels of all its points. The gray levels of the first points are
+/// given, because the shape may have other values.
 pub(crate) fn filled_in(
     shape: &AlphaShape,
     grays: &[f64],
@@ -244,7 +244,7 @@ pub(crate) fn filled_in(
     units: Units,
 ) -> Result<(AlphaShape, Vec<f64>), InterpolateError> {
     let whole = fill(shape, Some(volume), units)?;
-    // The corners come after the points, and are in gray levels already.
+    // The corners come after the points, and have gray levels already.
     let corners = whole.points().values().into_iter().flatten().skip(grays.len());
     let all = grays.iter().chain(corners).copied().collect();
     Ok((whole, all))

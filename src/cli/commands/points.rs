@@ -1,4 +1,4 @@
-//! `walpha points`: steps 1 to 7 alone.
+//! `walpha points`: performs only steps 1 to 7.
 
 use std::path::PathBuf;
 
@@ -34,7 +34,7 @@ pub(crate) struct Points {
     output: Option<PathBuf>,
     #[command(flatten)]
     pipeline: PipelineArgs,
-    // After the input, whose `TypedOptions` must be parsed first.
+    // These follow the input, whose `TypedOptions` must be parsed first.
     /// Largest error of a value in a .wvm, in gray levels (for points without a volume: in units of their
     /// values). F is off by at most as much everywhere, and the file is smaller; 0 keeps every bit.
     #[arg(long, value_name = "E", value_parser = not_negative, default_value = "0",

@@ -59,7 +59,7 @@ const PHANTOM: &str = "sample:phantom";
 impl Reproduce {
     pub(crate) fn run(self, global: Global) -> Result<()> {
         let mut progress = Progress::new(global);
-        // Before the long work.
+        // The folder is opened before the long work.
         let mut folder =
             Folder::open(&self.out, "--out", &["report.html", "report.json", "reproduction.md"])?;
         let (name, volume) = progress.stage(Stage::Read, || self.volume(global))?;
@@ -118,7 +118,7 @@ impl Reproduce {
     }
 }
 
-/// The day in UTC, or that of `SOURCE_DATE_EPOCH` (<https://reproducible-builds.org/specs/source-date-epoch/>).
+/// The current day in UTC, or that of `SOURCE_DATE_EPOCH` (<https://reproducible-builds.org/specs/source-date-epoch/>).
 fn today() -> String {
     let asked = std::env::var("SOURCE_DATE_EPOCH").ok().and_then(|seconds| seconds.parse().ok());
     // Times beyond the year 9999 are taken for mistakes.
@@ -149,7 +149,7 @@ fn date(mut days: u64) -> String {
     format!("{year:04}-{month:02}-{:02}", days + 1)
 }
 
-/// The text to print: the verdicts, and where the page is.
+/// The text to print: the verdicts, and the path of the page.
 fn text(report: &Report, out: &Path, files: usize) -> String {
     let mut text = String::new();
     let input = &report.input;

@@ -1,4 +1,4 @@
-//! `walpha shape`: the whole pipeline, and its outputs.
+//! `walpha shape`: runs the whole pipeline, and writes its outputs.
 
 use std::io::Write;
 use std::path::PathBuf;
@@ -114,7 +114,7 @@ fn unused(name: &str, given: bool, why: &str) -> Result<()> {
 }
 
 impl Shape {
-    /// The options of all stages; refuses those that no output uses.
+    /// The options of all stages. Refuses options that no output uses.
     fn recipe(&self) -> Result<Recipe> {
         let input = &self.pipeline.input;
         self.format.check(self.output.iter())?;
@@ -167,7 +167,7 @@ impl Shape {
         Ok(recipe.refuse_flat(self.require_3d))
     }
 
-    /// How outputs are written.
+    /// The options for writing outputs.
     pub(crate) fn export(&self) -> ExportOptions {
         ExportOptions::default()
             .ascii(self.ascii)
@@ -176,7 +176,7 @@ impl Shape {
             .input(Some(self.pipeline.input.input.to_string()))
     }
 
-    /// The outputs, under names whose extensions say their formats.
+    /// The outputs, as paths whose extensions determine their formats.
     fn names(&self) -> Result<Vec<PathBuf>> {
         self.output.iter().map(|path| self.format.named(path)).collect()
     }
@@ -208,7 +208,7 @@ impl Shape {
         print_summary(global, &report)
     }
 
-    /// Makes the shape in blocks, which are kept in files.
+    /// Computes the shape in blocks, which are stored in files.
     fn in_blocks(
         &self,
         recipe: Recipe,
@@ -235,7 +235,7 @@ impl Shape {
         work.lead(outputs, progress, team)
     }
 
-    /// Makes the shape in memory.
+    /// Computes the shape in memory.
     fn at_once(
         &self,
         recipe: &Recipe,
@@ -245,7 +245,7 @@ impl Shape {
     ) -> Result<Report> {
         let input = &self.pipeline.input;
         let names = self.names()?;
-        // A CT may tell the recipe what to look for.
+        // If the input is a CT, the recipe may be chosen for it.
         let mut recipe = recipe.clone();
         let read = pipeline::read_suited(input, &mut recipe, progress)?;
         let recipe = &recipe;
@@ -276,7 +276,7 @@ impl Shape {
         self.deliver(&model.shape, &facts, report, outputs, global, progress)
     }
 
-    /// Writes a shape, and adds to its report what the files do to its boundary and its coordinates.
+    /// Writes a shape, and adds the changes that files make to its boundary and its coordinates to its report.
     pub(crate) fn deliver(
         &self,
         shape: &AlphaShape,
@@ -299,14 +299,14 @@ impl Shape {
     }
 }
 
-/// The outputs, by what they are made from.
+/// The outputs, grouped by their source.
 #[derive(Default)]
 pub(crate) struct Outputs {
-    /// The blocks: a file for each.
+    /// Outputs made from the blocks, with a file for each block.
     pub pieces: Vec<(BlockwiseFormat, PathBuf)>,
-    /// The shape.
+    /// Outputs made from the shape.
     pub whole: Vec<(Target, Box<dyn Exporter>)>,
-    /// The points, with all that is needed to make the shape again.
+    /// Outputs made from the points, with all data needed to make the shape again.
     pub models: Vec<(Target, &'static PointWriter)>,
 }
 
@@ -333,7 +333,7 @@ impl Outputs {
         Ok(outputs)
     }
 
-    /// Refuses a shape of which a file would hold nothing, and without files one of nothing.
+    /// Refuses a shape for which a file would be empty; without files, refuses an empty shape.
     fn refuse_empty(&self, shape: &AlphaShape) -> Result<()> {
         if self.whole.is_empty() && self.models.is_empty() {
             EmptyShape::check(shape, Needs::Simplex).map_err(or_allowed)?;
@@ -345,7 +345,7 @@ impl Outputs {
         Ok(())
     }
 
-    /// Remarks of the chosen formats about the shape.
+    /// The remarks of the chosen formats on the shape.
     fn remarks(&self, shape: &AlphaShape) -> Vec<String> {
         let remark = |(target, exporter): &(Target, Box<dyn Exporter>)| {
             let remark = exporter.remark(shape)?.with_names(option);
@@ -370,14 +370,14 @@ impl Outputs {
     }
 }
 
-/// The error for a shape of nothing, which may be allowed.
+/// The error for an empty shape, which an option may allow.
 fn or_allowed(empty: EmptyShape) -> CommandError {
     let error = CommandError::from(empty);
     let next = error.next.map(|next| format!("{next}, or --allow-empty to go on all the same"));
     CommandError { next, ..error }
 }
 
-/// Extensions of all formats that a shape is written in.
+/// The extensions of all formats in which a shape can be written.
 fn extensions() -> impl Iterator<Item = &'static str> + Clone {
     let pieces = BlockwiseFormat::ALL.iter().map(|(_, extension)| *extension);
     let models = PointWriter::all().filter(|writer| writer.packs).map(|writer| writer.extension);

@@ -1,4 +1,4 @@
-//! `walpha shape` in blocks, by one process or by all that MPI started.
+//! `walpha shape` in blocks, computed by one process or by all that MPI started.
 
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
@@ -27,16 +27,16 @@ use crate::progress::Stage;
 pub(crate) struct SharedWork {
     job: Job,
     cutting: Cutting,
-    /// Folder for unfinished work.
+    /// The folder for unfinished work.
     folder: PathBuf,
-    /// Destinations of the outputs with a file for each block.
+    /// The destinations of the outputs with a file for each block.
     pieces: Vec<(BlockwiseFormat, PathBuf)>,
-    /// Threads of each process.
+    /// The number of threads of each process.
     threads: u16,
 }
 
 impl SharedWork {
-    /// The work that the options ask for, in a [working folder](working_folder).
+    /// The work that the options request, in a [working folder](working_folder).
     pub(crate) fn new(
         input: &InputArgs,
         recipe: Recipe,
@@ -69,7 +69,7 @@ impl SharedWork {
         Ok(report)
     }
 
-    /// Does the share of one process.
+    /// Does the share of this process.
     fn share(
         &self,
         working: Option<AtWork>,
@@ -90,17 +90,17 @@ impl SharedWork {
     }
 }
 
-/// A working folder that this command made, now or before it was interrupted, while it works there.
+/// A working folder that this command created, now or before it was interrupted, while it works there.
 struct AtWork {
     lock: Lock,
     new: Option<NewFolder>,
 }
 
 impl AtWork {
-    /// The file that tells such a folder from others, and is locked while a process works there.
+    /// The file that marks a working folder, and is locked while a process works there.
     const FILE: &str = "shape.lock";
 
-    /// Makes the folder, or takes the one that is there up again. A folder of others is refused, as its files could be
+    /// Creates the folder, or resumes work in an existing one. A folder without the mark is refused, as its files could be
     /// replaced.
     fn in_folder(folder: &Path) -> Result<Self> {
         const INSTEAD: &str = "by naming another output";
@@ -122,7 +122,7 @@ impl AtWork {
         }
     }
 
-    /// Keeps the folder, from which an interrupted command goes on.
+    /// Keeps the folder, so that an interrupted command can resume from it.
     fn kept(mut self) -> Self {
         self.lock.keep();
         if let Some(new) = self.new.take() {
@@ -131,20 +131,20 @@ impl AtWork {
         self
     }
 
-    /// Leaves the folder, without the lock.
+    /// Leaves the folder and removes the lock.
     fn end(self) -> io::Result<()> {
         self.lock.remove()
     }
 }
 
-/// What a process has done.
+/// The result of a process.
 struct Shared {
     plan: Plan,
-    /// The shape, which the first process has.
+    /// The shape, in the first process.
     merged: Option<Merged>,
-    /// What its files in single precision have subtracted.
+    /// The offsets that its files in single precision have subtracted.
     offsets: Vec<FileOffset>,
-    /// The working folder, which the first process has.
+    /// The working folder, in the first process.
     working: Option<AtWork>,
 }
 
@@ -152,7 +152,7 @@ fn order(team: &dyn Team, work: Option<String>) {
     team.broadcast(Some(work));
 }
 
-/// Does what the first process orders, until it [dismisses](dismiss) this one.
+/// Does the work that the first process sends, until it [dismisses](dismiss) this process.
 pub(crate) fn serve(team: &dyn Team) -> Result<()> {
     while let Some(work) = team.broadcast::<Option<String>>(None) {
         let work: SharedWork = serde_json::from_str(&work).map_err(io::Error::from)?;
@@ -175,9 +175,9 @@ pub(crate) fn peak(team: &dyn Team) -> Option<u64> {
     team.reduce(memory::peak_bytes(), |most, other| *most = (*most).max(other))
 }
 
-/// The folder for unfinished work: next to the first output with a file for each block, `bone.blocks` for
-/// `bone.pvtp`, or else next to the first file; without files, in the current folder, named after the input. It is
-/// removed at the end; after an interruption the same command continues from it.
+/// The folder for unfinished work. It is next to the first output with a file for each block, `bone.blocks` for `bone.pvtp`, or
+/// else next to the first file; without files, it is in the current folder and named after the input. It is removed at the end;
+/// after an interruption the same command resumes from it.
 pub(crate) fn working_folder(outputs: &[PathBuf], input: &str) -> PathBuf {
     let pieces = outputs.iter().find(|path| BlockwiseFormat::of(path).is_some());
     let file = || outputs.iter().find(|path| *path != Path::new(Target::STDOUT));

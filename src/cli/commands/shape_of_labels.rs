@@ -1,4 +1,4 @@
-//! `walpha shape` of a segmentation: the solid of its labels, in one file or in one for each label.
+//! `walpha shape` for a segmentation: writes the solid of its labels, in one file or in one for each label.
 
 use std::collections::BTreeMap;
 use std::fmt::{self, Display};
@@ -26,11 +26,11 @@ use crate::shape::{Betti, Cuts, Kept};
 use crate::volume::Volume;
 use crate::{Coordinates, Recipe};
 
-/// What the solids are written as unless told otherwise.
+/// The default format of the solids.
 const DEFAULT_MESH: &str = "stl";
 
 impl Shape {
-    /// Makes the solid of the labels that the recipe names.
+    /// Computes the solid of the labels that the recipe names.
     pub(crate) fn of_labels(
         &self,
         volume: Volume,
@@ -50,7 +50,7 @@ impl Shape {
         self.deliver(&model.shape, &ModelMetadata::default(), report, outputs, global, progress)
     }
 
-    /// Makes the solid of each label, in files of their own.
+    /// Computes the solid of each label, and writes it to a separate file.
     pub(crate) fn each_label(&self, recipe: &Recipe, global: Global) -> Result<()> {
         let [folder] = &self.output[..] else {
             fail_usage!("--each-label writes a file for each label to one folder" => "name it, as in -o labels");
@@ -102,13 +102,13 @@ impl Shape {
         )
     }
 
-    /// The formats that `--each-label` writes.
+    /// The formats for `--each-label`.
     pub(crate) fn meshes(&self) -> Result<Vec<Mesh>> {
         meshes(&self.mesh, &[DEFAULT_MESH], &self.export())
     }
 }
 
-/// Refuses outputs that hold points alone, from which a shape is made by α.
+/// Refuses outputs that contain only points, from which a shape would be made by α.
 fn refuse_points_alone(outputs: &Outputs) -> Result<()> {
     if let Some((target, _)) = outputs.models.first() {
         let name = walpha_base::shown::shown(target.path());
@@ -117,7 +117,7 @@ fn refuse_points_alone(outputs: &Outputs) -> Result<()> {
     Ok(())
 }
 
-/// Summary printed after writing a solid for each label.
+/// The summary printed after writing a solid for each label.
 #[derive(Serialize)]
 struct EachLabel {
     schema_version: u32,
@@ -140,7 +140,7 @@ struct SolidSummary {
     #[serde(skip_serializing_if = "Option::is_none")]
     solid: Option<Cuts>,
     files: Vec<String>,
-    /// What files in single precision have subtracted from coordinates, where they have.
+    /// The offsets that files in single precision have subtracted from coordinates, if they have.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     offsets: Vec<FileOffset>,
 }

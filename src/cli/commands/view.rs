@@ -1,4 +1,4 @@
-//! `walpha view`: an interactive page.
+//! `walpha view`: writes an interactive page.
 
 use std::collections::BTreeMap;
 use std::fmt::{self, Display};
@@ -105,8 +105,8 @@ impl View {
         print_summary(global, &facts)
     }
 
-    /// The weighted points of each level of detail, the fewest first and those of the shape last, and the
-    /// volume that they come from.
+    /// The weighted points of each level of detail, the fewest first and those of the shape last, and the volume that they come
+    /// from.
     fn weighed(&self, progress: &mut Progress) -> Result<(Vec<Weighed>, Option<PlacedVolume>)> {
         let input = &self.pipeline.input;
         let mut recipe = self.pipeline.recipe()?;
@@ -138,7 +138,7 @@ impl View {
         Ok((details, Some(source)))
     }
 
-    /// Makes the page of the shapes, and the summary of each level of detail.
+    /// Makes the page of the shapes, and a summary of each level of detail.
     fn page(
         &self,
         details: &[Detail],
@@ -250,15 +250,15 @@ impl View {
     }
 }
 
-/// Number of levels that `--alphas auto` chooses, besides the suggested ones.
+/// The number of levels that `--alphas auto` chooses, besides the suggested ones.
 const STOPS: usize = 28;
-/// Critical values among which it chooses: all of them would take longer than the shape.
+/// The number of critical values that are considered: all of them would take longer than the shape.
 const CANDIDATES: usize = 1024;
 
 pub(crate) struct Detail {
     pub weighed: Weighed,
     pub filtration: Filtration,
-    /// Difference of F from the volume, in the values that are written.
+    /// The difference of F from the volume, in the values that are written.
     pub differences: Option<Differences>,
     /// How many components it consists of, if not all were to be kept.
     pub kept: Option<Kept>,
@@ -301,12 +301,12 @@ impl Detail {
         Ok(Self { weighed, filtration, differences, kept })
     }
 
-    /// The α that the weights are computed for, or else the one that is found.
+    /// The α of the weights, or else the one that is found.
     pub(crate) fn reference(&self) -> Parameter {
         self.weighed.parameter.unwrap_or_else(|| self.by_rule(self.weighed.rule))
     }
 
-    /// The α that the page opens at.
+    /// The α at which the page opens.
     pub(crate) fn opening(&self, asked: Option<AlphaRule>) -> Alpha {
         asked.map_or_else(|| self.reference(), |rule| self.by_rule(rule)).alpha
     }
@@ -315,8 +315,8 @@ impl Detail {
         rule.on(&self.filtration, self.weighed.origin.coordinates.unit)
     }
 
-    /// Stops of the slider that each show something, and something other than the one before: the one to open at,
-    /// suggested ones, and others between.
+    /// The stops of the slider: the one to open at, the suggested ones, and others between. Each is not empty and differs from
+    /// the previous one.
     pub(crate) fn stops(&self, opening: Alpha) -> Vec<Alpha> {
         let curve = self.filtration.coarse_curve(CANDIDATES);
         let mut alphas = self.filtration.stops(&curve, STOPS);
@@ -327,7 +327,7 @@ impl Detail {
     }
 }
 
-/// Difference of the interpolant, filled in, from the volume; `None` if the points have no values.
+/// The difference of the filled interpolant from the volume; `None` if the points have no values.
 fn differences(
     weighed: &Weighed,
     source: &PlacedVolume,
@@ -364,7 +364,7 @@ impl Default for Isovalue {
 }
 
 impl Isovalue {
-    /// Says where no sample reaches it, or all do: there is no isosurface then.
+    /// Warns if no sample reaches the level, or all do: there is no isosurface then.
     fn check(self, PlacedVolume { volume, range, .. }: &PlacedVolume) {
         let (low, high) = volume.value_range();
         let [low, high] = [low, high].map(f64::from);
@@ -382,7 +382,7 @@ impl Isovalue {
         tracing::warn!("there is no isosurface at {self}, as {ends}; --isovalue chooses another");
     }
 
-    /// The gray level, where values `range` are gray 0..255.
+    /// The gray level; the values `range` are gray 0..255.
     pub(crate) fn gray(self, range: &GrayRange) -> f64 {
         match self {
             Self::Gray(gray) => gray,
@@ -421,10 +421,10 @@ impl FromStr for Isovalue {
 pub(crate) struct ViewSummary {
     pub schema_version: u32,
     pub input: String,
-    /// The coarsest first; the shape's own is the last.
+    /// The levels of detail, the coarsest first; that of the shape is the last.
     pub details: Vec<DetailSummary>,
     pub bytes: usize,
-    /// What the page leaves out, if anything.
+    /// A note on what the page leaves out, if anything.
     pub simplified: Option<String>,
     pub file: String,
     pub seconds: BTreeMap<&'static str, f64>,
@@ -435,7 +435,7 @@ pub(crate) struct ViewSummary {
 pub(crate) struct DetailSummary {
     points: usize,
     levels: usize,
-    /// RMSE of F, filled in, on all samples, in written values; null without a volume.
+    /// The RMSE of F, filled in, on all samples, in written values; null without a volume.
     rmse_filled: Option<f64>,
     /// How many components the points are of, if not all were to be kept.
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -1,4 +1,4 @@
-//! α of commands that make several shapes.
+//! The option α for commands that make several shapes.
 
 use std::str::FromStr;
 
@@ -6,7 +6,8 @@ use crate::Alpha;
 use crate::cli::process::errors::{CommandError, Result, command_error};
 use crate::pipeline::{AlphaRule, Parameter, PlacedVolume};
 
-/// α for a command that makes several sets of points from a volume. `auto` is refused, because each set would have its own.
+/// The α for a command that makes several sets of points from a volume. `auto` is refused, because each set would have a
+/// different one.
 pub(crate) fn one_alpha(rule: AlphaRule, source: &PlacedVolume) -> Result<Parameter> {
     rule.of_volume(&source.volume, source.units)?.ok_or_else(|| {
         command_error!(
@@ -16,12 +17,12 @@ pub(crate) fn one_alpha(rule: AlphaRule, source: &PlacedVolume) -> Result<Parame
     })
 }
 
-/// The α of a ladder.
+/// The values of α of a ladder.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Alphas {
     /// Critical values, chosen automatically.
     Auto,
-    /// The values given.
+    /// The given values.
     Given(Vec<Alpha>),
 }
 

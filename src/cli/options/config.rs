@@ -1,7 +1,7 @@
-//! Options from a file, and as a file: `--config` and `--print-config`.
+//! Reads options from a file, and prints them as a file: `--config` and `--print-config`.
 //!
-//! The settings of a file become command-line arguments after those that the user gave, so each option is
-//! checked once and in one place, and new commands and options need no code here.
+//! The settings of a file become command-line arguments after those of the user, so each option is checked once and in one place,
+//! and new commands and options need no code here.
 
 use std::ffi::{OsStr, OsString};
 use std::fs::File;
@@ -23,11 +23,11 @@ use crate::settings::Settings;
 
 /// The option that names the file.
 const FILE: &str = "config";
-/// The option that prints one.
+/// The option that prints a configuration file.
 pub(crate) const PRINT: &str = "print-config";
-/// Bytes of a file with settings, at most: there are a hundred options.
+/// The largest size of a settings file in bytes. There are about a hundred options.
 const LONGEST: u64 = 1 << 20;
-/// The hidden option that names the options which the file set.
+/// The hidden option that lists the options which the file set.
 pub(crate) const CONFIGURED: &str = "configured";
 /// Options that a file cannot set: they concern the configuration itself, or only this call.
 const NOT_CONFIGURED: [&str; 6] = [FILE, PRINT, CONFIGURED, preset::OPTION, "help", "version"];
@@ -47,21 +47,21 @@ pub(crate) fn config_options() -> [Arg; 3] {
     ]
 }
 
-/// The arguments, with those from the file that `--config` names.
+/// Returns the arguments, with those from the file that `--config` names.
 ///
-/// Keys are the long names of options. Those at the top level are for every command that has the option;
-/// a table named after a command is for that command, and takes precedence. The command line takes
-/// precedence over the file, and settings that conflict with it are ignored.
+/// Keys are the long names of options. Those at the top level are for every command that has the option; a table named after a
+/// command is only for that command, and takes precedence. The command line takes precedence over the file, and settings of the
+/// file that conflict with it are ignored.
 pub(crate) fn with_settings(command: &Command, mut args: Vec<OsString>) -> Result<Vec<OsString>> {
     let long = format!("--{FILE}");
     if !args.iter().any(|arg| arg.to_string_lossy().starts_with(&long)) {
         return Ok(args);
     }
-    // A first, lenient pass finds out what the file may not set. Errors in the arguments are reported when all of
-    // them are parsed.
+    // A first, lenient pass finds the options that the file must not set. Errors in the arguments are reported when all of them
+    // are parsed.
     let lenient = command.clone().ignore_errors(true).try_get_matches_from(&args);
     let Ok(given) = lenient else { return Ok(args) };
-    // `blocks plan` is a command of a command.
+    // `blocks plan` is a subcommand of a command.
     let (mut subcommand, mut of_command, mut name) = (command, &given, "");
     let mut file = path(&given);
     while let Some((inner_name, inner)) = of_command.subcommand()
@@ -86,7 +86,7 @@ pub(crate) fn with_settings(command: &Command, mut args: Vec<OsString>) -> Resul
         let text = arguments(arg, &value).map_err(|error| {
             error.context(format!("{}: {key} = {value} makes no sense", shown(&file)))
         })?;
-        // A default need not be passed, and must not be where its option requires another.
+        // A default need not be passed, and must not be passed if its option requires another.
         let defaults = arg.get_default_values();
         if matches!((&text[..], defaults), ([one], [default]) if *one == default_text(arg, default))
         {
@@ -100,7 +100,7 @@ pub(crate) fn with_settings(command: &Command, mut args: Vec<OsString>) -> Resul
     Ok(args)
 }
 
-/// The options in force as a file for `--config`: what was given, and defaults.
+/// Prints the options in force as a file for `--config`: the given ones and the defaults.
 pub(crate) fn print(subcommand: &Command, matches: &ArgMatches) -> String {
     let mut text = format!("# walpha {}\n", subcommand.get_name());
     let of_preset = of_preset(matches);
@@ -131,7 +131,7 @@ pub(crate) fn print(subcommand: &Command, matches: &ArgMatches) -> String {
     text
 }
 
-/// The settings that the preset adds to those given.
+/// The settings that the preset adds to the given ones.
 fn of_preset(matches: &ArgMatches) -> Vec<(&'static str, String)> {
     let all = Given::from_arg_matches(matches).expect("all have parsers");
     let is_given = |name| matches.value_source(name) == Some(ValueSource::CommandLine);
@@ -195,7 +195,7 @@ fn unknown(file: &Path, name: &str, key: &str, known: Vec<&str>) -> CommandError
     command_error!("{}: no option has the name {name}", shown(file) => "{next}")
 }
 
-/// The options a file may set.
+/// The options that a file may set.
 fn options(subcommand: &Command) -> impl Iterator<Item = &Arg> {
     subcommand.get_arguments().filter(|arg| {
         arg.get_long().is_some_and(|long| !NOT_CONFIGURED.contains(&long)) && !arg.is_positional()
@@ -263,7 +263,7 @@ fn default_text(arg: &Arg, default: &OsStr) -> String {
     format!("--{}={}", arg.get_long().unwrap_or_default(), default.to_string_lossy())
 }
 
-/// A value in TOML: a number if it parses as one, else a string.
+/// A value in TOML: a number if it parses as one, otherwise a string.
 fn value(arg: &Arg, raw: &str) -> Value {
     if !arg.get_action().takes_values() {
         return Value::Boolean(raw == "true");
@@ -271,7 +271,7 @@ fn value(arg: &Arg, raw: &str) -> Value {
     let number =
         format!("number = {raw}").parse::<Table>().ok().and_then(|mut t| t.remove("number"));
     match number {
-        // Only if it is printed as the same text again.
+        // The text must not change when the number is printed.
         Some(number @ (Value::Integer(_) | Value::Float(_))) if number.to_string() == raw => number,
         _ => Value::String(raw.to_owned()),
     }

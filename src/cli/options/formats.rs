@@ -1,9 +1,9 @@
-//! Help texts that list formats, from the library's tables.
+//! Help texts that list formats, generated from the library's tables.
 
 use crate::outofcore::BlockwiseFormat;
 use crate::{export, points, volume};
 
-/// What INPUT may be.
+/// The list of inputs.
 fn inputs() -> String {
     let volumes: Vec<&str> = volume::FORMATS.iter().map(|format| format.name).collect();
     let points: Vec<&str> = points::FORMATS.iter().map(|format| format.name).collect();
@@ -39,7 +39,7 @@ fn dotted<'a>(extensions: impl IntoIterator<Item = &'a str>) -> String {
     }
 }
 
-/// The help of an output that is a volume; `what` is what to write.
+/// The help of an output that is a volume; `what` says what is written.
 pub(crate) fn volume_output(what: &str) -> String {
     format!(
         "{what}, as f32, replaced if it exists: {}; or - (standard output, with --output-format)",

@@ -1,4 +1,4 @@
-//! Options and exit codes that all commands share.
+//! Options and exit codes common to all commands.
 
 use clap::Args;
 
@@ -28,21 +28,21 @@ pub(crate) struct Global {
     pub(crate) piped: bool,
 }
 
-/// Heading of the options that all commands share.
+/// The heading of the options that all commands share.
 pub(crate) const EVERY_COMMAND: &str = "Every command";
-/// Exit code of a failure.
+/// The exit code of a failure.
 pub(crate) const FAILURE: u8 = 1;
-/// Exit code of wrong arguments.
+/// The exit code of wrong arguments.
 pub(crate) const USAGE: u8 = 2;
-/// Exit code of a panic, as in Rust.
+/// The exit code of a panic, as in Rust.
 pub(crate) const PANICKED: u8 = 101;
-/// Exit code after a broken pipe, as in shells after SIGPIPE.
+/// The exit code after a broken pipe, as in shells after SIGPIPE.
 pub(crate) const UNREAD: u8 = 141;
-/// Exit code of a check or comparison that found differences.
+/// The exit code of a check or comparison that found differences.
 pub(crate) const DIFFERENT: u8 = 3;
-/// Exit code of a check that found nothing wrong and could not judge everything.
+/// The exit code of a check that found nothing wrong but could not judge everything.
 pub(crate) const UNDECIDED: u8 = 4;
-/// Stack size of a thread in bytes, as in rayon.
+/// The stack size of a thread in bytes, as in rayon.
 pub(crate) const STACK: usize = 2 << 20;
-/// Exit code after Ctrl-C, as in shells.
+/// The exit code after Ctrl-C, as in shells.
 pub(crate) const INTERRUPTED: i32 = 130;

@@ -1,19 +1,19 @@
-//! Help: the order of options, and the few that `-h` shows.
+//! The help: the order of options, and the few that `-h` shows.
 
 use clap::{Arg, Command};
 
 use super::preset;
 use crate::cli::options::global::EVERY_COMMAND;
 
-/// Heading of outputs, and the options of commands that belong there.
+/// The heading of outputs, and the options of commands that belong there.
 const OUTPUT: &str = "Output";
 const OUTPUTS: [&str; 4] = ["output", "ascii", "solid", "groups"];
-/// The headings in the order of use; others come after those, and what every command has is last.
+/// The headings in the order of use. Others come after these, and the options of every command are last.
 const HEADINGS: [&str; 7] =
     ["Input", "Weights and α", OUTPUT, "Points", "Wavelet stage", "Shape", "Coordinates"];
-/// The headings of advanced options, last but those of every command.
+/// The headings of advanced options, which come last before those of every command.
 const ADVANCED: [&str; 4] = ["Parts of a volume", "Raw volumes", "Pictures (.png)", "Packing"];
-/// Of the options with a heading, those that `-h` shows.
+/// The options with a heading that `-h` shows.
 const COMMON: [&str; 12] = [
     "preset",
     "gray",
@@ -29,7 +29,7 @@ const COMMON: [&str; 12] = [
     "json",
 ];
 
-/// The command with its options in the order of use, of which `-h` shows the common ones.
+/// Sorts the options of a command in the order of use, and hides all but the common ones in `-h`.
 pub(crate) fn arranged(command: Command) -> Command {
     let mut command = command.mut_subcommands(arranged);
     let mut order: Vec<(usize, String)> = command
@@ -39,7 +39,7 @@ pub(crate) fn arranged(command: Command) -> Command {
         .collect();
     order.sort_by_key(|(rank, name)| (*rank, name != preset::OPTION));
     for (_, name) in order {
-        // An option that is changed becomes the last.
+        // Changing an option moves it to the end.
         command = command.mut_arg(&name, |arg| {
             let hidden = heading(&arg).is_some() && !COMMON.contains(&name.as_str());
             let arg = if is_output(&arg) { arg.help_heading(OUTPUT) } else { arg };
@@ -49,7 +49,7 @@ pub(crate) fn arranged(command: Command) -> Command {
     command
 }
 
-/// The option with the first clause of its help for `-h`, unless it has a short help of its own.
+/// Shortens the help of an option to its first clause for `-h`, unless it has a separate short help.
 fn shortened(arg: Arg) -> Arg {
     let (Some(help), None) = (arg.get_help(), arg.get_long_help()) else { return arg };
     let help = help.to_string();

@@ -1,4 +1,4 @@
-//! INPUT: its name, and what was given of how it is read.
+//! INPUT: its name, and the options for reading it.
 
 use std::ffi::OsString;
 use std::fmt::{self, Display};
@@ -33,7 +33,7 @@ pub(crate) struct InputArgs {
     reading: Declared<Reading>,
 }
 
-/// How INPUT is read.
+/// The options for reading INPUT.
 struct Reading;
 
 impl Groups for Reading {
@@ -42,17 +42,17 @@ impl Groups for Reading {
 }
 
 impl InputArgs {
-    /// The settings that were given.
+    /// The given settings.
     pub(crate) fn settings(&self) -> &Settings {
         &self.given.settings
     }
 
-    /// Options for reading a volume.
+    /// The options for reading a volume.
     pub(crate) fn options(&self) -> ReadOptions {
         self.settings().reading()
     }
 
-    /// The grid that `--dims` asks for, if it does not describe a raw file.
+    /// The grid that `--dims` requests, if it does not describe a raw file.
     pub(crate) fn grid(&self) -> Option<Dims> {
         self.settings().dims().copied().filter(|_| self.settings().dtype().is_none())
     }
@@ -62,12 +62,12 @@ impl InputArgs {
         self.settings().input_format().map(|format| format!(".{format}")).unwrap_or_default()
     }
 
-    /// The recipe with the settings that were given.
+    /// The recipe with the given settings.
     pub(crate) fn recipe(&self) -> Result<Recipe> {
         Ok(self.settings().recipe()?.classifier(shape::CGAL))
     }
 
-    /// Options for reading points.
+    /// The options for reading points.
     pub(crate) fn point_options(&self) -> Result<PointOptions> {
         Ok(self.recipe()?.of_points())
     }
@@ -83,7 +83,7 @@ impl InputArgs {
     }
 }
 
-/// The name of a sample or a file: the path as the system has it, which need not be UTF-8, and the text shown to users and
+/// The name of a sample or a file: the path in the form of the system, which need not be UTF-8, and the text shown to users and
 /// in reports.
 #[derive(Clone, Debug)]
 pub(crate) struct InputName {

@@ -1,4 +1,4 @@
-//! Options that several commands share, and how they become a recipe: help and syntax stand here, meaning in
+//! Options that several commands share, and their conversion to a recipe: help and syntax are defined here, the meaning in
 //! [`Settings`](crate::settings::Settings).
 
 mod alphas;
@@ -44,22 +44,22 @@ pub(super) struct PipelineArgs<W: Groups = WithAlpha> {
     of: PhantomData<W>,
 }
 
-/// From an input to points with weights that stay fixed while α varies.
+/// The options of the steps from an input to points with weights that do not change while α varies.
 pub(super) type FrozenPipelineArgs = PipelineArgs<Frozen>;
 
 /// The options of the wavelet stage.
 pub(super) struct Wavelets;
-/// Which samples become points, with which values.
+/// The options for the selection of samples as points, and their values.
 pub(super) struct Selection;
-/// α and the weights in proportion to it.
+/// The options for α, and weights proportional to it.
 #[derive(Clone)]
 pub(super) struct WithAlpha;
-/// Weights in proportion to an α at which they are frozen.
+/// The options for weights proportional to an α at which they are frozen.
 #[derive(Clone)]
 pub(super) struct Frozen;
-/// How the shape is computed.
+/// The options for computing the shape.
 pub(super) struct OfShape;
-/// A periodic box.
+/// The option for a periodic box.
 pub(super) struct Periodic;
 /// Which components of the shape are kept.
 pub(super) struct Kept;
@@ -101,12 +101,12 @@ impl Groups for Kept {
 }
 
 impl<W: Groups> PipelineArgs<W> {
-    /// The settings that the command was given.
+    /// The given settings of the command.
     pub(super) fn settings(&self) -> &Settings {
         self.input.settings()
     }
 
-    /// The recipe with the settings that were given.
+    /// The recipe with the given settings.
     pub(super) fn recipe(&self) -> Result<Recipe> {
         let typed = &self.input.typed;
         if self.settings().label().is_some() {
@@ -120,13 +120,13 @@ impl<W: Groups> PipelineArgs<W> {
     }
 }
 
-/// The names of the settings of some groups.
+/// The names of the settings in some groups.
 pub(super) fn names(groups: &[Group]) -> Vec<&'static str> {
     groups.iter().flat_map(|group| Settings::names(*group)).collect()
 }
 
-/// The names of the settings that say how points are selected by gray levels and weighted, and what α is: with one of them, a
-/// volume is not taken for labels.
+/// The names of the settings for the selection of points by gray levels, their weights, and α: if one of them is given, a volume
+/// is not taken for labels.
 pub(super) fn of_gray_levels() -> Vec<&'static str> {
     let groups = [Group::Haar, Group::Points, Group::Refit, Group::Weights, Group::Weighting];
     names(&groups).into_iter().chain(["gray"]).collect()
@@ -149,18 +149,18 @@ pub(super) fn refuse_gray_levels(input: &InputArgs) -> Result<()> {
     input.typed.refuse(&refused, why)
 }
 
-/// A number from 0 up.
+/// Parses a number that is not negative.
 pub(super) fn not_negative(text: &str) -> Result<f64> {
     Ok(parse::not_negative(text)?)
 }
 
-/// A number.
+/// Parses a number.
 #[cfg(feature = "render")]
 pub(super) fn number(text: &str) -> Result<f64> {
     Ok(parse::number(text)?)
 }
 
-/// A box in the units of the points.
+/// Parses a box in the units of the points.
 pub(super) fn places(text: &str) -> Result<Region> {
     Ok(parse::places(text)?)
 }

@@ -1,4 +1,4 @@
-//! Stands in for pictures if the command is built without them: no options, no files.
+//! Replaces pictures if the command is built without them: there are no options and no files.
 
 use std::path::Path;
 

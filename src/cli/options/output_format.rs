@@ -18,7 +18,7 @@ pub(crate) struct OutputArgs {
 }
 
 impl OutputArgs {
-    /// A path whose extension names the format of an output: its own path, if that has an extension.
+    /// Returns a path whose extension determines the format of an output: its own path, if that has an extension.
     pub(crate) fn named(&self, path: &Path) -> Result<PathBuf> {
         match &self.output_format {
             _ if path.extension().is_some() => Ok(path.to_owned()),

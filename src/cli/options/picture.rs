@@ -1,4 +1,4 @@
-//! A shape as a picture: the options, and the writer for `.png`.
+//! Pictures of shapes: the options, and the writer for `.png`.
 
 use std::ffi::OsStr;
 use std::fmt::Display;
@@ -75,10 +75,10 @@ impl PictureArgs {
     /// The names of these options.
     pub(crate) const NAMES: [&str; 4] = ["view", "camera", "colour", "size"];
 
-    /// Extensions of pictures.
+    /// The extensions of pictures.
     pub(crate) const EXTENSIONS: [&str; 1] = ["png"];
 
-    /// Whether a path asks for a picture.
+    /// Whether the extension of a path is that of a picture.
     pub(crate) fn wanted(path: &Path) -> bool {
         let extension = path.extension().and_then(OsStr::to_str);
         extension.is_some_and(|e| Self::EXTENSIONS.iter().any(|png| e.eq_ignore_ascii_case(png)))
@@ -99,7 +99,7 @@ impl PictureArgs {
         };
         let bounds = bounding_box(positions);
         let diagonal = (0..3).map(|k| (bounds[1][k] - bounds[0][k]).powi(2)).sum::<f64>().sqrt();
-        // Thin compared with the shape, in any unit: 0.12 for 64³ voxels, as in the figures.
+        // The edges are thin compared with the shape, in any unit: 0.12 for 64³ voxels, as in the figures.
         let edge_radius = diagonal * 0.0011;
         let style = ShapeStyle { colouring, edge_radius, ..ShapeStyle::default() };
         let scene = Scene::of_shape(positions, shape.complex(), &style)?;

@@ -1,4 +1,4 @@
-//! `--preset`: named settings, and those that suit an input where nobody says what to look for.
+//! `--preset`: named settings, and the choice of settings for an input if the user does not say what to look for.
 
 use clap::builder::PossibleValuesParser;
 use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
@@ -12,7 +12,7 @@ use crate::volume::{Hounsfield, Labels, Volume};
 /// The name of the option.
 pub(crate) const OPTION: &str = "preset";
 
-/// The option. [`Given`](super::settings::Given) has its settings.
+/// The option. Its settings are in [`Given`](super::settings::Given).
 #[derive(Clone, Copy)]
 pub(super) struct PresetArgs;
 
@@ -39,7 +39,7 @@ impl FromArgMatches for PresetArgs {
     }
 }
 
-/// The recipe for a CT whose selection nobody stated: that of bone, with a warning that says how to state it. `None` for
+/// The recipe for a CT if the user stated no selection: that for bone, with a warning that shows how to state it. `None` for
 /// other volumes.
 pub(crate) fn suited(
     args: &InputArgs,
@@ -62,9 +62,9 @@ pub(crate) fn suited(
     Some(bone)
 }
 
-/// The command line with these settings.
+/// The command line with these settings added.
 fn stated(settings: &Settings) -> String {
-    // For a shell; no argument holds a zero byte.
+    // Arguments are quoted for a shell; none of them contains a zero byte.
     let typed: Vec<String> = std::env::args_os()
         .skip(1)
         .map(|arg| shlex::try_quote(&arg.to_string_lossy()).unwrap_or_default().into_owned())
@@ -77,8 +77,8 @@ pub(crate) fn looks_for_gray_levels(args: &InputArgs) -> bool {
     args.given.preset || of_gray_levels().iter().any(|name| args.settings().has(name))
 }
 
-/// [`suited`] for a volume in memory: for a segmentation whose labels nobody named the solid of all of them, with a warning that
-/// says how to have it otherwise.
+/// Like [`suited`], for a volume in memory. For a segmentation without named labels, it is the recipe for the solid of all
+/// labels, with a warning that says how to get another.
 pub(crate) fn suited_to(args: &InputArgs, recipe: &Recipe, volume: &Volume) -> Option<Recipe> {
     if recipe.labels.is_some() {
         return None;

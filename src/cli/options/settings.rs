@@ -1,4 +1,4 @@
-//! The settings of a recipe as options: their help, and how they are given. What they mean stands in [`Settings`].
+//! The settings of a recipe as options: their help, and how they are given. Their meaning is defined in [`Settings`].
 
 use std::marker::PhantomData;
 
@@ -12,7 +12,7 @@ use crate::cli::process::errors::CommandError;
 use crate::settings::{Group, Settings};
 use crate::volume::Dtype;
 
-/// Name on the command line, name of the value (none for a switch), and help.
+/// The name on the command line, the name of the value (empty for a switch), and the help.
 const HELP: &[(&str, &str, &str)] = &[
     (
         "input-format",
@@ -186,7 +186,7 @@ const HELP: &[(&str, &str, &str)] = &[
     ),
 ];
 
-/// Defaults that help and `--print-config` show.
+/// The defaults that the help and `--print-config` show.
 const DEFAULTS: [(&str, &str); 7] = [
     ("haar", "non-standard"),
     ("rms", "1"),
@@ -197,7 +197,7 @@ const DEFAULTS: [(&str, &str); 7] = [
     ("engine", "auto"),
 ];
 
-/// The option of a setting.
+/// The option for a setting.
 fn option(name: &'static str, heading: &'static str) -> Arg {
     let long = name.replace('_', "-");
     let described = HELP.iter().find(|(known, ..)| *known == long);
@@ -232,7 +232,7 @@ fn option(name: &'static str, heading: &'static str) -> Arg {
     }
 }
 
-/// Text that is a value of a setting.
+/// A parser for text that must be a value of a setting.
 fn checked(name: &'static str) -> impl TypedValueParser<Value = String> {
     clap::builder::StringValueParser::new().try_map(move |text| {
         Settings::default().set(name, &text).map(|()| text).map_err(CommandError::from)
@@ -247,13 +247,13 @@ fn weights_help() -> String {
     )
 }
 
-/// Groups of settings that a command takes.
+/// The groups of settings that a command takes.
 pub(crate) trait Groups {
-    /// The groups, each with the heading that its options have in the help.
+    /// The groups, each with the heading of its options in the help.
     const GROUPS: &[(Group, &str)];
 }
 
-/// Declares the options of some groups. [`Given`] has their values.
+/// Declares the options of some groups. Their values are in [`Given`].
 pub(crate) struct Declared<G>(PhantomData<G>);
 
 impl<G> Clone for Declared<G> {
@@ -293,7 +293,8 @@ impl<G: Groups> FromArgMatches for Declared<G> {
     }
 }
 
-/// The settings that a command was given: those typed, over those of the file of `--config`, over those of the preset.
+/// The settings given to a command: those typed take precedence over those of the file of `--config`, and these over those of the
+/// preset.
 #[derive(Clone, Default)]
 pub(crate) struct Given {
     pub settings: Settings,
@@ -346,7 +347,7 @@ mod tests {
     use super::*;
     use crate::Recipe;
 
-    /// What help calls a default is one: given, it changes nothing.
+    /// The defaults in the help are the defaults of the recipe: giving one changes nothing.
     #[test]
     fn every_setting_has_help_and_defaults_are_those_of_the_recipe() {
         let of_help: Vec<String> = HELP.iter().map(|(name, ..)| name.replace('-', "_")).collect();

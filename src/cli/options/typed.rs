@@ -1,5 +1,4 @@
-//! The options typed on the command line: those without effect are refused, and inputs are protected from being
-//! overwritten.
+//! The options typed on the command line: those without effect are refused, and inputs are protected from being overwritten.
 
 use std::fmt;
 use std::path::Path;
@@ -12,10 +11,10 @@ use super::config::CONFIGURED;
 use crate::cli::process::errors::{Result, fail_usage};
 use crate::volume::files_of;
 
-/// The names of the options that the user typed. Those from the file of `--config` are left out: they are for all
-/// inputs, and need not apply to this one.
+/// The names of the options that the user typed. Those from the file of `--config` are left out: they are for all inputs, and
+/// need not apply to this one.
 ///
-/// It must be the first field that a command parses: the others remove their values from the matches.
+/// This must be the first field that a command parses, as the others remove their values from the matches.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct TypedOptions(Vec<String>);
 
@@ -36,7 +35,7 @@ impl TypedOptions {
     }
 }
 
-/// Whether an option stands on the command line, not in the file of `--config`.
+/// Whether an option is on the command line, and not only in the file of `--config`.
 fn is_typed(matches: &ArgMatches, name: &str) -> bool {
     let configured = || matches.get_many::<String>(CONFIGURED).into_iter().flatten();
     matches.value_source(name) == Some(ValueSource::CommandLine)
@@ -65,9 +64,9 @@ impl Args for TypedOptions {
     }
 }
 
-/// Options that name files to read; positional arguments do so, too.
+/// The options that name files to read; positional arguments do so, too.
 const READ: [&str; 3] = ["config", "input", "points"];
-/// Options that name files to write.
+/// The options that name files to write.
 const WRITTEN: [&str; 3] = ["output", "out", "mask"];
 /// The option that lets outputs replace inputs.
 const IN_PLACE: &str = "in_place";

@@ -1,4 +1,4 @@
-//! Errors of the command, and how all errors are printed: what could not be done, why, and what to do next.
+//! Errors of the command, and the printing of all errors: what failed, why, and what to do next.
 
 use std::error::Error;
 use std::io::{self, IsTerminal};
@@ -11,35 +11,35 @@ use crate::cli::options::global::{DIFFERENT, FAILURE, UNREAD, USAGE};
 use crate::cli::process::output::remark;
 use crate::cli::process::progress;
 
-/// The result of a command, or of a step of one.
+/// The result of a command or of one of its steps.
 pub(crate) type Result<T, E = CommandError> = std::result::Result<T, E>;
 
-/// Why a command cannot do something, and what to do next.
+/// The reason why a command failed, and what to do next.
 #[derive(Clone, Debug, thiserror::Error)]
 #[error("{why}")]
 pub(crate) struct CommandError {
     pub why: String,
     pub next: Option<String>,
-    /// Whether the command line itself is wrong ([`Category::Usage`]), or what is.
+    /// The category, which is [`Category::Usage`] if the command line itself is wrong.
     pub category: Category,
-    /// Whether the result is there, and cannot be printed.
+    /// Whether the result was computed but cannot be printed.
     pub unprinted: bool,
 }
 
 impl CommandError {
-    /// An error of the library that the command line caused.
+    /// Converts an error of the library that the command line caused.
     pub(crate) fn usage_of(error: impl Advise) -> Self {
         Self { category: Category::Usage, ..error.into() }
     }
 
-    /// The same error, after what it concerns.
+    /// Prefixes the error with the item that it concerns.
     pub(crate) fn context(self, text: String) -> Self {
         let why = if text.contains(&self.why) { text } else { format!("{text}: {}", self.why) };
         Self { why, ..self }
     }
 }
 
-/// The messages of an error of the library and its causes, each once, and its advice with settings named as options.
+/// Joins the messages of an error of the library and its causes, each once, and takes its advice with settings named as options.
 impl<E: Advise> From<E> for CommandError {
     fn from(error: E) -> Self {
         let (why, next) = told(&error, option);
@@ -47,7 +47,7 @@ impl<E: Advise> From<E> for CommandError {
     }
 }
 
-/// A [`CommandError`]: why, and after `=>` what to do next.
+/// Creates a [`CommandError`]: the reason and, after `=>`, what to do next.
 macro_rules! command_error {
     ($why:literal $(, $of_why:expr)* $(=> $next:literal $(, $of_next:expr)*)?) => {
         $crate::cli::process::errors::CommandError {
@@ -87,20 +87,20 @@ pub(crate) fn option(setting: Setting) -> String {
     }
 }
 
-/// Whether standard error takes colours: a terminal, and `NO_COLOR` is not set (<https://no-color.org>).
+/// Whether standard error supports colours: it is a terminal, and `NO_COLOR` is not set (<https://no-color.org>).
 pub(crate) fn coloured() -> bool {
     let forbidden = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
     io::stderr().is_terminal() && !forbidden
 }
 
-/// An error as three lines on standard error.
+/// An error, printed as three lines on standard error.
 struct ErrorMessage {
     what: String,
     why: String,
     next: String,
 }
 
-/// Prints why a command failed. The stage that failed is the one announced last.
+/// Prints why a command failed. The stage that failed is the last one announced.
 pub(crate) fn print_error(command: &str, error: &CommandError) {
     let what = match progress::current().as_str() {
         _ if error.category == Category::Usage => "cannot do this".to_owned(),
@@ -128,7 +128,7 @@ pub(crate) fn exit_code(error: &CommandError) -> u8 {
     }
 }
 
-/// Prints what is wrong with a command line; `configured` if some of it comes from a file.
+/// Prints what is wrong with a command line; `configured` means that some of it comes from a file.
 pub(crate) fn print_usage_error(command: &str, error: &clap::Error, configured: bool) {
     if matches!(error.kind(), ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand) {
         let _ = error.print();
@@ -147,7 +147,7 @@ pub(crate) fn print_usage_error(command: &str, error: &clap::Error, configured: 
     }
     let mut what = said.first().map_or("", |line| line.trim_start_matches("error: ")).to_owned();
     let mut rest = said.get(1..).unwrap_or_default().join(" ");
-    // "invalid value 'x' for '--option <X>': what its parser says".
+    // The form is "invalid value 'x' for '--option <X>': message of its parser".
     if rest.is_empty()
         && let Some((head, tail)) = what.split_once("': ")
     {
@@ -157,7 +157,7 @@ pub(crate) fn print_usage_error(command: &str, error: &clap::Error, configured: 
         what = format!("{what} {rest}");
         rest = String::new();
     }
-    // Parsers of values return errors of the command, and clap their trait object.
+    // Parsers of values return errors of the command, which clap wraps in a trait object.
     let next = || error.source()?.downcast_ref::<CommandError>()?.next.clone();
     let (why, next) = match rest.strip_prefix("[possible values: ") {
         Some(values) => (format!("it is one of {}", values.trim_end_matches(']')), None),
@@ -180,7 +180,7 @@ impl ErrorMessage {
     fn print(&self) {
         let (red, bold, plain) =
             if coloured() { ("\x1b[1;31m", "\x1b[1m", "\x1b[0m") } else { ("", "", "") };
-        // They contain names of files and arguments, which may hold control characters.
+        // These contain names of files and arguments, which may contain control characters.
         let [what, why, next] =
             [&self.what, &self.why, &self.next].map(|text| escaped(text, |_| false));
         remark(&format!("{red}error:{plain} {what}"));

@@ -1,4 +1,4 @@
-//! The process: its threads and ranks, signals, progress, what it prints, and how it fails.
+//! The process: its threads and ranks, signals, progress, output, and errors.
 
 pub(super) mod errors;
 #[cfg(feature = "mpi")]

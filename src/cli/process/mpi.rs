@@ -1,4 +1,4 @@
-//! The processes of a team, connected by MPI.
+//! Processes of a team that are connected by MPI.
 
 use std::time::Duration;
 
@@ -9,10 +9,10 @@ use mpi::{Threading, request};
 
 use crate::outofcore::Team;
 
-/// Bytes sent at once: the counts of MPI have 32 bits.
+/// The number of bytes sent at once, as the counts of MPI have 32 bits.
 const CHUNK: usize = 1 << 20;
-/// MPI waits by polling, which takes a core from working threads. So it is polled this many times without a
-/// pause, and then once every [`PAUSE`].
+/// MPI waits by polling, which occupies a core that working threads need. So it is polled this many times without a pause, and
+/// then once every [`PAUSE`].
 const EAGER: u32 = 200;
 const PAUSE: Duration = Duration::from_micros(500);
 
@@ -76,7 +76,7 @@ impl Team for World {
     }
 }
 
-/// Polls until there is an answer.
+/// Polls until there is a result.
 fn wait<T>(mut poll: impl FnMut() -> Option<T>) -> T {
     for polled in 0u32.. {
         if let Some(answer) = poll() {

@@ -16,8 +16,8 @@ use walpha_base::standard_output;
 use crate::cli::options::global::Global;
 use crate::cli::process::errors::{CommandError, Result, command_error};
 
-/// Prints facts as the options ask for: as JSON, as text, or not at all; to standard error if a file goes to
-/// standard output (`-o -`).
+/// Prints facts in the form that the options request: as JSON, as text, or not at all. They go to standard error if a file goes
+/// to standard output (`-o -`).
 pub(crate) fn print_summary<T: Serialize + Display>(global: Global, facts: &T) -> Result<()> {
     if global.json {
         let warnings = warnings();
@@ -30,7 +30,7 @@ pub(crate) fn print_summary<T: Serialize + Display>(global: Global, facts: &T) -
     Ok(())
 }
 
-/// Facts, with the warnings of the run.
+/// Facts together with the warnings of the run.
 #[derive(Serialize)]
 struct WithWarnings<'a, T> {
     #[serde(flatten)]
@@ -52,7 +52,7 @@ fn write_text(global: Global, text: &str) -> Result<()> {
     Ok(())
 }
 
-/// Standard output is closed, full, or no longer read: what was to be printed is lost.
+/// The error for a standard output that is closed, full, or no longer read: the output is lost.
 fn unprinted(error: &io::Error) -> CommandError {
     let next = match error.kind() {
         ErrorKind::BrokenPipe => "let the reading program read to the end, if all is needed",
@@ -67,7 +67,7 @@ pub(crate) fn print(text: &str) -> Result<()> {
     print_with(|out| out.write_all(text.as_bytes()))
 }
 
-/// Prints what `write` writes, and flushes it.
+/// Prints the output of `write`, and flushes it.
 pub(crate) fn print_with(
     write: impl FnOnce(&mut io::StdoutLock<'static>) -> io::Result<()>,
 ) -> Result<()> {
@@ -89,10 +89,10 @@ pub(crate) fn json(value: &impl Serialize) -> io::Result<String> {
     Ok(serde_json::to_string_pretty(value)? + "\n")
 }
 
-/// Distinct warnings so far.
+/// The distinct warnings so far.
 static WARNINGS: Mutex<Vec<String>> = Mutex::new(Vec::new());
 
-/// Collects warnings, and lets each through once: a file that is looked at before it is read would be warned about twice.
+/// Collects warnings, and passes each on once: a file that is examined before it is read would otherwise cause them twice.
 pub(crate) struct WarningCollector;
 
 impl<S: Subscriber> Layer<S> for WarningCollector {

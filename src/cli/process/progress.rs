@@ -1,4 +1,4 @@
-//! The running stage, its progress, and the time that each stage took.
+//! The running stage, its progress, and the time of each stage.
 
 use std::fmt;
 use std::io::{self, IsTerminal};
@@ -11,15 +11,15 @@ use crate::cli::options::global::{Global, STACK};
 use crate::progress::{Listener, Monitor, Stage};
 use crate::threads;
 
-/// The progress bar: one, as there is one standard error.
+/// The progress bar. There is only one, as there is only one standard error.
 static BAR: LazyLock<ProgressBar> = LazyLock::new(|| {
     ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden())
         .with_style(style(WITHOUT_LENGTH))
 });
 
-/// The bar of a stage that does not report how far it is.
+/// The bar of a stage that does not report its progress.
 const WITHOUT_LENGTH: &str = "{spinner} {msg} {elapsed}";
-/// The bar of a stage that reports how far it is.
+/// The bar of a stage that reports its progress.
 const WITH_LENGTH: &str = "{spinner} {msg} [{bar:30}] {percent}% {elapsed}, {eta} left, {rate}";
 
 /// Times stages by name and shows the running one on a terminal.
@@ -28,15 +28,15 @@ pub(crate) struct Progress {
     monitor: Monitor,
 }
 
-/// Seconds of the stages that ended, and the running one.
+/// The seconds of the completed stages, and the running one.
 struct Times {
     started: Instant,
     stages: Vec<(&'static str, f64)>,
-    /// The running stage, and when it began.
+    /// The running stage, and its start.
     running: Option<(&'static str, Instant)>,
 }
 
-/// The work that an interrupt cancels: the last that began.
+/// The work that an interrupt cancels: the work started last.
 static WORK: Mutex<Option<Monitor>> = Mutex::new(None);
 
 /// Cancels the running work. Returns whether there is any.
@@ -51,7 +51,7 @@ pub(crate) fn is_cancelled() -> bool {
     work.as_ref().is_some_and(|monitor| monitor.check().is_err())
 }
 
-/// The stage that was announced last, or "".
+/// The name of the stage announced last, or "".
 pub(crate) fn current() -> String {
     BAR.message()
 }
@@ -62,9 +62,9 @@ pub(crate) fn clear() {
 }
 
 impl Progress {
-    /// Draws on standard error if that is a terminal and nobody asked for quiet.
+    /// Shows progress on standard error if that is a terminal and neither `--quiet` nor `--verbose` was given.
     pub(crate) fn new(global: Global) -> Self {
-        // A thread of its own draws the bar, and cannot always be started.
+        // A separate thread draws the bar, and cannot always be started.
         let watched = !global.quiet && !global.verbose && io::stderr().is_terminal();
         let watched = watched && threads::available(1, STACK) == 1;
         if watched {
@@ -78,7 +78,7 @@ impl Progress {
         Self { times, monitor }
     }
 
-    /// Runs a stage. Calls with the same stage add up.
+    /// Runs a stage. The times of calls with the same stage add up.
     pub(crate) fn stage<T>(&mut self, stage: Stage, work: impl FnOnce() -> T) -> T {
         self.watch(|| {
             // Cancelled work ends at its next check.
@@ -87,7 +87,7 @@ impl Progress {
         })
     }
 
-    /// Runs work that reports which stage begins: stages are shown and timed.
+    /// Runs work that reports the beginning of its stages, which are shown and timed.
     pub(crate) fn watch<T>(&mut self, work: impl FnOnce() -> T) -> T {
         let result = self.monitor.watch(work);
         self.lock().end();
@@ -144,7 +144,7 @@ impl Times {
     }
 }
 
-/// Times the stages, and moves the bar where it is drawn.
+/// Times the stages, and updates the bar if it is drawn.
 struct ProgressListener {
     times: Arc<Mutex<Times>>,
     drawn: bool,
@@ -153,7 +153,7 @@ struct ProgressListener {
 impl Listener for ProgressListener {
     fn stage(&self, name: &'static str) {
         self.times.lock().unwrap_or_else(PoisonError::into_inner).begin(name);
-        // In this order: each of them draws.
+        // The order matters, as each of these calls draws.
         BAR.set_style(style(WITHOUT_LENGTH));
         BAR.set_message(name);
         BAR.unset_length();

@@ -10,40 +10,40 @@ use crate::cli::options::global::{PANICKED, USAGE};
 use crate::cli::process::errors::{self, CommandError, Result, command_error};
 use crate::outofcore::{Alone, Team};
 
-/// Which process this is of how many.
+/// The role of this process among those started for the command.
 pub(crate) enum Ranks {
     /// The only process.
     Single,
-    /// One of several that were started for one command, which cannot talk to each other. All but the first have
-    /// nothing to do.
+    /// One of several processes that were started for one command but cannot communicate. All except the first have nothing to
+    /// do.
     Unconnected(Launched),
     /// One of several that share the work.
     #[cfg(feature = "mpi")]
     Connected(crate::cli::process::mpi::World),
 }
 
-/// Rank and size that a launcher set.
+/// The rank and size that a launcher set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Launched {
     rank: usize,
     size: usize,
-    /// The environment variable that holds the size.
+    /// The environment variable that contains the size.
     variable: &'static str,
 }
 
-/// Environment variables in which launchers set the number of processes, and the rank of this one.
+/// The environment variables in which launchers set the number of processes, and the rank of this one.
 const VARIABLES: [[&str; 2]; 4] = [
     // Open MPI.
     ["OMPI_COMM_WORLD_SIZE", "OMPI_COMM_WORLD_RANK"],
-    // MPICH, Intel MPI, and Slurm for these.
+    // MPICH, Intel MPI, and Slurm when it starts these.
     ["PMI_SIZE", "PMI_RANK"],
     ["MV2_COMM_WORLD_SIZE", "MV2_COMM_WORLD_RANK"],
-    // srun; what sbatch sets in its script has other names.
+    // srun. The variables that sbatch sets in its script have other names.
     ["SLURM_STEP_NUM_TASKS", "SLURM_PROCID"],
 ];
 
 impl Launched {
-    /// Rank and size from the environment, if there is more than one process.
+    /// Reads rank and size from the environment, if there is more than one process.
     fn of(variable: impl Fn(&str) -> Option<OsString>) -> Option<Self> {
         let number = |name: &str| variable(name)?.to_str()?.trim().parse::<usize>().ok();
         let launched = VARIABLES.iter().filter_map(|[size, rank]| {
@@ -69,11 +69,11 @@ impl Launched {
 
 /// The command that several processes share.
 const SHARED: &str = "walpha shape";
-/// The command whose steps are for processes on their own.
+/// The command whose steps are for independent processes.
 const SINGLE: &str = "walpha blocks";
 
 impl Ranks {
-    /// Finds out how this process was started to run a command, and connects to the others.
+    /// Determines how this process was started to run a command, and connects to the others.
     pub(crate) fn find(command: &str) -> Self {
         match Launched::of(|name| std::env::var_os(name)) {
             Some(launched) if command != SINGLE => Self::of(launched, command),
@@ -104,8 +104,8 @@ impl Ranks {
         }
     }
 
-    /// Runs the command line in the first process, while the others serve it. A failure or panic ends all of them;
-    /// `lead` gives the exit code of a failure as its error.
+    /// Runs the command line in the first process, while the others serve it. A failure or panic ends all of them; the error of
+    /// `lead` is the exit code of a failure.
     pub(crate) fn run(
         &self,
         command: &str,
@@ -132,14 +132,14 @@ impl Ranks {
         match done {
             Ok(Ok(code)) => code,
             Ok(Err(code)) => self.end(code),
-            // Its message is on standard error already.
+            // The message of the panic is on standard error already.
             Err(_) => self.end(PANICKED),
         }
     }
 
-    /// Reports a failure in a process that is not the first, and returns its exit code.
+    /// Reports a failure in a process other than the first, and returns its exit code.
     fn report_failure(&self, command: &str, error: &CommandError) -> u8 {
-        /// A failure in all processes is reported by the first, which ends the others within this time.
+        /// If all processes fail, the first reports it and ends the others within this time.
         const PATIENCE: std::time::Duration = std::time::Duration::from_secs(2);
         std::thread::sleep(PATIENCE);
         errors::print_error(&format!("{command} (rank {})", self.team().rank()), error);
@@ -172,7 +172,7 @@ mod tests {
         let one = [("OMPI_COMM_WORLD_SIZE", "1"), ("OMPI_COMM_WORLD_RANK", "0")];
         assert_eq!(launched(&one), None);
         assert_eq!(launched(&[("PMI_SIZE", "8"), ("PMI_RANK", "3")]), Some((3, 8)));
-        // srun, which may speak no dialect of MPI; and a script of sbatch, which is one process.
+        // This is srun, which need not use a dialect of MPI; followed by a script of sbatch, which is one process.
         let step = [("SLURM_NTASKS", "4"), ("SLURM_STEP_NUM_TASKS", "4"), ("SLURM_PROCID", "2")];
         assert_eq!(launched(&step), Some((2, 4)));
         assert_eq!(launched(&[("SLURM_NTASKS", "4"), ("SLURM_PROCID", "0")]), None);

@@ -5,7 +5,7 @@ use crate::threads;
 use crate::cli::options::global::STACK;
 use crate::cli::process::errors::{Result, command_error};
 
-/// Starts the threads asked for, or the default number; fewer if the system allows no more.
+/// Starts the requested number of threads, or the default number; fewer if the system does not allow so many.
 pub(crate) fn start(asked: Option<u16>) -> Result<()> {
     let asked = asked.map(usize::from);
     let (wanted, most) = (threads::wanted(asked), threads::most());

@@ -1,4 +1,4 @@
-//! The facts a command prints, as JSON or as text.
+//! The facts that a command prints, as JSON or as text.
 
 pub(super) mod offsets;
 mod parts;
@@ -26,7 +26,8 @@ use parts::ShapeReport;
 use parts::{EndedEarly, InputReport, PointsReport};
 pub(super) use parts::{HaarReport, MovedIntoBox, WeightsReport};
 
-/// Incremented when a field is removed or changes its meaning; new fields may be added at any time.
+/// The version of the schema. It is incremented when a field is removed or changes its meaning; new fields may be added at any
+/// time.
 pub(super) const SCHEMA_VERSION: u32 = 1;
 
 /// The stages whose times are printed, in the order of the work.
@@ -49,19 +50,19 @@ const STAGES: [&str; 11] = [
 pub(super) struct Report {
     schema_version: u32,
     input: InputReport,
-    /// Coordinates of points, and the unit of all lengths: areas are in the square of this unit, volumes in its cube, α and
+    /// The coordinates of points, and the unit of all lengths: areas are in the square of this unit, volumes in its cube, α and
     /// weights in the square.
     coordinates: Coordinates,
-    /// The labels that the shape is the solid of; absent where it is one of α.
+    /// The labels whose solid the shape is; absent if it is a shape of α.
     #[serde(skip_serializing_if = "Option::is_none")]
     labels: Option<LabelSizes>,
     haar: Option<HaarReport>,
     points: PointsReport,
-    /// How values were fitted; null if they are those of samples.
+    /// The fit of values; null if they are those of samples.
     fit: Option<Fit>,
-    /// Null where no α was needed.
+    /// Null if no α was needed.
     alpha: Option<Parameter>,
-    /// Null for labels, which have none.
+    /// Null for labels, which have no weights.
     weights: Option<WeightsReport>,
     #[serde(skip_serializing_if = "Option::is_none")]
     shape: Option<ShapeReport>,
@@ -70,11 +71,11 @@ pub(super) struct Report {
     /// How many components were kept, if not all were to be; `shape` is what is kept.
     #[serde(skip_serializing_if = "Option::is_none")]
     kept: Option<Kept>,
-    /// Where the boundary was cut apart, if it is written as that of a solid.
+    /// The places at which the boundary was cut apart, if it is written as that of a solid.
     #[serde(skip_serializing_if = "Option::is_none")]
     solid: Option<Cuts>,
     files: Vec<String>,
-    /// What files in single precision have subtracted from coordinates, where they have.
+    /// The offsets that files in single precision have subtracted from coordinates, if they have.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(super) offsets: Vec<FileOffset>,
     seconds: BTreeMap<&'static str, f64>,
@@ -82,7 +83,7 @@ pub(super) struct Report {
 }
 
 impl Report {
-    /// A report with all of which nothing is known left out.
+    /// Creates a report that leaves out everything unknown.
     fn new(input: InputReport, coordinates: Coordinates, points: PointsReport) -> Self {
         Self {
             schema_version: SCHEMA_VERSION,
@@ -138,14 +139,14 @@ impl Report {
         Self { labels: model.labels.clone(), ..Self::new(input, model.origin.coordinates, points) }
     }
 
-    /// Adds a shape of α.
+    /// Adds a shape that was made by α.
     pub(super) fn add_model(&mut self, model: &Model) {
         self.alpha = Some(model.parameter);
         self.engine = Some(model.shape.options().engine);
         self.add_shape(model);
     }
 
-    /// Adds a shape, of α or not.
+    /// Adds a shape, whether it was made by α or not.
     pub(super) fn add_shape(&mut self, model: &Model) {
         let shape = &model.shape;
         self.points.duplicates = Some(shape.duplicates().len());
@@ -156,7 +157,7 @@ impl Report {
         self.kept = shape.kept();
     }
 
-    /// The report on a shape made in blocks.
+    /// The report on a shape that was made in blocks.
     pub(super) fn of_blocks(plan: &Plan, merged: &Merged) -> Self {
         let (job, survey) = (&plan.job, &plan.survey);
         let GrayRange { low, high } = survey.range;
@@ -189,7 +190,7 @@ impl Report {
         }
     }
 
-    /// Adds where the boundary was cut apart.
+    /// Adds the places at which the boundary was cut apart.
     pub(super) fn add_solid(&mut self, cuts: Cuts) {
         self.solid = Some(cuts);
     }
@@ -243,7 +244,7 @@ impl Display for Report {
         if let Some(shape) = &self.shape {
             shape.print(f, unit)?;
         }
-        // Where α was given, the user knows what holds together.
+        // If α was given, the user knows which parts are connected.
         let (found, apart) =
             (self.alpha.filter(Parameter::is_found), self.shape.as_ref().map(|s| s.apart));
         if let (Some(_), Some(apart @ 1..), Some(all)) = (found, apart, self.points.in_shape) {
@@ -290,7 +291,7 @@ pub(super) fn print_kept(f: &mut fmt::Formatter<'_>, kept: &Kept, unit: &str) ->
     writeln!(f, "kept      {kept}, which had a volume of {volume} {unit}³ together")
 }
 
-/// The last lines of a report: the files written, and how long each stage took.
+/// Prints the last lines of a report: the files written, and the time of each stage.
 pub(super) fn ending(
     f: &mut fmt::Formatter<'_>,
     files: &[String],

@@ -1,4 +1,4 @@
-//! What files in single precision have subtracted from coordinates.
+//! The offsets that files in single precision have subtracted from coordinates.
 
 use std::fmt::{self, Display};
 use std::path::Path;
@@ -10,16 +10,16 @@ use crate::AlphaShape;
 use crate::cli::process::output::name;
 use crate::export::{Exporter, Target};
 
-/// A file whose coordinates are those of the points less an offset.
+/// A file whose coordinates are those of the points minus an offset.
 #[derive(Serialize)]
 pub(crate) struct FileOffset {
     file: String,
-    /// Along x, y and z, in the unit of the points.
+    /// The offset along x, y and z, in the unit of the points.
     offset: [f64; 3],
 }
 
 impl FileOffset {
-    /// That of a file, if it has one; a warning says it, or that single precision does not hold the mesh.
+    /// The offset of a file, if it has one. Warns about the offset, or that single precision does not represent the mesh.
     pub(crate) fn of(path: &Path, exporter: &dyn Exporter, shape: &AlphaShape) -> Option<Self> {
         let single = exporter.single_precision(shape)?;
         tracing::warn!("{}: {}", shown(path), single.remark()?);
@@ -29,7 +29,7 @@ impl FileOffset {
     }
 }
 
-/// Those of the files of a shape.
+/// The offsets of the files of a shape.
 pub(crate) fn offsets(
     files: &[(Target, Box<dyn Exporter>)],
     shape: &AlphaShape,

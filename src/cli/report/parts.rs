@@ -16,7 +16,7 @@ use crate::{AlphaShape, GrayRange, LengthUnit, Truncation, Weighting};
 #[derive(Serialize)]
 pub(super) struct InputReport {
     pub(super) name: String,
-    /// Samples along x, y and z; null for points.
+    /// The number of samples along x, y and z; null for points.
     pub(super) dims: Option<[usize; 3]>,
     /// The values that became gray 0 and 255; null for points.
     pub(super) gray_range: Option<[f64; 2]>,
@@ -26,10 +26,10 @@ pub(super) struct InputReport {
 pub(in crate::cli) struct HaarReport {
     pub(super) kept: u64,
     pub(super) total: u64,
-    /// Gray levels.
+    /// The error in gray levels.
     pub(super) epsilon: f64,
     pub(super) rms: f64,
-    /// In values of the input; null where these are gray levels.
+    /// The error in values of the input; null if these are gray levels.
     pub(super) rms_in_values: Option<f64>,
 }
 
@@ -37,17 +37,17 @@ pub(in crate::cli) struct HaarReport {
 pub(super) struct PointsReport {
     pub(super) selected: usize,
     pub(super) duplicates: Option<usize>,
-    /// Points outside the periodic box that were moved into it; absent without a box.
+    /// The number of points outside the periodic box that were moved into it; absent without a box.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) folded: Option<usize>,
     pub(super) hidden: Option<usize>,
     pub(super) in_shape: Option<usize>,
-    /// Set if adaptive selection needed fewer points than asked for.
+    /// Set if adaptive selection needed fewer points than requested.
     pub(super) ended_early: Option<EndedEarly>,
 }
 
 impl PointsReport {
-    /// Of a number of points, of which no more is known.
+    /// The report on a number of points of which nothing else is known.
     pub(super) fn new(selected: usize) -> Self {
         Self {
             selected,
@@ -60,11 +60,11 @@ impl PointsReport {
     }
 }
 
-/// Why there are fewer points than asked for.
+/// The reason why there are fewer points than requested.
 #[derive(Clone, Copy, Serialize)]
 pub(super) struct EndedEarly {
     pub(super) asked: u64,
-    /// The RMSE that was good enough; 0 if only a perfect interpolant is.
+    /// The RMSE that was sufficient; 0 if only a perfect interpolant is.
     pub(super) rmse: f64,
     /// The bound on the largest error, if there was one.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -88,21 +88,21 @@ impl Display for EndedEarly {
     }
 }
 
-/// Kind and range of the weights.
+/// The kind and range of the weights.
 #[derive(Serialize)]
 pub(in crate::cli) struct WeightsReport {
     pub(super) kind: String,
-    /// Whether they are squares of radii, which the input has instead of weights.
+    /// Whether the weights are squares of radii, which the input has instead of weights.
     pub(super) of_radii: bool,
     pub(super) min: f64,
     pub(super) mean: f64,
     pub(super) max: f64,
-    /// Unit of length; weights are in its square.
+    /// The unit of length; weights are in its square.
     pub(super) unit: LengthUnit,
 }
 
 impl WeightsReport {
-    /// Kind and range of the weights of points.
+    /// The kind and range of the weights of points.
     pub(in crate::cli) fn of(weighed: &Weighed) -> Self {
         let WeightSummary { min, mean, max } = weighed.points.summary();
         let origin = weighed.origin;
@@ -121,7 +121,7 @@ impl Display for WeightsReport {
 }
 
 impl HaarReport {
-    /// The truncation, for values `range` that became gray 0..255.
+    /// The report on a truncation; the values `range` became gray 0..255.
     pub(in crate::cli) fn new(t: &Truncation, range: &GrayRange) -> Self {
         let rms_in_values = (!range.is_identity()).then(|| t.rms * range.step());
         Self { kept: t.kept, total: t.total, epsilon: t.epsilon, rms: t.rms, rms_in_values }
@@ -173,7 +173,7 @@ impl Display for PointsReport {
     }
 }
 
-/// The number of points moved into a periodic box, as text after other counts; empty if none were.
+/// Displays the number of points moved into a periodic box, as text after other counts; empty if none were moved.
 pub(in crate::cli) struct MovedIntoBox(pub Option<usize>);
 
 impl Display for MovedIntoBox {
@@ -199,14 +199,14 @@ pub(super) struct ShapeReport {
     pub(super) area: f64,
     pub(super) regular_area: f64,
     pub(super) singular_area: f64,
-    /// Points of the shape outside the component that has the most.
+    /// The number of points of the shape outside its largest component, by points.
     pub(super) apart: usize,
-    /// Absent unless the points lie in one plane; all other fields have the classes and sizes of space.
+    /// Absent unless the points lie in one plane; all other fields have the classes and sizes in space.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) plane: Option<PlaneReport>,
-    /// The largest by volume, each with the voids that its boundary encloses.
+    /// The largest components by volume, each with the voids that its boundary encloses.
     pub(super) components: Vec<Component>,
-    /// Null unless the simplices outside the shape are kept.
+    /// Null unless exterior simplices are kept.
     pub(super) voids: Option<Vec<Void>>,
 }
 
@@ -215,7 +215,7 @@ pub(super) struct Cells {
     pub(super) interior: usize,
 }
 
-/// The counts of the simplices of one dimension, as a line.
+/// Displays the counts of the simplices of one dimension, as a line.
 pub(super) struct Line<'a>(pub &'a ByClass<usize>);
 
 impl Display for Line<'_> {
@@ -247,7 +247,7 @@ impl ShapeReport {
         }
     }
 
-    /// The report on a shape made in blocks.
+    /// The report on a shape that was made in blocks.
     pub(super) fn of_blocks(merged: &Merged) -> Self {
         Self {
             apart: apart(&merged.components),
@@ -266,7 +266,7 @@ impl ShapeReport {
         }
     }
 
-    /// Prints the numbers of simplices by the classes of space.
+    /// Prints the numbers of simplices by their classes in space.
     fn print_classes(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "cells     {:>9} interior", self.cells.interior)?;
         writeln!(f, "facets    {}", Line(&self.facets))?;
@@ -316,13 +316,13 @@ impl ShapeReport {
     }
 }
 
-/// The number of points outside the component that has the most.
+/// The number of points outside the largest component, by points.
 fn apart(components: &[Component]) -> usize {
     let sizes = components.iter().map(|component| component.vertices);
     sizes.clone().sum::<usize>() - sizes.max().unwrap_or_default()
 }
 
-/// Most components listed.
+/// The largest number of components listed.
 const MAX_LISTED: usize = 20;
 
 fn largest(mut components: Vec<Component>) -> Vec<Component> {

@@ -9,10 +9,10 @@ use super::parts::Line;
 use crate::AlphaShape;
 use crate::shape::ByClass;
 
-/// The shape of points in a plane, as a region of it.
+/// The shape of points in a plane, as a region of that plane.
 #[derive(Serialize)]
 pub(super) struct PlaneReport {
-    /// By the classes that they have in the plane.
+    /// The numbers of simplices by their classes in the plane.
     #[serde(serialize_with = "ByClass::serialize_shape")]
     facets: ByClass<usize>,
     #[serde(serialize_with = "ByClass::serialize_shape")]
@@ -27,7 +27,7 @@ pub(super) struct PlaneReport {
 }
 
 impl PlaneReport {
-    /// The report on a shape; `None` unless its points lie in one plane, and on no line.
+    /// The report on a shape; `None` unless its points lie in one plane, but not on one line.
     pub(super) fn of(shape: &AlphaShape) -> Option<Self> {
         let outline = shape.outline().ok()?;
         Some(Self {

@@ -10,13 +10,13 @@ struct Evidence {
     plain: ShapeNumbers,
     /// Equation 4.2 as printed.
     literal: ShapeNumbers,
-    /// N times that.
+    /// Equation 4.2 times N.
     scaled: ShapeNumbers,
-    /// Sum of the weights as printed.
+    /// The sum of the weights as printed.
     sum: f64,
-    /// Difference from ω = 0, with the weights as printed.
+    /// The difference from ω = 0, with the weights as printed.
     apart: Difference,
-    /// Difference from ω = 0, with N times these weights.
+    /// The difference from ω = 0, with N times these weights.
     scaled_apart: Difference,
     /// Whether ω = 0 and the weights as printed give the same set of points in space.
     same: bool,

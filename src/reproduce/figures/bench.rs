@@ -1,4 +1,4 @@
-//! What all figures are made with: shapes, pictures, files, claims and their verdicts.
+//! Common parts of all figures: shapes, pictures, files, claims and their verdicts.
 
 use std::collections::BTreeMap;
 
@@ -10,14 +10,14 @@ use crate::reproduce::study::{Eye, panel, panel_size};
 use crate::reproduce::study::{Shaped, Shapes, Study};
 use crate::reproduce::{File, Finding, ReproduceError, Verdict, text};
 
-/// Inputs of the figures, and the files they make.
+/// The inputs of the figures, and the files that they make.
 pub(in crate::reproduce) struct Bench<'a> {
     pub study: &'a Study<'a>,
     pub shapes: &'a Shapes,
     /// Cancels the work of a figure, whose progress is not shown.
     pub monitor: Monitor,
     pub(in crate::reproduce) files: Vec<File>,
-    /// Pictures of shapes, by label: several figures show the same.
+    /// Pictures of shapes, by label, as several figures show the same picture.
     views: BTreeMap<(String, Eye), Picture>,
 }
 
@@ -64,7 +64,7 @@ impl<'a> Bench<'a> {
         Ok(panel(title, self.view(shaped, Eye::Portrait)?, captions(shaped)))
     }
 
-    /// A shape from both cameras, its numbers below.
+    /// A shape seen from both cameras, with its numbers below.
     pub(super) fn two_views(&mut self, shaped: &Shaped) -> Result<Vec<Panel>, ReproduceError> {
         let side = self.view(shaped, Eye::Side)?;
         let front = self.shape_panel(VIEWS[0], shaped)?;
@@ -105,7 +105,7 @@ pub(super) fn captions(shaped: &Shaped) -> Vec<String> {
     ]
 }
 
-/// A claim of the paper, and how the measurements decide it.
+/// A claim of the paper, and the function that judges it by measurements.
 pub(super) struct Claim<Evidence> {
     /// The claim.
     pub text: &'static str,

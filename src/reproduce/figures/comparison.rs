@@ -4,24 +4,23 @@ use crate::reproduce::compare::{Difference, PixelDifference, same_set};
 use crate::reproduce::study::{ALPHA, Eye, Shared};
 use crate::reproduce::{Fact, Item, ReproduceError, ShapeNumbers, Table, Verdict, text};
 
-/// Four shapes, and how much the paper's two differ: without weights, left, and with barycentric
-/// ones, right.
+/// Four shapes, and the difference of the paper's two: without weights on the left, with barycentric weights on the right.
 struct Evidence {
     /// ω = 0.
     plain: ShapeNumbers,
     /// Equation 4.2 as printed.
     literal: ShapeNumbers,
-    /// N times that.
+    /// Equation 4.2 times N.
     scaled: ShapeNumbers,
     /// Equation 4.1.
     min_max: ShapeNumbers,
     /// ω = 0 at α plus the mean of these weights: for `scaled`, and for `min_max`.
     raised: [ShapeNumbers; 2],
-    /// Simplices of only the left or only the right shape.
+    /// The simplices of only the left or only the right shape.
     apart: Difference,
     /// Whether left and right are the same set of points in space.
     same: bool,
-    /// How much their pictures differ.
+    /// The difference of their pictures.
     pixels: PixelDifference,
     /// Number of pixels of each picture.
     all_pixels: usize,
@@ -59,7 +58,7 @@ impl Evidence {
         [&self.plain, &self.literal, &self.scaled, &self.min_max]
     }
 
-    /// Whether the right shape is another one and has fewer tunnels or voids.
+    /// Whether the right shape differs and has fewer tunnels or voids.
     fn filled(&self) -> bool {
         let (left, right) = (&self.plain.betti, &self.literal.betti);
         !self.same && (right.b1 < left.b1 || right.b2 < left.b2)
@@ -182,8 +181,7 @@ pub(super) fn figure_10(bench: &mut Bench<'_>) -> Result<Item, ReproduceError> {
     })
 }
 
-/// Whether some weighted shape has fewer and smaller holes than ω = 0 has, at the same α and at α
-/// plus the mean weight.
+/// Whether some weighted shape has fewer and smaller holes than ω = 0, both at the same α and at α plus the mean weight.
 fn improvement(plain: &ShapeNumbers, trials: [Trial<'_>; 2]) -> Verdict {
     let less = |of: &dyn Fn(&ShapeNumbers) -> f64, trial: &Trial<'_>| {
         of(trial.weighted) < of(plain).min(of(trial.raised))

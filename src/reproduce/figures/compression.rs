@@ -1,7 +1,7 @@
-//! Error against bits per sample on the skull: of compressors of volumes, as constants, because they are not part
-//! of this program, and of our own slowest choice of points, which takes too long for the report.
+//! Error against bits per sample on the skull: for compressors of volumes, as constants, because they are not part of this
+//! program; and for our slowest choice of points, which takes too long for the report.
 //!
-//! `benches/race_compressors.py sample:skull` measures all of them again.
+//! `benches/race_compressors.py sample:skull` repeats all these measurements.
 
 use walpha_base::Monitor;
 
@@ -19,13 +19,13 @@ use crate::reproduce::{Fact, Item, ReproduceError, Table, text};
 use crate::shape::{Alpha, ShapeOptions, alpha_shape};
 use crate::volume::{Coordinates, Volume};
 
-/// Points of the largest model, as a share of all samples.
+/// The points of the largest model, as a share of all samples.
 const MOST: f64 = 0.08;
 
 /// The largest error of a stored value, over the RMSE of the model without rounding.
 const ROUNDING: f64 = 1.5;
 
-/// The name of our curves, or what it begins with.
+/// The name of our curves, or its beginning.
 const OURS: &str = "walpha .wvm";
 
 /// A model, measured as a file.
@@ -42,7 +42,7 @@ impl Measured {
     }
 }
 
-/// What the paper does not measure: how few bytes represent the volume, compared with compressors of volumes.
+/// A measurement that is not in the paper: how few bytes represent the volume, compared with compressors of volumes.
 pub(super) fn bytes_against_error(bench: &mut Bench<'_>) -> Result<Item, ReproduceError> {
     let subject = bench.study.subject;
     let measured = models(subject.volume, &bench.monitor)?;
@@ -93,7 +93,7 @@ fn remark(others: &[Compressor]) -> String {
     )
 }
 
-/// Whether this is a good way to store a volume, by the bits that each takes at an RMSE of 2 gray levels.
+/// The verdict on our format as a way to store a volume, by the bits that each method takes at an RMSE of 2 gray levels.
 fn verdict(curves: &[RateCurve]) -> String {
     const RMSE: f64 = 2.0;
     let bits = |curve: &RateCurve| Some((curve.name.clone(), read_off(&curve.points, RMSE)?));
@@ -240,7 +240,7 @@ pub(super) struct Compressor {
     pub curve: &'static [[f64; 2]],
 }
 
-/// The compressors measured; of two builds of one, the better.
+/// The compressors measured; if there are two builds of one, the better one.
 pub(super) const SKULL: [Compressor; 6] = [
     Compressor {
         name: "walpha .wvm, exchanged and fitted",

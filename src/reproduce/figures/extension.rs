@@ -7,7 +7,7 @@ use crate::reproduce::study::ALPHA;
 use crate::reproduce::{Fact, Item, ReproduceError, Table, text};
 use crate::shape::Alpha;
 
-/// What the paper does not measure: how well F, linear on the cells, approximates the volume.
+/// A measurement that is not in the paper: how well F, linear on the cells, approximates the volume.
 ///
 /// Three counts and two kinds of weights keep it short; `walpha interpolate --curve` measures more.
 pub(super) fn error_against_points(bench: &mut Bench<'_>) -> Result<Item, ReproduceError> {

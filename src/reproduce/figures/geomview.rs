@@ -13,7 +13,7 @@ use crate::shape::{Betti, Surface};
 struct Evidence {
     /// Left and right.
     sides: [Side; 2],
-    /// How much their pictures differ.
+    /// The difference of their pictures.
     pixels: PixelDifference,
     /// Whether they are the same set of points in space.
     same: bool,
@@ -35,12 +35,12 @@ impl Evidence {
         })
     }
 
-    /// Whether both files hold exactly the surfaces of the shapes.
+    /// Whether both files contain exactly the surfaces of the shapes.
     fn agrees(&self) -> bool {
         self.sides.iter().all(|side| side.agrees)
     }
 
-    /// Whether the right shape is another one and has fewer tunnels or voids.
+    /// Whether the right shape differs and has fewer tunnels or voids.
     fn filled(&self) -> bool {
         let [left, right] = &self.betti;
         !self.same && (right.b1 < left.b1 || right.b2 < left.b2)
@@ -136,7 +136,7 @@ struct Side {
     file: String,
     mesh: OffMesh,
     picture: Picture,
-    /// Whether the file holds exactly the surface of the shape.
+    /// Whether the file contains exactly the surface of the shape.
     agrees: bool,
 }
 

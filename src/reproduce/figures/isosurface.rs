@@ -15,12 +15,12 @@ const PRINTED_PERCENT: &str = "6.07";
 /// The rate that follows from its own numbers.
 const COMPUTED_PERCENT: f64 = 100.0 * paper::POINTS as f64 / paper::SAMPLES as f64;
 
-/// What the isosurface and the shape are made from.
+/// Numbers of the isosurface and of the shape.
 struct Evidence {
     samples: usize,
     /// Samples that marching cubes reads.
     read: usize,
-    /// Of these, those next to the surface.
+    /// The read samples that are next to the surface.
     beside: usize,
     vertices: usize,
     triangles: usize,
@@ -28,7 +28,7 @@ struct Evidence {
     area: f64,
     points: usize,
     points_in_shape: usize,
-    /// Quantities that the threshold may be meant for, and how many samples each leaves.
+    /// The quantities that the threshold may refer to, and the number of samples that each leaves.
     readings: [(&'static str, usize); 5],
 }
 
@@ -53,7 +53,7 @@ impl Evidence {
         100.0 * samples as f64 / self.samples as f64
     }
 
-    /// Whether one reading of the threshold leaves as many samples as the paper says.
+    /// Whether one interpretation of the threshold leaves as many samples as the paper states.
     fn is_as_printed(&self) -> bool {
         let paper: f64 = PRINTED_PERCENT.parse().expect("a number");
         let near =
@@ -170,7 +170,7 @@ fn draw(
     Ok(Figure { legend: Vec::new(), ..figure(&title, panels) })
 }
 
-/// Quantities that a threshold of 50 may be meant for, and how many samples each leaves.
+/// The quantities that a threshold of 50 may refer to, and the number of samples that each leaves.
 fn readings(study: &Study<'_>) -> [(&'static str, usize); 5] {
     let least = THRESHOLD;
     let differences = difference(&study.smoothed);

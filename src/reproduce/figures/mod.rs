@@ -23,9 +23,9 @@ use super::study::{BY_ALPHA, Shared};
 use super::{Item, ReproduceError};
 pub(in crate::reproduce) use bench::Bench;
 
-/// One item: how it is called, and what makes it.
+/// An item: its name, and the function that makes it.
 pub(in crate::reproduce) struct Entry {
-    /// The name of the item, and what the names of its files begin with.
+    /// The name of the item, with which the names of its files begin.
     pub name: &'static str,
     /// The name of its stage.
     pub stage: &'static str,

@@ -10,11 +10,11 @@ const ROW: [f64; 4] = [9.0, 7.0, 3.0, 5.0];
 /// The coefficients of the row, and the row restored without some of them.
 struct Evidence {
     whole: Unnormalised,
-    /// Without the detail −1.
+    /// The row restored without the detail −1.
     one: Vec<f64>,
-    /// Without both details of the first level.
+    /// The row restored without both details of the first level.
     both: Vec<f64>,
-    /// Weights of the row without both.
+    /// The weights of the row restored without both.
     weights: Vec<f64>,
 }
 

@@ -133,12 +133,12 @@ pub(super) fn figure_6(bench: &mut Bench<'_>) -> Result<Item, ReproduceError> {
     })
 }
 
-/// A closed surface and the points it should be the hull of.
+/// A closed surface, and the points whose hull it should be.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Hull {
     /// Its facets.
     pub facets: usize,
-    /// Points on the wrong side of a facet: none if the surface is convex and holds all points.
+    /// The number of points on the wrong side of a facet: 0 if the surface is convex and contains all points.
     pub outside: usize,
     /// The volume that the facets enclose (divergence theorem), not the sum of the cells.
     pub volume: f64,

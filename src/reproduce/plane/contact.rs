@@ -1,4 +1,4 @@
-//! Which points the generalised discs that contain all points touch.
+//! Finds the points that the generalised discs which contain all points touch.
 //!
 //! A disc that touches p and q has its centre on their bisector, at t = ±√(1/α² − |pq|²/4) from
 //! the middle, to the left of pq for t > 0. That no point lies inside it (α < 0), or none outside
@@ -159,15 +159,15 @@ fn pairs(points: &BTreeSet<u32>) -> impl Iterator<Item = [u32; 2]> + '_ {
     points.iter().flat_map(|&p| points.range(p + 1..).map(move |&q| [p, q]))
 }
 
-/// Where the centre of the circle around a triangle at pq lies on the bisector of pq.
+/// The place of the centre of the circle around a triangle at pq on the bisector of pq.
 #[derive(Clone, Copy)]
 struct Centre {
     triangle: usize,
     /// The angle at the triangle's third vertex against the right angle: `Greater` is acute.
     apex: Ordering,
-    /// Its t against 0.
+    /// The sign of its t.
     sign: Ordering,
-    /// Its radius against that of the curve.
+    /// The comparison of its radius with that of the curve.
     radius: Ordering,
 }
 

@@ -35,7 +35,7 @@ impl Exact {
         Self::scaled(positions, &[], 0.0, exponent.unwrap_or(0))
     }
 
-    /// With power weights, and α in the same unit.
+    /// Creates the units for power weights, and α in the same unit.
     pub(super) fn weighted(positions: &[[f64; 2]], weights: &[f64], alpha: f64) -> Self {
         let lengths = positions.as_flattened().iter().filter_map(|&v| lowest_bit(v));
         let squares = weights.iter().chain([&alpha]).filter_map(|&v| lowest_bit(v));
@@ -112,7 +112,7 @@ impl Exact {
             numerator / (denominator << shift.unsigned_abs() as usize)
         };
         let exponent = (i64::from(self.exponent) - shift / 2) as i32;
-        // In two steps, so that the factor itself is a double wherever the length is.
+        // Two steps are used, so that the factor itself is a double for any length.
         let half = exponent / 2;
         quotient.to_f64().value().sqrt() * 2f64.powi(half) * 2f64.powi(exponent - half)
     }

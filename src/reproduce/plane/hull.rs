@@ -142,7 +142,7 @@ impl Cover<'_> {
             .collect()
     }
 
-    /// Where the circle around `centre` crosses the arc, as shares of it.
+    /// The places where the circle around `centre` crosses the arc, as shares of it.
     fn crossings(&self, arc: &Arc, centre: [f64; 2]) -> impl Iterator<Item = f64> {
         let apart = distance(arc.centre, centre);
         let meet = apart > TOLERANCE * self.radius && apart < 2.0 * self.radius;

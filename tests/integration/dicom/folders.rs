@@ -68,7 +68,7 @@ fn a_folder_of_ten_thousand_other_files_is_no_series() {
     slice(1, 0.0).save(folder.path(), "a.dcm");
     let error = open(folder.path()).unwrap_err().told();
     assert!(error.contains("DICOM files among more than 10000 others"), "{error}");
-    // Named itself, the slice is read: the folders beside it are not looked into.
+    // A slice that is named itself is read: the folders next to it are not searched.
     assert_eq!(open(&folder.path().join("a.dcm")).unwrap().dims().xyz(), [3, 2, 1]);
 }
 
@@ -133,7 +133,7 @@ fn damaged_slices_are_named_wherever_they_are() {
             assert!(warned.contains(end) && warned.contains("left out"), "{how}: {warned}");
             fails(f, 1, "info .", &[end, "--skip-damaged"]);
         }
-        // One that is missed inside is a gap, whatever is skipped.
+        // A missing slice inside is a gap, regardless of skipped files.
         let folder = tempfile::tempdir().unwrap();
         let f = folder.path();
         five(f);
@@ -154,7 +154,7 @@ fn other_files_are_of_no_concern() {
     fs::write(f.join("._s0.dcm"), [0; 200]).unwrap();
     assert_eq!(open(f).unwrap().dims().xyz(), [3, 2, 5]);
     assert!(!ok(f, &["info", "."]).contains("left out"));
-    // Where slices have no extension, either, it takes more to look like one of them.
+    // If slices have no extension, either, a file must have more of their features to look like one.
     let bare = tempfile::tempdir().unwrap();
     (0..3).for_each(|n| slice(n, f64::from(n)).save(bare.path(), &format!("IM{n}")));
     fs::write(bare.path().join("README"), "slices of a phantom").unwrap();

@@ -35,7 +35,7 @@ pub(super) fn enhanced(heights: &[f64]) -> Slice {
 
 #[test]
 fn frames_of_one_file_are_slices() {
-    // Not in order, and each with an intercept of its own.
+    // The frames are not in order, and each has its own intercept.
     let volume = series(&[enhanced(&[4.0, 0.0, 2.0])]).unwrap();
     assert_eq!(volume.dims().xyz(), [3, 2, 3]);
     let [first, second, third] = [6 + 100, 12 + 200, 0].map(|start| (0..6).map(move |i| start + i));
@@ -76,7 +76,7 @@ fn dose(offsets: &str) -> Slice {
 #[test]
 fn a_dose_is_a_volume_of_its_own() {
     let folder = tempfile::tempdir().unwrap();
-    // From the first, or in places of the patient.
+    // The places start from the first, or are places of the patient.
     for (offsets, order) in
         [("0\\2\\4", [0, 1, 2]), ("30\\32\\34", [0, 1, 2]), ("0\\-2\\-4", [2, 1, 0])]
     {

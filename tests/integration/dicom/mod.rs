@@ -90,16 +90,16 @@ fn meta(syntax: &str) -> Vec<u8> {
 }
 
 impl Slice {
-    /// With these elements instead of its own, or beside them.
+    /// Replaces or adds these elements.
     pub fn with(mut self, changed: impl IntoIterator<Item = Element>) -> Self {
         self.changed.extend(changed);
         self
     }
 
-    /// The elements of its data set, but for packed pixels.
+    /// The elements of its data set, except for packed pixels.
     fn elements(&self) -> Vec<Element> {
         let [x, y, z] = self.position;
-        // A name of its own for each content.
+        // A different name for each content.
         let content = self.pixels.iter().map(|&v| v as u64).chain([x, y, z].map(f64::to_bits));
         let instance = content.fold(7, |all: u64, part| all.wrapping_mul(31).wrapping_add(part));
         let number = |n: u16| n.to_le_bytes().to_vec();
@@ -221,7 +221,7 @@ fn values_are_those_of_the_modality() {
     let volume = series(&[bytes(0), bytes(20)]).unwrap();
     assert!(volume.has_gray_levels());
     assert_eq!(volume.as_slice()[6..], [200.0, 201.0, 202.0, 203.0, 204.0, 205.0]);
-    // One slice: as thick as its header says.
+    // A single slice is as thick as its header says.
     assert_eq!(series(&[slice(1, 7.0)]).unwrap().frame().spacing, [0.75, 0.5, 2.5]);
 }
 

@@ -72,7 +72,7 @@ fn deflated(write: impl FnOnce(&mut dyn Write)) -> Vec<u8> {
     [&[0; 128][..], b"DICM", &length, &meta, &encoder.finish().unwrap()].concat()
 }
 
-/// The header of an element of so many bytes.
+/// The header of an element of this number of bytes.
 fn long(group: u16, number: u16, kind: &[u8], bytes: u32) -> Vec<u8> {
     let mut header = element(group, number, kind, b"");
     header.truncate(8);
@@ -99,7 +99,7 @@ fn what_a_small_file_unpacks_to_is_bounded() {
             .unwrap();
         assert_eq!(open(&path).unwrap().as_slice(), [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
 
-        // An element of nobody in front of the header.
+        // An unknown element in front of the header.
         let bytes = deflated(|out| {
             out.write_all(&long(7, 0x1001, b"OB", MEGABYTES << 20)).unwrap();
             zeros(out, MEGABYTES);

@@ -71,7 +71,7 @@ const RIGHT: [u8; 6] = [0, 0, 1, 0, 1, 1];
 #[test]
 fn bits_are_labels_in_their_planes() {
     let folder = tempfile::tempdir().unwrap();
-    // Not in order, and with a plane that has no frame.
+    // The frames are not in order, and one plane has no frame.
     let frames = [(3, 8.0, RIGHT), (1, 0.0, LEFT), (1, 8.0, LEFT), (3, 24.0, RIGHT)];
     let path = saved(folder.path(), &segmentation("BINARY", &frames, Some("8")));
     let volume = open(&path).unwrap();
@@ -81,7 +81,7 @@ fn bits_are_labels_in_their_planes() {
     let [one, three] = [LEFT.map(f32::from), RIGHT.map(|v| 3.0 * f32::from(v))];
     let both: Vec<f32> = one.iter().zip(three).map(|(a, b)| a + b).collect();
     assert_eq!(volume.as_slice(), [&one[..], &both, &[0.0; 6], &three].concat());
-    // One of them.
+    // A single frame.
     let second = read(&path, &ReadOptions::default().frame(Some(1))).unwrap();
     assert_eq!(second.as_slice().iter().filter(|&&v| v == 3.0).count(), 6);
     assert_eq!(second.dims().z(), 3);

@@ -65,7 +65,7 @@ fn several_spacings_become_the_finest() {
     );
 }
 
-/// Where a slice is, its values are its own, and next to padding there is padding.
+/// At the place of a slice, values are unchanged, and padding extends by one.
 #[test]
 fn slices_stay_and_padding_spreads_by_one() {
     let padding = (0x28, 0x120, b"SS", 7i16.to_le_bytes().to_vec());

@@ -1,4 +1,4 @@
-//! What stored pixels mean: modality tables, padding, bits, floating point.
+//! The meaning of stored pixels: modality tables, padding, bits, floating point.
 
 use walpha::volume::{Dtype, Nan, ReadOptions, read};
 
@@ -15,7 +15,7 @@ fn table(descriptor: &[u16], data: Vec<u8>) -> Element {
     (0x28, 0x3000, b"SQ", items(&[item.concat()]))
 }
 
-/// Three slices alike, with pixels and elements of their own, and without a rescale.
+/// Three equal slices with the given pixels and elements, and without a rescale.
 fn three(pixels: [i16; 6], changed: impl Fn(i16) -> Vec<Element>) -> Vec<Slice> {
     let none = [(0x28, 0x1052, b"DS", Vec::new()), (0x28, 0x1053, b"DS", Vec::new())];
     let one = |n: i16| {
@@ -33,16 +33,16 @@ fn a_modality_table_gives_the_values() {
     let slices = three([-9, -2, -1, 0, 1, 9], |_| vec![table(&[4, 65534, 16], entries.clone())]);
     assert_eq!(first(&slices), [1000.0, 1000.0, 1003.0, 1006.0, 1009.0, 1009.0]);
     assert_eq!(series(&slices).unwrap().dtype(), Dtype::U16);
-    // Of 8 bits, one in each byte or one in each word.
+    // A table of 8 bits, with one entry in each byte or in each word.
     for data in [vec![9, 8, 7, 250], us(&[9, 8, 7, 250])] {
         let slices = three([0, 1, 2, 3, 4, 0], |_| vec![table(&[4, 0, 8], data.clone())]);
         assert_eq!(first(&slices), [9.0, 8.0, 7.0, 250.0, 250.0, 9.0]);
     }
-    // As many as 16 bits cannot count.
+    // A table with more entries than 16 bits can count.
     let all: Vec<u8> = us(&(0..=u16::MAX).collect::<Vec<_>>());
     let slices = three([-32768, 0, 32767, 1, 2, 3], |_| vec![table(&[0, 32768, 16], all.clone())]);
     assert_eq!(first(&slices)[..3], [0.0, 32768.0, 65535.0]);
-    // What cannot hold together is refused.
+    // Contradictory elements are refused.
     let both = |slope: &'static str| {
         let rescale = [(0x28, 0x1053, b"DS", slope.into()), (0x28, 0x1052, b"DS", b"0".to_vec())];
         let with = |_| [vec![table(&[4, 0, 16], us(&[1, 2, 3, 4]))], rescale.to_vec()].concat();
@@ -93,11 +93,11 @@ fn padding_is_masked_and_said() {
     // Either end of a range may come first.
     assert_eq!(masked(vec![value(-2000), limit(-5)]), [0, 1, 4]);
     assert_eq!(masked(vec![value(-5), limit(-2000)]), [0, 1, 4]);
-    // Its type may be that of unsigned numbers, where pixels are signed.
+    // Its type may be that of unsigned numbers, although pixels are signed.
     let unsigned = (0x28, 0x120, b"US", (-2000i16).to_le_bytes().to_vec());
     assert_eq!(masked(vec![unsigned]), [0, 4]);
     assert!(!padded(vec![]).has_missing() && !padded(vec![limit(3)]).has_missing());
-    // It is compared with what is stored, not with what that means.
+    // It is compared with stored values, not with their meaning.
     let rescaled = vec![value(3), (0x28, 0x1052, b"DS", b"-3".to_vec())];
     assert_eq!(masked(rescaled), [2]);
     // Beyond the bits that are stored, all bits are compared.

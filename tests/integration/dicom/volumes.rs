@@ -20,7 +20,7 @@ fn copies_count_once() {
     let named = |n: i16, z: f64| slice(n, z).with([name.clone()]);
     let text = series(&[named(0, 0.0), named(5, 0.0), slice(1, 1.0)]).unwrap_err();
     assert!(text.contains("two files of one SOP Instance UID whose pixels differ"), "{text}");
-    // At other places they are not copies, whatever they are called.
+    // At other places they are not copies, regardless of their names.
     assert_eq!(series(&[named(0, 0.0), named(0, 1.0)]).unwrap().dims().z(), 2);
 }
 

@@ -110,7 +110,7 @@ fn one_pair(damaged: &FiltrationFile, rule: &dyn Fn(&FiltrationFinding) -> bool)
     assert!(found.len() == 1 && rule(&found[0]), "{found:?}");
 }
 
-/// What is wrong is found, and named.
+/// Faults are found, and named.
 #[test]
 fn the_checker_finds_what_is_wrong() {
     let mut random = Random::new(5);

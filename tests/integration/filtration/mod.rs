@@ -16,7 +16,7 @@ use crate::common;
 /// Makes a place and a weight.
 type Family = fn(&mut Random) -> ([f64; 3], f64);
 
-/// What a set is made of, by its number.
+/// Makes the points of a set, by its number.
 const FAMILIES: [Family; 6] = [
     |r| ([0; 3].map(|_| r.whole(0, 3)), 0.0),
     |r| ([0; 3].map(|_| r.whole(0, 3)), r.whole(-2, 4) / 2.0),
@@ -33,7 +33,7 @@ const FAMILIES: [Family; 6] = [
     },
 ];
 
-/// Sets of up to so many points that span a volume.
+/// Sets of up to `most` points that span a volume.
 fn sets(count: usize, most: usize) -> impl Iterator<Item = WeightedPoints> {
     let mut random = Random::new(17);
     let sets = (0..).map(move |k| {
@@ -70,8 +70,8 @@ fn the_order_is_by_value_dimension_and_vertices() {
     }
 }
 
-/// Where doubles cannot tell two values apart the order still does: a point off the middle of an edge
-/// by less than its square can show.
+/// If doubles cannot distinguish two values, the order still does: a point is off the middle of an edge by less than its square
+/// can show.
 #[test]
 fn values_with_one_double_are_told_apart() {
     let tiny = 2f64.powi(-40);

@@ -108,7 +108,7 @@ fn a_damaged_vti_says_what_is_wrong() {
         vti("compressor=\"vtkZLibDataCompressor\"", &blocks, b""),
         &["compressed blocks"],
     );
-    // Of the file that follows, a block of 12 bytes is far too little for what it is to hold.
+    // A block of 12 bytes of the following file is far too small for its stated content.
     let lying = [[1u32, 1 << 20, 0, 12].map(u32::to_le_bytes).concat(), vec![0; 3000]].concat();
     let blocks = format!("format=\"binary\">{}", base64(&lying));
     let file = vti("compressor=\"vtkZLibDataCompressor\"", &blocks, b"");
@@ -247,7 +247,7 @@ fn no_damage_does_harm() {
     });
 }
 
-/// A file is to be copied again only where it is shorter than it says.
+/// The advice to copy a file again is given only if it is shorter than it says.
 #[test]
 fn advice_follows_from_the_cause() {
     let n = |from: &'static str, to: &'static str| nrrd(move |h| h.replace(from, to), &shorts());

@@ -1,4 +1,4 @@
-//! `info` on what is not read as it is: several volumes, samples that are not numbers, colours.
+//! `info` about content that is not read without changes: several volumes, samples that are not numbers, colours.
 
 use ndarray::{Array3, Array4};
 use walpha::volume::{Nan, ReadOptions, Space, read};
@@ -133,7 +133,7 @@ fn frames_that_differ_are_told() {
     assert_eq!(warnings.len(), 1, "{warnings:?}");
     names(warnings[0].as_str().unwrap(), &["both.nii", "qform", "7 mm", "sform is taken"]);
     assert_eq!(told["origin"], serde_json::json!([0.0, 0.0, 0.0]));
-    // Where only the qform is there, it is taken, and there is nothing to say.
+    // If there is only the qform, it is used, without any message.
     let mut alone = both(7.0);
     alone[254] = 0;
     save(f, "qform.nii", alone);

@@ -1,4 +1,4 @@
-//! A voxel keeps its place in the patient, whatever formats a volume goes through.
+//! A voxel keeps its place in the patient in any sequence of formats.
 
 use ndarray::Array3;
 use proptest::prelude::*;
@@ -16,7 +16,7 @@ fn through(extension: &str, volume: &Volume) -> Volume {
     open(&save(folder.path(), &format!("v.{extension}"), written(extension, volume))).unwrap()
 }
 
-/// Where a sample is in a patient, in millimetres.
+/// The place of a sample in a patient, in millimetres.
 fn place(volume: &Volume, index: [f64; 3]) -> [f64; 3] {
     let frame = volume.frame().to(Coordinates::PATIENT);
     assert_eq!(frame.coordinates, Coordinates::PATIENT, "{:?}", volume.frame());
@@ -121,7 +121,8 @@ fn headers_say_the_space_and_the_unit() {
     assert!(text("mha", &small).contains("ElementSpacing = 0.0005 0.0005 0.002"));
 }
 
-/// World units where the file states them, LPS unless asked otherwise, and told beside each length.
+/// Coordinates are in world units if the file states them, in LPS unless requested otherwise, and the unit is printed with each
+/// length.
 #[test]
 fn lengths_are_in_the_unit_of_the_file() {
     let folder = tempfile::tempdir().unwrap();

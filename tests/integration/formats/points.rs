@@ -47,7 +47,7 @@ fn points_come_through_a_pipe_that_is_opened_once() {
         let input = path.clone();
         thread::spawn(move || {
             let read = Recipe::default().open(&input);
-            // Nobody listens where the test has ended.
+            // There is no receiver if the test has ended.
             drop(opened.send(read.map_err(|error| error.to_string())));
         });
         std::fs::write(&path, text).unwrap();
@@ -56,7 +56,7 @@ fn points_come_through_a_pipe_that_is_opened_once() {
     }
 }
 
-/// The same for commands that ask more of a file than its points: they read a pipe once, or say why they cannot.
+/// Commands that need more of a file than its points read a pipe once, or say why they cannot.
 #[test]
 #[cfg(unix)]
 fn commands_open_a_pipe_once() {
@@ -164,7 +164,7 @@ fn tables_need_no_header() {
     }
 }
 
-/// Of CGAL's own examples all are read but one, whose lines are triangles; it says what to do.
+/// All of CGAL's own examples are read except one, whose lines are triangles; it gets advice.
 #[test]
 fn cgal_s_point_sets_are_read() {
     let archive = std::path::Path::new("/usr/share/doc/libcgal-dev/data.tar.gz");
@@ -236,7 +236,7 @@ fn pcd_examples() -> [(&'static str, Vec<u8>); 4] {
         let sizes = [pieces.len(), by_field.len()].map(|n| (n as u32).to_le_bytes()).concat();
         [sizes, pieces].concat()
     };
-    // As they are; and with the second and third normals as copies of what stands 12 bytes before, too.
+    // Once without changes, and once with the second and third normals as copies of the 12 bytes before them.
     let literal = |bytes: &[u8]| {
         bytes.chunks(32).flat_map(|c| [&[c.len() as u8 - 1], c].concat()).collect::<Vec<u8>>()
     };

@@ -115,7 +115,7 @@ fn written_shapes_are_read_back() {
     let length =
         |place: usize| u32::from_le_bytes(glb[place..place + 4].try_into().unwrap()) as usize;
     assert_eq!((&glb[..4], length(4), length(8)), (&b"glTF"[..], 2, glb.len()));
-    // Keys in the order of the specification, and not of the alphabet, with whichever features this is built.
+    // Keys are in the order of the specification, not of the alphabet, with any features of the build.
     assert!(glb[20..].starts_with(b"{\"asset\":{\"version\""));
     let document: serde_json::Value = serde_json::from_slice(&glb[20..20 + length(12)]).unwrap();
     assert_eq!(document["accessors"][0]["max"], serde_json::json!([4.0, 4.0, 4.0]));
@@ -178,7 +178,7 @@ fn vertices_are_coloured_by_their_values() {
     assert!(head.ends_with("vertex_indices\n"), "meshio reads no numbers of facets: {head}");
     let groups = text("ply", &options.clone().groups(true), &shape);
     assert!(groups.contains("property uchar class\nproperty uint component\nproperty int sheet"));
-    // Of the values 1, 2, 3 and 5 on the hull the least is dark, the most light.
+    // Of the values 1, 2, 3 and 5 on the hull, the smallest is dark and the largest is light.
     let rows: Vec<&str> = body.lines().take(4).collect();
     assert_eq!(rows[0], "0 0 0 0 1 68 1 84 0");
     assert_eq!(rows[3], "0 0 4 0 5 253 231 37 3");

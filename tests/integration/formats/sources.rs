@@ -1,4 +1,4 @@
-//! Volumes read box by box, against the same volumes read at once.
+//! Compares volumes read box by box with the same volumes read as a whole.
 
 use std::fs::{self, File};
 use std::io::{Seek, SeekFrom, Write};
@@ -90,7 +90,7 @@ fn samples_beside_their_header_are_read_in_boxes() {
                 ElementDataFile = samples.bin\n";
     fs::write(at("volume.mhd"), meta).unwrap();
     same(&at("volume.mhd"), &ReadOptions::default());
-    // One of two volumes.
+    // A file of two volumes.
     let two = nrrd.replace("dimension: 3\nsizes: 4 3 5", "dimension: 4\nsizes: 4 3 1 5");
     let two =
         two.replace("sizes: 4 3 1 5", "sizes: 2 3 5 2").replace("byte skip: -1", "byte skip: 5");
@@ -102,7 +102,7 @@ fn samples_beside_their_header_are_read_in_boxes() {
 fn volumes_beyond_memory_are_read_in_boxes() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("huge.raw");
-    // 8·10⁹ bytes that take no room on the disk, but for the last few.
+    // 8·10⁹ bytes that take no room on the disk, except for the last few.
     let size = 2000u64;
     let mut file = File::create(&path).unwrap();
     file.seek(SeekFrom::Start(size.pow(3) - 3)).unwrap();
@@ -115,7 +115,7 @@ fn volumes_beyond_memory_are_read_in_boxes() {
     let source = Source::open(input, &options).unwrap();
     assert_eq!(source.read([1996, 1999, 1999], [4, 1, 1]).unwrap(), [0.0, 7.0, 8.0, 9.0]);
     assert_eq!(source.read([0, 0, 1999], [2, 2, 1]).unwrap(), [0.0; 4]);
-    // Not at once.
+    // It cannot be read as a whole.
     let error = open(input, &options).unwrap_err().to_string();
     assert!(error.contains("too many"), "{error}");
 }
@@ -144,7 +144,7 @@ fn what_cannot_be_read_in_boxes_is_refused() {
     let outside = Region { first: [0; 3], end: [Some(10), None, None] };
     let options = ReadOptions::default().region(outside);
     assert!(Source::open("sample:phantom@9", &options).is_err());
-    // What NaN are is left to whoever reads.
+    // The treatment of NaN is left to the reader.
     let options = ReadOptions::default().nan(Nan::Mask);
     assert!(Source::open("sample:phantom@9", &options).is_ok());
 }

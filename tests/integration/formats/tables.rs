@@ -1,4 +1,4 @@
-//! What is made of the tables of formats: the tables of docs/formats.md, the list of fuzz targets, and help.
+//! Texts that are made from the tables of formats: the tables of docs/formats.md, the list of fuzz targets, and help.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -16,7 +16,7 @@ fn dotted<'a>(extensions: impl IntoIterator<Item = &'a str>) -> String {
     if dotted.is_empty() { "–".into() } else { dotted.join(" ") }
 }
 
-/// How a file to read is found: by its extension at the latest.
+/// The way a file to read is recognized: by its extension at the latest.
 fn read(extensions: &'static [&str], tells: bool) -> String {
     match (extensions, tells) {
         ([], true) => "by content".into(),

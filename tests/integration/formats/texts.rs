@@ -33,7 +33,7 @@ fn text_under_many_extensions() {
     fails(f, 1, "info short.pts", &["claims 3 points in line 1, but has 2"]);
     save(f, "grid.asc", "ncols 2\nnrows 2\nxllcorner 0\n1 2\n3 4\n");
     fails(f, 1, "info grid.asc", &["ESRI ASCII", "convert it to x,y,z"]);
-    // A volume by its content stays one, whatever it is called.
+    // A file with the content of a volume is one, with any name.
     assert!(!walpha::points::is_point_file(&save(f, "v.txt", "NRRD0004\n")).unwrap());
 }
 
@@ -85,7 +85,7 @@ fn extended_xyz_states_columns_and_a_cell() {
     let (points, facts) = read(&format!("{lattice} {properties} pbc=\"T T T\"")).unwrap();
     assert_eq!((points.positions.as_slice(), points.values), (&PLACES[..], Some(vec![0.5, 7.0])));
     assert_eq!(facts.cell.unwrap().sides(), Some([10.0, 20.0, 30.0]));
-    // Without Properties the second word is x, and what follows z is passed over.
+    // Without Properties the second word is x, and the words after z are skipped.
     let (points, facts) = read(&format!("a title {lattice}")).unwrap();
     assert_eq!((points.positions.as_slice(), points.values), (&PLACES[..], None));
     assert!(facts.cell.is_some());
@@ -252,7 +252,7 @@ fn the_report_says_that_weights_are_squares() {
     assert!(text.contains("column, squares of its radii: min 1"), "{text}");
     assert!(ok(f, &["info", "r.csv"]).contains("weights   yes, squares of its radii"));
     assert_eq!(json(f, &["info", "r.csv"])["of_radii"], true);
-    // What is asked for comes first.
+    // Requested options take precedence.
     let told = json(f, &["shape", "r.csv", "--alpha", "1", "--weights", "common=0"]);
     assert_eq!(
         (&told["weights"]["of_radii"], &told["weights"]["max"]),

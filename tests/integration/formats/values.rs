@@ -1,4 +1,4 @@
-//! What goes out are the values of the file, and selection can be said in them.
+//! Outputs contain the values of the file, and selections can be stated in them.
 
 use std::path::Path;
 
@@ -193,7 +193,7 @@ fn whole_numbers_that_are_rounded_are_said() {
     // Scaled numbers are not whole ones.
     save(f, "d.npy", npy_of("<f8", &[16777217.5f64; 12].map(f64::to_le_bytes).concat()));
     assert_eq!(said("d.npy"), 0);
-    // In parts, too, and once.
+    // The message also appears, once, if the file is read in parts.
     save(f, "a.npy", npy_of("<i4", &integers((1 << 24) + 1)));
     let source = Source::open(f.join("a.npy"), &ReadOptions::default()).unwrap();
     assert_eq!(source.read([0; 3], [1; 3]).unwrap(), [16777216.0]);

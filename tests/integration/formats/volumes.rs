@@ -39,7 +39,7 @@ fn written_volumes_are_read_back() {
             (true, true) => turned(),
         };
         assert!(close(back.frame(), &frame), "{extension}: {:?}", back.frame());
-        // By content too.
+        // The format is also recognized by content.
         if format.keeps.dtype {
             let renamed = folder.path().join("unnamed");
             fs::copy(&path, &renamed).unwrap();
@@ -249,7 +249,7 @@ fn folders_of_slices_are_read_in_natural_order() {
 /// Frames of 2×3×2 samples of a type, 0, 1, 2, …
 fn mgh(kind: i32, frames: i32, placed: bool, sample: impl Fn(u8) -> Vec<u8>) -> Vec<u8> {
     let whole = [1, 2, 3, 2, frames, kind, 0].map(i32::to_be_bytes).concat();
-    // x runs to the left, y down, z to the front, as `FreeSurfer` has it.
+    // x runs to the left, y down, z to the front, like in `FreeSurfer`.
     let reals: [f32; 15] =
         [2.0, 1.0, 0.5, -1.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, 1.0, 0.0, 10.0, 20.0, 30.0];
     let mut bytes =

@@ -171,7 +171,7 @@ fn what_makes_no_sense_is_refused() {
     assert_eq!(fs::read_dir(f).unwrap().count(), 1, "something was left behind");
 }
 
-/// Elsewhere, F on the hull of the paper's points had RMSE 40.6 over 27 % of the samples.
+/// In other work, F on the hull of the paper's points had RMSE 40.6 over 27 % of the samples.
 #[test]
 fn errors_on_the_skull_are_those_found_elsewhere() {
     if !has_skull() {
@@ -185,7 +185,7 @@ fn errors_on_the_skull_are_those_found_elsewhere() {
     assert!((inside["rmse"].as_f64().unwrap() - 40.6).abs() < 0.2, "{inside}");
 }
 
-/// Fewer points than asked for are told, and why.
+/// A selection with fewer points than requested is reported, with the reason.
 #[test]
 fn a_selection_that_ends_early_says_so() {
     let folder = tempfile::tempdir().unwrap();

@@ -85,8 +85,8 @@ fn what_has_no_values_has_no_interpolant() {
     assert!(matches!(error, InterpolateError::NoValues), "{error}");
 }
 
-/// In a tilted frame the coordinates of samples are rounded: on the sides of the volume many are outside of the hull of
-/// its corners by that, and would have no value.
+/// In a tilted frame the coordinates of samples are rounded: many on the sides of the volume are therefore outside of the hull of
+/// its corners, and would have no value.
 #[test]
 fn samples_of_tilted_and_mirrored_volumes_are_located_by_index() {
     for mirror in [1.0, -1.0] {

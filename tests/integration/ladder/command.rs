@@ -99,7 +99,7 @@ fn the_command_makes_levels_of_detail() {
     assert!(epsilon(0) <= 100.0 && epsilon(1) > 100.0 && epsilon(1) <= 1000.0);
 }
 
-/// They tell what `interpolate` tells of as many points, whatever the values of the file are.
+/// The levels tell the same error as `interpolate` for the same number of points, for any values in the file.
 #[test]
 fn levels_of_detail_tell_the_error_of_the_interpolant() {
     let folder = tempfile::tempdir().unwrap();

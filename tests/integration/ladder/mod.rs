@@ -35,7 +35,7 @@ fn close(a: f64, b: f64) -> bool {
     (a - b).abs() <= 1e-9 * a.abs().max(b.abs()).max(1.0)
 }
 
-/// Level by level against a shape of its own, exterior simplices included.
+/// Compares each level with a separately computed shape, including exterior simplices.
 fn check(points: &WeightedPoints, squared: &[f64], engine: Engine) -> Filtration {
     let filtration = Filtration::new(points.clone()).unwrap();
     let levels = filtration.levels(&alphas(squared));
@@ -82,7 +82,7 @@ fn check_numbers(level: &Level, shape: &AlphaShape) {
     assert_eq!(level.solid_components, solid_components(shape));
 }
 
-/// By flooding.
+/// The number of solid components, by flooding.
 fn solid_components(shape: &AlphaShape) -> u64 {
     let cells: Vec<_> = shape.complex().cells.of(Class::Interior).collect();
     let mut seen = vec![false; cells.len()];
@@ -265,12 +265,12 @@ fn a_hollow_block_and_what_is_suggested_for_it() {
     let suggested = filtration.suggest(&curve);
     assert_eq!(suggested.all_points, alpha(0.75));
     assert_eq!(suggested.one_region, alpha(0.75));
-    // The hole is a box of three with its corners cut: the sphere in its middle meets (1, 2, 2) and alike.
+    // The hole is a box of three with its corners cut: the sphere in its middle meets (1, 2, 2) and the like.
     assert_eq!(suggested.no_void, alpha(2.75));
     assert_eq!(suggested.plateau, [0.75, 2.75].map(alpha));
     let chosen = filtration.readable(&curve, 24);
     let chosen: Vec<f64> = chosen.iter().map(|alpha| alpha.squared()).collect();
-    // Where a corner is missing three points make a triangle: 2/3, rounded up.
+    // If a corner is missing, three points make a triangle: 2/3, rounded up.
     assert_eq!(chosen, [0.25, 0.5, 0.6666666666666667, 0.75, 2.75]);
 }
 
@@ -303,7 +303,7 @@ fn the_critical_values_of_ill_conditioned_points_are_exact() {
     }
 }
 
-/// What is printed as filling a void fills it, and no smaller double does.
+/// The value that is printed as filling a void fills it, and no smaller double does.
 #[test]
 fn voids_fill_at_the_first_double() {
     let mut points = hollow_lattice();

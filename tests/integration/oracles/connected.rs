@@ -62,7 +62,7 @@ fn the_connected_alpha_is_the_least_with_the_property() {
             } else {
                 rising.fetch_add(1, Ordering::Relaxed);
             }
-            // In the other mode there are more values, but the same cells.
+            // The other mode has more values, but the same cells.
             let general = shapes(Mode::General).unwrap();
             let same = general.find_optimal_alpha(number).unwrap();
             assert!(fits(alpha(same.nearest)) || fits(alpha(same.nearest.next_up())));

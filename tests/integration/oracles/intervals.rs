@@ -47,7 +47,7 @@ fn assert_same_values(ours: &Ordered<'_>, theirs: &AlphaShape3) {
     wanted.extend(by_vertices(theirs.vertices()));
     let (rows, firsts) = theirs.cells();
     let cell = |(row, &Critical { rank, nearest, .. }): (&[u32; 4], &Critical)| {
-        // Of a cell, which is never regular.
+        // The values of a cell, which is never regular.
         (row.to_vec(), (rank, nearest, f64::INFINITY, nearest))
     };
     wanted.extend(rows.iter().zip(firsts).map(cell));
@@ -97,7 +97,7 @@ fn regularized(general: &Complex) -> Complex {
             match class {
                 _ if !cells_at.contains_key(&sorted[..]) => (sorted, Class::Exterior),
                 Class::Interior => (row, Class::Interior),
-                // What has a cell of the shape at it is no longer singular.
+                // A simplex at a cell of the shape is no longer singular.
                 _ => (row, Class::Regular),
             }
         };
@@ -121,7 +121,7 @@ fn regularized_shapes_are_the_cells_and_their_faces() {
             AlphaShape3::new(points.positions(), Some(points.weights()), Mode::Regularized);
         let theirs = theirs.unwrap();
         assert!(theirs.edges().spans.iter().all(|span| span.min.is_none()));
-        // Its values are those of cells.
+        // Its values are values of cells.
         let mut of_cells: Vec<u32> = theirs.cells().1.iter().map(|first| first.rank).collect();
         of_cells.sort_unstable();
         of_cells.dedup();

@@ -14,7 +14,7 @@ const SIDE: f64 = 8.0;
 fn set(seed: u64) -> WeightedPoints {
     let mut random = Random::new(seed);
     let count = [300, 600, 1500][random.below(3)];
-    // Places that stay as they are in the box.
+    // Places that are not changed in the box.
     let mut place = |_| [0; 3].map(|_| random.below(1 << 40) as f64 / (1u64 << 40) as f64 * SIDE);
     let positions: Vec<[f64; 3]> = (0..count).map(&mut place).collect();
     let weight = |random: &mut Random| random.unit() * SIDE * SIDE / 64.5;

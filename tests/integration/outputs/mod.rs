@@ -1,4 +1,4 @@
-//! What becomes of files: inputs, outputs that are replaced or cannot be written, and those left unfinished.
+//! The treatment of files: inputs, outputs that are replaced or cannot be written, and unfinished files.
 
 mod unfinished;
 
@@ -22,7 +22,7 @@ fn limited(folder: &Path, resource: Resource, limit: u64, args: &[&str]) -> Outp
     limited_with(&[], folder, resource, limit, args)
 }
 
-/// The same with variables of the environment.
+/// Like [`limited`], with environment variables.
 fn limited_with(
     variables: &[(&str, &str)],
     folder: &Path,
@@ -44,7 +44,7 @@ fn refused(folder: &Path, args: &str, words: &[&str]) {
     refused_as(1, folder, args, words);
 }
 
-/// The same with another code.
+/// Like [`refused`], with another exit code.
 fn refused_as(expected: i32, folder: &Path, args: &str, words: &[&str]) {
     let names = || -> Vec<_> {
         let mut names: Vec<_> =
@@ -129,7 +129,7 @@ fn places_that_cannot_be_are_refused_at_the_start() {
     let name = format!("{}.npy", "b".repeat(400));
     refused(f, &format!("haar no.nrrd -o {name}"), &["too long", "choose a shorter name"]);
     refused(f, "ladder no.nrrd -o no/ladder", &["no/ladder", "--output"]);
-    // What a folder will hold is looked at before the work, too.
+    // The future content of a folder is checked before the work, too.
     fs::create_dir(f.join("ladder")).unwrap();
     fs::write(f.join("ladder/voids.csv"), "precious").unwrap();
     fs::set_permissions(f.join("ladder/voids.csv"), Permissions::from_mode(0o444)).unwrap();

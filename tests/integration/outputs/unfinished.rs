@@ -1,4 +1,4 @@
-//! What a failure or an interrupt leaves.
+//! The remains of a failure or an interrupt.
 
 use super::*;
 
@@ -35,7 +35,7 @@ fn pieces_are_written_with_all_outputs_or_not_at_all() {
     let largest = pieces.map(|piece| piece.unwrap().metadata().unwrap().len()).max().unwrap();
     let limit = u64::midpoint(largest, bytes("b.json"));
     assert!(limit > largest && limit < bytes("b.json"), "{largest} {limit}");
-    // Where there was nothing, and where there is something.
+    // Once without existing files, and once with them.
     for with in [true, false] {
         if with {
             fs::remove_dir_all(f.join("a")).unwrap();
@@ -114,7 +114,7 @@ fn an_interrupt_leaves_nothing() {
     }
 }
 
-/// With too little memory a command says so, and takes its unfinished files away.
+/// With too little memory a command says so, and removes its unfinished files.
 #[test]
 fn a_lack_of_memory_leaves_nothing() {
     let folder = tempfile::tempdir().unwrap();
@@ -185,7 +185,7 @@ fn threads_of_the_environment_are_bounded() {
     assert_eq!((output.status.code(), said.contains("threads start")), (Some(0), false), "{said}");
 }
 
-/// No block is so small: the shape is refused before anything of it is computed.
+/// No block is small enough: the shape is refused before anything of it is computed.
 #[test]
 fn a_memory_that_no_block_fits_is_refused_at_once() {
     let folder = tempfile::tempdir().unwrap();
@@ -199,7 +199,7 @@ fn a_memory_that_no_block_fits_is_refused_at_once() {
     }
 }
 
-/// What C++ throws for want of memory arrives as an error of that.
+/// An exception of C++ about a lack of memory arrives as such an error.
 #[test]
 fn cpp_says_that_it_has_no_memory() {
     let folder = tempfile::tempdir().unwrap();

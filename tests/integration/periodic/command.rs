@@ -90,7 +90,7 @@ fn large_spheres_of_a_torus_are_judged() {
     }
 }
 
-/// One point hidden beside a heavier one, and one at the place of another.
+/// One point is hidden by a heavier one next to it, and one is at the place of another.
 #[test]
 fn hidden_points_of_a_torus_are_judged() {
     let mut positions = grid();
@@ -106,8 +106,8 @@ fn hidden_points_of_a_torus_are_judged() {
     );
     let (found, certificate) = right.findings().unwrap();
     assert_eq!(found, []);
-    // At this α all is inside: no exterior simplex says that the complex is whole. So whether a point is rightly hidden
-    // is not judged, whether it is that alone is.
+    // At this α everything is inside: no exterior simplex says that the complex is whole. So it is not judged whether a point is
+    // rightly hidden, but it is judged whether it is only hidden.
     assert!(certificate.not_judged.contains(&NotJudged::HiddenAndHull));
     let mut vertex = right;
     vertex.hidden = Some(vec![13, 27]);
@@ -233,7 +233,7 @@ fn shapes_filtrations_and_checks() {
     let made = ["filtration", "p.xyz", "--periodic", "4,4,4", "-o", "f.npz", "f.json"];
     let filtration = common::json(f, &made);
     assert_eq!(filtration["values"], 5);
-    // Of the torus, whose first and second Betti numbers are 3: edges go round it before facets close it.
+    // The values of the torus, whose first and second Betti numbers are 3: edges wind round it before facets close it.
     let lasting = |of: &str| filtration["persistence"][of].clone();
     assert_eq!(lasting("lasting_loops"), serde_json::json!([0.1875, 0.1875, 0.1875]));
     assert_eq!(lasting("lasting_voids"), serde_json::json!([0.28125, 0.28125, 0.28125]));
@@ -269,7 +269,7 @@ fn what_is_folded_and_stated_is_told() {
     assert_eq!(common::json(f, &args)["points"]["folded"], 0);
     assert!(!common::ok(f, &args).contains("moved into it"));
     assert_eq!(common::json(f, &["shape", "p.xyz", "--alpha", "1"])["points"].get("folded"), None);
-    // Those at x = 0 are a box away.
+    // The points at x = 0 are moved by one box.
     let text = std::fs::read_to_string(f.join("p.xyz")).unwrap();
     let outside = text.lines().filter(|line| line.starts_with("0 "));
     let shifted = text.lines().map(|line| match line.strip_prefix("0 ") {

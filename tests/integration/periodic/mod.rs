@@ -31,7 +31,7 @@ fn unweighted(positions: Vec<[f64; 3]>) -> WeightedPoints {
     WeightedPoints::new(positions, weights).unwrap()
 }
 
-/// A lattice in a box of so many cells, with these points in each cell.
+/// A lattice in a box with these numbers of cells, with these points in each cell.
 fn crystal(cells: [i32; 3], basis: &[[f64; 3]]) -> WeightedPoints {
     let mut positions = Vec::new();
     for x in 0..cells[0] {
@@ -232,7 +232,7 @@ fn a_lattice_covers_the_torus() {
     }
 }
 
-/// What goes round has no end along that axis.
+/// A component that winds round has no end along that axis.
 #[test]
 fn boxes_of_rods_and_slabs_span_the_torus() {
     let box_of = |keep: fn(&[f64; 3]) -> bool| {
@@ -273,7 +273,7 @@ fn things_that_go_round() {
     assert_eq!(betti(slabs, 0.75), ([3, 4, 2, 0], vec![0, 2, 2]));
     let hole = all().filter(|p| *p != [0.0, 3.0, 7.0]).collect();
     assert_eq!(betti(hole, 0.75), ([1, 3, 3, 0], vec![3]));
-    // A staircase that goes round in all directions at once is one loop.
+    // A staircase that winds round in all directions together is one loop.
     let stairs = (0..24).map(|i| [(i + 2) / 3, (i + 1) / 3, i / 3].map(f64::from)).collect();
     assert_eq!(betti(stairs, 0.25), ([1, 1, 0, 0], vec![1]));
 }
@@ -376,7 +376,7 @@ fn filtrations_hold_all_shapes_of_the_torus() {
     }
 }
 
-/// The same voids, but for the rounding of their volumes.
+/// Asserts that voids are equal, except for the rounding of their volumes.
 fn assert_same_voids(some: &[Void], others: &[Void]) {
     let sorted = |voids: &[Void]| {
         let mut voids = voids.to_vec();
@@ -403,7 +403,7 @@ fn persistence_pairs_of_a_torus() {
         let lasting = [&pairs.lasting, &loops.lasting, &pairs.lasting_voids].map(Vec::len);
         assert_eq!(lasting, [1, 3, 3]);
         assert_eq!(pairs.voids.len() + 1, ordered.count(3));
-        // What is born and has not died is what the Betti numbers count.
+        // Betti numbers count the classes that are born and have not died.
         let rank = |number: u32| ordered.simplex(number).rank;
         for (at, betti) in ordered.betti_curve().iter().enumerate() {
             let there = |&[from, to]: &[u32; 2]| rank(from) <= at as u32 && (at as u32) < rank(to);

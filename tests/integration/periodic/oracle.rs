@@ -1,5 +1,5 @@
-//! What a periodic shape must be, by other means: simplices by the engine for points in space (or by the
-//! exact checker's definition) on many copies, Betti numbers by ranks of boundary matrices.
+//! Computes a periodic shape by other means: simplices by the engine for points in space (or by the definition of the exact
+//! checker) on many copies, Betti numbers by ranks of boundary matrices.
 
 use std::collections::BTreeMap;
 
@@ -125,7 +125,7 @@ const PRIME: u64 = 1_000_003;
 /// The rank of the boundary map between simplices.
 fn rank(of: &[Vec<u32>], to: &[Vec<u32>]) -> usize {
     let number: BTreeMap<&[u32], u32> = to.iter().map(Vec::as_slice).zip(0..).collect();
-    // By the last row that is not 0.
+    // Indexed by the last row that is not 0.
     let mut reduced: BTreeMap<u32, BTreeMap<u32, u64>> = BTreeMap::new();
     for simplex in of {
         let mut column: BTreeMap<u32, u64> = BTreeMap::new();

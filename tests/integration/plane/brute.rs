@@ -7,7 +7,7 @@ use dashu_int::IBig;
 
 pub type Point = [i64; 2];
 
-/// What the definition says.
+/// The result of the definition.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub struct Eks {
     pub edges: BTreeSet<[u32; 2]>,

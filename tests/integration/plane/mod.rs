@@ -116,7 +116,7 @@ fn bad_input_is_refused() {
 
 #[test]
 fn huge_tiny_and_close_numbers_are_told_apart() {
-    // One ulp decides whether the angle is right, and so on which side the disc lies.
+    // One ulp decides whether the angle is right, and therefore on which side the disc lies.
     let near = 1f64.next_up();
     for scale in [1.0, 2f64.powi(-490), 2f64.powi(490)] {
         let at = |points: [[f64; 2]; 3]| points.map(|p| p.map(|v| v * scale));
@@ -216,7 +216,7 @@ proptest! {
     }
 }
 
-/// How often an outline winds around a place.
+/// The number of times an outline winds around a place.
 fn winding(outline: &[OutlinePiece], place: [f64; 2]) -> i32 {
     let step = |a: [f64; 2], b: [f64; 2]| {
         let (a, b) = ([a[0] - place[0], a[1] - place[1]], [b[0] - place[0], b[1] - place[1]]);

@@ -60,7 +60,7 @@ proptest! {
 /// Betti numbers and outline of the union, counted without a triangulation.
 fn union_agrees(points: &[[f64; 2]], weights: &[f64], alpha: f64) {
     let shape = weighted(points, weights, alpha);
-    // Of discs around one place the first of the largest counts.
+    // Of discs around one place, the first of the largest counts.
     let gone: BTreeSet<u32> = shape.duplicates().iter().map(|pair| pair[0]).collect();
     let discs: Vec<Disc> = (points.iter().zip(shape.radii()).enumerate())
         .filter(|(k, _)| !gone.contains(&(*k as u32)))

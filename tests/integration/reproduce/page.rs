@@ -11,7 +11,7 @@ fn numbers(text: &str) -> Vec<String> {
     trimmed.filter(|part| part.parse::<f64>().is_ok()).collect()
 }
 
-/// What a reader sees of a part of a page: no tags, no pictures.
+/// The visible text of a part of a page: no tags, no pictures.
 fn visible(html: &str) -> String {
     let mut text = String::new();
     for part in html.split('<') {
@@ -21,14 +21,14 @@ fn visible(html: &str) -> String {
     text
 }
 
-/// A number the page is to show: as a text has it, or rounded to as many digits as are shown.
+/// A number that the page must show: as in a text, or rounded to the number of digits that are shown.
 #[derive(Clone)]
 enum Shown {
     Word(String),
     Rounded(f64),
 }
 
-/// The numbers that stand in a text of the report, which the page shows as it is.
+/// The numbers in a text of the report, which the page shows without changes.
 fn words(text: &Value) -> Vec<Shown> {
     numbers(text.as_str().expect("a text")).into_iter().map(Shown::Word).collect()
 }
@@ -94,7 +94,7 @@ fn compare(place: &str, text: &str, expected: Vec<Shown>) {
     }
 }
 
-/// In the order of the page.
+/// The numbers of an item in the order of the page.
 fn of_item(item: &Value) -> Vec<Shown> {
     let mut all = [words(&item["title"]), words(&item["paper"]), words(&item["ours"])].concat();
     all.extend(each(&item["findings"], |f| [words(&f["claim"]), words(&f["reason"])].concat()));

@@ -63,7 +63,7 @@ impl std::fmt::Display for Verdict {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 #[non_exhaustive]
 pub struct Certificate {
-    /// What follows from the findings.
+    /// The verdict that follows from the findings.
     pub verdict: Verdict,
     /// Number of findings before the visitor stopped.
     pub findings: usize,
@@ -71,7 +71,7 @@ pub struct Certificate {
     pub ties: usize,
     /// Six times the volume of all cells; zero if rows are invalid.
     pub six_volumes: Exact,
-    /// What was not judged, and why.
+    /// The parts that were not judged, with the reasons.
     pub not_judged: Vec<NotJudged>,
 }
 

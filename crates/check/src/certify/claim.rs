@@ -1,6 +1,6 @@
 use crate::{Alpha, Complex, Placed};
 
-/// How much of the triangulation a complex claims to list.
+/// The part of the triangulation that a complex claims to list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Extent {
     /// The whole regular triangulation, with the simplices that are not in the shape.
@@ -24,7 +24,7 @@ impl Extent {
 pub struct Claim<'a> {
     /// The complex with its points.
     pub placed: Placed<'a>,
-    /// How much of the triangulation the complex lists.
+    /// The part of the triangulation that the complex lists.
     pub extent: Extent,
     /// The points listed as hidden, if they are listed.
     pub hidden: Option<&'a [u32]>,
@@ -42,26 +42,26 @@ impl<'a> Claim<'a> {
         Self { placed, extent, hidden: None, duplicates: None, lowest: 0 }
     }
 
-    /// The same claim with another extent.
+    /// Returns this claim with another extent.
     #[must_use]
     pub fn with_extent(self, extent: Extent) -> Self {
         Self { extent, ..self }
     }
 
-    /// The same claim with these points listed as hidden.
+    /// Returns this claim with these points listed as hidden.
     #[must_use]
     pub fn with_hidden(self, hidden: impl Into<Option<&'a [u32]>>) -> Self {
         Self { hidden: hidden.into(), ..self }
     }
 
-    /// The same claim of a shape that lists, of the simplices below this dimension, only the faces of others: that further ones are
-    /// missing is not a finding.
+    /// Returns this claim for a shape that lists, of the simplices below this dimension, only the faces of others: further
+    /// missing ones are not a finding.
     #[must_use]
     pub fn with_lowest(self, lowest: usize) -> Self {
         Self { lowest, ..self }
     }
 
-    /// The same claim with these pairs (removed, kept) listed as duplicates.
+    /// Returns this claim with these pairs (removed, kept) listed as duplicates.
     #[must_use]
     pub fn with_duplicates(self, duplicates: impl Into<Option<&'a [[u32; 2]]>>) -> Self {
         Self { duplicates: duplicates.into(), ..self }

@@ -68,7 +68,7 @@ pub(super) fn judge(
     Ok(findings)
 }
 
-/// What the class of a simplex depends on.
+/// The data that the class of a simplex depends on.
 pub(super) struct Judge<'a> {
     pub points: Points<'a>,
     pub alpha: Alpha,
@@ -77,7 +77,7 @@ pub(super) struct Judge<'a> {
     pub dimension: usize,
     /// Only in a shape alone.
     pub emptiness: Option<&'a Emptiness<'a>>,
-    /// Of which the complex has copies.
+    /// The torus of which the complex contains copies.
     pub torus: Option<Torus>,
 }
 
@@ -275,7 +275,7 @@ pub(super) struct Faces<'a, const N: usize, const M: usize> {
     pub(super) index: &'a Index<'a, M>,
 }
 
-/// What is known of a simplex from its cofaces, which are visited in parallel.
+/// The information about a simplex that its cofaces give. They are visited in parallel.
 #[derive(Default)]
 struct Cofaces(AtomicU8);
 
@@ -301,7 +301,7 @@ impl Cofaces {
     }
 }
 
-/// What is known of a simplex once all its cofaces were visited.
+/// The information about a simplex after all its cofaces were visited.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum State {
     /// It has a coface in the shape, and all of them are interior.
@@ -348,7 +348,7 @@ impl<const N: usize, const M: usize> Faces<'_, N, M> {
         judge.classes(self.lower, &verdict, findings, &monitor.part(9, 10, 10))
     }
 
-    /// What each lower simplex has for cofaces, and which faces are not listed.
+    /// Returns the state of the cofaces of each lower simplex, and findings for faces that are not listed.
     fn cofaces(&self, monitor: &Monitor) -> Result<(Vec<Cofaces>, Vec<Finding>), Cancelled> {
         let cofaces: Vec<Cofaces> = self.lower.rows().iter().map(|_| Cofaces::default()).collect();
         let missing = of_each(self.higher.len(), monitor, |i| {
@@ -365,7 +365,7 @@ impl<const N: usize, const M: usize> Faces<'_, N, M> {
                 }
             })
         })?;
-        // Of several simplices with the face, the first is named.
+        // If several simplices have the face, the first is named.
         let missing: BTreeMap<_, _> = missing.into_iter().rev().collect();
         let finding = |(face, of): ([u32; M], [u32; N])| Finding::MissingFace {
             face: face.into(),
@@ -374,8 +374,8 @@ impl<const N: usize, const M: usize> Faces<'_, N, M> {
         Ok((cofaces, missing.into_iter().map(finding).collect()))
     }
 
-    /// For each candidate the smallest corner opposite to it, in an exterior higher simplex, that
-    /// is inside its sphere; else [`NONE`]. Empty if there are no candidates.
+    /// For each candidate, the smallest corner opposite to it, in an exterior higher simplex, that is inside its sphere,
+    /// otherwise [`NONE`]. Empty if there are no candidates.
     fn neighbours_inside(
         &self,
         states: &[State],

@@ -33,7 +33,8 @@ impl<'a> Polytope<'a> {
     /// Whether the simplices of this dimension that are listed between the points cover their hull. They must be part of one
     /// triangulation.
     ///
-    /// Where they leave a part of it open, a face of one of them with none on its other side has points of the sphere beyond it.
+    /// If they leave a part of it open, a face of one of them without another on its other side has points of the sphere beyond
+    /// it.
     pub(super) fn is_covered(&self, structure: &Structure) -> bool {
         match (self.dimension(), self.on) {
             (0, &[v]) => structure.vertices.contains([v]),

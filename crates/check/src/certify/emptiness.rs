@@ -14,8 +14,8 @@ use crate::exact::{RoundedSphere, Side, WeightedPoint, in_conflict, orientation,
 /// those within √(R² + ω) of the centre; where doubles cannot locate the centre, those within √(α + ω) + √(α + largest ω) of a
 /// vertex.
 ///
-/// On a torus a sphere that is not empty holds a point no further from a vertex than the diagonal of the box. Where
-/// that is less, it takes the place of the latter sum.
+/// On a torus, a sphere that is not empty contains a point no farther from a vertex than the diagonal of the box. If the diagonal
+/// is less than the latter sum, it replaces that sum.
 pub(super) struct Emptiness<'a> {
     points: Points<'a>,
     /// Few points are much heavier than the others, and one such would make all points far around a sphere be tested.
@@ -26,14 +26,14 @@ pub(super) struct Emptiness<'a> {
 struct Layer {
     grid: Grid,
     heaviest: f64,
-    /// How far from a vertex all points inside are, rounded up.
+    /// The distance from a vertex within which all points inside a sphere are, rounded up.
     around: f64,
 }
 
 impl<'a> Emptiness<'a> {
-    /// For spheres of squared radius up to `alpha`; only the points `tested` are looked for.
-    /// If any point is inside a sphere, one within 2 `largest` of its simplex's first vertex must be, and otherwise all
-    /// points on it must be there; in space that is ∞.
+    /// Creates the test for spheres of squared radius up to `alpha`; only the points `tested` are searched for. If any point is
+    /// inside a sphere, one point inside must be within 2 `largest` of the first vertex of its simplex; otherwise all points on
+    /// the sphere must be there. In space `largest` is ∞.
     pub(super) fn new(points: Points<'a>, alpha: Alpha, largest: f64, tested: Vec<u32>) -> Self {
         let heaviest = |numbers: &mut dyn Iterator<Item = u32>| {
             numbers.map(|i| points.weight(i)).fold(f64::NEG_INFINITY, f64::max)
@@ -82,8 +82,8 @@ impl<'a> Emptiness<'a> {
         self.find(simplex, |q, _| side(corners.each_ref(), q) == Side::Inside)
     }
 
-    /// All points on the smallest orthogonal sphere of a simplex, its corners included, ascending; the
-    /// squared radius is at most α.
+    /// All points on the smallest orthogonal sphere of a simplex, including its corners, ascending. The squared radius must be at
+    /// most α.
     pub(super) fn on_sphere<const N: usize>(&self, simplex: [u32; N]) -> Vec<u32> {
         let corners = self.points.corners(simplex);
         let on = RefCell::new(simplex.to_vec());
@@ -118,7 +118,7 @@ impl<'a> Emptiness<'a> {
     }
 }
 
-/// At most one point in this many goes into a heavier layer.
+/// At most one of this many points goes into a heavier layer.
 const HEAVY: usize = 64;
 
 /// Points in layers of similar weight. The heaviest few form a layer of their own as long as their weights span more than those of

@@ -52,8 +52,7 @@ impl Simplex {
     }
 }
 
-/// What is wrong with a complex: the rule that is broken, the simplex that breaks it, and the exact
-/// values that show it.
+/// A fault of a complex: the rule that is broken, the simplex that breaks it, and the exact values that show it.
 ///
 /// Serialized with the rule as `"rule"`, exact values as text.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -98,7 +97,7 @@ pub enum Finding {
         /// det(b−a, c−a, d−a), which must be positive.
         six_volumes: Exact,
     },
-    /// On a torus: an edge spans half of the box or more, so that it is ambiguous which copies it joins.
+    /// On a torus: an edge spans half of the box or more, so it is ambiguous which copies it joins.
     LongEdge {
         /// The edge.
         edge: Simplex,
@@ -150,7 +149,7 @@ pub enum Finding {
         /// from it as the first facet.
         facet: Simplex,
     },
-    /// In a whole triangulation of a torus: a facet has a cell on one side only.
+    /// In a whole triangulation of a torus: a facet has a cell on only one side.
     OpenFacet {
         /// The facet, counter-clockwise seen from the other side.
         facet: Simplex,
@@ -201,8 +200,8 @@ pub enum Finding {
         /// Six times the volume between them.
         six_volumes: Exact,
     },
-    /// All faces of a cell are listed, and the definition has it, but it is not listed. It is
-    /// judged as if it were, and what follows from its absence is not reported.
+    /// A cell is not listed although all its faces are listed and the definition contains it. The complex is judged as if the
+    /// cell were listed, and the consequences of its absence are not reported.
     MissingCell {
         /// The cell, positively oriented.
         cell: Simplex,
@@ -249,16 +248,16 @@ pub enum Finding {
         /// itself.
         expected: Option<u32>,
     },
-    /// Of several points with equal positions and weights, one other than the first is kept, which the rule
-    /// names: a choice among ties.
+    /// Of several points with equal positions and weights, a point other than the first, which the rule selects, is kept: a
+    /// choice among ties.
     EqualPoint {
         /// The point that is kept.
         point: u32,
         /// The first of its equals.
         first: u32,
     },
-    /// In a shape alone: the simplices listed on one empty sphere with further points do not triangulate
-    /// all its points, so they follow from no choice among ties.
+    /// In a shape alone: the simplices that are listed on one empty sphere with further points do not triangulate all its points,
+    /// so they do not follow from any choice among ties.
     TiedSphere {
         /// A simplex whose smallest orthogonal sphere it is.
         simplex: Simplex,
@@ -267,16 +266,15 @@ pub enum Finding {
         /// Number of simplices of this dimension listed on it.
         listed: usize,
     },
-    /// In a shape alone: on a flat part of a tied sphere, not all facets have cells on the same sides, so
-    /// they do not fit together.
+    /// In a shape alone: on a flat part of a tied sphere, facets have cells on different sides, so they do not fit together.
     TiedFacets {
         /// A facet.
         facet: Simplex,
-        /// One in the same plane, on the same sphere, with cells on another side.
+        /// Another facet in the same plane, on the same sphere, with cells on another side.
         other: Simplex,
     },
-    /// In a shape alone: a simplex that is a face of no other has further points on its smallest orthogonal
-    /// sphere that span more than it does, so a larger simplex is missing.
+    /// In a shape alone: a simplex that is not a face of another one has further points on its smallest orthogonal sphere that
+    /// span more than it does, so a larger simplex is missing.
     SpannedSphere {
         /// The simplex.
         simplex: Simplex,
@@ -290,22 +288,22 @@ pub enum Finding {
         /// The point kept at its position.
         kept: u32,
     },
-    /// Of labels: a point is not at a corner of a voxel, or another point is at the same one.
+    /// For labels: a point is not at a corner of a voxel, or another point is at the same corner.
     NotACorner {
         /// The point.
         point: u32,
     },
-    /// Of labels: a facet with one cell is not half of a face between a voxel of the region, where the cell is, and one outside; or
-    /// it is not one of two that cover this face.
+    /// For labels: a facet with one cell is not half of a face between a voxel of the region, where the cell is, and a voxel
+    /// outside; or it is not one of two that cover this face.
     NotABorder {
         /// The facet.
         facet: Simplex,
     },
-    /// Of labels: a face between a voxel of the region and one outside is not a boundary of cells.
+    /// For labels: a face between a voxel of the region and a voxel outside is not a boundary of cells.
     Unfilled {
         /// The voxel of the region.
         voxel: [u32; 3],
-        /// Its face: from −3 to 3, the axis across it, counted from 1, negative for the side of smaller indices.
+        /// Its face: from −3 to 3, the axis across it, counted from 1, negative on the side of smaller indices.
         side: i8,
     },
 }
@@ -499,7 +497,7 @@ impl Finding {
         }
     }
 
-    /// Without the vertices from this number on.
+    /// Removes the vertices from this number on.
     pub(super) fn without(mut self, first: u32) -> Self {
         self.simplices_mut().into_iter().for_each(|simplex| simplex.drop_from(first));
         self

@@ -13,9 +13,9 @@ use crate::{Class, Complex, Simplices};
 /// A cone over a flat triangulation: cells over its largest simplices, with auxiliary apexes outside its plane
 /// or line.
 ///
-/// Which points of a plane lie inside a circle is the same for every sphere through that circle, and the
-/// auxiliary apexes have no influence on the perturbation. So the cone is the regular triangulation of the
-/// points and the apexes if and only if its base is that of the points.
+/// The points of a plane that lie inside a circle are the same for every sphere through that circle, and the auxiliary apexes
+/// have no influence on the perturbation. So the cone is the regular triangulation of the points and the apexes if and only if
+/// its base is the triangulation of the points.
 pub(super) struct Cone {
     pub complex: Complex,
     /// The dimension of the base, 0 to 2.

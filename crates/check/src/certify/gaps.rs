@@ -87,7 +87,7 @@ fn judge(
     missing.then_some((cell, if fits { Class::Interior } else { Class::Exterior }))
 }
 
-/// Those of the missing cells of a shape alone that the rule for ties makes.
+/// The missing cells of a shape alone that the tie rule makes.
 pub(super) fn by_rule(
     missing: &[([u32; 4], Class)],
     emptiness: Option<&Emptiness>,

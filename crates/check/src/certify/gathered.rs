@@ -1,4 +1,4 @@
-//! The same claim with its points in another order, in which those that are near are beside each other in memory.
+//! Reorders the points of a claim so that points near each other are also close in memory.
 
 use rayon::prelude::*;
 use walpha_complex::canonical::{smallest_even, sorted};
@@ -9,9 +9,9 @@ use crate::index::{for_each_bucket, in_buckets, of_bucket};
 use crate::schema::PlacedComplex;
 use crate::{Class, Complex, Placed, Simplices};
 
-/// Fewer points than this fit into a cache, in whatever order they are.
+/// Fewer points than this fit into a cache, in any order.
 const FEW: usize = 1 << 16;
-/// Cells whose spread is looked at.
+/// Number of cells whose spread is sampled.
 const SAMPLE: usize = 1 << 10;
 /// Parts that rows are sorted in: of a million points, each fits into a cache.
 const PARTS: usize = 1 << 8;
@@ -98,7 +98,7 @@ fn is_scattered(cells: &[[u32; 4]], points: usize) -> bool {
     points >= FEW && 2 * far > sample.count()
 }
 
-/// Bytes that the copy takes while it is made, or later with what is linked to it, whichever is more.
+/// The number of bytes of the copy while it is made, or later with the data that is linked to it, whichever is larger.
 fn bytes(complex: &Complex, points: usize) -> usize {
     fn row<const N: usize>(simplices: &Simplices<N>) -> [usize; 2] {
         [size_of::<Numbered<N>>(), size_of::<([u32; N], Class)>()]
@@ -117,8 +117,8 @@ type Numbered<const N: usize> = ([u32; N], bool, Class);
 
 /// The rows with new numbers, sorted up to their windings; `None` if one has a vertex that does not exist.
 ///
-/// They are written down by parts of the numbers first, and then sorted part by part: a row that is put in its place among all would
-/// be a cache miss.
+/// They are first distributed by parts of the numbers, and then sorted part by part: inserting a row at its place among all rows
+/// would cause a cache miss.
 fn sorted_anew<const N: usize>(simplices: &Simplices<N>, new: &[u32]) -> Option<Simplices<N>> {
     let (rows, classes) = (simplices.rows(), simplices.classes());
     if rows.as_flattened().par_iter().any(|&v| v as usize >= new.len()) {
@@ -248,7 +248,7 @@ mod tests {
         }
     }
 
-    /// The verdict is that of the claim as it is: where it is right, and where a class, a list or a simplex is wrong.
+    /// The verdict equals that of the original claim, for a correct claim and for one with a wrong class, list or simplex.
     #[test]
     fn verdicts_do_not_depend_on_the_order_of_points() {
         let mut random = Random::new(9);
@@ -292,7 +292,7 @@ mod tests {
         assert!(right > 100 && wrong > 100, "{right} {tied} {wrong}");
     }
 
-    /// Without one cell or facet.
+    /// Removes one cell or facet.
     fn without_one(complex: &Complex, random: &mut Random) -> Complex {
         fn but<const N: usize>(simplices: &Simplices<N>, row: usize) -> Simplices<N> {
             let rows = simplices.iter().enumerate().filter(|(i, _)| *i != row);

@@ -11,14 +11,14 @@ use crate::Complex;
 use crate::exact::{Exact, Lattice, Star, in_conflict, orientation, power_value, six_volume};
 use crate::parallel::of_each;
 
-/// What the facets with one cell are.
+/// What the facets with only one cell form.
 #[derive(Clone, Copy)]
 pub(super) enum Boundary {
-    /// Those of a whole triangulation in space: a convex surface.
+    /// The facets of a whole triangulation in space, which form a convex surface.
     Hull,
-    /// Those of a whole triangulation of a torus: none that has a vertex below this number.
+    /// The facets of a whole triangulation of a torus: none has a vertex below this number.
     NoneAt { box_points: u32 },
-    /// Those of a shape alone.
+    /// The facets of a shape alone, which are arbitrary.
     Any,
 }
 
@@ -60,7 +60,7 @@ impl<'a> Linked<'a> {
     }
 }
 
-/// All findings on cells as a whole triangulation of some points, such as those on one sphere.
+/// All findings for cells as a whole triangulation of some points, such as those on one sphere.
 pub(super) fn triangulation_findings(
     cells: &Complex,
     points: Points,

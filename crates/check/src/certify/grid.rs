@@ -12,7 +12,7 @@ pub(super) struct Grid {
     /// 1 / `step`.
     scale: f64,
     counts: [usize; 3],
-    /// Where the points of each box start; x varies fastest.
+    /// The start of the points of each box; x varies fastest.
     starts: Vec<u32>,
     points: Vec<u32>,
 }
@@ -64,7 +64,7 @@ impl Grid {
         self.rows_within(center, radius, |row| row.iter().find_map(|&point| visit(point)))
     }
 
-    /// How many points that [visits](Self::within).
+    /// The number of points that [`within`](Self::within) visits.
     pub(super) fn count(&self, center: [f64; 3], radius: f64) -> usize {
         let count = Cell::new(0);
         self.rows_within(center, radius, |row| {
@@ -127,7 +127,7 @@ impl Grid {
         let high = self.low[axis] + (slice + 1) as f64 * self.step;
         // More than the roundings of positions, when they are sorted, and of these two.
         let rounded = 8.0 * f64::EPSILON * (self.low[axis].abs() + high.abs()) + f64::MIN_POSITIVE;
-        // Those beyond the last slice are in it.
+        // The last slice also contains the points beyond it.
         let beyond = if slice + 1 == self.counts[axis] { 0.0 } else { x - high };
         (low - x).max(beyond).max(rounded) - rounded
     }
@@ -172,21 +172,21 @@ mod tests {
     use super::*;
     use crate::exact::WeightedPoint;
 
-    /// Every point within a radius is visited, once, whatever the unit of length; and of small balls hardly more.
+    /// Every point within a radius is visited once, for any unit of length; for small balls only few other points are visited.
     #[test]
     fn all_points_within_are_visited() {
         let mut random = Random::new(11);
         let (mut within, mut visited_in_all, mut points_in_all) = (0, 0, 0);
         for round in 0..300 {
             let unit = 2f64.powi(random.pick(&[-1000, -520, -30, 0, 1, 300, 500]));
-            // Also points of a plane, of a line, and of one place.
+            // Also use points of a plane, of a line, and at one place.
             let sides = [0, 1, 2].map(|k| if round % 7 > k { 40 } else { 0 });
             let mut draw = |beyond: i64| sides.map(|side| random.whole(-beyond, side + beyond));
             let positions: Vec<[f64; 3]> = (0..200).map(|_| draw(0)).collect();
             let sites: Vec<WeightedPoint> = (positions.iter())
                 .map(|p| WeightedPoint { position: p.map(|x| x * unit), weight: 0.0 })
                 .collect();
-            // Not all of them.
+            // Use only some of them.
             let numbers: Vec<u32> = (0..200).filter(|i| i % 3 != 1).collect();
             let grid = Grid::new(Points { sites: &sites }, numbers.clone());
             for _ in 0..20 {

@@ -25,15 +25,16 @@ use crate::flat::{Flat, flat_simplices};
 use crate::index::{for_each_bucket, in_buckets, of_bucket};
 use crate::parallel::of_each;
 
-/// Why nobody looked for missing simplices: too many pairs of points are near enough to each other for an edge between them.
+/// The reason why missing simplices were not searched for: too many pairs of points are so near each other that an edge may join
+/// them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[non_exhaustive]
 pub struct Declined {
-    /// About so many pairs.
+    /// The approximate number of pairs.
     pub pairs: u64,
-    /// As many are searched.
+    /// The maximum number of pairs for a search.
     pub most: u64,
-    /// For these simplices the search is declined beyond this α.
+    /// The α beyond which the search is declined for these simplices.
     pub alpha: Alpha,
 }
 
@@ -42,7 +43,7 @@ pub(super) const MOST_PAIRS: u64 = 1 << 32;
 /// Points of which neighbours are counted.
 const SAMPLE: usize = 1 << 10;
 
-/// What the search needs.
+/// The data of the search.
 pub(super) struct Search<'a> {
     pub structure: &'a Structure<'a>,
     pub spheres: Spheres<'a>,
@@ -57,7 +58,7 @@ pub(super) struct Search<'a> {
 type Found = (Vec<u32>, Corners);
 
 impl Search<'_> {
-    /// Findings on what is missing; or why that is not known.
+    /// Findings about missing simplices, or the reason why they are not known.
     pub(super) fn findings(
         &self,
         kept: &[u32],
@@ -77,7 +78,7 @@ impl Search<'_> {
         let triples = self.triples(&known, &open, &monitor.part(15, 20, 20))?;
         self.add(points.into_iter().chain(pairs), &mut known, &mut found);
         self.add(triples, &mut known, &mut found);
-        // What is found is as good as listed from here on, so that what it bounds is found, too.
+        // From here on, found simplices are treated as listed, so that the simplices they bound are found, too.
         let rest = monitor.unreported();
         let further = self.further_triples(&known, &rest)?;
         self.add(further, &mut known, &mut found);
@@ -110,7 +111,7 @@ impl Search<'_> {
         Polytope::new(self.spheres.points, on).is_covered(self.structure)
     }
 
-    /// The same, unless simplices listed cover their hull.
+    /// Like [`polytope`](Self::polytope); `None` also if the listed simplices cover the hull of the points.
     fn uncovered(&self, corners: Corners, near: &mut Vec<u32>) -> Option<Found> {
         self.polytope(corners, near).filter(|(on, _)| !self.is_covered(on))
     }
@@ -126,7 +127,7 @@ impl Search<'_> {
         })
     }
 
-    /// Which points are listed and not surrounded by cells.
+    /// Marks the points that are listed and not surrounded by cells.
     fn open(&self) -> Vec<bool> {
         let surrounded = self.structure.surrounded(self.spheres.points.len());
         let mut open = vec![false; surrounded.len()];
@@ -166,7 +167,7 @@ impl Search<'_> {
             let own = rank[v as usize] as usize;
             for (rank, layer) in (own..).zip(&pairs.layers[own..]) {
                 layer.grid.within(points.position(v), pairs.reach(v, layer), |q| {
-                    // Of each pair in one layer one is the first.
+                    // Of each pair in one layer, one point is the first.
                     let (is_first, pair) = (rank > own || q > v, [v, q].into());
                     if is_first && self.spheres.fits(pair) && listed.binary_search(&q).is_err() {
                         let (near, settled, found) = &mut *state.borrow_mut();
@@ -221,7 +222,7 @@ impl Search<'_> {
         })
     }
 
-    /// The same of facets with an edge that was found.
+    /// Unlisted facets of the shape that contain an edge that was found.
     fn further_triples(&self, known: &Known, monitor: &Monitor) -> Result<Vec<Found>, Cancelled> {
         let edges: Vec<[u32; 2]> = known.edges().collect();
         of_each(edges.len(), monitor, |i| {
@@ -360,7 +361,7 @@ struct Pairs<'a> {
 }
 
 impl Pairs<'_> {
-    /// How far from a point others of a layer are at most that it may have an edge with.
+    /// The maximum distance from a point to others of a layer with which it may have an edge.
     fn reach(&self, point: u32, layer: &Layer) -> f64 {
         let Spheres { points, alpha, .. } = self.search.spheres;
         self.reach_at(alpha.squared(), points.weight(point), layer)
@@ -405,7 +406,7 @@ impl Pairs<'_> {
     }
 }
 
-/// The last of the doubles in their order of which something is true, as it is of those before.
+/// The last double in their order that satisfies a condition, which also holds for all doubles before it.
 fn last(is_true: impl Fn(f64) -> bool) -> f64 {
     let double = |key: i64| f64::from_bits((key ^ ((key >> 63) as u64 >> 1) as i64) as u64);
     let key = |x: f64| {
@@ -427,7 +428,7 @@ fn last(is_true: impl Fn(f64) -> bool) -> f64 {
 /// Edges and facets that are listed, and those that were found.
 struct Known<'a> {
     structure: &'a Structure<'a>,
-    /// Where the listed neighbours of each open point start.
+    /// The start of the listed neighbours of each open point.
     starts: Vec<u32>,
     listed: Vec<u32>,
     added: BTreeMap<u32, BTreeSet<u32>>,
@@ -454,7 +455,7 @@ impl<'a> Known<'a> {
         &self.listed[of_bucket(&self.starts, v)]
     }
 
-    /// With those that have an edge that was found.
+    /// All neighbours, including those that share an edge that was found.
     fn neighbours(&self, v: u32) -> Vec<u32> {
         let added = self.added.get(&v).into_iter().flatten();
         let mut all: Vec<u32> = self.listed(v).iter().chain(added).copied().collect();

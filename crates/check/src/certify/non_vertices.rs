@@ -15,7 +15,7 @@ use crate::Complex;
 use crate::exact::{in_conflict, orientation, power_value, six_volume};
 use crate::parallel::of_each;
 
-/// For each point, the one kept at its position by the rule: the heaviest, of equal weights the first.
+/// For each point, the one that the rule keeps at its position: the heaviest, and of equal weights the first.
 fn by_rule(points: Points) -> Vec<u32> {
     let position = |i: u32| points.position(i);
     let weight = |i: u32| points.weight(i);
@@ -34,7 +34,7 @@ fn by_rule(points: Points) -> Vec<u32> {
     for alike in order.chunk_by_mut(|one, other| one.0 == other.0).filter(|alike| alike.len() > 1) {
         alike.sort_unstable_by(|&(_, a), &(_, b)| {
             let by_position = position(a).partial_cmp(&position(b)).expect("no coordinate is NaN");
-            // Not `total_cmp`, to which −0 is less than 0.
+            // `total_cmp` is unsuitable because it puts −0 before 0.
             let heavier = weight(b).partial_cmp(&weight(a)).expect("no weight is NaN");
             by_position.then(heavier).then(a.cmp(&b))
         });
@@ -47,10 +47,10 @@ fn by_rule(points: Points) -> Vec<u32> {
     kept
 }
 
-/// For each point, the one kept at its position, and findings where that is not the one the rule names.
+/// For each point, the one kept at its position, and findings if it is not the one that the rule selects.
 ///
-/// Of points with equal positions and weights any may be kept: the one that is a vertex is, or else the one
-/// that the list of duplicates names.
+/// Of points with equal positions and weights, any one may be kept: the one that is a vertex, or otherwise the one that the list
+/// of duplicates names.
 pub(super) fn kept_points(
     points: Points,
     complex: &Complex,
@@ -112,18 +112,18 @@ pub(super) fn duplicates(
     findings
 }
 
-/// What a claim says of a point.
+/// The status of a point in a claim.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Status {
-    /// Not yet.
+    /// The claim does not contain it so far.
     Unaccounted,
-    /// As a vertex, or as a listed hidden point.
+    /// It is a vertex, or a listed hidden point.
     Accounted,
     /// Another point is kept at its position.
     Duplicate,
 }
 
-/// Which points are neither vertices nor duplicates.
+/// The points that are neither vertices nor duplicates.
 pub(super) fn hidden(structure: &Structure, kept: &[u32]) -> Vec<u32> {
     let statuses = statuses(structure, kept);
     (0..)
@@ -219,7 +219,7 @@ pub(super) fn hiddenness(
     })
 }
 
-/// The same of hidden points in cells that fill all of space around a box: by each cell, of the points in it.
+/// Like [`hiddenness`], for hidden points in cells that fill all of space around a box: each cell tests the points in it.
 pub(super) fn hiddenness_in_cells(
     structure: &Structure,
     points: Points,

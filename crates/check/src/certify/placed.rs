@@ -18,10 +18,10 @@ impl PlacedComplex {
             .with_lowest(self.lowest)
     }
 
-    /// All broken rules, and the certificate. Of labels the rules are that the cells fill the voxels, face to face, and nothing else, and that
-    /// classes follow from it. In space the rules are those of [`Claim::visit`]. On a torus they
-    /// are the same around each simplex; besides, no edge may span half of the box; and a whole triangulation
-    /// must fill the box, instead of the rules on the hull.
+    /// All broken rules, and the certificate. For labels, the rules are that the cells fill exactly the voxels, face to face, and
+    /// that classes follow from the cells. In space the rules are those of [`Claim::visit`]. On a torus they are the same around
+    /// each simplex; in addition, no edge may span half of the box, and a whole triangulation must fill the box, instead of the
+    /// rules for the hull.
     ///
     /// # Errors
     /// [`CertifyError`].

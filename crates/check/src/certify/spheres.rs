@@ -6,14 +6,14 @@ use super::structure::Points;
 use crate::Alpha;
 use crate::exact::{Exact, Side, collinear, orientation, radius, radius_value, side};
 
-/// One to four points, affinely independent.
+/// One to four affinely independent points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Corners {
     row: [u32; 4],
     count: usize,
 }
 
-/// A value of the corners as an array, whatever their number.
+/// Evaluates an expression with the corners as an array, for any number of corners.
 macro_rules! of_row {
     ($corners:expr, $row:ident => $value:expr) => {
         match *$corners.numbers() {
@@ -50,7 +50,7 @@ impl Corners {
         &self.row[..self.count]
     }
 
-    /// As a simplex, with its vertices in ascending order.
+    /// The simplex of the corners, with its vertices in ascending order.
     pub(super) fn simplex(&self) -> Simplex {
         let mut sorted = *self;
         sorted.row[..self.count].sort_unstable();
@@ -72,9 +72,9 @@ pub(super) struct Spheres<'a> {
 }
 
 impl Spheres<'_> {
-    /// Of all spheres orthogonal to some corners that are empty and have a squared radius of at most α, the smallest: that of the
-    /// corners returned, of which the given ones are the first. `near` are points that may be inside, which are tested first; others
-    /// that are join them.
+    /// The smallest of all spheres that are orthogonal to some corners, are empty, and have a squared radius of at most α. It is
+    /// the sphere of the returned corners, of which the given ones are the first. `near` are points that may be inside, which are
+    /// tested first; other points inside are added to them.
     ///
     /// The centres of spheres that are orthogonal to the corners and do not have a certain point inside are a half-space of
     /// the places of equal power from all corners. So the smallest sphere is the solution of a convex quadratic program in at most three
@@ -89,16 +89,16 @@ impl Spheres<'_> {
         Some(best)
     }
 
-    /// All points on the sphere of some corners, which is empty and has a squared radius of at most α; ascending.
+    /// All points on the sphere of some corners, ascending. The sphere must be empty and its squared radius at most α.
     pub(super) fn on(&self, corners: Corners) -> Vec<u32> {
         of_row!(corners, row => self.emptiness.on_sphere(row))
     }
 
     /// The smallest sphere with none of `others` inside, as if there were no further points.
     ///
-    /// By R. Seidel, "Small-dimensional linear programming and convex hulls made easy", Discrete Comput. Geom. 6, 1991,
-    /// doi:10.1007/BF02574699. A point that is inside the smallest sphere for those before it is on the smallest one with it. It is
-    /// moved to the front, as it may well be inside others.
+    /// The method is that of R. Seidel, "Small-dimensional linear programming and convex hulls made easy", Discrete Comput. Geom.
+    /// 6, 1991, doi:10.1007/BF02574699. A point that is inside the smallest sphere for the points before it is on the smallest
+    /// sphere that includes it. It is moved to the front, because it may also be inside others.
     fn smallest(&self, corners: Corners, others: &mut [u32]) -> Option<Corners> {
         if !self.fits(corners) {
             return None;

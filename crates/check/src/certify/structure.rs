@@ -56,13 +56,13 @@ impl<'a> Points<'a> {
         row.map(|i| self.get(i))
     }
 
-    /// Their positions.
+    /// The positions of the vertices of a row.
     pub(super) fn positions_of<const N: usize>(self, row: [u32; N]) -> [[f64; 3]; N] {
         row.map(|i| self.position(i))
     }
 }
 
-/// As many cells as the 32-bit numbers of their sides, 4 · cell + 0..4, leave room for.
+/// The maximum number of cells, limited by the 32-bit numbers of their sides, 4 · cell + 0..4.
 pub(super) const MAX_CELLS: usize = (u32::MAX / 4) as usize;
 
 /// The listed simplices, linked: cells to facets and back, and each found by its vertices.
@@ -72,8 +72,8 @@ pub(super) struct Structure<'a> {
     pub facets: Index<'a, 3>,
     pub edges: Index<'a, 2>,
     pub vertices: Index<'a, 1>,
-    /// For each facet, its sides in cells as 4 · cell + the corner opposite to it,
-    /// ascending; [`NONE`] for a missing one. Of a crowded facet the first two.
+    /// For each facet, its sides in cells as 4 · cell + the corner opposite to it, ascending; [`NONE`] for a missing one. Only
+    /// the first two for a crowded facet.
     pub sides: Vec<[u32; 2]>,
     /// The rows of each cell's facets, opposite to its vertices.
     pub cell_facets: Vec<[u32; 4]>,
@@ -142,7 +142,7 @@ impl<'a> Structure<'a> {
         self.cell_facets[cell].iter().any(|&facet| self.sides[facet as usize][1] == NONE)
     }
 
-    /// For each point, whether there are cells all around it: it is a vertex of some, and no facet at it has only one cell.
+    /// For each point, whether it is surrounded by cells: it is a vertex of some, and no facet at it has only one cell.
     pub(super) fn surrounded(&self, points: usize) -> Vec<bool> {
         let mut surrounded = vec![false; points];
         for &v in self.complex.cells.rows().as_flattened() {

@@ -1,10 +1,9 @@
-//! In a shape alone: whether the simplices listed on tied spheres fit together.
+//! In a shape alone: whether the simplices that are listed on tied spheres fit together.
 //!
-//! Where more points lie on one empty sphere than a simplex has corners, their polytope may be cut in
-//! several ways. For a whole triangulation, hull and volume prove that it is cut in one of them. In a shape
-//! alone each polytope is judged by itself, as a whole triangulation of the points on its sphere; on each of its
-//! flat faces, which the polytope beyond may cut, too, all facets must have cells on the same sides; and no vertex
-//! may lie within an edge, which other polytopes may cut, too.
+//! If more points lie on one empty sphere than a simplex has corners, their polytope may be cut in several ways. For a whole
+//! triangulation, hull and volume prove that it is cut in one of these ways. In a shape alone, each polytope is judged by itself,
+//! as a whole triangulation of the points on its sphere. On each of its flat faces, which the polytope on the other side may also
+//! cut, all facets must have cells on the same sides. No vertex may lie within an edge, which other polytopes may also cut.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -56,7 +55,7 @@ pub(super) fn singular(
     }
     let on_spheres = monitor.unreported();
     for (on, rows) in &lines {
-        // All edges between these points, as some may be faces of facets.
+        // All edges between these points, because some may be faces of facets.
         let listed = edges_between(structure, on);
         let edges = listed.map(|pair| (local(pair, on), Class::Exterior)).collect();
         let first = complex.edges.rows()[rows[0] as usize];
@@ -141,7 +140,7 @@ pub(super) fn cells(
     findings.extend(cut.into_iter().map(of_line));
     let mut crossing = BTreeMap::<u32, u32>::new();
     for (face, rows) in &faces {
-        // Of copies on a torus, the one that names a point of the box, if any does.
+        // Of copies on a torus, the one with a point of the box, if any has one.
         let first = rows.iter().copied().min_by_key(|&row| facets[row as usize].into_iter().min());
         let first = first.expect("a face has facets");
         let known = sides(structure, points, face, first);

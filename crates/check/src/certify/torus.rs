@@ -1,10 +1,10 @@
 //! Complexes of a torus: their copies in space around one box are judged.
 //!
-//! No edge may span half of the box. Then all simplices around one that touches the box have their vertices in
-//! it or in a neighbouring copy, so among 27 copies of the complex the simplices that touch the middle one are judged
-//! as in space. If the complex is whole (it lists exterior simplices, or α = ∞), the rules are those for a whole triangulation,
-//! with others for the boundary: there is none, so each facet is between two cells, and the cells' volumes add up
-//! to that of the box, so they cover it once. A shape alone is judged as one in space.
+//! No edge may span half of the box. Then all simplices around a simplex that touches the box have their vertices in it or in a
+//! neighbouring copy. So among 27 copies of the complex, the simplices that touch the middle one are judged as in space. If the
+//! complex is whole (it lists exterior simplices, or α = ∞), the rules are those for a whole triangulation, except for the
+//! boundary: there is none, so each facet is between two cells, and the volumes of the cells add up to the volume of the box, so
+//! they cover it once. A shape alone is judged like one in space.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -20,7 +20,7 @@ use crate::exact::Exact;
 use crate::schema::{PlacedComplex, moved, nearest_copy};
 use crate::{Alpha, Complex, Placed, Simplices};
 
-/// Of what torus a complex in space is the copies.
+/// The torus whose copies are in a complex in space.
 #[derive(Clone, Copy)]
 pub(super) struct Torus {
     /// The number of points in the box. They come before all copies.
@@ -208,7 +208,7 @@ fn moves() -> Vec<[i32; 3]> {
     moves
 }
 
-/// How copies are numbered.
+/// The numbering of copies.
 struct Layout<'a> {
     positions: &'a [[f64; 3]],
     sides: [f64; 3],
@@ -217,7 +217,7 @@ struct Layout<'a> {
 }
 
 impl<'a> Layout<'a> {
-    /// With the copies that touch the box.
+    /// Creates the layout of the copies that touch the box.
     fn new(positions: &'a [[f64; 3]], sides: [f64; 3]) -> Self {
         let moves = moves();
         let numbers = moves.iter().copied().zip(0..).collect();

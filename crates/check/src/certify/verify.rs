@@ -45,7 +45,7 @@ impl Claim<'_> {
         Ok(first)
     }
 
-    /// All broken rules and [ties](Finding::is_tie) that are not decided by the rule, and the certificate.
+    /// All broken rules, [ties](Finding::is_tie) that do not follow the rule, and the certificate.
     ///
     /// # Errors
     /// [`CertifyError`].
@@ -187,7 +187,7 @@ impl Claim<'_> {
         if let Some(index) = (0..positions.len()).find(|i| !finite(i)) {
             return Err(CertifyError::NotFinite(index));
         }
-        // Of a shape alone there are also two grids, each with about as many bytes.
+        // For a shape alone there are also two grids, each with approximately this number of bytes.
         let copies = if self.extent == Extent::Shape { 3 } else { 1 };
         afford(complex, copies * positions.len())
     }
@@ -203,7 +203,7 @@ fn afford(complex: &Complex, copies: usize) -> Result<(), CertifyError> {
 
 /// Why the remaining rules are not applied.
 enum Stop {
-    /// The visitor wants no more, or a rule is broken on which the others depend.
+    /// The visitor needs no more findings, or a rule is broken on which the others depend.
     Enough,
     Cancelled(Cancelled),
 }
@@ -214,10 +214,10 @@ impl From<Cancelled> for Stop {
     }
 }
 
-/// Takes the findings of a rule; stops when the visitor wants no more.
+/// Takes the findings of a rule; stops when the visitor needs no more.
 type Report<'r> = dyn FnMut(Vec<Finding>) -> Result<(), Stop> + 'r;
 
-/// What is found of simplices that touch the box of a torus; in space, all.
+/// Keeps the findings for simplices that touch the box of a torus; in space, all.
 fn near_box(torus: Option<Torus>, mut findings: Vec<Finding>) -> Vec<Finding> {
     if let Some(torus) = torus {
         findings.retain(|finding| finding.clone().at_box(torus.points).is_some());
@@ -272,7 +272,7 @@ fn apply(
     let [linked, summed, searched] = if whole { [7, 10, 11] } else { [4, 5, 12] };
     let listed = Linked::new(complex, points, boundary, &monitor.part(0, linked, 20))?;
     let summing = monitor.part(linked, summed, 20);
-    // Of a whole triangulation the sum of all cells is a second witness that they fit together.
+    // In a whole triangulation, the sum of all cells is a second proof that they fit together.
     let of_cells = if whole {
         geometry::six_volumes(complex.cells.rows(), points, &summing)?
     } else {
@@ -283,8 +283,8 @@ fn apply(
     let gaps = &monitor.part(summed, searched, 20);
     let missing = gaps::missing_cells(&listed.structure, points, alpha, judge.emptiness, gaps)?;
     let rest = monitor.part(searched, 20, 20);
-    // Cells that could be missing overlap where one holds points on its sphere, and parts of it could be missing, too.
-    // Those that the rule for ties makes do not.
+    // Cells that could be missing overlap if one has points on its sphere, and parts of it could be missing, too. Those that the
+    // tie rule makes do not overlap.
     let by_rule = gaps::by_rule(&missing, judge.emptiness);
     let choices = [missing, by_rule].into_iter().filter(|missing| !missing.is_empty());
     for (part, missing) in (0..).zip(choices) {

@@ -1,7 +1,7 @@
 //! Judging the solid of labels: that its cells fill the voxels of a region, face to face, and nothing else.
 //!
-//! Everything is judged in index space, where the corners of voxels are integers. That the position of a point is the corner's, to the last bit,
-//! is a rule of its own, and so is that cells are positively oriented where they lie.
+//! Everything is judged in index space, where the corners of voxels are integers. Two further rules are that the position of a
+//! point equals that of the corner to the last bit, and that cells are positively oriented at these positions.
 //!
 //! **Why the rules imply it.** The cells are positively oriented. A facet has one cell or two, two lie on different sides, and one makes it half of a face between a
 //! voxel of the region and one outside, with the cell on the side of the region. Each such face is two of these facets, which share
@@ -238,13 +238,13 @@ fn border(outward: [u32; 3], corners: &[Place], voxels: &Voxels) -> Option<Half>
     if along.iter().any(|&k| most[k] - least[k] != 1) {
         return None;
     }
-    // Which corner of the face each is, by two bits; their exclusive or is the one that is left out.
+    // Encodes each corner of the face in two bits; their exclusive or is the corner that is left out.
     let bits = places.map(|place| {
         (place[along[0]] - least[along[0]]) as usize
             | ((place[along[1]] - least[along[1]]) as usize) << 1
     });
     let out = bits[0] ^ bits[1] ^ bits[2];
-    // In the plane of the next two axes it turns counter-clockwise seen from the side of larger indices.
+    // In the plane of the next two axes it turns counter-clockwise, as seen from the side of larger indices.
     let [u, v] = [1, 2].map(|i| along.map(|k| i64::from(places[i][k]) - i64::from(places[0][k])));
     let turns_up = (u[0] * v[1] - u[1] * v[0] > 0) != is_mirrored(voxels);
     let behind = least.map(i64::from);

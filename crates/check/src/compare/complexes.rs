@@ -31,7 +31,7 @@ pub struct Comparison {
     pub exterior: bool,
     /// Vertices, edges, facets and cells.
     pub dimensions: [Differences; 4],
-    /// How the regions that the cells cover are related.
+    /// The relation between the regions that the cells cover.
     pub domain: Domain,
 }
 
@@ -266,7 +266,7 @@ impl Display for Comparison {
     }
 }
 
-/// Writes the number of rows and the first of them; nothing if there are none.
+/// Writes the number of rows and the first of them, or nothing if there are none.
 pub(super) fn rows<T: Display>(
     f: &mut fmt::Formatter<'_>,
     what: &str,

@@ -14,14 +14,14 @@ use crate::parallel::of_each;
 use crate::schema::orient;
 use crate::{Class, Placed};
 
-/// How the regions that the cells of two shapes cover are related.
+/// The relation between the regions that the cells of two shapes cover.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum Domain {
-    /// The same cells.
+    /// The cells are the same.
     SameCells,
-    /// The same region, cut into other cells.
+    /// The region is the same, but cut into other cells.
     SameRegion {
         /// Six times the volume of the region.
         six_volumes: Exact,

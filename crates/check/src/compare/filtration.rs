@@ -41,8 +41,8 @@ pub struct FiltrationComparison {
     pub gabriel: Vec<Simplex>,
     /// Simplices that become regular or interior at different α; empty unless both say when.
     pub intervals: Vec<Simplex>,
-    /// The first simplex, by A's indices, that has another rank in the order; `None` if there is no such
-    /// simplex, if the simplices are not the same, or if points are numbered differently.
+    /// The first simplex, by A's indices, that has another rank in the order; `None` if there is none, if the simplices are not
+    /// the same, or if points are numbered differently.
     pub order: Option<Simplex>,
     /// Whether the order was compared.
     pub order_compared: bool,

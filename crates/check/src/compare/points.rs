@@ -51,7 +51,7 @@ impl CommonPositions {
         only(&self.b, &self.a)
     }
 
-    /// Where the largest weights of A and B at a position of both differ.
+    /// The common positions at which the largest weights of A and B differ.
     pub(super) fn weight_differences(&self, a: &[f64], b: &[f64]) -> Vec<WeightDifference> {
         let mut in_a = weights_by_position(a, &self.a);
         let in_b = weights_by_position(b, &self.b);

@@ -35,8 +35,8 @@ impl RoundedSphere {
         let [x, y, z] = [0, 1, 2].map(|k| vertex.position[k] - center[k]);
         // The square may be too small or too large for a double.
         let distance = if near.is_normal() { near.sqrt() } else { x.hypot(y).hypot(z) };
-        // For any k > 0, √S ≤ S / (2 k) + k / 2. With S = 2 (far + near) this is (far + near) / k + k / 2, with equality if
-        // k = √S, as here where far = near.
+        // For any k > 0, √S ≤ S / (2 k) + k / 2. With S = 2 (far + near) this is (far + near) / k + k / 2. It is an equality for
+        // k = √S, as here if far = near.
         let k = (2.0 * near.sqrt()).max(error.sqrt());
         let slope = 2.0 * error / k * (1.0 + 1e-12) + ROUNDED;
         let base = error * k * (1.0 + 1e-12) + ROUNDED * vertex.weight.abs() + f64::MIN_POSITIVE;
@@ -184,7 +184,7 @@ mod tests {
                     continue;
                 }
                 judged += 1;
-                // Its own line and plane hold the centre.
+                // The line and plane of the points contain the centre.
                 judge(center, [u, plus(u, u, times)], radius, &mut draw);
                 judge(center, [u, v, plus(u, v, times)], radius, &mut draw);
                 judge(center, [u, v, w, x], radius, &mut draw);

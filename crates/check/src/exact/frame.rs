@@ -8,7 +8,7 @@ use super::number::{Approx, Binary, Bits, Number, Range, sign};
 
 /// A point with a power weight; all four numbers finite.
 #[derive(Clone, Copy, Debug, PartialEq)]
-// So that none lies on two cache lines: in random order each point is a cache miss.
+// Aligned so that no point lies on two cache lines: in random order each point is a cache miss.
 #[repr(align(32))]
 pub(crate) struct WeightedPoint {
     /// x, y, z.

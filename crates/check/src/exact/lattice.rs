@@ -19,7 +19,7 @@ pub(crate) struct Lattice {
     bits: u32,
 }
 
-/// Tetrahedra summed at once, few enough for the sum to have no more than twelve bits more than each.
+/// Number of tetrahedra that are summed together, few enough for their sum to have at most twelve bits more than each of them.
 const CHUNK: usize = 1 << 12;
 
 impl Lattice {
@@ -72,8 +72,8 @@ impl Lattice {
         sums.try_reduce(|| IBig::ZERO, |a, b| Ok(a + b))
     }
 
-    /// The plane through three points that are not on one line, the same for whichever three:
-    /// normal and offset without common factor, the first number that is not zero positive.
+    /// The plane through three points that are not on one line, which does not depend on the choice of points: normal and offset
+    /// without common factor, where the first number that is not zero is positive.
     pub(crate) fn plane(self, triangle: [[f64; 3]; 3]) -> [IBig; 4] {
         let [a, b, c] = triangle.map(|p| self.big(p));
         let [x, y, z] = cross(&minus(&b, &a), &minus(&c, &a));
@@ -135,7 +135,7 @@ impl Star {
         [(&a, &b), (&b, &c), (&c, &a)].iter().all(|(u, v)| det3(&ray, u, v).is_ge())
     }
 
-    /// From the centre to a point, twelvefold.
+    /// The vector from the centre to a point, multiplied by twelve.
     fn spoke(&self, p: [f64; 3]) -> [IBig; 3] {
         let p = self.lattice.big(p);
         std::array::from_fn(|k| &p[k] * 12 - &self.center[k])
@@ -166,8 +166,8 @@ impl Lift {
         Self { coordinate, height }
     }
 
-    /// The hyperplane through four lifted points that span a volume, the same for any four of its
-    /// points: cells with one orthogonal sphere have one hyperplane.
+    /// The hyperplane through four lifted points that span a volume. It does not depend on the choice of four points: cells with
+    /// the same orthogonal sphere have the same hyperplane.
     ///
     /// For D = det(b−a, c−a, d−a) and n the normal with n·(b−a) = D·(h(b) − h(a)) and so on, the
     /// height at x is (n·x + o)/D. These five integers are without common factor, and D > 0.

@@ -6,7 +6,7 @@ use super::formulas::{Area, Power1, Power2, Power3, Power4, Radius2, Radius3, Ra
 use super::frame::{WeightedPoint, sign_of};
 use crate::Alpha;
 
-/// Where a weighted point is relative to the smallest orthogonal sphere of others.
+/// The location of a weighted point relative to the smallest orthogonal sphere of others.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Side {
     /// Strictly inside: its power product with the sphere is negative.
@@ -40,10 +40,10 @@ pub(crate) fn collinear(a: [f64; 3], b: [f64; 3], c: [f64; 3]) -> bool {
     sign_of(&Area, &a, [&b, &c], 0.0).is_eq()
 }
 
-/// Where `q` is relative to the smallest orthogonal sphere of 1 to 4 affinely independent points.
+/// The location of `q` relative to the smallest orthogonal sphere of 1 to 4 affinely independent points.
 ///
 /// # Panics
-/// If there are none or more than 4.
+/// If the number of points is 0 or more than 4.
 pub(crate) fn side<const N: usize>(simplex: [&WeightedPoint; N], q: &WeightedPoint) -> Side {
     Side::of(match simplex[..] {
         [a] => sign_of(&Power1, a, [q], 0.0),
@@ -64,7 +64,7 @@ pub(crate) fn side<const N: usize>(simplex: [&WeightedPoint; N], q: &WeightedPoi
 /// compared with α (±∞ allowed).
 ///
 /// # Panics
-/// If there are none or more than 4.
+/// If the number of points is 0 or more than 4.
 pub(crate) fn radius<const N: usize>(simplex: [&WeightedPoint; N], alpha: Alpha) -> Ordering {
     let alpha = alpha.squared();
     if alpha.is_infinite() {

@@ -21,7 +21,7 @@ pub struct Exact {
 }
 
 impl Exact {
-    /// In lowest terms, both odd or zero.
+    /// Creates a value in lowest terms: numerator and denominator are odd or zero.
     pub(crate) fn new(numerator: IBig, denominator: IBig, exponent: i64) -> Self {
         let Some(twos) = numerator.trailing_zeros() else {
             return Self { numerator, denominator: IBig::ONE, exponent: 0 };
@@ -96,7 +96,7 @@ impl fmt::Display for Exact {
 }
 
 impl Serialize for Exact {
-    /// As text: JSON numbers would round it.
+    /// Writes text, because JSON numbers would round the value.
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_str(&format_args!("{self:#}"))
     }

@@ -4,7 +4,7 @@ use dashu_int::{IBig, Sign, UBig};
 
 use super::number::Number;
 
-/// An integer modulo 2²⁵⁶, in two's complement: exact as long as the final result has at most 255 bits, whatever is between.
+/// An integer modulo 2²⁵⁶, in two's complement. Results are exact if they have at most 255 bits, for any intermediate values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Wide([u64; 4]);
 
@@ -14,7 +14,7 @@ impl Wide {
     /// The digits that one holds in both signs.
     pub(super) const BITS: u32 = 255;
 
-    /// Its value, if that has at most [`BITS`](Self::BITS) bits.
+    /// Its value, if it has at most [`BITS`](Self::BITS) bits.
     pub(super) fn value(self) -> IBig {
         let negative = self.0[3] >> 63 == 1;
         let magnitude = if negative { Self::ZERO.minus(&self) } else { self };
@@ -80,7 +80,7 @@ mod tests {
     fn the_same_as_integers_of_any_length() {
         let mut random = Random::new(4);
         let number = |random: &mut Random| {
-            // Of any length up to 126 bits, ones and zeros in long runs as well.
+            // Numbers of any length up to 126 bits, also with long runs of ones and zeros.
             let high = i128::from(random.below(1 << 31) as u32) << 96;
             let low = i128::from(random.below(1 << 31) as u32) * 0x1_0000_0001_0000_0001;
             (high | low | (1 << random.below(90))) >> random.below(126)
@@ -93,7 +93,7 @@ mod tests {
             let all = [Wide::plus, Wide::minus, Wide::times].map(|f| f(&wide[0], &wide[1]).value());
             let expected = [&big[0] + &big[1], &big[0] - &big[1], &big[0] * &big[1]];
             assert_eq!(all, expected, "{a} {b}");
-            // What is between may wrap.
+            // Intermediate values may wrap.
             let half = Wide([0, 0, 0, 1 << 62]);
             let wrapped = wide[0].plus(&half).plus(&half).plus(&wide[1]);
             assert_eq!(wrapped.minus(&half).minus(&half).value(), expected[0]);

@@ -20,17 +20,17 @@ impl MeshError {
         Self { place: String::new(), why: why.into(), next: None }
     }
 
-    /// The same error at a place, such as `line 3`.
+    /// Adds a place to the error, such as `line 3`.
     pub(super) fn at(self, place: &str) -> Self {
         Self { place: format!("{place}: "), ..self }
     }
 
-    /// The same error with what to do about it.
+    /// Adds advice to the error.
     pub(super) fn with_advice(self, next: impl Into<Advice>) -> Self {
         Self { next: Some(next.into()), ..self }
     }
 
-    /// The same error in another file than the one that was named.
+    /// Attributes the error to another file than the named one.
     #[must_use]
     pub fn of_file(self, path: &Path) -> Self {
         let name = path.file_name().unwrap_or_default().to_string_lossy();

@@ -216,7 +216,7 @@ struct Elements {
 impl Elements {
     fn read_two(&mut self, scan: &mut Scan, numbers: Form, nodes: &Nodes) -> Result<(), MeshError> {
         let count = count_of_two(scan, numbers, "the number of elements")?;
-        // Of a point in text: its tag, its type, the number of its labels and a node; in binary its tag and its node.
+        // For a point in text: its tag, its type, the number of its labels and a node; in binary its tag and its node.
         self.cells = scan.room(count, least(numbers, 4, 8), "elements")?;
         let mut left = count;
         while left > 0 {
@@ -319,7 +319,7 @@ impl Elements {
 struct Kind {
     number: i64,
     nodes: usize,
-    /// In the plural.
+    /// The plural name.
     name: &'static str,
 }
 

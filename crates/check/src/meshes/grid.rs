@@ -7,8 +7,8 @@ use crate::{Alpha, Class};
 
 /// An unstructured grid of VTK. Arrays are doubles, which hold every index and class.
 ///
-/// A grid that states α is a complex, and has the classes of its simplices or else only what is in the shape. Another
-/// one is the mesh of its tetrahedra, if it has some: triangles beside them are its surface.
+/// A grid that states α is a complex, and has the classes of its simplices or otherwise only the simplices of the shape. Any
+/// other grid is the mesh of its tetrahedra, if it has some; triangles in addition to them are its surface.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Grid {
     /// x, y, z of each point.
@@ -17,7 +17,7 @@ pub struct Grid {
     pub weights: Option<Vec<f64>>,
     /// VTK's type of each cell.
     pub types: Vec<u8>,
-    /// Where the corners of each cell end.
+    /// The end of the corners of each cell.
     pub ends: Vec<f64>,
     /// The corners of all cells.
     pub corners: Vec<f64>,
@@ -141,7 +141,7 @@ struct Rows {
 }
 
 impl Rows {
-    /// With classes an empty list means that there are no such simplices; without, they are derived as faces.
+    /// With classes, an empty list means that there are no such simplices; without classes, they are derived as faces.
     fn put(self, complex: &mut ComplexFile, all: bool) {
         fn listed<T>(rows: Vec<T>, all: bool) -> Option<Vec<T>> {
             (all || !rows.is_empty()).then_some(rows)

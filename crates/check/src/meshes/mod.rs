@@ -41,7 +41,7 @@ pub use error::MeshError;
 pub use grid::Grid;
 pub use weights::open_weights;
 
-/// What a file of points and tetrahedra holds.
+/// The points and tetrahedra of a file.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Mesh {
@@ -50,7 +50,7 @@ pub struct Mesh {
     /// The first attribute of each point, where attributes have no names (`TetGen`). It is a weight only for those who
     /// say so.
     pub attribute: Option<Vec<f64>>,
-    /// What to know about the verdict: how numbers were read, and what was left out.
+    /// Notes for the reader of the verdict: how numbers were read, and what was left out.
     pub notes: Vec<String>,
 }
 
@@ -58,7 +58,7 @@ pub struct Mesh {
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct MeshFormat {
-    /// Its name, as users know it.
+    /// Its name for users.
     pub name: &'static str,
     /// Extensions, without dots.
     pub extensions: &'static [&'static str],
@@ -123,7 +123,7 @@ impl MeshFormat {
     /// beside the path.
     ///
     /// # Errors
-    /// As [`MeshFormat::read`].
+    /// See [`MeshFormat::read`].
     pub fn read_bytes(&self, path: impl AsRef<Path>, bytes: &[u8]) -> Result<Mesh, MeshError> {
         (self.read)(path.as_ref(), bytes)
     }
@@ -189,7 +189,7 @@ impl Mesh {
     }
 }
 
-/// A complex, as it is.
+/// Takes a complex without changes.
 impl From<ComplexFile> for Mesh {
     fn from(complex: ComplexFile) -> Self {
         Self { complex, attribute: None, notes: Vec::new() }

@@ -8,29 +8,29 @@ use walpha_base::memory::try_with_capacity;
 
 use super::MeshError;
 
-/// How numbers are written.
+/// The form of numbers in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Form {
-    /// As words.
+    /// Words.
     Text,
-    /// As bytes, the last one first.
+    /// Bytes, starting with the last.
     Little,
-    /// As bytes, the first one first.
+    /// Bytes, starting with the first.
     Big,
 }
 
-/// What to do about most damages.
+/// The advice for most kinds of damage.
 pub(super) const WRITE_AGAIN: &str = "write the file again";
 /// The longest part of a word that a message shows.
 const SHOWN: usize = 40;
 
 pub(super) struct Scan<'a> {
     bytes: &'a [u8],
-    /// Where to go on.
+    /// The position of the next byte.
     at: usize,
-    /// Where what was read last begins.
+    /// The start of the part that was read last.
     last: usize,
-    /// How numbers are written from here on.
+    /// The form of the numbers that follow.
     pub(super) form: Form,
     /// Whether `#` begins a comment, up to the end of its line.
     comments: bool,
@@ -41,7 +41,7 @@ impl<'a> Scan<'a> {
         Self { bytes, at: 0, last: 0, form: Form::Text, comments: false }
     }
 
-    /// The same of a file with comments.
+    /// Like [`new`](Self::new), for a file with comments.
     pub(super) fn with_comments(bytes: &'a [u8]) -> Self {
         Self { comments: true, ..Self::new(bytes) }
     }
@@ -199,7 +199,7 @@ impl<'a> Scan<'a> {
         Err(error.with_advice("remove such points and their cells"))
     }
 
-    /// The next bytes, as many as are asked for.
+    /// Takes the requested number of bytes.
     pub(super) fn take(&mut self, count: usize, what: &str) -> Result<&'a [u8], MeshError> {
         let Some(bytes) = self.left().get(..count) else { return Err(self.truncated(what)) };
         self.last = self.at;

@@ -1,7 +1,7 @@
 //! `.node` and `.ele` of `TetGen` (its manual, section 5.2): points, and cells by the numbers of points.
 //!
-//! Points are numbered from 0 or from 1, as the first of them is, and cells must be numbered alike. Files of
-//! neighbours (`.neigh`) are not read, as they follow from the cells.
+//! Points are numbered from 0 or from 1, as the first of them shows, and cells must use the same numbering. Files of neighbours
+//! (`.neigh`) are not read, because they follow from the cells.
 
 use std::borrow::Cow;
 use std::ffi::OsStr;
@@ -59,7 +59,7 @@ fn nodes(bytes: &[u8]) -> Result<Nodes, MeshError> {
     let mut scan = Scan::with_comments(bytes);
     let mut words = Vec::new();
     scan.expect_record(&mut words, "the number of points")?;
-    // Only the number of points is required, as `TetGen` has it.
+    // Only the number of points is required, like in `TetGen`.
     let [count, dimension, attributes, markers] = header(&scan, &words, [0, 3, 0, 0])?;
     if dimension != 3 {
         return Err(scan.fault(format!("points have {dimension} coordinates, not 3")));

@@ -1,8 +1,8 @@
 //! Unstructured grids in legacy VTK files, as text and in binary (VTK User's Guide, "VTK File Formats"). Cells come as
 //! rows that begin with their lengths, or from version 5 on as offsets and corners.
 //!
-//! Of the data of points `weight`, or the square of `radius`, is a weight; `alpha` in the field data is α, and `class`
-//! of the cells their class.
+//! In the data of points, `weight`, or the square of `radius`, is a weight; `alpha` in the field data is α, and `class` in the
+//! data of cells is their class.
 
 use std::str;
 
@@ -58,7 +58,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Mesh, MeshError> {
     Ok(if numbers == Form::Text { mesh.with_decimal_note() } else { mesh })
 }
 
-/// What the arrays that follow belong to.
+/// The owner of the arrays that follow.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Of {
     Points,
@@ -181,7 +181,7 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// Reads an attribute with a keyword of its own.
+    /// Reads an attribute that has its own keyword.
     fn attribute(&mut self, keyword: &[u8], of: Of, count: u64) -> Result<(), MeshError> {
         let name = self.scan.expect("a name")?;
         let mut components = match keyword {
@@ -339,7 +339,7 @@ impl Kind {
     const BYTE: Self = kind!(u8);
     const INT: Self = kind!(i32);
 
-    /// The type that VTK calls so. Its `long` has 64 bits wherever these files are usual.
+    /// The type with this name in VTK. `long` has 64 bits on the systems where these files are usual.
     fn of(name: &str) -> Option<Self> {
         Some(match name {
             "unsigned_char" => Self::BYTE,

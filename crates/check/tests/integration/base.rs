@@ -6,9 +6,9 @@ use walpha_check::{Extent, Finding, Verdict};
 
 use crate::common::{Answer, Case, definition, grid};
 
-/// Of the base.
+/// A hidden point of the base.
 pub(crate) const HIDDEN: u32 = 28;
-/// Of the base: it lies where point 0 does.
+/// A duplicate in the base: it lies at the position of point 0.
 pub(crate) const DUPLICATE: u32 = 29;
 
 /// A 3×3×3 grid at its critical α, a far point, a hidden point and a lighter duplicate of point 0:
@@ -32,7 +32,7 @@ fn make_base() -> (Case, Answer) {
     (case, answer)
 }
 
-/// What is wrong with an answer; all ways of asking say the same.
+/// The findings for an answer; all ways of asking give the same.
 pub(crate) fn findings(case: &Case, answer: &Answer, extent: Extent) -> Vec<Finding> {
     let claim = case.claim(answer, extent);
     let (findings, certificate) = claim.findings().unwrap();

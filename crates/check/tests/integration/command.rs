@@ -7,7 +7,7 @@ use walpha_base::random::Random;
 
 const POINTS: &str = r#""points":[[0,0,0],[1,0,0],[0,1,0],[0,0,1]],"alpha":0.75"#;
 
-/// A folder of its own for each test, below Cargo's for tests.
+/// A folder for each test, below Cargo's folder for tests.
 fn folder(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
     std::fs::create_dir_all(&folder).unwrap();
@@ -46,7 +46,8 @@ fn exit_codes_say_what_was_found() {
     }
 }
 
-/// So many points near each other that nobody looks for edges between them: nothing is found wrong, and the exit code is one of its own.
+/// So many points are near each other that edges between them are not searched for: no fault is found, and there is a separate
+/// exit code.
 #[test]
 fn what_is_right_as_far_as_judged_has_an_exit_code_of_its_own() {
     let folder = folder("as_far_as_judged");
@@ -110,7 +111,7 @@ fn what_cannot_be_judged_comes_with_advice() {
     }
 }
 
-/// A square cut along its other diagonal is right, unless the rule of ties is asked for.
+/// A square that is cut along its other diagonal is right, unless the tie rule is requested.
 #[test]
 fn ties_are_findings_where_asked() {
     let folder = folder("ties");
@@ -130,7 +131,7 @@ fn ties_are_findings_where_asked() {
     assert_eq!((codes("any"), codes("exact")), ([0, 0], [0, 3]));
 }
 
-/// What cannot be printed is lost, and the exit code says so.
+/// Output that cannot be printed is lost, and the exit code tells it.
 #[test]
 #[cfg(target_os = "linux")]
 fn a_verdict_that_cannot_be_printed_is_an_error() {
@@ -153,7 +154,7 @@ fn a_verdict_that_cannot_be_printed_is_an_error() {
             assert_eq!(said.lines().last(), Some(code.to_string().as_str()), "{said}");
         }
     }
-    // Nobody hears the error.
+    // The reader of the error has gone.
     let mut shell = Command::new("sh");
     let line =
         "(sleep 0.3; \"$0\" none.json 2>&1 >/dev/null; echo $? >code) | true; sleep 0.6; cat code";

@@ -25,7 +25,7 @@ impl Case {
         Placed::new(&self.positions, &self.weights, self.alpha(), complex)
     }
 
-    /// What an answer claims.
+    /// The claim of an answer.
     pub fn claim<'a>(&'a self, answer: &'a Answer, extent: Extent) -> Claim<'a> {
         Claim::new(self.placed(&answer.complex))
             .with_extent(extent)
@@ -33,13 +33,13 @@ impl Case {
             .with_duplicates(&answer.duplicates[..])
     }
 
-    /// What is wrong with an answer.
+    /// The findings for an answer.
     pub fn findings(&self, answer: &Answer, extent: Extent) -> Vec<Finding> {
         self.claim(answer, extent).findings().unwrap().0
     }
 }
 
-/// What an engine makes of a case, or the definition.
+/// The result of an engine for a case, or of the definition.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Answer {
     pub complex: Complex,
@@ -102,7 +102,7 @@ pub fn closed(cells: &[[u32; 4]]) -> Complex {
     }
 }
 
-/// Removes a row, if there are so many, and gives its vertices in ascending order.
+/// Removes a row, if it exists, and returns its vertices in ascending order.
 pub fn drop_row<const N: usize>(simplices: &mut Simplices<N>, row: usize) -> Option<Vec<u32>> {
     let dropped = sorted(simplices.rows().get(row)?);
     let rest = std::mem::take(simplices).into_iter().enumerate();

@@ -7,7 +7,7 @@ use walpha_check::{
 
 use crate::common::{Answer, Case, closed, definition, drop_row, grid, shape_of};
 
-/// Without weights, at α = 0.75.
+/// A complex without weights, at α = 0.75.
 fn placed<'a>(positions: &'a [[f64; 3]], answer: &'a Answer) -> Placed<'a> {
     weighted(positions, &[0.0; 64][..positions.len()], answer)
 }
@@ -38,7 +38,7 @@ fn the_order_of_points_does_not_count() {
     assert_eq!(comparison.domain, Domain::SameCells);
 }
 
-/// The same cube cut along other diagonals, also on its faces.
+/// Compares a cube with the same cube cut along other diagonals, also on its faces.
 #[test]
 fn other_diagonals_cover_the_same() {
     let positions = grid(2);
@@ -58,7 +58,7 @@ fn other_diagonals_cover_the_same() {
     assert!(comparison.to_string().contains("as cospherical points allow"), "{comparison}");
 }
 
-/// Flat cells beside the others cover nothing, but what has them is not a triangulation.
+/// Flat cells between the others cover nothing, but a complex that contains them is not a triangulation.
 #[test]
 fn flat_cells_are_not_excused() {
     let positions = grid(2);
@@ -176,13 +176,13 @@ fn weights_and_alpha_that_differ() {
     let heavier = compare(a, weighted(&case.positions, &weights, &answer)).unwrap();
     assert!(!heavier.is_equal());
     assert!(heavier.to_string().contains("point 3: 0 in A, 0.125 in B"), "{heavier}");
-    // Of two points in one place the heavier counts.
+    // Of two points at one place, the heavier one counts.
     let twice = [&case.positions[..], &case.positions[3..4]].concat();
     let lighter = [&[0.0; 8][..], &[-1.0]].concat();
     assert!(compare(a, weighted(&twice, &lighter, &answer)).unwrap().is_equal());
 }
 
-/// Of everything that is compared, one thing differs at a time, on either side.
+/// One of the compared properties differs at a time, on either side.
 #[test]
 fn each_difference_counts_alone() {
     let case = Case { positions: grid(2), weights: vec![0.0; 8], alpha: 0.75 };

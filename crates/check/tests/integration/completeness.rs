@@ -50,7 +50,7 @@ fn shape(case: &Case) -> Complex {
     complex
 }
 
-/// Those that are faces of no other.
+/// The simplices that are not faces of others.
 fn maximal(rows: &BTreeSet<Row>) -> Vec<Row> {
     let bounds = |row: &Row, other: &Row| {
         other.len() == row.len() + 1 && row.iter().all(|v| other.contains(v))
@@ -69,7 +69,7 @@ fn closure<'a>(rows: impl IntoIterator<Item = &'a Row>) -> BTreeSet<Row> {
     rows.into_iter().flat_map(faces).collect()
 }
 
-/// What is found where these simplices are listed, with the classes that follow from them; or the cells alone.
+/// The findings if these simplices are listed, with the classes that follow from them; or if the cells alone are listed.
 fn judged(case: &Case, listed: &BTreeSet<Row>, cells_alone: bool) -> (Vec<Finding>, Certificate) {
     fn of<const N: usize>(rows: &BTreeSet<Row>) -> Vec<[u32; N]> {
         rows.iter().filter_map(|row| row[..].try_into().ok()).collect()
@@ -89,8 +89,8 @@ fn cells(rows: &BTreeSet<Row>) -> Vec<&Row> {
     rows.iter().filter(|row| row.len() == 4).collect()
 }
 
-/// A part of a shape is wrong, and the whole of it is exact, whatever part it is: the faces of some of its simplices, or of those of
-/// a smaller α.
+/// Any part of a shape is wrong, and the whole of it is exact. The parts are the faces of some of its simplices, or of those of a
+/// smaller α.
 #[test]
 fn whatever_is_missing_is_found() {
     let mut random = Random::new(22);
@@ -117,7 +117,7 @@ fn whatever_is_missing_is_found() {
             "{case:?}\n{part:?}\n{findings:?}"
         );
         assert_eq!(certificate.verdict == Verdict::Wrong, part != all, "{case:?}\n{findings:?}");
-        // Of cells alone nothing else is missing.
+        // For cells alone, nothing else is missing.
         let (findings, certificate) = judged(&case, &part, true);
         let verdict = if cells(&part) == cells(&all) { Verdict::Exact } else { Verdict::Wrong };
         assert_eq!(certificate.verdict, verdict, "{case:?}\n{part:?}\n{findings:?}");
@@ -129,7 +129,7 @@ fn whatever_is_missing_is_found() {
     assert!(without_cells > 100, "{without_cells}");
 }
 
-/// In general position each missing simplex that is a face of no other is named, and nothing else.
+/// In general position exactly the missing simplices are named that are not faces of others.
 #[test]
 fn what_is_missing_is_named() {
     let mut random = Random::new(23);
@@ -165,7 +165,7 @@ fn other_ways_to_cut_a_polytope_leave_nothing_missing() {
         let mut case = case(&mut random, if round % 3 == 0 { 5 } else { 2 });
         case.alpha = random.pick(&[0.25, 0.5, 0.75, 1.0, 2.0]);
         let all = rows(&shape(&case));
-        // As the rule cuts the mirror image.
+        // The mirror image is cut by the rule.
         let positions = case.positions.iter().map(|p| [-p[1], p[0], p[2]]).collect();
         let other = rows(&shape(&Case { positions, ..case.clone() }));
         let (findings, certificate) = judged(&case, &other, false);
@@ -212,7 +212,7 @@ fn a_cube_that_is_left_out_is_named_by_its_corners() {
     );
 }
 
-/// No α is too small for a verdict.
+/// A verdict exists for any small α.
 #[test]
 fn an_empty_shape_is_exact_where_nothing_is_in_it() {
     for (alpha, verdict) in

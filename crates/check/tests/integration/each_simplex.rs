@@ -46,12 +46,12 @@ fn each_dropped_cell() {
     }
 }
 
-/// One finding, and the true one.
+/// Whether there is exactly one finding, the true one.
 fn is_missing(all: &[Finding], dropped: &[u32]) -> bool {
     matches!(all, [Finding::MissingCell { cell, .. }] if sorted(cell.vertices()) == dropped)
 }
 
-/// Also where classes were made from the cells that are left.
+/// The finding also appears if classes were made from the remaining cells.
 #[test]
 fn each_dropped_cell_of_a_file_without_classes() {
     let (case, answer) = base();
@@ -67,7 +67,7 @@ fn each_dropped_cell_of_a_file_without_classes() {
     }
 }
 
-/// Also when every face that only the dropped cell had goes with it.
+/// The finding also appears if every face that only the dropped cell had is dropped.
 #[test]
 fn each_cell_dropped_with_its_faces() {
     let (mut case, mut answer) = base();

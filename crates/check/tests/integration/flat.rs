@@ -2,7 +2,7 @@
 
 use crate::common::{Case, definition};
 
-/// How many vertices, edges, facets and cells are in the shape.
+/// The numbers of vertices, edges, facets and cells in the shape.
 fn sizes(positions: &[[f64; 3]], weights: &[f64], alpha: f64) -> [usize; 4] {
     let case = Case { positions: positions.to_vec(), weights: weights.to_vec(), alpha };
     let complex = definition(&case).unwrap().complex;

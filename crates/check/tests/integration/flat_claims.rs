@@ -72,7 +72,7 @@ fn other_choices_are_valid() {
     assert!(seen[1] > 10, "{seen:?}");
 }
 
-/// Whatever row is dropped, whatever class is changed.
+/// Any dropped row and any changed class is found.
 #[test]
 fn damage_is_found() {
     for case in cases().into_iter().step_by(3) {
@@ -142,7 +142,7 @@ fn rules_of_the_plane() {
 fn filtration(case: &Case) -> FiltrationFile {
     let whole = definition(&Case { alpha: f64::INFINITY, ..case.clone() }).unwrap();
     let mut values = std::collections::BTreeMap::<Vec<u32>, f64>::new();
-    // Of triangles on such a grid all squared radii are multiples of this.
+    // All squared radii of triangles on such a grid are multiples of this step.
     let steps = (0..200).map(|step| f64::from(step) / 16.0);
     for alpha in steps {
         let alpha = Alpha::from_squared(alpha).unwrap();
@@ -206,7 +206,7 @@ fn filtrations_are_judged_in_their_plane() {
     assert!(damaged > 50, "{damaged}");
 }
 
-/// Nothing surrounds the points of a line or a point alone, at no value of α.
+/// The points of a line or a single point are never surrounded, at any value of α.
 #[test]
 fn nothing_on_a_line_is_interior() {
     let value = |x: f64| Alpha::from_squared(x).unwrap();
@@ -250,7 +250,7 @@ fn nothing_on_a_line_is_interior() {
     }
 }
 
-/// With nothing listed of the dimension that points span.
+/// No simplices of the dimension that the points span are listed.
 #[test]
 fn a_plane_needs_facets() {
     let positions = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];

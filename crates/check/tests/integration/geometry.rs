@@ -4,7 +4,7 @@ use walpha_check::{Class, Extent, Finding};
 
 use crate::common::{Answer, Case, closed, definition, grid};
 
-/// All cells, exterior, of a triangulation of points without weights.
+/// A triangulation of points without weights. All cells are exterior.
 fn triangulation(positions: Vec<[f64; 3]>, cells: &[[u32; 4]]) -> (Case, Answer) {
     let weights = vec![0.0; positions.len()];
     (Case { positions, weights, alpha: f64::NEG_INFINITY }, Answer::of(closed(cells)))

@@ -147,7 +147,7 @@ fn comparisons_move() {
     let [a, b] = [0.03, 0.05].map(|alpha| definition(&Case { alpha, ..case.clone() }).unwrap());
     let different = || compare(case.placed(&a.complex), case.placed(&b.complex));
     assert_moves(100, different, is_cancelled);
-    // The same region cut in another way, so that both are judged.
+    // The same region is cut in another way, so that both are judged.
     let positions = mirrored_cube().points;
     let cube = Case { weights: vec![0.0; 8], positions, alpha: 0.75 };
     let mirrored = cube.positions.iter().map(|p| [-p[0], p[1], p[2]]).collect();

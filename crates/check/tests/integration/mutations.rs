@@ -153,7 +153,7 @@ fn a_point_hidden_twice_and_one_that_is_none() {
 #[test]
 fn a_hidden_point_that_is_not() {
     found!(|c, _| c.weights[HIDDEN as usize] = -0.7, Finding::NotHidden { point: HIDDEN, .. });
-    // On the sphere, where the perturbation decides.
+    // The point is on the sphere, where the perturbation decides.
     found!(
         |c, _| c.weights[HIDDEN as usize] = -0.75,
         Finding::NotHidden { point: HIDDEN, power, .. } if power.to_string() == "0"

@@ -2,7 +2,7 @@
 
 use walpha_check::{FiltrationFinding, Finding, count_by_rule};
 
-/// The name of a rule is the one that it has in JSON, whatever else the finding says.
+/// The name of a rule equals its name in JSON, regardless of the other content of the finding.
 #[test]
 fn rules_are_named_as_in_json() {
     let findings = [

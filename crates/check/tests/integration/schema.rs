@@ -36,7 +36,7 @@ fn round_trips() {
     }
 }
 
-/// What another program would write: sorted rows, no classes, no exterior simplices.
+/// A file as another program would write it: sorted rows, no classes, no exterior simplices.
 #[test]
 fn classes_follow_from_a_shape_alone() {
     for alpha in [0.3, 0.6, 0.75, 0.9] {
@@ -99,7 +99,7 @@ fn errors_name_the_field() {
     }
 }
 
-/// Of rows that are derived an empty list of classes says nothing, and another one is refused.
+/// For derived rows, an empty list of classes has no effect, and any other list is refused.
 #[test]
 fn classes_of_rows_that_are_not_listed() {
     let cell = |classes: &str| {

@@ -18,7 +18,7 @@ fn otherwise(case: &Case, turn: [usize; 3], signs: [f64; 3]) -> Answer {
     turned_back(case, made)
 }
 
-/// With cells and facets turned as in the case's own space.
+/// Turns cells and facets as in the case's own space.
 fn turned_back(case: &Case, made: Answer) -> Answer {
     let placed = case.placed(&made.complex);
     let complex = PlacedComplex::try_from(ComplexFile::from(walpha_check::Claim::new(placed)))
@@ -85,8 +85,8 @@ fn other_choices_are_valid() {
     assert!(seen[0] > 50 && seen[1] > 100, "{seen:?}");
 }
 
-/// What a shape lists may be no part of any one triangulation though each sphere is empty: half of one
-/// choice with half of another.
+/// The simplices that a shape lists may not be part of any one triangulation although each sphere is empty: half of one choice
+/// with half of another.
 #[test]
 fn mixed_choices_are_wrong() {
     let mut wrong = 0;
@@ -98,7 +98,7 @@ fn mixed_choices_are_wrong() {
         if only.is_empty() {
             continue;
         }
-        // One cell of the other choice beside those of the rule.
+        // One cell of the other choice together with those of the rule.
         let cells: Vec<_> = a.iter().chain(only.into_iter().take(1)).copied().collect();
         let whole = one.with(closed(&cells));
         assert_eq!(verdict(&case, &whole, Extent::Whole), Verdict::Wrong, "{case:?}");
@@ -199,7 +199,7 @@ fn a_point_inside_is_no_tie() {
     }
 }
 
-/// Of the cells on one sphere all are listed, or none: a valid choice in part is none.
+/// Of the cells on one sphere, all or none must be listed: a part of a valid choice is not valid.
 #[test]
 fn a_part_of_a_choice_is_wrong() {
     let case = Case { positions: grid(2), weights: vec![0.0; 8], alpha: 0.75 };
@@ -211,7 +211,7 @@ fn a_part_of_a_choice_is_wrong() {
         file.vertices = Some((0..8).collect());
         let part = Answer::of(PlacedComplex::try_from(file).unwrap().complex);
         let found = findings(&case, &part, Extent::Shape);
-        // Where the rule has this cell, nothing says that others are missing.
+        // If the rule contains this cell, the missing ones cannot be noticed.
         if !found.is_empty() {
             let wrong: Vec<_> = found.iter().filter(|f| !f.is_tie()).collect();
             assert!(matches!(wrong[..], [Finding::TiedSphere { listed: 1, .. }]), "{found:?}");
@@ -221,8 +221,7 @@ fn a_part_of_a_choice_is_wrong() {
     assert!(tied > 0);
 }
 
-/// Where further points lie on the sphere of a simplex by itself and not in its span, a larger one is in the
-/// shape, too.
+/// If further points lie on the sphere of an isolated simplex and outside its span, a larger simplex is in the shape, too.
 #[test]
 fn what_spans_a_tied_sphere_is_listed() {
     let check = |positions: &[[f64; 3]],
@@ -236,7 +235,7 @@ fn what_spans_a_tied_sphere_is_listed() {
         let mut file = ComplexFile::of_points(case.positions.clone(), case.alpha());
         file.weights = Some(case.weights.clone());
         file.facets = Some(facets.to_vec());
-        // Those of facets come by themselves.
+        // The edges of facets are derived.
         file.edges = (!edges.is_empty()).then(|| edges.to_vec());
         file.vertices = Some((0..positions.len() as u32).collect());
         let less = Answer::of(PlacedComplex::try_from(file).unwrap().complex);
@@ -295,7 +294,7 @@ fn a_face_is_cut_as_its_cells_are() {
     }
 }
 
-/// Of two points at one place and with one weight either may stay; not both, and not a lighter one.
+/// Either of two points with the same place and weight may stay, but not both, and not a lighter one.
 #[test]
 fn either_of_equal_points_stays() {
     let mut case = Case { positions: grid(2), weights: vec![0.0; 8], alpha: 0.75 };
@@ -323,7 +322,7 @@ fn either_of_equal_points_stays() {
             case.claim(&other, Extent::Whole).with_duplicates(None).with_hidden(&hidden[..]);
         assert_eq!(claim.verdict().unwrap(), Verdict::Valid, "{hidden:?}");
     }
-    // What would be right if the heavier were not there.
+    // The result that would be right without the heavier point.
     let mut light = Case { weights: vec![0.0; 8], positions: grid(2), alpha: 0.75 };
     light.weights[3] = -0.25;
     let lighter = Case { weights: [&[0.0; 8][..], &[-0.25]].concat(), ..case.clone() };

@@ -5,7 +5,7 @@ use walpha_check::{Alpha, Certificate, CertifyError, Class, Finding, NotJudged, 
 
 use crate::common::{Case, closed, definition, grid};
 
-/// What is found of an edge from the origin along x.
+/// The findings for an edge from the origin along x.
 fn findings(end: f64, side: f64) -> Result<Vec<Finding>, CertifyError> {
     let alpha = Alpha::from_squared(16.0).unwrap();
     let mut file = ComplexFile::of_points(vec![[0.0; 3], [end, 0.0, 0.0]], alpha);
@@ -90,7 +90,7 @@ fn verdict(file: ComplexFile) -> Verdict {
     judged(file).1.verdict
 }
 
-/// One cube cut as its mirror image, and all others as by the rule: each is right by itself.
+/// One cube is cut as its mirror image, and all others by the rule: each is right by itself.
 #[test]
 fn cubes_of_a_torus_fit_together() {
     for alpha in [0.75, f64::INFINITY] {
@@ -146,7 +146,7 @@ fn a_square_of_a_torus_is_cut_once() {
     assert_eq!(with(&own[..1]), Verdict::Wrong);
 }
 
-/// Nothing of this is in the shape.
+/// Nothing here is in the shape.
 fn exterior(cells: Vec<[u32; 4]>) -> ComplexFile {
     file(cells, -1.0, Class::Exterior)
 }
@@ -186,7 +186,7 @@ fn exterior_simplices_of_a_torus_are_judged() {
 
 #[test]
 fn hidden_points_of_a_torus_are_judged() {
-    // In the middle of a cube, above the lower hull, on it and below.
+    // A point in the middle of a cube, above the lower hull, on it and below it.
     let weights = [(-1.0, Verdict::Exact), (-0.75, Verdict::Valid), (-0.5, Verdict::Wrong)];
     for (weight, expected) in weights {
         for at in [[0.5; 3], [2.5; 3]] {
@@ -201,7 +201,7 @@ fn hidden_points_of_a_torus_are_judged() {
     }
 }
 
-/// So heavy that doubles have no room for the box beside the weights.
+/// Points so heavy that doubles have no room for the box in addition to the weights.
 #[test]
 fn heavy_points_of_a_torus_are_judged() {
     let heavy = |class: Class| {

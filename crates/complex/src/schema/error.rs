@@ -13,10 +13,10 @@ pub enum SchemaError {
     /// The extension is neither `.json` nor `.npz`, or the feature of its format is off.
     #[error("a complex is read from .json or .npz")]
     Extension,
-    /// Not JSON, or not of this form; with line and column.
+    /// The file is not JSON, or does not have this form; with line and column.
     #[error("the complex cannot be read as JSON: {0}")]
     Json(#[source] Box<dyn std::error::Error + Send + Sync>),
-    /// Not a ZIP archive, or a damaged one.
+    /// The file is not a ZIP archive, or a damaged one.
     #[error("the complex cannot be read as NPZ: {0}")]
     Zip(String),
     /// An array of the archive cannot be read.
@@ -24,7 +24,7 @@ pub enum SchemaError {
     Npy {
         /// Its name.
         name: &'static str,
-        /// What is wrong with its header.
+        /// The fault in its header.
         source: NpyError,
     },
     /// There is not enough memory for an array.
@@ -43,9 +43,9 @@ pub enum SchemaError {
     Array {
         /// Its name.
         name: &'static str,
-        /// What it has.
+        /// The form that it has.
         got: String,
-        /// What it must have.
+        /// The form that it must have.
         expected: String,
     },
     /// A number that the field cannot hold.
@@ -55,7 +55,7 @@ pub enum SchemaError {
         name: &'static str,
         /// The number.
         value: String,
-        /// What it should be.
+        /// A description of the expected values.
         expected: &'static str,
     },
     /// Two fields have different lengths.
@@ -63,9 +63,9 @@ pub enum SchemaError {
     Lengths {
         /// The field.
         name: &'static str,
-        /// Its length.
+        /// The length of the field.
         got: usize,
-        /// The other's.
+        /// The length of the other field.
         expected: usize,
         /// The other field.
         of: &'static str,
@@ -80,10 +80,10 @@ pub enum SchemaError {
         /// Number of points.
         points: usize,
     },
-    /// No points.
+    /// The file lists no points.
     #[error("the file lists no points")]
     NoPoints,
-    /// No simplices.
+    /// The file lists no simplices.
     #[error("the file lists no simplices")]
     NoSimplices,
 }

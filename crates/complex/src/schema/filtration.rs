@@ -85,7 +85,7 @@ pub struct FiltrationFile {
     /// The sides of the periodic box, if there is one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub periodic: Option<[f64; 3]>,
-    /// Whatever the writer wants to add.
+    /// Any further data of the writer.
     #[cfg(feature = "json")]
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub info: Option<serde_json::Value>,
@@ -95,13 +95,13 @@ pub struct FiltrationFile {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Values {
-    /// Of the vertices.
+    /// The values of the vertices.
     pub vertices: Vec<Alpha>,
-    /// Of the edges.
+    /// The values of the edges.
     pub edges: Vec<Alpha>,
-    /// Of the facets.
+    /// The values of the facets.
     pub facets: Vec<Alpha>,
-    /// Of the cells.
+    /// The values of the cells.
     pub cells: Vec<Alpha>,
 }
 
@@ -109,11 +109,11 @@ pub struct Values {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Below<T> {
-    /// Of the vertices.
+    /// The values of the vertices.
     pub vertices: Vec<T>,
-    /// Of the edges.
+    /// The values of the edges.
     pub edges: Vec<T>,
-    /// Of the facets.
+    /// The values of the facets.
     pub facets: Vec<T>,
 }
 
@@ -128,15 +128,15 @@ pub struct PairsFile {
     /// An edge that closes a loop, and the facet that fills it; `None` if they were not computed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub loops: Option<Vec<[u32; 2]>>,
-    /// Of a torus: edges that close loops which are never filled.
+    /// For a torus: edges that close loops which are never filled.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub lasting_loops: Vec<u32>,
     /// A facet that closes a void, and the cell that fills it.
     pub voids: Vec<[u32; 2]>,
-    /// Of a torus: facets that close surfaces which are never filled.
+    /// For a torus: facets that close surfaces which are never filled.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub lasting_voids: Vec<u32>,
-    /// Of a torus: the cell that completes it.
+    /// For a torus: the cell that completes it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub last: Option<u32>,
 }

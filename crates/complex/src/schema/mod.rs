@@ -105,7 +105,7 @@ pub struct ComplexFile {
     /// The voxels that the cells fill, if the complex is of labels.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub voxels: Option<Voxels>,
-    /// Whatever the writer wants to add.
+    /// Any further data of the writer.
     #[cfg(feature = "json")]
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub info: Option<serde_json::Value>,
@@ -116,16 +116,16 @@ pub struct ComplexFile {
 #[serde(deny_unknown_fields)]
 #[non_exhaustive]
 pub struct Classes {
-    /// Of the cells.
+    /// The classes of the cells.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub cells: Option<Vec<Class>>,
-    /// Of the facets.
+    /// The classes of the facets.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub facets: Option<Vec<Class>>,
-    /// Of the edges.
+    /// The classes of the edges.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub edges: Option<Vec<Class>>,
-    /// Of the vertices.
+    /// The classes of the vertices.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub vertices: Option<Vec<Class>>,
 }

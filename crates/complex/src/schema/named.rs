@@ -1,13 +1,13 @@
 //! Triangulations under the names that other programs give their arrays.
 
-/// What a file calls its points and its cells.
+/// The names of points and cells in a file.
 pub(super) type Names = [&'static str; 2];
 
-/// What others call points, as n×3 numbers: `SciPy`, distmesh and scikit-fem, trimesh.
+/// The names of points in other programs, as n×3 numbers: `SciPy`, distmesh and scikit-fem, trimesh.
 const POINTS: [&str; 3] = ["points", "p", "vertices"];
-/// What others call tetrahedra: `SciPy`, meshio, distmesh and scikit-fem.
+/// The names of tetrahedra in other programs: `SciPy`, meshio, distmesh and scikit-fem.
 const CELLS: [&str; 3] = ["simplices", "tetra", "t"];
-/// Our own name, which is one of a triangulation only beside these.
+/// Our own name, which names the cells of a triangulation only together with these other names.
 const OUR_CELLS: &str = "cells";
 const BESIDE: [&str; 5] = ["points", "p", "vertices", "weights", OUR_CELLS];
 

@@ -493,8 +493,8 @@ const CHUNK_BYTES: usize = 24 << 18;
 /// Rows that one thread decodes at a time.
 const BATCH: usize = 1 << 12;
 
-/// All rows of `N` elements of an array in the order of the file, converted from numbers. The reader is positioned after the header;
-/// `bytes` more follow, which must be exactly as many as the header claims.
+/// All rows of `N` elements of an array in the order of the file, converted from numbers. The reader is positioned after the
+/// header; `bytes` more bytes follow, which must match the header exactly.
 fn decoded<T: Send, const N: usize>(
     name: &'static str,
     header: &Header,

@@ -32,7 +32,7 @@ impl FiltrationFile {
     /// Reads a file, as JSON or NPZ by its extension.
     ///
     /// # Errors
-    /// As [`ComplexFile::open`].
+    /// See [`ComplexFile::open`].
     pub fn open(path: impl AsRef<Path>) -> Result<Self, SchemaError> {
         let (format, file) = Format::open(path.as_ref())?;
         format.filtration(file)
@@ -58,7 +58,7 @@ impl AnyFile {
     /// complexes.
     ///
     /// # Errors
-    /// As [`ComplexFile::open`] and [`FiltrationFile::open`].
+    /// See [`ComplexFile::open`] and [`FiltrationFile::open`].
     pub fn open(path: impl AsRef<Path>) -> Result<Self, SchemaError> {
         let (format, mut file) = Format::open(path.as_ref())?;
         let error = match format.complex(&mut file) {

@@ -1,4 +1,4 @@
-//! All integration tests in one program: each program links everything once more.
+//! All integration tests in one program, because each program links everything again.
 
 #[cfg(feature = "npz")]
 mod archive;

@@ -116,7 +116,7 @@ fn an_array_that_only_repeats_itself() {
     assert!(error.to_string().contains("does not repeat itself"), "{error}");
 }
 
-/// More than is read at a time. The first number that is not a point's is named, wherever it is.
+/// Arrays longer than the part that is read at once. The first number that is not a point's is named, at any position.
 #[test]
 fn long_arrays_are_read_whole() {
     const ROWS: usize = 600_000;

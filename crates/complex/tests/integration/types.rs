@@ -81,14 +81,14 @@ fn counts_by_class() {
     let order: Vec<String> = counts.iter().map(|(class, n)| format!("{class} {n}")).collect();
     assert_eq!(order, ["interior 1", "regular 0", "singular 1", "exterior 2"]);
     assert!(counts.iter().all(|(class, n)| counts[class] == *n));
-    // As values: the order of fields is a feature of serde_json that other crates turn on.
+    // Compare values, because the order of fields is a feature of serde_json that other crates turn on.
     let whole = serde_json::to_value(counts).unwrap();
     assert_eq!(whole, json!({ "interior": 1, "regular": 0, "singular": 1, "exterior": 2 }));
     let shape = counts.serialize_shape(serde_json::value::Serializer).unwrap();
     assert_eq!(shape, json!({ "interior": 1, "regular": 0, "singular": 1 }));
 }
 
-/// Of a solid ball, a sphere, two of them and nothing.
+/// The characteristic of a solid ball, a sphere, two of them, and the empty shape.
 #[test]
 fn the_euler_characteristic_is_that_of_the_shape() {
     let sphere = |from: u32, cell: Class| {

@@ -1,4 +1,4 @@
-//! Shapes as what the checker judges.
+//! Converts shapes to the claims that the checker judges.
 
 use walpha_check::Claim;
 use walpha_check::schema::PlacedComplex;
@@ -9,7 +9,7 @@ pub fn claim(shape: &AlphaShape) -> Claim<'_> {
     Claim::new(shape.placed()).with_hidden(shape.hidden()).with_duplicates(shape.duplicates())
 }
 
-/// A copy of a shape's complex with its points, for the checker; on a torus too.
+/// A copy of a shape's complex with its points, for the checker; also for a shape on a torus.
 pub fn placed_complex(shape: &AlphaShape) -> PlacedComplex {
     let sides = shape.options().periodic.map(|torus| torus.sides());
     PlacedComplex::from(claim(shape)).with_periodic(sides).with_voxels(shape.voxels().cloned())

@@ -1,4 +1,4 @@
-//! Colours for values, in formats with colours.
+//! Colours for values, in formats that support them.
 
 /// Five colours of the colour map "viridis": red, green and blue in linear light.
 const COLOURS: [[f64; 3]; 5] = [
@@ -9,7 +9,7 @@ const COLOURS: [[f64; 3]; 5] = [
     [0.9823, 0.7991, 0.0185],
 ];
 
-/// A colour for each value, from dark blue (least) through green to yellow (most), in linear light.
+/// The colour of each value, from dark blue (least) through green to yellow (most), in linear light.
 pub(super) fn linear(values: &[f64]) -> Vec<[f64; 3]> {
     let low = values.iter().copied().fold(f64::INFINITY, f64::min);
     let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -24,7 +24,7 @@ pub(super) fn linear(values: &[f64]) -> Vec<[f64; 3]> {
     values.iter().map(colour).collect()
 }
 
-/// The same colours as sRGB bytes.
+/// The colour of each value as sRGB bytes; the colours are those of [`linear`].
 pub(super) fn bytes(values: &[f64]) -> Vec<[u8; 3]> {
     let screen = |c: f64| {
         let c = if c <= 0.003_130_8 { 12.92 * c } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 };

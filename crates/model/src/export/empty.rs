@@ -7,13 +7,13 @@ use walpha_shape::ladder::Filtration;
 use walpha_shape::{Alpha, AlphaShape, Balls, Class, Complex, ShapeOptions, alpha_shape};
 use walpha_volume::annotation;
 
-/// What a shape must have for a file of it to hold something.
+/// What a shape must have for its file not to be empty.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Needs {
     /// Any simplex: formats of whole complexes.
     Simplex,
-    /// A facet, or, where all points lie on one line, an edge: formats of the boundary that have edges.
+    /// A facet, or an edge if all points lie on one line: formats of the boundary that have edges.
     FacetOrLine,
     /// A facet: formats of facets, and of outlines.
     Facet,
@@ -22,12 +22,12 @@ pub enum Needs {
 }
 
 impl Needs {
-    /// Whether a shape has it.
+    /// Whether a shape has what is needed.
     pub fn met_by(self, shape: &AlphaShape) -> bool {
         let Complex { vertices, edges, facets, .. } = shape.complex();
         let has_facet = || facets.classes().iter().any(|&class| class != Class::Exterior);
         match self {
-            // With exterior simplices the file is that of the triangulation.
+            // If exterior simplices are listed, the file is that of the triangulation.
             Self::Simplex => !vertices.is_empty(),
             Self::FacetOrLine => {
                 let has_edge = || edges.classes().iter().any(|&class| class != Class::Exterior);
@@ -48,7 +48,7 @@ impl Needs {
     }
 }
 
-/// A file would hold nothing of a shape.
+/// The error for a shape whose file would be empty.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("the shape has no {} {}", needs.name(*extent), self.cause())]
 #[non_exhaustive]
@@ -57,14 +57,14 @@ pub struct EmptyShape {
     pub needs: Needs,
     /// The α of the shape.
     pub alpha: Alpha,
-    /// The parameter of a shape of the same points that has it, rounded up: √α, and with [`Balls::Radius`] α. `None` where
-    /// none is known.
+    /// The parameter at which a shape of the same points has what is needed, rounded up: √α, or α with [`Balls::Radius`]. `None`
+    /// if no such parameter is known.
     pub suggested: Option<f64>,
     balls: Balls,
     extent: Extent,
 }
 
-/// What points span.
+/// The extent of the points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Extent {
     Place,
@@ -85,8 +85,9 @@ impl Extent {
 }
 
 impl EmptyShape {
-    /// Refuses a shape that has not what a file needs. The error names a radius at which it would have it: from the spacing of
-    /// the points if that is enough, which is tried, or else the smallest at which all points are in one solid component.
+    /// Refuses a shape that lacks what a file needs. The error suggests a radius at which the shape would have it: the one from
+    /// the spacing of the points, if a test shows that it is enough, or else the smallest at which all points are in one solid
+    /// component.
     ///
     /// # Errors
     /// [`EmptyShape`].
@@ -103,7 +104,7 @@ impl EmptyShape {
         Err(empty)
     }
 
-    /// Whether some α would do.
+    /// Whether a shape of the same points has what is needed at some α.
     fn can_have_it(&self) -> bool {
         match (self.extent, self.needs) {
             (Extent::Space, _) | (_, Needs::Simplex) => true,
@@ -142,7 +143,7 @@ impl Advise for EmptyShape {
     }
 }
 
-/// The parameter of a shape of the same points that has what a file needs.
+/// The parameter at which a shape of the same points has what a file needs.
 fn suggested(shape: &AlphaShape, needs: Needs) -> Option<f64> {
     let options = *shape.options();
     let points = shape.points();
@@ -170,7 +171,7 @@ fn three_digits_up(number: f64) -> f64 {
     let rounded = |number: f64| format!("{number:.2e}").parse().unwrap_or(number);
     match rounded(number) {
         up if up >= number => up,
-        // A little more than half a step of the third digit.
+        // This adds a little more than half a unit of the third digit.
         _ => rounded(number + 0.500_01 * 10f64.powf(number.log10().floor() - 2.0)),
     }
 }
@@ -189,12 +190,13 @@ mod tests {
         (error.to_string(), error.advice().unwrap().to_string())
     }
 
-    /// What is suggested has what was asked for, and is no more than needed for it to be a round number.
+    /// At the suggested radius the shape has what is needed, and the radius is not larger than rounding requires.
     #[test]
     fn a_radius_is_suggested_that_does_it() {
         let cube: Vec<[f64; 3]> =
             (0..64).map(|i| [i % 4, i / 4 % 4, i / 16].map(f64::from)).collect();
-        // Points along a curve have all neighbours before and behind them, so their spacing makes edges alone.
+        // Points along a curve have all neighbours before and behind them, so that the radius from their spacing yields only
+        // edges.
         let curve: Vec<[f64; 3]> = (0..60)
             .map(|i| f64::from(i) / 10.0)
             .map(|t| [50.0 * t.cos(), 50.0 * t.sin(), 3.0 * t])

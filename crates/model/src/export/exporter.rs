@@ -13,7 +13,7 @@ pub trait Exporter {
     /// [unwrapped](AlphaShape::unwrapped) first if the format cannot represent a torus.
     ///
     /// # Errors
-    /// Whatever `out` returns.
+    /// Errors of `out`.
     fn write(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
         match shape.options().periodic {
             Some(_) if !self.knows_torus() => self.encode(&shape.unwrapped(), out),
@@ -21,11 +21,11 @@ pub trait Exporter {
         }
     }
 
-    /// The bytes of a format, for [`Exporter::write`]: the shape is one on a torus only if the format
-    /// [knows](Exporter::knows_torus) these.
+    /// Writes the bytes of the format, for [`Exporter::write`]. The shape is on a torus only if the format
+    /// [supports](Exporter::knows_torus) that.
     ///
     /// # Errors
-    /// Whatever `out` returns.
+    /// Errors of `out`.
     fn encode(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()>;
 
     /// Whether the format can represent a periodic box.
@@ -33,12 +33,12 @@ pub trait Exporter {
         false
     }
 
-    /// What a shape must have for the file to hold something.
+    /// What a shape must have for the file not to be empty.
     fn needs(&self) -> Needs {
         Needs::Simplex
     }
 
-    /// How the file has the coordinates of a shape, if it has them in single precision.
+    /// How coordinates are converted, if the file stores them in single precision.
     fn single_precision(&self, _shape: &AlphaShape) -> Option<SinglePrecision> {
         None
     }
@@ -53,10 +53,10 @@ pub trait Exporter {
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct ExportOptions {
-    /// Text, if the format also has a binary form: PLY.
+    /// Writes text, if the format also has a binary form: PLY.
     pub ascii: bool,
-    /// The boundary of a [solid](AlphaShape::solid): only regular facets, closed, oriented and cut apart into a
-    /// manifold. For formats that hold the boundary.
+    /// Writes the boundary of a [solid](AlphaShape::solid): only regular facets, closed, oriented and cut apart into a manifold.
+    /// For formats that store the boundary.
     pub solid: bool,
     /// Separates regular and singular facets in ways that some programs do not expect: by groups (OBJ, also edges
     /// and points), colours (OFF) or properties (PLY, also components and sheets).
@@ -73,12 +73,12 @@ impl ExportOptions {
         if self.solid { Cow::Borrowed(shape.solid().0) } else { Cow::Owned(Surface::of(shape)) }
     }
 
-    /// What a shape must have for a file of its boundary, or of the solid, not to be empty.
+    /// What a shape must have for a file of its boundary, or of the boundary of its solid, not to be empty.
     pub(super) fn needs(&self, boundary: Needs) -> Needs {
         if self.solid { Needs::RegularFacet } else { boundary }
     }
 
-    /// How the boundary becomes single precision.
+    /// How the coordinates of the boundary are converted to single precision.
     pub(super) fn single_precision(&self, shape: &AlphaShape) -> SinglePrecision {
         match shape.options().periodic {
             Some(_) => self.single_precision(&shape.unwrapped()),

@@ -1,4 +1,4 @@
-//! Filtrations as files: every simplex with the values of α at which it enters and changes class.
+//! Writers of filtrations: every simplex with the values of α at which it enters and changes class.
 
 use std::fmt;
 use std::io::{self, Write};
@@ -16,13 +16,13 @@ use walpha_volume::UnknownFormat;
 /// A format that filtrations are written in, chosen by file name extension.
 #[derive(Clone, Copy)]
 pub struct FiltrationFormat {
-    /// Its name, as users know it.
+    /// The name, as users know it.
     pub name: &'static str,
-    /// Its extension, without the dot.
+    /// The extension, without the dot.
     pub extension: &'static str,
-    /// Its content.
+    /// A description of the content.
     pub about: &'static str,
-    /// Whether it has persistence pairs, which are computed on writing unless they are known.
+    /// Whether the file has persistence pairs, which are computed on writing unless they are known.
     pub pairs: bool,
     write: fn(&Ordered<'_>, &mut dyn Write, &Monitor) -> io::Result<()>,
 }
@@ -86,7 +86,7 @@ impl FiltrationFormat {
     /// The format for the extension of a path.
     ///
     /// # Errors
-    /// [`UnknownFormat`], which names the known extensions.
+    /// [`UnknownFormat`], which lists the known extensions.
     pub fn of(path: impl AsRef<Path>) -> Result<&'static Self, UnknownFormat> {
         let path = path.as_ref();
         let all = FILTRATION_FORMATS.iter().map(|format| (format.extension, format));
@@ -97,7 +97,7 @@ impl FiltrationFormat {
     /// values are written.
     ///
     /// # Errors
-    /// Whatever `out` returns; not enough memory.
+    /// Errors of `out`; not enough memory.
     pub fn write(&self, ordered: &Ordered<'_>, out: &mut dyn Write) -> io::Result<()> {
         let monitor = &*Monitor::current();
         (self.write)(ordered, out, monitor)
@@ -115,7 +115,7 @@ fn lasting(ordered: &Ordered<'_>, pairs: &[[u32; 2]]) -> Vec<[u32; 2]> {
     pairs.iter().copied().filter(|&pair| ordered.lasts(pair)).collect()
 }
 
-/// Prefixes of the names of arrays, by dimension.
+/// The prefixes of the names of arrays, by dimension.
 const DIMENSIONS: [&str; 4] = ["vertex", "edge", "facet", "cell"];
 
 fn write_npz(ordered: &Ordered<'_>, out: &mut dyn Write, monitor: &Monitor) -> io::Result<()> {
@@ -139,7 +139,7 @@ fn write_npz(ordered: &Ordered<'_>, out: &mut dyn Write, monitor: &Monitor) -> i
             numbers.clone().map(|number| of(ordered.simplex(number))).collect()
         };
         archive.list(&format!("{name}_values"), &doubles(|simplex| simplex.value))?;
-        // A cell needs only its value, which is that of its own sphere: it is interior from there on.
+        // A cell needs only its value, which is that of its own sphere: from there on it is interior.
         if name != "cell" {
             archive.list(&format!("{name}_regular"), &doubles(|simplex| simplex.regular))?;
             archive.list(&format!("{name}_interior"), &doubles(|simplex| simplex.interior))?;
@@ -165,7 +165,7 @@ fn write_npz(ordered: &Ordered<'_>, out: &mut dyn Write, monitor: &Monitor) -> i
 
 fn write_json(ordered: &Ordered<'_>, out: &mut dyn Write, monitor: &Monitor) -> io::Result<()> {
     let loops = monitor.watch(|| ordered.loops()).map_err(io::Error::other)?;
-    // Per simplex at most four vertices, three numbers, and its position in the order.
+    // A simplex needs at most four vertices, three numbers, and its position in the order.
     let each = size_of::<[u32; 4]>() + size_of::<[f64; 3]>() + size_of::<u32>();
     let bytes = ordered.len().saturating_mul(each);
     memory::afford(bytes, || format!("the JSON of {} simplices", ordered.len()))
@@ -236,7 +236,7 @@ fn alpha(squared: f64) -> Alpha {
     Alpha::from_squared(squared).expect("radii are numbers")
 }
 
-/// Lines between two reports of progress.
+/// The number of lines between two reports of progress.
 const REPORT_STEP: usize = 1 << 16;
 
 fn write_text(ordered: &Ordered<'_>, out: &mut dyn Write, monitor: &Monitor) -> io::Result<()> {
@@ -245,7 +245,7 @@ fn write_text(ordered: &Ordered<'_>, out: &mut dyn Write, monitor: &Monitor) -> 
         if at % REPORT_STEP == 0 {
             monitor.report(at as u64, ordered.len() as u64).map_err(io::Error::other)?;
         }
-        // Debug formatting uses an exponent for numbers that would be hundreds of digits long.
+        // The debug format uses an exponent for numbers that would have hundreds of digits.
         let (value, gabriel) = (simplex.value, u8::from(simplex.gabriel));
         write!(out, "{value:?} {gabriel} {:?} {:?}", simplex.regular, simplex.interior)?;
         simplex.vertices.iter().try_for_each(|v| write!(out, " {v}"))?;
@@ -254,7 +254,7 @@ fn write_text(ordered: &Ordered<'_>, out: &mut dyn Write, monitor: &Monitor) -> 
     Ok(())
 }
 
-/// The persistence diagram in all dimensions.
+/// Writes the persistence diagram of all dimensions.
 fn write_csv(ordered: &Ordered<'_>, out: &mut dyn Write, monitor: &Monitor) -> io::Result<()> {
     writeln!(out, "dimension,birth,death,birth_simplex,death_simplex")?;
     for (dimension, intervals) in persistence(ordered, monitor)?.into_iter().enumerate() {
@@ -269,7 +269,7 @@ fn write_csv(ordered: &Ordered<'_>, out: &mut dyn Write, monitor: &Monitor) -> i
     Ok(())
 }
 
-/// The vertices of a simplex, between spaces.
+/// Writes the vertices of a simplex, separated by spaces.
 fn write_vertices(ordered: &Ordered<'_>, number: u32, out: &mut dyn Write) -> io::Result<()> {
     let vertices = ordered.simplex(number).vertices;
     vertices.iter().enumerate().try_for_each(|(at, v)| match at {
@@ -278,7 +278,7 @@ fn write_vertices(ordered: &Ordered<'_>, number: u32, out: &mut dyn Write) -> io
     })
 }
 
-/// The intervals of each dimension: of points of space there are none of dimension 3.
+/// The intervals of each dimension. Points in space have none of dimension 3.
 fn persistence(ordered: &Ordered<'_>, monitor: &Monitor) -> io::Result<[Vec<Interval>; 4]> {
     monitor.watch(|| ordered.loops()).map_err(io::Error::other)?;
     let mut all = [const { Vec::new() }; 4];

@@ -3,11 +3,11 @@ use std::io::{self, Write};
 use super::vtu::{Appended, Ids, VTK_TYPES, bytes};
 use walpha_check::Finding;
 
-/// Writes what findings are about as VTU: their simplices and points, once for each finding, over all points. Cell data
-/// are `finding`, its number in the list from 0, and `rule`; the field `rule_legend` names the rules.
+/// Writes the simplices and points of findings as VTU, once for each finding, over all points. Cell data are `finding`, its
+/// number in the list from 0, and `rule`; the field `rule_legend` names the rules.
 ///
 /// # Errors
-/// Those of writing.
+/// Errors of the writer.
 ///
 /// # Panics
 /// Never: the rule of each finding is listed.

@@ -11,26 +11,26 @@ use walpha_volume::UnknownFormat;
 #[derive(Clone, Copy)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a property of its own")]
 pub struct Format {
-    /// Its name, as users know it.
+    /// The name, as users know it.
     pub name: &'static str,
-    /// Its extension, without the dot.
+    /// The extension, without the dot.
     pub extension: &'static str,
-    /// Its content.
+    /// A description of the content.
     pub about: &'static str,
-    /// Whether it holds only the boundary, which may then be that of a solid.
+    /// Whether the file contains only the boundary, which may be that of a solid.
     pub boundary: bool,
-    /// Whether it holds the outline of points in a plane, and nothing else.
+    /// Whether the file contains the outline of points in a plane, and nothing else.
     pub outline: bool,
     /// Whether it states the whole complex, for [`walpha_check`] to judge.
     pub whole: bool,
-    /// Whether it has both a text form and a binary form.
+    /// Whether the format has both a text form and a binary form.
     pub ascii: bool,
-    /// Whether it can separate regular and singular facets in a way that some programs do not expect.
+    /// Whether the format can separate regular and singular facets in a way that some programs do not expect.
     pub groups: bool,
     exporter: fn(ExportOptions) -> Box<dyn Exporter>,
 }
 
-/// Defaults: a format of all simplices.
+/// The defaults: a format of all simplices.
 const PLAIN: Format = Format {
     name: "",
     extension: "",
@@ -157,7 +157,7 @@ impl Format {
     /// The format for the extension of a path.
     ///
     /// # Errors
-    /// [`UnknownFormat`], which names the known extensions.
+    /// [`UnknownFormat`], which lists the known extensions.
     pub fn of(path: impl AsRef<Path>) -> Result<&'static Self, UnknownFormat> {
         UnknownFormat::find(
             path.as_ref(),
@@ -166,7 +166,7 @@ impl Format {
         )
     }
 
-    /// Its writer.
+    /// The writer of the format.
     pub fn exporter(&self, options: &ExportOptions) -> Box<dyn Exporter> {
         (self.exporter)(options.clone())
     }

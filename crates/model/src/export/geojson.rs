@@ -8,11 +8,11 @@ use super::{Exporter, Needs};
 use walpha_shape::{Alpha, AlphaShape};
 use walpha_volume::LengthUnit;
 
-/// `GeoJSON` (RFC 7946): a feature collection. Its first feature is the polygons of an [outline](AlphaShape::outline)
-/// as one `MultiPolygon`, outer rings counter-clockwise and holes clockwise, with α, area, perimeter and the unit of
-/// length as properties. Singular edges (`MultiLineString`) and vertices (`MultiPoint`) are features of their own where there are
-/// some. The property `part` tells them apart. Coordinates have a z unless it is 0 everywhere, and are those of the points, whatever
-/// RFC 7946 says of longitude and latitude.
+/// Writes `GeoJSON` (RFC 7946): a feature collection. Its first feature is the polygons of an [outline](AlphaShape::outline) as
+/// one `MultiPolygon`, outer rings counter-clockwise and holes clockwise, with α, area, perimeter and the unit of length as
+/// properties. Singular edges (`MultiLineString`) and vertices (`MultiPoint`) are separate features, if there are any. The
+/// property `part` distinguishes the features. Coordinates are those of the points, even though RFC 7946 requires longitude and
+/// latitude, and have a z unless it is 0 everywhere.
 #[derive(Clone, Copy, Debug)]
 pub struct GeoJson;
 
@@ -82,14 +82,14 @@ struct Properties {
 
 #[derive(Serialize)]
 struct Size {
-    /// A squared length.
+    /// α as a squared length.
     alpha: Alpha,
     area: f64,
     perimeter: f64,
     unit: LengthUnit,
 }
 
-/// x, y and perhaps z.
+/// A position: x, y and perhaps z.
 type Place<'a> = &'a [f64];
 
 #[derive(Serialize)]

@@ -6,18 +6,17 @@ use serde_json::{Value, json};
 use super::{ExportOptions, Exporter, Needs, colour};
 use walpha_shape::{AlphaShape, SinglePrecision, Surface};
 
-/// GLB, glTF 2.0 in one binary file: the boundary as triangles, singular edges as lines and singular
-/// vertices as points. If F is known, vertices are coloured by it, from dark blue (least) through green to
-/// yellow (most). Coordinates are rounded to `f32`; where that would move them by more than a thousandth of the shortest
-/// edge, a round number is subtracted first ([`SinglePrecision`]), by which the node is translated. The scene rotates
-/// it so that z becomes glTF's y, which points up.
+/// Writes GLB, glTF 2.0 in one binary file: the boundary as triangles, singular edges as lines and singular vertices as points.
+/// If F is known, vertices are coloured by it, from dark blue (least) through green to yellow (most). Coordinates are rounded to
+/// `f32`; if that would move them by more than a thousandth of the shortest edge, a round number is subtracted first
+/// ([`SinglePrecision`]), and the node is translated by it. The scene rotates it so that z becomes glTF's y, which points up.
 #[derive(Clone, Debug, Default)]
 pub struct Glb(pub ExportOptions);
 
 /// A quarter turn about x, as a quaternion: z becomes y, and y becomes −z.
 const UPRIGHT: [f64; 4] = [-FRAC_1_SQRT_2, 0.0, 0.0, FRAC_1_SQRT_2];
 
-/// glTF's numbers: component types, buffer targets, primitive modes.
+/// The codes of glTF: component types, buffer targets, primitive modes.
 const FLOAT: u32 = 5126;
 const UNSIGNED_INT: u32 = 5125;
 const ARRAY_BUFFER: u32 = 34962;
@@ -46,7 +45,7 @@ impl Exporter for Glb {
             document["scenes"][0] = json!({ "nodes": [0] });
             document["nodes"] = json!([{ "mesh": 0, "rotation": UPRIGHT }]);
             if single.has_offset() {
-                // It is rotated before it is translated.
+                // The node is rotated before it is translated.
                 let [x, y, z] = single.offset;
                 document["nodes"][0]["translation"] = json!([x, z, 0.0 - y]);
             }

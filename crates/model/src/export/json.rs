@@ -6,9 +6,9 @@ use walpha_shape::AlphaShape;
 
 use super::claim;
 
-/// JSON: the complex with its points, power weights and α, in the [`schema`](walpha_check::schema)
-/// that `walpha check` and `walpha compare` read. α and the weights are those that
-/// classify the simplices: for [`Balls::Radius`](walpha_shape::Balls) the weights are (α + ω)², and α is 0.
+/// Writes JSON: the complex with its points, power weights and α, in the [`schema`](walpha_check::schema) that `walpha check` and
+/// `walpha compare` read. α and the weights are those that classify the simplices: for [`Balls::Radius`](walpha_shape::Balls) the
+/// weights are (α + ω)², and α is 0.
 #[derive(Clone, Copy, Debug)]
 pub struct Json;
 

@@ -1,4 +1,4 @@
-//! Shapes as files for other programs.
+//! Writes shapes to files for other programs.
 //!
 //! All writers implement one trait, which turns a shape into bytes and does not deal with paths. [`Target`]
 //! provides a file that appears under its name only when it is complete.
@@ -70,7 +70,7 @@ pub use vtu::Vtu;
 pub(crate) use vtu::{PointData, Provenance, write_grid};
 pub use walpha_files::{Target, TargetError};
 pub use walpha_volume::UnknownFormat;
-// For the command and for Python: not covered by semantic versioning.
+// These are for the command and for Python, and not covered by semantic versioning.
 #[doc(hidden)]
 pub use walpha_files::{Content, Filled, NewFolder, Scratch, put_all, sweep, write_all};
 pub use wkt::Wkt;

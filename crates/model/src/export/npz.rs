@@ -8,11 +8,11 @@ use zip::{CompressionMethod, DateTime, ZipWriter};
 use super::Exporter;
 use walpha_shape::{AlphaShape, Class, NO_COMPONENT, Voxels};
 
-/// NPZ, `NumPy`'s archive of arrays: the complex with its points, power weights and α, in the
-/// [`schema`](walpha_check::schema) that `walpha check` and `walpha compare` read, as in
-/// [`Json`](super::Json). Also, if known: `values` of all points; `components` (n), the component number of
-/// each point, −1 for points outside the shape; `boundary_sheets` (k×2), the [sheets](walpha_shape::Sheets) in
-/// front of and behind the regular facets, then the singular ones, −1 for none.
+/// Writes NPZ, `NumPy`'s archive of arrays: the complex with its points, power weights and α, in the
+/// [`schema`](walpha_check::schema) that `walpha check` and `walpha compare` read, as in [`Json`](super::Json). If known, it also
+/// contains: `values` of all points; `components` (n), the component number of each point, −1 for points outside the shape;
+/// `boundary_sheets` (k×2), the [sheets](walpha_shape::Sheets) in front of and behind the regular facets, followed by the
+/// singular ones, −1 for none.
 #[derive(Clone, Copy, Debug)]
 pub struct Npz;
 
@@ -67,7 +67,7 @@ pub(super) struct Archive<W: Write + Seek> {
 
 impl<W: Write + Seek> Archive<W> {
     pub(super) fn new(zip: ZipWriter<W>) -> Self {
-        // A fixed time of modification, so that the same shape gives the same bytes.
+        // The time of modification is fixed, so that the same shape gives the same bytes.
         let options = SimpleFileOptions::default()
             .compression_method(CompressionMethod::Stored)
             .large_file(true)
@@ -75,7 +75,7 @@ impl<W: Write + Seek> Archive<W> {
         Self { zip, options }
     }
 
-    /// An archive of compressed arrays, tuned for speed rather than size.
+    /// Creates an archive of compressed arrays, tuned for speed and not for size.
     pub(super) fn compressed(zip: ZipWriter<W>) -> Self {
         let Self { zip, options } = Self::new(zip);
         let options =

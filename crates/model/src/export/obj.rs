@@ -5,8 +5,8 @@ use super::{ExportOptions, Exporter, Needs};
 use walpha_shape::AlphaShape;
 use walpha_volume::annotation;
 
-/// Wavefront OBJ: facets, regular ones first, singular edges and singular vertices; ungrouped, or on request
-/// in the groups `regular`, `singular`, `edges` and `points`. Numbering starts at 1.
+/// Writes Wavefront OBJ: facets, regular ones first, singular edges and singular vertices; ungrouped, or on request in the groups
+/// `regular`, `singular`, `edges` and `points`. Numbering starts at 1.
 #[derive(Clone, Debug, Default)]
 pub struct Obj(pub ExportOptions);
 

@@ -5,8 +5,8 @@ use super::{ExportOptions, Exporter, Needs};
 use walpha_shape::AlphaShape;
 use walpha_volume::annotation;
 
-/// OFF, the object file format of Geomview: boundary facets; with groups, regular facets are light and singular
-/// ones orange. The format has no edges or isolated points, so singular edges and vertices are left out.
+/// Writes OFF, the object file format of Geomview: boundary facets; with groups, regular facets are light and singular ones
+/// orange. The format has no edges or isolated points, so singular edges and vertices are left out.
 #[derive(Clone, Debug, Default)]
 pub struct Off(pub ExportOptions);
 

@@ -1,4 +1,4 @@
-//! What the formats of shapes in a plane share.
+//! Common parts of the formats of shapes in a plane.
 
 use std::io;
 
@@ -6,15 +6,14 @@ use walpha_base::advice::Advice;
 
 use walpha_shape::{AlphaShape, Outline};
 
-/// An outline and the places of its points, as text formats of geographic data have them: x and y, and z unless it is 0
-/// for all points.
+/// An outline and the positions of its points, for text formats of geographic data: x and y, and z unless it is 0 for all points.
 pub(super) struct Planar<'a> {
     pub outline: &'a Outline,
     positions: &'a [[f64; 3]],
     columns: usize,
 }
 
-/// Says that polygons in a vertical plane are none to programs that look at x and y alone, as most do.
+/// A warning that polygons in a vertical plane have no area for programs that use only x and y, as most do.
 pub(super) fn remark(shape: &AlphaShape) -> Option<Advice> {
     let is_vertical = shape.outline().is_ok_and(|outline| outline.axes != [0, 1]);
     is_vertical.then(|| {
@@ -25,7 +24,7 @@ pub(super) fn remark(shape: &AlphaShape) -> Option<Advice> {
 }
 
 impl<'a> Planar<'a> {
-    /// Those of a shape.
+    /// The outline of a shape, and the positions of its points.
     ///
     /// # Errors
     /// The shape has no outline.
@@ -36,22 +35,22 @@ impl<'a> Planar<'a> {
         Ok(Self { outline, positions, columns })
     }
 
-    /// Whether places have a z.
+    /// Whether positions have a z.
     pub(super) fn has_z(&self) -> bool {
         self.columns == 3
     }
 
-    /// The place of a point: two or three coordinates.
+    /// The position of a point: two or three coordinates.
     pub(super) fn place(&self, v: u32) -> &'a [f64] {
         &self.positions[v as usize][..self.columns]
     }
 
-    /// The places of points, one after the other.
+    /// The positions of points, in their order.
     pub(super) fn places(&self, points: &[u32]) -> Vec<&'a [f64]> {
         points.iter().map(|&v| self.place(v)).collect()
     }
 
-    /// The places of a ring, the first once more at the end.
+    /// The positions of a ring, with the first repeated at the end.
     pub(super) fn ring(&self, ring: &[u32]) -> Vec<&'a [f64]> {
         let mut places = self.places(ring);
         places.extend(ring.first().map(|&v| self.place(v)));

@@ -7,10 +7,10 @@ use super::{ExportOptions, Exporter, Needs, colour};
 use walpha_shape::{AlphaShape, Class, Surface};
 use walpha_volume::annotation;
 
-/// PLY: vertices of the boundary with weight, input index and, if known, value and its colour (red, green, blue);
-/// facets. With groups, facets have their class (2 regular, 3 singular), their component and, if known and not of
-/// a solid, the [sheets](walpha_shape::Sheets) in front and behind, −1 for none. Coordinates are doubles. Binary
-/// little-endian, or text.
+/// Writes PLY: vertices of the boundary with weight, input index and, if known, value and its colour (red, green, blue); facets.
+/// With groups, facets have their class (2 regular, 3 singular), their component and, if known and not of a solid, the
+/// [sheets](walpha_shape::Sheets) in front and behind, −1 for none. Coordinates are doubles. The file is binary little-endian, or
+/// text.
 ///
 /// Singular edges are left out, as most programs refuse a PLY file with edges. Groups are optional because meshio
 /// cannot read properties of facets.
@@ -79,7 +79,7 @@ impl Exporter for Ply {
     }
 }
 
-/// Properties of a vertex with a value.
+/// The properties of a vertex with a value.
 const VALUED: &str =
     "property double value\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n";
 
@@ -104,7 +104,7 @@ fn vertices(row: &mut Row<'_>, shape: &AlphaShape, surface: &Surface) -> io::Res
     Ok(())
 }
 
-/// Numbers of one element, as text on a line or as bytes.
+/// The numbers of one element, as text on a line or as bytes.
 struct Row<'a> {
     ascii: bool,
     out: &'a mut dyn Write,

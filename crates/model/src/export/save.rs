@@ -10,12 +10,11 @@ use walpha_volume::UnknownFormat;
 
 /// Shapes that save themselves.
 pub trait Save {
-    /// Writes a file in the format of its extension, one of [`FORMATS`](super::FORMATS), with the default
-    /// [`ExportOptions`]. The file appears under its name when it is complete, and replaces one that is there.
+    /// Writes a file in the format of its extension, one of [`FORMATS`](super::FORMATS), with the default [`ExportOptions`]. The
+    /// file appears under its name when it is complete, and replaces an existing one.
     ///
     /// # Errors
-    /// The extension is unknown, the file cannot be written, or it would hold nothing of the shape. An [`Exporter`]
-    /// writes such a file, too.
+    /// The extension is unknown, the file cannot be written, or it would be empty. An [`Exporter`] also writes empty files.
     fn save(&self, path: impl AsRef<Path>) -> Result<(), SaveError>;
 }
 
@@ -28,14 +27,14 @@ impl Save for AlphaShape {
     }
 }
 
-/// Why a shape is not saved.
+/// An error of saving a shape.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum SaveError {
     /// No format has the extension.
     #[error(transparent)]
     Format(#[from] UnknownFormat),
-    /// The file would hold nothing of the shape.
+    /// The file would be empty.
     #[error(transparent)]
     Empty(#[from] EmptyShape),
     /// The file cannot be written.

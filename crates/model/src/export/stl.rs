@@ -7,10 +7,10 @@ use super::{ExportOptions, Exporter, Needs};
 use walpha_shape::{AlphaShape, SinglePrecision};
 use walpha_volume::annotation;
 
-/// Binary STL: the regular facets, counter-clockwise seen from outside, with their normals.
-/// Coordinates are rounded to `f32`; where that would move them by more than a thousandth of the shortest edge, a round number
-/// is subtracted first ([`SinglePrecision`]), which the header states: `OFFSET=434000,5412000,0`. Singular facets, edges and vertices do not bound a solid and are
-/// left out.
+/// Writes binary STL: the regular facets, counter-clockwise seen from outside, with their normals. Coordinates are rounded to
+/// `f32`; if that would move them by more than a thousandth of the shortest edge, a round number is subtracted first
+/// ([`SinglePrecision`]), which the header states: `OFFSET=434000,5412000,0`. Singular facets, edges and vertices do not bound a
+/// solid and are left out.
 #[derive(Clone, Debug, Default)]
 pub struct Stl(pub ExportOptions);
 
@@ -55,13 +55,13 @@ impl Exporter for Stl {
     }
 }
 
-/// The header: 80 bytes.
+/// The header of 80 bytes.
 ///
 /// # Errors
-/// Numbers of an offset that have no room in it.
+/// The numbers of an offset do not fit into the header.
 fn head(shape: &AlphaShape, single: &SinglePrecision) -> io::Result<[u8; 80]> {
     let stated = annotation::comment(shape.coordinates());
-    // It must not begin with "solid", as some readers would take the file for text.
+    // The header must not begin with "solid", as some readers would take the file for text.
     let about = if single.has_offset() {
         let [x, y, z] = single.offset.map(number);
         format!("walpha OFFSET={x},{y},{z}{stated}")

@@ -5,9 +5,9 @@ use super::{Exporter, Needs};
 use walpha_shape::{AlphaShape, Class, Outline};
 use walpha_volume::annotation;
 
-/// SVG: the polygons of an [outline](AlphaShape::outline), each a path that is filled by the even-odd rule, singular edges
-/// as lines and singular vertices as dots, in the two coordinates in which the plane is seen. The second one points up, so it
-/// is negated; otherwise coordinates are those of the points.
+/// Writes SVG: the polygons of an [outline](AlphaShape::outline), each a path that is filled by the even-odd rule, singular edges
+/// as lines and singular vertices as dots. They are drawn in the two coordinates in which the plane is seen. The second one
+/// points up and is therefore negated; otherwise coordinates are those of the points.
 #[derive(Clone, Copy, Debug)]
 pub struct Svg;
 
@@ -17,7 +17,7 @@ impl Exporter for Svg {
         let [u, v] = outline.axes;
         let place = |point: u32| {
             let position = shape.points().positions()[point as usize];
-            // From 0, so that there is no −0.
+            // Subtracting from 0 avoids −0.
             [position[u], 0.0 - position[v]]
         };
         let Frame { low: [x, y], size: [width, height], pen } = Frame::around(outline, place);
@@ -83,7 +83,7 @@ struct Frame {
 }
 
 impl Frame {
-    /// The box of the vertices, and a margin; the unit square for an empty shape.
+    /// The box of the vertices with a margin; the unit square for an empty shape.
     fn around(outline: &Outline, place: impl Fn(u32) -> [f64; 2]) -> Self {
         let vertices = outline.complex.vertices.iter();
         let places =

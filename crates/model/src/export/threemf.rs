@@ -10,11 +10,11 @@ use zip::{CompressionMethod, DateTime, ZipWriter};
 use super::about::about;
 use super::{ExportOptions, Exporter, Needs};
 
-/// 3MF, the 3D Manufacturing Format of slicers: the boundary as that of a [solid](AlphaShape::solid), with its unit, whether the
-/// options say so or not, as the format demands it. The unit is that of the coordinates, or millimetres if the format does not know that. Coordinates
-/// are rounded to `f32`, as slicers do; where that would move them by more than a thousandth of the shortest edge, a round number is
-/// subtracted first ([`SinglePrecision`]), by which the item is translated. The layout in space of a shape on a torus is cut open, and
-/// becomes an object of the type `surface`.
+/// Writes 3MF, the 3D Manufacturing Format of slicers: the boundary of a [solid](AlphaShape::solid), whatever the options say, as
+/// the format requires it, with its unit. The unit is that of the coordinates, or millimetres if the format does not support
+/// that. Coordinates are rounded to `f32`, as slicers do; if that would move them by more than a thousandth of the shortest edge,
+/// a round number is subtracted first ([`SinglePrecision`]), and the item is translated by it. The layout in space of a shape on
+/// a torus is cut open, and becomes an object of the type `surface`.
 #[derive(Clone, Debug, Default)]
 pub struct ThreeMf(pub ExportOptions);
 
@@ -31,13 +31,13 @@ const RELATIONS: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
 </Relationships>
 "#;
 
-/// Facets from which on the sizes of the model may have no room in 32 bits.
+/// The number of facets from which on the sizes in the archive may exceed 32 bits.
 const LARGE: usize = 1 << 24;
 
 impl Exporter for ThreeMf {
     fn encode(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
         let surface = self.options(shape).surface(shape);
-        // A fixed time of modification, so that the same shape gives the same bytes.
+        // The time of modification is fixed, so that the same shape gives the same bytes.
         let options = SimpleFileOptions::default()
             .compression_method(CompressionMethod::Deflated)
             .large_file(surface.regular.len() > LARGE)
@@ -74,13 +74,13 @@ impl Exporter for ThreeMf {
 }
 
 impl ThreeMf {
-    /// The options of a solid, unless the shape is cut open.
+    /// The options for a solid, unless the shape is cut open.
     fn options(&self, shape: &AlphaShape) -> ExportOptions {
         self.0.clone().solid(!is_open(shape))
     }
 }
 
-/// Whether the shape is the layout of one on a torus.
+/// Whether the shape is the layout of a shape on a torus.
 fn is_open(shape: &AlphaShape) -> bool {
     shape.options().periodic.is_some() || !shape.copies().is_empty()
 }

@@ -5,11 +5,11 @@ use super::{ExportOptions, Exporter, Needs};
 use walpha_shape::{AlphaShape, Class, Sheets, Surface};
 use walpha_volume::annotation;
 
-/// VTP, VTK's polygons: the boundary, singular edges and singular vertices. Cell data are their
-/// `class` (2 regular, 3 singular), the `component` of the shape they belong to and, where known, the
-/// [sheets](walpha_shape::Sheets) in front (`sheet`) and behind (`sheet_behind`), −1 for none; point
-/// data are `weight`, `value` and `input_index`. Field data are those of [`Vtu`](super::Vtu), with texts as strings.
-/// Solids have no sheets. Arrays are appended raw, little-endian, with 64-bit sizes.
+/// Writes VTP, VTK's polygons: the boundary, singular edges and singular vertices. Cell data are their `class` (2 regular, 3
+/// singular), the `component` of the shape that they belong to and, if known, the [sheets](walpha_shape::Sheets) in front
+/// (`sheet`) and behind (`sheet_behind`), −1 for none; point data are `weight`, `value` and `input_index`. Field data are those
+/// of [`Vtu`](super::Vtu), with texts as strings. Solids have no sheets. Arrays are appended raw, little-endian, with 64-bit
+/// sizes.
 #[derive(Clone, Debug, Default)]
 pub struct Vtp(pub ExportOptions);
 
@@ -28,9 +28,9 @@ impl Exporter for Vtp {
     }
 }
 
-/// Components and sheets of a surface.
+/// The components and sheets of a surface.
 pub(crate) struct Membership<'a> {
-    /// The component of each point, by its number.
+    /// The component number of each point.
     pub components: &'a [u32],
     /// The sheets of its facets and edges.
     pub sheets: Option<&'a Sheets>,

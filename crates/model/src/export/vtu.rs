@@ -5,12 +5,11 @@ use super::{ExportOptions, Exporter};
 use walpha_shape::{Alpha, AlphaShape, Complex, Simplices, Voxels};
 use walpha_volume::{Coordinates, annotation};
 
-/// VTU, VTK's unstructured grid: every simplex of the shape, vertices first, with its class as
-/// cell data (1 interior, 2 regular, 3 singular); `weight`, `value` and `input_index` as point
-/// data. Field data record how it was made: `alpha` (a squared length), `alpha_radius` unless α is negative,
-/// `class_legend`, `made_by` (program and version) and, if known, `input` and `unit`, the unit of length. Texts
-/// are arrays of UTF-8 bytes, as meshio refuses files with strings. Arrays are appended raw, little-endian, with
-/// 64-bit sizes.
+/// Writes VTU, VTK's unstructured grid: every simplex of the shape, vertices first, with its class as cell data (1 interior, 2
+/// regular, 3 singular); `weight`, `value` and `input_index` as point data. Field data record how it was made: `alpha` (a squared
+/// length), `alpha_radius` unless α is negative, `class_legend`, `made_by` (program and version) and, if known, `input` and
+/// `unit`, the unit of length. Texts are arrays of UTF-8 bytes, as meshio refuses files with strings. Arrays are appended raw,
+/// little-endian, with 64-bit sizes.
 ///
 /// Exterior simplices of the complex, if it has any, are written as class 0.
 #[derive(Clone, Debug, Default)]
@@ -24,9 +23,9 @@ impl Exporter for Vtu {
     }
 }
 
-/// How a shape was made, for the field data of files.
+/// A record of how a shape was made, for the field data of files.
 pub(crate) struct Provenance<'a> {
-    /// A squared length, as the weights are, whichever balls the shape was made of.
+    /// α as a squared length, like the weights, whichever balls the shape is made of.
     pub alpha: Alpha,
     pub coordinates: Coordinates,
     pub input: Option<&'a str>,
@@ -35,14 +34,14 @@ pub(crate) struct Provenance<'a> {
 }
 
 impl<'a> Provenance<'a> {
-    /// How a shape was made from the input in the options.
+    /// The record for a shape that was made from the input in the options.
     pub(crate) fn of(shape: &AlphaShape, options: &'a ExportOptions) -> Self {
         let (alpha, coordinates) = (shape.power_alpha(), shape.coordinates());
         let voxels = shape.voxels().map(Voxels::count);
         Self { alpha, coordinates, input: options.input.as_deref(), voxels }
     }
 
-    /// What the shape is: α, in these words, or of labels.
+    /// Describes the shape: by `alpha`, a text about α, or as a solid of labels.
     pub(super) fn about(&self, alpha: String) -> String {
         self.voxels.map_or(alpha, of_labels)
     }
@@ -53,13 +52,13 @@ pub(crate) struct PointData<'a> {
     pub positions: &'a [[f64; 3]],
     pub weights: &'a [f64],
     pub values: Option<&'a [f64]>,
-    /// Their indices in a volume, if they are numbered within a block; otherwise their numbers are indices of
-    /// the input.
+    /// The indices of the points in a volume, if they are numbered within a block; otherwise their numbers are indices of the
+    /// input.
     pub voxels: Option<&'a [u64]>,
 }
 
 impl<'a> PointData<'a> {
-    /// The points of a shape.
+    /// The data of a shape's points.
     pub(crate) fn of(shape: &'a AlphaShape) -> Self {
         let points = shape.points();
         Self {
@@ -85,7 +84,7 @@ impl<'a> PointData<'a> {
     }
 }
 
-/// Writes simplices of all dimensions. `vertices` are all their corners, ascending.
+/// Writes simplices of all dimensions. `vertices` contains all their corners, ascending.
 pub(crate) fn write_grid(
     complex: &Complex,
     vertices: &[u32],
@@ -124,7 +123,7 @@ pub(crate) fn write_grid(
     file.end(out)
 }
 
-/// VTK's numbers for a vertex, a line, a triangle and a tetrahedron: simplices by dimension.
+/// VTK's codes for a vertex, a line, a triangle and a tetrahedron: simplices by dimension.
 pub(super) const VTK_TYPES: [u8; 4] = [1, 3, 5, 10];
 
 struct Grid {
@@ -132,7 +131,7 @@ struct Grid {
     offsets: Ids,
     types: Vec<u8>,
     classes: Vec<u8>,
-    /// Number of corners so far: the next offset.
+    /// The number of corners so far, which is the next offset.
     end: usize,
 }
 
@@ -156,7 +155,7 @@ impl Grid {
     }
 }
 
-/// Indices and offsets in VTK: 32-bit numbers if all fit, which halves most files.
+/// Indices and offsets in VTK: 32-bit numbers if all fit, which halves the size of most files.
 pub(super) struct Ids {
     is_wide: bool,
     bytes: Vec<u8>,
@@ -184,7 +183,7 @@ pub(super) struct Appended {
     pub data: Vec<u8>,
 }
 
-/// Meaning of the numbers of `class`.
+/// The meaning of the numbers of `class`.
 const LEGEND: &str = "0 exterior, 1 interior, 2 regular, 3 singular";
 
 impl Appended {
@@ -198,7 +197,7 @@ impl Appended {
         )
     }
 
-    /// Writes points and cells of the only piece of an unstructured grid, whose data came before.
+    /// Writes the points and cells of the only piece of an unstructured grid, whose data were written before.
     pub(super) fn grid(
         &mut self,
         positions: impl Iterator<Item = [f64; 3]>,
@@ -223,13 +222,13 @@ impl Appended {
         write!(out, "\n</AppendedData>\n</VTKFile>\n")
     }
 
-    /// Writes how the shape was made, with texts as strings or as arrays of bytes.
+    /// Writes the record of how the shape was made, with texts as strings or as arrays of bytes.
     pub(super) fn field_data(&mut self, made: &Provenance<'_>, as_strings: bool) -> io::Result<()> {
         let alpha = made.alpha;
         writeln!(self.xml, "<FieldData>")?;
         for (name, number) in [("alpha", Some(alpha.squared())), ("alpha_radius", alpha.radius())] {
             if let Some(number) = number.filter(|_| made.voxels.is_none()) {
-                // In binary, as VTK cannot read "inf".
+                // The number is binary, as VTK cannot read "inf".
                 self.field("DataArray", "Float64", name, 1, &number.to_le_bytes())?;
             }
         }

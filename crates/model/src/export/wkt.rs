@@ -6,9 +6,9 @@ use super::planar::{self, Planar};
 use super::{Exporter, Needs};
 use walpha_shape::AlphaShape;
 
-/// Well-known text (OGC Simple Features, ISO 19125-1): the polygons of an [outline](AlphaShape::outline) as one
-/// `MULTIPOLYGON`, outer rings counter-clockwise and holes clockwise. Where there are singular edges or vertices, a
-/// `GEOMETRYCOLLECTION` of it, a `MULTILINESTRING` and a `MULTIPOINT`. With ` Z` unless z is 0 everywhere.
+/// Writes well-known text (OGC Simple Features, ISO 19125-1): the polygons of an [outline](AlphaShape::outline) as one
+/// `MULTIPOLYGON`, outer rings counter-clockwise and holes clockwise. If there are singular edges or vertices, it is part of a
+/// `GEOMETRYCOLLECTION` with a `MULTILINESTRING` and a `MULTIPOINT`. Geometries have ` Z` unless z is 0 everywhere.
 #[derive(Clone, Copy, Debug)]
 pub struct Wkt;
 
@@ -48,12 +48,12 @@ impl Exporter for Wkt {
     }
 }
 
-/// Texts in parentheses.
+/// Joins texts in parentheses.
 fn listed(texts: impl IntoIterator<Item = String>) -> String {
     format!("({})", texts.into_iter().collect::<Vec<_>>().join(", "))
 }
 
-/// Places in parentheses.
+/// Joins positions in parentheses.
 fn line(places: &[&[f64]]) -> String {
     let place = |place: &&[f64]| place.iter().map(f64::to_string).collect::<Vec<_>>().join(" ");
     listed(places.iter().map(place))

@@ -12,17 +12,16 @@ use super::{Deviation, InterpolateError};
 use walpha_points::Units;
 use walpha_volume::{Dims, Volume};
 
-/// When adaptive selection is done: as soon as one of these is reached.
+/// The goals of adaptive selection, which ends as soon as one of them is reached.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Adaptive {
-    /// Points at most.
+    /// The largest number of points.
     pub count: u64,
-    /// An RMSE over the whole volume, in gray levels, that is good enough; 0 asks for all of
-    /// `count`, or for a perfect interpolant.
+    /// A sufficient RMSE over the whole volume, in gray levels; 0 requests all of `count`, or a perfect interpolant.
     pub rmse: f64,
-    /// A bound on the largest error of a sample, in gray levels. With one, points are chosen by that
-    /// error, and only samples beyond the bound join.
+    /// A bound on the largest error of a sample, in gray levels. With a bound, points are chosen by that error, and only samples
+    /// beyond the bound are added.
     pub max_error: Option<f64>,
 }
 
@@ -35,38 +34,35 @@ impl Adaptive {
     setters! { rmse: f64, max_error: Option<f64> }
 }
 
-/// Points of a batch, over those there are: a batch is large enough for few triangulations, and
-/// small enough that its points are chosen for what is there and not for each other.
+/// The size of a batch as a share of the existing points. It is large enough for few triangulations, and small enough that points
+/// are chosen for the existing triangulation and not for each other.
 const BATCH: f64 = 0.2;
-/// Samples looked at as one piece of work.
+/// The number of samples in one parallel task.
 const CHUNK: usize = 1 << 14;
-/// While there are few points, batches are of this size.
+/// The size of batches while there are few points.
 const FIRST_BATCH: usize = 32;
 
-/// Voxels whose triangulation interpolates a volume well, in the order in which they were chosen:
-/// the first so many are what a smaller count would have chosen.
+/// Selects voxels whose triangulation interpolates a volume well, in the order in which they were chosen: the first k are those
+/// that a count of k would have chosen.
 ///
-/// From the 8 corners on, greedily, after Garland and Heckbert, "Fast polygonal approximation of
-/// terrains and height fields" (CMU-CS-95-181, 1995), in space and in batches:
+/// The selection starts from the 8 corners and is greedy, after Garland and Heckbert, "Fast polygonal approximation of terrains
+/// and height fields" (CMU-CS-95-181, 1995), in space and in batches:
 ///
 /// 1. the unweighted (ω = 0) Delaunay triangulation of the voxels so far is resampled on the grid;
-/// 2. cells are put in order of the squared error summed over their voxels, and each names its
-///    worst voxel;
-/// 3. in that order these join, but none beside one that has just joined (among its 26 neighbours),
-///    because it would repair the same error; at most a fifth as many as there are.
+/// 2. cells are sorted by the squared error summed over their voxels, and each proposes its worst voxel;
+/// 3. in that order these voxels are added, except those that are among the 26 neighbours of a voxel just added, which would
+/// correct the same error; at most a fifth of the number of existing points.
 ///
-/// With a bound on the largest error, cells are put in order of their largest error instead, and voxels
-/// within the bound do not join.
+/// With a bound on the largest error, cells are sorted by their largest error instead, and voxels within the bound are not added.
 ///
-/// Error is measured from `volume` itself, so give the original, not a truncated one. It is looked
-/// at between batches: when that ends the selection, the last batch may have overshot the target.
-/// Fewer voxels than asked for suffice where their interpolant is perfect. A batch costs its
-/// insertions, samples in the cells that these make (in all cells, where doubles do not hold the frame), and one
-/// pass over all errors; memory, 16 bytes a sample. The result does not depend on the number of threads.
+/// Error is measured from `volume` itself, so pass the original and not a truncated one. It is measured between batches: the last
+/// batch may overshoot the goal. Fewer voxels than requested are selected if their interpolant is perfect. A batch costs its
+/// insertions, the samples in the new cells (in all cells, if doubles do not represent the frame exactly), and one pass over all
+/// errors; memory is 16 bytes a sample. The result does not depend on the number of threads.
 ///
 /// # Errors
-/// A count below 8 or above the samples, a target or bound that is negative or NaN, missing samples, or
-/// a volume whose samples lie in one plane.
+/// The count is below 8 or above the number of samples, a goal or bound is negative or NaN, samples are missing, or the samples
+/// of the volume lie in one plane.
 pub fn adaptive_voxels(
     volume: &Volume,
     goal: &Adaptive,
@@ -109,9 +105,8 @@ pub fn adaptive_voxels(
     }
 }
 
-/// The worst voxel of each simplex, in order of the squared error of its whole simplex, the
-/// largest first, of those that may join. Voxels without error may not. `max` is the largest error.
-/// With a bound: those beyond it, in order of their own errors.
+/// The worst voxel of each simplex, sorted by the squared error of the whole simplex, the largest first. Voxels without error are
+/// left out. `max` is the largest error. With a bound, only voxels beyond it are returned, sorted by their own errors.
 pub(super) fn worst(
     volume: &Volume,
     sampled: &Sampled<'_>,
@@ -119,17 +114,17 @@ pub(super) fn worst(
     bound: Option<f64>,
     may_join: impl Fn(u32) -> bool + Sync,
 ) -> Vec<u32> {
-    // Sums of integers do not depend on their order: squares in units of max²/2³¹, of which 2³²
-    // samples make less than 2⁶⁴.
+    // Sums of integers do not depend on their order. The unit of squares is max²/2³¹, so that those of 2³² samples sum to less
+    // than 2⁶⁴.
     let units = |error: f64| ((error / max).powi(2) * 2f64.powi(31)) as u64;
-    // Floats that are not negative are ordered as their bits are; of equal ones the lowest voxel.
+    // Nonnegative floats are ordered like their bits; of equal ones, the lowest voxel comes first.
     let key = |error: f32, voxel: u32| u64::from(error.to_bits()) << 32 | u64::from(!voxel);
     let zeros = || (0..sampled.cells()).map(|_| AtomicU64::new(0)).collect::<Vec<_>>();
     let (sums, worst) = (zeros(), zeros());
     let pairs = volume.as_slice().par_chunks(CHUNK).zip(sampled.f().par_chunks(CHUNK));
     let chunks = pairs.zip(sampled.owners().par_chunks(CHUNK)).enumerate();
     chunks.for_each(|(chunk, ((theirs, ours), owners))| {
-        // Samples side by side are often in one cell: these are written together.
+        // Consecutive samples are often in one cell, and are written together.
         let write = |owner: u32, sum: u64, most: u64| {
             if owner != OUTSIDE {
                 sums[owner as usize].fetch_add(sum, Relaxed);
@@ -161,7 +156,7 @@ pub(super) fn worst(
     ranked.into_iter().map(|(_, key)| !(key as u32)).collect()
 }
 
-/// The first `most` of some voxels, without those adjacent to an earlier one.
+/// The first `most` voxels, without those adjacent to an earlier one.
 fn spaced(dims: Dims, voxels: Vec<u32>, most: usize) -> Vec<u32> {
     let [nx, ny, nz] = dims.xyz();
     let mut near = HashSet::new();

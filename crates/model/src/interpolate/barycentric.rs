@@ -1,18 +1,16 @@
-//! Barycentric coordinates of a position in a simplex. Whether it lies there is decided exactly: in doubles
-//! where these are exact, behind an error bound, or in big integers.
+//! Barycentric coordinates of a position in a simplex. Whether the position is in the simplex is decided exactly: in doubles if
+//! these are exact, behind an error bound, or in big integers.
 
 use std::cmp::Ordering;
 
 use dashu_int::IBig;
 use walpha_regular::internals::number::{Number, cross, dot, integer, lowest_bit};
 
-/// The coordinates of a place in a simplex of one to four corners, or `None` where it lies outside;
-/// its boundary is inside. Four corners turn positively: det(b−a, c−a, d−a) > 0. Coordinates beyond
-/// the corners are 0.
+/// The coordinates of a position in a simplex of one to four corners, or `None` if it is outside; the boundary is inside. Four
+/// corners must be positively oriented: det(b−a, c−a, d−a) > 0. Coordinates beyond the number of corners are 0.
 ///
-/// With `exact`, no operation on these doubles rounds ([`Lattice`](Lattice)), and
-/// the coordinates are the doubles nearest to the true ones. Otherwise they are off by at most
-/// [`TOLERANCE`], and zeros and ones are right all the same.
+/// With `exact`, no operation on these doubles rounds ([`Lattice`](Lattice)), and the coordinates are the doubles nearest to the
+/// true ones. Otherwise they are off by at most [`TOLERANCE`], and zeros and ones are still correct.
 pub(super) fn coordinates(corners: &[[f64; 3]], place: [f64; 3], exact: bool) -> Option<[f64; 4]> {
     if !in_box(corners, place) {
         return None;
@@ -34,8 +32,8 @@ pub(super) fn coordinates(corners: &[[f64; 3]], place: [f64; 3], exact: bool) ->
     }
 }
 
-/// The coordinates of many places in one cell, where no operation on any of them rounds: each part is a
-/// plane, of which normal and offset are exact, too. The same bits as [`coordinates`] gives.
+/// Computes the coordinates of many positions in one cell, if no operation on any of them rounds. Each part is a plane, whose
+/// normal and offset are exact, too. The results have the same bits as those of [`coordinates`].
 pub(super) struct Planes {
     normals: [[f64; 3]; 4],
     offsets: [f64; 4],
@@ -43,11 +41,11 @@ pub(super) struct Planes {
 }
 
 impl Planes {
-    /// For corners that turn positively. `None` where they span no volume.
+    /// The planes of positively oriented corners; `None` if they span no volume.
     pub(super) fn of([a, b, c, d]: [[f64; 3]; 4]) -> Option<Self> {
         let normal = |p, q, r| cross(&minus(q, p), &minus(r, p));
         let inward = |n: [f64; 3]| n.map(|x| -x);
-        // The volume with the place instead of a corner, as it turns.
+        // The volume with the position in place of a corner, with the same orientation.
         let normals =
             [inward(normal(b, c, d)), normal(a, c, d), inward(normal(a, b, d)), normal(a, b, c)];
         let offsets = [b, a, a, a];
@@ -56,7 +54,7 @@ impl Planes {
         (whole > 0.0).then_some(Self { normals, offsets, whole })
     }
 
-    /// The coordinates of a place in the cell, or `None` where it lies outside.
+    /// The coordinates of a position in the cell, or `None` if it is outside.
     #[inline(always)]
     pub(super) fn shares(&self, place: [f64; 3]) -> Option<[f64; 4]> {
         let part = |k: usize| dot(&self.normals[k], &place) + self.offsets[k];
@@ -66,7 +64,7 @@ impl Planes {
     }
 }
 
-/// Largest error of a coordinate where doubles round: 2⁻⁴³ ≈ 1.1e-13.
+/// The largest error of a coordinate if doubles round: 2⁻⁴³ ≈ 1.1e-13.
 const TOLERANCE: f64 = f64::from_bits((1023 - 43) << 52);
 
 fn in_box(corners: &[[f64; 3]], place: [f64; 3]) -> bool {
@@ -84,8 +82,8 @@ fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
-/// From corners as seen from the place. Each coordinate is the share that the simplex with the
-/// place instead of that corner has of the whole.
+/// Computes coordinates from the offsets of the corners from the position. Each coordinate is the share of the whole volume that
+/// the simplex with the position in place of that corner has.
 fn of_offsets<T: Scalar>(offsets: &[[T; 3]]) -> Option<[f64; 4]> {
     let negative = |x: &T| T::zero().minus(x);
     match offsets {
@@ -98,7 +96,7 @@ fn of_offsets<T: Scalar>(offsets: &[[T; 3]]) -> Option<[f64; 4]> {
             if dot(a, &parts[0]).sign().is_ne() {
                 return None;
             }
-            // Seen along an axis in which the triangle does not vanish.
+            // The triangle is projected along an axis in which it does not vanish.
             along_an_axis(parts)
         }
         [a, b] => {
@@ -112,14 +110,14 @@ fn of_offsets<T: Scalar>(offsets: &[[T; 3]]) -> Option<[f64; 4]> {
     }
 }
 
-/// Shares by the first component in which the parts do not sum to 0.
+/// The shares in the first component in which the parts do not sum to 0.
 fn along_an_axis<T: Scalar, const N: usize>(parts: [[T; 3]; N]) -> Option<[f64; 4]> {
     let whole = |k: usize| parts.iter().fold(T::zero(), |sum, part| sum.plus(&part[k]));
     let (k, sign) = (0..3).map(|k| (k, whole(k).sign())).find(|(_, sign)| sign.is_ne())?;
     shares(parts.map(|part| if sign.is_gt() { part[k].clone() } else { T::zero().minus(&part[k]) }))
 }
 
-/// Parts over their sum; `None` if one is negative.
+/// The parts divided by their sum; `None` if one is negative.
 fn shares<T: Scalar, const N: usize>(parts: [T; N]) -> Option<[f64; 4]> {
     if parts.iter().any(|part| part.sign() == Ordering::Less) {
         return None;
@@ -135,16 +133,16 @@ fn shares<T: Scalar, const N: usize>(parts: [T; N]) -> Option<[f64; 4]> {
     Some(shares)
 }
 
-/// The answer of doubles with an error bound.
+/// The result of doubles with an error bound.
 enum Filtered {
     Outside,
     Inside([f64; 4]),
-    /// On the boundary or nearly so, or the simplex is too flat for doubles.
+    /// The position is on or near the boundary, or the simplex is too flat for doubles.
     Close,
 }
 
 fn filtered([a, b, c, d]: &[[f64; 3]; 4]) -> Filtered {
-    // Each part is a sum of six products of three rounded differences: eight roundings in a row.
+    // Each part is a sum of six products of three rounded differences, with eight successive roundings.
     const ROUNDINGS: f64 = 10.0 * f64::EPSILON / 2.0;
     let (ab, cd) = (cross(a, b), cross(c, d));
     let parts = [dot(b, &cd), -dot(a, &cd), dot(d, &ab), -dot(c, &ab)];
@@ -165,18 +163,18 @@ fn filtered([a, b, c, d]: &[[f64; 3]; 4]) -> Filtered {
     }
 }
 
-/// The cross product with sums for differences, of vectors without negative components.
+/// The cross product with sums in place of differences, for vectors without negative components.
 fn magnitudes(u: &[f64; 3], v: &[f64; 3]) -> [f64; 3] {
     let sum = |i: usize, j: usize| u[i] * v[j] + u[j] * v[i];
     [sum(1, 2), sum(2, 0), sum(0, 1)]
 }
 
-/// A number of which barycentric coordinates are made; doubles are exact only where a
-/// [`BitRange`](walpha_regular::internals::BitRange) says that no operation rounds.
+/// A number type for barycentric coordinates. Doubles are exact only if a [`BitRange`](walpha_regular::internals::BitRange)
+/// guarantees that no operation rounds.
 pub(super) trait Scalar: Number + Clone {
     fn zero() -> Self;
     fn sign(&self) -> Ordering;
-    /// The share of a positive whole, from 0 to 1, as the double nearest to it or beside that.
+    /// The share of a positive whole, from 0 to 1, as the double nearest to it or next to that.
     fn over(&self, whole: &Self) -> f64;
 }
 
@@ -206,7 +204,7 @@ impl Scalar for IBig {
     }
 }
 
-/// Differences of a place from others, in one unit that makes all of them integers.
+/// The differences of positions from another, in a unit in which all of them are integers.
 pub(super) fn integer_offsets(corners: &[[f64; 3]], from: [f64; 3]) -> Vec<[IBig; 3]> {
     let numbers = corners.iter().chain([&from]).flatten().copied();
     let unit = numbers.filter_map(lowest_bit).min().unwrap_or(0);
@@ -268,7 +266,7 @@ mod tests {
     #[test]
     fn one_ulp_decides() {
         let third: f64 = 4.0 / 3.0;
-        // On the slanted face, rounded to one of its sides.
+        // This position is on the slanted face, rounded to one of its sides.
         let place: [f64; 3] = [third, third, 4.0 - 2.0 * third];
         let sum_is_at_most_four = |p: [f64; 3]| {
             let rows = integer_offsets(&[p, [4.0, 0.0, 0.0]], [0.0; 3]);
@@ -301,7 +299,7 @@ mod tests {
 
     #[test]
     fn slivers_have_coordinates() {
-        // Six volumes of 1e-40, far below what doubles resolve beside the corners.
+        // Six times the volume is 1e-40, far below the resolution of doubles beside the corners.
         let corners =
             [[1.0, 1.0, 1.0], [2.0, 1.0, 1.0], [1.0, 2.0, 1.0], [1.5, 1.5, 1.0f64.next_up()]];
         let centre = [1.25, 1.25, 1.0];

@@ -2,9 +2,9 @@ use super::{CurvePoint, Deviation, Method};
 use walpha_points::Weighting;
 use walpha_render::{Content, Drawing, Figure, PALETTE, Panel, Pen, Rgb, Size};
 
-/// The figure of an error curve (see [`error_curve`](super::error_curve)): RMSE of the
-/// filled interpolant, RMSE inside the shape at α (squared), the share of samples it covers, and how many points are
-/// hidden, over the number of points. A colour for each method; unweighted lines are solid.
+/// The figure of an error curve (see [`error_curve`](super::error_curve)): RMSE of the filled interpolant, RMSE inside the shape
+/// at α (squared), the share of samples that it covers, and the number of hidden points, over the number of points. Each method
+/// has a colour; unweighted lines are solid.
 #[expect(clippy::missing_panics_doc, reason = "an invariant, never met")]
 pub fn error_figure(title: &str, alpha: f64, curve: &[CurvePoint]) -> Figure {
     let size = Size::new(800, 640).expect("a size that is right");

@@ -14,20 +14,20 @@ use walpha_points::{
 use walpha_shape::{Alpha, Engine, ShapeError, ShapeOptions, alpha_shape};
 use walpha_volume::Volume;
 
-/// Where the numbers of an error curve come from.
+/// The method that yields the points of an error curve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 #[non_exhaustive]
 pub enum Method {
     /// The N voxels of largest difference L, as in the paper.
     Difference,
-    /// The voxels with L of at least the whole gray level nearest to that of the N-th.
+    /// The voxels whose L is at least the whole gray level nearest to that of the N-th voxel.
     Threshold,
-    /// [`adaptive_voxels`](super::adaptive_voxels).
+    /// The voxels of [`adaptive_voxels`](super::adaptive_voxels).
     Adaptive,
-    /// A lattice of about N voxels, as evenly spread as whole steps allow, corners included.
+    /// A lattice of about N voxels, as evenly distributed as whole steps allow, including the corners.
     Lattice,
-    /// No points: the N largest Haar coefficients.
+    /// No points, but the N largest Haar coefficients.
     Haar,
 }
 
@@ -49,45 +49,44 @@ impl fmt::Display for Method {
     }
 }
 
-/// What to measure.
+/// The measurements of an error curve.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CurveOptions {
-    /// How many points, or coefficients.
+    /// The numbers of points or coefficients.
     pub counts: Vec<u64>,
-    /// With which weights; proportional ones are for `alpha`.
+    /// The weights; proportional ones are for `alpha`.
     pub weightings: Vec<Weighting>,
     /// The α of the shapes.
     pub alpha: Alpha,
-    /// What coordinates, and so α and weights, are measured in.
+    /// The units of coordinates, and therefore of α and weights.
     pub units: Units,
 }
 
 /// One measurement.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CurvePoint {
-    /// Where points or coefficients come from.
+    /// The method that yields the points or coefficients.
     pub method: Method,
-    /// How points are weighed; `None` for coefficients.
+    /// The weights of points; `None` for coefficients.
     pub weighting: Option<Weighting>,
-    /// Points or coefficients.
+    /// The number of points or coefficients.
     pub count: usize,
-    /// Points that the weights of others hide in the filled shape.
+    /// The number of points that the weights of others hide in the filled shape.
     pub hidden: usize,
-    /// F on the shape at α.
+    /// The error of F on the shape at α.
     pub inside: Deviation,
-    /// F on the whole grid: see [`fill`](super::fill()).
+    /// The error of F on the whole grid: see [`fill`](super::fill()).
     pub filled: Deviation,
 }
 
-/// Error and covered share of samples over the number of points, for each method and weighting, in that order.
+/// Measures the error and the covered share of samples over the number of points, for each method and weighting, in that order.
 ///
-/// `smoothed` is the truncated volume, whose differences choose and weigh points; error is always
-/// measured from `volume`. Where so few points span no volume, or there are not so many, the
-/// measurement is left out. Two triangulations for each point of the curve, and one adaptive
-/// selection of the largest count.
+/// `smoothed` is the truncated volume, whose differences choose and weigh points; error is always measured from `volume`. If the
+/// points span no volume, or there are fewer than requested, the measurement is left out. Takes two triangulations for each point
+/// of the curve, and one adaptive selection of the largest count.
 ///
 /// # Errors
-/// Whatever a stage refuses, other than points that span no volume.
+/// The errors of the stages, except points that span no volume.
 pub fn error_curve(
     volume: &Volume,
     smoothed: &Volume,
@@ -114,7 +113,7 @@ struct CurveBuilder<'a> {
 }
 
 impl CurveBuilder<'_> {
-    /// Adds what is measured of a method.
+    /// Adds the measurements of a method.
     fn add(&self, method: Method, curve: &mut Vec<CurvePoint>) -> Result<(), InterpolateError> {
         if method == Method::Haar {
             curve.extend(self.haar()?);
@@ -129,7 +128,7 @@ impl CurveBuilder<'_> {
         Ok(())
     }
 
-    /// The counts that there are samples for.
+    /// The counts that do not exceed the number of samples.
     fn counts(&self) -> impl Iterator<Item = u64> {
         let samples = self.volume.dims().samples() as u64;
         self.options.counts.iter().copied().filter(move |count| (1..=samples).contains(count))
@@ -150,7 +149,7 @@ impl CurveBuilder<'_> {
                 let level = |count: u64| levels[count as usize - 1].round().max(1.0);
                 let mut thresholds: Vec<f64> = self.counts().map(level).collect();
                 thresholds.dedup();
-                // A constant volume has no difference of a gray level.
+                // A constant volume has no difference of a whole gray level.
                 thresholds.retain(|&threshold| levels[0] >= threshold);
                 thresholds.into_iter().map(|t| self.by(SelectionRule::Threshold(t))).collect()
             }
@@ -180,7 +179,7 @@ impl CurveBuilder<'_> {
         points_at(self.volume, &self.differences, voxels, self.options.units)
     }
 
-    /// About so many voxels at steps that are as equal along and across the axes as can be.
+    /// About `count` voxels, with steps as equal as possible along all axes.
     fn lattice(&self, count: u64) -> Vec<u32> {
         let dims = self.volume.dims();
         let sizes = dims.xyz();
@@ -254,8 +253,8 @@ impl CurveBuilder<'_> {
     }
 }
 
-/// Writes an error curve as CSV, a line for each measurement: errors in gray levels, and the RMSE in
-/// values, of which a gray level is `step`. What there is not is left empty.
+/// Writes an error curve as CSV, a line for each measurement: errors in gray levels, and the RMSE in values, with `step` values
+/// to a gray level. Missing numbers are left empty.
 ///
 /// # Errors
 /// Errors of the writer.

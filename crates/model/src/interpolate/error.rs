@@ -8,36 +8,36 @@ use walpha_points::haar::HaarError;
 use walpha_shape::ShapeError;
 use walpha_volume::VolumeError;
 
-/// Why an interpolant, or points for one, cannot be computed.
+/// An error of the computation of an interpolant, or of points for one.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum InterpolateError {
     /// The points of the shape have no values.
     #[error("the points carry no values to interpolate")]
     NoValues,
-    /// A value that is not finite.
+    /// A value is not finite.
     #[error("the value of point {index} is {value}: it must be finite")]
     Value {
-        /// The point, counted from 0.
+        /// The number of the point, from 0.
         index: usize,
         /// Its value.
         value: f64,
     },
-    /// A volume some of whose samples are missing.
+    /// Some samples of a volume are missing.
     #[error("adaptive selection interpolates between all samples, and some are missing")]
     Missing,
-    /// Several samples where the grid has no room for them.
+    /// There are several samples along an axis in which the grid has no room for them.
     #[error(
         "{samples} samples along {axis} from {low} to {high} are not a step apart: the grid must have a positive, finite extent there"
     )]
     Extent {
         /// x, y or z.
         axis: char,
-        /// Samples asked for.
+        /// The number of samples requested.
         samples: usize,
-        /// The first position.
+        /// The position of the first sample.
         low: f64,
-        /// The last.
+        /// The position of the last sample.
         high: f64,
     },
     /// Adaptive selection cannot give this many points.
@@ -45,12 +45,12 @@ pub enum InterpolateError {
         "{asked} points cannot be selected adaptively: it starts from the 8 corners of the volume"
     )]
     Count {
-        /// Points asked for.
+        /// The number of points requested.
         asked: u64,
-        /// Samples of the volume.
+        /// The number of samples of the volume.
         available: u64,
     },
-    /// A target that no error can reach.
+    /// A goal is not a valid error.
     #[error("{what} of {target} gray levels makes no sense as a target")]
     Target {
         /// The kind of target.
@@ -58,18 +58,18 @@ pub enum InterpolateError {
         /// The number.
         target: f64,
     },
-    /// The normal equations of values that are fitted were not solved.
+    /// The normal equations of the fitted values were not solved.
     #[error("after {steps} steps the values of the points are not fitted to 1e-6")]
     Fit {
-        /// Steps of conjugate gradients.
+        /// The number of steps of conjugate gradients.
         steps: usize,
     },
-    /// The shape is one of a torus, and places are those of space.
+    /// The shape is on a torus, but interpolants are defined in space.
     #[error(
         "a shape of a periodic box cannot be interpolated: it repeats, and the interpolant is one of space"
     )]
     Periodic,
-    /// The points make no shape.
+    /// The points do not make a shape.
     #[error(transparent)]
     Shape(ShapeError),
     /// The volume yields no points.
@@ -81,10 +81,10 @@ pub enum InterpolateError {
     /// The work was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
-    /// Not enough memory for the samples.
+    /// There is not enough memory for the samples.
     #[error(transparent)]
     Memory(#[from] NoMemory),
-    /// The values make no volume: they pass the range of `f32`.
+    /// The values do not make a volume, as they exceed the range of `f32`.
     #[error("after interpolation: {0}")]
     Volume(#[from] VolumeError),
 }

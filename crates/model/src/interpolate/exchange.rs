@@ -1,4 +1,4 @@
-//! What one point more or less would change, with everything else as it is.
+//! The effects of adding or removing one point, with everything else unchanged.
 
 use std::collections::HashSet;
 
@@ -17,35 +17,34 @@ use walpha_points::Units;
 use walpha_shape::ShapeError;
 use walpha_volume::Volume;
 
-/// Points exchanged in one round, at most, over those there are. Halved where a round gains nothing.
+/// The largest share of points exchanged in one round. It is halved after a round without gain.
 const MOST: f64 = 0.1;
-/// Samples tried as new points in one round, over the points there are.
+/// The number of samples tried as new points in one round, as a share of the points.
 const TRIED: f64 = 0.5;
-/// Rounds at most. Each lowers the RMSE by less than the one before it.
+/// The largest number of rounds. Each lowers the RMSE by less than the one before.
 const ROUNDS: u64 = 16;
 /// A round that lowers the RMSE by less than this share is the last.
 const LEAST: f64 = 2e-3;
 
-/// As many samples whose triangulation represents the volume better: points whose loss costs least
-/// are exchanged for samples that gain most, until a round gains next to nothing.
+/// Selects the same number of samples whose triangulation represents the volume better: the points of least loss are exchanged
+/// for the samples of greatest gain, until a round gains next to nothing.
 ///
-/// Error is that of fitted values ([`refit`](super::refit())) on the unweighted triangulation, over all
-/// samples. In each round
+/// The error is that of fitted values ([`refit`](super::refit())) on the unweighted triangulation, over all samples. Each round
+/// does the following:
 ///
 /// 1. the *loss* of each point is computed, the increase of the squared error when it is removed and all
 ///    other values stay; and the *gain* of the worst sample of each cell, worst cells first, the decrease
 ///    when it is inserted with its optimal value: both by local retriangulation;
-/// 2. the greatest gain is paired with the least loss, the next with the next, as long as the gain is
-///    greater; points near others of the round wait;
-/// 3. values are fitted. If the error is not smaller, the round is taken back and the next one is
-///    half as large.
+/// 2. the greatest gain is paired with the least loss, the next with the next, as long as the gain is greater; points near others
+/// of the round have to wait;
+/// 3. values are fitted. If the error is not smaller, the round is undone and the next one is half as large.
 ///
-/// The corners of the volume stay. `voxels` are samples of the volume, its corners among them, in any
-/// order; those that were never exchanged come first in the result, in that order. The result does not depend on the number
-/// of threads. For n points a round takes about n removals and n/2 insertions, each of a few dozen cells.
+/// The corners of the volume stay. `voxels` are samples of the volume including its corners, in any order; those that were never
+/// exchanged come first in the result, in that order. The result does not depend on the number of threads. For n points a round
+/// takes about n removals and n/2 insertions, each of a few dozen cells.
 ///
 /// # Errors
-/// Missing samples; samples that span no volume; no memory.
+/// Samples are missing, the given samples span no volume, or there is not enough memory.
 pub fn exchange(
     volume: &Volume,
     voxels: &[u32],
@@ -90,7 +89,7 @@ pub fn exchange(
     Ok(best)
 }
 
-/// Points exchanged in one round, by number.
+/// The points exchanged in one round, by number.
 struct Swap {
     leave: Vec<u32>,
     join: Vec<u32>,
@@ -125,8 +124,8 @@ fn choose(
     Ok(pair(&gains, &losses, most))
 }
 
-/// The greatest gain and the least loss, the next ones, and so on. No cell goes for two new points, and
-/// no point leaves beside a new point or another that leaves.
+/// Pairs the greatest gain with the least loss, the next ones, and so on. No cell is removed for two new points, and no point is
+/// removed beside a new point or another that is removed.
 fn pair(gains: &[Gain], losses: &[Loss], most: usize) -> Swap {
     let mut swap = Swap { leave: Vec::new(), join: Vec::new() };
     let (mut cells, mut stay) = (HashSet::<u32>::new(), HashSet::<u32>::new());
@@ -153,29 +152,29 @@ fn pair(gains: &[Gain], losses: &[Loss], most: usize) -> Swap {
     swap
 }
 
-/// Cost of removing a point.
+/// The cost of removing a point.
 pub(super) struct Loss {
-    /// The point, by its number.
+    /// The number of the point.
     pub point: u32,
-    /// The squared error added.
+    /// The increase of the squared error.
     pub loss: f64,
-    /// Its neighbours.
+    /// The neighbours of the point.
     pub around: Vec<u32>,
 }
 
-/// Gain of inserting a point.
+/// The gain of inserting a point.
 pub(super) struct Gain {
-    /// The point, by its number.
+    /// The number of the point.
     pub point: u32,
-    /// The squared error taken away.
+    /// The decrease of the squared error.
     pub gain: f64,
-    /// The cells in conflict with it.
+    /// The cells in conflict with the point.
     pub removed: Vec<u32>,
-    /// The neighbours it would have.
+    /// The neighbours that the point would have.
     pub around: Vec<u32>,
 }
 
-/// A triangulation that points are tried on.
+/// A triangulation on which points are tried.
 pub(super) struct Trial<'a> {
     volume: &'a Volume,
     sampled: &'a Sampled<'a>,
@@ -184,7 +183,7 @@ pub(super) struct Trial<'a> {
 }
 
 impl<'a> Trial<'a> {
-    /// Looks up which samples each cell has. O(samples).
+    /// Finds the samples of each cell. O(samples).
     pub(super) fn new(
         volume: &'a Volume,
         sampled: &'a Sampled<'a>,
@@ -199,7 +198,7 @@ impl<'a> Trial<'a> {
         Ok(Workspace::new(self.sampled.voxels().len())?)
     }
 
-    /// Cost of removing a vertex; `None` where it cannot be removed.
+    /// The cost of removing a vertex; `None` if it cannot be removed.
     pub(super) fn loss(
         &self,
         point: u32,
@@ -223,12 +222,12 @@ impl<'a> Trial<'a> {
         Ok(Some(Loss { point, loss, around: cells.vertices(point) }))
     }
 
-    /// What a point gains that is a sample and no vertex, with the value that gains most.
+    /// The gain of inserting a sample that is not a vertex, with the value that gains most.
     pub(super) fn gain(&self, point: u32) -> Option<Gain> {
         let cell = self.sampled.owners()[self.sampled.voxels()[point as usize] as usize];
         let insertion = self.growing().insertion(self.screen, point, cell);
         let cells = LinearCells::of(insertion.cells.iter().copied(), self);
-        // Of the errors without the new value, e, and its shares φ: Σe², Σφe, Σφ².
+        // For the errors e without the new value, and its shares φ: Σe², Σφe, Σφ².
         let (mut before, mut errors, mut products, mut squares) = (0.0, 0.0, 0.0, 0.0);
         for &sample in insertion.removed.iter().flat_map(|&cell| self.samples.of(cell)) {
             let (row, shares) = cells.at(self.sampled.place(sample))?;
@@ -270,7 +269,7 @@ impl<'a> Trial<'a> {
     }
 }
 
-/// A few cells, each with the map from a place to its coordinates there.
+/// A few cells, each with the map from a position to its coordinates in the cell.
 struct LinearCells(Vec<LinearCell>);
 
 struct LinearCell {
@@ -285,8 +284,8 @@ impl LinearCells {
         Self(rows.filter_map(|row| LinearCell::of(row, trial.growing().positions())).collect())
     }
 
-    /// The cell that a place is in, or nearest to being in, and its coordinates there. Rounding decides
-    /// between cells at a face, where all of them say the same.
+    /// The cell that contains a position, or nearly does, and its coordinates in the cell. Rounding decides between cells at a
+    /// face, where all of them have the same values.
     fn at(&self, place: [f64; 3]) -> Option<([u32; 4], [f64; 4])> {
         let mut best = None;
         let mut depth = f64::NEG_INFINITY;
@@ -304,7 +303,7 @@ impl LinearCells {
         best
     }
 
-    /// The vertices, without one.
+    /// The vertices of the cells, except one.
     fn vertices(&self, without: u32) -> Vec<u32> {
         let all = self.0.iter().flat_map(|cell| cell.row);
         let mut vertices: Vec<u32> = all.filter(|&v| v != without).collect();
@@ -315,7 +314,7 @@ impl LinearCells {
 }
 
 impl LinearCell {
-    /// `None` for a cell without volume, as there are among points on one sphere.
+    /// The map of a cell; `None` for a cell without volume, which occurs among points on one sphere.
     fn of(row: [u32; 4], positions: &[[f64; 3]]) -> Option<Self> {
         let [a, b, c, d] = row.map(|v| positions[v as usize]);
         let from = |p: [f64; 3]| [p[0] - a[0], p[1] - a[1], p[2] - a[2]];

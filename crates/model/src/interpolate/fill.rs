@@ -3,17 +3,16 @@ use walpha_points::{Units, WeightedPoints};
 use walpha_shape::{Alpha, AlphaShape, ShapeOptions, alpha_shape};
 use walpha_volume::Volume;
 
-/// The whole regular triangulation of a shape's points (α = ∞) and, given their volume, of its
-/// corner samples too, so that it covers every sample of the grid.
+/// Computes the whole regular triangulation of a shape's points (α = ∞) and, given their volume, of its corner samples, too, so
+/// that it covers every sample of the grid.
 ///
-/// Corners that are not points yet come with their gray level and the least weight there is among
-/// the points. Being corners they are never hidden, and being light they hide little. Weights
-/// decide which points the triangulation has: a point hidden by heavier neighbours is not a vertex,
-/// and its value is not used. With [`Balls::Radius`](walpha_shape::Balls::Radius) the weights are (α + ω)²
-/// for the α of the shape.
+/// Corners that are not points yet are added with their gray level and the least weight of the points. As corners they are never
+/// hidden, and as they are light they hide little. Weights determine the vertices of the triangulation: a point hidden by heavier
+/// neighbours is not a vertex, and its value is not used. With [`Balls::Radius`](walpha_shape::Balls::Radius) the weights are (α
+/// + ω)² for the α of the shape.
 ///
 /// # Errors
-/// Points without values, and what [`alpha_shape`] refuses.
+/// The points have no values; and the errors of [`alpha_shape`].
 pub fn fill(
     shape: &AlphaShape,
     volume: Option<&Volume>,
@@ -48,7 +47,7 @@ fn missing_corners(volume: &Volume, units: Units, positions: &[[f64; 3]]) -> Vec
     corners.filter(|(corner, _)| !positions.contains(corner)).collect()
 }
 
-/// The corner samples of a volume, ascending: 8, or fewer where an axis has one sample.
+/// The corner samples of a volume, ascending: 8, or fewer if an axis has one sample.
 pub(super) fn corners(volume: &Volume) -> Vec<u32> {
     let [nx, ny, nz] = volume.dims().xyz();
     let mut corners = Vec::with_capacity(8);

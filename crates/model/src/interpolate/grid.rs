@@ -8,19 +8,18 @@ use super::InterpolateError;
 use walpha_points::{SampleGrid, Units};
 use walpha_volume::{Coordinates, Dims, Frame, Volume, inverse};
 
-/// A grid of places to sample F at.
+/// A grid of positions at which F is sampled.
 ///
-/// Its first and last samples along each axis coincide with the first and last samples of the volume it
-/// is laid over (or on the sides of a box), the others at equal steps between: the extent is that
-/// of the sample positions, and the grid of a volume's own sizes is the volume's own. An axis of a
-/// single sample lies in the middle. Positions are rounded once, so those that a double can hold
-/// are exact.
+/// Its first and last samples along each axis coincide with the first and last samples of the volume that it covers (or lie on
+/// the sides of a box), and the others are at equal steps between them: the extent is that of the sample positions, and the grid
+/// with a volume's own sizes is the volume's own. If an axis has a single sample, that is in the middle. Positions are rounded
+/// once, so those that a double can represent are exact.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Grid {
     dims: Dims,
-    /// Positions along the axes: fractional indices of the volume, or coordinates in a box.
+    /// The positions along the axes: fractional indices of the volume, or coordinates in a box.
     axes: [Vec<f64>; 3],
-    /// From there to the points' coordinates; `None` where these are the same.
+    /// The map from these positions to the points' coordinates; `None` if they are equal.
     world: Option<World>,
     frame: Frame,
 }
@@ -28,30 +27,30 @@ pub struct Grid {
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct World {
     frame: Frame,
-    /// From the world back to indices, after the origin is taken away; rounded.
+    /// The rounded map from the world to indices, after the origin is subtracted.
     inverse: [[f64; 3]; 3],
 }
 
 impl Grid {
-    /// The samples of a volume.
+    /// The grid of a volume's samples.
     #[expect(clippy::missing_panics_doc, reason = "its own samples are a step apart")]
     pub fn of(volume: &Volume, units: Units) -> Self {
         Self::over(volume, volume.dims(), units).expect("as many samples as the volume has")
     }
 
-    /// `dims` samples over the extent of a volume.
+    /// A grid of `dims` samples over the extent of a volume.
     ///
     /// # Errors
-    /// [`InterpolateError::Extent`]: several samples along an axis that has one in the volume.
+    /// [`InterpolateError::Extent`]: there are several samples along an axis with one sample in the volume.
     pub fn over(volume: &Volume, dims: Dims, units: Units) -> Result<Self, InterpolateError> {
         let samples = SampleGrid { dims: volume.dims(), frame: *volume.frame(), units };
         Self::over_samples(&samples, dims)
     }
 
-    /// `dims` samples over the extent of the grid that points are samples of.
+    /// A grid of `dims` samples over the extent of the grid whose samples the points are.
     ///
     /// # Errors
-    /// [`InterpolateError::Extent`]: several samples along an axis that has one there.
+    /// [`InterpolateError::Extent`]: there are several samples along an axis with one sample there.
     pub fn over_samples(samples: &SampleGrid, dims: Dims) -> Result<Self, InterpolateError> {
         let SampleGrid { dims: counts, frame: source, units } = *samples;
         let high = counts.xyz().map(|count| (count - 1) as f64);
@@ -61,11 +60,11 @@ impl Grid {
         Ok(Self { dims, axes, world: (units == Units::World).then_some(world), frame })
     }
 
-    /// `dims` samples over a box, given by its corners (x, y, z).
+    /// A grid of `dims` samples over a box, given by its corners (x, y, z).
     ///
     /// # Errors
-    /// [`InterpolateError::Extent`]: a coordinate that is not finite, a box whose corners are exchanged, or several samples along an
-    /// axis where it has no extent.
+    /// [`InterpolateError::Extent`]: a coordinate is not finite, the corners of the box are exchanged, or there are several
+    /// samples along an axis in which it has no extent.
     pub fn spanning(low: [f64; 3], high: [f64; 3], dims: Dims) -> Result<Self, InterpolateError> {
         let (axes, spacing) = axes(low, high, dims)?;
         let origin = [0, 1, 2].map(|k| axes[k][0]);
@@ -74,12 +73,12 @@ impl Grid {
         Ok(Self { dims, axes, world: None, frame })
     }
 
-    /// Sizes along the axes.
+    /// The number of samples along each axis.
     pub fn dims(&self) -> Dims {
         self.dims
     }
 
-    /// Where the samples lie in the world, for files.
+    /// The place of the samples in the world, for files.
     pub fn frame(&self) -> &Frame {
         &self.frame
     }
@@ -90,8 +89,8 @@ impl Grid {
         self.world.as_ref().map_or(place, |world| world.frame.to_world(place))
     }
 
-    /// What the coordinates of all samples have in common. O(samples) where they are of the
-    /// world, else along the axes alone.
+    /// The common bits of the coordinates of all samples. O(samples) if they are those of the world; otherwise only the axes are
+    /// examined.
     pub(super) fn bit_range(&self) -> BitRange {
         let [nx, ny, nz] = self.dims.xyz();
         if self.world.is_some() {
@@ -102,12 +101,12 @@ impl Grid {
         BitRange::of_all((0..nx.max(ny).max(nz)).map(|i| self.position(along(i))))
     }
 
-    /// The same samples, at their indices in the volume instead of in the world.
+    /// Returns a grid of the same samples, positioned by their indices in the volume instead of in the world.
     pub(super) fn by_index(&self) -> Self {
         Self { world: None, ..self.clone() }
     }
 
-    /// The indices of positions in the world, all of which are samples of the volume; `None` where one is not a sample, or
+    /// The indices of positions in the world, all of which must be samples of the volume; `None` if one is not a sample, or
     /// positions are indices already.
     pub(super) fn indices(&self, positions: &[[f64; 3]]) -> Option<Vec<[f64; 3]>> {
         let world = self.world.as_ref()?;
@@ -118,7 +117,7 @@ impl Grid {
         positions.par_iter().map(index).collect()
     }
 
-    /// Whether a cell that turns positively in the world turns negatively in indices.
+    /// Whether a cell that is positively oriented in the world is negatively oriented in indices.
     pub(super) fn is_mirrored(&self) -> bool {
         self.world.as_ref().is_some_and(|World { frame, .. }| {
             let [a, b, c] = frame.axes();
@@ -140,7 +139,7 @@ impl Grid {
         })
     }
 
-    /// The indices along an axis from one fractional index to another; all where these are none.
+    /// The indices along an axis from one fractional index to another; all if these are not finite.
     pub(super) fn range(&self, axis: usize, low: f64, high: f64) -> Range<usize> {
         let n = self.dims.xyz()[axis];
         if !(low.is_finite() && high.is_finite()) {
@@ -159,10 +158,10 @@ impl World {
     }
 }
 
-/// The simplex of a sample that is outside the shape.
+/// The simplex number of a sample outside the shape.
 pub(super) const OUTSIDE: u32 = u32::MAX;
 
-/// Positions along each axis, and the distances between neighbours.
+/// The positions along each axis, and the distances between neighbours.
 fn axes(
     low: [f64; 3],
     high: [f64; 3],
@@ -181,7 +180,7 @@ fn axes(
     Ok((positions, [0, 1, 2].map(|k| step(low[k], high[k], n[k]))))
 }
 
-/// `n` numbers at equal steps from the first to the last; the middle where `n` is 1.
+/// `n` numbers at equal steps from the first to the last; the middle if `n` is 1.
 fn steps(first: f64, last: f64, n: usize) -> Vec<f64> {
     if n == 1 {
         return vec![first / 2.0 + last / 2.0];
@@ -191,7 +190,7 @@ fn steps(first: f64, last: f64, n: usize) -> Vec<f64> {
     (0..n).map(at).collect()
 }
 
-/// The distance between neighbours of [`steps`]; of one position the extent, or 1 where there is none.
+/// The distance between neighbours of [`steps`]; for one position, the extent, or 1 if there is none.
 fn step(first: f64, last: f64, n: usize) -> f64 {
     let length = if n > 1 || last > first { last - first } else { 1.0 };
     length / (n - 1).max(1) as f64
@@ -249,7 +248,7 @@ mod tests {
         assert_eq!(of([0.0, nan, 0.0], [1.0; 3]), Some('y'));
         assert_eq!(of([0.0; 3], [1.0, 1.0, inf]), Some('z'));
         assert_eq!(of([-1e308, 0.0, 0.0], [1e308, 0.0, 1.0]), Some('x'));
-        // Doubles that have no third between them.
+        // No double is between these two.
         let three = Dims::new(3, 1, 1).unwrap();
         assert!(Grid::spanning([1.0, 0.0, 0.0], [1f64.next_up(), 0.0, 0.0], three).is_err());
         let flat = Volume::new(Array3::zeros((1, 4, 3)), Frame::VOXEL).unwrap();

@@ -10,23 +10,22 @@ use super::least_squares::PiecewiseLinear;
 use super::{Grid, InterpolateError};
 use walpha_shape::{AlphaShape, Class, Simplices};
 
-/// Places located as one piece of work, at least.
+/// The minimum number of positions in one parallel task.
 const CHUNK: usize = 256;
 
-/// F on a shape: on each simplex the linear function of the values at its vertices.
+/// The function F on a shape: on each simplex, it is linear in the values at the vertices.
 ///
-/// The simplices are the interior cells, then the singular facets, edges and vertices: what is a
-/// face of no higher simplex of the shape. A place on several belongs to the first of them, by
-/// that order and by the canonical order of [`Complex`](walpha_shape::Complex). Whether a simplex holds a
-/// place is decided exactly from the doubles given, so no place on the shape is missed between two
-/// cells, and the value does not jump across faces.
+/// The simplices are the interior cells, followed by the singular facets, edges and vertices: those that are not a face of a
+/// higher simplex of the shape. A position on several belongs to the first of them, in that order and in the canonical order of
+/// [`Complex`](walpha_shape::Complex). Whether a simplex contains a position is decided exactly for the given doubles, so no
+/// position on the shape is missed between two cells, and the value does not jump across faces.
 ///
-/// Values are rounded, by about 1e-13 of the largest value at the vertices; at a vertex they are
-/// its value bit for bit. Where coordinates are small multiples of a power of two, as those of
-/// voxels are, it makes no difference at all which of several simplices a place belongs to.
+/// Values are rounded, by about 1e-13 of the largest value at the vertices; at a vertex they are its value bit for bit. If
+/// coordinates are small multiples of a power of two, like those of voxels, the value does not depend at all on which of several
+/// simplices a position belongs to.
 ///
-/// Where all points are samples of a volume, the samples of a grid over it are located by their indices in the volume, which
-/// are exact in any frame, and not by the rounded coordinates of the world.
+/// If all points are samples of a volume, the samples of a grid over it are located by their indices in the volume, which are
+/// exact in any frame, and not by the rounded coordinates of the world.
 ///
 /// If several points coincide, the value of the one that was kept is used. Hidden points are ignored.
 #[derive(Clone, Debug)]
@@ -35,43 +34,43 @@ pub struct Interpolant<'a> {
     values: &'a [f64],
     simplices: Vec<SupportSimplex>,
     bit_range: BitRange,
-    /// Made when a single place is asked for; grids do without.
+    /// The search tree, built when a single position is queried; grids do not need it.
     tree: OnceLock<Tree>,
 }
 
-/// A simplex with a function on it: its vertices, as many as count.
+/// A simplex with a function on it: its vertices, of which the first `count` are used.
 #[derive(Clone, Copy, Debug)]
 struct SupportSimplex {
     vertices: [u32; 4],
     count: u8,
 }
 
-/// Where a place lies.
+/// The location of a position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Location<'a> {
-    /// The simplex it belongs to: input indices of one to four vertices.
+    /// The simplex that it belongs to: the input indices of one to four vertices.
     pub simplex: &'a [u32],
-    /// Its barycentric coordinates there, one for each vertex, then zeros.
+    /// Its barycentric coordinates there, one for each vertex, followed by zeros.
     pub coordinates: [f64; 4],
 }
 
 impl<'a> Interpolant<'a> {
-    /// The interpolant of the values of a shape's points. O(n).
+    /// Creates the interpolant of the values of a shape's points. O(n).
     ///
     /// # Errors
-    /// Points without values, or with one that is not finite.
+    /// The points have no values, or one that is not finite.
     pub fn new(shape: &'a AlphaShape) -> Result<Self, InterpolateError> {
         let values = shape.points().values().ok_or(InterpolateError::NoValues)?;
         Self::with_values(shape, values)
     }
 
-    /// The interpolant of other values, one for each point of a shape. O(n).
+    /// Creates the interpolant of other values, one for each point of a shape. O(n).
     ///
     /// # Errors
-    /// A value that is not finite; a shape of a periodic box.
+    /// A value is not finite, or the shape is on a torus.
     ///
     /// # Panics
-    /// When there are not as many values as points.
+    /// The number of values differs from that of points.
     pub fn with_values(shape: &'a AlphaShape, values: &'a [f64]) -> Result<Self, InterpolateError> {
         assert_eq!(values.len(), shape.points().len(), "a value for each point");
         if shape.options().periodic.is_some() {
@@ -97,12 +96,12 @@ impl<'a> Interpolant<'a> {
         })
     }
 
-    /// The same function of indices, and the grid by index, where the points are samples of the grid's volume and their
-    /// coordinates are those of the world; else both as they are.
+    /// Expresses this function and a grid in indices, if the points are samples of the grid's volume and their coordinates are
+    /// those of the world; otherwise returns both unchanged.
     ///
-    /// In a tilted or anisotropic frame the coordinates of samples are rounded, so a sample on the boundary of the shape may
-    /// be outside of it by a rounding error, and each decision near a facet takes big integers. Indices are exact in
-    /// any frame, and barycentric coordinates do not depend on it. O(n).
+    /// In a tilted or anisotropic frame the coordinates of samples are rounded, so that a sample on the boundary of the shape may
+    /// be outside by a rounding error, and each decision near a facet takes big integers. Indices are exact in any frame, and
+    /// barycentric coordinates do not depend on it. O(n).
     pub(super) fn by_index<'b>(&'b self, grid: &'b Grid) -> (Cow<'b, Self>, Cow<'b, Grid>) {
         let Some(indices) = grid.indices(&self.positions) else {
             return (Cow::Borrowed(self), Cow::Borrowed(grid));
@@ -118,19 +117,19 @@ impl<'a> Interpolant<'a> {
         (Cow::Owned(there), Cow::Owned(grid.by_index()))
     }
 
-    /// F at a place (x, y, z) in the units of the points; `None` outside the shape, and for what is
-    /// no place. O(log n) after the first.
+    /// The value of F at a position (x, y, z) in the units of the points; `None` outside the shape, and for coordinates that are
+    /// not finite. O(log n) after the first call.
     pub fn value_at(&self, place: [f64; 3]) -> Option<f64> {
         let simplex = self.simplex_at(place)?;
         Some(self.value(simplex, &self.coordinates(simplex, place)?))
     }
 
-    /// F at many places, in parallel.
+    /// The values of F at many positions, in parallel.
     pub fn values_at(&self, places: &[[f64; 3]]) -> Vec<Option<f64>> {
         places.par_iter().with_min_len(CHUNK).map(|&place| self.value_at(place)).collect()
     }
 
-    /// The simplex that a place belongs to, and its coordinates there.
+    /// The simplex that a position belongs to, and its coordinates there.
     pub fn locate(&self, place: [f64; 3]) -> Option<Location<'_>> {
         let number = self.simplex_at(place)?;
         let simplex = self.simplices[number as usize].vertices();
@@ -147,24 +146,24 @@ impl<'a> Interpolant<'a> {
         self.values
     }
 
-    /// What the coordinates of points have in common.
+    /// The common bits of the coordinates of points.
     pub(super) fn bit_range(&self) -> BitRange {
         self.bit_range
     }
 
-    /// The corners of a simplex; the first so many count.
+    /// The corners of a simplex, and how many of them are used.
     pub(super) fn corners(&self, simplex: u32) -> ([[f64; 3]; 4], usize) {
         let simplex = self.simplices[simplex as usize];
         (simplex.vertices.map(|v| self.positions[v as usize]), usize::from(simplex.count))
     }
 
-    /// The coordinates of a place in a simplex, if it holds it.
+    /// The coordinates of a position in a simplex, if it contains the position.
     pub(super) fn coordinates(&self, simplex: u32, place: [f64; 3]) -> Option<[f64; 4]> {
         let (corners, count) = self.corners(simplex);
         coordinates(&corners[..count], place, self.bit_range.is_exact_with(place))
     }
 
-    /// F on a simplex.
+    /// The value of F on a simplex.
     pub(super) fn value(&self, simplex: u32, coordinates: &[f64; 4]) -> f64 {
         let simplex = self.simplices[simplex as usize];
         combine(coordinates, simplex.vertices.map(|v| self.values[v as usize]))
@@ -190,8 +189,8 @@ impl<'a> Interpolant<'a> {
     }
 }
 
-/// The sum of values by their shares, in order of size, so that it does not matter in which order the
-/// vertices are. A vertex's own value bit for bit.
+/// The sum of values weighted by their shares, in order of size, so that it does not depend on the order of the vertices. At a
+/// vertex it is the vertex's value bit for bit.
 pub(super) fn combine(shares: &[f64; 4], values: [f64; 4]) -> f64 {
     if let Some(vertex) = shares.iter().position(|&share| share == 1.0) {
         return values[vertex];
@@ -239,14 +238,14 @@ fn add<const N: usize>(supports: &mut Vec<SupportSimplex>, simplices: &Simplices
     }));
 }
 
-/// Boxes in a binary tree, to find those that hold a place.
+/// A binary tree of boxes, to find those that contain a position.
 ///
-/// Nodes are in preorder, each with the node that follows its whole subtree, so that a search
-/// needs no stack. Memory: a node for every two boxes or so.
+/// Nodes are in preorder, each with the node that follows its whole subtree, so that a search needs no stack. There is about one
+/// node for every two boxes.
 #[derive(Clone, Debug)]
 pub(super) struct Tree {
     nodes: Vec<Node>,
-    /// The boxes' numbers, those of a leaf side by side.
+    /// The numbers of the boxes; those of a leaf are contiguous.
     order: Vec<u32>,
 }
 
@@ -254,21 +253,20 @@ pub(super) struct Tree {
 struct Node {
     low: [f64; 3],
     high: [f64; 3],
-    /// The node after this one's subtree.
+    /// The node after the subtree of this one.
     next: u32,
-    /// The range of its boxes in the order, if it is a leaf.
+    /// The range of the node's boxes in the order, if it is a leaf.
     leaf: Option<(u32, u32)>,
 }
 
-/// Low and high corners.
+/// The low and the high corner.
 pub(super) type Bounds = [[f64; 3]; 2];
 
-/// Boxes of a leaf, at most.
+/// The largest number of boxes of a leaf.
 const LEAF: usize = 4;
 
 impl Tree {
-    /// Halves the boxes by their middles along the axis in which these are farthest apart, again
-    /// and again. O(n log n).
+    /// Halves the boxes repeatedly by their centres, along the axis in which these are farthest apart. O(n log n).
     pub(super) fn new(boxes: &[Bounds]) -> Self {
         let mut order: Vec<u32> = (0..boxes.len() as u32).collect();
         let mut nodes = Vec::with_capacity(boxes.len());
@@ -278,7 +276,7 @@ impl Tree {
         Self { nodes, order }
     }
 
-    /// The least number for which `holds`, among the boxes that hold a place.
+    /// The least number for which `holds` is true, among the boxes that contain a position.
     pub(super) fn first(&self, place: [f64; 3], holds: impl Fn(u32) -> bool) -> Option<u32> {
         let mut first = None;
         let mut at = 0;

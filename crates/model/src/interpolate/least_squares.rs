@@ -1,4 +1,4 @@
-//! Values fitted by least squares: the normal equations, and conjugate gradients to solve them.
+//! Fits values by least squares: sets up the normal equations, and solves them by conjugate gradients.
 
 use rayon::prelude::*;
 use walpha_base::memory::{NoMemory, afford, try_with_capacity};
@@ -8,29 +8,29 @@ use super::grid::OUTSIDE;
 use super::{Grid, InterpolateError};
 use walpha_volume::Volume;
 
-/// Rows, or elements of a vector, worked on together. Fixed, so that sums are the same on any number
-/// of threads.
+/// The number of rows, or elements of a vector, in one parallel task. It is fixed, so that sums do not depend on the number of
+/// threads.
 const CHUNK: usize = 1 << 10;
 
-/// How far the residual is to fall.
+/// The relative residual to be reached.
 const TOLERANCE: f64 = 1e-6;
 
 /// Simplices with linear functions on them.
 pub(super) trait PiecewiseLinear: Sync {
     /// One more than the largest number of a simplex.
     fn count(&self) -> usize;
-    /// The vertices of a simplex, and how many of the four count.
+    /// The vertices of a simplex, and how many of the four are used.
     fn vertices(&self, part: u32) -> ([u32; 4], usize);
-    /// The barycentric coordinates of a position in a simplex, if it lies there.
+    /// The barycentric coordinates of a position in a simplex, if the simplex contains it.
     fn coordinates(&self, part: u32, place: [f64; 3]) -> Option<[f64; 4]>;
-    /// F on a simplex.
+    /// The value of F on a simplex.
     fn value(&self, part: u32, shares: &[f64; 4]) -> f64;
 }
 
-/// Symmetric equations for the changes of values, in compressed rows: those of the diagonal apart.
+/// Symmetric equations for the changes of values, in compressed rows, with the diagonal separate.
 pub(super) struct Normal {
     starts: Vec<usize>,
-    /// Off-diagonal entries: column and number.
+    /// The off-diagonal entries: column and number.
     entries: Vec<(u32, f64)>,
     diagonal: Vec<f64>,
     right: Vec<f64>,
@@ -40,9 +40,9 @@ pub(super) struct Normal {
 pub(super) struct Solved {
     /// The change of each value.
     pub change: Vec<f64>,
-    /// Steps of conjugate gradients.
+    /// The number of steps of conjugate gradients.
     pub steps: usize,
-    /// The norm of the residual over that of the right side.
+    /// The norm of the residual divided by that of the right-hand side.
     pub residual: f64,
 }
 
@@ -55,8 +55,8 @@ struct Row {
 }
 
 impl Normal {
-    /// The equations for the values of the first `free` points; those of the others stay. Each row is
-    /// summed by one thread, over the simplices at its point in their order.
+    /// Sets up the equations for the values of the first `free` points; those of the others do not change. Each row is summed by
+    /// one thread, over the simplices at its point in their order.
     pub(super) fn assemble(
         cells: &impl PiecewiseLinear,
         owners: &[u32],
@@ -113,7 +113,7 @@ impl Normal {
         Self { starts, entries, diagonal, right }
     }
 
-    /// Conjugate gradients with the diagonal as preconditioner, from 0.
+    /// Solves the equations by conjugate gradients, with the diagonal as preconditioner, starting from 0.
     pub(super) fn solve(&self, monitor: &Monitor) -> Result<Solved, InterpolateError> {
         let n = self.diagonal.len();
         let scaled = |r: &[f64]| -> Vec<f64> {
@@ -155,7 +155,7 @@ impl Normal {
     }
 }
 
-/// Without rounding as many steps as values would do.
+/// The least limit of steps. Without rounding, as many steps as values would be enough.
 const LEAST_STEPS: usize = 100;
 
 /// Progress on a logarithmic scale, in percent.
@@ -177,20 +177,19 @@ impl Row {
     }
 }
 
-/// Sums over chunks of a fixed size.
+/// The inner product, with sums over chunks of a fixed size.
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     let of_chunk = |(a, b): (&[f64], &[f64])| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     let sums: Vec<f64> = a.par_chunks(CHUNK).zip(b.par_chunks(CHUNK)).map(of_chunk).collect();
     sums.iter().sum()
 }
 
-/// a + s·b, in the place of a.
+/// Computes a + s·b in place of a.
 fn add(a: &mut [f64], s: f64, b: &[f64]) {
     a.par_iter_mut().zip(b).with_min_len(CHUNK).for_each(|(a, b)| *a += s * b);
 }
 
-/// The samples of each of so many simplices, ascending, by the simplex of each sample; missing ones are
-/// left out.
+/// The samples of each of `simplices` simplices, ascending, given the simplex of each sample. Missing samples are left out.
 pub(super) fn samples_of(
     simplices: usize,
     owners: &[u32],
@@ -205,14 +204,14 @@ pub(super) fn samples_of(
     })
 }
 
-/// A list of numbers for each key, in one array.
+/// A list of numbers for each key, stored in one array.
 pub(super) struct Lists {
     starts: Vec<u32>,
     items: Vec<u32>,
 }
 
 impl Lists {
-    /// `visit` names all pairs of a key and an item, in the same order each time it is called.
+    /// Creates the lists. `visit` must name all pairs of a key and an item, in the same order each time it is called.
     pub(super) fn new(
         keys: usize,
         visit: impl Fn(&mut dyn FnMut(u32, u32)),
@@ -234,7 +233,7 @@ impl Lists {
         Ok(Self { starts, items })
     }
 
-    /// The items of a key, in the order in which they were named.
+    /// The items of a key, in the order in which `visit` named them.
     pub(super) fn of(&self, key: u32) -> &[u32] {
         let [start, end] = [0, 1].map(|k| self.starts[key as usize + k] as usize);
         &self.items[start..end]

@@ -1,15 +1,14 @@
-//! The function F on a shape, what it misses of the volume, and points that miss less.
+//! The function F on a shape, its error with respect to the volume, and the selection of points that reduces this error.
 //!
-//! F is linear on each simplex of the shape: on interior cells, and on the facets, edges and
-//! vertices that are faces of no other simplex, at positions exactly on them. Which simplex holds a
-//! position is decided exactly, so F is defined everywhere on the shape and nowhere else, and each sample of a
-//! grid belongs to one simplex, whatever the number of threads.
+//! F is linear on each simplex of the shape: on interior cells, and on the facets, edges and vertices that are not faces of
+//! another simplex, at positions exactly on them. The simplex that contains a position is determined exactly, so F is defined
+//! everywhere on the shape and nowhere else, and each sample of a grid belongs to one simplex, whatever the number of threads.
 //!
-//! `barycentric.rs` computes coordinates in plain doubles where a lattice makes these exact, otherwise behind an error
-//! bound with big integers to fall back on. `raster.rs` fills grids in parallel over the simplices: each sample keeps the
-//! least number written to it. `adaptive.rs` chooses points by the error they leave, over `sampled.rs`, which keeps F at all
-//! samples while points come and leave; `exchange.rs` computes the gain of adding a point and the loss of removing one, and
-//! exchanges the points of least loss for the samples of most gain. `refit.rs` fits values by least squares.
+//! `barycentric.rs` computes coordinates in plain doubles if a lattice makes these exact, and otherwise behind an error bound,
+//! with big integers to fall back on. `raster.rs` fills grids in parallel over the simplices: each sample keeps the least number
+//! written to it. `adaptive.rs` chooses points by the error that they leave, over `sampled.rs`, which keeps F at all samples
+//! while points are added and removed; `exchange.rs` computes the gain of adding a point and the loss of removing one, and
+//! exchanges the points of least loss for the samples of greatest gain. `refit.rs` fits values by least squares.
 //!
 //! ```
 //! use walpha_model::interpolate::{Deviation, Grid, Interpolant, fill};

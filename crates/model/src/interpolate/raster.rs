@@ -1,5 +1,4 @@
-//! Which samples of a grid lie in a simplex: by rounded planes and exact tests, or in integers where corners are
-//! samples, too.
+//! Finds the samples of a grid in a simplex: by rounded planes and exact tests, or in integers if the corners are samples, too.
 
 use std::ops::Range;
 use std::sync::atomic::AtomicU32;
@@ -13,15 +12,13 @@ use super::barycentric::Planes;
 use super::grid::OUTSIDE;
 use super::{Grid, Interpolant};
 
-/// Simplices rasterised as one piece of work, at least.
+/// The minimum number of simplices in one parallel task.
 pub(super) const CHUNK: usize = 32;
 
-/// The simplex each sample belongs to, in memory order: the first of those that hold it, or
-/// [`OUTSIDE`].
+/// The simplex of each sample, in memory order: the first of those that contain it, or [`OUTSIDE`].
 ///
-/// Simplices are drawn in parallel, and a sample keeps the least number written to it, which does
-/// not depend on who comes first. Exact tests are spent on the samples near a simplex only, as
-/// rounded planes decide.
+/// Simplices are drawn in parallel, and a sample keeps the least number written to it, which does not depend on the order of
+/// writing. Rounded planes exclude most samples, so that exact tests are needed only near a simplex.
 pub(super) fn owners(interpolant: &Interpolant<'_>, grid: &Grid) -> Result<Vec<u32>, NoMemory> {
     let [nx, ny, _] = grid.dims().xyz();
     let samples = grid.dims().samples();
@@ -46,17 +43,17 @@ pub(super) fn owners(interpolant: &Interpolant<'_>, grid: &Grid) -> Result<Vec<u
             }
         });
     });
-    // In place, as both are of one size.
+    // The conversion is in place, as both types have the same size.
     Ok(owners.into_iter().map(AtomicU32::into_inner).collect())
 }
 
-/// How far, in samples, one looks beyond a simplex: far more than indices are rounded by.
+/// The margin around a simplex in which samples are tested, in samples: far larger than the rounding of indices.
 const MARGIN: f64 = 1e-3;
 
-/// Below so many samples in its box a simplex needs no planes.
+/// A simplex with fewer samples in its box needs no planes.
 const FEW: usize = 24;
 
-/// Visits the samples in a simplex, and some beside it.
+/// Visits the samples in a simplex, and some near it.
 fn for_each_near(grid: &Grid, corners: &[[f64; 3]], mut visit: impl FnMut([usize; 3])) {
     let mut indices = [[0.0; 3]; 4];
     let indices = &mut indices[..corners.len()];
@@ -99,15 +96,15 @@ fn within(planes: &[Plane], grid: &Grid, row: Range<usize>, [y, z]: [f64; 2]) ->
     if low > high { 0..0 } else { grid.range(0, low - MARGIN, high + MARGIN) }
 }
 
-/// What lies on the inner side of a facet, or at most [`MARGIN`] beyond: normal·p + offset ≥ 0.
+/// The half-space on the inner side of a facet, extended by at most [`MARGIN`]: normal·p + offset ≥ 0.
 struct Plane {
     normal: [f64; 3],
     offset: f64,
 }
 
 impl Plane {
-    /// The plane through three corners, the fourth on its inner side. All of space where that is
-    /// not certain.
+    /// The half-space bounded by the plane through three corners, with the fourth on its inner side. It is all of space if that
+    /// is not certain.
     fn beyond([a, b, c, inner]: [[f64; 3]; 4]) -> Self {
         let from_a = |p: [f64; 3]| [p[0] - a[0], p[1] - a[1], p[2] - a[2]];
         let size = |v: [f64; 3]| v.iter().map(|x| x.abs()).sum::<f64>();
@@ -126,14 +123,14 @@ impl Plane {
     }
 }
 
-/// Below so many samples along a row its ends are not looked for.
+/// The number of samples in a row below which its ends are not searched for.
 const SHORT: i64 = 8;
 
-/// Visits the samples in a cell or on its boundary, with six times the volumes of the cells that have the
-/// sample instead of one corner, and that of the whole. Corners and samples are indices (x, y, z), below
-/// 2¹⁶; a cell without volume holds nothing.
+/// Visits the samples in a cell or on its boundary, with six times the volumes of the four cells in which the sample replaces a
+/// corner, and that of the whole cell. Corners and samples are indices (x, y, z) below 2¹⁶; a cell without volume contains
+/// nothing.
 ///
-/// The shares, volumes over the whole, are those in any affine frame. A visit costs four additions; so
+/// The shares, which are the volumes divided by the whole, are the same in any affine frame. A visit costs four additions; so
 /// does a sample of the box around a small cell, and two beyond each end of the rows of a large one.
 #[inline(always)]
 pub(super) fn for_each_inside(
@@ -158,7 +155,7 @@ pub(super) fn for_each_inside(
             };
             let mut volumes = [0, 1, 2, 3].map(|k| row[k] + steps[k] * from);
             for x in from..=to {
-                // None of them has a sign.
+                // No volume is negative.
                 if volumes[0] | volumes[1] | volumes[2] | volumes[3] >= 0 {
                     visit([x, y, z], volumes, whole);
                 }
@@ -168,7 +165,7 @@ pub(super) fn for_each_inside(
     }
 }
 
-/// Volumes as functions of the place: normal·p + origin.
+/// The volumes as functions of the position: normal·p + origin.
 struct Volumes {
     normals: [[i64; 3]; 4],
     origin: [i64; 4],
@@ -192,10 +189,10 @@ impl Volumes {
     }
 }
 
-/// The part of a row where no volume is negative, and up to two samples more at each end.
+/// The part of a row in which no volume is negative, and up to two more samples at each end.
 fn ends(row: [i64; 4], steps: [i64; 4], [mut from, mut to]: [i64; 2]) -> [i64; 2] {
     for (&at, &step) in row.iter().zip(&steps) {
-        // Rounded by far less than a sample.
+        // The error of rounding is far smaller than a sample.
         let zero = -(at as f64) / step as f64;
         if step > 0 {
             from = from.max(zero as i64 - 1);

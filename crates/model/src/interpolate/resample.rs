@@ -9,20 +9,20 @@ use super::raster::owners;
 use super::{Grid, Interpolant, InterpolateError};
 use walpha_volume::Volume;
 
-/// F on the samples of a grid.
+/// The values of F at the samples of a grid.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Resampled {
     volume: Volume,
-    /// The simplex each sample belongs to.
+    /// The simplex of each sample.
     pub(super) owners: Vec<u32>,
 }
 
 impl Interpolant<'_> {
-    /// F on a grid. Each sample belongs to one simplex, decided as [`Interpolant`] says. O(simplices
-    /// + samples), in parallel over both, independent of the number of threads; 8 bytes a sample.
+    /// Samples F on a grid. Each sample belongs to one simplex, determined as [`Interpolant`] describes. O(simplices + samples),
+    /// parallel over both, independent of the number of threads; 8 bytes a sample.
     ///
     /// # Errors
-    /// Values that pass the range of `f32`; no memory for as many samples.
+    /// Values exceed the range of `f32`, or there is not enough memory for the samples.
     #[expect(clippy::missing_panics_doc, reason = "an invariant, never met")]
     pub fn resample(&self, grid: &Grid) -> Result<Resampled, InterpolateError> {
         let (there, grid) = self.by_index(grid);
@@ -51,12 +51,12 @@ impl Interpolant<'_> {
 }
 
 impl Resampled {
-    /// The values, 0 outside the shape.
+    /// The values; 0 outside the shape.
     pub fn volume(&self) -> &Volume {
         &self.volume
     }
 
-    /// Gives the values away.
+    /// Turns this into the volume of its values.
     pub fn into_volume(self) -> Volume {
         self.volume
     }
@@ -66,7 +66,7 @@ impl Resampled {
         self.owners[sample] != OUTSIDE
     }
 
-    /// Samples on the shape.
+    /// The number of samples on the shape.
     pub fn covered(&self) -> usize {
         self.owners.par_iter().filter(|&&part| part != OUTSIDE).count()
     }
@@ -74,7 +74,7 @@ impl Resampled {
     /// A volume that is 1 on the shape and 0 outside.
     ///
     /// # Errors
-    /// No memory for it.
+    /// There is not enough memory.
     #[expect(clippy::missing_panics_doc, reason = "an invariant, never met")]
     pub fn mask(&self) -> Result<Volume, InterpolateError> {
         let dims = self.volume.dims();
@@ -86,17 +86,17 @@ impl Resampled {
     }
 }
 
-/// Samples summed at a time. Fixed, so that sums are independent of the number of threads.
+/// The number of samples summed at a time. It is fixed, so that sums do not depend on the number of threads.
 const CHUNK: usize = 1 << 16;
 
-/// How far F is from a volume, on the samples that the shape covers.
+/// The deviation of F from a volume, on the samples that the shape covers.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Deviation {
-    /// Samples of the volume that are not missing.
+    /// The number of samples of the volume that are not missing.
     pub samples: usize,
-    /// Samples on the shape.
+    /// The number of samples on the shape.
     pub covered: usize,
-    /// Root mean square difference over these, in gray levels; `None` where there are none.
+    /// The root mean square difference on these samples, in gray levels; `None` if there are none.
     pub rmse: Option<f64>,
     /// The largest difference, in gray levels.
     pub max: Option<f64>,
@@ -106,16 +106,16 @@ impl Deviation {
     /// The peak that [`Deviation::psnr`] refers to.
     pub const PEAK: f64 = 255.0;
 
-    /// Compares a volume with F on its grid. O(n), sums in f64 in a fixed order.
+    /// Compares a volume with F on its grid. O(n); sums are doubles, in a fixed order.
     ///
     /// # Panics
-    /// When the two are not of one shape.
+    /// The sizes of the two differ.
     pub fn of(original: &Volume, resampled: &Resampled) -> Self {
         assert_eq!(original.dims(), resampled.volume().dims(), "one grid");
         Self::at(original, resampled.volume().as_slice(), |sample| resampled.is_inside(sample))
     }
 
-    /// Compares a volume with numbers at its samples, where there are some.
+    /// Compares a volume with numbers at its samples, where `is_inside` holds.
     pub(super) fn at(
         original: &Volume,
         ours: &[f32],
@@ -148,32 +148,32 @@ impl Deviation {
         }
     }
 
-    /// The deviation in another unit, of which a gray level is `step`.
+    /// Converts the deviation to another unit, with `step` units to a gray level.
     #[must_use]
     pub fn scaled(&self, step: f64) -> Self {
         let scaled = |error: Option<f64>| error.map(|error| error * step);
         Self { rmse: scaled(self.rmse), max: scaled(self.max), ..*self }
     }
 
-    /// The share of samples on the shape; coverage, of a ladder, is one of volume.
+    /// The share of samples on the shape. In a ladder, coverage is a share of volume instead.
     pub fn covered_share(&self) -> f64 {
         self.covered as f64 / self.samples as f64
     }
 
-    /// The peak signal-to-noise ratio in decibels, 20·log₁₀(255/RMSE); ∞ where nothing differs.
+    /// The peak signal-to-noise ratio in decibels, 20·log₁₀(255/RMSE); ∞ if nothing differs.
     pub fn psnr(&self) -> Option<f64> {
         self.rmse.map(|rmse| 20.0 * (Self::PEAK / rmse).log10())
     }
 }
 
 impl Interpolant<'_> {
-    /// How far F is from a volume around each point: the root mean square difference at the samples of the
-    /// point's simplices, each weighted by the point's barycentric coordinate there. In the units of the
-    /// values; 0 for a point that no sample counts for. `grid` is that of the volume, in the units of the
-    /// points, and `resampled` this interpolant on it. O(samples).
+    /// The deviation of F from a volume around each point: the root mean square difference at the samples of the point's
+    /// simplices, each weighted by the point's barycentric coordinate there. It is in the units of the values, and 0 for a point
+    /// that no sample contributes to. `grid` is that of the volume, in the units of the points, and `resampled` is this
+    /// interpolant on it. O(samples).
     ///
     /// # Panics
-    /// When grid, volume and samples are not of one shape.
+    /// The sizes of grid, volume and samples differ.
     pub fn local_deviations(
         &self,
         original: &Volume,

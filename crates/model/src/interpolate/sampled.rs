@@ -19,40 +19,40 @@ use walpha_points::Units;
 use walpha_shape::ShapeError;
 use walpha_volume::Volume;
 
-/// The interpolant of samples of a volume on their Delaunay triangulation, at all samples.
+/// The interpolant of samples of a volume on their Delaunay triangulation, evaluated at all samples.
 ///
 /// A sample belongs to the same cell, and F has the same bits there, as if
-/// [`Interpolant::resample`](super::Interpolant::resample) were asked for the triangulation of the
-/// points in the order in which they came. Both locate samples by their indices, not by coordinates of the
-/// world, which are rounded in most frames; numbers made of indices are not, as a volume has fewer than 2³²
-/// samples. F is computed anew only in new cells and where a sample has another cell than before.
+/// [`Interpolant::resample`](super::Interpolant::resample) were called for the triangulation of the points in the order of their
+/// insertion. Both locate samples by their indices and not by coordinates of the world, which are rounded in most frames;
+/// computations with indices are exact, as a volume has fewer than 2³² samples. F is recomputed only in new cells and where the
+/// cell of a sample changed.
 pub(super) struct Sampled<'a> {
     volume: &'a Volume,
     units: Units,
-    /// The samples at their indices.
+    /// The grid of samples by their indices.
     grid: Grid,
-    /// Whether a cell that turns positively in the world turns negatively in indices.
+    /// Whether a cell that is positively oriented in the world is negatively oriented in indices.
     mirrored: bool,
     /// Whether coordinates of the world are exact, so that every cell has a volume in indices, too.
     exact: bool,
     growing: Growing,
-    /// The sample of each point, by its number in the triangulation; 0 for the infinite vertex.
+    /// The sample of each point, by the number of the point in the triangulation; 0 for the infinite vertex.
     voxels: Vec<u32>,
-    /// Its index (x, y, z) in the volume.
+    /// The index (x, y, z) of each point in the volume.
     indices: Vec<[i64; 3]>,
-    /// Values of points by their numbers in the triangulation.
+    /// The values of points, by their numbers in the triangulation.
     values: Vec<f64>,
-    /// F at each sample.
+    /// The value of F at each sample.
     f: Vec<f32>,
     /// The cell of each sample, by its number in the triangulation.
     owners: Vec<u32>,
 }
 
 impl<'a> Sampled<'a> {
-    /// The interpolant of some samples.
+    /// Creates the interpolant of some samples.
     ///
     /// # Errors
-    /// Samples that span no volume; no memory.
+    /// The samples span no volume, or there is not enough memory.
     pub(super) fn new(
         volume: &'a Volume,
         units: Units,
@@ -82,7 +82,7 @@ impl<'a> Sampled<'a> {
     /// Inserts samples as points.
     ///
     /// # Errors
-    /// No memory.
+    /// There is not enough memory.
     pub(super) fn add(&mut self, voxels: &[u32]) -> Result<(), InterpolateError> {
         let named: Vec<u32> = self.name(voxels).collect();
         self.growing.insert(&named).map_err(ShapeError::from)?;
@@ -99,7 +99,7 @@ impl<'a> Sampled<'a> {
     /// Removes points and inserts others, by their numbers.
     ///
     /// # Errors
-    /// No memory.
+    /// There is not enough memory.
     pub(super) fn change(&mut self, leave: &[u32], join: &[u32]) -> Result<(), InterpolateError> {
         self.growing.remove(leave).map_err(ShapeError::from)?;
         self.growing.insert(join).map_err(ShapeError::from)?;
@@ -110,7 +110,7 @@ impl<'a> Sampled<'a> {
     /// Fits the values of points to the volume by least squares, as [`refit`](super::refit()) does.
     ///
     /// # Errors
-    /// No memory.
+    /// There is not enough memory.
     pub(super) fn refit(&mut self, monitor: &Monitor) -> Result<(), InterpolateError> {
         let cells = self.triangulation();
         let free = self.values.len();
@@ -121,12 +121,12 @@ impl<'a> Sampled<'a> {
         Ok(())
     }
 
-    /// How far F is from the volume.
+    /// The deviation of F from the volume.
     pub(super) fn deviation(&self) -> Deviation {
         Deviation::at(self.volume, &self.f, |sample| self.owners[sample] != OUTSIDE)
     }
 
-    /// F at each sample, 0 where no cell is.
+    /// The value of F at each sample; 0 outside all cells.
     pub(super) fn f(&self) -> &[f32] {
         &self.f
     }
@@ -141,18 +141,18 @@ impl<'a> Sampled<'a> {
         &self.values
     }
 
-    /// The samples that points are, by their numbers.
+    /// The samples that the points are, by their numbers.
     pub(super) fn voxels(&self) -> &[u32] {
         &self.voxels
     }
 
-    /// Numbers of the vertices.
+    /// The numbers of the vertices.
     pub(super) fn vertices(&self) -> Vec<u32> {
         let all = Growing::FIRST..self.voxels.len() as u32;
         all.filter(|&v| self.growing.is_vertex(v)).collect()
     }
 
-    /// Where a sample is, in the units of points.
+    /// The position of a sample, in the units of points.
     pub(super) fn place(&self, sample: u32) -> [f64; 3] {
         self.units.position(self.volume, sample)
     }
@@ -182,7 +182,7 @@ impl<'a> Sampled<'a> {
         Cells { growing, values, indices, mirrored: *mirrored }
     }
 
-    /// Finds the cells of the samples that new cells hold, and F there.
+    /// Finds the cells of the samples in new cells, and computes F there.
     fn follow(&mut self) {
         let fresh = self.growing.take_new_cells();
         let mut is_fresh = vec![false; self.cells()];
@@ -204,9 +204,9 @@ impl<'a> Sampled<'a> {
         self.evaluate(changed);
     }
 
-    /// The first cell of each sample, of all cells. Where the world rounds, four samples in one plane may be
-    /// a cell without volume in indices. It holds nothing, and of two cells on its sides, which have no
-    /// facet in common, either may come first.
+    /// The first of all cells that contain each sample. If coordinates of the world are rounded, four samples in one plane may
+    /// form a cell without volume in indices. It contains nothing, and of two cells on its sides, which have no common facet,
+    /// either may come first.
     fn draw_all(&self) -> Vec<u32> {
         let cells = self.triangulation();
         let none = |_| AtomicU32::new(OUTSIDE);
@@ -225,8 +225,8 @@ impl<'a> Sampled<'a> {
         owners.into_iter().map(AtomicU32::into_inner).collect()
     }
 
-    /// Finds the samples in new cells where every cell has a volume: F is then the same whichever of several
-    /// cells a sample belongs to, and is written at once.
+    /// Finds the samples in new cells, if every cell has a volume. F is then the same whichever of several cells a sample belongs
+    /// to, and is written immediately.
     fn draw(&mut self, fresh: &[u32], is_fresh: &[bool], owners: &[AtomicU32]) {
         let f: Vec<AtomicU32> = self.f.par_iter().map(|f| AtomicU32::new(f.to_bits())).collect();
         let cells = self.triangulation();
@@ -236,7 +236,8 @@ impl<'a> Sampled<'a> {
             for_each_inside(row.map(|v| self.indices[v as usize]), |index, volumes, whole| {
                 let sample = self.sample(index);
                 let owner = &owners[sample];
-                // A new owner was found from a new cell, and once is enough; at vertices it may be another.
+                // This owner was found from another new cell, which is enough, except at vertices, where another cell may come
+                // first.
                 let found = is_fresh.get(owner.load(Relaxed) as usize).is_some_and(|&fresh| fresh);
                 if found && volumes.iter().filter(|&&volume| volume == 0).count() < 3 {
                     return;
@@ -255,7 +256,7 @@ impl<'a> Sampled<'a> {
         (x + nx * (y + ny * z)) as usize
     }
 
-    /// Computes F at some samples.
+    /// Computes F at the samples for which `wanted` holds.
     fn evaluate(&mut self, wanted: impl Fn(usize, u32) -> bool + Sync) {
         let mut f = std::mem::take(&mut self.f);
         let cells = self.triangulation();
@@ -281,7 +282,7 @@ fn positions(volume: &Volume, units: Units, voxels: &[u32]) -> Vec<[f64; 3]> {
     voxels.iter().map(|&voxel| units.position(volume, voxel)).collect()
 }
 
-/// The cells of a triangulation as an interpolant has them, with corners at their indices.
+/// The cells of a triangulation in the form of an interpolant, with corners at their indices.
 struct Cells<'a> {
     growing: &'a Growing,
     values: &'a [f64],
@@ -305,19 +306,19 @@ impl Cells<'_> {
         Some([a, b, c, d])
     }
 
-    /// Gives a sample in a new cell to the first of the cells that hold it.
+    /// Assigns a sample in a new cell to the first of the cells that contain it.
     #[inline(always)]
     fn claim(&self, cell: u32, shares: &[f64; 4], owner: &AtomicU32) {
         match shares.iter().filter(|share| **share == 0.0).count() {
             0 => owner.store(cell, Relaxed),
             1 => owner.store(self.first_across(cell, shares), Relaxed),
             2 => owner.store(self.first_at(cell, shares), Relaxed),
-            // At a vertex F is its value, whichever cell the sample belongs to.
+            // At a vertex F is the vertex's value, whichever cell the sample belongs to.
             _ => drop(owner.fetch_min(cell, Relaxed)),
         }
     }
 
-    /// The first in canonical order of a cell and the one beyond the facet that a place lies on.
+    /// The first, in canonical order, of a cell and the cell beyond the facet on which a position lies.
     fn first_across(&self, cell: u32, shares: &[f64; 4]) -> u32 {
         let row = self.row(cell);
         let apex = (0..4).find(|&k| shares[k] == 0.0).expect("a share is 0");
@@ -330,9 +331,8 @@ impl Cells<'_> {
         if self.row(next) < row { next } else { cell }
     }
 
-    /// The first in canonical order of the cells at the face that a place lies on within one of them. They
-    /// are those with all vertices of the face, and from one to the next the way leads through facets
-    /// that have all of them, too.
+    /// The first, in canonical order, of the cells at the face on which a position in one of them lies. These are the cells with
+    /// all vertices of the face; they are connected by facets that contain all of these vertices, too.
     fn first_at(&self, cell: u32, shares: &[f64; 4]) -> u32 {
         let row = self.row(cell);
         let on = |v: u32| (0..4).any(|k| row[k] == v && shares[k] != 0.0);

@@ -1,5 +1,5 @@
-//! Files of blocks: a header in JSON, then arrays of little-endian numbers. The start has the digest of the
-//! header, which has those of the arrays, so that every byte is verified.
+//! Files of blocks: a header in JSON, followed by arrays of little-endian numbers. The file starts with the digest of the header,
+//! which contains those of the arrays, so that every byte is verified.
 
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
@@ -13,15 +13,15 @@ use super::{BlocksError, Plan};
 use crate::export::Target;
 use walpha_shape::{Class, Complex, ComponentSums, SheetSums, Sheets, Simplices};
 
-/// How a file of a block begins. The length of the header in 64 bits follows, and its digest.
+/// The magic bytes of a block file. They are followed by the length of the header in 64 bits, and its digest.
 const MAGIC: &[u8; 16] = b"walpha block 2\r\n";
-/// Bytes before the header.
+/// The number of bytes before the header.
 const START: usize = 40;
 
 /// The header, before the arrays.
 #[derive(Serialize, Deserialize)]
 struct Header {
-    /// Version of the program.
+    /// The version of the program.
     version: String,
     /// The digest of the plan.
     plan: Digest,
@@ -31,16 +31,16 @@ struct Header {
     arrays: Vec<Array>,
 }
 
-/// Name, length and digest of an array.
+/// The name, length and digest of an array.
 #[derive(Serialize, Deserialize)]
 struct Array {
     name: String,
-    /// Its length in bytes.
+    /// The length in bytes.
     bytes: u64,
     digest: Digest,
 }
 
-/// Arrays that are to be written.
+/// Arrays to be written.
 #[derive(Default)]
 pub(super) struct Arrays(Vec<(&'static str, Vec<u8>)>);
 
@@ -56,7 +56,7 @@ impl Arrays {
         self.0.push((name, bytes));
     }
 
-    /// Writes the file of a block, which appears when it is whole.
+    /// Writes the file of a block, which appears when it is complete.
     pub(super) fn write(
         self,
         plan: &Plan,
@@ -87,17 +87,17 @@ impl Arrays {
 pub(super) struct BlockFile {
     path: PathBuf,
     pub summary: BlockSummary,
-    /// Arrays, and where they begin.
+    /// The arrays, and their positions.
     arrays: Vec<(Array, u64)>,
-    /// Samples of the volume.
+    /// The number of samples of the volume.
     samples: u64,
 }
 
 impl BlockFile {
-    /// Opens the file of a block, whose arrays are read when they are asked for.
+    /// Opens the file of a block. Its arrays are read on request.
     ///
     /// # Errors
-    /// It is not there, does not verify, or is of another plan or block.
+    /// The file does not exist, does not verify, or belongs to another plan or block.
     pub(super) fn open(plan: &Plan, block: usize) -> Result<Self, BlocksError> {
         let path = plan.block_file(block);
         let mut file = bytes::open(&path)?;
@@ -149,8 +149,8 @@ impl BlockFile {
 
     const DAMAGED: &str = "is damaged, or cut off";
 
-    /// Whether the facts match the lengths of the arrays. That is true of every block that was written; it is checked
-    /// here so that later code may rely on it.
+    /// Whether the numbers of the summary match the lengths of the arrays. That is true for every block that was written; it is
+    /// checked here so that later code may rely on it.
     fn fits(&self, points: u64) -> bool {
         let BlockSummary { cells, facets, edges, vertices, components, sheets, .. } = &self.summary;
         let sum = |counts: &[usize; 3]| counts.iter().map(|&count| count as u128).sum::<u128>();
@@ -164,7 +164,7 @@ impl BlockFile {
         };
         let (kept, border, shared) =
             (rows("voxels", 8), rows("border_points", 8), rows("shared_simplices", 24));
-        // A regular facet has a sheet on one side, a singular one on both.
+        // A regular facet has a sheet on one side, a singular one on both sides.
         let sides = facets[1] as u128 + 2 * facets[2] as u128;
         let lengths = [
             ("voxels", 8, kept),
@@ -200,10 +200,10 @@ impl BlockFile {
                 .all(|met| components.get(met.component as usize).is_some())
     }
 
-    /// An array.
+    /// Reads an array.
     ///
     /// # Errors
-    /// It cannot be read, or does not verify.
+    /// The array cannot be read, or does not verify.
     pub(super) fn read<T: Number>(&self, name: &str) -> Result<Vec<T>, BlocksError> {
         let known = self.arrays.iter().find(|(known, _)| known.name == name);
         let (array, at) = known.ok_or_else(|| self.damaged(&format!("has no {name}")))?;
@@ -219,10 +219,10 @@ impl BlockFile {
         sound.ok_or_else(|| self.damaged(Self::DAMAGED))
     }
 
-    /// An array of numbers that are below a bound each.
+    /// Reads an array of numbers that must be below a bound.
     ///
     /// # Errors
-    /// The errors of [`read`](Self::read); a number out of range.
+    /// See [`read`](Self::read); or a number is out of range.
     pub(super) fn below<T: Number + Ord>(
         &self,
         name: &str,
@@ -235,10 +235,10 @@ impl BlockFile {
         Ok(numbers)
     }
 
-    /// The points by their index in the volume, ascending.
+    /// The indices of the points in the volume, ascending.
     ///
     /// # Errors
-    /// The errors of [`read`](Self::read).
+    /// See [`read`](Self::read).
     pub(super) fn voxels(&self) -> Result<Vec<u64>, BlocksError> {
         let voxels = self.below("voxels", self.samples)?;
         if !voxels.is_sorted_by(|a, b| a < b) {
@@ -247,15 +247,15 @@ impl BlockFile {
         Ok(voxels)
     }
 
-    /// The error for what a block that verifies cannot have.
+    /// The error for content that a verified block cannot have.
     pub(super) fn damaged(&self, what: &str) -> BlocksError {
         BlocksError::Damaged { path: self.path.clone(), what: what.to_owned() }
     }
 
-    /// Reads all of it, a little at a time, and looks whether it is what was written.
+    /// Reads the whole file piece by piece, and verifies it.
     ///
     /// # Errors
-    /// It is not, or cannot be read.
+    /// The file does not verify, or cannot be read.
     pub(super) fn verify(&self) -> Result<(), BlocksError> {
         let io = |source| BlocksError::Io { path: self.path.clone(), source };
         let mut file = bytes::open(&self.path)?;
@@ -270,21 +270,21 @@ impl BlockFile {
     }
 }
 
-/// Summary of a block: all that merging needs besides keys and rows.
+/// The summary of a block: everything that merging needs besides keys and rows.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct BlockSummary {
     pub points: u64,
     pub halo: u64,
     pub cells: usize,
-    /// By class: interior, regular, singular.
+    /// The numbers by class: interior, regular, singular.
     pub facets: [usize; 3],
     pub edges: [usize; 3],
     pub vertices: [usize; 3],
-    /// `None` where there is no point.
+    /// `None` if there is no point.
     pub weights: Option<Weights>,
     pub components: Vec<BlockComponent>,
     pub sheets: Vec<BlockSheet>,
-    /// At most four places, with the same affine hull as the points of the block and its halo.
+    /// At most four positions, with the same affine hull as the points of the block and its halo.
     pub spanning: Vec<[f64; 3]>,
 }
 
@@ -307,12 +307,12 @@ pub(super) struct BlockComponent {
 /// The part of a sheet in a block.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct BlockSheet {
-    /// Where it is met first in the order of the rows; `None` where the block has no row of it.
+    /// The first occurrence in the order of the rows; `None` if the block has no row of the sheet.
     pub met: Option<Met>,
     pub sums: SheetSums,
 }
 
-/// A place in the order in which sheets are met: along the facets of the boundary, then the singular edges.
+/// A position in the order in which sheets occur: along the facets of the boundary, then along the singular edges.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub(super) struct Met {
     pub is_edge: bool,
@@ -323,10 +323,10 @@ pub(super) struct Met {
     pub component: u32,
 }
 
-/// What a block has of the shape: rows of `points` points, and sheets by their common numbers.
+/// Reads a block's part of the shape: rows of `points` points, and sheets by their common numbers.
 ///
 /// # Errors
-/// The file cannot be read, does not verify, or has simplices that cannot be.
+/// The file cannot be read, does not verify, or contains impossible simplices.
 pub(super) fn read_rows(
     file: &BlockFile,
     points: usize,
@@ -348,7 +348,7 @@ pub(super) fn read_rows(
     let sheet = |name: u32| numbers[name as usize];
     let count = numbers.len() as u32;
     let mut names = file.below::<u32>("facet_sheets", count)?.into_iter().map(sheet);
-    // As many as there are sides: `BlockFile::open` has compared them.
+    // There are as many names as sides: `BlockFile::open` has compared them.
     let mut next = || names.next().unwrap_or_default();
     let mut sheets = Sheets::default();
     for class in complex.facets.classes() {
@@ -362,7 +362,7 @@ pub(super) fn read_rows(
     Ok((complex, sheets))
 }
 
-/// Simplices with their classes; without an array of these, all are interior.
+/// Reads simplices with their classes; if `classes` is `None`, all are interior.
 fn rows<const N: usize>(
     file: &BlockFile,
     name: &str,

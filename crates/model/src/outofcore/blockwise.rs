@@ -1,5 +1,5 @@
-//! Outputs written block by block, never whole in memory: VTK's parallel formats (a file for each block and an
-//! index), and arrays of Zarr.
+//! Writers of outputs that are written block by block and never complete in memory: VTK's parallel formats (a file for each block
+//! and an index), and arrays of Zarr.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -16,14 +16,13 @@ use crate::export::{
 };
 use walpha_shape::{Complex, Surface};
 
-/// A format that blocks are written to one after the other. VTK's programs open theirs by the file that names the
-/// others.
+/// A format to which blocks are written one after the other. VTK's programs open the index, the file that names the others.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub enum BlockwiseFormat {
-    /// `.pvtu`: all simplices, as [`Vtu`](crate::export::Vtu) has them.
+    /// `.pvtu`: all simplices, as in [`Vtu`](crate::export::Vtu).
     Grid,
-    /// `.pvtp`: boundary, singular edges and vertices, as [`Vtp`](crate::export::Vtp) has them.
+    /// `.pvtp`: boundary, singular edges and vertices, as in [`Vtp`](crate::export::Vtp).
     Surface,
     /// `.zarr`: a folder of arrays with all simplices (`docs/clusters.md`).
     #[cfg(feature = "zarr")]
@@ -31,7 +30,7 @@ pub enum BlockwiseFormat {
 }
 
 impl BlockwiseFormat {
-    /// The formats, and the extensions of what they are opened by.
+    /// The formats, with the extensions of the files or folders to open.
     pub const ALL: &[(Self, &str)] = &[
         (Self::Grid, "pvtu"),
         (Self::Surface, "pvtp"),
@@ -39,10 +38,10 @@ impl BlockwiseFormat {
         (Self::Arrays, "zarr"),
     ];
 
-    /// Refuses a place where this cannot be written, before the work.
+    /// Refuses a path at which the output cannot be written, before the work.
     ///
     /// # Errors
-    /// A folder of arrays is there already, or what is there is an input.
+    /// A folder of arrays exists already, or an input would be replaced.
     pub fn check(self, path: &Path) -> Result<(), BlocksError> {
         match self {
             Self::Grid | Self::Surface => {
@@ -67,21 +66,21 @@ impl BlockwiseFormat {
         Self::ALL.iter().find(|(_, known)| extension == *known).map(|(pieces, _)| *pieces)
     }
 
-    /// Writes the shape of merged blocks, several blocks at a time in memory, one for each thread. Points are
-    /// named by their index in the volume, `voxel`. Of VTK's formats there is a file for each block that
-    /// has simplices, in a folder beside `path` of its name without the extension.
+    /// Writes the shape of merged blocks, with several blocks at a time in memory, one for each thread. Points are named by their
+    /// index in the volume, `voxel`. In VTK's formats there is a file for each block that has simplices, in a folder beside
+    /// `path` that has its name without the extension.
     ///
     /// # Errors
-    /// A block cannot be read, a file not written.
+    /// A block cannot be read, or a file cannot be written.
     pub fn write(self, plan: &Plan, merged: &Merged, path: &Path) -> Result<(), BlocksError> {
         self.write_with(plan, Some(merged), path, &Alone)
     }
 
-    /// The same as one of a team. Of VTK's formats each process writes some of the pieces, and the first, which
-    /// has what was merged, the file that names them; arrays are written by the first alone.
+    /// Like [`write`](Self::write), as one process of a team. In VTK's formats each process writes some of the pieces, and the
+    /// first, which has the merged shape, also writes the index; arrays are written by the first alone.
     ///
     /// # Errors
-    /// As [`BlockwiseFormat::write`]. A process that returns an error leaves the rest of the team waiting.
+    /// See [`write`](Self::write). A process that returns an error leaves the rest of the team waiting.
     pub fn write_with(
         self,
         plan: &Plan,
@@ -90,7 +89,7 @@ impl BlockwiseFormat {
         team: &dyn Team,
     ) -> Result<(), BlocksError> {
         let Written { new, files } = self.fill(plan, merged, path, team)?;
-        // The first process has the file that names the others.
+        // The first process has the index.
         team.barrier();
         let put = || -> Result<(), BlocksError> {
             put_all(files)?;
@@ -109,7 +108,7 @@ impl BlockwiseFormat {
         }
     }
 
-    /// Writes all that a process of a team has to write, but puts nothing in its place yet.
+    /// Writes all files of a process of a team, but does not move them to their destinations yet.
     #[doc(hidden)]
     pub fn fill(
         self,
@@ -133,12 +132,12 @@ impl BlockwiseFormat {
     }
 }
 
-/// Pieces that are complete, and wait to be put in their places; dropped, they go.
+/// Complete pieces that have not been moved to their destinations yet. If dropped, they are removed.
 #[derive(Debug)]
 pub struct Written {
-    /// The one that names the others is the last.
+    /// The files. The index is the last.
     pub files: Vec<Filled>,
-    /// The folder of the pieces, if it was made for them. After the files: it goes when it is empty.
+    /// The folder of the pieces, if it was created for them. It is declared after the files, as it is removed if it is empty.
     pub new: Option<NewFolder>,
 }
 
@@ -150,7 +149,7 @@ pub(super) enum VtkFormat {
 }
 
 impl VtkFormat {
-    /// Where the files of blocks go.
+    /// The folder for the files of blocks.
     pub(super) fn folder(path: &Path) -> PathBuf {
         path.with_extension("")
     }
@@ -163,7 +162,7 @@ impl VtkFormat {
         }
     }
 
-    /// Fills the pieces of this process, and last the index as the first.
+    /// Fills the pieces of this process and, if it is the first, the index as the last file.
     pub(super) fn fill(
         self,
         plan: &Plan,
@@ -254,7 +253,7 @@ impl VtkFormat {
     }
 }
 
-/// A text as an attribute of XML.
+/// Escapes a text for an attribute in XML.
 fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;")
 }
@@ -291,7 +290,7 @@ impl MergedBlock {
         }
     }
 
-    /// The points that simplices have as corners, ascending.
+    /// The points that are corners of simplices, ascending.
     fn corners(&self) -> Vec<u32> {
         let Complex { cells, facets, edges, vertices } = &self.complex;
         let mut used = vec![false; self.voxels.len()];

@@ -1,4 +1,5 @@
-//! What was read of a volume, brick by brick, so that a block can tell whether it reads what was planned.
+//! Digests of the samples that were read from a volume, brick by brick, so that a block can verify that it reads what was
+//! planned.
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
@@ -9,26 +10,26 @@ use super::bytes::{Digest, Hasher};
 
 /// Digests of the bricks of a box: 8 bytes for each, of 8³ or 16³ samples.
 pub(super) struct ReadDigests {
-    /// Samples along x, y and z of the volume, and of a brick.
+    /// The number of samples along x, y and z in the volume, and along the sides of a brick.
     dims: [usize; 3],
     side: usize,
-    /// In bricks.
+    /// The box in bricks.
     part: SampleBox,
-    /// 0 where nothing was read yet.
+    /// The digest of each brick; 0 if nothing was read yet.
     bricks: Vec<AtomicU64>,
-    /// Whether a brick was not what it had been.
+    /// Whether a brick differed when it was read again.
     differs: AtomicBool,
 }
 
 impl ReadDigests {
-    /// Nothing yet of a box of samples of a volume.
+    /// Creates empty digests for a box of samples of a volume.
     pub(super) fn none_of(part: &SampleBox, side: usize, dims: [usize; 3]) -> Self {
         let part = Self::around(part, side, dims);
         let bricks = (0..part.samples()).map(|_| AtomicU64::new(0)).collect();
         Self { dims, side, part, bricks, differs: AtomicBool::new(false) }
     }
 
-    /// The bricks that have samples of a box.
+    /// The bricks that overlap a box of samples.
     fn around(part: &SampleBox, side: usize, dims: [usize; 3]) -> SampleBox {
         let SampleBox { first, size } = part.aligned(side, dims);
         SampleBox { first: first.map(|i| i / side), size: size.map(|n| n.div_ceil(side)) }
@@ -39,8 +40,8 @@ impl ReadDigests {
         ((z - z0) * ny + y - y0) * nx + x - x0
     }
 
-    /// Notes the samples of a box; says whether all bricks, those of earlier reads too, are what they were.
-    /// Bricks that are not whole in the box, or beyond that of this, are left out.
+    /// Records the samples of a box; returns whether all bricks agree with earlier reads. Bricks that are not completely in the
+    /// box, or are outside the box of this object, are left out.
     pub(super) fn note(&self, part: &SampleBox, samples: &[f32]) -> bool {
         let bricks = Self::around(part, self.side, self.dims).common(&self.part);
         let SampleBox { first, size: [nx, ny, _] } = bricks;
@@ -59,7 +60,7 @@ impl ReadDigests {
         !self.differs.load(Ordering::Relaxed)
     }
 
-    /// The digest of a brick; `None` where the box does not contain all of it.
+    /// The digest of a brick; `None` if the box does not contain all of it.
     fn of_brick(&self, at: [usize; 3], part: &SampleBox, samples: &[f32]) -> Option<u64> {
         let whole = SampleBox { first: at.map(|i| i * self.side), size: [self.side; 3] };
         let whole = whole.common(&SampleBox::whole(self.dims));
@@ -80,7 +81,7 @@ impl ReadDigests {
         Some(hasher.short().max(1))
     }
 
-    /// The digest of the bricks that have samples of a box, in their order.
+    /// The digest of the bricks that overlap a box of samples, in their order.
     pub(super) fn digest(&self, part: &SampleBox) -> Digest {
         let bricks = Self::around(part, self.side, self.dims).common(&self.part);
         let mut hasher = Hasher::default();
@@ -95,12 +96,12 @@ impl ReadDigests {
         hasher.digest()
     }
 
-    /// Digests of this process, to send to others.
+    /// The digests of this process, to be sent to others.
     pub(super) fn bricks(&self) -> Vec<u64> {
         self.bricks.iter().map(|brick| brick.load(Ordering::Relaxed)).collect()
     }
 
-    /// Joins the digests of two processes; says whether they agree where both have read.
+    /// Joins the digests of two processes; returns whether they agree on the bricks that both have read.
     pub(super) fn join(seen: &mut [u64], other: &[u64]) -> bool {
         let mut same = true;
         for (mine, &theirs) in seen.iter_mut().zip(other) {
@@ -110,7 +111,7 @@ impl ReadDigests {
         same
     }
 
-    /// Takes the joined digests of all processes.
+    /// Replaces the digests by the joined ones of all processes.
     pub(super) fn take(&mut self, all: Vec<u64>) {
         self.bricks = all.into_iter().map(AtomicU64::new).collect();
     }
@@ -133,8 +134,7 @@ mod tests {
         samples
     }
 
-    /// However the volume is read, the same bricks have the same digest; another sample in any of them
-    /// has another.
+    /// The same bricks have the same digests however the volume is read; another sample in any of them changes its digest.
     #[test]
     fn bricks_are_known_again() {
         let dims = [21, 17, 30];

@@ -1,4 +1,4 @@
-//! Digests, by which files and samples are known again.
+//! Digests, by which files and samples are recognised.
 
 use std::fmt::{self, Debug, Display};
 use std::fs::File;
@@ -10,7 +10,7 @@ use walpha_files::open_ordinary;
 
 use super::BlocksError;
 
-/// BLAKE3 of some bytes, its first 128 bits: against accidents, not against somebody who wants to deceive.
+/// The first 128 bits of BLAKE3 of some bytes. They protect against accidents, not against deception.
 #[derive(Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(into = "String", try_from = "String")]
 pub(super) struct Digest([u8; 16]);
@@ -22,22 +22,23 @@ impl Digest {
         hasher.digest()
     }
 
-    /// Whether these are the bytes that it is of. A fuzzer would never get past it, and does not have to.
+    /// Whether this is the digest of these bytes. It is always true for fuzzers, which could never match a digest and do not have
+    /// to.
     pub(super) fn is_of(self, bytes: &[u8]) -> bool {
         self.is(Self::of(bytes))
     }
 
-    /// Its bytes, as stored in files.
+    /// The bytes of the digest, as stored in files.
     pub(super) fn bytes(&self) -> &[u8] {
         &self.0
     }
 
-    /// Out of 16 bytes.
+    /// Reads a digest from 16 bytes.
     pub(super) fn read(bytes: &[u8]) -> Self {
         Self(bytes.try_into().expect("as many bytes as it has"))
     }
 
-    /// Whether it equals the digest found.
+    /// Whether it equals another digest.
     pub(super) fn is(self, found: Self) -> bool {
         cfg!(fuzzing) || self == found
     }
@@ -65,7 +66,7 @@ impl TryFrom<String> for Digest {
     type Error = &'static str;
 
     fn try_from(text: String) -> Result<Self, Self::Error> {
-        // As it is printed, so that each digest has one text.
+        // Only the printed form is accepted, so that each digest has one text.
         let is_digit = |byte: &u8| matches!(byte, b'0'..=b'9' | b'a'..=b'f');
         if text.len() != 32 || !text.as_bytes().iter().all(is_digit) {
             return Err("a digest has 32 digits");
@@ -75,7 +76,7 @@ impl TryFrom<String> for Digest {
     }
 }
 
-/// Takes bytes piece by piece.
+/// Computes a digest of bytes that are added piece by piece.
 #[derive(Default)]
 pub(super) struct Hasher(blake3::Hasher);
 
@@ -84,7 +85,7 @@ impl Hasher {
         self.0.update(bytes);
     }
 
-    /// The first 64 bits, of which there may be many.
+    /// The first 64 bits, for digests of which there are many.
     pub(super) fn short(&self) -> u64 {
         let mut digest = [0; 8];
         self.0.finalize_xof().fill(&mut digest);
@@ -98,7 +99,7 @@ impl Hasher {
     }
 }
 
-/// A number as files have it.
+/// A number as it is stored in files.
 pub(super) trait Number: Copy {
     const SIZE: usize;
     fn put(self, bytes: &mut Vec<u8>);
@@ -131,13 +132,13 @@ impl<T: Number, const N: usize> Number for [T; N] {
     }
 }
 
-/// Numbers out of their bytes; `None` where some are left.
+/// Converts bytes to numbers; `None` if some bytes are left over.
 pub(super) fn numbers<T: Number>(bytes: &[u8]) -> Option<Vec<T>> {
     let whole = bytes.len().is_multiple_of(T::SIZE);
     whole.then(|| bytes.chunks(T::SIZE).map(T::get).collect())
 }
 
-/// Opens a file in the folder of a plan. Anything but an ordinary file counts as damaged: what a link leads to is not of
+/// Opens a file in the folder of a plan. Anything but an ordinary file counts as damaged: the target of a link does not belong to
 /// the plan.
 pub(super) fn open(path: &Path) -> Result<File, BlocksError> {
     let opened = open_ordinary(path);
@@ -146,7 +147,7 @@ pub(super) fn open(path: &Path) -> Result<File, BlocksError> {
     opened.ok_or_else(|| BlocksError::Damaged { path: path.into(), what: what.into() })
 }
 
-/// A whole file in the folder of a plan.
+/// Reads a whole file in the folder of a plan.
 pub(super) fn read_file(path: &Path) -> Result<Vec<u8>, BlocksError> {
     let mut bytes = Vec::new();
     let read = open(path)?.read_to_end(&mut bytes);
@@ -154,7 +155,7 @@ pub(super) fn read_file(path: &Path) -> Result<Vec<u8>, BlocksError> {
     Ok(bytes)
 }
 
-/// Length and digest of a file, read in chunks.
+/// The length and digest of a file, read in chunks.
 pub(super) fn digest_of(file: impl Read) -> io::Result<(u64, Digest)> {
     let (mut file, mut hasher, mut length) = (file, Hasher::default(), 0);
     let mut bytes = vec![0; 1 << 18];
@@ -178,7 +179,7 @@ mod tests {
     #[test]
     fn a_digest_is_that_of_blake3_and_has_one_text() {
         let digest = Digest::of(b"");
-        // The test vector of no bytes.
+        // This is the test vector for no bytes.
         assert_eq!(digest.to_string(), "af1349b9f5f9a1a6a0404dea36dcc949");
         assert_eq!(Digest::try_from(digest.to_string()), Ok(digest));
         let text = digest.to_string();

@@ -10,55 +10,56 @@ use super::field::Field;
 use super::plan::{DEFAULT_MEMORY, TILE_SAMPLE};
 use super::{BlocksError, Cutting, Job};
 
-/// What a job will cost, by a model: as if its blocks were cubes, three tenths of the volume were filled evenly with
-/// points, and the cores were those of the machine in `docs/clusters.md`, which has what was measured. Nothing of the volume is read.
+/// The estimated cost of a job. The model assumes that blocks are cubes, that three tenths of the volume are filled evenly with
+/// points, and that the cores are those of the machine in `docs/clusters.md`, which has the measurements. No samples of the
+/// volume are read.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct CostEstimate {
-    /// Samples of the volume.
+    /// The number of samples of the volume.
     pub samples: u64,
-    /// Points that will be selected.
+    /// The number of points that will be selected.
     pub points: u64,
-    /// Blocks.
+    /// The number of blocks.
     pub blocks: u64,
-    /// Points that are looked at again, around blocks, as a share of all.
+    /// The number of points around blocks, which are processed again, as a share of all.
     pub halo_share: f64,
-    /// Bytes of memory of a process that works on one block at a time.
+    /// The memory in bytes of a process that works on one block at a time.
     pub memory_per_block: u64,
-    /// Bytes of samples that are read by the plan, and by all blocks together.
+    /// The bytes of samples that are read by the plan, and by all blocks together.
     pub bytes_read: [u64; 2],
-    /// Bytes that blocks write, and of these what merging reads.
+    /// The bytes that blocks write, and the part of them that merging reads.
     pub bytes_written: [u64; 2],
-    /// Bytes of files that the plan works with; blocks need a third of them, for the standard decomposition.
+    /// The size in bytes of the files that the plan works with; blocks need a third of them, for the standard decomposition.
     pub bytes_of_plan: u64,
-    /// Seconds of one core for the plan, for all blocks, and for merging without writing pieces.
+    /// The seconds of one core for the plan, for all blocks, and for merging without writing pieces.
     pub core_seconds: [f64; 3],
 }
 
-/// Passes over the volume that a plan takes: where values are gray levels, and where these are to be found first.
+/// The number of passes over the volume that a plan takes: if values are gray levels, and if their range must be found first.
 const PASSES: [f64; 2] = [5.0, 6.0];
-/// The share of the volume where the points are.
+/// The share of the volume that is filled with points.
 const FILLED: f64 = 0.3;
-/// Nanoseconds of a core for a sample in a pass of the plan, and in a block.
+/// The nanoseconds of a core for a sample in a pass of the plan, and in a block.
 const SAMPLE: f64 = 60.0;
-/// Nanoseconds of a core for a point of a block at work, and for its rows.
+/// The memory in bytes for a point of a block at work, and its time, including its rows, in nanoseconds of a core.
 const POINT: f64 = 6900.0;
-/// Bytes that a block writes for a point of its own.
+/// The number of bytes that a block writes for each of its own points.
 const ROWS: f64 = 335.0;
-/// Bytes of keys for a point next to a face between blocks, and nanoseconds of merging them.
+/// The bytes of keys for a point next to a face between blocks, and the nanoseconds of merging them.
 const KEYS: f64 = 23.0;
 const MERGE: f64 = 250.0;
-/// Bytes of the sum of a brick.
+/// The size in bytes of the sum of a brick.
 const SUM: u64 = 8;
-/// Bytes for a sample of the coefficients of the standard decomposition, and of the truncated volume, in files.
+/// The size in bytes of a sample in files: of a coefficient of the standard decomposition, and of the truncated volume.
 const IN_FILE: u64 = 8 + 4;
-/// How many times the mean the largest difference is taken to be.
+/// The assumed ratio of the largest difference and the mean.
 const PEAK: f64 = 8.0;
 
 /// Estimates the cost of a job.
 ///
 /// # Errors
-/// The errors of [`Job::check`]; a selection whose count is known only after reading the volume.
+/// See [`Job::check`]; or the number of selected points is known only after reading the volume.
 pub fn estimate_cost(job: &Job, cutting: Cutting) -> Result<CostEstimate, BlocksError> {
     job.check()?;
     let source = Source::open(&job.input, &job.recipe.read)?;
@@ -69,7 +70,7 @@ pub fn estimate_cost(job: &Job, cutting: Cutting) -> Result<CostEstimate, Blocks
     };
     let Model { samples: n, points: p, .. } = model;
     let size = source.dtype().size() as f64;
-    // Two layers of points at each face between blocks.
+    // There are two layers of points at each face between blocks.
     let faces = 6.0 * ((blocks as f64).cbrt() - 1.0) * p.powf(2.0 / 3.0);
     let is_gray = source.has_gray_levels() && job.recipe.gray.is_none();
     let passes = PASSES[usize::from(!is_gray)];
@@ -95,14 +96,14 @@ pub fn estimate_cost(job: &Job, cutting: Cutting) -> Result<CostEstimate, Blocks
     })
 }
 
-/// Cubes of equally many samples, of which some are filled with points.
+/// A model of cubes with equal numbers of samples, some of which are filled with points.
 struct Model {
     samples: f64,
     points: f64,
-    /// How far, in samples, what is looked at around a block reaches from it: points, and samples.
+    /// The width in samples of the surroundings of a block that are processed: of points, and of samples.
     width: f64,
     margin: f64,
-    /// Bytes for the sums of all bricks, for these and the samples at work, and for each point.
+    /// The bytes for the sums of all bricks, for these and the samples at work, and for each point.
     sums: u64,
     samples_at_work: u64,
     point: u64,
@@ -125,7 +126,7 @@ impl Model {
             Weighting::BarycentricN => PEAK * job.alpha().squared(),
             _ => 0.0,
         };
-        // All weights but a common one are small as a rule.
+        // Except for common ones, weights are usually small.
         let usual = if let Weighting::Common(weight) = job.weighting() { weight } else { 0.0 };
         let radius = |weight: f64| job.recipe.balls.radius(job.alpha(), weight);
         let product = |sizes: [usize; 3]| sizes.iter().product::<usize>() as u64;
@@ -142,33 +143,33 @@ impl Model {
         })
     }
 
-    /// How many times as large a block of so many samples is with what is around it. Blocks at the sides of
-    /// the volume have nothing beyond these.
+    /// The factor by which a block of samples grows with its surroundings. Blocks at the sides of the volume have none beyond
+    /// these.
     fn grown(blocks: u64, samples: f64, by: f64) -> f64 {
         let blocks = blocks as f64;
         let edge = (samples / blocks).cbrt();
         (1.0 + 2.0 * by * (1.0 - 1.0 / blocks.cbrt()) / edge).powi(3)
     }
 
-    /// Samples in and around blocks, for each sample.
+    /// The number of samples in and around blocks, for each sample.
     fn around(&self, blocks: u64) -> f64 {
         Self::grown(blocks, self.samples, self.margin)
     }
 
-    /// Points around blocks, for each point.
+    /// The number of points around blocks, for each point.
     fn halo(&self, blocks: u64) -> f64 {
         Self::grown(blocks, FILLED * self.samples, self.width) - 1.0
     }
 
-    /// Bytes for a block at work.
+    /// The memory in bytes for a block at work.
     fn memory(&self, blocks: u64) -> u64 {
         let points = self.points / blocks as f64 * (1.0 + self.halo(blocks));
         self.samples_at_work + (self.point as f64 * points) as u64
     }
 
-    /// The fewest blocks that keep to `asked` bytes, with one block at work per thread.
+    /// The smallest number of blocks that need at most `asked` bytes, with one block at work per thread.
     fn blocks(&self, asked: u64) -> Result<u64, ShapeError> {
-        /// Powers of two that are tried.
+        /// The number of powers of two that are tried.
         const POWERS: u32 = 32;
         let threads = rayon::current_num_threads() as u64;
         let needed = |blocks: u64| threads * self.memory(blocks);

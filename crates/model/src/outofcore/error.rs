@@ -19,7 +19,7 @@ use walpha_volume::VolumeError;
 pub struct Finding {
     /// The file.
     pub path: PathBuf,
-    /// What is wrong, as of "block-00001.walpha …".
+    /// What is wrong, in words that follow the name of the file.
     pub what: String,
 }
 
@@ -30,23 +30,23 @@ impl Display for Finding {
     }
 }
 
-/// Why work in blocks cannot be done.
+/// An error of work in blocks.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum BlocksError {
     /// The volume cannot be read.
     #[error(transparent)]
     Volume(#[from] VolumeError),
-    /// The wavelet stage.
+    /// An error of the wavelet stage.
     #[error(transparent)]
     Haar(#[from] HaarError),
-    /// Selection or weights.
+    /// An error of the selection of points or of their weights.
     #[error(transparent)]
     Points(#[from] PointsError),
-    /// α.
+    /// An error of α.
     #[error(transparent)]
     Pipeline(#[from] PipelineError),
-    /// The shape.
+    /// An error of the computation of the shape.
     #[error(transparent)]
     Shape(#[from] ShapeError),
     /// A file cannot be written.
@@ -55,7 +55,7 @@ pub enum BlocksError {
     /// The work was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
-    /// Not enough memory.
+    /// There is not enough memory.
     #[error(transparent)]
     Memory(#[from] NoMemory),
     /// A file of the plan's folder cannot be read.
@@ -82,10 +82,10 @@ pub enum BlocksError {
         /// The problem.
         what: String,
     },
-    /// There is no plan that can be used.
+    /// There is no usable plan.
     #[error("{}: {what}", shown(path))]
     NoPlan {
-        /// Its file.
+        /// The file of the plan.
         path: PathBuf,
         /// The problem.
         what: String,
@@ -93,23 +93,23 @@ pub enum BlocksError {
     /// A block was made by another plan.
     #[error("{} belongs to another plan", shown(path))]
     OtherPlan {
-        /// Its file.
+        /// The file of the block.
         path: PathBuf,
     },
-    /// Blocks are not there yet.
+    /// Some blocks have not been computed yet.
     #[error("{} of {all} blocks are missing: {}", missing.len(), first(missing))]
     Missing {
         /// The missing blocks.
         missing: Vec<usize>,
-        /// Number of blocks of the plan.
+        /// The number of blocks of the plan.
         all: usize,
     },
     /// There is no such block.
     #[error("there is no block {index}: the plan has {count}, from 0 to {}", count - 1)]
     NoBlock {
-        /// The one asked for.
+        /// The number of the block asked for.
         index: usize,
-        /// Number of blocks.
+        /// The number of blocks.
         count: usize,
     },
     /// Files do not verify.
@@ -117,10 +117,10 @@ pub enum BlocksError {
     Unsound {
         /// The folder of the plan.
         folder: PathBuf,
-        /// Which, and why.
+        /// The files that do not verify, and why.
         findings: Vec<Finding>,
     },
-    /// The input is not what it was when the plan was made.
+    /// The input has changed since the plan was made.
     #[error("{input} has changed since it was planned: {what}")]
     Changed {
         /// The input of the plan.
@@ -128,7 +128,7 @@ pub enum BlocksError {
         /// The difference.
         what: String,
     },
-    /// What takes the whole volume or all points at once.
+    /// An option or method needs the whole volume or all points at once.
     #[error("{what} is not local, so that it cannot be computed in blocks")]
     NotLocal {
         /// The option or method.
@@ -136,10 +136,10 @@ pub enum BlocksError {
         /// The advice.
         next: &'static str,
     },
-    /// More than one file can hold.
+    /// The shape is too large for a single file.
     #[error("{what} pass 32-bit indices, so that they fit no single file")]
     TooLarge {
-        /// The things counted.
+        /// The items that are too many.
         what: String,
     },
 }
@@ -160,7 +160,7 @@ fn listed(findings: &[Finding]) -> String {
     shown.join(", ") + more
 }
 
-/// A number of files, and that they do not verify.
+/// States that a number of files do not verify.
 fn number(count: usize, one: &str, many: &str) -> String {
     format!("{count} {} not verify", if count == 1 { one } else { many })
 }

@@ -1,4 +1,4 @@
-//! Gray levels, truncated gray levels and differences of any part of a volume, and passes over all of it, tile by tile.
+//! Gray levels, truncated gray levels and differences in any part of a volume, and passes over all of it, tile by tile.
 
 use ndarray::Array3;
 use rayon::prelude::*;
@@ -12,11 +12,11 @@ use walpha_points::internal::Bricks;
 use walpha_points::internal::Cut;
 use walpha_volume::{Frame, GrayRange, Nan, Source, Volume, VolumeError};
 
-/// Samples handled at a time, about.
+/// The approximate number of samples processed at a time.
 const TILE: usize = 1 << 22;
-/// Samples along an edge of what is handled at a time, at least.
+/// The minimum number of samples along an edge of a tile.
 const EDGE: usize = 64;
-/// The most sums of bricks of 8 samples a side that are gathered; else bricks have 16.
+/// The largest number of sums of bricks of 8 samples a side; if there were more, bricks have 16 samples a side.
 const SUMS: usize = 1 << 24;
 
 /// A volume read part by part, as gray levels.
@@ -28,44 +28,44 @@ pub(super) struct Field {
     nan: Option<Nan>,
     /// The values that are gray 0 and 255.
     pub range: GrayRange,
-    /// The least value, which stands in for missing ones.
+    /// The least value, which replaces missing ones.
     pub least: f32,
-    /// Digests of the bricks read so far.
+    /// The digests of the bricks read so far.
     pub digests: ReadDigests,
 }
 
 /// The truncated volume.
 #[expect(clippy::large_enum_variant, reason = "there is one for each block at work")]
 pub(super) enum Truncated {
-    /// Nothing but zeros was dropped: it is the volume.
+    /// Only zeros were dropped: it equals the volume.
     Same,
-    /// Of the non-standard decomposition: which coefficients stay, and the sums of the bricks of the
+    /// For the non-standard decomposition: the cut that determines which coefficients stay, and the sums of the bricks of the
     /// truncated volume.
     Bricks { cut: Cut, sums: Vec<f64> },
-    /// Of the standard decomposition: its samples, and what was read of them.
+    /// For the standard decomposition: its samples, and digests of those that were read.
     File(Source, ReadDigests),
 }
 
-/// Gray levels of a part, and which samples are missing.
+/// The gray levels of a part, and which samples are missing.
 pub(super) struct Grays {
     pub values: Vec<f32>,
     pub missing: Option<Vec<bool>>,
 }
 
-/// A sample that takes part in the choice of points.
+/// A sample that may become a point.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sample {
     /// Its index in the volume.
     pub voxel: u64,
     pub difference: f64,
-    /// Its gray level, before and after truncation.
+    /// The gray level, before and after truncation.
     pub gray: f32,
     pub smoothed: f32,
     pub missing: bool,
 }
 
 impl Field {
-    /// Opens the input of a job, of which a part will be read, or all.
+    /// Opens the input of a job, of which a part or all will be read.
     pub(super) fn open(job: &Job, part: Option<&SampleBox>) -> Result<Self, BlocksError> {
         let source = Source::open(&job.input, &job.recipe.read)?;
         if source.dims() != job.dims {
@@ -81,18 +81,17 @@ impl Field {
         Ok(Self { source, input, dims, bricks, nan, range, least, digests })
     }
 
-    /// Whether values are gray levels as they are, and all numbers.
+    /// Whether the values are gray levels already, and all are numbers.
     pub(super) fn is_gray(&self) -> bool {
         self.source.has_gray_levels()
     }
 
-    /// The size of what is handled at a time: whole bricks, and whole pieces of the file as far as these are
-    /// no larger.
+    /// The size of tiles: whole bricks, and whole pieces of the file unless these are larger.
     pub(super) fn tile(&self) -> [usize; 3] {
         Self::tile_of(&self.source)
     }
 
-    /// The tile size for an opened volume.
+    /// The size of tiles for an opened volume.
     pub(super) fn tile_of(source: &Source) -> [usize; 3] {
         let dims = source.dims().xyz();
         let side = Self::bricks_of(dims).side();
@@ -100,7 +99,7 @@ impl Field {
         let grain = source.grain();
         let mut tile = [0, 1, 2].map(|k| grain[k].max(EDGE).next_multiple_of(side).min(whole[k]));
         let samples = |tile: [usize; 3]| tile.iter().product::<usize>();
-        // Larger where there is room, smaller where pieces of the file are too large; z first.
+        // The tile is enlarged if there is room, and reduced if pieces of the file are too large; z comes first.
         for k in [2, 1, 0] {
             while samples(tile) < TILE && 2 * tile[k] <= 4 * EDGE && tile[k] < whole[k] {
                 tile[k] = (2 * tile[k]).min(whole[k]);
@@ -112,7 +111,7 @@ impl Field {
         tile
     }
 
-    /// Bricks as small as memory for the sums of all allows.
+    /// The bricks, as small as the memory for their sums allows.
     pub(super) fn bricks_of(dims: [usize; 3]) -> Bricks {
         let fine = Bricks::new(dims, 3);
         let is_fit = fine.count().iter().product::<usize>() <= SUMS;
@@ -125,7 +124,7 @@ impl Field {
         ((z * ny + y) * nx + x) as u64
     }
 
-    /// The values of a part, where NaN and infinities are values or [missing](Nan::Mask).
+    /// The values of a part, with the rule for NaN and infinities applied: replaced by a value or [missing](Nan::Mask).
     pub(super) fn values(&self, part: &SampleBox) -> Result<Grays, BlocksError> {
         let mut values = self.source.read(part.first, part.size)?;
         if !self.digests.note(part, &values) {
@@ -165,15 +164,15 @@ impl Field {
         Ok(grays)
     }
 
-    /// Coefficients of a part of whole bricks, with the sum of each brick at its first place.
+    /// The coefficients of a part that consists of whole bricks, with the sum of each brick at its first place.
     pub(super) fn coefficients(&self, part: &SampleBox, grays: &[f32]) -> Vec<f64> {
         let mut values: Vec<f64> = grays.par_iter().map(|&v| f64::from(v)).collect();
         self.bricks.fine(&mut values, part.size);
         values
     }
 
-    /// Visits the places of a part of whole bricks: the place in the part, the index in the volume, and
-    /// the number of the brick whose first place it is, if it is one.
+    /// Visits the samples of a part that consists of whole bricks: the index in the part, the index in the volume, and the number
+    /// of the brick whose first sample it is, if it is one.
     pub(super) fn places(
         &self,
         part: &SampleBox,
@@ -196,7 +195,7 @@ impl Field {
         }
     }
 
-    /// Truncated gray levels of a part of whole bricks.
+    /// The truncated gray levels of a part that consists of whole bricks.
     fn smoothed(
         &self,
         part: &SampleBox,
@@ -239,7 +238,7 @@ impl Field {
         let outer = part.grown([1; 3], self.dims).aligned(self.bricks.side(), self.dims);
         let Grays { values, missing } = self.grays(&outer)?;
         let smoothed = self.smoothed(&outer, &values, truncated)?;
-        // Wrong at the ends of the outer part alone, unless these are ends of the volume.
+        // These are wrong only at the ends of the outer part, unless the ends are those of the volume.
         let differences = difference(&smoothed);
         let differences = differences.as_slice().expect("standard layout");
         let [nx, ny, _] = outer.size;
@@ -274,7 +273,7 @@ pub(super) struct Passes<'a> {
 }
 
 impl<'a> Passes<'a> {
-    /// Passes of a process of a team.
+    /// The passes of a process of a team.
     pub(super) fn new(team: &'a dyn Team, tiles: &[SampleBox], monitor: &'a Monitor) -> Self {
         let tiles = team.own(tiles.len()).map(|tile| tiles[tile]).collect();
         Self { team, monitor, tiles, done: 0 }
@@ -283,7 +282,7 @@ impl<'a> Passes<'a> {
     /// The usual number of passes.
     const USUAL: u64 = 5;
 
-    /// Works on each tile of this process, several at a time, and joins what they give in their order.
+    /// Processes each tile of this process, several at a time, and joins the results in their order.
     pub(super) fn each<T: Send>(
         &mut self,
         work: impl Fn(&SampleBox) -> Result<T, BlocksError> + Sync,
@@ -302,7 +301,7 @@ impl<'a> Passes<'a> {
         Ok(())
     }
 
-    /// Works on pieces of the volume one after the other, in this process alone.
+    /// Processes pieces of the volume one after the other, only in this process.
     pub(super) fn serial(
         &mut self,
         pieces: &[SampleBox],

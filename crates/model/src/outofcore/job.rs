@@ -1,4 +1,4 @@
-//! How the files of an input look without reading them.
+//! Jobs, and the sizes and times of their input files, which show changes without reading them.
 
 use std::fs::{self, Metadata};
 use std::path::Path;
@@ -13,37 +13,37 @@ use walpha_points::{Selection, Units, Weighting};
 use walpha_shape::Alpha;
 use walpha_volume::{Dims, Frame, GrayRange, Source, any_size, files_of};
 
-/// An input, and the recipe for its shape. Plans hold it.
+/// An input, and the recipe for its shape. It is part of a plan.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Job {
-    /// A sample or a file.
+    /// The name of a sample or file.
     pub input: String,
     /// The options of all stages.
     pub recipe: Recipe,
-    /// Samples along x, y and z.
+    /// The number of samples along x, y and z.
     #[serde(deserialize_with = "any_size")]
     pub dims: Dims,
-    /// Where the grid lies, in the space that its points are in.
+    /// The place of the grid, in the space of its points.
     pub frame: Frame,
-    /// What coordinates are measured in.
+    /// The units of coordinates.
     pub units: Units,
 }
 
 impl Job {
-    /// The recipe for the volume behind an input, which is opened.
+    /// Creates a job from an input, which is opened, and a recipe.
     ///
     /// # Errors
-    /// The input cannot be read in parts; what is not local ([`Job::check`]).
+    /// The input cannot be read in parts, or an option is not local ([`Job::check`]).
     pub fn new(input: &str, recipe: Recipe) -> Result<Self, BlocksError> {
         let source = Source::open(input, &recipe.read)?;
         Self::of_source(input, recipe, &source)
     }
 
-    /// The same for a volume that is open.
+    /// Like [`new`](Self::new), for a volume that is already open.
     ///
     /// # Errors
-    /// What is not local ([`Job::check`]).
+    /// An option is not local ([`Job::check`]).
     pub fn of_source(input: &str, recipe: Recipe, source: &Source) -> Result<Self, BlocksError> {
         let (frame, units) = recipe.place(*source.frame())?;
         let job = Self { input: input.to_owned(), recipe, dims: source.dims(), frame, units };
@@ -51,7 +51,7 @@ impl Job {
         Ok(job)
     }
 
-    /// Whether it can be done in blocks.
+    /// Checks that the job can be done in blocks.
     ///
     /// # Errors
     /// [`BlocksError::NotLocal`].
@@ -89,38 +89,38 @@ impl Job {
         Ok(())
     }
 
-    /// α; `None` where it is to be found, which takes all points at once.
+    /// The α that is given or is the default; `None` if it must be found, which takes all points at once.
     fn rule(&self) -> Result<Option<Parameter>, BlocksError> {
         Ok(self.recipe.alpha.of_frame(&self.frame, self.units)?)
     }
 
-    /// α as a parameter.
+    /// The parameter α with its origin.
     ///
     /// # Panics
-    /// It is not known: [`Job::check`] refuses that.
+    /// α is not known; [`Job::check`] refuses such jobs.
     pub fn parameter(&self) -> Parameter {
         self.rule().ok().flatten().expect("a job that was checked has an α")
     }
 
-    /// α.
+    /// The value of α.
     pub(super) fn alpha(&self) -> Alpha {
         self.parameter().alpha
     }
 
-    /// Where weights come from.
+    /// The source of weights.
     pub fn weighting(&self) -> Weighting {
         self.recipe.weighting.unwrap_or(Weighting::Common(0.0))
     }
 
-    /// Which samples become points, where `range` became gray 0 and 255.
+    /// The selection of the samples that become points; `range` became gray 0 and 255.
     ///
     /// # Panics
-    /// They are chosen adaptively: [`Job::check`] refuses that.
+    /// Samples are chosen adaptively; [`Job::check`] refuses such jobs.
     pub(super) fn selection(&self, range: &GrayRange) -> Selection {
         self.recipe.selection(range).expect("a job that was checked selects by differences")
     }
 
-    /// How many samples along x, y and z balls of this radius reach.
+    /// The number of samples along x, y and z that balls of this radius reach.
     pub(super) fn reach(&self, radius: f64) -> [usize; 3] {
         let samples = |step: f64| (radius * step).ceil().max(0.0) as usize;
         match self.units {
@@ -133,7 +133,7 @@ impl Job {
     }
 }
 
-/// The rows of the inverse of the matrix of these columns, if there is one.
+/// The rows of the inverse of the matrix with these columns, if it exists.
 fn inverse([a, b, c]: [[f64; 3]; 3]) -> Option<[[f64; 3]; 3]> {
     use walpha_base::vector::{cross, dot};
     let volume = dot(a, cross(b, c));
@@ -141,18 +141,18 @@ fn inverse([a, b, c]: [[f64; 3]; 3]) -> Option<[[f64; 3]; 3]> {
     rows.as_flattened().iter().all(|v| v.is_finite()).then_some(rows)
 }
 
-/// How many files an input has, how large they are, and when one was written last. A hint: a file may be touched
-/// and stay what it was. What was read of it is known by its digests ([`ReadDigests`](super::brick_digests::ReadDigests)).
+/// The number and size of an input's files, and the time of the latest change. This is only a hint: a file may be touched without
+/// being changed. Samples that were read are verified by their digests ([`ReadDigests`](super::brick_digests::ReadDigests)).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Stamp {
     files: u64,
     bytes: u64,
-    /// Nanoseconds since 1970.
+    /// The time in nanoseconds since 1970.
     newest: u64,
 }
 
 impl Stamp {
-    /// The stamp of the input of a job as it is now; empty for a sample. Looks at each file of a folder.
+    /// The current stamp of the input of a job; empty for a sample. Examines each file of a folder.
     pub(super) fn of(job: &Job) -> Self {
         let mut stamp = Self::default();
         if !job.input.starts_with("sample:") {

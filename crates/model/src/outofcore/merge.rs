@@ -17,31 +17,31 @@ use walpha_shape::{
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Merged {
-    /// Number of selected points.
+    /// The number of selected points.
     pub points: u64,
     /// The weights ω.
     pub weights: WeightSummary,
-    /// Cells in the shape.
+    /// The number of cells in the shape.
     pub cells: usize,
-    /// Facets by class; those outside are not counted.
+    /// The numbers of facets by class; exterior ones are not counted.
     pub facets: ByClass<usize>,
-    /// Edges by class.
+    /// The numbers of edges by class.
     pub edges: ByClass<usize>,
-    /// Vertices by class.
+    /// The numbers of vertices by class.
     pub vertices: ByClass<usize>,
-    /// Betti numbers.
+    /// The Betti numbers.
     pub betti: Betti,
-    /// Volume and areas.
+    /// The volume and areas.
     pub measures: Measures,
     /// The components, in the order of their smallest vertices.
     pub components: Vec<Component>,
-    /// Number of halo points, summed over all blocks.
+    /// The number of halo points, summed over all blocks.
     pub halo: u64,
-    /// For each block the common numbers of its components and of its sheets.
+    /// For each block, the common numbers of its components and of its sheets.
     pub(super) numbers: Vec<MergedNumbers>,
-    /// Number of sheets.
+    /// The number of sheets.
     pub(super) sheets: u32,
-    /// Whether the points span no volume: their shape has no sheets then.
+    /// Whether the points span no volume: their shape then has no sheets.
     pub(super) is_flat: bool,
 }
 
@@ -52,13 +52,13 @@ pub(super) struct MergedNumbers {
     pub sheets: Vec<u32>,
 }
 
-/// Merges the blocks of a plan: unites components and sheets over the borders, and adds up the rest. Rows
-/// of simplices are not read: [`Plan::check`] looks at these, too.
+/// Merges the blocks of a plan: unites components and sheets across borders, and adds up everything else. Rows of simplices are
+/// not read; [`Plan::check`] also verifies these.
 ///
-/// Memory for the keys of the borders, some 50 bytes for each point there.
+/// Takes memory for the keys of the borders, about 50 bytes for each point there.
 ///
 /// # Errors
-/// Blocks are missing, belong to another plan, or what is read of them does not verify.
+/// Blocks are missing, belong to another plan, or do not verify.
 pub fn merge(plan: &Plan) -> Result<Merged, BlocksError> {
     let monitor = &*Monitor::current();
     let all = plan.blocks.len();
@@ -85,16 +85,16 @@ pub fn merge(plan: &Plan) -> Result<Merged, BlocksError> {
     union.merged().ok_or_else(|| BlocksError::Damaged { path: folder.into(), what: what() })
 }
 
-/// The summaries of all blocks, side by side.
+/// The summaries of all blocks, with pairs of components and sheets that belong together.
 #[derive(Default)]
 struct Union {
     summaries: Vec<BlockSummary>,
-    /// The components of all blocks, and pairs that are one.
+    /// The number of components of all blocks, and the pairs that are one component.
     components: u32,
     sheets: u32,
     same_components: Vec<[u32; 2]>,
     same_sheets: Vec<[u32; 2]>,
-    /// Which block first named a point, and a side of a facet or an edge.
+    /// The component of the block that first named a point; and the sheet that first named a side of a facet or an edge.
     points: HashMap<u64, u32>,
     sides: HashMap<([u64; 3], u32), u32>,
 }
@@ -124,14 +124,14 @@ impl Union {
         Ok(())
     }
 
-    /// `None` where the numbers of the blocks are of no shape.
+    /// The merged shape; `None` if the numbers of the blocks cannot belong to a shape.
     fn merged(self) -> Option<Merged> {
         let Self { summaries, components: all_components, sheets: all_sheets, .. } = &self;
         let components = united(*all_components, &self.same_components);
         let sheets = united(*all_sheets, &self.same_sheets);
         let parts = summaries.iter().flat_map(|summary| &summary.components);
         let (component_numbers, components) = number_components(parts, components);
-        // The components of a block's sheets are counted within it.
+        // The components of a block's sheets are numbered within the block.
         let mut offset = 0;
         let mut parts = Vec::new();
         for summary in summaries {
@@ -192,8 +192,8 @@ fn united(count: u32, pairs: &[[u32; 2]]) -> UnionFind {
     sets
 }
 
-/// Numbers components in the order of their smallest vertices: for each part its number, and the
-/// components. A part without vertices has none of its own.
+/// Numbers components in the order of their smallest vertices. Returns the number of each part, and the components. A part
+/// without vertices does not define a component.
 fn number_components<'a>(
     parts: impl Iterator<Item = &'a BlockComponent>,
     sets: UnionFind,
@@ -219,8 +219,8 @@ fn number_components<'a>(
     (numbers, order.into_iter().map(|(_, _, sums)| sums).collect())
 }
 
-/// Numbers sheets in the order in which they are met: for each part its number, and the sheets with their
-/// components. A part comes with the number of the first component of its block.
+/// Numbers sheets in the order of their first occurrence. Returns the number of each part, and the sheets with their components.
+/// A part comes with the number of the first component of its block.
 fn number_sheets(
     parts: &[(&BlockSheet, usize)],
     sets: UnionFind,
@@ -228,7 +228,7 @@ fn number_sheets(
 ) -> (Vec<u32>, Vec<(u32, usize, SheetSums)>) {
     let mut whole: Vec<Option<(Met, usize, SheetSums)>> = vec![None; sets.members()];
     for (&(part, offset), i) in parts.iter().zip(0..) {
-        // A part without rows of its own was named by a neighbour that has some.
+        // A part without rows was named by a neighbour that has some.
         let Some(met) = part.met else { continue };
         let component = components[offset + met.component as usize] as usize;
         match &mut whole[sets.find(i) as usize] {
@@ -252,7 +252,7 @@ fn number_sheets(
     (numbers, sheets.collect())
 }
 
-/// Sums over all blocks.
+/// The sums over all blocks.
 #[derive(Default)]
 struct Totals {
     points: u64,

@@ -1,13 +1,12 @@
-//! One shape in blocks that need not know each other, on one machine in turn or on many.
+//! Computes one shape in independent blocks, on one machine or on many.
 //!
-//! Everything from a volume to its shape is local once a few numbers are known, so the work is three
-//! functions on files. [`Plan::make`] surveys the volume, cuts it into boxes and writes a plan into a folder. [`run`]
-//! computes one block from its own samples and those around it, with no other block. [`merge`] joins blocks over
-//! their borders. What comes out is the shape that [`alpha_shape`](walpha_shape::alpha_shape)
-//! computes of the points that a [`Recipe`](crate::Recipe) selects, simplex by simplex and number by number:
-//! sums are exact, and ties are broken by indices of the volume.
+//! Once a few numbers are known, every step from a volume to its shape is local, so the work consists of three functions on
+//! files. [`Plan::make`] surveys the volume, cuts it into boxes and writes a plan into a folder. [`run`] computes one block from
+//! its own samples and those around it, without any other block. [`merge`] joins blocks across their borders. The result is the
+//! shape that [`alpha_shape`](walpha_shape::alpha_shape) computes from the points that a [`Recipe`](crate::Recipe) selects,
+//! simplex by simplex and number by number: sums are exact, and ties are broken by indices in the volume.
 //!
-//! Processes that can send each other messages share the survey, the blocks and the writing of pieces as a [`Team`].
+//! Processes that can exchange messages share the survey, the blocks and the writing of pieces as a [`Team`].
 //!
 //! # Step by step
 //! - *Reading*: `volume::Source` reads any box of a volume without the rest (rows of uncompressed files, chunks of

@@ -1,4 +1,4 @@
-//! Into which boxes a volume is cut.
+//! Plans: the boxes into which a volume is cut.
 
 use std::path::{Path, PathBuf};
 
@@ -19,13 +19,13 @@ use walpha_shape::{AT_WORK, Alpha, PlanError, ShapeError};
 
 use crate::Recipe;
 
-/// How a job is cut into blocks.
+/// The rule for cutting a job into blocks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Cutting {
-    /// Into so many blocks; fewer where there are fewer bricks with points.
+    /// The number of blocks; there are fewer if fewer bricks have points.
     pub blocks: Option<usize>,
-    /// Bytes of memory that all blocks at work keep to, as many as there are threads.
+    /// The memory in bytes for all blocks at work, of which there are as many as threads.
     pub memory: Option<u64>,
 }
 
@@ -38,16 +38,16 @@ impl Cutting {
     setters! { blocks: Option<usize>, memory: Option<u64> }
 }
 
-/// All that a block needs to know of the others: the job, the numbers of the whole volume, and where the
-/// blocks are. It is kept in a folder, to which the blocks are written, too.
+/// Everything that a block needs to know about the others: the job, the numbers of the whole volume, and the boxes of the blocks.
+/// It is stored in a folder, to which the blocks are written, too.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Plan {
-    /// Version of the program that made it.
+    /// The version of the program that made the plan.
     version: String,
     /// The job.
     pub job: Job,
-    /// How it is cut.
+    /// The rule by which it was cut.
     pub cutting: Cutting,
     /// The numbers of the whole volume.
     pub survey: Survey,
@@ -55,7 +55,7 @@ pub struct Plan {
     pub blocks: Vec<BlockPlan>,
     /// The files beside the plan.
     pub(super) kept: Vec<DigestedFile>,
-    /// Stamp of the input files.
+    /// The stamp of the input files.
     pub(super) stamp: Stamp,
     #[serde(skip)]
     pub(super) folder: PathBuf,
@@ -67,44 +67,44 @@ pub struct Plan {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct BlockPlan {
-    /// Its samples.
+    /// The box of its samples.
     pub part: SampleBox,
-    /// Its points.
+    /// The number of its points.
     pub points: u64,
-    /// The points around it that it may need, counted by bricks.
+    /// The number of points around it that it may need, counted by bricks.
     pub halo: u64,
-    /// Digests of the bricks it reads.
+    /// The digests of the bricks that it reads.
     pub(super) reads: Reads,
 }
 
-/// Digests of what a block reads.
+/// The digests of the samples that a block reads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Reads {
     pub input: Digest,
-    /// Digest of the truncated volume, where that is in a file.
+    /// The digest of the truncated volume, if that is in a file.
     pub truncated: Option<Digest>,
 }
 
 impl Plan {
     pub(super) const FILE: &str = "plan.json";
-    /// The program's. A plan and its blocks are of one version.
+    /// The version of this program. A plan and its blocks must have the same version.
     pub(super) const VERSION: &str = env!("CARGO_PKG_VERSION");
 
-    /// Surveys the volume of a job, cuts it, and writes the plan into a folder, which is there. Reads
-    /// the volume five or six times, a tile for each thread in memory.
+    /// Surveys the volume of a job, cuts it, and writes the plan into an existing folder. Reads the volume five or six times,
+    /// with a tile for each thread in memory.
     ///
     /// # Errors
-    /// What a stage refuses; what is not local ([`Job::check`]); a folder that cannot be written to.
+    /// The errors of the stages, an option that is not local ([`Job::check`]), or a folder that cannot be written to.
     pub fn make(job: Job, cutting: Cutting, folder: impl AsRef<Path>) -> Result<Self, BlocksError> {
         let folder = folder.as_ref();
         Self::make_with(job, cutting, folder, &Alone)
     }
 
-    /// The same as one of a team: each process surveys its share of the volume, the first writes the plan, and
-    /// all get it. Memory that blocks keep to is that of one process.
+    /// Like [`make`](Self::make), as one process of a team: each process surveys its share of the volume, the first writes the
+    /// plan, and all get it. The memory limit of blocks applies to one process.
     ///
     /// # Errors
-    /// The errors of [`Plan::make`]. A process that returns an error leaves the rest of the team waiting.
+    /// See [`make`](Self::make). A process that returns an error leaves the rest of the team waiting.
     pub fn make_with(
         job: Job,
         cutting: Cutting,
@@ -113,7 +113,7 @@ impl Plan {
     ) -> Result<Self, BlocksError> {
         let monitor = &*Monitor::current();
         job.check()?;
-        // Before it is read, so that what is written while it is read is newer.
+        // The stamp is taken before reading, so that a change during reading is detected.
         let stamp = Stamp::of(&job);
         let mut field = Field::open(&job, None)?;
         let surveyed = survey(&job, &mut field, folder, team, monitor)?;
@@ -127,7 +127,7 @@ impl Plan {
         Self::broadcast(plan, folder, team)
     }
 
-    /// Gives to all what the first process has.
+    /// Gives the plan of the first process to all.
     pub(super) fn broadcast(
         first: Option<Self>,
         folder: &Path,
@@ -140,7 +140,7 @@ impl Plan {
         Self::of_text(&team.broadcast(text), folder)
     }
 
-    /// Cuts a surveyed volume, and writes what the plan keeps.
+    /// Cuts a surveyed volume, and writes the files that the plan keeps.
     fn cut(
         job: Job,
         cutting: Cutting,
@@ -193,8 +193,7 @@ impl Plan {
         Ok(plan)
     }
 
-    /// The samples that are read for a part of which the points within a margin are looked at: differences
-    /// take one sample more.
+    /// The samples to be read for a part if points within a margin around it are needed: differences need one more sample.
     pub(super) fn read_around(part: &SampleBox, margin: [usize; 3], dims: [usize; 3]) -> SampleBox {
         part.grown(margin, dims).grown([1; 3], dims)
     }
@@ -207,10 +206,10 @@ impl Plan {
     /// The text before and after the digest of a plan.
     const CHECKSUM: [&[u8]; 2] = [b",\n  \"checksum\": \"", b"\"\n}\n"];
 
-    /// Its text: JSON, with the digest of all bytes before as the last field.
+    /// The text of the plan: JSON, with the digest of all bytes before it as the last field.
     fn text(&self) -> Vec<u8> {
         let mut text = serde_json::to_vec_pretty(self).expect("it has no maps");
-        // Without the brace and the line before it.
+        // This removes the closing brace and the line end before it.
         text.truncate(text.len() - 2);
         let [before, behind] = Self::CHECKSUM;
         let digest = Digest::of(&text).to_string();
@@ -220,7 +219,7 @@ impl Plan {
     /// Opens the plan in a folder.
     ///
     /// # Errors
-    /// There is none, it cannot be read, or does not verify.
+    /// There is no plan, it cannot be read, or it does not verify.
     pub fn open(folder: impl AsRef<Path>) -> Result<Self, BlocksError> {
         let folder = folder.as_ref();
         let text = read_file(&folder.join(Self::FILE)).map_err(|error| match error {
@@ -258,7 +257,7 @@ impl Plan {
         Ok(Self { digest: plan.computed_digest(), ..plan })
     }
 
-    /// Whether its job can be done in blocks, and its blocks are in the volume.
+    /// Whether the job can be done in blocks, and the blocks are in the volume.
     fn fits(&self) -> bool {
         let dims = self.job.dims.xyz();
         let is_inside = |BlockPlan { part: SampleBox { first, size }, .. }: &BlockPlan| {
@@ -273,12 +272,12 @@ impl Plan {
             && self.kept.iter().all(|kept| [SUMS, SMOOTHED].contains(&&*kept.name))
     }
 
-    /// The folder it is in.
+    /// The folder of the plan.
     pub fn folder(&self) -> &Path {
         &self.folder
     }
 
-    /// Identifies this plan, whatever its folder, and whenever the files of its input were written.
+    /// A text that identifies the plan. It depends neither on its folder nor on the times of the input files.
     pub fn digest(&self) -> String {
         self.digest.to_string()
     }
@@ -293,7 +292,7 @@ impl Plan {
         self.folder.join(format!("block-{block:05}.walpha"))
     }
 
-    /// How weights come from differences, where they do.
+    /// The formula that computes weights from differences, if they depend on these.
     pub(super) fn shares(&self) -> Result<Option<Shares>, PointsError> {
         let weighting = self.job.weighting();
         if !weighting.needs_differences() {
@@ -311,37 +310,37 @@ impl Plan {
         }
     }
 
-    /// How far, in samples along x, y and z, what decides a simplex is from its vertices.
+    /// The largest distance, in samples along x, y and z, between a simplex and the points that decide on it.
     pub(super) fn margin(&self) -> Result<[usize; 3], BlocksError> {
         let (shares, differences) = (self.shares()?, &self.survey.differences);
         let weights = [differences.min, differences.max].map(|l| self.weight(shares, l));
         let radius = |weight: f64| self.job.recipe.balls.radius(self.job.alpha(), weight);
         let largest = weights.map(radius).into_iter().fold(0.0, f64::max);
-        // Rounded up by more than all roundings on the way.
+        // This is rounded up by more than all rounding errors before it.
         Ok(self.job.reach(2.0 * largest * (1.0 + 1e-9)).map(|samples| samples.saturating_add(1)))
     }
 
-    /// α, for weights and reports.
+    /// The α of the shape and its weights.
     pub fn alpha(&self) -> Alpha {
         self.job.alpha()
     }
 }
 
-/// Default memory limit of blocks, in bytes.
+/// The default memory limit of blocks, in bytes.
 pub(super) const DEFAULT_MEMORY: u64 = 2 << 30;
-/// Bytes for each sample of a tile, of which each thread has one.
+/// The number of bytes for each sample of a tile, of which each thread has one.
 pub(super) const TILE_SAMPLE: u64 = 48;
-/// Most blocks of a plan.
+/// The largest number of blocks of a plan.
 pub(super) const MAX_BLOCKS: usize = 1 << 16;
 
-/// Boxes of bricks with their points.
+/// Boxes of bricks with the numbers of their points.
 pub(super) struct Boxes<'a> {
     pub counts: &'a [u32],
     pub bricks: [usize; 3],
 }
 
 impl Boxes<'_> {
-    /// The points of a box.
+    /// The number of points of a box.
     pub(super) fn points(&self, part: &SampleBox) -> u64 {
         let mut points = 0;
         self.rows(part, |_, row| points += row.iter().map(|&n| u64::from(n)).sum::<u64>());
@@ -358,13 +357,13 @@ impl Boxes<'_> {
         }
     }
 
-    /// Cuts all bricks into so many boxes with about equally many points, each across its longest side, and
-    /// fewer where a box is one brick. O(bricks log boxes).
+    /// Cuts all bricks into `blocks` boxes with about equal numbers of points, each across its longest side. There are fewer if a
+    /// box is a single brick. O(bricks log boxes).
     fn cut(&self, blocks: usize) -> Vec<SampleBox> {
         let mut pending = vec![(SampleBox::whole(self.bricks), blocks)];
         let mut cut = Vec::new();
         while let Some((part, blocks)) = pending.pop() {
-            // Of equals the last, the slowest in memory.
+            // Of equal sides the last is taken, which is the slowest in memory.
             let axis = (0..3).max_by_key(|&k| part.size[k]).unwrap_or(2);
             if blocks <= 1 || part.size[axis] == 1 {
                 cut.push(part);
@@ -387,14 +386,14 @@ impl Boxes<'_> {
             low.size[axis] = at;
             high.first[axis] += at;
             high.size[axis] -= at;
-            // From the last to the first, so that blocks are numbered from low to high.
+            // The high part is pushed first, so that blocks are numbered from low to high.
             pending.extend([(high, blocks - left), (low, left)]);
         }
         cut
     }
 
-    /// The boxes asked for, or as few as keep to the memory of each process, and one for each of its threads,
-    /// each with the points in it and around it.
+    /// The requested number of boxes, or the smallest number that respects the memory limit of each process and gives each of its
+    /// threads a box; with the numbers of points in and around each.
     pub(super) fn planned(
         &self,
         cutting: Cutting,
@@ -439,7 +438,7 @@ mod tests {
     use super::*;
     use crate::pipeline::AlphaRule;
 
-    /// With a digest that is right: what is in the plan decides.
+    /// A plan whose digest is correct is still checked for its content.
     #[test]
     fn plans_that_verify_are_looked_at_still() {
         let folder = tempfile::tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! The files of a plan: verifying, restoring, resuming and removing them.
+//! Verifies, restores, resumes and removes the files of a plan.
 
 use std::io;
 use std::path::Path;
@@ -15,26 +15,26 @@ use super::job::Stamp;
 use super::truncate::{DigestedFile, SMOOTHED, SUMS, smoothed, truncated};
 use super::{Alone, BlocksError, Cutting, Finding, Job, Plan, SampleBox, Team};
 
-/// Result of verifying the files of a plan.
+/// The result of verifying the files of a plan.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Checked {
-    /// Blocks that are not there yet.
+    /// The blocks that have not been computed yet.
     pub missing: Vec<usize>,
-    /// Files that do not verify.
+    /// The files that do not verify.
     pub findings: Vec<Finding>,
 }
 
 impl Checked {
-    /// Whether all is there, as it was written.
+    /// Whether all files exist and verify.
     pub fn is_whole(&self) -> bool {
         self.missing.is_empty() && self.findings.is_empty()
     }
 }
 
 impl Plan {
-    /// Reads all files of the plan, and looks whether they are what was written: their digests, to which
-    /// plan and block they belong, and the version of the program. O(bytes on disk), several blocks at a time.
+    /// Reads all files of the plan, and verifies them: their digests, the plan and block that they belong to, and the version of
+    /// the program. O(bytes on disk), several blocks at a time.
     ///
     /// # Errors
     /// A file cannot be read.
@@ -66,10 +66,10 @@ impl Plan {
         Ok(checked)
     }
 
-    /// Refuses blocks that are missing or do not verify, and names all of them. Reads all blocks.
+    /// Refuses missing blocks and those that do not verify, and names all of them. Reads all blocks.
     ///
     /// # Errors
-    /// There are some; a file cannot be read.
+    /// There are such blocks, or a file cannot be read.
     pub fn verify_blocks(&self) -> Result<(), BlocksError> {
         let Checked { missing, findings } = self.check_blocks()?;
         if !findings.is_empty() {
@@ -81,8 +81,7 @@ impl Plan {
         Ok(())
     }
 
-    /// The blocks that are to be computed: those that are not there, and those that do not verify. Reads all
-    /// that are there.
+    /// The blocks that must be computed: those that are missing, and those that do not verify. Reads all existing blocks.
     ///
     /// # Errors
     /// A file cannot be read.
@@ -100,7 +99,7 @@ impl Plan {
     }
 }
 
-/// The problem of a file that does not verify; other errors are passed on.
+/// The finding for a file that does not verify; other errors are passed on.
 fn finding(found: Result<(), BlocksError>) -> Result<Option<Finding>, BlocksError> {
     match found {
         Ok(()) => Ok(None),
@@ -113,10 +112,10 @@ fn finding(found: Result<(), BlocksError>) -> Result<Option<Finding>, BlocksErro
 }
 
 impl Plan {
-    /// The truncated volume, of which a part will be read.
+    /// Opens the truncated volume, of which a part will be read.
     ///
     /// # Errors
-    /// Its file is not there or does not verify. Of the samples in a file it is known when they were read.
+    /// The file does not exist or does not verify. Samples in a file can be verified only after they are read.
     pub(super) fn truncated(&self, part: &SampleBox) -> Result<Truncated, BlocksError> {
         if let Some(cut) = self.survey.cut {
             let path = self.folder.join(SUMS);
@@ -147,21 +146,21 @@ impl Plan {
         }
     }
 
-    /// Reads the files beside the plan, and looks whether they are what was written.
+    /// Reads the files beside the plan, and verifies them.
     ///
     /// # Errors
-    /// One is not.
+    /// One does not verify.
     pub(super) fn verify_kept(&self) -> Result<(), BlocksError> {
         self.kept.iter().try_for_each(|kept| kept.verify(&self.folder))
     }
 
-    /// Makes again what does not verify of the files beside the plan: sums, or the truncated volume. Reads these, and
-    /// the volume a few times where that is so.
+    /// Recreates the files beside the plan that do not verify: the sums, or the truncated volume. Reads these files, and the
+    /// volume a few times if necessary.
     ///
     /// # Errors
     /// The errors of planning; the input has changed.
     pub fn restore(&self) -> Result<(), BlocksError> {
-        // Of several threads that miss it, one makes it.
+        // If several threads miss it, only one recreates it.
         static ONE: Mutex<()> = Mutex::new(());
         let _one = ONE.lock().unwrap_or_else(PoisonError::into_inner);
         if self.verify_kept().is_ok() {
@@ -185,11 +184,10 @@ impl Plan {
 }
 
 impl Plan {
-    /// The plan of a job in a folder, if it is there; else makes one. So work that was interrupted goes on
-    /// where it was.
+    /// Opens the plan of a job in a folder, or makes one if it does not exist. Interrupted work is resumed in this way.
     ///
     /// # Errors
-    /// The errors of [`Plan::make`].
+    /// See [`Plan::make`].
     pub fn resume(
         job: Job,
         cutting: Cutting,
@@ -199,18 +197,18 @@ impl Plan {
         Self::resume_with(job, cutting, folder, &Alone)
     }
 
-    /// [`Plan::resume`] as one of a team, which may be of another size than the one that was interrupted.
+    /// Like [`Plan::resume`], as one process of a team, which may have another size than the interrupted one.
     ///
     /// # Errors
-    /// As [`Plan::make_with`].
+    /// See [`Plan::make_with`].
     pub fn resume_with(
         job: Job,
         cutting: Cutting,
         folder: &Path,
         team: &dyn Team,
     ) -> Result<Self, BlocksError> {
-        // An input whose files look otherwise is planned again. Where it is what it was, that is the same plan,
-        // and the blocks that are there are its.
+        // If the files of the input look different, it is planned again. If its content is unchanged, the new plan is equal, and
+        // the existing blocks belong to it.
         let is_same = |plan: &Self| {
             plan.job == job && plan.cutting == cutting && plan.stamp == Stamp::of(&job)
         };
@@ -222,7 +220,7 @@ impl Plan {
         }
     }
 
-    /// Removes the plan and its blocks, and the folder if nothing else is in it.
+    /// Removes the plan and its blocks, and the folder if it is then empty.
     ///
     /// # Errors
     /// A file cannot be removed.
@@ -237,7 +235,7 @@ impl Plan {
                 _ => {}
             }
         }
-        // It stays if somebody put something there.
+        // The folder stays if it contains other files.
         let _ = std::fs::remove_dir(&self.folder);
         Ok(())
     }

@@ -1,4 +1,4 @@
-//! All blocks, several at a time, from file to file: on one machine, or shared by a team.
+//! Computes blocks from file to file, several at a time: on one machine, or shared by a team.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -29,12 +29,12 @@ struct Points {
     own: Vec<bool>,
 }
 
-/// Computes what a block owns of the shape, and writes it into the folder of the plan. A block that is
-/// there is left alone, unless it does not verify or belongs to another plan. What the plan keeps in files is made
-/// again where it does not verify. Needs no other block.
+/// Computes the part of the shape that a block owns, and writes it into the folder of the plan. An existing block is kept, unless
+/// it does not verify or belongs to another plan. Files that the plan keeps are recreated if they do not verify. Needs no other
+/// block.
 ///
 /// # Errors
-/// What a stage refuses, an input that has changed since, a folder that cannot be written to.
+/// The errors of the stages, an input that has changed since the plan was made, or a folder that cannot be written to.
 pub fn run(plan: &Plan, block: usize) -> Result<(), BlocksError> {
     let count = plan.blocks.len();
     let Some(planned) = plan.blocks.get(block) else {
@@ -58,7 +58,7 @@ pub fn run(plan: &Plan, block: usize) -> Result<(), BlocksError> {
         return Err(BlocksError::changed(&plan.job.input, what));
     }
     let job = &plan.job;
-    // Named by its place in the volume.
+    // Errors name a point by its index in the volume.
     let named = |error| match error {
         ShapeError::Radius { index, radius } => {
             ShapeError::Radius { index: points.voxels[index] as usize, radius }
@@ -119,7 +119,7 @@ fn points(plan: &Plan, block: usize) -> Result<Points, BlocksError> {
     Ok(points)
 }
 
-/// Numbers from 0 in the order in which keys are met first.
+/// Numbers keys from 0 in the order of their first occurrence.
 struct Numbering(Vec<u32>, u32);
 
 const NONE: u32 = u32::MAX;
@@ -143,7 +143,7 @@ fn write(plan: &Plan, block: usize, points: &Points, shape: BlockShape) -> Resul
     let mut number = |v: u32| numbers.of(shape.components[v as usize]);
     let mut components: Vec<BlockComponent> = Vec::new();
     let mut component_of = vec![NONE; points.voxels.len()];
-    // Own points come first in each component: they are its vertices.
+    // The block's own points come first in each component: they are its vertices.
     for &[v] in complex.vertices.rows() {
         let component = number(v);
         component_of[v as usize] = component;
@@ -209,7 +209,7 @@ fn sheets(
         match class {
             Class::Regular => add(row, row, false),
             Class::Singular => {
-                // First the side on which the sorted row turns clockwise.
+                // The side on which the sorted row turns clockwise comes first.
                 add(row, [a, c, b], false);
                 add(row, row, true);
             }
@@ -225,7 +225,7 @@ fn sheets(
     sheets
 }
 
-/// Points that are the block's own or corners of its rows, the rows, and the keys that blocks share.
+/// The arrays of a block: the points that are its own or corners of its rows, the rows, and the keys that blocks share.
 fn arrays(
     points: &Points,
     shape: &BlockShape,
@@ -268,7 +268,7 @@ fn arrays(
     arrays
 }
 
-/// Runs some blocks of a plan, as many at a time as there are threads. Those that are there are left alone.
+/// Runs some blocks of a plan, one per thread at a time. Existing blocks are kept.
 ///
 /// # Errors
 /// The error of [`run()`] for the first block that fails; [`BlocksError::Cancelled`]. Finished blocks stay.
@@ -280,7 +280,7 @@ pub fn run_all(plan: &Plan, blocks: &[usize]) -> Result<(), BlocksError> {
     let next = AtomicUsize::new(0);
     let failed = Mutex::new(None);
     let is_over = || failed.lock().is_ok_and(|failed| failed.is_some());
-    // Threads of their own: one of rayon's that waits within a block might begin with another.
+    // These are not rayon's threads: one of those that waits within a block might begin with another.
     std::thread::scope(|scope| {
         for _ in 0..rayon::current_num_threads().min(blocks.len()) {
             scope.spawn(|| {
@@ -302,11 +302,11 @@ pub fn run_all(plan: &Plan, blocks: &[usize]) -> Result<(), BlocksError> {
     failed.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner).map_or(Ok(()), Err)
 }
 
-/// Runs the blocks of a plan that are missing, as one of a team, and waits until all are there. Each process
-/// gets blocks with about as many points, in and around them, as the others.
+/// Runs the missing blocks of a plan, as one process of a team, and waits until all exist. Each process gets blocks with about
+/// the same number of points, in and around them.
 ///
 /// # Errors
-/// The errors of [`run_all`]. A process that returns an error leaves the rest of the team waiting.
+/// See [`run_all`]. A process that returns an error leaves the rest of the team waiting.
 pub fn run_missing(plan: &Plan, team: &dyn Team) -> Result<(), BlocksError> {
     let missing = if team.is_first() { Some(plan.missing()?) } else { None };
     let missing = team.broadcast(missing);
@@ -316,8 +316,8 @@ pub fn run_missing(plan: &Plan, team: &dyn Team) -> Result<(), BlocksError> {
     Ok(())
 }
 
-/// Shares blocks among processes: the largest first, each to the one that has least (Graham, "Bounds on
-/// multiprocessing timing anomalies", 1969, doi:10.1137/0117039). No share is above 4/3 of what it could be.
+/// Shares blocks among processes: the largest first, each to the process with the least work (Graham, "Bounds on multiprocessing
+/// timing anomalies", 1969, doi:10.1137/0117039). No share exceeds 4/3 of the optimum.
 fn shared(
     mut blocks: Vec<usize>,
     size: impl Fn(usize) -> u64,

@@ -5,29 +5,29 @@ use serde::{Deserialize, Serialize};
 /// A box of samples of a grid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SampleBox {
-    /// Its first sample along x, y and z.
+    /// The first sample along x, y and z.
     pub first: [usize; 3],
-    /// How many it has along x, y and z.
+    /// The number of samples along x, y and z.
     pub size: [usize; 3],
 }
 
 impl SampleBox {
-    /// All of a grid.
+    /// The box of a whole grid.
     pub(super) fn whole(dims: [usize; 3]) -> Self {
         Self { first: [0; 3], size: dims }
     }
 
-    /// How many samples it has.
+    /// The number of samples.
     pub fn samples(&self) -> usize {
         self.size.iter().product()
     }
 
-    /// Whether a sample is in it.
+    /// Whether the box contains a sample.
     pub(super) fn holds(&self, at: [usize; 3]) -> bool {
         (0..3).all(|k| at[k] >= self.first[k] && at[k] < self.first[k] + self.size[k])
     }
 
-    /// The box from one sample up to, and without, another.
+    /// The box from a first sample to an exclusive end.
     fn between(first: [usize; 3], end: [usize; 3]) -> Self {
         Self { first, size: [0, 1, 2].map(|k| end[k].saturating_sub(first[k])) }
     }
@@ -36,7 +36,7 @@ impl SampleBox {
         [0, 1, 2].map(|k| self.first[k] + self.size[k])
     }
 
-    /// The box grown by so many samples on each side, within the grid.
+    /// The box grown by a number of samples on each side, within the grid.
     pub(super) fn grown(&self, by: [usize; 3], dims: [usize; 3]) -> Self {
         let end = self.end();
         Self::between(
@@ -45,7 +45,7 @@ impl SampleBox {
         )
     }
 
-    /// The smallest box of whole bricks of a side around it, within the grid.
+    /// The smallest box of whole bricks with this side around the box, within the grid.
     pub(super) fn aligned(&self, side: usize, dims: [usize; 3]) -> Self {
         let end = self.end();
         Self::between(
@@ -54,7 +54,7 @@ impl SampleBox {
         )
     }
 
-    /// What two boxes have in common; empty where that is nothing.
+    /// The intersection of two boxes, which may be empty.
     pub(super) fn common(&self, other: &Self) -> Self {
         let (a, b) = (self.end(), other.end());
         Self::between(
@@ -63,7 +63,7 @@ impl SampleBox {
         )
     }
 
-    /// The boxes of this size, from the grid's first sample on, that have samples of this one, cut to it.
+    /// The tiles of this size, counted from the grid's first sample, that overlap this box, cut to it.
     pub(super) fn tiles(self, size: [usize; 3]) -> Vec<Self> {
         let starts = |k: usize| {
             let from = self.first[k] / size[k] * size[k];

@@ -1,4 +1,4 @@
-//! The numbers that depend on the whole volume, found part by part.
+//! Finds the numbers that depend on the whole volume, part by part.
 
 use std::path::Path;
 
@@ -23,29 +23,28 @@ pub struct Survey {
     pub range: GrayRange,
     /// The least value.
     pub(super) least: f32,
-    /// The truncation.
+    /// The result of the truncation.
     pub truncation: Truncation,
-    /// Which coefficients stay, where blocks need it: not where nothing but zeros goes.
+    /// The cut that determines which coefficients stay, if blocks need it; `None` if only zeros are dropped.
     pub(super) cut: Option<Cut>,
     pub(super) choice: Criterion,
     pub(super) differences: Differences,
-    /// The first of the points, by its index in the volume.
+    /// The index in the volume of the first point.
     pub(super) first: u64,
 }
 
-/// The result of a survey, and what planning needs besides.
+/// The result of a survey, and other data that planning needs.
 pub(super) struct Surveyed {
     pub survey: Survey,
     pub truncated: Truncated,
-    /// Number of points in each brick.
+    /// The number of points in each brick.
     pub counts: Vec<u32>,
-    /// Files that are written.
+    /// The files that were written.
     pub kept: Vec<DigestedFile>,
 }
 
-/// Surveys the volume of a job: reads it five or six times. Each process of a team reads its share of the
-/// tiles, and all come to know the same. Of the standard decomposition the truncated volume goes to a file in
-/// the folder.
+/// Surveys the volume of a job, and reads it five or six times. Each process of a team reads its share of the tiles, and all get
+/// the same result. For the standard decomposition, the truncated volume goes to a file in the folder.
 pub(super) fn survey(
     job: &Job,
     field: &mut Field,
@@ -72,7 +71,7 @@ pub(super) fn survey(
     Ok(Surveyed { survey, truncated, counts, kept })
 }
 
-/// Joins the digests of what the processes of a team read.
+/// Joins the digests of the samples that the processes of a team read.
 fn join_digests(digests: &mut ReadDigests, job: &Job, team: &dyn Team) -> Result<(), BlocksError> {
     if team.size() == 1 {
         return Ok(());
@@ -97,7 +96,7 @@ pub(super) fn gray_levels(
     if field.is_gray() && job.recipe.gray.is_none() {
         return Ok(());
     }
-    // Missing values must not be the least.
+    // The placeholder for missing values must not be the least.
     field.least = f32::MAX;
     let masks = job.recipe.read.nan == Some(Nan::Mask);
     let mut found = (f32::INFINITY, f32::NEG_INFINITY);
@@ -132,7 +131,7 @@ pub(super) fn gray_levels(
     Ok(())
 }
 
-/// Which samples are points.
+/// The criterion by which samples are points.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Criterion {
     rule: Rule,
@@ -147,7 +146,7 @@ enum Rule {
 }
 
 impl Criterion {
-    /// Why no sample is a point.
+    /// The error if no sample is a point.
     fn none_chosen(&self, job: &Job, range: &GrayRange) -> PointsError {
         let error = match self.rule {
             Rule::Threshold(least) => {
@@ -159,7 +158,7 @@ impl Criterion {
         job.recipe.in_its_terms(error, range)
     }
 
-    /// The difference of a sample that takes part, else NaN.
+    /// The difference of a sample that takes part, or NaN for others.
     fn masked(gray_min: Option<f64>, sample: &Sample) -> f64 {
         let out =
             sample.missing || gray_min.is_some_and(|least| f64::from(sample.smoothed) < least);
@@ -176,7 +175,7 @@ impl Criterion {
     }
 }
 
-/// Finds which samples are points.
+/// Finds the criterion by which samples are points.
 pub(super) fn choose(
     job: &Job,
     field: &Field,
@@ -190,7 +189,7 @@ pub(super) fn choose(
         Asked::Largest(most) => most,
         Asked::AtLeast(least) => return Ok(Criterion { rule: Rule::Threshold(least), gray_min }),
     };
-    // The first round asks the same whatever the budget is.
+    // The first round does not depend on the budget.
     let first = Search::new(Budget::Count(0), FEW);
     let (counts, highest) = round(&first, gray_min, field, truncated, passes)?;
     let available = counts.total();
@@ -207,7 +206,7 @@ pub(super) fn choose(
     Ok(Criterion { rule: Rule::Largest(cut), gray_min })
 }
 
-/// One round of a search over the differences of all samples, and the highest truncated gray level.
+/// Performs one round of a search over the differences of all samples, and finds the highest truncated gray level.
 fn round(
     search: &Search,
     gray_min: Option<f64>,
@@ -236,13 +235,13 @@ fn round(
     Ok(passes.team.reduce(all, join))
 }
 
-/// Statistics of all points.
+/// The statistics of all points.
 #[derive(Serialize, Deserialize)]
 pub(super) struct Counted {
     pub(super) differences: Differences,
-    /// The first of them, by its index in the volume.
+    /// The index in the volume of the first point.
     pub(super) first: u64,
-    /// Number of points in each brick.
+    /// The number of points in each brick.
     pub(super) counts: Vec<u32>,
 }
 
@@ -254,7 +253,7 @@ impl Counted {
     }
 }
 
-/// Looks at all points.
+/// Computes the statistics of all points.
 pub(super) fn count(
     field: &Field,
     truncated: &Truncated,

@@ -3,11 +3,11 @@
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-/// One of several processes that compute a shape together, as the ranks of MPI do. All see the folder of the
-/// plan, and call the same functions with the same arguments in the same order.
+/// One of several processes that compute a shape together, such as the ranks of MPI. All have access to the folder of the plan,
+/// and call the same functions with the same arguments in the same order.
 ///
-/// Messages between two processes arrive in the order in which they were sent. A process that fails must end
-/// the others, which would wait for it.
+/// Messages between two processes arrive in the order in which they were sent. A process that fails must end the others, which
+/// would otherwise wait for it.
 ///
 /// ```
 /// use walpha_model::outofcore::{Alone, Team};
@@ -17,15 +17,15 @@ use serde::de::DeserializeOwned;
 pub trait Team {
     /// The number of this process, from 0.
     fn rank(&self) -> usize;
-    /// How many processes there are, at least one.
+    /// The number of processes, at least one.
     fn size(&self) -> usize;
-    /// Sends a message of any length to another process; may wait until that one takes it.
+    /// Sends a message of any length to another process. This may wait until the message is received.
     fn send(&self, to: usize, message: &[u8]);
     /// Waits for the next message from another process.
     fn receive(&self, from: usize) -> Vec<u8>;
 }
 
-/// A process on its own.
+/// A single process without others.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Alone;
 
@@ -48,19 +48,19 @@ impl Team for Alone {
 }
 
 impl dyn Team + '_ {
-    /// Whether this process speaks for all.
+    /// Whether this is the first process, which acts for all.
     #[doc(hidden)]
     pub fn is_first(&self) -> bool {
         self.rank() == 0
     }
 
-    /// Which of so many equal parts are this process's: every `size`-th.
+    /// The numbers of the parts of this process, of `parts` equal ones: every `size`-th.
     pub(crate) fn own(&self, parts: usize) -> impl Iterator<Item = usize> {
         (self.rank()..parts).step_by(self.size())
     }
 
-    /// Joins what each process has, in an order that may be any, and gives it to all. ⌈log₂ size⌉ messages
-    /// of each process, to the first and back.
+    /// Joins the values of all processes, in any order, and gives the result to all. Each process sends ⌈log₂ size⌉ messages to
+    /// the first and back.
     #[doc(hidden)]
     pub fn reduce<T: Serialize + DeserializeOwned>(
         &self,
@@ -82,7 +82,7 @@ impl dyn Team + '_ {
         self.broadcast(self.is_first().then_some(mine))
     }
 
-    /// Gives to all what the first process has; the others have nothing.
+    /// Gives the value of the first process to all; the others pass `None`.
     #[doc(hidden)]
     pub fn broadcast<T: Serialize + DeserializeOwned>(&self, first: Option<T>) -> T {
         let (rank, size) = (self.rank(), self.size());
@@ -101,7 +101,7 @@ impl dyn Team + '_ {
         known.expect("the first process has it")
     }
 
-    /// Waits until all are here.
+    /// Waits until all processes have reached this call.
     #[doc(hidden)]
     pub fn barrier(&self) {
         self.reduce((), |(), ()| ());
@@ -112,7 +112,7 @@ fn packed<T: Serialize>(what: &T) -> Vec<u8> {
     postcard::to_allocvec(what).expect("numbers, texts and lists of these")
 }
 
-/// All processes are one program, so that what one packs the others can unpack.
+/// Unpacks a message. All processes run the same program, so that each can unpack the messages of the others.
 fn unpacked<T: DeserializeOwned>(message: &[u8]) -> T {
     postcard::from_bytes(message).expect("packed by the same program")
 }
@@ -129,7 +129,7 @@ mod tests {
     use walpha_points::Weighting;
     use walpha_volume::GrayRange;
 
-    /// Threads as processes.
+    /// A thread that takes the role of a process.
     struct Thread {
         rank: usize,
         to: Vec<Sender<Vec<u8>>>,
@@ -187,7 +187,7 @@ mod tests {
         }
     }
 
-    /// What any number of processes surveys, runs and writes, some of them without a tile or a block.
+    /// The survey, blocks and outputs do not depend on the number of processes, some of which have no tile or block.
     #[test]
     fn a_team_makes_what_one_makes() {
         let range = GrayRange { low: -3.0, high: 190.0 };

@@ -1,4 +1,4 @@
-//! The standard decomposition, whose functions reach across the volume: in a file, slab by slab.
+//! The standard decomposition, whose functions extend across the volume: computed in a file, slab by slab.
 
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom, Write};
@@ -16,12 +16,12 @@ use walpha_points::internal::Slabs;
 use walpha_points::internal::{Counts, Cut, Search};
 use walpha_volume::{Dims, Dtype, RawLayout, ReadOptions, Source};
 
-/// The file of the sums of bricks.
+/// The name of the file with the sums of bricks.
 pub(super) const SUMS: &str = "sums.f64";
-/// The file of the truncated volume, of the standard decomposition.
+/// The name of the file with the truncated volume of the standard decomposition.
 pub(super) const SMOOTHED: &str = "truncated.f32";
 
-/// A file that the plan has the digest of.
+/// A file whose digest is in the plan.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct DigestedFile {
     pub name: String,
@@ -38,10 +38,10 @@ impl DigestedFile {
         Ok(Self { name: SUMS.into(), bytes: bytes.len() as u64, digest })
     }
 
-    /// Reads it and looks whether it is what was written.
+    /// Reads the file and verifies it.
     ///
     /// # Errors
-    /// It is not, or is not there.
+    /// The file does not verify, or does not exist.
     pub(super) fn verify(&self, folder: &Path) -> Result<(), BlocksError> {
         let path = folder.join(&self.name);
         let found = match bytes::open(&path) {
@@ -61,8 +61,7 @@ impl DigestedFile {
     pub(super) const DAMAGED: &str = "is damaged, cut off, or of another plan";
 }
 
-/// The truncated volume that a plan of the standard decomposition left in its folder, and that nothing
-/// was read of it.
+/// Opens the truncated volume that a plan of the standard decomposition left in its folder, with empty digests.
 pub(super) fn smoothed(folder: &Path, dims: Dims) -> Result<(Source, ReadDigests), BlocksError> {
     let path = folder.join(SMOOTHED);
     bytes::open(&path)?;
@@ -72,10 +71,10 @@ pub(super) fn smoothed(folder: &Path, dims: Dims) -> Result<(Source, ReadDigests
     Ok((source, ReadDigests::none_of(&SampleBox::whole(dims), Field::bricks_of(dims).side(), dims)))
 }
 
-/// Values that a cut is looked for among are listed when so few are left: 64 MB.
+/// The number of values left in the search for a cut below which they are listed: 64 MB.
 pub(super) const FEW: u64 = 1 << 22;
 
-/// Truncates the volume of a job whose gray levels are known, and gives what is kept in a file.
+/// Truncates the volume of a job whose gray levels are known, and returns the file that the plan keeps, if any.
 pub(super) fn truncated(
     job: &Job,
     field: &Field,
@@ -91,8 +90,7 @@ pub(super) fn truncated(
     }
 }
 
-/// Finds which coefficients of the non-standard decomposition stay, and the sums of bricks of the truncated
-/// volume.
+/// Finds the cut of the non-standard decomposition, and the sums of bricks of the truncated volume.
 pub(super) fn truncate(
     job: &Job,
     field: &Field,
@@ -145,13 +143,13 @@ pub(super) fn truncate(
     Ok((truncation, Truncated::Bricks { cut, sums }))
 }
 
-/// Takes in sums of other bricks: those of which nothing is known are positive zeros.
+/// Takes the sums of bricks of another process. Unknown ones are positive zeros.
 fn either(sums: &mut [f64], others: Vec<f64>) {
     let known = sums.iter_mut().zip(others).filter(|(_, other)| other.to_bits() != 0);
     known.for_each(|(sum, other)| *sum = other);
 }
 
-/// The coefficients of levels above bricks, with their places in the volume.
+/// The coefficients of levels above bricks, with their indices in the volume.
 fn coarse<'a>(field: &'a Field, sums: &'a [f64]) -> impl Iterator<Item = (f64, u64)> + 'a {
     let ([cx, cy, _], side) = (field.bricks.count(), field.bricks.side());
     sums.iter().enumerate().map(move |(brick, &value)| {
@@ -160,12 +158,12 @@ fn coarse<'a>(field: &'a Field, sums: &'a [f64]) -> impl Iterator<Item = (f64, u
     })
 }
 
-/// Samples of a slab, about; it has at least a plane or a wall.
+/// The approximate number of samples of a slab, which has at least a plane or a wall.
 const SLAB: usize = 1 << 22;
 
-/// Truncates the volume by the standard decomposition, and writes the truncated one into the folder, where all
-/// processes find it. The work of the first process: coefficients are 8 bytes for each sample of a file
-/// without a name, in four passes and one for each further round of the search.
+/// Truncates the volume by the standard decomposition, and writes the truncated volume into the folder, where all processes find
+/// it. The first process does this: coefficients take 8 bytes for each sample in an unnamed file, in four passes and one for each
+/// further round of the search.
 pub(super) fn truncate_to_file(
     job: &Job,
     field: &Field,
@@ -190,7 +188,7 @@ pub(super) fn truncate_to_file(
 /// The coefficients of a volume in a file, in double precision.
 struct StandardTransform<'a> {
     file: File,
-    /// Samples along x, y and z.
+    /// The number of samples along x, y and z.
     dims: [usize; 3],
     slabs: Slabs,
     /// The folder of the plan.
@@ -236,7 +234,7 @@ impl StandardTransform<'_> {
         Ok((truncation, kept))
     }
 
-    /// Drops coefficients, and writes the samples of what stays.
+    /// Drops coefficients, and writes the samples computed from the remaining ones.
     fn smooth(
         &mut self,
         cut: Cut,
@@ -277,7 +275,7 @@ impl StandardTransform<'_> {
         Ok(DigestedFile { name: SMOOTHED.into(), bytes: length, digest: hasher.digest() })
     }
 
-    /// Whole planes (axis 2) or whole walls (axis 1), of about [`SLAB`] samples each.
+    /// Cuts the volume into whole planes (axis 2) or whole walls (axis 1), of about [`SLAB`] samples each.
     fn cut(&self, axis: usize) -> Vec<SampleBox> {
         let mut size = self.dims;
         size[axis] = (SLAB * self.dims[axis] / self.dims.iter().product::<usize>()).max(1);
@@ -285,7 +283,7 @@ impl StandardTransform<'_> {
         SampleBox::whole(self.dims).tiles(size)
     }
 
-    /// Coefficients of a part with their indices in the volume.
+    /// The coefficients of a part with their indices in the volume.
     fn indexed<'v>(
         &self,
         part: &SampleBox,
@@ -300,7 +298,7 @@ impl StandardTransform<'_> {
         })
     }
 
-    /// Reads a part that has all samples along x.
+    /// Reads a part that contains all samples along x.
     fn read(&self, part: &SampleBox) -> Result<Vec<f64>, BlocksError> {
         let mut bytes = vec![0; 8 * part.samples()];
         self.each_run(part, |mut file, run| file.read_exact(&mut bytes[run]))?;
@@ -313,7 +311,7 @@ impl StandardTransform<'_> {
         self.each_run(part, |mut file, run| file.write_all(&bytes[run]))
     }
 
-    /// Visits the bytes of a part that follow each other in the file, which is at them then.
+    /// Visits the byte ranges of a part that are contiguous in the file, which is positioned at each.
     fn each_run(
         &self,
         part: &SampleBox,

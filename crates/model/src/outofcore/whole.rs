@@ -6,11 +6,11 @@ use walpha_shape::{
     AlphaShape, Assembled, Class, Complex, Engine, NO_COMPONENT, ShapeOptions, Sheets, Simplices,
 };
 
-/// The shape of all blocks in one piece, as [`alpha_shape`](walpha_shape::alpha_shape) gives it: for results
-/// that fit the memory.
+/// Computes the shape of all blocks in one piece, equal to that of [`alpha_shape`](walpha_shape::alpha_shape), for results that
+/// fit the memory.
 ///
 /// # Errors
-/// A file cannot be read or does not verify; more points than 32-bit indices name.
+/// A file cannot be read or does not verify, or there are more points than 32-bit indices.
 #[expect(clippy::missing_panics_doc, reason = "an invariant, never met")]
 pub fn whole(plan: &Plan, merged: &Merged) -> Result<AlphaShape, BlocksError> {
     if merged.points > u64::from(u32::MAX) {
@@ -29,7 +29,7 @@ pub fn whole(plan: &Plan, merged: &Merged) -> Result<AlphaShape, BlocksError> {
     let indices = |file: &BlockFile, voxels: Vec<u64>| -> Result<Vec<u32>, BlocksError> {
         let index = |voxel: u64| {
             let found = points.binary_search_by_key(&voxel, |&(voxel, ..)| voxel);
-            // Each corner is some block's own.
+            // Each corner is a block's own point.
             found.map(|index| index as u32).map_err(|_| file.damaged("has points of no block"))
         };
         voxels.into_iter().map(index).collect()
@@ -65,7 +65,7 @@ pub fn whole(plan: &Plan, merged: &Merged) -> Result<AlphaShape, BlocksError> {
 #[derive(Default)]
 struct Gathered {
     cells: Vec<[u32; 4]>,
-    /// With the sheets of their sides.
+    /// The facets, with the sheets of their sides.
     facets: Vec<([u32; 3], Class, [u32; 2])>,
     edges: Vec<([u32; 2], Class, u32)>,
     vertices: Vec<([u32; 1], Class)>,
@@ -100,7 +100,7 @@ impl Gathered {
         Ok(())
     }
 
-    /// In canonical order.
+    /// Sorts the rows into canonical order.
     fn finish(mut self, count: u32) -> (Complex, Sheets) {
         self.cells.sort_unstable();
         self.facets.sort_unstable_by_key(|facet| facet.0);

@@ -1,4 +1,4 @@
-//! A shape as arrays of Zarr, which never are in memory as a whole.
+//! Writes a shape as arrays of Zarr, which are never in memory as a whole.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -17,10 +17,10 @@ use super::whole::MergedBlock;
 use super::{BlocksError, Merged, Plan};
 use walpha_shape::Simplices;
 
-/// Rows of a chunk.
+/// The number of rows of a chunk.
 const ROWS: u64 = 1 << 18;
 
-/// Fills a folder that is not there yet.
+/// Writes a new folder.
 pub(super) fn write(
     plan: &Plan,
     merged: &Merged,
@@ -31,9 +31,9 @@ pub(super) fn write(
     fill_folder(path, failed, |part| fill(plan, merged, part, monitor))
 }
 
-/// Fills a folder: a group for each dimension, with the rows of all blocks, the first block first. Corners are
-/// named by their index in the volume, which `vertices/corners` and `vertices/positions` tie to places. A block
-/// for each thread is in memory.
+/// Fills a folder with a group for each dimension, which has the rows of all blocks, in the order of blocks. Corners are named by
+/// their index in the volume; `vertices/corners` and `vertices/positions` map these to positions. A block for each thread is in
+/// memory.
 fn fill(plan: &Plan, merged: &Merged, folder: &Path, monitor: &Monitor) -> Result<(), BlocksError> {
     let failed = |error: &dyn std::fmt::Display| BlocksError::Written {
         path: folder.into(),
@@ -72,14 +72,14 @@ fn fill(plan: &Plan, merged: &Merged, folder: &Path, monitor: &Monitor) -> Resul
     Ok(())
 }
 
-/// A folder of arrays, and what an error there is called.
+/// A folder of arrays, and the conversion of errors there.
 struct File<'a> {
     store: Arc<FilesystemStore>,
     failed: &'a dyn Fn(&dyn std::fmt::Display) -> BlocksError,
 }
 
 impl File<'_> {
-    /// The group of all, with what is known of the whole.
+    /// Writes the root group, with the numbers of the whole shape.
     fn group(&self, plan: &Plan, merged: &Merged) -> Result<(), BlocksError> {
         let coordinates = plan.job.units.coordinates_of(&plan.job.frame);
         let attributes = json!({ "walpha": {
@@ -105,7 +105,7 @@ impl File<'_> {
         Ok(())
     }
 
-    /// An array of so many rows, each of one number or of `width`.
+    /// Creates an array with this number of rows, each of one number or of `width`.
     fn array<T: ArrayNumber>(
         &self,
         name: &str,
@@ -125,7 +125,7 @@ impl File<'_> {
         Ok(Growing { array, width: width.unwrap_or(1), rows: 0 })
     }
 
-    /// The arrays of simplices of a dimension.
+    /// Creates the arrays of simplices of a dimension.
     fn rows<const N: usize>(&self, name: &str, rows: usize) -> Result<SimplexArrays, BlocksError> {
         let corners = self.array(&format!("{name}/corners"), rows, Some(N), &0u64)?;
         let classes = self.array(&format!("{name}/classes"), rows, None, &0u8)?;
@@ -133,7 +133,7 @@ impl File<'_> {
     }
 }
 
-/// A number that an array holds.
+/// A number type of arrays.
 trait ArrayNumber: Element + Copy {
     const TYPE: DataType;
     fn fill(self) -> FillValue;
@@ -156,7 +156,7 @@ array_numbers!(u8: UInt8, u32: UInt32, u64: UInt64, f64: Float64);
 struct Growing {
     array: Array<FilesystemStore>,
     width: usize,
-    /// Rows that are there.
+    /// The number of rows written.
     rows: u64,
 }
 
@@ -184,7 +184,7 @@ impl Growing {
     }
 }
 
-/// Simplices of a dimension.
+/// The simplices of a dimension.
 struct SimplexArrays {
     corners: Growing,
     classes: Growing,

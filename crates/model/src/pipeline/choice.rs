@@ -8,7 +8,7 @@ use walpha_points::{
 };
 use walpha_volume::Volume;
 
-/// Which samples of a volume become points.
+/// The method that chooses which samples of a volume become points.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
@@ -17,19 +17,19 @@ pub enum Choice {
     Difference(Selection),
     /// Greedily, the voxels where the interpolant of those chosen so far is worst.
     Adaptive(Goal),
-    /// As `Adaptive`, and then voxels whose loss costs little are exchanged for others
+    /// Like `Adaptive`; then voxels whose loss costs little are exchanged for others
     /// ([`exchange`](crate::interpolate::exchange())).
     Exchanged(Goal),
 }
 
-/// Where adaptive selection ends: at the first goal that is reached. Without any goal, at the paper's share of all
-/// samples.
+/// The goals of adaptive selection, which ends when the first of them is reached. Without any goal, it ends at the paper's share
+/// of all samples.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Goal {
-    /// A number of points.
+    /// This number of points.
     pub count: Option<u64>,
-    /// This share of all samples, in place of `count`.
+    /// This share of all samples, instead of `count`.
     pub ratio: Option<f64>,
     /// The root mean square error of the interpolant over all samples, in gray levels.
     pub rmse: Option<f64>,
@@ -43,10 +43,10 @@ impl Goal {
         Self { count: Some(count), ..Self::default() }
     }
 
-    /// The goal for a volume of `samples` samples.
+    /// The goals for a volume of `samples` samples.
     ///
     /// # Errors
-    /// A ratio that is not a share.
+    /// The ratio is not a share.
     fn of(&self, samples: u64) -> Result<Adaptive, PointsError> {
         if let Some(ratio) = self.ratio {
             SelectionRule::Ratio(ratio).asked(samples)?;
@@ -65,7 +65,7 @@ impl Default for Choice {
     }
 }
 
-/// The points that were chosen.
+/// The chosen points.
 pub(super) struct Chosen {
     pub(super) points: Points,
     pub(super) importance: Importance,
@@ -74,7 +74,7 @@ pub(super) struct Chosen {
 }
 
 impl Choice {
-    /// The choice without samples below a gray level, if one is given.
+    /// Returns the choice without samples below a gray level, if one is given.
     pub(super) fn at_least(self, gray_min: Option<f64>) -> Self {
         match (self, gray_min) {
             (Self::Difference(selection), Some(_)) => {
@@ -84,7 +84,7 @@ impl Choice {
         }
     }
 
-    /// The choice with this number of points.
+    /// Returns the choice with this number of points.
     #[must_use]
     pub fn with_count(self, count: u64) -> Self {
         let goal = |goal: Goal| Goal { count: Some(count), ratio: None, ..goal };
@@ -125,7 +125,7 @@ impl Choice {
         voxels.sort_unstable();
         let place = |voxel: &u32| voxels.binary_search(voxel).expect("the same voxels") as u32;
         let importance = Importance::Order(chosen.iter().map(place).collect());
-        // A goal of error alone allows as many points as there are samples: no number was asked for.
+        // A goal of error alone allows as many points as there are samples: no number was requested.
         let asked = goal.count < volume.dims().samples() as u64;
         let fewer = asked && (voxels.len() as u64) < goal.count;
         let points = points_at(volume, &differences, &voxels, units);

@@ -9,7 +9,7 @@ use walpha_points::PointsError;
 use walpha_points::haar::HaarError;
 use walpha_shape::{AlphaError, ShapeError};
 
-/// Why a pipeline fails: an error of one of its stages, or contradicting options.
+/// An error of a pipeline: of one of its stages, or of contradicting options.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum PipelineError {
@@ -25,7 +25,7 @@ pub enum PipelineError {
     /// An error in making the solid of labels.
     #[error(transparent)]
     Labels(LabelsError),
-    /// Labels, where points are to be selected by gray levels.
+    /// The volume contains labels, but points were to be selected by gray levels.
     #[error(
         "the volume holds labels, and their solid comes from voxels, without α, differences or weights"
     )]
@@ -33,7 +33,7 @@ pub enum PipelineError {
     /// An error in computing the shape.
     #[error(transparent)]
     Shape(ShapeError),
-    /// A voxel so large that 10 h² is not finite.
+    /// A voxel is so large that 10 h² is not finite.
     #[error(transparent)]
     Alpha(#[from] AlphaError),
     /// The work was cancelled.
@@ -70,7 +70,7 @@ pub enum PipelineError {
         /// The unit of lengths.
         unit: LengthUnit,
     },
-    /// Weights from differences to neighbours, for scattered points on a torus.
+    /// Weights were to be computed from differences to neighbours, for scattered points on a torus.
     #[error(
         "these weights come from differences to neighbours, and neighbours across the sides of a periodic box are not considered"
     )]

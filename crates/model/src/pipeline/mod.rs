@@ -1,5 +1,5 @@
-//! All stages in one call: a [`Recipe`] holds their options, and turns a volume or points into a shape. The crate's
-//! first page has an example. Each stage is reported to the [`Monitor`] that watches.
+//! All stages in one call: a [`Recipe`] contains their options, and turns a volume or points into a shape. The crate's first page
+//! has an example. Each stage is reported to the [`Monitor`] that watches.
 
 mod choice;
 mod error;
@@ -30,7 +30,7 @@ use walpha_points::{ModelMetadata, Points, SampleGrid};
 use walpha_shape::{Alpha, AlphaShape, Engine, Kept, NO_COMPONENT, alpha_shape};
 use walpha_volume::Volume;
 
-/// A shape, and how it was made.
+/// A shape, with a record of how it was made.
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct Model {
@@ -38,15 +38,15 @@ pub struct Model {
     pub shape: AlphaShape,
     /// The α of the shape.
     pub parameter: Parameter,
-    /// Where its points come from.
+    /// The origin of its points.
     pub origin: Origin,
-    /// The labels that it is the solid of, if it is of labels.
+    /// The labels whose solid the shape is, if it is a solid of labels.
     pub labels: Option<LabelSizes>,
 }
 
 impl Recipe {
-    /// The shape of a volume: that of its [labels](Recipe::labels), if the recipe names some; otherwise its values are mapped to
-    /// gray levels first if needed.
+    /// Computes the shape of a volume: the solid of its [labels](Recipe::labels), if the recipe names some; otherwise its values
+    /// are first mapped to gray levels if needed.
     ///
     /// # Errors
     /// The errors of its stages, and [`PipelineError::Cancelled`].
@@ -58,8 +58,8 @@ impl Recipe {
         self.finish(self.weighed(&source, Values::Written)?)
     }
 
-    /// The solid of the labels that the recipe names, of all but 0 if it names none: its cells fill their voxels
-    /// ([`labels::solid`]).
+    /// Computes the solid of the labels that the recipe names, or of all labels but 0 if it names none. Its cells fill the voxels
+    /// of these labels ([`labels::solid`]).
     ///
     /// # Errors
     /// [`PipelineError::Labels`], and the errors of [`Recipe::place`].
@@ -68,7 +68,7 @@ impl Recipe {
         self.solid_of(volume, counts)
     }
 
-    /// The solid of these labels, which have these numbers of voxels.
+    /// Computes the solid of these labels, which have these numbers of voxels.
     #[doc(hidden)]
     pub fn solid_of(
         &self,
@@ -86,7 +86,7 @@ impl Recipe {
         Ok(Model { shape, parameter, origin, labels: Some(sizes) })
     }
 
-    /// The shape of scattered points.
+    /// Computes the shape of scattered points.
     ///
     /// # Errors
     /// The errors of its stages, and [`PipelineError::Cancelled`].
@@ -95,7 +95,7 @@ impl Recipe {
         self.finish(self.weighed_points(points, &metadata, Values::Written)?)
     }
 
-    /// The weighted points of an input, and the volume that they come from, if any.
+    /// Computes the weighted points of an input, and returns the volume that they come from, if any.
     ///
     /// # Errors
     /// The errors of its stages.
@@ -116,7 +116,7 @@ impl Recipe {
         }
     }
 
-    /// The weighted points of a volume.
+    /// Computes the weighted points of a volume.
     ///
     /// # Errors
     /// The errors of its stages.
@@ -155,7 +155,7 @@ impl Recipe {
         Ok(weighed)
     }
 
-    /// The weighted points of a file with this metadata. The default α is the stored one, if any.
+    /// Computes the weighted points of a file with this metadata. The default α is the stored one, if any.
     ///
     /// # Errors
     /// The errors of its stages.
@@ -193,7 +193,7 @@ impl Recipe {
         Ok(weighed)
     }
 
-    /// The shape of weighted points.
+    /// Computes the shape of weighted points.
     ///
     /// # Errors
     /// The errors of its stages, and [`PipelineError::Radii`].

@@ -12,21 +12,21 @@ use walpha_shape::ladder::Filtration;
 use walpha_shape::{Alpha, AlphaError, ShapeError, Torus};
 use walpha_volume::{Frame, LengthUnit, Volume};
 
-/// Which α a shape is made at.
+/// The rule that determines the α of a shape.
 ///
-/// Serialised as `default`, `auto`, `auto:connected` or a number.
+/// It is serialised as `default`, `auto`, `auto:connected` or a number.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(into = "String", try_from = "String")]
 #[non_exhaustive]
 pub enum AlphaRule {
-    /// For a volume 10 h², h³ being the volume of a voxel; [`AlphaRule::Auto`] for scattered points.
+    /// For a volume 10 h², where h³ is the volume of a voxel; [`AlphaRule::Auto`] for scattered points.
     #[default]
     Default,
-    /// From the spacing of the points: nine of ten balls reach the centres of their eighth neighbours
-    /// ([`Parameter::of_spacing`]). If weights are proportional to α, that of the points without weights.
+    /// The α from the spacing of the points, at which nine of ten balls reach the centres of their eighth neighbours
+    /// ([`Parameter::of_spacing`]). If weights are proportional to α, the α of the points without weights is used.
     Auto,
-    /// The smallest α at which all points are in one solid component ([`Filtration::one_region`]); if weights are
-    /// proportional to α, that of the points without weights.
+    /// The smallest α at which all points are in one solid component ([`Filtration::one_region`]). If weights are proportional to
+    /// α, the α of the points without weights is used.
     Connected,
     /// This α.
     Given(Alpha),
@@ -41,7 +41,7 @@ impl From<Alpha> for AlphaRule {
 impl FromStr for AlphaRule {
     type Err = AlphaError;
 
-    /// `auto`, `auto:connected`, or α as a number.
+    /// Parses `auto`, `auto:connected`, or α as a number.
     fn from_str(text: &str) -> Result<Self, AlphaError> {
         Ok(match text.trim() {
             "auto" => Self::Auto,
@@ -70,43 +70,43 @@ impl TryFrom<String> for AlphaRule {
     }
 }
 
-/// α, and where it comes from.
+/// The value of α, and its origin.
 #[derive(Clone, Copy, Debug, Serialize)]
 #[serde(into = "ParameterFields")]
 #[non_exhaustive]
 pub struct Parameter {
-    /// α, a squared length.
+    /// The value of α, a squared length.
     pub alpha: Alpha,
-    /// Unit of length; α is in its square.
+    /// The unit of length; α is in its square.
     pub unit: LengthUnit,
-    /// Where it comes from.
+    /// The origin of the value.
     pub origin: ParameterOrigin,
 }
 
-/// Where an α comes from.
+/// The origin of a value of α.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum ParameterOrigin {
-    /// It was given.
+    /// α was given.
     Given,
-    /// Ten squared voxels, as in the paper.
+    /// α is the default: ten squared voxels, as in the paper.
     Default,
-    /// Stored in the file of points.
+    /// α was stored in the file of points.
     Stored,
-    /// From the spacing of the points.
+    /// α was found from the spacing of the points.
     Auto,
-    /// The same for the points without weights, as the weights are proportional to α.
+    /// Like `Auto`, for the points without weights, as the weights are proportional to α.
     AutoUnweighted,
-    /// The smallest at which all points are in one solid component.
+    /// α is the smallest at which all points are in one solid component.
     Connected,
-    /// The same for the points without weights, as the weights are proportional to α.
+    /// Like `Connected`, for the points without weights, as the weights are proportional to α.
     ConnectedUnweighted,
-    /// There is none: the shape is the solid of labels.
+    /// There is no α, as the shape is the solid of labels.
     Labels,
 }
 
-/// α as a squared length and as a radius.
+/// The value of α as a squared length and as a radius.
 #[derive(Serialize)]
 struct ParameterFields {
     squared: Alpha,
@@ -120,10 +120,10 @@ struct ParameterFields {
 const SQUARED_VOXELS: f64 = 10.0;
 
 impl AlphaRule {
-    /// The α for the points of a volume; `None` if it is still to be found.
+    /// The α for the points of a volume; `None` if it must still be found.
     ///
     /// # Errors
-    /// A voxel so large that 10 h² is not finite.
+    /// A voxel is so large that 10 h² is not finite.
     pub fn of_volume(
         self,
         volume: &Volume,
@@ -132,7 +132,7 @@ impl AlphaRule {
         self.of_frame(volume.frame(), units)
     }
 
-    /// [`of_volume`](Self::of_volume) for the grid of a volume.
+    /// Like [`of_volume`](Self::of_volume), for the grid of a volume.
     pub(crate) fn of_frame(
         self,
         frame: &Frame,
@@ -162,7 +162,7 @@ impl AlphaRule {
         self.given(unit).unwrap_or_else(found)
     }
 
-    /// The given α; `None` if it is still to be found.
+    /// The given α; `None` if it must still be found.
     pub fn given(self, unit: LengthUnit) -> Option<Parameter> {
         match self {
             Self::Given(alpha) => Some(Parameter { alpha, unit, origin: ParameterOrigin::Given }),
@@ -172,13 +172,13 @@ impl AlphaRule {
 }
 
 impl Parameter {
-    /// The α of [`AlphaRule::Auto`]: the least at which the balls of nine of ten points reach the centres of their
-    /// eighth neighbours, that is the quantile of r² − ω over points, r being the distance to the eighth of the other
-    /// places and ω the weight. Surfaces become closed and solids filled, and a few strays do not matter.
-    /// Optionally on a torus. O(n log n); of more than 20 000 points a sample is looked at.
+    /// The α of [`AlphaRule::Auto`]: the least at which the balls of nine of ten points reach the centres of their eighth
+    /// neighbours. It is the quantile of r² − ω over points, where r is the distance to the eighth of the other positions and ω
+    /// the weight. Surfaces become closed and solids filled, and a few strays do not matter. The points may be on a torus. O(n
+    /// log n); if there are more than 20 000 points, a sample of them is examined.
     ///
     /// # Errors
-    /// Coordinates or weights that are not finite or too large.
+    /// Coordinates or weights are not finite or are too large.
     pub fn of_spacing(
         points: &WeightedPoints,
         torus: Option<Torus>,
@@ -187,13 +187,13 @@ impl Parameter {
         Ok(Self { alpha: spacing_alpha(points, torus)?, unit, origin: ParameterOrigin::Auto })
     }
 
-    /// The α of [`AlphaRule::Connected`]: the smallest of a filtration at which all points are in one solid component.
+    /// The α of [`AlphaRule::Connected`]: the smallest α of a filtration at which all points are in one solid component.
     pub fn of_filtration(filtration: &Filtration, unit: LengthUnit) -> Self {
         Self { alpha: filtration.one_region(), unit, origin: ParameterOrigin::Connected }
     }
 
-    /// Finds α for points, optionally on a torus: by [`AlphaRule::Connected`] from their triangulation, and otherwise
-    /// from their spacing.
+    /// Finds α for points, optionally on a torus: for [`AlphaRule::Connected`] from their triangulation, otherwise from their
+    /// spacing.
     pub(super) fn find(
         rule: AlphaRule,
         points: &WeightedPoints,
@@ -206,7 +206,7 @@ impl Parameter {
         Ok(Self::of_filtration(&Filtration::on(torus, points.clone())?, unit))
     }
 
-    /// Finds the α that weights will be proportional to: that of the points without weights.
+    /// Finds the α to which weights will be proportional: that of the points without weights.
     pub(super) fn find_unweighted(
         rule: AlphaRule,
         points: &Points,
@@ -221,12 +221,12 @@ impl Parameter {
         Ok(Self { origin, ..found })
     }
 
-    /// That of the solid of labels, which has none: infinite.
+    /// The parameter of a solid of labels, which has no α: it is infinite.
     pub(super) fn of_labels(unit: LengthUnit) -> Self {
         Self { alpha: Alpha::INFINITE, unit, origin: ParameterOrigin::Labels }
     }
 
-    /// Whether it was found rather than given.
+    /// Whether α was found and not given.
     pub fn is_found(&self) -> bool {
         use ParameterOrigin::{Auto, AutoUnweighted, Connected, ConnectedUnweighted};
         matches!(self.origin, Auto | AutoUnweighted | Connected | ConnectedUnweighted)

@@ -21,9 +21,9 @@ const MOST_FOR_CGAL: usize = 20_000;
 
 /// The numbers of the paper's experiment.
 pub mod paper {
-    /// Points selected.
+    /// The number of selected points.
     pub const POINTS: usize = 15956;
-    /// Samples of its volume: 64³.
+    /// The number of samples of its volume: 64³.
     pub const SAMPLES: usize = 262_144;
 }
 
@@ -47,46 +47,46 @@ pub mod paper {
 #[non_exhaustive]
 #[expect(clippy::struct_excessive_bools, reason = "each is an option of its own")]
 pub struct Recipe {
-    /// How a volume is read.
+    /// The options for reading a volume.
     pub read: ReadOptions,
     /// The columns of a table of points; `None` takes them from its header or guesses them from its numbers.
     pub columns: Option<Columns>,
     /// The classes of points to read from LAS and LAZ ([`PointOptions::classes`]).
     pub classes: Option<Vec<u8>>,
-    /// Whether points of LAS and LAZ that are withheld are read ([`PointOptions::withheld`]).
+    /// Whether withheld points of LAS and LAZ are read ([`PointOptions::withheld`]).
     pub withheld: bool,
     /// Keeps the first point in each cube of this side ([`PointOptions::thin`]).
     pub thin: Option<f64>,
-    /// The labels whose [solid](Recipe::solid) the shape is; `None` selects points by gray levels. With labels nothing else of
-    /// the recipe has an effect, except how a volume is read, its units and its space.
+    /// The labels whose [solid](Recipe::solid) is the shape; `None` selects points by gray levels. With labels, the rest of the
+    /// recipe has no effect, except the options for reading a volume, its units and its space.
     pub labels: Option<LabelChoice>,
     /// The values that become gray 0 and 255; `None` leaves unsigned bytes unchanged, and otherwise takes the
     /// smallest and largest value.
     pub gray: Option<GrayRange>,
-    /// Whether points get gray levels rather than the values of the input.
+    /// Whether points get gray levels and not the values of the input.
     pub gray_out: bool,
-    /// Units of the coordinates; `None` is [`Units::World`] if the input states a unit of length, a spacing or an
-    /// origin, and otherwise [`Units::Voxel`].
+    /// The units of the coordinates; `None` is [`Units::World`] if the input states a unit of length, a spacing or an origin, and
+    /// otherwise [`Units::Voxel`].
     pub units: Option<Units>,
-    /// Directions of the world axes, if the input states the patient's orientation; `None` is [`Space::Lps`].
+    /// The directions of the world axes, if the input states the patient's orientation; `None` is [`Space::Lps`].
     pub space: Option<Space>,
-    /// How the volume is transformed and truncated.
+    /// The options for the transform and truncation of the volume.
     pub haar: HaarOptions,
-    /// Which samples become points.
+    /// The choice of samples that become points.
     pub choice: Choice,
     /// Leaves out samples below this value of the input; an alternative to [`Selection::gray_min`].
     pub value_min: Option<f64>,
     /// Fits the values of points to the volume by least squares; `None` keeps the values of its samples.
     pub refit: Option<Refit>,
-    /// Where weights come from; `None` is the column of the input, or 0 if there is none.
+    /// The source of weights; `None` is the column of the input, or 0 if it has none.
     pub weighting: Option<Weighting>,
-    /// α, or how to find it.
+    /// The value of α, or the rule that finds it.
     pub alpha: AlphaRule,
     /// How α and ω define the balls.
     pub balls: Balls,
-    /// Which engine computes the shape.
+    /// The engine that computes the shape.
     pub engine: Engine,
-    /// Whether the simplices outside the shape are listed too ([`ShapeOptions::exterior`]).
+    /// Whether exterior simplices are listed, too ([`ShapeOptions::exterior`]).
     pub exterior: bool,
     /// Whether hidden points are listed ([`ShapeOptions::hidden`]).
     pub hidden: bool,
@@ -102,20 +102,20 @@ pub struct Recipe {
     /// Which components of the shape are kept.
     #[serde(skip_serializing_if = "Keep::is_all")]
     pub keep: Keep,
-    /// The engine of another crate ([`ShapeOptions::classifier`]): in the crate `walpha`, CGAL. It is not stored with the
+    /// The engine of another crate ([`ShapeOptions::classifier`]); in the crate `walpha`, this is CGAL. It is not stored with the
     /// other options.
     #[serde(skip)]
     pub classifier: Option<Classifier>,
 }
 
 impl Recipe {
-    /// The defaults.
+    /// Creates a recipe with the defaults.
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// The paper's experiment on any volume: its share of the samples, lengths in voxels, weights by its equation 4.1, and
-    /// α = 10, which is the default for voxels. The command calls this `--preset paper`, and `reproduce` starts from it.
+    /// The paper's experiment on any volume: its share of the samples, lengths in voxels, weights by its equation 4.1, and α =
+    /// 10, which is the default for voxels. The command calls this `--preset paper`, and `reproduce` starts from it.
     ///
     /// # Panics
     /// Never: it is a preset.
@@ -147,8 +147,8 @@ impl Recipe {
         classifier: Option<Classifier>,
     }
 
-    /// The options that differ from the default, as a JSON object from which the recipe can be deserialised. A
-    /// `.wvm` stores this.
+    /// Converts the options that differ from the defaults to a JSON object, from which the recipe can be deserialised. A `.wvm`
+    /// stores this.
     ///
     /// # Panics
     /// Never: all options can be serialised.
@@ -169,7 +169,7 @@ impl Recipe {
         Self { gray: gray.into(), ..self }
     }
 
-    /// Sets `units`; `None` leaves them to the input.
+    /// Sets `units`; `None` chooses them by the input.
     pub fn units(self, units: impl Into<Option<Units>>) -> Self {
         Self { units: units.into(), ..self }
     }
@@ -184,7 +184,7 @@ impl Recipe {
         Self { refit: to.into(), ..self }
     }
 
-    /// Sets `weighting`; `None` leaves weights to the input.
+    /// Sets `weighting`; `None` takes the weights of the input.
     pub fn weighting(self, weighting: impl Into<Option<Weighting>>) -> Self {
         Self { weighting: weighting.into(), ..self }
     }
@@ -194,7 +194,7 @@ impl Recipe {
         Self { alpha: alpha.into(), ..self }
     }
 
-    /// How points are read.
+    /// The options for reading points.
     #[doc(hidden)]
     pub fn of_points(&self) -> PointOptions {
         PointOptions::default()
@@ -208,17 +208,17 @@ impl Recipe {
             .thin(self.thin)
     }
 
-    /// How values become gray levels.
+    /// The mapping of values to gray levels.
     pub(crate) fn gray_levels(&self) -> Gray {
         self.gray.map_or(Gray::Automatic, Gray::Range)
     }
 
-    /// The values that gray levels stand for in what is written, where `range` became 0..255.
+    /// The values that gray levels represent in written files; `range` became 0..255.
     pub(crate) fn written(&self, range: GrayRange) -> GrayRange {
         if self.gray_out { GrayRange::IDENTITY } else { range }
     }
 
-    /// The grid in the coordinates that its points will have, and their units.
+    /// Converts a grid to the coordinates that its points will have, and returns these with their units.
     ///
     /// # Errors
     /// [`PipelineError::SpaceOfVoxels`] and [`PipelineError::UnknownSpace`].
@@ -236,8 +236,7 @@ impl Recipe {
         Ok((frame.to(Coordinates { space, unit }), units))
     }
 
-    /// The selection by differences in a volume whose values `range` are gray 0..255; `None` if points are chosen
-    /// adaptively.
+    /// The selection by differences in a volume whose values `range` are gray 0..255; `None` if points are chosen adaptively.
     #[doc(hidden)]
     pub fn selection(&self, range: &GrayRange) -> Option<Selection> {
         match self.choice.at_least(self.value_min.map(|value| range.gray(value))) {
@@ -246,8 +245,8 @@ impl Recipe {
         }
     }
 
-    /// An error of selection in the terms of this recipe: of settings that stand for one another it names the one
-    /// that was given, in a volume whose values `range` are gray 0..255.
+    /// Converts an error of selection to the terms of this recipe: of alternative settings, it names the given one. The values
+    /// `range` of the volume are gray 0..255.
     #[doc(hidden)]
     pub fn in_its_terms(&self, error: PointsError, range: &GrayRange) -> PointsError {
         let gray_min = match self.choice {
@@ -277,14 +276,14 @@ impl Recipe {
         }
     }
 
-    /// Where the weights of these points come from.
+    /// The source of the weights of these points.
     pub(super) fn weighting_of(&self, points: &Points) -> Weighting {
         let of_input =
             if points.weights.is_some() { Weighting::Column } else { Weighting::Common(0.0) };
         self.weighting.unwrap_or(of_input)
     }
 
-    /// The options of the shape at α.
+    /// The options of the shape at this α.
     pub fn shape_at(&self, alpha: Alpha) -> ShapeOptions {
         ShapeOptions::new(alpha)
             .balls(self.balls)
@@ -301,11 +300,11 @@ impl Recipe {
     /// Checks in advance that the options of the shape are compatible, as far as α is known.
     ///
     /// # Errors
-    /// Those of [`ShapeOptions::check`].
+    /// See [`ShapeOptions::check`].
     pub fn check(&self) -> Result<(), ShapeError> {
         let alpha = match self.alpha {
             AlphaRule::Given(alpha) => alpha,
-            // An α that is found is finite.
+            // An α that is found will be finite.
             AlphaRule::Auto | AlphaRule::Connected | AlphaRule::Default => Alpha::ZERO,
         };
         self.shape_at(alpha).check()
@@ -340,7 +339,7 @@ impl Recipe {
     }
 }
 
-/// Drops null fields: they are options that are absent by default.
+/// Drops null fields, which are absent by default.
 fn drop_nulls(value: &mut Value) {
     if let Value::Object(fields) = value {
         fields.retain(|_, value| !value.is_null());
@@ -348,7 +347,7 @@ fn drop_nulls(value: &mut Value) {
     }
 }
 
-/// A periodic box as its sides.
+/// Serialises a periodic box as its sides.
 mod sides {
     use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
 
@@ -376,7 +375,7 @@ mod tests {
     use crate::pipeline::{Goal, Values};
     use walpha_points::SelectionRule;
 
-    /// Including an infinite α, which JSON has no number for, and one that is to be found.
+    /// This includes an infinite α, for which JSON has no number, and one that must be found.
     #[test]
     fn recipes_survive_json() {
         let base = Recipe::new()

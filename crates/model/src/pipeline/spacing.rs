@@ -1,4 +1,4 @@
-//! α from the spacing of points, which a few strays do not decide.
+//! Finds α from the spacing of points, without the influence of a few strays.
 
 use rayon::prelude::*;
 use rstar::RTree;
@@ -9,26 +9,26 @@ use walpha_regular::internals::check_numbers;
 use walpha_points::WeightedPoints;
 use walpha_shape::{Alpha, ShapeError, Torus};
 
-/// How many neighbours the ball of a point reaches. Where points are scattered at random, with m of them in a unit of
-/// area or volume, the largest empty disc or ball has about the radius that nine of ten points need for this many:
-/// √(ln n / π m) and ∛(3 ln n / 4π m), against 1.9/√m and 1.4/∛m, for n of 10⁴ to 10⁶. So the rule closes surfaces and
+/// The number of neighbours that the ball of a point reaches. For points that are scattered at random, with m of them in a unit
+/// of area or volume, the largest empty disc or ball has about the radius at which nine of ten points reach this many neighbours:
+/// √(ln n / π m) and ∛(3 ln n / 4π m), compared with 1.9/√m and 1.4/∛m, for n of 10⁴ to 10⁶. So the rule closes surfaces and
 /// fills solids alike.
 const NEIGHBOURS: usize = 8;
-/// The share of points whose balls reach that many neighbours. The rest may be strays.
+/// The share of points whose balls reach that many neighbours. The others may be strays.
 const SHARE: f64 = 0.9;
-/// Number of points that are looked at, if there are more. The quantile varies by less than one percent.
+/// The number of points that are examined, if there are more. The quantile varies by less than one percent.
 const LOOKED_AT: usize = 20_000;
 
 type Neighbour = GeomWithData<[f64; 3], f64>;
 
-/// The α at which the balls of nine of ten points reach their eighth neighbours' centres: the quantile of r² − ω over
-/// points, r being the distance to the eighth of the other places (or to the farthest, where these are fewer) and
-/// ω the weight. On a torus distances are those of the nearest copies. 0 for a single place without weight.
+/// The α at which the balls of nine of ten points reach their eighth neighbours' centres: the quantile of r² − ω over points,
+/// where r is the distance to the eighth of the other positions (or to the farthest, if there are fewer) and ω the weight. On a
+/// torus, distances are those of the nearest copies. 0 for a single position without weight.
 ///
-/// A function of the set of points alone, not of their order. O(n log n).
+/// The result depends only on the set of points, not on their order. O(n log n).
 ///
 /// # Errors
-/// Numbers that are not finite or too large.
+/// Numbers are not finite or are too large.
 pub(super) fn spacing_alpha(
     points: &WeightedPoints,
     torus: Option<Torus>,
@@ -50,7 +50,7 @@ pub(super) fn spacing_alpha(
     Ok(Alpha::from_squared(squared).expect("squares of coordinates in range are numbers"))
 }
 
-/// The distinct places of points, in order, each with the largest weight there.
+/// The distinct positions of points, in order, each with the largest weight there.
 fn places(points: &WeightedPoints, torus: Option<Torus>) -> Vec<Neighbour> {
     let place = |&place: &[f64; 3]| torus.map_or(place, |torus| torus.wrap(place));
     let mut places: Vec<([f64; 3], f64)> = points
@@ -69,12 +69,12 @@ fn places(points: &WeightedPoints, torus: Option<Torus>) -> Vec<Neighbour> {
     places.into_iter().map(|(place, weight)| Neighbour::new(place, weight)).collect()
 }
 
-/// The squared distance from a place to the eighth of the others; on a torus these are all copies of places, its own among
-/// them.
+/// The squared distance from a position to the eighth of the others. On a torus these are all copies of positions, including its
+/// own.
 fn eighth(tree: &RTree<Neighbour>, from: &[f64; 3], torus: Option<Torus>) -> f64 {
     let nearest = |from: [f64; 3]| {
         let neighbours = tree.nearest_neighbor_iter_with_distance_2(&from);
-        // The first is the place itself.
+        // The first is the position itself.
         neighbours.map(|(_, squared)| squared).take(NEIGHBOURS + 1)
     };
     let mut squares: Vec<f64> = nearest(*from).collect();
@@ -82,7 +82,7 @@ fn eighth(tree: &RTree<Neighbour>, from: &[f64; 3], torus: Option<Torus>) -> f64
         return squares.get(NEIGHBOURS).or(squares.last()).copied().unwrap_or_default();
     };
     let sides = torus.sides();
-    // So far along the shortest side, to either side of it, there are eight copies of the place itself.
+    // Within this distance along the shortest side, in both directions, there are eight copies of the position itself.
     let enough = (NEIGHBOURS / 2) as f64 * sides.iter().copied().fold(f64::INFINITY, f64::min);
     let steps = |k: usize| {
         let most = (enough / sides[k]) as i32 + 1;
@@ -102,7 +102,7 @@ fn eighth(tree: &RTree<Neighbour>, from: &[f64; 3], torus: Option<Torus>) -> f64
     squares[NEIGHBOURS]
 }
 
-/// The squared distance from a place to a box from the origin to its `sides`.
+/// The squared distance from a position to a box from the origin to its `sides`.
 fn squared_distance_to_box(place: [f64; 3], sides: [f64; 3]) -> f64 {
     let outside = |k: usize| (-place[k]).max(place[k] - sides[k]).max(0.0);
     (0..3).map(|k| outside(k) * outside(k)).sum()
@@ -122,7 +122,7 @@ mod tests {
         (0..side.pow(3)).map(at).collect()
     }
 
-    /// On random points of one to a unit of area or volume, √α is the radius that the eighth neighbour has for nine of ten.
+    /// For random points, one to a unit of area or volume, √α is the distance of the eighth neighbour for nine of ten points.
     #[test]
     fn random_points_have_the_expected_spacing() {
         let mut random = Random::new(1);
@@ -131,7 +131,7 @@ mod tests {
         let surface: Vec<[f64; 3]> = (0..40_000).map(|_| [at(square), at(square), 0.0]).collect();
         let solid: Vec<[f64; 3]> = (0..27_000).map(|_| [at(cube), at(cube), at(cube)]).collect();
         let torus = Torus::new([cube; 3]).unwrap();
-        // 11.77 is the ninth decile of the gamma distribution of shape 8: π r² and 4 π r³ / 3 are distributed so.
+        // 11.77 is the ninth decile of the gamma distribution of shape 8, which is that of π r² and 4 π r³ / 3.
         let ball = (11.77 * 3.0 / (4.0 * std::f64::consts::PI)).cbrt();
         for (found, expected) in [
             (alpha(&surface, None), (11.77 / std::f64::consts::PI).sqrt()),
@@ -143,23 +143,23 @@ mod tests {
                 found.sqrt()
             );
         }
-        // At the faces of the cube half of the neighbours are missing.
+        // At the faces of the cube, half of the neighbours are missing.
         assert!(alpha(&solid, None).sqrt() > 1.02 * ball);
     }
 
     #[test]
     fn lattices_and_few_points() {
-        // 6 at distance 1, 12 at √2; on faces 5 and then 8.
+        // There are 6 neighbours at distance 1 and 12 at √2; on faces, 5 and 8.
         assert_eq!(alpha(&lattice(30), None), 2.0);
         assert_eq!(alpha(&lattice(4), Some(Torus::new([4.0; 3]).unwrap())), 2.0);
         assert_eq!(alpha(&[[1.0; 3]], None), 0.0);
         assert_eq!(alpha(&[[0.0; 3], [3.0, 0.0, 0.0], [3.0, 0.0, 0.0]], None), 9.0);
         assert_eq!(alpha(&[[0.0; 3]], Some(Torus::new([2.0, 3.0, 4.0]).unwrap())), 13.0);
-        // The longest distances whose squares are looked at.
+        // These are the longest distances whose squares are examined.
         assert!(alpha(&[[-3e150; 3], [3e150; 3]], None).is_finite());
     }
 
-    /// Along a short side, copies are neighbours that are several sides away.
+    /// Along a short side, copies several sides away are neighbours.
     #[test]
     fn copies_are_as_far_away_as_they_must_be() {
         let along = |axis: usize, short: f64, long: f64| {
@@ -172,10 +172,10 @@ mod tests {
             assert_eq!(along(axis, 3.0, 300.0), 16.0);
             assert_eq!(along(axis, 3.0, 3.0), 9.0);
         }
-        // Of one place alone, the fourth copy to either side.
+        // For a single position, this is the fourth copy in either direction.
         assert_eq!(alpha(&[[0.5; 3]], Some(Torus::new([1.0, 1000.0, 1000.0]).unwrap())), 16.0);
 
-        // As copies that are laid out.
+        // The result equals that for copies laid out in space.
         let mut random = Random::new(3);
         for sides in [[1.0, 4.0, 9.0], [2.0, 2.0, 1.0], [1.0, 1.0, 8.0]] {
             let places: Vec<[f64; 3]> =
@@ -217,7 +217,7 @@ mod tests {
         }
     }
 
-    /// Neither strays, duplicates nor the order of points matter.
+    /// Strays, duplicates and the order of points do not matter.
     #[test]
     fn strays_do_not_decide() {
         let mut random = Random::new(2);
@@ -231,7 +231,7 @@ mod tests {
         assert!((alpha(&points, None) / without - 1.0).abs() < 0.01);
     }
 
-    /// Equal weights shift α.
+    /// Equal weights shift α by their value.
     #[test]
     fn weights_are_taken_off() {
         let mut points = WeightedPoints::unweighted(lattice(12));

@@ -11,40 +11,41 @@ use walpha_points::{
 use walpha_shape::{Alpha, Torus};
 use walpha_volume::{Coordinates, GrayRange};
 
-/// Weighted points, and how they were made.
+/// Weighted points, with a record of how they were made.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Weighed {
-    /// The points, with the values that [`Values`](super::Values) asked for.
+    /// The points, with the values that [`Values`](super::Values) requested.
     pub points: WeightedPoints,
-    /// Where the points come from.
+    /// The origin of the points.
     pub origin: Origin,
-    /// α; `None` while it is still to be found ([`Weighed::find_parameter`]) because weights do not need it.
+    /// The value of α; `None` while it must still be found ([`Weighed::find_parameter`]), as weights do not need it.
     pub parameter: Option<Parameter>,
-    /// How α is found where it is still to be found.
+    /// The rule that finds α if it must still be found.
     pub rule: AlphaRule,
-    /// The recipe that made them ([`Recipe::to_json`](super::Recipe::to_json)), or else that of the file they were read from.
+    /// The recipe that made the points ([`Recipe::to_json`](super::Recipe::to_json)), or else that of the file they were read
+    /// from.
     pub recipe: Option<String>,
-    /// What orders the points, if they were selected from a volume.
+    /// The order of importance of the points, if they were selected from a volume.
     importance: Option<Importance>,
 }
 
 /// The order of importance of points.
 #[derive(Clone, Debug)]
 pub(super) enum Importance {
-    /// By their differences L.
+    /// The points are ordered by their differences L.
     Differences(Vec<f64>),
-    /// In this order, given by their indices.
+    /// The points are in this order, given by their indices.
     Order(Vec<u32>),
 }
 
-/// Where points come from.
+/// The origin of points.
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub struct Origin {
-    /// Axes and unit of the coordinates.
+    /// The axes and unit of the coordinates.
     pub coordinates: Coordinates,
-    /// Where their weights come from.
+    /// The source of the weights.
     pub weighting: Weighting,
     /// The truncation of the volume.
     pub truncation: Option<Truncation>,
@@ -54,16 +55,16 @@ pub struct Origin {
     pub range: Option<GrayRange>,
     /// The goal of adaptive selection, if it was reached with fewer points than allowed.
     pub ended: Option<Adaptive>,
-    /// Whether their weights are squares of radii.
+    /// Whether the weights are squares of radii.
     pub of_radii: bool,
-    /// Number of points outside the periodic box, which are moved to their copies inside; `None` without a box.
+    /// The number of points outside the periodic box, which are moved to their copies inside; `None` without a box.
     pub folded: Option<usize>,
-    /// How values were fitted to the volume; `None` if they are those of its samples.
+    /// The fit of values to the volume; `None` if they are those of its samples.
     pub fit: Option<Fit>,
 }
 
 impl Origin {
-    /// That of the corners of voxels, in these coordinates.
+    /// The origin of the corners of voxels, in these coordinates.
     pub(super) fn of_labels(coordinates: Coordinates) -> Self {
         Self {
             coordinates,
@@ -100,19 +101,19 @@ impl Weighed {
             points.differences = Some(scattered_difference(&points)?);
         }
         if parameter.is_none() && weighting.needs_differences() {
-            // Checks the weights before the costly search for α.
+            // This checks the weights before the costly search for α.
             weights(&points, weighting, Alpha::ZERO)?;
             Stage::Alpha.begin()?;
             parameter = Some(Parameter::find_unweighted(rule, &points, coordinates.unit)?);
             Stage::Points.begin()?;
         }
-        // Weights that do not depend on α are the same at ∞.
+        // Weights that do not depend on α are computed with ∞.
         let alpha = parameter.map_or(Alpha::INFINITE, |parameter| parameter.alpha);
         let points = weigh(points, weighting, alpha)?;
         Ok(Self { points, origin, parameter, rule, recipe: None, importance: None })
     }
 
-    /// The same points with their order of importance.
+    /// Sets the order of importance of the points.
     pub(super) fn ordered(self, importance: Importance) -> Self {
         Self { importance: Some(importance), ..self }
     }
@@ -137,8 +138,8 @@ impl Weighed {
         }
     }
 
-    /// The indices of the points, the most important first, if they were selected from a volume. The first k are
-    /// what a count of k would have selected, unless points were exchanged. O(n log n).
+    /// The indices of the points, the most important first, if they were selected from a volume. The first k are those that a
+    /// count of k would have selected, unless points were exchanged. O(n log n).
     pub fn order(&self) -> Option<Vec<u32>> {
         Some(match self.importance.as_ref()? {
             Importance::Differences(differences) => largest_first(differences),
@@ -146,8 +147,8 @@ impl Weighed {
         })
     }
 
-    /// What a file of these points states besides them, except their order. `written` is the mapping of the volume
-    /// that they were selected from to written values ([`PlacedVolume::written`](super::PlacedVolume::written)).
+    /// The metadata of these points for a file, except their order. `written` maps the gray levels of the volume that they were
+    /// selected from to written values ([`PlacedVolume::written`](super::PlacedVolume::written)).
     pub fn metadata(&self, written: Option<GrayRange>) -> ModelMetadata {
         let origin = self.origin;
         ModelMetadata::default()
@@ -158,7 +159,7 @@ impl Weighed {
             .recipe(self.recipe.clone())
     }
 
-    /// α, found now if weights did not need it.
+    /// The value of α, which is found now if weights did not need it.
     ///
     /// # Errors
     /// For [`AlphaRule::Connected`], the errors of a [`Filtration`](walpha_shape::ladder::Filtration).
@@ -166,7 +167,7 @@ impl Weighed {
         self.find_parameter_on(None)
     }
 
-    /// [`find_parameter`](Self::find_parameter), on a torus if there is one.
+    /// Like [`find_parameter`](Self::find_parameter), on a torus if there is one.
     pub(super) fn find_parameter_on(
         &mut self,
         torus: Option<Torus>,
@@ -184,8 +185,8 @@ impl Weighed {
     /// Marks the points as those of a torus, if there is one, and counts the points outside its box.
     ///
     /// # Errors
-    /// [`PipelineError::PeriodicWeights`]: weights of scattered points from differences to neighbours do not take
-    /// the copies across the sides of the box into account.
+    /// [`PipelineError::PeriodicWeights`]: differences to neighbours of scattered points do not take the copies across the sides
+    /// of the box into account.
     pub fn on_torus(&mut self, torus: Option<Torus>) -> Result<(), PipelineError> {
         let Some(torus) = torus else { return Ok(()) };
         let Origin { weighting, truncation, .. } = self.origin;
@@ -198,7 +199,7 @@ impl Weighed {
     }
 }
 
-/// The indices of numbers, the largest first, ties by the index.
+/// The indices of numbers, the largest first, with ties in order of the index.
 fn largest_first(numbers: &[f64]) -> Vec<u32> {
     let mut order: Vec<u32> = (0..numbers.len() as u32).collect();
     let number = |index: u32| numbers[index as usize];

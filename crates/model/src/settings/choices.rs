@@ -1,4 +1,4 @@
-//! Settings that are one of a few names.
+//! Settings whose values are a few names.
 
 use crate::interpolate::Refit;
 use walpha_points::Units;
@@ -12,13 +12,13 @@ pub(super) trait Named: Copy + 'static {
     const NAMES: &'static [(Self, &'static str, &'static str)];
 }
 
-/// How samples are chosen as points.
+/// The method of choosing samples as points.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Select {
-    /// Those of largest gray difference.
+    /// The samples of largest gray difference.
     #[default]
     Difference,
-    /// One after another, where the interpolant of those before is worst.
+    /// One after another, the samples where the interpolant of the previous ones is worst.
     Adaptive,
 }
 
@@ -104,7 +104,7 @@ impl Named for Space {
     ];
 }
 
-/// The names of a setting that is one of a few, with their help.
+/// The names of the values of a setting, with their help, if it has such names.
 pub(super) fn of(setting: &str) -> Option<Vec<[&'static str; 2]>> {
     fn names<T: Named>() -> Vec<[&'static str; 2]> {
         T::NAMES.iter().map(|&(_, name, help)| [name, help]).collect()

@@ -1,7 +1,7 @@
-//! The options of a [`Recipe`] as users write them: on the command line, in a file for `--config`, as a preset, in the page.
+//! The options of a [`Recipe`] as users write them: on the command line, in a file for `--config`, as a preset, or in the page.
 //!
-//! One vocabulary for all of these: a setting has one name and one parser, which stand here. [`Settings::recipe`] says what it
-//! means; the command adds its help.
+//! All of these use one vocabulary: a setting has one name and one parser, which are defined here. [`Settings::recipe`] defines
+//! its meaning; the command adds its help.
 
 mod choices;
 pub mod parse;
@@ -23,7 +23,7 @@ use crate::labels::LabelChoice;
 use crate::pipeline::{AlphaRule, Choice, Goal};
 pub use choices::Select;
 
-/// What is wrong with a setting, and what to do about it. Both may name settings.
+/// An error of a setting, and advice about it. Both may name settings.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{why}")]
 pub struct SettingError {
@@ -60,9 +60,9 @@ impl Advise for SettingError {
 /// A preset: its name, and its settings in TOML.
 pub type Preset = (&'static str, &'static str);
 
-/// Bone in a CT.
+/// The preset for bone in a CT.
 pub const CT_BONE: &str = "ct-bone";
-/// The solid of all labels.
+/// The preset for the solid of all labels.
 pub const LABELS: &str = "labels";
 /// All presets.
 pub const PRESETS: [Preset; 7] = [
@@ -75,7 +75,7 @@ pub const PRESETS: [Preset; 7] = [
     ("paper", include_str!("../../presets/paper.toml")),
 ];
 
-/// Settings of which only one is used.
+/// Groups of settings of which only one may be used.
 const EXCLUSIVE: &[&[&str]] = &[
     &["rms", "epsilon", "coefficients"],
     &["count", "ratio", "threshold"],
@@ -102,8 +102,8 @@ macro_rules! settings {
             $($group),*
         }
 
-        /// Settings that were given; the others have their defaults. Names are those of the methods; in files and on the command line
-        /// they have hyphens.
+        /// The settings that were given; the others have their defaults. Names are those of the methods; in files and on the
+        /// command line they have hyphens.
         ///
         /// ```
         /// use walpha_model::settings::Settings;
@@ -119,7 +119,7 @@ macro_rules! settings {
         #[derive(Clone, Debug, Default)]
         pub struct Settings {
             $($($name: Option<$kind>,)*)*
-            /// All of them as they were written, in this order.
+            /// All given settings as they were written, in this order.
             written: Vec<(&'static str, String)>,
         }
 
@@ -283,7 +283,7 @@ settings! {
 }
 
 impl Settings {
-    /// A preset.
+    /// Returns a preset by its name.
     ///
     /// # Panics
     /// Never: presets are settings.
@@ -297,13 +297,13 @@ impl Settings {
         Self::NAMES.iter().filter(move |(_, of)| *of == group).map(|(name, _)| *name)
     }
 
-    /// The names of the settings that one excludes, and is excluded by.
+    /// The names of the settings that this one excludes, and that exclude it.
     pub fn excluded_by(name: &str) -> impl Iterator<Item = &'static str> {
         let groups = EXCLUSIVE.iter().filter(move |names| names.contains(&name));
         groups.copied().flatten().copied().filter(move |other| *other != name)
     }
 
-    /// The settings given that this one excludes. A switch that is off excludes none, nor is it excluded.
+    /// The given settings that this one excludes. A switch that is off does not exclude others, nor is it excluded.
     fn rivals(&self, name: &str, text: &str) -> Vec<&'static str> {
         const OFF: &str = "false";
         let is_given =
@@ -311,15 +311,15 @@ impl Settings {
         if text == OFF { Vec::new() } else { Self::excluded_by(name).filter(is_given).collect() }
     }
 
-    /// The values of a setting that has names for them, each with its help.
+    /// The named values of a setting, if it has such values, each with its help.
     pub fn choices(name: &str) -> Option<Vec<[&'static str; 2]>> {
         choices::of(name)
     }
 
-    /// Sets one, given as text. What excludes it is unset.
+    /// Sets a setting, given as text. Settings that exclude it are unset.
     ///
     /// # Errors
-    /// A name that no setting has, or text that does not parse.
+    /// No setting has the name, or the text cannot be parsed.
     pub fn set(&mut self, name: &str, text: &str) -> Result<(), SettingError> {
         let name = name.replace('-', "_");
         let Some(&(name, _)) = Self::NAMES.iter().find(|(known, _)| *known == name) else {
@@ -335,15 +335,15 @@ impl Settings {
         Ok(())
     }
 
-    /// Unsets one, which then has its default.
+    /// Unsets a setting, which then has its default.
     pub fn unset(&mut self, name: &str) {
         self.forget(&name.replace('-', "_"));
     }
 
-    /// These, and of others those that these leave open.
+    /// Returns these settings, completed by those of `others` that they leave open.
     ///
     /// # Panics
-    /// Never: what parsed once parses again.
+    /// Never: text that was parsed once can be parsed again.
     #[must_use]
     pub fn over(&self, others: &Self) -> Self {
         let mut all = others.clone();
@@ -353,17 +353,17 @@ impl Settings {
         all
     }
 
-    /// Those given, each with its text.
+    /// The given settings, each with its text.
     pub fn iter(&self) -> impl Iterator<Item = (&'static str, &str)> {
         self.written.iter().map(|(name, text)| (*name, text.as_str()))
     }
 
-    /// Whether one was given.
+    /// Whether a setting was given.
     pub fn has(&self, name: &str) -> bool {
         self.written.iter().any(|(known, _)| *known == name)
     }
 
-    /// Those given as arguments of the command.
+    /// The given settings as arguments of the command.
     pub fn arguments(&self) -> Vec<String> {
         let argument = |(name, text): &(&str, String)| {
             let name = name.replace('_', "-");
@@ -372,7 +372,7 @@ impl Settings {
         self.written.iter().filter(|(_, text)| text != "false").map(argument).collect()
     }
 
-    /// Those given as TOML, a line for each.
+    /// The given settings as TOML, one in each line.
     pub fn to_toml(&self) -> String {
         let value = |text: &str| match text.parse::<f64>() {
             Ok(number) if number.is_finite() => text.to_owned(),
@@ -385,7 +385,7 @@ impl Settings {
             .collect()
     }
 
-    /// How a volume is read.
+    /// The options for reading a volume.
     pub fn reading(&self) -> ReadOptions {
         ReadOptions::default()
             .raw(self.layout())
@@ -408,7 +408,7 @@ impl Settings {
         self.dims.zip(self.dtype).map(|of| layout(of).offset(self.offset.unwrap_or_default()))
     }
 
-    /// How a volume is transformed.
+    /// The options for the transform of a volume.
     pub fn transform(&self) -> HaarOptions {
         let tolerance = match (self.epsilon, self.coefficients, self.rms) {
             (Some(epsilon), ..) => Tolerance::Epsilon(epsilon),
@@ -420,7 +420,7 @@ impl Settings {
         HaarOptions::default().decomposition(decomposition).tolerance(tolerance)
     }
 
-    /// By which rule samples are selected.
+    /// The rule by which samples are selected.
     pub fn rule(&self) -> SelectionRule {
         match (self.count, self.threshold, self.ratio) {
             (Some(count), ..) => SelectionRule::Count(count),
@@ -430,7 +430,7 @@ impl Settings {
         }
     }
 
-    /// α, or how it is found.
+    /// The value of α, or the rule that finds it.
     pub fn parameter(&self) -> AlphaRule {
         let given = self.alpha_radius.map(AlphaRule::Given);
         given.or(self.alpha).or(self.alpha_ref).unwrap_or_default()
@@ -498,10 +498,10 @@ impl Settings {
         Some(recipe.clone().gray(bone.gray).choice(bone.choice).haar(haar))
     }
 
-    /// The recipe with these settings.
+    /// Creates the recipe with these settings.
     ///
     /// # Errors
-    /// Settings that contradict each other.
+    /// Settings contradict each other.
     pub fn recipe(&self) -> Result<Recipe, SettingError> {
         let is_set = |switch: Option<bool>| switch == Some(true);
         let recipe = Recipe::new()
@@ -567,7 +567,7 @@ impl Settings {
     }
 }
 
-/// Names of settings as a list.
+/// Lists the names of settings.
 fn listed(settings: &[Setting]) -> Advice {
     let mut parts = Vec::new();
     for (k, setting) in settings.iter().enumerate() {
@@ -579,7 +579,8 @@ fn listed(settings: &[Setting]) -> Advice {
     Advice::new(parts)
 }
 
-/// By their names with hyphens; values are text, numbers, `true`, or lists of these. Settings that exclude each other are an error.
+/// Reads settings by their names with hyphens. Values are text, numbers, `true`, or lists of these. Settings that exclude each
+/// other are an error.
 impl<'de> Deserialize<'de> for Settings {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let mut settings = Self::default();
@@ -646,7 +647,7 @@ mod tests {
         assert!(Settings::preset("no such").is_none());
     }
 
-    /// What is given later, or over another, takes the place of what it excludes, and of nothing else.
+    /// A setting that is given later, or over another, replaces the settings that it excludes, and no others.
     #[test]
     fn one_of_those_that_exclude_each_other_is_kept() {
         let bone = Settings::preset(CT_BONE).unwrap();

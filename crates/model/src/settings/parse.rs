@@ -1,4 +1,4 @@
-//! Settings from text. Each parser says what is wrong, and how a value looks.
+//! Parses settings from text. Each parser reports what is wrong, and shows what a value looks like.
 
 use std::fmt::Display;
 use std::str::FromStr;
@@ -10,7 +10,7 @@ use walpha_volume::{Dims, GrayRange, Nan, Region};
 use super::SettingError;
 use super::choices::Named;
 
-/// An error: what is wrong, and after `=>` what to do.
+/// Returns an error: what is wrong, and after `=>` what to do.
 macro_rules! fail {
     ($why:literal $(, $of_why:expr)* => $next:literal $(, $of_next:expr)*) => {
         return Err(error!($why $(, $of_why)* => $next $(, $of_next)*))
@@ -23,17 +23,17 @@ macro_rules! error {
     };
 }
 
-/// A type whose parser's errors say nothing but what is wrong.
+/// Parses a type whose parser gives errors without advice.
 pub(super) fn plain<T: FromStr<Err: Display>>(text: &str) -> Result<T, SettingError> {
     text.parse().map_err(|error: T::Err| SettingError { why: error.to_string().into(), next: None })
 }
 
-/// A type whose parser's errors have advice.
+/// Parses a type whose parser gives errors with advice.
 pub(super) fn own<T: FromStr<Err: Advise>>(text: &str) -> Result<T, SettingError> {
     text.parse().map_err(|error| SettingError::of(&error))
 }
 
-/// One of a few names.
+/// Parses one of a few names.
 pub(super) fn named<T: Named>(text: &str) -> Result<T, SettingError> {
     let known = || T::NAMES.iter().map(|(_, name, _)| *name).collect::<Vec<_>>().join(", ");
     let found = T::NAMES.iter().find(|(_, name, _)| *name == text);
@@ -42,7 +42,7 @@ pub(super) fn named<T: Named>(text: &str) -> Result<T, SettingError> {
         .ok_or_else(|| error!("{text:?} is unknown" => "give one of {}", known()))
 }
 
-/// A switch.
+/// Parses a switch.
 pub(super) fn switch(text: &str) -> Result<bool, SettingError> {
     text.parse().map_err(|_| error!("{text:?} is neither true nor false" => "give true or false"))
 }
@@ -104,10 +104,10 @@ pub(super) fn bytes(text: &str) -> Result<u64, SettingError> {
     Ok(bytes)
 }
 
-/// A number, infinite or NaN ones included.
+/// Parses a number, which may be infinite or NaN.
 ///
 /// # Errors
-/// Text that is not a number.
+/// The text is not a number.
 pub fn number(text: &str) -> Result<f64, SettingError> {
     text.trim()
         .parse()
@@ -139,10 +139,10 @@ pub(super) fn not_nan(text: &str) -> Result<f64, SettingError> {
     Ok(number)
 }
 
-/// A number from 0 up.
+/// Parses a number that is not negative.
 ///
 /// # Errors
-/// Another number, or text that is not a number.
+/// The number is negative or NaN, or the text is not a number.
 pub fn not_negative(text: &str) -> Result<f64, SettingError> {
     let number = number(text)?;
     if number.is_nan() || number < 0.0 {
@@ -159,7 +159,7 @@ pub(super) fn positive(text: &str) -> Result<f64, SettingError> {
     Ok(number)
 }
 
-/// Codes of classes in LAS, by name or number, separated by commas (ASPRS LAS 1.4, table 17).
+/// Parses the codes of classes in LAS, by name or number, separated by commas (ASPRS LAS 1.4, table 17).
 pub(super) fn classes(text: &str) -> Result<Vec<u8>, SettingError> {
     let codes = text.split(',').map(class).collect::<Result<Vec<_>, _>>()?;
     Ok(codes.concat())
@@ -193,7 +193,7 @@ pub(super) fn torus(text: &str) -> Result<Torus, SettingError> {
     Torus::new([x, y, z]).map_err(|error| SettingError::of(&error))
 }
 
-/// The ends of three ranges as text, without surrounding white space.
+/// Splits a text into the ends of three ranges, without surrounding white space.
 fn ends(text: &str) -> Result<[[&str; 2]; 3], SettingError> {
     let ranges: Vec<&str> = text.split(',').collect();
     let &[x, y, z] = ranges.as_slice() else {
@@ -209,7 +209,7 @@ fn ends(text: &str) -> Result<[[&str; 2]; 3], SettingError> {
     Ok(ends)
 }
 
-/// Samples from one index up to, and without, another; ends may be omitted.
+/// Parses a range of samples along each axis, from a first index to an exclusive end; ends may be omitted.
 pub(super) fn samples(text: &str) -> Result<Region, SettingError> {
     let mut region = Region::default();
     for (k, [first, end]) in ends(text)?.into_iter().enumerate() {
@@ -226,10 +226,10 @@ pub(super) fn samples(text: &str) -> Result<Region, SettingError> {
     Ok(region)
 }
 
-/// A box in the units of the points, borders included: `X0:X1,Y0:Y1,Z0:Z1`.
+/// Parses a box in the units of the points, including its boundary: `X0:X1,Y0:Y1,Z0:Z1`.
 ///
 /// # Errors
-/// Text that is not three ranges of finite numbers.
+/// The text is not three ranges of finite numbers.
 pub fn places(text: &str) -> Result<walpha_points::Region, SettingError> {
     let mut region = walpha_points::Region { low: [0.0; 3], high: [0.0; 3] };
     for (k, [low, high]) in ends(text)?.into_iter().enumerate() {

@@ -1,4 +1,4 @@
-//! NaN, infinities and numbers beyond what makes sense, in whatever takes numbers: an error that names the point or the option.
+//! NaN, infinities and unreasonable numbers, in everything that takes numbers: an error that names the point or the option.
 
 use ndarray::Array3;
 use walpha_base::random::Random;
@@ -31,7 +31,7 @@ fn names<T>(result: Result<T, impl ToString>, words: &[&str], what: &str) {
     assert!(words.iter().all(|word| text.contains(word)), "{what}: {text}");
 }
 
-/// What takes points, by position and weight.
+/// Everything that takes points, by position and weight.
 #[test]
 fn points_are_named() {
     for wrong in WRONG {

@@ -98,7 +98,7 @@ fn a_shape_moves_within_its_blocks() {
         let blocks = std::num::NonZeroUsize::new(blocks);
         let options = ShapeOptions::new(alpha).engine(engine).blocks(blocks);
         let work = || alpha_shape(lattice(27), &options);
-        // On one thread, as others may be in the middle of a report.
+        // Use one thread, because others may be in the middle of a report.
         let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
         one.install(|| assert_moves(4 + 2 * blocks.unwrap().get(), work, is_cancelled));
     }

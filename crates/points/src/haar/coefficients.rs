@@ -11,14 +11,14 @@ use super::{nonstandard, standard};
 use crate::largest::{Budget, Cut, Dropped};
 use walpha_volume::VolumeError;
 
-/// Which functions of (x, y, z) the basis is made of.
+/// The kind of basis functions of (x, y, z).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Decomposition {
-    /// All axes step once per level, then the octant of means continues: cubes of 2ˡ samples a side.
+    /// All axes take one step per level, and the octant of means continues: the functions are on cubes of 2ˡ samples a side.
     #[default]
     NonStandard,
-    /// Each axis is transformed fully: boxes of any powers of two.
+    /// Each axis is transformed fully: the functions are on boxes whose sides are any powers of two.
     Standard,
 }
 
@@ -31,7 +31,7 @@ impl fmt::Display for Decomposition {
     }
 }
 
-/// Orthonormal Haar coefficients of a volume, in the place of its samples.
+/// The orthonormal Haar coefficients of a volume, in the place of its samples.
 ///
 /// Along an axis, the coefficient of the whole row's mean is at 0, and the detail between the
 /// samples from i to i + 2ˡ and those from there to i + 2·2ˡ is at i + 2ˡ: the number of
@@ -77,18 +77,18 @@ pub fn forward(samples: ArrayView3<'_, f32>, decomposition: Decomposition) -> Co
 }
 
 impl Coefficients {
-    /// The coefficients, at their places in `[z, y, x]`.
+    /// The coefficients at their places in `[z, y, x]`.
     pub fn values(&self) -> ArrayView3<'_, f64> {
         self.values.view()
     }
 
-    /// The decomposition they belong to.
+    /// The decomposition of the coefficients.
     pub fn decomposition(&self) -> Decomposition {
         self.decomposition
     }
 
-    /// The samples `[z, y, x]` that have these coefficients, rounded once. O(n), parallel, the same
-    /// on any number of threads.
+    /// Computes the samples `[z, y, x]` that have these coefficients, rounded once. O(n), parallel; the result does not depend on
+    /// the number of threads.
     pub fn inverse(self) -> Array3<f32> {
         let mut values = self.values;
         match self.decomposition {
@@ -101,13 +101,13 @@ impl Coefficients {
     }
 }
 
-/// Coefficients cut by a thread at a time.
+/// The number of coefficients that a thread cuts at a time.
 const CHUNK: usize = 1 << 16;
 
-/// Each square is off by less than 2⁻⁴⁹ of itself, and so is their sum, which is exact. ε² is rounded, too.
+/// The relative error of each square is below 2⁻⁴⁹, and so is that of their sum, which is exact. ε² is rounded, too.
 const SLACK: f64 = 1.0 + 1.0 / (1u64 << 34) as f64;
 
-/// How much of a volume may be lost, one of three ways to say it.
+/// How much of a volume may be lost, in one of three ways.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 #[non_exhaustive]
@@ -116,37 +116,37 @@ pub enum Tolerance {
     Rms(f64),
     /// The norm ‖f − f̂‖ itself, ε.
     Epsilon(f64),
-    /// This many coefficients stay, or all if there are fewer.
+    /// The number of coefficients that stay; all stay if there are fewer.
     Coefficients(u64),
 }
 
-/// An RMS of one gray level.
+/// The default is an RMS of one gray level.
 impl Default for Tolerance {
     fn default() -> Self {
         Self::Rms(1.0)
     }
 }
 
-/// Result of a truncation.
+/// The result of a truncation.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Truncation {
-    /// The tolerance asked for.
+    /// The tolerance requested.
     pub asked: Tolerance,
-    /// Coefficients that stay.
+    /// The number of coefficients that stay.
     pub kept: u64,
-    /// Coefficients there were, as many as samples.
+    /// The number of coefficients before the truncation, which is that of samples.
     pub total: u64,
-    /// ‖f − f̂‖ reached: the square root of the sum of the squares of the dropped coefficients.
+    /// The norm ‖f − f̂‖ reached: the square root of the sum of the squares of the dropped coefficients.
     pub epsilon: f64,
     /// The root mean square of f − f̂ reached, epsilon/√n.
     pub rms: f64,
 }
 
-/// Why a volume cannot be truncated.
+/// An error of the truncation of a volume.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum HaarError {
-    /// A negative or undefined tolerance.
+    /// The tolerance is negative or not a number.
     #[error("a tolerance of {given} makes no sense for {what}")]
     Tolerance {
         /// The number given.
@@ -154,13 +154,13 @@ pub enum HaarError {
         /// The kind of tolerance.
         what: &'static str,
     },
-    /// The truncated samples make no volume: they passed the range of `f32`.
+    /// The truncated samples do not form a volume, as they exceed the range of `f32`.
     #[error("after truncation: {0}")]
     Volume(#[from] VolumeError),
     /// The work was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
-    /// Not enough memory for the coefficients.
+    /// There is not enough memory for the coefficients.
     #[error(transparent)]
     Memory(#[from] NoMemory),
 }
@@ -201,15 +201,15 @@ impl Tolerance {
 }
 
 impl Coefficients {
-    /// Drops (sets to 0) the smallest coefficients: in order of decreasing magnitude, ties in order
-    /// of their index, the fewest stay for which the squares of the dropped ones sum to at most
-    /// ε²; to 2⁻³⁴ of ε², so that rounding does not decide about sums of just ε².
+    /// Drops (sets to 0) the smallest coefficients. In order of decreasing magnitude, with ties in order of their index, the
+    /// fewest stay for which the squares of the dropped ones sum to at most ε². Sums are compared up to 2⁻³⁴ of ε², so that
+    /// rounding does not decide about sums of just ε².
     ///
-    /// O(n), independent of the number of threads. Zeros are always dropped when an error
-    /// is asked for, so `Rms(0.0)` keeps the coefficients that are not 0.
+    /// O(n), independent of the number of threads. Zeros are always dropped if an error is requested, so `Rms(0.0)` keeps the
+    /// coefficients that are not 0.
     ///
     /// # Errors
-    /// [`HaarError::Tolerance`] when the tolerance is negative or NaN.
+    /// [`HaarError::Tolerance`] if the tolerance is negative or NaN.
     #[expect(clippy::missing_panics_doc, reason = "an invariant, never met")]
     pub fn truncate(&mut self, asked: Tolerance) -> Result<Truncation, HaarError> {
         asked.check()?;
@@ -218,7 +218,7 @@ impl Coefficients {
         let (cut, dropped) = Cut::new(values, asked.budget(total));
         values.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, values)| {
             for (value, i) in values.iter_mut().zip((chunk * CHUNK) as u64..) {
-                // Without branches: which coefficients stay cannot be foretold.
+                // There are no branches, as it is unpredictable which coefficients stay.
                 *value = if cut.keeps(*value, i) { *value } else { 0.0 };
             }
         });
@@ -227,7 +227,7 @@ impl Coefficients {
 }
 
 impl Truncation {
-    /// The truncation of `total` coefficients of which `dropped` went.
+    /// The result of dropping `dropped` of `total` coefficients.
     #[doc(hidden)]
     pub fn new(asked: Tolerance, total: u64, dropped: Dropped) -> Self {
         Self {

@@ -1,4 +1,4 @@
-//! The orthonormal Haar transform of a volume, its truncation, and back.
+//! The orthonormal Haar transform of a volume, its truncation, and the inverse transform.
 //!
 //! Steps 1 to 5 of the paper, equations 3.1 to 3.3; the truncation rule is that of Stollnitz,
 //! `DeRose` and Salesin, "Wavelets for computer graphics: a primer" (IEEE CG&A 15(3), 1995,
@@ -40,11 +40,11 @@ use walpha_base::setters;
 
 use walpha_volume::Volume;
 
-/// How a volume is transformed and truncated.
+/// The options for the transform and truncation of a volume.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct HaarOptions {
-    /// Which of the two three-dimensional decompositions.
+    /// The three-dimensional decomposition.
     pub decomposition: Decomposition,
     /// How much of the volume may be lost.
     pub tolerance: Tolerance,
@@ -54,21 +54,21 @@ impl HaarOptions {
     setters! { decomposition: Decomposition, tolerance: Tolerance }
 }
 
-/// The truncated volume f̂ of a volume f: forward, truncate, inverse.
+/// Computes the truncated volume f̂ of a volume f: transform, truncation, inverse transform.
 ///
-/// Where no coefficient but zeros is dropped, f̂ is f bit for bit. O(n); the same on any number of
-/// threads; the coefficients, in double precision, live beside f, and then beside f̂.
+/// If only zeros are dropped, f̂ equals f bit for bit. O(n); the result does not depend on the number of threads. The
+/// coefficients, in double precision, are in memory together with f, and then with f̂.
 ///
 /// # Errors
-/// A tolerance that is none (see [`Coefficients::truncate`]), samples so large that f̂ passes
-/// the range of `f32`, or no memory; cancelled by a [`Monitor`] that watches.
+/// The tolerance is not valid (see [`Coefficients::truncate`]), samples are so large that f̂ exceeds the range of `f32`, there is
+/// not enough memory, or a [`Monitor`] that watches was cancelled.
 pub fn smooth(volume: &Volume, options: &HaarOptions) -> Result<(Volume, Truncation), HaarError> {
     let monitor = &*Monitor::current();
     options.tolerance.check()?;
     let dims = volume.dims();
     let bytes = dims.samples().saturating_mul(size_of::<f64>() + size_of::<f32>());
     memory::afford(bytes, || format!("transforming {dims} samples"))?;
-    // Each way takes as long, and truncation a little.
+    // Both transforms take equally long, and truncation takes little time.
     let mut coefficients = forward(volume.samples(), options.decomposition);
     monitor.report(4, 9)?;
     let truncation = coefficients.truncate(options.tolerance)?;

@@ -3,10 +3,10 @@ use rayon::prelude::*;
 
 use super::support::{Axis, forward_row, forward_rows, inverse_row, inverse_rows, strides};
 
-/// Pairs of rows handed to a thread at once, at least.
+/// The minimum number of pairs of rows in one parallel task.
 const PAIRS: usize = 8;
 
-/// All levels, from samples to coefficients.
+/// Transforms samples to coefficients, on all levels.
 pub(super) fn forward(values: &mut Array3<f64>) {
     let (z, y, x) = values.dim();
     let flat = values.as_slice_mut().expect("standard layout");
@@ -15,7 +15,7 @@ pub(super) fn forward(values: &mut Array3<f64>) {
     flat[0] /= whole_norm([x, y, z]);
 }
 
-/// All levels, from coefficients to samples.
+/// Transforms coefficients to samples, on all levels.
 pub(super) fn inverse(values: &mut Array3<f64>) {
     let (z, y, x) = values.dim();
     let flat = values.as_slice_mut().expect("standard layout");
@@ -24,36 +24,36 @@ pub(super) fn inverse(values: &mut Array3<f64>) {
     strides(x.max(y).max(z)).rev().for_each(|stride| sums.inverse(flat, stride));
 }
 
-/// The norm of the function 1, by which a sum of all is more than its coefficient.
+/// The norm of the function 1: the ratio of the sum of all samples and its coefficient.
 pub(super) fn whole_norm(dims: [usize; 3]) -> f64 {
     dims.map(|n| n as f64).iter().product::<f64>().sqrt()
 }
 
-/// A grid of sums over cubes of samples; of samples, where the cubes are of one.
+/// A grid of sums over cubes of samples, which are the samples if cubes consist of one.
 pub(super) struct Sums {
     axes: [Axis; 3],
     dims: [usize; 3],
 }
 
 impl Sums {
-    /// A grid of samples.
+    /// The grid of samples.
     pub(super) fn of_samples(dims: [usize; 3]) -> Self {
         Self { axes: dims.map(Axis::of_samples), dims }
     }
 
-    /// The sums over cubes of `unit` samples a side, of so many samples.
+    /// The grid of sums over cubes of `unit` samples a side, for a volume with these numbers of samples.
     pub(super) fn of_cubes(samples: [usize; 3], unit: usize) -> Self {
         let dims = samples.map(|n| n.div_ceil(unit));
         Self { axes: samples.map(|n| Axis { n, unit }), dims }
     }
 
-    /// One level, of a stride counted in sums of the grid.
+    /// Transforms one level; its stride is in sums of the grid.
     pub(super) fn forward(&self, flat: &mut [f64], stride: usize) {
         let level = self.level(stride);
         level.each_bundle(flat, |bundle| level.forward(bundle));
     }
 
-    /// Inverts one level.
+    /// Inverts one level; its stride is in sums of the grid.
     pub(super) fn inverse(&self, flat: &mut [f64], stride: usize) {
         let level = self.level(stride);
         level.each_bundle(flat, |bundle| level.inverse(bundle));
@@ -71,11 +71,11 @@ struct Level {
     axes: [Axis; 3],
     dims: [usize; 3],
     stride: usize,
-    /// The factor along x of the square that belongs to the raw value at each multiple of the stride.
+    /// The factors along x of the square of the raw value at each multiple of the stride.
     squares: Vec<f64>,
 }
 
-/// Up to 2×2 rows that step together: those at y and y + s, in the slices at z and z + s.
+/// Up to 2×2 rows that take a step together: those at y and y + s, in the slices at z and z + s.
 struct Bundle<'a> {
     y: usize,
     z: usize,
@@ -136,7 +136,7 @@ impl Level {
         rows.iter_mut().flatten().flatten().for_each(|row| inverse_row(row, self.axes[0], s));
     }
 
-    /// Multiplies each detail by a function of its square. Sums stay for the next level.
+    /// Multiplies each detail by a function of its square. Sums remain for the next level.
     fn scale(
         &self,
         y: usize,
@@ -151,7 +151,7 @@ impl Level {
                 let Some(row) = row else { continue };
                 let square_yz = along_y.square(s, y + dy * s) * along_z.square(s, z + dz * s);
                 let factor = |k: usize| of(square_yz * self.squares[k]);
-                // All pairs along x but the last have the same two squares.
+                // All pairs along x except the last have the same two squares.
                 let (sum, detail) = (factor(0), factor(self.squares.len().min(2) - 1));
                 let sum = if dy == 0 && dz == 0 { 1.0 } else { sum };
                 let full = along_x.n / (2 * s * along_x.unit) * (2 * s);
@@ -177,56 +177,56 @@ impl Level {
     }
 }
 
-/// The rows of `x` samples at 0 and at `apart`, if that one is there.
+/// The rows of `x` samples at 0 and at `apart`, if the latter exists.
 fn pair(rows: &mut [f64], apart: usize, x: usize) -> [Option<&mut [f64]>; 2] {
     let (first, second) = rows.split_at_mut(rows.len().min(apart));
     [Some(&mut first[..x]), second.get_mut(..x)]
 }
 
-/// The non-standard transform of a volume that is never in one place: by *bricks*, the cubes of 2ᵏ samples a
-/// side that begin at multiples of 2ᵏ, those at the far ends smaller.
+/// The non-standard transform of a volume that need not be in memory as a whole. It is divided into *bricks*, the cubes of 2ᵏ
+/// samples a side that begin at multiples of 2ᵏ; those at the far ends are smaller.
 ///
-/// The levels below 2ᵏ stay within a brick ([`fine`](Self::fine)) and leave its sum; the levels above are
-/// a transform of these sums alone ([`coarse`](Self::coarse)), 1/8ᵏ of the samples. Bit for bit what
-/// [`forward`](super::forward) makes of the whole.
+/// The levels below 2ᵏ stay within a brick ([`fine`](Self::fine)) and leave its sum. The levels above are a transform of these
+/// sums alone ([`coarse`](Self::coarse)), which are 1/8ᵏ of the samples. The result equals that of [`forward`](super::forward)
+/// bit for bit.
 #[derive(Clone, Copy, Debug)]
 pub struct Bricks {
-    /// Samples of the whole along x, y and z.
+    /// The number of samples of the whole volume along x, y and z.
     dims: [usize; 3],
     k: u32,
 }
 
 impl Bricks {
-    /// The bricks of a volume of so many samples along x, y and z.
+    /// Divides a volume with these numbers of samples along x, y and z into bricks.
     pub fn new(dims: [usize; 3], k: u32) -> Self {
         Self { dims, k }
     }
 
-    /// Samples along a side of a brick.
+    /// The number of samples along a side of a brick.
     pub fn side(self) -> usize {
         1 << self.k
     }
 
-    /// Number of bricks along x, y and z.
+    /// The number of bricks along x, y and z.
     pub fn count(self) -> [usize; 3] {
         self.dims.map(|n| n.div_ceil(self.side()))
     }
 
-    /// From the samples of some bricks, a box of `dims` of them, to coefficients, with the sum of each brick
-    /// at its first place. O(n).
+    /// Transforms the samples of a box of bricks with `dims` samples to coefficients, and leaves the sum of each brick at its
+    /// first place. O(n).
     pub fn fine(self, values: &mut [f64], dims: [usize; 3]) {
         let sums = Sums::of_samples(dims);
         self.strides().take(self.k as usize).for_each(|stride| sums.forward(values, stride));
     }
 
-    /// The inverse.
+    /// The inverse of [`fine`](Self::fine).
     pub fn inverse_fine(self, values: &mut [f64], dims: [usize; 3]) {
         let sums = Sums::of_samples(dims);
         let strides = self.strides().rev().filter(|&stride| stride < self.side());
         strides.for_each(|stride| sums.inverse(values, stride));
     }
 
-    /// From the sums of all bricks to the coefficients at their first places. O(bricks).
+    /// Transforms the sums of all bricks to the coefficients at their first places. O(bricks).
     pub fn coarse(self, sums: &mut [f64]) {
         let grid = Sums::of_cubes(self.dims, self.side());
         let strides = self.strides().skip(self.k as usize);
@@ -234,7 +234,7 @@ impl Bricks {
         sums[0] /= whole_norm(self.dims);
     }
 
-    /// The inverse.
+    /// The inverse of [`coarse`](Self::coarse).
     pub fn inverse_coarse(self, sums: &mut [f64]) {
         let grid = Sums::of_cubes(self.dims, self.side());
         sums[0] *= whole_norm(self.dims);
@@ -256,7 +256,7 @@ mod tests {
     use super::*;
     use crate::haar::{Decomposition, forward};
 
-    /// Coefficients by bricks, boxes of so many at a time, and the samples back from them.
+    /// The coefficients computed by bricks, in boxes of this many bricks a side, and the samples computed back from them.
     fn by_bricks(samples: &Array3<f32>, k: u32, bricks: usize) -> (Array3<f64>, Array3<f64>) {
         let (z, y, x) = samples.dim();
         let whole = Bricks::new([x, y, z], k);
@@ -297,7 +297,7 @@ mod tests {
         for (z, y, x) in sizes {
             let mut random = Random::new(3);
             let samples = Array3::from_shape_simple_fn((z, y, x), || {
-                // No whole numbers: sums are rounded, and must be so in the same order.
+                // These are not whole numbers: sums are rounded, and must be added in the same order.
                 random.below(1 << 24) as f32 / 65537.3
             });
             let whole = forward(samples.view(), Decomposition::NonStandard);

@@ -5,14 +5,14 @@ use super::support::{
     Axis, Step, forward_row, forward_rows, inverse_row, inverse_rows, square, strides,
 };
 
-/// Each axis in full, x first, from samples to coefficients.
+/// Transforms samples to coefficients: each axis in full, x first.
 pub(super) fn forward(values: &mut Array3<f64>) {
     let (slabs, flat) = whole(values);
     slabs.forward_planes(flat);
     slabs.forward_walls(flat, 0);
 }
 
-/// Each axis in full, z first, from coefficients to samples.
+/// Transforms coefficients to samples: each axis in full, z first.
 pub(super) fn inverse(values: &mut Array3<f64>) {
     let (slabs, flat) = whole(values);
     slabs.inverse_walls(flat, 0);
@@ -24,16 +24,16 @@ fn whole(values: &mut Array3<f64>) -> (Slabs, &mut [f64]) {
     (Slabs::new([x, y, z]), values.as_slice_mut().expect("standard layout"))
 }
 
-/// The standard transform of a volume that need never be in one place: by *planes*, all samples of some z,
-/// and then by *walls*, all samples of some y. Bit for bit the same however many are taken at a time.
+/// The standard transform of a volume that need not be in memory as a whole: first by *planes*, all samples of some z, and then
+/// by *walls*, all samples of some y. The result is equal bit for bit however many are transformed at a time.
 #[derive(Clone, Copy, Debug)]
 pub struct Slabs {
-    /// Samples of the whole along x, y and z.
+    /// The number of samples of the whole volume along x, y and z.
     dims: [usize; 3],
 }
 
 impl Slabs {
-    /// The slabs of a volume of so many samples along x, y and z.
+    /// The slabs of a volume with these numbers of samples along x, y and z.
     pub fn new(dims: [usize; 3]) -> Self {
         Self { dims }
     }
@@ -47,19 +47,19 @@ impl Slabs {
         planes.par_chunks_mut(x * y).for_each(|plane| along(plane, y, false));
     }
 
-    /// Transforms some walls, of which the first is at `y`, along z: they hold coefficients then. O(n).
+    /// Transforms some walls along z, of which the first is at `y`. They then contain coefficients. O(n).
     pub fn forward_walls(self, walls: &mut [f64], y: usize) {
         along(walls, self.dims[2], false);
         self.scale(walls, y, |square| 1.0 / square.sqrt());
     }
 
-    /// Back from that.
+    /// The inverse of [`forward_walls`](Self::forward_walls).
     pub fn inverse_walls(self, walls: &mut [f64], y: usize) {
         self.scale(walls, y, f64::sqrt);
         along(walls, self.dims[2], true);
     }
 
-    /// Back from planes to samples.
+    /// The inverse of [`forward_planes`](Self::forward_planes).
     pub fn inverse_planes(self, planes: &mut [f64]) {
         let [x, y, _] = self.dims;
         planes.par_chunks_mut(x * y).for_each(|plane| along(plane, y, true));
@@ -81,7 +81,7 @@ impl Slabs {
     }
 }
 
-/// All levels along the slowest of the axes of `flat`, which has n lines.
+/// Transforms all levels along the slowest axis of `flat`, which has n lines, or inverts them if `back` is set.
 fn along(flat: &mut [f64], n: usize, back: bool) {
     let line = flat.len() / n;
     let level = |s: usize| {
@@ -100,7 +100,7 @@ fn along(flat: &mut [f64], n: usize, back: bool) {
     if back { strides(n).rev().for_each(level) } else { strides(n).for_each(level) }
 }
 
-/// The factors of a row of n samples.
+/// The squares for a row of n samples.
 fn squares(n: usize) -> Vec<f64> {
     let at = |i: usize| if i == 0 { n as f64 } else { square(n, 1 << i.trailing_zeros(), i) };
     (0..n).map(at).collect()

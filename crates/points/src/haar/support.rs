@@ -23,10 +23,10 @@ pub(super) struct Step {
 }
 
 impl Step {
-    /// Supports of equal size.
+    /// The step for supports of equal size.
     const EVEN: Self = Self { of_first: 1.0, of_second: 1.0 };
 
-    /// The step at `stride` of a row of n samples whose second sum is at `second`.
+    /// The step at `stride` in a row of n samples, for the pair whose second sum is at `second`.
     pub(super) fn of(n: usize, stride: usize, second: usize) -> Self {
         let (a, b) = (stride, stride.min(n - second));
         let g = common_divisor(a, b);
@@ -34,14 +34,13 @@ impl Step {
     }
 }
 
-/// The greatest common divisor of a power of two and a number that is not 0.
+/// The greatest common divisor of a power of two and a nonzero number.
 fn common_divisor(power: usize, number: usize) -> usize {
     power.min(1 << number.trailing_zeros())
 }
 
-/// The square of what the raw value at `i` after the level of `stride` is to be divided by to be an
-/// orthonormal coefficient: a + b at a sum, ab(a + b)/g² at a detail. A whole number, so that
-/// products over axes do not depend on their order.
+/// The square of the divisor that makes the raw value at `i`, after the level of `stride`, an orthonormal coefficient: a + b for
+/// a sum, ab(a + b)/g² for a detail. It is a whole number, so that products over axes do not depend on their order.
 pub(super) fn square(n: usize, stride: usize, i: usize) -> f64 {
     if i.is_multiple_of(2 * stride) {
         (2 * stride).min(n - i) as f64
@@ -57,7 +56,7 @@ pub(super) fn strides(n: usize) -> impl DoubleEndedIterator<Item = usize> {
     (0..n.next_power_of_two().trailing_zeros()).map(|level| 1 << level)
 }
 
-/// A row of sums: each of `unit` of `n` samples, but for the last, which has those that are left.
+/// A row of sums. Each is that of `unit` of the `n` samples, except the last, which has the remaining ones.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Axis {
     pub n: usize,
@@ -70,23 +69,23 @@ impl Axis {
         Self { n, unit: 1 }
     }
 
-    /// The step at `stride` whose second sum is at `second`, both counted in sums of the row.
+    /// The step at `stride` for the pair whose second sum is at `second`, both counted in sums of the row.
     pub(super) fn step(self, stride: usize, second: usize) -> Step {
         Step::of(self.n, stride * self.unit, second * self.unit)
     }
 
-    /// [`square`] at `i`, counted in sums of the row.
+    /// The [`square`] at `i`; both are counted in sums of the row.
     pub(super) fn square(self, stride: usize, i: usize) -> f64 {
         square(self.n, stride * self.unit, i * self.unit)
     }
 }
 
-/// Steps a row forward.
+/// Transforms one level of a row.
 pub(super) fn forward_row(row: &mut [f64], axis: Axis, stride: usize) {
     each_step(row, axis, stride, join);
 }
 
-/// Steps a row back.
+/// Inverts one level of a row.
 pub(super) fn inverse_row(row: &mut [f64], axis: Axis, stride: usize) {
     each_step(row, axis, stride, part);
 }
@@ -107,12 +106,12 @@ fn each_step(row: &mut [f64], axis: Axis, stride: usize, work: impl Fn(&mut f64,
     }
 }
 
-/// Joins two rows sample by sample, at each `stride`-th.
+/// Joins two rows sample by sample, at every `stride`-th sample.
 pub(super) fn forward_rows(first: &mut [f64], second: &mut [f64], stride: usize, step: Step) {
     each_pair(first, second, stride, step, join);
 }
 
-/// Parts two rows sample by sample.
+/// Separates two rows sample by sample, at every `stride`-th sample: the inverse of [`forward_rows`].
 pub(super) fn inverse_rows(first: &mut [f64], second: &mut [f64], stride: usize, step: Step) {
     each_pair(first, second, stride, step, part);
 }
@@ -126,7 +125,7 @@ fn each_pair(
     work: impl Fn(&mut f64, &mut f64, Step),
 ) {
     let pairs = a.iter_mut().zip(b);
-    // Told apart so that the dense and even case is vectorised, without divisions.
+    // The cases are separate so that the dense and even one is vectorised, without divisions.
     if stride > 1 {
         pairs.step_by(stride).for_each(|(p, q)| work(p, q, step));
     } else if step == Step::EVEN {

@@ -1,5 +1,5 @@
-/// The Haar decomposition of a row into plain averages and half-differences, as Table 1 of the
-/// paper prints it. For show: thresholds belong on orthonormal coefficients ([`forward`](super::forward)).
+/// The Haar decomposition of a row into plain averages and half-differences, as Table 1 of the paper prints it. It is only for
+/// illustration: thresholds belong on orthonormal coefficients ([`forward`](super::forward)).
 ///
 /// ```
 /// use walpha_points::haar::Unnormalised;
@@ -16,15 +16,14 @@
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Unnormalised {
-    /// The averages (p + q)/2 after each level, finest first. Only the last, a single one, matters
-    /// for the way back.
+    /// The averages (p + q)/2 after each level, finest first. Only the last, a single one, is needed for the inverse.
     pub averages: Vec<Vec<f64>>,
     /// The half-differences (p − q)/2 of each level, finest first.
     pub details: Vec<Vec<f64>>,
 }
 
 impl Unnormalised {
-    /// Decomposes a row fully; `None` unless its length is a power of two, 2 or more.
+    /// Decomposes a row fully; `None` unless its length is a power of two and at least 2.
     pub fn of(row: &[f64]) -> Option<Self> {
         if row.len() < 2 || !row.len().is_power_of_two() {
             return None;

@@ -2,28 +2,27 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use walpha_base::Sum;
 
-/// Values counted into one histogram. Fixed, so that sums are independent of the number of threads.
+/// The number of values counted into one histogram. It is fixed, so that sums do not depend on the number of threads.
 const CHUNK: usize = 1 << 17;
-/// Position and number of the bits of a magnitude that each pass sorts by, 63 in all: the exponent
-/// and a bit of the mantissa first.
+/// The position and the number of the bits of a magnitude that each pass sorts by, 63 in all: the exponent and a bit of the
+/// mantissa come first.
 const DIGITS: [(u32, u32); 6] = [(51, 12), (41, 10), (31, 10), (21, 10), (11, 10), (0, 11)];
 
-/// The threshold between kept and dropped values, which are ordered by decreasing magnitude, equal ones by increasing
-/// index.
+/// The threshold between kept and dropped values. They are ordered by decreasing magnitude, and equal ones by increasing index.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Cut {
     /// The bits of the magnitude at the cut: larger ones stay, smaller ones are dropped.
     pub(super) magnitude: u64,
-    /// Values of just this magnitude stay below this index.
+    /// Values of exactly this magnitude stay if their index is below this one.
     pub(super) ties_end: u64,
 }
 
 impl Cut {
-    /// Cuts values so that as many are dropped as the budget allows; says what is dropped. NaN takes no part,
-    /// and does not stay; infinities must not occur.
+    /// Cuts values so that as many are dropped as the budget allows, and returns what is dropped. NaN is ignored and does not
+    /// stay; infinities must not occur.
     ///
-    /// Magnitudes are ordered as their bits are, so this is a radix selection: a histogram of
-    /// counts and energies by the leading digit, then of what agrees with it by the next. O(n).
+    /// Magnitudes are ordered like their bits, so this is a radix selection: a histogram of counts and energies by the leading
+    /// digit, then by the next digit of the values that agree with it, and so on. O(n).
     pub fn new(values: &[f64], budget: Budget) -> (Self, Dropped) {
         let mut spent = Spent::of(budget);
         let (mut magnitude, mut ties) = (0, 0);
@@ -58,7 +57,7 @@ impl Cut {
 
 /// The bits of an infinite magnitude. Those of NaN are larger.
 pub(super) const INFINITY: u64 = f64::INFINITY.to_bits();
-/// Bits of a magnitude below its exponent.
+/// The number of bits of a magnitude below its exponent.
 pub(super) const EXPONENT: u32 = 52;
 
 #[inline(always)]
@@ -66,7 +65,7 @@ pub(super) fn magnitude(value: f64) -> u64 {
     value.to_bits() & (u64::MAX >> 1)
 }
 
-/// Sorts values that agree with `prefix` above the digit at `shift` by this digit.
+/// Sorts the values that agree with `prefix` above the digit at `shift` into bins by this digit.
 fn histogram(values: &[f64], prefix: u64, shift: u32, width: u32) -> Vec<Bin> {
     let above = shift + width;
     let sort = |chunk| match above {
@@ -84,7 +83,7 @@ fn histogram(values: &[f64], prefix: u64, shift: u32, width: u32) -> Vec<Bin> {
     total
 }
 
-/// Every value counts. Neighbours go to two tables in turn: runs of equal values (zeros, mostly)
+/// Makes a histogram in which every value counts. Neighbours go to two tables alternately: runs of equal values (mostly zeros)
 /// would make each addition wait for the one before.
 fn leading_digits(chunk: &[f64], shift: u32, width: u32) -> Vec<Bin> {
     let mut bins = vec![Bin::default(); 1 << width];
@@ -102,7 +101,7 @@ fn leading_digits(chunk: &[f64], shift: u32, width: u32) -> Vec<Bin> {
     bins
 }
 
-/// Few values count: blocks without one are passed over, which the compiler vectorises.
+/// Makes a histogram in which few values count. Blocks without such values are skipped, which the compiler vectorises.
 fn inner_digits(chunk: &[f64], prefix: u64, shift: u32, width: u32) -> Vec<Bin> {
     let (above, mask) = (shift + width, (1 << width) - 1);
     let mut bins = vec![Bin::default(); 1 << width];
@@ -117,7 +116,7 @@ fn inner_digits(chunk: &[f64], prefix: u64, shift: u32, width: u32) -> Vec<Bin> 
     bins
 }
 
-/// The index after the `nth` (from 1) value of this magnitude, of which there are as many.
+/// The index after the `nth` value (from 1) of this magnitude; there must be at least so many.
 fn place_after(nth: u64, values: &[f64], wanted: u64) -> usize {
     let is_wanted = |value: &f64| magnitude(*value) == wanted;
     let count = |chunk: &[f64]| chunk.iter().filter(|&value| is_wanted(value)).count() as u64;
@@ -134,26 +133,26 @@ fn place_after(nth: u64, values: &[f64], wanted: u64) -> usize {
     values.len()
 }
 
-/// What may be dropped, smallest magnitudes first.
+/// How much may be dropped, smallest magnitudes first.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Budget {
-    /// A number of values.
+    /// At most this number of values.
     Count(u64),
-    /// Values whose squares sum to no more than this.
+    /// Values whose squares sum to at most this.
     Energy(f64),
 }
 
 /// The values that a cut drops.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Dropped {
-    /// Number of values.
+    /// The number of values.
     pub count: u64,
-    /// The sum of their squares, each rounded, the sum exact and rounded once.
+    /// The sum of their squares. Each square is rounded; the sum is exact and rounded once.
     pub energy: f64,
 }
 
-/// Values whose magnitudes have the same exponent: how many, and the exact sum of their squares, in units of
-/// the last place that squares of this exponent have.
+/// The values whose magnitudes have the same exponent: their number, and the exact sum of their squares, in units of the last
+/// place of squares with this exponent.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Bin {
     pub(super) count: u64,
@@ -175,14 +174,14 @@ impl Bin {
 
 const FRACTION: u64 = (1 << EXPONENT) - 1;
 
-/// The biased exponent of the least square of magnitudes of a biased exponent.
+/// The biased exponent of the least square of magnitudes with a biased exponent.
 #[inline(always)]
 fn least(exponent: u64) -> u64 {
-    // 2⁵¹¹ and more, whose squares pass the range of doubles, count as if they were of its end.
+    // Magnitudes from 2⁵¹¹ on, whose squares exceed the range of doubles, count as if their squares were at its end.
     (2 * exponent).saturating_sub(1023).clamp(1, 2046)
 }
 
-/// The square of a magnitude, rounded, in units of its exponent: below 2⁵⁴.
+/// The rounded square of a magnitude, in units of its exponent: below 2⁵⁴.
 #[inline(always)]
 fn units(bits: u64) -> u64 {
     let value = f64::from_bits(bits);
@@ -192,7 +191,7 @@ fn units(bits: u64) -> u64 {
     (square & FRACTION | hidden) << (exponent.max(1) - least(bits >> EXPONENT))
 }
 
-/// Count and energy of the values dropped so far.
+/// The number and energy of the values dropped so far.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Spent {
     budget: Budget,
@@ -205,7 +204,7 @@ impl Spent {
         Self { budget, count: 0, energy: Sum::default() }
     }
 
-    /// Drops a whole bin of values of an exponent, if the budget allows.
+    /// Drops a whole bin of values with an exponent, if the budget allows.
     pub(super) fn take(&mut self, bin: &Bin, exponent: u64) -> bool {
         if bin.count == 0 {
             return true;
@@ -221,7 +220,7 @@ impl Spent {
         allowed
     }
 
-    /// Drops as many of `count` values of one magnitude as the budget allows, and says how many.
+    /// Drops as many of `count` values of one magnitude as the budget allows, and returns their number.
     pub(super) fn equal(&mut self, magnitude: u64, count: u64) -> u64 {
         let (each, exponent) = (u128::from(units(magnitude)), magnitude >> EXPONENT);
         let with = |drop: u64| self.with(each * u128::from(drop), exponent);
@@ -245,9 +244,9 @@ impl Spent {
         Dropped { count: self.count, energy: self.energy.value() }
     }
 
-    /// The energy so far and more of it.
+    /// The energy so far plus these units.
     fn with(&self, units: u128, exponent: u64) -> Sum {
-        /// Bits that a double holds with ease.
+        /// A number of bits that a double holds safely.
         const PIECE: u32 = 48;
         let mut energy = self.energy.clone();
         let mut unit = last_place(least(exponent));
@@ -260,7 +259,7 @@ impl Spent {
     }
 }
 
-/// The last place of doubles of a biased exponent.
+/// The unit of the last place of doubles with a biased exponent.
 fn last_place(exponent: u64) -> f64 {
     match exponent {
         0..=52 => f64::from_bits(1 << (exponent.max(1) - 1)),
@@ -292,7 +291,7 @@ mod tests {
     fn the_budget_is_kept_to_the_last_bit() {
         let square: f64 = 0.1 * 0.1;
         let mut spent = Spent::of(Budget::Energy((0..7).map(|_| square).collect::<Sum>().value()));
-        // The sum of seven is not a double: whether seven fit depends on how it was rounded.
+        // The sum of seven squares is not a double: whether seven fit depends on the rounding.
         let dropped = spent.equal(0.1f64.to_bits(), 100);
         let exact: Sum = (0..7).map(|_| square).collect();
         assert_eq!(dropped, if exact.is_at_most(exact.value()) { 7 } else { 6 });

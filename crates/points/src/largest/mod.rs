@@ -1,5 +1,5 @@
-//! The largest of many values, as few or as many as a budget allows; of values in memory at once
-//! ([`Cut::new`]), or piece by piece ([`Search`]). Energies are summed exactly, so both find the same.
+//! Finds the largest of many values, as few or as many as a budget allows, for values in memory at once ([`Cut::new`]) or piece
+//! by piece ([`Search`]). Energies are summed exactly, so both give the same result.
 
 mod cut;
 mod search;

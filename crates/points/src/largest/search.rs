@@ -4,15 +4,15 @@ use serde::{Deserialize, Serialize};
 
 use super::cut::{Bin, Budget, Cut, Dropped, EXPONENT, INFINITY, Spent, magnitude};
 
-/// The same cut as [`Cut::new`] finds, of values that are never in one place: rounds of
-/// [counting](Self::count), piece by piece, whose joined counts go to [`Search::learn`].
+/// Finds the cut of [`Cut::new`] for values that are never in memory together. It takes rounds of [counting](Self::count), piece
+/// by piece; the joined counts go to [`Search::learn`].
 ///
-/// Values are ordered by their magnitude, equal ones by descending index, as one number of 63 + 64 bits. A
-/// round counts what agrees with the known digits by the next one; when few are left they are listed.
+/// Values are ordered by their magnitude, equal ones by descending index, as one number of 63 + 64 bits. A round counts the
+/// values that agree with the known digits by the next digit; when few are left they are listed.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Search {
     spent: Spent,
-    /// Values listed rather than counted.
+    /// Fewer values than this are listed and not counted.
     list_below: u64,
     state: State,
 }
@@ -20,19 +20,20 @@ pub struct Search {
 /// The digits of the cut found so far.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 enum State {
-    /// The bits of the magnitude at the cut above `shift`.
+    /// The bits of the magnitude at the cut, above `shift`, are known.
     Magnitude {
         prefix: u64,
         shift: u32,
     },
-    /// The magnitude, of which so many stay; the bits of the first index that goes above `shift`.
+    /// The magnitude is known, and so is the number of its values that stay; of the first index that is dropped, the bits above
+    /// `shift` are known.
     Index {
         magnitude: u64,
         stay: u64,
         prefix: u64,
         shift: u32,
     },
-    /// There are few values left that agree with these bits of the magnitude.
+    /// Few values are left that agree with these bits of the magnitude.
     List {
         prefix: u64,
         shift: u32,
@@ -40,27 +41,27 @@ enum State {
     Found(Cut),
 }
 
-/// Bits decided in one round.
+/// The number of bits decided in one round.
 const DIGIT: u32 = 18;
-/// Bits of a magnitude.
+/// The number of bits of a magnitude.
 const MAGNITUDE: u32 = 63;
 
-/// Counts of a part of the values.
+/// The counts of a part of the values.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Counts {
-    /// By digit.
+    /// The bins by digit.
     bins: BTreeMap<u64, Bin>,
-    /// The magnitude and index of the few that are left.
+    /// The magnitude and index of each value, if few are left.
     list: Vec<(u64, u64)>,
 }
 
 impl Counts {
-    /// Number of values counted.
+    /// The number of values counted.
     pub fn total(&self) -> u64 {
         self.bins.values().map(|bin| bin.count).sum::<u64>() + self.list.len() as u64
     }
 
-    /// Number of values, in a first round, of magnitude 0, or so small that they are not normal.
+    /// In a first round, the number of values of magnitude 0, or so small that they are subnormal.
     pub fn zeros(&self) -> u64 {
         self.bins.get(&0).map_or(0, |bin| bin.count)
     }
@@ -75,17 +76,17 @@ impl Counts {
 }
 
 impl Search {
-    /// Looks for the cut that drops as many values as the budget allows. Where no more than `few` values
-    /// are in question, 16 bytes each, they are listed.
+    /// Starts the search for the cut that drops as many values as the budget allows. If at most `list_below` values are left,
+    /// they are listed, with 16 bytes each.
     pub fn new(budget: Budget, list_below: u64) -> Self {
         let state = State::Magnitude { prefix: 0, shift: MAGNITUDE };
         Self { spent: Spent::of(budget), list_below, state }
     }
 
-    /// Goes on until the cut is found, with what it drops: `round` counts all values.
+    /// Finds the cut, and returns it with what it drops. `round` counts all values.
     ///
     /// # Errors
-    /// Those of `round`.
+    /// Errors of `round`.
     pub fn find<E>(
         mut self,
         mut round: impl FnMut(&Self) -> Result<Counts, E>,
@@ -99,7 +100,7 @@ impl Search {
         }
     }
 
-    /// The cut and what it drops, when it is found.
+    /// The cut and what it drops, once it is found.
     pub fn found(&self) -> Option<(Cut, Dropped)> {
         match self.state {
             State::Found(cut) => Some((cut, self.spent.dropped())),
@@ -107,7 +108,7 @@ impl Search {
         }
     }
 
-    /// Counts values, each with its index, for the round at hand. NaN takes no part. O(n).
+    /// Counts values, each with its index, for the current round. NaN is ignored. O(n).
     pub fn count(&self, values: impl Iterator<Item = (f64, u64)>) -> Counts {
         let mut counts = Counts::default();
         let values = values.map(|(value, index)| (magnitude(value), index));
@@ -140,7 +141,7 @@ impl Search {
         counts
     }
 
-    /// Goes on to the next round with what all pieces have.
+    /// Continues with the next round, given the joined counts of all pieces.
     pub fn learn(&mut self, counts: Counts) {
         self.state = match self.state {
             State::Magnitude { prefix, shift } => self.by_magnitude(counts, prefix, shift),
@@ -185,7 +186,7 @@ impl Search {
         above(prefix, shift)
     }
 
-    /// Drops what it can of equal magnitudes; `None` if that is all of them.
+    /// Drops as many of the values of equal magnitude as possible; `None` if all are dropped.
     fn ties(&mut self, magnitude: u64, count: u64) -> Option<State> {
         let stay = count - self.spent.equal(magnitude, count);
         match stay {
@@ -204,7 +205,7 @@ fn above(prefix: u64, shift: u32) -> State {
 fn by_index(counts: Counts, magnitude: u64, mut stay: u64, prefix: u64, shift: u32) -> State {
     let next = shift.saturating_sub(DIGIT);
     for (digit, bin) in counts.bins {
-        // The first that goes is the one behind those that stay.
+        // The first dropped value is the one behind those that stay.
         if stay < bin.count {
             let prefix = prefix | digit << next;
             return match next {
@@ -217,7 +218,7 @@ fn by_index(counts: Counts, magnitude: u64, mut stay: u64, prefix: u64, shift: u
     unreachable!("fewer stay than there are")
 }
 
-/// Whether the bits from `shift` on are those of `prefix`.
+/// Whether the bits from `shift` on equal those of `prefix`.
 #[inline(always)]
 fn agrees(bits: u64, prefix: u64, shift: u32) -> bool {
     shift >= 63 && prefix == 0 || (bits ^ prefix) >> shift == 0
@@ -229,7 +230,7 @@ mod tests {
 
     use super::*;
 
-    /// A search over pieces of the values, in as many rounds as it takes.
+    /// Searches over pieces of the values, in as many rounds as necessary.
     fn searched(values: &[f64], budget: Budget, list_below: u64) -> (Cut, Dropped) {
         let mut search = Search::new(budget, list_below);
         for _ in 0..20 {

@@ -9,18 +9,18 @@ use walpha_volume::Reason;
 
 /// The names of the columns that are read.
 pub(crate) const COLUMNS: [&str; 6] = ["x", "y", "z", "weight", "value", "radius"];
-/// Index in [`COLUMNS`] of the weight.
+/// The index in [`COLUMNS`] of the weight.
 pub(super) const WEIGHT: usize = 3;
-/// Index in [`COLUMNS`] of the value.
+/// The index in [`COLUMNS`] of the value.
 pub(super) const VALUE: usize = 4;
-/// Index in [`COLUMNS`] of the radius, whose square is a weight.
+/// The index in [`COLUMNS`] of the radius, whose square is a weight.
 pub(super) const RADIUS: usize = 5;
 
-/// The columns of a table of points, in order. The names `x`, `y`, `z`, `weight`, `value` and `radius` may occur
-/// once each, in any letter case, with a unit in brackets behind it, or with `CloudCompare`'s `scalar_` before it;
-/// columns of other names are skipped. If there are no other names and no `z`, the points lie in the plane z = 0. Where
-/// x, y or z is not named, the surveying names `easting`, `northing`, and `height`, `elevation` or `altitude`, stand for
-/// it, or `ParaView`'s `Points:0` and so on; where there is no `value`, `intensity` or `reflectance` is one.
+/// The columns of a table of points, in order. The names `x`, `y`, `z`, `weight`, `value` and `radius` may occur once each, in
+/// any letter case, followed by a unit in brackets, or preceded by `CloudCompare`'s `scalar_`. Columns with other names are
+/// skipped. If there are no other names and no `z`, the points lie in the plane z = 0. If x, y or z is not named, the surveying
+/// names `easting`, `northing`, and `height`, `elevation` or `altitude` replace it, or `ParaView`'s `Points:0` and so on; if
+/// there is no `value`, `intensity` or `reflectance` is the value.
 ///
 /// ```
 /// use walpha_points::Columns;
@@ -54,8 +54,8 @@ impl Advise for UnknownColumns {
 const NAME_THEM: &str = "name each column of the file, x, y and z once each, perhaps weight (or radius) and \
                          value, and others as you like, as in x,y,z,nx,ny,nz";
 
-/// Other names of x, y, z, and of a value, each with the place of its column in [`COLUMNS`]. They hold where a file
-/// has no column of the name itself.
+/// Synonyms of x, y, z and the value, each with the index of its column in [`COLUMNS`]. They are used if a file has no column
+/// with the name itself.
 const SYNONYMS: [(usize, &[&str]); 5] = [
     (0, &["easting", "points:0", "points_0"]),
     (1, &["northing", "points:1", "points_1"]),
@@ -64,7 +64,7 @@ const SYNONYMS: [(usize, &[&str]); 5] = [
     (VALUE, &["reflectance"]),
 ];
 
-/// Rows of which the first column may number the points; fewer are so by chance.
+/// The least number of rows whose first column may number the points; fewer may count by chance.
 const LEAST_COUNTED: usize = 4;
 
 /// Names of angles, which cannot be coordinates.
@@ -73,13 +73,14 @@ const ANGLES: [&str; 5] = ["lon", "lat", "lng", "longitude", "latitude"];
 /// Units of angles.
 const DEGREES: [&str; 5] = ["deg", "degree", "degrees", "°", "rad"];
 
-/// Whether a name or its unit is that of an angle.
+/// Whether a name or its unit denotes an angle.
 fn is_angle(name: &str) -> bool {
     let (name, unit) = name_and_unit(name);
     is_among(name, &ANGLES) || unit.is_some_and(|unit| is_among(unit, &DEGREES))
 }
 
-/// Whether a word among others shows that they name columns: a part of it is x, y or z, or an angle, as in `X-coord` and `lon_deg`.
+/// Whether a word among others shows that they are names of columns: a part of it is x, y or z, or an angle, as in `X-coord` and
+/// `lon_deg`.
 pub(super) fn is_of_coordinate(word: &str) -> bool {
     const PLANE: [&str; 2] = ["easting", "northing"];
     is_angle(word)
@@ -93,7 +94,7 @@ fn is_among(name: &str, known: &[&str]) -> bool {
     known.iter().any(|known| known.eq_ignore_ascii_case(name))
 }
 
-/// A name without white space, quotes, and a unit in brackets; and this unit.
+/// Separates a name, without white space and quotes, from a unit in brackets.
 pub(super) fn name_and_unit(text: &str) -> (&str, Option<&str>) {
     let text = text.trim_matches(|c: char| c.is_whitespace() || c == '"' || c == '\'');
     for (open, close) in [('[', ']'), ('(', ')')] {
@@ -106,13 +107,13 @@ pub(super) fn name_and_unit(text: &str) -> (&str, Option<&str>) {
     (text, None)
 }
 
-/// The name of a scalar field as `CloudCompare` writes it, without its prefix.
+/// The name of a scalar field written by `CloudCompare`, without its prefix.
 fn scalar(name: &str) -> Option<&str> {
     let (prefix, name) = name.split_at_checked(7)?;
     prefix.eq_ignore_ascii_case("scalar_").then_some(name)
 }
 
-/// The column of each name, by its index in [`COLUMNS`]; `None` for other names.
+/// The column of each name, as its index in [`COLUMNS`]; `None` for other names.
 pub(super) fn places(names: &[&str]) -> Vec<Option<usize>> {
     let names: Vec<&str> = names.iter().map(|name| name_and_unit(name).0).collect();
     let place = |name: &str| COLUMNS.iter().position(|known| known.eq_ignore_ascii_case(name));
@@ -142,8 +143,7 @@ impl Columns {
     /// The columns with these names.
     ///
     /// # Errors
-    /// x or y is missing; z is missing and other columns than those read are named; or a name that is read occurs
-    /// twice.
+    /// x or y is missing; z is missing and other columns than the known ones are named; or a known name occurs twice.
     pub fn named(names: &[&str]) -> Result<Self, UnknownColumns> {
         let columns = places(names);
         let is_planar = columns.iter().all(Option::is_some);
@@ -166,8 +166,8 @@ impl Columns {
 }
 
 impl Columns {
-    /// Guesses columns from their numbers: x y z, perhaps followed by a value, a normal (of length 1 or 0) or a
-    /// colour (whole numbers up to 255). Says what other columns it may be.
+    /// Guesses columns from their numbers: x y z, perhaps followed by a value, a normal (of length 1 or 0) or a colour (whole
+    /// numbers up to 255). Reports which other columns are possible.
     pub(super) fn guess(path: &Path, rows: &[Vec<f64>]) -> Result<Self, Reason> {
         let count = rows.first().map_or(0, Vec::len);
         let vectors = || rows.iter().map(|row| &row[3..]);
@@ -219,10 +219,10 @@ impl Columns {
 }
 
 impl Columns {
-    /// The unit of lengths that names state for x, y, z and the radius; the first one, if they differ in none.
+    /// The unit of length that the names state for x, y, z and the radius; if several agree, the first one.
     ///
     /// # Errors
-    /// Two of them differ, or are those of angles.
+    /// Two units differ, or are those of angles.
     pub(super) fn unit<'a>(
         &self,
         names: &[&'a str],
@@ -249,7 +249,7 @@ impl Columns {
     }
 }
 
-/// The names, with `-` for a skipped column.
+/// Lists the names, with `-` for a skipped column.
 impl From<Columns> for String {
     fn from(columns: Columns) -> Self {
         let name = |column: &Option<usize>| column.map_or("-", |column| COLUMNS[column]);

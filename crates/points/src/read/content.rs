@@ -1,4 +1,4 @@
-//! The bytes of a file of points: unpacked where it is compressed with gzip, or a ZIP archive of one file.
+//! The bytes of a file of points, unpacked if the file is compressed with gzip, or is a ZIP archive of one file.
 
 use std::io::{self, BufRead, BufReader, Cursor, Read};
 use std::path::{Path, PathBuf};
@@ -9,14 +9,14 @@ use zip::ZipArchive;
 use super::{PointsError, format};
 use walpha_volume::{Gunzip, OpenFile, Reason, io_error};
 
-/// How gzip streams begin.
+/// The magic bytes of gzip streams.
 const GZIP: &[u8] = b"\x1f\x8b";
-/// How ZIP archives begin.
+/// The magic bytes of ZIP archives.
 const ZIP: &[u8] = b"PK\x03\x04";
-/// Bytes of what is unpacked by which a format is recognised.
+/// The number of unpacked bytes by which a format is recognised.
 const START: u64 = 1024;
 
-/// What a compressed file holds.
+/// The content of a compressed file.
 pub(crate) struct Packed {
     /// Its name, as far as it is known.
     pub name: PathBuf,
@@ -25,11 +25,11 @@ pub(crate) struct Packed {
 }
 
 impl Packed {
-    /// What a file holds, if it is compressed with gzip, or is an archive of one file.
+    /// The content of a file that is compressed with gzip, or is an archive of one file.
     pub(crate) fn of(file: &OpenFile) -> Option<Self> {
         let (path, mut start) = (file.path(), Vec::new());
         if file.start().starts_with(GZIP) {
-            // What cannot be unpacked is left to the reader, which says why.
+            // If it cannot be unpacked, the reader says why.
             let _ = Gunzip::quiet(file.reader().ok()?).take(START).read_to_end(&mut start);
             let is_gz = path.extension().is_some_and(|own| own.eq_ignore_ascii_case("gz"));
             let name = if is_gz { path.with_extension("") } else { path.to_owned() };
@@ -60,9 +60,9 @@ fn members(archive: &ZipArchive<impl Read + io::Seek>) -> Vec<usize> {
 
 /// The bytes of a file, unpacked.
 pub(super) struct Content<'a> {
-    /// At the first byte.
+    /// The reader, at the first byte.
     pub reader: Box<dyn BufRead + 'a>,
-    /// How many there are.
+    /// The number of bytes.
     pub length: u64,
 }
 
@@ -87,7 +87,7 @@ impl<'a> Content<'a> {
         Ok(Self { length: bytes.len() as u64, reader: Box::new(Cursor::new(bytes)) })
     }
 
-    /// All bytes.
+    /// Reads all bytes.
     pub(super) fn bytes(self, path: &Path) -> Result<Vec<u8>, PointsError> {
         let mut bytes = Vec::new();
         append(&mut bytes, self.reader, io_error(path))?;
@@ -95,7 +95,7 @@ impl<'a> Content<'a> {
     }
 }
 
-/// The lines of a header before data of any kind. The first line shows how lines end: with LF, CR LF, or CR.
+/// Reads the lines of a header in front of other data. The first line shows how lines end: with LF, CR LF, or CR.
 pub(super) struct HeaderLines<'a> {
     reader: Box<dyn BufRead + 'a>,
     end: Option<u8>,
@@ -109,7 +109,7 @@ impl<'a> HeaderLines<'a> {
 
     /// The next line without its end. Bytes that are not UTF-8 are replaced.
     pub(super) fn read(&mut self) -> io::Result<Option<String>> {
-        /// Longer lines are data taken for a header.
+        /// The largest length of a line. Longer ones are data mistaken for a header.
         const MOST: u64 = 1 << 16;
         let end = match self.end {
             Some(end) => end,
@@ -127,18 +127,18 @@ impl<'a> HeaderLines<'a> {
         Ok((found > 0).then(|| String::from_utf8_lossy(line).into_owned()))
     }
 
-    /// The bytes of the lines so far.
+    /// The number of bytes of the lines so far.
     pub(super) fn bytes(&self) -> u64 {
         self.bytes
     }
 
-    /// The reader, behind the last line.
+    /// The reader, after the last line.
     pub(super) fn into_inner(self) -> Box<dyn BufRead + 'a> {
         self.reader
     }
 }
 
-/// The last byte of each line: LF, unless the first end is a CR without LF.
+/// The last byte of each line: LF, unless the first line ends with a CR without LF.
 fn line_end(reader: &mut impl BufRead) -> io::Result<u8> {
     let start = reader.fill_buf()?;
     let at = start.iter().position(|byte| b"\r\n".contains(byte));
@@ -177,7 +177,7 @@ fn damaged(path: &Path, error: &io::Error) -> PointsError {
     )
 }
 
-/// Reads to the end, in memory that may be refused.
+/// Reads to the end. The memory for that may be refused.
 fn append<E>(
     bytes: &mut Vec<u8>,
     mut reader: impl Read,

@@ -1,11 +1,11 @@
-//! What the coordinates of a LAS file are by its reference system: lengths in one unit, or not. It is stated as `GeoTIFF`'s keys or
-//! as well-known text.
+//! The reference system of a LAS file, which determines whether its coordinates are lengths in one unit. It is stated as
+//! `GeoTIFF`'s keys or as well-known text.
 //!
 //! Sources: OGC 19-008r4, `GeoTIFF`; OGC 01-009, 12-063r5 and 18-010r7, well-known text, versions 1 and 2; LAS 1.4 R15, section 3.
 
 use walpha_volume::Reason;
 
-/// What is known of a reference system.
+/// The known properties of a reference system.
 #[derive(Default)]
 pub(super) struct ReferenceSystem {
     /// Whether x and y are longitude and latitude.
@@ -18,12 +18,12 @@ pub(super) struct ReferenceSystem {
 #[derive(Clone, Debug, PartialEq)]
 struct Unit {
     name: String,
-    /// In metres, or else 0.
+    /// The length in metres, or 0 if it is unknown.
     metres: f64,
 }
 
 impl ReferenceSystem {
-    /// Reads it from the records of a file.
+    /// Reads the reference system from the records of a file.
     pub(super) fn of<'a>(records: impl Iterator<Item = &'a las::Vlr>) -> Self {
         const DIRECTORY: u16 = 34735;
         const TEXT: u16 = 2112;
@@ -58,7 +58,7 @@ impl ReferenceSystem {
         Ok(())
     }
 
-    /// From a directory of keys: each is a number, where its values are (0: here), how many it has, and its value.
+    /// Reads a directory of keys. Each entry is a number, the place of its values (0: here), their count, and the value.
     fn of_keys(bytes: &[u8]) -> Self {
         const MODEL: u16 = 1024;
         const GEOGRAPHIC: [u16; 2] = [2048, 2054];
@@ -73,13 +73,13 @@ impl ReferenceSystem {
         let is_geographic = match value(MODEL) {
             Some(1 | 3) => false,
             Some(2) => true,
-            // A writer may leave the kind of system out, and state the system or its unit of angles.
+            // A writer may omit the kind of system, and state the system or its unit of angles.
             _ => GEOGRAPHIC.iter().any(|&key| value(key).is_some()) && !is_projected(),
         };
         Self { is_geographic, units: UNITS.map(|key| value(key).and_then(Unit::of_code)) }
     }
 
-    /// From well-known text of either version: nested lists, each with a keyword before its bracket.
+    /// Reads well-known text of either version: nested lists, each with a keyword before its bracket.
     fn of_text(text: &str) -> Self {
         let mut system = Self::default();
         let [mut has_angles, mut has_lengths] = [false; 2];
@@ -111,17 +111,17 @@ impl ReferenceSystem {
         system
     }
 
-    /// Takes the first unit of an axis.
+    /// Sets the unit of an axis, unless it is already known.
     fn add(&mut self, axis: usize, unit: Option<Unit>) {
         let known = &mut self.units[axis];
         *known = known.take().or(unit);
     }
 }
 
-/// What a keyword of well-known text begins, as far as it matters here.
+/// The part of well-known text that a keyword begins, as far as it matters here.
 #[derive(Clone, Copy, PartialEq)]
 enum Part {
-    /// A system of longitude and latitude, unless it is Cartesian: geocentric.
+    /// A system of longitude and latitude, unless it is Cartesian, that is, geocentric.
     Angles,
     /// A system of lengths.
     Plane,
@@ -147,14 +147,14 @@ impl Part {
     }
 }
 
-/// Whether axes are Cartesian, by what follows `CS[`.
+/// Whether axes are Cartesian, according to the text after `CS[`.
 fn is_cartesian(content: &str) -> bool {
     const WORD: &str = "Cartesian";
     content.trim_start().get(..WORD.len()).is_some_and(|kind| kind.eq_ignore_ascii_case(WORD))
 }
 
 impl Unit {
-    /// From a number of EPSG's; `None` if it is undefined.
+    /// The unit with a code of EPSG; `None` if it is undefined.
     fn of_code(code: u16) -> Option<Self> {
         let (name, metres) = match code {
             0 | 32767 => return None,
@@ -166,14 +166,14 @@ impl Unit {
         Some(Self { name, metres })
     }
 
-    /// From a name in quotes and a number of metres.
+    /// The unit with a name in quotes and a number of metres.
     fn of_text(content: &str) -> Option<Self> {
         let (name, rest) = content.trim_start().strip_prefix('"')?.split_once('"')?;
         let number = rest.trim_start().strip_prefix(',')?.split([',', ']', ')']).next()?;
         Some(Self { name: name.to_owned(), metres: number.trim().parse().ok()? })
     }
 
-    /// Whether lengths in one are lengths in the other, but for the two feet, which differ by 2 in a million.
+    /// Whether lengths in one unit are lengths in the other, except for the two feet, which differ by 2 in a million.
     fn is_like(&self, other: &Self) -> bool {
         self.name == other.name || (self.metres / other.metres - 1.0).abs() < 1e-5
     }

@@ -1,12 +1,12 @@
-//! How a text separates its fields and writes its numbers. All rows together decide: a comma may separate fields, mark
-//! decimals, or group thousands, and one row alone says too little.
+//! How a text separates its fields and writes its numbers. This is decided by all rows together: a comma may separate fields,
+//! mark decimals, or group thousands, and a single row has too little information.
 
 use std::borrow::Cow;
 
 use super::lines::Numbered;
 use walpha_volume::Reason;
 
-/// What separates fields, and the decimal mark.
+/// The separator of fields and the decimal mark.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Dialect {
     separator: Separator,
@@ -18,21 +18,21 @@ pub(super) struct Dialect {
 enum Separator {
     /// This character, which may have blanks around it.
     One(char),
-    /// Blanks, and commas where these mark no decimals.
+    /// Blanks, and commas if these do not mark decimals.
     Blanks,
 }
 
-/// What to do about numbers that can be read in two ways.
+/// The advice about numbers that can be read in two ways.
 pub(super) const PLAINLY: &str = "write it with decimal points and without marks between thousands";
 
 impl Dialect {
-    /// The dialect of some rows. `tabs` says that tabs separate fields, rather than being blanks; `width` is the number of
-    /// columns, where it is known.
+    /// The dialect of some rows. `tabs` means that tabs separate fields instead of being blanks; `width` is the number of
+    /// columns, if it is known.
     ///
     /// - Semicolons in most rows separate fields, and the commas of their numbers mark decimals.
-    /// - Commas where all separate their fields, with blanks beside them or without, are separators.
-    /// - Of numbers with commas between blanks (or tabs) the commas mark decimals, unless each of them could group
-    ///   thousands, as in `1,234`: then nothing decides.
+    /// - If commas separate all fields, with or without blanks beside them, they are separators.
+    /// - In numbers between blanks (or tabs), commas mark decimals, unless each of them could group thousands, as in `1,234`:
+    /// then the text is ambiguous.
     pub(super) fn of(
         rows: &Numbered<'_>,
         tabs: bool,
@@ -81,13 +81,13 @@ impl Dialect {
         Ok(blanks)
     }
 
-    /// The same dialect, where commas in fields mark decimals if there are any.
+    /// Sets whether commas in fields mark decimals, if there are any.
     fn with_commas(self, rows: &Numbered<'_>) -> Result<Self, Reason> {
         let marks = Marks::of(rows, |row| self.fields(row).into_iter());
         if marks.example.is_none() {
             return Ok(self);
         }
-        // Who separates by semicolons does so because commas mark decimals.
+        // Writers use semicolons as separators because commas mark decimals.
         if !(marks.decimal && self.separator == Separator::One(';')) {
             marks.decide()?;
         } else if let Some((line, word)) = marks.dotted {
@@ -124,7 +124,7 @@ impl Dialect {
         self.separator == Separator::One(';')
     }
 
-    /// The fields of a line, without quotes and the blanks around them.
+    /// The fields of a line, without the quotes and blanks around them.
     pub(super) fn fields(self, line: &str) -> Vec<&str> {
         match self.separator {
             Separator::Blanks if self.decimal_comma => line.split_whitespace().collect(),
@@ -137,7 +137,7 @@ impl Dialect {
     }
 }
 
-/// The fields between these marks. Those in quotes are not split.
+/// The fields between these marks. Text in quotes is not split.
 pub(super) fn split_at(line: &str, mark: char) -> Vec<&str> {
     let mut quoted = false;
     let is_end = |c: char| {
@@ -152,7 +152,7 @@ fn unquoted(field: &str) -> &str {
     field.strip_prefix('"').and_then(|field| field.strip_suffix('"')).map_or(field, str::trim)
 }
 
-/// A number as a text writes it: with a decimal comma, if it has such; and with Fortran's D for an exponent.
+/// The number in a word: with a decimal comma, if the text uses it; and with Fortran's D for an exponent.
 pub(super) fn number(word: &str, decimal_comma: bool) -> Option<f64> {
     if let Ok(number) = word.parse::<f64>() {
         return Some(number);
@@ -165,7 +165,7 @@ pub(super) fn number(word: &str, decimal_comma: bool) -> Option<f64> {
     (if decimal_comma { plain.replace(',', ".") } else { plain }).parse().ok()
 }
 
-/// A number without the marks between its thousands, as in `1'234.5`, `1.234,5` and `1_234`; `None` if it has none.
+/// A number without the marks between its thousands, as in `1'234.5`, `1.234,5` and `1_234`; `None` if it has no such marks.
 pub(super) fn without_marks(word: &str) -> Option<String> {
     let mark = ['\'', '\u{2019}', '_', '.', ','].into_iter().find(|&mark| {
         let whole = word.split(|c| c != mark && ".,".contains(c)).next().unwrap_or_default();
@@ -182,13 +182,13 @@ pub(super) fn without_marks(word: &str) -> Option<String> {
     plain.parse::<f64>().is_ok().then_some(plain)
 }
 
-/// What the commas of numbers can be.
+/// The possible meanings of the commas in numbers.
 struct Marks<'a> {
     /// The first number with a comma, and its line.
     example: Option<(u64, &'a str)>,
-    /// Whether all can mark decimals.
+    /// Whether all of them can mark decimals.
     decimal: bool,
-    /// Whether all can group thousands.
+    /// Whether all of them can group thousands.
     thousands: bool,
     /// A number with a point that could group thousands.
     dotted: Option<(u64, &'a str)>,
@@ -213,7 +213,7 @@ impl<'a> Marks<'a> {
         marks
     }
 
-    /// Refuses numbers of which nothing says whether their commas mark decimals or group thousands.
+    /// Refuses numbers if nothing decides whether their commas mark decimals or group thousands.
     fn decide(&self) -> Result<(), Reason> {
         let Some((line, word)) = self.example else { return Ok(()) };
         match (self.decimal, self.thousands, self.dotted) {
@@ -246,13 +246,13 @@ fn point(word: &str) -> Cow<'_, str> {
     if word.contains(',') { word.replace(',', ".").into() } else { word.into() }
 }
 
-/// Whether a word is written in the characters of numbers.
+/// Whether a word consists of the characters of numbers.
 fn is_numeric(word: &str) -> bool {
     let is_part = |c: char| c.is_ascii_digit() || "+-.,eEdD'\u{2212}".contains(c);
     word.contains(|c: char| c.is_ascii_digit()) && word.chars().all(is_part)
 }
 
-/// Whether the comma of a number, between digits, can mark its decimals.
+/// Whether the comma of a number, between digits, can mark decimals.
 fn is_decimal(word: &str) -> bool {
     let Some((whole, decimals)) = word.split_once(',') else { return false };
     whole.ends_with(|c: char| c.is_ascii_digit())
@@ -261,7 +261,7 @@ fn is_decimal(word: &str) -> bool {
         && number(word, true).is_some()
 }
 
-/// Whether this mark can group the thousands of a number: up to three digits without a leading zero, and then three each.
+/// Whether this mark can group the thousands of a number: up to three digits without a leading zero, followed by groups of three.
 fn groups_thousands(word: &str, mark: char) -> bool {
     let digits = word.trim_start_matches(['+', '-', '\u{2212}']);
     let digits = if mark == ',' { digits.split('.').next().unwrap_or_default() } else { digits };
@@ -282,7 +282,7 @@ fn is_group(digits: &str) -> bool {
     digits.len() == 3 && digits.bytes().all(|byte| byte.is_ascii_digit())
 }
 
-/// Whether a row has blanks between two fields, and no comma beside them.
+/// Whether a row has blanks between two fields and no comma beside them.
 fn has_bare_blank(row: &str) -> bool {
     let mut words = row.split_whitespace();
     let mut before = words.next().unwrap_or_default();
@@ -292,7 +292,7 @@ fn has_bare_blank(row: &str) -> bool {
     })
 }
 
-/// Whether some commas of a row have a blank behind them, and others do not.
+/// Whether some commas of a row are followed by a blank and others are not.
 fn commas_differ(row: &str) -> bool {
     let row = row.trim_end_matches([',', ' ', '\t']);
     let wide = row.matches(", ").count();
@@ -338,7 +338,7 @@ mod tests {
             ("1 2, 3\n4 5 6", vec![1.0, 2.0, 3.0, 4.0, 5.0, 6.0]),
             ("1,2,3\n4 5 6", vec![1.0, 2.0, 3.0, 4.0, 5.0, 6.0]),
             ("1.5,2.5, 3.5", vec![1.5, 2.5, 3.5]),
-            // One number of four digits, or a leading zero, is not a group of thousands.
+            // A number of four digits, or a leading zero, is not a group of thousands.
             (
                 "1,234 5,678 9,012\n1234,567 8,901 2,345",
                 vec![1.234, 5.678, 9.012, 1234.567, 8.901, 2.345],

@@ -1,4 +1,4 @@
-//! The second line of extended XYZ: the columns, and the unit cell of periodic points.
+//! The second line of extended XYZ, which gives the columns and the unit cell of periodic points.
 
 use std::path::Path;
 
@@ -9,9 +9,9 @@ use walpha_volume::Reason;
 /// The content of the line.
 #[derive(Default)]
 pub(super) struct Comment {
-    /// From `Properties=species:S:1:pos:R:3:…`.
+    /// The columns from `Properties=species:S:1:pos:R:3:…`.
     pub columns: Option<Columns>,
-    /// From `Lattice="…"`, unless `pbc` says that the points do not repeat.
+    /// The cell from `Lattice="…"`, unless `pbc` states that the points do not repeat.
     pub cell: Option<Cell>,
 }
 
@@ -37,7 +37,7 @@ impl Comment {
     }
 }
 
-/// The pairs `key=value` of a line; values with white space are in quotes, braces or brackets.
+/// The pairs `key=value` of a line. Values with white space are in quotes, braces or brackets.
 fn pairs(line: &str) -> Vec<(&str, &str)> {
     let mut pairs = Vec::new();
     let mut rest = line;
@@ -104,7 +104,7 @@ fn cell(path: &Path, text: &str) -> Result<Cell, PointsError> {
     }
 }
 
-/// Along which vectors of the cell the points repeat: T or F, or 1 or 0, for each.
+/// Whether the points repeat along each vector of the cell: T or F, or 1 or 0.
 fn directions(text: &str) -> Option<[bool; 3]> {
     let yes = |word: &str| match word.to_ascii_lowercase().as_str() {
         "t" | "true" | "1" => Some(true),

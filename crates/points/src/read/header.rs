@@ -1,4 +1,4 @@
-//! What comes before the rows of a table of points: comments, the names of columns, and their units.
+//! The text before the rows of a table of points: comments, the names of columns, and their units.
 
 use std::path::Path;
 
@@ -24,8 +24,8 @@ const FIRST_LINE: &str = "its first line must name the columns x, y and z, perha
                           value, or hold numbers";
 
 impl Header {
-    /// Reads the lines before the first row or count. Names follow `#` or `//`, or nothing. A first line of other names is
-    /// no row where `given` says what the columns are. From here on the lines know which rows begin as comments do.
+    /// Reads the lines before the first row or count. Names may follow `#` or `//`. If `given` states the columns, a first line
+    /// of other names is not a row. From here on, the lines know which rows begin like comments.
     pub(super) fn read(
         path: &Path,
         lines: &mut Numbered<'_>,
@@ -34,7 +34,7 @@ impl Header {
         let mut remark = None;
         while let Some((_, line)) = lines.peek() {
             let bare = line.trim_start_matches(['#', '/', ' ', '\t']).trim_end();
-            // Units belong to the names before them.
+            // A unit belongs to the name before it.
             let joined = bare.replace(" [", "[").replace(" (", "(");
             let names = names(&joined);
             if let Ok(columns) = Columns::named(&names) {
@@ -104,7 +104,7 @@ impl Header {
         Ok(Self { columns: given.cloned(), unit: LengthUnit::Unstated })
     }
 
-    /// Takes the unit, from brackets behind the names or from a line of its own.
+    /// Adds the unit, from brackets behind the names or from a separate line.
     fn with_unit(
         path: &Path,
         lines: &mut Numbered<'_>,
@@ -143,7 +143,7 @@ fn names(line: &str) -> Vec<&str> {
     fields_at(line, mark(line))
 }
 
-/// Whether a comment may name the columns: it has a word for each number of the first row, and no number.
+/// Whether a comment may name the columns: it has a word for each number of the first row, and contains no number.
 fn may_head(names: &[&str], lines: &Numbered<'_>) -> bool {
     let is_row = |line: &&str| count(line).is_none();
     let row = lines.contents().map(|(_, line)| line).find(is_row).unwrap_or_default();
@@ -153,20 +153,20 @@ fn may_head(names: &[&str], lines: &Numbered<'_>) -> bool {
         && [self::names(row).len(), row.split_whitespace().count()].contains(&names.len())
 }
 
-/// Whether words that may name columns do so: by a name of a coordinate among them, or as they are separated. Other words may be
-/// a remark.
+/// Whether words that may name columns do so: one of them is the name of a coordinate, or they are separated by a mark. Other
+/// words may be a remark.
 fn is_header(names: &[&str], mark: Option<char>) -> bool {
     mark.is_some() || names.iter().any(|name| is_of_coordinate(name))
 }
 
-/// Whether a line has a number in it, or a word for a missing one.
+/// Whether a line contains a number, or a word for a missing number.
 fn holds_number(line: &str) -> bool {
     let words = line.split(|c: char| c.is_whitespace() || ";,\"".contains(c));
     let is_number = |word: &str| number(word, false).is_some() || is_missing(word);
     words.filter(|word| !word.is_empty()).any(is_number)
 }
 
-/// Whether a line has an empty field and then 0, 1, 2 and so on, as pandas names columns that have no names.
+/// Whether a line has an empty field and then 0, 1, 2 and so on, which is how pandas names columns without names.
 fn numbered_columns(line: &str) -> bool {
     let words = names(line);
     words.len() > 2 && words[0].is_empty() && is_count_up(&words[1..])
@@ -176,7 +176,7 @@ fn is_count_up(words: &[&str]) -> bool {
     words.iter().enumerate().all(|(k, word)| word.parse() == Ok(k))
 }
 
-/// Says that a first row 0, 1, 2 is a point, where the others are not whole numbers.
+/// Reports that a first row 0, 1, 2 is taken for a point, if the other rows are not whole numbers.
 fn say_first_row(path: &Path, lines: &Numbered<'_>) {
     let mut rows = lines.contents();
     if let (Some((_, first)), Some((_, second))) = (rows.next(), rows.next())

@@ -13,12 +13,11 @@ use super::{COLUMNS, Points, PointsError, format};
 use crate::{ModelMetadata, PointOptions};
 use walpha_volume::{OpenFile, Reason, io_error};
 
-/// Bytes of points read at once: a header may claim records of up to 64 KiB, and more than the file has.
+/// The number of bytes of points read at once: a header may claim records of up to 64 KiB, and more of them than the file has.
 const BATCH: u64 = 1 << 22;
 
-/// Reads the positions of the points, of some classes (ASPRS codes) or of all, and their intensities as values. Points
-/// that are withheld are left out unless they are asked for. Coordinates are doubles, computed with the file's scales and
-/// offsets.
+/// Reads the positions of the points, of some classes (ASPRS codes) or of all, and their intensities as values. Withheld points
+/// are left out unless they are requested. Coordinates are doubles, computed with the file's scales and offsets.
 pub(crate) fn read(
     file: &OpenFile,
     options: &PointOptions,
@@ -68,7 +67,8 @@ pub(crate) fn read(
         let rows = places.zip(batch.intensity()).zip(batch.classification()).zip(records);
         for (((place, intensity), class), record) in rows {
             found += 1;
-            // Formats 0 to 5 have the flags above the class, and the others in a byte before it (LAS 1.4 R15, tables 8 and 16).
+            // In formats 0 to 5 the flags are above the class, in the others in the byte before it (LAS 1.4 R15, tables 8 and
+            // 16).
             let flags = if is_extended { record[15] & 15 } else { record[15] >> 5 };
             if options.classes.as_ref().is_some_and(|classes| !classes.contains(&class)) {
                 continue;
@@ -107,15 +107,15 @@ pub(crate) fn read(
     Ok((points, ModelMetadata::default().notes(kinds.notes())))
 }
 
-/// The flag of points that are not to be processed.
+/// The flag of points that must not be processed.
 const WITHHELD: u8 = 4;
-/// The other flags, and the classes of points that others may leave out, with their names.
+/// The other flags, and the classes of points that a user may want to leave out, with their names.
 const FLAGS: [(u8, &str); 3] =
     [(1, "synthetic"), (2, "key points"), (8, "in an overlap of swaths")];
 const CLASSES: [(u8, &str); 3] =
     [(7, "noise (class 7)"), (12, "in an overlap (class 12)"), (18, "high noise (class 18)")];
 
-/// How many points there are of each kind that a user may want to leave out.
+/// The numbers of points of each kind that a user may want to leave out.
 #[derive(Default)]
 struct Kinds {
     flags: [u64; FLAGS.len()],
@@ -142,14 +142,14 @@ impl Kinds {
     }
 }
 
-/// The number of points. Version 1.4 counts them in 64 bits, and perhaps also in the field of older versions; where the two
-/// differ, PDAL, laspy and `LAStools` take the former, and so do we (LAS 1.4 R15 would have the latter, with an error).
+/// The number of points. Version 1.4 counts them in 64 bits, and perhaps also in the field of older versions. If the two differ,
+/// PDAL, laspy and `LAStools` use the former, and so do we (LAS 1.4 R15 requires the latter, with an error).
 pub(super) fn count(header: &las::raw::Header) -> u64 {
     let large = header.large_file.map_or(0, |large| large.number_of_point_records);
     if large > 0 { large } else { header.number_of_point_records.into() }
 }
 
-/// Says that the two numbers of points differ.
+/// Warns if the two numbers of points differ.
 fn say_counts(path: &Path, header: &las::raw::Header) {
     let old = u64::from(header.number_of_point_records);
     let Some(large) = header.large_file.map(|large| large.number_of_point_records) else { return };
@@ -162,7 +162,7 @@ fn say_counts(path: &Path, header: &las::raw::Header) {
     }
 }
 
-/// A LAS file without the number of points in the field of older versions, which the library prefers.
+/// A LAS file without the number of points in the field of older versions, which the library would prefer.
 struct WithoutOldCount<R> {
     reader: R,
     at: u64,
@@ -193,7 +193,8 @@ impl<R: Seek> Seek for WithoutOldCount<R> {
     }
 }
 
-/// Refuses what a compressed file claims of its compression and does not hold; returns what it claims, if it is compressed.
+/// Refuses a compressed file whose claims about its compression do not match its content. Returns the claims, if the file is
+/// compressed.
 fn check_compression(
     path: &Path,
     reader: &mut (impl Read + Seek),
@@ -212,9 +213,9 @@ fn check_compression(
     Ok(Some(claims))
 }
 
-/// Refuses a file that has fewer points than it claims, or that claims none and has some; scales that are not numbers, or 0;
-/// and claims that the library would trust: more bytes of points than 64 bits can count, and an extended record longer than
-/// the file, for which it would allocate memory. Returns the header, and what it claims of its compression.
+/// Refuses a file that has fewer points than it claims, or that has points but claims none; scales that are 0 or not numbers; and
+/// claims that the library would trust: more bytes of points than 64 bits can count, and an extended record longer than the file,
+/// for which it would allocate memory. Returns the header, and the claims about its compression.
 fn check(file: &OpenFile) -> Result<(las::raw::Header, Option<Claims>), PointsError> {
     let (path, length) = (file.path(), file.length());
     let mut reader = file.reader()?;
@@ -241,7 +242,7 @@ fn check(file: &OpenFile) -> Result<(las::raw::Header, Option<Claims>), PointsEr
     }
     say_counts(path, &header);
     let claims = check_compression(path, &mut reader, &header, length)?;
-    // Some writers say where such records would begin, and that there are none.
+    // Some writers give the position of such records, and their number as 0.
     let behind = header.evlr.filter(|records| records.number_of_evlrs > 0);
     let behind = behind.map(|records| records.start_of_first_evlr);
     let waves = header.start_of_waveform_data_packet_record.filter(|&start| start > 0);

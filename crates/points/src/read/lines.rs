@@ -1,4 +1,4 @@
-//! The lines of a text with their numbers, and the frames into which counts of rows divide them.
+//! The numbered lines of a text, and the frames into which counts of rows divide them.
 
 use std::path::Path;
 
@@ -6,14 +6,14 @@ use super::dialect::{number, split_at};
 use super::{Columns, PointsError, format};
 use walpha_volume::Reason;
 
-/// Lines, counted from 1.
+/// Lines with their numbers, from 1.
 #[derive(Clone)]
 pub(super) struct Numbered<'a> {
-    /// What is left.
+    /// The remaining text.
     text: &'a str,
     /// The number of the next line.
     line: u64,
-    /// What rows look like that begin as comments do.
+    /// The form of rows that begin like comments.
     labelled: Option<Labelled>,
 }
 
@@ -22,28 +22,28 @@ impl<'a> Numbered<'a> {
         Self { text, line: 1, labelled: None }
     }
 
-    /// Takes lines that begin as comments do for rows where they look like rows.
+    /// Treats lines that begin like comments as rows if they look like such rows.
     pub(super) fn set_labelled(&mut self, labelled: Labelled) {
         self.labelled = Some(labelled);
     }
 
-    /// The next line, which stays.
+    /// Returns the next line without consuming it.
     pub(super) fn peek(&self) -> Option<(u64, &'a str)> {
         self.clone().next()
     }
 
-    /// Lines that are neither empty nor comments, which begin with `#` or `/`.
+    /// The lines that are neither empty nor comments. Comments begin with `#` or `/`.
     pub(super) fn contents(&self) -> impl Iterator<Item = (u64, &'a str)> + use<'a> {
         let labelled = self.labelled;
         self.clone().filter(move |(_, line)| is_content(line, labelled))
     }
 
-    /// What comes before a later place in the same text.
+    /// The lines before a later place in the same text.
     fn until(&self, end: &Self) -> Self {
         Self { text: &self.text[..self.text.len() - end.text.len()], ..*self }
     }
 
-    /// Whether nothing but empty lines and comments is left.
+    /// Whether only empty lines and comments are left.
     pub(super) fn is_at_end(&self) -> bool {
         self.contents().next().is_none()
     }
@@ -70,9 +70,9 @@ impl<'a> Iterator for Numbered<'a> {
     }
 }
 
-/// The first line of a text, and the rest. A field in quotes may go on for a few lines.
+/// Splits a text into its first line and the rest. A field in quotes may extend over several lines.
 fn split(text: &str) -> (&str, &str) {
-    /// As many lines at most.
+    /// The largest number of lines of such a field.
     const LINES: usize = 4;
     let mut ends = text.match_indices('\n').map(|(end, _)| end).take(LINES);
     let first = ends.next().unwrap_or(text.len());
@@ -81,7 +81,7 @@ fn split(text: &str) -> (&str, &str) {
     (&text[..end], text.get(end + 1..).unwrap_or_default())
 }
 
-/// Whether a field in quotes has no end yet.
+/// Whether a line ends inside a field in quotes.
 fn is_open(line: &str) -> bool {
     let begins = |(at, _): (usize, &str)| {
         line[..at].trim_end_matches([' ', '\t']).is_empty()
@@ -90,20 +90,21 @@ fn is_open(line: &str) -> bool {
     line.matches('"').count() % 2 == 1 && line.match_indices('"').next().is_some_and(begins)
 }
 
-/// The words of lines, each with the number of its line.
+/// The words of lines, each with its line number.
 pub(super) fn words<'a>(
     lines: impl Iterator<Item = (u64, &'a str)> + Clone,
 ) -> impl Iterator<Item = (u64, &'a str)> + Clone {
     lines.flat_map(|(number, line)| line.split_whitespace().map(move |word| (number, word)))
 }
 
-/// Rows that may begin with a label such as `#2` or `/data/b.jpg`: by the names of their columns, or what separates these.
+/// The form of rows that may begin with a label such as `#2` or `/data/b.jpg`, given by the names of their columns or by the
+/// separator of these names.
 #[derive(Clone, Copy)]
 pub(super) struct Labelled {
-    /// `None` for blanks.
+    /// The separator; `None` for blanks.
     mark: Option<char>,
     width: usize,
-    /// The columns of x, y and, if there is one, z.
+    /// The columns of x, y and, if it exists, z.
     axes: [Option<usize>; 3],
 }
 
@@ -121,7 +122,7 @@ impl Labelled {
     }
 }
 
-/// What separates the fields of a line: semicolons, tabs, commas, or else blanks.
+/// The separator of the fields of a line: semicolon, tab or comma; `None` for blanks.
 pub(super) fn mark(line: &str) -> Option<char> {
     [';', '\t', ','].into_iter().find(|&mark| line.contains(mark))
 }
@@ -138,30 +139,30 @@ pub(super) fn fields_at(line: &str, mark: Option<char>) -> Vec<&str> {
     fields
 }
 
-/// Whether a line begins as comments do.
+/// Whether a line begins like a comment.
 pub(super) fn is_comment(line: &str) -> bool {
     line.trim_start_matches([' ', '\t', ';', ',']).starts_with(['#', '/'])
 }
 
-/// Whether a line is neither empty nor a comment. A line of separators alone is empty.
+/// Whether a line is neither empty nor a comment. A line that contains only separators is empty.
 fn is_content(line: &str, labelled: Option<Labelled>) -> bool {
     !line.trim_matches([' ', '\t', ';', ',']).trim().is_empty()
         && (!is_comment(line) || labelled.is_some_and(|labelled| labelled.is_row(line)))
 }
 
-/// The number that a line holds alone.
+/// The number that is the whole content of a line.
 pub(super) fn count(line: &str) -> Option<u64> {
     line.trim_matches([' ', '\t', ';', ',']).parse().ok()
 }
 
-/// Rows behind a count of them.
+/// The rows that follow a count of them.
 pub(super) struct Frame<'a> {
     pub rows: Numbered<'a>,
-    /// The line between, in chemistry's XYZ.
+    /// The line in between, in chemistry's XYZ.
     pub comment: Option<&'a str>,
 }
 
-/// A count that differs from the number of rows behind it.
+/// The error for a count that differs from the number of rows behind it.
 pub(super) struct Miscount {
     line: u64,
     claimed: u64,
@@ -181,7 +182,7 @@ impl Miscount {
     }
 }
 
-/// The frames of lines of which the first is a count. With `comments`, a line of any content follows each count.
+/// Divides lines, of which the first is a count, into frames. With `comments`, a line of any content follows each count.
 pub(super) fn frames(mut lines: Numbered<'_>, comments: bool) -> Result<Vec<Frame<'_>>, Miscount> {
     let mut frames = Vec::new();
     while let Some((line, text)) = lines.next_content() {

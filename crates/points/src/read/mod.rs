@@ -49,7 +49,7 @@ fn mesh_error(path: &Path, error: &MeshError) -> PointsError {
     format(path, Reason::content(error.to_string(), advice))
 }
 
-/// The error for a file whose cells are not simplices that the checker judges.
+/// The error for a file whose cells are not simplices, which the checker requires.
 pub(super) fn no_complex(path: &Path) -> PointsError {
     let reason = Reason::unsupported(
         "its cells cannot be read as a complex",

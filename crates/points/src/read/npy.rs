@@ -11,14 +11,14 @@ use walpha_volume::{Dtype, Element as _, Endian, NpyFile, OpenFile, Reason, npy_
 /// Whether an array lists points: its elements have fields, or it has two axes.
 pub(crate) fn holds_points(file: &OpenFile) -> Result<bool, PointsError> {
     Ok(match fields_of(file)? {
-        // One of three axes is a volume, of which a field is asked for.
+        // An array of three axes is a volume, one of whose fields is requested.
         Some(header) => header.shape.len() != 3,
         None => NpyFile::open(file)?.shape.len() == 2,
     })
 }
 
-/// Reads an array of two axes, whose columns are those given, or else x, y, z and perhaps a value; or an array whose
-/// elements have fields of these names.
+/// Reads an array of two axes with the given columns, by default x, y, z and perhaps a value; or an array whose elements have
+/// fields with these names.
 pub(crate) fn read(file: &OpenFile, columns: Option<&Columns>) -> Result<Points, PointsError> {
     match fields_of(file)? {
         Some(header) => structured(file, &header, columns),
@@ -28,13 +28,13 @@ pub(crate) fn read(file: &OpenFile, columns: Option<&Columns>) -> Result<Points,
 
 /// The header of an array whose elements have fields.
 fn fields_of(file: &OpenFile) -> Result<Option<Header>, PointsError> {
-    // What is wrong with a header says the reader of arrays.
+    // If the header is invalid, the reader of arrays says why.
     let header = Header::read(&mut file.reader()?).ok();
     Ok(header.filter(|header| header.descr.starts_with('[')))
 }
 
 fn plain(file: &OpenFile, columns: Option<&Columns>) -> Result<Points, PointsError> {
-    /// Rows from which columns without names are guessed, as in text.
+    /// The number of rows from which columns without names are guessed, as in text.
     const ROWS: usize = 100;
     let path = file.path();
     let file = NpyFile::open(file)?;
@@ -69,9 +69,9 @@ fn plain(file: &OpenFile, columns: Option<&Columns>) -> Result<Points, PointsErr
     })
 }
 
-/// Refuses integers that may be others than the doubles nearest to them.
+/// Refuses integers that may differ from the doubles nearest to them.
 fn check_integers(path: &Path, dtype: Dtype, numbers: &[f64]) -> Result<(), PointsError> {
-    /// All smaller ones are doubles.
+    /// All integers below this are doubles.
     const LEAST: f64 = (1u64 << f64::MANTISSA_DIGITS) as f64;
     let wrong = numbers.iter().position(|number| number.abs() >= LEAST);
     let Some(row) = wrong.filter(|_| matches!(dtype, Dtype::I64 | Dtype::U64)) else {
@@ -83,7 +83,7 @@ fn check_integers(path: &Path, dtype: Dtype, numbers: &[f64]) -> Result<(), Poin
     Err(format(path, Reason::content(what, advice)))
 }
 
-/// The error for columns that are named, and are not as many as there are.
+/// The error for a wrong number of named columns.
 fn wrong_width(found: usize, named: usize) -> Reason {
     Reason::choice(
         Setting::Columns,
@@ -92,7 +92,7 @@ fn wrong_width(found: usize, named: usize) -> Reason {
     )
 }
 
-/// Points whose columns are read one by one.
+/// The points whose columns are read one by one.
 fn points(
     path: &Path,
     rows: usize,
@@ -113,12 +113,12 @@ fn points(
     Ok(points)
 }
 
-/// A field of the elements of a structured array, or one of its numbers, if it has several.
+/// A field of the elements of a structured array, or one of its numbers if it has several.
 struct Field<'a> {
     name: &'a str,
-    /// Its type, unless it is not a number.
+    /// The type of the field, if it is a number.
     kind: Option<(Dtype, Endian)>,
-    /// Where it begins in an element, in bytes.
+    /// The position of the field in an element, in bytes.
     offset: usize,
 }
 
@@ -169,14 +169,14 @@ fn structured(
     })
 }
 
-/// The fields of a structured type such as `[('x', '<f4'), ('normal', '<f4', (3,))`, and the bytes of an element.
+/// The fields of a structured type such as `[('x', '<f4'), ('normal', '<f4', (3,))`, and the size of an element in bytes.
 fn fields(descr: &str) -> Option<(Vec<Field<'_>>, usize)> {
     let (mut fields, mut offset) = (Vec::new(), 0usize);
     let mut rest = descr.strip_prefix('[')?.trim();
     while !rest.is_empty() {
         let (name, behind) = quoted(rest.strip_prefix('(')?)?;
         let (kind, behind) = quoted(behind.trim_start().strip_prefix(',')?.trim_start())?;
-        // A shape, as (3,), or nothing.
+        // A shape such as (3,) may follow.
         let (shape, behind) = behind.split_once(')')?;
         let shape = shape.trim_start_matches(',').trim_start();
         let (shape, behind) = match shape.strip_prefix('(') {
@@ -213,10 +213,10 @@ fn fields(descr: &str) -> Option<(Vec<Field<'_>>, usize)> {
     Some((fields, offset))
 }
 
-/// Names of fields of three numbers that are x, y and z.
+/// The names of fields of three numbers that are x, y and z.
 const AXES: [&str; 6] = ["xyz", "pos", "position", "points", "coordinates", "vertex"];
 
-/// A text in quotes, and what follows it.
+/// Separates a text in quotes from the text behind it.
 fn quoted(text: &str) -> Option<(&str, &str)> {
     let quote = text.chars().next().filter(|quote| ['\'', '"'].contains(quote))?;
     text[1..].split_once(quote)

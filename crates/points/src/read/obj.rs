@@ -9,7 +9,7 @@ use super::{CellCount, Points, PointsError};
 use walpha_volume::OpenFile;
 
 /// Reads the vertices (`v x y z …`) of a Wavefront OBJ file; everything else is skipped. A fourth number is the weight of a
-/// rational curve, and no divisor (OBJ specification, B1-15); six numbers are a place and a colour.
+/// rational curve, and not a divisor (OBJ specification, B1-15); six numbers are a position and a colour.
 pub(crate) fn read(file: &OpenFile) -> Result<Points, PointsError> {
     let (path, text) = (file.path(), text(file)?);
     let mut points = Points::default();
@@ -45,7 +45,7 @@ pub(crate) fn cells(file: &OpenFile) -> Result<Vec<CellCount>, PointsError> {
     Ok(counts.into())
 }
 
-/// Lines without comments, with those that a backslash at their end continues.
+/// The lines without comments. A line that ends with a backslash is joined with the next.
 fn statements(text: &str) -> impl Iterator<Item = (u64, Cow<'_, str>)> {
     let mut lines = Numbered::new(text);
     std::iter::from_fn(move || {
@@ -62,8 +62,8 @@ fn statements(text: &str) -> impl Iterator<Item = (u64, Cow<'_, str>)> {
     })
 }
 
-/// A line without its comment, or without the backslash that says that it goes on. A `#` begins a comment where a word begins; a
-/// backslash in a comment continues nothing.
+/// A line without its comment, or without the backslash that continues it, and whether it is continued. A `#` begins a comment at
+/// the start of a word; a backslash in a comment does not continue the line.
 fn content(line: &str) -> (&str, bool) {
     let begins = |&(at, _): &(usize, &str)| at == 0 || line[..at].ends_with([' ', '\t']);
     match line.match_indices('#').find(begins) {

@@ -7,9 +7,9 @@ use super::text::text;
 use super::{COLUMNS, CellCount, Points, PointsError, format};
 use walpha_volume::{OpenFile, Reason};
 
-/// Reads the vertices of an OFF file in text, with normals, colours or texture coordinates (NOFF, COFF,
-/// STOFF) or without: the first three numbers of each. There must be as many faces as it claims. Ends of lines mean
-/// nothing, but that a colour may stand behind a vertex or a face in its line.
+/// Reads the vertices of an OFF file in text, with normals, colours or texture coordinates (NOFF, COFF, STOFF) or without: the
+/// first three numbers of each. There must be as many faces as the file claims. Ends of lines have no meaning, except that a
+/// colour may follow a vertex or a face in its line.
 pub(crate) fn read(file: &OpenFile) -> Result<Points, PointsError> {
     let path = file.path();
     let text = text(file)?;
@@ -33,19 +33,19 @@ pub(crate) fn cells(file: &OpenFile) -> Result<Vec<CellCount>, PointsError> {
     Ok(vec![CellCount::new("faces", header.faces)])
 }
 
-/// What a file says of itself.
+/// The header of a file, and the words behind it.
 struct Header<W> {
     vertices: usize,
     faces: usize,
-    /// Numbers of a vertex, without those of a colour.
+    /// The number of numbers of a vertex, without those of a colour.
     base: usize,
     /// Whether each vertex has a colour.
     coloured: bool,
-    /// The words behind, each with its line.
+    /// The words after the header, each with its line.
     words: W,
 }
 
-/// Reads the kind, which may have a count right behind it, and the counts. That of the edges may be left out.
+/// Reads the kind, which may have a count directly behind it, and the counts. The count of edges may be left out.
 fn header(text: &str) -> Result<Header<impl Iterator<Item = (u64, &str)> + Clone>, Reason> {
     let contents = Numbered::new(text)
         .map(|(number, line)| (number, line.split('#').next().unwrap_or_default()));
@@ -75,7 +75,7 @@ fn header(text: &str) -> Result<Header<impl Iterator<Item = (u64, &str)> + Clone
         let what = "does not say how many vertices and faces it has";
         return Err(Reason::content(what, "begin it with OFF, and a line with these counts"));
     };
-    // The edges, beside the other counts or alone in a line.
+    // The count of edges is beside the other counts or alone in a line.
     let mut ahead = words.clone();
     if let Some((own, word)) = ahead.next()
         && word.parse::<u64>().is_ok()
@@ -87,8 +87,8 @@ fn header(text: &str) -> Result<Header<impl Iterator<Item = (u64, &str)> + Clone
 }
 
 impl<'a, W: Iterator<Item = (u64, &'a str)> + Clone> Header<W> {
-    /// How many numbers a vertex has: as many as its line, if all are in lines of their own, or else by the kind. The error says
-    /// how they differ from the counts.
+    /// The number of numbers of a vertex: that of its line, if all vertices and faces are in separate lines, or else the one of
+    /// the kind. The error says how the words differ from the counts.
     fn width(&self) -> Result<usize, Reason> {
         let (base, coloured) = (self.base, [self.base + 3, self.base + 4]);
         let Some((line, _, found)) = self.lines().next() else {
@@ -114,7 +114,7 @@ impl<'a, W: Iterator<Item = (u64, &'a str)> + Clone> Header<W> {
         self.holds(width).map(|()| width)
     }
 
-    /// Lines: the number of each, its first word, and how many it has.
+    /// The lines: the number of each, its first word, and the number of its words.
     fn lines(&self) -> impl Iterator<Item = (u64, &'a str, usize)> {
         let mut words = self.words.clone().peekable();
         std::iter::from_fn(move || {
@@ -127,8 +127,8 @@ impl<'a, W: Iterator<Item = (u64, &'a str)> + Clone> Header<W> {
         })
     }
 
-    /// Whether there are a line for each vertex, of so many numbers, and one for each face, of a number of corners, these, and
-    /// perhaps a colour.
+    /// Whether there is a line of `width` numbers for each vertex, and a line for each face, with a number of corners, these
+    /// corners, and perhaps a colour.
     fn is_in_lines(&self, width: usize) -> bool {
         let (mut lines, vertices, faces) = (self.lines(), self.vertices, self.faces);
         let is_face = |corners: &str, found: usize| corners.parse().is_ok_and(|n: usize| n < found);
@@ -138,7 +138,7 @@ impl<'a, W: Iterator<Item = (u64, &'a str)> + Clone> Header<W> {
             && lines.next().is_none()
     }
 
-    /// Compares the words with those of the vertices, of so many numbers, and of faces without colours.
+    /// Compares the words with those of vertices with `width` numbers, and of faces without colours.
     fn holds(&self, width: usize) -> Result<(), Reason> {
         let Self { vertices, faces, .. } = *self;
         let cut = || {
@@ -169,7 +169,7 @@ impl<'a, W: Iterator<Item = (u64, &'a str)> + Clone> Header<W> {
     }
 }
 
-/// The first three words of a line, as coordinates.
+/// Converts the first three words of a line to coordinates.
 pub(super) fn position<'a>(
     path: &Path,
     line: u64,

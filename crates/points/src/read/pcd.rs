@@ -9,9 +9,9 @@ use super::content::{Content, HeaderLines};
 use super::{COLUMNS, Points, PointsError, RADIUS, format, take_radii};
 use walpha_volume::{OpenFile, Reason, io_error};
 
-/// Reads PCD, the Point Cloud Library's format: text, binary or compressed, with the fields x, y and z,
-/// optionally weight or radius, and value or else intensity. Points without a position (NaN, as scanners write them)
-/// are left out. Without a number of points there are width times height of them.
+/// Reads PCD, the Point Cloud Library's format: text, binary or compressed, with the fields x, y and z, optionally weight or
+/// radius, and value or else intensity. Points without a position (NaN, as scanners write them) are left out. If the number of
+/// points is missing, it is width times height.
 pub(crate) fn read(file: &OpenFile) -> Result<Points, PointsError> {
     let path = file.path();
     let fail = |reason: Reason| format(path, reason);
@@ -57,12 +57,12 @@ struct Header {
     names: Vec<String>,
     sizes: Vec<usize>,
     types: Vec<String>,
-    /// How many numbers each field has.
+    /// The number of numbers of each field.
     counts: Vec<usize>,
     width: Option<usize>,
     height: Option<usize>,
     points: Option<usize>,
-    /// The sensor's place and direction, unless they are the origin and none.
+    /// The position and direction of the sensor, unless they are the defaults.
     viewpoint: Option<String>,
 }
 
@@ -72,7 +72,7 @@ struct Field {
     offset: usize,
 }
 
-/// What to do about a header that contradicts itself or the data.
+/// The advice about a header that contradicts itself or the data.
 const HEADER: &str = "correct its header, or write it again";
 
 impl Header {
@@ -86,7 +86,7 @@ impl Header {
         let numbers = || words.clone().map(str::parse).collect::<Result<Vec<usize>, _>>();
         let number = || words.clone().next().and_then(|n| n.parse().ok()).ok_or_else(damaged);
         match key {
-            // COLUMNS is what version 0.5 calls them.
+            // Version 0.5 calls them COLUMNS.
             "FIELDS" | "COLUMNS" => self.names = words.map(str::to_ascii_lowercase).collect(),
             "TYPE" => self.types = words.map(str::to_ascii_uppercase).collect(),
             "SIZE" => self.sizes = numbers().map_err(|_| damaged())?,
@@ -106,7 +106,7 @@ impl Header {
         Ok(())
     }
 
-    /// The number of points. Refuses lists of different lengths, huge fields, and more points than the file can hold.
+    /// The number of points. Refuses lists of different lengths, huge fields, and more points than the file can contain.
     fn check(&mut self, length: u64) -> Result<usize, Reason> {
         let fields = self.names.len();
         if self.counts.is_empty() {
@@ -147,13 +147,14 @@ impl Header {
         Ok(points)
     }
 
-    /// The bytes, or else the numbers, of some fields of a point; the largest `usize` where they are more, as they may be in 32 bits.
+    /// The size in bytes, or else the number of numbers, of some fields of a point; the largest `usize` if it is larger, as it
+    /// may be in 32 bits.
     fn width(&self, fields: Range<usize>, bytes: bool) -> usize {
         let width = |k: usize| self.counts[k].saturating_mul(if bytes { self.sizes[k] } else { 1 });
         fields.map(width).fold(0, usize::saturating_add)
     }
 
-    /// The fields x, y, z, weight, value and radius, each with an offset in bytes, or else in numbers.
+    /// The fields x, y, z, weight, value and radius, each with an offset in bytes or else in numbers.
     fn fields(&self, bytes: bool) -> Result<[Option<Field>; 6], Reason> {
         let names: Vec<&str> = self.names.iter().map(String::as_str).collect();
         let places = places(&names);
@@ -307,7 +308,7 @@ fn number(kind: &str, bytes: &[u8]) -> Result<f64, Reason> {
     })
 }
 
-/// The double that an integer is.
+/// The double that equals an integer.
 fn double(integer: i128) -> Result<f64, Reason> {
     let nearest = integer as f64;
     if nearest as i128 == integer {
@@ -319,8 +320,8 @@ fn double(integer: i128) -> Result<f64, Reason> {
     ))
 }
 
-/// Unpacks LZF, behind the packed and the unpacked size. Where these are equal, some writers stored what they could not
-/// pack as it is.
+/// Unpacks LZF, which follows its packed and its unpacked size. If these are equal, some writers stored data that they could not
+/// compress.
 fn unpacked(bytes: &[u8]) -> Result<Vec<u8>, Reason> {
     let cut = || Reason::truncated("ends inside its compressed data: it is truncated");
     let sizes = bytes.first_chunk::<8>().ok_or_else(cut)?;
@@ -333,7 +334,7 @@ fn unpacked(bytes: &[u8]) -> Result<Vec<u8>, Reason> {
     }
 }
 
-/// Literals and references to earlier output.
+/// Decodes LZF: literals, and references to earlier output.
 fn from_lzf(mut rest: &[u8], whole: usize) -> Result<Vec<u8>, Reason> {
     let damaged = || Reason::damaged("has compressed data that are damaged");
     let mut out = Vec::new();
@@ -367,7 +368,7 @@ fn from_lzf(mut rest: &[u8], whole: usize) -> Result<Vec<u8>, Reason> {
 mod tests {
     use super::*;
 
-    /// References to near and far output, of the greatest length, and overlapping their own output.
+    /// Tests references to near and far output, of the greatest length, and overlapping their own output.
     #[test]
     fn pieces_repeat_what_came_before() {
         let literal: Vec<u8> = (0..320u32).map(|i| (i * i % 251) as u8).collect();

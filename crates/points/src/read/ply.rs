@@ -10,14 +10,14 @@ use super::{
 };
 use walpha_volume::{Dtype, Element as _, Endian, OpenFile, Reason, io_error};
 
-/// Reads the vertices of a PLY file, text or binary of either byte order: properties x, y and z,
-/// optionally weight or radius, and value. All other elements must be as the header declares.
+/// Reads the vertices of a PLY file, text or binary of either byte order: properties x, y and z, optionally weight or radius, and
+/// value. All other elements must be as the header declares.
 pub(crate) fn read(file: &OpenFile) -> Result<Points, PointsError> {
     Ok(content(file, &mut None)?.0)
 }
 
-/// Reads the vertices and the tetrahedra: of elements of one of [these names](TETRAHEDRA), the corners are the list
-/// `vertex_indices` or `vertex_index`, or else the first one.
+/// Reads the vertices and the tetrahedra. In an element with one of [these names](TETRAHEDRA), the corners are the list
+/// `vertex_indices` or `vertex_index`, or else the first list.
 pub(crate) fn read_complex(file: &OpenFile) -> Result<Mesh, PointsError> {
     let mut corners = Some(Corners::default());
     let (points, header) = content(file, &mut corners)?;
@@ -39,17 +39,17 @@ pub(crate) fn read_complex(file: &OpenFile) -> Result<Mesh, PointsError> {
     Ok(if header.endian.is_none() { mesh.with_decimal_note() } else { mesh })
 }
 
-/// The corners of all tetrahedra, and where those of each end.
+/// The corners of all tetrahedra, and the end of each tetrahedron's corners.
 #[derive(Default)]
 struct Corners {
     numbers: Vec<f64>,
     ends: Vec<f64>,
 }
 
-/// Names of elements that are tetrahedra: `tetra` is that of `VCGlib`.
+/// The names of elements that are tetrahedra. `VCGlib` uses `tetra`.
 const TETRAHEDRA: [&str; 5] = ["tetra", "tet", "tetrahedra", "tetrahedron", "cell"];
 
-/// Reads the points and, where they are asked for, the tetrahedra; and the header.
+/// Reads the points, the header and, if they are requested, the tetrahedra.
 fn content(
     file: &OpenFile,
     corners: &mut Option<Corners>,
@@ -171,7 +171,7 @@ fn vertices(
 }
 
 struct Header {
-    /// `None` for text.
+    /// The byte order; `None` for text.
     endian: Option<Endian>,
     elements: Vec<Element>,
 }
@@ -183,9 +183,9 @@ struct Element {
 }
 
 enum Property {
-    /// A number, by its name and type.
+    /// A number, given by its name and type.
     Scalar(String, Dtype),
-    /// A list, by its name and the types of its length and of its items.
+    /// A list, given by its name and the types of its length and of its items.
     List(String, Dtype, Dtype),
 }
 
@@ -259,7 +259,7 @@ impl Header {
 }
 
 impl Element {
-    /// Refuses more of this element than the bytes after the header can hold.
+    /// Refuses more elements of this kind than the bytes after the header can contain.
     fn fits(&self, binary: bool, left: u64) -> Result<(), Reason> {
         let least = |property: &Property| match (binary, property) {
             (true, Property::Scalar(_, dtype) | Property::List(_, dtype, _)) => dtype.size() as u64,
@@ -277,7 +277,7 @@ impl Element {
     }
 
     fn skip(&self, numbers: &mut Numbers<impl Read>) -> Result<(), Reason> {
-        // Elements without properties take no bytes, however many there are.
+        // Elements without properties take no bytes, whatever their number.
         let rows = if self.properties.is_empty() { 0 } else { self.count };
         for _ in 0..rows {
             for property in &self.properties {
@@ -290,7 +290,7 @@ impl Element {
 }
 
 impl Property {
-    /// Reads a number, or the length of a list, whose items are passed on.
+    /// Reads a number, or the length of a list and its items, which are passed on.
     fn read(
         &self,
         numbers: &mut Numbers<impl Read>,
@@ -310,7 +310,7 @@ impl Property {
     }
 }
 
-/// More bytes behind the last element are not padding.
+/// The most bytes of padding behind the last element.
 const MOST_PADDING: u64 = 1 << 16;
 
 /// The numbers after a header.
@@ -319,14 +319,14 @@ enum Numbers<R> {
     Binary(R, Endian),
 }
 
-/// Numbers as text. A row may go on in further lines, and a line may hold several rows; but where a row begins within a line
-/// and goes on in the next, lines are not what the header declares.
+/// Numbers as text. A row may continue in further lines, and a line may contain several rows. But if a row begins within a line
+/// and continues in the next, the lines do not match the header.
 struct Words {
     text: String,
     at: usize,
-    /// Where the row begins.
+    /// The start of the row.
     row: usize,
-    /// The first row that began a line and ended within one: where it begins, and where it ends.
+    /// The start and the end of the first row that began at the start of a line and ended within one.
     wrong: Option<(usize, usize)>,
 }
 
@@ -338,7 +338,7 @@ impl Words {
         Some(word)
     }
 
-    /// Compares a row with the lines that it is in; `false` if these cannot be what the header declares.
+    /// Compares a row with its lines; returns `false` if the lines cannot match the header.
     fn end_row(&mut self) -> bool {
         const ENDS: [char; 2] = ['\n', '\r'];
         let read = &self.text[self.row..self.at];
@@ -354,7 +354,7 @@ impl Words {
         fits
     }
 
-    /// What is wrong with the first row that did not end with its line.
+    /// The error for the first row that did not end with its line.
     fn wrong_row(&self) -> Option<Reason> {
         let (start, end) = self.wrong?;
         let (before, rest) = self.text.split_at(start);

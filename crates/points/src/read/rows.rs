@@ -4,10 +4,10 @@ use super::dialect::{PLAINLY, number, without_marks};
 use super::{COLUMNS, Columns, Points, PointsError, RADIUS, format, take_radii};
 use walpha_volume::Reason;
 
-/// Number of rows from which columns without names are guessed.
+/// The number of rows from which columns without names are guessed.
 const MAX_PENDING: usize = 100;
 
-/// Turns rows of text into points.
+/// Converts rows of text to points.
 pub(super) struct TextRows<'a> {
     path: &'a Path,
     columns: Option<Columns>,
@@ -17,7 +17,7 @@ pub(super) struct TextRows<'a> {
     pub decimal_comma: bool,
     /// Whether rows may have more columns than are known.
     pub open_ended: bool,
-    /// The columns without names, if their number matches.
+    /// The columns to assume without names, if their number matches.
     pub default_columns: Option<Columns>,
     points: Points,
     radii: Option<Vec<f64>>,
@@ -37,7 +37,7 @@ impl<'a> TextRows<'a> {
         }
     }
 
-    /// Adds the words of a line. Empty ones at its end are those behind a separator too many.
+    /// Adds the words of a line. Empty ones at its end follow superfluous separators.
     pub(super) fn push(&mut self, line: u64, words: &[&str]) -> Result<(), PointsError> {
         let expected = match (&self.columns, self.pending.first()) {
             (Some(columns), _) => columns.len(),
@@ -55,7 +55,7 @@ impl<'a> TextRows<'a> {
         if self.pending.len() < MAX_PENDING { Ok(()) } else { self.flush() }
     }
 
-    /// All points.
+    /// Returns all points.
     pub(super) fn finish(mut self) -> Result<Points, PointsError> {
         self.flush()?;
         take_radii(self.path, &mut self.points, self.radii)?;
@@ -138,7 +138,7 @@ impl<'a> TextRows<'a> {
     }
 }
 
-/// Whether a word says that there is no number.
+/// Whether a word stands for a missing number.
 pub(super) fn is_missing(word: &str) -> bool {
     ["", "nan", "na", "n/a", "null", "none", "-"]
         .iter()

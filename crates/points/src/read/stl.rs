@@ -11,9 +11,9 @@ use super::text::text;
 use super::{CellCount, Points, PointsError, format};
 use walpha_volume::{OpenFile, Reason, io_error};
 
-/// Bytes before the facets of a binary STL file: a header, and the number of facets.
+/// The number of bytes before the facets of a binary STL file: a header, and the number of facets.
 const HEAD: u64 = 84;
-/// Bytes of a facet: its normal, its corners, and two attribute bytes.
+/// The size of a facet in bytes: its normal, its corners, and two attribute bytes.
 const FACET: u64 = 50;
 
 /// Reads the vertices of an STL file, binary or text: the corners of its facets, each position once.
@@ -45,8 +45,8 @@ pub(crate) fn read(file: &OpenFile) -> Result<Points, PointsError> {
     Ok(corners.points)
 }
 
-/// The number of facets of a binary file, whose head is read; `None` for text. A binary file may begin with `solid`, too:
-/// its length tells, or a byte 0, which no text has.
+/// The number of facets of a binary file, whose head is read; `None` for text. A binary file may begin with `solid`, too: it is
+/// recognised by its length, or by a byte 0, which no text contains.
 fn binary_facets(
     path: &Path,
     reader: &mut impl Read,
@@ -74,7 +74,7 @@ fn binary_facets(
     Ok(Some(count))
 }
 
-/// Whether bytes begin with the word of text, in any case.
+/// Whether bytes begin with the first word of text files, in any letter case.
 fn begins_solid(head: &[u8]) -> bool {
     let text = head.strip_prefix(b"\xef\xbb\xbf").unwrap_or(head).trim_ascii_start();
     text.get(..5).is_some_and(|word| word.eq_ignore_ascii_case(b"solid"))
@@ -89,8 +89,8 @@ pub(crate) fn cells(file: &OpenFile) -> Result<Vec<CellCount>, PointsError> {
     Ok(vec![CellCount::new("facets", in_text(file)?.1)])
 }
 
-/// Reads all solids of a text, and counts their facets. Ends of lines mean nothing, but that a name ends there, or before the
-/// first facet.
+/// Reads all solids of a text, and counts their facets. Ends of lines have no meaning, except that a name ends at the end of its
+/// line or before the first facet.
 fn in_text(file: &OpenFile) -> Result<(Points, usize), PointsError> {
     let (path, text) = (file.path(), text(file)?);
     let mut corners = Corners::default();

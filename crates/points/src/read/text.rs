@@ -1,4 +1,4 @@
-//! Text in whatever encoding and with whatever line ends a program wrote it.
+//! Decodes text in various encodings and with various line ends.
 
 use walpha_base::memory::{NoMemory, try_with_capacity};
 
@@ -6,8 +6,8 @@ use super::content::Content;
 use super::{PointsError, format};
 use walpha_volume::{OpenFile, Reason};
 
-/// All of a file as text whose lines end with `\n`: from UTF-8, UTF-16 of either byte order, with a mark or without, or
-/// else Latin-1. Lines may end with CR LF or CR.
+/// The whole file as text whose lines end with `\n`. The encoding may be UTF-8, UTF-16 of either byte order, with or without a
+/// byte order mark, or else Latin-1. Lines may end with CR LF or CR.
 pub(super) fn text(file: &OpenFile) -> Result<String, PointsError> {
     let path = file.path();
     decoded(Content::of(file)?.bytes(path)?).map_err(|error| match error {
@@ -35,7 +35,7 @@ fn decoded(bytes: Vec<u8>) -> Result<String, Undecodable> {
         (all, Some(order)) => utf16(all, order)?,
         _ => match String::from_utf8(bytes) {
             Ok(text) => text,
-            // Bytes are Latin-1's characters, of one or two bytes each in UTF-8.
+            // Bytes are characters of Latin-1, which take one or two bytes in UTF-8.
             Err(error) => {
                 let bytes = error.into_bytes();
                 let mut text = room(2 * bytes.len())?;
@@ -71,7 +71,7 @@ fn room(bytes: usize) -> Result<String, NoMemory> {
     Ok(String::from_utf8(bytes).expect("nothing is text"))
 }
 
-/// The byte order of UTF-16 without a mark: each of the first characters has one byte 0, always the same.
+/// The byte order of UTF-16 without a byte order mark: each of the first characters has one byte 0, always the same one.
 fn wide(bytes: &[u8]) -> Option<fn([u8; 2]) -> u16> {
     let (pairs, _) = bytes.as_chunks::<2>();
     let pairs = &pairs[..pairs.len().min(32)];

@@ -7,10 +7,10 @@ use walpha_complex::Alpha;
 use super::{CellCount, Points, PointsError, format, mesh_error, take_radii};
 use walpha_volume::{OpenFile, Reason, VtkPoints, VtkXml};
 
-/// Names of arrays that are not read as values, even if they are the active scalars.
+/// The names of arrays that are not read as values, even if they are the active scalars.
 const WEIGHT_NAMES: [&str; 2] = ["weight", "radius"];
 
-/// Whether a file holds points rather than a volume.
+/// Whether a file contains points and not a volume.
 pub(crate) fn holds_points(file: &OpenFile) -> Result<bool, PointsError> {
     Ok(is_geometry(&VtkXml::open(file)?))
 }
@@ -19,9 +19,9 @@ fn is_geometry(file: &VtkXml) -> bool {
     matches!(file.kind(), "UnstructuredGrid" | "PolyData")
 }
 
-/// Reads the points of VTU or VTP, VTK's unstructured grids and polygons in XML, with the point data `weight` (or
-/// `radius`) and `value`, in any letter case. Without a `value`, the active scalars are read. Pieces follow each other;
-/// points that VTK marks as copies of another piece's, or as hidden, are left out.
+/// Reads the points of VTU or VTP, VTK's unstructured grids and polygons in XML, with the point data `weight` (or `radius`) and
+/// `value`, in any letter case. Without a `value`, the active scalars are read. Pieces follow each other; points that VTK marks
+/// as hidden, or as copies of those in another piece, are left out.
 pub(crate) fn read(file: &OpenFile) -> Result<Points, PointsError> {
     let path = file.path();
     let file = VtkXml::open(file)?;
@@ -40,7 +40,7 @@ pub(crate) fn read(file: &OpenFile) -> Result<Points, PointsError> {
     Ok(all.unwrap_or_default())
 }
 
-/// The array of bytes in which bits mark points that are copies, or hidden (vtkDataSetAttributes.h).
+/// The name of the array of bytes whose bits mark points that are copies or hidden (vtkDataSetAttributes.h).
 const GHOSTS: &str = "vtkGhostType";
 const COPY_OR_HIDDEN: u8 = 3;
 
@@ -78,7 +78,7 @@ fn join(path: &Path, all: &mut Points, piece: Points) -> Result<(), PointsError>
     Ok(())
 }
 
-/// An array of one number for each point, by its name in any case.
+/// The array with this name, in any letter case, and one number for each point.
 fn point_array(file: &VtkXml, piece: usize, wanted: &str) -> Option<usize> {
     let data = file.children(piece, "PointData").next()?;
     let is_it = |&array: &usize| {
@@ -132,7 +132,7 @@ fn points(path: &Path, file: &VtkXml, piece: usize) -> Result<Points, PointsErro
     Ok(points)
 }
 
-/// Reads the points of a legacy VTK file, with the same point data.
+/// Reads the points of a legacy VTK file, with the point data that [`read`] takes.
 pub(crate) fn read_legacy(file: &OpenFile) -> Result<Points, PointsError> {
     let path = file.path();
     let file = VtkPoints::open(file)?;
@@ -151,8 +151,8 @@ pub(crate) fn read_legacy(file: &OpenFile) -> Result<Points, PointsError> {
     Ok(points)
 }
 
-/// Number of cells of each kind in a VTU or VTP file. If all are vertices and no α is stated, the file is a list
-/// of points and has none.
+/// The number of cells of each kind in a VTU or VTP file. If all are vertices and no α is stated, the file is a list of points
+/// without cells.
 pub(crate) fn cells(file: &OpenFile) -> Result<Vec<CellCount>, PointsError> {
     let path = file.path();
     let file = VtkXml::open(file)?;
@@ -184,14 +184,14 @@ pub(crate) fn cells(file: &OpenFile) -> Result<Vec<CellCount>, PointsError> {
     Ok(if are_points && stated_alpha(&file, dataset)?.is_none() { Vec::new() } else { counts })
 }
 
-/// Number of cells of each kind in a legacy file, without vertices.
+/// The number of cells of each kind in a legacy file, without vertices.
 pub(crate) fn cells_of_legacy(file: &OpenFile) -> Result<Vec<CellCount>, PointsError> {
     let cells = VtkPoints::open(file)?.cells.into_iter();
     Ok(cells.map(|(kind, count)| CellCount::new(kind, count as usize)).collect())
 }
 
-/// Reads the simplices of a VTU file with its points and weights, and the classes and α if walpha wrote it. Of
-/// another grid only the tetrahedra are read, if it has some, and α is ∞.
+/// Reads the simplices of a VTU file with its points and weights, and the classes and α if walpha wrote it. In another grid only
+/// the tetrahedra are read, if it has some, and α is ∞.
 pub(crate) fn read_complex(file: &OpenFile) -> Result<Mesh, PointsError> {
     let path = file.path();
     let file = VtkXml::open(file)?;
@@ -213,13 +213,13 @@ pub(crate) fn read_complex(file: &OpenFile) -> Result<Mesh, PointsError> {
     grid.mesh().map_err(|error| mesh_error(path, &error))
 }
 
-/// Reads the simplices of a legacy VTK file in the same way.
+/// Reads the simplices of a legacy VTK file, as [`read_complex`] does those of a VTU file.
 pub(crate) fn read_legacy_complex(file: &OpenFile) -> Result<Mesh, PointsError> {
     let format = MeshFormat::named("vtk").expect("VTK is a format of meshes");
     format.read_bytes(file.path(), &file.bytes()?).map_err(|error| mesh_error(file.path(), &error))
 }
 
-/// VTK's type of single points.
+/// VTK's code for single points.
 const VERTEX: u8 = 1;
 
 /// The α in the field data `alpha`, which walpha writes.

@@ -13,15 +13,15 @@ use super::{Columns, Points, PointsError, format};
 use crate::{Cell, ModelMetadata, PointOptions};
 use walpha_volume::{Coordinates, OpenFile, Reason};
 
-/// How lines of numbers are laid out, unless they have names.
+/// The layout of lines of numbers that have no names.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum TextLayout {
     /// A table, whose fields may be empty.
     Table,
-    /// A first line with only a count begins chemistry's XYZ: a comment line, whose form extended XYZ defines,
-    /// then for each atom an element, its coordinates, and possibly more columns.
+    /// If the first line contains only a count, it begins chemistry's XYZ: a comment line, whose form extended XYZ defines, then
+    /// for each atom an element, its coordinates, and possibly more columns.
     Atoms,
-    /// As `Atoms`, but six columns are a position with a normal or colour.
+    /// Like `Atoms`, but six columns are a position with a normal or colour.
     Vectors,
     /// PTS: a count may come first; seven columns are x y z, the intensity and a colour.
     Scan,
@@ -30,7 +30,7 @@ pub(crate) enum TextLayout {
 }
 
 impl TextLayout {
-    /// The columns without names, unless they are guessed from the numbers in them.
+    /// The columns to assume without names; `None` if they are guessed from their numbers.
     fn default_columns(self) -> Option<Columns> {
         let axes = [Some(0), Some(1), Some(2)];
         match self {
@@ -40,14 +40,14 @@ impl TextLayout {
         }
     }
 
-    /// Whether counts may come with a line of comment behind them.
+    /// Whether counts may be followed by a comment line.
     fn has_comments(self) -> bool {
         matches!(self, Self::Atoms | Self::Vectors)
     }
 }
 
-/// Reads lines of numbers: a table with or without names, atoms, or scans with counts. Text says its encoding itself, and
-/// [`Dialect`] what separates fields. Lines that begin with `#` or `/` are comments. Of several frames, one is read.
+/// Reads lines of numbers: a table with or without names, atoms, or scans with counts. The encoding is recognised from the text,
+/// and [`Dialect`] decides on the separators. Lines that begin with `#` or `/` are comments. Of several frames, one is read.
 pub(crate) fn read(
     file: &OpenFile,
     options: &PointOptions,
@@ -76,7 +76,7 @@ pub(crate) fn read(
     Ok((points, metadata.cell(cell)))
 }
 
-/// The index of the frame that is asked for.
+/// The index of the requested frame.
 fn choose(path: &Path, count: usize, asked: Option<u64>) -> Result<usize, PointsError> {
     let last = count - 1;
     let several = match asked {
@@ -89,8 +89,8 @@ fn choose(path: &Path, count: usize, asked: Option<u64>) -> Result<usize, Points
     Err(format(path, Reason::choice(Setting::Frame, several, advice)))
 }
 
-/// The frames of lines that begin with a count. In chemistry's XYZ a line of comment follows it; where the numbers of rows
-/// tell that none does, points follow.
+/// The frames of lines that begin with a count. In chemistry's XYZ a comment line follows it; if the numbers of rows show that
+/// there is none, points follow.
 fn counted<'a>(
     path: &Path,
     lines: &Numbered<'a>,
@@ -122,7 +122,7 @@ fn counted<'a>(
     }
 }
 
-/// Whether the comment of a single frame looks like its rows: numbers, and as many of them.
+/// Whether the comment of a single frame looks like its rows, with numbers, and as many of them.
 fn is_row_or_comment(frames: &[Frame<'_>]) -> bool {
     let [Frame { rows, comment: Some(comment) }] = frames else { return false };
     let numbers = |line: &str| {
@@ -148,7 +148,7 @@ fn of_frame(
     let columns = columns.or(stated);
     let has_comment = frame.comment.is_some();
     let atoms = columns.is_none() && layout.has_comments() && are_atoms(&frame.rows, has_comment);
-    // Points right behind their count are laid out as scanners do.
+    // Points directly behind their count are laid out as scanners do.
     let is_scan = layout == TextLayout::Atoms && !has_comment;
     let layout = if is_scan { TextLayout::Scan } else { layout };
     let columns = if atoms {
@@ -166,7 +166,7 @@ fn of_frame(
     Ok((rows(path, &frame.rows, columns, layout, atoms)?, cell))
 }
 
-/// Whether rows begin with elements before x, y and z, or with atomic numbers, if these are looked for.
+/// Whether rows begin with elements before x, y and z, or, with `by_number`, with atomic numbers.
 fn are_atoms(rows: &Numbered<'_>, by_number: bool) -> bool {
     let first = |row: &'_ str| row.split_whitespace().next().map(str::to_owned).unwrap_or_default();
     let is_name = |word: &str| number(word, true).is_none();
@@ -178,7 +178,7 @@ fn are_atoms(rows: &Numbered<'_>, by_number: bool) -> bool {
             && rows.contents().all(|(_, row)| has_four(row) && is_atomic_number(&first(row)))
 }
 
-/// The points of rows.
+/// Converts rows to points.
 fn rows(
     path: &Path,
     lines: &Numbered<'_>,
@@ -211,7 +211,7 @@ fn rows(
     rows.finish()
 }
 
-/// Reads a count, as many points, and as many normals, if any, which are skipped.
+/// Reads a count, as many points, and as many normals, if there are any, which are skipped.
 fn points_then_normals(path: &Path, mut lines: Numbered<'_>) -> Result<Points, PointsError> {
     let first = lines.next_content();
     let count = first.and_then(|(_, line)| count(line)).unwrap_or_default();

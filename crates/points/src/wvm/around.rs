@@ -12,7 +12,7 @@ pub(super) struct Windows {
     nearest: Vec<[i32; 3]>,
 }
 
-/// Numbers of points around a voxel.
+/// The numbers of points around a voxel.
 pub(super) struct Counts {
     earlier: [usize; 4],
     later: [usize; 3],
@@ -55,15 +55,14 @@ impl Windows {
     }
 }
 
-/// Number of binary digits; 0 for 0.
+/// The number of binary digits; 0 for 0.
 fn size(count: usize) -> usize {
     (usize::BITS - count.leading_zeros()) as usize
 }
 
 impl Counts {
-    /// The contexts of a voxel, from the counts and: which blocks nearby have points of this layer, how many
-    /// voxels are left in a block without points so far (0 if it has some), and whether the voxel is at an end
-    /// of the grid.
+    /// The contexts of a voxel. They are computed from the counts, the nearby blocks with points of this layer, the number of
+    /// voxels left in a block without points so far (0 if it has some), and whether the voxel is at an end of the grid.
     pub(super) fn contexts(&self, sides: usize, left: usize, edge: usize) -> [usize; 8] {
         let ([a, b, c, d], [e, f, g]) = (self.earlier, self.later);
         let left = if left == 0 { 0 } else { left.min(63) / 4 + 1 };

@@ -5,21 +5,21 @@ use std::collections::HashMap;
 /// A voxel or a block, by its indices (x, y, z).
 pub(super) type Cell = [u32; 3];
 
-/// Voxels along each side of a block.
+/// The number of voxels along each side of a block.
 pub(super) const SIDE: u32 = 4;
 
-/// Number of blocks in the neighbourhood of a block, with itself in the middle.
+/// The number of blocks in the neighbourhood of a block, including itself in the middle.
 pub(super) const AROUND: usize = 27;
 
-/// Index of the block itself in its neighbourhood.
+/// The index of the block itself in its neighbourhood.
 pub(super) const MIDDLE: usize = AROUND / 2;
 
 /// The size of a grid, in voxels and in blocks.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Shape {
-    /// Voxels along each axis.
+    /// The number of voxels along each axis.
     pub voxels: Cell,
-    /// Blocks along each axis.
+    /// The number of blocks along each axis.
     pub blocks: Cell,
 }
 
@@ -114,7 +114,7 @@ impl Window {
         Self((0..64).map(of).collect())
     }
 
-    /// Number of the voxels around that are in the window of the voxel of a bit.
+    /// The number of voxels around that are in the window of the voxel of a bit.
     pub(super) fn count(&self, around: &[u64; AROUND], bit: u32) -> usize {
         let pairs = self.0[bit as usize].iter().zip(around);
         pairs.map(|(window, voxels)| (window & voxels).count_ones() as usize).sum()

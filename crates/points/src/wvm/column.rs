@@ -1,4 +1,4 @@
-//! Doubles bit for bit, as byte planes: the first bytes of all, then the second ones, and so on, deflated.
+//! Stores doubles bit for bit, as byte planes: the first bytes of all, then the second ones, and so on, deflated.
 
 use std::io::{Read, Write};
 
@@ -16,7 +16,7 @@ pub(super) fn pack(numbers: &[f64]) -> std::io::Result<Vec<u8>> {
     out.finish()
 }
 
-/// Unpacks `count` numbers; `None` if the bytes hold fewer or more.
+/// Unpacks `count` numbers; `None` if the bytes contain fewer or more.
 pub(super) fn unpack(bytes: &[u8], count: usize) -> Option<Vec<f64>> {
     let mut planes = Vec::new();
     let length = count.checked_mul(8)?;

@@ -10,10 +10,10 @@ use walpha_volume::{Coordinates, Dims, Frame, GrayRange, Reason};
 /// The version of the format.
 const VERSION: u8 = 1;
 
-/// Maximum number of points per byte of a layer, so that a reader's memory is proportional to the file.
+/// The maximum number of points per byte of a layer, so that a reader's memory is proportional to the file.
 pub(super) const POINTS_PER_BYTE: u64 = 64;
 
-/// Size of a checksum, in bytes.
+/// The size of a checksum in bytes.
 pub(super) const CHECKSUM: usize = 4;
 
 /// The header of a file.
@@ -29,11 +29,11 @@ pub(super) struct Header {
     pub layers: Vec<Layer>,
 }
 
-/// How values are kept.
+/// The encoding of values.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Values {
     None,
-    /// As `base` plus whole multiples of `step`.
+    /// The values are `base` plus whole multiples of `step`.
     Steps {
         base: f64,
         step: f64,
@@ -42,10 +42,10 @@ pub(super) enum Values {
     Exact,
 }
 
-/// How weights are kept.
+/// The encoding of weights.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Weights {
-    /// One for all.
+    /// One weight for all points.
     Common(f64),
     /// Bit for bit.
     Exact,
@@ -64,13 +64,13 @@ impl Layer {
         Ok(Self { count, bytes: [fields.whole()?, fields.whole()?, fields.whole()?] })
     }
 
-    /// Bytes of all its parts; `None` on overflow.
+    /// The size in bytes of all parts of the layer; `None` on overflow.
     pub(super) fn length(&self) -> Option<u64> {
         self.bytes.iter().try_fold(0u64, |sum, &part| sum.checked_add(part))
     }
 }
 
-// The bits of the flags.
+// These are the bits of the flags.
 const GRID: u8 = 1;
 const FRAME: u8 = 2;
 const WORLD: u8 = 4;

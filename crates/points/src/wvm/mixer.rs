@@ -11,21 +11,21 @@ use super::coder::{Coder, WHOLE};
 /// Contexts are numbers below this.
 pub(super) const CONTEXTS: usize = 1 << 16;
 
-/// Minimum distance of a probability from 0 and from 1, in multiples of 2⁻¹⁶.
+/// The minimum distance of a probability from 0 and from 1, in multiples of 2⁻¹⁶.
 const LEAST: u32 = 16;
 
 /// Predicts and codes bits under several contexts.
 pub(super) struct Mixer {
-    /// For each kind of context one slot per context: the balance of its bits, from −1 (only 0 so far) to 1
-    /// (only 1), and their number.
+    /// For each kind of context, one slot per context: the balance of its bits, from −1 (only 0 so far) to 1 (only 1), and their
+    /// number.
     slots: Vec<[f64; 2]>,
-    /// One weight per input, for each set of weights.
+    /// For each set of weights, one weight per input.
     weights: Vec<f64>,
     inputs: Vec<f64>,
     kinds: usize,
-    /// Maximum number of bits that a slot averages over.
+    /// The maximum number of bits that a slot averages over.
     memory: f64,
-    /// Learning rate of the weights.
+    /// The learning rate of the weights.
     rate: f64,
 }
 

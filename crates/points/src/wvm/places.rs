@@ -7,7 +7,7 @@ use super::blocks::{Blocks, Cell, MIDDLE, SIDE, Shape, bit_of};
 use super::coder::Coder;
 use super::mixer::Mixer;
 
-/// Blocks along each side of a superblock.
+/// The number of blocks along each side of a superblock.
 const SUPER: u32 = 8;
 
 /// Codes occupied voxels layer by layer: the superblocks that have points, then their blocks, then the voxels
@@ -182,7 +182,7 @@ impl Places {
         (voxels.len() == count).then_some(voxels)
     }
 
-    /// Which of the three face neighbours of a block that are nearest to a voxel have points of this layer.
+    /// Determines which of the three face neighbours of a block that are nearest to a voxel have points of this layer.
     fn sides(&self, flagged: &HashSet<u32>, block: Cell, voxel: Cell) -> usize {
         let mut sides = 0;
         for k in 0..3 {

@@ -7,16 +7,16 @@ use std::collections::HashMap;
 
 use super::blocks::{Cell, SIDE, Shape, bit_of, place_in_block, squared, steps};
 
-/// Maximum number of known values in a prediction.
+/// The maximum number of known values in a prediction.
 const NEIGHBOURS: usize = 14;
 
-/// How many of these are in the first estimate.
+/// The number of these in the first estimate.
 const NEAR: usize = 8;
 
-/// Maximum number of rings of blocks that are searched for neighbours.
+/// The maximum number of rings of blocks that are searched for neighbours.
 const RINGS: i32 = 3;
 
-/// Values known so far, by block: the bit of each voxel, and its value.
+/// The values known so far, by block: the bit of each voxel, and its value.
 #[derive(Debug, Default)]
 pub(super) struct Known(HashMap<u32, Vec<(u8, u32)>>);
 
@@ -32,9 +32,9 @@ struct Neighbour {
 pub(super) struct Guess {
     /// The expected value.
     pub value: f64,
-    /// Standard deviation of the near neighbours, weighted like their mean.
+    /// The standard deviation of the near neighbours, weighted like their mean.
     pub spread: f64,
-    /// Squared distance of the nearest known value.
+    /// The squared distance of the nearest known value.
     pub squared: f64,
     /// Other estimates: the nearest value, the second nearest, a mean of all neighbours, and a plane.
     pub others: [f64; 4],
@@ -47,8 +47,8 @@ impl Known {
         self.0.entry(block).or_default().push((bit_of(voxel) as u8, value));
     }
 
-    /// The nearest known values, from the blocks around and from further rings of blocks until there are
-    /// enough. The nearest first, ties in the order of z, then y, then x.
+    /// The nearest known values, from the blocks around and from further rings of blocks until there are enough. The nearest come
+    /// first, with ties in the order of z, then y, then x.
     fn near(&self, shape: &Shape, voxel: Cell) -> Vec<Neighbour> {
         let block = voxel.map(|v| v / SIDE);
         let mut found = Vec::new();
@@ -112,8 +112,8 @@ fn average(
     sum / total
 }
 
-/// Height above the mean, at the voxel, of a plane fitted to the neighbours: least squares with weights 1/d²,
-/// regularised by 1 for slopes and by 0.05 for the height, solved by elimination in the order of the columns.
+/// The height above the mean, at the voxel, of a plane fitted to the neighbours: least squares with weights 1/d², regularised by
+/// 1 for slopes and by 0.05 for the height, solved by elimination in the order of the columns.
 fn plane(near: &[Neighbour], mean: f64) -> f64 {
     let mut rows = [[0.0; 5]; 4];
     for n in near {

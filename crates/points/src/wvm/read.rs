@@ -1,4 +1,4 @@
-//! Reading of `.wvm`.
+//! Reads `.wvm`.
 
 use std::io::Read;
 
@@ -15,7 +15,7 @@ use walpha_volume::{OpenFile, Reason, io_error};
 
 /// Reads points without the last `level` layers, and their metadata.
 ///
-/// Memory is proportional to the size of the file, whatever its header claims: a byte holds at most 64 points.
+/// Memory is proportional to the size of the file, whatever its header claims: a byte contains at most 64 points.
 pub(crate) fn read(file: &OpenFile, level: u32) -> Result<(Points, ModelMetadata), PointsError> {
     let (path, length) = (file.path(), file.length());
     let fail = |reason: Reason| format(path, reason);
@@ -107,7 +107,7 @@ impl<'a> Model<'a> {
 
     /// Checks that there is memory for `count` more points.
     fn reserve(&self, count: usize) -> Result<(), PointsError> {
-        /// Memory for a point, while it is read and sorted.
+        /// The memory for a point in bytes, while it is read and sorted.
         const BYTES: usize = 128;
         let all = self.positions.len().saturating_add(count);
         Ok(try_with_capacity::<[u8; BYTES]>(all, || format!("a model of {all} points"))

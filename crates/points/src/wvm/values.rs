@@ -1,4 +1,4 @@
-//! Whole numbers at the voxels of points, coded as differences from a prediction.
+//! Codes whole numbers at the voxels of points, as differences from a prediction.
 
 use super::blocks::{Blocks, Cell, SIDE, Shape, Window, bit_of, squared};
 use super::coder::Coder;
@@ -17,12 +17,12 @@ pub(super) struct Values {
     density: Window,
 }
 
-/// What the contexts of all bits of one value share.
+/// The data that the contexts of all bits of one value share.
 struct ValueContext {
     /// The expected value, rounded, and the quarter of the rounding interval that it was in.
     expected: u64,
     quarter: usize,
-    /// A logarithm of the spread, 0 to 23.
+    /// A logarithm of the spread, from 0 to 23.
     spread: usize,
     level: usize,
     distance: usize,
@@ -98,7 +98,7 @@ impl Values {
             }
             counted += 1;
             if counted > COUNTED {
-                // The part beyond the unary code.
+                // This is the part beyond the unary code.
                 let rest = size.saturating_sub(counted);
                 counted += self.large.number(coder, context.spread, rest)?;
                 break;
@@ -110,7 +110,7 @@ impl Values {
     }
 }
 
-/// Twice the binary logarithm, rounded down, plus 4, from 0 to 23.
+/// Twice the binary logarithm, rounded down, plus 4, limited to 0 to 23.
 fn logarithm(number: f64) -> usize {
     let exponent = (number.to_bits() >> 52) as i64 - 1023;
     let mantissa = f64::from_bits((number.to_bits() & ((1 << 52) - 1)) | (1023 << 52));

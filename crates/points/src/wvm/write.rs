@@ -1,4 +1,4 @@
-//! Writing of `.wvm`.
+//! Writes `.wvm`.
 
 use std::io::{self, Write};
 
@@ -12,12 +12,12 @@ use crate::{ModelMetadata, Packing, SampleGrid, WeightedPoints};
 
 /// Writes points and their metadata.
 ///
-/// Positions are stored as voxels if each lies exactly on a sample of the grid, or of a grid of whole numbers,
-/// and no two on the same; the points are then read in the order of the samples. Otherwise positions are
-/// stored as doubles, in their order and in one layer.
+/// Positions are stored as voxels if each lies exactly on a sample of the grid, or of a grid of whole numbers, and no two on the
+/// same sample; the points are then read in the order of the samples. Otherwise positions are stored as doubles, in their order
+/// and in one layer.
 ///
 /// # Errors
-/// Whatever `out` returns.
+/// Errors of `out`.
 pub(crate) fn write(
     points: &WeightedPoints,
     metadata: &ModelMetadata,
@@ -107,7 +107,7 @@ struct Steps {
 }
 
 impl Steps {
-    /// The multiples for values within an error, or exact if it is 0; `None` if a value has none.
+    /// The multiples that represent values within an error, or exactly if it is 0; `None` if a value cannot be represented.
     fn of(values: &[f64], error: f64) -> Option<Self> {
         let base = values.iter().copied().reduce(f64::min)?;
         let step = if error > 0.0 { 2.0 * error } else { common_step(values, base)? };
@@ -163,7 +163,7 @@ impl Coders {
 }
 
 impl Content<'_> {
-    /// The weight of all points, if they have the same.
+    /// The weight of all points, if it is the same for all.
     fn common_weight(&self) -> Option<f64> {
         let weights = self.points.weights();
         let first = weights.first().copied().unwrap_or_default();

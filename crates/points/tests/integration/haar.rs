@@ -170,7 +170,7 @@ fn whole_product(f: &Array3<f32>, at: [usize; 3], decomposition: Decomposition) 
     f.indexed_iter().map(|((z, y, x), &v)| fx[x] * fy[y] * fz[z] * v as i128).sum()
 }
 
-/// Of any size: what is 0 in exact numbers is 0, and nothing else is.
+/// For data of any size, exactly those coefficients are 0 that are 0 in exact numbers.
 #[test]
 fn coefficients_are_zero_just_where_they_are() {
     for (seed, dims) in SIZES.into_iter().chain([[13, 17, 11], [20, 9, 15]]).enumerate() {
@@ -202,7 +202,7 @@ fn an_epsilon_at_a_bound_is_within() {
             if values[order[stay - 1]] == 0.0 {
                 continue;
             }
-            // Some ulps beside the exact sum, as a user's number may be.
+            // Values some ulps away from the exact sum, which a user may give.
             for epsilon in [tail.sqrt(), tail.sqrt() * (1.0 - 1e-15), tail.sqrt() * (1.0 + 1e-15)] {
                 let truncation =
                     coefficients.clone().truncate(Tolerance::Epsilon(epsilon)).unwrap();
@@ -224,7 +224,7 @@ fn mirrored_samples_stay_equal() {
         let mut coefficients = forward(volume.samples(), options.decomposition);
         let (smoothed, truncation) = smooth(&volume, &options).unwrap();
         coefficients.truncate(options.tolerance).unwrap();
-        // Where the cut parts a pair of equal coefficients, the image is another.
+        // If the cut separates a pair of equal coefficients, the image is not symmetric.
         let kept = coefficients.values();
         let least = kept.iter().filter(|c| **c != 0.0).fold(f64::INFINITY, |m, c| m.min(c.abs()));
         let all = forward(volume.samples(), options.decomposition);
@@ -244,8 +244,8 @@ pub fn by_magnitude(values: &[f64]) -> Vec<usize> {
     order
 }
 
-/// How many stay: the fewest with a tail of squares of at most `budget`, a whole number of
-/// 1/(2³·3²·5²·…) or so: far coarser than the rounding that is allowed for.
+/// The number of coefficients that stay: the smallest number with a tail of squares of at most `budget`, a multiple of
+/// approximately 1/(2³·3²·5²·…), far coarser than the rounding that is allowed for.
 fn fewest(values: &[f64], order: &[usize], budget: f64) -> usize {
     let mut tail = 0.0;
     let fits = |&&i: &&usize| {

@@ -4,14 +4,14 @@ use super::{Builder, Mesh};
 use crate::kernel::Screen;
 use crate::{Cell, Triangulation, TriangulationError, filled};
 
-/// Side of [`Cavity::table`]: the largest number of distinct vertices of the boundary of a cavity, the infinite vertex
-/// included, whose cells are joined by table. A power of two.
+/// Side of [`Cavity::table`]: the largest number of distinct vertices of the boundary of a cavity, including the infinite vertex,
+/// whose cells are joined by table. A power of two.
 const TABLE_SIDE: usize = 64;
 
 /// Working memory of an insertion, kept so that the next one need not allocate.
 #[derive(Debug)]
 pub(super) struct Cavity {
-    /// The cells in conflict with the point. Empty once their slots belong to new cells.
+    /// The cells in conflict with the point. Empty after their slots are given to new cells.
     conflicts: Vec<u32>,
     /// The slots of the new cells, one for each facet of the boundary.
     new_cells: Vec<u32>,
@@ -19,26 +19,26 @@ pub(super) struct Cavity {
     boundary: Vec<Facet>,
     /// Number of facets of the boundary.
     facets: usize,
-    /// Vertices of the boundary have local numbers 0, 1, … in the order in which they are met. This is, by
-    /// vertex, `base` plus the local number; less than `base` for vertices not met in this insertion.
+    /// Vertices of the boundary have local numbers 0, 1, … in the order in which they are met. For each vertex this is `base`
+    /// plus the local number; less than `base` for vertices that were not met in this insertion.
     local_numbers: Vec<u32>,
     base: u32,
     /// Number of distinct vertices of the boundary.
     vertices: u32,
-    /// By the local numbers of two vertices x, y: 4·cell + corner of the new facet with vertices v, x, y, where v
-    /// is the new point.
+    /// For the local numbers of two vertices x, y: 4·cell + corner of the new facet with vertices v, x, y, where v is the new
+    /// point.
     table: Box<[u32; TABLE_SIDE * TABLE_SIDE]>,
-    /// Stamp of cells that this insertion visited and that are not in conflict; `stamp + 1` is that of cells in
-    /// conflict. All older stamps are smaller.
+    /// Stamp of cells that this insertion visited and that are not in conflict; `stamp + 1` is the stamp of cells in conflict.
+    /// All older stamps are smaller.
     stamp: u32,
 }
 
 /// A boundary facet of the cavity.
 #[derive(Clone, Copy, Debug, Default)]
 struct Facet {
-    /// Its vertices; with the new point as fourth corner they are a positively oriented cell.
+    /// Its vertices; with the new point as fourth corner they form a positively oriented cell.
     corners: [u32; 3],
-    /// The same facet as 4·cell + corner of the cell outside the cavity.
+    /// The facet as 4·cell + corner of the cell outside the cavity.
     outside: u32,
 }
 
@@ -46,7 +46,7 @@ struct Facet {
 const APEX: u32 = 3;
 
 impl Cavity {
-    /// For vertices with numbers below `below`.
+    /// Creates the work space for vertices with numbers below `below`.
     pub(super) fn new(below: usize) -> Result<Self, TriangulationError> {
         let local_numbers = filled(below, 0)?;
         Ok(Self {
@@ -137,7 +137,7 @@ impl Builder {
     /// Assigns slots to the new cells: first those of the cells in conflict, then free ones, then new ones.
     fn assign_slots(&mut self) -> Result<(), TriangulationError> {
         let wanted = self.cavity.facets;
-        // Exchanged rather than copied: what the last insertion made is no longer needed.
+        // Exchanged rather than copied, because the result of the last insertion is no longer needed.
         std::mem::swap(&mut self.cavity.conflicts, &mut self.cavity.new_cells);
         self.cavity.conflicts.clear();
         let slots = &mut self.cavity.new_cells;
@@ -186,8 +186,8 @@ impl Builder {
     }
 }
 
-/// The entry of an edge of the boundary, by the local numbers of its vertices. With too many vertices for the table
-/// it is within bounds all the same; what is entered then is not used.
+/// The entry of an edge of the boundary, by the local numbers of its vertices. If there are too many vertices for the table, the
+/// entry is still within bounds, but is not used.
 #[inline(always)]
 fn table_index(x: u32, y: u32) -> usize {
     (x as usize * TABLE_SIDE + y as usize) % (TABLE_SIDE * TABLE_SIDE)
@@ -226,8 +226,8 @@ impl Cavity {
         }
     }
 
-    /// The same for more vertices than the table holds: sorting by edge brings the two facets at each edge
-    /// together.
+    /// Makes new cells the neighbours of each other, for more vertices than the table holds: sorting by edge brings the two
+    /// facets at each edge together.
     fn join_by_sorting(&mut self, mesh: &mut Mesh) {
         let mut edges = Vec::with_capacity(3 * self.facets);
         for (facet, &new) in self.boundary[..self.facets].iter().zip(&self.new_cells) {

@@ -9,13 +9,12 @@ use crate::kernel::{Predicates, Screen};
 use crate::order::{position_bits, rounds};
 use crate::{Cell, DELETED, Sites, TriangulationError, order};
 
-/// The regular triangulation of a set of points that grows by batches, and from which points may be removed.
+/// The regular triangulation of a set of points that grows in batches, and from which points may be removed.
 ///
-/// Ties are broken as in [`Triangulation`](crate::Triangulation), so the cells depend on the points in the
-/// triangulation alone, and not on the order of insertions and removals. Points are numbered from
-/// [`Growing::FIRST`] on in the order in which they are registered; a registered point need not be a vertex. The
-/// infinite vertex is vertex 0. Without weights, or where all are equal, every point that is inserted becomes a vertex and stays
-/// one; otherwise [`Growing::settle`] finds out which ones are.
+/// Ties are broken as in [`Triangulation`](crate::Triangulation), so the cells depend only on the points in the triangulation,
+/// and not on the order of insertions and removals. Points are numbered from [`Growing::FIRST`] on in the order in which they are
+/// registered; a registered point need not be a vertex. The infinite vertex is vertex 0. Without weights, or if all are equal,
+/// every inserted point becomes a vertex and stays one; otherwise [`Growing::settle`] finds the vertices.
 #[derive(Debug)]
 pub struct Growing {
     positions: Vec<[f64; 3]>,
@@ -23,10 +22,10 @@ pub struct Growing {
     state: State,
 }
 
-/// What the insertion of a point would change; see [`Growing::insertion`].
+/// The changes that the insertion of a point would make; see [`Growing::insertion`].
 #[derive(Debug)]
 pub struct Insertion {
-    /// The cells in conflict with the point, infinite ones included.
+    /// The cells in conflict with the point, including infinite ones.
     pub removed: Vec<u32>,
     /// The finite cells that would replace them.
     pub cells: Vec<[u32; 4]>,
@@ -44,7 +43,7 @@ pub(super) struct State {
     new_cells: Vec<u32>,
 }
 
-/// The infinite vertex. Its number precedes those of the points, whose number is not known in advance.
+/// The infinite vertex. Its number precedes those of the points, because their number is not known in advance.
 pub(super) const AT_INFINITY: u32 = 0;
 /// Stands for the absence of a cell.
 pub(super) const NO_CELL: u32 = u32::MAX;
@@ -56,7 +55,7 @@ impl Growing {
     /// The Delaunay triangulation of points.
     ///
     /// # Errors
-    /// Points that are no [`Sites`] or span no volume; out of memory.
+    /// Points that are not valid [`Sites`] or span no volume; out of memory.
     pub fn new(positions: &[[f64; 3]]) -> Result<Self, TriangulationError> {
         let weights = vec![0.0; positions.len()];
         Sites::new(positions, &weights)?;
@@ -66,8 +65,7 @@ impl Growing {
         Ok(growing)
     }
 
-    /// Points, of which there is at least one, that are registered and not yet inserted: [`Growing::start_again`] comes
-    /// before all else.
+    /// Registers points, at least one, without inserting them: [`Growing::start_again`] must be called first.
     ///
     /// # Errors
     /// Out of memory.
@@ -87,7 +85,7 @@ impl Growing {
     /// Triangulates these registered points alone.
     ///
     /// # Errors
-    /// Points that span no volume: nothing has changed then. Too many cells; out of memory.
+    /// Points that span no volume, in which case nothing changes. Too many cells; out of memory.
     pub fn start_again(&mut self, points: &[u32]) -> Result<(), TriangulationError> {
         let Self { positions, weights, state } = self;
         let predicates = Predicates::new(positions, weights);
@@ -145,8 +143,7 @@ impl Growing {
         Ok(removed)
     }
 
-    /// Finds out which points are vertices, after an insertion that may have hidden some. Hidden points can be inserted
-    /// again.
+    /// Determines the vertices after an insertion that may have hidden some. Hidden points can be inserted again.
     pub fn settle(&mut self) {
         let Self { positions, state, .. } = self;
         state.cell_at.fill(NO_CELL);
@@ -174,7 +171,7 @@ impl Growing {
         Screen::with_infinite(predicates, AT_INFINITY)
     }
 
-    /// What the removal of a vertex would change; `None` where all others span no volume.
+    /// The changes that the removal of a vertex would make; `None` if all others span no volume.
     ///
     /// # Errors
     /// Out of memory.
@@ -187,7 +184,7 @@ impl Growing {
         self.state.hole(screen, v, workspace)
     }
 
-    /// What the insertion of a registered point would change, which is not a vertex and lies in the cell `cell`.
+    /// The changes that the insertion of a registered point would make. It must not be a vertex, and must lie in the cell `cell`.
     pub fn insertion(&self, screen: &Screen<'_>, v: u32, cell: u32) -> Insertion {
         let mesh = &self.state.builder.mesh;
         let (mut removed, mut kept, mut cells) = (vec![cell], Vec::new(), Vec::new());
@@ -219,7 +216,7 @@ impl Growing {
         self.state.cell_at[v as usize] != NO_CELL
     }
 
-    /// All cells, infinite and deleted ones included; see [`Self::is_cell`].
+    /// All cells, including infinite and deleted ones; see [`Self::is_cell`].
     pub fn cells(&self) -> &[Cell] {
         &self.state.builder.mesh.cells
     }
@@ -245,7 +242,7 @@ impl Growing {
         &self.positions
     }
 
-    /// The weights of registered points, as their positions.
+    /// The weights of registered points, indexed like their positions.
     pub fn weights(&self) -> &[f64] {
         &self.weights
     }

@@ -36,9 +36,9 @@ pub struct Cell {
 /// Insertions between two reports of progress: some milliseconds.
 const REPORT_EVERY: usize = 4096;
 
-/// The regular triangulation of points, which satisfy the conditions of [`Sites`](super::Sites) and follow a
-/// space-filling curve. `inserted` is called now and then with the number of points inserted since. Expected
-/// O(n log n) for evenly distributed points.
+/// The regular triangulation of points, which satisfy the conditions of [`Sites`](super::Sites) and follow a space-filling curve.
+/// `inserted` is called from time to time with the number of points inserted since the last call. Expected O(n log n) for evenly
+/// distributed points.
 ///
 /// # Errors
 /// Points that span no volume; too many cells; out of memory; what `inserted` returns.
@@ -51,7 +51,7 @@ pub fn insert_all(
     CellArrays::of_cells(cells, at_infinity)
 }
 
-/// The same, with cells in the order in which they were made. The corner 0 of free slots is [`DELETED`].
+/// Like [`insert_all`], with cells in the order of their creation. The corner 0 of free slots is [`DELETED`].
 pub(crate) fn insert_cells(
     positions: &[[f64; 3]],
     weights: &[f64],
@@ -73,7 +73,7 @@ pub(crate) fn insert_cells(
     Ok(builder.finish())
 }
 
-/// A triangulation whose cells are in the slots that they were made in.
+/// A triangulation whose cells are in the slots of their creation.
 pub(crate) struct Built {
     pub cells: Vec<Cell>,
     /// Slots of deleted cells.
@@ -84,7 +84,7 @@ pub(crate) struct Built {
 /// Memory is reserved for this many cells per point, and 1/16 more. A Poisson–Delaunay triangulation has
 /// about 6.8; some more exist during construction.
 const CELLS_PER_POINT: usize = 7;
-/// At least this many cells are reserved.
+/// The minimum number of cells that are reserved.
 const MIN_CELLS: usize = 64;
 /// Memory of a cell: itself and its visit stamp.
 const CELL_BYTES: usize = size_of::<Cell>() + size_of::<u32>();
@@ -100,14 +100,14 @@ struct Builder {
     free_slots: Vec<u32>,
     /// The corners of the cell that construction started from.
     first_cell: [u32; 4],
-    /// Where the next walk starts: a cell at the last vertex.
+    /// The start of the next walk: a cell at the last vertex.
     hint: u32,
     cavity: Cavity,
 }
 
 impl Builder {
-    /// An empty triangulation with capacity for `points` points. All vertex numbers, the infinite vertex's included, are below
-    /// `below`.
+    /// An empty triangulation with capacity for `points` points. All vertex numbers, including that of the infinite vertex, are
+    /// below `below`.
     fn with_capacity(
         points: usize,
         below: usize,
@@ -126,8 +126,8 @@ impl Builder {
         Ok(builder)
     }
 
-    /// Starts with four of some points that span a volume: one cell and the four infinite cells around it. O(n)
-    /// where the first points span none.
+    /// Starts with four of some points that span a volume: one cell and the four infinite cells around it. O(n) if the first
+    /// points span none.
     fn start(
         &mut self,
         screen: &Screen<'_>,
@@ -236,8 +236,8 @@ impl Mesh {
         quick.unwrap_or_else(|| self.conflicts_exactly(screen, cell, v))
     }
 
-    /// The exact test. The sphere of an infinite cell is the open half-space beyond its facet of the hull; in the
-    /// plane of that facet the sphere of the finite cell behind it decides.
+    /// The exact test. The sphere of an infinite cell is the open half-space beyond its facet of the hull; in the plane of that
+    /// facet, the sphere of the finite cell behind it decides.
     #[inline(never)]
     fn conflicts_exactly(&self, screen: &Screen<'_>, cell: u32, v: u32) -> bool {
         let mut corners = self.cells[cell as usize].corners;
@@ -257,7 +257,7 @@ impl Mesh {
         }
     }
 
-    /// Which corner of a cell is the infinite vertex; `None` for finite cells.
+    /// The corner of a cell that is the infinite vertex; `None` for finite cells.
     #[inline(always)]
     fn infinite_corner(&self, cell: u32) -> Option<usize> {
         self.cells[cell as usize].corners.iter().position(|&v| v == self.at_infinity)

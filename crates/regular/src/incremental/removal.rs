@@ -22,10 +22,10 @@ pub struct Hole {
 pub struct Workspace {
     /// The triangulation of the neighbours.
     builder: Builder,
-    /// All facets of its cells, sorted: the vertices, in the orientation of [`facets`] with the smallest first, and
-    /// 4·cell + corner.
+    /// All facets of its cells, sorted: the vertices, in the orientation of [`facets`] with the smallest first, and 4·cell +
+    /// corner.
     facets: Vec<([u32; 3], u32)>,
-    /// By 4·cell + corner: for a facet of the boundary, 4·cell + corner outside the hole; else [`NO_CELL`].
+    /// For each 4·cell + corner: for a facet of the boundary, 4·cell + corner outside the hole; otherwise [`NO_CELL`].
     outside: Vec<u32>,
     /// The index of each cell in the filling, or [`NO_CELL`].
     index_of: Vec<u32>,
@@ -36,7 +36,7 @@ pub struct Workspace {
 const TYPICAL_DEGREE: usize = 32;
 
 impl Workspace {
-    /// For vertices with numbers below `below`.
+    /// Creates the work space for vertices with numbers below `below`.
     ///
     /// # Errors
     /// Out of memory.
@@ -102,7 +102,7 @@ impl Workspace {
         Some(Hole { star, filling, boundary })
     }
 
-    /// The index of a cell in the filling; appends it where it has none.
+    /// The index of a cell in the filling; appends the cell if it has none.
     fn add(&mut self, cell: u32, inside: &mut Vec<u32>) -> u32 {
         let index = &mut self.index_of[cell as usize];
         if *index == NO_CELL {
@@ -114,7 +114,7 @@ impl Workspace {
 }
 
 impl State {
-    /// The star of a vertex and what would replace it; `None` if all other vertices span no volume.
+    /// The star of a vertex and the cells that would replace it; `None` if all other vertices span no volume.
     ///
     /// The orthogonal sphere of a cell that replaces part of the star is in conflict with no other vertex, in particular no neighbour of
     /// the vertex. So it is a cell of the triangulation of the neighbours, of which the part within the boundary
@@ -149,8 +149,8 @@ impl State {
         self.builder.mesh.cells[side as usize / 4].corners[side as usize % 4]
     }
 
-    /// The star of a vertex: its cells, and of each the facet opposite the vertex (its link) with 4·cell + corner
-    /// on the other side.
+    /// The star of a vertex: its cells, and for each the facet opposite the vertex (its link) with 4·cell + corner on the other
+    /// side.
     fn star(&self, v: u32) -> (Vec<u32>, Vec<([u32; 3], u32)>) {
         let (mut star, mut boundary) = (vec![self.cell_at[v as usize]], Vec::new());
         while let Some(&cell) = star.get(boundary.len()) {

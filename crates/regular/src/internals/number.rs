@@ -1,9 +1,9 @@
-//! Arithmetic of formulas that are written once, for doubles and for integers of any length; and the mantissa and
-//! exponent of doubles.
+//! Arithmetic of formulas that are written once for doubles and for integers of any length, and the mantissa and exponent of
+//! doubles.
 
 use dashu_int::IBig;
 
-/// A number type of formulas. Operations are exact on integers, and on doubles where none rounds.
+/// A number type of formulas. Operations are exact on integers, and on doubles if none rounds.
 pub trait Number {
     /// The sum.
     #[must_use]
@@ -51,7 +51,7 @@ impl<T: Number> Scale<T> for T {
     }
 }
 
-/// Integers that doubles are converted to: `i128` where 128 bits suffice, else [`IBig`].
+/// Integers that doubles are converted to: `i128` if 128 bits suffice, otherwise [`IBig`].
 pub trait Integer: Number + Ord {
     /// 0.
     const ZERO: Self;

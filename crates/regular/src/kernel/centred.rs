@@ -1,5 +1,5 @@
-//! A squared radius from an approximate centre: as exact as [`Twofold`](super::twofold::Twofold) numbers, for a third
-//! of their operations.
+//! A squared radius from an approximate centre: as exact as [`Twofold`](super::twofold::Twofold) numbers, with a third of their
+//! operations.
 //!
 //! Let p be the first vertex of a simplex, aᵢ the rays to the others and tᵢ their powers. The centre p + c has
 //! 2c·aᵢ = tᵢ and c in the span of the rays, and the squared radius is R = |c|² − ω(p). For any c̃ and μᵢ, let
@@ -11,9 +11,9 @@
 //!
 //! R = |c̃|² − 2δ·c − |δ|² − ω(p) = |c̃|² − ω(p) + Σ μᵢrᵢ − 2δ·s + |δ|².
 //!
-//! Doubles give c̃ and μ so well that the last two terms, which have two small factors each, are far below half a unit
-//! in the last place of R. The others are sums of products, in which what is rounded off is added up, too. δ is bounded
-//! by its equations, so that no assumption on the shape of the simplex is needed; flat ones have large bounds.
+//! Doubles give c̃ and μ so well that the last two terms, which have two small factors each, are far below half a unit in the
+//! last place of R. The others are sums of products, in which the rounded-off parts are added, too. δ is bounded by its
+//! equations, so no assumption about the shape of the simplex is needed; flat ones have large bounds.
 
 use super::formulas::Ray;
 use super::size::Size;
@@ -21,7 +21,7 @@ use super::twofold::Twofold;
 use super::{ROUNDING, Site};
 use crate::number::{cross, dot};
 
-/// An approximate centre, relative to the first vertex, the factors μ of the rays, and what bounds its distance from
+/// An approximate centre, relative to the first vertex, the factors μ of the rays, and the numbers that bound its distance from
 /// the centre: Σ |rᵢ| times `per_residual`, and |s| if `in_plane`.
 struct Centre<const M: usize> {
     at: [f64; 3],
@@ -60,8 +60,8 @@ fn of_facet(a: &Ray<f64>, b: &Ray<f64>, size: Size) -> Option<Centre<2>> {
     let twice = 0.5 / gram;
     let factors = [(a.power * bb - b.power * ab) * twice, (b.power * aa - a.power * ab) * twice];
     let at = [0, 1, 2].map(|k| factors[0] * a.vector[k] + factors[1] * b.vector[k]);
-    // In the plane, δ = −½ Σ rᵢaᵢ* in the dual basis: |a*| = |b| / |a×b|, and |b| ≤ √3 times the size. Across the
-    // plane it is that of s.
+    // In the plane, δ = −½ Σ rᵢaᵢ* in the dual basis: |a*| = |b| / |a×b|, and |b| ≤ √3 times the size. Across the plane, δ is
+    // that of s.
     let per_residual = 0.9 * size.length / least.sqrt();
     Some(Centre { at, factors, per_residual, in_plane: true })
 }
@@ -97,12 +97,12 @@ fn around<const M: usize>(
 ) -> Option<f64> {
     let Centre { at, factors, per_residual, in_plane } = centre;
     let far = at.iter().fold(0f64, |most, x| most.max(x.abs()));
-    // What underflows is far below the errors of what does not; NaN is refused, too.
+    // Terms that underflow are far below the errors of the others; NaN is refused, too.
     if !(far > Size::SHORTEST && far < Size::LONGEST) {
         return None;
     }
     let twice = at.map(|x| 2.0 * x);
-    // Of one residual; the magnitudes of its terms are aₖ(aₖ + 2c̃ₖ) and the weights, which are summed exactly.
+    // The error of one residual; the magnitudes of its terms are aₖ(aₖ + 2c̃ₖ) and the weights, which are summed exactly.
     let off = Twofold::ROUNDING * (size.power + 6.0 * size.length * far);
     let (mut missed, mut correction, mut wrong) = (0.0, 0.0, 0.0);
     let mut sum_of_factors = 0.0;
@@ -143,10 +143,9 @@ fn around<const M: usize>(
     Twofold::sum(square.high, square.low + correction).nearest(error).map(|radius| radius + 0.0)
 }
 
-/// A sum of doubles and products, in which what is rounded off is added up, too (Ogita, Rump and Oishi 2005,
-/// doi:10.1137/030601818). With u = 2⁻⁵³, the error of fewer than ten terms is below 2⁻⁹⁷ times the sum of their
-/// magnitudes: the parts rounded off have magnitudes of at most 3u times that sum each, and adding them up rounds by
-/// u times theirs.
+/// A sum of doubles and products, in which the rounded-off parts are added, too (Ogita, Rump and Oishi 2005,
+/// doi:10.1137/030601818). With u = 2⁻⁵³, the error of fewer than ten terms is below 2⁻⁹⁷ times the sum of their magnitudes: the
+/// rounded-off parts have magnitudes of at most 3u times that sum each, and adding them rounds by u times their magnitudes.
 struct Compensated {
     high: f64,
     low: f64,

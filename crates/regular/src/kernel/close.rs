@@ -1,9 +1,9 @@
-//! Signs that doubles leave open, decided without integers where possible: by coordinates that are equal, as on grids
-//! along the axes, and in numbers with twice the digits.
+//! Signs that doubles leave undecided, decided without integers if possible: by coordinates that are equal, as on grids along the
+//! axes, and in numbers with twice the digits.
 //!
-//! A grid whose spacing is not a double, or which is turned, has rounded coordinates. They are on no lattice of few
-//! bits, and most of what is a tie on the grid itself is nearly one: the difference is about one rounding, and far
-//! larger than those of twice the digits. What is a tie all the same has equal coordinates, as the corners of a box have.
+//! A grid whose spacing is not a double, or which is turned, has rounded coordinates. They are on no lattice of few bits, and
+//! most ties on the grid itself become near ties: the difference is about one rounding, and far larger than the roundings of
+//! twice the digits. The remaining ties have equal coordinates, like the corners of a box.
 
 use std::cmp::Ordering;
 
@@ -59,7 +59,7 @@ pub(super) fn inside<const N: usize>(
     certain(side(&rays(sites[0], sites)[1..], &to_x), size, terms)
 }
 
-/// The sign of a polynomial the magnitudes of whose terms sum to at most `terms`, beyond its error bound.
+/// The sign of a polynomial whose terms have magnitudes that sum to at most `terms`, if it is beyond its error bound.
 fn certain(value: Twofold, size: Size, terms: f64) -> Option<Ordering> {
     let beyond = size.is_sane() && value.high.abs() > terms * Twofold::ROUNDING;
     beyond.then(|| super::sign(value.high))
@@ -74,8 +74,8 @@ pub(super) fn rays<const N: usize>(p: Site, sites: &[Site; N]) -> [Ray<Twofold>;
     })
 }
 
-/// Whether four points have one coordinate in common, or two pairs of coordinates at most along two axes: they lie in
-/// one plane, normal to an axis or parallel to one.
+/// Whether four points have one coordinate in common, or at most two pairs of coordinates along two axes: then they lie in one
+/// plane, normal to an axis or parallel to one.
 fn in_a_plane_of_the_grid(sites: &[Site; 4]) -> bool {
     (0..3).any(|k| has_values(1, along(k, sites)) || has_values(2, across(k, sites)))
 }
@@ -112,7 +112,7 @@ fn across<const N: usize>(k: usize, sites: &[Site; N]) -> [[f64; 2]; N] {
     sites.each_ref().map(|site| [site.position[(k + 1) % 3], site.position[(k + 2) % 3]])
 }
 
-/// Whether there are at most so many different values.
+/// Whether there are at most this many different values.
 fn has_values<T: PartialEq, const N: usize>(most: usize, values: [T; N]) -> bool {
     let is_new = |&i: &usize| !values[..i].contains(&values[i]);
     (0..N).filter(is_new).count() <= most

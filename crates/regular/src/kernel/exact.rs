@@ -1,5 +1,5 @@
-//! The predicates in integers, without any rounding. 128 bits suffice on most lattices, whatever the weights;
-//! otherwise integers are of arbitrary length.
+//! The predicates in integers, without any rounding. 128 bits suffice on most lattices, for any weights; otherwise integers are
+//! of arbitrary length.
 
 use std::cmp::Ordering;
 
@@ -80,7 +80,8 @@ pub(super) fn squared_radius<const N: usize>(sites: [Site; N]) -> Ratio {
     Ratio::new(numerator, denominator, units.square())
 }
 
-/// The centre of the orthogonal sphere of a positively oriented cell, seen from its first corner: each coordinate the nearest double.
+/// The centre of the orthogonal sphere of a positively oriented cell, relative to its first corner: each coordinate is the
+/// nearest double.
 pub(super) fn centre_of(sites: [Site; 4]) -> [f64; 3] {
     let units = Units::of(&sites, 0.0);
     let [_, b, c, d] = sites.map(|q| units.ray::<IBig>(sites[0], q));
@@ -174,7 +175,7 @@ impl Units {
         self.coordinate
     }
 
-    /// By how many bits the unit of squares is finer than the square of that of coordinates.
+    /// The number of bits by which the unit of squares is finer than the square of the unit of coordinates.
     pub(super) fn finer(&self) -> usize {
         self.finer
     }

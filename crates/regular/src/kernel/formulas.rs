@@ -8,8 +8,8 @@
 
 use crate::number::{Number, Scale, cross, dot};
 
-/// From the first vertex p to another vertex q: `vector` q − p and `power` |q − p|² + ω(p) − ω(q). The types differ
-/// where a lattice makes vectors exact in doubles, and only powers need more digits.
+/// The way from the first vertex p to another vertex q: `vector` is q − p and `power` is |q − p|² + ω(p) − ω(q). The types differ
+/// if a lattice makes vectors exact in doubles, and only powers need more digits.
 #[derive(Clone, Copy)]
 pub(super) struct Ray<T, V = T> {
     pub vector: [V; 3],
@@ -77,7 +77,7 @@ pub(super) struct Centre<T, V> {
     pub twice: [T; 3],
     /// The determinant of the three rays.
     pub det: V,
-    /// Of the facets at p, each opposite one of the other corners: the products of their two rays.
+    /// For the facets at p, each opposite one of the other corners: the products of their two rays.
     pub normals: [[V; 3]; 3],
 }
 
@@ -115,8 +115,8 @@ pub(super) fn side<T: Number>(rays: &[Ray<T>], e: &Ray<T>) -> T {
 
 /// Positive multiples of the barycentric coordinates of the centre p + c, that of p first.
 ///
-/// For one ray they are multiplied by 2|a|², for two by 2d with the Gram determinant d, for three by 2d² with
-/// the determinant d.
+/// They are multiplied by 2|a|² for one ray, by 2d with the Gram determinant d for two, and by 2d² with the determinant d for
+/// three.
 #[inline(always)]
 pub(super) fn barycentric(rays: &[Ray<f64>], to: &mut [f64]) {
     match rays {

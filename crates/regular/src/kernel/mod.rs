@@ -1,9 +1,9 @@
-//! The exact predicates of regular triangulations and α-complexes: orientation, power test, radius of the smallest
-//! orthogonal sphere, and whether a point lies inside it.
+//! The exact predicates of regular triangulations and α-complexes: orientation, power test, radius of the smallest orthogonal
+//! sphere, and whether a point lies inside it.
 //!
-//! Each predicate is the sign of a polynomial. It is evaluated in doubles, and accepted if its magnitude exceeds a
-//! forward error bound, or if the arithmetic is exact because all numbers are small multiples of a power of two, as on
-//! voxel grids. Otherwise numbers with twice the digits decide, and in the end integers.
+//! Each predicate is the sign of a polynomial. It is evaluated in doubles, and accepted if its magnitude exceeds a forward error
+//! bound, or if the arithmetic is exact because all numbers are small multiples of a power of two, as on voxel grids. Otherwise
+//! numbers with twice the digits decide, and finally integers.
 
 mod centred;
 mod close;
@@ -57,8 +57,8 @@ pub struct Predicates<'a> {
     positions: &'a [[f64; 3]],
     weights: &'a [f64],
     lattice: Lattice,
-    /// By degree less 1: the largest sum of magnitudes of terms for which a polynomial in coordinates is exact in
-    /// doubles; 0 without a lattice.
+    /// For each degree less 1, the largest sum of magnitudes of terms for which a polynomial in coordinates is exact in doubles;
+    /// 0 without a lattice.
     exact: [f64; 8],
     /// On a torus, points stand for all their copies: a simplex has the copies nearest to its first corner.
     torus: Option<Torus>,
@@ -68,7 +68,7 @@ pub struct Predicates<'a> {
 /// error is less than this times the sum of the magnitudes of its terms.
 const ROUNDING: f64 = 1.0 / (1u64 << 48) as f64;
 
-/// From here on not all integers are doubles: 2⁵³.
+/// Not all integers from here on are doubles: 2⁵³.
 const MAX_INTEGER: f64 = (1u64 << f64::MANTISSA_DIGITS) as f64;
 
 impl<'a> Predicates<'a> {
@@ -83,7 +83,7 @@ impl<'a> Predicates<'a> {
         Self { positions, weights, lattice, exact, torus: None }
     }
 
-    /// Predicates on a few points, each of them asked once: to look for a lattice would take longer.
+    /// Predicates on a few points, each of which is evaluated once: searching for a lattice would take longer.
     pub(crate) fn of_few(positions: &'a [[f64; 3]], weights: &'a [f64]) -> Self {
         Self { positions, weights, lattice: Lattice::NONE, exact: [0.0; 8], torus: None }
     }
@@ -123,7 +123,7 @@ impl<'a> Predicates<'a> {
         }
     }
 
-    /// Encloses the squared radius of the smallest orthogonal sphere of a simplex: the least α that it fits.
+    /// Encloses the squared radius of the smallest orthogonal sphere of a simplex: the smallest α that it fits.
     #[inline]
     pub fn squared_radius<const N: usize>(&self, simplex: [u32; N]) -> Interval {
         let p = self.site(simplex[0]);
@@ -164,7 +164,7 @@ impl<'a> Predicates<'a> {
         self.fits(simplex, alpha)
     }
 
-    /// The least double α that a simplex fits: its squared radius, rounded up. By division of integers; some
+    /// The smallest double α that a simplex fits: its squared radius, rounded up. Computed by division of integers in some
     /// microseconds.
     pub fn first_alpha<const N: usize>(&self, simplex: [u32; N]) -> f64 {
         let sites = self.sites(simplex);
@@ -195,9 +195,8 @@ impl<'a> Predicates<'a> {
     /// For each corner of an edge, a facet or a cell, whether it lies strictly inside the smallest orthogonal sphere of
     /// the face opposite it. Exact.
     ///
-    /// It does if the centre of the simplex's own smallest orthogonal sphere lies beyond that face: the power of a
-    /// corner with respect to the sphere of the face is twice the product of its height above the face and that of
-    /// the centre.
+    /// It does if the centre of the simplex's own smallest orthogonal sphere lies beyond that face: the power of a corner with
+    /// respect to the sphere of the face is twice the product of its height above the face and the height of the centre.
     #[inline]
     pub fn inside_opposite<const N: usize>(&self, simplex: [u32; N]) -> [bool; N] {
         let sites = self.sites(simplex);
@@ -245,7 +244,7 @@ impl<'a> Predicates<'a> {
         }
     }
 
-    /// Whether three points lie on one line. Exact, by integers.
+    /// Whether three points lie on one line. Exact, in integers.
     pub fn collinear(&self, corners: [u32; 3]) -> bool {
         exact::collinear(self.sites(corners))
     }
@@ -268,10 +267,11 @@ impl<'a> Predicates<'a> {
         }
     }
 
-    /// The centre of the orthogonal sphere of a positively oriented cell, seen from its first corner: each coordinate to 2⁻³⁰ of the
-    /// cell's largest difference of coordinates and of the distance; where doubles do not give that, the nearest double.
+    /// The centre of the orthogonal sphere of a positively oriented cell, relative to its first corner. Each coordinate is
+    /// correct to 2⁻³⁰ of the cell's largest difference of coordinates and of the distance; if doubles do not achieve that, it is
+    /// the nearest double.
     pub fn centre(&self, cell: [u32; 4]) -> [f64; 3] {
-        /// How many times the error bound of its terms a determinant must be, for a quotient by it to be right to 2⁻³⁰.
+        /// The ratio of a determinant to the error bound of its terms for which a quotient by it is right to 2⁻³⁰.
         const WELL_ABOVE: f64 = (1u64 << 32) as f64;
         let sites = self.sites(cell);
         let View { rays: [_, b, c, d], size } = View::of(sites[0], sites);
@@ -309,7 +309,7 @@ impl<'a> Predicates<'a> {
         }
     }
 
-    /// Whether a polynomial of this degree, the magnitudes of whose terms sum to at most `bound`, is exact in doubles.
+    /// Whether a polynomial of this degree, whose terms have magnitudes that sum to at most `bound`, is exact in doubles.
     #[inline]
     fn holds(&self, bound: f64, degree: usize) -> bool {
         // Without a step nothing is exact, not even a bound that underflowed to 0.

@@ -1,4 +1,4 @@
-//! Squared radii as numbers: the nearest double, and the exact number where two have the same nearest double.
+//! Squared radii as numbers: the nearest double, and the exact number if two have the same nearest double.
 
 use super::formulas::{Ray, quotient};
 use super::size::{Size, View};
@@ -25,12 +25,12 @@ impl SmallRadius {
 }
 
 impl Predicates<'_> {
-    /// The double nearest to the squared radius of the smallest orthogonal sphere; of two equally near ones the
-    /// even one. Never −0.
+    /// The double nearest to the squared radius of the smallest orthogonal sphere; of two equally near ones the even one. Never
+    /// −0.
     ///
-    /// Where a lattice makes numerator and denominator exact, this takes one division. Otherwise an approximate centre
-    /// is corrected, or for edges and flat simplices numbers have twice the digits of doubles (only powers do
-    /// where a lattice makes vectors exact); and integers decide what is too near to the midpoint of two doubles for that.
+    /// If a lattice makes numerator and denominator exact, this takes one division. Otherwise an approximate centre is corrected,
+    /// or for edges and flat simplices numbers have twice the digits of doubles (only powers do if a lattice makes vectors
+    /// exact). Integers decide values that are too near to the midpoint of two doubles for that.
     pub fn nearest_radius<const N: usize>(&self, simplex: [u32; N]) -> f64 {
         let sites = self.sites(simplex);
         if N == 1 {
@@ -73,12 +73,12 @@ impl Predicates<'_> {
             && self.holds(size.bounds(vertices).denominator, 2 * vertices - 2)
     }
 
-    /// The squared radius of the smallest orthogonal sphere, exactly. By integers of arbitrary length.
+    /// The exact squared radius of the smallest orthogonal sphere, in integers of arbitrary length.
     pub fn exact_radius<const N: usize>(&self, simplex: [u32; N]) -> Ratio {
         exact::squared_radius(self.sites(simplex))
     }
 
-    /// The same as a ratio of 64-bit integers, where a lattice allows.
+    /// The squared radius of the smallest orthogonal sphere as a ratio of 64-bit integers, if a lattice allows that.
     pub fn small_radius<const N: usize>(&self, simplex: [u32; N]) -> Option<SmallRadius> {
         let sites = self.sites(simplex);
         let weight = sites[0].weight;

@@ -37,7 +37,7 @@ impl Ratio {
 
     /// The nearest double, of two equally near ones the even one; ±∞ beyond the largest. Never −0.
     pub fn nearest(self) -> f64 {
-        // The quotient has 53 or 54 bits, or fewer where the double is subnormal.
+        // The quotient has 53 or 54 bits, or fewer if the double is subnormal.
         let shift = self.shift_for(MANTISSA_BITS);
         let (numerator, denominator, exponent) = self.shifted(shift);
         let negative = numerator < IBig::ZERO;
@@ -56,8 +56,8 @@ impl Ratio {
         if negative && value != 0.0 { -value } else { value }
     }
 
-    /// By how many bits the numerator must be shifted to the left for a quotient of `count` bits or one more, but
-    /// none below the lowest bit of a double. Negative for a shift of the denominator.
+    /// The number of bits by which the numerator must be shifted to the left for a quotient of `count` bits or one more, but with
+    /// no bits below the lowest bit of a double. Negative for a shift of the denominator.
     fn shift_for(&self, count: i32) -> i32 {
         (count - bits(&self.numerator) + bits(&self.denominator)).min(self.exponent - LOWEST)
     }
@@ -107,7 +107,7 @@ fn bits(number: &IBig) -> i32 {
 /// `digits`, of magnitude at most 2⁵³, times 2^`power`.
 fn double(digits: IBig, power: i32) -> f64 {
     let digits = i64::try_from(digits).expect("at most 2⁵³") as f64;
-    // In two steps, as a power alone may be out of range; each product is exact.
+    // Two steps are needed because a power alone may be out of range; each product is exact.
     digits * 2f64.powi(power / 2) * 2f64.powi(power - power / 2)
 }
 

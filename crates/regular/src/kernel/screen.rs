@@ -18,16 +18,15 @@ pub struct Screen<'a> {
     /// are adjacent in memory, and a difference of two points is not shuffled. After the last point comes the infinite vertex,
     /// all NaN: no comparison accepts a sign that it takes part in.
     points: Vec<[f64; 4]>,
-    /// Where every orientation is exact: factors of x and y for which `x·fx + y·fy + z` orders points by (x, y, z),
-    /// exactly.
+    /// If every orientation is exact: factors of x and y for which `x·fx + y·fy + z` orders points by (x, y, z), exactly.
     order: Option<[f64; 2]>,
-    /// Error bounds of the determinants: beyond them a sign is certain. 0 where they are exact.
+    /// Error bounds of the determinants: beyond them a sign is certain. 0 if the determinants are exact.
     orientation: f64,
     power: f64,
 }
 
-/// 2⁻¹⁰⁶⁰, 2¹⁴ times the smallest positive double: bounds what the products of a determinant lose by underflow
-/// together, before they are multiplied by further factors.
+/// 2⁻¹⁰⁶⁰, 2¹⁴ times the smallest positive double: bounds the total loss of the products of a determinant by underflow, before
+/// they are multiplied by further factors.
 const UNDERFLOW: f64 = f64::from_bits(1 << 14);
 
 impl<'a> Screen<'a> {
@@ -59,8 +58,7 @@ impl<'a> Screen<'a> {
         let terms = 6.0 * width * depth * height;
         // Four differences of heights, each at most twice the largest height.
         let power_terms = 4.0 * terms * 2.0 * highest;
-        // Underflows of products, times the factors that they are multiplied by later; ∞ where a product may
-        // overflow.
+        // Underflows of products, times the factors by which they are multiplied later; ∞ if a product may overflow.
         let underflow =
             UNDERFLOW * (1.0 + width) * (1.0 + depth) * (1.0 + height) * (1.0 + highest);
         let error_bound = |terms: f64, degree: usize, exact: bool| {
@@ -74,15 +72,15 @@ impl<'a> Screen<'a> {
         let on_lattice = lattice.step != 0.0;
         let (orientation, power) =
             (error_bound(terms, 3, on_lattice), error_bound(power_terms, 5, exact));
-        // A step in y counts more than the whole extent in z, and one in x more than that in y and z. The sum stays
-        // below 2⁵³, as six times the product of the extents does.
+        // A step in y counts more than the whole extent in z, and a step in x more than the extents in y and z. The sum stays
+        // below 2⁵³, like six times the product of the extents.
         let counts = |extent: f64| extent / lattice.step + 1.0;
         let order = (on_lattice && orientation == 0.0)
             .then(|| [counts(depth) * counts(height), counts(height)]);
         Ok(Self { predicates, points, order, orientation, power })
     }
 
-    /// Like `new`, but the infinite vertex has an index into the positions whose entry is a dummy. That entry must
+    /// Like [`new`](Self::new), but the infinite vertex has an index into the positions whose entry is a dummy. That entry must
     /// be a copy of a point's, so that it widens no bound.
     ///
     /// # Errors
@@ -101,8 +99,7 @@ impl<'a> Screen<'a> {
         self.points.len() - 1
     }
 
-    /// The sign of the determinant of b − a, c − a, d − a: positive if a, b, c turn
-    /// counter-clockwise seen from d.
+    /// The sign of the determinant of b − a, c − a, d − a: positive if a, b, c turn counter-clockwise, as seen from d.
     #[inline(always)]
     pub fn orientation(&self, corners: [u32; 4]) -> Ordering {
         let a = &self.points[corners[0] as usize];
@@ -144,7 +141,7 @@ impl<'a> Screen<'a> {
     /// point is raised by an infinitesimal height, which is larger the later the point comes in the order of (x, y, z)
     /// (Devillers and Teillaud 2011, doi:10.1016/j.comgeo.2010.09.010; CGAL's `Regular_triangulation_3` does the same).
     pub fn conflicts_exactly(&self, cell: [u32; 4], t: u32) -> bool {
-        // Where the filter is exact, it has found a 0.
+        // An exact filter has found a 0.
         let sign = match self.power {
             0.0 => Ordering::Equal,
             _ => self.predicates.power(cell, t),

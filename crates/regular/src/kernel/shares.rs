@@ -1,5 +1,5 @@
 //! The centre of the smallest orthogonal sphere of a simplex by its barycentric coordinates, in numbers with twice the digits of
-//! doubles, or by integers where these are too few: the flatter a simplex, the more digits are lost.
+//! doubles, or in integers if those have too few digits: the flatter a simplex, the more digits are lost.
 
 use dashu_int::IBig;
 
@@ -10,7 +10,7 @@ use super::twofold::Twofold;
 use super::{Ratio, Site, exact};
 use crate::number::{Number, dot};
 
-/// What a corner of a simplex has of the centre c of its smallest orthogonal sphere.
+/// The share of a corner of a simplex in the centre c of its smallest orthogonal sphere.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Share {
     /// Its barycentric coordinate b of c.
@@ -19,12 +19,12 @@ pub struct Share {
     pub moment: [f64; 3],
 }
 
-/// The shares of the corners of a simplex, at these places and with these weights. They are right to 2⁻⁵⁰ of the largest, and moments to
-/// as much of that times the way from c to the corner; where numbers of two doubles do not give that, they are the nearest doubles. NaN
-/// where the places span no simplex.
+/// The shares of the corners of a simplex, at these places and with these weights. They are correct to 2⁻⁵⁰ of the largest, and
+/// moments to that times the way from c to the corner; if numbers of two doubles do not achieve that, they are the nearest
+/// doubles. NaN if the places span no simplex.
 ///
 /// # Panics
-/// If there are not one to four corners.
+/// If the number of corners is not one to four.
 pub fn centre_shares<const N: usize>(places: [[f64; 3]; N], weights: [f64; N]) -> [Share; N] {
     let mut sites = [Site { position: [0.0; 3], weight: 0.0 }; N];
     for (site, (position, weight)) in sites.iter_mut().zip(places.into_iter().zip(weights)) {
@@ -35,10 +35,10 @@ pub fn centre_shares<const N: usize>(places: [[f64; 3]; N], weights: [f64; N]) -
 
 /// Numerators and denominators of shares and of the centre.
 struct Shares<T> {
-    /// Of the barycentric coordinates, but the first one's.
+    /// The numerators of the barycentric coordinates, except the first one's.
     others: Vec<T>,
     of_others: T,
-    /// Of the centre, seen from the first corner.
+    /// The numerators of the centre, as seen from the first corner.
     centre: [T; 3],
     of_centre: T,
 }
@@ -73,7 +73,7 @@ impl<T: Number + Clone> Shares<T> {
 const ALONE: Share = Share { share: 1.0, moment: [0.0; 3] };
 const NONE: Share = Share { share: f64::NAN, moment: [f64::NAN; 3] };
 
-/// By numbers of two doubles; `None` where their error bounds are too large.
+/// Computes in numbers of two doubles; `None` if their error bounds are too large.
 fn closely<const N: usize>(sites: &[Site; N]) -> Option<[Share; N]> {
     /// The error of a quotient is at most a few times that of its parts.
     const PRECISE: f64 = 1.0 / (1u64 << 53) as f64;
@@ -87,7 +87,8 @@ fn closely<const N: usize>(sites: &[Site; N]) -> Option<[Share; N]> {
     }
     let rays = rays(sites[0], sites);
     let Shares { others, of_others, centre, of_centre } = Shares::of(&rays[1..]);
-    // Bounds of the terms of the way from the centre to a corner, and of its denominator, which three powers of the length are part of.
+    // Bounds of the terms of the way from the centre to a corner, and of its denominator, which contains three powers of the
+    // length.
     let Size { length, power } = size;
     let (way_terms, centre_terms) = match N {
         2 => (3.0 * power * length, 6.0 * length * length),
@@ -119,7 +120,7 @@ fn closely<const N: usize>(sites: &[Site; N]) -> Option<[Share; N]> {
     Some(shares)
 }
 
-/// By integers, each number the nearest double.
+/// Computes in integers, and rounds each number to the nearest double.
 fn exactly<const N: usize>(sites: [Site; N]) -> [Share; N] {
     if N == 1 {
         return [ALONE; N];
@@ -170,7 +171,7 @@ mod tests {
         sites
     }
 
-    /// The largest difference of shares, and of moments, as parts of what they are promised to.
+    /// The largest errors of shares, and of moments, relative to their guaranteed precision.
     fn off<const N: usize>(sites: [Site; N]) -> Option<f64> {
         let (found, wanted) = (closely(&sites)?, exactly(sites));
         let largest = |of: &dyn Fn(&Share) -> f64| wanted.iter().map(of).fold(0.0, f64::max);
@@ -213,7 +214,7 @@ mod tests {
         let shares = centre_shares(corner, [0.0; 4]);
         assert_eq!(shares.map(|share| share.share), [-0.5, 0.5, 0.5, 0.5]);
         assert_eq!(shares[1].moment, [0.5, -1.0, -1.5]);
-        // With other weights in front of the same.
+        // An edge whose ends have different weights.
         let edge = centre_shares([[1.0; 3], [5.0, 1.0, 1.0]], [0.0, 8.0]);
         assert_eq!(edge.map(|share| share.share), [0.75, 0.25]);
         assert_eq!(edge[1].moment, [0.75, 0.0, 0.0]);

@@ -1,5 +1,4 @@
-//! A simplex as rays from one point, and bounds of the terms of its polynomials, from which follow bounds of their
-//! rounding errors.
+//! A simplex as rays from one point, and bounds of the terms of its polynomials, which give bounds of their rounding errors.
 
 use super::Site;
 use super::formulas::Ray;

@@ -15,7 +15,7 @@ fn number(random: &mut Random, wild: bool) -> f64 {
     }
 }
 
-/// Five points; the lattice is theirs.
+/// Five points with their lattice.
 fn draw(random: &mut Random, wild: bool) -> (Vec<[f64; 3]>, Vec<f64>) {
     let positions = (0..5).map(|_| [0; 3].map(|_| number(random, wild))).collect();
     (positions, (0..5).map(|_| number(random, wild)).collect())
@@ -91,7 +91,7 @@ fn a_radius_on_a_lattice_is_a_round_number() {
     assert_eq!(predicates.squared_radius([3]), Interval { low: 0.0, high: 0.0 });
 }
 
-/// What the corners of simplices that are not flat say of the faces opposite them, against the predicate for each alone.
+/// Compares the tests of the faces opposite the corners of simplices that are not flat with the predicate for each face alone.
 #[test]
 fn corners_inside_opposite_faces() {
     let mut random = Random::new(5);
@@ -179,10 +179,10 @@ fn draw_on_grid(random: &mut Random) -> (Vec<[f64; 3]>, Vec<f64>) {
     (positions, (0..5).map(|_| if weighted { random.below(3) as f64 / 3.0 } else { 0.0 }).collect())
 }
 
-/// On rounded grids, where doubles leave much open, against integers; and these have little left to do.
+/// Compares with integers on rounded grids, where doubles leave much undecided; little remains for integers.
 #[test]
 fn rounded_grids_agree_with_integers() {
-    // Signs, zeros and what is left open, of orientation, power, points inside an edge and a facet, and radii.
+    // Signs, zeros and undecided cases of orientation, power, points inside an edge and a facet, and radii.
     let mut counts = [[0; 3]; 5];
     let mut count = |row: usize, closely: Option<Ordering>| {
         counts[row][match closely {
@@ -240,7 +240,7 @@ fn rounded_grids_agree_with_integers() {
     assert!(counts[..4].iter().all(|[signs, zeros, _]| signs.min(zeros) > &500), "{counts:?}");
 }
 
-/// The centre in doubles is as near to the exact one as it says, and where it cannot be, it is that one.
+/// The centre in doubles is as near to the exact one as it claims; if it cannot be, it is the exact one.
 #[test]
 fn centres_are_near() {
     let mut random = Random::new(21);
@@ -274,7 +274,7 @@ fn centres_are_near() {
     assert!(rounded > 2000 && exact_ones > 2000, "{rounded} {exact_ones}");
 }
 
-/// A quotient by the squared step that underflows is not 0, and its number no multiple.
+/// A quotient by the squared step that underflows is not 0, and its number is not a multiple.
 #[test]
 fn the_smallest_alpha_is_not_a_multiple_of_a_large_step() {
     // The two balls touch: the squared radius of the smallest orthogonal sphere is 0.

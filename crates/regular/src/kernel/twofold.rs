@@ -44,8 +44,8 @@ impl Twofold {
         Self::sum(quotient, rest / other.high)
     }
 
-    /// The double nearest to every number that differs from this one by at most `error`; `None` if they have
-    /// different ones.
+    /// The double nearest to every number that differs from this one by at most `error`; `None` if these have different nearest
+    /// doubles.
     #[inline(always)]
     pub(super) fn nearest(self, error: f64) -> Option<f64> {
         let error = error * (1.0 + 1e-9) + self.low.abs() * f64::EPSILON;
@@ -102,7 +102,7 @@ mod tests {
     use super::*;
     use crate::number::integer;
 
-    /// In units of 2⁻²⁰⁰.
+    /// The number in units of 2⁻²⁰⁰.
     fn exactly(number: Twofold) -> IBig {
         integer(number.high, -200) + integer(number.low, -200)
     }

@@ -11,7 +11,7 @@ pub(crate) fn doubles(points: &[Place]) -> Vec<[f64; 3]> {
     points.iter().map(|p| p.map(|x| x as f64)).collect()
 }
 
-/// The sign of the determinant of b − a, c − a, d − a, by integers.
+/// The sign of the determinant of b − a, c − a, d − a, in integers.
 pub(crate) fn sign([a, b, c, d]: [Place; 4]) -> i128 {
     let from = |p: Place| [0, 1, 2].map(|k| i128::from(p[k] - a[k]));
     let [u, v, w] = [from(b), from(c), from(d)];
@@ -34,7 +34,7 @@ fn faces(made: &Triangulation, points: &[Place], point: Place) -> Vec<(u32, Vec<
     made.finite_cells().filter_map(face).collect()
 }
 
-/// Checks where a point is found against all cells. Returns the number of vertices of its face, 0 outside.
+/// Compares the found location of a point with all cells. Returns the number of vertices of its face, 0 outside.
 fn check(made: &Triangulation, points: &[Place], point: Place, location: Location) -> usize {
     let faces = faces(made, points, point);
     let face = match location {
@@ -100,7 +100,7 @@ fn points_are_where_all_cells_say() {
 
 #[test]
 fn doubles_next_to_a_facet_are_beside_it() {
-    // The plane x + y + z = 0.6 of doubles, of which no sum is 0.6.
+    // The plane x + y + z = 0.6 through doubles, whose sum is never 0.6.
     let points = [[0.6, 0.0, 0.0], [0.0, 0.6, 0.0], [0.0, 0.0, 0.6], [0.0; 3], [1.0; 3]];
     let made = triangulate(&points, None).unwrap();
     let (mut below, mut above) = (0, 0);
@@ -134,12 +134,12 @@ fn what_cannot_be_found() {
     assert_eq!(made.locate_from([0.1; 3], 5), None);
     let far = made.locate([MAX_COORDINATE, 0.1, -MAX_COORDINATE]);
     assert!(matches!(far, Some(Location::Outside { .. })));
-    // From a cell beyond the hull, too.
+    // A walk also starts from a cell beyond the hull.
     let beyond = far.unwrap().cell();
     assert!(matches!(made.locate_from([0.1; 3], beyond), Some(Location::InCell { .. })));
 }
 
-/// Where most points are hidden, none of those that a walk might start from need be a vertex.
+/// If most points are hidden, none of the possible starts of a walk need be a vertex.
 #[test]
 fn walks_start_among_hidden_points() {
     let mut points: Vec<Place> = (1..600).map(|i| [i % 7 + 1, i % 5 + 1, i % 3 + 1]).collect();

@@ -11,8 +11,8 @@ use crate::{Cell, DELETED, TriangulationError, facets, smallest_first};
 /// Stands for the absence of a cell or facet.
 const NONE: u32 = u32::MAX;
 
-/// The triangulation of the points of two halves. `None` where more than the part `max_open` of all points are
-/// corners of open cells, or a leaf has no slots left.
+/// The triangulation of the points of two halves. `None` if more than the part `max_open` of all points are corners of open
+/// cells, or a leaf has no slots left.
 ///
 /// # Errors
 /// Out of memory; what `inserted` returns.
@@ -61,11 +61,11 @@ pub(super) fn merge(
     Ok(filling.fill(&mut mesh, open).then_some(Half { points: all, extent, mesh }))
 }
 
-/// A facet between an open cell and one that is kept.
+/// A facet between an open cell and a kept cell.
 struct Facet {
-    /// Its vertices, which with a point on the side of the open cell are a positively oriented cell.
+    /// Its vertices, which with a point on the side of the open cell form a positively oriented cell.
     corners: [u32; 3],
-    /// 4·slot + corner of the cell that is kept.
+    /// 4·slot + corner of the kept cell.
     kept: u32,
 }
 
@@ -85,7 +85,7 @@ fn boundary_of(slots: &Slots, open: &[u32], marks: &mut Marks) -> Vec<Facet> {
 /// The corners of open cells, numbered along the curve.
 struct Corners {
     first: usize,
-    /// By point of both halves: 1 for corners, and, once they are numbered, their number.
+    /// For each point of both halves: 1 for corners, and, after they are numbered, their number.
     numbers: Vec<u32>,
     list: Vec<u32>,
     at_infinity: u32,
@@ -114,7 +114,7 @@ impl Corners {
         }
     }
 
-    /// The number of a corner; the infinite vertex's is that of corners.
+    /// The number of a corner; that of the infinite vertex is the number of corners.
     fn of(&self, v: u32) -> u32 {
         if v == self.at_infinity {
             self.list.len() as u32
@@ -128,20 +128,20 @@ impl Corners {
     }
 }
 
-/// The cells that take the place of the open ones.
+/// The cells that replace the open ones.
 struct Filling<'a> {
     built: Built,
     corners: &'a Corners,
-    /// By 4·cell + corner of `built`: 4·slot + corner of the cell that is kept, at facets of the boundary.
+    /// For each 4·cell + corner of `built`: 4·slot + corner of the kept cell, at facets of the boundary.
     kept: Vec<u32>,
     /// The cells that are taken.
     taken: Vec<u32>,
-    /// By cell, its index among those; [`NONE`] for others.
+    /// For each cell, its index among those; [`NONE`] for others.
     index: Vec<u32>,
 }
 
 impl<'a> Filling<'a> {
-    /// Floods from the boundary; without cells that are kept, all cells are taken.
+    /// Floods from the boundary; without kept cells, all cells are taken.
     fn of(built: Built, boundary: &[Facet], corners: &'a Corners, is_whole: bool) -> Self {
         let by_vertex = FacetTable::of(boundary, corners);
         let count = built.cells.len();
@@ -192,7 +192,7 @@ impl<'a> Filling<'a> {
         }
     }
 
-    /// Puts the cells that are taken in the place of the open ones; `false` where slots run out.
+    /// Puts the taken cells in the place of the open ones; `false` if slots run out.
     fn fill(&self, mesh: &mut Mesh, open: Vec<u32>) -> bool {
         mesh.count = mesh.count - open.len() + self.taken.len();
         let mut slots = open;
@@ -228,9 +228,9 @@ impl<'a> Filling<'a> {
 
 /// The facets of a boundary by their smallest corner.
 struct FacetTable {
-    /// By corner, where its facets start.
+    /// For each corner, the start of its facets.
     starts: Vec<u32>,
-    /// The other two vertices, in the order of the facet, and 4·slot + corner of the cell that is kept.
+    /// The other two vertices, in the order of the facet, and 4·slot + corner of the kept cell.
     rest: Vec<([u32; 2], u32)>,
 }
 

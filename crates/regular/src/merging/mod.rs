@@ -1,7 +1,7 @@
 //! The triangulation of many points on all threads, by dividing and merging.
 //!
-//! Points along a Hilbert curve are divided into halves again and again, each by a plane, until they are few enough:
-//! these leaves are triangulated side by side. Two halves are merged as follows.
+//! Points along a Hilbert curve are divided into halves repeatedly, each by a plane, until they are few enough: these leaves are
+//! triangulated in parallel. Two halves are merged as follows.
 //!
 //! 1. A cell of one half is *open* if a point of the other may be in conflict with it ([`open`]). The other cells,
 //!    the closed ones, are cells of the whole.
@@ -10,8 +10,8 @@
 //! 3. Of its cells those are taken that fill what the closed cells leave free: they are found by flooding from the
 //!    facets between closed and open cells ([`glue`]).
 //!
-//! This needs no general position: ties are broken by the positions of points alone, so a cell of the whole is one of
-//! every subset that has its corners. Hidden points of a half are hidden in the whole.
+//! This requires no general position: ties are broken only by the positions of points, so a cell of the whole is a cell of every
+//! subset that has its corners. Hidden points of a half are hidden in the whole.
 
 mod glue;
 mod numbering;
@@ -29,25 +29,25 @@ use crate::{CellArrays, TriangulationError};
 use open::Extent;
 use slots::Mesh;
 
-/// With fewer points than this in all, one thread is as fast.
+/// With fewer points than this in total, one thread is as fast.
 const MIN_POINTS: usize = 1 << 16;
-/// Number of leaves per thread, about: threads that finish early find work, and more would be more to merge.
+/// Approximate number of leaves per thread: threads that finish early find work, and more leaves would require more merging.
 const LEAVES_PER_THREAD: usize = 2;
 /// Halves are not equal: a leaf may have a quarter more points than its share before it is divided.
 const MAX_SHARE: f64 = 1.25;
-/// No leaf is divided that has at most this many points.
+/// A leaf with at most this many points is not divided.
 const MIN_LEAF: usize = 1 << 12;
-/// Where more than this part of the points of two small leaves are corners of open cells, as on a sphere or a smooth
-/// surface (1), merging costs more than threads gain. At random it is 0.2, of lattices 0.3, of noisy surfaces 0.5.
+/// If more than this part of the points of two small leaves are corners of open cells, as on a sphere or a smooth surface (1),
+/// merging costs more than threads gain. The part is 0.2 for random points, 0.3 for lattices, 0.5 for noisy surfaces.
 const MAX_OPEN: f64 = 0.7;
-/// Number of places along the curve where this is tried.
+/// Number of places along the curve where this is tested.
 const TRIALS: usize = 3;
 /// Points of a small leaf, at most.
 const TRIAL_LEAF: usize = 1 << 11;
 
-/// The regular triangulation of points, which satisfy the conditions of [`Sites`](crate::Sites), on all threads where
-/// they follow the Hilbert curve through them, else on one. `inserted` is called now and then with the number of points inserted since. The result does
-/// not depend on the number of threads. Expected O(n log n) for evenly distributed points.
+/// The regular triangulation of points, which satisfy the conditions of [`Sites`](crate::Sites), on all threads if they follow
+/// the Hilbert curve through them, otherwise on one. `inserted` is called from time to time with the number of points inserted
+/// since the last call. The result does not depend on the number of threads. Expected O(n log n) for evenly distributed points.
 ///
 /// # Errors
 /// Points that span no volume; too many cells; out of memory; what `inserted` returns.
@@ -87,7 +87,7 @@ impl<'a> Along<'a> {
         indices.is_sorted().then_some(Self { points, indices })
     }
 
-    /// Tries whether merging is worth its price, by small leaves here and there along the curve.
+    /// Tests whether merging is worth its cost, with small leaves at some places along the curve.
     fn merging_pays(&self) -> Result<bool, TriangulationError> {
         let count = self.indices.len();
         let pays = |trial: usize| {
@@ -105,8 +105,8 @@ impl<'a> Along<'a> {
         Ok(2 * pay.into_iter().filter(|&pays| pays).count() > TRIALS)
     }
 
-    /// The mesh of the points, divided into leaves of at most `leaf` points where the curve divides these; `None`
-    /// where a leaf has no slots left, or the points span no volume.
+    /// The mesh of the points, divided into leaves of at most `leaf` points where the curve divides these; `None` if a leaf has
+    /// no slots left, or the points span no volume.
     fn divide_and_merge(
         self,
         leaf: usize,
@@ -121,7 +121,7 @@ impl<'a> Along<'a> {
     }
 }
 
-/// How points are divided.
+/// The division of points into leaves.
 struct Tree {
     points: Range<usize>,
     /// The number of its first leaf, in the order of the curve.
@@ -130,7 +130,7 @@ struct Tree {
 }
 
 impl Tree {
-    /// Divides a range of points at the first bit in which their indices differ, again and again.
+    /// Divides a range of points repeatedly at the first bit in which their indices differ.
     fn of(points: Range<usize>, leaf: usize, indices: &[u64], leaves: &mut usize) -> Self {
         let first = *leaves;
         let halves = middle(&points, indices).filter(|_| points.len() > leaf).map(|middle| {
@@ -153,7 +153,7 @@ impl Tree {
     }
 }
 
-/// Where the first bit in which indices differ becomes 1.
+/// The position where the first bit in which indices differ becomes 1.
 fn middle(range: &Range<usize>, indices: &[u64]) -> Option<usize> {
     let indices = &indices[range.clone()];
     let bit = (indices.first()? ^ indices.last()?).checked_ilog2()?;
@@ -175,7 +175,7 @@ struct Half {
     mesh: Mesh,
 }
 
-/// What all calls have in common.
+/// The data that all calls share.
 struct Work<'a, I> {
     points: Points<'a>,
     /// Number of leaves.
@@ -186,7 +186,7 @@ struct Work<'a, I> {
 }
 
 impl<I: Fn(usize) -> Result<(), Cancelled> + Sync> Work<'_, I> {
-    /// Triangulates the points of a tree; `None` where halves are not merged, or a leaf has no slots left.
+    /// Triangulates the points of a tree; `None` if halves are not merged, or a leaf has no slots left.
     fn triangulate(&self, tree: &Tree) -> Result<Option<Half>, TriangulationError> {
         let Some(halves) = &tree.halves else { return self.triangulate_leaf(tree) };
         let [a, b] = &**halves;

@@ -1,4 +1,4 @@
-//! Cells in canonical order, whatever made them.
+//! Puts cells in canonical order, regardless of how they were made.
 
 use std::sync::atomic::{AtomicU32, Ordering};
 
@@ -8,8 +8,8 @@ use rayon::prelude::*;
 use super::slots::Slots;
 use crate::{Cell, CellArrays, DELETED, TriangulationError, with_capacity};
 
-/// The permutations that bring the smallest of four first and the smallest of the others second, and are even: entry
-/// 3·p + r where the smallest was at p, after which the other three are rotated r times. Where each comes from.
+/// The even permutations that bring the smallest of four first and the smallest of the others second. Entry 3·p + r is for a
+/// smallest one at p, after which the other three are rotated r times. Each entry lists the sources of the elements.
 const EVEN: [[u8; 4]; 12] = [
     [0, 1, 2, 3],
     [0, 2, 3, 1],
@@ -25,7 +25,7 @@ const EVEN: [[u8; 4]; 12] = [
     [3, 0, 2, 1],
 ];
 
-/// Where each corner goes by the permutations of [`EVEN`].
+/// The target of each corner under the permutations of [`EVEN`].
 const TO: [[u8; 4]; 12] = {
     let mut to = [[0; 4]; 12];
     let mut code = 0;
@@ -40,7 +40,7 @@ const TO: [[u8; 4]; 12] = {
     to
 };
 
-/// Which of [`EVEN`] makes corners the lexicographically smallest.
+/// The permutation of [`EVEN`] that makes corners the lexicographically smallest.
 #[inline(always)]
 fn canonical(corners: [u32; 4]) -> usize {
     let [a, b, c, d] = corners;
@@ -64,13 +64,13 @@ impl CellArrays {
     }
 }
 
-/// Slots that one task looks at.
+/// The number of slots that one task handles.
 const PIECE: usize = 1 << 16;
-/// Vertices whose cells one task puts in order: so few that its working memory stays in the cache.
+/// The number of vertices whose cells one task sorts: few enough for its working memory to stay in the cache.
 const VERTICES: usize = 1 << 11;
 
-/// The cells in canonical order: each as its lexicographically smallest even permutation, and these ascending. So cells
-/// of consecutive points are close in memory. O(cells) for bounded numbers of cells at a point.
+/// The cells in canonical order: each as its lexicographically smallest even permutation, and the cells ascending. So cells of
+/// consecutive points are close in memory. O(cells) for bounded numbers of cells at a point.
 pub(super) fn number(slots: Slots, at_infinity: u32) -> Result<CellArrays, TriangulationError> {
     let Slots { chunks: mut old, bits, .. } = slots;
     let ranges = at_infinity as usize / VERTICES + 1;
@@ -100,7 +100,7 @@ pub(super) fn number(slots: Slots, at_infinity: u32) -> Result<CellArrays, Trian
     let count = by_range.iter().flatten().map(Vec::len).sum();
     let (mut cells, mut from): (Vec<[u32; 4]>, Vec<u32>) =
         (with_capacity(count)?, with_capacity(count)?);
-    // In parallel, as a good part of the time is the kernel's, for new pages.
+    // This is parallel because the kernel takes much of the time, for new pages.
     cells.par_extend(repeat_n([0; 4], count));
     from.par_extend(repeat_n(0, count));
     let mask = (1 << bits) - 1;
@@ -142,9 +142,9 @@ pub(super) fn number(slots: Slots, at_infinity: u32) -> Result<CellArrays, Trian
 /// The corners of a cell, permuted, and its slot.
 type Corners = ([u32; 4], u32);
 
-/// What a slot holds while cells move from it to their numbers.
+/// The content of a slot while cells move from it to their numbers.
 struct Moved {
-    /// In the order of the permuted corners, as 4·slot + corner before these were permuted.
+    /// The neighbours in the order of the permuted corners, as 4·slot + corner before these were permuted.
     neighbors: [u32; 4],
     number: AtomicU32,
     /// The entry of [`EVEN`] by which the corners were permuted.
@@ -152,15 +152,15 @@ struct Moved {
 }
 
 impl Moved {
-    /// A cell that [`permute`] left.
+    /// A cell after [`permute`].
     fn of(cell: Cell) -> Self {
         let Cell { corners: [code, ..], neighbors } = cell;
         Self { neighbors, number: AtomicU32::new(0), code }
     }
 }
 
-/// Permutes the cells of consecutive slots, the first of which is given, and leaves the entry of [`EVEN`] in place of
-/// their first corner. By range of vertices, the cells whose smallest corner is there.
+/// Permutes the cells of consecutive slots, the first of which is given, and stores the entry of [`EVEN`] in place of their first
+/// corner. Returns for each range of vertices the cells whose smallest corner is there.
 fn permute(cells: &mut [Cell], start: u32, ranges: usize) -> Vec<Vec<Corners>> {
     let range = |cell: &Cell| cell.corners.into_iter().min().unwrap_or(0) as usize / VERTICES;
     let mut counts = vec![0; ranges];
@@ -192,7 +192,7 @@ fn sort(lists: Vec<Vec<Corners>>, first: u32) -> Vec<Corners> {
         ends[v + 1] += ends[v];
     }
     let mut sorted = vec![Corners::default(); ends[VERTICES]];
-    // Where the next cell of each vertex goes: at last, where its cells end.
+    // The position of the next cell of each vertex; finally, the end of its cells.
     for cell in lists.into_iter().flatten() {
         let at = &mut ends[of(cell.0)];
         sorted[*at] = cell;

@@ -1,4 +1,4 @@
-//! Which cells of one half may be in conflict with a point of the other.
+//! Finds the cells of one half that may be in conflict with a point of the other half.
 
 use walpha_base::vector::{cross, dot, sub as minus};
 
@@ -7,7 +7,7 @@ use super::slots::{Marks, Slots};
 use crate::facets;
 use crate::kernel::extent;
 
-/// Where points are, and how heavy: their bounding box and largest weight.
+/// The extent of points: their bounding box and largest weight.
 #[derive(Clone, Copy)]
 pub(super) struct Extent {
     low: [f64; 3],
@@ -44,8 +44,8 @@ impl Extent {
         (0..3).any(|k| self.high[k] < other.low[k] || other.high[k] < self.low[k])
     }
 
-    /// Whether it is certain that no point of the extent is in conflict with a cell. `false` where rounding leaves it
-    /// undecided, which includes NaN and infinities.
+    /// Whether it is certain that no point of the extent is in conflict with a cell. `false` if rounding leaves it undecided,
+    /// which includes NaN and infinities.
     fn is_clear_of(&self, corners: [u32; 4], points: &Points<'_>) -> bool {
         match corners.iter().position(|&v| v == points.at_infinity) {
             Some(corner) => self.is_behind(facets(corners)[corner], points),
@@ -101,14 +101,14 @@ fn crossed_terms([a, b, c]: [f64; 3], [u, v, w]: [f64; 3]) -> [f64; 3] {
     [(b * w).abs() + (c * v).abs(), (c * u).abs() + (a * w).abs(), (a * v).abs() + (b * u).abs()]
 }
 
-/// The mark of a cell that is closed.
+/// The mark of a closed cell.
 pub(super) const CLOSED: u8 = 1;
-/// The mark of a cell that is open.
+/// The mark of an open cell.
 pub(super) const OPEN: u8 = 2;
 
-/// Appends the open cells of the half that an infinite cell belongs to, and marks them: all with which a point of the other half, within `other`, is in
-/// conflict. The cells in conflict with one point are connected, and an infinite one is among them, as the point is
-/// outside the convex hull of this half. So flooding from the hull finds all.
+/// Appends the open cells of the half that an infinite cell belongs to, and marks them: all cells with which a point of the other
+/// half, within `other`, is in conflict. The cells in conflict with one point are connected, and an infinite one is among them,
+/// because the point is outside the convex hull of this half. So flooding from the hull finds all.
 pub(super) fn flood(
     slots: &Slots,
     infinite: u32,

@@ -1,10 +1,10 @@
-//! Cells in the slots of leaves, so that merging moves no cell that is kept.
+//! Cells in the slots of leaves, so that merging does not move kept cells.
 
 use crate::incremental::Built;
 use crate::{Cell, DELETED, Triangulation};
 
-/// Cells by slot, in one chunk for each of consecutive leaves. The number of a slot is that of its leaf, followed by as
-/// many bits as all leaves leave free.
+/// Cells by slot, in one chunk for each of consecutive leaves. The number of a slot is that of its leaf, followed by as many bits
+/// as the numbers of all leaves leave free.
 pub(super) struct Slots {
     pub chunks: Vec<Vec<Cell>>,
     /// The leaf of the first chunk.
@@ -14,7 +14,7 @@ pub(super) struct Slots {
 }
 
 impl Slots {
-    /// Those of a triangulation in one piece.
+    /// The slots of a triangulation in one piece.
     pub(super) fn of_one(cells: Vec<Cell>) -> Self {
         Self { chunks: vec![cells], first: 0, bits: Triangulation::MAX_CELLS.ilog2() }
     }
@@ -36,7 +36,7 @@ impl Slots {
         &mut self.chunks[chunk][at]
     }
 
-    /// A new slot; `None` where the last leaf is full.
+    /// A new slot; `None` if the last leaf is full.
     pub(super) fn push(&mut self) -> Option<u32> {
         let leaf = self.first + self.chunks.len() - 1;
         let chunk = self.chunks.last_mut()?;
@@ -72,9 +72,9 @@ pub(super) struct Mesh {
     pub slots: Slots,
     /// Slots of deleted cells.
     pub free: Vec<u32>,
-    /// Number of cells; 0 where the points of the leaves span no volume.
+    /// Number of cells; 0 if the points of the leaves span no volume.
     pub count: usize,
-    /// The slot of an infinite cell, where there are cells.
+    /// The slot of an infinite cell, if there are cells.
     pub infinite: u32,
 }
 
@@ -90,7 +90,7 @@ impl Mesh {
         self.count > 0
     }
 
-    /// The mesh of one of so many leaves, whose first point is given; `None` where it has more cells than slots.
+    /// The mesh of one of `leaves` leaves, whose first point is given; `None` if it has more cells than slots.
     pub(super) fn of_leaf(
         built: Built,
         leaf: usize,
@@ -122,7 +122,7 @@ impl Mesh {
         Some(Self { slots, free: free_slots, count, infinite })
     }
 
-    /// The cells of both, not merged yet. `other` has the leaves that follow.
+    /// The cells of both, without merging. `other` has the leaves that follow.
     pub(super) fn append(&mut self, other: Self) {
         self.slots.chunks.extend(other.slots.chunks);
         self.free.extend(other.free);
@@ -130,7 +130,7 @@ impl Mesh {
     }
 }
 
-/// The bits that the numbers of so many leaves leave free.
+/// The number of bits that the numbers of this many leaves leave free.
 fn bits(leaves: usize) -> u32 {
     Triangulation::MAX_CELLS.ilog2().saturating_sub(leaves.next_power_of_two().ilog2())
 }

@@ -5,7 +5,7 @@ use super::numbering::number;
 use crate::incremental::{Built, insert_cells};
 use crate::{CellArrays, Sites, TriangulationError};
 
-/// The triangulation with leaves of at most `leaf` points, and that of one leaf, whichever can be made.
+/// The triangulation with leaves of at most `leaf` points, and that of one leaf, or the errors.
 fn both(points: &[([f64; 3], f64)], leaf: usize) -> [Result<CellArrays, TriangulationError>; 2] {
     let (positions, weights): (Vec<_>, Vec<_>) = points.iter().copied().unzip();
     let sites = Sites::any(&positions, &weights).unwrap();
@@ -47,7 +47,7 @@ fn set(random: &mut Random, case: usize) -> Vec<([f64; 3], f64)> {
                 // A lattice, without and with weights that hide points.
                 2 => (p.map(|x| (x * 5.0).floor()), 0.0),
                 3 => (p.map(|x| (x * 6.0).floor()), (w * 4.0).floor()),
-                // On a sphere of lattice points, and in few planes.
+                // Points on a sphere of lattice points, and in few planes.
                 4 => {
                     let [a, b, c] = [[3.0, 4.0, 0.0], [5.0, 0.0, 0.0], [0.0, 3.0, -4.0]][i % 3];
                     let sign = |x: f64, u: f64| if u < 0.5 { -x } else { x };
@@ -59,7 +59,7 @@ fn set(random: &mut Random, case: usize) -> Vec<([f64; 3], f64)> {
                 6 => (p, if i % 17 == 0 { 0.3 } else { 0.0 }),
                 // The moment curve: all points are neighbours of all.
                 7 => ([t, t * t, t * t * t], 0.0),
-                // Two lines, which no leaf need span a volume with.
+                // Two lines; a leaf need not span a volume.
                 8 if i % 2 == 0 => ([t, 0.0, 0.0], 0.0),
                 8 => ([20.0, t - 30.0, 1.0], 0.0),
                 // Neighbours that differ in the last bit.
@@ -115,7 +115,7 @@ fn threads_do_not_change_the_triangulation() {
     }
 }
 
-/// On a sphere all cells are open: merging would be more work than it saves.
+/// On a sphere all cells are open: merging would take more work than it saves.
 #[test]
 fn merging_pays_but_on_a_sphere() {
     let mut random = Random::new(3);

@@ -67,9 +67,9 @@ fn cells_with_one_centre_have_one_number() {
     assert!(shared > 1000 && shared < cells - 1000, "{shared} of {cells}");
 }
 
-/// Each cell is divided into simplices whose corners are the weighted circumcentres of a vertex, an edge, a facet and a tetrahedron,
-/// each a face of the next. They have a sign, as centres may lie outside of their faces (Mullen, Memari, de Goes and Desbrun
-/// 2011, doi:10.1145/1964921.1964998).
+/// Each cell is divided into simplices whose corners are the weighted circumcentres of a vertex, an edge, a facet and a
+/// tetrahedron, each a face of the next. They have a sign, because centres may lie outside of their faces (Mullen, Memari, de
+/// Goes and Desbrun 2011, doi:10.1145/1964921.1964998).
 fn by_centres(made: &Triangulation, weights: &[f64]) -> Vec<f64> {
     let bounded = |v: u32| made.star(v).into_iter().all(|cell| made.is_finite(cell));
     let none = |v: u32| if !made.is_vertex(v) || bounded(v) { 0.0 } else { f64::INFINITY };
@@ -91,11 +91,11 @@ fn orders([a, b, c, d]: [u32; 4]) -> impl Iterator<Item = [u32; 4]> {
     })
 }
 
-/// The volume of the simplex of the centres of the first point, the first two, three and four; negative where the way from
-/// centre to centre goes away from the next point an odd number of times.
+/// The volume of the simplex of the centres of the first point, the first two, three and four; negative if the way from centre to
+/// centre leads away from the next point an odd number of times.
 fn signed_volume([(p, weight), rest @ ..]: [([f64; 3], f64); 4]) -> f64 {
-    // The centre, seen from p, and orthogonal directions: Gram and Schmidt. A step along a direction does not change the
-    // powers of the points before, and is as long as makes that of the next point equal to theirs.
+    // The centre, relative to p, and orthogonal directions: Gram and Schmidt. A step along a direction does not change the powers
+    // of the points before. Its length makes the power of the next point equal to theirs.
     let (mut centre, mut volume) = ([0.0; 3], 1.0 / 6.0);
     let mut directions: Vec<[f64; 3]> = Vec::new();
     for (q, other) in rest {
@@ -132,7 +132,7 @@ fn volumes_are_sums_over_simplices_of_centres() {
     assert!(bounded > 500 && none > 500, "{bounded} {none}");
 }
 
-/// A bounded cell is a closed polyhedron: its facets, each times its normal, add up to nothing.
+/// A bounded cell is a closed polyhedron: the sum of its facets, each times its normal, is zero.
 #[test]
 fn facets_close_cells() {
     let mut closed = 0;
@@ -161,8 +161,8 @@ fn facets_close_cells() {
     assert!(closed > 500, "{closed}");
 }
 
-/// Whether a point that is not hidden is in a segment, a triangle or a tetrahedron of others, and its height |p|² − ω is the mean of theirs
-/// with the shares that its place has in them.
+/// Whether a point that is not hidden is in a segment, a triangle or a tetrahedron of others, and its height |p|² − ω is the mean
+/// of their heights, weighted by their shares in its place.
 fn is_just_seen(points: &[Place], heights: &[i64], v: usize) -> bool {
     let lifted = |i: usize| {
         let way = [0, 1, 2].map(|k| points[i][k] - points[v][k]);
@@ -238,7 +238,7 @@ fn points_that_are_just_not_hidden_have_no_volume() {
     assert!(flat[0] > 10 && flat[1] > 100 && solid > 100, "{flat:?} {solid}");
 }
 
-/// Neighbours are those whose cells have an area in common, also where cells without volume of one point or several are between them.
+/// Neighbours are points whose cells have a common area, also if cells without volume of one point or several are between them.
 #[test]
 fn cells_without_volume_have_no_facets() {
     let row = |inner: &[f64]| {
@@ -246,7 +246,7 @@ fn cells_without_volume_have_no_facets() {
         let mut weights = vec![0.0; 4];
         for &x in inner {
             points.push([x, 0.0, 0.0]);
-            // As high as the segment from 0 to 8 is there.
+            // The height of the segment from 0 to 8 at this position.
             weights.push(x * x - 8.0 * x);
         }
         PowerDiagram::of(&triangulate(&points, Some(&weights)).unwrap(), Some(&weights)).unwrap()
@@ -259,7 +259,7 @@ fn cells_without_volume_have_no_facets() {
         assert_eq!(made.volumes()[..4], *alone.volumes());
         assert!(made.volumes()[4..].iter().all(|&volume| volume == 0.0), "{inner:?}");
     }
-    // In the middle of a facet of the hull, and of the cell.
+    // A point in the middle of a facet of the hull, and one in the middle of the cell.
     let corners = [[0.0; 3], [6.0, 0.0, 0.0], [0.0, 6.0, 0.0], [0.0, 0.0, 8.0]];
     for (inner, weight) in [([2.0, 2.0, 0.0], 8.0 - 24.0), ([1.5, 1.5, 2.0], 8.5 - 34.0)] {
         let points = [&corners[..], &[inner]].concat();
@@ -312,7 +312,7 @@ fn a_lattice_has_facets_between_neighbours_alone() {
     assert_eq!(finite, 3 * 2 * 2 * 3);
 }
 
-/// Lengths scale by powers of two alone, so that they are the same but for these; also far from the origin.
+/// Lengths scale only by powers of two, so they are the same except for these; also far from the origin.
 #[test]
 fn tiny_huge_and_distant_cells_are_as_precise() {
     let mut random = Random::new(7);
@@ -342,7 +342,7 @@ fn tiny_huge_and_distant_cells_are_as_precise() {
     }
 }
 
-/// Where doubles do not hold areas or volumes, these are not numbers; what is unbounded is known to be.
+/// If doubles do not hold areas or volumes, these are NaN; unbounded ones are known.
 #[test]
 fn what_doubles_do_not_hold_is_nan() {
     let mut random = Random::new(8);

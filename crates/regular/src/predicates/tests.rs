@@ -1,4 +1,4 @@
-//! Against determinants of integers by their definition, which no code of the kernel computes.
+//! Compares with determinants of integers by their definition, which no code of the kernel computes.
 
 use std::collections::BTreeSet;
 
@@ -32,14 +32,14 @@ fn places(points: &[[f64; 3]]) -> Vec<Vec<IBig>> {
     points.iter().map(|p| p.iter().map(|&x| integer(x, UNIT)).collect()).collect()
 }
 
-/// Of the matrix of homogeneous coordinates (1, x, y, z).
+/// The sign of the matrix of homogeneous coordinates (1, x, y, z).
 fn orientation_by_definition(points: [[f64; 3]; 4]) -> Ordering {
     let rows: Vec<Vec<IBig>> =
         places(&points).into_iter().map(|p| [vec![IBig::ONE], p].concat()).collect();
     determinant(&rows).cmp(&IBig::ZERO)
 }
 
-/// Of the matrix of lifted points (1, x, y, z, |p|² − ω), with the tested point last.
+/// The sign of the matrix of lifted points (1, x, y, z, |p|² − ω), with the tested point last.
 fn power_by_definition(points: [[f64; 3]; 5], weights: [f64; 5]) -> Ordering {
     let lifted = |(p, weight): (Vec<IBig>, f64)| {
         let square: IBig = p.iter().map(|x| x * x).sum();
@@ -47,7 +47,7 @@ fn power_by_definition(points: [[f64; 3]; 5], weights: [f64; 5]) -> Ordering {
         [vec![IBig::ONE], p, vec![height]].concat()
     };
     let rows: Vec<_> = places(&points).into_iter().zip(weights).map(lifted).collect();
-    // Positive where the last point is outside a positively oriented cell.
+    // Positive if the last point is outside a positively oriented cell.
     determinant(&rows).cmp(&IBig::ZERO)
 }
 

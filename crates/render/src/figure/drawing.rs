@@ -45,7 +45,7 @@ impl Pen {
         Self { stroke: None, width: 0.0, dashed: false, fill, fill_opacity: opacity }
     }
 
-    /// The same pen, with a dashed line.
+    /// Returns this pen with a dashed line.
     #[must_use]
     pub fn dashed(self) -> Self {
         Self { dashed: true, ..self }
@@ -59,7 +59,7 @@ pub enum Step {
     Line([f64; 2]),
     /// Along a circle to a point.
     Arc {
-        /// Where the arc ends.
+        /// The end of the arc.
         to: [f64; 2],
         /// The radius of the circle.
         radius: f64,

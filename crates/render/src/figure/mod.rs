@@ -27,7 +27,7 @@ pub struct Figure {
     pub columns: usize,
     /// The pixels of a panel, the same for all, so that equal cameras give equal scales.
     pub panel: Size,
-    /// In reading order.
+    /// The panels in reading order.
     pub panels: Vec<Panel>,
     /// The values that colours represent.
     pub colour_bar: Option<ColourBar>,
@@ -60,7 +60,7 @@ impl Figure {
     /// The figure as pixels.
     ///
     /// # Errors
-    /// As [`Figure::to_png`].
+    /// See [`Figure::to_png`].
     pub fn to_picture(&self) -> Result<Picture, RenderError> {
         let (svg, [width, height]) = self.compose()?;
         let scale = (f64::from(Self::MIN_WIDTH) / width).max(1.0);
@@ -162,13 +162,13 @@ fn write_picture(
 pub struct Panel {
     /// Above it, after its letter "(a)"; a single panel has no letter.
     pub title: String,
-    /// What it shows.
+    /// The content of the panel.
     pub content: Content,
-    /// Below it, wrapped to its width; a paragraph each.
+    /// The text below it, wrapped to its width, with a paragraph for each element.
     pub captions: Vec<String>,
 }
 
-/// What a panel shows.
+/// The content of a panel.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Content {
     /// Pixels, fitted into the panel.
@@ -180,9 +180,9 @@ pub enum Content {
 /// The values that the colours of a figure represent.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ColourBar {
-    /// From values to colours.
+    /// The map from values to colours.
     pub map: ColourMap,
-    /// What is measured, with its unit.
+    /// The measured quantity, with its unit.
     pub label: String,
 }
 

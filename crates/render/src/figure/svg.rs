@@ -89,7 +89,7 @@ pub(super) fn write_lines(
     }
 }
 
-/// Breaks a text into lines that fit a width; a longer word has a line of its own.
+/// Breaks a text into lines that fit a width; a longer word gets a separate line.
 pub(super) fn wrap(text: &str, width: f64, size: f64) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split_whitespace() {

@@ -13,7 +13,7 @@ fn ball(side: usize, radius: f64) -> Array3<f32> {
     })
 }
 
-/// How often each directed edge occurs.
+/// The number of occurrences of each directed edge.
 fn directed_edges(surface: &Isosurface) -> HashMap<(u32, u32), usize> {
     let mut count = HashMap::new();
     for t in &surface.triangles {
@@ -24,7 +24,7 @@ fn directed_edges(surface: &Isosurface) -> HashMap<(u32, u32), usize> {
     count
 }
 
-/// Every edge has one triangle on each side, but for edges in the border of the grid.
+/// Every edge has one triangle on each side, except for edges in the border of the grid.
 fn assert_watertight(surface: &Isosurface, dims: [usize; 3]) {
     let count = directed_edges(surface);
     for (&(a, b), &times) in &count {
@@ -145,7 +145,7 @@ impl isosurface::source::ScalarSource for Published<'_> {
     fn sample_scalar(&self, p: isosurface::math::Vec3) -> isosurface::distance::Signed {
         let cells = (self.0.dim().0 - 1) as f32;
         let at = [p.z, p.y, p.x].map(|c| (c * cells).round() as usize);
-        // It reads one slice beyond the grid, where nothing is inside.
+        // The other crate reads one slice beyond the grid, where nothing is inside.
         isosurface::distance::Signed(self.0.get(at).map_or(1.0, |v| -v))
     }
 }

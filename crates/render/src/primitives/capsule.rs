@@ -9,7 +9,7 @@ use crate::scene::{Lens, Tube};
 pub(crate) struct Capsule {
     pub bounds: PixelBox,
     tube: u32,
-    /// In the eye's axes, cut off where the tube would reach the eye.
+    /// The ends in the axes of the eye, cut off where the tube would reach the eye.
     ends: [V3; 2],
     radius: f64,
     /// The ends in pixels. No pixel whose centre is further than `reach` from the line between them is
@@ -95,7 +95,7 @@ impl Capsule {
         off[0] * off[0] + off[1] * off[1] > self.reach * self.reach
     }
 
-    /// Where a line of sight enters the tube.
+    /// The point where a line of sight enters the tube.
     fn entry(&self, origin: V3, direction: V3) -> Option<f64> {
         let [a, b] = self.ends;
         let (axis, w) = (sub(b, a), sub(origin, a));

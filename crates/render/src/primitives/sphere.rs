@@ -8,7 +8,7 @@ use crate::scene::{Ball, Lens, Projection};
 pub(crate) struct Sphere {
     pub bounds: PixelBox,
     ball: u32,
-    /// In the eye's axes.
+    /// The centre in the axes of the eye.
     centre: V3,
     radius: f64,
 }
@@ -87,7 +87,7 @@ pub(super) fn outline(centre: V3, radius: f64, lens: &Lens) -> [[f64; 2]; 2] {
     ]
 }
 
-/// Where a line of sight enters a sphere.
+/// The point where a line of sight enters a sphere.
 pub(super) fn entry(origin: V3, direction: V3, centre: V3, radius: f64) -> Option<f64> {
     let to_centre = sub(centre, origin);
     let a = dot(direction, direction);

@@ -12,7 +12,7 @@ pub(crate) struct Triangle {
     pub mesh: u32,
     pub bounds: PixelBox,
     triangle: u32,
-    /// In 1/256 pixel, ordered so that the area is positive.
+    /// The corners in 1/256 pixel, ordered so that the area is positive.
     corners: [[i64; 2]; 3],
     /// Nearness is a·x + b·y + c at pixel position (x, y), and is kept within `range`.
     plane: [f64; 3],
@@ -97,7 +97,7 @@ impl Triangle {
                     let [a, b, c] = self.plane;
                     for (k, nearness) in patch.nearness.iter_mut().enumerate() {
                         let [x, y] = sample_position(x, y, k);
-                        // In this order, the NaN of a plane seen edge-on becomes a number.
+                        // This order turns the NaN of a plane seen edge-on into a number.
                         let n = (a * x + b * y + c).max(self.range[0]).min(self.range[1]);
                         *nearness = n as f32;
                     }
@@ -164,7 +164,7 @@ struct Edge {
     delta: [i64; 2],
     /// −1 where samples exactly on the edge belong to the neighbour.
     bias: i64,
-    /// What each sample of a pixel adds to the value at the pixel's corner, and the largest of these.
+    /// The number that each sample of a pixel adds to the value at the pixel's corner, and the largest of these.
     step: [i64; SAMPLES],
     most: i64,
 }
@@ -173,8 +173,8 @@ impl Edge {
     fn new(from: [i64; 2], to: [i64; 2]) -> Self {
         let [dx, dy] = [to[0] - from[0], to[1] - from[1]];
         let step = SAMPLE.map(|[x, y]| dx * y - dy * x);
-        // As if every sample were moved a little to the right and, far less, down: then none is on an edge, and exactly one
-        // of the two directions of an edge owns it.
+        // Moves every sample a little to the right and, far less, down: then none is on an edge, and exactly one of the two
+        // directions of an edge owns it.
         let bias = if dy < 0 || (dy == 0 && dx > 0) { 0 } else { -1 };
         let most = step.into_iter().fold(i64::MIN, i64::max);
         Self { from, delta: [dx, dy], bias, step, most }

@@ -1,6 +1,6 @@
-//! From a scene to pixels: primitives are sorted into tiles; a tile keeps the nearest primitive of each of 16
-//! samples per pixel, and shades each primitive that is visible in a pixel once, at the centre of its samples. A tile is drawn
-//! by one thread, which reads nothing that another writes, so the picture does not depend on the number of threads.
+//! Draws a scene as pixels. Primitives are sorted into tiles. A tile keeps the nearest primitive of each of 16 samples per pixel,
+//! and shades each primitive that is visible in a pixel once, at the centre of its samples. A tile is drawn by one thread, which
+//! reads nothing that another thread writes, so the picture does not depend on the number of threads.
 
 use rayon::prelude::*;
 use walpha_base::memory::try_with_capacity;
@@ -29,7 +29,7 @@ impl Scene {
     ) -> Result<Picture, RenderError> {
         self.check()?;
         let lens = Lens::new(camera, size)?;
-        // Allocated before the work, so that a failure is reported at once.
+        // Allocate before the work, so that a failure is reported immediately.
         let (width, height) = (size.width() as usize, size.height() as usize);
         let mut pixels =
             try_with_capacity(width * height, || format!("a picture of {width}×{height} pixels"))?;
@@ -57,7 +57,7 @@ impl Scene {
     }
 }
 
-/// For each tile the primitives that may touch it, one tile after the other in one array.
+/// The primitives that may touch each tile, one tile after the other in one array.
 struct Tiles {
     size: Size,
     across: usize,
@@ -160,7 +160,7 @@ fn draw(
             }
         });
     }
-    // From far to near in each pixel; the order of the scene decides between equals.
+    // Sort from far to near in each pixel; the order of the scene decides between equal ones.
     veils.sort_by(|a, b| {
         let order = a.pixel.cmp(&b.pixel).then(a.nearness.total_cmp(&b.nearness));
         order.then(a.name.cmp(&b.name))
@@ -176,7 +176,7 @@ fn draw(
     pixels
 }
 
-/// No primitive.
+/// Stands for a missing primitive.
 const NOTHING: u32 = u32::MAX;
 
 /// A translucent primitive in one pixel.

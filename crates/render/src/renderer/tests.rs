@@ -24,7 +24,7 @@ fn ball(centre: [f64; 3], radius: f64, colour: Rgb) -> Scene {
     Scene { balls: vec![Ball { centre, radius, colour }], ..Scene::default() }
 }
 
-/// Everything at once, scattered as it was when the sum of its pixels was taken.
+/// All primitives together, scattered in the same way as when the sum of its pixels was taken.
 fn crowd() -> Scene {
     let mut state = 1_u64;
     let mut next = || {
@@ -64,7 +64,7 @@ fn the_same_bytes_on_any_number_of_threads() {
         assert!(picture == one, "{threads} threads draw another picture");
         assert_eq!(picture.to_png().unwrap(), one.to_png().unwrap());
     }
-    // And on any machine: FNV-1a over all pixels. It changes only when the look is changed.
+    // The picture is the same on any machine: FNV-1a over all pixels. It changes only when the look is changed.
     let hash = one.pixels().as_flattened().iter().fold(0xcbf2_9ce4_8422_2325_u64, |hash, &byte| {
         (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
     });

@@ -16,19 +16,19 @@ pub enum Projection {
 /// CT convention of the sample head.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum View {
-    /// From −y.
+    /// Seen from −y.
     Front,
-    /// From +y.
+    /// Seen from +y.
     Back,
-    /// From +x, the subject's own left.
+    /// Seen from +x, the subject's own left.
     Left,
-    /// From −x, the subject's own right.
+    /// Seen from −x, the subject's own right.
     Right,
-    /// From +z, the face down in the picture.
+    /// Seen from +z, with the face down in the picture.
     Top,
-    /// From −z, the face up in the picture.
+    /// Seen from −z, with the face up in the picture.
     Bottom,
-    /// From the front, 22° to the subject's left and 11° above: the portrait of a solid.
+    /// Seen from the front, 22° to the subject's left and 11° above: the portrait of a solid.
     ThreeQuarter,
 }
 
@@ -145,7 +145,7 @@ pub(crate) struct Lens {
     pub focal: f64,
     /// The middle of the picture in pixels.
     pub centre: [f64; 2],
-    /// Nothing nearer than this is drawn.
+    /// The distance within which nothing is drawn.
     pub near: f64,
 }
 

@@ -71,7 +71,7 @@ impl Mesh {
 /// The colour of a mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Colours {
-    /// The same everywhere.
+    /// One colour everywhere.
     Uniform(Rgb),
     /// One for each vertex, blended over the triangles.
     Vertex(Vec<Rgb>),
@@ -91,7 +91,7 @@ pub enum Shading {
 pub struct Ball {
     /// The centre, (x, y, z).
     pub centre: [f64; 3],
-    /// In the units of the scene.
+    /// The radius in the units of the scene.
     pub radius: f64,
     /// Its colour.
     pub colour: Rgb,
@@ -102,7 +102,7 @@ pub struct Ball {
 pub struct Tube {
     /// Both ends, (x, y, z).
     pub ends: [[f64; 3]; 2],
-    /// In the units of the scene.
+    /// The radius in the units of the scene.
     pub radius: f64,
     /// Its colour.
     pub colour: Rgb,
@@ -114,7 +114,7 @@ pub enum Background {
     /// White, for paper.
     #[default]
     White,
-    /// Nothing: opacity 0.
+    /// No background: opacity 0.
     Transparent,
 }
 

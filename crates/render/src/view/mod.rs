@@ -19,7 +19,7 @@ pub use subject::{Detail, Differences, Original, Subject};
 pub struct Page {
     /// The file.
     pub html: String,
-    /// What was simplified for display, if anything.
+    /// Tells what was simplified for display, if anything.
     pub simplified: Option<String>,
 }
 
@@ -68,7 +68,7 @@ impl Page {
     }
 }
 
-/// What was simplified at each level of detail.
+/// Tells what was simplified at each level of detail.
 fn simplified(subject: &Subject<'_>, packed: &[Packed]) -> Option<String> {
     let of = |(detail, packed): (&Detail<'_>, &Packed)| {
         let points = detail.levels.points().len();
@@ -84,7 +84,7 @@ const PAGE: &str = include_str!("page.html");
 /// Voids of a level that the page lists.
 const MOST_VOIDS: usize = 200;
 
-/// What does not depend on the level of detail.
+/// The content that does not depend on the level of detail.
 fn whole(subject: &Subject<'_>, centre: [f64; 3]) -> Value {
     let difference = format!(
         "difference to the original (root mean square of F, filled in, around each point), in {}",
@@ -120,7 +120,7 @@ fn facts(subject: &Subject<'_>, centre: [f64; 3]) -> Vec<(String, String)> {
     facts
 }
 
-/// How the positions of a level of detail, as seen from a place, become single precision.
+/// The conversion of the positions of a level of detail, as seen from a place, to single precision.
 fn single(detail: &Detail<'_>, from: [f64; 3]) -> SinglePrecision {
     let seen = |place: &[f64; 3]| [0, 1, 2].map(|k| place[k] - from[k]);
     let places: Vec<[f64; 3]> = detail.levels.points().positions().iter().map(seen).collect();

@@ -81,7 +81,7 @@ pub(super) struct Packed {
     pub simplified: Option<String>,
 }
 
-/// The first level of points that are in no shape whatever α, as the page has it: they are hidden.
+/// The first level, in the page, of points that are in no shape for any α because they are hidden.
 const NEVER: u32 = 255;
 
 /// The most samples along an axis for the surface to compare.

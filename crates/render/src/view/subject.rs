@@ -25,7 +25,7 @@ pub struct Subject<'a> {
 pub struct Detail<'a> {
     /// The shapes.
     pub levels: &'a Levels<'a>,
-    /// Their numbers.
+    /// The numbers of the levels.
     pub ladder: &'a Ladder,
     /// The level shown first.
     pub first: usize,

@@ -1,4 +1,4 @@
-//! A block, what is asked of it, and the merged result of all blocks.
+//! A block, the parameters of its shape, and the merged result of all blocks.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -26,9 +26,9 @@ pub(crate) struct MergedComplex {
     pub b0: u64,
     /// One sheet for each regular facet and two for each singular one, in the order of the facets.
     pub facet_sheets: Vec<u32>,
-    /// The sheet of each singular edge, in their order.
+    /// The sheet of each singular edge, in the order of the edges.
     pub edge_sheets: Vec<u32>,
-    /// Input indices of hidden sites, where the whole triangulation was made.
+    /// Input indices of hidden sites, if the whole triangulation was made.
     pub hidden: Option<Vec<u32>>,
     /// Number of independent directions in which loops on the sheets wind round a torus.
     pub sheet_windings: usize,
@@ -44,14 +44,14 @@ pub(crate) struct Block {
     pub input: Vec<u32>,
     /// Number of the block's own points.
     pub own: u32,
-    /// On a torus: how the points of the halo were moved.
+    /// On a torus: the shifts of the points of the halo.
     pub copies: Option<Copies>,
 }
 
 /// The copies that a halo consists of, on a torus.
 pub(crate) struct Copies {
     pub torus: Torus,
-    /// The multiples of the sides by which each is moved.
+    /// The multiples of the sides by which each copy is moved.
     pub windings: Vec<[i32; 3]>,
 }
 
@@ -74,7 +74,7 @@ pub(super) fn triangulate(
 ) -> Result<CellArrays, TriangulationError> {
     let (own, all) = (TRIANGULATION * u64::from(points.own), points.input.len() as u64);
     if u64::from(points.own) == all {
-        // The only block: all threads are free for it.
+        // A single block can use all threads.
         let counted = AtomicU64::new(0);
         let made = triangulate_along(&points.positions, &points.weights, |more| {
             let fresh = TRIANGULATION * more as u64;

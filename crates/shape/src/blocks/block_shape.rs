@@ -18,19 +18,19 @@ pub struct Own<'a> {
     pub positions: &'a [[f64; 3]],
     /// Power weights.
     pub weights: &'a [f64],
-    /// Which points are the block's own. The others are a superset of its halo.
+    /// Marks the points that are the block's own. The others are a superset of its halo.
     pub own: &'a [bool],
 }
 
-/// The simplices that a block owns, in canonical order, and what is needed to merge it with other blocks. Points are
-/// numbered by their index among those given; sheets and components from 0 within the block.
+/// The simplices that a block owns, in canonical order, and the data for merging it with other blocks. Points are numbered by
+/// their index among the given ones, sheets and components from 0 within the block.
 #[derive(Debug, Default)]
 pub struct BlockShape {
     /// The simplices that the block owns.
     pub complex: Complex,
     /// One sheet for each regular facet and two for each singular one, in the order of the facets.
     pub facet_sheets: Vec<u32>,
-    /// The sheet of each singular edge, in their order.
+    /// The sheet of each singular edge, in the order of the edges.
     pub edge_sheets: Vec<u32>,
     /// Number of sheets.
     pub sheets: u32,
@@ -61,7 +61,7 @@ pub fn block_shape(points: Own<'_>, alpha: f64) -> Result<BlockShape, ShapeError
     let mut block = block(points, alpha)?;
     let halo = block.input.len() as u64 - u64::from(block.own);
     let largest = weights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    // Below −max ω the shape is empty: this is a finite α below that.
+    // Below −max ω the shape is empty; this α is finite and below that.
     let alpha = alpha.max(-2.0 * largest.abs() - 1.0);
     let (monitor, next) = (Monitor::noop(), positions.len() as u32);
     let work = monitor.units(1);
@@ -100,7 +100,7 @@ fn block(points: Own<'_>, alpha: f64) -> Result<Block, ShapeError> {
     })
 }
 
-/// The rows in canonical order; `points` is the number of points given.
+/// The rows in canonical order; `points` is the number of given points.
 fn ordered(owned: Owned, block: &Block, points: usize) -> BlockShape {
     let mut order: Vec<u32> = (0..block.own).collect();
     order.par_sort_unstable_by_key(|&v| block.input[v as usize]);
@@ -132,7 +132,7 @@ fn ordered(owned: Owned, block: &Block, points: usize) -> BlockShape {
 mod tests {
     use super::*;
 
-    /// Squared lengths may be below zero; below all weights there is nothing.
+    /// Squared lengths may be negative; the shape is empty for an α below all weights.
     #[test]
     fn nothing_is_in_the_shape_below_all_weights() {
         let positions = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];

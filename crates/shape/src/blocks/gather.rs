@@ -8,7 +8,7 @@ use crate::{Class, Complex, Simplices};
 /// Points whose records one thread gathers at a time.
 const CHUNK: usize = 1 << 12;
 
-/// Where the record of a point is.
+/// The location of the record of a point.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Location {
     pub records: u32,
@@ -28,7 +28,7 @@ pub(super) struct Counts {
 }
 
 impl Counts {
-    /// Those of some points. Vertices that are exterior count only if exterior simplices are wanted.
+    /// The counts for some points. Exterior vertices count only if exterior simplices are wanted.
     fn of<'a>(points: impl Iterator<Item = &'a PointRows>, exterior: bool) -> Self {
         points.fold(Self::default(), |sum, point| {
             sum.plus(Self {
@@ -42,7 +42,7 @@ impl Counts {
         })
     }
 
-    /// Those of all points in some records.
+    /// The counts for all points in some records.
     pub(super) fn of_all<'a>(
         records: impl ParallelIterator<Item = &'a Records>,
         exterior: bool,
@@ -62,7 +62,7 @@ impl Counts {
         }
     }
 
-    /// Bytes of so many rows, classes and sheets once gathered.
+    /// The bytes of these rows, classes and sheets after they are gathered.
     pub(super) fn bytes(self) -> u64 {
         let rows = |vertices: usize, count: usize| {
             (vertices * size_of::<u32>() + size_of::<Class>()) as u64 * count as u64
@@ -107,7 +107,7 @@ impl<const N: usize> List<N> {
 }
 
 impl Gathered {
-    /// Lists of so many elements, which are to be written.
+    /// Allocates lists for this number of elements, which are then written.
     pub(super) fn new(counts: Counts) -> Self {
         Self {
             cells: List::new(counts.cells),
@@ -119,7 +119,7 @@ impl Gathered {
         }
     }
 
-    /// All that is to be written.
+    /// Everything that has to be written.
     pub(super) fn rest(&mut self) -> Rest<'_> {
         Rest {
             cells: self.cells.rest(),
@@ -131,8 +131,8 @@ impl Gathered {
         }
     }
 
-    /// The complex; the sheets of each regular facet, one, and of each singular one, two, in the order of the facets;
-    /// and the sheet of each singular edge, in their order.
+    /// The complex; the one sheet of each regular facet and the two sheets of each singular facet, in the order of the facets;
+    /// and the sheet of each singular edge, in the order of the edges.
     pub(super) fn into_parts(self) -> (Complex, Vec<u32>, Vec<u32>) {
         let complex = Complex {
             cells: self.cells.simplices(),
@@ -144,7 +144,7 @@ impl Gathered {
     }
 }
 
-/// What is not written yet of gathered lists.
+/// The part of gathered lists that is not written yet.
 pub(super) struct Rest<'a> {
     cells: Part<'a, 4>,
     facets: Part<'a, 3>,
@@ -198,8 +198,8 @@ impl Rest<'_> {
         }
     }
 
-    /// Writes the simplices of the next points, on all threads: where each is recorded, and its input index, in the
-    /// order of these. Returns those that are not vertices of the triangulation.
+    /// Writes the simplices of the next points, on all threads, given the location of their records and their ascending input
+    /// indices. Returns the points that are not vertices of the triangulation.
     pub(super) fn write(
         &mut self,
         records: &[Records],

@@ -12,9 +12,9 @@ use super::plan::Plan;
 use crate::Class;
 use crate::winding::{WindingSets, minus};
 
-/// Puts what blocks recorded in the order of the smallest vertices, which rows are stored without. Rows of one
-/// smallest vertex are in order already. The records of a bucket are freed before the next bucket is merged, so
-/// that few rows are in memory twice.
+/// Sorts the records of blocks by the smallest vertices, which are left out of the stored rows. Rows with the same smallest
+/// vertex are in order already. The records of a bucket are freed before the next bucket is merged, so only few rows are in
+/// memory twice.
 pub(super) fn merge(
     sites: &Sites<'_>,
     plan: &Plan,
@@ -53,7 +53,7 @@ pub(super) fn merge(
     }
 }
 
-/// Where each site is recorded, among the records of its bucket in all blocks.
+/// The location of the record of each site, among the records of its bucket in all blocks.
 fn locations(sites: &Sites<'_>, partition: &Partition, buckets: Buckets) -> Vec<Location> {
     let mut locations = vec![Location::default(); sites.input().len()];
     let mut first = 0;
@@ -72,7 +72,7 @@ fn locations(sites: &Sites<'_>, partition: &Partition, buckets: Buckets) -> Vec<
     locations
 }
 
-/// Unites the components of all blocks: how many times two of them became one.
+/// Unites the components of all blocks, and returns the number of times two of them became one.
 fn joined(sites: &Sites<'_>, blocks: &mut [Owned]) -> u64 {
     // On a torus even one block has a halo, whose copies are joined to their own points more than once.
     if let [block] = blocks
@@ -85,8 +85,8 @@ fn joined(sites: &Sites<'_>, blocks: &mut [Owned]) -> u64 {
     pairs.filter(|&[a, b]| sets.unite(a, b)).count() as u64
 }
 
-/// Numbers the sheets of all blocks in common: those that share a side of a facet, or a singular edge, are
-/// one. Returns the number of independent directions in which sheets wind round a torus.
+/// Gives the sheets of all blocks common numbers: those that share a side of a facet, or a singular edge, are one. Returns the
+/// number of independent directions in which sheets wind round a torus.
 fn unite_sheets(blocks: &mut [Owned]) -> usize {
     let starts: Vec<u32> = (blocks.iter())
         .scan(0, |next, block| {
@@ -105,7 +105,7 @@ fn unite_sheets(blocks: &mut [Owned]) -> usize {
     let total: u32 = blocks.iter().map(|block| block.sheets).sum();
     let mut sets = WindingSets::new(total as usize);
     for pair in shared.windows(2).filter(|pair| pair[0].0 == pair[1].0) {
-        // Moved so that their copies of the smallest vertex coincide.
+        // Sets are moved so that their copies of the smallest vertex coincide.
         sets.unite(pair[0].1, pair[1].1, minus(pair[0].2, pair[1].2));
     }
     for (block, start) in blocks.iter_mut().zip(&starts) {

@@ -46,7 +46,7 @@ impl Partition {
             }
             let axis = nodes[at].longest_side();
             let left = blocks / 2;
-            // The product may pass what 32 bits hold.
+            // The product may exceed 32 bits.
             let middle = (here.len() as u64 * left as u64 / blocks as u64) as usize;
             let along =
                 |&rank: &u32| sites.positions()[sites.curve()[rank as usize] as usize][axis];
@@ -78,7 +78,7 @@ impl Partition {
         members.iter().map(|&rank| sites.curve()[rank as usize])
     }
 
-    /// The number of points of the largest block, its halo included.
+    /// The number of points of the largest block, including its halo.
     pub(crate) fn largest(&self, sites: &Sites<'_>, reach: Reach) -> usize {
         let size = |block: usize| self.size(sites, reach, block);
         (0..self.len()).into_par_iter().map(size).max().unwrap_or(0)
@@ -160,8 +160,8 @@ impl Partition {
         }
     }
 
-    /// The multiples of the sides by which points of the halo of a block may be moved: all that may be in reach, and
-    /// perhaps more.
+    /// The multiples of the sides by which points of the halo of a block may be moved: all that may be in reach, and possibly
+    /// more.
     fn windings(&self, sites: &Sites<'_>, own: &Node, reach: Reach) -> Vec<[i32; 3]> {
         let Some(torus) = sites.torus() else { return vec![[0; 3]] };
         let all = &self.nodes[0];
@@ -188,7 +188,7 @@ impl Partition {
 pub(crate) enum Reach {
     /// The points whose balls at this α meet a ball of the block's points: they decide the shape at α.
     Balls(f64),
-    /// The points within this distance, whatever their balls.
+    /// The points within this distance, for balls of any size.
     Distance(f64),
 }
 
@@ -280,7 +280,7 @@ impl Node {
 
     fn longest_side(&self) -> usize {
         let side = |k: usize| self.high[k] - self.low[k];
-        // Of equal sides the last, along which the samples of a volume are farthest apart in memory.
+        // Of equal sides, choose the last, along which the samples of a volume are farthest apart in memory.
         (0..3).max_by(|&a, &b| side(a).total_cmp(&side(b))).unwrap_or(2)
     }
 

@@ -6,14 +6,14 @@ use walpha_regular::internals::Sites;
 use super::partition::{Partition, Reach};
 use crate::PlanError;
 
-/// The blocks, and how many of them are computed at once.
+/// The blocks, and how many of them are computed at the same time.
 pub(crate) struct Plan {
     pub partition: Partition,
     pub at_once: usize,
-    /// Points in the blocks worked on at once, their halos' included.
+    /// The number of points, including those of halos, in the blocks that are computed at the same time.
     at_work: u64,
-    /// The bound on memory, if there is one. Freed memory is then returned to the system at once, which costs a tenth
-    /// of the time, as it must be requested again.
+    /// The bound on memory, if there is one. With a bound, freed memory is returned to the system immediately, which costs a
+    /// tenth of the time because it must be requested again.
     bound: Option<Bound>,
 }
 
@@ -22,16 +22,16 @@ pub(crate) struct Plan {
 struct Bound {
     /// Allowed.
     asked: u64,
-    /// In use when the plan was made.
+    /// The bytes in use when the plan was made.
     resident: u64,
 }
 
 /// The limits of a plan.
 #[derive(Clone, Copy)]
 pub(crate) struct Limits {
-    /// Blocks asked for.
+    /// The requested number of blocks.
     pub blocks: Option<usize>,
-    /// Bytes allowed.
+    /// The allowed number of bytes.
     pub memory: Option<u64>,
 }
 
@@ -41,24 +41,24 @@ pub(crate) struct Limits {
 const DONE: u64 = 215;
 /// Bytes per point when blocks are merged: rows with all vertices.
 const MERGED: u64 = 320;
-/// Bytes per point that merging takes besides rows: the locations of the rows.
+/// Bytes per point that merging takes in addition to rows: the locations of the rows.
 const LOCATIONS: u64 = 16;
-/// Buckets in which rows are merged where memory is bounded: only one bucket is in memory twice.
+/// Buckets in which rows are merged if memory is bounded: only one bucket is in memory twice.
 const BUCKETS: usize = 32;
 /// The speed-up of one mesh on 2ᵏ threads, as a fraction of 2ᵏ, is 2⁻ᵏ to this power. Measured on two threads
 /// (`benches/shapes.rs`): 0.72 to 0.88.
 const LOSS: f64 = 0.32;
-/// The least number of points of a block that is cut for the sake of threads: with smaller blocks, halos cost more
-/// than another thread gains.
+/// The minimum number of points of a block that is cut to use more threads: with smaller blocks, halos cost more than another
+/// thread gains.
 const WORTHWHILE: usize = 2000;
 /// The largest number of blocks.
 const MAX_BLOCKS: usize = 1 << 12;
 
-/// Bytes per point of a block being computed, its halo's points included: 6 to 7 cells of 36 bytes (corners,
-/// neighbours and visit stamp) during triangulation; then of 32, with stars and rows.
+/// Bytes per point of a block during its computation, including the points of its halo: 6 to 7 cells of 36 bytes (corners,
+/// neighbours and visit stamp) during triangulation; then cells of 32 bytes, with stars and rows.
 pub const AT_WORK: u64 = 600;
 
-/// Bytes that a shape of `points` points takes while blocks with `at_work` points, halos included, are computed.
+/// Bytes that a shape of `points` points takes during the computation of blocks with `at_work` points, including halos.
 fn taken(points: usize, at_work: u64) -> u64 {
     let working = DONE * points as u64 + AT_WORK * at_work;
     working.max(MERGED * points as u64)
@@ -70,14 +70,14 @@ fn fewest(points: usize, threads: usize) -> usize {
 }
 
 impl Plan {
-    /// All sites as one block.
+    /// Plans one block with all sites.
     pub(crate) fn whole(sites: &Sites<'_>) -> Self {
         let at_work = sites.input().len() as u64;
         Self { partition: Partition::new(sites, 1), at_once: 1, at_work, bound: None }
     }
 
-    /// As many blocks as there are threads; with a bound on memory, those that keep it and take the
-    /// least time. O(n log n).
+    /// Plans as many blocks as there are threads; with a bound on memory, the blocks that respect it and take the least time. O(n
+    /// log n).
     ///
     /// # Errors
     /// [`PlanError`] when the bound cannot be kept.
@@ -97,7 +97,7 @@ impl Plan {
         }
     }
 
-    /// As many blocks as there are threads, or the whole on all threads where halos would cost more than that loses.
+    /// Plans as many blocks as there are threads, or a single block on all threads if halos would cost more than that loses.
     fn fast(sites: &Sites<'_>, reach: Reach, threads: usize) -> Self {
         let points = sites.input().len();
         let at_once = fewest(points, threads);
@@ -109,7 +109,7 @@ impl Plan {
         Self { partition, at_once, at_work, bound: None }
     }
 
-    /// The blocks that keep a bound and take the least time.
+    /// Chooses the blocks that respect a bound and take the least time.
     fn within(
         bound: Bound,
         sites: &Sites<'_>,
@@ -126,8 +126,8 @@ impl Plan {
         let mut best: Option<(f64, Self)> = None;
         loop {
             let partition = Partition::new(sites, blocks);
-            // The largest block has no fewer points than this one. Where that is too many already, and no news
-            // for the least that is needed, the others are not counted: with a long reach each has nearly all.
+            // The largest block has at least as many points as this one. If that is already too many, and does not reduce the
+            // known minimum, the others are not counted: with a long reach each has nearly all points.
             let some = partition.size(sites, reach, partition.len() / 2);
             let hopeless = needs(1, some) > asked && needs(1, some) >= least.needed;
             let largest = if hopeless { some } else { partition.largest(sites, reach) };
@@ -147,7 +147,7 @@ impl Plan {
                 best = Some((time(at_once), Self { partition, at_once, at_work, bound }));
             }
             blocks *= 2;
-            // More blocks have more points in halos: once all threads have work, they are slower.
+            // More blocks have more points in halos: after all threads have work, more blocks are slower.
             if at_once == Some(threads)
                 || (best.is_some() && time(threads) >= shortest)
                 || blocks > MAX_BLOCKS.min(points)
@@ -183,7 +183,7 @@ impl Plan {
         if needed <= asked { Ok(()) } else { Err(error) }
     }
 
-    /// Returns freed memory to the system where memory is bounded; some allocators (glibc's) would keep it.
+    /// Returns freed memory to the system if memory is bounded; some allocators (glibc's) would keep it.
     pub(crate) fn give_back(&self) {
         if self.bound.is_some() {
             memory::give_back();

@@ -13,7 +13,7 @@ use super::spanning::spanning;
 use super::torus::{on_torus, too_long};
 use crate::ShapeError;
 
-/// The α-complex of sites; with exterior simplices, which need one block, the whole triangulation.
+/// The α-complex of sites; with exterior simplices, which require one block, the whole triangulation.
 pub(crate) fn run(
     sites: &Sites<'_>,
     plan: &Plan,

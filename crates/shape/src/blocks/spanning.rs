@@ -6,8 +6,8 @@ use walpha_regular::{SitesError, TriangulationError};
 
 use super::block::{Block, triangulate};
 
-/// Triangulates a block. Where its points span no volume, auxiliary points are added, with input indices from `next`
-/// on. Their balls at α are empty, so they are in no simplex of the shape and refute none.
+/// Triangulates a block. If its points span no volume, auxiliary points are added, with input indices from `next` on. Their balls
+/// at α are empty, so they are in no simplex of the shape and refute none.
 pub(super) fn spanning(
     block: &mut Block,
     alpha: f64,
@@ -17,7 +17,7 @@ pub(super) fn spanning(
     match triangulate(block, work) {
         Err(TriangulationError::Sites(SitesError::Flat { .. } | SitesError::TooFew { .. })) => {
             let auxiliary = auxiliary_positions(&block.positions);
-            // Weights below −α make the balls empty; twice as much, for roundings.
+            // Weights below −α make the balls empty; the factor 2 allows for roundings.
             block.weights.extend(auxiliary.iter().map(|_| -(2.0 * alpha.max(0.0) + 1.0).ceil()));
             block.input.extend((next..).take(auxiliary.len()));
             block.positions.extend(auxiliary);

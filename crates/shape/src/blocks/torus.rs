@@ -1,4 +1,4 @@
-//! The halo of a block of a torus: smaller than α asks for where that is enough to decide the block.
+//! The halo of a block of a torus, which is smaller than the halo for α if that is enough to decide the block.
 
 use rayon::prelude::*;
 use walpha_base::monitor::Units;
@@ -34,9 +34,9 @@ pub(super) fn on_torus(
     Ok((points, made, params.lattice))
 }
 
-/// Squared radii of spheres for which halos are tried, in squares of the mean spacing of points. The largest empty
-/// spheres of evenly distributed points have radii of at most about twice the spacing, so the first halo is mostly
-/// enough, and much smaller than that for a large α.
+/// Squared radii of spheres for which halos are tried, in squares of the mean spacing of points. The largest empty spheres of
+/// evenly distributed points have radii of at most about twice the spacing, so the first halo is usually enough, and it is much
+/// smaller than the halo for a large α.
 const SQUARED_RADII: [f64; 3] = [4.0, 16.0, 64.0];
 
 impl BlockParams {
@@ -85,19 +85,19 @@ mod tests {
         BlockParams { alpha, lattice, exterior }
     }
 
-    /// Points of even density in a box of 8: a point to each cube of side 1, and not at its centre.
+    /// Points of even density in a box of 8: one point in each cube of side 1, away from its centre.
     fn even() -> Vec<[f64; 3]> {
         let cube = |i: u32| [i % 8, i / 8 % 8, i / 64].map(f64::from);
         let within = |i: u32| [i * 7 % 13, i * 11 % 17, i * 5 % 19].map(|k| f64::from(k) / 32.0);
         (0..512).map(|i| std::array::from_fn(|k| cube(i)[k] + within(i)[k])).collect()
     }
 
-    /// As many, all in one corner of an eighth of the box.
+    /// The same number of points, all in one corner of an eighth of the box.
     fn corner() -> Vec<[f64; 3]> {
         even().into_iter().map(|point| point.map(|x| x / 2.0)).collect()
     }
 
-    /// A point to each unit of volume, the heaviest of weight ½; half of a diagonal is 6.93.
+    /// One point for each unit of volume, the heaviest with weight ½; half of a diagonal is 6.93.
     #[test]
     fn small_halos_come_first_and_what_is_asked_last() {
         let weights: Vec<f64> = (0..512).map(|i| f64::from(i % 4) / 6.0).collect();

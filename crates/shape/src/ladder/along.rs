@@ -8,8 +8,8 @@ use crate::Complex;
 
 /// Vertices along a Hilbert curve, and the rows of the simplices of each dimension whose smallest vertex each is.
 ///
-/// Rows are in the order of input indices, which need not be close in space. Visited along the curve, most of what a
-/// simplex needs is in a cache still, from those before it.
+/// Rows are in the order of input indices, which need not be close in space. In visits along the curve, most of the data of a
+/// simplex is still in a cache from the simplices before it.
 pub(super) struct Along {
     order: Vec<u32>,
     /// The first row of each vertex, and the end.
@@ -53,8 +53,8 @@ pub(super) fn rows(starts: &[u32], group: u32) -> Range<usize> {
     starts[group as usize] as usize..starts[group as usize + 1] as usize
 }
 
-/// Where the rows of each group start, and where the last ones end. Groups ascend; `before` says whether a row belongs to
-/// one before this.
+/// The start of the rows of each group, and the end of the last ones. Groups ascend; `before` says whether a row belongs to a
+/// group before this one.
 pub(super) fn starts<T: Sync>(
     rows: &[T],
     groups: usize,

@@ -1,8 +1,8 @@
 //! Incidences and radii, in one visit of each simplex: most of the time goes into waiting for memory.
 //!
-//! In a regular triangulation, a smallest orthogonal sphere of a facet that contains any point contains one of the two
-//! vertices opposite the facet; that of an edge or a vertex, one of a facet or an edge that it is a face of. So cells
-//! tell which facets are not Gabriel, then facets which edges, and edges which vertices.
+//! In a regular triangulation, if a smallest orthogonal sphere of a facet contains any point, it contains one of the two vertices
+//! opposite the facet; the sphere of an edge or a vertex contains a vertex of a facet or an edge that it is a face of. So cells
+//! determine the facets that are not Gabriel, then facets the edges, and edges the vertices.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -27,16 +27,16 @@ impl Radius {
 /// Squared radii of the smallest orthogonal spheres, each the nearest double, by row.
 #[derive(Debug)]
 pub(super) struct Radii {
-    /// Of all cells, …
+    /// The radii of all cells, …
     pub cells: Vec<f64>,
-    /// … and of what is Gabriel among lower simplices.
+    /// … and those of the Gabriel simplices among the lower ones.
     pub facets: Vec<Radius>,
     pub edges: Vec<Radius>,
     pub vertices: Vec<Radius>,
 }
 
-/// Radii that threads write in the order in which they visit simplices. A slot is NaN once its sphere is known not to be
-/// empty, from any thread; its radius is set after that only.
+/// Radii that threads write in the order in which they visit simplices. A slot becomes NaN as soon as any thread finds that its
+/// sphere is not empty; its radius is only set after that.
 pub(super) struct Slots(Vec<AtomicU64>);
 
 impl Slots {
@@ -144,7 +144,7 @@ impl<'a> Faces<'a> {
     }
 }
 
-/// The index of the row with this last vertex, among rows whose last vertices ascend. There are nearly always few: then
+/// The index of the row with this last vertex, among rows whose last vertices ascend. There are nearly always few rows; then
 /// counting is faster than bisection, whose branches are mispredicted.
 fn index_of<const N: usize>(rows: &[[u32; N]], last: u32) -> u32 {
     // Up to this many rows are counted.
@@ -158,8 +158,8 @@ fn index_of<const N: usize>(rows: &[[u32; N]], last: u32) -> u32 {
     at as u32
 }
 
-/// The incidences and radii of all simplices. Expected O(n log d), where d is the degree of a vertex, and exact arithmetic
-/// where doubles do not decide. Calls `done` after each of the three passes.
+/// The incidences and radii of all simplices. Expected O(n log d), where d is the degree of a vertex, and exact arithmetic if
+/// doubles do not decide. Calls `done` after each of the three passes.
 pub(super) fn incidence_and_radii(
     whole: &Complex,
     positions: &[[f64; 3]],
@@ -220,8 +220,8 @@ pub(super) fn incidence_and_radii(
     Ok((incidence, radii))
 }
 
-/// On which side of the facet opposite each corner a cell lies: its corners are positively oriented, and those of the facet
-/// ascend. Two cells at a facet are on different sides, so that each is written to a place of its own.
+/// The side of the facet opposite each corner on which a cell lies. The corners of the cell are positively oriented, and those of
+/// the facet ascend. Two cells at a facet are on different sides, so each is written to its own place.
 fn sides([_, _, c, d]: [u32; 4]) -> [usize; 4] {
     // An exchange of two corners changes the side: (a, b, c, d) is on side 0 of (a, b, c), so (a, b, d, c) is on
     // side 1 of (a, b, d); (b, c, d, a) takes three exchanges and (a, c, d, b) two, and one more where c > d.

@@ -10,9 +10,8 @@ use crate::{Alpha, Betti};
 
 /// The topology of a filtration at every critical value: every α at which a simplex enters.
 ///
-/// Critical values are distinguished exactly; those with the same least double that is not below are
-/// one entry, as no double separates them. On a voxel grid, where values are equal by the thousand,
-/// that leaves few.
+/// Critical values are distinguished exactly; values with the same smallest double that is not below them are one entry, because
+/// no double separates them. On a voxel grid, where thousands of values are equal, this leaves few entries.
 #[derive(Clone, Debug)]
 pub struct Curve {
     pub(super) values: Vec<Value>,
@@ -20,27 +19,26 @@ pub struct Curve {
     pub betti: Vec<Betti>,
     /// The solid components from each value on.
     pub solid_components: Vec<u64>,
-    /// Number of vertices of the triangulation that are in no cell of the shape, from each value on; where points span
-    /// no volume, in no triangle, or in no edge.
+    /// Number of vertices of the triangulation that are in no cell of the shape, from each value on; if points span no volume, in
+    /// no triangle, or in no edge.
     pub loose: Vec<u64>,
     /// The visible simplices from each value on.
     pub(super) visible: Vec<Visible>,
     largest_weight: f64,
 }
 
-/// Suggested values of α, squared lengths, each the least double at which the shape has the property.
+/// Suggested values of α, squared lengths, each the smallest double at which the shape has the property.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct Suggestions {
-    /// Every vertex of the triangulation is one of a cell: MATLAB's
-    /// `criticalAlpha(shp, 'all-points')`, CGAL's `Alpha_shape_3::find_alpha_solid`.
+    /// Every vertex of the triangulation is a vertex of a cell: MATLAB's `criticalAlpha(shp, 'all-points')`, CGAL's
+    /// `Alpha_shape_3::find_alpha_solid`.
     pub all_points: Alpha,
-    /// Besides, the cells are one solid component: MATLAB's `criticalAlpha(shp, 'one-region')`,
-    /// CGAL's `Alpha_shape_3::find_optimal_alpha(1)`, which bisects and may find a larger
-    /// one. This is the smallest α with the property, not one from which it lasts: the
-    /// number of components rises and falls.
+    /// In addition, the cells are one solid component: MATLAB's `criticalAlpha(shp, 'one-region')`, CGAL's
+    /// `Alpha_shape_3::find_optimal_alpha(1)`, which bisects and may find a larger one. This is the smallest α with the property,
+    /// not one from which it lasts: the number of components rises and falls.
     pub one_region: Alpha,
-    /// Besides, there are no voids.
+    /// In addition, there are no voids.
     pub no_void: Alpha,
     /// The longest interval from `all_points` on in which the Betti numbers do not change, measured by the ratio of the
     /// squared radii of the largest balls. The second is the α at which they change again; ∞, the string "inf" in
@@ -54,9 +52,9 @@ impl Filtration {
         self.curve_of(self.values())
     }
 
-    /// The topology at about `most` of the critical values, spread evenly over their ranks, the first and the last among
-    /// them: for pictures, where all would take several times as long. Each value of α is a double just above the critical
-    /// one, and what is said of it holds exactly. O(n log n).
+    /// The topology at about `most` of the critical values, spread evenly over their ranks and including the first and the last.
+    /// It is meant for pictures, for which all values would take several times as long. Each value of α is a double just above
+    /// the critical value, and its topology is exact. O(n log n).
     ///
     /// # Panics
     /// When `most` is less than 2.
@@ -65,7 +63,7 @@ impl Filtration {
         self.curve_of(self.some_values(most))
     }
 
-    /// The α of [`coarse_curve`](Self::coarse_curve) alone, ascending, for about half of its time. O(n log n).
+    /// The α of [`coarse_curve`](Self::coarse_curve) alone, ascending, in about half of its time. O(n log n).
     ///
     /// # Panics
     /// When `most` is less than 2.
@@ -90,13 +88,13 @@ impl Filtration {
     }
 
     /// The smallest α at which all points are in one solid component ([`Levels::solid_components`]): [`Suggestions::one_region`],
-    /// for less than half of what a [`Curve`] costs. O(n log n).
+    /// in less than half of the time of a [`Curve`]. O(n log n).
     pub fn one_region(&self) -> Alpha {
         self.optimal_alpha(NonZeroU64::MIN)
     }
 
-    /// The smallest α at which all points are in at most so many solid components; as
-    /// [`Filtration::one_region`], of CGAL's `Alpha_shape_3::find_optimal_alpha`. O(n log n).
+    /// The smallest α at which all points are in at most this many solid components; like [`Filtration::one_region`], the
+    /// counterpart of CGAL's `Alpha_shape_3::find_optimal_alpha`. O(n log n).
     #[expect(clippy::missing_panics_doc, reason = "an invariant")]
     pub fn optimal_alpha(&self, components: NonZeroU64) -> Alpha {
         let values = self.values();
@@ -151,9 +149,8 @@ impl Filtration {
         Suggestions { all_points, one_region, no_void, plateau: [low, high] }
     }
 
-    /// At most `count` critical values at which Betti numbers change, as evenly spaced as possible in the
-    /// logarithm of the squared radius α + max ω of the largest balls. Each is the least double
-    /// at which the shape is the new one. O(n·count).
+    /// At most `count` critical values at which Betti numbers change, as evenly spaced as possible in the logarithm of the
+    /// squared radius α + max ω of the largest balls. Each is the smallest double at which the shape is the new one. O(n·count).
     ///
     /// # Panics
     /// When `count` is less than 2.
@@ -234,7 +231,7 @@ impl Curve {
 pub(super) struct Visible {
     /// Their number.
     pub count: u64,
-    /// How many appear, disappear, or turn from singular to regular at this level.
+    /// The number of simplices that appear, disappear, or turn from singular to regular at this level.
     pub changed: u64,
 }
 
@@ -268,8 +265,8 @@ impl Levels<'_> {
         change.into_iter().map(sight).collect()
     }
 
-    /// The levels with visible simplices that differ from those of the level before. Of several equal levels, `wanted`
-    /// is kept if it is one of them, else the first. O(n).
+    /// The levels with visible simplices that differ from those of the level before. Of several equal levels, `wanted` is kept if
+    /// it is one of them, otherwise the first. O(n).
     pub fn distinct(&self, wanted: Alpha) -> Vec<Alpha> {
         let mut kept: Vec<Alpha> = Vec::new();
         let mut has_visible = false;
@@ -288,13 +285,12 @@ impl Levels<'_> {
 }
 
 impl Filtration {
-    /// At most `count` critical values for pictures, ascending: each has visible simplices, and others than the one
+    /// At most `count` critical values for pictures, ascending: each has visible simplices, and different ones from the value
     /// before.
     ///
-    /// They are evenly spaced in the mean of three measures, so that neither few large simplices nor many small ones
-    /// dominate: the logarithm of the squared radius of the largest balls, the
-    /// facets and edges that appear and disappear, and the Betti numbers that change. The last two put most
-    /// levels where the shape takes form. O(n).
+    /// They are evenly spaced in the mean of three measures, so that neither few large simplices nor many small ones dominate:
+    /// the logarithm of the squared radius of the largest balls, the facets and edges that appear and disappear, and the Betti
+    /// numbers that change. The last two put most levels where the shape forms. O(n).
     pub fn stops(&self, curve: &Curve, count: usize) -> Vec<Alpha> {
         let shows = |&k: &usize| {
             let Visible { count, changed } = curve.visible[k];

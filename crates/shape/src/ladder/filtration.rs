@@ -10,13 +10,11 @@ use crate::{Alpha, AlphaShape, Complex, Engine, ShapeError, ShapeOptions, alpha_
 
 /// All alpha shapes of a set of points: the regular triangulation, and for each simplex the α at which it enters.
 ///
-/// Weights are the same for every α; with weights that depend on α, shapes would not be nested. A simplex enters
-/// at the squared radius of its smallest orthogonal sphere if no point
-/// lies strictly inside (it is *Gabriel*), else with the first simplex it is a face of
-/// (Edelsbrunner and Mücke 1994, doi:10.1145/174462.156635; CGAL's `Alpha_shape_3` keeps the same
-/// intervals, in rounded numbers). Here a radius is the nearest double, and where an α is as near to the
-/// exact number, exact arithmetic decides: a shape taken from a filtration equals that of
-/// [`alpha_shape`](crate::alpha_shape()).
+/// Weights are the same for every α; with weights that depend on α, shapes would not be nested. A simplex enters at the squared
+/// radius of its smallest orthogonal sphere if no point lies strictly inside (it is *Gabriel*), otherwise with the first simplex
+/// of which it is a face (Edelsbrunner and Mücke 1994, doi:10.1145/174462.156635; CGAL's `Alpha_shape_3` keeps the same
+/// intervals, in rounded numbers). Here a radius is the nearest double, and if an α is equally near to the exact number, exact
+/// arithmetic decides: a shape taken from a filtration equals that of [`alpha_shape`](crate::alpha_shape()).
 #[derive(Debug)]
 pub struct Filtration {
     pub(super) whole: AlphaShape,
@@ -25,14 +23,14 @@ pub struct Filtration {
 }
 
 impl Filtration {
-    /// Triangulates points and computes when each simplex enters. Takes about twice the time of one shape
-    /// of the whole triangulation; expected O(n log n). Borrowed points are copied, as for a shape.
+    /// Triangulates points and computes when each simplex enters. Takes about twice the time of one shape of the whole
+    /// triangulation; expected O(n log n). Borrowed points are copied, as for a shape.
     ///
     /// Points in one plane, on one line or at one place have the filtration that they have there: there are no
     /// cells, triangles (edges, the vertex) enter by their own spheres, and none is ever interior.
     ///
     /// # Errors
-    /// As [`alpha_shape`](crate::alpha_shape()).
+    /// See [`alpha_shape`](crate::alpha_shape()).
     pub fn new(points: impl Into<WeightedPoints>) -> Result<Self, ShapeError> {
         Self::on(None, points)
     }
@@ -41,7 +39,7 @@ impl Filtration {
     /// [`ShapeOptions::periodic`].
     ///
     /// # Errors
-    /// As [`alpha_shape`](crate::alpha_shape()) at α = ∞; so no edge of the whole triangulation may span half of the box.
+    /// See [`alpha_shape`](crate::alpha_shape()), at α = ∞; so no edge of the whole triangulation may span half of the box.
     pub fn on(torus: Option<Torus>, points: impl Into<WeightedPoints>) -> Result<Self, ShapeError> {
         let monitor = &*Monitor::current();
         let options = ShapeOptions {
@@ -64,7 +62,7 @@ impl Filtration {
         Ok(Self { whole, incidence, radii })
     }
 
-    /// Bytes of a filtration of these simplices, besides them and without levels.
+    /// The bytes of a filtration of these simplices, without the simplices and levels.
     fn bytes(whole: &Complex) -> usize {
         let radius = size_of::<Radius>();
         let cell = radius + size_of::<[u32; 4]>();
@@ -111,7 +109,7 @@ impl Filtration {
 type AdjacentPair = [u32; 2];
 
 impl Filtration {
-    /// The dimension of what the points span.
+    /// The dimension of the affine hull of the points.
     pub(super) fn dimension(&self) -> usize {
         let complex = self.whole.complex();
         let counts = [complex.edges.len(), complex.facets.len(), complex.cells.len()];
@@ -149,7 +147,7 @@ impl Filtration {
     }
 }
 
-/// The two cofaces of each face, by row; [`Incidence::OUTSIDE`] for those missing.
+/// The two cofaces of each face, by row; [`Incidence::OUTSIDE`] for missing ones.
 fn cofaces<'a>(faces: usize, of: impl Iterator<Item = &'a [u32]>) -> Vec<AdjacentPair> {
     let mut sides = vec![[Incidence::OUTSIDE; 2]; faces];
     for (row, its) in (0..).zip(of) {

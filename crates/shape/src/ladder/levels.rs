@@ -7,15 +7,15 @@ use super::Filtration;
 use super::build::Incidence;
 use crate::{Alpha, AlphaShape, Betti, Class, Complex, WeightedPoints};
 
-/// The levels at which the class of a simplex changes. Levels count from 0; the number of levels stands for never.
-/// Its fields are public: this is plain data.
+/// The levels at which the class of a simplex changes. Levels count from 0; the number of levels stands for never. The fields are
+/// public because this is plain data.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Span {
-    /// From here on it is in the shape.
+    /// The first level at which it is in the shape.
     pub first: u32,
-    /// From here on it is a face of another simplex of the shape; singular before.
+    /// The first level at which it is a face of another simplex of the shape; it is singular before.
     pub regular: u32,
-    /// From here on it is not on the boundary.
+    /// The first level at which it is not on the boundary.
     pub interior: u32,
 }
 
@@ -30,7 +30,8 @@ impl Span {
         self.interior = self.interior.max(higher.interior);
     }
 
-    /// Sets the level at which the simplex enters by its own sphere, if that is empty; call it after all cofaces.
+    /// Sets the level at which the simplex enters by its own sphere, if that sphere is empty. It must be called after all
+    /// cofaces.
     ///
     /// The smallest orthogonal sphere of a face is no larger than that of a coface, so own ≤ regular. This makes each
     /// level a complex; contradictory predicates would be found here.
@@ -53,8 +54,8 @@ impl Span {
     }
 }
 
-/// A filtration at several α: for each simplex, the first level at which it is in the shape, and
-/// the levels at which its class changes. Levels are nested, as a simplex never leaves.
+/// A filtration at several α: for each simplex, the first level at which it is in the shape, and the levels at which its class
+/// changes. Levels are nested, because a simplex never leaves.
 #[derive(Debug)]
 pub struct Levels<'a> {
     pub(super) filtration: &'a Filtration,
@@ -67,8 +68,8 @@ pub struct Levels<'a> {
 }
 
 impl Filtration {
-    /// Decides exactly for every simplex at which α it is in the shape. The α are sorted, and duplicates removed.
-    /// O(n log m) for m levels, and exact arithmetic for ties.
+    /// Decides exactly for every simplex at which α it is in the shape. The α are sorted, and duplicates are removed. O(n log m)
+    /// for m levels, and exact arithmetic for ties.
     pub fn levels(&self, alphas: &[Alpha]) -> Levels<'_> {
         let mut alphas = alphas.to_vec();
         alphas.sort_unstable();
@@ -143,7 +144,7 @@ impl Filtration {
     }
 }
 
-/// The spans of faces, to which threads add cofaces in any order: least and largest levels do not depend on it.
+/// The spans of faces, to which threads add cofaces in any order: the smallest and largest levels do not depend on it.
 struct Cofaces(Vec<[AtomicU32; 2]>);
 
 impl Cofaces {
@@ -152,7 +153,7 @@ impl Cofaces {
         Self((0..rows).into_par_iter().map(row).collect())
     }
 
-    /// Accounts for a coface, as [`Span::add_coface`].
+    /// Accounts for a coface, like [`Span::add_coface`].
     fn add(&self, row: usize, higher: Span) {
         let [regular, interior] = &self.0[row];
         // Reading is cheaper, and most cofaces change nothing.
@@ -164,7 +165,7 @@ impl Cofaces {
         }
     }
 
-    /// The spans, once all cofaces are added, given the levels of own spheres.
+    /// The spans after all cofaces are added, given the levels of own spheres.
     fn finished(self, own: impl Fn(usize) -> Option<u32> + Sync) -> Vec<Span> {
         let span = |(row, levels): (usize, [AtomicU32; 2])| {
             let [regular, interior] = levels.map(AtomicU32::into_inner);
@@ -176,7 +177,7 @@ impl Cofaces {
     }
 }
 
-/// By row, the level at which a simplex enters by its own sphere, if that is empty.
+/// For each row, the level at which a simplex enters by its own sphere, if that sphere is empty.
 pub(super) struct OwnLevels<F, E, V> {
     pub facets: F,
     pub edges: E,
@@ -184,8 +185,8 @@ pub(super) struct OwnLevels<F, E, V> {
 }
 
 impl Levels<'_> {
-    /// The first level of each maximal simplex, by row. Maximal simplices are cells or, where points span no volume,
-    /// triangles, edges, or one vertex.
+    /// The first level of each maximal simplex, by row. Maximal simplices are cells or, if points span no volume, triangles,
+    /// edges, or one vertex.
     pub(super) fn firsts_of_maximal(&self) -> Vec<u32> {
         let firsts = |spans: &[Span]| spans.iter().map(|span| span.first).collect();
         match self.filtration.dimension() {
@@ -217,8 +218,8 @@ impl Levels<'_> {
     }
 }
 
-/// The level at which a simplex enters by its own sphere: the number of α, which ascend, that it does not fit. `radius`
-/// is the double nearest to its squared radius.
+/// The level at which a simplex enters by its own sphere: the number of α, which ascend, that are too small. `radius` is the
+/// double nearest to its squared radius.
 fn level<const N: usize>(
     spheres: &Predicates<'_>,
     simplex: [u32; N],
@@ -266,7 +267,7 @@ impl Levels<'_> {
     /// simplices outside are kept. `betti` is the level's, of [`Levels::betti`]. O(n log n).
     ///
     /// # Panics
-    /// If there is no such level.
+    /// If the level does not exist.
     pub fn shape(&self, level: usize, exterior: bool, betti: Betti) -> AlphaShape {
         let alpha = self.alphas[level];
         self.filtration.whole.at(alpha, exterior, self.complex(level, exterior), betti)
@@ -288,7 +289,7 @@ impl Levels<'_> {
         edges.filter(|(_, span)| span.first < span.regular).collect()
     }
 
-    /// All cells of the triangulation, and the level from which on each is in the shape. O(n).
+    /// All cells of the triangulation, each with the level at which it enters the shape. O(n).
     pub fn cells(&self) -> Vec<([u32; 4], u32)> {
         let rows = self.filtration.whole.complex().cells.rows();
         rows.iter().copied().zip(self.cells.iter().copied()).collect()

@@ -25,10 +25,10 @@ pub struct Level {
     /// Its facets, and those of the triangulation outside it.
     #[serde(serialize_with = "ByClass::serialize_shape")]
     pub facets: ByClass<usize>,
-    /// Its edges, likewise.
+    /// Its edges, and those of the triangulation outside it.
     #[serde(serialize_with = "ByClass::serialize_shape")]
     pub edges: ByClass<usize>,
-    /// Its vertices, likewise.
+    /// Its vertices, and those of the triangulation outside it.
     #[serde(serialize_with = "ByClass::serialize_shape")]
     pub vertices: ByClass<usize>,
     /// Components, tunnels, voids.
@@ -52,8 +52,7 @@ impl Level {
 }
 
 impl Filtration {
-    /// The ladder at several α. `domain` is the volume that coverage is a share of: that of the box
-    /// around the samples of a grid, say.
+    /// The ladder at several α. Coverage is a share of the volume `domain`, such as that of the box around the samples of a grid.
     ///
     /// Near-linear in the simplices for all α together, and the length of the lists of voids.
     /// Volumes and areas are sums in double precision in a fixed order; on a lattice, volumes are

@@ -34,9 +34,9 @@ impl Levels<'_> {
         (0..self.len()).map(grow).collect()
     }
 
-    /// Solid components of each level: cells joined through facets, as CGAL's
-    /// `Alpha_shape_3::number_of_solid_components` counts them; where points span no volume, triangles joined
-    /// through edges, or edges through vertices. O(n α(n)).
+    /// Solid components of each level: cells joined through facets, as counted by CGAL's
+    /// `Alpha_shape_3::number_of_solid_components`; if points span no volume, triangles joined through edges, or edges through
+    /// vertices. O(n α(n)).
     pub fn solid_components(&self) -> Vec<u64> {
         let firsts = self.firsts_of_maximal();
         let simplices = ByLevel::new(self.len(), firsts.iter().copied());
@@ -47,7 +47,7 @@ impl Levels<'_> {
         let sets = UnionFind::new(firsts.len());
         let mut count = 0;
         let grow = |level| {
-            // All of them first: one may be united with others that enter at the same level.
+            // Count all of them first, because one may be united with others that enter at the same level.
             count += simplices.at(level).len() as u64;
             for &joint in by_level.at(level) {
                 let [a, b] = adjacent_pairs[joint as usize];
@@ -94,14 +94,14 @@ pub(super) struct LevelComplement<'a> {
     levels: &'a Levels<'a>,
     spheres: Predicates<'a>,
     sets: Sets,
-    /// By root, the sums over each component.
+    /// For each root, the sums over its component.
     hollows: Vec<Hollow>,
-    /// A superset of the roots: those, and cells that were roots once.
+    /// A superset of the roots: the roots, and cells that were roots before.
     roots: Vec<u32>,
     count: u64,
     /// The cells of each component as a circular list: the next of each cell.
     next: Vec<u32>,
-    /// By root, the α that fills a component and its number of cells then, where it has been computed.
+    /// For each root, the α that fills its component and its number of cells then, if it was computed.
     known: BTreeMap<u32, (usize, f64)>,
 }
 
@@ -114,9 +114,9 @@ pub(super) struct UpperBetti {
 
 /// The union-find over cells.
 enum Sets {
-    /// With the outside, which is one past the last cell.
+    /// Includes the outside, whose number follows that of the last cell.
     InSpace(UnionFind),
-    /// With the directions in which all of them together wind round.
+    /// Includes the directions in which all of them together wind round.
     OnTorus(Torus, WindingSets, Directions),
 }
 
@@ -130,9 +130,8 @@ impl Sets {
 }
 
 impl Levels<'_> {
-    /// The voids of each level, in space as many as its second Betti number, largest
-    /// first as in [`AlphaShape::voids`](crate::AlphaShape::voids).
-    /// O(n α(n)), and the length of the result.
+    /// The voids of each level, in space as many as its second Betti number, largest first, like in
+    /// [`AlphaShape::voids`](crate::AlphaShape::voids). O(n α(n)), and the length of the result.
     pub fn voids(&self) -> Vec<Vec<Void>> {
         let mut voids = vec![Vec::new(); self.len()];
         self.descend(|level, complement| voids[level] = complement.voids());
@@ -256,7 +255,7 @@ impl LevelComplement<'_> {
         voids
     }
 
-    /// The least double at which all cells of a component fit.
+    /// The smallest double at which all cells of a component fit.
     fn filling(&mut self, root: u32) -> f64 {
         let hollow = self.hollows[root as usize];
         match self.known.get(&root) {

@@ -15,9 +15,9 @@ use crate::WeightedPoints;
 /// A critical value of α, as precisely as needed.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Value {
-    /// The least double that is not below it.
+    /// The smallest double that is not below it.
     First(f64),
-    /// The value of a simplex whose interval meets no other, and the upper end of the interval.
+    /// The value of a simplex whose interval overlaps no other, and the upper end of the interval.
     Of(Row, f64),
 }
 
@@ -40,8 +40,8 @@ impl Value {
 }
 
 impl Filtration {
-    /// All critical values, ascending; those between the same two doubles are one. Radii whose intervals meet no other
-    /// are sorted by interval, all others by exact arithmetic.
+    /// All critical values, ascending; values between the same two doubles are one. Radii whose intervals overlap no other are
+    /// sorted by interval, all others by exact arithmetic.
     pub(super) fn values(&self) -> Vec<Value> {
         let radii = self.sorted_radii();
         let spheres = self.spheres();
@@ -60,8 +60,8 @@ impl Filtration {
         clusters(&radii).par_iter().map_init(HashMap::new, split).flatten_iter().collect()
     }
 
-    /// About `most` of the critical values, those of the most even rank, without exact arithmetic: of values that rounded
-    /// radii do not tell apart, a double just above the last one.
+    /// About `most` of the critical values, with ranks as even as possible, without exact arithmetic: for values that rounded
+    /// radii do not distinguish, a double just above the last one.
     pub(super) fn some_values(&self, most: usize) -> Vec<Value> {
         let radii = self.sorted_radii();
         let clusters = clusters(&radii);
@@ -92,7 +92,7 @@ impl Filtration {
         radii
     }
 
-    /// The least double that is not below a value.
+    /// The smallest double that is not below a value.
     pub(super) fn first_alpha(&self, value: Value) -> Alpha {
         let first = match value {
             Value::First(alpha) => alpha,
@@ -106,9 +106,9 @@ impl Filtration {
     }
 }
 
-/// About `most` ranks from 0 to the last, as even as can be.
+/// About `most` ranks from 0 to the last, as even as possible.
 fn even_ranks(last: usize, most: usize) -> Vec<usize> {
-    // The product may pass what 32 bits hold.
+    // The product may exceed 32 bits.
     let rank = |k: usize| (k as u64 * last as u64 / (most as u64 - 1)) as usize;
     let mut ranks: Vec<usize> = (0..most).map(rank).collect();
     ranks.dedup();
@@ -140,8 +140,8 @@ struct Firsts<'a> {
 }
 
 impl Firsts<'_> {
-    /// The least double that is not below the squared radius of a simplex. On a lattice, most simplices are congruent
-    /// to an earlier one.
+    /// The smallest double that is not below the squared radius of a simplex. On a lattice, most simplices are congruent to an
+    /// earlier one.
     fn of(&self, row: Row, known: &mut HashMap<Key, f64>) -> f64 {
         let Filtration { whole, incidence, .. } = self.filtration;
         let complex = whole.complex();
@@ -166,7 +166,7 @@ impl Firsts<'_> {
 /// The numbers that determine the squared radius of a simplex. Exact on a small lattice only.
 pub(super) fn key<const N: usize>(filtration: &Filtration, mut simplex: [u32; N]) -> Key {
     let weights = &filtration.points().weights;
-    // By weight: congruent simplices may have their vertices in another order.
+    // Sort by weight, because congruent simplices may have their vertices in another order.
     simplex.sort_unstable_by(|&a, &b| weights[a as usize].total_cmp(&weights[b as usize]));
     let corners = filtration.whole.corners(simplex);
     let pairs = (0..N).flat_map(|i| (0..i).map(move |j| (i, j)));
@@ -184,8 +184,8 @@ const SMALL_BITS: i32 = 24;
 /// Squares of units stay above the smallest double.
 const LOWEST_UNIT: i32 = -500;
 
-/// Whether coordinates are multiples of a power of two, by integers below 2²⁴, so that squared distances are integers
-/// below 2⁵³ in its square.
+/// Whether coordinates are multiples of a power of two, by integers below 2²⁴, so that squared distances are integers below 2⁵³
+/// in units of its square.
 pub(super) fn is_small_lattice(points: &WeightedPoints, torus: Option<Torus>) -> bool {
     let sides = torus.map(|torus| torus.sides());
     let sides = sides.as_slice().as_flattened();
@@ -199,7 +199,7 @@ pub(super) fn is_small_lattice(points: &WeightedPoints, torus: Option<Torus>) ->
 mod tests {
     use super::*;
 
-    /// Also where a product of ranks passes 32 bits.
+    /// Ranks are even also if a product of ranks exceeds 32 bits.
     #[test]
     fn ranks_are_even() {
         assert_eq!(even_ranks(6, 3), [0, 3, 6]);
@@ -209,7 +209,8 @@ mod tests {
         assert!(many.windows(2).all(|pair| (391_006..=391_007).contains(&(pair[1] - pair[0]))));
     }
 
-    /// Two squared lengths that differ by 1 beyond 2⁵³ would be one double, and their simplices taken for congruent.
+    /// Two squared lengths that differ by 1 beyond 2⁵³ would be the same double, and their simplices would be considered
+    /// congruent.
     #[test]
     fn squared_distances_on_a_small_lattice_are_exact() {
         let corners = |half: f64| WeightedPoints::unweighted(vec![[-half; 3], [half; 3]]);

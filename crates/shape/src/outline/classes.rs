@@ -1,4 +1,4 @@
-//! The classes that simplices of a plane have there, and the length of the boundary.
+//! The classes of simplices in their plane, and the length of the boundary.
 
 use walpha_base::Sum;
 use walpha_base::vector::{length, sub};
@@ -6,8 +6,8 @@ use walpha_base::vector::{length, sub};
 use super::rings::Triangles;
 use crate::{Class, Complex, Simplices};
 
-/// A complex of a plane with the classes of the plane, its triangles turned as given and regular edges oriented. What
-/// is exterior stays so.
+/// A complex of a plane with the classes of the plane, its triangles turned as given and regular edges oriented. Exterior
+/// simplices stay exterior.
 pub(super) fn in_plane(complex: &Complex, triangles: &Triangles) -> Complex {
     let mut turned = triangles.rows().iter();
     let facets = complex.facets.iter().map(|(&row, class)| match class {
@@ -22,7 +22,7 @@ pub(super) fn in_plane(complex: &Complex, triangles: &Triangles) -> Complex {
         (_, Some(_)) => (row, Class::Interior),
     });
     let edges: Simplices<2> = edges.collect();
-    // What a vertex is on counts in this order.
+    // The simplices that a vertex may be on take precedence in this order.
     let largest = complex.vertices.rows().iter().map(|&[v]| v).max();
     let mut classes = vec![Class::Singular; largest.map_or(0, |v| v as usize + 1)];
     triangles.rows().as_flattened().iter().for_each(|&v| classes[v as usize] = Class::Interior);

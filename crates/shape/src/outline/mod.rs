@@ -1,9 +1,9 @@
-//! Shapes of points in one plane as regions of it: polygons with holes, and the edges and points beside them.
+//! Shapes of points in one plane as regions of the plane: polygons with holes, and the edges and points outside of them.
 //!
-//! In space all triangles of such a shape are singular. In its plane they are its interior, and classes are those of
-//! [`Class`] one dimension lower: an edge between two triangles is interior, one on a single triangle is regular, one on
-//! none is singular. A vertex with triangles all round is interior, another one on an edge of the shape regular, and one
-//! alone singular. CGAL's `Alpha_shape_2` has the same classes but for the ends of singular edges that are on no triangle: it
+//! In space all triangles of such a shape are singular. In its plane they are its interior, and classes are those of [`Class`]
+//! one dimension lower: an edge between two triangles is interior, one on a single triangle is regular, one on none is singular.
+//! A vertex that is surrounded by triangles is interior, another one on an edge of the shape is regular, and an isolated one is
+//! singular. The `Alpha_shape_2` of CGAL has the same classes except for the ends of singular edges that are on no triangle: it
 //! calls all vertices on no triangle singular.
 
 mod classes;
@@ -24,11 +24,11 @@ use view::{View, spanning_plane};
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Outline {
-    /// The two coordinates in which the plane is seen, 0 for x, 1 for y and 2 for z: the first of (x, y), (x, z) and
-    /// (y, z) that tell its points apart. Counter-clockwise is the way from the first axis to the second.
+    /// The two coordinates in which the plane is seen, 0 for x, 1 for y and 2 for z: the first of (x, y), (x, z) and (y, z) in
+    /// which its points differ. Counter-clockwise is the way from the first axis to the second.
     pub axes: [usize; 2],
-    /// The polygons: triangles that are joined through edges make one. Polygons touch each other at vertices
-    /// at most. In the order of their outer rings.
+    /// The polygons: triangles that are joined through edges make one. Polygons touch each other only at vertices. They are in
+    /// the order of their outer rings.
     pub polygons: Vec<Polygon>,
     /// The singular edges, those on no triangle, in the order of the complex.
     pub edges: Vec<[u32; 2]>,
@@ -37,7 +37,7 @@ pub struct Outline {
     /// The simplices of the shape's complex, in its order, with the classes that they have in the plane. Triangles of the
     /// shape turn counter-clockwise, and regular edges have the shape on their left.
     pub complex: Complex,
-    /// The area of the polygons, in squared units of the points; in the plane, not as it is seen.
+    /// The area of the polygons in the plane, not of their projection, in squared units of the points.
     pub area: f64,
     /// The length of all rings, in units of the points.
     pub perimeter: f64,
@@ -62,7 +62,7 @@ impl Outline {
         self.polygons.iter().map(|polygon| polygon.holes.len()).sum()
     }
 
-    /// The outline of a complex in a plane, whose triangles have this area in all.
+    /// The outline of a complex in a plane, whose triangles have this total area.
     fn of(complex: &Complex, positions: &[[f64; 3]], area: f64) -> Result<Self, OutlineError> {
         let view = View::of(positions)?;
         let seen = view.seen();
@@ -83,12 +83,12 @@ impl Outline {
 }
 
 impl AlphaShape {
-    /// The outline of a shape whose points lie in one plane, which is decided exactly: polygons with holes, and what is
-    /// beside them. The plane may be tilted. O(n log n) at the first call, and computed once.
+    /// The outline of a shape whose points lie in one plane, which is decided exactly: polygons with holes, and the edges and
+    /// points outside of them. The plane may be tilted. O(n log n) at the first call, and computed once.
     ///
-    /// Every ring is simple: it passes each vertex once. Rings of one polygon touch each other at vertices at most, and
-    /// its interior is connected, so polygons are valid in the sense of OGC Simple Features (ISO 19125-1). The result does
-    /// not depend on the engine.
+    /// Every ring is simple: it passes each vertex once. Rings of one polygon touch each other only at vertices, and its interior
+    /// is connected, so polygons are valid in the sense of OGC Simple Features (ISO 19125-1). The result does not depend on the
+    /// engine.
     ///
     /// ```
     /// use walpha_shape::{Alpha, ShapeOptions, WeightedPoints, alpha_shape};

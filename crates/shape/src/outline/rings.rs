@@ -1,13 +1,13 @@
 //! Polygons from triangles: walks along the boundary, cut into simple rings.
 //!
-//! A *side* is an edge of a triangle, as 3·triangle + corner: from this corner to the next one, with the triangle on its
-//! left. A walk goes along sides without a triangle on the right. At a vertex it turns through the triangles on its left to
-//! the last of them, whose side comes next: so it never crosses itself or another walk, and does not leave the triangles
-//! that are joined through edges.
+//! A *side* is an edge of a triangle, as 3·triangle + corner: from this corner to the next one, with the triangle on its left. A
+//! walk follows sides without a triangle on the right. At a vertex it turns through the triangles on its left to the last of
+//! them, whose side comes next: so it never crosses itself or another walk, and does not leave the triangles that are joined
+//! through edges.
 //!
-//! A walk that comes to a vertex again has closed a ring. As nothing crosses, what is cut off there touches the rest at
-//! that vertex alone, and neither crosses the other. Of the rings of one polygon, one turns counter-clockwise: around
-//! the inside of each such ring the polygon, which is connected, would lie within it, and so would the other ring.
+//! A walk that comes to a vertex again has closed a ring. As nothing crosses, the ring that is cut off there touches the rest
+//! only at that vertex, and neither crosses the other. Of the rings of one polygon, only one turns counter-clockwise: the
+//! polygon, which is connected, would lie inside each such ring, and so would the other ring.
 
 use std::collections::BTreeMap;
 
@@ -28,13 +28,13 @@ pub struct Polygon {
 /// An edge of a triangle: 3·triangle + corner.
 type Side = u32;
 
-/// On the other side of a side of the boundary: no triangle. Among vertices: none.
+/// Stands for a missing triangle on the other side of a side of the boundary, or for a missing vertex.
 const NONE: u32 = u32::MAX;
 
-/// Triangles of a plane that turn counter-clockwise, and what is beside them.
+/// Triangles of a plane that turn counter-clockwise, and their neighbours.
 pub(super) struct Triangles {
     rows: Vec<[u32; 3]>,
-    /// The same edge as a side of the triangle beside, or [`NONE`].
+    /// For each side, the same edge as a side of the neighbouring triangle, or [`NONE`].
     across: Vec<Side>,
     /// Each side by the ends of its edge, smaller end first. Sorted.
     sides: Vec<([u32; 2], Side)>,
@@ -145,7 +145,7 @@ fn next(side: Side) -> Side {
 struct Cutter {
     /// The vertices passed that are in no ring yet.
     path: Vec<u32>,
-    /// For each vertex its place in the path, or [`NONE`].
+    /// The place of each vertex in the path, or [`NONE`].
     place: Vec<u32>,
 }
 
@@ -155,7 +155,7 @@ impl Cutter {
         Self { path: Vec::new(), place: vec![NONE; vertices] }
     }
 
-    /// Passes a vertex; the ring that this closes, if it does.
+    /// Passes a vertex, and returns the ring that this closes, if any.
     fn pass(&mut self, v: u32) -> Option<Vec<u32>> {
         let place = self.place[v as usize];
         let ring = (place != NONE).then(|| self.cut(place as usize));
@@ -164,7 +164,7 @@ impl Cutter {
         ring
     }
 
-    /// The ring that is left at the end of the walk.
+    /// The rest of the walk at its end, as a ring.
     fn rest(&mut self) -> Vec<u32> {
         self.cut(0)
     }

@@ -17,13 +17,13 @@ fn flat(places: &[Place]) -> Vec<[f64; 3]> {
     places.iter().map(|&[x, y]| [x, y, 0.0]).collect()
 }
 
-/// Places of the lattice with both coordinates in 0..n, but for some.
+/// Places of the lattice with both coordinates in 0..n, except some.
 fn lattice(n: i32, is_left_out: impl Fn(i32, i32) -> bool) -> Vec<Place> {
     let all = (0..n * n).map(|i| (i % n, i / n));
     all.filter(|&(x, y)| !is_left_out(x, y)).map(|(x, y)| [x.into(), y.into()]).collect()
 }
 
-/// The triangles with all their faces, each singular, as classes of space do not matter here.
+/// The triangles with all their faces, each singular, because classes of space do not matter here.
 fn closed(triangles: &[[u32; 3]]) -> Complex {
     let sorted = |mut row: [u32; 3]| {
         row.sort_unstable();
@@ -52,7 +52,7 @@ fn twice_area(ring: &[u32], places: &[Place]) -> f64 {
     (0..ring.len()).map(|i| at(i)[0] * at(i + 1)[1] - at(i)[1] * at(i + 1)[0]).sum()
 }
 
-/// Whether a place is within a ring, which it is not on: by the parity of crossings with a ray.
+/// Whether a place that is not on a ring is inside it, by the parity of crossings with a ray.
 fn is_within(ring: &[u32], places: &[Place], [x, y]: Place) -> bool {
     let at = |i: usize| places[ring[i % ring.len()] as usize];
     let crosses = |&i: &usize| {
@@ -99,7 +99,7 @@ fn a_square_with_a_hole() {
     assert_eq!(made.betti().unwrap().b1, 1);
 }
 
-/// With exterior simplices listed, too.
+/// Edges and points outside of polygons, also with exterior simplices listed.
 #[test]
 fn edges_and_points_beside_polygons() {
     let places = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [2.1, 0.0], [9.0, 9.0], [3.2, 0.0]];
@@ -136,7 +136,7 @@ fn two_squares_that_touch_at_one_vertex() {
     assert_eq!(outline.complex.vertices.counts().interior, 2);
 }
 
-/// A band of triangles whose two ends meet at a vertex alone: the outer ring and the hole touch there.
+/// A band of triangles whose two ends meet only at a vertex: the outer ring and the hole touch there.
 #[test]
 fn an_annulus_pinched_at_a_vertex() {
     let places = [[0.0, 0.0], [4.0, 2.0], [4.0, -2.0], [9.0, 9.0], [9.0, -9.0]];
@@ -149,7 +149,7 @@ fn an_annulus_pinched_at_a_vertex() {
 #[test]
 fn islands_in_holes() {
     let distance = |x: i32, y: i32| x.min(y).min(13 - x).min(13 - y);
-    // From the rim inwards: a band of two rows of points, and a row left out.
+    // From the rim inwards: a band of two rows of points, then a row left out.
     let places = lattice(14, |x, y| distance(x, y) % 3 == 2);
     let outline = shape(flat(&places), 0.5).outline().cloned().unwrap();
     assert_eq!(summary(&outline, &places), [(1, 50.0), (1, 26.0), (0, 1.0)]);
@@ -173,7 +173,7 @@ fn lattices_at_several_alphas() {
     }
 }
 
-/// The same outline, whatever the plane, as it is seen in two of the coordinates.
+/// The outline does not depend on the plane, except for how it is seen in two of the coordinates.
 #[test]
 fn tilted_planes() {
     let places = lattice(6, |x, y| (2..4).contains(&x) && (2..4).contains(&y));
@@ -182,7 +182,7 @@ fn tilted_planes() {
         shape(flat(&places), 0.5).outline().cloned().unwrap().polygons
     });
     assert_ne!(wanted, mirrored);
-    // Each turns the plane without stretching it, but for a factor.
+    // Each turns the plane and scales it evenly.
     type Turn = fn(f64, f64) -> [f64; 3];
     let turns: [(Turn, f64, [usize; 2], bool); 7] = [
         (|x, y| [x, y, 7.0], 1.0, [0, 1], true),
@@ -212,7 +212,7 @@ fn tilted_planes() {
     }
 }
 
-/// Coordinates whose differences and products round, underflow or are large: only exact predicates tell what turns how.
+/// Coordinates whose differences and products round, underflow or are large: only exact predicates find orientations.
 #[test]
 fn extreme_coordinates() {
     let places = lattice(6, |x, y| (2..4).contains(&x) && (2..4).contains(&y));
@@ -226,7 +226,7 @@ fn extreme_coordinates() {
     let far = 2f64.powi(52);
     let sliver = [[far, far], [far + 2.0, far + 2.0], [far + 1.0, far + 2.0]];
     assert_eq!(outline_of(&[[0, 1, 2]], &sliver).polygons[0].outer, [0, 1, 2]);
-    // The smallest double coordinates of either sign, zeros included.
+    // The smallest double coordinates of either sign, including zeros.
     let least = [[-0.0, 1.0], [0.0, 0.0], [0.0, 2.0], [5e-324, 1.0]];
     let outline = outline_of(&[[0, 1, 3], [0, 2, 3]], &least);
     assert_eq!(outline.polygons[0].outer, [0, 1, 3, 2]);
@@ -236,7 +236,7 @@ fn extreme_coordinates() {
 fn what_is_not_in_a_plane_has_no_outline() {
     let cube: Vec<[f64; 3]> = (0..8).map(|i| [i & 1, i >> 1 & 1, i >> 2].map(f64::from)).collect();
     assert_eq!(shape(cube.clone(), 1.0).outline(), Err(OutlineError::Space));
-    // Even where the shape itself is flat.
+    // This is also true if the shape itself is flat.
     assert_eq!(shape(cube.clone(), -1.0).outline(), Err(OutlineError::Space));
     assert_eq!(Outline::check(&cube), Err(OutlineError::Space));
     assert_eq!(
@@ -273,12 +273,13 @@ fn flooded(triangles: &[[u32; 3]]) -> Vec<Vec<[u32; 3]>> {
     components
 }
 
-/// A place at random, on no edge but by chance.
+/// A random place, which is on an edge only by chance.
 fn probe(random: &mut Random) -> Place {
     [0, 1].map(|_| 8.0 * random.unit() - 0.5)
 }
 
-/// Some of the triangles of a triangulation, which touch, nest and pinch in all ways, against parity, flooding and Euler.
+/// Compares some of the triangles of a triangulation, which touch, nest and pinch in all ways, with parity, flooding and the
+/// Euler characteristic.
 #[test]
 fn outlines_are_those_of_their_triangles() {
     let mut random = Random::new(11);

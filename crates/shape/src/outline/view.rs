@@ -1,5 +1,5 @@
-//! A plane as it is seen along an axis of space. That drops a coordinate and rounds nothing, so what turns which way is
-//! decided exactly, by the predicates of space.
+//! The view of a plane along an axis of space. It drops a coordinate and rounds nothing, so orientations are decided exactly by
+//! the predicates of space.
 
 use walpha_regular::internals::{Predicates, spanning};
 
@@ -14,13 +14,13 @@ pub(super) fn spanning_plane(positions: &[[f64; 3]]) -> Result<[[f64; 3]; 3], Ou
     }
 }
 
-/// Points of a plane as they are seen, and an eye above them.
+/// The seen points of a plane, and an eye above them.
 pub(super) struct View {
     /// The coordinates that are seen.
     pub axes: [usize; 2],
     /// The points in these coordinates, at height 0; the last one is the eye.
     places: Vec<[f64; 3]>,
-    /// None has any.
+    /// All weights are 0.
     weights: Vec<f64>,
 }
 
@@ -83,7 +83,7 @@ impl Seen<'_> {
     }
 }
 
-/// The height of an eye: about the extent of the places, so that predicates need no integers where triangles are not far
+/// The height of an eye: approximately the extent of the places, so that predicates need no integers if triangles are not far
 /// smaller, and a power of two, which keeps places on their lattice.
 fn height(places: &[[f64; 3]]) -> f64 {
     // Cubes of shorter lengths leave the range of doubles.

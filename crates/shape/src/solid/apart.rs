@@ -1,7 +1,8 @@
-//! Moves the copies of vertices apart, so that the boundary is a manifold also for whoever takes equal coordinates for one vertex.
+//! Moves the copies of vertices apart, so that the boundary is a manifold also for readers that take equal coordinates for one
+//! vertex.
 //!
-//! The boundary of the cut solid touches itself, but does not cross itself: facets meet in common faces alone, if copies at one place
-//! count as one vertex. Vertices are moved one after another, and this stays so with each step:
+//! The boundary of the cut solid touches itself, but does not cross itself: facets meet only in common faces if copies at one
+//! place count as one vertex. Vertices are moved one after another, and each step preserves this property:
 //!
 //! - **Into the cells of its fan.** Let S be the union of the cells around a copy v. Its boundary consists of the fan at v and of
 //!   the facets opposite v. A point p that is strictly inside the planes of all these facets sees all of S: it is in the interior of
@@ -17,8 +18,8 @@
 //!   directions are tried: a new fan crosses neither itself nor a facet near, opposite facets of its cells included, and these cells
 //!   stay positively oriented. So these fill what the fan and the opposite facets bound, a sphere that does not cross itself.
 //!
-//! One fan at each place stays. When all others have moved, no two vertices are at the same place. All is decided exactly for
-//! the doubles that are written. Single precision rounds them once more, by a fraction of the steps ([`LEAST`]).
+//! One fan at each place stays. After all others have moved, no two vertices are at the same place. Everything is decided exactly
+//! for the doubles that are written. Single precision rounds them once more, by a fraction of the steps ([`LEAST`]).
 
 use std::cmp::Ordering::{Greater, Less};
 use std::collections::HashMap;
@@ -33,27 +34,27 @@ use super::{Middle, Surface};
 
 type Point = [f64; 3];
 
-/// The share of the shortest edge of a fan that its vertex is moved by, or else half of that, and so on.
+/// The share of the shortest edge of a fan by which its vertex is moved, or otherwise half of that, and so on.
 const STEP: f64 = 1.0 / 1024.0;
-/// Steps that are tried.
+/// The number of steps that are tried.
 const TRIES: usize = 24;
-/// The share of the extent of the boundary that a vertex is moved by at least, if it can: several steps of single precision, so that
-/// files in it have different places, too.
+/// The share of the extent of the boundary by which a vertex is moved at least, if possible: several steps of single precision,
+/// so that files in single precision also have different places.
 const LEAST: f64 = 4.0 * f32::EPSILON as f64;
 /// The largest share of the shortest edge for that.
 const MOST: f64 = 1.0 / 16.0;
-/// The largest share of a coordinate for steps that are longer only because doubles are no nearer to each other.
+/// The largest share of a coordinate for steps that are longer only because doubles are not denser.
 const ROUNDING: f64 = 32.0 * f64::EPSILON;
-/// Steps that are tried in all directions.
+/// The number of steps that are tried in all directions.
 const FAR: usize = 4;
 /// Half the width of the grid of these directions.
 const GRID: u32 = 3;
 
 pub(super) struct Moved {
-    /// Vertices that were moved, ascending, and where they are.
+    /// Vertices that were moved, ascending, with their places.
     pub moved: Vec<(u32, Point)>,
     pub largest: f64,
-    /// Vertices that are still where another one is.
+    /// The number of vertices that are still at the place of another one.
     pub together: usize,
 }
 
@@ -64,9 +65,9 @@ pub(super) struct Apart<'a> {
     tiling: Tiling,
     /// Half of the extent of the boundary along the axis where it is largest.
     extent: f64,
-    /// The facets at each vertex whose place is in question.
+    /// The facets at each vertex that is being moved or separated.
     fans: HashMap<u32, Vec<u32>>,
-    /// All facets, if they have been asked for.
+    /// All facets, if they were requested.
     facets: Option<Boxes>,
 }
 
@@ -79,7 +80,7 @@ impl<'a> Apart<'a> {
         Self { surface, of_input, positions, tiling, extent, fans, facets }
     }
 
-    /// Moves what is together.
+    /// Separates vertices that are at the same place.
     pub(super) fn separate(&mut self, middles: &[Middle], places: &[Place]) -> Moved {
         self.collect_fans(middles, places);
         self.orient();
@@ -138,13 +139,13 @@ impl<'a> Apart<'a> {
         }
     }
 
-    /// The cells around what is moved.
+    /// The cells around the vertices that move.
     #[cfg(test)]
     pub(super) fn cells(&self) -> &[[u32; 4]] {
         &self.tiling.cells
     }
 
-    /// Where a vertex is now.
+    /// The current position of a vertex.
     pub(super) fn at(&self, v: u32) -> Point {
         match v.checked_sub(self.tiling.vertices) {
             Some(input) => self.of_input[input as usize],
@@ -152,7 +153,7 @@ impl<'a> Apart<'a> {
         }
     }
 
-    /// The facets at a vertex, counter-clockwise seen from outside, by their other corners.
+    /// The facets at a vertex by their other corners, counter-clockwise as seen from outside.
     fn fan(&self, v: u32) -> Vec<[u32; 2]> {
         let turned = |&facet: &u32| {
             let [a, b, c] = self.surface.regular[facet as usize];
@@ -165,7 +166,7 @@ impl<'a> Apart<'a> {
         self.fans[&v].iter().map(turned).collect()
     }
 
-    /// Moves a midpoint into the cells between its facets. Returns whether there is a step that does.
+    /// Moves a midpoint into the cells between its facets. Returns whether a step was found.
     fn move_middle(&mut self, middle: &Middle) -> bool {
         let vertex = middle.vertex;
         let [u, v] = middle.ends.map(|v| self.tiling.corner(v));
@@ -187,7 +188,7 @@ impl<'a> Apart<'a> {
         found
     }
 
-    /// Moves all copies but one away from a place. Returns the number of further ones that stay.
+    /// Moves all copies but one away from a place. Returns the number of further copies that stay.
     fn separate_copies(&mut self, place: &Place) -> usize {
         let mut whole = Vec::new();
         let mut staying = place.copies.len();
@@ -216,7 +217,7 @@ impl<'a> Apart<'a> {
         self.step(v, &fan, &others, &steps, |_| true)
     }
 
-    /// Moves copies between which are the same cells out of these, but for one, which gets the cells. Returns those that stay.
+    /// Moves copies that share the same cells out of these, except for one, which gets the cells. Returns the copies that stay.
     fn retreat(&mut self, group: &[u32]) -> Vec<u32> {
         let mut order = group.to_vec();
         order.sort_by_key(|v| (self.fans[v].len(), *v));
@@ -258,7 +259,7 @@ impl<'a> Apart<'a> {
         self.step(v, &fan, &[], &steps, empty)
     }
 
-    /// Moves a vertex in one of many directions, if it leads to where nothing crosses anything.
+    /// Moves a vertex in one of many directions, to a place where no facets cross.
     fn move_anywhere(&mut self, v: u32) -> bool {
         let sides = self.fan(v);
         let steps = self.steps(v, sides.iter().map(|side| side[0]));
@@ -282,14 +283,14 @@ impl<'a> Apart<'a> {
         found.inspect(|&place| self.positions[v as usize] = place).is_some()
     }
 
-    /// The facets that a vertex may meet when it is moved, without those of its fan.
+    /// The facets that a vertex may meet when it moves, except those of its fan.
     fn near(&mut self, v: u32, steps: &[f64]) -> Vec<[Point; 3]> {
         let own = &self.fans[&v];
         let row =
             |facet: u32| self.surface.regular[facet as usize].map(|w| self.positions[w as usize]);
         let facets = self.facets.get_or_insert_with(|| {
             Boxes::new((0..self.surface.regular.len() as u32).map(|facet| {
-                // Wide enough for what its corners move by.
+                // The box is wide enough for the moves of its corners.
                 let [low, high] = bounds(row(facet));
                 wider([low, high], MOST * length([0, 1, 2].map(|k| high[k] - low[k])))
             }))
@@ -299,8 +300,8 @@ impl<'a> Apart<'a> {
         near.into_iter().filter(|facet| own.binary_search(facet).is_err()).map(row).collect()
     }
 
-    /// The steps to try from a vertex that has edges to these: halved from the first on, and where that leads nowhere, as an edge is hardly
-    /// longer than doubles are apart, doubled.
+    /// The steps to try from a vertex that has edges to these: halved from the first on, and doubled if that leads nowhere
+    /// because an edge is hardly longer than the distance of doubles.
     fn steps(&self, v: u32, to: impl IntoIterator<Item = u32>) -> Vec<f64> {
         let from = self.at(v);
         let lengths = to.into_iter().map(|w| {
@@ -317,7 +318,7 @@ impl<'a> Apart<'a> {
         times(0.5).take(TRIES).chain(larger).collect()
     }
 
-    /// Moves a vertex to where it is seen from as the counter-clockwise side of the facets of its fan and of others, and is accepted.
+    /// Moves a vertex to a place from which it sees the facets of its fan and of others counter-clockwise, and that is accepted.
     fn step(
         &mut self,
         v: u32,
@@ -345,12 +346,12 @@ impl<'a> Apart<'a> {
     }
 }
 
-/// Whether a place that a step leads to is another one.
+/// Whether the place of a step differs from its start.
 fn is_elsewhere(place: Point, from: Point) -> bool {
     place != from && place.iter().all(|x| x.is_finite())
 }
 
-/// A box that is wider by what corners move by in steps of this length, in any direction and rounded.
+/// A box that is wider by the moves of corners in steps of this length, in any direction and rounded.
 fn wider([low, high]: [Point; 2], step: f64) -> [Point; 2] {
     let margin = |x: f64| 2.0 * (step + ROUNDING * x.abs());
     [low.map(|x| x - margin(x)), high.map(|x| x + margin(x))]

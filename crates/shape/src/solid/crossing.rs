@@ -7,8 +7,8 @@ use walpha_regular::predicates::orientation;
 type Point = [f64; 3];
 
 /// Whether two triangles have a point in common that is not in a corner or an edge of both, where corners are equal if their
-/// coordinates are. Of a mesh without such pairs the facets meet in common faces alone. A triangle without
-/// area crosses what it is in a plane with.
+/// coordinates are. In a mesh without such pairs, facets meet only in common faces. A triangle without area crosses everything
+/// with which it shares a plane.
 pub(super) fn cross(one: [Point; 3], other: [Point; 3]) -> bool {
     let own = |of: [Point; 3], not: [Point; 3]| of.into_iter().filter(move |p| !not.contains(p));
     let common: Vec<Point> = one.into_iter().filter(|p| other.contains(p)).collect();
@@ -55,7 +55,7 @@ fn meets_in_plane([p, q]: [Point; 2], [a, b, c]: [Point; 3]) -> bool {
         let around = [[a, b], [b, c], [c, a]].map(|[x, y]| side(x, y, point));
         !(around.contains(&Greater) && around.contains(&Ordering::Less))
     };
-    // Two segments of one line have an end of one in the other: if p and q are outside, they pass over two sides.
+    // If p and q are outside, two segments of one line have an end of one in the other: they pass over two sides.
     let passes = |[x, y]: [Point; 2]| {
         let (ends, sides) = ([side(p, q, x), side(p, q, y)], [side(x, y, p), side(x, y, q)]);
         ends[0] != ends[1] && sides[0] != sides[1]

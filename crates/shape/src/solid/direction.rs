@@ -2,9 +2,9 @@
 
 type Vector = [f64; 3];
 
-/// The direction that makes the least angle, at most, with these directions: the axis of the narrowest cone about them. `None` if they are in no
-/// cone narrower than a half-space. In doubles: whoever goes there tests exactly where it leads. Linear time if their
-/// order is arbitrary (Welzl 1991, doi:10.1007/BFb0038202), and never more than cubic.
+/// The direction whose largest angle with these directions is smallest: the axis of the narrowest cone about them. `None` if they
+/// are in no cone narrower than a half-space. Computed in doubles: the caller tests exactly where it leads. Linear time if the
+/// order of the directions is arbitrary (Welzl 1991, doi:10.1007/BFb0038202), and never more than cubic.
 pub(super) fn axis(directions: &[Vector]) -> Option<Vector> {
     let holds = |cone: &Cone, direction: &Vector| dot(cone.axis, *direction) >= cone.cosine - 1e-12;
     let mut cone = Cone { axis: *directions.first()?, cosine: 1.0 };
@@ -25,7 +25,7 @@ pub(super) fn axis(directions: &[Vector]) -> Option<Vector> {
             }
         }
     }
-    // Directions all around leave a cone that does not hold all.
+    // Directions all around leave a cone that does not contain all of them.
     directions
         .iter()
         .all(|direction| holds(&cone, direction) && dot(cone.axis, *direction) > 0.0)
@@ -63,7 +63,7 @@ pub(super) fn normal([a, b, c]: [[f64; 3]; 3]) -> Option<Vector> {
     unit(cross(u, v))
 }
 
-/// The length of a vector. Roots are rounded alike on every machine, which `hypot` is not.
+/// The length of a vector. Its roots are rounded equally on every machine, unlike those of `hypot`.
 pub(super) fn length(v: Vector) -> f64 {
     let most = v.into_iter().fold(0.0, |most: f64, x| most.max(x.abs()));
     if most == 0.0 {
@@ -98,7 +98,7 @@ mod tests {
         let corner = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
         near(axis(&corner).unwrap(), unit([1.0; 3]).unwrap());
         near(axis(&corner[..2]).unwrap(), unit([1.0, 1.0, 0.0]).unwrap());
-        // One between the others changes nothing.
+        // A direction between the others changes nothing.
         let between = [corner[0], unit([1.0, 1.0, 0.2]).unwrap(), corner[1], corner[0]];
         let found = axis(&between).unwrap();
         assert!(between.iter().all(|&d| dot(found, d) > 0.7), "{found:?}");

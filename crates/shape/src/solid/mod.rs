@@ -16,7 +16,7 @@ use super::{AlphaShape, Class, Complex, Surface};
 use apart::Apart;
 use tiling::{Place, Tiling};
 
-/// Where a boundary was cut apart to become a manifold, and how far its vertices moved.
+/// The cuts that made a boundary a manifold, and the distances by which its vertices moved.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct Cuts {
@@ -28,9 +28,10 @@ pub struct Cuts {
     pub midpoints: usize,
     /// Vertices that were moved away from others at the same place.
     pub moved: usize,
-    /// The largest distance that one was moved, in the unit of the coordinates.
+    /// The largest distance by which a vertex was moved, in the unit of the coordinates.
     pub largest_move: f64,
-    /// Vertices that are still where another one is, as no step was found that keeps the boundary from crossing itself.
+    /// The number of vertices that are still at the place of another one, because no step was found that keeps the boundary from
+    /// crossing itself.
     pub together: usize,
 }
 
@@ -45,12 +46,12 @@ struct Middle {
     thirds: [u32; 2],
 }
 
-/// A boundary that is cut apart, and not moved yet.
+/// A boundary that is cut apart, before vertices move.
 struct Cut {
     solid: Surface,
     cuts: Cuts,
     middles: Vec<Middle>,
-    /// What is to be moved, if there is anything, and the cells there.
+    /// The vertices to move, if there are any, and the cells there.
     around: Option<(Tiling, Vec<Place>)>,
 }
 
@@ -89,7 +90,7 @@ impl Cut {
         let facets = solid.regular.clone();
         let middles = solid.insert_midpoints(&pairs);
         cuts.midpoints = middles.len();
-        // Where a torus is cut open, its cells are not beside each other in space.
+        // Where a torus is cut open, its cells are not adjacent in space.
         let in_space = shape.options.periodic.is_none() && shape.copies.is_empty();
         let around = (in_space && cuts.vertices + cuts.midpoints > 0).then(|| {
             let corners = (&whole, &starts[..], &corners[..]);
@@ -100,7 +101,7 @@ impl Cut {
 }
 
 impl Surface {
-    /// As [`AlphaShape::solid`](crate::AlphaShape::solid) says.
+    /// See [`AlphaShape::solid`](crate::AlphaShape::solid).
     pub(super) fn solid(shape: &AlphaShape) -> (Self, Cuts) {
         let Cut { mut solid, mut cuts, middles, around } = Cut::of(shape);
         if let Some((tiling, places)) = around {
@@ -114,7 +115,7 @@ impl Surface {
         (solid, cuts)
     }
 
-    /// The corners of regular facets at each vertex: where those of a vertex start among all, and all.
+    /// The corners of regular facets at each vertex: the start of those of each vertex, and all corners.
     fn corners_by_vertex(&self) -> (Vec<u32>, Vec<Corner>) {
         let all = self.regular.as_flattened();
         let mut starts = vec![0; self.vertices.len() + 1];
@@ -136,7 +137,7 @@ impl Surface {
             let key = [ends[0].min(ends[1]), ends[0].max(ends[1])];
             sheets.entry(key).or_default().push([a / 3, b / 3]);
         }
-        // The rows that a facet has been divided into.
+        // The rows into which a facet was divided.
         let mut rows: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
         let mut middles = Vec::new();
         for (ends, sheets) in sheets {
@@ -153,7 +154,7 @@ impl Surface {
         middles
     }
 
-    /// Divides the one of these rows that has an edge by a vertex on it; returns the third corner.
+    /// Divides the row that has an edge at a vertex on the edge; returns the third corner.
     fn divide(&mut self, rows: &mut Vec<u32>, ends: [u32; 2], vertex: u32) -> u32 {
         let has_edge = |row: &&u32| {
             let row = &self.regular[**row as usize];
@@ -175,14 +176,14 @@ pub(super) fn join(fans: &UnionFind, a: [Corner; 2], b: [Corner; 2]) {
     fans.unite(a[1], b[1]);
 }
 
-/// Pairs of facets that stay joined along one of these edges, as they bound the same cells there: by their corners at the ends
-/// of the edge, in the same order.
+/// Pairs of facets that stay joined along one of these edges because they bound the same cells there. They are given by their
+/// corners at the ends of the edge, in the same order.
 fn pairs(complex: &Complex, surface: &Surface, edges: &[Vec<Side>]) -> Vec<[[Corner; 2]; 2]> {
     let number = |end: u32| surface.vertices[end as usize];
     let wedges = wedges(complex, edges.iter().map(|sides| sides[0].0.map(number)).collect());
     let mut pairs = Vec::new();
     for sides in edges {
-        // By the third corner of each facet, which is also one of the first or last cell between two facets.
+        // The key is the third corner of each facet, which is also a corner of the first or last cell between two facets.
         let third = |corners: &[Corner; 2]| {
             let row = surface.regular[corners[0] as usize / 3];
             let ends = sides[0].0;
@@ -202,7 +203,7 @@ fn pairs(complex: &Complex, surface: &Surface, edges: &[Vec<Side>]) -> Vec<[[Cor
     pairs
 }
 
-/// By edge, the third and fourth corners of the cells of the shape around it: the link of the edge in the shape.
+/// For each edge, the third and fourth corners of the cells of the shape around it: the link of the edge in the shape.
 fn wedges(complex: &Complex, edges: HashSet<[u32; 2]>) -> HashMap<[u32; 2], Vec<[u32; 2]>> {
     let mut wedges: HashMap<[u32; 2], Vec<[u32; 2]>> = HashMap::new();
     if edges.is_empty() {

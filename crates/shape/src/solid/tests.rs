@@ -1,4 +1,4 @@
-//! Solids as a reader sees them who takes equal coordinates for one vertex.
+//! Solids as a reader sees them that takes equal coordinates for one vertex.
 
 use std::cmp::Ordering;
 use std::collections::{BTreeMap, BTreeSet};
@@ -77,7 +77,7 @@ fn voxels(side: u32, mut inside: impl FnMut([u32; 3]) -> bool) -> AlphaShape {
     voxel_shape(voxels, |_| 0.0).unwrap()
 }
 
-/// Some shape of scattered points, of points of a lattice, with weights or without, or of voxels.
+/// A shape of scattered points, of points of a lattice, with weights or without, or of voxels.
 fn some_shape(seed: u64) -> AlphaShape {
     let mut random = Random::new(seed);
     let share = random.unit();
@@ -103,8 +103,8 @@ fn some_shape(seed: u64) -> AlphaShape {
     }
 }
 
-/// The solid is a manifold for whoever takes equal coordinates for one vertex, in doubles and in single precision, and crosses
-/// itself nowhere; what was not cut apart is where it was.
+/// The solid is a manifold for readers that take equal coordinates for one vertex, in doubles and in single precision, and
+/// nowhere crosses itself; vertices that were not cut apart stay in place.
 fn is_apart(shape: &AlphaShape) -> (Cuts, f64) {
     let (solid, cuts) = shape.solid();
     let of_input = shape.points().positions();
@@ -139,7 +139,7 @@ fn solids_are_manifolds_by_their_coordinates() {
     assert!(seen.vertices > 2000 && seen.midpoints > 50, "{seen:?}");
 }
 
-/// The cells around what was moved stay positively oriented, and each facet there is on one.
+/// The cells around moved vertices stay positively oriented, and each facet there is on one cell.
 fn is_tiled(shape: &AlphaShape) {
     let Cut { solid, middles, around, .. } = Cut::of(shape);
     let Some((tiling, places)) = around else { return };
@@ -163,7 +163,7 @@ fn is_tiled(shape: &AlphaShape) {
 
 #[test]
 fn cells_stay_positively_oriented() {
-    // What is moved anywhere near may leave its cells, and of voxels nothing has to be.
+    // Vertices that are moved anywhere near may leave their cells, but voxels need no such moves.
     (3..160).step_by(4).for_each(|seed| is_tiled(&some_shape(seed)));
 }
 
@@ -172,7 +172,7 @@ fn sorted(mut row: [u32; 3]) -> [u32; 3] {
     row
 }
 
-/// The shape that has these cells, whatever α would say.
+/// The shape that has these cells, for any α.
 fn of_cells(places: &[Point], cells: &[[u32; 4]]) -> AlphaShape {
     let mut facets: BTreeMap<[u32; 3], Vec<[u32; 3]>> = BTreeMap::new();
     for &cell in cells {
@@ -210,7 +210,7 @@ fn steps_stay_in_flat_cells() {
     assert!(cuts.largest_move < height, "{cuts:?}");
 }
 
-/// In a wide shape the first step is longer, so that single precision has it.
+/// In a wide shape the first step is longer, so that single precision resolves it.
 #[test]
 fn places_differ_in_single_precision() {
     let tetrahedron = |[x, y, z]: Point, size: f64| {
@@ -255,7 +255,7 @@ fn cavities_that_touch_retreat() {
     assert_eq!((cuts.edges, cuts.moved), (1, cuts.vertices + cuts.midpoints));
 }
 
-/// Lattices in which doubles are few: what is between them is tried by the places that there are.
+/// Lattices with few doubles: the places between them are all tried.
 #[test]
 fn rounded_steps_cross_nothing() {
     let mut random = Random::new(4);
@@ -273,7 +273,7 @@ fn rounded_steps_cross_nothing() {
     }
 }
 
-/// Points as near to each other as doubles can be leave no room: what stays together is counted.
+/// Points as near to each other as doubles can be leave no room: vertices that stay together are counted.
 #[test]
 fn what_cannot_be_moved_apart_is_counted() {
     let mut random = Random::new(3);

@@ -8,29 +8,29 @@ use walpha_base::UnionFind;
 use super::{Middle, Surface};
 use crate::{Class, Complex};
 
-/// The copies of a vertex, and how the cells around it bind them together.
+/// The copies of a vertex, and the groups into which the cells around it join them.
 pub(super) struct Place {
     pub copies: Range<u32>,
-    /// Copies between which are the same cells, joined by facets. Mostly these are single ones: there are more where cavities of the
-    /// shape touch at a vertex.
+    /// Copies between which there are the same cells, joined by facets. Most groups are single copies: there are more copies
+    /// where cavities of the shape touch at a vertex.
     pub groups: Vec<Vec<u32>>,
 }
 
-/// Cells by vertices of the solid: each has for a corner the copy in whose fan it is, the first of its group; corners that are on no boundary
-/// are numbered after the vertices of the solid, by input index.
+/// Cells by vertices of the solid. Each cell has as a corner the copy in whose fan it is, or the first of its group. Corners that
+/// are not on the boundary are numbered after the vertices of the solid, by input index.
 pub(super) struct Tiling {
     pub cells: Vec<[u32; 4]>,
-    /// The cells at each vertex whose place is in question.
+    /// The cells at each vertex that may move.
     at: HashMap<u32, Vec<u32>>,
-    /// The first of its group for each copy that is not.
+    /// The first copy of its group, for each copy that is not the first.
     firsts: HashMap<u32, u32>,
     /// The number of vertices of the solid, midpoints included.
     pub vertices: u32,
 }
 
 impl Tiling {
-    /// That of a solid before its edges get midpoints: `whole` is the surface as it was before it was cut, with corners by vertex, and
-    /// `ends` are further vertices whose cells are wanted.
+    /// Creates the tiling of a solid before its edges get midpoints: `whole` is the surface before it was cut, with corners by
+    /// vertex, and `ends` are further vertices whose cells are needed.
     pub(super) fn new(
         complex: &Complex,
         (whole, starts, corners): (&Surface, &[u32], &[u32]),
@@ -87,7 +87,7 @@ impl Tiling {
         (tiling, places)
     }
 
-    /// The corner of cells that a vertex is.
+    /// The vertex that stands for a vertex in cells.
     pub(super) fn corner(&self, v: u32) -> u32 {
         self.firsts.get(&v).copied().unwrap_or(v)
     }

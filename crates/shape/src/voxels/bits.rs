@@ -6,7 +6,7 @@ use walpha_complex::Voxels;
 use super::VoxelsError;
 use crate::ShapeError;
 
-/// A set of places (x, y, z) of a box, a bit each, in rows along x of whole words.
+/// A set of places (x, y, z) of a box, with a bit for each, in rows along x of whole words.
 #[derive(Debug)]
 pub(super) struct Bits {
     pub(super) size: [usize; 3],
@@ -89,7 +89,7 @@ impl Bits {
         }
     }
 
-    /// A set in a box of this size, from rows that `fill` makes of those of this set around them.
+    /// A set in a box of this size. `fill` makes its rows from the rows of this set around them.
     fn map(
         &self,
         size: [usize; 3],
@@ -207,7 +207,7 @@ impl Numbered {
     }
 }
 
-/// The rows at a row and around it.
+/// The rows around a row, including the row itself.
 fn around([y, z]: [i64; 2]) -> impl Iterator<Item = [i64; 2]> {
     (-1..=1).flat_map(move |dz| (-1..=1).map(move |dy| [y + dy, z + dz]))
 }

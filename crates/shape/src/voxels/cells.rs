@@ -1,4 +1,4 @@
-//! A region of voxels by the part that each plays in its solid, and the simplices that fill what is deep.
+//! The parts that voxels of a region play in its solid, and the simplices that fill deep voxels.
 
 use rayon::prelude::*;
 use walpha_base::Monitor;
@@ -10,7 +10,7 @@ use super::VoxelsError;
 use super::bits::{Bits, Numbered};
 use crate::ShapeError;
 
-/// As many corners as the 32-bit numbers of their octants leave room for.
+/// The maximum number of corners, limited by the 32-bit numbers of their octants.
 pub(super) const MOST_CORNERS: u64 = 1 << 29;
 
 /// A region by the part that voxels play in its solid.
@@ -35,7 +35,8 @@ impl Lattice {
         Ok(Self { shell, deep, corners: Numbered::new(corners)? })
     }
 
-    /// What fills the deep voxels: positively oriented where the axes of the grid are right-handed; turned over where `mirrored`.
+    /// The cells that fill the deep voxels. They are positively oriented if the axes of the grid are right-handed; they are
+    /// turned over if `mirrored`.
     pub(super) fn filling(&self, mirrored: bool, monitor: &Monitor) -> Result<Filling, ShapeError> {
         let what = || "the cells of deep voxels".to_owned();
         let lining = self.deep.dilated()?.and(&self.shell)?.corners()?;
@@ -63,7 +64,7 @@ impl Lattice {
     }
 }
 
-/// A positively oriented cell in canonical form, turned over where `mirrored`.
+/// A positively oriented cell in canonical form, turned over if `mirrored`.
 pub(super) fn written(mut cell: [u32; 4], mirrored: bool) -> [u32; 4] {
     if mirrored {
         cell.swap(2, 3);

@@ -12,9 +12,9 @@ use super::bits::Bits;
 use super::cells::{Filling, Lattice, written};
 use crate::{Class, Complex, ShapeError, Simplices};
 
-/// The complex of a region: each corner lists the simplices whose smallest vertex it is. A facet of one cell is regular, as are its edges and
-/// vertices, and everything else is interior. The cells are positively oriented where the axes of the grid are right-handed; turned over where
-/// `mirrored`.
+/// The complex of a region: each corner lists the simplices whose smallest vertex it is. A facet of one cell is regular, and so
+/// are its edges and vertices; all other simplices are interior. The cells are positively oriented if the axes of the grid are
+/// right-handed, and turned over if `mirrored`.
 pub(super) fn complex(
     lattice: &Lattice,
     region: &Bits,
@@ -36,7 +36,7 @@ pub(super) fn complex(
         });
         Ok::<_, ShapeError>(())
     };
-    // Once to count, so that nothing larger than the result is ever needed.
+    // The first pass counts, so that nothing larger than the result is ever needed.
     let counted = planes().map(|plane| {
         let mut counts = [0; 4];
         each(plane, &mut |found| {
@@ -77,14 +77,14 @@ const CUBE: [[u32; 3]; 8] =
 /// The place of a corner in the 3 × 3 × 3 around it. These places, in the order of z, y and x, are in the order of the numbers of corners.
 const HERE: u32 = 13;
 
-/// What one of the cubes around a corner has of a simplex whose smallest vertex the corner is.
+/// A simplex whose smallest vertex is the corner, as it is contained in the cubes around the corner.
 #[derive(Clone, Debug)]
 struct Pattern<const N: usize> {
     /// The cubes that the simplex is in, a bit for each octant.
     around: u8,
-    /// By cube, a bit, the places of its vertices, of a facet as it is seen from outside of the cube.
+    /// For each cube, as a bit, the places of the vertices; those of a facet as seen from outside of the cube.
     seen: Vec<(u8, [u32; N])>,
-    /// Its places where no side of it is outside: ascending, but for a cell, which keeps its orientation.
+    /// Its places if no side of it is outside: ascending, except that a cell keeps its orientation.
     inner: [u32; N],
 }
 
@@ -102,7 +102,8 @@ impl<const N: usize> Pattern<N> {
     }
 }
 
-/// The octants around a corner that are in a set, a bit each; bit k of an octant's number says that it is after the corner along axis k.
+/// The octants around a corner that are in a set, a bit for each; bit k of an octant's number says that it is after the corner
+/// along axis k.
 struct Octants {
     shell: u8,
     region: u8,
@@ -171,7 +172,7 @@ impl Patterns {
         found.facets.extend(starting(&filling.facets, number).map(|&row| (row, Class::Interior)));
         found.facets.sort_unstable();
         for &edge in starting(&filling.edges, number) {
-            // An edge of a cube is there already, with the class that the cubes around it give it.
+            // An edge of a cube exists already, with the class that the cubes around it give it.
             if !found.edges.iter().any(|(there, _)| *there == edge) {
                 found.edges.push((edge, Class::Interior));
             }
@@ -188,7 +189,7 @@ fn place(octant: u32, step: [u32; 3]) -> u32 {
     along(0) + 3 * along(1) + 9 * along(2)
 }
 
-/// Patterns as they are gathered, by their places.
+/// Patterns during their collection, by their places.
 type Gathered<const N: usize> = BTreeMap<[u32; N], Vec<(u8, [u32; N])>>;
 
 fn add<const N: usize>(to: &mut Gathered<N>, octant: u32, row: [u32; N]) {
@@ -198,7 +199,7 @@ fn add<const N: usize>(to: &mut Gathered<N>, octant: u32, row: [u32; N]) {
     }
 }
 
-/// Those whose smallest vertex is the corner.
+/// The patterns whose smallest vertex is the corner [`HERE`].
 fn only<const N: usize>(gathered: Gathered<N>) -> Vec<Pattern<N>> {
     let smallest = gathered.into_iter().filter(|(row, _)| row[0] == HERE);
     let pattern = |(sorted, seen): ([u32; N], Vec<(u8, [u32; N])>)| Pattern {
@@ -274,7 +275,7 @@ impl<const N: usize> Rows<N> {
     }
 }
 
-/// A part, as far as it has not been written.
+/// The part of the rows that has not been written.
 struct Place<'a, const N: usize> {
     rows: std::slice::IterMut<'a, [u32; N]>,
     classes: std::slice::IterMut<'a, Class>,

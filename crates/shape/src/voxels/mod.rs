@@ -1,4 +1,4 @@
-//! The solid of a region of voxels, such as those of a label: a complex whose cells fill these voxels exactly, whatever α would say.
+//! The solid of a region of voxels, such as those of a label: a complex whose cells fill these voxels exactly, independent of α.
 //!
 //! The points are corners of voxels, in *index space*: the lattice of integers, in which a voxel is a cube of side 1. A cube of the lattice is a
 //! Delaunay polytope of every set of lattice points that contains its eight corners: the sphere through them has radius √¾, and any other
@@ -6,15 +6,17 @@
 //! nothing else, and which are the same in every cube, since moving points does not change their order. [`closure`] therefore writes the
 //! cells of voxels down without a triangulation.
 //!
-//! **Deep voxels**, those whose 26 neighbours are all in the region, need no corners of their own. Let D be the deep voxels, and L, the lining, the
-//! other voxels of the region that have a neighbour in D. Take the Delaunay triangulation of the corners of L. Each voxel of L is a union of
-//! cells. Every face of D that is not between two voxels of D is a face of a voxel of L, because all neighbours of D are in the region, so in
-//! L or in D; and D lies in the hull of L, as a ray that leaves D in any direction passes through L. A cell is convex, its interior meets no face of a
-//! voxel of L, so it lies in D or outside of it as a whole: D is a union of cells. A cell belongs to D if the voxel that its centroid lies in does.
-//! On the faces that L and D share, both cut by the same rule in the plane of the face: the cells meet face to face.
+//! **Deep voxels**, whose 26 neighbours are all in the region, need no corners of their own. Let D be the deep voxels, and L, the
+//! lining, the other voxels of the region that have a neighbour in D. Take the Delaunay triangulation of the corners of L. Each
+//! voxel of L is a union of cells. Every face of D that is not between two voxels of D is a face of a voxel of L, because all
+//! neighbours of D are in the region, so in L or in D; and D lies in the hull of L, because a ray that leaves D in any direction
+//! passes through L. A cell is convex, and its interior meets no face of a voxel of L, so it lies entirely in D or outside of it:
+//! D is a union of cells. A cell belongs to D if the voxel that contains its centroid does. The faces that L and D share are cut
+//! by the same rule in the plane of the face: the cells meet face to face.
 //!
-//! All of this is in integers. At last corners get their positions in the world, each coordinate rounded: an affine map, so cells keep their orientation or
-//! all change it, in which case they are turned over. [`voxel_shape`] refuses a grid so fine, so far from the origin, that rounding could matter.
+//! All of this is in integers. Finally, corners get their positions in the world, each coordinate rounded. This is an affine map,
+//! so all cells keep their orientation or all change it; in the latter case they are turned over. [`voxel_shape`] refuses a grid
+//! that is so fine, and so far from the origin, that rounding could matter.
 
 mod bits;
 mod cells;
@@ -41,7 +43,7 @@ use cells::Lattice;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum VoxelsError {
-    /// There is no voxel in the region.
+    /// The region contains no voxel.
     #[error("the region holds no voxel")]
     Empty,
     /// Runs that overlap, are out of order or leave the grid.
@@ -80,13 +82,13 @@ impl Advise for VoxelsError {
     }
 }
 
-/// The solid of a region of voxels: the cells fill its voxels and nothing else, so that the volume is the number of voxels times that of
-/// one, up to the rounding of positions. Points are corners of voxels that have a neighbour outside of the region, among the 26 around
-/// them, in the order of z, y and x; `value` gives each its value, by its indices in the grid ([`Voxels::corner`]).
+/// The solid of a region of voxels: the cells fill exactly its voxels, so the volume is the number of voxels times that of one,
+/// up to the rounding of positions. Points are the corners of voxels that have a neighbour outside of the region, among the 26
+/// around them, in the order of z, y and x; `value` gives each its value, by its indices in the grid ([`Voxels::corner`]).
 ///
 /// Every simplex is a face of a cell, so nothing is singular. Parts of the region that share an edge or a corner are in one
-/// component; those that share faces are in one [solid](AlphaShape::solid). The options of the shape say α = ∞: no α has a part in it. Time and memory grow with
-/// the surface of the region, not with its volume.
+/// component; parts that share faces are in one [solid](AlphaShape::solid). The options of the shape state α = ∞, because α plays
+/// no part. Time and memory grow with the surface of the region, not with its volume.
 ///
 /// ```
 /// use walpha_shape::{Voxels, voxel_shape};

@@ -6,8 +6,9 @@ use walpha_base::UnionFind;
 use super::bits::Bits;
 use crate::{Class, Complex, Sheets};
 
-/// The sheets: the boundary facets that one sees from one part of the space outside. Around a corner the space outside consists of octants, each in a
-/// voxel; two that share a face are in one part of it, and so are those that a facet has at its three corners.
+/// The sheets: the boundary facets that are seen from one part of the space outside. Around a corner the space outside consists
+/// of octants, each in a voxel. Two that share a face are in one part of it, and so are those that a facet has at its three
+/// corners.
 pub(super) fn sheets(complex: &Complex, corners: &[[u32; 3]], region: &Bits) -> Sheets {
     // Octant o of corner v is 8 v + o. Bit k of o says whether it is after the corner along axis k.
     let octants = UnionFind::new(8 * corners.len());

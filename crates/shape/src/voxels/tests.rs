@@ -23,14 +23,14 @@ fn shape(voxels: &Voxels) -> AlphaShape {
     voxel_shape(voxels.clone(), |at| f64::from(at[0])).unwrap()
 }
 
-/// A ball of radius r in voxels, with much that is deep.
+/// A ball of radius r in voxels, with many deep ones.
 fn ball(r: f64) -> Voxels {
     let side = 2 * r.ceil() as u32 + 1;
     let middle = f64::from(side - 1) / 2.0;
     voxels([side; 3], |at| at.iter().map(|&i| (i as f64 - middle).powi(2)).sum::<f64>() < r * r)
 }
 
-/// Regions with what makes boundaries hard: cavities, gaps and plates of one voxel, voxels that share an edge or a corner.
+/// Regions with difficult boundaries: cavities, gaps and plates of one voxel, voxels that share an edge or a corner.
 fn regions() -> Vec<Voxels> {
     let mut random = Random::new(5);
     let mut regions = vec![
@@ -163,8 +163,8 @@ fn parts(set: &BTreeSet<[i64; 3]>, differing: usize) -> usize {
     count
 }
 
-/// Components are those of 26 neighbours, voids those of the 6 of the space outside; solids have the parts of 6 neighbours, which
-/// bound one surface each and one for each of their own cavities.
+/// Components are those of 26 neighbours, and voids those of the 6 neighbours in the space outside. Solids are the parts of 6
+/// neighbours, each with one boundary surface and one more for each of its own cavities.
 #[test]
 fn components_and_voids_are_those_of_the_voxels() {
     for voxels in regions() {

@@ -1,4 +1,4 @@
-//! Which format a file or folder is of, and reading it.
+//! Recognises the format of a file or folder, and reads it.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -22,25 +22,25 @@ use crate::read::{OpenFile, raw};
 use crate::source::whole_only;
 use crate::{ReadOptions, Reason, Series, Source, Volume, VolumeError};
 
-/// Bytes of what is unpacked that are looked at.
+/// The number of unpacked bytes that are looked at.
 const BYTES: u64 = 1024;
 
-/// What DICOM files are often called. They are recognised by their content alone.
+/// Common extensions of DICOM files. These files are recognised by their content alone.
 const DICOM_EXTENSIONS: [&str; 4] = ["dcm", "dicom", "dic", "ima"];
 
-/// Reads a volume from a file: raw samples if a layout is given, otherwise in the format that its first bytes show, or else
-/// its extension. Folders are read as the first format that they look like.
+/// Reads a volume from a file: as raw samples if a layout is given, otherwise in the format that its first bytes show, or else
+/// its extension. A folder is read as the first format that it looks like.
 ///
-/// [`FORMATS`] are read, as far as their features were built in. Spacing, origin and directions are
-/// those of the file, in the space it means; where it says none, spacing is 1 and the origin 0.
+/// All [`FORMATS`] are read, as far as their features were built in. Spacing, origin and directions are those of the file, in the
+/// space that it means; without them, spacing is 1 and the origin 0.
 ///
-/// A header's claim is compared with the length of the file before memory is allocated. Samples of
-/// unsigned 8 bits are marked as gray levels. One pass; memory for the samples and a few MB.
+/// The claim of a header is compared with the length of the file before memory is allocated. Samples of unsigned 8 bits are
+/// marked as gray levels. Reading takes one pass, and memory for the samples and a few MB.
 ///
 /// # Errors
-/// The file cannot be read, is of no format known, is truncated, longer than it claims or
-/// otherwise not what it says, has an empty axis or too many samples, or holds a NaN or infinity.
-/// Every message names the file. [`VolumeError::Cancelled`], once a [`Monitor`] that watches is cancelled.
+/// The file cannot be read, has an unknown format, is truncated, longer than it claims or otherwise inconsistent, has an empty
+/// axis or too many samples, or contains NaN or infinity. Every message names the file. [`VolumeError::Cancelled`], once a
+/// [`Monitor`] that watches is cancelled.
 pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Volume, VolumeError> {
     let (path, monitor) = (path.as_ref(), &*Monitor::current());
     if !is_folder(path, options) {
@@ -55,10 +55,10 @@ pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Volume, Vol
     finish(path, options, volume, |error| error)
 }
 
-/// The same for a file that is open. What is made coarser is read in parts, where its format allows that.
+/// Like [`read`], for a file that is already open. A volume to be made coarser is read in parts, where its format allows that.
 ///
 /// # Errors
-/// Those of [`read`].
+/// See [`read`].
 pub fn read_file(file: &OpenFile, options: &ReadOptions) -> Result<Volume, VolumeError> {
     let monitor = &*Monitor::current();
     if let Some(n) = options.downsample
@@ -79,7 +79,7 @@ pub fn read_file(file: &OpenFile, options: &ReadOptions) -> Result<Volume, Volum
     finish(file.path(), options, volume, |error| naming_data_files(file, options, error))
 }
 
-/// The part of a volume that is asked for, without NaN; `name` adds the names of files to an error about samples.
+/// The requested part of a volume, without NaN. Errors about samples get the names of files by `name`.
 fn finish(
     path: &Path,
     options: &ReadOptions,
@@ -93,7 +93,7 @@ fn finish(
     volume.map_err(|error| in_file(path, error))
 }
 
-/// An error that says which file it is about.
+/// Adds the file to an error that does not name it.
 fn in_file(path: &Path, error: VolumeError) -> VolumeError {
     match error {
         VolumeError::Io { .. }
@@ -104,7 +104,7 @@ fn in_file(path: &Path, error: VolumeError) -> VolumeError {
     }
 }
 
-/// An error about samples, with the names of the files that hold them where those are not the header's.
+/// Adds the names of the files that hold the samples to an error about samples, if these are not in the header's file.
 fn naming_data_files(file: &OpenFile, options: &ReadOptions, error: VolumeError) -> VolumeError {
     if let Ok(files) = data_files_of(file, options)
         && !files.is_empty()
@@ -115,7 +115,7 @@ fn naming_data_files(file: &OpenFile, options: &ReadOptions, error: VolumeError)
     error
 }
 
-/// Calls a reader. What panics in it, in a decoder that others wrote, is an error of the file.
+/// Calls a reader. A panic in a decoder of another author becomes an error of the file.
 pub(crate) fn decoded<T>(
     path: &Path,
     read: impl FnOnce() -> Result<T, VolumeError>,
@@ -137,7 +137,7 @@ pub(crate) fn source(path: &Path, options: &ReadOptions) -> Result<Source, Volum
     source_of(&OpenFile::open(path)?, options)
 }
 
-/// The same for a file that is open.
+/// Like [`source`], for a file that is already open.
 pub(crate) fn source_of(file: &OpenFile, options: &ReadOptions) -> Result<Source, VolumeError> {
     if let Some(layout) = &options.raw {
         return Ok(raw::box_reader(file, layout)?.source());
@@ -155,21 +155,21 @@ fn whole(format: &VolumeFormat, path: &Path) -> VolumeError {
     if format.is_built_in() { whole_only(path, format.name) } else { left_out(format, path) }
 }
 
-/// The error for a format that was left out of the build.
+/// The error for a format that was not built in.
 fn left_out(format: &VolumeFormat, path: &Path) -> VolumeError {
     let (what, feature) = (format.name, format.feature.unwrap_or_default());
     format_error(path, Reason::Without { what, feature })
 }
 
-/// Whether a path is a folder to be recognised; bare samples are in a file.
+/// Whether a path is a folder whose format is to be recognised. Bare samples are always in a file.
 fn is_folder(path: &Path, options: &ReadOptions) -> bool {
     options.raw.is_none() && path.is_dir()
 }
 
-/// What a file or folder is, as `NRRD` or `NIfTI, gzip`.
+/// The name of the format of a file or folder, such as `NRRD` or `NIfTI, gzip`.
 ///
 /// # Errors
-/// The file cannot be read or is of no format known.
+/// The file cannot be read, or its format is not known.
 pub fn format_name(path: impl AsRef<Path>, options: &ReadOptions) -> Result<String, VolumeError> {
     let path = path.as_ref();
     if is_folder(path, options) {
@@ -178,7 +178,7 @@ pub fn format_name(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Stri
     format_name_of(&OpenFile::open(path)?, options)
 }
 
-/// The same for a file that is open.
+/// Like [`format_name`], for a file that is already open.
 pub(crate) fn format_name_of(
     file: &OpenFile,
     options: &ReadOptions,
@@ -190,8 +190,8 @@ pub(crate) fn format_name_of(
     Ok(if gzip { format!("{}, gzip", format.name) } else { format.name.into() })
 }
 
-/// The files that hold the samples of a volume, where its header is a file of its own (NRRD,
-/// `MetaImage`, `NIfTI`); else none. A header may name any file, not only those of its folder.
+/// The files that hold the samples of a volume whose header is a file of its own (NRRD, `MetaImage`, `NIfTI`); otherwise none. A
+/// header may name any file, also one outside its folder.
 ///
 /// # Errors
 /// The header cannot be read.
@@ -206,7 +206,7 @@ pub fn data_files(
     data_files_of(&OpenFile::open(path)?, options)
 }
 
-/// The same for a file that is open.
+/// Like [`data_files`], for a file that is already open.
 pub(crate) fn data_files_of(
     file: &OpenFile,
     options: &ReadOptions,
@@ -222,8 +222,8 @@ pub(crate) fn data_files_of(
     }
 }
 
-/// All files that a volume is read from: a file and those that its header names; of a folder the DICOM files in
-/// it, its slices, or all of a Zarr store. As far as can be told: what cannot be read has none.
+/// All files that a volume is read from: a file and those that its header names; for a folder, its DICOM files, its slices, or
+/// all files of a Zarr store. The list is best effort: nothing is listed for a file that cannot be read.
 pub fn files_of(path: &Path) -> Vec<PathBuf> {
     if path.is_dir() {
         return files_of_folder(path);
@@ -246,7 +246,7 @@ fn files_of_folder(folder: &Path) -> Vec<PathBuf> {
     series
 }
 
-/// The files in a folder and those in it. Links to folders are not followed: they may lead round in circles.
+/// The files in a folder and its subfolders. Links to folders are not followed, as they may form cycles.
 fn files_below(folder: &Path) -> Vec<PathBuf> {
     let (mut folders, mut files) = (vec![folder.to_owned()], Vec::new());
     while let Some(folder) = folders.pop() {
@@ -261,7 +261,7 @@ fn files_below(folder: &Path) -> Vec<PathBuf> {
     files
 }
 
-/// The series in a folder; none where it holds no DICOM files.
+/// The DICOM series in a folder; none if it contains no DICOM files.
 ///
 /// # Errors
 /// The folder or a file in it cannot be read.
@@ -276,18 +276,18 @@ pub fn series(folder: impl AsRef<Path>) -> Result<Vec<Series>, VolumeError> {
     }
 }
 
-/// Whether a file that starts so is of a format of volumes.
+/// Whether a file with these first bytes is in a format of volumes.
 pub fn begins_as_volume(start: &[u8]) -> bool {
     by_content(start).is_some()
 }
 
-/// What a file is by its content, for people, if that is known.
+/// What a file is according to its content, in words for people, if that is known.
 #[cfg(feature = "dicom")]
 pub(crate) fn recognised(start: &[u8]) -> Option<&'static str> {
     by_content(start).map(|format| format.name).or_else(|| other_name(start))
 }
 
-/// The error for a file of no format known.
+/// The error for a file of an unknown format.
 fn unknown(path: &Path) -> VolumeError {
     let given = path.extension().unwrap_or_default().to_string_lossy();
     if DICOM_EXTENSIONS.iter().any(|own| given.eq_ignore_ascii_case(own)) {
@@ -308,13 +308,13 @@ fn unknown(path: &Path) -> VolumeError {
     format_error(path, Reason::Unknown { known, near })
 }
 
-/// A format, and whether a file of it is compressed as a whole.
+/// A format, and whether the file is compressed as a whole.
 struct Detected {
     format: &'static VolumeFormat,
     gzip: bool,
 }
 
-/// Refuses settings that the format has no use for.
+/// Refuses settings that the format does not use.
 fn accept(format: &VolumeFormat, path: &Path, options: &ReadOptions) -> Result<(), VolumeError> {
     for (setting, given) in [
         (Setting::Level, options.level.is_some()),
@@ -347,7 +347,7 @@ fn format_of_folder(path: &Path) -> Result<&'static VolumeFormat, VolumeError> {
     Err(io_error(path)(io::ErrorKind::IsADirectory.into()))
 }
 
-/// The format of a file, which must be the one that the user says, if one is said.
+/// The format of a file. If the user states a format, it must be the same.
 fn detect(file: &OpenFile, options: &ReadOptions) -> Result<Detected, VolumeError> {
     let asked = options.format.as_deref();
     let detected = detect_as(file, asked)?;
@@ -405,16 +405,16 @@ fn by_extension(path: &Path, asked: Option<&str>) -> Option<&'static VolumeForma
     FORMATS.iter().find(|format| format.extensions.iter().any(ends))
 }
 
-/// The file's name in lower case, with the extension that the user says, if one is said.
+/// The file's name in lower case, with the extension that the user states, if any.
 fn name(path: &Path, asked: Option<&str>) -> String {
     let own = || path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
     asked.map_or_else(own, |asked| format!("it.{}", asked.to_lowercase()))
 }
 
-/// What a gzip stream holds.
+/// Detects the content of a gzip stream.
 fn unpacked(file: &OpenFile, asked: Option<&str>) -> Result<Detected, VolumeError> {
     let path = file.path();
-    // What cannot be unpacked is left to the reader, which says why.
+    // If it cannot be unpacked, the reader says why.
     let (start, failed) = file.start_unpacked(BYTES)?;
     let packed = FORMATS.iter().filter(|format| format.gzip);
     let names: Vec<&str> = packed.clone().map(|format| format.name).collect();

@@ -1,10 +1,10 @@
-//! How files of each format begin.
+//! The first bytes of files of each format.
 
 use walpha_base::npy;
 
 use crate::Endian;
 
-/// Lengths of the headers of `NIfTI`'s versions 1 and 2, which their first numbers repeat.
+/// The lengths of the headers of `NIfTI`'s versions 1 and 2. The first number of a file repeats its length.
 pub(crate) const NIFTI_HEADERS: [usize; 2] = [348, 540];
 
 /// Whether a file begins as a `NIfTI` (or Analyze) header does, of either version and byte order.
@@ -12,7 +12,7 @@ pub(super) fn is_nifti(start: &[u8]) -> bool {
     start.len() >= NIFTI_HEADERS[0] && nifti_version(start).is_some()
 }
 
-/// `NIfTI`'s version and byte order, by the first number.
+/// The version and byte order of `NIfTI`, according to the first number.
 pub(crate) fn nifti_version(start: &[u8]) -> Option<(u8, Endian)> {
     let first: [u8; 4] = start.get(..4)?.try_into().ok()?;
     for (size, version) in NIFTI_HEADERS.into_iter().zip(1..) {
@@ -26,7 +26,7 @@ pub(crate) fn nifti_version(start: &[u8]) -> Option<(u8, Endian)> {
     None
 }
 
-/// Whether a file begins as a `MetaImage` header does: with a line of one of these keys.
+/// Whether a file begins as a `MetaImage` header does: with a line that has one of these keys.
 pub(super) fn is_metaimage(start: &[u8]) -> bool {
     const FIRST_KEYS: [&str; 4] = ["ObjectType", "NDims", "Comment", "ObjectSubType"];
     let line = start.split(|&byte| byte == b'\n').next().unwrap_or_default();
@@ -47,7 +47,7 @@ pub(super) fn is_tiff(start: &[u8]) -> bool {
     MAGIC.iter().any(|magic| start.starts_with(magic))
 }
 
-/// Whether a file begins as an MGH header does: with version 1, four sizes from 1 up, and a type that there is.
+/// Whether a file begins as an MGH header does: with version 1, four sizes of at least 1, and an existing type.
 pub(super) fn is_mgh(start: &[u8]) -> bool {
     let (numbers, _) = start.as_chunks();
     let numbers: Vec<i32> =
@@ -70,8 +70,8 @@ pub(crate) fn is_gzip(start: &[u8]) -> bool {
     start.starts_with(&[0x1f, 0x8b])
 }
 
-/// Whether a file begins as a DICOM file does: with the mark, or, where that is missing, with elements. The bytes before
-/// the mark are anybody's: some scanners write a TIFF header there.
+/// Whether a file begins as a DICOM file does: with the `DICM` mark or, without a mark, with elements. The bytes before the mark
+/// are free: some scanners write a TIFF header there.
 pub(crate) fn is_dicom(start: &[u8]) -> bool {
     match dicom_mark(start) {
         Some(0) => dicom_order(&start[4..]).is_some(),
@@ -80,20 +80,20 @@ pub(crate) fn is_dicom(start: &[u8]) -> bool {
     }
 }
 
-/// Where a DICOM file has its mark: behind 128 bytes, which some files lack.
+/// The position of the `DICM` mark of a DICOM file: behind 128 bytes, which some files lack.
 pub(crate) fn dicom_mark(start: &[u8]) -> Option<u64> {
     [128, 0].into_iter().find(|&at| start.get(at..at + 4) == Some(b"DICM")).map(|at| at as u64)
 }
 
-/// The order of bytes of DICOM elements, and whether they state their types: of the first three, which are in the order of
-/// their numbers and begin with those about the file (group 2) or the image (group 8).
+/// The byte order of DICOM elements, and whether they state their types. It is decided by the first three elements, which are in
+/// ascending order and begin with those about the file (group 2) or the image (group 8).
 pub(crate) fn dicom_order(start: &[u8]) -> Option<(Endian, bool)> {
     let all = [(Endian::Little, true), (Endian::Little, false), (Endian::Big, true)];
     all.into_iter().find(|&(order, typed)| begins_with_elements(start, order, typed))
 }
 
 fn begins_with_elements(start: &[u8], order: Endian, typed: bool) -> bool {
-    /// Types whose length has four bytes, behind two that are not used.
+    /// Types with a length of four bytes, after two unused ones.
     const LONG: [&[u8]; 6] = [b"OB", b"OW", b"SQ", b"UN", b"UT", b"OF"];
     const SHORT: [&[u8]; 13] =
         [b"AE", b"CS", b"DA", b"DS", b"IS", b"LO", b"PN", b"SH", b"TM", b"UI", b"UL", b"US", b"ST"];
@@ -128,7 +128,7 @@ fn begins_with_elements(start: &[u8], order: Endian, typed: bool) -> bool {
         } else {
             None
         };
-        // In front of these there is nothing long, such as a sequence.
+        // No long element, such as a sequence, precedes these.
         let Some((value, length)) = value.filter(|(_, length)| length % 2 == 0) else {
             return false;
         };

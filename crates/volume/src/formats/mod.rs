@@ -1,5 +1,5 @@
-//! The formats of volumes: what each is called, how it is recognised, read and written, and what it
-//! keeps. Whatever else lists formats is made from the [table](FORMATS).
+//! The formats of volumes: what each is called, how it is recognised, read and written, and what it stores. All other lists of
+//! formats are made from the [table](FORMATS).
 
 mod detect;
 mod magic;
@@ -7,7 +7,7 @@ mod others;
 mod table;
 mod unknown;
 
-/// What a feature brings, or `None` where it is left out.
+/// An item that needs a feature, or `None` if the feature was not built in.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! __built {

@@ -1,4 +1,4 @@
-//! Kinds of files that are known by how they begin and read neither as volumes nor as points.
+//! Kinds of files that are recognised by their first bytes but are read neither as volumes nor as points.
 
 use std::path::Path;
 
@@ -7,14 +7,14 @@ use walpha_base::shown::shown;
 
 use crate::Reason;
 
-/// A kind of files: what it is, after "is ", and what to do about it.
+/// A kind of file: what it is, in words that follow "is ", and what to do about it.
 struct Kind {
     begins: fn(&[u8]) -> bool,
     what: &'static str,
     advice: &'static str,
 }
 
-/// A kind by its first bytes.
+/// Defines a kind by its first bytes.
 macro_rules! kind {
     ($($start:literal)|+, $what:literal, $advice:expr) => {
         Kind {
@@ -32,7 +32,7 @@ const TABLE: &str = "save the places of its atoms as a table, x,y,z in each line
 const SAVE_TABLE: &str = "save it as CSV";
 const DOWNLOAD: &str = "download the file itself: this is what a server said instead";
 
-/// The kinds, in the order in which they are looked for.
+/// The kinds, in the order in which they are tried.
 static KINDS: [Kind; 49] = [
     kind!(b"\x89PNG", "a PNG picture, one slice", SLICES),
     kind!(b"\xff\xd8\xff", "a JPEG picture, one slice", SLICES),
@@ -158,13 +158,13 @@ static KINDS: [Kind; 49] = [
     kind!(b"{\\rtf", "an RTF document", "save it as plain text"),
 ];
 
-/// Why a file that begins so is not read, if it is of a kind that is known.
+/// Why a file with these first bytes is not read, if its kind is known.
 pub fn other_kind(start: &[u8]) -> Option<Reason> {
     let kind = kind(start)?;
     Some(Reason::unsupported(format!("is {}", kind.what), kind.advice))
 }
 
-/// What a file is that begins so, if it is of a kind that is known.
+/// What a file with these first bytes is, if its kind is known.
 #[cfg(feature = "dicom")]
 pub(super) fn other_name(start: &[u8]) -> Option<&'static str> {
     Some(kind(start)?.what)
@@ -174,7 +174,7 @@ fn kind(start: &[u8]) -> Option<&'static Kind> {
     KINDS.iter().find(|kind| (kind.begins)(start))
 }
 
-/// Why a file is not read that holds the samples of a header beside it, or is called so.
+/// Why a file is not read that holds the samples of a header beside it, or has the name of such a file.
 pub(super) fn partner(path: &Path) -> Option<Reason> {
     const HEADERS: [&str; 3] = ["hdr", "mhd", "nhdr"];
     let beside = HEADERS.map(|extension| path.with_extension(extension));
@@ -203,7 +203,7 @@ pub(super) fn partner(path: &Path) -> Option<Reason> {
     })
 }
 
-/// Text without a mark of its encoding and white space.
+/// Removes the mark of the encoding and leading white space from text.
 fn text(start: &[u8]) -> &[u8] {
     start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(start).trim_ascii_start()
 }
@@ -215,15 +215,15 @@ fn is_html(start: &[u8]) -> bool {
     begins(b"<!doctype html") || begins(b"<html") || begins(b"<head")
 }
 
-/// Text of XML. A file of VTK may begin with a comment that hides its first element from us.
+/// Whether the file is XML other than VTK's. A VTK file may begin with a comment that hides its first element from us.
 fn is_other_xml(start: &[u8]) -> bool {
     let start = text(start);
     start.starts_with(b"<svg")
         || start.starts_with(b"<?xml") && !start.windows(4).any(|window| window == b"<!--")
 }
 
-/// A title, a count, and a line of a residue's number and name, an atom's name and number, and a place, each as wide as it
-/// must be.
+/// Whether the file is in GROMACS's GRO format: a title, a count, and a line of a residue's number and name, an atom's name and
+/// number, and a position, each in columns of fixed width.
 fn is_gro(start: &[u8]) -> bool {
     let mut lines = start.split(|&byte| byte == b'\n').skip(1);
     let mut next = || str::from_utf8(lines.next()?).ok();
@@ -243,7 +243,7 @@ fn is_gro(start: &[u8]) -> bool {
         && (0..3).all(place)
 }
 
-/// Words that the first lines of CIF have.
+/// Whether the first lines contain words that CIF files have.
 fn is_cif(start: &[u8]) -> bool {
     const WORDS: [&[u8]; 4] = [b"_entry", b"_audit", b"_cell", b"_atom_site"];
     let start = text(start);
@@ -251,12 +251,13 @@ fn is_cif(start: &[u8]) -> bool {
     start.starts_with(b"data_") && WORDS.iter().any(has)
 }
 
-/// A letter, a digit, white space, and a number or a comment.
+/// Whether the file begins as PNM: with a letter, a digit, white space, and a number or a comment.
 fn is_pnm(start: &[u8]) -> bool {
     matches!(start, [b'P', b'1'..=b'6', b' ' | b'\n' | b'\r' | b'\t', b'0'..=b'9' | b'#', ..])
 }
 
-/// Two counts, the place of the scanner and its axes, and a matrix: lines of 1, 1, 3, 3, 3, 3, 4, 4, 4 and 4 numbers.
+/// Whether the file begins as PTX: with two counts, the position of the scanner, its axes, and a matrix, as lines of 1, 1, 3, 3,
+/// 3, 3, 4, 4, 4 and 4 numbers.
 fn is_ptx(start: &[u8]) -> bool {
     let lines = start.split(|&byte| byte == b'\n').take(10);
     let counts = lines.map(|line| {
@@ -267,13 +268,13 @@ fn is_ptx(start: &[u8]) -> bool {
     counts.eq([1, 1, 3, 3, 3, 3, 4, 4, 4, 4].map(Some))
 }
 
-/// A header of 14 bytes and one of a length that there is.
+/// Whether the file begins as BMP: with a header of 14 bytes and one of a length that exists.
 fn is_bmp(start: &[u8]) -> bool {
     start.starts_with(b"BM")
         && matches!(start.get(14..18), Some([12 | 40 | 52 | 56 | 64 | 108 | 124, 0, 0, 0]))
 }
 
-/// Records of six characters, the first of which there are not many.
+/// Whether the file begins as PDB: with a record of six characters, of which few come first in a file.
 fn is_pdb(start: &[u8]) -> bool {
     const RECORDS: [&[u8]; 9] = [
         b"HEADER  ",

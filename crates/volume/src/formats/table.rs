@@ -1,4 +1,4 @@
-//! The formats of volumes, and what is known of each.
+//! The table of the formats of volumes.
 
 use std::fmt;
 use std::io::{self, Write};
@@ -26,58 +26,58 @@ type DataFiles = fn(&OpenFile) -> Result<Vec<PathBuf>, VolumeError>;
 
 /// A format of volumes.
 pub struct VolumeFormat {
-    /// For people.
+    /// The name for people.
     pub name: &'static str,
     /// The extensions of files read, without their first dots.
     pub extensions: &'static [&'static str],
-    /// What it keeps of where samples lie and what they are.
+    /// What the format stores about the grid and its samples.
     pub keeps: Keeps,
-    /// Which settings choose one volume of a file or folder of several.
+    /// The settings that choose one volume from a file or folder of several.
     pub chooses: &'static [Setting],
-    /// The feature that reads and writes it; `None` where it needs none.
+    /// The feature that reads and writes the format; `None` if it needs no feature.
     pub feature: Option<&'static str>,
-    /// Its targets for fuzzing.
+    /// The fuzz targets of the format.
     pub fuzzed_by: &'static [&'static str],
-    /// Its writers.
+    /// The writers of the format.
     pub writers: &'static [VolumeWriter],
-    /// Whether a whole file of it is read when compressed with gzip.
+    /// Whether a file is also read if it is compressed with gzip as a whole.
     pub(super) gzip: bool,
-    /// How its files begin.
+    /// Whether a file with these first bytes is in the format.
     pub(super) begins: fn(&[u8]) -> bool,
-    /// For people, a folder of it.
+    /// The name for people of a folder in the format.
     pub(super) folder_name: &'static str,
-    /// How its folders look.
+    /// Whether a folder is in the format.
     pub(super) is_folder: fn(&Path) -> Result<bool, VolumeError>,
-    /// Reads a file, where the format has files and was not left out of the build.
+    /// Reads a file, if the format has files and was built in.
     pub(super) read: Option<Read>,
-    /// Reads a folder, where the format has folders and was not left out of the build.
+    /// Reads a folder, if the format has folders and was built in.
     pub(super) read_folder: Option<ReadFolder>,
-    /// Opens a file to be read part by part, where its format lends itself to that.
+    /// Opens a file to be read part by part, if the format allows that.
     pub(super) parts: Option<PartsOf>,
-    /// The same for a folder.
+    /// Opens a folder to be read part by part, if the format allows that.
     pub(super) parts_of_folder: Option<PartsOfFolder>,
-    /// The files that hold the samples, where a header does not.
+    /// Lists the files that hold the samples, if they are not in the header's file.
     pub(super) data_files: Option<DataFiles>,
 }
 
-/// What a format keeps.
+/// What a format stores.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[expect(clippy::struct_excessive_bools, reason = "each is an answer of its own")]
 pub struct Keeps {
-    /// Distances of samples.
+    /// The distances between samples.
     pub spacing: bool,
-    /// Where the grid begins and which way its axes run.
+    /// The position of the grid and the directions of its axes.
     pub directions: bool,
-    /// The space these are in.
+    /// The space of its position and directions.
     pub space: bool,
-    /// The unit of lengths.
+    /// The unit of length.
     pub unit: bool,
     /// Whether the file stores the type of samples; if not, the user has to give it.
     pub dtype: bool,
 }
 
-/// How volumes are written under an extension: samples as `f32`, little-endian, and the frame where the
-/// format has one, in the space and unit that are its convention.
+/// Writes volumes under an extension: samples as `f32`, little-endian; and the frame if the format has one, in the space and unit
+/// of its convention.
 #[derive(Clone, Copy)]
 pub struct VolumeWriter {
     /// The extension without its first dot.
@@ -88,7 +88,7 @@ pub struct VolumeWriter {
 type WriteAs = fn(&Volume, &mut dyn Write) -> io::Result<()>;
 
 impl VolumeFormat {
-    /// Whether it was built in.
+    /// Whether the format was built in.
     pub fn is_built_in(&self) -> bool {
         self.feature.is_none() || self.read.is_some() || self.read_folder.is_some()
     }
@@ -101,15 +101,15 @@ impl fmt::Debug for VolumeFormat {
 }
 
 impl VolumeWriter {
-    /// Those that were built in.
+    /// The writers that were built in.
     pub fn all() -> impl Iterator<Item = &'static Self> + Clone {
         FORMATS.iter().filter(|format| format.is_built_in()).flat_map(|format| format.writers)
     }
 
-    /// The writer a path asks for by its extension.
+    /// The writer that the extension of a path asks for.
     ///
     /// # Errors
-    /// [`UnknownFormat`] names the ones there are.
+    /// [`UnknownFormat`] names the existing ones.
     pub fn of(path: impl AsRef<Path>) -> Result<&'static Self, UnknownFormat> {
         let path = path.as_ref();
         UnknownFormat::find(path, "a volume", Self::all().map(|writer| (writer.extension, writer)))
@@ -118,7 +118,7 @@ impl VolumeWriter {
     /// Writes the whole file. The same volume gives the same bytes.
     ///
     /// # Errors
-    /// Whatever `out` returns.
+    /// The errors of `out`.
     pub fn write(&self, volume: &Volume, out: &mut dyn Write) -> io::Result<()> {
         (self.write)(volume, out)
     }
@@ -130,9 +130,9 @@ impl fmt::Debug for VolumeWriter {
     }
 }
 
-/// Everything about where a grid lies.
+/// A format that stores everything about the grid.
 const ALL: Keeps = Keeps { spacing: true, directions: true, space: true, unit: true, dtype: true };
-/// The samples alone.
+/// A format that stores the samples alone.
 const SAMPLES: Keeps =
     Keeps { spacing: false, directions: false, space: false, unit: false, dtype: true };
 
@@ -140,7 +140,7 @@ const fn writer(extension: &'static str, write: WriteAs) -> VolumeWriter {
     VolumeWriter { extension, write }
 }
 
-/// A format of single files, recognised by extension only.
+/// A format of single files that are recognised by their extension only.
 const PLAIN: VolumeFormat = VolumeFormat {
     name: "",
     extensions: &[],
@@ -160,9 +160,9 @@ const PLAIN: VolumeFormat = VolumeFormat {
     data_files: None,
 };
 
-/// The formats of volumes, in the order in which they are looked for.
+/// The formats of volumes, in the order in which they are tried.
 pub static FORMATS: [VolumeFormat; 14] = [
-    // First, because a file of it may begin as one of another, too.
+    // DICOM comes first, because its files may begin like those of another format, too.
     VolumeFormat {
         name: "DICOM",
         keeps: ALL,

@@ -5,7 +5,7 @@ use walpha_base::advice::{Advice, Advise, Category};
 use crate::near::nearest;
 use walpha_base::shown::shown;
 
-/// No writer has this extension.
+/// The error for an extension that no writer has.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{path}: no format has the extension `{extension}`, {thing} can be written as {known}")]
 pub struct UnknownFormat {
@@ -20,7 +20,7 @@ impl UnknownFormat {
     /// The value that belongs to the extension of a path, among pairs of an extension and a value.
     ///
     /// # Errors
-    /// The name has no extension that is known.
+    /// The name has no known extension.
     pub fn find<'a, F>(
         path: &Path,
         thing: &'static str,
@@ -35,8 +35,7 @@ impl UnknownFormat {
         found.map(|(_, format)| format).ok_or_else(|| Self::new(path, thing, known))
     }
 
-    /// Says that `thing` cannot be written to `path`, only under the `known` extensions (without their
-    /// dots).
+    /// The error that `thing` cannot be written to `path`, but only under the `known` extensions (without their dots).
     pub fn new<'a>(
         path: &Path,
         thing: &'static str,

@@ -19,7 +19,7 @@ pub(super) fn data_paths(header: &Path, names: &[String]) -> Vec<PathBuf> {
 
 /// The files of a numbered sequence; `None` if the words do not describe one.
 pub(super) fn numbered(words: &[impl AsRef<str>]) -> Option<Result<Vec<String>, Reason>> {
-    /// A row has a file a slice, at most.
+    /// The largest number of files of a sequence, which has at most one file for each slice.
     const MAX_FILES: i64 = 1 << 20;
     let words: Vec<&str> = words.iter().map(AsRef::as_ref).collect();
     let &[pattern, first, last, step, ..] = &words[..] else { return None };
@@ -43,8 +43,7 @@ pub(super) fn numbered(words: &[impl AsRef<str>]) -> Option<Result<Vec<String>, 
     Some(Ok((0..=(last - first) / step).map(name).collect()))
 }
 
-/// Reads the volume that a header describes from these files; `skip` gives how much of a file of
-/// this length is passed over.
+/// Reads the volume that a header describes from these files. `skip` returns how many bytes to skip in a file of a given length.
 pub(super) fn read(
     header: &Path,
     layout: Layout,
@@ -57,7 +56,7 @@ pub(super) fn read(
     layout.read(header, source, bytes, monitor).map_err(naming(header, files))
 }
 
-/// Errors about samples in files separate from their header, with the names of both.
+/// Converts errors about samples in files separate from their header, so that they name both.
 pub(crate) fn naming<'a>(
     header: &'a Path,
     files: &'a [PathBuf],
@@ -83,14 +82,14 @@ pub(crate) fn naming<'a>(
     }
 }
 
-/// Samples in files separate from their header: these files one after the other, each
-/// without its first bytes. One is open at a time.
+/// The samples in files separate from their header: these files one after the other, each without its first bytes. One file is
+/// open at a time.
 #[derive(Debug)]
 struct Detached {
-    /// Those still to come, and the bytes to pass over in each.
+    /// The files that are not read yet, and the number of bytes to skip in each.
     files: VecDeque<(PathBuf, u64)>,
     current: Option<(PathBuf, File)>,
-    /// Bytes in all, those skipped left out.
+    /// The number of bytes in all files, without those that are skipped.
     bytes: u64,
 }
 

@@ -5,8 +5,7 @@ use super::payload::{Length, unreadable};
 use crate::error::format_error;
 use crate::{Reason, VolumeError};
 
-/// Which of the volumes of a file is read: those along a fourth axis (and further axes), one after the
-/// other.
+/// The volume of a file that is read, if a fourth axis (or further axes) counts several, one after the other.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct FrameChoice {
     pub index: u64,
@@ -17,7 +16,7 @@ impl FrameChoice {
     /// The only volume of a file.
     pub(super) const ONE: Self = Self { index: 0, count: 1 };
 
-    /// The one asked for, where the axes beyond the third have these sizes.
+    /// Chooses the volume asked for in a file whose axes beyond the third have these sizes.
     pub(super) fn choose(
         path: &Path,
         beyond: &[u64],
@@ -35,7 +34,7 @@ impl FrameChoice {
         }
     }
 
-    /// From a reader of all volumes, of so many bytes each, to the one.
+    /// Moves a reader of all volumes, of `each` bytes, to the chosen one.
     pub(super) fn select<R: Read>(
         self,
         path: &Path,
@@ -54,7 +53,7 @@ impl FrameChoice {
             other => other.minus(skip),
         };
         io::copy(&mut (&mut reader).take(skip), &mut io::sink()).map_err(unreadable(path))?;
-        // A single volume must be all there is.
+        // A single volume must be all that the file contains.
         let most = if self.count > 1 { each } else { u64::MAX };
         Ok((reader.take(most), left))
     }

@@ -1,4 +1,4 @@
-//! Streams of gzip, with what follows them.
+//! Gzip streams with several members, or with other data behind them.
 
 use std::io::{self, BufRead, Read};
 use std::path::Path;
@@ -8,30 +8,30 @@ use walpha_base::shown::shown;
 
 use crate::formats::is_gzip;
 
-/// What the members of a gzip stream hold, one after the other. As gzip does, it ends where no other member
-/// follows: zeros behind it are passed over, and so is anything else, which is said.
+/// Reads the content of the members of a gzip stream, one after the other. Like gzip, it ends where no other member follows.
+/// Zeros behind the last member are skipped, and so is anything else, with a warning.
 pub struct Gunzip<R> {
     /// `None` at the end.
     member: Option<GzDecoder<R>>,
-    /// Of the file, for what is said; `None` where nothing is to be said.
+    /// The name of the file for warnings; `None` for no warnings.
     name: Option<String>,
 }
 
 impl<R: BufRead> Gunzip<R> {
-    /// At the first member.
+    /// Creates a reader at the first member.
     pub fn new(path: &Path, stream: R) -> Self {
         Self { name: Some(shown(path)), ..Self::quiet(stream) }
     }
 
-    /// The same for a look at its beginning, about which nothing is said.
+    /// Like [`new`](Self::new), without warnings: for a look at the first bytes.
     pub fn quiet(stream: R) -> Self {
         Self { member: Some(GzDecoder::new(stream)), name: None }
     }
 
-    /// From the end of a member to the next one, or to the end.
+    /// Moves from the end of a member to the next one, or to the end.
     fn next_member(&mut self, mut rest: R) -> io::Result<()> {
         let start = rest.fill_buf()?;
-        // At the edge of a buffer one byte has to do.
+        // At the end of a buffer only one byte may be available.
         if is_gzip(start) || start == [0x1f] {
             self.member = Some(GzDecoder::new(rest));
             return Ok(());

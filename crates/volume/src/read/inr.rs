@@ -13,7 +13,7 @@ use crate::{Coordinates, Dims, Dtype, Endian, Frame, Reason, Volume, VolumeError
 const MAGIC: &[u8] = b"#INRIMAGE-4#{";
 /// The line that ends a header.
 const END: &[u8] = b"\n##}\n";
-/// Longer headers than these 16 kB are taken for damage.
+/// Headers longer than these 16 kB are taken for damage.
 const MAX_HEADER: usize = 1 << 14;
 
 /// Reads a file, gzipped or not.
@@ -22,12 +22,11 @@ pub(crate) fn open(file: &OpenFile, monitor: &Monitor) -> Result<Volume, VolumeE
     read(file.path(), reader, length, monitor)
 }
 
-/// Reads an INRIMAGE-4 image, INRIA's format in which CGAL ships its sample volumes: lines
-/// `KEY=VALUE` up to a line `##}`, then the samples, x fastest. Headers should be padded to a multiple
-/// of 256 bytes; like CGAL's reader, this one takes any length.
+/// Reads an INRIMAGE-4 image, INRIA's format in which CGAL ships its sample volumes: lines `KEY=VALUE` up to a line `##}`, then
+/// the samples, x fastest. Headers should be padded to a multiple of 256 bytes; this reader accepts any length, like CGAL's.
 ///
-/// `SCALE`, `XO`, `YO` and `ZO` are passed over, as by CGAL; where they say something, that is
-/// said. Images with several values a voxel (`VDIM`) or rotated axes (`RX`…) are refused.
+/// `SCALE`, `XO`, `YO` and `ZO` are ignored, as by CGAL, with a warning if they are not neutral. Images with several values in a
+/// voxel (`VDIM`) or rotated axes (`RX`…) are refused.
 pub(crate) fn read(
     path: &Path,
     mut reader: impl Read,
@@ -116,7 +115,7 @@ fn size(key: &str, text: &str) -> Result<u64, HeaderError> {
     })
 }
 
-/// The text of a header: lines KEY=value, and comments.
+/// The text of a header: lines `KEY=value` and comments.
 struct Fields<'a>(&'a str);
 
 impl<'a> Fields<'a> {

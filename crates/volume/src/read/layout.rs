@@ -1,4 +1,4 @@
-//! What the header of a file says of its samples, and reading them as it says.
+//! The layout of samples according to the header of a file, and the reading of samples in this layout.
 
 use std::io::{BufReader, Read};
 use std::path::Path;
@@ -16,7 +16,7 @@ use super::text;
 use crate::error::format_error;
 use crate::{Coordinates, Dims, Dtype, Endian, Frame, LengthUnit, Reason, Volume, VolumeError};
 
-/// A volume as the header of a file describes it, x fastest.
+/// A volume as the header of a file describes it, with x fastest.
 #[derive(Clone, Debug)]
 pub(super) struct Layout {
     pub dims: Dims,
@@ -27,12 +27,12 @@ pub(super) struct Layout {
     pub frames: FrameChoice,
 }
 
-/// How samples become bytes.
+/// The encoding of samples as bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Encoding {
-    /// As they are.
+    /// Uncompressed.
     Raw,
-    /// As numbers with white space between them.
+    /// Numbers as text, separated by white space.
     Text,
     /// Compressed, with the header of gzip.
     Gzip,
@@ -43,17 +43,17 @@ pub(super) enum Encoding {
 }
 
 impl Layout {
-    /// Bytes of all volumes of the file where they are not compressed.
+    /// The uncompressed size in bytes of all volumes of the file.
     pub(super) fn bytes(&self) -> u64 {
         self.each().saturating_mul(self.frames.count)
     }
 
-    /// Bytes of one volume.
+    /// The size in bytes of one volume.
     pub(super) fn each(&self) -> u64 {
         self.dims.bytes(self.dtype.size())
     }
 
-    /// Reads the samples, which are all there is in `bytes` bytes.
+    /// Reads the samples, which must be all of the `bytes` bytes.
     pub(super) fn read(
         self,
         path: &Path,
@@ -100,7 +100,7 @@ impl Layout {
         self.volume(samples)
     }
 
-    /// The volume of as many samples as were claimed.
+    /// The volume of as many samples as the header claims.
     pub(super) fn volume(self, samples: Vec<f32>) -> Result<Volume, VolumeError> {
         let samples =
             Array3::from_shape_vec(self.dims.shape(), samples).expect("count was checked");
@@ -109,7 +109,7 @@ impl Layout {
     }
 }
 
-/// The frame a header gives, or the error that says which number is none.
+/// The frame that a header gives, or an error that says which number is not valid.
 pub(super) fn frame(
     path: &Path,
     origin: [f64; 3],
@@ -126,13 +126,13 @@ pub(super) fn frame(
     })
 }
 
-/// Steps along the world's axes.
+/// Axes along those of the world, with these steps.
 pub(super) fn diagonal(spacing: [f64; 3]) -> [[f64; 3]; 3] {
     let [x, y, z] = spacing;
     [[x, 0.0, 0.0], [0.0, y, 0.0], [0.0, 0.0, z]]
 }
 
-/// The unit that a file names. One that is not known is said, and lengths are in no unit then.
+/// The unit that a file names. For an unknown unit there is a warning, and lengths have no unit.
 pub(super) fn unit_named(path: &Path, name: &str) -> LengthUnit {
     let unit = LengthUnit::named(name);
     let said = name.trim().trim_matches('"');
@@ -142,8 +142,8 @@ pub(super) fn unit_named(path: &Path, name: &str) -> LengthUnit {
     unit
 }
 
-/// The unit of the first axis that has one, and what lengths along each axis are multiplied by to be in it.
-/// `None` is an axis of which no unit is said.
+/// The first unit of the axes, and the factors that convert lengths along each axis to it. `None` stands for an axis without a
+/// unit.
 pub(super) fn one_unit(
     path: &Path,
     units: [Option<LengthUnit>; 3],

@@ -12,18 +12,17 @@ use crate::{Coordinates, Dims, Dtype, Endian, Frame, LengthUnit, Reason, Volume,
 use walpha_base::Monitor;
 use walpha_base::shown::shown;
 
-/// Keys that place the grid, each before those of its synonyms that it goes before in `MetaIO` 5.4.
+/// Keys of the grid, with their synonyms in the order of precedence of `MetaIO` 5.4.
 const SPACING: [&str; 2] = ["ElementSpacing", "ElementSize"];
 const ORIGIN: [&str; 4] = ["ImagePosition", "Origin", "Offset", "Position"];
 const MATRIX: [&str; 3] = ["TransformMatrix", "Rotation", "Orientation"];
 const BYTE_ORDER: [&str; 2] = ["BinaryDataByteOrderMSB", "ElementByteOrderMSB"];
 
-/// Reads `MetaImage`, the format of ITK's `MetaIO`, with its samples after the header (`.mha`) or in
-/// other files (`.mhd`: one, a `LIST`, or a numbered row), raw, zlib-compressed or text.
+/// Reads `MetaImage`, the format of ITK's `MetaIO`. Its samples are behind the header (`.mha`) or in other files (`.mhd`: one, a
+/// `LIST`, or a numbered sequence), raw, compressed with zlib, or text.
 ///
-/// `ElementSpacing`, `Offset` and `TransformMatrix`, whose rows are the grid's axes, give the frame. Synonyms
-/// and flags are taken as `MetaIO` takes them. A fourth axis counts volumes, of which `frame` is read; several
-/// channels are refused.
+/// `ElementSpacing`, `Offset` and `TransformMatrix`, whose rows are the grid's axes, give the frame. Synonyms and flags are
+/// interpreted as by `MetaIO`. A fourth axis counts volumes, of which `frame` is read; several channels are refused.
 pub(crate) fn read(
     file: &OpenFile,
     frame: Option<u64>,
@@ -43,7 +42,7 @@ pub(crate) fn read(
     detached::read(path, layout, &data_paths(path, &names), skip, monitor)
 }
 
-/// Where the samples of a volume lie, to be read part by part.
+/// Locates the samples of a volume, to be read part by part.
 pub(crate) fn box_reader(file: &OpenFile, frame: Option<u64>) -> Result<Uncompressed, VolumeError> {
     let path = file.path();
     let mut lines = Lines::new(file.reader()?);
@@ -60,7 +59,7 @@ pub(crate) fn box_reader(file: &OpenFile, frame: Option<u64>) -> Result<Uncompre
     }
 }
 
-/// The files that hold the samples, where the header does not.
+/// The files that hold the samples, if the header's file does not.
 pub(crate) fn data_files(file: &OpenFile) -> Result<Vec<PathBuf>, VolumeError> {
     let path = file.path();
     let mut lines = Lines::new(file.reader()?);
@@ -70,7 +69,7 @@ pub(crate) fn data_files(file: &OpenFile) -> Result<Vec<PathBuf>, VolumeError> {
 
 struct Header {
     fields: Vec<(String, String)>,
-    /// `ElementDataFile`, the last field.
+    /// The value of `ElementDataFile`, the last field.
     data: String,
 }
 
@@ -99,7 +98,7 @@ impl Header {
         Err(format_error(path, reason))
     }
 
-    /// The data files as they are named; `None` where the samples follow the header.
+    /// The names of the data files as the header states them; `None` if the samples follow the header.
     fn names(
         &self,
         path: &Path,
@@ -130,7 +129,7 @@ impl Header {
         Ok(Some(names))
     }
 
-    /// The words of a numbered row, whose first and last number and step may be left out.
+    /// The words of a numbered sequence, with the defaults of a first number, last number and step that are left out.
     fn numbering<'a>(&self, words: &[&'a str]) -> Vec<std::borrow::Cow<'a, str>> {
         let mut full: Vec<std::borrow::Cow<'a, str>> =
             words.iter().map(|&word| word.into()).collect();
@@ -155,7 +154,7 @@ impl Header {
         full
     }
 
-    /// The value of the first of these keys that is there. Of a key that is there twice the last value counts.
+    /// The value of the first of these keys that exists. If a key occurs twice, the last value is used.
     fn field(&self, keys: &[&str]) -> Option<&str> {
         let of_key = |wanted: &&str| {
             let field = self.fields.iter().rev().find(|(key, _)| key == wanted);
@@ -164,12 +163,12 @@ impl Header {
         keys.iter().find_map(of_key)
     }
 
-    /// Whether a flag is set: whatever begins with T, t or 1 sets it.
+    /// Whether a flag is set: its value begins with T, t or 1.
     fn flag(&self, keys: &[&str]) -> bool {
         self.field(keys).is_some_and(|value| value.starts_with(['T', 't', '1']))
     }
 
-    /// Says which of the things that the header states are not taken.
+    /// Warns about statements of the header that are not followed.
     fn say_what_is_passed_over(&self, path: &Path) {
         let path = shown(path);
         for keys in [&SPACING[..], &ORIGIN, &MATRIX, &BYTE_ORDER] {
@@ -203,7 +202,7 @@ impl Header {
         }
     }
 
-    /// As many numbers as the key should have; where it is missing, `default`.
+    /// As many numbers as the key should have; `default` for a missing key.
     fn numbers(
         &self,
         path: &Path,
@@ -275,7 +274,7 @@ impl Header {
         })
     }
 
-    /// The type of samples, one for each voxel.
+    /// The type of samples. A voxel must have only one value.
     fn dtype(&self, path: &Path) -> Result<Dtype, VolumeError> {
         let channels = self.field(&["ElementNumberOfChannels"]).unwrap_or("1");
         if channels != "1" {
@@ -292,14 +291,14 @@ impl Header {
         })
     }
 
-    /// The place of a grid of `count` axes.
+    /// The place of a grid with `count` axes.
     fn frame(&self, path: &Path, count: usize) -> Result<Frame, VolumeError> {
         let spacing = self.numbers(path, &SPACING, count, 1.0)?;
         let origin = self.numbers(path, &ORIGIN, count, 0.0)?;
         let [origin, spacing] = [(origin, 0.0), (spacing, 1.0)].map(|(numbers, default)| {
             [0, 1, 2].map(|k: usize| numbers.get(k).copied().unwrap_or(default))
         });
-        // The rows of the matrix are the grid's axes, in as many dimensions as the image has.
+        // The rows of the matrix are the grid's axes. It has as many dimensions as the image.
         let mut axes = diagonal([1.0; 3]);
         if self.field(&MATRIX).is_some() {
             let matrix = self.numbers(path, &MATRIX, count * count, 0.0)?;
@@ -314,7 +313,7 @@ impl Header {
         layout::frame(path, origin, axes, self.coordinates())
     }
 
-    /// `MetaImage` is LPS, and in millimetres unless `DistanceUnits` say otherwise.
+    /// The coordinates. `MetaImage` is LPS, and in millimetres unless `DistanceUnits` says otherwise.
     fn coordinates(&self) -> Coordinates {
         let keys = [SPACING.as_slice(), &ORIGIN, &MATRIX].concat();
         if self.field(&keys).is_none() {
@@ -326,7 +325,7 @@ impl Header {
         }
     }
 
-    /// Bytes before the samples of each data file; `None` where they are at its end.
+    /// The number of bytes before the samples in each data file; `None` if the samples are at its end.
     fn skip(&self, path: &Path) -> Result<Option<u64>, VolumeError> {
         let text = self.field(&["HeaderSize"]).unwrap_or("0");
         match text.parse::<i64>() {
@@ -341,8 +340,8 @@ impl Header {
 }
 
 impl Header {
-    /// Where the samples begin in the file of the header itself, of which `lines` bytes are the header's:
-    /// `HeaderSize` counts from the first byte.
+    /// The position of the samples in the header's own file, whose first `lines` bytes are the header. `HeaderSize` counts from
+    /// the first byte.
     fn start_of_local(
         &self,
         path: &Path,
@@ -370,7 +369,7 @@ fn scalar_type(name: &str) -> Option<Dtype> {
         "MET_UCHAR" => Dtype::U8,
         "MET_SHORT" => Dtype::I16,
         "MET_USHORT" => Dtype::U16,
-        // Four bytes in MetaIO, on any machine.
+        // These have four bytes in MetaIO on every machine.
         "MET_INT" | "MET_LONG" => Dtype::I32,
         "MET_UINT" | "MET_ULONG" => Dtype::U32,
         "MET_LONG_LONG" => Dtype::I64,

@@ -1,4 +1,4 @@
-//! `FreeSurfer`'s volumes: MGH, and MGZ, which is the same compressed with gzip.
+//! `FreeSurfer`'s volumes: MGH, and MGZ, which is MGH compressed with gzip.
 
 use std::io::Read;
 use std::path::Path;
@@ -14,14 +14,13 @@ use crate::{
 };
 use walpha_base::Monitor;
 
-/// Bytes before the samples.
+/// The number of bytes before the samples.
 pub(crate) const HEADER: usize = 284;
 
-/// Reads an MGH file, or one of its frames: a header of 284 bytes, big-endian, then samples, x fastest, then
-/// perhaps what a scanner was set to, which is passed over.
+/// Reads an MGH file or one of its frames: a header of 284 bytes, big-endian, then samples, x fastest. The settings of a scanner
+/// may follow, and are ignored.
 ///
-/// The frame is RAS, in mm; the header gives the position of the grid's centre. Without `goodRASFlag` no position
-/// is known.
+/// The frame is RAS, in mm; the header contains the position of the grid's centre. Without `goodRASFlag` the position is unknown.
 pub(crate) fn read(
     file: &OpenFile,
     frame: Option<u64>,
@@ -32,7 +31,7 @@ pub(crate) fn read(
     let layout = layout(path, &mut reader, frame)?;
     layout.dims.bounded()?;
     let all = layout.bytes();
-    // What follows the samples is none of them.
+    // The data after the samples are not samples.
     let length = match length.minus(HEADER as u64) {
         Length::Exactly(bytes) => Length::Exactly(bytes.min(all)),
         bounded @ Length::AtMost(_) => bounded,
@@ -45,7 +44,7 @@ pub(crate) fn read(
     layout.volume(samples)
 }
 
-/// Where the samples of a volume that is not compressed lie, to be read part by part.
+/// Locates the samples of an uncompressed volume, to be read part by part.
 pub(crate) fn box_reader(file: &OpenFile, frame: Option<u64>) -> Result<Uncompressed, VolumeError> {
     let path = file.path();
     let layout = layout(path, &mut file.reader()?, frame)?;

@@ -21,9 +21,9 @@ use crate::{
 
 /// Reads NIfTI-1 and NIfTI-2 (nifti.nimh.nih.gov): `.nii`, `.nii.gz`, or a pair `.hdr` and `.img`.
 ///
-/// `scl_slope` and `scl_inter` are applied. The frame is that of `sform`, else of `qform`, else of
-/// `pixdim` alone, which says nothing of the space; the other two are RAS. Axes beyond
-/// the third count volumes, of which `frame` is read; colours and complex numbers are refused.
+/// `scl_slope` and `scl_inter` are applied. The frame is that of `sform`, else of `qform`, else of `pixdim` alone, which says
+/// nothing about the space; the other two are RAS. Axes beyond the third count volumes, of which `frame` is read; colours and
+/// complex numbers are refused.
 pub(crate) fn read(
     file: &OpenFile,
     frame: Option<u64>,
@@ -69,7 +69,7 @@ fn volume(
     samples(path, layout, slope, inter, reader, length.minus(offset), monitor)
 }
 
-/// Where the samples of a volume lie, to be read part by part.
+/// Locates the samples of a volume, to be read part by part.
 pub(crate) fn box_reader(file: &OpenFile, frame: Option<u64>) -> Result<Uncompressed, VolumeError> {
     let path = file.path();
     let header = Header::read(path, &mut file.reader()?)?;
@@ -87,7 +87,7 @@ pub(crate) fn box_reader(file: &OpenFile, frame: Option<u64>) -> Result<Uncompre
     Ok(samples.scaled(scaling).with_labels(header.states_labels()))
 }
 
-/// The file that holds the samples, where the header has one of its own.
+/// The file that holds the samples, if it is not the header's.
 pub(crate) fn data_files(file: &OpenFile) -> Result<Vec<PathBuf>, VolumeError> {
     let path = file.path();
     let Some((version, endian)) = nifti_version(file.start()) else { return Ok(Vec::new()) };
@@ -95,7 +95,7 @@ pub(crate) fn data_files(file: &OpenFile) -> Result<Vec<PathBuf>, VolumeError> {
     Ok(if header.is_pair(path)? { vec![image(path)] } else { Vec::new() })
 }
 
-/// The partner of a header: `v.img` of `v.hdr` or `v.hdr.gz`, or `v.img.gz` where only that is there.
+/// The partner of a header: `v.img` for `v.hdr` or `v.hdr.gz`, or `v.img.gz` if only that exists.
 fn image(header: &Path) -> PathBuf {
     let is_packed = header.extension().is_some_and(|own| own.eq_ignore_ascii_case("gz"));
     let header = if is_packed { header.with_extension("") } else { header.to_owned() };
@@ -103,7 +103,7 @@ fn image(header: &Path) -> PathBuf {
     if !plain.exists() && packed.exists() { packed } else { plain }
 }
 
-/// Reads samples and scales them, in doubles where `f32` does not hold the numbers of the file.
+/// Reads samples and scales them, in doubles if `f32` does not hold the numbers of the file.
 fn samples(
     path: &Path,
     layout: Layout,
@@ -134,11 +134,11 @@ fn samples(
             payload.samples(path, dtype, endian, count, monitor).map_err(fail)?;
         samples.iter().map(|v| (v * slope + inter) as f32).collect()
     };
-    // Scaled bytes are not gray levels.
+    // Bytes that were scaled are not gray levels.
     Ok(layout.volume(scaled)?.with_dtype(Dtype::F32))
 }
 
-/// The bytes of a header; places are those of version 1 and version 2.
+/// The bytes of a header. Methods take the positions in version 1 and version 2.
 struct Header {
     bytes: Vec<u8>,
     version: u8,
@@ -146,7 +146,7 @@ struct Header {
 }
 
 impl Header {
-    /// Reads a header, and nothing behind it.
+    /// Reads a header and nothing behind it.
     fn read(path: &Path, reader: &mut dyn Read) -> Result<Self, VolumeError> {
         let mut bytes = Vec::new();
         let mut fill = |size: usize, bytes: &mut Vec<u8>| -> Result<(), VolumeError> {
@@ -173,7 +173,7 @@ impl Header {
         Ok(Self { bytes, version, endian })
     }
 
-    /// As many bytes as asked for, least significant first.
+    /// Bytes at a position, least significant first.
     fn at<const N: usize>(&self, one: usize, two: usize) -> [u8; N] {
         let place = if self.version == 1 { one } else { two };
         let mut bytes: [u8; N] = self.bytes[place..place + N].try_into().expect("inside");
@@ -187,7 +187,7 @@ impl Header {
         i16::from_le_bytes(self.at(one, two))
     }
 
-    /// A code: 16 bits in version 1, 32 in version 2.
+    /// A code, which has 16 bits in version 1 and 32 in version 2.
     fn code(&self, one: usize, two: usize) -> i32 {
         match self.version {
             1 => i32::from(self.short(one, two)),
@@ -195,7 +195,7 @@ impl Header {
         }
     }
 
-    /// A real number: `f32` in version 1, `f64` in version 2. `i` counts numbers from the place.
+    /// A real number: `f32` in version 1, `f64` in version 2. `i` counts the numbers from the position.
     fn real(&self, one: usize, two: usize, i: usize) -> f64 {
         match self.version {
             1 => f32::from_le_bytes(self.at(one + 4 * i, 0)).into(),
@@ -240,13 +240,13 @@ impl Header {
         }
     }
 
-    /// Where the samples begin in a file of its own.
+    /// The position of the samples in a file of its own.
     fn offset(&self, path: &Path) -> Result<u64, VolumeError> {
         let offset = self.vox_offset();
         if offset >= self.bytes.len() as f64 && offset.fract() == 0.0 {
             return Ok(offset as u64);
         }
-        // Some writers leave 0 for "behind the header", which 4 bytes of extension flags follow.
+        // Some writers leave 0 for "behind the header and its 4 bytes of extension flags".
         if offset == 0.0 {
             return Ok(self.bytes.len() as u64 + 4);
         }
@@ -309,13 +309,13 @@ impl Header {
         Ok(Layout { dims, dtype, endian, frame, encoding, frames })
     }
 
-    /// Whether values are labels: `intent_code` is `NIFTI_INTENT_LABEL`.
+    /// Whether the values are labels: `intent_code` is `NIFTI_INTENT_LABEL`.
     fn states_labels(&self) -> bool {
         self.code(68, 504) == 1002
     }
 
-    /// Slope and intercept; a slope of 0, or none, means neither. An intercept that is not a number is 0, as for `NIfTI`'s own library,
-    /// which is said.
+    /// The slope and intercept; a slope of 0, or that is not a number, disables both. An intercept that is not a number is 0, as
+    /// for `NIfTI`'s own library, with a warning.
     fn scaling(&self, path: &Path) -> (f64, f64) {
         let (slope, inter) = (self.real(112, 176, 0), self.real(116, 184, 0));
         if slope == 0.0 || !slope.is_finite() {
@@ -332,13 +332,13 @@ impl Header {
     }
 }
 
-/// Rounding makes the square of a quaternion longer than 1 by no more than this.
+/// Rounding makes the square of a quaternion exceed 1 by no more than this.
 const LONGER: f64 = 1e-5;
-/// `sform` and `qform` disagree if they place a sample further apart than this share of the shortest spacing.
+/// `sform` and `qform` disagree if they place a sample further apart than this share of the smallest spacing.
 const APART: f64 = 0.01;
 
 impl Header {
-    /// Where the samples lie: as `sform` says, else as `qform` does. A warning says by how much these differ.
+    /// The place of the grid: according to `sform`, else to `qform`. A warning says by how much these differ.
     fn frame(&self, path: &Path, dims: Dims) -> Result<Frame, VolumeError> {
         let taken = if self.code(254, 348) > 0 {
             self.sform(path)?
@@ -392,10 +392,10 @@ impl Header {
         frame(path, column(3), axes, self.coordinates(Space::Ras))
     }
 
-    /// As `qform` says, else as `pixdim` alone does.
+    /// The frame according to `qform`, or else to `pixdim` alone.
     fn qform(&self, path: &Path) -> Result<Frame, VolumeError> {
         let pixdim = |i: usize| self.real(76, 104, i);
-        // 0 stands for "unknown" in some files.
+        // In some files, 0 stands for "unknown".
         let length = |i: usize| if pixdim(i) == 0.0 { 1.0 } else { pixdim(i).abs() };
         let spacing = [1, 2, 3].map(length);
         if [1, 2, 3].map(pixdim).iter().any(|&length| length < 0.0) {
@@ -415,7 +415,7 @@ impl Header {
                 shown(path)
             );
         }
-        // A turn of almost 180°: rounding would speak for the real part, as in NIfTI's own library.
+        // For a turn of almost 180°, the real part would consist of rounding errors. NIfTI's own library does the same.
         let half_turn = 1.0 - square < 1e-7;
         if half_turn && square > 0.0 {
             imaginary = imaginary.map(|v| v / square.sqrt());
@@ -444,7 +444,7 @@ impl Header {
         code & 7
     }
 
-    /// The unit of `xyzt_units`; a patient is measured in millimetres where it names none.
+    /// The unit of `xyzt_units`; millimetres for a patient if it names none.
     fn coordinates(&self, space: Space) -> Coordinates {
         let unit = match self.length_unit() {
             1 => LengthUnit::Metre,
@@ -457,7 +457,7 @@ impl Header {
     }
 }
 
-/// How far apart two frames place the samples of a grid at most: at one of its corners.
+/// The largest distance between the places of a sample in two frames, which occurs at a corner of the grid.
 fn apart(one: &Frame, other: &Frame, dims: Dims) -> f64 {
     let last = dims.xyz().map(|n| n.saturating_sub(1) as f64);
     let distance = |corner: usize| {

@@ -14,22 +14,22 @@ use super::uncompressed::Uncompressed;
 use crate::error::io_error;
 use crate::{Dims, Dtype, Endian, Frame, Reason, Volume, VolumeError};
 
-/// An array as NPY describes it (format versions 1 to 3, numpy.lib.format).
+/// An array in an NPY file (format versions 1 to 3, numpy.lib.format).
 pub struct NpyFile<R> {
-    /// Lengths of the axes.
+    /// The lengths of the axes.
     pub shape: Vec<u64>,
-    /// The first axis is the fastest in the file.
+    /// Whether the first axis is the fastest in the file.
     pub fortran: bool,
-    /// Type of the elements.
+    /// The type of the elements.
     pub dtype: Dtype,
     endian: Endian,
-    /// Booleans are read as 0 and 1, not as gray levels.
+    /// Whether the elements are booleans, which are read as 0 and 1 and not as gray levels.
     boolean: bool,
     payload: Payload<R>,
 }
 
-/// Reads an array of three axes `[z, y, x]`, in C or Fortran order, or the one numbered `frame` of an
-/// array of four, in C order. Of four axes, a last one of one element is a channel, and is left out.
+/// Reads an array of three axes `[z, y, x]`, in C or Fortran order, or the one numbered `frame` in an array of four, in C order.
+/// If the last of four axes has one element, it is a channel and is dropped.
 pub(crate) fn read(
     file: &OpenFile,
     frame: Option<u64>,
@@ -55,7 +55,7 @@ pub(crate) fn read(
     volume(path, file, monitor)
 }
 
-/// Where the samples of a volume lie, to be read part by part: in C order.
+/// Locates the samples of a volume in C order, to be read part by part.
 pub(crate) fn box_reader(file: &OpenFile, frame: Option<u64>) -> Result<Uncompressed, VolumeError> {
     let (path, length) = (file.path(), file.length());
     let fail = |reason: Reason| VolumeError::Format { path: path.into(), reason };
@@ -77,12 +77,12 @@ pub(crate) fn box_reader(file: &OpenFile, frame: Option<u64>) -> Result<Uncompre
         return Err(fail(Reason::Length { claim, needed: all, found, bound: "" }));
     }
     let offset = length - found + frames.index * each;
-    // Booleans are bytes, and no gray levels.
+    // Booleans are bytes, but not gray levels.
     let dtype = if array.boolean { Dtype::I8 } else { array.dtype };
     Uncompressed::new(file, dims, Frame::VOXEL, dtype, array.endian, offset)
 }
 
-/// The volume an array is.
+/// Converts an array to a volume.
 pub(super) fn volume<R: Read>(
     path: &Path,
     file: NpyFile<R>,
@@ -108,7 +108,7 @@ pub(super) fn volume<R: Read>(
     let samples = Array3::from_shape_vec(shape, monitor.watch(|| file.values(path))?)
         .expect("count was checked");
     let volume = Volume::of_file(samples, Frame::VOXEL)?;
-    // Booleans are bytes, and no gray levels.
+    // Booleans are bytes, but not gray levels.
     Ok(volume.with_dtype(if gray_levels || dtype != Dtype::U8 { dtype } else { Dtype::I8 }))
 }
 
@@ -116,14 +116,14 @@ impl<'a> NpyFile<BufReader<&'a File>> {
     /// Reads and checks the header.
     ///
     /// # Errors
-    /// [`VolumeError`]: what cannot be read, and why.
+    /// [`VolumeError`] says what cannot be read, and why.
     pub fn open(file: &'a OpenFile) -> Result<Self, VolumeError> {
         Self::of(file.path(), file.reader()?, file.length())
     }
 }
 
 impl<R: Read> NpyFile<R> {
-    /// The same without a last axis of one element behind three others: a channel, and no row along x.
+    /// Drops a last axis of one element behind three others, which is a channel and not a row along x.
     fn without_channel(mut self) -> Self {
         if let [_, _, _, 1] = self.shape[..] {
             self.shape.pop();
@@ -131,10 +131,10 @@ impl<R: Read> NpyFile<R> {
         self
     }
 
-    /// Reads and checks the header of an array of so many bytes in a file.
+    /// Reads and checks the header of an array in a file of `length` bytes.
     ///
     /// # Errors
-    /// [`VolumeError`]: what cannot be read, and why.
+    /// [`VolumeError`] says what cannot be read, and why.
     pub fn of(path: &Path, mut reader: R, length: u64) -> Result<Self, VolumeError> {
         let fail = |reason: Reason| VolumeError::Format { path: path.into(), reason };
         let header = Header::read(&mut reader).map_err(|error| match error {
@@ -161,10 +161,10 @@ impl<R: Read> NpyFile<R> {
         Ok(Self { shape, fortran, dtype, endian, boolean, payload })
     }
 
-    /// All elements in the order of the file, which must hold exactly as many as it claims.
+    /// All elements in the order of the file, which must contain exactly as many as it claims.
     ///
     /// # Errors
-    /// [`VolumeError`]: what cannot be read, and why.
+    /// [`VolumeError`] says what cannot be read, and why.
     pub fn values<T: Element>(self, path: &Path) -> Result<Vec<T>, VolumeError> {
         let monitor = &*Monitor::current();
         let count = self.shape.iter().fold(1u64, |product, &n| product.saturating_mul(n));
@@ -175,7 +175,7 @@ impl<R: Read> NpyFile<R> {
     }
 }
 
-/// What to save instead of an array of a type that is not read.
+/// What to save instead of an array of an unsupported type.
 fn instead(descr: &str) -> &'static str {
     let kind = descr.trim_start_matches(['<', '>', '|', '=']).chars().next();
     match kind {
@@ -186,7 +186,7 @@ fn instead(descr: &str) -> &'static str {
     }
 }
 
-/// Type, byte order and whether it is boolean, of a `NumPy` type string such as `<f4`.
+/// The type, the byte order, and whether it is boolean, for a `NumPy` type string such as `<f4`.
 pub fn element(descr: &str) -> Option<(Dtype, Endian, bool)> {
     let (order, kind) = descr.split_at_checked(1)?;
     let dtype = match kind {

@@ -13,8 +13,8 @@ use super::payload::MOST_EXPANSION;
 use crate::error::{format_error, io_error};
 use crate::{Reason, Volume, VolumeError};
 
-/// Reads NPZ, `NumPy`'s archive of arrays (`savez`, `savez_compressed`): its only array of three axes, or
-/// the one of this name.
+/// Reads NPZ, `NumPy`'s archive of arrays (`savez`, `savez_compressed`): its only array of three axes, or the array with this
+/// name.
 pub(crate) fn read(
     file: &OpenFile,
     wanted: Option<&str>,
@@ -46,7 +46,7 @@ pub(crate) fn read(
         }
         match member(path, &mut archive, i, length) {
             Ok((name, array)) if array.shape.len() == 3 => found.push((i, name)),
-            // An array of texts or objects beside the volume.
+            // An array of texts or objects may accompany the volume.
             Err(VolumeError::Format { reason: Reason::Unsupported { .. }, .. })
                 if wanted.is_none() => {}
             Ok(_) => {}
@@ -83,13 +83,13 @@ pub(crate) fn read(
     }
 }
 
-/// Whether a file of the archive is an array, by its name.
+/// Whether a file of the archive is an array, according to its name.
 #[expect(clippy::case_sensitive_file_extension_comparisons, reason = "NumPy writes no other")]
 fn is_array(name: &str) -> bool {
     name.ends_with(".npy")
 }
 
-/// An array of the archive, at its first element.
+/// Opens an array of the archive at its first element.
 fn member<'a>(
     path: &Path,
     archive: &'a mut ZipArchive<impl Read + Seek>,

@@ -21,7 +21,7 @@ use crate::{
 /// The first bytes of each NRRD file, before the digit of its version.
 const MAGIC: &[u8] = b"NRRD000";
 
-/// The fields that there are.
+/// All fields of the format.
 const FIELDS: [&str; 38] = [
     "axis maxs",
     "axis mins",
@@ -63,13 +63,13 @@ const FIELDS: [&str; 38] = [
     "units",
 ];
 
-/// Reads NRRD ("nearly raw raster data", teem.sourceforge.net/nrrd/format.html) with its samples
-/// behind the header (`.nrrd`) or in other files (`.nhdr`: one, a `LIST`, or a numbered row).
+/// Reads NRRD ("nearly raw raster data", teem.sourceforge.net/nrrd/format.html). Its samples are behind the header (`.nrrd`) or
+/// in other files (`.nhdr`: one, a `LIST`, or a numbered sequence).
 ///
-/// Encodings raw, gzip, bzip2 and text; every scalar type. `space directions` and `space origin`, or
-/// `spacings` and `axis mins`, give the frame, in the space the file names. An axis whose direction is `none`, or
-/// whose kind is one of time, is none of space. Axes beyond the third and behind those of space count
-/// volumes, of which `frame` is read; axes of colours or vectors, `hex` and `line skip` are refused.
+/// All scalar types and the encodings raw, gzip, bzip2 and text are read. `space directions` and `space origin`, or `spacings`
+/// and `axis mins`, give the frame, in the space that the file names. An axis whose direction is `none`, or whose kind is a time,
+/// is not a spatial axis. Axes beyond the third and behind the spatial ones count volumes, of which `frame` is read; axes of
+/// colours or vectors, `hex` and `line skip` are refused.
 pub(crate) fn read(
     file: &OpenFile,
     frame: Option<u64>,
@@ -115,7 +115,7 @@ fn volume(
     }
 }
 
-/// Where the samples of a volume lie, to be read part by part.
+/// Locates the samples of a volume, to be read part by part.
 pub(crate) fn box_reader(file: &OpenFile, frame: Option<u64>) -> Result<Uncompressed, VolumeError> {
     let path = file.path();
     let mut lines = Lines::new(file.reader()?);
@@ -129,7 +129,7 @@ pub(crate) fn box_reader(file: &OpenFile, frame: Option<u64>) -> Result<Uncompre
     Ok(samples?.with_labels(header.labels))
 }
 
-/// The files that hold the samples, where the header does not.
+/// The files that hold the samples, if the header's file does not.
 pub(crate) fn data_files(file: &OpenFile) -> Result<Vec<PathBuf>, VolumeError> {
     let path = file.path();
     let header = Header::read(path, &mut Lines::new(file.reader()?))?;
@@ -137,11 +137,11 @@ pub(crate) fn data_files(file: &OpenFile) -> Result<Vec<PathBuf>, VolumeError> {
 }
 
 struct Header {
-    /// By name, in lower case.
+    /// The fields by name, in lower case.
     fields: HashMap<String, String>,
-    /// The files that hold the samples; `None` where they follow the header.
+    /// The names of the files that hold the samples; `None` if they follow the header.
     files: Option<Vec<String>>,
-    /// Whether values are labels: it has keys of 3D Slicer's segments, or is named as a file of these.
+    /// Whether the values are labels: the header has keys of 3D Slicer's segments, or the file has the name of a segmentation.
     labels: bool,
 }
 
@@ -154,7 +154,7 @@ impl Header {
         }
         let mut header =
             Self { fields: HashMap::new(), files: None, labels: is_segmentation(path) };
-        // A header alone may end with its file; samples need the blank line.
+        // A header alone may end with its file; samples must follow a blank line.
         while let Some(line) = lines.read_line().map_err(io_error(path))? {
             if line.is_empty() {
                 return Ok(header);
@@ -213,8 +213,7 @@ impl Header {
         Ok(Layout { dims, dtype, endian, frame, encoding, frames })
     }
 
-    /// The axes that are x, y and z; those of more than one sample among the others must be behind them, where
-    /// they count volumes.
+    /// The axes that are x, y and z. Other axes with more than one sample must be behind them, where they count volumes.
     fn axes_of_space(&self, path: &Path, sizes: &[u64]) -> Result<Vec<usize>, VolumeError> {
         let directions = self.directions(path, sizes.len())?;
         let kinds = self.kinds();
@@ -248,8 +247,8 @@ impl Header {
         Ok(kept)
     }
 
-    /// The direction of each axis, where the header has them; `None` for an axis that is none of space. Of four
-    /// components the last is time.
+    /// The direction of each axis, if the header has them; `None` for an axis that is not spatial. The last of four components is
+    /// time.
     fn directions(
         &self,
         path: &Path,
@@ -272,7 +271,7 @@ impl Header {
         self.field("kinds").map(|kinds| kinds.split_whitespace().collect()).unwrap_or_default()
     }
 
-    /// Says which of the things that the header states are not taken.
+    /// Warns about statements of the header that are not followed.
     fn say_what_is_passed_over(&self, path: &Path) {
         let path = shown(path);
         let mut unknown: Vec<&str> =
@@ -296,7 +295,7 @@ impl Header {
         }
     }
 
-    /// Samples along each axis, the fastest first.
+    /// The number of samples along each axis, the fastest first.
     fn sizes(&self, path: &Path) -> Result<Vec<u64>, VolumeError> {
         let fail = |what: String| format_error(path, Reason::header(what));
         let text = self.needed(path, "sizes")?;
@@ -310,7 +309,7 @@ impl Header {
         Ok(sizes)
     }
 
-    /// Refuses axes along which a voxel has several values.
+    /// Refuses axes that give a voxel several values.
     fn check_scalar(&self, path: &Path, sizes: &[u64]) -> Result<(), VolumeError> {
         let kinds = self.kinds();
         for (axis, &size) in sizes.iter().enumerate() {
@@ -364,7 +363,7 @@ impl Header {
         }
     }
 
-    /// Bytes before the samples; `None` where they are at the end of the file.
+    /// The number of bytes before the samples; `None` if the samples are at the end of the file.
     fn skip(&self, path: &Path, layout: &Layout) -> Result<Option<u64>, VolumeError> {
         let fail = |reason: Reason| format_error(path, reason);
         let lines = self.field("line skip").or(self.field("lineskip")).unwrap_or("0");
@@ -390,13 +389,13 @@ impl Header {
     }
 }
 
-/// Whether a key is one of 3D Slicer's about a segment, as `Segment0_LabelValue`.
+/// Whether a key is one of 3D Slicer's about a segment, such as `Segment0_LabelValue`.
 fn is_of_segment(key: &str) -> bool {
     let number = key.strip_prefix("Segment").and_then(|rest| rest.split_once('_'));
     number.is_some_and(|(number, _)| number.parse::<u32>().is_ok())
 }
 
-/// Whether the name is that of 3D Slicer's segmentations, `.seg.nrrd` or `.seg.nhdr`.
+/// Whether the name is one of 3D Slicer's segmentations, `.seg.nrrd` or `.seg.nhdr`.
 fn is_segmentation(path: &Path) -> bool {
     let inner = path.file_stem().map(Path::new).and_then(Path::extension);
     inner.is_some_and(|inner| inner.eq_ignore_ascii_case("seg"))
@@ -428,8 +427,8 @@ fn scalar_type(name: &str) -> Option<Dtype> {
     })
 }
 
-/// The names a `data file` field gives: one, a `LIST` of the lines that follow, or a numbered row
-/// `pattern min max step`, where the pattern has one `%d` or, say, `%03d`.
+/// The names that a `data file` field gives: one, a `LIST` of the lines that follow, or a numbered sequence `pattern min max
+/// step`, whose pattern has one `%d` or, for example, `%03d`.
 fn named(
     path: &Path,
     value: &str,
@@ -452,11 +451,11 @@ fn named(
 }
 
 impl Header {
-    /// Where the grid lies; `kept` are the axes that are read, of `all`, and `dims` their sizes.
+    /// The place of the grid; `kept` are the axes that are read, of `all`, and `dims` their sizes.
     ///
-    /// `space directions` and `space origin` say it, or else `spacings` and `axis mins`, or `axis mins`
-    /// and `axis maxs`. The ends of an axis are those of its samples, or lie half a spacing beyond
-    /// their middles where `centerings` says `cell` or nothing, as teem and ITK take it.
+    /// It is given by `space directions` and `space origin`, or else by `spacings` and `axis mins`, or by `axis mins` and `axis
+    /// maxs`. The ends of an axis are at its outer samples, or half a spacing beyond them if `centerings` says `cell` or nothing,
+    /// as for teem and ITK.
     fn frame(
         &self,
         path: &Path,
@@ -504,7 +503,7 @@ impl Header {
                 }
             };
         }
-        // Units are those of the axes of the world, or of the grid where these run along them.
+        // Units are those of the axes of the world, or of the grid if its axes run along those of the world.
         let (coordinates, factors) = self.coordinates(path, kept)?;
         for vector in steps.iter_mut().chain([&mut origin]) {
             vector.iter_mut().zip(factors).for_each(|(component, factor)| *component *= factor);
@@ -512,7 +511,7 @@ impl Header {
         frame(path, origin, steps, coordinates)
     }
 
-    /// The space that the file names, where it says which way a patient lies.
+    /// The space that the file names, if it has directions in a patient.
     fn space(&self) -> Space {
         match self.field("space").unwrap_or_default().to_lowercase().as_str() {
             "left-posterior-superior" | "lps" | "left-posterior-superior-time" | "lpst" => {
@@ -526,9 +525,8 @@ impl Header {
         }
     }
 
-    /// The space and its unit, and what lengths along each axis are multiplied by to be in it. The unit is that of
-    /// `space units`, or else of `units`. A patient is
-    /// measured in millimetres where neither is there, as ITK and Slicer take it.
+    /// The space and its unit, and the factors that convert lengths along each axis to that unit. The unit is that of `space
+    /// units`, or else of `units`. If neither exists, a patient is measured in millimetres, as for ITK and Slicer.
     fn coordinates(
         &self,
         path: &Path,
@@ -554,8 +552,7 @@ impl Header {
         Ok((Coordinates { space, unit }, factors))
     }
 
-    /// A number for each axis; `None` if the field is absent or NaN, which means
-    /// "unknown".
+    /// A number for each axis; `None` if the field does not exist or is NaN, which means "unknown".
     fn numbers(
         &self,
         path: &Path,
@@ -576,12 +573,12 @@ impl Header {
     }
 }
 
-/// Words such as `"mm" "mm" ""`, without their quotes.
+/// The words of a text such as `"mm" "mm" ""`, without their quotes.
 fn quoted(text: &str) -> impl Iterator<Item = &str> {
     text.split('"').skip(1).step_by(2)
 }
 
-/// Vectors such as `(1,0,0) none (0,0,2)`, of up to four components.
+/// The vectors of a text such as `(1,0,0) none (0,0,2)`, with up to four components.
 fn vectors(text: &str) -> Option<Vec<Option<[f64; 4]>>> {
     let mut rest = text.trim();
     let mut rows = Vec::new();
@@ -596,7 +593,7 @@ fn vectors(text: &str) -> Option<Vec<Option<[f64; 4]>>> {
             row.split(',').map(|number| number.trim().parse().ok()).collect::<Option<_>>()?;
         let mut vector = [0.0; 4];
         vector.get_mut(..numbers.len())?.copy_from_slice(&numbers);
-        // NaN stands for what is not known.
+        // NaN stands for "unknown".
         rows.push((!numbers.iter().all(|number| number.is_nan())).then_some(vector));
         rest = after.trim_start();
     }

@@ -1,4 +1,4 @@
-//! A file that is read: opened once, from the look at its first bytes to its samples.
+//! A file to read. It is opened only once, from the detection of its format to the reading of its samples.
 
 use std::fs::File;
 use std::io::{self, BufReader, Read, Seek, SeekFrom};
@@ -10,10 +10,10 @@ use crate::VolumeError;
 use crate::error::io_error;
 use crate::formats::is_gzip;
 
-/// Bytes from which a format is recognised.
+/// The number of bytes by which a format is recognised.
 const START: u64 = 1024;
 
-/// An open file and its first bytes. Detection looks at these, and readers start at the first byte again.
+/// An open file and its first bytes. Detection uses these, and readers start again at the first byte.
 #[derive(Debug)]
 pub struct OpenFile {
     path: PathBuf,
@@ -27,13 +27,14 @@ impl OpenFile {
     /// Opens a file.
     ///
     /// # Errors
-    /// [`VolumeError::Io`]: it cannot be opened or read.
+    /// [`VolumeError::Io`] if it cannot be opened or read.
     pub fn open(path: &Path) -> Result<Self, VolumeError> {
         let failed = io_error(path);
         let file = File::open(path).map_err(&failed)?;
         let metadata = file.metadata().map_err(&failed)?;
         let mut start = Vec::new();
-        // A pipe gives its bytes only once: they are left to the reader. A folder says what it is.
+        // The bytes of a pipe can be read only once: they are left to the reader. Reading a folder gives the error that it is
+        // one.
         if metadata.is_file() || metadata.is_dir() {
             (&file).take(START).read_to_end(&mut start).map_err(&failed)?;
         }
@@ -41,28 +42,27 @@ impl OpenFile {
         Ok(Self { path: path.into(), file, length, is_ordinary, start })
     }
 
-    /// The path it was opened by.
+    /// The path by which it was opened.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Its length in bytes.
+    /// The length in bytes.
     pub fn length(&self) -> u64 {
         self.length
     }
 
-    /// Whether it is an ordinary file, which can be read in several passes, and no pipe or device.
+    /// Whether it is an ordinary file, which can be read in several passes, and not a pipe or device.
     pub fn is_ordinary(&self) -> bool {
         self.is_ordinary
     }
 
-    /// Its first bytes: up to 1024, and none of a pipe.
+    /// The first bytes: up to 1024, or none for a pipe.
     pub fn start(&self) -> &[u8] {
         &self.start
     }
 
-    /// Reads from the first byte on. All readers of a file share one position in it: a new one ends the use of
-    /// those before.
+    /// Returns a reader at the first byte. All readers of a file share one position: a new one invalidates those before.
     ///
     /// # Errors
     /// [`VolumeError::Io`].
@@ -70,7 +70,7 @@ impl OpenFile {
         if self.start.is_empty() { Ok(BufReader::new(&self.file)) } else { self.reader_at(0) }
     }
 
-    /// All its bytes.
+    /// Reads all bytes.
     ///
     /// # Errors
     /// [`VolumeError::Io`].
@@ -80,17 +80,17 @@ impl OpenFile {
         Ok(bytes)
     }
 
-    /// Reads from another byte on.
+    /// Returns a reader at another byte.
     ///
     /// # Errors
-    /// [`VolumeError::Io`]: among others, a pipe has no other bytes than the next ones.
+    /// [`VolumeError::Io`]; among others, a pipe cannot be read from another position.
     pub fn reader_at(&self, offset: u64) -> Result<BufReader<&File>, VolumeError> {
         let mut file = &self.file;
         file.seek(SeekFrom::Start(offset)).map_err(io_error(&self.path))?;
         Ok(BufReader::new(file))
     }
 
-    /// The same as [`reader`](Self::reader), for what wants a file of its own: another handle of the same open file.
+    /// Like [`reader`](Self::reader), for callers that need to own a file: returns another handle of the same open file.
     ///
     /// # Errors
     /// [`VolumeError::Io`].
@@ -101,7 +101,7 @@ impl OpenFile {
 
     /// Another handle of the same open file, at the same position.
     pub(crate) fn handle(&self) -> Result<File, VolumeError> {
-        // WASI has no second handle of an open file: it is opened again, and begins at the first byte.
+        // WASI has no second handles of open files: the file is opened again, and begins at the first byte.
         #[cfg(target_os = "wasi")]
         let handle = File::open(&self.path);
         #[cfg(not(target_os = "wasi"))]
@@ -109,8 +109,8 @@ impl OpenFile {
         handle.map_err(io_error(&self.path))
     }
 
-    /// Reads from the first byte on, unpacked where the file is compressed with gzip; and what is known of the
-    /// number of bytes.
+    /// Returns a reader at the first byte, which unpacks a file that is compressed with gzip; and what is known about the number
+    /// of bytes.
     pub(crate) fn unpacked(&self) -> Result<(Box<dyn Read + '_>, Length), VolumeError> {
         let reader = self.reader()?;
         Ok(if is_gzip(&self.start) {
@@ -119,7 +119,7 @@ impl OpenFile {
             (Box::new(reader), Length::Exactly(self.length))
         })
     }
-    /// The first bytes of what a gzip stream holds, up to `count`, and the error that ended it.
+    /// The first bytes of the content of a gzip stream, up to `count`, and the error that ended it.
     pub(crate) fn start_unpacked(
         &self,
         count: u64,

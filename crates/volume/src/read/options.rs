@@ -1,4 +1,4 @@
-//! Options of reading.
+//! Options for reading.
 
 use std::num::NonZeroUsize;
 
@@ -8,34 +8,33 @@ use walpha_base::setters;
 use super::raw::RawLayout;
 use crate::{Nan, Region, Volume, VolumeError, downsample};
 
-/// How to read a file: what its name and content leave open.
+/// How to read a file, as far as its name and content do not determine it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct ReadOptions {
-    /// Reads the file as bare samples in this layout, whatever it looks like.
+    /// Reads the file as bare samples in this layout, whatever its content looks like.
     pub raw: Option<RawLayout>,
-    /// The extension of the format that the file is of, whatever its own; content still says more.
+    /// The extension of the file's format, to be used instead of its own. The content takes precedence.
     pub format: Option<String>,
     /// The level of a pyramid to read (OME-Zarr), 0 being the finest. Files without levels refuse it.
     pub level: Option<u32>,
-    /// The array to read, by its name, of a file that may hold several (VTK, NPZ).
+    /// The name of the array to read from a file that may contain several (VTK, NPZ).
     pub array: Option<String>,
-    /// The volume to read of a file of several (a fourth axis), from 0.
+    /// The number of the volume to read from a file of several (a fourth axis), from 0.
     pub frame: Option<u64>,
-    /// The series to read of a folder of several (DICOM): its number, from 1, or the end of its UID, if
-    /// that is not a number.
+    /// The series to read from a folder of several (DICOM): its number, from 1, or the end of its UID, if that is not a number.
     pub series: Option<String>,
-    /// Goes on without damaged slices of a series (DICOM), which a warning names; without it they are refused.
+    /// Leaves out damaged slices of a series (DICOM), with a warning that names them; otherwise they are refused.
     pub skip_damaged: bool,
-    /// Refuses slices at several distances (DICOM); without it they are resampled linearly to the finest distance.
+    /// Refuses slices at different distances (DICOM); otherwise they are resampled linearly to the smallest distance.
     #[serde(default)]
     pub no_resample: bool,
-    /// How to treat samples that are NaN or infinite; by default they are an error. What a file states as padding (DICOM) is
-    /// masked, unless a value replaces it here.
+    /// How to treat samples that are NaN or infinite; by default they are an error. Samples that a file states as padding (DICOM)
+    /// are masked, unless a value here replaces them.
     pub nan: Option<Nan>,
     /// The region to crop to.
     pub region: Option<Region>,
-    /// How many samples along each axis become one; `None` leaves them as they are.
+    /// The number of samples along each axis that become one; `None` leaves them unchanged.
     pub downsample: Option<NonZeroUsize>,
 }
 
@@ -54,10 +53,10 @@ impl ReadOptions {
         downsample: Option<NonZeroUsize>,
     }
 
-    /// The part of a volume that is asked for.
+    /// The requested part of a volume.
     ///
     /// # Errors
-    /// [`VolumeError`]: what cannot be read, and why.
+    /// [`VolumeError`] says what cannot be read, and why.
     pub fn part(&self, volume: Volume) -> Result<Volume, VolumeError> {
         let volume = match &self.region {
             Some(region) => region.of(&volume)?,

@@ -1,4 +1,4 @@
-//! The bytes of samples: reading as many as a header claims, and decoding them.
+//! Reads and decodes as many bytes of samples as a header claims.
 
 use std::io::{self, Read};
 use std::path::Path;
@@ -11,42 +11,42 @@ use crate::error::format_error;
 use crate::rounding::Rounding;
 use crate::{Dims, Dtype, Endian, Reason, Sample, VolumeError};
 
-/// Decoded at a time, so that a file is never held in memory along with its samples.
+/// The number of bytes decoded at a time, so that a file is never held in memory along with its samples.
 const CHUNK_BYTES: usize = 8 << 20;
 
-/// What follows a header: a row of samples, and how many bytes of them there can be.
+/// The data behind a header: a sequence of samples, and the number of bytes that they may have.
 pub(super) struct Payload<R> {
-    /// At the first sample.
+    /// The reader, at the first sample.
     pub reader: R,
-    /// What is known of the length before reading.
+    /// What is known about the length before reading.
     pub length: Length,
 }
 
-/// Deflate expands by no more than this (zlib's technical details), nor does another lossless
-/// code: a header that claims more is wrong.
+/// The largest factor by which Deflate expands data (zlib's technical details), and other lossless codes, too. A header that
+/// claims more is wrong.
 pub(super) const MOST_EXPANSION: u64 = 1032;
 
-/// What is known of the number of bytes left to read.
+/// What is known about the number of bytes left to read.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Length {
-    /// An uncompressed file or archive member.
+    /// The length of an uncompressed file or archive member.
     Exactly(u64),
-    /// A gzip stream, whose length is known only once it is read; this is the most it can hold.
+    /// The largest possible length of a gzip stream, whose length is known only once it is read.
     AtMost(u64),
 }
 
 impl Length {
-    /// A small gzip file that claims a huge volume is refused before anything is allocated.
+    /// The length for a gzip stream. A small file that claims a huge volume is refused before anything is allocated.
     pub(crate) fn of_gzip(compressed: u64) -> Self {
         Self::AtMost(compressed.saturating_mul(MOST_EXPANSION))
     }
 
-    /// The same for bzip2, which packs 900 kB of runs, each of 255 bytes in 5, into as few as 40 bytes.
+    /// The length for a bzip2 stream, which packs 900 kB of runs, each of 255 bytes in 5, into as few as 40 bytes.
     pub(crate) fn of_bzip2(compressed: u64) -> Self {
         Self::AtMost(compressed.saturating_mul(1 << 21))
     }
 
-    /// What is left after a header.
+    /// The length left after a header.
     pub(crate) fn minus(self, header: u64) -> Self {
         match self {
             Self::Exactly(bytes) => Self::Exactly(bytes.saturating_sub(header)),
@@ -55,12 +55,12 @@ impl Length {
     }
 }
 
-/// Why a payload holds other than the samples its header claims.
+/// Why a payload does not contain the samples that its header claims.
 #[derive(Debug)]
 pub(super) enum PayloadError {
-    /// Bytes needed, and the bytes there are; `bound` is empty, "at most " or "at least ".
+    /// The bytes needed, and those that exist; `bound` is empty, "at most " or "at least ".
     Length { needed: u64, found: u64, bound: &'static str },
-    /// The samples fit the file, but not the memory.
+    /// The samples fit the file but not the memory.
     Memory { needed: u64 },
     /// Reading was cancelled.
     Cancelled,
@@ -69,8 +69,8 @@ pub(super) enum PayloadError {
 }
 
 impl<R: Read> Payload<R> {
-    /// Reads exactly `count` samples, which must be all there is. The length is compared with the
-    /// claim before anything is allocated; decoding runs in parallel, a few MB at a time.
+    /// Reads exactly `count` samples, which must be all of the payload. The length is compared with the claim before anything is
+    /// allocated; decoding runs in parallel, a few MB at a time.
     pub(super) fn samples<T: Element>(
         mut self,
         path: &Path,
@@ -119,7 +119,7 @@ impl<R: Read> Payload<R> {
     }
 }
 
-/// The error for a file whose header claims a volume that is not there.
+/// The error for a file whose header claims a volume that it does not contain.
 pub(super) fn payload_error(
     path: &Path,
     dims: &Dims,
@@ -129,12 +129,12 @@ pub(super) fn payload_error(
     move |error| payload_error_of(path, &claim, error)
 }
 
-/// The error for what comes before the samples and cannot be read.
+/// The error for data before the samples that cannot be read.
 pub(super) fn unreadable(path: &Path) -> impl Fn(io::Error) -> VolumeError {
     move |error| payload_error_of(path, "what comes before its samples", PayloadError::Io(error))
 }
 
-/// The error for a file whose header claims something that is not there.
+/// The error for a file whose header claims something that it does not contain.
 pub(super) fn payload_error_of(path: &Path, claim: &str, error: PayloadError) -> VolumeError {
     let reason = match error {
         PayloadError::Io(source) if source.kind() == io::ErrorKind::UnexpectedEof => {
@@ -163,7 +163,7 @@ pub(super) fn payload_error_of(path: &Path, claim: &str, error: PayloadError) ->
     format_error(path, reason)
 }
 
-/// Fills the buffer, or as much of it as there is.
+/// Fills the buffer as far as the data suffice.
 fn read_up_to(reader: &mut impl Read, buffer: &mut [u8]) -> io::Result<usize> {
     let mut filled = 0;
     while filled < buffer.len() {
@@ -177,7 +177,7 @@ fn read_up_to(reader: &mut impl Read, buffer: &mut [u8]) -> io::Result<usize> {
     Ok(filled)
 }
 
-/// The number type samples become: `f32` for volumes, `f64` for point columns.
+/// The number type that samples become: `f32` for volumes, `f64` for columns of points.
 pub trait Element: Copy + Default + Send + Sync {
     /// Decodes as many samples as `out` is long. Returns whether whole numbers were rounded to `f32`.
     fn decode(bytes: &[u8], dtype: Dtype, endian: Endian, out: &mut [Self]) -> bool;

@@ -10,23 +10,23 @@ use super::payload::{Length, Payload, PayloadError};
 use super::uncompressed::Uncompressed;
 use crate::{Dims, Dtype, Endian, Frame, Reason, Volume, VolumeError, any_size};
 
-/// What a file of bare samples does not say of itself.
+/// The layout of a file of bare samples, which does not state it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct RawLayout {
-    /// Samples along x (fastest), y and z (slowest).
+    /// The number of samples along x (fastest), y and z (slowest).
     #[serde(deserialize_with = "any_size")]
     pub dims: Dims,
-    /// The type of each.
+    /// The type of each sample.
     pub dtype: Dtype,
-    /// The order of their bytes.
+    /// The byte order of samples.
     pub endian: Endian,
-    /// Bytes before the first sample, a header to be skipped.
+    /// The number of bytes before the first sample: a header to be skipped.
     pub offset: u64,
 }
 
 impl RawLayout {
-    /// Samples from the first byte on, little-endian.
+    /// The layout of samples from the first byte on, little-endian.
     pub fn new(dims: Dims, dtype: Dtype) -> Self {
         Self { dims, dtype, endian: Endian::Little, offset: 0 }
     }
@@ -34,7 +34,7 @@ impl RawLayout {
     setters! { endian: Endian, offset: u64 }
 }
 
-/// Reads a file that holds `offset` bytes and then exactly the samples of the layout.
+/// Reads a file that contains `offset` bytes and then exactly the samples of the layout.
 pub(crate) fn read(
     file: &OpenFile,
     layout: &RawLayout,
@@ -59,7 +59,7 @@ pub(crate) fn read(
     Ok(Volume::of_file(samples, Frame::VOXEL)?.with_dtype(dtype))
 }
 
-/// Where the samples of a volume lie, to be read part by part.
+/// Locates the samples of a volume, to be read part by part.
 pub(crate) fn box_reader(file: &OpenFile, layout: &RawLayout) -> Result<Uncompressed, VolumeError> {
     let (path, length) = (file.path(), file.length());
     let RawLayout { dims, dtype, endian, offset } = *layout;

@@ -1,20 +1,20 @@
-//! The scans of a JPEG image, by its markers.
+//! The scans of a JPEG image, found by its markers.
 
 /// The scans of an image up to its end marker (ITU-T T.81, B.1 and B.2).
 pub(super) struct Scans {
-    /// Where the data of each end.
+    /// Where the data of each scan end.
     pub(super) ends: Vec<usize>,
-    /// How many low bits of each coefficient are missing; `None` of one that no scan has.
+    /// The number of missing low bits of each coefficient; `None` for a coefficient that is in no scan.
     missing: [Option<u8>; 64],
 }
 
 impl Scans {
-    /// `None` of an image without an end.
+    /// Finds the scans; `None` for an image without an end.
     pub(super) fn of(bytes: &[u8]) -> Option<Self> {
         let mut scans = Self { ends: Vec::new(), missing: [None; 64] };
         let mut at = 2;
         loop {
-            // Decoders pass over bytes between segments.
+            // Decoders skip bytes between segments.
             at += bytes.get(at..)?.windows(2).position(is_marker)?;
             let marker = bytes[at + 1];
             at += 2;
@@ -37,13 +37,13 @@ impl Scans {
         }
     }
 
-    /// Whether each coefficient has all of its bits.
+    /// Whether all bits of all coefficients are there.
     pub(super) fn are_complete(&self) -> bool {
         self.missing.iter().all(|missing| *missing == Some(0))
     }
 }
 
-/// Whether two bytes are a marker: not a byte 255 of data, nor one that fills.
+/// Whether two bytes are a marker, and not a data byte 255 or a fill byte.
 fn is_marker(pair: &[u8]) -> bool {
     pair[0] == 0xff && pair[1] != 0 && pair[1] != 0xff
 }

@@ -1,4 +1,4 @@
-//! What is in a folder: a Zarr store, or the files of DICOM series.
+//! The content of a folder: a Zarr store, or the files of DICOM series.
 
 use std::fmt;
 use std::fs::{DirEntry, File, ReadDir};
@@ -19,17 +19,17 @@ use crate::formats::is_dicom;
 /// A series of slices in a folder (DICOM).
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Series {
-    /// Its place among those of the folder, from 1.
+    /// Its number among the series of the folder, from 1.
     pub number: usize,
-    /// Its unique name.
+    /// Its UID.
     pub uid: String,
-    /// As CT or MR.
+    /// The modality, such as CT or MR.
     pub modality: String,
-    /// What somebody called it.
+    /// The description of the series in its files.
     pub description: String,
-    /// Columns and rows of the first slice.
+    /// The columns and rows of the first slice.
     pub size: [u64; 2],
-    /// How many slices it has.
+    /// The number of its slices.
     pub slices: usize,
     /// The first of its files.
     pub file: PathBuf,
@@ -51,7 +51,7 @@ pub(crate) fn is_zarr(folder: &Path) -> bool {
     [".zarray", ".zgroup", "zarr.json"].iter().any(|name| folder.join(name).is_file())
 }
 
-/// The first DICOM file that is found in a folder or those in it, among its first entries.
+/// The first DICOM file in a folder or its subfolders, among the first entries.
 pub(crate) fn first(folder: &Path) -> Result<Option<PathBuf>, VolumeError> {
     Walk::new(folder, true).next().transpose()
 }
@@ -59,14 +59,13 @@ pub(crate) fn first(folder: &Path) -> Result<Option<PathBuf>, VolumeError> {
 /// The DICOM files of a folder, and possibly damaged ones.
 #[cfg(feature = "dicom")]
 pub(super) struct Files {
-    /// By content, in the order of their names.
+    /// The DICOM files, recognised by content, in the order of their names.
     pub dicom: Vec<PathBuf>,
-    /// Empty files, those that begin with nothing but zeros, and those called .dcm, where their names end as
-    /// those of the others do.
+    /// Empty files, files that begin with zeros only, and files called .dcm, if their names end as those of the DICOM files do.
     pub suspects: Vec<PathBuf>,
 }
 
-/// The DICOM files of a folder and, if wanted, of the folders in it.
+/// The DICOM files of a folder and, if wanted, of its subfolders.
 #[cfg(feature = "dicom")]
 pub(super) fn files(folder: &Path, nested: bool) -> Result<Files, VolumeError> {
     let mut walk = Walk::new(folder, nested);
@@ -87,19 +86,19 @@ pub(super) fn files(folder: &Path, nested: bool) -> Result<Files, VolumeError> {
     Ok(Files { dicom, suspects })
 }
 
-/// So many entries that are not DICOM files, one after the other, are looked at: a folder may be that of the
-/// whole disk.
+/// The largest number of successive entries that are looked at without finding a DICOM file: a folder may be that of the whole
+/// disk.
 const MOST_OTHERS: usize = 10_000;
 
-/// Goes through DICOM files. Links to folders are not followed: they may lead round in circles.
+/// Iterates over DICOM files. Links to folders are not followed, as they may form cycles.
 struct Walk {
     nested: bool,
     folders: Vec<PathBuf>,
-    /// What is left of the folder that is open.
+    /// The remaining entries of the open folder.
     entries: Option<(PathBuf, ReadDir)>,
-    /// Entries since the last DICOM file.
+    /// The number of entries since the last DICOM file.
     others: usize,
-    /// Whether there were too many.
+    /// Whether there were too many entries.
     is_cut_short: bool,
     /// Files that may be damaged DICOM files.
     suspects: Vec<PathBuf>,
@@ -111,7 +110,7 @@ impl Walk {
         Self { nested, folders, entries: None, others: 0, is_cut_short: false, suspects }
     }
 
-    /// The next entry, and the folder it is in.
+    /// The next entry, and its folder.
     fn entry(&mut self) -> Option<Result<DirEntry, VolumeError>> {
         loop {
             let (folder, entries) = if let Some(open) = &mut self.entries {
@@ -162,10 +161,10 @@ impl Iterator for Walk {
     }
 }
 
-/// What a file is, by how it begins.
+/// The kind of a file, according to its first bytes.
 enum Kind {
     Dicom,
-    /// Possibly a damaged DICOM file.
+    /// A file that may be a damaged DICOM file.
     Suspect,
     Other,
 }

@@ -1,4 +1,4 @@
-//! Text in files of samples: the lines of a header, and numbers.
+//! Text in files of samples: header lines and numbers.
 
 use std::io::{self, BufRead, Read};
 use std::path::Path;
@@ -11,26 +11,25 @@ use crate::dtype::HELD;
 use crate::rounding::Rounding;
 use crate::{Dtype, Reason, Sample as _};
 
-/// Longer lines than this are data taken for a header.
+/// The largest length of a line. Longer ones are data mistaken for a header.
 const MAX_LINE: u64 = 1 << 20;
 
-/// Lines of a header before data of any kind, with the number of bytes they took.
+/// Reads the lines of a header in front of other data, and counts their bytes.
 pub struct Lines<R> {
     reader: R,
     bytes: u64,
 }
 
 impl<R: BufRead> Lines<R> {
-    /// At the first line.
+    /// Creates a reader at the first line.
     pub fn new(reader: R) -> Self {
         Self { reader, bytes: 0 }
     }
 
-    /// The next line without its end (LF or CR LF); `None` at the end of the file. Bytes that are
-    /// no UTF-8 are replaced.
+    /// The next line without its end (LF or CR LF); `None` at the end of the file. Bytes that are not UTF-8 are replaced.
     ///
     /// # Errors
-    /// What the system says.
+    /// Errors of the file system.
     pub fn read_line(&mut self) -> io::Result<Option<String>> {
         let mut line = Vec::new();
         let found = (&mut self.reader).take(MAX_LINE).read_until(b'\n', &mut line)? as u64;
@@ -51,32 +50,32 @@ impl<R: BufRead> Lines<R> {
     /// Skips bytes that are not lines.
     ///
     /// # Errors
-    /// What the system says.
+    /// Errors of the file system.
     pub fn skip(&mut self, bytes: u64) -> io::Result<()> {
         let passed = io::copy(&mut (&mut self.reader).take(bytes), &mut io::sink())?;
         self.bytes += passed;
         Ok(())
     }
 
-    /// The next byte, which is in no line; 0 at the end of the file.
+    /// The next byte, which belongs to no line; 0 at the end of the file.
     ///
     /// # Errors
-    /// What the system says.
+    /// Errors of the file system.
     pub fn byte(&mut self) -> io::Result<u8> {
         let mut byte = [0];
         self.bytes += self.reader.read(&mut byte)? as u64;
         Ok(byte[0])
     }
 
-    /// Whether nothing follows.
+    /// Whether the file ends here.
     ///
     /// # Errors
-    /// What the system says.
+    /// Errors of the file system.
     pub fn at_end(&mut self) -> io::Result<bool> {
         Ok(self.reader.fill_buf()?.is_empty())
     }
 
-    /// Bytes of the lines so far.
+    /// The number of bytes of the lines so far.
     pub fn bytes(&self) -> u64 {
         self.bytes
     }
@@ -87,8 +86,8 @@ impl<R: BufRead> Lines<R> {
     }
 }
 
-/// Reads exactly `count` numbers of a type, written as text with white space between them, from
-/// `bytes` bytes. The text is held in memory along with the numbers.
+/// Reads exactly `count` numbers of a type, written as text with white space between them, from `bytes` bytes. The text is held
+/// in memory along with the numbers.
 ///
 /// The error says what is wrong, in words that follow the name of the file.
 pub(super) fn numbers<T: Element + FromStr + Into<f64>>(
@@ -98,7 +97,7 @@ pub(super) fn numbers<T: Element + FromStr + Into<f64>>(
     dtype: Dtype,
     count: u64,
 ) -> Result<Vec<T>, Reason> {
-    // A digit each, and a space between.
+    // Each number needs at least a digit, and a space before the next one.
     if bytes.saturating_add(1) / 2 < count {
         return Err(Reason::claims_more(format!(
             "claims {count} numbers, which {bytes} bytes of text cannot hold: it is \

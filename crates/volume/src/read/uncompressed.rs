@@ -14,8 +14,7 @@ use crate::source::CONVERT;
 use crate::source::{BoxReader, Source};
 use crate::{Dims, Dtype, Endian, Frame, VolumeError};
 
-/// The samples of a volume as they lie in a file, x fastest, not compressed: any box of them can be read
-/// alone.
+/// The uncompressed samples of a volume in a file, x fastest. Any box of them can be read separately.
 pub(crate) struct Uncompressed {
     path: PathBuf,
     file: SharedFile,
@@ -23,11 +22,11 @@ pub(crate) struct Uncompressed {
     frame: Frame,
     dtype: Dtype,
     endian: Endian,
-    /// Byte offset of the first sample.
+    /// The byte offset of the first sample.
     offset: u64,
-    /// Slope and intercept.
+    /// The slope and the intercept.
     scaling: Option<(f64, f64)>,
-    /// Whether the file states that values are labels.
+    /// Whether the file states that the values are labels.
     labels: bool,
     rounding: Rounding,
 }
@@ -57,18 +56,18 @@ impl Uncompressed {
         })
     }
 
-    /// Scales samples, in doubles. Scaled bytes are not gray levels.
+    /// Sets the scaling of samples, which is done in doubles. Scaled bytes are not gray levels.
     pub(crate) fn scaled(self, (slope, inter): (f64, f64)) -> Self {
         Self { scaling: ((slope, inter) != (1.0, 0.0)).then_some((slope, inter)), ..self }
     }
 
-    /// Says whether the file states that values are labels.
+    /// Sets whether the file states that the values are labels.
     pub(crate) fn with_labels(self, labels: bool) -> Self {
         Self { labels, ..self }
     }
 
-    /// Samples behind a header of so many bytes, of which further ones are skipped: `None` where the samples
-    /// are at the end of the file.
+    /// The samples behind a header of `after` bytes and `skip` further bytes; if `skip` is `None`, the samples are at the end of
+    /// the file.
     pub(super) fn after_header(
         file: &OpenFile,
         layout: Layout,
@@ -78,7 +77,7 @@ impl Uncompressed {
         Self::within(file.path(), file, layout, after, skip)
     }
 
-    /// Samples in a file of their own.
+    /// The samples in a file of their own.
     pub(super) fn in_data_file(
         header: &Path,
         layout: Layout,
@@ -124,10 +123,10 @@ impl Uncompressed {
         Self::new(file, dims, frame, dtype, endian, offset)
     }
 
-    /// The volume they are.
+    /// The volume that consists of these samples.
     pub(crate) fn source(self) -> Source {
         let dtype = if self.scaling.is_some() { Dtype::F32 } else { self.dtype };
-        // Rows lie one behind the other: whole ones are read in one piece.
+        // Rows are contiguous, so whole rows are read in one piece.
         let grain = [self.dims.x(), 1, 1];
         let labels = self.labels;
         let source = Source::new(self.dims, self.frame, dtype, grain, Box::new(self));
@@ -139,7 +138,7 @@ impl BoxReader for Uncompressed {
     fn read(&self, first: [usize; 3], size: [usize; 3]) -> Result<Vec<f32>, VolumeError> {
         let Self { path, file, dims, dtype, offset, .. } = self;
         let [nx, ny, _] = dims.xyz();
-        // Whole rows lie side by side with the next ones.
+        // Whole rows are contiguous with the next ones.
         let whole = size[0] == nx;
         let (runs, run) = if whole { (1, size[0] * size[1]) } else { (size[1], size[0]) };
         let mut bytes = vec![0; run * dtype.size()];
@@ -163,7 +162,7 @@ impl Uncompressed {
             self.rounding.note(f32::decode(bytes, dtype, endian, samples));
             return self.rounding.say(&self.path);
         };
-        // In doubles where `f32` does not hold the numbers of the file.
+        // Computes in doubles if `f32` does not hold the numbers of the file.
         let mut exact = vec![0.0; samples.len()];
         f64::decode(bytes, dtype, endian, &mut exact);
         for (sample, value) in samples.iter_mut().zip(exact) {
@@ -172,11 +171,11 @@ impl Uncompressed {
     }
 }
 
-/// An open file of which threads read different places side by side.
+/// An open file that several threads read at different positions.
 struct SharedFile {
     #[cfg(unix)]
     file: File,
-    /// One thread at a time moves its position and reads.
+    /// Only one thread at a time may move the position and read.
     #[cfg(not(unix))]
     file: std::sync::Mutex<File>,
 }

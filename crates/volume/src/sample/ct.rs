@@ -1,4 +1,4 @@
-//! The phantom as a CT scanner gives it.
+//! A CT scan of the phantom.
 
 use ndarray::Array3;
 use rayon::prelude::*;
@@ -8,21 +8,21 @@ use walpha_base::{Coordinates, LengthUnit, Space};
 use super::phantom::{gray, position};
 use crate::{Dims, Dtype, Frame, Volume};
 
-/// Samples along x, y and z.
+/// The number of samples along x, y and z.
 const DIMS: [u64; 3] = [128, 128, 72];
-/// Slices are thicker than pixels are wide; in mm.
+/// The spacing in mm. Slices are thicker than pixels are wide.
 const SPACING: [f64; 3] = [1.75, 1.75, 3.0];
-/// The gantry is tilted by 16° around x: its cosine and sine.
+/// The cosine and sine of the tilt of the gantry by 16° around x.
 const TILT: [f64; 2] = [0.96, 0.28];
 /// The standard deviation of the noise, in Hounsfield units.
 const NOISE: f64 = 25.0;
-/// Gray levels of the phantom and what they are in Hounsfield units, ascending, linear in between: air, skin, the
-/// densest soft tissue, bone, teeth.
+/// Gray levels of the phantom and their Hounsfield units, ascending, with linear interpolation in between: air, skin, the densest
+/// soft tissue, bone, teeth.
 const HOUNSFIELD: [[f64; 2]; 5] =
     [[0.0, -1000.0], [32.0, 20.0], [50.0, 80.0], [205.0, 900.0], [245.0, 1800.0]];
 
-/// A head CT of the [`phantom`](super::phantom()): 128×128×72 samples in Hounsfield units, rounded to integers, with
-/// noise of 25 HU, of 1.75×1.75×3 mm in slices tilted by 16° around x, LPS. The same bytes on every machine.
+/// A head CT of the [`phantom`](super::phantom()): 128×128×72 samples in Hounsfield units, rounded to integers, with noise of 25
+/// HU, of 1.75×1.75×3 mm in slices tilted by 16° around x, LPS. The bytes are the same on every machine.
 #[expect(clippy::missing_panics_doc, reason = "invariants, always met")]
 pub fn ct() -> Volume {
     let [x, y, z] = DIMS;
@@ -32,7 +32,7 @@ pub fn ct() -> Volume {
         let mut noise = Random::new(row as u64);
         let (y, z) = (position(row % dims.y(), dims.y()), position(row / dims.y(), dims.z()));
         for (x, sample) in samples.iter_mut().enumerate() {
-            // The sum of twelve has variance 1, and is nearly normal.
+            // The sum of twelve numbers has variance 1 and is nearly normal.
             let normal = (0..12).map(|_| noise.unit()).sum::<f64>() - 6.0;
             *sample =
                 (hounsfield(gray([position(x, dims.x()), y, z])) + NOISE * normal).round() as f32;
@@ -40,7 +40,7 @@ pub fn ct() -> Volume {
     });
     let [cos, sin] = TILT;
     let direction = [[1.0, 0.0, 0.0], [0.0, cos, -sin], [0.0, sin, cos]];
-    // The centre of the head is at 0.
+    // The centre of the head is the origin.
     let half = [0, 1, 2].map(|k| 0.5 * (DIMS[k] - 1) as f64 * SPACING[k]);
     let origin = direction.map(|row| -(0..3).map(|k| row[k] * half[k]).sum::<f64>());
     let coordinates = Coordinates { space: Space::Lps, unit: LengthUnit::Millimetre };

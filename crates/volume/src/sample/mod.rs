@@ -15,22 +15,22 @@ pub use skull::{SKULL_SHA256, skull_sha256};
 
 use crate::{Frame, Volume, VolumeError};
 
-/// The samples there are, as a user writes them.
+/// The existing samples, as a user writes them.
 pub const SAMPLES: [&str; 4] = ["sample:ct", "sample:skull", "sample:phantom", "sample:phantom@N"];
-/// Samples along each axis of the phantom unless `@N` says otherwise: as many as the skull has.
+/// The number of samples along each axis of the phantom, unless `@N` says otherwise: as many as the skull has.
 const PHANTOM_SIZE: u64 = 64;
 
-/// A sample by its name: one of [`SAMPLES`].
+/// Returns a sample by its name: one of [`SAMPLES`].
 ///
 /// `sample:skull` is `skull_2.9.inr` of CGAL's own data, 64³ samples of a CT scan, read in place;
 /// `sample:phantom` is a [`phantom`] of 64³ samples, `sample:phantom@N` one of N³;
 /// `sample:ct` is a [`ct`] of the phantom, in Hounsfield units.
 ///
 /// # Errors
-/// Unknown name; the skull is not installed, or its archive is damaged; N is not a size.
+/// The name is unknown; the skull is not installed, or its archive is damaged; N is not a size.
 pub fn sample(name: &str) -> Result<Volume, VolumeError> {
     match name.strip_prefix("sample:") {
-        // Its header has numbers, but the paper's lengths are voxels.
+        // Its header states a spacing, but the paper's lengths are in voxels.
         Some("skull") => Ok(skull()?.resolve_nan(None)?.with_frame(Frame::VOXEL)),
         Some("phantom") => phantom(PHANTOM_SIZE),
         Some("ct") => Ok(ct()),

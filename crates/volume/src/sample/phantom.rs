@@ -5,7 +5,7 @@ use walpha_base::memory::try_with_capacity;
 use crate::source::{BoxReader, Source};
 use crate::{Dims, Dtype, Frame, Volume, VolumeError};
 
-/// Half the head's box is 1; an edge fades over this much, one voxel of a 64³ phantom.
+/// The width over which an edge fades: one voxel of a 64³ phantom. Half the box of the head has the length 1.
 const SOFTNESS: f64 = 1.0 / 32.0;
 
 /// Gray levels of the tissues. All soft tissue stays below 50, so that the isosurface at 50 is
@@ -19,12 +19,12 @@ const TEETH: f64 = 245.0;
 /// A head made of ellipsoids, boxes and rods: cranial vault with brain, orbits with eyes, nasal
 /// opening, cheek bones, and a jaw with teeth, in soft tissue and air.
 ///
-/// The face looks towards −y, up is +z. `size` samples along each axis, gray levels 0..255 as
-/// unrounded `f32`, spacing 1. The geometry is the same at any size. Only + − × ÷ and square roots
-/// are used, which IEEE 754 rounds the same everywhere: same size, same bytes.
+/// The face looks towards −y, up is +z. There are `size` samples along each axis with gray levels 0..255 as unrounded `f32`; the
+/// spacing is 1. The geometry is the same at any size. Only + − × ÷ and square roots are used, which IEEE 754 rounds identically
+/// everywhere, so that the same size gives the same bytes.
 ///
 /// # Errors
-/// A size of 0, or above 1625, the largest whose cube is within [`Dims::MAX_SAMPLES`], or no memory.
+/// The size is 0 or above 1625, the largest whose cube is within [`Dims::MAX_SAMPLES`]; or there is not enough memory.
 #[expect(clippy::missing_panics_doc, reason = "an invariant, never met")]
 pub fn phantom(size: u64) -> Result<Volume, VolumeError> {
     let dims = Dims::new(size, size, size)?;
@@ -38,7 +38,7 @@ pub fn phantom(size: u64) -> Result<Volume, VolumeError> {
     Ok(Volume::new(samples, Frame::VOXEL)?.with_gray_levels())
 }
 
-/// A piece of a row of the phantom of `n` samples along each axis, from a voxel on.
+/// Fills a part of a row, from a voxel on, of the phantom with `n` samples along each axis.
 fn fill(n: usize, [x, y, z]: [usize; 3], samples: &mut [f32]) {
     let at = |i: usize| position(i, n);
     let (y, z) = (at(y), at(z));
@@ -47,12 +47,12 @@ fn fill(n: usize, [x, y, z]: [usize; 3], samples: &mut [f32]) {
     }
 }
 
-/// Where sample i of n along an axis is in the box −1..1.
+/// The position of sample i of n along an axis of the box −1..1.
 pub(super) fn position(i: usize, n: usize) -> f64 {
     (2 * i + 1) as f64 / n as f64 - 1.0
 }
 
-/// The phantom part by part, of any size.
+/// The phantom of any size, read part by part.
 pub(in super::super) struct PhantomBoxes(usize);
 
 impl PhantomBoxes {
@@ -91,7 +91,7 @@ pub(super) fn gray([x, y, z]: Point) -> f64 {
     let cranium = vault.max(-inside);
     let face = unite(ellipsoid(p, [0.0, -0.46, -0.22], [0.40, 0.30, 0.36]), brow(p), 0.08);
     let mut skull = unite(cranium, face.max(-inside), 0.06);
-    // Behind the face, below the vault, a skull is hollow: throat and nasal cavity.
+    // Behind the face and below the vault, a skull is hollow: throat and nasal cavity.
     skull = skull.max(-ellipsoid(p, [0.0, -0.34, -0.36], [0.26, 0.26, 0.22]));
     skull = skull.max(-orbit).max(-nose).max(-spine);
     skull = skull.min(cheek(p)).min(jaw(p));
@@ -123,7 +123,7 @@ fn nose(p: Point) -> f64 {
     unite(upper, lower, 0.04)
 }
 
-/// Cheek bone and the arch that bridges the temple, with a gap under it.
+/// The cheek bone and the arch that bridges the temple, with a gap under it.
 fn cheek(p: Point) -> f64 {
     let bone = rod(p, [0.30, -0.60, -0.16], [0.44, -0.48, -0.13], 0.07);
     let rim = rod(p, [0.42, -0.52, 0.10], [0.44, -0.48, -0.12], 0.05);
@@ -141,7 +141,7 @@ fn jaw(p: Point) -> f64 {
     unite(unite(chin, body, 0.05), unite(ridge, branch, 0.05), 0.05)
 }
 
-/// Two rows of six teeth a side, on a parabola.
+/// Two rows of six teeth on each side, on a parabola.
 fn teeth(p: Point) -> f64 {
     let tooth = |k: i32, z: f64| {
         let x = 0.036 + 0.066 * f64::from(k);
@@ -150,10 +150,10 @@ fn teeth(p: Point) -> f64 {
     (0..5).flat_map(|k| [tooth(k, -0.50), tooth(k, -0.615)]).fold(f64::INFINITY, f64::min)
 }
 
-/// (x, y, z) in the box −1..1.
+/// A point (x, y, z) in the box −1..1.
 type Point = [f64; 3];
 
-/// Puts a tissue where its signed distance is negative, blended across the edge.
+/// Paints a tissue where its signed distance is negative, blended across the edge.
 fn paint(below: f64, tissue: f64, distance: f64) -> f64 {
     let share = (0.5 - distance / SOFTNESS).clamp(0.0, 1.0);
     below + share * (tissue - below)
@@ -163,7 +163,7 @@ fn length([x, y, z]: Point) -> f64 {
     (x * x + y * y + z * z).sqrt()
 }
 
-/// About the signed distance to an ellipsoid: exact on its surface, to first order near it.
+/// The approximate signed distance to an ellipsoid: exact on its surface, and to first order near it.
 fn ellipsoid(p: Point, centre: Point, radii: Point) -> f64 {
     let scaled = [0, 1, 2].map(|i| (p[i] - centre[i]) / radii[i]);
     let gradient = length([0, 1, 2].map(|i| scaled[i] / radii[i]));
@@ -227,7 +227,7 @@ mod tests {
     #[test]
     fn any_size_is_the_same_head() {
         assert_eq!(phantom(1).unwrap().dims().samples(), 1);
-        // A sample of the coarse head lies where the middle one of 3×3×3 of the fine head lies.
+        // A sample of the coarse head is at the middle one of 3×3×3 samples of the fine head.
         let (coarse, fine) = (phantom(20).unwrap(), phantom(60).unwrap());
         for [x, y, z] in [[10, 10, 14], [4, 10, 14], [12, 2, 8], [14, 5, 3]] {
             let (a, b) = (at(&coarse, [x, y, z]), at(&fine, [3 * x + 1, 3 * y + 1, 3 * z + 1]));

@@ -1,4 +1,4 @@
-//! The skull of CGAL's data: where it is found, and which bytes it has.
+//! The skull in CGAL's data: where it is found, and its checksum.
 
 use std::fs::File;
 use std::io::{self, BufReader, Read};
@@ -13,22 +13,22 @@ use crate::error::io_error;
 use crate::read::{Length, OpenFile, inr};
 use crate::{Reason, Volume, VolumeError};
 
-/// Where Debian and Ubuntu put CGAL's data, in the package `libcgal-demo`.
+/// The archive of CGAL's data in Debian's and Ubuntu's package `libcgal-demo`.
 const ARCHIVE: &str = "/usr/share/doc/libcgal-dev/data.tar.gz";
-/// The skull in that archive, and below CGAL's data directory.
+/// The path of the skull in that archive, and below CGAL's data directory.
 const MEMBER: &str = "data/images/skull_2.9.inr";
 const FILE: &str = "images/skull_2.9.inr";
 
-/// The SHA-256 of `skull_2.9.inr` as CGAL 5.5 has it.
+/// The SHA-256 of `skull_2.9.inr` in CGAL 5.5.
 pub const SKULL_SHA256: &str = "7a9147c819e426fbd7bf4f0ed5ddac799e54376f64260ef4f650f29e3aa5d4c4";
 
-/// The skull from `CGAL_DATA_DIR`, the variable CGAL's own programs look at, or from Debian's
-/// archive, without unpacking it to disk.
+/// Reads the skull from `CGAL_DATA_DIR`, the variable of CGAL's own programs, or from Debian's archive, without unpacking it to
+/// disk.
 pub(super) fn skull() -> Result<Volume, VolumeError> {
     Found::installed()?.read()
 }
 
-/// The SHA-256 of the file that `sample:skull` reads, in hexadecimal: [`SKULL_SHA256`], if it is CGAL's.
+/// The SHA-256 of the file that `sample:skull` reads, in hexadecimal. It is [`SKULL_SHA256`] if the file is CGAL's.
 ///
 /// # Errors
 /// The skull is not installed, or cannot be read.
@@ -36,7 +36,7 @@ pub fn skull_sha256() -> Result<String, VolumeError> {
     Found::installed()?.sha256()
 }
 
-/// A file or archive that has the skull.
+/// A file or archive that contains the skull.
 enum Found {
     File(PathBuf),
     Archive(PathBuf),
@@ -91,7 +91,7 @@ fn digest(bytes: &mut dyn Read) -> io::Result<String> {
     Ok(hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect())
 }
 
-/// What `read` makes of the skull in an archive, and of its size in bytes.
+/// Calls `read` with the skull in an archive and its size in bytes.
 fn in_archive<T>(
     path: &Path,
     read: impl FnOnce(&mut dyn Read, u64) -> Result<T, VolumeError>,
@@ -159,7 +159,7 @@ mod tests {
         assert_eq!(volume.as_slice(), [1.5, -2.0]);
         let from_archive = Found::find(None, &archive).unwrap();
         assert_eq!(from_archive.read().unwrap(), volume);
-        // By sha256sum.
+        // This checksum was computed by sha256sum.
         let expected = "63c610005658298b7582f67710dfb28995f9b7d3dd33477cff519212ae19297c";
         assert_eq!([from_folder, from_archive].map(|found| found.sha256().unwrap()), [expected; 2]);
     }

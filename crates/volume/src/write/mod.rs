@@ -1,4 +1,4 @@
-//! Volumes as files, by the name of each format. Samples are `f32`, little-endian.
+//! Writers of volumes, named after their formats. Samples are `f32`, little-endian.
 
 mod nifti;
 mod plain;

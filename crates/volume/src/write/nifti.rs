@@ -3,12 +3,12 @@ use std::io::{self, Write};
 use super::plain::raw;
 use crate::{Coordinates, Frame, LengthUnit, Space, Volume};
 
-/// Writes a volume as NIfTI-1, or NIfTI-2 where an axis is longer than version 1 can say. A known space
-/// becomes RAS, the coordinates of the scanner; of an unknown one the numbers stay ("aligned"), and a
-/// volume in voxels has no place. The frame is its `sform`; `f32` of version 1 round it.
+/// Writes a volume as NIfTI-1, or NIfTI-2 if an axis is too long for version 1. A known space becomes RAS, the coordinates of the
+/// scanner; numbers in an unknown space are unchanged ("aligned"); a volume in voxels has no place. The frame is its `sform`,
+/// which the `f32` of version 1 round.
 ///
 /// # Errors
-/// Whatever `out` returns.
+/// Errors of `out`.
 pub(crate) fn nifti(volume: &Volume, out: &mut dyn Write) -> io::Result<()> {
     let long = volume.dims().xyz().iter().any(|&size| size > i16::MAX as usize);
     let frame = volume.frame().to(convention(volume.frame().coordinates));
@@ -19,32 +19,32 @@ pub(crate) fn nifti(volume: &Volume, out: &mut dyn Write) -> io::Result<()> {
     raw(volume, out)
 }
 
-/// The same, compressed with gzip.
+/// Writes a volume as [`nifti`] does, compressed with gzip.
 ///
 /// # Errors
-/// Whatever `out` returns.
+/// Errors of `out`.
 pub(crate) fn nifti_gzip(volume: &Volume, out: &mut dyn Write) -> io::Result<()> {
     let mut packed = flate2::write::GzEncoder::new(out, flate2::Compression::default());
     nifti(volume, &mut packed)?;
     packed.finish().map(drop)
 }
 
-/// `NIfTI`'s number for `float32`, and its bits.
+/// `NIfTI`'s code for `float32`, and its number of bits.
 const FLOAT32: [i16; 2] = [16, 32];
-/// Coordinates that are those of the scanner, or of another space that something is aligned to; none.
+/// The codes for coordinates of the scanner, for those of a space that something is aligned to, and for no coordinates.
 const SCANNER: i16 = 1;
 const ALIGNED: i16 = 2;
 const NONE: i16 = 0;
-/// In front of version 2's name, so that a transfer as text is found out.
+/// The magic bytes of version 2, which detect a transfer as text.
 const MAGIC_2: &[u8; 8] = b"n+2\0\r\n\x1a\n";
 
-/// RAS, in the unit there is if `NIfTI` knows it.
+/// RAS, in the given unit if `NIfTI` knows it, and otherwise in millimetres.
 fn convention(Coordinates { unit, .. }: Coordinates) -> Coordinates {
     let unit = if unit_code(unit) == 0 { LengthUnit::Millimetre } else { unit };
     Coordinates { space: Space::Ras, unit }
 }
 
-/// The number in `xyzt_units`; 0 for what has none.
+/// The code in `xyzt_units`; 0 for a unit without a code.
 fn unit_code(unit: LengthUnit) -> u8 {
     match unit {
         LengthUnit::Metre => 1,
@@ -96,25 +96,25 @@ fn version_2(volume: &Volume, frame: &Frame) -> Vec<u8> {
 struct Header(Vec<u8>);
 
 impl Header {
-    /// Puts numbers one after the other.
+    /// Writes numbers one after the other, from a position on.
     fn put<const B: usize, const N: usize>(&mut self, place: usize, numbers: [[u8; B]; N]) {
         self.0[place..place + B * N].copy_from_slice(numbers.as_flattened());
     }
 }
 
-/// The number of axes, then their sizes; those beyond the third have one sample.
+/// The number of axes, followed by their sizes; those beyond the third have one sample.
 fn dims(volume: &Volume) -> [i64; 8] {
     let [x, y, z] = volume.dims().xyz().map(|size| size as i64);
     [3, x, y, z, 1, 1, 1, 1]
 }
 
-/// A sign that matters to `qform` only, then the spacing.
+/// A sign that matters only to `qform`, followed by the spacing.
 fn pixdim(frame: &Frame) -> [f64; 8] {
     let [x, y, z] = frame.spacing;
     [1.0, x, y, z, 1.0, 1.0, 1.0, 1.0]
 }
 
-/// The rows of the matrix from indices to positions.
+/// The rows of the matrix that maps indices to positions.
 fn sform(frame: &Frame) -> [f64; 12] {
     let (axes, origin) = (frame.axes(), frame.origin);
     let number = |i: usize| match (i / 4, i % 4) {

@@ -1,4 +1,4 @@
-//! Samples with hardly a header: raw, and NPY.
+//! Formats with hardly a header: raw and NPY.
 
 use std::io::{self, Write};
 
@@ -6,13 +6,13 @@ use ndarray_npy::{WriteNpyError, WriteNpyExt};
 
 use crate::Volume;
 
-/// Samples turned into bytes at a time.
+/// The number of samples turned into bytes at a time.
 const CHUNK: usize = 1 << 16;
 
 /// Writes the samples of a volume and nothing else: `f32`, little-endian, x fastest.
 ///
 /// # Errors
-/// Whatever `out` returns.
+/// Errors of `out`.
 pub(crate) fn raw(volume: &Volume, out: &mut dyn Write) -> io::Result<()> {
     let mut bytes = Vec::with_capacity(CHUNK * 4);
     for samples in volume.as_slice().chunks(CHUNK) {
@@ -26,7 +26,7 @@ pub(crate) fn raw(volume: &Volume, out: &mut dyn Write) -> io::Result<()> {
 /// Writes the samples of a volume as a `NumPy` array: `f32`, axes z, y, x.
 ///
 /// # Errors
-/// Whatever `out` returns.
+/// Errors of `out`.
 pub(crate) fn npy(volume: &Volume, out: &mut dyn Write) -> io::Result<()> {
     volume.samples().write_npy(out).map_err(|error| match error {
         WriteNpyError::Io(error) => error,

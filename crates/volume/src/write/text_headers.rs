@@ -1,4 +1,4 @@
-//! Formats of a header in text with raw samples behind it: NRRD, `MetaImage` and VTI.
+//! Formats with a header in text and raw samples behind it: NRRD, `MetaImage` and VTI.
 
 use std::io::{self, Write};
 
@@ -6,12 +6,11 @@ use super::plain::raw;
 use crate::annotation::field_data;
 use crate::{Coordinates, Frame, Space, Volume};
 
-/// Writes a volume as NRRD with raw samples after the header. The grid is written in the volume's own
-/// space, which is named; that of a patient in millimetres, as ITK and Slicer expect. A volume in
-/// voxels has no place.
+/// Writes a volume as NRRD with raw samples after the header. The grid is written in the volume's own space, which is named; a
+/// known space is in millimetres, as ITK and Slicer expect. A volume in voxels has no place.
 ///
 /// # Errors
-/// Whatever `out` returns.
+/// Errors of `out`.
 pub(crate) fn nrrd(volume: &Volume, out: &mut dyn Write) -> io::Result<()> {
     let [x, y, z] = volume.dims().xyz();
     write!(
@@ -26,14 +25,14 @@ pub(crate) fn nrrd(volume: &Volume, out: &mut dyn Write) -> io::Result<()> {
     raw(volume, out)
 }
 
-/// The frame as it is written.
+/// The frame in the coordinates in which it is written.
 fn converted(frame: &Frame) -> Frame {
     let space = frame.coordinates.space;
     let patient = Coordinates { space, ..Coordinates::PATIENT };
     if space.is_known() { frame.to(patient) } else { *frame }
 }
 
-/// NRRD wants the space before the vectors in it.
+/// The fields of the space and its unit. NRRD requires them before the vectors in that space.
 fn nrrd_space(frame: &Frame) -> String {
     let Coordinates { space, unit } = converted(frame).coordinates;
     let space = match space {
@@ -57,11 +56,11 @@ fn nrrd_place(frame: &Frame) -> String {
     format!("space directions: {axes}\nspace origin: {}\n", vector(frame.origin))
 }
 
-/// Writes a volume as `MetaImage` (`.mha`), ITK's own format, with raw samples after the header. A
-/// known space is LPS there, in millimetres. A volume in voxels has no place.
+/// Writes a volume as `MetaImage` (`.mha`), ITK's own format, with raw samples after the header. A known space is converted to
+/// LPS in millimetres. A volume in voxels has no place.
 ///
 /// # Errors
-/// Whatever `out` returns.
+/// Errors of `out`.
 pub(crate) fn metaimage(volume: &Volume, out: &mut dyn Write) -> io::Result<()> {
     let [x, y, z] = volume.dims().xyz();
     write!(
@@ -96,11 +95,11 @@ fn metaimage_place(frame: &Frame) -> String {
     )
 }
 
-/// Writes a volume as VTI, VTK's image data: point data `value`, appended raw. A known space is LPS; the
-/// field data `SPACE` and `UNIT` say so.
+/// Writes a volume as VTI, VTK's image data: point data `value`, appended raw. A known space is converted to LPS; the field data
+/// `SPACE` and `UNIT` state the coordinates.
 ///
 /// # Errors
-/// Whatever `out` returns.
+/// Errors of `out`.
 pub(crate) fn vti(volume: &Volume, out: &mut dyn Write) -> io::Result<()> {
     let [x, y, z] = volume.dims().xyz().map(|size| size - 1);
     let extent = format!("0 {x} 0 {y} 0 {z}");

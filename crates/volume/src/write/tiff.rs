@@ -6,14 +6,13 @@ use tiff::tags::{CompressionMethod, PhotometricInterpretation, ResolutionUnit, S
 
 use crate::{LengthUnit, Volume};
 
-/// Writes a volume as TIFF, a page for each slice, or `BigTIFF` where it has more than 4 GB. Spacing and
-/// its unit are where `ImageJ` looks for them; TIFF has no origin and no directions. The file is built
-/// in memory first.
+/// Writes a volume as TIFF with a page for each slice, or as `BigTIFF` if it has more than 4 GB. Spacing and its unit are stored
+/// where `ImageJ` looks for them; TIFF has no origin and no directions. The file is first built in memory.
 ///
 /// # Errors
-/// Whatever `out` returns.
+/// Errors of `out`.
 pub(crate) fn tiff(volume: &Volume, out: &mut dyn Write) -> io::Result<()> {
-    /// For the directories of the pages.
+    /// The space reserved for the directories of the pages.
     const BESIDE: usize = 1 << 29;
     let mut bytes = Cursor::new(Vec::new());
     let large = volume.dims().samples() > (u32::MAX as usize - BESIDE) / size_of::<f32>();
@@ -48,7 +47,7 @@ fn pages<K: TiffKind>(
     for slice in 0..nz as u64 {
         let mut page = file.image_directory()?;
         if slice == 0 {
-            // All of them in one piece, as ImageJ has it, and readers of its files expect it.
+            // All samples are in one piece, as in ImageJ's files and as their readers expect.
             start = page.write_data(volume.as_slice())?;
         }
         page.write_tag(Tag::ImageWidth, nx as u32)?;
@@ -76,10 +75,10 @@ fn pages<K: TiffKind>(
     Ok(())
 }
 
-/// 1/spacing, as near as two numbers of 32 bits say it.
+/// 1/spacing, as nearly as the ratio of two 32-bit numbers can express it.
 fn pixels_a_unit(spacing: f64) -> Rational {
     let scale = f64::from(u32::MAX) / spacing.max(1.0);
-    // Whole millionths where they fit, because most spacings are.
+    // Whole millionths are used if they fit, because most spacings are such.
     let scale = if scale > 1e6 { 1e6 } else { scale };
     Rational { n: scale.round() as u32, d: (spacing * scale).round().max(1.0) as u32 }
 }

@@ -13,18 +13,18 @@ use zarrs::group::GroupBuilder;
 
 use crate::{Dtype, Frame, LengthUnit, Source, VolumeError};
 
-/// Samples along an edge of a chunk.
+/// The number of samples along an edge of a chunk.
 const CHUNK: usize = 64;
 
-/// Writes a volume as OME-Zarr (version 0.5, of Zarr 3) with one level, in chunks of 64³ samples
-/// compressed by zstd. Where nothing is known of the grid, it writes an array without a group.
+/// Writes a volume as OME-Zarr (version 0.5, of Zarr 3) with one level, in chunks of 64³ samples compressed by zstd. If nothing
+/// is known about the grid, it writes an array without a group.
 ///
 /// It reads and writes one row of chunks per thread at a time. Bytes and 16-bit integers keep their
 /// type, other samples become `f32`. Spacing, origin and unit are kept; directions are not, as
 /// OME-Zarr has no place for them.
 ///
 /// # Errors
-/// `folder` is there already, cannot be made, or the volume cannot be read. Nothing is left behind then.
+/// `folder` exists already or cannot be created, or the volume cannot be read. Nothing is left behind then.
 pub(crate) fn zarr(source: &Source, folder: &Path, monitor: &Monitor) -> Result<(), VolumeError> {
     let failed = |source| VolumeError::Written { path: folder.into(), source };
     make_folder(folder, failed, |part| fill(source, part, monitor))
@@ -77,7 +77,7 @@ fn fill(source: &Source, folder: &Path, monitor: &Monitor) -> Result<(), VolumeE
     Ok(())
 }
 
-/// Stores samples as the type of the array, which holds them exactly.
+/// Stores samples in the type of the array, which holds them exactly.
 fn store_part(
     array: &Array<FilesystemStore>,
     at: &ArraySubset,
@@ -101,7 +101,7 @@ fn store_part(
     }
 }
 
-/// The metadata of a pyramid of one level.
+/// The metadata of a pyramid with one level.
 fn ome(frame: &Frame) -> serde_json::Value {
     let Frame { spacing: [sx, sy, sz], origin: [ox, oy, oz], coordinates, .. } = frame;
     let unit = match coordinates.unit {

@@ -41,7 +41,7 @@ fn sequence(group: u16, number: u16, content: &[Vec<u8>]) -> Element {
     (group, number, b"SQ", items(&[content.concat()]))
 }
 
-/// The same inside of an item.
+/// The bytes of a [`sequence`] inside an item.
 fn inner(group: u16, number: u16, content: &[Vec<u8>]) -> Vec<u8> {
     let (group, number, kind, value) = sequence(group, number, content);
     element(group, number, kind, &value)

@@ -10,7 +10,7 @@ fn vtp(pieces: &str) -> String {
     )
 }
 
-/// A piece of so many points, with point data.
+/// A piece of these points, with point data.
 fn piece(places: &str, data: &str) -> String {
     let count = places.split(' ').count() / 3;
     format!(
@@ -210,7 +210,7 @@ fn arrays_behind_texts_are_found() {
     assert_eq!(warnings(&path), "null");
 }
 
-/// Texts beside samples are not samples.
+/// Texts in addition to samples are not samples.
 #[test]
 fn texts_are_passed_by_in_a_volume() {
     use crate::formats::files::{VTK, open, save};

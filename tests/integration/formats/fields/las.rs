@@ -35,7 +35,7 @@ fn las(classes: [u8; 2], changes: &[(usize, &[u8])], behind: &[u8]) -> Vec<u8> {
     [&bytes[..], behind].concat()
 }
 
-/// The same in version 1.4, with the numbers of points that its two fields state.
+/// A file of version 1.4, with the numbers of points that its two fields state.
 fn las_of_1_4(old: u32, large: u64) -> Vec<u8> {
     /// Bytes of the header, and where the number of 64 bits is.
     const HEADER_OF_1_4: u16 = 375;
@@ -208,7 +208,7 @@ fn each_field_of_the_table() {
     );
 }
 
-/// In 1.4 the number of 64 bits holds, whichever is larger, unless it is left out.
+/// In version 1.4 the 64-bit number counts, whichever is larger, unless it is left out.
 #[test]
 fn numbers_of_points_that_differ() {
     let folder = tempfile::tempdir().unwrap();

@@ -177,7 +177,7 @@ fn each_field_of_ply() {
     );
 }
 
-/// What the lines say, rather than that a count were wrong.
+/// The error tells the content of the lines, rather than a wrong count.
 #[test]
 fn lines_that_differ_from_the_header_of_ply_are_named() {
     let folder = tempfile::tempdir().unwrap();
@@ -347,7 +347,7 @@ fn each_field_of_obj() {
 /// A text of one facet, whose third corner is the first.
 const STL: &str = "solid a\nfacet normal 0 0 1\nouter loop\nvertex 1 2 3\nvertex 4 5 6\nvertex 1 2 3\nendloop\nendfacet\nendsolid a\n";
 
-/// A binary file that claims so many facets and has this one, with attribute bytes.
+/// A binary file that claims `count` facets and has this one, with attribute bytes.
 fn stl(head: &str, count: u32, attribute: u16, behind: &[u8]) -> Vec<u8> {
     let mut bytes = format!("{head:80}").into_bytes();
     bytes.extend(count.to_le_bytes());

@@ -39,9 +39,9 @@ pub struct Field {
     pub fate: Fate,
 }
 
-/// What becomes of a field. The second column of the table begins with its name.
+/// The treatment of a field. The second column of the table begins with its name.
 pub enum Fate {
-    /// It is taken. The function reads the file and asserts that.
+    /// The field is read. The function reads the file and asserts that.
     Read(fn(&Path)),
     /// The file is not read; the error has these words.
     Refused(&'static [&'static str]),

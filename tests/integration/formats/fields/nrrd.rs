@@ -74,7 +74,7 @@ fn each_field_of_the_table() {
             },
             Field {
                 name: "`space directions`",
-                // An axis without a direction is none of space, whatever its kind.
+                // An axis without a direction is not one of space, regardless of its kind.
                 file: |f| with(f, "space dimension: 3\nspace directions: (2,0,0) (0,0,3) none\n"),
                 fate: Fate::Read(|path| {
                     let second = frame(path, 1);

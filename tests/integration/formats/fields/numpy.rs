@@ -160,7 +160,7 @@ fn each_field_of_the_table() {
             },
             Field {
                 name: "files that are not arrays, alone",
-                // One text alone would be points.
+                // A single text would be points.
                 file: |f| archive(f, &[("a.txt", b"1 2 3"), ("b.txt", b"4 5 6")]),
                 fate: Fate::Refused(&["a zip archive of a.txt and 1 others", "unpack it"]),
             },

@@ -1,4 +1,4 @@
-//! What the tables of points share: files of the points (1, 2, 3) and (4, 5, 6).
+//! The shared parts of the tables of points: files of the points (1, 2, 3) and (4, 5, 6).
 
 use std::path::Path;
 
@@ -31,14 +31,14 @@ pub fn places(path: &Path) {
     assert_eq!((points.weights, points.values), (None, None), "{}", path.display());
 }
 
-/// The same, and nothing is said about them.
+/// Like [`places`]; also asserts that there are no warnings.
 pub fn without_a_word(path: &Path) {
     places(path);
     let told = json(path.parent().unwrap(), &["info", path.to_str().unwrap()]);
     assert!(told.get("warnings").is_none_or(|told| told.as_array().unwrap().is_empty()), "{told}");
 }
 
-/// What is said about a file.
+/// The warnings about a file.
 pub fn warnings(path: &Path) -> String {
     json(path.parent().unwrap(), &["info", path.to_str().unwrap()])["warnings"].to_string()
 }

@@ -19,7 +19,7 @@ fn slices(folder: &Path, names: &[&str]) -> PathBuf {
     folder.to_owned()
 }
 
-/// A PNG of one row of bytes, of a kind of colour and so many bits.
+/// A PNG of one row of bytes, with this kind of colour and number of bits.
 fn png(kind: u8, bits: u8, width: u32, row: &[u8], chunks: &[(&[u8; 4], &[u8])]) -> Vec<u8> {
     let chunk = |name: &[u8; 4], data: &[u8]| {
         let named = [&name[..], data].concat();

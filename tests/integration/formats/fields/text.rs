@@ -450,7 +450,7 @@ fn comments_are_names_or_rows_or_neither() {
     }
 }
 
-/// What `--weights column` asks for, where no column is a weight by its name.
+/// `--weights column` for a file without a column that is named as a weight.
 #[test]
 fn a_fourth_column_is_a_weight_where_that_is_asked_for() {
     let folder = tempfile::tempdir().unwrap();
@@ -463,7 +463,7 @@ fn a_fourth_column_is_a_weight_where_that_is_asked_for() {
     assert!(told["warnings"].to_string().contains("its values are taken for weights"), "{told}");
 }
 
-/// What the name says, and the content does not.
+/// Files whose content contradicts their name.
 #[test]
 fn kinds_that_are_no_text_of_points() {
     let folder = tempfile::tempdir().unwrap();

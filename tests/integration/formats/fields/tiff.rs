@@ -35,7 +35,7 @@ fn strip_of_jpeg(side: u32, jpeg: &[u8]) -> Vec<u8> {
 /// A tag: its number, its type (2 text, 3 and 4 whole numbers, 5 pairs of them) and its bytes.
 type Tag<'a> = (u16, u16, &'a [u8]);
 
-/// A file of so many pages of 3×2 shorts, the samples of `shorts`, with these tags in place of their own.
+/// A file of `pages` pages of 3×2 shorts, the samples of `shorts`, with these tags in place of their own.
 fn file(pages: usize, tags: &[Tag]) -> Vec<u8> {
     tiff_of(&vec![tags; pages])
 }
@@ -94,7 +94,7 @@ fn described(folder: &Path, text: &[u8]) -> PathBuf {
     with(folder, &[(270, 2, text), (282, 5, &ratio), (283, 5, &ratio), (296, 3, &[1, 0])])
 }
 
-/// One page with these tags, whose samples and those of a second one are at the end of the file.
+/// A page with these tags. Its samples and those of a second page are at the end of the file.
 fn behind_one_page(folder: &Path, tags: &[Tag]) -> PathBuf {
     let page = file(1, tags);
     let start = page.windows(12).position(|window| window == &shorts()[..12]).unwrap();
@@ -112,13 +112,13 @@ fn row<'a>(tags: &[Tag<'a>]) -> Vec<Tag<'a>> {
     [&own, tags].concat()
 }
 
-/// So many pages of one row, of the samples of `shorts` one after the other, with a description.
+/// `pages` pages of one row, with the samples of `shorts` one after the other, and a description.
 fn rows(folder: &Path, text: &[u8], pages: usize) -> PathBuf {
     let page = |k: usize| if k == 0 { row(&[(270, 2, text)]) } else { row(&[]) };
     let pages: Vec<Vec<Tag>> = (0..pages).map(page).collect();
     let pages: Vec<&[Tag]> = pages.iter().map(Vec::as_slice).collect();
     let mut bytes = tiff_of(&pages);
-    // What `tiff_of` wrote as the first rows of two slices.
+    // The samples that `tiff_of` wrote as the first rows of two slices.
     let first = [&shorts()[..12], &shorts()[12..]];
     let mut from = 0;
     for k in 0..pages.len() {
@@ -237,7 +237,7 @@ fn each_field_of_the_table() {
                     let mut jpeg = jpeg.into_inner();
                     let whole = save(f, "whole.tif", strip_of_jpeg(40, &jpeg));
                     assert_eq!(volume(&whole).dims().xyz(), [40, 40, 1]);
-                    // As a copy that stopped leaves it.
+                    // A file whose copying stopped early.
                     let from = jpeg.len() * 3 / 4;
                     jpeg[from..].fill(0);
                     save(f, "v.tif", strip_of_jpeg(40, &jpeg))
@@ -398,7 +398,7 @@ fn each_field_of_the_table() {
                     let folder = path.parent().unwrap();
                     let unnamed = rows(folder, b"{\"shape\": [2, 2, 1, 3]}\0", 4);
                     assert_eq!(frame(&unnamed, 1).as_slice(), second);
-                    // Of two arrays in a file the first; arrays of a page each are slices.
+                    // Of two arrays in a file, the first one is read; arrays of one page each are slices.
                     let first = volume(&rows(folder, b"{\"shape\": [2, 1, 3]}\0", 4));
                     assert_eq!(first.as_slice(), [0.0, 2.0, 4.0, 6.0, 8.0, 10.0]);
                     let pages = volume(&rows(folder, b"{\"shape\": [1, 3]}\0", 4));

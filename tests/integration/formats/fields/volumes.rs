@@ -1,4 +1,4 @@
-//! What the tests of volumes' fields share.
+//! The shared parts of the tests of volumes' fields.
 
 use std::path::Path;
 
@@ -14,7 +14,7 @@ pub fn volume(path: &Path) -> Volume {
     open(path).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// One of the volumes in a file of several.
+/// A volume of a file with several.
 #[track_caller]
 pub fn frame(path: &Path, frame: u64) -> Volume {
     read(path, &ReadOptions::default().frame(frame)).unwrap_or_else(|error| panic!("{error}"))

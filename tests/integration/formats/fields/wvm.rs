@@ -15,7 +15,7 @@ fn made(folder: &Path) -> PathBuf {
     folder.join("a.wvm")
 }
 
-/// The same with a change of its bytes.
+/// The file of [`made`] with its bytes changed.
 fn changed(folder: &Path, change: fn(&mut Vec<u8>)) -> PathBuf {
     let path = made(folder);
     let mut bytes = std::fs::read(&path).unwrap();

@@ -65,7 +65,7 @@ fn coordinates(folder: &Path, y: &[i16]) -> PathBuf {
     stating(&folder.join("density"), json!({"_ARRAY_DIMENSIONS": ["z", "y", "x"]}))
 }
 
-/// The samples as they are read in parts.
+/// The samples when they are read in parts.
 fn parts(path: &Path) -> Vec<f32> {
     let source = Source::open(path, &ReadOptions::default()).unwrap();
     source.read([0; 3], source.dims().xyz()).unwrap()
@@ -190,7 +190,7 @@ fn each_field_of_the_table() {
                     pyramid(f, &[2, 1, 3, 2], axes, json!([]), json!([]))
                 },
                 fate: Fate::Read(|path| {
-                    // Of each time the second channel.
+                    // The second channel of each time.
                     assert_eq!(frame(path, 3).as_slice(), [14.0, 18.0, 22.0]);
                 }),
             },

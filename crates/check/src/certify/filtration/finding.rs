@@ -17,9 +17,9 @@ pub enum FiltrationFinding {
     When {
         /// The simplex.
         simplex: Simplex,
-        /// Which of these three.
+        /// Which of the three values is wrong.
         bound: Bound,
-        /// As given.
+        /// The given value.
         given: Alpha,
         /// The double nearest to the exact number; ∞ for never.
         expected: Alpha,
@@ -48,9 +48,9 @@ pub enum FiltrationFinding {
     /// A simplex precedes another that must come first: the order is by value, then dimension, then
     /// vertices.
     Order {
-        /// The one that precedes in the file.
+        /// The simplex that precedes in the file.
         before: Simplex,
-        /// The one right after it.
+        /// The simplex right after it.
         after: Simplex,
         /// Their values.
         values: [Exact; 2],
@@ -83,13 +83,13 @@ impl FiltrationFinding {
     }
 }
 
-/// What a simplex becomes at an α.
+/// A change of a simplex at an α.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Bound {
-    /// In the shape.
+    /// It enters the shape.
     Value,
-    /// A face of another simplex of the shape.
+    /// It becomes a face of another simplex of the shape.
     Regular,
     /// Off the boundary.
     Interior,

@@ -31,7 +31,7 @@ pub struct FiltrationCertificate {
     pub triangulation: Certificate,
     /// Number of distinct exact values.
     pub values: usize,
-    /// What was not judged.
+    /// The parts that were not judged.
     pub not_judged: Vec<Unjudged>,
 }
 
@@ -49,9 +49,9 @@ impl std::fmt::Display for FiltrationCertificate {
 pub enum Unjudged {
     /// Values, classes and order, as the triangulation is wrong.
     AfterFindings,
-    /// Which simplices are Gabriel, as the file does not say.
+    /// Whether simplices are Gabriel, because the file does not tell.
     Gabriel,
-    /// From which α on simplices are regular and interior, as the file does not say.
+    /// The α at which simplices become regular and interior, because the file does not tell.
     Intervals,
     /// Persistence pairs, as the file lists none.
     Pairs,
@@ -114,8 +114,7 @@ impl Advise for CertifyFiltrationError {
 /// singular, regular and interior. Faces come before their cofaces where the order is right: no value
 /// is smaller than that of a face, and equal ones are ordered by dimension.
 ///
-/// Linear up to sorting, a few microseconds for each simplex; but for pairs of dimension 1, which take a reduction of
-/// matrices.
+/// Linear except for sorting, and a few microseconds for each simplex; but pairs of dimension 1 require a reduction of matrices.
 ///
 /// # Errors
 /// [`CertifyFiltrationError`]: fields of different lengths, numbers out of range; points of a torus.

@@ -50,7 +50,7 @@ pub(super) fn judge(
     Ok(findings)
 }
 
-/// What determines the position of a simplex in the order.
+/// The key that determines the position of a simplex in the order.
 struct OrderKey {
     rank: u32,
     /// Ascending.

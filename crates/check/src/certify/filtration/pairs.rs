@@ -62,7 +62,7 @@ struct Pairing<'a> {
 
 /// Pairs of dimension 0.
 struct Components {
-    /// Those whose simplices have different values.
+    /// The pairs whose simplices have different values.
     pairs: BTreeSet<[u32; 2]>,
     /// Vertices whose components never end.
     lasting: BTreeSet<u32>,
@@ -71,7 +71,7 @@ struct Components {
 }
 
 impl Pairing<'_> {
-    /// In order: a vertex creates a component, and an edge between two components ends the younger one.
+    /// Visits simplices in order: a vertex creates a component, and an edge between two components ends the younger one.
     fn components(&self, monitor: &Monitor) -> Result<Components, Cancelled> {
         let work = monitor.units(self.file.order.len() as u64);
         let vertices = self.file.vertices.len() as u32;
@@ -98,8 +98,8 @@ impl Pairing<'_> {
         Ok(Components { pairs, lasting: oldest.remaining(), merging })
     }
 
-    /// In reverse order: an edge that ends no component closes a loop, which ends with the first facet of its coboundary, once
-    /// coboundaries of later edges with this first facet are added.
+    /// Visits simplices in reverse order: an edge that does not end a component closes a loop, which ends with the first facet of
+    /// its coboundary, after coboundaries of later edges with the same first facet are added.
     fn loops(
         &self,
         merging: &BTreeSet<u32>,
@@ -111,7 +111,7 @@ impl Pairing<'_> {
         let sorted = |[a, b]: [u32; 2]| if a < b { [a, b] } else { [b, a] };
         let edges: BTreeMap<[u32; 2], u32> =
             self.file.edges.iter().map(|&edge| sorted(edge)).zip(first_edge..).collect();
-        // By number of the edge, places in the order.
+        // For each edge, by its number, places in the order.
         let mut coboundaries = BTreeMap::<u32, Vec<usize>>::new();
         for (place, &simplex) in self.file.order.iter().enumerate() {
             let facet = simplex.checked_sub(first_facet);
@@ -151,13 +151,13 @@ impl Pairing<'_> {
         Ok(pairs)
     }
 
-    /// In reverse order: a cell creates a component of the complement, and a facet between two components ends the
-    /// younger one. The outside is the oldest.
+    /// Visits simplices in reverse order: a cell creates a component of the complement, and a facet between two components ends
+    /// the younger one. The outside is the oldest.
     fn voids(&self, monitor: &Monitor) -> Result<BTreeSet<[u32; 2]>, Cancelled> {
         let work = monitor.units(self.file.order.len() as u64);
         let below = self.file.vertices.len() + self.file.edges.len();
         let [facets, cells] = [below, below + self.file.facets.len()].map(|n| n as u32);
-        // By rows of the triangulation, the numbers of the file.
+        // The numbers of the file by the rows of the triangulation.
         let number: BTreeMap<usize, u32> = self.rows.cells.iter().copied().zip(cells..).collect();
         let mut oldest = Oldest::default();
         oldest.begin(OUTSIDE);
@@ -188,7 +188,7 @@ const OUTSIDE: u32 = u32::MAX;
 /// Disjoint sets whose representatives are their oldest members.
 #[derive(Default)]
 struct Oldest {
-    /// For each member an older one of its set, or itself; and its age.
+    /// For each member, an older one of its set, or itself; and its age.
     older: BTreeMap<u32, (u32, usize)>,
 }
 

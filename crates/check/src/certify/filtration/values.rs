@@ -17,8 +17,7 @@ pub(super) const ATTACHED: u32 = u32::MAX;
 /// The rank beyond all values.
 pub(super) const NEVER: u32 = u32::MAX;
 
-/// By row, the rank of each simplex's own squared radius among all distinct ones, or
-/// [`ATTACHED`].
+/// For each row, the rank of the simplex's own squared radius among all distinct ones, or [`ATTACHED`].
 pub(super) struct Ranks {
     pub values: Vec<(f64, Exact)>,
     pub vertices: Vec<u32>,
@@ -61,7 +60,7 @@ impl Ranks {
         let mut ranks = counts.map(|count| vec![ATTACHED; count]);
         let mut values: Vec<(f64, Exact)> = Vec::new();
         for (value, dimension, row) in own {
-            // In lowest terms: equal numbers are equal field by field.
+            // Values are in lowest terms, so equal numbers have equal fields.
             if values.last() != Some(&value) {
                 values.push(value);
             }
@@ -211,7 +210,7 @@ fn below<const M: usize>(
         }
     }
     let of_face = |(&own, (regular, interior))| {
-        // Nothing surrounds what has no cofaces.
+        // A simplex without cofaces is never surrounded.
         span(own, regular, if regular == NEVER { NEVER } else { interior })
     };
     own.iter().zip(ends).map(of_face).collect()
@@ -231,7 +230,7 @@ pub(super) struct RowNumbers {
 }
 
 impl RowNumbers {
-    /// Of a file that lists the simplices of the triangulation.
+    /// The rows of a file that lists the simplices of the triangulation.
     pub(super) fn of(file: &FiltrationFile, structure: &Structure) -> Self {
         let Structure { vertices, edges, facets, cells, .. } = structure;
         Self {

@@ -306,7 +306,7 @@ fn errors_in_binary_say_which_byte() {
     assert!(error.ends_with("the order of bytes is not stated by a 1"), "{error}");
 }
 
-/// What a file states about its size is held against its size, before memory is taken.
+/// The size that a file states is compared with its actual size, before memory is allocated.
 #[test]
 fn counts_beyond_the_file_are_refused() {
     let huge = ["4294967295", "99999999999999999", "18446744073709551615"];

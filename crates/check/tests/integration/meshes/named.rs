@@ -43,7 +43,7 @@ fn names_of_others_are_known() {
     }
 }
 
-/// What `SciPy` has besides, weights, and α where it is stated.
+/// Other data of `SciPy`, weights, and α if it is stated.
 #[test]
 fn what_else_is_there_is_passed_over() {
     let json = format!(

@@ -25,7 +25,7 @@ fn write(folder: &TempDir, files: &[(&str, Vec<u8>)]) {
     files.iter().for_each(|(name, bytes)| std::fs::write(folder.path().join(name), bytes).unwrap());
 }
 
-/// The same files with a weight for each point, as `TetGen` has it.
+/// Writes the files with a weight for each point, in the form of `TetGen`.
 fn with_attributes(folder: &TempDir) {
     let [(_, node), (_, ele)] = tetgen(&POINTS, &CELLS, 0).try_into().unwrap();
     let node = String::from_utf8(node).unwrap().replace("5 3 0 0", "5 3 2 1");
@@ -55,7 +55,7 @@ fn weights_are_taken_where_they_are_asked_for() {
             ("word.csv", b"0\nweight\n".to_vec()),
         ],
     );
-    // Without its weight the fifth point is in the cell; with it, it is hidden.
+    // Without its weight the fifth point is in the cell; with its weight, it is hidden.
     let (code, text) = run(&folder, &["w.ele"]);
     assert_eq!(code, 3, "{text}");
     assert!(text.contains("point 4 is not hidden"), "{text}");
@@ -86,7 +86,7 @@ fn weights_are_taken_where_they_are_asked_for() {
     }
 }
 
-/// With an α the cells are a shape; a file that states one keeps it.
+/// With an α the cells are a shape; a file that states an α keeps it.
 #[test]
 fn alpha_makes_a_shape() {
     let folder = folder();
@@ -108,7 +108,7 @@ fn alpha_makes_a_shape() {
     assert!(code == 1 && text.contains("--alpha has no effect: a filtration"), "{text}");
 }
 
-/// All findings are counted, by the rule that is broken.
+/// All findings are counted by the broken rule.
 #[test]
 fn findings_are_counted_by_rule() {
     let folder = folder();
@@ -117,7 +117,7 @@ fn findings_are_counted_by_rule() {
     let lines: Vec<&str> = text.lines().collect();
     assert_eq!((code, lines[0]), (3, "\"t.mesh\": wrong: 7 findings"), "{text}");
     assert_eq!(lines[1], "  by rule: 4 crowded, 2 repeated_simplex, 1 volume");
-    // What the checker derives from the cells is judged where they are a shape.
+    // The simplices that the checker derives from the cells are judged if they are a shape.
     let (_, text) = run(&folder, &["t.mesh", "--alpha", "9"]);
     assert!(text.contains(" class"), "{text}");
 }

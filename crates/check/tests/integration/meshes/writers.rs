@@ -5,7 +5,7 @@ use std::fmt::Write;
 /// A file by its name.
 pub(super) type File = (&'static str, Vec<u8>);
 
-/// How numbers are written.
+/// The form of numbers in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Form {
     Text,
@@ -138,7 +138,7 @@ pub(super) fn gmsh_2(points: &[[f64; 3]], cells: &[[u32; 4]], form: Form) -> Vec
 pub(super) fn gmsh_4(points: &[[f64; 3]], cells: &[[u32; 4]], form: Form) -> Vec<File> {
     let mut out = mesh_format(form, "4.1");
     out.text("$Nodes\n");
-    // The first point is a block of its own, on a curve and with its parameter there.
+    // The first point is a separate block, on a curve and with its parameter there.
     let count = points.len() as u64;
     [2, count, 5, 3 * count + 2].into_iter().for_each(|x| out.size(x));
     for (block, dimension) in [(0..1, 1), (1..points.len() as u32, 3)] {

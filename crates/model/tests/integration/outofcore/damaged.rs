@@ -21,7 +21,7 @@ fn done(job: &Job, blocks: usize, folder: &Path) -> Plan {
     plan
 }
 
-/// What merging writes.
+/// The output of merging.
 fn merged(plan: &Plan) -> Result<Vec<u8>, BlocksError> {
     let merged = merge(plan)?;
     let shape = whole(plan, &merged)?;
@@ -49,13 +49,13 @@ fn name(path: &Path) -> &str {
     path.file_name().unwrap().to_str().unwrap()
 }
 
-/// One bit of every byte: what is merged is right, or nothing is, and the file is named.
+/// One bit of every byte is flipped: the merged output is right, or there is none, and the file is named.
 #[test]
 fn no_flipped_bit_makes_a_wrong_shape() {
     for decomposition in [Decomposition::NonStandard, Decomposition::Standard] {
         let folder = tempfile::tempdir().unwrap();
         let mut job = small(decomposition);
-        // Not a point more than it takes.
+        // Use no more points than needed.
         job.recipe.choice = super::selected(walpha_points::SelectionRule::Count(16));
         let plan = done(&job, 2, folder.path());
         let expected = merged(&plan).unwrap();
@@ -190,7 +190,7 @@ fn an_input_that_changed_is_refused_where_it_is_read() {
     let plan = planned(&job, 4, &work);
     run(&plan, 0).unwrap();
 
-    // One sample in the last corner, by so little that no other point is chosen.
+    // One sample in the last corner changes by so little that the same points are selected.
     written(&input, |samples| samples[samples.len() - 1] += 1e-3);
     let changed = |plan: &Plan, block: usize| match run(plan, block) {
         Ok(()) => false,
@@ -204,12 +204,12 @@ fn an_input_that_changed_is_refused_where_it_is_read() {
     assert!(text.contains("a.npy has changed since it was planned"), "{text}");
     assert!(error.advice().unwrap().to_string().contains("plan again"));
 
-    // Of another size.
+    // A file of another size.
     sized(&input, 20, |_| {});
     let text = run(&plan, 2).unwrap_err().to_string();
     assert!(text.contains("20×20×20 samples, not 40×40×40"), "{text}");
 
-    // As it was, whenever that was written.
+    // The original content, regardless of the time of writing.
     written(&input, |_| {});
     (0..4).for_each(|block| run(&plan, block).unwrap());
     let expected = {
@@ -248,7 +248,7 @@ fn work_goes_on_where_an_input_was_touched_and_anew_where_it_changed() {
     assert_eq!(other.missing().unwrap(), [0, 1, 2, 3]);
 }
 
-/// What a folder of chunks holds, one of which changed.
+/// One chunk in a folder of chunks changed.
 #[cfg(feature = "zarr")]
 #[test]
 fn a_chunk_that_changed_is_refused() {
@@ -262,7 +262,7 @@ fn a_chunk_that_changed_is_refused() {
         path
     };
     let input = convert("a.zarr", |_| {});
-    // By so little that no other point is chosen.
+    // The change is so small that the same points are selected.
     let other = convert("b.zarr", |samples| samples[samples.len() - 1] += 1e-3);
     let work = folder.path().join("work");
     fs::create_dir(&work).unwrap();

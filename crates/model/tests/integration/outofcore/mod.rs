@@ -21,7 +21,7 @@ use walpha_volume::{Nan, ReadOptions, open};
 
 use crate::has_skull;
 
-/// The job in one piece, in as many blocks of a k-d tree as asked for.
+/// The job in one piece, in the requested number of blocks of a k-d tree.
 fn in_one_piece(job: &Job, blocks: usize) -> Model {
     let volume = open(&job.input, &job.recipe.read).unwrap();
     let recipe = job.recipe.clone().blocks(NonZeroUsize::new(blocks)).refuse_flat(true);
@@ -38,7 +38,7 @@ fn in_blocks(job: &Job, blocks: usize) -> (Plan, Merged, AlphaShape) {
     let made = planned(job, blocks, folder.path());
     let plan = Plan::open(folder.path()).unwrap();
     assert_eq!((&plan, plan.digest()), (&made, made.digest()));
-    // In any order.
+    // Blocks can be computed in any order.
     (0..plan.blocks.len()).rev().for_each(|block| run(&plan, block).unwrap());
     let merged = merge(&plan).unwrap();
     let shape = whole(&plan, &merged).unwrap();
@@ -127,7 +127,7 @@ fn a_larger_phantom_in_blocks_is_the_phantom() {
     compare(&job, &[5, 64]);
 }
 
-/// No power of two along any edge; a few of its points, so that it takes seconds.
+/// The size is not a power of two along any edge; few of its points are used, so that it takes seconds.
 #[test]
 fn a_phantom_of_no_power_of_two_in_blocks_is_the_phantom() {
     let mut job = job("sample:phantom@200");
@@ -187,7 +187,7 @@ fn noise_in_blocks_is_noise() {
     compare(&job, &[6]);
 }
 
-/// Nothing but ties: four levels, so that coefficients, differences and spheres are equal by the thousand.
+/// A volume full of ties: four levels, so that thousands of coefficients, differences and spheres are equal.
 #[test]
 fn ties_across_blocks_are_broken_as_in_one_piece() {
     let folder = tempfile::tempdir().unwrap();
@@ -318,7 +318,7 @@ fn blocks_that_are_missing_or_of_another_plan_are_named() {
     let error = merge(&plan).unwrap_err();
     assert_eq!(error.to_string(), "2 of 4 blocks are missing: 0, 2");
     assert_eq!(plan.missing().unwrap(), [0, 2]);
-    // A block that is there stays as it is.
+    // An existing block is not changed.
     let written = || std::fs::metadata(plan.block_file(1)).unwrap().modified().unwrap();
     let before = written();
     (0..4).for_each(|block| run(&plan, block).unwrap());
@@ -326,7 +326,7 @@ fn blocks_that_are_missing_or_of_another_plan_are_named() {
     merge(&plan).unwrap();
     assert!(matches!(run(&plan, 4), Err(BlocksError::NoBlock { index: 4, count: 4 })));
 
-    // The same folder, another α: what is there does not belong to it.
+    // The existing blocks of the same folder do not belong to another α.
     job.recipe.alpha = alpha(5.0);
     let other = planned(&job, 4, folder.path());
     assert_ne!(other.digest(), plan.digest());

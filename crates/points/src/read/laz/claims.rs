@@ -1,5 +1,5 @@
-//! What a LAZ file claims about its compression, checked before it is decompressed: the library for that trusts items that do
-//! not add up to a record, and allocates as much as a table of chunks or the layers of a chunk claim.
+//! Checks the claims of a LAZ file about its compression before it is decompressed: the decompression library trusts items that
+//! do not add up to a record, and allocates as much as a table of chunks or the layers of a chunk claim.
 //!
 //! Source: `LASzip`'s `laszip.hpp` and the LAZ specification (Isenburg, "`LASzip`: lossless compression of `LiDAR` data", 2013).
 
@@ -8,16 +8,16 @@ use std::io::{self, Read, Seek, SeekFrom};
 use crate::read::las::count;
 use walpha_volume::Reason;
 
-/// The record that describes the compression: its user and number, and its bytes before the items.
+/// The record that describes the compression: its user and number, and the number of its bytes before the items.
 const RECORD: (&[u8], u16) = (b"laszip encoded", 22204);
 const BEFORE_ITEMS: usize = 34;
-/// Bytes of a record's header.
+/// The size in bytes of a record's header.
 const RECORD_HEADER: u64 = 54;
-/// The compressors: all points in one stream, in chunks, and in chunks of layers, one for each kind of field.
+/// The compressors: all points in one stream, in chunks, or in chunks of layers, with one layer for each kind of field.
 pub(super) const POINTWISE: u16 = 1;
 pub(super) const CHUNKED: u16 = 2;
 pub(super) const LAYERED: u16 = 3;
-/// Types of items, with their bytes.
+/// The types of items, with their sizes in bytes.
 const BYTES: u16 = 0;
 const BYTES_14: u16 = 14;
 const POINT_10: (u16, u16) = (6, 20);
@@ -29,7 +29,7 @@ const RGB_14: (u16, u16) = (11, 6);
 const RGB_NIR_14: (u16, u16) = (12, 8);
 const WAVE_14: (u16, u16) = (13, 29);
 
-/// The items of each format of points, but for further bytes.
+/// The items of each point format, except further bytes.
 const ITEMS: [&[(u16, u16)]; 11] = [
     &[POINT_10],
     &[POINT_10, GPS_TIME],
@@ -44,26 +44,26 @@ const ITEMS: [&[(u16, u16)]; 11] = [
     &[POINT_14, RGB_NIR_14, WAVE_14],
 ];
 
-/// What is checked against the file.
+/// The claims that are checked against the file.
 pub(in crate::read) struct Claims {
-    /// The compressor, and for each item its type and bytes.
+    /// The compressor, and the type and size in bytes of each item.
     pub(in crate::read) compressor: u16,
     items: Vec<(u16, u16)>,
-    /// Bytes of a point.
+    /// The size of a point in bytes.
     record: u64,
-    /// Number of points.
+    /// The number of points.
     points: u64,
-    /// Where points begin.
+    /// The position of the points.
     pub(in crate::read) data: u64,
-    /// Bytes of the file.
+    /// The size of the file in bytes.
     length: u64,
 }
 
 impl Claims {
-    /// Reads them; `None` if the points are not compressed. The inner error says what cannot be.
+    /// Reads the claims; `None` if the points are not compressed. The inner error says which claim is impossible.
     ///
     /// # Errors
-    /// Those of the system, an early end of the file among them.
+    /// Errors of the file system, including an early end of the file.
     pub(in crate::read) fn of(
         reader: &mut (impl Read + Seek),
         header: &las::raw::Header,
@@ -93,7 +93,7 @@ impl Claims {
             let mut bytes = vec![0; bytes];
             reader.read_exact(&mut bytes)?;
             let record = header.point_data_record_length.into();
-            // The two highest bits are of the compression.
+            // The two highest bits belong to the compression.
             let format = format & 0x3f;
             let compression = items(&bytes, format, record)
                 .and_then(|items| Ok((compressor(&bytes, format)?, items)));
@@ -109,10 +109,10 @@ impl Claims {
         Ok(Some(Err(Reason::header("is compressed, and has no record that says how"))))
     }
 
-    /// Compares them with what the file holds; the inner error says what cannot be.
+    /// Compares the claims with the content of the file. The inner error says which claim is impossible.
     ///
     /// # Errors
-    /// Those of the system, an early end of the file among them.
+    /// Errors of the file system, including an early end of the file.
     pub(in crate::read) fn check(
         &self,
         reader: &mut (impl Read + Seek),
@@ -127,12 +127,12 @@ impl Claims {
         }
     }
 
-    /// A chunk begins with a whole point, so there are no more chunks than whole points in all bytes of the file. Without a
-    /// table the library does without, or refuses the file.
+    /// Checks the table of chunks. A chunk begins with an uncompressed point, so there are at most as many chunks as points fit
+    /// into the file. If there is no table, the library works without one or refuses the file.
     fn check_table(&self, reader: &mut (impl Read + Seek)) -> io::Result<Result<(), Reason>> {
         reader.seek(SeekFrom::Start(self.data))?;
         let mut table = i64::from_le_bytes(array(reader)?);
-        // Where the writer could not go back, it is at the end.
+        // If the writer could not seek, the position is at the end of the file.
         if table <= self.data.cast_signed() {
             reader.seek(SeekFrom::End(-8))?;
             table = i64::from_le_bytes(array(reader)?);
@@ -158,7 +158,8 @@ impl Claims {
         Ok(Ok(()))
     }
 
-    /// A chunk of layers is a whole point, the number of points, the bytes of each layer, and the layers.
+    /// Checks the chunks of layers. Such a chunk is an uncompressed point, the number of points, the size of each layer, and the
+    /// layers.
     fn check_layers(&self, reader: &mut (impl Read + Seek)) -> io::Result<Result<(), Reason>> {
         let layers_of = |&(item, bytes): &(u16, u16)| match (item, bytes) {
             POINT_14 => 9,
@@ -188,7 +189,7 @@ impl Claims {
     }
 }
 
-/// The items that a record describes, if they are those of a format of points of `record` bytes.
+/// The items that a record describes, if they are those of a point format with `record` bytes.
 fn items(bytes: &[u8], format: u8, record: u64) -> Result<Vec<(u16, u16)>, Reason> {
     let number = |from: usize| u16::from_le_bytes([bytes[from], bytes[from + 1]]);
     let Some(listed) = bytes.get(BEFORE_ITEMS..) else {
@@ -224,8 +225,8 @@ fn items(bytes: &[u8], format: u8, record: u64) -> Result<Vec<(u16, u16)>, Reaso
     Ok(found)
 }
 
-/// The compressor of points of a format: the formats of LAS 1.4 are compressed in layers, and no others are. The library goes by
-/// the items, and would read layers that this does not announce.
+/// The compressor of points of a format: those formats that LAS 1.4 introduced are compressed in layers, and no others. The
+/// library goes by the items, and would read layers that this does not announce.
 fn compressor(bytes: &[u8], format: u8) -> Result<u16, Reason> {
     let compressor = u16::from_le_bytes([bytes[0], bytes[1]]);
     match compressor {

@@ -1,7 +1,7 @@
-//! LAZ, compressed LAS: what a file claims of its compression is checked, then its points are decompressed.
+//! LAZ, compressed LAS: checks the claims of a file about its compression, then decompresses its points.
 //!
-//! The library `laz` decompresses all fields but GPS times, because it decodes a change of their sequence by calling itself, which
-//! damaged data can ask for until the stack is exhausted.
+//! The library `laz` decompresses all fields except GPS times. It decodes a change of their sequence by recursion, which damaged
+//! data can repeat until the stack is exhausted.
 
 mod claims;
 mod records;

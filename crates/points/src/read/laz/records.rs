@@ -1,4 +1,4 @@
-//! The points of a LAZ file as the records of a LAS file.
+//! Decompresses the points of a LAZ file to the records of a LAS file.
 
 use std::io::{self, Read, Seek, SeekFrom};
 
@@ -13,24 +13,24 @@ use super::times::GpsTimes;
 pub(in crate::read) struct Records<R: Read + Seek + Send + Sync + 'static>(Kind<R>);
 
 enum Kind<R: Read + Seek + Send + Sync + 'static> {
-    /// Of formats 0 to 5: in one stream, or in chunks.
+    /// Formats 0 to 5: in one stream or in chunks.
     Sequential {
         description: LazVlr,
         decompressor: SequentialPointRecordDecompressor<'static, R>,
-        /// The points of the chunks that follow.
+        /// The numbers of points in the remaining chunks.
         chunks: Box<dyn Iterator<Item = u64> + Send>,
-        /// How many points of this chunk follow.
+        /// The number of points left in this chunk.
         left: u64,
     },
-    /// Of formats 6 to 10: in layers. Those that nobody asks for stay 0, GPS times among them.
+    /// Formats 6 to 10: in layers. Fields that are not needed stay 0, including GPS times.
     Layered(LasZipDecompressor<'static, R>),
 }
 
 impl<R: Read + Seek + Send + Sync + 'static> Records<R> {
-    /// Of the points that begin at byte `data`, by the compressor that the file names.
+    /// Decompresses the points that begin at byte `data`, with the compressor that the file names.
     ///
     /// # Errors
-    /// Those of the stream, and of what the record of the compression describes.
+    /// Errors of the stream, or of the record that describes the compression.
     pub(in crate::read) fn new(
         mut stream: R,
         data: u64,
@@ -61,10 +61,10 @@ impl<R: Read + Seek + Send + Sync + 'static> Records<R> {
         Ok(Self(Kind::Sequential { description, decompressor, chunks, left: 0 }))
     }
 
-    /// Fills `records`, whole ones, with the next ones.
+    /// Fills `records` with the next whole records.
     ///
     /// # Errors
-    /// Those of the stream; `UnexpectedEof` behind the last chunk, and `InvalidData` for data that cannot be of a writer.
+    /// Errors of the stream; `UnexpectedEof` behind the last chunk; `InvalidData` for data that no writer creates.
     pub(in crate::read) fn fill(&mut self, records: &mut [u8]) -> io::Result<()> {
         match &mut self.0 {
             Kind::Layered(decompressor) => decompressor.decompress_many(records),
@@ -83,14 +83,14 @@ impl<R: Read + Seek + Send + Sync + 'static> Records<R> {
     }
 }
 
-/// Begins a chunk: each has its own models, and a first point that is stored as it is.
+/// Begins a chunk. Each chunk has its own models, and its first point is not compressed.
 fn begin<R: Read>(
     decompressor: &mut SequentialPointRecordDecompressor<'_, R>,
     description: &LazVlr,
 ) -> io::Result<()> {
     decompressor.reset();
     for item in description.items() {
-        // Version 1 of GPS times knows one sequence.
+        // Version 1 of GPS times has only one sequence.
         if item.item_type() == LazItemType::GpsTime && item.version() == 2 {
             decompressor.add_field_decompressor(GpsTimes::new());
         } else {
@@ -115,11 +115,11 @@ mod tests {
     use super::super::claims::CHUNKED;
     use super::*;
 
-    /// Bytes of a point of format 1.
+    /// The size in bytes of a point of format 1.
     const BYTES: usize = 28;
 
-    /// Records whose times follow each of the ways in which they are stored: the same, steps that are alike, unlike, multiples
-    /// and reversed, several sequences that take turns, and times far from all of them.
+    /// Records whose times use all ways of storing them: equal times, steps that are similar, dissimilar, multiples and reversed,
+    /// several sequences that alternate, and times far from all of them.
     fn records(count: usize) -> Vec<u8> {
         let mut random = 0x2545_f491_4f6c_dd1d_u64;
         let mut next = move |bound: u64| {
@@ -155,7 +155,7 @@ mod tests {
         records
     }
 
-    /// What the library compresses is decompressed to the same bytes, in chunks of one size and of their own.
+    /// The records that the library compresses are decompressed to the same bytes, in chunks of one size and of varying sizes.
     #[test]
     fn records_are_those_that_were_compressed() {
         let whole = records(120_000);

@@ -1,4 +1,4 @@
-//! GPS times of points of formats 1 and 3 to 5.
+//! GPS times of points in formats 1 and 3 to 5.
 //!
 //! Source: `LASzip`'s item `GPSTIME11`, version 2 (Isenburg, "`LASzip`: lossless compression of `LiDAR` data", 2013).
 
@@ -9,14 +9,14 @@ use laz::decompressors::{IntegerDecompressor, IntegerDecompressorBuilder};
 use laz::models::{ArithmeticModel, ArithmeticModelBuilder};
 use laz::record::FieldDecompressor;
 
-/// Symbols after a step of 0: the same time, a step of 32 bits, a whole time; those above change the sequence.
+/// The symbols after a step of 0: the same time, a step of 32 bits, or a whole time; higher symbols change the sequence.
 const STILL: u32 = 0;
 const STEP: u32 = 1;
 const WHOLE: u32 = 2;
 const STILL_SYMBOLS: u32 = 6;
 
-/// Symbols after another step: 0 for a step that is not like the last; 1 for one that is; a multiple of the last, up to [`MOST`]
-/// or, behind that, down to -[`LEAST`]; the same time; a whole time; and those above change the sequence.
+/// The symbols after another step: 0 for a step unlike the last one; 1 for a similar one; a multiple of the last step, up to
+/// [`MOST`], or behind that down to -[`LEAST`]; the same time; a whole time; higher symbols change the sequence.
 const UNLIKE: u32 = 0;
 const LIKE: u32 = 1;
 const MOST: u32 = 500;
@@ -25,19 +25,19 @@ const SAME: u32 = MOST + LEAST + 1;
 const WHOLE_TIME: u32 = SAME + 1;
 const STEP_SYMBOLS: u32 = WHOLE_TIME + 4;
 
-/// A number of steps unlike the last one, after which the last is replaced.
+/// The number of steps unlike the last one after which the last one is replaced.
 const PATIENCE: u8 = 3;
 
-/// Times as the bits of a double, of points that were measured one after another.
+/// Times, as the bits of doubles, of points that were measured one after another.
 #[derive(Clone, Copy, Default)]
 struct Sequence {
     time: i64,
     step: i32,
-    /// How many steps were unlike `step`.
+    /// The number of steps that were unlike `step`.
     unlike: u8,
 }
 
-/// A decoder of GPS times. Lasers take turns, so it follows four sequences of times.
+/// A decoder of GPS times. Lasers alternate, so it follows four sequences of times.
 pub(super) struct GpsTimes {
     sequences: [Sequence; 4],
     current: usize,
@@ -62,8 +62,8 @@ impl GpsTimes {
     /// Decodes the next time.
     ///
     /// # Errors
-    /// Those of the stream, and `InvalidData` where the sequence changes more often than there are sequences: a writer changes
-    /// it once at most.
+    /// Errors of the stream; `InvalidData` if the sequence changes more often than there are sequences, as a writer changes it at
+    /// most once.
     fn next<R: Read>(&mut self, decoder: &mut ArithmeticDecoder<R>) -> io::Result<i64> {
         for _ in 0..=self.sequences.len() {
             let change = if self.sequences[self.current].step == 0 {
@@ -103,7 +103,7 @@ impl GpsTimes {
         Err(io::Error::new(io::ErrorKind::InvalidData, "its GPS times are damaged"))
     }
 
-    /// A step that is predicted from the last one.
+    /// Decodes a step that is predicted from the last one.
     fn step<R: Read>(&mut self, decoder: &mut ArithmeticDecoder<R>, symbol: u32) -> io::Result<()> {
         let (multiple, context) = match symbol {
             UNLIKE => (0, 7),
@@ -127,7 +127,7 @@ impl GpsTimes {
         Ok(())
     }
 
-    /// A time that is near none of the sequences begins the one that was begun longest ago.
+    /// Decodes a time that is near none of the sequences. It starts anew the sequence that was started longest ago.
     fn whole<R: Read>(&mut self, decoder: &mut ArithmeticDecoder<R>) -> io::Result<()> {
         let last = self.sequences[self.current].time >> 32;
         let high = self.differences.decompress(decoder, last as i32, 8)?;
@@ -178,7 +178,7 @@ mod tests {
 
     use super::*;
 
-    /// The stack is not exhausted by a million changes of the sequence: the fifth is an error.
+    /// A million changes of the sequence do not exhaust the stack: the fifth is an error.
     #[test]
     fn changes_without_an_end_are_an_error() {
         let mut encoder = ArithmeticEncoder::new(Vec::new());

@@ -76,7 +76,7 @@ fn corners_of_facets_are_points_once() {
     assert_eq!(points.positions, [[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]]);
 }
 
-/// What a file holds is known by how it begins, whatever its name says.
+/// The kind of a file is known by its first bytes, for any name.
 #[test]
 fn content_goes_before_names() {
     let folder = tempfile::tempdir().unwrap();

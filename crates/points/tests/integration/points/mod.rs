@@ -252,7 +252,7 @@ fn close_differences_are_told_apart() {
     assert!(l[[0, 0, 2]] > l[[0, 0, 0]] && l[[0, 0, 2]] as f32 == l[[0, 0, 0]] as f32);
 }
 
-/// What is asked for by default is never more than there is; what a user asks for is.
+/// The default never requests more points than exist; a user may.
 #[test]
 fn the_default_takes_all_where_little_is_left() {
     let samples = Array3::from_shape_fn((10, 10, 10), |(z, y, x)| (100 * z + 10 * y + x) as f32);

@@ -79,7 +79,7 @@ fn headers_are_not_believed() {
     let with_recipe = [&head(0, &claims(&[9], 8), &[])[..], b"{\xff}"].concat();
     let error = refused(&forged(&with_recipe, &[0; 8]));
     assert!(error.contains("UTF-8"), "{error}");
-    // As many points as these bytes may claim, on the largest grid: the bytes decide what is there.
+    // The maximum number of points that these bytes may claim, on the largest grid: the bytes decide what exists.
     for filler in [0, 0x55, 0xff] {
         let count = [0x80, 0x80, 0x01]; // 64·256
         let layer = [&count[..], &[0x80, 0x02, 0, 0]].concat();

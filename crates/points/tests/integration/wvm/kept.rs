@@ -55,7 +55,7 @@ fn files_that_were_kept_are_read_and_written_as_ever() {
             let values =
                 found.values().into_iter().flatten().zip(points.values().into_iter().flatten());
             assert!(values.into_iter().all(|(a, b)| (a - b).abs() <= 0.5), "{name}");
-            // What is written again is the middle of each step.
+            // The second writing stores the middle of each step.
             assert_eq!(written(&found, &facts, packing), file, "{name}");
         } else {
             let known = (points.values(), facts.clone().order(None));

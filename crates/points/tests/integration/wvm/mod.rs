@@ -29,7 +29,7 @@ fn save(folder: &Path, bytes: &[u8]) -> PathBuf {
     path
 }
 
-/// What a file gives back, without so many layers.
+/// The content of a file, without its last `level` layers.
 fn back(bytes: &[u8], level: u32) -> (WeightedPoints, ModelMetadata) {
     let folder = tempfile::tempdir().unwrap();
     let (points, facts) =

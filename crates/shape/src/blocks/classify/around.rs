@@ -22,10 +22,10 @@ pub(super) struct Walker<'a> {
     pub buckets: Buckets,
 }
 
-/// What walks around the points of a range find.
+/// The results of walking around the points of a range.
 #[derive(Default)]
 pub(super) struct Walked {
-    /// By bucket.
+    /// One element for each bucket.
     pub records: Vec<Records>,
     pub shared: Vec<Side>,
     pub border: Vec<u32>,
@@ -35,19 +35,19 @@ pub(super) struct Walked {
 /// The memory of a thread, used again for the next range.
 pub(super) struct Worker {
     stars: RangeStars,
-    /// By vertex u: 4·v + flags of the facets at the edge uv ([`COVERED`], [`OPEN`]), where v is the last point visited
+    /// For each vertex u: 4·v + flags of the facets at the edge uv ([`COVERED`], [`OPEN`]), where v is the last visited point
     /// that has u as a neighbour.
     edge_flags: Vec<u32>,
-    /// The neighbours of the point visited, followed by unused elements.
+    /// The neighbours of the visited point, followed by unused elements.
     neighbours: Vec<u32>,
     /// The number of its neighbours.
     degree: usize,
-    /// Rows of the point visited, followed by unused elements.
+    /// Rows of the visited point, followed by unused elements.
     cells: Vec<u128>,
     facets: Vec<FacetRow>,
     edges: Vec<EdgeRow>,
     draft: Draft,
-    /// By bucket.
+    /// One element for each bucket.
     records: Vec<Records>,
 }
 
@@ -90,7 +90,7 @@ impl Walker<'_> {
             worker.records[bucket].push(class, &mut worker.draft);
         }
         worker.stars = around;
-        // Copied, as lists that grew have memory to spare.
+        // A copy, because lists that have grown have memory to spare.
         walked.records = worker.records.clone();
         worker.records.iter_mut().for_each(Records::clear);
         walked
@@ -239,22 +239,22 @@ impl Walker<'_> {
     }
 }
 
-/// A facet whose smallest vertex is the point visited.
+/// A facet whose smallest vertex is the visited point.
 #[derive(Clone, Copy, Default)]
 struct FacetRow {
     /// The two other vertices, by input index, in one number, the first in its upper half.
     pub row: u64,
     /// 4·cell + corner opposite.
     pub side: u32,
-    /// Whether the point and these turn clockwise seen from the cell's fourth corner.
+    /// Whether the point and these turn clockwise, as seen from the cell's fourth corner.
     pub clockwise: bool,
 }
 
-/// An edge whose smallest vertex is the point visited.
+/// An edge whose smallest vertex is the visited point.
 struct EdgeRow {
     to: u32,
     class: Class,
-    /// Of a singular edge: 4·cell + corner at the point visited.
+    /// For a singular edge: 4·cell + corner at the visited point.
     corner: Option<u32>,
 }
 
@@ -324,7 +324,7 @@ impl Walker<'_> {
         let smallest = self.local.input(v);
         for &neighbour in &worker.neighbours[..worker.degree] {
             let to = self.local.input(neighbour);
-            // Edges between two blocks are visited from both ends, as each block unites its own corners only.
+            // Edges between two blocks are visited from both ends, because each block unites only its own corners.
             if to < smallest && self.local.owned(neighbour) {
                 continue;
             }
@@ -365,8 +365,8 @@ impl Walker<'_> {
         }
     }
 
-    /// Unites the corners at both ends of a singular edge, as the space around it is connected. Where the other end is
-    /// another block's, returns the edge for the merge.
+    /// Unites the corners at both ends of a singular edge, because the space around it is connected. If the other end belongs to
+    /// another block, returns the edge for the merge.
     fn unite_ends(&self, [v, u]: [u32; 2], corner: u32) -> Option<Side> {
         let local = self.local;
         if local.owned(u) {

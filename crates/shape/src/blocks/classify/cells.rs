@@ -7,12 +7,12 @@ use super::sheets::Sheets;
 use super::state::{Kind, State};
 use crate::Class;
 
-/// The regular and singular facets, each as 4·cell + corner from both sides: first that of the cell that it is
-/// emitted from. Ascending, by [`CELLS`] cells. Replaces the adjacency of cells once facets are classified.
+/// The regular and singular facets, each as 4·cell + corner from both sides, starting with the cell that emits it. Ascending, in
+/// chunks of [`CELLS`] cells. Replaces the adjacency of cells after facets are classified.
 pub(super) struct Boundary(Vec<Vec<[u32; 2]>>);
 
 impl Boundary {
-    /// 4·cell + corner on the other side of a facet, by that of the cell that it is emitted from.
+    /// 4·cell + corner on the other side of a facet, from the side of the cell that emits it.
     pub(super) fn beyond(&self, side: u32) -> u32 {
         let facets = &self.0[side as usize / (4 * CELLS)];
         let found = facets.binary_search_by_key(&side, |facet| facet[0]);
@@ -37,15 +37,15 @@ impl Local<'_> {
         self.cells.par_iter().with_min_len(CELLS).map(kind).collect()
     }
 
-    /// Classifies each facet with an owned vertex, and unites the corners of exterior cells that it shows to be on
-    /// one sheet. Also returns the sides of facets that other blocks know, too.
+    /// Classifies each facet with an owned vertex, and unites the corners of exterior cells that it shows to be on one sheet.
+    /// Also returns the sides of facets that other blocks share.
     pub(super) fn classify_facets(
         &self,
         neighbors: &[[u32; 4]],
         kinds: Vec<Kind>,
         sheets: &Sheets,
     ) -> (Vec<State>, Boundary, Vec<Side>) {
-        // First each facet from its lower side, as neighbours may be another thread's.
+        // Start with each facet from its lower side, because neighbours may belong to another thread.
         let mut singular = vec![0; kinds.len()];
         let chunks = singular.par_chunks_mut(CELLS).enumerate().map(|(chunk, singular)| {
             let mut shared = Vec::new();
@@ -70,8 +70,8 @@ impl Local<'_> {
         (states, boundary, shared)
     }
 
-    /// Of the facets of a cell, given by 4·cell + corner on both sides, those for which it is the lower side: the bits
-    /// of the singular ones. Unites the corners of exterior cells that they show to be on one sheet.
+    /// Returns the singular facets of a cell as bits. `facets` are its facets as 4·cell + corner on both sides; only those for
+    /// which the cell is the lower side count. Also unites the corners of exterior cells that the facets show to be on one sheet.
     fn unite_and_find_singular(
         &self,
         facets: impl Iterator<Item = (u32, u32)>,

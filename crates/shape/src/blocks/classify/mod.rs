@@ -69,7 +69,7 @@ pub(super) fn classify(
         components: &components,
         buckets,
     };
-    // As many as there are threads at work.
+    // Idle workers. There are as many workers as threads at work.
     let idle: Mutex<Vec<Worker>> = Mutex::default();
     let lock = || idle.lock().expect("no thread panics while it holds the lock");
     let walked = (0..stars.ranges()).into_par_iter().map(|range| {
@@ -96,7 +96,7 @@ pub(super) fn classify(
     Ok(owned)
 }
 
-/// Each point that is not the representative of its component, with that, by input index.
+/// Each point that is not the representative of its component, with the representative, by input index.
 fn component_pairs(components: &UnionFind, input: &[u32]) -> Vec<[u32; 2]> {
     let pair = |v: u32| {
         let root = components.find(v);

@@ -1,4 +1,4 @@
-//! The simplices that a block owns, recorded by point, and what the merge of blocks needs besides.
+//! The simplices that a block owns, recorded by point, and further data for the merge of blocks.
 
 use std::ops::Range;
 
@@ -7,21 +7,21 @@ use rayon::prelude::*;
 use crate::Class;
 use crate::blocks::gather::Counts;
 
-/// The simplices that a block owns, and what the merge of blocks needs besides.
+/// The simplices that a block owns, and further data for the merge of blocks.
 #[derive(Default)]
 pub(in crate::blocks) struct Owned {
-    /// By bucket of the smallest vertices, and by range of points along the curve.
+    /// The records by the bucket of the smallest vertex, and by the range of points along the curve.
     pub buckets: Vec<Vec<Records>>,
     /// Number of sheets.
     pub sheets: u32,
     /// Sides of facets, and singular edges, with vertices in this block and in others.
     pub shared: Vec<Side>,
-    /// Points, each with another one of its component, none of which follows from others: uniting these pairs gives
-    /// the components.
+    /// Pairs of a point and another one of its component, none of which follows from others: uniting these pairs gives the
+    /// components.
     pub components: Vec<[u32; 2]>,
     /// The ends of edges of the shape between points of this block and of others, possibly repeated.
     pub border: Vec<u32>,
-    /// On a torus: the first edge that spans half of the box or more, if there is one.
+    /// On a torus: the first edge that spans half of the box or more, if one exists.
     pub long: Option<Long>,
 }
 
@@ -52,27 +52,27 @@ impl Buckets {
         ((input / self.length) as usize).min(self.count - 1)
     }
 
-    /// By bucket, the range of its elements in these input indices, which ascend.
+    /// For each bucket, the range of its elements among these ascending input indices.
     pub(crate) fn ranges(self, input: &[u32]) -> Vec<Range<usize>> {
         let start = |bucket| input.partition_point(|&i| self.at(i) < bucket);
         (0..self.count).map(|bucket| start(bucket)..start(bucket + 1)).collect()
     }
 }
 
-/// The simplices whose smallest vertices are given points of one bucket. These vertices are left out of the rows, and
-/// classes take two bits each, which saves memory until blocks are merged. What belongs to a point is in one place, as
-/// points are merged in another order than that along the curve.
+/// The simplices whose smallest vertices are given points of one bucket. These vertices are left out of the rows, and classes
+/// take two bits each, which saves memory until blocks are merged. The data of a point is in one place, because points are merged
+/// in another order than that along the curve.
 #[derive(Clone, Default)]
 pub(in crate::blocks) struct Records {
     pub points: Vec<PointRows>,
-    /// By point: the vertices of its cells, facets and edges, by input index, then their classes.
+    /// For each point: the vertices of its cells, facets and edges, by input index, then their classes.
     words: Vec<u32>,
-    /// By point: the sheet of each regular facet, and the two of each singular facet, first that on the side where
-    /// the facet's sorted row turns clockwise; then the sheet of each singular edge. Numbered from 0 within the block.
+    /// For each point: the sheet of each regular facet, and both sheets of each singular facet, starting with the side where the
+    /// facet's sorted row turns clockwise; then the sheet of each singular edge. Numbered from 0 within the block.
     sheets: Vec<u32>,
 }
 
-/// A point, and how many simplices it is the smallest vertex of.
+/// A point, and the number of simplices of which it is the smallest vertex.
 #[derive(Clone, Copy)]
 pub(in crate::blocks) struct PointRows {
     /// The class of the point, `None` if it is not a vertex.
@@ -86,12 +86,12 @@ pub(in crate::blocks) struct PointRows {
     sheets: u32,
 }
 
-/// What is recorded of a point: rows without their smallest vertices, and sheets.
+/// The record of a point: rows without their smallest vertices, and sheets.
 pub(in crate::blocks) struct Record<'a> {
     pub cells: &'a [[u32; 3]],
     pub facets: &'a [[u32; 2]],
     pub edges: &'a [[u32; 1]],
-    /// Those of the cells, then of the facets, then of the edges.
+    /// The classes of the cells, then of the facets, then of the edges.
     pub classes: Classes<'a>,
     pub facet_sheets: &'a [u32],
     pub edge_sheets: &'a [u32],
@@ -100,7 +100,7 @@ pub(in crate::blocks) struct Record<'a> {
 /// Classes, 16 to a word.
 pub(in crate::blocks) struct Classes<'a> {
     words: std::slice::Iter<'a, u32>,
-    /// What is left of a word; the bit above it marks its end.
+    /// The unread part of a word; the bit above it marks its end.
     rest: u64,
 }
 
@@ -122,7 +122,7 @@ impl Classes<'_> {
 }
 
 impl Records {
-    /// What is recorded of a point.
+    /// Returns the record of a point.
     pub(in crate::blocks) fn of(&self, point: &PointRows) -> Record<'_> {
         let mut words = &self.words[point.words as usize..];
         let mut rest = |length: u32| {
@@ -163,7 +163,7 @@ impl Records {
     }
 }
 
-/// What is recorded of a point, while it is found: first its cells, then its facets, then its edges, each ascending.
+/// The record of a point while it is being found: first its cells, then its facets, then its edges, each ascending.
 #[derive(Default)]
 pub(super) struct Draft {
     words: Vec<u32>,
@@ -211,7 +211,7 @@ impl Draft {
 }
 
 impl PointRows {
-    /// Whether the point is to be listed among the vertices.
+    /// Whether the point will be listed among the vertices.
     pub(in crate::blocks) fn is_listed(&self, exterior: bool) -> bool {
         self.class.is_some_and(|class| exterior || class != Class::Exterior)
     }
@@ -222,11 +222,11 @@ impl PointRows {
 pub struct Side {
     /// Sorted input indices; an edge repeats its last one.
     pub simplex: [u32; 3],
-    /// Which side: 1 where an even permutation sorts the corners of the cell there, else 0; 0 for an edge.
+    /// The side: 1 if an even permutation sorts the corners of the cell there, otherwise 0; 0 for an edge.
     pub side: u32,
     /// Its sheet within the block.
     pub sheet: u32,
-    /// On a torus: by how many sides its smallest vertex is moved.
+    /// On a torus: the number of box sides by which its smallest vertex is moved, along each axis.
     pub windings: [i32; 3],
 }
 

@@ -49,7 +49,7 @@ impl Sheets {
     }
 }
 
-/// For each item the number of items before it that are counted; and the number of all that are.
+/// For each item, the number of counted items before it; and the number of all counted items.
 fn ranks<T: Sync>(items: &[T], is_counted: impl Fn(&T) -> bool + Sync) -> (Vec<u32>, u32) {
     let count = |items: &[T]| items.iter().filter(|item| is_counted(item)).count() as u32;
     let mut starts: Vec<u32> = items.par_chunks(CELLS).map(count).collect();
@@ -94,7 +94,7 @@ impl Local<'_> {
         let cell = self.cells[side as usize / 4];
         let mut corners = [1, 2, 3].map(|step| (side as usize + step) % 4);
         let own = corners.iter().filter(|&&k| self.owned(cell[k])).count();
-        // The cell has no owned vertex but the one opposite this facet, so the facet is other blocks' alone.
+        // The only owned vertex of the cell is opposite this facet, so the facet belongs to other blocks.
         if own == 0 {
             return None;
         }

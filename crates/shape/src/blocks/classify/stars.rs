@@ -2,10 +2,10 @@ use rayon::prelude::*;
 
 use super::state::State;
 
-/// Points whose stars one thread walks at a time: they fit its cache.
+/// The number of points whose stars one thread walks at a time: they fit its cache.
 pub(in crate::blocks) const RANGE: usize = 1 << 12;
 
-/// At most this many chunks of cells are searched for stars side by side.
+/// The maximum number of chunks of cells that are searched for stars in parallel.
 const CHUNKS: usize = 64;
 
 /// The corners of cells, as 4·cell + corner, at the vertices of each range of points.
@@ -14,7 +14,7 @@ pub(super) struct Stars<'a> {
     own: u32,
     /// Grouped by range.
     corners: Vec<u32>,
-    /// Where each range starts, and where the last one ends.
+    /// The start of each range, and the end of the last one.
     starts: Vec<usize>,
 }
 
@@ -23,7 +23,7 @@ pub(super) struct Stars<'a> {
 pub(super) struct RangeStars {
     first: u32,
     corners: Vec<u32>,
-    /// Where the star of each vertex starts, and where the last one ends.
+    /// The start of the star of each vertex, and the end of the last one.
     starts: Vec<u32>,
 }
 
@@ -80,7 +80,7 @@ impl<'a> Stars<'a> {
         let number = |corner: u32| {
             (self.cells[corner as usize / 4][corner as usize % 4] - vertices.start) as usize
         };
-        // `starts[v + 1]` is where the next corner of v is written; once all are, it is where the star of v ends.
+        // `starts[v + 1]` is the place of the next corner of v; after all are written, it is the end of the star of v.
         stars.first = vertices.start;
         stars.starts.clear();
         stars.starts.resize(vertices.len() + 2, 0);

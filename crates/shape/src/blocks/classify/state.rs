@@ -1,9 +1,9 @@
 use crate::Class;
 
-/// Where a cell is.
+/// The location of a cell.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Kind {
-    /// None of its corners is the block's own, so that the block needs nothing of it.
+    /// None of its corners is the block's own, so the block does not need it.
     Foreign,
     /// One of its corners is the infinite vertex.
     Infinite,
@@ -68,7 +68,8 @@ impl State {
         (self.0 >> 1 | !self.0) & Self::LOW_BITS
     }
 
-    /// What is emitted at a corner: bits for the facets opposite the others, and for the cell the bit of the corner.
+    /// The simplices that are emitted at a corner: a bit for each facet opposite another corner, and the bit of the corner itself
+    /// for the cell.
     #[inline(always)]
     pub(super) fn emitted(self, corner: usize) -> u32 {
         self.0 >> (Self::EMITTED + 4 * corner) & 0xf

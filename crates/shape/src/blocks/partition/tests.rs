@@ -13,7 +13,7 @@ fn points() -> (Vec<[f64; 3]>, Vec<f64>) {
     (positions, weights)
 }
 
-/// How far apart a point is from a box.
+/// The distance of a point from a box.
 fn apart(at: [f64; 3], own: &[[f64; 3]]) -> f64 {
     let away = (0..3).map(|k| {
         let low = own.iter().map(|p| p[k]).fold(f64::INFINITY, f64::min);
@@ -23,7 +23,7 @@ fn apart(at: [f64; 3], own: &[[f64; 3]]) -> f64 {
     away.map(|x| x * x).sum::<f64>().sqrt()
 }
 
-/// Those, and no others, whose balls meet the box of the block.
+/// A halo consists of exactly the points whose balls meet the box of the block.
 #[test]
 fn halos_are_the_points_within_reach() {
     let (positions, weights) = points();

@@ -1,4 +1,4 @@
-//! Plans against all that there are, and runs that do not keep to theirs.
+//! Compares plans with all possible ones, and tests runs that exceed their plans.
 
 use walpha_regular::internals::Lattice;
 
@@ -6,7 +6,7 @@ use super::*;
 use crate::ShapeError;
 use crate::blocks::{BlockParams, run as run_blocks};
 
-/// Each cube of a grid has six cells: with their faces more than is reckoned with for each point.
+/// Each cube of a grid has six cells, which with their faces are more than the plan expects for each point.
 #[test]
 fn a_run_that_will_not_keep_its_bound_is_stopped() {
     let (positions, weights) = grid();
@@ -43,7 +43,7 @@ fn threads_have_a_block_each_unless_halos_are_large() {
     for (reach, threads, expected) in [
         (Reach::Balls(0.75), 3, 3),
         (Reach::Balls(0.75), 16, 4),
-        // Halos of three layers: the middle one of three blocks has 13 of 20, which still is not the whole.
+        // Halos of three layers: the middle one of three blocks has 13 of 20 layers, which is not everything.
         (Reach::Balls(3.0), 2, 1),
         (Reach::Balls(3.0), 3, 1),
         (Reach::Distance(f64::INFINITY), 4, 1),
@@ -54,13 +54,13 @@ fn threads_have_a_block_each_unless_halos_are_large() {
     }
 }
 
-/// Against all plans that there are, for every bound at which the answer changes.
+/// Compares with all possible plans, for every bound at which the answer changes.
 #[test]
 fn the_fastest_plan_within_the_bound_is_found() {
     let (positions, weights) = grid();
     let sites = Sites::new(&positions, &weights).unwrap();
     let (reach, threads, resident) = (Reach::Balls(0.75), 3, 1_000_000);
-    // Bytes, time, blocks, blocks at once: the fastest first, of equals the one with fewer blocks.
+    // Bytes, time, blocks, blocks at the same time: the fastest plan first, and of equal ones the plan with fewer blocks.
     let mut plans = Vec::new();
     for blocks in (0..12).map(|step| 3 << step).take_while(|&blocks| blocks <= MAX_BLOCKS) {
         let largest = Partition::new(&sites, blocks).largest(&sites, reach);
@@ -97,7 +97,7 @@ fn the_fastest_plan_within_the_bound_is_found() {
 
 #[test]
 fn a_block_at_work_has_room_for_its_cells() {
-    // Of uniformly random points there are 6.77 cells to a point, of four vertices and four neighbours.
+    // Uniformly random points have 6.77 cells per point, each with four vertices and four neighbours.
     assert!(AT_WORK as f64 > 6.77 * 32.0);
 }
 

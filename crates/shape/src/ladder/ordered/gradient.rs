@@ -1,26 +1,26 @@
-//! How values change with the points.
+//! Derivatives of values with respect to the points.
 
 use walpha_regular::internals::centre_shares;
 
 use super::rank::NONE;
 use super::{Filtration, Ordered};
 
-/// How the value of a simplex changes with one of its points.
+/// The derivative of the value of a simplex with respect to one of its points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Derivative {
     /// The input index of the point.
     pub vertex: u32,
-    /// By its position (x, y, z): a length.
+    /// With respect to its position (x, y, z): a length.
     pub position: [f64; 3],
-    /// By its weight.
+    /// With respect to its weight.
     pub weight: f64,
 }
 
 impl Ordered<'_> {
-    /// For each simplex, by its number, the number of the Gabriel simplex that gives its value: itself, or a coface with
-    /// which it enters. Of several with the same exact value, where the value has no derivative, it is one whose number does
-    /// not depend on threads. O(n).
+    /// For each simplex, by its number, the number of the Gabriel simplex that gives its value: itself, or a coface with which it
+    /// enters. If several have the same exact value, and the value therefore has no derivative, the chosen one does not depend on
+    /// threads. O(n).
     pub fn gabriel_simplices(&self) -> Vec<u32> {
         let incidence = &self.filtration().incidence;
         let [_, edges, facets, cells] = self.numbers.first;
@@ -48,13 +48,13 @@ impl Ordered<'_> {
 }
 
 impl Filtration {
-    /// How the squared radius of the smallest orthogonal sphere of a simplex changes with its points, given by their input indices.
-    /// That is its value, if it is Gabriel: see [`Ordered::gabriel_simplices`].
+    /// The derivatives of the squared radius of the smallest orthogonal sphere of a simplex with respect to its points, given by
+    /// their input indices. This radius is its value if it is Gabriel: see [`Ordered::gabriel_simplices`].
     ///
-    /// Where c = Σ bᵢ pᵢ is the centre, with Σ bᵢ = 1, the squared radius is the stationary value of Σ bᵢ (|pᵢ|² − wᵢ) − |c|² in b,
-    /// so that its derivatives are 2 bᵢ (pᵢ − c) by pᵢ and −bᵢ by wᵢ (the envelope theorem). However flat the simplex is, each bᵢ is right
-    /// to 2⁻⁵⁰ of the largest, and each product to that times 2 |pᵢ − c|: they are computed in numbers of two doubles, or by integers
-    /// where these are too few. All are NaN for points that span no simplex.
+    /// If c = Σ bᵢ pᵢ is the centre, with Σ bᵢ = 1, the squared radius is the stationary value of Σ bᵢ (|pᵢ|² − wᵢ) − |c|² in b,
+    /// so its derivatives are 2 bᵢ (pᵢ − c) by pᵢ and −bᵢ by wᵢ (the envelope theorem). However flat the simplex is, each bᵢ is
+    /// correct to 2⁻⁵⁰ of the largest, and each product to that times 2 |pᵢ − c|: they are computed in numbers of two doubles, or
+    /// in integers if those are not precise enough. All are NaN for points that span no simplex.
     ///
     /// ```
     /// use walpha_shape::WeightedPoints;
@@ -69,7 +69,7 @@ impl Filtration {
     /// ```
     ///
     /// # Panics
-    /// If there are no points, more than four, or an index of none.
+    /// If there are no points, more than four, or an index without a point.
     pub fn derivatives(&self, vertices: &[u32]) -> Vec<Derivative> {
         match *vertices {
             [a] => self.of_simplex([a]).to_vec(),
@@ -111,7 +111,7 @@ mod tests {
     fn derivatives_of_flat_cells_are_precise() {
         for h in [1e-3, 1e-8, 1e-14, 1e-30, 1e-100] {
             let positions = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.3, 0.4, h]];
-            // What 0.3 and 0.4 are as doubles does not change the first 15 digits.
+            // The rounding of 0.3 and 0.4 to doubles does not change the first 15 digits.
             let z = (h * h - 0.45) / (2.0 * h);
             let wanted = 2.0 * z * (0.5 + 0.225 / (h * h));
             let filtration = Filtration::new(positions).unwrap();
@@ -130,7 +130,7 @@ mod tests {
         }
     }
 
-    /// A tilted cell of thickness 10⁻¹⁴, and what fractions of integers make of its derivatives.
+    /// A tilted cell of thickness 10⁻¹⁴, whose derivatives are compared with fractions of integers.
     #[test]
     fn derivatives_of_tilted_flat_cells_are_precise() {
         let positions = vec![
@@ -155,7 +155,7 @@ mod tests {
         }
     }
 
-    /// In space, in a plane and on a torus, by positions and weights.
+    /// Derivatives by positions and weights in space, in a plane and on a torus.
     #[test]
     fn derivatives_are_limits_of_differences() {
         const STEP: f64 = 1e-6;
@@ -187,7 +187,7 @@ mod tests {
                     let entry = simplices.simplex(number);
                     assert_eq!(entry.rank, simplices.simplex(own).rank);
                     assert!(simplices.simplex(own).gabriel);
-                    // Of flat simplices a step changes too much.
+                    // For flat simplices, a step changes too much.
                     let vertices = entry.vertices;
                     let (Some(low), Some(high)) = (low.get(vertices), high.get(vertices)) else {
                         continue;

@@ -1,7 +1,7 @@
 use super::Ordered;
 use crate::ShapeError;
 
-/// A component, loop or void of a filtration: the values between which it is there, and the simplices that begin and end it.
+/// A component, loop or void of a filtration: the values between which it exists, and the simplices that begin and end it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Interval {
@@ -16,14 +16,14 @@ pub struct Interval {
 }
 
 impl Ordered<'_> {
-    /// The persistence diagram of a dimension: components (0), loops (1) and voids (2); of a torus
-    /// also its own class (3). Without what begins and ends at one value. In the order of deaths for dimensions 0 and 1, of births
-    /// for 2; what never ends comes last.
+    /// The persistence diagram of a dimension: components (0), loops (1) and voids (2); for a torus also its own class (3).
+    /// Classes that begin and end at the same value are left out. The order is that of deaths for dimensions 0 and 1, and of
+    /// births for 2; classes that never end come last.
     ///
     /// Values are the doubles nearest to the exact ones, so birth and death may be one double where these differ.
     ///
     /// # Errors
-    /// As [`loops`](Self::loops), for dimension 1.
+    /// See [`loops`](Self::loops), for dimension 1.
     pub fn persistence(&self, dimension: usize) -> Result<Vec<Interval>, ShapeError> {
         let pairs = self.pairs();
         let (pairs, lasting) = match dimension {

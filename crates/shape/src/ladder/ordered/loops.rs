@@ -2,14 +2,14 @@
 //! doi:10.1007/s00454-002-2885-2).
 //!
 //! The pairs of dimensions 0 and 2, which are known, leave little of the matrix. Only facets that end a loop have a column
-//! (clearing, Chen and Kerber 2011), and only edges that begin one a row, as an edge that ends a component is never the
-//! last of a reduced column (compression, Bauer, Kerber and Reininghaus 2014, doi:10.1007/978-3-319-04099-8_7). So no column is reduced
-//! to nothing, and each is one pair.
+//! (clearing, Chen and Kerber 2011), and only edges that begin a loop have a row, because an edge that ends a component is never
+//! the last of a reduced column (compression, Bauer, Kerber and Reininghaus 2014, doi:10.1007/978-3-319-04099-8_7). So no column
+//! is reduced to nothing, and each is one pair.
 //!
-//! In space no field gives other pairs than another. On a torus Z/2 would: surfaces with one side lie in it, and voids are
-//! found by directions of whole numbers. So coefficients are in Z/p, p = 2³¹ − 1, which stands for rational numbers: no
-//! torsion of a set of points is of that order. The column at work has a tree of bits for what is not 0, whose largest member is found in a few steps (Bauer,
-//! Kerber, Reininghaus and Wagner 2017, doi:10.1016/j.jsc.2016.03.008).
+//! In space, all fields give the same pairs. On a torus Z/2 would give others: surfaces with one side lie in it, and voids are
+//! found by directions of whole numbers. So coefficients are in Z/p, p = 2³¹ − 1, which stands for rational numbers: no torsion
+//! of a set of points has that order. The current column has a tree of bits for the numbers that are not 0, whose largest member
+//! is found in a few steps (Bauer, Kerber, Reininghaus and Wagner 2017, doi:10.1016/j.jsc.2016.03.008).
 
 use std::ops::Range;
 
@@ -19,8 +19,8 @@ use walpha_base::memory::{self, NoMemory};
 use super::Ordered;
 use crate::ShapeError;
 
-/// Persistence pairs of loops, by the numbers of simplices. Coefficients are rational; in space those of any other field
-/// give the same.
+/// Persistence pairs of loops, by the numbers of simplices. Coefficients are rational; in space any other field gives the same
+/// pairs.
 ///
 /// Pairs of persistence 0, whose simplices have the same value, are included.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -38,7 +38,7 @@ const NONE: u32 = u32::MAX;
 impl Ordered<'_> {
     /// Persistence pairs of dimension 1. Computed once.
     ///
-    /// On one thread. No bound below O(n³) is known; on alpha filtrations it takes about as long as
+    /// This takes one thread. No bound below O(n³) is known; for alpha filtrations it takes about as long as
     /// [`Filtration::simplices`](crate::ladder::Filtration::simplices).
     ///
     /// # Errors
@@ -103,7 +103,7 @@ impl Ordered<'_> {
 
 /// Reduced columns by their last rows.
 struct Columns {
-    /// By last row, the range of the column among the members; empty if there is none.
+    /// For each last row, the range of the column among the members; empty if there is none.
     ranges: Vec<Range<usize>>,
     /// The rows of all columns with their coefficients: those of each descending, the first coefficient 1.
     members: Vec<(u32, u32)>,
@@ -164,7 +164,7 @@ fn inverse(a: u32) -> u32 {
 
 /// The column that is being reduced.
 struct Column {
-    /// The rows of what is not 0.
+    /// The rows of the coefficients that are not 0.
     rows: BitTree,
     /// The coefficient of each row.
     values: Vec<u32>,
@@ -187,7 +187,7 @@ impl Column {
 
 /// A set of numbers. Each bit of a level says whether a word of the level below has bits.
 struct BitTree {
-    /// From the numbers up to a single word.
+    /// The levels of the tree, from the numbers up to a single word.
     levels: Vec<Vec<u64>>,
 }
 
@@ -246,7 +246,7 @@ mod tests {
         for bound in [1, 64, 65, 4096, 4097, 300_000] {
             let (mut tree, mut set) = (BitTree::new(bound), BTreeSet::new());
             for _ in 0..2000 {
-                // Near the last one as well, so that words become empty.
+                // Also use numbers near the last one, so that words become empty.
                 let number = match tree.last() {
                     Some(last) if random.below(2) == 0 => last,
                     _ => random.below(bound) as u32,

@@ -24,16 +24,15 @@ pub use loops::Loops;
 use numbers::Numbers;
 use rank::{NONE, Ranks};
 
-/// All simplices of a regular triangulation with their values of α: where each enters the shape, becomes regular, and
-/// becomes interior.
+/// All simplices of a regular triangulation with their values of α: each simplex has the values at which it enters the shape,
+/// becomes regular, and becomes interior.
 ///
-/// A *value* is a squared radius, given as the double nearest to the exact number (of two equally near ones, the
-/// even one). The order is by the exact number, then by dimension, then by vertices;
-/// so faces precede their cofaces, and even simplices whose values differ by less than
-/// doubles can resolve are in the right order.
+/// A *value* is a squared radius, given as the double nearest to the exact number (of two equally near ones, the even one). The
+/// order is by the exact number, then by dimension, then by vertices. So faces precede their cofaces, and even simplices whose
+/// values differ by less than doubles can resolve are in the right order.
 ///
-/// A double nearest to a value may be below it: the shape at this very α, [`Filtration::shape`], may
-/// have the simplex or not. [`Filtration::curve`] has doubles that are not below.
+/// The double nearest to a value may be below it: the shape at exactly this α, [`Filtration::shape`], may contain the simplex or
+/// not. [`Filtration::curve`] has doubles that are not below.
 ///
 /// Simplices have *numbers*: vertices first, then edges, facets, cells; those of one dimension in
 /// lexicographic order of their vertices, which ascend in each.
@@ -60,12 +59,12 @@ pub struct Entry<'a> {
     pub value: f64,
     /// The rank of the exact value among all values, from 0; equal for equal numbers only.
     pub rank: u32,
-    /// Whether no point lies inside its smallest orthogonal sphere, so that the value is the squared
-    /// radius of this; else it enters with a coface, and is *attached*.
+    /// Whether no point lies inside its smallest orthogonal sphere, so that the value is the squared radius of this sphere;
+    /// otherwise the simplex enters with a coface, and is *attached*.
     pub gabriel: bool,
-    /// From which on it is a face of another simplex of the shape; singular before. Of cells, ∞.
+    /// The value from which on it is a face of another simplex of the shape; it is singular before. ∞ for cells.
     pub regular: f64,
-    /// From which on it is off the boundary; ∞ on the convex hull. Of cells, the value.
+    /// The value from which on it is not on the boundary; ∞ on the convex hull. For cells, this equals `value`.
     pub interior: f64,
 }
 
@@ -76,13 +75,13 @@ pub struct Entry<'a> {
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Pairs {
-    /// Components: a vertex, and the edge that unites its component with one that came before; in
-    /// the order of edges. All vertices but one have such an edge.
+    /// Components: a vertex, and the edge that unites its component with an earlier one; in the order of edges. All vertices but
+    /// one have such an edge.
     pub components: Vec<[u32; 2]>,
     /// The vertex whose component is essential: one.
     pub lasting: Vec<u32>,
-    /// Voids: a facet, and the cell that fills what it has shut in; in the order of facets. All
-    /// cells have such a facet, on a torus all but one.
+    /// Voids: a facet, and the cell that fills the enclosed void; in the order of facets. All cells have such a facet; on a torus
+    /// all but one.
     pub voids: Vec<[u32; 2]>,
     /// On a torus: the facets that create its three essential classes of dimension 2.
     pub lasting_voids: Vec<u32>,
@@ -91,8 +90,7 @@ pub struct Pairs {
 }
 
 impl Filtration {
-    /// All simplices with their values, in order. O(n log n), and exact arithmetic where two values
-    /// are, or nearly are, equal.
+    /// All simplices with their values, in order. O(n log n), plus exact arithmetic for values that are equal or nearly equal.
     ///
     /// # Errors
     /// Out of memory; more simplices than 32-bit numbers.
@@ -159,7 +157,7 @@ fn sorted_cells(rows: &[[u32; 4]]) -> (Vec<[u32; 4]>, Vec<u32>) {
 }
 
 impl Ordered<'_> {
-    /// Bytes that are needed at once.
+    /// The number of bytes that are needed at the same time.
     fn bytes(numbers: Numbers) -> usize {
         let span = 3 * size_of::<u32>();
         let parts = [
@@ -241,7 +239,7 @@ impl Ordered<'_> {
     /// A simplex by its number.
     ///
     /// # Panics
-    /// If there is no such number.
+    /// If no simplex has this number.
     pub fn simplex(&self, number: u32) -> Entry<'_> {
         let value = |rank: u32| {
             self.values().get(rank as usize).map_or(f64::INFINITY, |value| value.squared())
@@ -293,7 +291,7 @@ impl Ordered<'_> {
     }
 }
 
-/// Number of ranges of ranks, which are sorted separately: few enough to be written to at once.
+/// Number of ranges of ranks, which are sorted separately. They are few enough to be written to at the same time.
 const PARTS: usize = 256;
 /// Numbers that one task distributes to the ranges.
 const CHUNK: usize = 1 << 20;

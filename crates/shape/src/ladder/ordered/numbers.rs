@@ -1,6 +1,6 @@
 use crate::Complex;
 
-/// How simplices of all dimensions are numbered: vertices first, then edges, facets, cells.
+/// The numbering of simplices of all dimensions: vertices first, then edges, facets, cells.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Numbers {
     /// The first number of each dimension.

@@ -124,7 +124,7 @@ struct ElderSets {
     sets: UnionFind,
     /// When each was added.
     ages: Vec<u32>,
-    /// By root, the eldest member of its set.
+    /// For each root, the eldest member of its set.
     eldest: Vec<u32>,
 }
 
@@ -145,7 +145,7 @@ impl ElderSets {
         self.eldest[self.sets.find(member) as usize]
     }
 
-    /// Unites two sets, and returns the younger of their eldest members; `None` if they are one set already.
+    /// Unites two sets, and returns the younger of their eldest members; `None` if they are already one set.
     fn unite(&mut self, a: u32, b: u32) -> Option<u32> {
         let [a, b] = [self.eldest_of(a), self.eldest_of(b)];
         if !self.sets.unite(a, b) {

@@ -23,7 +23,7 @@ pub(super) const NONE: u32 = u32::MAX;
 pub(super) struct Ranks {
     /// The nearest double of each, ascending; several may have the same.
     pub values: Vec<f64>,
-    /// By number of the simplex; [`NONE`] where the sphere is not empty.
+    /// The rank of each simplex by its number; [`NONE`] if its sphere is not empty.
     pub of: Vec<u32>,
 }
 
@@ -34,7 +34,7 @@ const CHUNK: usize = 1 << 12;
 type Radius = (u64, u32);
 
 impl Ranks {
-    /// Bytes that are needed at once.
+    /// The number of bytes that are needed at the same time.
     pub(super) fn bytes(simplices: usize) -> usize {
         simplices.saturating_mul(size_of::<Radius>() + size_of::<u32>() + size_of::<f64>())
     }

@@ -1,5 +1,5 @@
-//! Lengths that a DICOM file claims, checked before the parser trusts them: it allocates memory for each
-//! element by the length in its header.
+//! Checks the lengths that a DICOM file claims before the parser trusts them: it allocates memory for each element by the length
+//! in its header.
 
 use std::io::{self, Read};
 use std::path::Path;
@@ -20,20 +20,19 @@ pub(super) const DOUBLE_PIXEL_DATA: Tag = Tag(0x7FE0, 0x0009);
 pub(super) const PIXEL_DATA: Tag = Tag(0x7FE0, 0x0010);
 const PIXELS: [Tag; 3] = [FLOAT_PIXEL_DATA, DOUBLE_PIXEL_DATA, PIXEL_DATA];
 
-/// Unpacked bytes of a packed file that are read without asking what they are. A header is smaller, and of pixels it
-/// says how many there are.
+/// The number of unpacked bytes of a packed file that are read whatever they are. A header is smaller than this, and states how
+/// many pixels there are.
 const MOST_UNPACKED: u64 = 64 << 20;
 
 /// The element that holds the samples of a file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Pixels {
     pub tag: Tag,
-    /// Its bytes; `None` where they are compressed.
+    /// The number of its bytes; `None` if they are compressed.
     pub bytes: Option<u64>,
 }
 
-/// Refuses a file with an element longer than the file, and finds its pixels. What else may be wrong is for the reader to
-/// say.
+/// Refuses a file with an element longer than the file, and finds its pixels. The reader reports all other errors.
 pub(super) fn check(path: &Path, start: &Start) -> Result<Option<Pixels>, VolumeError> {
     let file = start.open(path)?;
     let length = file.get_ref().metadata().map_err(io_error(path))?.len();
@@ -41,8 +40,8 @@ pub(super) fn check(path: &Path, start: &Start) -> Result<Option<Pixels>, Volume
     let Codec::Dataset(Some(adapter)) = syntax.codec() else {
         return check_elements(path, file, syntax, Limits { each: length, all: None });
     };
-    // It is unpacked piece by piece, twice: first to see how long it is, if it is not too long. One that breaks off
-    // is as long as it goes.
+    // The file is unpacked twice, piece by piece: first to find its length, if it is not too long. A truncated file is as long as
+    // what can be unpacked.
     let mut data = adapter.adapt_reader(Box::new(file)).take(MOST_UNPACKED);
     let found = discard(&mut data);
     let (each, all) = if found < MOST_UNPACKED {
@@ -54,7 +53,7 @@ pub(super) fn check(path: &Path, start: &Start) -> Result<Option<Pixels>, Volume
     check_elements(path, again, syntax, Limits { each, all })
 }
 
-/// Reads to the end, or as far as it goes, and says how far.
+/// Reads to the end, or as far as possible, and returns the number of bytes read.
 fn discard(data: &mut impl Read) -> u64 {
     let (mut found, mut buffer) = (0, [0; 1 << 14]);
     while let Ok(bytes @ 1..) = data.read(&mut buffer) {
@@ -63,15 +62,15 @@ fn discard(data: &mut impl Read) -> u64 {
     found
 }
 
-/// What elements may claim.
+/// Limits for the lengths that elements claim.
 struct Limits {
-    /// One of them.
+    /// The limit for one element.
     each: u64,
-    /// All that come before the pixels together.
+    /// The limit for the sum of all elements before the pixels.
     all: Option<u64>,
 }
 
-/// Reads as the reader of the series does: an element's header comes before its value is read.
+/// Checks the elements in the order in which the reader of the series reads them: the header of an element, then its value.
 fn check_elements(
     path: &Path,
     source: impl Read,
@@ -81,7 +80,7 @@ fn check_elements(
     let Ok(reader) = DataSetReader::new_with_ts(source, syntax) else { return Ok(None) };
     let mut left = all;
     let mut pixels = None;
-    // Pixels inside of a sequence are those of an icon.
+    // Pixels inside a sequence are those of an icon.
     let mut depth = 0usize;
     for token in reader.map_while(Result::ok) {
         let claimed = match token {
@@ -123,7 +122,7 @@ fn check_elements(
                 ));
                 return Err(format_error(path, reason));
             }
-            // What is in a sequence counts twice, which does no harm.
+            // The content of a sequence is counted twice, which does no harm.
             *left = left.saturating_sub(claimed.into());
         }
     }
@@ -140,7 +139,7 @@ pub(super) fn check_length(path: &Path, claimed: u32, length: u64) -> Result<(),
     Err(format_error(path, reason))
 }
 
-/// The error for a file that the reader gives up on, with all that it says.
+/// The error for a file that the parser rejects, with its message and causes.
 pub(super) fn damaged(path: &Path, error: &dyn std::error::Error) -> VolumeError {
     let mut what = error.to_string();
     let mut cause = error.source();

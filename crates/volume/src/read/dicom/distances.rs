@@ -1,53 +1,53 @@
-//! What the distances of slices tell: one spacing, several, or a hole.
+//! Interprets the distances between slices: one spacing, several, or a gap.
 
-/// Places this alike, as a share of the distance, are those of an even grid.
+/// Distances that differ by no more than this share form an even grid.
 const EVEN: f64 = 0.01;
-/// Places this far off are moved to those of an even grid, with a warning.
+/// Slices that are off by no more than this share of the distance are moved to an even grid, with a warning.
 const JITTER: f64 = 0.1;
-/// Distances this alike, as a share, are one.
+/// Distances that differ by no more than this share count as equal.
 const ALIKE: f64 = 0.02;
-/// A distance this many times that of its neighbours, or more, is wide.
+/// A distance that is at least this many times that of its neighbours is wide.
 const WIDE: f64 = 1.5;
-/// How near a wide distance is to a whole number of its neighbours' where slices are missing.
+/// Slices are missing if a wide distance is this near to a multiple of its neighbours' distance.
 const WHOLE: f64 = 0.1;
 
-/// What the distances of slices tell.
+/// The pattern of the distances between slices.
 #[derive(Debug, PartialEq)]
 pub(super) enum Distances {
-    /// There is one slice.
+    /// There is only one slice.
     One,
     /// This slice and the next are at one place.
     Same(usize),
-    /// All slices are so far apart, and none is further off its place than that; 0 where it does not matter.
+    /// The slices are `step` apart, and none is further than `off` from its place; `off` is 0 if it does not matter.
     Even { step: f64, off: f64 },
-    /// There are several distances, of which this is the least.
+    /// There are several distances; this is the smallest.
     Several(f64),
-    /// One is so wide that slices may be missing.
+    /// One distance is so wide that slices may be missing.
     Wide(Wide),
 }
 
 /// A wide distance.
 #[derive(Debug, PartialEq)]
 pub(super) struct Wide {
-    /// The slice before it.
+    /// The slice before the distance.
     pub slice: usize,
     pub gap: f64,
     /// The distance of its neighbours.
     pub usual: f64,
-    /// How many slices are missing, if it has the place of whole ones.
+    /// The number of missing slices, if whole slices fit into the distance.
     pub missing: Option<u64>,
 }
 
-/// Judges places in order, and the numbers of slices, if all have one.
+/// Interprets the places of slices, in order, and the numbers of slices, if all have one.
 ///
-/// Several distances are a change of spacing where each of them occurs twice or more in a row, or where the numbers of
-/// slices go on across it. A wide distance that stands alone is a hole; so is one across which numbers are left out.
+/// Several distances mean a change of spacing if each of them occurs at least twice in a row, or if the numbers of slices
+/// continue across it. A wide distance that stands alone is a gap; so is one across which numbers are left out.
 pub(super) fn distances(at: &[f64], numbers: Option<&[f64]>) -> Distances {
     let [first, .., last] = at else { return Distances::One };
     let gaps: Vec<f64> = at.windows(2).map(|two| two[1] - two[0]).collect();
     let mut sorted = gaps.clone();
     sorted.sort_by(f64::total_cmp);
-    // Of an even number the greater, so that not all places need be doubled.
+    // Of an even number of distances, the larger median is taken, so that not all places have to be doubled.
     let usual = sorted[sorted.len() / 2];
     if let Some(i) = gaps.iter().position(|&gap| gap <= EVEN * usual) {
         return Distances::Same(i);
@@ -62,7 +62,7 @@ pub(super) fn distances(at: &[f64], numbers: Option<&[f64]>) -> Distances {
         return Distances::Even { step, off };
     }
     let alike = |a: f64, b: f64| (a - b).abs() <= ALIKE * a.min(b);
-    // Distances that occur twice in a row.
+    // The distances that occur twice in a row.
     let in_a_row = gaps.windows(2).filter(|two| alike(two[0], two[1]));
     let spacings: Vec<f64> = in_a_row.map(|two| two[0]).collect();
     let steps = numbers.and_then(steps);
@@ -83,13 +83,13 @@ pub(super) fn distances(at: &[f64], numbers: Option<&[f64]>) -> Distances {
             return Distances::Wide(Wide { slice: i, gap, usual: finest, missing });
         }
     }
-    // The mean of the finest, as places are rounded.
+    // The mean of the smallest distances, as places are rounded.
     let finest: Vec<f64> = gaps.into_iter().filter(|&gap| alike(gap, sorted[0])).collect();
     Distances::Several(finest.iter().sum::<f64>() / finest.len() as f64)
 }
 
-/// How far the numbers of slices go on from each to the next, in the least step; `None` where they are not in the order of
-/// places, and tell nothing.
+/// The differences between the numbers of neighbouring slices, in units of the smallest; `None` if the numbers do not follow the
+/// order of places and therefore say nothing.
 fn steps(numbers: &[f64]) -> Option<Vec<u64>> {
     let steps: Vec<f64> = numbers.windows(2).map(|two| two[1] - two[0]).collect();
     let is_ordered = steps.iter().all(|&step| step > 0.0) || steps.iter().all(|&step| step < 0.0);
@@ -101,7 +101,7 @@ fn steps(numbers: &[f64]) -> Option<Vec<u64>> {
 mod tests {
     use super::*;
 
-    /// Places at these distances.
+    /// The places of slices at these distances.
     fn at(gaps: &[f64]) -> Vec<f64> {
         let mut at = vec![-20.0];
         at.extend(gaps.iter().scan(-20.0, |place, gap| {
@@ -141,7 +141,7 @@ mod tests {
         assert_eq!(several(&[[2.5; 11].as_slice(), &[7.5; 7]].concat()), 2.5);
         assert_eq!(several(&[[1.0; 7].as_slice(), &[4.0; 4], &[1.0; 8]].concat()), 1.0);
         assert_eq!(several(&[5.0, 5.0, 5.0, 2.0, 2.0]), 2.0);
-        // Uneven, but nowhere wide.
+        // The distances are uneven, but none is wide.
         assert_eq!(several(&[1.0, 1.3, 1.1, 1.3, 1.0]), 1.0);
     }
 
@@ -163,9 +163,9 @@ mod tests {
         assert_eq!(judge(&[6.0, 5.0, 4.0, 3.0, 2.0, 1.0]), Distances::Several(1.0));
         let hole = Wide { slice: 3, gap: 2.0, usual: 1.0, missing: Some(1) };
         assert_eq!(judge(&[1.0, 2.0, 3.0, 4.0, 6.0, 8.0]), Distances::Wide(hole));
-        // Numbers in no order tell nothing.
+        // Unordered numbers say nothing.
         assert_eq!(judge(&[1.0, 3.0, 2.0, 4.0, 6.0, 8.0]), Distances::Several(1.0));
-        // One wide distance, and none left out.
+        // One distance is wide, and no number is left out.
         let alone = distances(&at(&[1.0, 1.0, 4.0]), Some(&[1.0, 2.0, 3.0, 4.0]));
         assert_eq!(alone, Distances::Several(1.0));
     }

@@ -1,4 +1,4 @@
-//! The files of a series: which belong to it, and which cannot be read.
+//! The files of a series: those that belong to it, and those that cannot be read.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -14,15 +14,15 @@ use crate::read::OpenFile;
 use crate::read::series::{self, Files};
 use crate::{Reason, VolumeError};
 
-/// What the files of a folder are.
+/// The files of a folder, sorted by what they are.
 pub(super) struct SeriesFiles {
     pub found: Vec<DicomFile>,
-    /// Files that may be slices and cannot be read, each with the reason.
+    /// The files that may be slices but cannot be read, each with the reason.
     damaged: Vec<(PathBuf, VolumeError)>,
 }
 
 impl SeriesFiles {
-    /// Looks at the headers in a folder; indices of media (DICOMDIR) are passed over.
+    /// Reads the headers in a folder. Indices of media (DICOMDIR) are skipped.
     pub(super) fn of(folder: &Path, nested: bool) -> Result<Self, VolumeError> {
         let is_index = |path: &PathBuf| path.file_name().is_some_and(|name| name == "DICOMDIR");
         let Files { dicom, suspects } = series::files(folder, nested)?;
@@ -36,7 +36,7 @@ impl SeriesFiles {
                 Err(error) => files.damaged.push((path, error)),
             }
         }
-        // A header that breaks off before it names its series.
+        // These are headers that end before they name their series.
         let named = files.found.iter().any(|found| !found.series.is_empty());
         for broken in files
             .found
@@ -53,11 +53,10 @@ impl SeriesFiles {
         Ok(files)
     }
 
-    /// The slices of a series, and those of its files that cannot be read dealt with: refused, or left out with
-    /// a warning where `skip` says so.
+    /// The slices of a series. Files that cannot be read are refused, or left out with a warning if `skip` is set.
     ///
-    /// Which series an unreadable file is of cannot be known. `near` says whether one may be of this: others are
-    /// left alone, with a warning.
+    /// The series of an unreadable file cannot be known. `near` decides whether such a file may belong to this series; others are
+    /// left out with a warning.
     pub(super) fn slices(
         self,
         skip: bool,
@@ -99,7 +98,7 @@ impl SeriesFiles {
     }
 }
 
-/// The same error, with the advice that the rest can be read.
+/// Adds the advice that the remaining slices can be read to an error.
 pub(super) fn skippable(error: VolumeError) -> VolumeError {
     match error {
         VolumeError::Format { path, reason } => {
@@ -111,7 +110,7 @@ pub(super) fn skippable(error: VolumeError) -> VolumeError {
     }
 }
 
-/// What is wrong with a file, without its name.
+/// What is wrong with a file, without the name of the file.
 pub(super) fn reason(error: &VolumeError) -> String {
     match error {
         VolumeError::Format { reason, .. } => format!("it {reason}"),
@@ -119,7 +118,7 @@ pub(super) fn reason(error: &VolumeError) -> String {
     }
 }
 
-/// What is wrong with a file that is not a DICOM file, and is named as if it were.
+/// What is wrong with a file that has the name of a DICOM file but is not one.
 fn not_dicom(path: &Path) -> Reason {
     let open = OpenFile::open(path);
     match open.as_ref().map(|file| (file.length(), file.start())) {
@@ -140,7 +139,7 @@ fn not_dicom(path: &Path) -> Reason {
     }
 }
 
-/// A name without its digits: what slices of one series are called.
+/// The name of a file without its digits, which is common to the slices of a series.
 pub(super) fn pattern(path: &Path) -> String {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     name.chars().filter(|c| !c.is_ascii_digit()).collect()

@@ -12,8 +12,8 @@ const SHARED_FUNCTIONAL_GROUPS: Tag = Tag(0x5200, 0x9229);
 const PER_FRAME_FUNCTIONAL_GROUPS: Tag = Tag(0x5200, 0x9230);
 const DETECTOR_INFORMATION: Tag = Tag(0x0054, 0x0022);
 
-/// The header of a file, as it applies to one of its frames: in enhanced images some elements are in
-/// functional groups, of the frame or shared by all frames (PS3.3, C.7.6.16), in nuclear medicine with the detector.
+/// The header of a file, as it applies to one of its frames: in enhanced images some elements are in functional groups, of the
+/// frame or shared by all frames (PS3.3, C.7.6.16), and in nuclear medicine they are with the detector.
 #[derive(Clone, Copy)]
 pub(super) struct Header<'a> {
     path: &'a Path,
@@ -22,12 +22,12 @@ pub(super) struct Header<'a> {
 }
 
 impl<'a> Header<'a> {
-    /// Of a file.
+    /// The header of a whole file.
     pub(super) fn new(path: &'a Path, object: &'a InMemDicomObject) -> Self {
         Self { path, object, frame: None }
     }
 
-    /// As the frame has it that is counted from 0.
+    /// The header as it applies to the frame with this number, from 0.
     pub(super) fn of_frame(self, frame: u32) -> Self {
         Self { frame: Some(frame), ..self }
     }
@@ -37,7 +37,7 @@ impl<'a> Header<'a> {
         format_error(self.path, reason)
     }
 
-    /// The functional groups that hold for the frame, its own first.
+    /// The functional groups that apply to the frame, its own first.
     fn groups(&self) -> impl Iterator<Item = &'a InMemDicomObject> {
         let items = |tag: Tag| self.object.get(tag).and_then(|sequence| sequence.items());
         let own = self.frame.and_then(|frame| {
@@ -46,7 +46,7 @@ impl<'a> Header<'a> {
         own.into_iter().chain(items(SHARED_FUNCTIONAL_GROUPS).and_then(|items| items.first()))
     }
 
-    /// An element, from the functional group `group` where there is one.
+    /// An element, from the functional group `group` if it is there.
     pub(super) fn element(
         &self,
         group: impl Into<Option<Tag>>,
@@ -61,7 +61,7 @@ impl<'a> Header<'a> {
         self.groups().find_map(in_group).or_else(own).or_else(of_detector)
     }
 
-    /// The items of a sequence, from the functional group where there is one.
+    /// The items of a sequence, from the functional group if it is there.
     pub(super) fn items(
         &self,
         group: impl Into<Option<Tag>>,
@@ -75,13 +75,13 @@ impl<'a> Header<'a> {
         self.object.get(tag).is_some() || self.groups().any(|group| group.get(tag).is_some())
     }
 
-    /// A text, if it is there, without the spaces that fill it up.
+    /// A text, if it exists, without padding.
     pub(super) fn text(&self, group: impl Into<Option<Tag>>, tag: Tag) -> Option<String> {
         let text = self.element(group, tag)?.to_str().ok()?;
         Some(text.trim_matches(['\0', ' ']).to_owned()).filter(|text| !text.is_empty())
     }
 
-    /// A number, if it is there.
+    /// A number, if it exists.
     pub(super) fn number(
         &self,
         group: impl Into<Option<Tag>>,
@@ -101,18 +101,18 @@ impl<'a> Header<'a> {
         number.map(Some).ok_or_else(wrong)
     }
 
-    /// A number, or another where it is not there.
+    /// A number, or `other` if it does not exist.
     pub(super) fn number_or(&self, tag: Tag, other: f64) -> Result<f64, VolumeError> {
         Ok(self.number(None, tag)?.unwrap_or(other))
     }
 
-    /// All numbers of an element; none where it is not there.
+    /// All numbers of an element; none if it does not exist.
     pub(super) fn numbers(&self, group: impl Into<Option<Tag>>, tag: Tag) -> Vec<f64> {
         let element = self.element(group, tag);
         element.and_then(|element| element.to_multi_float64().ok()).unwrap_or_default()
     }
 
-    /// `N` numbers, called `name`, which a slice of a volume needs; without them, `next` is to be done.
+    /// `N` numbers, called `name`, that every slice of a volume needs. If they are missing, the error advises `next`.
     pub(super) fn vector<const N: usize>(
         &self,
         group: Tag,

@@ -1,4 +1,4 @@
-//! Several volumes in a series, as times, echoes or stacks: which of them a slice is of.
+//! Several volumes in a series, such as times, echoes or stacks, and the one that a slice belongs to.
 
 use std::cmp::Ordering;
 use std::fmt;
@@ -13,11 +13,11 @@ const STACK_ID: Tag = Tag(0x0020, 0x9056);
 const DIMENSION_INDEX_VALUES: Tag = Tag(0x0020, 0x9157);
 const DIMENSION_INDICES: Tag = Tag(0x0020, 0x9222);
 const DIMENSION_INDEX_POINTER: Tag = Tag(0x0020, 0x9165);
-/// Indices that count places, and with them slices of one volume.
+/// Indices that count places, and therefore slices of one volume.
 const OF_PLACES: [Tag; 4] =
     [Tag(0x0020, 0x0032), Tag(0x0020, 0x9057), Tag(0x0020, 0x9113), Tag(0x0020, 0x1041)];
 
-/// What tells volumes apart, each with its functional group, from what says so outright to what may be told from.
+/// The elements that distinguish volumes, each with its functional group; explicit indices come before mere hints.
 const INDICES: [(Option<Tag>, Tag, &str); 12] = [
     (Some(FRAME_CONTENT), Tag(0x0020, 0x9128), "Temporal Position Index"),
     (None, Tag(0x0020, 0x0100), "Temporal Position Identifier"),
@@ -33,7 +33,7 @@ const INDICES: [(Option<Tag>, Tag, &str); 12] = [
     (None, Tag(0x0008, 0x0032), "Acquisition Time"),
 ];
 
-/// Of nuclear medicine: a number for each frame.
+/// The vectors of nuclear medicine, which have a number for each frame.
 const VECTORS: [(Tag, &str); 7] = [
     (Tag(0x0054, 0x0010), "Energy Window Vector"),
     (Tag(0x0054, 0x0020), "Detector Vector"),
@@ -44,7 +44,7 @@ const VECTORS: [(Tag, &str); 7] = [
     (Tag(0x0054, 0x0100), "Time Slice Vector"),
 ];
 
-/// A number or text that tells volumes apart.
+/// A number or text that distinguishes volumes.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Index {
     pub name: String,
@@ -87,10 +87,11 @@ impl fmt::Display for Key {
     }
 }
 
-/// The name of the index that states volumes of their own, whatever places they have.
+/// The name of the index whose values are always separate volumes, whatever the places of their slices.
 pub(super) const STACK: &str = "Stack ID";
 
-/// What a frame states that may tell volumes apart: its stack, its indices along dimensions other than places, then the rest.
+/// All properties of a frame that may distinguish volumes: its stack, its indices along dimensions other than places, then the
+/// others.
 pub(super) fn of_frame(header: Header<'_>, frame: u32) -> Vec<Index> {
     let index = |name: &str, value: Key| Index { name: name.to_owned(), value };
     let stack = header.element(FRAME_CONTENT, STACK_ID).and_then(Key::of);
@@ -100,7 +101,7 @@ pub(super) fn of_frame(header: Header<'_>, frame: u32) -> Vec<Index> {
     for (item, &value) in pointers.iter().zip(&values) {
         let pointer = item.get(DIMENSION_INDEX_POINTER);
         let tag = pointer.and_then(|pointer| pointer.value().to_tag().ok());
-        // The stack is there by its name.
+        // The stack is already in the list.
         if let Some(tag) = tag.filter(|tag| !OF_PLACES.contains(tag) && *tag != STACK_ID) {
             all.push(index(&format!("index of {tag}"), Key::Number(value)));
         }

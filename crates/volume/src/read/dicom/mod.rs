@@ -1,5 +1,4 @@
-//! DICOM series: the slices of one series as a volume, each in a file of its own or several as the
-//! frames of one.
+//! DICOM series: reads the slices of one series as a volume. Each slice is a file, or several are the frames of one file.
 
 mod claims;
 mod distances;
@@ -35,7 +34,7 @@ use slice::{DicomFile, Slice};
 use stack::{Order, Stack, stacked};
 use volumes::{chosen, without_copies};
 
-/// Reads the series that a file belongs to: all slices of it in the same folder.
+/// Reads the series that a file belongs to: all of its slices in the same folder.
 pub(crate) fn read_series_of(
     path: &Path,
     options: &ReadOptions,
@@ -56,19 +55,19 @@ pub(crate) fn read_series_of(
     };
     let slices = one.slices?;
     if slices.iter().any(|slice| slice.segment.is_some()) {
-        // A segmentation is whole.
+        // A segmentation is complete in one file.
         one.notes.iter().for_each(|note| tracing::warn!("{} {note}", shown(path)));
         return assemble(path, slices, options, monitor);
     }
     let mut files = SeriesFiles::of(folder, false)?;
     files.found.retain(|other| other.series == one.series);
-    // Its neighbours may be anything, but those that are called alike.
+    // Unreadable files beside it may be anything, except those with similar names.
     let names: Vec<String> = files.found.iter().map(|found| pattern(&found.path)).collect();
     let near = |other: &Path| names.contains(&pattern(other));
     assemble(path, files.slices(options.skip_damaged, near)?, options, monitor)
 }
 
-/// Reads the one series in a folder, or the one wanted.
+/// Reads the only series in a folder, or the one asked for.
 pub(crate) fn read_folder(
     folder: &Path,
     options: &ReadOptions,
@@ -91,7 +90,7 @@ pub(crate) fn read_folder(
             return Err(format_error(folder, reason));
         }
         (Some(wanted), _) => {
-            // Digits alone may end a UID, too, and are a number first of all.
+            // Digits may be a number or the end of a UID; a number takes precedence.
             let is_it = |one: &&Series| match wanted.parse::<usize>() {
                 Ok(number) => one.number == number,
                 Err(_) => one.uid.ends_with(wanted),
@@ -112,7 +111,7 @@ pub(crate) fn read_folder(
     assemble(folder, files.slices(skip, |_| true)?, options, monitor)
 }
 
-/// The series in a folder that have images, in the order of the names of their files.
+/// The series in a folder that have images, in the order of their file names.
 pub(crate) fn series(folder: &Path) -> Result<Vec<Series>, VolumeError> {
     Ok(listed(&SeriesFiles::of(folder, true)?.found))
 }
@@ -141,8 +140,8 @@ fn listed(found: &[DicomFile]) -> Vec<Series> {
     list
 }
 
-/// The volume of slices of one series. Those whose pixels cannot be read are refused, or left out with a warning
-/// where that is asked for.
+/// Builds the volume from the slices of one series. Slices whose pixels cannot be read are refused, or left out with a warning if
+/// that is asked for.
 fn assemble(
     path: &Path,
     mut slices: Vec<Slice>,
@@ -160,7 +159,7 @@ fn assemble(
         };
         let count = slices.len();
         slices.retain(|slice| slice.path != of);
-        // Nothing to do with one of several slices.
+        // The error is not about one of several slices.
         if slices.len() == count || slices.is_empty() {
             return Err(error);
         }
@@ -171,8 +170,8 @@ fn assemble(
     }
 }
 
-/// The volume of slices, or the error about a file whose pixels cannot be read. The other error is about the slices as a
-/// whole.
+/// Builds a volume from slices. The inner error is about a file whose pixels cannot be read; the outer error is about the slices
+/// as a whole.
 fn volume(
     path: &Path,
     slices: Vec<Slice>,
@@ -220,7 +219,7 @@ fn volume(
     Ok(Ok(volume))
 }
 
-/// The numbers that are padding, as they are stored.
+/// The stored numbers that are padding.
 fn paddings(slices: &[Slice]) -> String {
     let mut all: Vec<String> = Vec::new();
     for padding in slices.iter().filter_map(|slice| slice.values.padding) {
@@ -233,7 +232,7 @@ fn paddings(slices: &[Slice]) -> String {
     all.join(", ")
 }
 
-/// The samples of slices, one after the other, and which of them are padding, if any is.
+/// The samples of slices, one after the other; and which of them are padding, if any is.
 fn samples(slices: &[Slice], monitor: &Monitor) -> Result<Padded, VolumeError> {
     let first = &slices[0];
     let dims = Dims::new(first.columns, first.rows, slices.len() as u64)?;
@@ -243,12 +242,12 @@ fn samples(slices: &[Slice], monitor: &Monitor) -> Result<Padded, VolumeError> {
     let mut padded: Vec<Option<Vec<bool>>> = vec![None; slices.len()];
     let targets = samples.chunks_exact_mut(each).zip(&mut padded);
     let mut places: Vec<_> = slices.iter().zip(targets).collect();
-    // Frames of one file are decoded together.
+    // The frames of one file are decoded together.
     places.sort_by(|a, b| a.0.path.cmp(&b.0.path));
     let mut files: Vec<_> = places.chunk_by_mut(|a, b| a.0.path == b.0.path).collect();
     let count = files.len();
     let rounding = Rounding::default();
-    // So many at once: pixels decoded ahead take memory.
+    // The number of files at a time is limited, as decoded pixels take memory.
     for (done, batch) in files.chunks_mut(16).enumerate() {
         batch.par_iter_mut().try_for_each(|file| {
             let frames: Vec<&Slice> = file.iter().map(|(slice, _)| *slice).collect();
@@ -274,10 +273,10 @@ fn samples(slices: &[Slice], monitor: &Monitor) -> Result<Padded, VolumeError> {
     Ok((samples, Some(all)))
 }
 
-/// Samples and, where any is padding, which.
+/// The samples and, if any is padding, a mask of the padding.
 type Padded = (Vec<f32>, Option<Vec<bool>>);
 
-/// Planes between slices: mixtures of the slice below and a share of the next. What is mixed with padding is padding.
+/// Interpolates planes between slices: mixtures of the slice below and a share of the next. A mixture with padding is padding.
 fn resampled(
     samples: Vec<f32>,
     padded: Option<Vec<bool>>,

@@ -1,4 +1,4 @@
-//! Frames of nuclear medicine, which are counted instead of placed (PS3.3, C.8.4).
+//! Frames of nuclear medicine, which are numbered and not placed one by one (PS3.3, C.8.4).
 
 use dicom_object::Tag;
 
@@ -11,12 +11,12 @@ const MODALITY: Tag = Tag(0x0008, 0x0060);
 const SPACING_BETWEEN_SLICES: Tag = Tag(0x0018, 0x0088);
 const SLICE_VECTOR: Tag = Tag(0x0054, 0x0080);
 
-/// Whether a file is of nuclear medicine.
+/// Whether a file is from nuclear medicine.
 pub(super) fn is_nuclear(header: Header<'_>) -> bool {
     header.text(None, MODALITY).is_some_and(|modality| modality == "NM")
 }
 
-/// Places the slices of a reconstruction, which has one place for the first.
+/// Places the slices of a reconstruction; the header contains only the place of the first.
 pub(super) fn place(header: Header<'_>, slices: &mut [Slice]) -> Result<(), VolumeError> {
     let types = header.text(None, IMAGE_TYPE).unwrap_or_default();
     let kind = types.split('\\').nth(2).unwrap_or_default();
@@ -42,7 +42,7 @@ pub(super) fn place(header: Header<'_>, slices: &mut [Slice]) -> Result<(), Volu
         );
         return Err(header.fail(Reason::header(what)));
     };
-    // A positive distance leads along the normal, a negative one against it.
+    // A positive distance follows the normal, a negative one is opposite to it.
     for (slice, number) in slices.iter_mut().zip(numbers) {
         slice.move_by((number - 1.0) * step);
     }

@@ -19,20 +19,20 @@ use crate::{Reason, VolumeError};
 
 /// The pixels of one slice, row by row.
 pub(super) struct Plane {
-    /// Their values, in the units of the modality (rescaled, as Hounsfield units are).
+    /// The values, in the units of the modality (rescaled, as Hounsfield units are).
     pub samples: Vec<f32>,
     /// Which of them are padding, if any is.
     pub padded: Option<Vec<bool>>,
 }
 
-/// The pixels of frames of one file; of whole numbers that are rounded is taken note.
+/// The pixels of frames of one file. `rounding` records whether whole numbers are rounded.
 pub(super) fn pixels(slices: &[&Slice], rounding: &Rounding) -> Result<Vec<Plane>, VolumeError> {
     let Some(first) = slices.first() else { return Ok(Vec::new()) };
     let bytes = stored_in(first)?;
     slices.iter().map(|slice| plane(slice, &bytes, rounding)).collect()
 }
 
-/// The pixels of a slice, of those of its file.
+/// The pixels of one slice, from those of its file.
 pub(super) fn plane(
     slice: &Slice,
     bytes: &[u8],
@@ -51,21 +51,21 @@ pub(super) fn plane(
     Ok(Plane { samples, padded })
 }
 
-/// The bytes of all pixels of the file of a slice, unpacked.
+/// The unpacked bytes of all pixels of the file that contains a slice.
 pub(super) fn stored_in(slice: &Slice) -> Result<Vec<u8>, VolumeError> {
     let path = &slice.path;
     let start = Start::of(path)?;
     check_syntax(path, &start)?;
     let mut object = start.object(path, None)?;
     join_fragments(path, &mut object, slice.frames as usize)?;
-    // 16 bits of each, as they are decoded and as they are handed over.
+    // Each pixel takes 16 bits twice: as it is decoded and as it is returned.
     let room = slice.columns.saturating_mul(slice.rows).saturating_mul(slice.frames.into());
     let room = usize::try_from(room.saturating_mul(4)).unwrap_or(usize::MAX);
     afford(room, || "the pixels of a DICOM file".into())?;
     stored(path, &object, &start, slice.values.coding)
 }
 
-/// The bytes of all pixels of a file, unpacked, the lowest of each first.
+/// The unpacked bytes of all pixels of a file, each with its lowest byte first.
 fn stored(
     path: &Path,
     object: &DefaultDicomObject,
@@ -79,14 +79,14 @@ fn stored(
     };
     let element = object.get(tag);
     let Some(value) = element.and_then(|element| element.value().primitive()) else {
-        // Each slice on its own, so that the series may go on without it.
+        // Each slice fails separately, so that the series may go on without it.
         let pixels = || object.decode_pixel_data().map_err(|error| damaged(path, &error));
         return Ok(decoded(path, pixels)?.data().to_vec());
     };
     let bytes = value.to_bytes();
     let is_of_words = element.is_some_and(|element| element.vr().to_string() == "OW");
     let is_big = start.syntax(path)?.endianness() == Endianness::Big;
-    // Words come in the order of this machine: longer numbers have them the other way round.
+    // Words are in the byte order of this machine, and the words of longer numbers are in the opposite order.
     Ok(if is_big && is_of_words && matches!(coding, Coding::Integer { bytes: 4, .. }) {
         let turned = bytes.as_chunks::<4>().0.iter().flat_map(|&[a, b, c, d]| [c, d, a, b]);
         turned.collect()
@@ -95,7 +95,8 @@ fn stored(
     })
 }
 
-/// Joins fragments that are parts of one frame, where no table of offsets says which are: a frame begins with the mark of its coding.
+/// Joins fragments that are parts of one frame if no offset table says which are: a frame begins with the magic bytes of its
+/// coding.
 fn join_fragments(
     path: &Path,
     object: &mut DefaultDicomObject,
@@ -130,12 +131,12 @@ fn is_start(fragment: &[u8]) -> bool {
     fragment.starts_with(b"\xff\xd8\xff") || fragment.starts_with(b"\xff\x4f\xff\x51")
 }
 
-/// How many fragments begin frames; `None` where the first one begins none.
+/// The number of fragments that begin a frame; `None` if the first does not begin one.
 fn begins(fragments: &[Vec<u8>]) -> Option<usize> {
     is_start(fragments.first()?).then(|| fragments.iter().filter(|one| is_start(one)).count())
 }
 
-/// Each frame in one fragment.
+/// Joins the fragments of each frame into one.
 fn joined(fragments: impl Iterator<Item = Vec<u8>>) -> Vec<Vec<u8>> {
     let mut frames: Vec<Vec<u8>> = Vec::new();
     for fragment in fragments {
@@ -147,7 +148,7 @@ fn joined(fragments: impl Iterator<Item = Vec<u8>>) -> Vec<Vec<u8>> {
     frames
 }
 
-/// Refuses pixels that are compressed in a way that there is no decoder for.
+/// Refuses pixels in a compression that has no decoder.
 fn check_syntax(path: &Path, start: &Start) -> Result<(), VolumeError> {
     let syntax: &TransferSyntax = start.syntax(path)?;
     if syntax.can_decode_all() {

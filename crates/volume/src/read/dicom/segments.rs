@@ -1,4 +1,4 @@
-//! Segmentations (DICOM SEG, PS3.3, C.8.20): frames that each show one segment in one plane.
+//! Segmentations (DICOM SEG, PS3.3, C.8.20): each frame shows one segment in one plane.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -29,15 +29,15 @@ const SEGMENT_IDENTIFICATION: Tag = Tag(0x0062, 0x000A);
 const REFERENCED_SEGMENT_NUMBER: Tag = Tag(0x0062, 0x000B);
 const MAXIMUM_FRACTIONAL_VALUE: Tag = Tag(0x0062, 0x000E);
 
-/// Segmentation Storage, and Label Map Segmentation Storage.
+/// The UIDs of Segmentation Storage and Label Map Segmentation Storage.
 const CLASSES: [&str; 2] = ["1.2.840.10008.5.1.4.1.1.66.4", "1.2.840.10008.5.1.4.1.1.66.7"];
 
-/// What a frame of a segmentation shows.
+/// The content of a frame of a segmentation.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Segment {
-    /// Its number, and what it is called; `None` where pixels are the numbers of segments.
+    /// The number of the segment and its name; `None` if pixels are the numbers of segments.
     pub of: Option<(u16, String)>,
-    /// The stored number that is all of it, where pixels are shares.
+    /// The stored number that means the whole voxel, if pixels are shares.
     pub share: Option<f64>,
 }
 
@@ -46,7 +46,7 @@ pub(super) fn is_segmentation(header: Header<'_>) -> bool {
     header.text(None, SOP_CLASS_UID).is_some_and(|class| CLASSES.contains(&class.as_str()))
 }
 
-/// Refuses kinds of segmentation that are not known.
+/// Refuses unknown types of segmentation.
 pub(super) fn check(header: Header<'_>) -> Result<(), VolumeError> {
     let kind = header.text(None, SEGMENTATION_TYPE).unwrap_or_default();
     if ["BINARY", "FRACTIONAL", "LABELMAP"].contains(&kind.as_str()) {
@@ -58,7 +58,7 @@ pub(super) fn check(header: Header<'_>) -> Result<(), VolumeError> {
     Err(header.fail(Reason::unsupported(what, "convert it to NRRD or NIfTI")))
 }
 
-/// What a frame shows; `None` where the file is not a segmentation.
+/// The content of a frame; `None` if the file is not a segmentation.
 pub(super) fn of_frame(header: Header<'_>) -> Result<Option<Segment>, VolumeError> {
     if !is_segmentation(header) {
         return Ok(None);
@@ -97,7 +97,7 @@ pub(super) fn of_frame(header: Header<'_>) -> Result<Option<Segment>, VolumeErro
     Ok(Some(Segment { of: Some((number, label)), share }))
 }
 
-/// The volume of a segmentation: numbers of segments, or shares of one. Planes without a frame are 0.
+/// Builds the volume of a segmentation: numbers of segments, or shares of one segment. Planes without a frame are 0.
 pub(super) fn volume(
     path: &Path,
     mut slices: Vec<Slice>,
@@ -156,8 +156,8 @@ pub(super) fn volume(
     Ok(if is_shared { volume } else { volume.with_labels() })
 }
 
-/// Lays a plane over what is there already: a segment as its number, and other pixels as they are. The error is the number of
-/// another segment in a pixel of this one.
+/// Lays a plane over the existing pixels: a segment as its number, other pixels unchanged. The error is the number of another
+/// segment that shares a pixel with this one.
 fn lay(target: &mut [f32], plane: &[f32], number: Option<u16>) -> Result<(), u16> {
     let taken = target.par_iter_mut().zip(plane).map(|(target, &value)| {
         let Some(number) = number.filter(|_| value != 0.0) else {

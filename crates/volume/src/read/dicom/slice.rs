@@ -1,4 +1,4 @@
-//! One file of a series: its header, and its slices.
+//! One file of a series: its header and its slices.
 
 use std::path::{Path, PathBuf};
 
@@ -17,10 +17,10 @@ use crate::error::{format_error, io_error};
 use crate::read::payload::MOST_EXPANSION;
 use crate::{Dtype, Reason, VolumeError};
 
-/// A direction longer or shorter than 1 by more is none: it would scale the distances of pixels.
+/// The largest deviation of a direction's length from 1. A longer or shorter one would scale the distances of pixels.
 const LONGER: f64 = 0.01;
 
-// By their names in part 6 of the standard.
+// These are named as in part 6 of the standard.
 const IMAGE_TYPE: Tag = Tag(0x0008, 0x0008);
 const SOP_INSTANCE_UID: Tag = Tag(0x0008, 0x0018);
 const MODALITY: Tag = Tag(0x0008, 0x0060);
@@ -38,67 +38,67 @@ const ROWS: Tag = Tag(0x0028, 0x0010);
 const COLUMNS: Tag = Tag(0x0028, 0x0011);
 const PIXEL_SPACING: Tag = Tag(0x0028, 0x0030);
 const REAL_WORLD_VALUE_MAPPING: Tag = Tag(0x0040, 0x9096);
-/// Of doses of radiation (PS3.3, C.8.8.3).
+/// The frame offsets of radiation doses (PS3.3, C.8.8.3).
 const GRID_FRAME_OFFSETS: Tag = Tag(0x3004, 0x000C);
-// Functional groups.
+// These are functional groups.
 const PLANE_POSITION: Tag = Tag(0x0020, 0x9113);
 const PLANE_ORIENTATION: Tag = Tag(0x0020, 0x9116);
 const PIXEL_MEASURES: Tag = Tag(0x0028, 0x9110);
 
-/// Of the index of a medium.
+/// The records of an index of a medium (DICOMDIR).
 const DIRECTORY_RECORDS: Tag = Tag(0x0004, 0x1220);
 
-/// One slice of a series: all but its pixels.
+/// One slice of a series, without its pixels.
 #[derive(Clone, Debug)]
 pub(super) struct Slice {
     pub path: PathBuf,
-    /// Which frame of the file it is, from 0, and how many the file has.
+    /// The number of this frame in the file, from 0, and the number of frames of the file.
     pub frame: u32,
     pub frames: u32,
     /// The unique name of the file's content.
     pub instance: String,
-    /// Its place among the slices of its series, where each is a file.
+    /// The number of the slice in its series, if each slice is a file.
     pub number: Option<f64>,
     pub columns: u64,
     pub rows: u64,
-    /// Where its first pixel lies, in mm: x to the patient's left, y to the back, z to the head.
+    /// The position of the first pixel in mm: x to the patient's left, y to the back, z to the head.
     pub position: [f64; 3],
-    /// Unit vectors along which the column and the row index grow.
+    /// The unit vectors along which the column index and the row index increase.
     pub orientation: [[f64; 3]; 2],
-    /// Distance of neighbouring columns and rows in mm.
+    /// The distances between neighbouring columns and rows in mm.
     pub spacing: [f64; 2],
-    /// Distance to the next slice as the header has it, and how thick the slice is.
+    /// The distance to the next slice according to the header, and the thickness of the slice.
     pub step: Option<f64>,
     pub thickness: Option<f64>,
-    /// Which volume of several it is of.
+    /// What the slice states about the volume of several that it belongs to.
     pub index: Vec<Index>,
-    /// What its pixels mean.
+    /// The meaning of its pixels.
     pub values: Values,
-    /// The segment that it shows, where it is one of a segmentation.
+    /// The segment that it shows, if it belongs to a segmentation.
     pub segment: Option<Segment>,
 }
 
-/// A file of a series, whether it is a slice or not.
+/// A file of a series, which may have no slices.
 #[derive(Debug)]
 pub(super) struct DicomFile {
     pub path: PathBuf,
-    /// The unique name of its series.
+    /// The UID of its series.
     pub series: String,
-    /// As CT or MR.
+    /// The modality, such as CT or MR.
     pub modality: String,
     pub description: String,
     /// Columns and rows, if it is an image.
     pub size: Option<[u64; 2]>,
-    /// Whether it is an index of a medium (DICOMDIR).
+    /// Whether the file is an index of a medium (DICOMDIR).
     pub is_directory: bool,
-    /// What it states that is read in another way than stated, or not at all: said once for a series.
+    /// Statements of the file that are not followed, or followed in another way. Each is reported once for a series.
     pub notes: Vec<String>,
-    /// Its slices, one for each frame, or why it has none.
+    /// The slices, one for each frame, or the reason why there are none.
     pub slices: Result<Vec<Slice>, VolumeError>,
 }
 
 impl DicomFile {
-    /// Reads the header.
+    /// Reads the header of a file.
     pub(super) fn open(path: &Path) -> Result<Self, VolumeError> {
         let start = Start::of(path)?;
         let pixels = claims::check(path, &start)?;
@@ -125,7 +125,7 @@ impl DicomFile {
     }
 }
 
-/// What to do with the index of a medium.
+/// The error for an index of a medium (DICOMDIR), which says what to open instead.
 fn directory(path: &Path) -> Reason {
     let folder = match path.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => shown(parent),
@@ -135,7 +135,7 @@ fn directory(path: &Path) -> Reason {
     Reason::content(what, format!("name its folder, {folder}, or a file of the series"))
 }
 
-/// What a file states that is read in another way, or not at all.
+/// Statements of the file that are not followed, or followed in another way.
 fn notes(header: Header<'_>, start: &Start) -> Vec<String> {
     let inverse =
         header.text(None, PHOTOMETRIC_INTERPRETATION).is_some_and(|of| of == "MONOCHROME1");
@@ -154,7 +154,7 @@ fn notes(header: Header<'_>, start: &Start) -> Vec<String> {
 }
 
 impl Slice {
-    /// The slices of a file, from its header: one, or as many as it has frames.
+    /// The slices of a file, according to its header: as many as it has frames.
     fn all(
         path: &Path,
         header: Header<'_>,
@@ -196,7 +196,7 @@ impl Slice {
         Ok(slices)
     }
 
-    /// One frame of several.
+    /// One of the frames of a file.
     fn of(
         path: &Path,
         header: Header<'_>,
@@ -211,7 +211,7 @@ impl Slice {
         let name = "Image Orientation (Patient)";
         let [a, b, c, d, e, f] =
             header.vector::<6>(PLANE_ORIENTATION, IMAGE_ORIENTATION, name, next)?;
-        // Cosines of directions, up to the digits that they are written with.
+        // The lengths of the directions, which are 1 up to the digits written.
         let lengths = [[a, b, c], [d, e, f]].map(|[x, y, z]| x.hypot(y).hypot(z));
         if lengths.iter().any(|length| (length - 1.0).abs() > LONGER) {
             let what = format!(
@@ -219,7 +219,7 @@ impl Slice {
             );
             return Err(header.fail(Reason::header(what)));
         }
-        // The standard gives the distance of rows first.
+        // The standard puts the distance of rows first.
         let [of_rows, of_columns] =
             header.vector::<2>(PIXEL_MEASURES, PIXEL_SPACING, "Pixel Spacing", next)?;
         let number = (frames == 1).then(|| header.number(None, INSTANCE_NUMBER)).transpose()?;
@@ -247,25 +247,25 @@ impl Slice {
         })
     }
 
-    /// Its file, for people, and which frame it is of several.
+    /// The name of its file, for people, and the number of the frame if there are several.
     pub(super) fn name(&self) -> String {
         let file = shown(&self.path);
         if self.frames == 1 { file } else { format!("frame {} of {file}", self.frame + 1) }
     }
 
-    /// The direction in which slices follow each other.
+    /// The direction from one slice to the next.
     pub(super) fn normal(&self) -> [f64; 3] {
         let [column, row] = self.orientation;
         cross(column, row)
     }
 
-    /// The type of its values.
+    /// The type of the values.
     pub(super) fn dtype(&self) -> Dtype {
         self.values.dtype()
     }
 }
 
-/// How many frames a file has, whose pixels are compared with what the header claims.
+/// The number of frames of a file. The size of its pixels is compared with the header's claim.
 fn frames(
     path: &Path,
     header: Header<'_>,
@@ -278,7 +278,7 @@ fn frames(
     let expected = coding.bytes(each.saturating_mul(frames as u64).max(1));
     let length = std::fs::metadata(path).map_err(io_error(path))?.len();
     let claim = format!("claims {frames} × {columns}×{rows} pixels");
-    // Compressed pixels are shorter than what they stand for, but not by any factor.
+    // Compression makes pixels smaller, but by a limited factor.
     if expected > length.saturating_mul(MOST_EXPANSION) {
         let what = format!("{claim}, which {length} bytes cannot hold: it is truncated or damaged");
         return Err(header.fail(Reason::truncated(what)));
@@ -291,12 +291,12 @@ fn frames(
             let what = format!("{claim}, and has none: no Pixel Data {PIXEL_DATA}");
             Err(header.fail(Reason::content(what, next)))
         }
-        // Each compressed frame has a fragment of its own, with a header of 8 bytes.
+        // Each compressed frame has at least one fragment, with a header of 8 bytes.
         Some(Pixels { bytes: None, .. }) if frames > (length / 8) as f64 => {
             let what = format!("{claim}, and {length} bytes in all: it is truncated or damaged");
             Err(header.fail(Reason::truncated(what)))
         }
-        // Less than a frame may be there to fill up, as one byte to make their number even.
+        // Up to a frame of padding may follow, such as one byte that makes the length even.
         Some(Pixels { bytes: Some(found), .. })
             if found < expected || found - expected >= coding.bytes(each).max(2) =>
         {
@@ -307,7 +307,7 @@ fn frames(
     }
 }
 
-/// Refuses colours, also those of a palette.
+/// Refuses colours, including those of a palette.
 fn check_colours(header: Header<'_>, [columns, rows]: [u64; 2]) -> Result<(), VolumeError> {
     let photometric = header.text(None, PHOTOMETRIC_INTERPRETATION).unwrap_or_default();
     let what = if photometric == "PALETTE COLOR" {
@@ -322,7 +322,7 @@ fn check_colours(header: Header<'_>, [columns, rows]: [u64; 2]) -> Result<(), Vo
     Err(header.fail(Reason::not_scalar(what, Some([columns, rows, frames]))))
 }
 
-/// Refuses compressed pixels that there is no decoder for.
+/// Refuses compressed pixels that have no decoder.
 fn check_compressed(header: Header<'_>, coding: Coding, start: &Start) -> Result<(), VolumeError> {
     let next = "unpack it first, as `gdcmconv --raw` does";
     let bits = match coding {
@@ -337,7 +337,7 @@ fn check_compressed(header: Header<'_>, coding: Coding, start: &Start) -> Result
     Err(header.fail(Reason::unsupported(what, next)))
 }
 
-/// Places the frames of a file that says how far each is from the first, as doses and nuclear medicine do.
+/// Places the frames of a file that states the distance of each from the first, as for doses and nuclear medicine.
 fn spread(header: Header<'_>, slices: &mut [Slice]) -> Result<(), VolumeError> {
     let differ = |slices: &[Slice]| {
         let differ = |two: &[Slice]| {
@@ -373,14 +373,14 @@ fn spread(header: Header<'_>, slices: &mut [Slice]) -> Result<(), VolumeError> {
         ))));
     }
     for (slice, offset) in slices.iter_mut().zip(&offsets) {
-        // Where the first is not 0, they are places along the axis, of which the first is that of the file.
+        // If the first offset is not 0, offsets are positions along the axis, and the first is that of the file.
         slice.move_by(offset - offsets[0]);
     }
     Ok(())
 }
 
 impl Slice {
-    /// Moves it along its normal.
+    /// Moves the slice along its normal.
     pub(super) fn move_by(&mut self, length: f64) {
         let normal = self.normal();
         self.position = [0, 1, 2].map(|k| self.position[k] + length * normal[k]);

@@ -1,4 +1,4 @@
-//! Slices in the order of their places, and where their grid lies.
+//! Orders slices by their places, and finds their grid.
 
 use std::path::Path;
 
@@ -12,36 +12,36 @@ use crate::error::format_error;
 use crate::read::layout;
 use crate::{Coordinates, Frame, Reason, VolumeError};
 
-/// Unit vectors this alike are one; headers have six digits or more.
+/// Unit vectors whose difference is below this are equal; headers have six digits or more.
 const SAME_DIRECTION: f64 = 1e-3;
-/// A slice may be this share of a pixel off the line through the others.
+/// The largest distance of a slice from the line through the others, in pixels.
 const ASIDE: f64 = 0.5;
-/// A grid may have this many times as many slices as there are.
+/// The largest number of planes of a grid, as a multiple of the number of slices.
 const MOST_FINER: usize = 32;
-/// A place of the grid this near to a slice, as a share of the distance of slices, is that of the slice.
+/// A plane of the grid that is this near to a slice, as a share of the distance of planes, is that of the slice.
 const SAME_PLACE: f64 = 0.01;
 
-/// Slices along their normal, and the grid that they are on.
+/// Slices ordered along their normal, and their grid.
 pub(super) struct Stack {
     pub slices: Vec<Slice>,
     pub frame: Frame,
     pub order: Order,
 }
 
-/// Which planes the grid has.
+/// The planes of the grid.
 pub(super) enum Order {
     /// The slices, one after the other.
     Slices,
-    /// Between slices: the one below each plane, and the share of the next one.
+    /// Planes between slices: for each, the slice below and the share of the next one.
     Between(Vec<(usize, f64)>),
-    /// For each slice of a segmentation, the planes that it is laid into.
+    /// For each slice of a segmentation, the planes that it fills.
     Planes(Vec<Vec<usize>>),
 }
 
-/// Slices in the order of their places along the normal, and where their grid lies.
+/// Orders slices by their places along the normal, and finds their grid.
 ///
-/// Slices of other sizes or directions, two at one place and missing ones are errors. Where distances differ, the grid has
-/// the finest of them. Where slices are shifted against each other, as a tilted gantry does, the third axis is oblique.
+/// Slices of different sizes or directions, two slices at one place and missing slices are errors. If distances differ, the grid
+/// has the smallest of them. If slices are shifted against each other, as a tilted gantry does, the third axis is oblique.
 pub(super) fn stacked(
     path: &Path,
     mut slices: Vec<Slice>,
@@ -74,7 +74,7 @@ pub(super) fn stacked(
     Ok(Stack { slices, frame, order })
 }
 
-/// Refuses slices that are not of one grid.
+/// Refuses slices that do not belong to one grid.
 fn alike(slices: &[Slice], first: &Slice) -> Result<(), Reason> {
     for slice in slices {
         let (name, other) = (slice.name(), first.name());
@@ -108,8 +108,8 @@ fn alike(slices: &[Slice], first: &Slice) -> Result<(), Reason> {
     Ok(())
 }
 
-/// How far one gets along the line through the first and the last slice while going one millimetre along the normal.
-/// A slice beside this line is an error.
+/// The displacement along the line through the first and the last slice for one millimetre along the normal. A slice beside this
+/// line is an error.
 fn line(slices: &[Slice], normal: [f64; 3]) -> Result<[f64; 3], Reason> {
     let [first, .., last] = slices else { return Ok(normal) };
     let whole = sub(last.position, first.position);
@@ -136,7 +136,7 @@ fn line(slices: &[Slice], normal: [f64; 3]) -> Result<[f64; 3], Reason> {
     Ok(line)
 }
 
-/// The distance of planes, and which planes there are.
+/// The distance of planes, and the planes themselves.
 fn even(slices: &[Slice], normal: [f64; 3], no_resample: bool) -> Result<(f64, Order), Reason> {
     let at: Vec<f64> = slices.iter().map(|slice| dot(slice.position, normal)).collect();
     let numbers: Option<Vec<f64>> = slices.iter().map(|slice| slice.number).collect();
@@ -165,11 +165,11 @@ fn even(slices: &[Slice], normal: [f64; 3], no_resample: bool) -> Result<(f64, O
     Ok((step, Order::Between(places)))
 }
 
-/// The same for a segmentation, in which a plane without a frame is empty.
+/// Like [`even`], for a segmentation, in which a plane without a frame is empty.
 fn planes(slices: &[Slice], normal: [f64; 3], no_resample: bool) -> Result<(f64, Order), Reason> {
     let places: Vec<f64> = slices.iter().map(|slice| dot(slice.position, normal)).collect();
     let first = &slices[0];
-    // Frames of several segments, each of which may have one there.
+    // Each of several segments may have a frame at the same place.
     let mut at: Vec<f64> = Vec::new();
     for &place in &places {
         if at.last().is_none_or(|last| place - last > 1e-3) {
@@ -225,12 +225,12 @@ fn planes(slices: &[Slice], normal: [f64; 3], no_resample: bool) -> Result<(f64,
     Ok((step, Order::Planes(places.iter().map(plane).collect())))
 }
 
-/// The distance to a next slice that is not there.
+/// The distance to the next slice if there is only one.
 fn thickness(slice: &Slice) -> f64 {
     slice.step.map(f64::abs).or(slice.thickness).filter(|&step| step > 0.0).unwrap_or(1.0)
 }
 
-/// For each place of a finer grid, the slice below and the share of the next.
+/// For each plane of a finer grid, the slice below and the share of the next.
 fn between(at: &[f64], step: f64) -> Result<Vec<(usize, f64)>, Reason> {
     let most = (at[at.len() - 1] - at[0]) / step + SAME_PLACE;
     if most >= (MOST_FINER * at.len()) as f64 {
@@ -255,7 +255,7 @@ fn between(at: &[f64], step: f64) -> Result<Vec<(usize, f64)>, Reason> {
     Ok((0..=most as usize).map(place).collect())
 }
 
-/// Which distances there are, for people.
+/// Describes the distances, for people.
 fn several(at: &[f64]) -> String {
     let mut counts: Vec<(f64, usize)> = Vec::new();
     for two in at.windows(2) {
@@ -279,7 +279,7 @@ fn several(at: &[f64]) -> String {
     }
 }
 
-/// The error where slices may not be resampled.
+/// The error if slices would have to be resampled but must not be.
 fn refused(what: String, said: &str, how: &str) -> Reason {
     let next = advice!["omit ", Setting::NoResample, format!(" to resample them {how} to {said}")];
     Reason::choice(Setting::NoResample, format!("holds a series whose {what}"), next)

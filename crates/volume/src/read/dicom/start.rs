@@ -1,5 +1,5 @@
-//! Where the data set of a file begins, and how it is encoded. Files have a preamble, a mark and a group of elements that
-//! names the encoding (PS3.10, 7.1), or lack any of these.
+//! Finds the start and the encoding of the data set in a file. Files have a preamble, a mark and a group of elements that names
+//! the encoding (PS3.10, 7.1), or lack any of these.
 
 use std::fs::File;
 use std::io::{self, BufReader, Cursor, Read, Seek, SeekFrom};
@@ -22,19 +22,19 @@ const IMPLICIT: &str = "1.2.840.10008.1.2";
 const EXPLICIT: &str = "1.2.840.10008.1.2.1";
 const EXPLICIT_BIG: &str = "1.2.840.10008.1.2.2";
 
-/// Where a data set begins, and how it is encoded.
+/// The start and the encoding of a data set.
 #[derive(Clone, Debug)]
 pub(super) struct Start {
-    /// Its first byte.
+    /// The position of its first byte.
     at: u64,
-    /// The unique name of its transfer syntax.
+    /// The UID of its transfer syntax.
     pub uid: String,
-    /// What is said where that is seen by its first elements.
+    /// The warning if the encoding was recognised by the first elements.
     pub guessed: Option<String>,
 }
 
 impl Start {
-    /// Of a file.
+    /// Finds the data set in a file.
     pub(super) fn of(path: &Path) -> Result<Self, VolumeError> {
         let mut file = BufReader::new(File::open(path).map_err(io_error(path))?);
         let length = file.get_ref().metadata().map_err(io_error(path))?.len();
@@ -43,7 +43,7 @@ impl Start {
         file.seek(SeekFrom::Start(at)).map_err(io_error(path))?;
         let decoder = ExplicitVRLittleEndianDecoder::default();
         let mut uid = None;
-        // The group of elements about the file, whose length need not be stated.
+        // This is the group of elements about the file, whose length need not be stated.
         while peek(&mut file, 2).map_err(io_error(path))? == [2, 0] {
             let Ok((header, bytes)) = decoder.decode_header(&mut file) else { break };
             let claimed = header.len.get().unwrap_or(0);
@@ -69,7 +69,7 @@ impl Start {
             });
         let is_plain = |uid: &str| [IMPLICIT, EXPLICIT, EXPLICIT_BIG].contains(&uid);
         match (uid.filter(|uid| !uid.is_empty()), seen) {
-            // Some programs state one of these and write another.
+            // Some programs state one encoding and write another.
             (Some(uid), Some((other, how))) if is_plain(&uid) && uid != other => {
                 let guessed = format!(
                     "states an encoding that its first elements do not have, and is read as {how}"
@@ -90,7 +90,7 @@ impl Start {
         }
     }
 
-    /// How it is encoded, or the error that there is no decoder.
+    /// The encoding, or the error that it has no decoder.
     pub(super) fn syntax(&self, path: &Path) -> Result<&'static TransferSyntax, VolumeError> {
         static REGISTRY: TransferSyntaxRegistry = TransferSyntaxRegistry;
         REGISTRY.get(&self.uid).ok_or_else(|| {
@@ -100,14 +100,14 @@ impl Start {
         })
     }
 
-    /// The bytes of the data set.
+    /// Opens the file at the start of the data set.
     pub(super) fn open(&self, path: &Path) -> Result<BufReader<File>, VolumeError> {
         let mut file = File::open(path).map_err(io_error(path))?;
         file.seek(SeekFrom::Start(self.at)).map_err(io_error(path))?;
         Ok(BufReader::new(file))
     }
 
-    /// The data set, up to an element and without it if one is given.
+    /// Reads the data set, or the part before the element `until`.
     pub(super) fn object(
         &self,
         path: &Path,
@@ -118,13 +118,13 @@ impl Start {
             Some(tag) => options.read_until(tag),
             None => options,
         };
-        // The parser wants a whole file: it gets the head of one that says no more than the transfer syntax.
+        // The parser needs a whole file. It gets a header that states only the transfer syntax.
         let head = Cursor::new(head(&self.uid));
         options.from_reader(head.chain(self.open(path)?)).map_err(|error| damaged(path, &error))
     }
 }
 
-/// The next bytes, which are read again afterwards.
+/// Returns the next bytes without consuming them.
 fn peek(file: &mut BufReader<File>, bytes: u64) -> io::Result<Vec<u8>> {
     let mut found = Vec::new();
     file.take(bytes).read_to_end(&mut found)?;
@@ -132,7 +132,7 @@ fn peek(file: &mut BufReader<File>, bytes: u64) -> io::Result<Vec<u8>> {
     Ok(found)
 }
 
-/// The mark, and the group of elements that each file should begin with.
+/// Creates the mark and the group of elements with which a file should begin.
 fn head(syntax: &str) -> Vec<u8> {
     let element = |number: u16, value: &str| {
         let padded = value.len().next_multiple_of(2);

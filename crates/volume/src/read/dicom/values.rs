@@ -1,4 +1,4 @@
-//! What the numbers in pixels mean: how they are stored, which of them are padding, and the values that they stand for.
+//! The meaning of the numbers in pixels: how they are stored, which of them are padding, and the values that they represent.
 
 use std::sync::Arc;
 
@@ -24,15 +24,15 @@ const MODALITY_LUT_SEQUENCE: Tag = Tag(0x0028, 0x3000);
 const LUT_DESCRIPTOR: Tag = Tag(0x0028, 0x3002);
 const LUT_DATA: Tag = Tag(0x0028, 0x3006);
 const PIXEL_VALUE_TRANSFORMATION: Tag = Tag(0x0028, 0x9145);
-/// Of doses of radiation (PS3.3, C.8.8.3).
+/// The scaling of radiation doses (PS3.3, C.8.8.3).
 const DOSE_GRID_SCALING: Tag = Tag(0x3004, 0x000E);
 
-/// How a number is stored.
+/// The coding of stored numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Coding {
-    /// One bit, eight in a byte, the first in the lowest.
+    /// One bit; a byte contains eight pixels, the first in its lowest bit.
     Bit,
-    /// The bits from `high` down, `stored` of them, of so many bytes.
+    /// An integer in `stored` bits, from bit `high` down, of a word of `bytes` bytes.
     Integer {
         bytes: u32,
         stored: u32,
@@ -44,7 +44,7 @@ pub(super) enum Coding {
 }
 
 impl Coding {
-    /// That of the pixels in an element, if the header says how they are stored there.
+    /// The coding of the pixels in an element, if the header says how they are stored.
     pub(super) fn of(header: Header<'_>, pixels: Option<Tag>) -> Result<Self, VolumeError> {
         match pixels {
             Some(FLOAT_PIXEL_DATA) => return Ok(Self::Float),
@@ -78,7 +78,7 @@ impl Coding {
         Ok(Self::Integer { bytes, stored, high, signed })
     }
 
-    /// Bytes of so many pixels.
+    /// The number of bytes of a number of pixels.
     pub(super) fn bytes(self, pixels: u64) -> u64 {
         match self {
             Self::Bit => pixels.div_ceil(8),
@@ -92,7 +92,7 @@ impl Coding {
         matches!(self, Self::Integer { signed: true, .. })
     }
 
-    /// The least and the largest number that can be stored; `None` for those with fractions.
+    /// The smallest and the largest number that can be stored; `None` for codings with fractions.
     fn range(self) -> Option<(f64, f64)> {
         match self {
             Self::Bit => Some((0.0, 1.0)),
@@ -108,12 +108,12 @@ impl Coding {
     }
 }
 
-/// The numbers that stand for no data, as they are stored.
+/// The stored numbers that represent no data.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Padding {
     pub low: f64,
     pub high: f64,
-    /// Whether they are beyond what the stored bits hold, and compared with all bits of a pixel.
+    /// Whether the numbers are beyond the range of the stored bits, and are therefore compared with all bits of a pixel.
     whole: bool,
 }
 
@@ -126,7 +126,7 @@ impl Padding {
         };
         let number = |tag| match header.element(None, tag) {
             None => Ok(None),
-            // Its type is that of pixels, whatever the file or a dictionary says.
+            // The number has the type of pixels, whatever the file or a dictionary says.
             Some(element) if coding.range().is_some() => match word(element, coding.is_signed()) {
                 None if element.value().multiplicity() == 0 => Ok(None),
                 None => header.number(None, tag),
@@ -135,26 +135,26 @@ impl Padding {
             Some(element) => Ok(element.to_float64().ok()),
         };
         let Some(value) = number(tags[0])? else { return Ok(None) };
-        // With the value alone, the limit is the value.
+        // If there is no limit, it equals the value.
         let limit = number(tags[1])?.unwrap_or(value);
         let (low, high) = (value.min(limit), value.max(limit));
         let whole = coding.range().is_some_and(|(least, most)| low < least || high > most);
         Ok(Some(Self { low, high, whole }))
     }
 
-    /// Whether a number is one of them: as it is stored, and of all bits.
+    /// Whether a pixel is padding; `stored` is its number in the stored bits, `whole` that of all bits.
     fn holds(&self, stored: f64, whole: f64) -> bool {
         let number = if self.whole { whole } else { stored };
         (self.low..=self.high).contains(&number) || number.is_nan() && self.low.is_nan()
     }
 }
 
-/// The first number of 16 bits in an element, if it holds such.
+/// The first 16-bit number in an element, if its type holds such numbers.
 fn word(element: &InMemElement, signed: bool) -> Option<f64> {
     words(element, signed)?.first().copied()
 }
 
-/// The numbers of 16 bits in an element, if it holds such, whichever of their types it has.
+/// The 16-bit numbers in an element, if its type holds such numbers.
 fn words(element: &InMemElement, signed: bool) -> Option<Vec<f64>> {
     if !["US", "SS", "OW", "OB", "UN"].contains(&element.vr().to_string()) {
         return None;
@@ -166,14 +166,14 @@ fn words(element: &InMemElement, signed: bool) -> Option<Vec<f64>> {
     Some(bytes.as_chunks().0.iter().map(number).collect())
 }
 
-/// What stored numbers become.
+/// The mapping from stored numbers to values.
 #[derive(Clone, Debug, PartialEq)]
 enum Mapping {
     Linear { slope: f64, intercept: f64 },
     Table(Arc<Table>),
 }
 
-/// The values of stored numbers from `first` on; before them stands the first, behind them the last.
+/// The values of stored numbers from `first` on. Smaller numbers have the first value, larger ones the last.
 #[derive(Debug, PartialEq)]
 struct Table {
     first: f64,
@@ -181,7 +181,7 @@ struct Table {
 }
 
 impl Mapping {
-    /// That of a frame: a Modality LUT, or a slope and an intercept.
+    /// The mapping of a frame: a Modality LUT, or a slope and an intercept.
     fn of(header: Header<'_>, coding: Coding) -> Result<Self, VolumeError> {
         let number = |tag| header.number(PIXEL_VALUE_TRANSFORMATION, tag);
         let (slope, intercept) = (number(RESCALE_SLOPE)?, number(RESCALE_INTERCEPT)?);
@@ -238,11 +238,11 @@ impl Table {
                 "whose LUT Descriptor {LUT_DESCRIPTOR} has {count} numbers, not 3"
             )));
         };
-        // As many as 16 bits cannot count.
+        // 0 means 2¹⁶, which 16 bits cannot hold.
         let count = if *count == 0.0 { 1 << 16 } else { *count as usize };
         let data = item.get(LUT_DATA);
         let bytes = data.and_then(|data| data.value().to_bytes().ok()).unwrap_or_default();
-        // Entries are unsigned (C.11.1.1), but for those of a type that is not.
+        // Entries are unsigned (C.11.1.1), except those of a signed type.
         let signed = data.is_some_and(|data| data.vr().to_string() == "SS");
         let entries: Vec<f64> = if bytes.len() >= 2 * count {
             data.and_then(|data| words(data, signed)).unwrap_or_default()
@@ -261,30 +261,30 @@ impl Table {
     }
 }
 
-/// What the numbers in the pixels of a frame mean.
+/// The meaning of the numbers in the pixels of a frame.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Values {
     pub coding: Coding,
     pub padding: Option<Padding>,
     mapping: Mapping,
-    /// What values are multiplied by in the end.
+    /// The factor by which values are multiplied in the end.
     factor: f64,
 }
 
 impl Values {
-    /// Of a frame, whose pixels are in this element.
+    /// The meaning of the pixels of a frame that are stored in this coding.
     pub(super) fn of(header: Header<'_>, coding: Coding) -> Result<Self, VolumeError> {
         let padding = Padding::of(header, coding)?;
         let factor = header.number_or(DOSE_GRID_SCALING, 1.0)?;
         Ok(Self { coding, padding, mapping: Mapping::of(header, coding)?, factor })
     }
 
-    /// The same, multiplied by a factor.
+    /// Multiplies the values by a factor.
     pub(super) fn times(self, factor: f64) -> Self {
         Self { factor: self.factor * factor, ..self }
     }
 
-    /// The type that holds all values there can be, if they are whole, and otherwise `f32`.
+    /// The type that holds all possible values if they are whole; otherwise `f32`.
     pub(super) fn dtype(&self) -> Dtype {
         let Some((least, most)) = self.coding.range() else {
             return if self.coding == Coding::Double { Dtype::F64 } else { Dtype::F32 };
@@ -296,7 +296,7 @@ impl Values {
             let holds = |dtype: &&Dtype| ends.iter().all(|&end| dtype.holds(end));
             among.iter().find(holds).copied().unwrap_or(Dtype::F32)
         };
-        // Bytes are gray levels only where the file stores them so.
+        // Bytes are gray levels only if the file stores them as bytes.
         let wide = [Dtype::U16, Dtype::I16, Dtype::U32, Dtype::I32];
         let is_wide = matches!(self.coding, Coding::Integer { bytes: 2.., .. });
         match &self.mapping {
@@ -311,8 +311,8 @@ impl Values {
         }
     }
 
-    /// The values of the pixels of a frame, and which of them are padding, if any is. `bytes` are those of all frames, of
-    /// which `first` pixels come before.
+    /// The values of the pixels of a frame, and which of them are padding, if any is. `bytes` contains all frames, and `first`
+    /// pixels precede this one.
     pub(super) fn decode(
         &self,
         bytes: &[u8],
@@ -352,7 +352,7 @@ impl Values {
                 let size = size as usize;
                 let words = bytes.get(first * size..end * size)?;
                 let number = |word: u32, low: u32, bits: u32| {
-                    // To the upper end, so that what is above is gone, and back with the sign.
+                    // The shift to the upper end removes the bits above; the shift back extends the sign.
                     let up = word << (32 - bits - low);
                     let down = 32 - bits;
                     if signed { f64::from(up as i32 >> down) } else { f64::from(up >> down) }

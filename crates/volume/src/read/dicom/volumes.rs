@@ -1,4 +1,4 @@
-//! Which slices of a series make one volume: copies are dropped, and times, echoes or stacks told apart.
+//! Divides the slices of a series into volumes: copies are dropped, and times, echoes or stacks are separated.
 
 use std::cmp::Ordering;
 use std::collections::{HashMap, HashSet};
@@ -14,11 +14,11 @@ use crate::error::format_error;
 use crate::read::frames::FrameChoice;
 use crate::{Reason, VolumeError};
 
-/// Places nearer than this, in mm, are one.
+/// Places that are nearer than this, in mm, are equal.
 const SAME_PLACE: f64 = 1e-3;
 
-/// The slices without copies: files of one SOP Instance UID with the same places and pixels. Those with other pixels are
-/// refused, and copies do not have other places.
+/// The slices without copies. Copies are slices in different files with the same SOP Instance UID and place. They are refused if
+/// their pixels differ.
 ///
 /// The inner error is about a file whose pixels cannot be read.
 pub(super) fn without_copies(
@@ -82,7 +82,7 @@ pub(super) fn without_copies(
     Ok(Ok(kept))
 }
 
-/// The slices of the volume that is asked for, of those of a series.
+/// The slices of the requested volume of a series.
 pub(super) fn chosen(
     path: &Path,
     slices: Vec<Slice>,
@@ -93,8 +93,8 @@ pub(super) fn chosen(
     Ok(volumes.swap_remove(choice.index as usize))
 }
 
-/// The volumes of a series: stacks are volumes of their own, and where slices share their places, the first index that parts
-/// them. One, where nothing does.
+/// The volumes of a series. Stacks are always separate volumes; slices that share places are separated by the first index that
+/// distinguishes them. Without such an index there is one volume.
 fn several(slices: Vec<Slice>) -> Vec<Vec<Slice>> {
     let stacks = parted(&slices, &[STACK.to_owned()]).unwrap_or_else(|| vec![slices]);
     stacks.into_iter().flat_map(by_index).collect()
@@ -107,7 +107,7 @@ fn by_index(slices: Vec<Slice>) -> Vec<Vec<Slice>> {
     }
     let names = slices[0].index.iter().map(|index| index.name.clone());
     let names: Vec<String> = names.filter(|name| name != STACK).collect();
-    // One index alone, if one is enough; otherwise as few of the first as are.
+    // A single index is tried first, then as few of the first ones together as possible.
     let alone = names.iter().map(std::slice::from_ref);
     let together = (2..=names.len()).map(|count| &names[..count]);
     let volumes = alone.chain(together).filter_map(|names| parted(&slices, names));
@@ -115,13 +115,13 @@ fn by_index(slices: Vec<Slice>) -> Vec<Vec<Slice>> {
     apart.next().unwrap_or_else(|| vec![slices.clone()])
 }
 
-/// What the slice states of these indices; `None` where it lacks one of them.
+/// The values of these indices of a slice; `None` if it lacks one of them.
 fn keys(slice: &Slice, names: &[String]) -> Option<Vec<Key>> {
     let key = |name: &String| slice.index.iter().find(|index| index.name == *name);
     names.iter().map(|name| key(name).map(|index| index.value.clone())).collect()
 }
 
-/// The slices with the same keys, in the order of keys; `None` where one has no keys, or all have the same.
+/// Groups slices by their keys, in the order of keys; `None` if a slice has no keys, or all slices have the same.
 fn parted(slices: &[Slice], names: &[String]) -> Option<Vec<Vec<Slice>>> {
     let mut keyed: Vec<(Vec<Key>, &Slice)> =
         slices.iter().map(|slice| Some((keys(slice, names)?, slice))).collect::<Option<_>>()?;

@@ -1,4 +1,4 @@
-//! Gray JPEG slices, none of whose data may be missing.
+//! Gray JPEG slices, whose data must be complete.
 
 use std::io::Read;
 use std::path::Path;
@@ -19,10 +19,10 @@ pub(super) fn is_jpeg(start: &[u8]) -> bool {
     start.starts_with(&[0xff, 0xd8])
 }
 
-/// Reads a slice.
+/// Reads a slice, and checks that its data are complete.
 ///
-/// Where data are missing, decoders go on as if zeros followed, and do not say so. So the image is decoded twice, with different bytes
-/// appended to the data of each scan, which a decoder passes over if it needs no more: if the results differ, data are missing.
+/// If data are missing, decoders silently continue as if zeros followed. So the image is decoded twice, with different bytes
+/// appended to the data of each scan, which a decoder ignores if it needs no more: if the results differ, data are missing.
 pub(super) fn page(path: &Path, file: &OpenFile) -> Result<Page, VolumeError> {
     let refused = |reason| format_error(path, reason);
     let mut bytes = Vec::new();
@@ -40,7 +40,7 @@ pub(super) fn page(path: &Path, file: &OpenFile) -> Result<Page, VolumeError> {
     let orientation = headers.exif_data().and_then(Orientation::from_exif_chunk);
     let orientation = orientation.unwrap_or(Orientation::NoTransforms).to_exif();
     let remarks = tiff::orientation_remark(orientation.into()).into_iter().collect();
-    // Of each pixel a coefficient, the levels of both times, and the sample.
+    // For each pixel: a coefficient, the levels of both decodings, and the sample.
     let room = usize::try_from(size[0] * size[1] * 8).unwrap_or(usize::MAX);
     afford(room, || format!("an image of {width}×{height} pixels"))?;
     let cut = || refused(Reason::truncated("ends inside its image: it is truncated"));
@@ -68,7 +68,7 @@ pub(super) fn page(path: &Path, file: &OpenFile) -> Result<Page, VolumeError> {
     Ok(Page { size, dtype: Dtype::U8, samples: once.into_iter().map(f32::from).collect(), remarks })
 }
 
-/// Bytes that are appended to the data of a scan.
+/// The number of bytes that are appended to the data of a scan.
 const APPENDED: usize = 64;
 
 fn unreadable(error: &Error) -> Reason {
@@ -85,7 +85,7 @@ fn unreadable(error: &Error) -> Reason {
 mod tests {
     use super::*;
 
-    /// 24 × 16 gray levels as libjpeg writes them, by scans that refine each other.
+    /// A JPEG file of 24 × 16 gray levels written by libjpeg, with scans that refine each other.
     const PROGRESSIVE: &str = "\
         ffd8ffe000104a46494600010100000100010000ffdb0043001b12141714111b1716171e1c1b2028422b28252528513a3d30\
         42605565645f555d5b6a7899816a7190735b5d85b586909ea3abadab6780bcc9baa6c799a8aba4ffc2000b08001000180101\
@@ -96,7 +96,7 @@ mod tests {
         3dde9c3842943b101260c300c63c5a83e98af20183b0a7ffd9\
         ";
 
-    /// The same with a restart marker after every second block.
+    /// The image of [`PROGRESSIVE`] with a restart marker after every second block.
     const RESTARTED: &str = "\
         ffd8ffe000104a46494600010100000100010000ffdb0043001b12141714111b1716171e1c1b2028422b28252528513a3d30\
         42605565645f555d5b6a7899816a7190735b5d85b586909ea3abadab6780bcc9baa6c799a8aba4ffc0000b08001000180101\
@@ -105,7 +105,7 @@ mod tests {
         1d1e38ac4fffd185287b5d8d7c8e4a45839153ffd9\
         ";
 
-    /// The same in one scan.
+    /// The image of [`PROGRESSIVE`] in one scan.
     const BASELINE: &str = "\
         ffd8ffe000104a46494600010100000100010000ffdb0043001b12141714111b1716171e1c1b2028422b28252528513a3d30\
         42605565645f555d5b6a7899816a7190735b5d85b586909ea3abadab6780bcc9baa6c799a8aba4ffc0000b08001000180101\
@@ -135,7 +135,7 @@ mod tests {
             assert_eq!(samples.len(), 24 * 16);
             for end in 2..whole.len() {
                 assert!(read(&whole[..end]).is_err(), "{end} bytes");
-                // Closed again, as some programs do.
+                // Some programs append an end marker to truncated data.
                 let closed = [&whole[..end], &[0xff, 0xd9]].concat();
                 if let Ok(found) = read(&closed) {
                     assert!(found == samples, "{end} bytes and an end marker");

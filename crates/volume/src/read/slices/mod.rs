@@ -15,15 +15,15 @@ use crate::read::payload::MOST_EXPANSION;
 use crate::read::tiff::{self, Page};
 use crate::{Dims, Dtype, Endian, Frame, Reason, Volume, VolumeError};
 
-/// What slices are called.
+/// The extensions of slices.
 const EXTENSIONS: [[&str; 2]; 3] = [["png", "png"], ["jpg", "jpeg"], ["tif", "tiff"]];
 
-/// Pictures that are none.
+/// The extensions of pictures that are not read as slices.
 const OTHER_PICTURES: [&str; 7] = ["bmp", "dcm", "gif", "jp2", "pgm", "ppm", "webp"];
 
-/// Reads a folder of gray PNG, JPEG or TIFF slices, all of one kind and size, in the natural order
-/// of their names: `slice9` before `slice10`. Their numbers must be a row without gaps, also with decimals and signs. Other files and hidden
-/// ones are passed over.
+/// Reads a folder of gray PNG, JPEG or TIFF slices, all of one kind and size, in the natural order of their names: `slice9`
+/// before `slice10`. Their numbers, which may have decimals and signs, must be a sequence without gaps. Other files and hidden
+/// files are ignored.
 pub(crate) fn read(folder: &Path) -> Result<Volume, VolumeError> {
     let paths = slices(folder)?;
     numbers::check(folder, &paths)?;
@@ -57,7 +57,7 @@ pub(crate) fn read(folder: &Path) -> Result<Volume, VolumeError> {
     Layout { dims, dtype, endian, frame, encoding, frames: FrameChoice::ONE }.volume(stack)
 }
 
-/// Why a folder is not read that holds no slices.
+/// Why a folder without slices is not read.
 fn no_slices(folder: &Path) -> Reason {
     let entries =
         || std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
@@ -166,7 +166,7 @@ fn page(path: &Path, is_first: bool) -> Result<Page, VolumeError> {
     }
 }
 
-/// Checks that a file of this length may hold as many pixels as it claims. PNG may have eight of them in a byte; JPEG has 64 in
+/// Checks that a file of this length may contain as many pixels as it claims. PNG may have eight pixels in a byte; JPEG has 64 in
 /// two bits at best.
 fn check_claim(path: &Path, [width, height]: [u64; 2], length: u64) -> Result<(), VolumeError> {
     if width * height <= length.saturating_mul(8 * MOST_EXPANSION) {
@@ -178,11 +178,11 @@ fn check_claim(path: &Path, [width, height]: [u64; 2], length: u64) -> Result<()
     Err(format_error(path, Reason::claims_more(what)))
 }
 
-/// What the header of a PNG says of its pixels.
+/// What the header of a PNG says about its pixels.
 #[derive(Clone, Copy, PartialEq)]
 enum Png {
     Palette,
-    /// Gray levels of so many bits.
+    /// Gray levels with this number of bits.
     Gray(u8),
     Other,
 }
@@ -197,7 +197,7 @@ impl Png {
         })
     }
 
-    /// How far apart levels are once they are spread over a byte.
+    /// The distance of levels after they are spread over a byte.
     fn step(self) -> u8 {
         match self {
             Self::Gray(1) => 255,
@@ -208,7 +208,7 @@ impl Png {
     }
 }
 
-/// Compares names, runs of digits by their number.
+/// Compares names, with runs of digits compared by their number.
 fn natural(a: &str, b: &str) -> Ordering {
     let (mut a, mut b) = (a.as_bytes(), b.as_bytes());
     loop {

@@ -1,4 +1,4 @@
-//! The numbers in the names of slices: one of them counts the slices, without a gap.
+//! The numbers in the names of slices: one of them must count the slices without a gap.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -8,7 +8,7 @@ use walpha_base::shown::shown;
 use crate::error::format_error;
 use crate::{Reason, VolumeError};
 
-/// A name without its extension.
+/// The name of a slice without its extension.
 struct Name {
     /// The text around the numbers.
     around: Vec<String>,
@@ -16,7 +16,7 @@ struct Name {
     numbers: Vec<Number>,
 }
 
-/// A run of digits without zeros in front, behind their number: the longer one is the larger one.
+/// A run of digits without leading zeros, preceded by its length: of two numbers, the longer one is larger.
 type Number = (usize, String);
 
 impl Name {
@@ -38,8 +38,7 @@ impl Name {
     }
 }
 
-/// Refuses slices that are several groups, or of which one is missing. They come in the natural order of their
-/// names.
+/// Refuses slices that form several groups, or of which one is missing. They are in the natural order of their names.
 pub(super) fn check(folder: &Path, paths: &[PathBuf]) -> Result<(), VolumeError> {
     let names: Vec<Name> = paths.iter().map(|path| Name::of(path)).collect();
     if names.len() < 2 {
@@ -65,7 +64,7 @@ pub(super) fn check(folder: &Path, paths: &[PathBuf]) -> Result<(), VolumeError>
     Err(format_error(folder, reason))
 }
 
-/// What is wrong with names as whole numbers.
+/// What is wrong with names whose numbers are whole.
 fn wrong(paths: &[PathBuf], names: &[Name]) -> Option<Reason> {
     let first = names.first()?;
     match names.iter().position(|name| name.around != first.around) {
@@ -74,8 +73,8 @@ fn wrong(paths: &[PathBuf], names: &[Name]) -> Option<Reason> {
     }
 }
 
-/// The same slices in the order of a number with decimals or signs in their names, where that counts them by equal steps, and
-/// whole numbers do not.
+/// Orders the slices by a number with decimals or signs in their names, if that number counts them in equal steps and whole
+/// numbers do not.
 pub(super) fn by_real_numbers(paths: &[PathBuf]) -> Option<Vec<PathBuf>> {
     let names: Vec<Name> = paths.iter().map(|path| Name::of(path)).collect();
     let is_apart = |name: &Name| {
@@ -123,7 +122,7 @@ fn real_numbers(path: &Path) -> (Vec<String>, Vec<f64>) {
     (around, numbers)
 }
 
-/// What is wrong with names that differ in their numbers alone.
+/// What is wrong with names that differ only in their numbers.
 fn check_row(paths: &[PathBuf], names: &[Name]) -> Option<Reason> {
     let column = |i: usize| names.iter().map(move |name| &name.numbers[i]);
     let distinct = |i: usize| column(i).collect::<BTreeSet<_>>().len();
@@ -131,7 +130,7 @@ fn check_row(paths: &[PathBuf], names: &[Name]) -> Option<Reason> {
     let is_row = |i: &&usize| distinct(**i) == names.len() && column(**i).is_sorted();
     let rows: Vec<usize> = varying.iter().filter(is_row).copied().collect();
     if rows.is_empty() {
-        // Two slices of one number, which the first of several numbers tells apart.
+        // Two slices have the same number, and the first of several numbers distinguishes them.
         let last = *varying.last().unwrap_or(&0);
         let mut first = BTreeMap::new();
         let again = |i: usize| first.insert(&names[i].numbers[last], i).map(|earlier| (earlier, i));
@@ -142,7 +141,7 @@ fn check_row(paths: &[PathBuf], names: &[Name]) -> Option<Reason> {
     gaps?.into_iter().next()
 }
 
-/// The first gap in a row of numbers.
+/// The first gap in a sequence of numbers.
 fn gap<'a>(paths: &[PathBuf], numbers: impl Iterator<Item = &'a Number>) -> Option<Reason> {
     // Numbers of more than 38 digits are not counts.
     let value =
@@ -214,7 +213,7 @@ mod tests {
             sorted(&["z-1.png", "z-2.png", "z0.png"]),
             expected(&["z-2.png", "z-1.png", "z0.png"])
         );
-        // As whole numbers they are a row.
+        // They are a sequence of whole numbers.
         assert_eq!(sorted(&["s1.1.png", "s1.2.png", "s1.3.png"]), None);
         assert_eq!(sorted(&["a-1.png", "a-2.png"]), None);
     }

@@ -1,4 +1,4 @@
-//! The directories of a TIFF file: what each page says of itself, before one is decoded.
+//! The directories of a TIFF file: what each page states, before a page is decoded.
 
 use std::io::{self, BufReader, Read, Seek, SeekFrom};
 use std::ops::Range;
@@ -8,23 +8,23 @@ use crate::error::{format_error, io_error};
 use crate::read::OpenFile;
 use crate::{Reason, VolumeError};
 
-/// A page, by its directory.
+/// A page, described by its directory.
 pub(super) struct Directory {
-    /// Where its values are: tag, type, count, and the place of the value or of where it is.
+    /// The locations of its values: tag, type, count, and position.
     entries: Vec<Entry>,
 }
 
 /// A field of a directory.
 struct Entry {
     tag: u16,
-    /// 1 bytes, 2 text, 3 and 4 whole numbers, 5 pairs of them, 16 whole numbers of 64 bits.
+    /// 1 stands for bytes, 2 for text, 3 and 4 for whole numbers, 5 for pairs of them, 16 for whole numbers of 64 bits.
     kind: u16,
     count: u64,
-    /// Of its bytes in the file.
+    /// The position of its bytes in the file.
     at: u64,
 }
 
-/// Tags that are looked at here; the decoder has those of pixels.
+/// The tags that are read here; the decoder reads those of pixels.
 pub(super) mod tag {
     pub(crate) const NEW_SUBFILE_TYPE: u16 = 254;
     pub(crate) const SUBFILE_TYPE: u16 = 255;
@@ -46,7 +46,7 @@ pub(super) mod tag {
     pub(crate) const GDAL_NODATA: u16 = 42113;
 }
 
-/// The tags above, all others are passed over.
+/// The tags above; all others are ignored.
 const LOOKED_AT: [u16; 18] = [
     tag::NEW_SUBFILE_TYPE,
     tag::SUBFILE_TYPE,
@@ -68,12 +68,12 @@ const LOOKED_AT: [u16; 18] = [
     tag::GDAL_NODATA,
 ];
 
-/// Tags have 16 bits.
+/// The largest number of entries: tags have 16 bits.
 const MOST_ENTRIES: u64 = 1 << 16;
-/// Photometric interpretation 0.
+/// The value of photometric interpretation for images in which 0 is white.
 const WHITE_IS_ZERO: u64 = 0;
 
-/// The directories of a file, one for each page, and the file to read their values from.
+/// The directories of a file, one for each page, and the file from which their values are read.
 pub(super) struct Directories<'a> {
     path: &'a Path,
     pub(super) file: &'a OpenFile,
@@ -82,7 +82,7 @@ pub(super) struct Directories<'a> {
 }
 
 impl<'a> Directories<'a> {
-    /// Goes from directory to directory, each of which begins in another place.
+    /// Follows the chain of directories. Each must begin in another place.
     pub(super) fn read(file: &'a OpenFile) -> Result<Self, VolumeError> {
         let path = file.path();
         let failed = |error: io::Error| match error.kind() {
@@ -97,7 +97,7 @@ impl<'a> Directories<'a> {
         let big_endian = start.starts_with(b"MM");
         let number = |bytes: &[u8]| number(bytes, big_endian);
         let big = number(&start[2..4]) == 43;
-        // Bytes of a count of entries, of an entry, and of a place.
+        // The sizes in bytes of a count of entries, of an entry, and of a position.
         let (count_size, entry_size, place_size) = if big { (8, 20, 8) } else { (2, 12, 4) };
         let mut next = number(&start[4..]);
         if big {
@@ -149,7 +149,7 @@ impl<'a> Directories<'a> {
         Ok(Self { path, file, big_endian, pages })
     }
 
-    /// The bytes of a value, up to those that there are.
+    /// The bytes of a value, as far as the file contains them.
     fn bytes(&self, page: usize, tag: u16) -> Result<Option<(&Entry, Vec<u8>)>, VolumeError> {
         let entry = self.pages.get(page).and_then(|page| page.entry(tag));
         let Some(entry) = entry else { return Ok(None) };
@@ -169,18 +169,18 @@ impl<'a> Directories<'a> {
         }))
     }
 
-    /// How many values there are.
+    /// The number of values of a field.
     pub(super) fn count(&self, page: usize, tag: u16) -> Option<u64> {
         self.pages.get(page)?.entry(tag).map(|entry| entry.count)
     }
 
-    /// Whole numbers of so many bytes and doubles, by their places in a value that is a table of them.
+    /// A value that is a table of whole numbers and doubles at certain positions.
     pub(super) fn table(&self, page: usize, tag: u16) -> Result<Option<Table>, VolumeError> {
         let found = self.bytes(page, tag)?;
         Ok(found.map(|(_, bytes)| Table { bytes, big_endian: self.big_endian }))
     }
 
-    /// A value that is a ratio.
+    /// A value that is a ratio of two numbers.
     pub(super) fn ratio(&self, page: usize, tag: u16) -> Result<Option<f64>, VolumeError> {
         let found = self.bytes(page, tag)?.filter(|(entry, _)| entry.kind == 5);
         Ok(found.and_then(|(_, bytes)| {
@@ -190,7 +190,7 @@ impl<'a> Directories<'a> {
         }))
     }
 
-    /// A text, up to its first 0: in UTF-8, or else in Latin-1.
+    /// A text up to its first 0, in UTF-8 or else in Latin-1.
     pub(super) fn text(&self, page: usize, tag: u16) -> Result<Option<String>, VolumeError> {
         let found = self.bytes(page, tag)?;
         Ok(found.map(|(_, bytes)| {
@@ -202,7 +202,7 @@ impl<'a> Directories<'a> {
         }))
     }
 
-    /// Whether a page is a smaller copy of another one (a thumbnail, a level of a pyramid) or a mask.
+    /// Whether a page is a mask, or a smaller copy of another page (a thumbnail, a level of a pyramid).
     pub(super) fn is_copy(&self, page: usize) -> Result<bool, VolumeError> {
         let flags = self.number(page, tag::NEW_SUBFILE_TYPE)?.unwrap_or(0);
         let old = self.number(page, tag::SUBFILE_TYPE)?.unwrap_or(1);
@@ -214,12 +214,12 @@ impl<'a> Directories<'a> {
         Ok(self.number(page, tag::NEW_SUBFILE_TYPE)?.unwrap_or(0) & 0b100 != 0)
     }
 
-    /// Whether a page says that 0 is white.
+    /// Whether a page states that 0 is white.
     pub(super) fn is_white_zero(&self, page: usize) -> Result<bool, VolumeError> {
         Ok(self.number(page, tag::PHOTOMETRIC)? == Some(WHITE_IS_ZERO))
     }
 
-    /// The file, for a decoder that would turn white and black round: every page says that 0 is black.
+    /// The file for a decoder that would invert white and black: every page states that 0 is black.
     pub(super) fn as_stored(&self) -> Result<AsStored<'a>, VolumeError> {
         let mut ones = Vec::new();
         for page in 0..self.pages.len() {
@@ -241,25 +241,25 @@ impl Directory {
     }
 }
 
-/// A value that holds numbers of several types.
+/// A value that contains numbers of several types.
 pub(super) struct Table {
     bytes: Vec<u8>,
     big_endian: bool,
 }
 
 impl Table {
-    /// A whole number of `size` bytes.
+    /// A whole number of `size` bytes at a position.
     pub(super) fn number(&self, place: usize, size: usize) -> Option<u64> {
         Some(number(self.bytes.get(place..place + size)?, self.big_endian))
     }
 
-    /// A double.
+    /// A double at a position.
     pub(super) fn double(&self, place: usize) -> Option<f64> {
         self.number(place, 8).map(f64::from_bits)
     }
 }
 
-/// Bytes of a value of a type. What is of no type known has none.
+/// The size in bytes of a value of a type; 0 for an unknown type.
 fn size_of_kind(kind: u16) -> u64 {
     match kind {
         1 | 2 | 6 | 7 => 1,
@@ -270,13 +270,13 @@ fn size_of_kind(kind: u16) -> u64 {
     }
 }
 
-/// A whole number of up to 8 bytes.
+/// Converts up to 8 bytes to a whole number.
 fn number(bytes: &[u8], big_endian: bool) -> u64 {
     let add = |sum: u64, &byte: &u8| sum << 8 | u64::from(byte);
     if big_endian { bytes.iter().fold(0, add) } else { bytes.iter().rev().fold(0, add) }
 }
 
-/// A file in which some bytes read as 1.
+/// A file in which some bytes are read as 1.
 pub(super) struct AsStored<'a> {
     reader: BufReader<&'a std::fs::File>,
     at: u64,

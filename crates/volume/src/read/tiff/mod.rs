@@ -22,17 +22,15 @@ use crate::{Dims, Dtype, Endian, Reason, Sample, Volume, VolumeError};
 use directories::{AsStored, Directories, tag};
 use stack::{PageRange, StackInfo};
 
-/// The most a compression that TIFF knows expands by: LZW writes up to 4096 bytes for a code of 12
-/// bits.
+/// The largest factor by which a compression of TIFF expands data: LZW writes up to 4096 bytes for a code of 12 bits.
 const MOST_EXPANSION: u64 = 2731;
 
-/// Reads TIFF and `BigTIFF`: the pages are the slices, those aside that are smaller copies of others. Values are as
-/// stored, whatever they look like. Spacing is what `ImageJ` or OME-XML say of it in
-/// the description of the first page; resolutions of other programs are those of prints.
+/// Reads TIFF and `BigTIFF`. The pages are the slices, except smaller copies of others. Values are as stored, whatever their
+/// display. The spacing is that of `ImageJ` or OME-XML in the description of the first page; resolutions of other programs are
+/// those of prints.
 ///
-/// Large stacks that `ImageJ` writes after a single page are read too. Of a stack with several channels or
-/// times, `frame` chooses one volume, channels counted first. Colours, palettes and samples of fewer
-/// than 8 bits are refused.
+/// Large stacks that `ImageJ` writes after a single page are read, too. If a stack has several channels or times, `frame` chooses
+/// one volume, channels counted first. Colours, palettes and samples of fewer than 8 bits are refused.
 pub(crate) fn read(
     file: &OpenFile,
     frame: Option<u64>,
@@ -85,7 +83,7 @@ pub(crate) fn read(
     info.layout(path, dims, first.dtype, Endian::Little, FrameChoice::ONE)?.volume(stack)
 }
 
-/// Reads one page alone, as a slice of a folder; of the first one is said what is passed over.
+/// Reads a single page, as a slice of a folder. For the first slice, warns about skipped pages.
 pub(super) fn read_page(path: &Path, is_first: bool) -> Result<Page, VolumeError> {
     let file = OpenFile::open(path)?;
     let mut pages = Pages::open(&file)?;
@@ -111,25 +109,25 @@ pub(super) fn read_page(path: &Path, is_first: bool) -> Result<Page, VolumeError
 
 /// A decoded page.
 pub(super) struct Page {
-    /// Samples along x and y.
+    /// The number of samples along x and y.
     pub size: [u64; 2],
     pub dtype: Dtype,
     pub samples: Vec<f32>,
-    /// What it states that is not taken.
+    /// Remarks on statements of the page that are not followed.
     pub remarks: Vec<String>,
 }
 
-/// The first row is the top, and the first column the left.
+/// The orientation in which the first row is the top and the first column the left.
 const AS_STORED: u64 = 1;
 
-/// What is said of another orientation.
+/// The remark on another orientation.
 pub(super) fn orientation_remark(orientation: u64) -> Option<String> {
     (orientation != AS_STORED).then(|| {
         format!("Orientation {orientation} is passed over: rows and columns are as stored")
     })
 }
 
-/// Says each remark once.
+/// Reports each remark once.
 pub(super) fn say(path: &Path, remarks: &[String], said: &mut Vec<String>) {
     for remark in remarks {
         if !said.contains(remark) {
@@ -143,10 +141,10 @@ struct Pages<'a> {
     path: &'a Path,
     decoder: Decoder<AsStored<'a>>,
     directories: Directories<'a>,
-    /// The pages that are slices, and the one where the decoder is.
+    /// The pages that are slices, and the current page of the decoder.
     slices: Vec<usize>,
     at: usize,
-    /// The most bytes all samples can have.
+    /// The largest possible size of all samples in bytes.
     most: u64,
     rounding: Rounding,
 }
@@ -155,7 +153,7 @@ impl<'a> Pages<'a> {
     fn open(file: &'a OpenFile) -> Result<Self, VolumeError> {
         let (path, length) = (file.path(), file.length());
         let most = length.saturating_mul(MOST_EXPANSION);
-        // The decoder's own limits are those of photographs; the length of the file is a better one.
+        // The decoder's own limits are made for photographs; the length of the file is a better limit.
         let mut limits = Limits::default();
         limits.decoding_buffer_size = usize::try_from(most).unwrap_or(usize::MAX);
         limits.intermediate_buffer_size = limits.decoding_buffer_size;
@@ -167,7 +165,7 @@ impl<'a> Pages<'a> {
                 slices.push(page);
             }
         }
-        // Copies of nothing that is there.
+        // All pages claim to be copies, but there is nothing to be copied.
         if slices.is_empty() {
             for page in 0..directories.pages.len() {
                 if !directories.is_mask(page)? {
@@ -189,7 +187,7 @@ impl<'a> Pages<'a> {
         Ok(Self { path, decoder, directories, slices, at: 0, most, rounding })
     }
 
-    /// Says which of the pages are not slices.
+    /// Reports the pages that are not slices.
     fn say_what_is_left_out(&self) {
         let copies = self.directories.pages.len() - self.slices.len();
         if copies > 0 {
@@ -198,7 +196,7 @@ impl<'a> Pages<'a> {
         }
     }
 
-    /// Which of the things that a page states are not taken.
+    /// Remarks on statements of a page that are not followed.
     fn remarks(&self, page: usize) -> Result<Vec<String>, VolumeError> {
         let directories = &self.directories;
         let mut remarks = Vec::new();
@@ -223,7 +221,7 @@ impl<'a> Pages<'a> {
         Ok(remarks)
     }
 
-    /// Goes to a slice, not before the one where the decoder is.
+    /// Moves to a slice, which must not be before the current one.
     fn go_to(&mut self, slice: u64) -> Result<usize, VolumeError> {
         let page = self.slices[slice as usize];
         while self.at < page {
@@ -233,7 +231,7 @@ impl<'a> Pages<'a> {
         Ok(page)
     }
 
-    /// Refuses another page where the file cannot hold so many samples.
+    /// Refuses another page if the file cannot contain so many samples.
     fn reserve(&mut self, slice: u64, samples: usize, dtype: Dtype) -> Result<(), VolumeError> {
         self.go_to(slice)?;
         let (x, y) = self.decoder.dimensions().map_err(damaged(self.path))?;
@@ -246,7 +244,7 @@ impl<'a> Pages<'a> {
         Ok(())
     }
 
-    /// Refuses what is not a row of gray values.
+    /// Refuses pages whose pixels are not single gray values.
     fn check_gray(&self, page: usize) -> Result<(), VolumeError> {
         let fail = |reason: Reason| Err(format_error(self.path, reason));
         let number = |tag, default| {
@@ -296,7 +294,7 @@ impl<'a> Pages<'a> {
         }
     }
 
-    /// Refuses JPEG strips and tiles of this page that have no end: decoders go on as if zeros followed, and do not say so.
+    /// Refuses JPEG strips and tiles of this page that have no end marker: decoders silently continue as if zeros followed.
     fn check_jpegs(&mut self) -> Result<(), VolumeError> {
         const JPEG: u64 = 7;
         let path = self.path;
@@ -348,7 +346,7 @@ impl<'a> Pages<'a> {
         }
         self.reserve(slice, 0, Dtype::U8)?;
         self.check_jpegs()?;
-        // As they are stored, and as floats.
+        // Memory for the samples as they are stored, and as floats.
         let room = u64::from(x) * u64::from(y) * (u64::from(bits / 8) + 4);
         let room = usize::try_from(room).unwrap_or(usize::MAX);
         afford(room, || format!("a page of {x}×{y} samples"))?;
@@ -381,7 +379,7 @@ impl<'a> Pages<'a> {
         Ok(Page { size, dtype, samples, remarks })
     }
 
-    /// Numbers as samples.
+    /// Converts numbers to samples, and reports rounding.
     fn rounded(&self, numbers: Vec<impl Sample>) -> Vec<f32> {
         let samples = numbers.into_iter().map(|number| self.rounding.sample(number)).collect();
         self.rounding.say(self.path);

@@ -1,5 +1,5 @@
-//! What programs say of a stack in the first page: `ImageJ`, OME-XML, SCIFIO and tifffile in its description, and `MetaMorph` and
-//! Zeiss in tags of their own.
+//! The statements of programs about a stack in its first page: those of `ImageJ`, OME-XML, SCIFIO and tifffile in the
+//! description, and those of `MetaMorph` and Zeiss in their own tags.
 
 use std::path::Path;
 
@@ -14,17 +14,17 @@ use crate::read::frames::FrameChoice;
 use crate::read::layout::{Encoding, Layout, diagonal, frame, one_unit, unit_named};
 use crate::{Coordinates, Dims, Dtype, Endian, LengthUnit, Reason, VolumeError};
 
-/// What the first page says of the stack.
+/// The statements of the first page about the stack.
 #[derive(Debug)]
 pub(super) struct StackInfo {
     spacing: [f64; 3],
     origin: [f64; 3],
     unit: LengthUnit,
-    /// Pages, as `ImageJ`, tifffile and `MetaMorph` count them, which may follow the only one that there is.
+    /// The number of pages according to `ImageJ`, tifffile or `MetaMorph`. They may follow a single page.
     pub(super) images: Option<u64>,
-    /// What the pages run along, fastest first, and how many there are of each.
+    /// The axes along which the pages run, fastest first, and the number of positions on each.
     axes: [(Axis, u64); 3],
-    /// Whether other images follow that have nothing to do with this one.
+    /// Whether unrelated images follow.
     others: bool,
 }
 
@@ -35,21 +35,21 @@ enum Axis {
     Time,
 }
 
-/// The pages of one volume: `count` from `first` on, each `step` after the one before.
+/// The pages of one volume: `count` of them, beginning with `first`, each `step` after the one before.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PageRange {
     pub first: u64,
     pub step: u64,
     pub count: u64,
-    /// Which of the file's volumes it is.
+    /// The choice of this volume among those of the file.
     pub frames: FrameChoice,
 }
 
-/// Millimetres of an inch.
+/// The number of millimetres in an inch.
 const INCH: f64 = 25.4;
 
 impl StackInfo {
-    /// Pages that are slices, of which nothing is known.
+    /// A stack whose pages are slices, without further information.
     const PLAIN: Self = Self {
         spacing: [1.0; 3],
         origin: [0.0; 3],
@@ -59,7 +59,7 @@ impl StackInfo {
         others: false,
     };
 
-    /// Looks at the first page.
+    /// Interprets the first page.
     pub(super) fn of(
         path: &Path,
         directories: &Directories,
@@ -112,7 +112,7 @@ impl StackInfo {
         Ok(info)
     }
 
-    /// Whether anything is said of where samples lie.
+    /// Whether the spacing of samples is known.
     pub(super) fn has_spacing(&self) -> bool {
         self.unit != LengthUnit::Voxel
     }
@@ -134,7 +134,7 @@ impl StackInfo {
         let unit = value("unit");
         let units = [unit, value("yunit").or(unit), value("zunit").or(unit)];
         let (spacing, unit) = calibration(path, directories, first, units, slices)?;
-        // Places of the origin are counted in pixels.
+        // The positions of the origin are in pixels.
         let places =
             ["xorigin", "yorigin", "zorigin"].map(|key| real(key).filter(|&place| place != 0.0));
         let origin = [0, 1, 2].map(|k| places[k].map_or(0.0, |place| -place * spacing[k]));
@@ -149,7 +149,7 @@ impl StackInfo {
         Ok(Self { spacing, origin, unit, images: count("images"), axes, others: false })
     }
 
-    /// By lists of axes, fastest first, in a description of SCIFIO.
+    /// Interprets a description of SCIFIO by its lists of axes, fastest first.
     fn of_scifio(path: &Path, text: &str) -> Result<Self, VolumeError> {
         let list = |key: &str| -> Vec<&str> {
             let line = text.lines().find_map(|line| line.strip_prefix(key)?.strip_prefix('='));
@@ -189,7 +189,7 @@ impl StackInfo {
         Ok(Self { spacing, unit, images, axes, ..Self::PLAIN })
     }
 
-    /// By the shape, slowest axis first, that tifffile describes, and the names of axes, where it has some.
+    /// Interprets the shape in tifffile's description, slowest axis first, and the names of axes, if there are any.
     fn of_shape(
         path: &Path,
         directories: &Directories,
@@ -208,7 +208,7 @@ impl StackInfo {
         let pages = beyond.map(|beyond| (0..beyond).rev().map(|k| (letters[k].as_str(), shape[k])));
         let axes = pages.and_then(axes_of).ok_or_else(|| unlike_pages(path, names))?;
         let images = axes.iter().fold(1, |product: u64, (_, size)| product.saturating_mul(*size));
-        // Of one page each, arrays are slices that were written one by one.
+        // Arrays of one page each are slices that were written one by one.
         let info = Self { axes, images: Some(images), others: images > 1, ..Self::PLAIN };
         let (slices, unit) = (about["spacing"].as_f64(), about["unit"].as_str());
         if slices.is_none() && unit.is_none() {
@@ -227,13 +227,13 @@ impl StackInfo {
         Ok(Self { spacing, unit, ..info })
     }
 
-    /// By the table of Zeiss' LSM, in which lengths are metres.
+    /// Interprets the table of Zeiss' LSM format, in which lengths are in metres.
     fn of_lsm(path: &Path, table: &Table) -> Result<Self, VolumeError> {
         let damaged =
             || format_error(path, Reason::damaged("has a table CZ_LSMINFO that is too short"));
         let size = |place| table.number(place, 4).ok_or_else(damaged);
         let scan = table.number(88, 2).ok_or_else(damaged)?;
-        // Planes of x and y: a stack, times of a plane, and times of a stack.
+        // These scan types consist of planes of x and y: a stack, times of a plane, and times of a stack.
         if !matches!(scan, 0 | 3 | 6) {
             let what =
                 format!("is an LSM file of scan type {scan}: only planes of x and y are read");
@@ -247,7 +247,7 @@ impl StackInfo {
         for (k, length) in spacing.iter_mut().enumerate() {
             *length = micrometres.length(table.double(40 + 8 * k).ok_or_else(damaged)?);
         }
-        // A single plane has no distance.
+        // A single plane has no distance to the next.
         if spacing[2] == 0.0 && axes[0].1 <= 1 {
             spacing[2] = spacing[0];
         }
@@ -316,7 +316,7 @@ impl StackInfo {
         info.ok_or_else(|| damaged(&"it has no element Pixels"))
     }
 
-    /// What an element Pixels says.
+    /// Interprets an element Pixels.
     fn of_pixels(
         path: &Path,
         text: &dyn Fn(&str) -> Result<Option<String>, VolumeError>,
@@ -331,7 +331,7 @@ impl StackInfo {
         for (k, axis) in ["X", "Y", "Z"].into_iter().enumerate() {
             let Some(length) = number(&format!("PhysicalSize{axis}"))? else { continue };
             spacing[k] = length;
-            // The schema's default.
+            // This is the schema's default.
             let unit = text(&format!("PhysicalSize{axis}Unit"))?;
             units[k] = Some(unit.map_or(LengthUnit::Micrometre, |name| unit_named(path, &name)));
         }
@@ -351,7 +351,7 @@ impl StackInfo {
         Ok(Self { spacing, unit, axes, ..Self::PLAIN })
     }
 
-    /// The page of a slice of a channel at a time.
+    /// The page of a slice in a channel at a time.
     fn page_of(&self, [z, c, t]: [u64; 3]) -> u64 {
         let mut step = 1u64;
         let mut page = 0u64;
@@ -367,15 +367,15 @@ impl StackInfo {
         page
     }
 
-    /// Pages of all volumes, as the description counts them.
+    /// The number of pages of all volumes, according to the description.
     fn stated(&self) -> u64 {
         let of_axes =
             self.axes.iter().fold(1u64, |product, (_, size)| product.saturating_mul(*size));
         self.images.unwrap_or(1).max(of_axes)
     }
 
-    /// The pages of the volume asked for, of `pages` there are. Where pages run along one axis only, they are
-    /// slices, whatever the program called them: a stack of many channels and one slice is common.
+    /// The pages of the requested volume, of `pages` in all. If pages run along one axis only, they are slices, whatever the
+    /// program called them: a stack of many channels with one slice is common.
     pub(super) fn wanted(
         &self,
         path: &Path,
@@ -425,7 +425,7 @@ impl StackInfo {
         Ok(PageRange { first, step: along.max(1), count: slices, frames })
     }
 
-    /// The grid of a volume.
+    /// The layout of a volume.
     pub(super) fn layout(
         &self,
         path: &Path,
@@ -441,8 +441,8 @@ impl StackInfo {
     }
 }
 
-/// Spacing and unit by the resolution of pixels, which is counted in the unit of x that the description names, or else in that of its
-/// tag, and a distance of slices.
+/// The spacing and its unit according to the resolution of pixels and a distance of slices. The resolution is in the unit of x
+/// that the description names, or else in that of its tag.
 fn calibration(
     path: &Path,
     directories: &Directories,
@@ -450,7 +450,7 @@ fn calibration(
     [x, y, z]: [Option<&str>; 3],
     slices: f64,
 ) -> Result<([f64; 3], LengthUnit), VolumeError> {
-    // Pixels a unit.
+    // The resolution in pixels per unit.
     let along = |tag| {
         Ok::<f64, VolumeError>(directories.ratio(first, tag)?.map_or(1.0, |pixels| 1.0 / pixels))
     };
@@ -473,11 +473,12 @@ fn calibration(
     Ok((spacing, unit))
 }
 
-/// Pages that are slices.
+/// The axes of a stack whose pages are slices.
 const SLICES: [(Axis, u64); 3] = [(Axis::Slice, 1), (Axis::Channel, 1), (Axis::Time, 1)];
 
-/// Slices, channels and times of axes by their names, fastest first. Axes of one page are left out; one of another name takes the place
-/// of slices, or else that of times or channels, where it is free. `None` where there is none left, or two have one name.
+/// The slices, channels and times of axes with these names, fastest first. Axes of one page are left out. An axis with another
+/// name becomes that of slices or, if this is taken, of times or channels. `None` if all are taken, or two axes have the same
+/// meaning.
 fn axes_of<'a>(named: impl Iterator<Item = (&'a str, u64)>) -> Option<[(Axis, u64); 3]> {
     let known = |name: &str| match name {
         "Z" => Some(Axis::Slice),
@@ -500,7 +501,7 @@ fn axes_of<'a>(named: impl Iterator<Item = (&'a str, u64)>) -> Option<[(Axis, u6
     axes?.try_into().ok()
 }
 
-/// The error for axes of which pages are not made.
+/// The error for axes that cannot be those of pages.
 fn unlike_pages(path: &Path, names: &str) -> VolumeError {
     let what = format!(
         "has the axes {names:?} by its description: pages of x and y are read, along slices, channels and times"
@@ -508,7 +509,7 @@ fn unlike_pages(path: &Path, names: &str) -> VolumeError {
     format_error(path, Reason::unsupported(what, "save it in that order"))
 }
 
-/// Numbers of slices, channels and times, in the order that OME names, as in XYZCT.
+/// The numbers of slices, channels and times, in the order that OME names, such as XYZCT.
 fn ordered(order: &str, [z, c, t]: [u64; 3]) -> Option<[(Axis, u64); 3]> {
     let axis = |letter| match letter {
         'Z' => Some((Axis::Slice, z)),

@@ -1,4 +1,4 @@
-//! Samples that VTK hides.
+//! Samples that VTK marks as hidden.
 
 use std::path::Path;
 
@@ -7,14 +7,13 @@ use walpha_base::shown::shown;
 use crate::error::format_error;
 use crate::{Reason, VolumeError};
 
-/// The array of bytes that says which points or cells are copies of those of another piece, or hidden.
+/// The name of the array of bytes that mark points or cells as hidden, or as copies of those in another piece.
 pub(super) const NAME: &str = "vtkGhostType";
-/// Its bits of hidden points and cells (vtkDataSetAttributes.h).
+/// The bits of hidden points and cells in such bytes (vtkDataSetAttributes.h).
 const HIDDEN_POINT: u8 = 2;
 const HIDDEN_CELL: u8 = 32;
 
-/// Which samples are hidden by these bytes, `None` where none is. They are not data: the least of the others replaces
-/// them.
+/// Finds the samples that these bytes hide; `None` if none is hidden. They are not data: the least of the others replaces them.
 pub(super) fn hide(
     path: &Path,
     samples: &mut [f32],

@@ -10,8 +10,8 @@ use crate::read::layout::{Encoding, Layout, frame};
 use crate::{Dims, Endian, Reason, Volume, VolumeError};
 use walpha_base::Monitor;
 
-/// Reads VTI, VTK's image data in XML, in one piece: the array of this name; or else the active scalars of
-/// its points, its first array of points, or of cells, whose samples are at the cells' centres.
+/// Reads VTI, VTK's image data in XML, in one piece: the array with this name; or else the active scalars of its points, the
+/// first array of points, or one of cells, whose samples are at the cells' centres.
 pub(crate) fn read(
     file: &OpenFile,
     wanted: Option<&str>,
@@ -80,8 +80,8 @@ pub(crate) fn read(
     Ok(volume.with_missing(hidden))
 }
 
-/// The array to read, and whether it is one of cells. Those of points come first; which one was taken is
-/// said where there are others.
+/// Chooses the array to read, and returns whether it belongs to cells. Arrays of points come first. If there are others, the
+/// choice is reported.
 fn choose(file: &VtkXml, piece: usize, wanted: Option<&str>) -> Result<(usize, bool), Reason> {
     let name = |array: usize| file.attribute(array, "Name").unwrap_or_default();
     let mut arrays = Vec::new();

@@ -16,9 +16,8 @@ use crate::read::layout::{Encoding, Layout, frame};
 use crate::read::text::{self, Lines};
 use crate::{Coordinates, Dims, Dtype, Endian, Reason, Volume, VolumeError};
 
-/// Reads the legacy VTK format (VTK User's Guide, "VTK File Formats"), text or binary (big endian):
-/// the scalars of this name of a `STRUCTURED_POINTS` dataset; or else the first ones of its points, or of
-/// its cells, located at the cells' centres.
+/// Reads the legacy VTK format (VTK User's Guide, "VTK File Formats"), text or binary (big endian): the scalars of this name in a
+/// `STRUCTURED_POINTS` dataset; or else the first scalars of its points, or of its cells, located at the cells' centres.
 pub(crate) fn read(
     file: &OpenFile,
     wanted: Option<&str>,
@@ -30,7 +29,7 @@ pub(crate) fn read(
     let (grid, arrays) = header(path, &mut lines)?;
     let (ghosts, mut arrays): (Vec<Array>, Vec<Array>) =
         arrays.into_iter().partition(|array| array.name == ghosts::NAME);
-    // Without a name only scalars come in question, where there are any, and those of points first.
+    // Without a name, only scalars are considered if there are any, and those of points come first.
     if wanted.is_none() && arrays.iter().any(|array| array.components == 1) {
         arrays.retain(|array| array.components == 1);
     }
@@ -111,8 +110,8 @@ fn read_binary(
     Ok(volume)
 }
 
-/// Which of some arrays, each with its name and whether it is one of cells: that of the name wanted, or
-/// else the first, which is said where there are others.
+/// Chooses among arrays, each with its name and whether it belongs to cells: the one with the wanted name, or else the first. If
+/// there are others, the choice is reported.
 pub(super) fn choice(arrays: &[(&str, bool)], wanted: Option<&str>) -> Result<usize, Reason> {
     let shown = |&(name, cells): &(&str, bool)| {
         if cells { format!("{name} (of cells)") } else { name.to_owned() }
@@ -140,7 +139,7 @@ pub(super) fn choice(arrays: &[(&str, bool)], wanted: Option<&str>) -> Result<us
     }
 }
 
-/// Reads the grid, and finds the arrays.
+/// Reads the grid and finds the arrays.
 fn header(path: &Path, lines: &mut Lines<impl BufRead>) -> Result<(Grid, Vec<Array>), VolumeError> {
     let fail = |reason: Reason| format_error(path, reason);
     let first = lines.read_line().map_err(io_error(path))?.unwrap_or_default();
@@ -170,7 +169,7 @@ fn header(path: &Path, lines: &mut Lines<impl BufRead>) -> Result<(Grid, Vec<Arr
             "DIMENSIONS" => grid.dims = Some(numbers(path, &words)?),
             "ORIGIN" => grid.origin = numbers(path, &words)?,
             "SPACING" | "ASPECT_RATIO" => grid.spacing = numbers(path, &words)?,
-            // VTK writes the matrix row after row.
+            // VTK writes the matrix row by row.
             "DIRECTION" => {
                 let rows: [f64; 9] = numbers(path, &words)?;
                 grid.direction = [0, 1, 2].map(|r| [0, 1, 2].map(|c| rows[3 * r + c]));
@@ -251,8 +250,7 @@ impl Grid {
     }
 }
 
-/// From the points of a grid to the centres of its cells. An axis of one point has cells of no
-/// thickness on it.
+/// Moves a grid from its points to the centres of its cells. Along an axis of one point, cells have no thickness.
 pub(super) fn to_centres(dims: &mut [u64; 3], origin: &mut [f64; 3], axes: [[f64; 3]; 3]) {
     for (size, axis) in dims.iter_mut().zip(axes).filter(|(size, _)| **size > 1) {
         *size -= 1;
@@ -273,7 +271,7 @@ fn numbers<const N: usize>(path: &Path, words: &[&str]) -> Result<[f64; N], Volu
     })
 }
 
-/// Where the text of numbers ends: at its end, or at a line that begins with a keyword.
+/// The end of the text of numbers: the end of the text, or a line that begins with a keyword.
 fn end_of_numbers(text: &[u8]) -> usize {
     let mut start = 0;
     for line in text.split_inclusive(|&byte| byte == b'\n') {
@@ -285,7 +283,7 @@ fn end_of_numbers(text: &[u8]) -> usize {
     text.len()
 }
 
-/// Whether nothing but white space follows, or a keyword.
+/// Whether a keyword follows, or nothing but white space.
 fn at_keyword(reader: &mut impl BufRead) -> std::io::Result<bool> {
     let mut rest = Vec::new();
     reader.take(4096).read_to_end(&mut rest)?;

@@ -1,4 +1,4 @@
-//! The arrays of a legacy VTK file, found before one is read.
+//! Finds the arrays of a legacy VTK file before one is read.
 
 use std::io::BufRead;
 use std::path::Path;
@@ -7,7 +7,7 @@ use crate::error::{format_error, io_error};
 use crate::read::text::Lines;
 use crate::{Dtype, Reason, VolumeError};
 
-/// Keywords that begin a section after the grid.
+/// The keywords that begin a section after the grid.
 pub(super) const KEYWORDS: [&str; 14] = [
     "METADATA",
     "SCALARS",
@@ -25,10 +25,10 @@ pub(super) const KEYWORDS: [&str; 14] = [
     "CELL_DATA",
 ];
 
-/// What is wrong with a file of a grid alone.
+/// The error for a file that contains only a grid.
 pub(super) const NO_SCALARS: &str = "ends before any SCALARS: it is truncated, or holds no samples";
 
-/// The name of the array of places.
+/// The name of the array of positions.
 pub(super) const POINTS: &str = "POINTS";
 
 /// The type of texts.
@@ -39,27 +39,27 @@ const TEXTS: &str = "string";
 pub(super) struct Array {
     pub name: String,
     pub cells: bool,
-    /// Values for each point or cell.
+    /// The number of values for each point or cell.
     pub components: u64,
-    /// In all.
+    /// The number of values in all.
     pub values: u64,
-    /// The type, as VTK calls it.
+    /// The type by its name in VTK.
     pub kind: String,
-    /// `COLOR_SCALARS`, as VTK calls bytes, which text gives as shares of 255.
+    /// Whether the array is `COLOR_SCALARS`, VTK's name for bytes, which are shares of 255 in text.
     pub colours: bool,
-    /// `SCALARS`, as VTK calls what it shows.
+    /// Whether the array is `SCALARS`, VTK's name for the data to show.
     pub active: bool,
-    /// Where the values begin, and where they end as far as that is known.
+    /// The positions of the first value and of the end of the values, as far as it is known.
     pub start: u64,
     pub end: Option<u64>,
-    /// No other array follows without a keyword before it.
+    /// Whether no other array follows without a keyword before it.
     pub last: bool,
 }
 
-/// Finds the arrays; `line` begins the data of points or cells.
+/// Finds the arrays. `line` begins the data of points or cells.
 ///
-/// The scan ends at whatever cannot be parsed after the first array, which is said. Texts are not samples, and found where there
-/// is nothing else.
+/// After the first array, the scan ends at anything that cannot be parsed, with a warning. Texts are not samples, and are found
+/// only if there is nothing else.
 pub(super) fn find(
     path: &Path,
     lines: &mut Lines<impl BufRead>,
@@ -75,11 +75,11 @@ pub(super) fn find(
     Ok(found)
 }
 
-/// How many cells a keyword lists, in the plural.
+/// The number of cells that a keyword lists, with its name in the plural.
 pub(super) type CellList = (&'static str, u64);
 
-/// Finds the places and the arrays that lie behind the line DATASET, and the cells, single points aside. Where
-/// cells come as `offsets` and corners, as from version 5 on, each of these is an array of its own.
+/// Finds the positions and the arrays behind the line DATASET, and the cells, except single points. If cells are stored as
+/// `offsets` and corners, as from version 5 on, each of these is a separate array.
 pub(super) fn find_all(
     path: &Path,
     lines: &mut Lines<impl BufRead>,
@@ -96,12 +96,12 @@ struct Scanner<'a, R> {
     path: &'a Path,
     lines: &'a mut Lines<R>,
     text: bool,
-    /// Whether cells are two arrays.
+    /// Whether cells are stored as two arrays.
     offsets: bool,
-    /// The lengths of these.
+    /// The lengths of these two arrays.
     lists: [u64; 2],
     cells: bool,
-    /// Points or cells.
+    /// The number of points or cells.
     count: u64,
     found: Vec<Array>,
     listed: Vec<CellList>,
@@ -113,7 +113,7 @@ impl<'a, R: BufRead> Scanner<'a, R> {
         Self { path, lines, text, offsets, lists, cells, count, found, listed }
     }
 
-    /// Finds them all, from a line on.
+    /// Finds all arrays, starting from a line.
     fn all(&mut self, mut line: Option<String>) -> Result<(), VolumeError> {
         let scanner = self;
         let path = scanner.path;
@@ -138,7 +138,7 @@ impl<'a, R: BufRead> Scanner<'a, R> {
         Ok(())
     }
 
-    /// Goes over what a line begins; `false` where it begins nothing that is known.
+    /// Skips the section that a line begins; returns `false` if it does not begin a known section.
     fn section(&mut self, line: &str) -> Result<bool, VolumeError> {
         let words: Vec<&str> = line.split_whitespace().collect();
         let Some(keyword) = words.first() else { return Ok(true) };
@@ -162,12 +162,12 @@ impl<'a, R: BufRead> Scanner<'a, R> {
                     array.active = true;
                 }
             }
-            // What lies between the line DATASET and the data of points.
+            // Sections between the line DATASET and the data of points.
             POINTS => self.array(POINTS, word(2), 3, number(1), true)?,
             "DIMENSIONS" => {}
             "VERTICES" | "LINES" | "POLYGONS" | "TRIANGLE_STRIPS" | "CELLS" => {
                 let [first, second] = [number(1), number(2)];
-                // Numbers of offsets and corners, or of cells and of these with their corners.
+                // The numbers of offsets and corners, or of cells and of all numbers in their lists.
                 let (cells, corners) = if self.offsets {
                     (first.saturating_sub(1), second)
                 } else {
@@ -212,13 +212,13 @@ impl<'a, R: BufRead> Scanner<'a, R> {
         Ok(true)
     }
 
-    /// So many arrays with a line each. VTK writes here whatever is not its active attribute.
+    /// Finds `count` arrays, each with a line of its own. VTK writes all data here except its active attribute.
     fn field(&mut self, count: u64) -> Result<bool, VolumeError> {
         let mut left = count;
         while left > 0 {
             let line = self.lines.read_line().map_err(io_error(self.path))?.unwrap_or_default();
             if line.is_empty() {
-                // VTK ends what it knows of an array with an empty line; a file ends without one.
+                // VTK ends the metadata of an array with an empty line; at the end of a file that line may be missing.
                 if self.lines.at_end().map_err(io_error(self.path))? {
                     break;
                 }
@@ -264,7 +264,7 @@ impl<'a, R: BufRead> Scanner<'a, R> {
         Ok(())
     }
 
-    /// Passes over so many numbers, or texts.
+    /// Skips `values` numbers or texts.
     fn pass(&mut self, kind: &str, values: u64) -> Result<(), VolumeError> {
         if kind == TEXTS {
             return self.pass_texts(values).map_err(io_error(self.path));
@@ -284,8 +284,8 @@ impl<'a, R: BufRead> Scanner<'a, R> {
         Ok(())
     }
 
-    /// Passes over texts: lines, or in binary each behind its length, which has 6, 14, 30 or 62 bits as the first two bits of the
-    /// first byte say (vtkDataWriter.cxx).
+    /// Skips texts: lines, or in binary files each preceded by its length, which has 6, 14, 30 or 62 bits according to the first
+    /// two bits of the first byte (vtkDataWriter.cxx).
     fn pass_texts(&mut self, count: u64) -> std::io::Result<()> {
         for _ in 0..count {
             if self.lines.at_end()? {
@@ -312,14 +312,14 @@ impl<'a, R: BufRead> Scanner<'a, R> {
     }
 }
 
-/// What is wrong with a line that begins no section.
+/// What is wrong with a line that does not begin a section.
 fn not_understood(line: &str) -> Reason {
     const SHOWN: usize = 40;
     let line: String = line.chars().take(SHOWN).collect();
     Reason::header(format!("has {line:?} where a section should begin"))
 }
 
-/// The type of one number, by its name.
+/// The type of scalars, by its name.
 pub(super) fn scalar(path: &Path, name: &str, components: u64) -> Result<Dtype, VolumeError> {
     if components != 1 {
         return Err(format_error(
@@ -335,7 +335,7 @@ pub(super) fn scalar(path: &Path, name: &str, components: u64) -> Result<Dtype, 
         "unsigned_int" => Dtype::U32,
         // VTK writes its indices as int.
         "int" | "vtkIdType" => Dtype::I32,
-        // As on all systems but Windows; there VTK writes vtktypeint64.
+        // This is the size on all systems but Windows, where VTK writes vtktypeint64.
         "unsigned_long" | "vtktypeuint64" => Dtype::U64,
         "long" | "vtktypeint64" => Dtype::I64,
         "float" => Dtype::F32,

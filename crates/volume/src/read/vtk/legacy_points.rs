@@ -1,4 +1,4 @@
-//! Points of legacy VTK files: those of polygons, unstructured and curved grids.
+//! Points in legacy VTK files: those of polygons, unstructured grids and curved grids.
 
 use std::io::{BufRead, Read};
 use std::path::Path;
@@ -13,7 +13,7 @@ use crate::read::payload::{Length, Payload, payload_error_of};
 use crate::read::text::{self, Lines};
 use crate::{Endian, Reason, VolumeError};
 
-/// The datasets whose points are listed.
+/// The datasets that list their points.
 const LISTED: [&str; 3] = ["POLYDATA", "UNSTRUCTURED_GRID", "STRUCTURED_GRID"];
 
 /// A legacy VTK file that lists points.
@@ -21,13 +21,13 @@ pub struct VtkPoints<'a> {
     file: &'a OpenFile,
     text: bool,
     arrays: Vec<Array>,
-    /// Numbers of cells by kind, vertices aside.
+    /// The numbers of cells by kind, except vertices.
     pub cells: Vec<CellList>,
 }
 
-/// What a legacy VTK file begins with.
+/// The first lines of a legacy VTK file.
 struct Preamble {
-    /// Whether cells are two arrays, as from version 5 on.
+    /// Whether cells are stored as two arrays, as from version 5 on.
     offsets: bool,
     text: bool,
     dataset: String,
@@ -37,7 +37,7 @@ impl<'a> VtkPoints<'a> {
     /// Whether a file lists points.
     ///
     /// # Errors
-    /// [`VolumeError`]: what cannot be read, and why.
+    /// [`VolumeError`] says what cannot be read, and why.
     pub fn lists_points(file: &OpenFile) -> Result<bool, VolumeError> {
         let preamble = preamble(file.path(), &mut Lines::new(file.reader()?))?;
         Ok(LISTED.contains(&preamble.dataset.as_str()))
@@ -46,7 +46,7 @@ impl<'a> VtkPoints<'a> {
     /// Finds the points and their data.
     ///
     /// # Errors
-    /// [`VolumeError`]: what cannot be read, and why.
+    /// [`VolumeError`] says what cannot be read, and why.
     pub fn open(file: &'a OpenFile) -> Result<Self, VolumeError> {
         let path = file.path();
         let mut lines = Lines::new(file.reader()?);
@@ -64,7 +64,7 @@ impl<'a> VtkPoints<'a> {
         }
     }
 
-    /// How many points there are.
+    /// The number of points.
     fn count(&self) -> u64 {
         self.arrays[0].values / 3
     }
@@ -72,23 +72,23 @@ impl<'a> VtkPoints<'a> {
     /// The coordinates, three for each point.
     ///
     /// # Errors
-    /// [`VolumeError`]: what cannot be read, and why.
+    /// [`VolumeError`] says what cannot be read, and why.
     pub fn coordinates(&self) -> Result<Vec<f64>, VolumeError> {
         self.values(&self.arrays[0])
     }
 
-    /// A number for each point, by the name of the array in any case.
+    /// The numbers of the points in the array with this name, in any letter case.
     ///
     /// # Errors
-    /// [`VolumeError`]: what cannot be read, and why.
+    /// [`VolumeError`] says what cannot be read, and why.
     pub fn named(&self, name: &str) -> Result<Option<Vec<f64>>, VolumeError> {
         self.one(|array| array.name.eq_ignore_ascii_case(name))
     }
 
-    /// The first active scalars whose name is none of these.
+    /// The numbers of the points in the first active scalars whose name is not in `but`.
     ///
     /// # Errors
-    /// [`VolumeError`]: what cannot be read, and why.
+    /// [`VolumeError`] says what cannot be read, and why.
     pub fn active(&self, but: &[&str]) -> Result<Option<Vec<f64>>, VolumeError> {
         let is_among = |name: &str| but.iter().any(|but| but.eq_ignore_ascii_case(name));
         self.one(|array| array.active && !is_among(&array.name))
@@ -133,7 +133,7 @@ fn preamble(path: &Path, lines: &mut Lines<impl BufRead>) -> Result<Preamble, Vo
     }
     let version = first.split_whitespace().next_back().and_then(|word| word.parse::<f64>().ok());
     let offsets = version.is_some_and(|version| version >= 5.0);
-    // The title.
+    // This line is the title.
     next()?;
     let mut text = None;
     while let Some(line) = next()? {

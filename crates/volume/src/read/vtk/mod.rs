@@ -1,4 +1,4 @@
-//! VTK's formats: the legacy ones, and those of XML.
+//! VTK's formats: the legacy formats and those in XML.
 
 mod ghosts;
 mod image;

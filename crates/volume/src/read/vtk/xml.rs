@@ -1,4 +1,4 @@
-//! VTK's XML formats: elements, and what they say.
+//! VTK's XML formats: the elements and their attributes.
 
 use std::collections::HashMap;
 use std::io::{self, BufRead, Read};
@@ -11,13 +11,12 @@ use crate::error::{format_error, io_error};
 use crate::read::OpenFile;
 use crate::{Dtype, Endian, Reason, VolumeError};
 
-/// A file of VTK's XML formats (VTK User's Guide, "VTK File Formats"): its elements, and the arrays
-/// they hold, which are read on demand. Arrays may be text, base64, or appended raw or in base64, and
-/// compressed with zlib or LZ4.
+/// A file in one of VTK's XML formats (VTK User's Guide, "VTK File Formats"): its elements, and their arrays, which are read on
+/// demand. Arrays may be text, base64, or appended raw or in base64, and compressed with zlib or LZ4.
 pub struct VtkXml<'a> {
     pub(super) file: &'a OpenFile,
     pub(super) endian: Endian,
-    /// Bytes of a length in front of an array.
+    /// The size in bytes of the length that precedes an array.
     pub(super) word: usize,
     pub(super) compressor: Option<Compressor>,
     pub(super) elements: Vec<XmlElement>,
@@ -25,25 +24,25 @@ pub struct VtkXml<'a> {
     pub(super) monitor: Monitor,
 }
 
-/// An element with what it says of itself.
+/// An element with its attributes.
 #[derive(Debug)]
 pub(super) struct XmlElement {
     pub(super) name: String,
     pub(super) parent: Option<usize>,
     pub(super) attributes: HashMap<String, String>,
-    /// Where its text begins in the file, and where it ends: at its end or its first child.
+    /// The position of its text in the file, and the end of that text: at the end of the element or at its first child.
     pub(super) text: u64,
     pub(super) text_end: Option<u64>,
 }
 
-/// How the blocks of arrays are compressed.
+/// The compression of the blocks of arrays.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Compressor {
     Zlib,
     Lz4,
 }
 
-/// Where appended arrays begin, and whether they are in base64.
+/// The position of the appended arrays, and whether they are in base64.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Appended {
     pub(super) start: u64,
@@ -51,10 +50,10 @@ pub(super) struct Appended {
 }
 
 impl<'a> VtkXml<'a> {
-    /// Reads all but the arrays. The root must be `VTKFile`.
+    /// Reads everything except the arrays. The root must be `VTKFile`.
     ///
     /// # Errors
-    /// [`VolumeError`]: what cannot be read, and why.
+    /// [`VolumeError`] says what cannot be read, and why.
     pub fn open(file: &'a OpenFile) -> Result<Self, VolumeError> {
         let path = file.path();
         if !file.is_ordinary() {
@@ -74,7 +73,7 @@ impl<'a> VtkXml<'a> {
             monitor: Monitor::noop(),
         };
         let mut reader = file.reader()?;
-        // Before a search for the first element, which may go through all of a huge file.
+        // This comes before the search for the first element, which may go through all of a huge file.
         if !begins_as_xml(reader.fill_buf().map_err(io_error(path))?) {
             return Err(
                 this.fail(Reason::other("is not a VTK file: it does not begin with an element"))
@@ -85,7 +84,7 @@ impl<'a> VtkXml<'a> {
         Ok(this)
     }
 
-    /// The same file, whose arrays are read under this monitor.
+    /// Returns this file with its arrays read under this monitor.
     #[must_use]
     pub fn monitored(self, monitor: &Monitor) -> Self {
         Self { monitor: monitor.clone(), ..self }
@@ -202,7 +201,7 @@ impl<'a> VtkXml<'a> {
         Ok(Appended { start: element.text + before.len() as u64 + 1, base64 })
     }
 
-    /// Checks the root, and reads what it says of all arrays.
+    /// Checks the root, and reads its statements about all arrays.
     fn root(&mut self) -> Result<(), VolumeError> {
         let Some(root) = self.elements.first().filter(|root| root.name == "VTKFile") else {
             return Err(
@@ -242,7 +241,7 @@ impl<'a> VtkXml<'a> {
         Ok(())
     }
 
-    /// A part of the file.
+    /// A reader for a part of the file.
     pub(super) fn part(&self, start: u64, end: u64) -> Result<impl BufRead + use<'a>, VolumeError> {
         Ok(self.file.reader_at(start)?.take(end.saturating_sub(start)))
     }
@@ -255,7 +254,7 @@ fn begins_as_xml(start: &[u8]) -> bool {
 
 /// Queries of elements and their attributes.
 impl VtkXml<'_> {
-    /// What the file holds, such as `ImageData`.
+    /// The type of the dataset, such as `ImageData`.
     pub fn kind(&self) -> &str {
         self.attribute(0, "type").unwrap_or("(nothing)")
     }
@@ -265,10 +264,10 @@ impl VtkXml<'_> {
         self.elements[element].attributes.get(name).map(String::as_str)
     }
 
-    /// As many numbers as an attribute should have, or the default where it is missing.
+    /// As many numbers as an attribute should have, or the default if it is missing.
     ///
     /// # Errors
-    /// [`VolumeError`]: what cannot be read, and why.
+    /// [`VolumeError`] says what cannot be read, and why.
     pub fn numbers<const N: usize>(
         &self,
         element: usize,
@@ -290,7 +289,7 @@ impl VtkXml<'_> {
         })
     }
 
-    /// The elements of this name right inside another.
+    /// The children of an element that have this name.
     pub fn children(&self, parent: usize, name: &str) -> impl Iterator<Item = usize> {
         let is_child = move |i: &usize| {
             self.elements[*i].parent == Some(parent) && self.elements[*i].name == name
@@ -301,7 +300,7 @@ impl VtkXml<'_> {
     /// The dataset and its elements `Piece`.
     ///
     /// # Errors
-    /// [`VolumeError`]: what cannot be read, and why.
+    /// [`VolumeError`] says what cannot be read, and why.
     pub fn pieces(&self) -> Result<(usize, Vec<usize>), VolumeError> {
         let kind = self.kind();
         let dataset = self.children(0, kind).next().ok_or_else(|| {
@@ -310,10 +309,10 @@ impl VtkXml<'_> {
         Ok((dataset, self.children(dataset, "Piece").collect()))
     }
 
-    /// The element `Piece` of the dataset, of which there must be one.
+    /// The dataset and its element `Piece`, of which there must be exactly one.
     ///
     /// # Errors
-    /// [`VolumeError`]: what cannot be read, and why.
+    /// [`VolumeError`] says what cannot be read, and why.
     pub fn piece(&self) -> Result<(usize, usize), VolumeError> {
         let (dataset, pieces) = self.pieces()?;
         match pieces[..] {
@@ -328,7 +327,7 @@ impl VtkXml<'_> {
     /// The type of an array's numbers.
     ///
     /// # Errors
-    /// [`VolumeError`]: what cannot be read, and why.
+    /// [`VolumeError`] says what cannot be read, and why.
     pub fn dtype(&self, array: usize) -> Result<Dtype, VolumeError> {
         Ok(match self.attribute(array, "type") {
             Some("Int8") => Dtype::I8,
@@ -351,7 +350,7 @@ impl VtkXml<'_> {
         })
     }
 
-    /// Number of components of an array.
+    /// The number of components of an array.
     pub fn components(&self, array: usize) -> &str {
         self.attribute(array, "NumberOfComponents").unwrap_or("1")
     }

@@ -1,4 +1,4 @@
-//! The arrays of VTK's XML formats, in each of their codings: text, base64, raw, and compressed.
+//! The arrays of VTK's XML formats in all encodings: text, base64, raw, and compressed.
 
 use std::io::{self, BufRead, Read, Take};
 use std::str::FromStr;
@@ -14,7 +14,7 @@ impl VtkXml<'_> {
     /// Reads an array, which must have exactly `count` numbers.
     ///
     /// # Errors
-    /// [`VolumeError`]: what cannot be read, and why.
+    /// [`VolumeError`] says what cannot be read, and why.
     pub fn values<T: Element + FromStr + Into<f64>>(
         &self,
         array: usize,
@@ -130,8 +130,7 @@ impl VtkXml<'_> {
         Ok(Some(bytes))
     }
 
-    /// Reads an array that follows its length, or the lengths of its compressed blocks; there are
-    /// at most `most` bytes.
+    /// Reads an array that follows its length, or the lengths of its compressed blocks, from at most `most` bytes.
     fn decoded<T: Element>(
         &self,
         array: usize,
@@ -211,7 +210,7 @@ impl VtkXml<'_> {
         payload.samples(self.file.path(), dtype, self.endian, count, &self.monitor).map_err(located)
     }
 
-    /// A length in front of an array.
+    /// A length that precedes an array.
     fn word(&self, data: &mut impl Read) -> io::Result<u64> {
         let mut bytes = [0; 8];
         let bytes = &mut bytes[..self.word];
@@ -224,25 +223,25 @@ impl VtkXml<'_> {
     }
 }
 
-/// Blocks compressed one by one.
+/// Reads blocks that are compressed one by one.
 struct Blocks<R> {
-    /// What follows, where no block is being read.
+    /// The data after the current block, while no block is being read.
     data: Option<R>,
     compressor: Compressor,
-    /// Compressed bytes of those to come.
+    /// The compressed sizes of the remaining blocks.
     sizes: std::vec::IntoIter<u64>,
-    /// The most bytes of one.
+    /// The largest uncompressed size of a block.
     block: u64,
     at: At<R>,
 }
 
-/// Where in a block we are.
+/// The position in a block.
 enum At<R> {
-    /// A block that is unpacked as it is read: it may be as large as the array.
+    /// In a block that is unpacked while it is read, as it may be as large as the array.
     Within(Take<ZlibDecoder<Take<R>>>),
-    /// What is left of a block that was unpacked at once.
+    /// In a block that was unpacked at once; this is what is left of it.
     Ready(io::Cursor<Vec<u8>>),
-    /// At its end.
+    /// At the end of a block.
     End,
 }
 
@@ -277,7 +276,7 @@ impl<R: Read> Read for Blocks<R> {
                         return Err(io::ErrorKind::UnexpectedEof.into());
                     }
                     self.data = Some(packed.into_inner());
-                    // LZ4 repeats a byte for each byte of 255 in its code, so this much may be true.
+                    // LZ4 repeats a byte for each byte 255 in its code, so an expansion by this factor is possible.
                     let most = self.block.min(size.saturating_mul(256)) as usize;
                     let bytes = lz4_flex::block::decompress(&code, most)
                         .map_err(|error| io::Error::new(io::ErrorKind::InvalidData, error))?;
@@ -288,11 +287,11 @@ impl<R: Read> Read for Blocks<R> {
     }
 }
 
-/// Decodes base64 (RFC 4648) as VTK writes it: white space is passed over, and padding may end one
-/// piece of data in the middle of the text, where the next begins.
+/// Decodes base64 (RFC 4648) as VTK writes it: white space is ignored, and padding may end one piece of data in the middle of the
+/// text, where the next begins.
 pub(in crate::read) struct Base64<R> {
     text: R,
-    /// Decoded bytes not yet given out, and how many were.
+    /// The decoded bytes, their number, and how many were returned.
     ready: [u8; 3],
     length: usize,
     given: usize,
@@ -352,7 +351,7 @@ impl<R: BufRead> Read for Base64<R> {
     }
 }
 
-/// Up to three bytes of four characters.
+/// Decodes four characters to up to three bytes.
 fn decode(group: [u8; 4]) -> Option<([u8; 3], usize)> {
     let padding = group.iter().rev().take_while(|&&character| character == b'=').count();
     let mut bits = 0u32;
@@ -382,7 +381,7 @@ mod tests {
         Ok(bytes)
     }
 
-    /// The examples of RFC 4648, section 10.
+    /// Tests the examples of RFC 4648, section 10.
     #[test]
     fn text_becomes_bytes() {
         for (text, bytes) in [

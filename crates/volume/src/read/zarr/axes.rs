@@ -1,4 +1,4 @@
-//! Which axes of an array are x, y and z.
+//! Finds the axes x, y and z of an array.
 
 use std::path::Path;
 
@@ -11,16 +11,16 @@ use crate::error::format_error;
 use crate::read::frames::FrameChoice;
 use crate::{Dims, Reason, VolumeError};
 
-/// An axis as the metadata name it.
+/// An axis as the metadata describe it.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct NamedAxis {
     name: String,
-    /// As `space`; empty where it is not said.
+    /// The type, such as `space`; empty if it is not stated.
     kind: String,
 }
 
 impl NamedAxis {
-    /// Those of OME-Zarr (names with types, or names alone), of `dimension_names` or `_ARRAY_DIMENSIONS`.
+    /// The axes in the metadata of OME-Zarr (names with types, or names alone), in `dimension_names` or `_ARRAY_DIMENSIONS`.
     pub(super) fn of(value: &Value) -> Option<Vec<Self>> {
         let text = |value: &Value| value.as_str().unwrap_or_default().to_lowercase();
         let axis = |value: &Value| match value {
@@ -35,27 +35,27 @@ impl NamedAxis {
         axes.iter().any(|axis| !axis.name.is_empty()).then_some(axes)
     }
 
-    /// Whether it counts volumes: times, channels.
+    /// Whether the axis counts volumes, as for times or channels.
     fn counts_volumes(&self) -> bool {
         matches!(self.kind.as_str(), "time" | "channel")
             || matches!(self.name.as_str(), "t" | "c" | "time" | "channel")
     }
 }
 
-/// Where z, y and x are among the axes of an array, and which volume of it is meant.
+/// The places of z, y and x among the axes of an array, and the volume that is read.
 pub(super) struct Axes {
-    /// The axis of each of z, y and x; `None` where there is none, of one sample.
+    /// The axis of each of z, y and x; `None` for one that does not exist and has one sample.
     pub space: [Option<usize>; 3],
-    /// The index along each axis; it has no meaning for those of space.
+    /// The index along each axis; meaningless for spatial axes.
     fixed: Vec<u64>,
     pub dims: Dims,
 }
 
-/// The names of the axes of space, as volumes have them.
+/// The names of the spatial axes of volumes.
 const NAMES: [&str; 3] = ["z", "y", "x"];
 
 impl Axes {
-    /// By their names where there are some; else the last three are z, y and x.
+    /// Finds the axes by their names, if there are any; otherwise the last three are z, y and x.
     pub(super) fn find(
         path: &Path,
         shape: &[u64],
@@ -106,15 +106,14 @@ impl Axes {
         ArraySubset::new_with_ranges(&all)
     }
 
-    /// Gives the elements of such a part, so many along z, y and x, row by row along x, the rows of a slice one
-    /// after the other.
+    /// Passes on the elements of such a part, with these sizes along z, y and x: row by row along x, and slice after slice.
     pub(super) fn rows<T: Copy>(
         &self,
         part: &[T],
         sizes: [usize; 3],
         mut give: impl FnMut(usize, ArrayView1<T>),
     ) {
-        // From the order of the array to that of z, y and x; axes that are not there come first.
+        // The order of the axes in the array; missing axes come first.
         let mut order = [0, 1, 2];
         order.sort_by_key(|&k| self.space[k]);
         let stored = order.map(|k| sizes[k]);
@@ -127,18 +126,18 @@ impl Axes {
         }
     }
 
-    /// The sizes along z, y and x of boxes of an array.
+    /// The sizes along z, y and x of chunks of an array.
     pub(super) fn sizes(&self, chunk: &[std::num::NonZeroU64]) -> [u64; 3] {
         self.space.map(|axis| axis.map_or(1, |axis| chunk[axis].get()))
     }
 
-    /// Numbers along x, y and z of numbers for all axes.
+    /// The numbers for x, y and z, from numbers for all axes.
     pub(super) fn of_space(&self, numbers: &[f64], default: f64) -> [f64; 3] {
         [2, 1, 0].map(|k| self.space[k].map_or(default, |axis| numbers[axis]))
     }
 }
 
-/// By name, whatever their order. What has another name takes the places left, the last axis first, which is said.
+/// Finds the axes by name, in any order. An axis with another name takes a free place, the last axis first, with a warning.
 fn by_name(path: &Path, axes: &[NamedAxis]) -> Result<[Option<usize>; 3], VolumeError> {
     let mut space = [None; 3];
     for (k, name) in NAMES.into_iter().enumerate() {

@@ -1,5 +1,4 @@
-//! Where the samples of an array lie by the coordinates that xarray keeps beside it: arrays of one axis, each called as
-//! the axis.
+//! Places samples by the coordinates that xarray stores beside an array: arrays of one axis, each with the name of the axis.
 
 use std::path::{Component, Path};
 use std::sync::Arc;
@@ -17,10 +16,10 @@ use super::{is_array, open_array};
 use crate::read::layout::{diagonal, frame as frame_of, one_unit, unit_named};
 use crate::{Coordinates, Dims, Frame, VolumeError};
 
-/// Coordinates this far from an even row, as a share of its step, are none.
+/// The largest deviation of coordinates from even spacing, as a share of the step. Others are not used.
 const APART: f64 = 1e-3;
 
-/// Of evenly spaced coordinates along x, y and z the frame; others are passed over, which is said.
+/// The frame for evenly spaced coordinates along x, y and z. Other coordinates are ignored, with a warning.
 pub(super) fn frame(
     path: &Path,
     shape: &[u64],
@@ -60,7 +59,7 @@ pub(super) fn frame(
     frame_of(path, origin, diagonal(steps), Coordinates { unit, ..Coordinates::default() })
 }
 
-/// The first of a row of coordinates, the step between them (none of a single one) and their unit.
+/// The first of evenly spaced coordinates, the step between them (`None` for a single one) and their unit.
 fn even(folder: &Path, count: u64) -> Option<(f64, Option<f64>, Option<String>)> {
     let store = Arc::new(FilesystemStore::new(folder).ok()?);
     let array = open_array(folder, store, "/").ok()?;
@@ -86,7 +85,7 @@ fn even(folder: &Path, count: u64) -> Option<(f64, Option<f64>, Option<String>)>
     all_even.then_some((first, Some(step), unit))
 }
 
-/// All numbers of an array of one axis, whatever their type.
+/// All numbers of an array of one axis, of any type.
 fn numbers(array: &Array<FilesystemStore>, into: &mut [f64]) -> Option<()> {
     let all = ArraySubset::new_with_shape(array.shape().to_vec());
     macro_rules! of_type {

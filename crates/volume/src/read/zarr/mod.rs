@@ -1,4 +1,4 @@
-//! Zarr arrays, and pyramids of them as OME-Zarr lays them out.
+//! Zarr arrays, and their pyramids in the layout of OME-Zarr.
 
 mod axes;
 mod coordinates;
@@ -26,12 +26,12 @@ use axes::{Axes, NamedAxis};
 use packing::Packing;
 use samples::{ZarrBoxes, check_chunk, check_stored, damaged, samples};
 
-/// Reads a Zarr array of version 2 or 3 in a folder, or a level of an OME-Zarr pyramid (0, the finest,
-/// unless `level` says otherwise).
+/// Reads a Zarr array of version 2 or 3 in a folder, or a level of an OME-Zarr pyramid (0, the finest, unless `level` says
+/// otherwise).
 ///
-/// Axes called x, y and z are these, whatever their order; where none has a name the last three are z, y and x.
-/// The others count volumes, of which the one numbered `frame_index` is read. Scale and translation
-/// of a pyramid give the frame, or else coordinates beside the array; attributes of CF unpack its numbers. Memory for the samples and some rows of chunks at a time.
+/// Axes called x, y and z are the spatial ones, in any order; if no axis has a name, the last three are z, y and x. The others
+/// count volumes, of which the one numbered `frame_index` is read. Scale and translation of a pyramid give the frame, or else
+/// coordinates beside the array; CF attributes unpack its numbers. Takes memory for the samples and a few rows of chunks.
 pub(crate) fn read(
     path: &Path,
     level: Option<u32>,
@@ -47,7 +47,7 @@ pub(crate) fn read(
     if packing.states_missing() { mask(path, volume) } else { Ok(volume) }
 }
 
-/// Masks what the attributes state to be missing.
+/// Masks the samples that the attributes declare to be missing.
 fn mask(path: &Path, volume: Volume) -> Result<Volume, VolumeError> {
     let missing: Vec<bool> = volume.as_slice().iter().map(|sample| sample.is_nan()).collect();
     let count = missing.iter().filter(|&&missing| missing).count();
@@ -65,7 +65,7 @@ fn mask(path: &Path, volume: Volume) -> Result<Volume, VolumeError> {
     })
 }
 
-/// The same, to be read part by part.
+/// Like [`read`], for a volume that is read part by part.
 pub(crate) fn source(
     path: &Path,
     level: Option<u32>,
@@ -82,7 +82,7 @@ pub(crate) fn source(
     Ok(Source::new(dims, frame, dtype, [x, y, z], Box::new(parts)))
 }
 
-/// An array of a store, and where the volume in it is.
+/// An array of a store, and the place of the volume in it.
 struct PlacedArray {
     array: Array<FilesystemStore>,
     axes: Axes,
@@ -147,7 +147,7 @@ fn place(
     Ok(PlacedArray { array, axes, packing, frame })
 }
 
-/// Where a level of a pyramid has its samples, by the array's number of axes.
+/// The place of the samples of a pyramid's level, given the array's number of axes.
 fn frame_of(
     path: &Path,
     count: usize,
@@ -168,7 +168,7 @@ fn frame_of(
     frame(path, origin, diagonal(scale), coordinates)
 }
 
-/// Opens an array; what it is stored by may not be known here.
+/// Opens an array. Its storage may use features that are not supported.
 fn open_array(
     path: &Path,
     store: Arc<FilesystemStore>,
@@ -200,7 +200,7 @@ fn open_array(
     })
 }
 
-/// The metadata of an array of version 2 whose fill value is true or false, with 1 or 0 for it.
+/// The metadata of an array of version 2 whose fill value is true or false, replaced by 1 or 0.
 fn boolean(folder: &Path) -> Option<ArrayMetadata> {
     let json = |name: &str| -> Option<Value> {
         serde_json::from_slice(&std::fs::read(folder.join(name)).ok()?).ok()
@@ -213,7 +213,7 @@ fn boolean(folder: &Path) -> Option<ArrayMetadata> {
     Some(metadata.with_attributes(attributes.unwrap_or_default()).into())
 }
 
-/// Names of axes that an array has itself: `dimension_names` of version 3, or those that xarray writes.
+/// The names of axes in the array's own metadata: `dimension_names` of version 3, or those that xarray writes.
 fn names(array: &Array<FilesystemStore>) -> Option<Value> {
     match array.metadata() {
         ArrayMetadata::V3(metadata) if metadata.dimension_names.is_some() => {
@@ -230,7 +230,7 @@ fn pyramids(attributes: &Value) -> &[Value] {
     found.map_or(&[], Vec::as_slice)
 }
 
-/// The pyramid of which an array is a level, and what it says of that level.
+/// The pyramid of which an array is a level, and its entry for that level.
 fn pyramid_of(level: &Path) -> Option<(Value, Value)> {
     let level = level.canonicalize().ok()?;
     level.ancestors().skip(1).find_map(|group| {
@@ -271,7 +271,7 @@ fn dataset(pyramid: &Value, level: Option<u32>) -> Result<(&Value, &str), Reason
     let Some(name) = dataset["path"].as_str() else {
         return Err(Reason::header(format!("names no array for level {wanted}")));
     };
-    // An upward step would lead to files that nobody named.
+    // `..` would lead to files that the user did not name.
     if Path::new(name).components().any(|part| part == Component::ParentDir) {
         return Err(Reason::header(format!(
             "names {name:?} for level {wanted}, outside the store"
@@ -287,7 +287,7 @@ fn is_array(folder: &Path) -> bool {
     folder.join(".zarray").is_file() || node().is_some_and(|node| node["node_type"] == "array")
 }
 
-/// The stores in a store, for a message.
+/// The stores inside a store, for a message.
 fn children(folder: &Path) -> String {
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
     let mut names: Vec<String> = entries
@@ -299,7 +299,7 @@ fn children(folder: &Path) -> String {
     if names.is_empty() { "nothing".to_owned() } else { names.join(", ") }
 }
 
-/// Scale and translation along x, y and z of the transformations of OME-Zarr, the first first.
+/// The scale and translation along x, y and z of OME-Zarr's transformations, applied in their order.
 fn placed(
     path: &Path,
     count: usize,

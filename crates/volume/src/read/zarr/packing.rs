@@ -1,4 +1,4 @@
-//! What stored numbers stand for, by the conventions of climate and forecast data (CF) that xarray and netCDF follow.
+//! The meaning of stored numbers, by the conventions for climate and forecast data (CF) that xarray and netCDF follow.
 
 use std::io::Read;
 use std::path::Path;
@@ -14,30 +14,30 @@ use crate::read::vtk::Base64;
 use crate::rounding::Rounding;
 use crate::{Dtype, Reason, Sample, VolumeError};
 
-/// From the numbers that an array stores to its samples.
+/// Converts the numbers that an array stores to its samples.
 #[derive(Debug)]
 pub(super) struct Packing {
-    /// How the array stores a number.
+    /// The type of stored numbers.
     pub(super) stored: Dtype,
-    /// Whether signed whole numbers are meant without their sign (`_Unsigned`).
+    /// Whether signed whole numbers stand for unsigned ones (`_Unsigned`).
     unsigned: bool,
-    /// Stored numbers that stand for no sample (`_FillValue`, `missing_value`).
+    /// The stored numbers that stand for a missing sample (`_FillValue`, `missing_value`).
     missing: Vec<f64>,
     /// `scale_factor` and `add_offset`.
     scaling: Option<(f64, f64)>,
-    /// What whole numbers became.
+    /// Records whether whole numbers were rounded.
     pub(super) rounding: Rounding,
 }
 
-/// Bounds of samples that CF takes for missing outside, and xarray does not.
+/// The bounds outside of which samples are missing for CF, but not for xarray.
 const BOUNDS: [&str; 3] = ["valid_min", "valid_max", "valid_range"];
 
 impl Packing {
-    /// As the attributes of an array state it.
+    /// The packing that the attributes of an array state.
     pub(super) fn of(path: &Path, array: &Array<FilesystemStore>) -> Result<Self, VolumeError> {
         let stored = dtype(path, array.data_type())?;
         let packing = Self::stated(path, array.attributes(), stored)?;
-        // 0 is what Zarr itself fills with.
+        // Zarr itself fills with 0.
         if let ArrayMetadata::V2(metadata) = array.metadata()
             && metadata.attributes.contains_key("_ARRAY_DIMENSIONS")
             && let Some(fill) = serde_json::json!(metadata.fill_value).as_f64()
@@ -100,7 +100,7 @@ impl Packing {
         Ok(Self { stored, unsigned, missing, scaling, rounding })
     }
 
-    /// The type of samples. Where some are missing they are floats.
+    /// The type of samples. If some are missing, they are floats.
     pub(super) fn dtype(&self) -> Dtype {
         match self.stored {
             _ if self.scaling.is_some() || !self.missing.is_empty() => Dtype::F32,
@@ -112,7 +112,7 @@ impl Packing {
         }
     }
 
-    /// The sample that a stored number stands for; NaN where it is missing.
+    /// The value that a stored number stands for; NaN if it is missing.
     pub(super) fn value(&self, stored: f64) -> f64 {
         let is_missing = |number: f64| self.missing.contains(&number);
         let wraps = self.unsigned && stored < 0.0;
@@ -123,12 +123,12 @@ impl Packing {
         self.scaling.map_or(meant, |(factor, offset)| meant * factor + offset)
     }
 
-    /// The same as a sample. `exact` is the number, too.
+    /// The sample that a stored number stands for; `exact` is the same number as a double.
     pub(super) fn sample(&self, stored: impl Sample, exact: f64) -> f32 {
         if self.is_none() { self.rounding.sample(stored) } else { self.value(exact) as f32 }
     }
 
-    /// Whether some numbers stand for no sample.
+    /// Whether some numbers stand for missing samples.
     pub(super) fn states_missing(&self) -> bool {
         !self.missing.is_empty()
     }
@@ -139,7 +139,7 @@ impl Packing {
     }
 }
 
-/// A double as xarray writes it in version 3: its bytes in base64.
+/// Decodes a double as xarray writes it in version 3: its bytes in base64.
 fn double(text: &str) -> Option<f64> {
     let mut bytes = Vec::new();
     Base64::new(text.as_bytes()).read_to_end(&mut bytes).ok()?;
@@ -163,7 +163,7 @@ mod tests {
         let scaled = json!({"scale_factor": [0.5], "add_offset": "-1000"});
         assert_eq!(packed(scaled.clone(), Dtype::I16, 3.0), -998.5);
         assert_eq!(packing(scaled, Dtype::U8).unwrap().dtype(), Dtype::F32);
-        // Missing numbers are stored ones, before they lose their sign or are scaled.
+        // Missing values are stored numbers, before these lose their sign or are scaled.
         let fill = json!({"_FillValue": -1, "missing_value": [7, 254], "_Unsigned": "true"});
         for number in [-1.0, 7.0, -2.0] {
             assert!(packed(fill.clone(), Dtype::I8, number).is_nan(), "{number}");
@@ -171,7 +171,7 @@ mod tests {
         assert_eq!(packed(fill, Dtype::I8, -3.0), 253.0);
         assert_eq!(packing(json!({"_Unsigned": true}), Dtype::I8).unwrap().dtype(), Dtype::U8);
         assert_eq!(packed(json!({"_Unsigned": "true"}), Dtype::I16, -1.0), 65535.0);
-        // 1e20 is no `f32`.
+        // 1e20 is not an `f32`.
         let of_floats = json!({"_FillValue": 1e20});
         assert!(packed(of_floats, Dtype::F32, f64::from(1e20f32)).is_nan());
         assert!(packed(json!({"_FillValue": "AAAAAACHw8A="}), Dtype::F64, -9998.0).is_nan());

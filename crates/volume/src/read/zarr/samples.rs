@@ -1,4 +1,4 @@
-//! The samples of a Zarr array: all of them, or part by part.
+//! The samples of a Zarr array, all at once or part by part.
 
 use std::fs::File;
 use std::io::{self, ErrorKind, Read, Seek, SeekFrom};
@@ -20,7 +20,7 @@ use crate::formats::decoded;
 use crate::source::BoxReader;
 use crate::{Dims, Dtype, Reason, VolumeError};
 
-/// Calls a method with what turns numbers of the type of an array into samples.
+/// Calls a method with the function that converts numbers of the array's type to samples.
 macro_rules! by_type {
     ($array:expr, $packing:expr, $object:ident.$read:ident $(, $argument:expr)*) => {{
         let packing = $packing;
@@ -57,7 +57,7 @@ pub(super) fn samples(
 pub(super) fn dtype(path: &Path, stored: &DataType) -> Result<Dtype, VolumeError> {
     Ok(match stored {
         DataType::UInt8 => Dtype::U8,
-        // Booleans are bytes of 0 and 1, and no gray levels.
+        // Booleans are bytes of 0 and 1, but not gray levels.
         DataType::Int8 | DataType::Bool => Dtype::I8,
         DataType::UInt16 => Dtype::U16,
         DataType::Int16 => Dtype::I16,
@@ -80,9 +80,9 @@ pub(super) fn dtype(path: &Path, stored: &DataType) -> Result<Dtype, VolumeError
     })
 }
 
-/// Samples read at a time, or one row of chunks if that is more.
+/// The number of samples read at a time, unless one row of chunks has more.
 const PIECE: u64 = 1 << 22;
-/// A chunk is decoded as a whole; larger ones must be of an array of their size.
+/// The largest number of samples in a chunk, which is decoded as a whole. A larger chunk must be the only one of its array.
 const MOST_IN_CHUNK: u64 = 1 << 26;
 
 pub(super) fn check_chunk(
@@ -144,14 +144,14 @@ struct ArrayReader<'a> {
     monitor: &'a Monitor,
 }
 
-/// Zarr leaves out chunks of nothing but the fill value, so an array may be larger than what is stored of it; so many
-/// bytes are believed without any.
+/// The size in bytes of an array that is accepted without any stored data. Zarr leaves out chunks that contain only the fill
+/// value, so an array may be larger than its stored data.
 const MOST_UNSTORED: u64 = 1 << 28;
-/// No codec expands by more: zstd repeats a byte 128 KiB long for 4 bytes of code.
+/// The largest expansion of any codec: zstd repeats a byte 128 KiB long for 4 bytes of code.
 const MOST_EXPANSION: u64 = 1 << 15;
 
-/// Refuses an array that claims far more than what is stored can hold: before memory is asked for, and before its parts are
-/// gone through.
+/// Refuses an array that claims far more than its stored data can contain, before memory is requested and before its parts are
+/// read.
 pub(super) fn check_stored(path: &Path, dims: Dims) -> Result<(), VolumeError> {
     let needed = (dims.samples() as u64).saturating_mul(size_of::<f32>() as u64);
     if needed <= MOST_UNSTORED {
@@ -167,7 +167,7 @@ pub(super) fn check_stored(path: &Path, dims: Dims) -> Result<(), VolumeError> {
     Err(format_error(path, Reason::content(what, "copy the whole store, or correct its shape")))
 }
 
-/// The bytes in a folder and those in it, as far as `enough`.
+/// The number of bytes in a folder and its subfolders; counting stops at `enough`.
 fn stored(folder: &Path, enough: u64) -> u64 {
     let (mut folders, mut bytes) = (vec![folder.to_owned()], 0u64);
     while let Some(folder) = folders.pop() {
@@ -186,7 +186,7 @@ fn stored(folder: &Path, enough: u64) -> u64 {
 }
 
 impl ArrayReader<'_> {
-    /// All samples, by as many slices at once as a chunk is thick, and as many rows as fit a piece.
+    /// All samples. A step reads as many slices as a chunk is thick, and as many rows as fit a piece.
     fn all<T: ElementOwned + Copy>(
         &self,
         convert: impl Fn(T) -> f32,
@@ -211,7 +211,7 @@ impl ArrayReader<'_> {
         })?;
         let [x, y, z] = dims.xyz().map(|size| size as u64);
         samples.resize(dims.samples(), 0.0);
-        // Whole chunks, so that none is decoded twice.
+        // Only whole chunks are read, so that none is decoded twice.
         let row_of_chunks = thick.saturating_mul(high).saturating_mul(x);
         let high = high.saturating_mul((PIECE / row_of_chunks).max(1));
         let steps = |size: u64, step: u64| {
@@ -244,30 +244,30 @@ impl ArrayReader<'_> {
     }
 }
 
-/// The error for a chunk or a shard.
+/// The error for a damaged chunk or shard.
 pub(super) fn damaged(path: &Path, error: &dyn std::fmt::Display) -> VolumeError {
     let what = format!("is a Zarr store with a chunk that cannot be read ({error})");
     let advice = "copy the whole store again, or write it anew with the program that made it";
     format_error(path, Reason::content(what, advice))
 }
 
-// Shards: chunks that hold chunks, and an index of where these are. The index is looked at before it is believed: the
-// reader adds an offset to a length without asking whether the sum is a number.
+// Shards are chunks that contain chunks and an index of their positions. The index is checked before it is used: the reader adds
+// an offset to a length without checking for overflow.
 
-/// How the index of a shard lies in its file.
+/// The layout of a shard's index in its file.
 struct Index {
-    /// Chunks in a shard; each has an offset and a length of 64 bits.
+    /// The number of chunks in a shard. Each has an offset and a length of 64 bits.
     chunks: u64,
     at_start: bool,
-    /// Bytes of a checksum behind it.
+    /// The size in bytes of a checksum behind the index.
     sum: u64,
 }
 
-/// Whether the shards of a part of an array lead to places in their own files. Arrays without shards pass, and so do
-/// shards whose index is compressed, which nobody writes.
+/// Checks that the shards of a part of an array refer to positions in their own files. Arrays without shards pass, and so do
+/// shards with a compressed index, which no known program writes.
 ///
 /// # Errors
-/// What is wrong.
+/// The message says what is wrong.
 fn check_shards(array: &Array<FilesystemStore>, part: &ArraySubset) -> io::Result<()> {
     let Some(index) = Index::of(array) else { return Ok(()) };
     let Ok(Some(shards)) = array.chunks_in_array_subset(part) else { return Ok(()) };
@@ -308,9 +308,9 @@ impl Index {
         Some(Self { chunks, at_start: about["index_location"] == "start", sum })
     }
 
-    /// Looks at the index of a shard.
+    /// Checks the index of a shard.
     fn check(&self, mut shard: File) -> io::Result<()> {
-        /// What an offset and a length are where there is no chunk.
+        /// The offset and length of a missing chunk.
         const NONE: [u64; 2] = [u64::MAX; 2];
         let wrong = |what: String| io::Error::new(ErrorKind::InvalidData, what);
         let length = shard.metadata()?.len();
