@@ -30,7 +30,7 @@ fn filtration(case: &Case, value: impl Fn(usize, f64) -> f64) -> FiltrationFile 
         "facets": complex.facets.rows(),
         "cells": complex.cells.rows(),
         "values": {"vertices": vec![0.0; counts[0]], "edges": vec![0.0; counts[1]], "facets": vec![0.0; counts[2]], "cells": vec![0.0; counts[3]]},
-        "order": Vec::from_iter(0..counts.iter().sum::<usize>()),
+        "order": (0..counts.iter().sum::<usize>()).collect::<Vec<_>>(),
         "hidden": hidden,
     }))
     .unwrap();
