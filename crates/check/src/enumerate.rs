@@ -50,8 +50,8 @@ impl Advise for EnumerateError {
     wrapped!(Cancelled);
 }
 
-/// The regular triangulation of weighted points, its hidden points and the α-complex in it,
-/// straight from the definition.
+/// Computes the regular triangulation of weighted points, its hidden points and the α-complex in it, directly from the
+/// definition.
 ///
 /// A cell is every positively oriented quadruple with no other point inside its orthogonal
 /// sphere. Ties are decided by a symbolic perturbation (Devillers & Teillaud,
@@ -61,7 +61,7 @@ impl Advise for EnumerateError {
 /// strictly inside, not even a hidden one, or when it is a face of one that is. Points in one plane
 /// or on one line have the triangulation that they have there, without cells.
 ///
-/// O(n⁴) quadruples with an early exit each: 60 points take seconds, 200 minutes.
+/// O(n⁴) quadruples, each with an early exit: 60 points take seconds, 200 take minutes.
 ///
 /// # Errors
 /// [`EnumerateError`]: coordinates or weights that are not finite, no points at all.
@@ -160,7 +160,7 @@ struct Definition<'a> {
 struct Star {
     /// Some incident cell is in the shape.
     touches_inside: bool,
-    /// Some incident cell is not, or the simplex is on the hull.
+    /// Some incident cell is outside, or the simplex is on the hull.
     touches_outside: bool,
     /// It is a face of a higher simplex of the shape.
     covered: bool,
@@ -254,9 +254,8 @@ impl Definition<'_> {
         radius(simplex.map(|i| &self.points[i as usize]), self.alpha).is_le()
     }
 
-    /// Whether no point at all, not even a hidden one, is strictly inside the smallest orthogonal
-    /// sphere. Duplicates are no heavier than the point kept at their position, so they are never the only ones in
-    /// it.
+    /// Whether no point, including hidden ones, is strictly inside the smallest orthogonal sphere. Duplicates are no heavier than
+    /// the point kept at their position, so they are never the only ones in it.
     fn is_empty<const N: usize>(&self, simplex: [u32; N]) -> bool {
         let corners = simplex.map(|i| &self.points[i as usize]);
         let others = self.sites.iter().filter(|q| !simplex.contains(q));

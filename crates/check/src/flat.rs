@@ -70,8 +70,8 @@ impl<'a> Cones<'a> {
     }
 }
 
-/// Positions, at most three, that span a volume together with given ones: one for a plane, two for a line, three for
-/// a single position, and none where these span a volume themselves. `None` if no positions are given.
+/// Positions, at most three, that span a volume together with given ones: one for a plane, two for a line, three for a single
+/// position, and none if the given ones span a volume. `None` if no positions are given.
 pub(crate) fn auxiliary_positions(
     positions: impl Iterator<Item = [f64; 3]> + Clone,
 ) -> Option<Vec<[f64; 3]>> {
@@ -86,7 +86,7 @@ pub(crate) fn auxiliary_positions(
     let far = positions.flatten().fold(1e-100f64, |most, x| most.max(x.abs()));
     for axis in 0..3 {
         let mut outside = first;
-        // Towards the origin and beyond, so that it remains finite.
+        // Moves towards the origin and beyond, so that the coordinate remains finite.
         outside[axis] = if outside[axis] > 0.0 { -far } else { far };
         if is_independent(&basis, outside) {
             basis.push(outside);

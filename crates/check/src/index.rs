@@ -69,7 +69,7 @@ fn fill<T: Copy + Send, I: Iterator<Item = (u32, T)>>(
     }
 }
 
-/// Buckets that one thread goes through at a time.
+/// The number of buckets that one thread processes at a time.
 const BUCKETS: usize = 1 << 12;
 
 /// Calls `work` with each bucket of entries sorted by a number, given where these [start](starts), in parallel.
@@ -98,7 +98,7 @@ pub(crate) fn for_each_bucket<T: Send>(
 /// Finds rows by their vertices (up to four), given in any order.
 pub(crate) struct Index<'a, const N: usize> {
     rows: &'a [[u32; N]],
-    /// The numbers of the rows, in the lexicographic order of their sorted vertices; nothing where the rows are in that order.
+    /// The numbers of the rows, in the lexicographic order of their sorted vertices; empty if the rows are in that order.
     order: Vec<u32>,
     /// The start of the rows with each smallest vertex in that order.
     starts: Vec<u32>,
@@ -121,7 +121,7 @@ impl<'a, const N: usize> Index<'a, N> {
         let order = if pairs.clone().all(|pair| key(pair[0]) <= key(pair[1])) {
             Vec::new()
         } else if pairs.clone().all(|pair| smallest(&pair[0]) <= smallest(&pair[1])) {
-            // Windings change the order of rows with one smallest vertex only.
+            // Windings change only the order of rows with the same smallest vertex.
             let mut order = numbers();
             for_each_bucket(&mut order, &starts, &|bucket| {
                 bucket.sort_unstable_by_key(by_vertices);
@@ -142,12 +142,12 @@ impl<'a, const N: usize> Index<'a, N> {
         places.filter(|&place| row(place - 1) == row(place)).map(row).collect()
     }
 
-    /// Whether there is a row of these vertices.
+    /// Whether there is a row with these vertices.
     pub(crate) fn contains(&self, vertices: [u32; N]) -> bool {
         self.row(vertices) != NONE
     }
 
-    /// The row of these vertices, one of several that have them, or [`NONE`].
+    /// The row with these vertices, or one of several, or [`NONE`].
     pub(crate) fn row(&self, vertices: [u32; N]) -> u32 {
         let vertices = sorted(vertices);
         let Range { mut start, mut end } = of_bucket(&self.starts, vertices[0]);
@@ -182,7 +182,7 @@ mod tests {
 
     use super::*;
 
-    /// Rows in canonical order, with windings; the same in any order; and in the order of their vertices. Some twice.
+    /// Rows in canonical order, with windings; the same rows in any order; and in the order of their vertices. Some occur twice.
     #[test]
     fn rows_are_found_in_any_order() {
         const POINTS: usize = 3 * BUCKETS;

@@ -1,9 +1,9 @@
-//! An exact checker for weighted alpha shapes and regular triangulations in 3D, in Rust alone.
+//! An exact checker for weighted alpha shapes and regular triangulations in 3D, written only in Rust.
 //!
-//! [`enumerate`] computes the complex of a few points from the definition; [`Claim`] judges complexes of any
-//! size, by rules that take linear time; [`compare()`] says how two complexes differ;
-//! [`certify_filtration`] and [`compare_filtrations`] do the same for all values of α at once;
-//! [`schema`] reads and writes complexes, [`meshes`] reads what other programs write. Every decision is exact on the input doubles.
+//! [`enumerate`] computes the complex of a few points from the definition; [`Claim`] judges complexes of any size, by rules that
+//! take linear time; [`compare()`] finds the differences of two complexes; [`certify_filtration`] and [`compare_filtrations`] do
+//! the same for all values of α together; [`schema`] reads and writes complexes, [`meshes`] reads files of other programs. Every
+//! decision is exact on the input doubles.
 //!
 //! ```
 //! use walpha_check::{Alpha, Claim, Placed, Verdict, compare, enumerate};

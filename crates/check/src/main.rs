@@ -147,7 +147,7 @@ fn complain(text: &str) {
     let _ = writeln!(io::stderr().lock(), "{text}");
 }
 
-/// Starts the threads of rayon: fewer where the system refuses more, and none but this one where it refuses all.
+/// Starts the threads of rayon: fewer if the system refuses more, and only this one if it refuses all.
 fn start_threads() {
     /// The default stack size of rayon.
     const STACK: usize = 2 << 20;
@@ -172,7 +172,7 @@ enum Failure {
         /// Whether `walpha check` reads it.
         by_walpha: bool,
     },
-    /// An option that the file leaves no room for.
+    /// An option that has no effect on the file.
     #[error("{option} has no effect: {why}")]
     Option { option: &'static str, why: &'static str },
     #[error("--weights column asks for the attributes of TetGen's points, and there are none")]
@@ -202,7 +202,7 @@ impl Advise for Failure {
     }
 }
 
-/// A file with what the options add, and what to know about the verdict.
+/// A file with the additions of the options, and notes for the reader of the verdict.
 fn read(path: &Path, arguments: &Arguments) -> Result<(AnyFile, Vec<String>), Failure> {
     let (mut file, mut attribute, mut notes) = match MeshFormat::of(path) {
         Some(format) => {
@@ -270,7 +270,7 @@ fn complete(
     Ok(())
 }
 
-/// Judges a file, prints the findings, and returns what it is.
+/// Judges a file, prints the findings, and returns the judgement.
 fn judge(path: &Path, arguments: &Arguments) -> Result<Judgement, Failure> {
     let (file, notes) = read(path, arguments)?;
     let ties = arguments.ties;
@@ -315,7 +315,7 @@ fn judge(path: &Path, arguments: &Arguments) -> Result<Judgement, Failure> {
     }
 }
 
-/// Does long work, and shows on a terminal how far it is.
+/// Does long work, and shows its progress on a terminal.
 fn watched<T>(work: impl FnOnce() -> T) -> T {
     /// Work that takes less time shows no progress.
     const QUICK: Duration = Duration::from_secs(1);
@@ -350,7 +350,7 @@ struct Report<'a, C, F, R> {
 }
 
 impl<C: Display, F: Display, R: Display> Report<'_, C, F, R> {
-    /// Prints the verdict, the findings, what was not judged, and what to know.
+    /// Prints the verdict, the findings, the parts that were not judged, and the notes.
     #[expect(clippy::unnecessary_debug_formatting, reason = "it escapes control characters")]
     fn print(&self, path: &Path) -> io::Result<()> {
         let Self { certificate, by_rule, findings, rules, parts, notes, .. } = self;

@@ -6,7 +6,7 @@ use walpha_base::{Cancelled, Monitor};
 /// Items between two checks of the monitor.
 const BATCH: usize = 1 << 8;
 
-/// The result of `work` for each index below `count`. Until it is known, `unknown` stands in its place.
+/// The result of `work` for each index below `count`. Until it is known, `unknown` takes its place.
 ///
 /// # Errors
 /// The work was cancelled.

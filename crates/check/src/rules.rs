@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use crate::{Certificate, FiltrationFinding, Finding};
 
 impl Finding {
-    /// The rule that is broken, by the name that it has in JSON.
+    /// The broken rule, by its name in JSON.
     pub fn rule(&self) -> &'static str {
         match self {
             Self::Index { .. } => "index",
@@ -48,7 +48,7 @@ impl Finding {
 }
 
 impl FiltrationFinding {
-    /// The rule that is broken, by the name that it has in JSON.
+    /// The broken rule, by its name in JSON.
     pub fn rule(&self) -> &'static str {
         match self {
             Self::When { .. } => "when",

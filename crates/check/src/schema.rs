@@ -26,8 +26,8 @@ pub struct PlacedComplex {
     pub duplicates: Option<Vec<[u32; 2]>>,
     /// The sides of the periodic box, if there is one.
     pub periodic: Option<[f64; 3]>,
-    /// The lowest dimension of which it lists all simplices: 0, unless the file leaves a dimension out. That one, and those below, have
-    /// faces alone.
+    /// The lowest dimension of which it lists all simplices: 0, unless the file leaves a dimension out. That dimension and those
+    /// below have only faces.
     pub lowest: usize,
     /// The voxels that the cells fill, if the complex is of labels.
     pub voxels: Option<Voxels>,
@@ -55,8 +55,8 @@ impl PlacedComplex {
 impl TryFrom<ComplexFile> for PlacedComplex {
     type Error = SchemaError;
 
-    /// Derives what is missing, orients cells and regular facets canonically, and sorts.
-    /// Flat cells and repeated rows are kept for the checker to find.
+    /// Derives missing data, orients cells and regular facets canonically, and sorts. Flat cells and repeated rows are kept for
+    /// the checker to find.
     ///
     /// # Errors
     /// Fields of different lengths, point numbers out of range, no points or no simplices.
@@ -149,7 +149,7 @@ impl TryFrom<ComplexFile> for PlacedComplex {
     }
 }
 
-/// The lowest dimension that the file lists, with all above it from the highest that it lists on.
+/// The lowest of the dimensions that the file lists without a gap, from the highest listed one down.
 fn lowest_listed(file: &ComplexFile) -> usize {
     let lower = [file.facets.is_some(), file.edges.is_some(), file.vertices.is_some()];
     let listed = [file.cells.is_some()].into_iter().chain(lower);
@@ -177,7 +177,7 @@ fn given_simplices<const N: usize>(
     if let Some(classes) = &classes {
         SchemaError::paired(of_classes, classes.len(), name, rows.as_ref().map_or(0, Vec::len))?;
     }
-    // An empty list of classes says nothing of rows that are derived.
+    // An empty list of classes has no meaning for derived rows.
     let classes = classes.filter(|_| rows.is_some());
     Ok(Given { rows, classes })
 }
@@ -235,7 +235,7 @@ fn complete<const N: usize, const M: usize, const F: usize>(
     let implied = |row: &[u32; M]| {
         let at = cofaces.binary_search_by_key(&sorted(*row), |&(face, _)| face);
         match at.map(|at| cofaces[at].1) {
-            // A facet has two sides; of an edge or vertex all cofaces must be interior.
+            // A facet has two sides; for an edge or vertex all cofaces must be interior.
             Ok(cofaces) if cofaces.in_shape => {
                 let closed = cofaces.all_interior && (M < 3 || cofaces.count == 2);
                 if closed { Class::Interior } else { Class::Regular }
@@ -273,7 +273,7 @@ pub(crate) fn orient(complex: &mut Complex, points: &[[f64; 3]], periodic: Optio
             let facets = outward_facets(*cell).into_iter();
             facets.filter(|facet| index.contains(*facet)).map(smallest_even)
         });
-    // A facet that is listed several times, or that has two such cells: as in the last of them.
+    // A facet that is listed several times, or that has two such cells, is oriented as in the last of them.
     let mut outward: Vec<[u32; 3]> = outward.collect();
     outward.par_sort_by_key(|facet| sorted(*facet));
     drop(index);

@@ -8,7 +8,7 @@ use walpha_base::advice::{Advice, Advise};
 
 /// The parameter α of a shape: a **squared** length, as in CGAL and in Edelsbrunner 1992.
 ///
-/// α = ∞ gives the convex hull; with weights a negative α is legal. It is never NaN, so any two compare; −0 is 0.
+/// α = ∞ gives the convex hull; with weights a negative α is allowed. It is never NaN, so any two can be compared; −0 is 0.
 ///
 /// In text, and in JSON, it is a number, `inf` or `-inf`:
 ///
@@ -40,10 +40,10 @@ impl Alpha {
         if squared.is_nan() { Err(AlphaError::NaN) } else { Ok(Self(squared + 0.0)) }
     }
 
-    /// α given by the radius it is the square of, rounded once.
+    /// α given by its square root, a radius, and rounded once.
     ///
     /// # Errors
-    /// [`AlphaError`] for NaN, for a negative radius, and for one so large or small that a double does not hold its square.
+    /// [`AlphaError`] for NaN, for a negative radius, and for a radius whose square is too large or too small for a double.
     pub fn from_radius(radius: f64) -> Result<Self, AlphaError> {
         match radius {
             _ if radius.is_nan() => Err(AlphaError::NaN),
@@ -86,7 +86,7 @@ impl Hash for Alpha {
     }
 }
 
-/// Why a number or a text is not an α.
+/// The reason why a number or a text is not an α.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum AlphaError {

@@ -1,4 +1,4 @@
-//! The canonical order of rows, as `Complex` documents it.
+//! The canonical order of rows, as documented for `Complex`.
 
 use crate::{Complex, Simplices};
 
@@ -15,8 +15,7 @@ pub fn sorted<const N: usize>(mut row: [u32; N]) -> [u32; N] {
     row
 }
 
-/// The faces of a positively oriented cell, each counter-clockwise seen from outside; the i-th is
-/// opposite to the i-th vertex.
+/// The faces of a positively oriented cell, each counter-clockwise as seen from outside; the i-th is opposite to the i-th vertex.
 pub fn outward_facets([a, b, c, d]: [u32; 4]) -> [[u32; 3]; 4] {
     [[b, c, d], [a, d, c], [a, b, d], [a, c, b]]
 }

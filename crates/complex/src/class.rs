@@ -24,7 +24,7 @@ impl Class {
     /// All classes, in the order of their numbers.
     pub const ALL: [Self; 4] = [Self::Exterior, Self::Interior, Self::Regular, Self::Singular];
 
-    /// The class with this number, that of CGAL and of NPZ files; `None` above 3.
+    /// The class with this number, which is also used by CGAL and NPZ files; `None` above 3.
     pub fn from_number(number: u8) -> Option<Self> {
         Self::ALL.get(usize::from(number)).copied()
     }
@@ -42,7 +42,7 @@ impl fmt::Display for Class {
     }
 }
 
-/// A value for each class, such as the number of simplices. Open: there are four classes.
+/// A value for each class, such as the number of simplices. The fields are public because there are always four classes.
 ///
 /// ```
 /// use walpha_complex::{ByClass, Class};
@@ -78,8 +78,8 @@ impl ByClass<usize> {
         self.interior + self.regular + self.singular
     }
 
-    /// Serializes the counts of the shape alone, without the exterior ones, which are known only where
-    /// the whole triangulation is. For `#[serde(serialize_with)]`.
+    /// Serializes the counts of the shape alone, without the exterior ones, which are only known if the whole triangulation is.
+    /// For `#[serde(serialize_with)]`.
     ///
     /// # Errors
     /// Errors of the serializer.

@@ -4,13 +4,12 @@ use crate::{Alpha, Class, Simplices};
 
 /// A classified simplicial complex over indexed points.
 ///
-/// **Canonical order.** Cells are positively oriented (a, b, c turn counter-clockwise seen
-/// from d: det(b−a, c−a, d−a) > 0) and regular
-/// facets turn counter-clockwise seen from outside; each is written as the lexicographically
-/// smallest even permutation of its vertices. All other simplices are sorted. Rows are in
-/// lexicographic order. So equal complexes are equal byte by byte.
+/// **Canonical order.** Cells are positively oriented (a, b, c turn counter-clockwise, as seen from d: det(b−a, c−a, d−a) > 0)
+/// and regular facets turn counter-clockwise, as seen from outside; each is written as the lexicographically smallest even
+/// permutation of its vertices. All other simplices are sorted. Rows are in lexicographic order. So equal complexes are equal
+/// byte by byte.
 ///
-/// The fields are open, so that any program can make one; [`canonical`](crate::canonical) puts it in order.
+/// The fields are public, so that any program can make a complex; [`canonical`](crate::canonical) puts it in order.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Complex {
     /// Tetrahedra.
@@ -50,7 +49,7 @@ impl Complex {
     }
 }
 
-/// A complex with its weighted points and α, to be judged or compared. Open: these four determine it.
+/// A complex with its weighted points and α, to be judged or compared. The fields are public because these four determine it.
 #[derive(Clone, Copy, Debug)]
 pub struct Placed<'a> {
     /// x, y, z of each input point.
@@ -64,8 +63,8 @@ pub struct Placed<'a> {
 }
 
 impl<'a> Placed<'a> {
-    /// A complex over points with these weights, at α. Consistency is not checked here, but by what judges or
-    /// compares it.
+    /// A complex over points with these weights, at α. Consistency is not checked here, but by the functions that judge or
+    /// compare it.
     pub fn new(
         positions: &'a [[f64; 3]],
         weights: &'a [f64],

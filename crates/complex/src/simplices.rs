@@ -2,8 +2,7 @@ use walpha_base::advice::Advise;
 
 use super::{ByClass, Class};
 
-/// Simplices of one dimension: rows of `N` vertices each, by input index, and their classes, as
-/// many as rows.
+/// Simplices of one dimension: rows of `N` vertices each, by input index, and a class for each row.
 ///
 /// A facet over the input points 7, 2 and 5 is the row `[2, 5, 7]` if its winding has no
 /// meaning; a regular facet that must be seen as 7 → 5 → 2 from outside is `[2, 7, 5]`.

@@ -3,7 +3,7 @@ use serde::{Deserialize, Serialize};
 /// A region of voxels of a grid, which the [shape of labels](crate::schema) fills. Voxel (i, j, k) is the box of half a step along
 /// each axis around its sample.
 ///
-/// The fields are open, so that any program can make one.
+/// The fields are public, so that any program can make a region.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Voxels {
@@ -18,8 +18,8 @@ pub struct Voxels {
 }
 
 impl Voxels {
-    /// The position of a corner: corner (i, j, k) is the one of voxel (i, j, k) with the least indices, half a step before its sample.
-    /// Each product and each sum is rounded once, so the same doubles come out everywhere.
+    /// The position of a corner: corner (i, j, k) is the corner of voxel (i, j, k) with the smallest indices, half a step before
+    /// its sample. Each product and each sum is rounded once, so the same doubles result everywhere.
     pub fn corner(&self, at: [u32; 3]) -> [f64; 3] {
         let steps = at.map(|i| f64::from(i) - 0.5);
         [0, 1, 2].map(|r| {
@@ -33,7 +33,7 @@ impl Voxels {
         self.runs.iter().map(|&[_, count]| count).sum()
     }
 
-    /// The determinant of the axes: the volume of a voxel, negative where the axes are left-handed.
+    /// The determinant of the axes: the volume of a voxel, negative if the axes are left-handed.
     pub fn determinant(&self) -> f64 {
         let [a, b, c] = self.axes;
         let minor = |i: usize, j: usize| b[i] * c[j] - b[j] * c[i];

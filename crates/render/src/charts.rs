@@ -19,9 +19,8 @@ const SIZES: [(&str, Rgb); 4] = [
     ("area of singular facets", PALETTE[7]),
 ];
 
-/// A ladder as a figure: Betti numbers at every critical value with the ladder's levels as dots, and
-/// sizes at the levels, over the logarithm of the squared radius α + max ω of the largest balls.
-/// Dashed lines mark the α suggested.
+/// A ladder as a figure: Betti numbers at every critical value with the ladder's levels as dots, and sizes at the levels, over
+/// the logarithm of the squared radius α + max ω of the largest balls. Dashed lines mark the suggested α.
 ///
 /// # Errors
 /// [`RenderError::Size`], which does not occur.
@@ -148,8 +147,8 @@ impl<'a> Chart<'a> {
     }
 }
 
-/// A persistence diagram: a dot for each interval, birth against death, both squared lengths, with a colour for components, loops and
-/// voids; what never ends is on the line above. Of dots that nearly cover each other one is drawn.
+/// A persistence diagram: a dot for each interval, birth against death, both squared lengths, with a colour for components, loops
+/// and voids. Intervals that never end are on the line above. Of dots that nearly cover each other, one is drawn.
 #[expect(clippy::missing_panics_doc, reason = "an invariant")]
 pub fn persistence_figure(title: &str, intervals: [&[[f64; 2]]; 3]) -> Figure {
     const SIDE: u32 = 1000;
@@ -213,8 +212,7 @@ fn height(count: u64) -> f64 {
     (1.0 + count as f64).log10()
 }
 
-/// A step function over its points, thinned to what a figure can show: the last point of each strip of
-/// the axis is kept.
+/// A step function over its points, thinned to the resolution of a figure: the last point of each strip of the axis is kept.
 fn stairs(points: impl Iterator<Item = [f64; 2]>, ends: [f64; 2]) -> Vec<[f64; 2]> {
     const STRIPS: f64 = 1200.0;
     let strip = |x: f64| ((x - ends[0]) / (ends[1] - ends[0]) * STRIPS) as i64;

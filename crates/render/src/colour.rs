@@ -10,8 +10,8 @@ impl Rgb {
     /// The light, warm gray of bare bone, which leaves room for light and shadow.
     pub const BONE: Self = Self([222, 212, 194]);
 
-    /// Linear light, 0 to 1. The square replaces the sRGB curve (an exponent of about 2.2):
-    /// its inverse is a square root, which every machine rounds alike.
+    /// Linear light, 0 to 1. The square replaces the sRGB curve (an exponent of about 2.2): its inverse is a square root, which
+    /// every machine rounds equally.
     pub(crate) fn light(self) -> [f32; 3] {
         self.0.map(|c| {
             let c = f32::from(c) / 255.0;
@@ -40,8 +40,8 @@ pub const PALETTE: [Rgb; 8] = [
     Rgb([0, 0, 0]),
 ];
 
-/// A perceptually uniform map from values to colours: viridis (Smith and van der Walt, 2015) by
-/// its values at sixteen equal steps, linear between them.
+/// A perceptually uniform map from values to colours: viridis (Smith and van der Walt, 2015) by its values at sixteen equal
+/// steps, linear between them.
 ///
 /// Equal steps of the value look equally far apart, and lightness alone orders them, so it
 /// survives gray printing and colour blindness.
@@ -52,8 +52,8 @@ pub struct ColourMap {
 }
 
 impl ColourMap {
-    /// The map with dark violet at `low` and below and yellow at `high` and above. When the two
-    /// are equal (or not finite), every value has the middle colour.
+    /// The map with dark violet at `low` and below and yellow at `high` and above. If the two are equal (or not finite), every
+    /// value has the middle colour.
     pub fn new(low: f64, high: f64) -> Self {
         Self { low, high }
     }

@@ -11,7 +11,7 @@ pub enum RenderError {
     /// A camera without a definite view.
     #[error("the camera cannot see: {0}")]
     Camera(&'static str),
-    /// Bounds that no camera can be fitted to.
+    /// Bounds to which no camera can be fitted.
     #[error(
         "cannot fit a camera to the box {low:?}..{high:?}: its corners must be finite and low ≤ high"
     )]

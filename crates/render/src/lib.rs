@@ -1,9 +1,9 @@
 //! Pictures. A scene of triangles, balls and tubes becomes a [`Picture`]; pictures and
 //! vector drawings become a [`Figure`] with panels, labels and a colour bar.
 //!
-//! Every picture is a function of its description alone: the same bytes on any number of threads
-//! and in each run. In the three-dimensional part nothing but + − × ÷ √ touches a pixel, which
-//! IEEE 754 fixes to the bit, and text is set in fonts that come with the library.
+//! Every picture depends only on its description: the same bytes on any number of threads and in each run. In the
+//! three-dimensional part, pixels are computed only by + − × ÷ √, which IEEE 754 fixes to the bit, and text is set in fonts that
+//! come with the library.
 //!
 //! ```
 //! use walpha_render::{Background, Camera, Projection, Scene, ShapeStyle, Size, View};
@@ -23,7 +23,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-// The macro of ndarray for slices allows it within itself, so it cannot be forbidden.
+// The macro of ndarray for slices allows it internally, so it cannot be forbidden.
 #![deny(unsafe_code)]
 #![warn(unreachable_pub)]
 

@@ -1,7 +1,8 @@
 //! The light in a scene: lamps, and how much of them and of the sky reaches each position.
 //!
-//! The exposure is measured with small depth maps from 64 directions of the sky and 16 around the main lamp: a position that is hidden in a map
-//! receives no light from its direction. This darkens hollows, even where what surrounds them is not visible, and is free of noise.
+//! The exposure is measured with small depth maps from 64 directions of the sky and 16 around the main lamp: a position that is
+//! hidden in a map receives no light from its direction. This darkens hollows, even if their surroundings are not visible, and is
+//! free of noise.
 
 use rayon::prelude::*;
 use walpha_base::vector::{V3, add, along, cross, dot, length, scale, sub, unit};
@@ -9,8 +10,7 @@ use walpha_base::vector::{V3, add, along, cross, dot, length, scale, sub, unit};
 use crate::normals::vertex_normals;
 use crate::scene::{Lens, Mesh, Projection, Scene, Shading};
 
-/// The lamps, fixed to the camera as in a photographer's studio, so that every panel of a figure
-/// is lit alike.
+/// The lamps, fixed to the camera as in a photographer's studio, so that every panel of a figure has the same light.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Studio {
     /// Towards the main lamp: upper left, before the subject.
@@ -138,7 +138,7 @@ pub(crate) struct Exposure {
 
 const SKY_DIRECTIONS: usize = 64;
 const KEY_DIRECTIONS: usize = 16;
-/// Depth maps made before any is used: bounds memory, and does not depend on the thread count.
+/// The number of depth maps that are made before any is used: bounds memory, and does not depend on the thread count.
 const MAPS_AT_ONCE: usize = 8;
 
 impl Exposure {
@@ -260,8 +260,8 @@ fn across(axis: V3) -> (V3, V3) {
     (u, cross(axis, u))
 }
 
-/// A position whose light is measured. It is raised a little along `normal`, so that neither its own
-/// surface nor anything within `radius` of it hides it.
+/// A position whose light is measured. It is raised a little along `normal`, so that neither its own surface nor anything within
+/// `radius` of it hides it.
 struct Receiver {
     pub place: V3,
     pub normal: V3,
@@ -275,7 +275,7 @@ struct Space {
 }
 
 impl Space {
-    /// `None` when the scene has no extent, so that nothing hides anything.
+    /// `None` if the scene has no extent, so that nothing hides anything.
     fn around(scene: &Scene) -> Option<Self> {
         let [low, high] = scene.bounds()?;
         let radius = length(sub(high, low)) / 2.0;

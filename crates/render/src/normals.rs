@@ -1,9 +1,8 @@
 use walpha_base::vector::{V3, add, along, cross, dot, length, scale, sub, unit};
 
-/// Normals of the vertices of a triangle mesh: the unit normals of the triangles around each,
-/// weighted by their angle there, so that it does not matter how a flat part is cut into triangles
-/// (Thürmer and Wüthrich 1998, doi:10.1080/10867651.1998.10487487). Of length 1, or 0 where
-/// nothing gives a direction.
+/// Normals of the vertices of a triangle mesh: the unit normals of the triangles around each vertex, weighted by their angles
+/// there, so that the division of a flat part into triangles does not matter (Thürmer and Wüthrich 1998,
+/// doi:10.1080/10867651.1998.10487487). Of length 1, or 0 if there is no direction.
 pub(crate) fn vertex_normals(positions: &[V3], triangles: &[[u32; 3]]) -> Vec<V3> {
     let mut sums = vec![[0.0; 3]; positions.len()];
     for corners in triangles {
@@ -18,8 +17,8 @@ pub(crate) fn vertex_normals(positions: &[V3], triangles: &[[u32; 3]]) -> Vec<V3
     sums.into_iter().map(|sum| unit(sum).unwrap_or([0.0; 3])).collect()
 }
 
-/// Normals of a surface made of lattice steps, as one would see them from further away: each
-/// round blends every normal with those of its neighbours along the triangles.
+/// Normals of a surface made of lattice steps, as seen from farther away: each round blends every normal with those of its
+/// neighbours along the triangles.
 pub(crate) fn smoothed(mut normals: Vec<V3>, triangles: &[[u32; 3]], rounds: usize) -> Vec<V3> {
     for _ in 0..rounds {
         let mut sums: Vec<V3> = normals.iter().map(|&n| scale(n, 2.0)).collect();

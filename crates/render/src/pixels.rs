@@ -13,13 +13,13 @@ pub struct Size {
 }
 
 impl Size {
-    /// 16384: a gigabyte of pixels, and far inside the range of the fixed-point edges.
+    /// 16384: a gigabyte of pixels, and well within the range of the fixed-point edges.
     pub const MAX_SIDE: u32 = MOST_PIXELS;
 
     /// Checks a width and a height.
     ///
     /// # Errors
-    /// [`RenderError::Size`] when one is zero or above [`Size::MAX_SIDE`].
+    /// [`RenderError::Size`] if one is zero or above [`Size::MAX_SIDE`].
     pub fn new(width: u32, height: u32) -> Result<Self, RenderError> {
         let fits = |side| (1..=Self::MAX_SIDE).contains(&side);
         if fits(width) && fits(height) {
@@ -76,7 +76,7 @@ impl Picture {
     /// The picture as a PNG file.
     ///
     /// # Errors
-    /// [`RenderError::Png`], when there is not enough memory for the file.
+    /// [`RenderError::Png`], if there is not enough memory for the file.
     pub fn to_png(&self) -> Result<Vec<u8>, RenderError> {
         let mut bytes = Vec::new();
         PngEncoder::new_with_quality(&mut bytes, CompressionType::Default, FilterType::Adaptive)

@@ -12,8 +12,8 @@ pub enum Colouring<'a> {
     Plain,
     /// A value at each input point, such as F, through a colour map.
     Values(&'a [f64], ColourMap),
-    /// The classes: boundary facets, singular facets, singular edges and lone vertices each have
-    /// the colour that [`class_colours`] says.
+    /// The classes: boundary facets, singular facets, singular edges and lone vertices each have their colour of
+    /// [`class_colours`].
     Classes,
 }
 
@@ -28,7 +28,7 @@ pub struct ShapeStyle<'a> {
     /// Half the thickness of singular edges, and half the radius of lone vertices, in the units of
     /// the points. 0 leaves both out.
     pub edge_radius: f64,
-    /// 1 for solid facets; less lets what is inside shine through, and shows the backs of facets.
+    /// 1 for solid facets; a smaller value makes the inside visible, and shows the backs of facets.
     pub opacity: f64,
 }
 
@@ -63,8 +63,8 @@ pub fn plain_colours() -> [(&'static str, Rgb); 2] {
 /// The tint of singular facets among plain ones.
 const SINGULAR_TINT: Rgb = Rgb([214, 138, 92]);
 
-/// Rounds of blending that take the steps of a voxel lattice out of the normals, and leave orbits
-/// a few voxels wide.
+/// The number of rounds of blending that remove the steps of a voxel lattice from the normals, and preserve orbits a few voxels
+/// wide.
 const LATTICE_ROUNDS: usize = 2;
 
 impl Scene {

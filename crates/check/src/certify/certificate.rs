@@ -12,10 +12,10 @@ use crate::exact::Exact;
 pub enum Verdict {
     /// The complex of the definition, with ties decided by the rule.
     Exact,
-    /// Exact as far as it was judged: whether simplices are missing is not known, as [`NotJudged::MissingSimplices`] says.
+    /// Exact as far as it was judged: it is not known whether simplices are missing; see [`NotJudged::MissingSimplices`].
     ExactAsFarAsJudged,
-    /// Right, with another choice where the definition leaves one: among points on one empty sphere, or
-    /// with equal positions and weights. Each sphere is empty, and a whole triangulation has no gaps.
+    /// Right, with another choice where the definition leaves one: among points on one empty sphere, or with equal positions and
+    /// weights. Each sphere is empty, and a whole triangulation has no gaps.
     Valid,
     /// Valid as far as it was judged.
     ValidAsFarAsJudged,
@@ -33,7 +33,7 @@ impl Verdict {
         }
     }
 
-    /// Whether all that the definition asks for was judged; of what is wrong, enough.
+    /// Whether everything that the definition requires was judged; for a wrong complex, enough of it.
     pub fn is_complete(self) -> bool {
         !matches!(self, Self::ExactAsFarAsJudged | Self::ValidAsFarAsJudged)
     }
@@ -59,7 +59,7 @@ impl std::fmt::Display for Verdict {
     }
 }
 
-/// The verdict on a complex, and what was not judged.
+/// The verdict on a complex, and the parts that were not judged.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 #[non_exhaustive]
 pub struct Certificate {
@@ -81,7 +81,7 @@ impl Certificate {
         !self.not_judged.contains(&NotJudged::HiddenAndHull)
     }
 
-    /// Concludes the verdict from the findings and from what was not judged.
+    /// Concludes the verdict from the findings and from the parts that were not judged.
     pub(super) fn conclude(&mut self) {
         let is_declined =
             self.not_judged.iter().any(|rule| matches!(rule, NotJudged::MissingSimplices(_)));
@@ -135,17 +135,16 @@ pub(super) fn write_verdict(
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum NotJudged {
-    /// Whether simplices of the shape are missing: that is not searched for. It is the only rule without which a shape is not
-    /// exact.
+    /// Whether simplices of the shape are missing, because the search for them was declined. It is the only rule without which a
+    /// shape is not exact.
     MissingSimplices(Declined),
     /// Singular simplices below the lowest dimension that is [claimed](crate::Claim::lowest) to be listed.
     SingularSimplices,
-    /// Whether points that are not vertices are hidden, and the hull: these need the whole
-    /// triangulation.
+    /// Whether points that are not vertices are hidden, and the hull: these require the whole triangulation.
     HiddenAndHull,
-    /// Whether the duplicates are right: no list is given.
+    /// Whether the duplicates are right, because no list is given.
     Duplicates,
-    /// Rules that rest on others which were broken, or the visitor stopped.
+    /// Rules that depend on others which were broken, or that followed when the visitor stopped.
     AfterFindings,
 }
 

@@ -10,8 +10,7 @@ pub enum Extent {
 }
 
 impl Extent {
-    /// Whole if there is an exterior simplex, or if α = ∞, where all of the triangulation is in
-    /// the shape.
+    /// Whole if there is an exterior simplex, or if α = ∞, for which all of the triangulation is in the shape.
     pub fn of(complex: &Complex, alpha: Alpha) -> Self {
         let whole = complex.lists_exterior() || alpha == Alpha::INFINITE;
         if whole { Self::Whole } else { Self::Shape }
@@ -30,13 +29,12 @@ pub struct Claim<'a> {
     pub hidden: Option<&'a [u32]>,
     /// Pairs (removed, kept) of points at one position, if they are listed.
     pub duplicates: Option<&'a [[u32; 2]]>,
-    /// The lowest dimension of which it claims to list all simplices: below it, faces alone are listed.
+    /// The lowest dimension of which it claims to list all simplices: below it, only faces are listed.
     pub lowest: usize,
 }
 
 impl<'a> Claim<'a> {
-    /// The claim of a complex without lists of hidden points and duplicates; its extent is
-    /// that of [`Extent::of`].
+    /// The claim of a complex without lists of hidden points and duplicates; its extent is that of [`Extent::of`].
     pub fn new(placed: Placed<'a>) -> Self {
         let extent = Extent::of(placed.complex, placed.alpha);
         Self { placed, extent, hidden: None, duplicates: None, lowest: 0 }

@@ -1,4 +1,4 @@
-//! The rules on classes: the class that each simplex has by the definition, against the one it was given.
+//! The rules on classes: the class that each simplex has by the definition, compared with the given one.
 
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicU8, AtomicU32, Ordering};
@@ -20,15 +20,13 @@ use crate::exact::{
 use crate::parallel::{of_each, one_for_each};
 use crate::{Alpha, Class, Simplices};
 
-/// Judges the classes of all simplices, that faces are listed, and that regular facets turn
-/// outward. Below cells a simplex is interior when all its cofaces are, regular when it is a face
-/// of a simplex of the shape, and singular when its own sphere has squared radius ≤ α and no
-/// point strictly inside.
+/// Judges the classes of all simplices, that faces are listed, and that regular facets turn outward. Below cells, a simplex is
+/// interior if all its cofaces are, regular if it is a face of a simplex of the shape, and singular if its own sphere has squared
+/// radius ≤ α and no point strictly inside.
 ///
-/// In a whole triangulation that was found regular, a sphere that contains any point contains a
-/// neighbour of its simplex, so only neighbours are tested; in a shape alone, all points nearby are.
-/// `untied` is whether cells are linked as they must be, and none is refuted by a neighbour, not even
-/// in a tie.
+/// In a whole triangulation that was found regular, a sphere that contains any point contains a neighbour of its simplex, so only
+/// neighbours are tested; in a shape alone, all points nearby are tested. `untied` is whether cells are linked as they must be,
+/// and none is refuted by a neighbour, not even in a tie.
 pub(super) fn judge(
     structure: &Structure,
     judge: &Judge,
@@ -73,7 +71,7 @@ pub(super) struct Judge<'a> {
     pub points: Points<'a>,
     pub alpha: Alpha,
     pub extent: Extent,
-    /// The dimension of the affine hull of the points: less than 3 where they span no volume.
+    /// The dimension of the affine hull of the points: less than 3 if they span no volume.
     pub dimension: usize,
     /// Only in a shape alone.
     pub emptiness: Option<&'a Emptiness<'a>>,
@@ -81,7 +79,7 @@ pub(super) struct Judge<'a> {
     pub torus: Option<Torus>,
 }
 
-/// The class that a simplex has, and the point in its sphere that excludes it from the shape, or [`NONE`].
+/// The class of a simplex, and the point in its sphere that excludes it from the shape, or [`NONE`].
 #[derive(Clone, Copy)]
 pub(super) struct Verdict {
     pub(super) class: Class,
@@ -95,8 +93,7 @@ impl Verdict {
 }
 
 impl Judge<'_> {
-    /// Whether simplices with `N` corners must be faces of others: those of a whole triangulation that are not
-    /// of the largest dimension.
+    /// Whether simplices with `N` corners must be faces of others: in a whole triangulation, those below the largest dimension.
     pub(super) fn has_strays<const N: usize>(&self) -> bool {
         self.extent == Extent::Whole && N != self.dimension + 1
     }
@@ -111,7 +108,7 @@ impl Judge<'_> {
         let cells = &structure.complex.cells;
         let class = |i: usize| {
             let cell = cells.rows()[i];
-            // Cells that are linked as they must be are not flat.
+            // Cells that are linked correctly are not flat.
             let inside = (untied || !self.flat(cell)) && self.fits(cell);
             Verdict::of(if inside { Class::Interior } else { Class::Exterior })
         };
@@ -122,7 +119,7 @@ impl Judge<'_> {
         Ok(classes)
     }
 
-    /// Findings on cells that a point refutes, in a shape alone.
+    /// Findings for cells that a point refutes, in a shape alone.
     ///
     /// If no neighbour refutes another, a cell with neighbours on all sides is tested only with points that lie in it and are not
     /// surrounded by cells. Why: suppose that a point refutes a cell, and walk straight from the cell to the point; each cell on the way
@@ -200,7 +197,7 @@ impl Judge<'_> {
         }
     }
 
-    /// The classes of some simplices by their verdicts; and findings where the given ones differ.
+    /// The classes of some simplices by their verdicts, and findings for given classes that differ.
     fn classes<const N: usize>(
         &self,
         given: &Simplices<N>,
@@ -315,8 +312,8 @@ enum State {
 }
 
 impl<const N: usize, const M: usize> Faces<'_, N, M> {
-    /// The class of each lower simplex; findings where given ones differ, on simplices that are missing and, in a whole triangulation,
-    /// on those that are not faces.
+    /// The class of each lower simplex; findings for given classes that differ, for missing simplices and, in a whole
+    /// triangulation, for simplices that are not faces.
     pub(super) fn judge(
         &self,
         judge: &Judge,
@@ -422,8 +419,8 @@ mod tests {
     use crate::enumerate;
     use crate::exact::WeightedPoint;
 
-    /// Cells of two triangulations of different points, one of them within the other or across it: those that a point refutes are found
-    /// where most of them are tested with few points, too. Some cells are left out.
+    /// Cells of two triangulations of different points, one of them inside the other or across it: cells that a point refutes are
+    /// also found if most cells are tested with few points. Some cells are left out.
     #[test]
     fn surrounded_points_need_no_test() {
         let mut random = Random::new(6);
@@ -435,7 +432,7 @@ mod tests {
             let corner = |i: usize, size: i64| {
                 [i & 1, i >> 1 & 1, i >> 2 & 1].map(|side| (2 * side as i64 - 1) * size)
             };
-            // A cube in a cube, and a few points in the middle, or anywhere.
+            // A cube in a cube, and a few points in the middle or anywhere.
             let outer: Vec<[f64; 3]> = (0..16)
                 .map(|i| corner(i, if i < 8 { 40 } else { 12 }).map(|x| jitter(x, 2)))
                 .collect();

@@ -1,4 +1,4 @@
-//! Whether the simplices listed on a sphere cover the hull of all points on it.
+//! Whether the simplices that are listed on a sphere cover the hull of all points on it.
 
 use walpha_complex::canonical::sorted;
 
@@ -11,7 +11,7 @@ const OF_CELL: [[usize; 3]; 4] = [[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]];
 const OF_FACET: [[usize; 2]; 3] = [[1, 2], [0, 2], [0, 1]];
 const OF_EDGE: [[usize; 1]; 2] = [[1], [0]];
 
-/// Points on one empty sphere, ascending, and what they span.
+/// Points on one empty sphere, ascending, and their affine hull.
 pub(super) struct Polytope<'a> {
     points: Points<'a>,
     on: &'a [u32],
@@ -54,7 +54,7 @@ impl<'a> Polytope<'a> {
     ) -> bool {
         let is_on = |row: &[u32; N]| row.iter().all(|v| self.on.binary_search(v).is_ok());
         let rows = self.on.iter().flat_map(|&v| listed.with_smallest(v)).filter(is_on);
-        // Each face, with the corner that is opposite.
+        // Each face, with the opposite corner.
         let mut sides: Vec<([u32; M], u32)> = rows
             .flat_map(|row| {
                 (0..N).map(move |k| (sorted(faces[k].map(|corner| row[corner])), row[k]))
@@ -65,7 +65,7 @@ impl<'a> Polytope<'a> {
         !sides.is_empty() && open.all(|side| self.is_outer(side[0].0, side[0].1))
     }
 
-    /// Whether no point is beyond a face, seen from a corner.
+    /// Whether no point is beyond a face, as seen from a corner.
     fn is_outer<const M: usize>(&self, face: [u32; M], corner: u32) -> bool {
         let position = |v: u32| self.points.position(v);
         let plane = || face.into_iter().map(position).chain(self.apexes.iter().copied());

@@ -9,16 +9,15 @@ use crate::exact::{RoundedSphere, Side, WeightedPoint, in_conflict, orientation,
 
 /// Answers whether a sphere is empty by testing all points nearby.
 ///
-/// A point of weight ω inside a sphere of squared radius R² ≤ α is less than √(α + ω) away from
-/// its centre, and a vertex of weight ω at most as far. So in a layer of points, of which the heaviest has ω, it is enough to test
-/// those within √(R² + ω) of the centre; where doubles cannot locate the centre, those within √(α + ω) + √(α + largest ω) of a
-/// vertex.
+/// A point of weight ω inside a sphere of squared radius R² ≤ α is less than √(α + ω) away from its centre, and a vertex of
+/// weight ω is at most as far away. So in a layer of points, of which the heaviest has ω, it is enough to test the points within
+/// √(R² + ω) of the centre; if doubles cannot locate the centre, the points within √(α + ω) + √(α + largest ω) of a vertex.
 ///
 /// On a torus, a sphere that is not empty contains a point no farther from a vertex than the diagonal of the box. If the diagonal
 /// is less than the latter sum, it replaces that sum.
 pub(super) struct Emptiness<'a> {
     points: Points<'a>,
-    /// Few points are much heavier than the others, and one such would make all points far around a sphere be tested.
+    /// Few points are much heavier than the others, but one of them would require testing all points far around a sphere.
     layers: Vec<Layer>,
 }
 
@@ -55,8 +54,8 @@ impl<'a> Emptiness<'a> {
         self.layers.iter().flat_map(|layer| layer.grid.points()).copied()
     }
 
-    /// A point that refutes a cell whose squared radius is at most α: one strictly inside its sphere, or
-    /// else one on it, by the perturbation.
+    /// A point that refutes a cell whose squared radius is at most α: a point strictly inside its sphere, or otherwise a point on
+    /// it, by the perturbation.
     pub(super) fn refuter_of_cell(&self, cell: [u32; 4]) -> Option<u32> {
         let perturbed = self.perturbed_refuter(cell)?;
         let corners = self.points.corners(cell);
@@ -121,7 +120,7 @@ impl<'a> Emptiness<'a> {
 /// At most one of this many points goes into a heavier layer.
 const HEAVY: usize = 64;
 
-/// Points in layers of similar weight. The heaviest few form a layer of their own as long as their weights span more than those of
+/// Points in layers of similar weight. The heaviest few form a separate layer as long as their weights span more than those of
 /// the others.
 pub(super) fn layers(points: Points, mut sites: Vec<u32>) -> Vec<Vec<u32>> {
     let weight = |&i: &u32| points.weight(i);
@@ -181,7 +180,7 @@ mod tests {
         assert_eq!(super::layers(Points { sites: &alike }, (0..700).collect()).len(), 1);
     }
 
-    /// Whether any point is inside a sphere, and which are on it, as when all are looked at.
+    /// Whether any point is inside a sphere, and which points are on it, are the same as in a test of all points.
     #[test]
     fn spheres_are_searched_to_the_last_point() {
         let mut random = Random::new(2);

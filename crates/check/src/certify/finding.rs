@@ -83,12 +83,12 @@ pub enum Finding {
         /// A simplex that has it.
         of: Simplex,
     },
-    /// A simplex is the face of no cell, and the complex claims to be a triangulation.
+    /// A simplex is not the face of a cell, but the complex claims to be a triangulation.
     Stray {
         /// The simplex.
         simplex: Simplex,
     },
-    /// A whole triangulation has no cells, or, where points span no volume, none of the largest simplices.
+    /// A whole triangulation has no cells, or, if points span no volume, none of the largest simplices.
     NoCells,
     /// A cell is not positively oriented, or flat.
     Orientation {
@@ -161,28 +161,27 @@ pub enum Finding {
         /// Six times the hull's volume.
         hull: Exact,
     },
-    /// A class is not what the definition says.
+    /// A class differs from the definition.
     Class {
         /// The simplex.
         simplex: Simplex,
-        /// The class it was given.
+        /// The given class.
         given: Class,
-        /// The class it has.
+        /// The class by the definition.
         expected: Class,
         /// The squared radius of its smallest orthogonal sphere; `None` for a flat simplex.
         radius_squared: Option<Exact>,
-        /// A point strictly inside that sphere, if that is why the simplex is not in the shape, and its
-        /// |point − centre|² − R² − ω.
+        /// A point strictly inside that sphere, if it excludes the simplex from the shape, and its |point − centre|² − R² − ω.
         refuted_by: Option<(u32, Exact)>,
     },
-    /// A boundary facet turns clockwise seen from outside the shape.
+    /// A boundary facet turns clockwise, as seen from outside the shape.
     Winding {
         /// The facet.
         facet: Simplex,
         /// The vertex opposite the facet in the shape's cell at it, which must lie behind the facet.
         behind: u32,
     },
-    /// A point that is not a vertex is not hidden: it refutes the cell it lies in.
+    /// A point that is not a vertex is not hidden: it refutes the cell that contains it.
     NotHidden {
         /// The point.
         point: u32,
@@ -210,8 +209,8 @@ pub enum Finding {
         /// The squared radius of its orthogonal sphere.
         radius_squared: Exact,
     },
-    /// Points lie on an empty sphere of squared radius at most α, and the simplices listed do not cover their hull, which is in the
-    /// shape.
+    /// Points lie on an empty sphere of squared radius at most α, but the listed simplices do not cover their hull, which is in
+    /// the shape.
     MissingSimplex {
         /// A simplex whose smallest orthogonal sphere it is; the missing one, if there are no further points on it.
         simplex: Simplex,
@@ -220,20 +219,19 @@ pub enum Finding {
         /// The squared radius of the sphere.
         radius_squared: Exact,
     },
-    /// A point is in the shape by itself, with no other point inside or on its sphere, but it is
-    /// not listed as a vertex.
+    /// A point is in the shape by itself, with no other point inside or on its sphere, but it is not listed as a vertex.
     MissingVertex {
         /// The point.
         point: u32,
         /// The squared radius of its sphere, at most α.
         radius_squared: Exact,
     },
-    /// A point is neither vertex nor listed as hidden or duplicate.
+    /// A point is neither a vertex nor listed as hidden or duplicate.
     Unaccounted {
         /// The point.
         point: u32,
     },
-    /// A point is listed as hidden, and also as a vertex or a duplicate, or it does not exist.
+    /// A point is listed as hidden but is also a vertex or a duplicate, or does not exist.
     NotOnlyHidden {
         /// The point.
         point: u32,
@@ -242,16 +240,15 @@ pub enum Finding {
     Duplicate {
         /// The point.
         point: u32,
-        /// The point listed as kept at its position, if any.
+        /// The point that is listed as kept at its position, if any.
         given: Option<u32>,
-        /// The point to be kept: the heaviest, of equal weights the first; `None` if it is the point
-        /// itself.
+        /// The point that should be kept: the heaviest, and of equal weights the first; `None` if it is the point itself.
         expected: Option<u32>,
     },
     /// Of several points with equal positions and weights, a point other than the first, which the rule selects, is kept: a
     /// choice among ties.
     EqualPoint {
-        /// The point that is kept.
+        /// The kept point.
         point: u32,
         /// The first of its equals.
         first: u32,
@@ -281,7 +278,7 @@ pub enum Finding {
         /// Another point on its sphere.
         point: u32,
     },
-    /// A point at whose position a heavier or earlier one is kept is a vertex.
+    /// A point is a vertex although a heavier or earlier one is kept at its position.
     DuplicateVertex {
         /// The vertex.
         point: u32,
@@ -309,8 +306,8 @@ pub enum Finding {
 }
 
 impl Finding {
-    /// The simplices and points that it is about, each by its vertices, the one at fault first. Indices may be none of
-    /// the points', if that is the finding.
+    /// The simplices and points that it is about, each by its vertices, the one at fault first. Indices may be out of range, if
+    /// that is the finding.
     pub fn parts(&self) -> Vec<&[u32]> {
         match self {
             Self::Index { simplex: s, .. }
@@ -361,8 +358,7 @@ impl Finding {
         }
     }
 
-    /// A finding on copies, in terms of the `count` points of the box; `None` if it concerns copies outside
-    /// the box only.
+    /// A finding for copies, in terms of the `count` points of the box; `None` if it concerns only copies outside the box.
     pub(super) fn at_box(mut self, count: u32) -> Option<Self> {
         let point_at_box = |point: &mut u32| {
             let is_at_box = *point < count;
@@ -447,8 +443,8 @@ impl Finding {
         is_at_box.then_some(self)
     }
 
-    /// Whether this is not an error but another choice where the definition leaves one: among points on one
-    /// empty sphere, or with equal positions and weights.
+    /// Whether this is not an error but another choice where the definition leaves one: among points on one empty sphere, or with
+    /// equal positions and weights.
     pub fn is_tie(&self) -> bool {
         match self {
             Self::NotRegular { power, .. } | Self::NotHidden { power, .. } => power.is_zero(),

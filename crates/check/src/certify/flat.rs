@@ -26,8 +26,8 @@ pub(super) struct Cone {
 }
 
 impl Cone {
-    /// The cone over a complex without cells whose rows are valid. `None` if no simplex is listed of the
-    /// dimension that the points span.
+    /// The cone over a complex without cells whose rows are valid. `None` if no simplex of the dimension that the points span is
+    /// listed.
     pub(super) fn over(complex: &Complex, points: Points, apexes: &[[f64; 3]]) -> Option<Self> {
         let first = points.len() as u32;
         let apexes_as_points =

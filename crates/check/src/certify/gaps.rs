@@ -12,11 +12,11 @@ use crate::index::{for_each_bucket, in_buckets, of_bucket};
 use crate::parallel::of_each;
 use crate::{Alpha, Class, Complex};
 
-/// The cells that belong into gaps between four listed facets, positively oriented, with their classes.
+/// The cells that belong in gaps between four listed facets, positively oriented, with their classes.
 ///
-/// A gap is bounded by facets that lack a cell on its side. In a whole triangulation, no vertex of a
-/// neighbour may be inside the sphere of its cell; in a shape alone, the sphere must fit α, and no point
-/// nearby may be inside. Where further points are on the sphere, their cells are listed, or the gap is a missing cell.
+/// A gap is bounded by facets that lack a cell on its side. In a whole triangulation, no vertex of a neighbour may be inside the
+/// sphere of its cell; in a shape alone, the sphere must fit α, and no point nearby may be inside. If further points are on the
+/// sphere, their cells are listed, or the gap is a missing cell.
 pub(super) fn missing_cells(
     structure: &Structure,
     points: Points,
@@ -28,7 +28,7 @@ pub(super) fn missing_cells(
     let open = |facet: u32| facet != NONE && structure.sides[facet as usize][1] == NONE;
     let open_rows: Vec<u32> =
         (0..facets.len() as u32).into_par_iter().filter(|&facet| open(facet)).collect();
-    // The open facets by their two smaller vertices, as each gap is found from the facet without its largest vertex.
+    // The open facets by their two smaller vertices, because each gap is found from the facet without its largest vertex.
     let entries = || {
         open_rows.iter().map(|&facet| {
             let [a, b, c] = sorted(facets[facet as usize]);

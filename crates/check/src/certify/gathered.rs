@@ -13,12 +13,12 @@ use crate::{Class, Complex, Placed, Simplices};
 const FEW: usize = 1 << 16;
 /// Number of cells whose spread is sampled.
 const SAMPLE: usize = 1 << 10;
-/// Parts that rows are sorted in: of a million points, each fits into a cache.
+/// Parts in which rows are sorted: for a million points, each fits into a cache.
 const PARTS: usize = 1 << 8;
 
-/// The claim with its points numbered along a curve, if that is worth a copy: where points are in random order, everything that is
-/// looked up of a cell is a cache miss. Nothing is found of one claim if and only if nothing is found of the other; but of several
-/// points that refute a simplex another may be named.
+/// The claim with its points numbered along a curve, if that is worth a copy: if points are in random order, all lookups for a
+/// cell are cache misses. One claim has findings if and only if the other has; but if several points refute a simplex, another
+/// one may be named.
 pub(super) fn gathered(claim: &Claim) -> Option<PlacedComplex> {
     let Placed { positions, complex, .. } = claim.placed;
     let pays = is_scattered(complex.cells.rows(), positions.len());
@@ -62,8 +62,8 @@ fn renumbered(claim: &Claim) -> Option<PlacedComplex> {
     })
 }
 
-/// The points along a Z-order curve through boxes, 1024 along the longest axis. In each box they are as they were, so that of equal
-/// points the first stays the first.
+/// The points along a Z-order curve through boxes, 1024 along the longest axis. In each box they keep their order, so that the
+/// first of equal points stays the first.
 fn along_curve(positions: &[[f64; 3]]) -> Vec<u32> {
     let ends = |k: usize| {
         let coordinates = positions.iter().map(|position| position[k]);
@@ -74,7 +74,7 @@ fn along_curve(positions: &[[f64; 3]]) -> Vec<u32> {
     let longest = ends.iter().map(|(low, high)| high - low).fold(0.0, f64::max);
     let place = |position: &[f64; 3]| {
         let bits = |k: usize| {
-            // Points of no extent, or of more than a double can hold, share a box: the conversion takes NaN to 0.
+            // Points without extent, or with more extent than a double can hold, share a box: the conversion turns NaN into 0.
             let number = ((position[k] - ends[k].0) / longest * 1023.0) as u64;
             (0..10).fold(0, |bits, i| bits | (number >> i & 1) << (3 * i + k))
         };
@@ -112,7 +112,7 @@ fn bytes(complex: &Complex, points: usize) -> usize {
     kept + in_parts.max(Structure::bytes(complex)) + 60 * points
 }
 
-/// A row with its vertices sorted, whether its winding is theirs, and its class.
+/// A row with its vertices sorted, whether its winding is that of the sorted vertices, and its class.
 type Numbered<const N: usize> = ([u32; N], bool, Class);
 
 /// The rows with new numbers, sorted up to their windings; `None` if one has a vertex that does not exist.
@@ -126,7 +126,7 @@ fn sorted_anew<const N: usize>(simplices: &Simplices<N>, new: &[u32]) -> Option<
     }
     let shift = new.len().div_ceil(PARTS).next_power_of_two().trailing_zeros();
     let range = rows.len().div_ceil(rayon::current_num_threads()).max(1);
-    // Windings are kept apart, so that rows compare by their sorted vertices.
+    // Windings are stored separately, so that rows compare by their sorted vertices.
     let in_parts = |(rows, classes): (&[[u32; N]], &[Class])| {
         let entries = || {
             rows.iter().zip(classes).map(|(row, &class)| {
@@ -189,7 +189,7 @@ mod tests {
         assert!(!is_scattered(&[], FEW));
     }
 
-    /// Each point once, and equal ones in their order; the curve goes through one half after the other.
+    /// Each point occurs once, and equal ones are in their order; the curve passes one half after the other.
     #[test]
     fn a_curve_takes_each_point_once() {
         let mut random = Random::new(10);
@@ -214,7 +214,7 @@ mod tests {
         }
     }
 
-    /// Rows are sorted as by one sort of all, with their windings and classes.
+    /// Rows are sorted as in a single sort, with their windings and classes.
     #[test]
     fn rows_are_sorted_anew() {
         let mut random = Random::new(11);

@@ -27,7 +27,7 @@ pub(super) struct Linked<'a> {
     pub structure: Structure<'a>,
     /// Broken rules on which the others depend.
     pub broken: Vec<Finding>,
-    /// Findings on neighbours and boundary, which are judged if `broken` is empty.
+    /// Findings for neighbours and boundary, which are judged if `broken` is empty.
     pub irregular: Vec<Finding>,
 }
 
@@ -53,8 +53,8 @@ impl<'a> Linked<'a> {
         Ok(Self { structure, broken, irregular })
     }
 
-    /// Whether no vertex is inside the sphere of a neighbouring cell, and the boundary of a whole triangulation is what
-    /// it must be: then it is regular, up to the choice among ties.
+    /// Whether no vertex is inside the sphere of a neighbouring cell, and the boundary of a whole triangulation is correct: then
+    /// it is regular, up to the choice among ties.
     pub(super) fn is_regular(&self) -> bool {
         self.broken.is_empty() && self.irregular.iter().all(Finding::is_tie)
     }
@@ -100,8 +100,8 @@ pub(super) fn orientations(
 /// Judges that the cells on a facet are on different sides of it, and neither is refuted by the other's
 /// vertex. Cells must be positively oriented.
 ///
-/// Over a convex domain this proves that the whole triangulation is regular: the lifted cells
-/// then make a function that is convex across every facet, hence convex.
+/// Over a convex domain this proves that the whole triangulation is regular: the lifted cells then form a function that is convex
+/// across every facet, and therefore convex.
 pub(super) fn neighbours(
     structure: &Structure,
     points: Points,
@@ -116,7 +116,7 @@ pub(super) fn neighbours(
 
 fn overlap(structure: &Structure, one: Half, other: Half) -> Option<Finding> {
     let [a, b, c] = structure.outward(one);
-    // Seen from its two sides, a facet turns in opposite directions.
+    // As seen from its two sides, a facet turns in opposite directions.
     let same_turn = [[a, b, c], [b, c, a], [c, a, b]].contains(&structure.outward(other));
     let cell = |half: Half| structure.complex.cells.rows()[half.cell].into();
     same_turn.then(|| Finding::Overlap { facet: [a, b, c].into(), cells: [cell(one), cell(other)] })
@@ -144,8 +144,8 @@ pub(super) fn six_volumes(
     Ok((sum, 3 * i64::from(lattice.exponent())))
 }
 
-/// Six times the volume of all cells once they are linked: that which their outer facets enclose, if they are on different sides of
-/// each facet, as inner facets cancel. These are few.
+/// Six times the volume of all cells after they are linked: the volume that their outer facets enclose, if cells are on different
+/// sides of each facet, because inner facets cancel. Outer facets are few.
 pub(super) fn six_volumes_linked(
     linked: &Linked,
     points: Points,
@@ -193,10 +193,10 @@ pub(super) fn volume(
 
 /// Judges that the hull is a convex surface that goes around the first cell once.
 ///
-/// By Mehlhorn et al., "Checking geometric programs or verification of geometric structures",
-/// Comput. Geom. 12, 1999, doi:10.1016/S0925-7721(98)00036-4: a closed surface is the boundary of
-/// a convex polytope if it is convex across each edge, has a point strictly inside all its
-/// facets, and one ray from that point through the interior of a facet meets no other facet.
+/// The method is that of Mehlhorn et al., "Checking geometric programs or verification of geometric structures", Comput. Geom.
+/// 12, 1999, doi:10.1016/S0925-7721(98)00036-4: a closed surface is the boundary of a convex polytope if it is convex across each
+/// edge, has a point strictly inside all its facets, and one ray from that point through the interior of a facet meets no other
+/// facet.
 pub(super) fn convexity(structure: &Structure, points: Points) -> Vec<Finding> {
     let hull = structure.hull();
     let mut findings = edges(&hull, points);

@@ -34,7 +34,7 @@ impl Grid {
         let boxes = |step: f64| extent.map(|e| (e / step) as usize + 1);
         let (mut step, mut counts) = (f64::INFINITY, [1; 3]);
         if longest > 0.0 && longest.is_finite() {
-            // Halving the step until the boxes outnumber the points; flat sets have flat grids.
+            // Halves the step until the boxes outnumber the points; flat sets have flat grids.
             step = longest;
             counts = boxes(step);
             while step > f64::MIN_POSITIVE {
@@ -74,7 +74,7 @@ impl Grid {
         count.get()
     }
 
-    /// Calls `visit` with rows of boxes that hold every point within `radius` of `center`, until it returns a value.
+    /// Calls `visit` with rows of boxes that contain every point within `radius` of `center`, until it returns a value.
     fn rows_within<T>(
         &self,
         center: [f64; 3],
@@ -125,7 +125,7 @@ impl Grid {
     fn apart(&self, axis: usize, slice: usize, x: f64) -> f64 {
         let low = self.low[axis] + slice as f64 * self.step;
         let high = self.low[axis] + (slice + 1) as f64 * self.step;
-        // More than the roundings of positions, when they are sorted, and of these two.
+        // More than the roundings in the sorting of positions, and those of these two numbers.
         let rounded = 8.0 * f64::EPSILON * (self.low[axis].abs() + high.abs()) + f64::MIN_POSITIVE;
         // The last slice also contains the points beyond it.
         let beyond = if slice + 1 == self.counts[axis] { 0.0 } else { x - high };

@@ -1,9 +1,9 @@
 //! In a shape alone: whether simplices of the shape are missing.
 //!
-//! A simplex can be missing only between points that the cells listed do not surround. Whichever is missing, one of the following belongs
-//! to the shape and is not listed: a point; a pair of points that are listed; three points whose edges are listed; or four whose facets
-//! are. For each of these the smallest empty sphere decides. Theorem 3 in docs/certifying.md proves that the search is complete, and that
-//! whatever it finds is missing.
+//! A simplex can be missing only between points that the listed cells do not surround. For any missing simplex, one of the
+//! following belongs to the shape and is not listed: a point; a pair of listed points; three points whose edges are listed; or
+//! four points whose facets are listed. For each of these the smallest empty sphere decides. Theorem 3 in docs/certifying.md
+//! proves that the search is complete, and that everything it finds is missing.
 
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
@@ -40,7 +40,7 @@ pub struct Declined {
 
 /// More pairs of points than this are not searched: they would take an hour.
 pub(super) const MOST_PAIRS: u64 = 1 << 32;
-/// Points of which neighbours are counted.
+/// Number of points whose neighbours are counted.
 const SAMPLE: usize = 1 << 10;
 
 /// The data of the search.
@@ -54,7 +54,7 @@ pub(super) struct Search<'a> {
     pub most_pairs: u64,
 }
 
-/// Points on an empty sphere whose hull nothing listed covers, and corners that have this sphere.
+/// Points on an empty sphere whose hull is not covered by listed simplices, and corners that have this sphere.
 type Found = (Vec<u32>, Corners);
 
 impl Search<'_> {
@@ -138,7 +138,7 @@ impl Search<'_> {
         open
     }
 
-    /// Edges of the shape that are not listed, or what they are faces of.
+    /// Edges of the shape that are not listed, or the simplices that they are faces of.
     fn pairs(
         &self,
         known: &Known,
@@ -162,7 +162,8 @@ impl Search<'_> {
         let found = of_each(firsts.len(), monitor, |i| {
             let v = firsts[i];
             let listed = known.listed(v);
-            // Points that may be inside, those with which the point is in a polytope that is covered, and what is not.
+            // Points that may be inside, points with which this point is in a covered polytope, and the polytopes that are not
+            // covered.
             let state = RefCell::new((listed.to_vec(), Vec::new(), Vec::new()));
             let own = rank[v as usize] as usize;
             for (rank, layer) in (own..).zip(&pairs.layers[own..]) {
@@ -189,7 +190,7 @@ impl Search<'_> {
         Ok(Ok(found))
     }
 
-    /// Facets of the shape whose edges are listed and that are not listed, or what they are faces of.
+    /// Facets of the shape whose edges are listed and that are not listed, or the simplices that they are faces of.
     fn triples(
         &self,
         known: &Known,
@@ -263,7 +264,7 @@ impl Search<'_> {
         (smallest as usize) < self.judged()
     }
 
-    /// Takes down what was found, and simplices that cover it.
+    /// Records the found polytopes, and simplices that cover them.
     fn add(
         &self,
         all: impl IntoIterator<Item = Found>,
@@ -294,7 +295,7 @@ impl Search<'_> {
         }
     }
 
-    /// The findings: of what was found, that which is not a face of anything else found.
+    /// The findings: the found polytopes that are not faces of others.
     fn told(&self, found: &BTreeMap<Vec<u32>, Corners>) -> Vec<Finding> {
         let points = self.spheres.points;
         let mut at = BTreeMap::<u32, Vec<&Vec<u32>>>::new();
@@ -373,7 +374,7 @@ impl Pairs<'_> {
         (reach(weight) + reach(layer.heaviest)).next_up().min(largest)
     }
 
-    /// About how many pairs are near enough to each other at some α; grows with it.
+    /// The approximate number of pairs that are near enough to each other at some α; grows with it.
     fn count(&self, alpha: f64) -> u64 {
         let points = self.search.spheres.points;
         let mut count = 0.0;
@@ -386,7 +387,7 @@ impl Pairs<'_> {
                     other.grid.count(points.position(v), reach)
                 };
                 let heavier = self.layers[rank + 1..].iter().map(of).sum::<usize>();
-                // A pair within a layer is counted from either end.
+                // A pair within a layer is counted from both ends.
                 (of(layer) - 1) as f64 / 2.0 + heavier as f64
             };
             count += numbers.iter().step_by(step).map(near).sum::<f64>() * step as f64;
@@ -507,7 +508,7 @@ mod tests {
         assert_eq!(last(|_| false), f64::NEG_INFINITY);
     }
 
-    /// Beyond one α the search is declined, and up to it everything is found.
+    /// The search is declined beyond one α, and up to it everything is found.
     #[test]
     fn a_search_is_declined_beyond_the_alpha_that_is_named() {
         let mut random = Random::new(25);

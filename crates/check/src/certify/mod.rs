@@ -1,4 +1,4 @@
-//! Certification: judging a complex that some engine or program made, without making one.
+//! Certification: judges a complex that any engine or program made, without computing one.
 
 mod causes;
 mod certificate;

@@ -144,8 +144,8 @@ fn statuses(structure: &Structure, kept: &[u32]) -> Vec<Status> {
     statuses
 }
 
-/// Judges that the list of hidden points, if there is one, names only hidden points. Without a list of
-/// duplicates it may name these, too.
+/// Judges that the list of hidden points, if there is one, names only hidden points. Without a list of duplicates it may name
+/// those, too.
 fn listed_hidden(statuses: &mut [Status], claim: &Claim) -> Vec<Finding> {
     let mut findings = Vec::new();
     for &point in claim.hidden.unwrap_or_default() {
@@ -160,8 +160,8 @@ fn listed_hidden(statuses: &mut [Status], claim: &Claim) -> Vec<Finding> {
     findings
 }
 
-/// Judges a whole triangulation: the list of hidden points, if there is one, has exactly those that are neither
-/// vertices nor duplicates.
+/// Judges a whole triangulation: the list of hidden points, if there is one, has exactly the points that are neither vertices nor
+/// duplicates.
 pub(super) fn of_whole(structure: &Structure, kept: &[u32], claim: &Claim) -> Vec<Finding> {
     let mut statuses = statuses(structure, kept);
     let mut findings = listed_hidden(&mut statuses, claim);
@@ -178,7 +178,7 @@ pub(super) fn of_shape(structure: &Structure, kept: &[u32], claim: &Claim) -> Ve
     listed_hidden(&mut statuses(structure, kept), claim)
 }
 
-/// Judges that each hidden point is hidden: it does not refute the cell it lies in.
+/// Judges that each hidden point is hidden: it does not refute the cell that contains it.
 ///
 /// The lifted cells are a convex function, so a point that lies above it in its own cell lies above the whole lower hull.
 /// The cell is found by a walk from a vertex nearby, which ends in a regular triangulation because its
@@ -241,8 +241,8 @@ pub(super) fn hiddenness_in_cells(
     })
 }
 
-/// Calls `visit` with every point of the grid that lies in a cell, its surface included, and is not a corner of it, until it returns a
-/// value.
+/// Calls `visit` with every point of the grid that lies in a cell, including its surface, and is not a corner of it, until it
+/// returns a value.
 pub(super) fn in_cell<T>(
     grid: &Grid,
     points: Points,
@@ -260,7 +260,7 @@ pub(super) fn in_cell<T>(
     })
 }
 
-/// The finding on a point that refutes the cell it lies in.
+/// The finding for a point that refutes the cell that contains it.
 fn not_hidden(points: Points, cell: [u32; 4], point: u32) -> Option<Finding> {
     let (corners, q) = (points.corners(cell), points.get(point));
     in_conflict(corners.each_ref(), &q).then(|| Finding::NotHidden {
@@ -270,7 +270,7 @@ fn not_hidden(points: Points, cell: [u32; 4], point: u32) -> Option<Finding> {
     })
 }
 
-/// Whether a position is in a cell, its surface included.
+/// Whether a position is in a cell, including its surface.
 fn holds(points: Points, cell: [u32; 4], position: [f64; 3]) -> bool {
     !outward_facets(cell).iter().any(|facet| beyond(points, *facet, position))
 }
@@ -281,10 +281,10 @@ fn beyond(points: Points, facet: [u32; 3], position: [f64; 3]) -> bool {
     orientation(a, b, c, position).is_gt()
 }
 
-/// The cell that contains a position, or a facet of the hull that it lies beyond.
+/// The cell that contains a position, or a facet of the hull beyond which the position lies.
 ///
-/// Among cells on one sphere a walk may cycle, as an arbitrary choice among ties need not be the
-/// projection of a convex surface: then all cells are searched.
+/// Among cells on one sphere a walk may cycle, because an arbitrary choice among ties need not be the projection of a convex
+/// surface: then all cells are searched.
 fn walk(
     structure: &Structure,
     points: Points,

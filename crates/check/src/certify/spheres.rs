@@ -76,9 +76,10 @@ impl Spheres<'_> {
     /// the sphere of the returned corners, of which the given ones are the first. `near` are points that may be inside, which are
     /// tested first; other points inside are added to them.
     ///
-    /// The centres of spheres that are orthogonal to the corners and do not have a certain point inside are a half-space of
-    /// the places of equal power from all corners. So the smallest sphere is the solution of a convex quadratic program in at most three
-    /// dimensions: points that are inside are taken in turn, each of which is on the smallest sphere that does not have it inside.
+    /// The centres of spheres that are orthogonal to the corners and do not contain a certain point form a half-space of the
+    /// places of equal power from all corners. So the smallest sphere is the solution of a convex quadratic program in at most
+    /// three dimensions: points inside are considered one after another, and each is on the smallest sphere that does not contain
+    /// it.
     pub(super) fn smallest_empty(&self, corners: Corners, near: &mut Vec<u32>) -> Option<Corners> {
         let mut best = self.smallest(corners, near)?;
         while let Some(point) = of_row!(best, row => self.emptiness.refuter(row)) {
@@ -94,7 +95,7 @@ impl Spheres<'_> {
         of_row!(corners, row => self.emptiness.on_sphere(row))
     }
 
-    /// The smallest sphere with none of `others` inside, as if there were no further points.
+    /// The smallest sphere with none of `others` inside, ignoring further points.
     ///
     /// The method is that of R. Seidel, "Small-dimensional linear programming and convex hulls made easy", Discrete Comput. Geom.
     /// 6, 1991, doi:10.1007/BF02574699. A point that is inside the smallest sphere for the points before it is on the smallest
@@ -131,8 +132,8 @@ impl Spheres<'_> {
         of_row!(corners, row => side(self.points.corners(row).each_ref(), &q)) == Side::Inside
     }
 
-    /// The corners and a point inside their smallest sphere. `None` if the point depends on them: then it is inside each sphere
-    /// orthogonal to them.
+    /// The corners and a point inside their smallest sphere. `None` if the point depends on the corners: then it is inside each
+    /// sphere orthogonal to them.
     fn with(&self, corners: Corners, point: u32) -> Option<Corners> {
         let Corners { mut row, count } = corners;
         *row.get_mut(count)? = point;

@@ -12,7 +12,7 @@ use crate::exact::WeightedPoint;
 pub(super) use crate::index::{Index, NONE};
 use crate::parallel::one_for_each;
 
-/// Points with their positions and weights side by side.
+/// Points, each with its position and weight together in memory.
 pub(super) fn sites(positions: &[[f64; 3]], weights: &[f64]) -> Vec<WeightedPoint> {
     let sites = positions.iter().zip(weights);
     sites.map(|(&position, &weight)| WeightedPoint { position, weight }).collect()
@@ -65,7 +65,7 @@ impl<'a> Points<'a> {
 /// The maximum number of cells, limited by the 32-bit numbers of their sides, 4 · cell + 0..4.
 pub(super) const MAX_CELLS: usize = (u32::MAX / 4) as usize;
 
-/// The listed simplices, linked: cells to facets and back, and each found by its vertices.
+/// The listed simplices, linked: cells to facets and back, and each simplex found by its vertices.
 pub(super) struct Structure<'a> {
     pub complex: &'a Complex,
     pub cells: Index<'a, 4>,
@@ -83,12 +83,12 @@ pub(super) struct Structure<'a> {
 #[derive(Clone, Copy)]
 pub(super) struct Half {
     pub cell: usize,
-    /// The corner of the cell that is opposite.
+    /// The opposite corner of the cell.
     pub opposite: usize,
 }
 
 impl<'a> Structure<'a> {
-    /// Bytes that linking a complex takes at most, besides the complex itself.
+    /// The maximum number of bytes for linking a complex, without the complex itself.
     pub(super) fn bytes(complex: &Complex) -> usize {
         let row = size_of::<u32>();
         let (cell, facet) = (row + size_of::<[u32; 4]>(), row + size_of::<[u32; 2]>());
@@ -188,7 +188,7 @@ impl<'a> Structure<'a> {
 /// The first two sides of each facet, and the facets that have more, given the facet at each side of the cells.
 fn sides(facets: usize, facet_at: &[u32]) -> (Vec<[u32; 2]>, BTreeSet<u32>) {
     let mut sides = vec![[NONE; 2]; facets];
-    // Each thread goes through all cells, and writes down what it finds of some of the facets.
+    // Each thread visits all cells, and records their sides at some of the facets.
     let share = facets.div_ceil(rayon::current_num_threads()).max(1);
     let parts = sides.par_chunks_mut(share).enumerate().map(|(part, sides)| {
         let start = (part * share) as u32;
@@ -207,7 +207,7 @@ fn sides(facets: usize, facet_at: &[u32]) -> (Vec<[u32; 2]>, BTreeSet<u32>) {
     (sides, crowded)
 }
 
-/// Findings on simplices that are listed more than once.
+/// Findings for simplices that are listed more than once.
 fn repeated<const N: usize>(index: &Index<N>) -> Vec<Finding> {
     index
         .repeated()
@@ -221,7 +221,7 @@ fn cells_with(cells: &[[u32; 4]], facets: &[[u32; 4]], row: u32) -> Vec<Simplex>
     cells.iter().zip(facets).filter(has).map(|(cell, _)| (*cell).into()).collect()
 }
 
-/// Findings on single rows: vertices that do not exist, or occur twice.
+/// Findings for single rows: vertices that do not exist, or occur twice.
 pub(super) fn rows(complex: &Complex, points: usize) -> Vec<Finding> {
     let mut findings = row_findings(complex.cells.rows(), points);
     findings.extend(row_findings(complex.facets.rows(), points));

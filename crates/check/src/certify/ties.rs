@@ -24,8 +24,8 @@ use crate::{Class, Complex, Simplices};
 /// Singular facets on tied circles: the points of each circle, and the rows.
 pub(super) type Circles = BTreeMap<Vec<u32>, Vec<u32>>;
 
-/// Judges singular simplices with further points on their spheres: they must be those of a
-/// triangulation of these points, by the rule or by another choice.
+/// Judges singular simplices with further points on their spheres: they must be those of a triangulation of these points, by the
+/// rule or by another choice.
 pub(super) fn singular(
     structure: &Structure,
     points: Points,
@@ -72,7 +72,7 @@ pub(super) fn singular(
     Ok((circles, findings))
 }
 
-/// Judges cells with further points on their spheres, and the facets and edges listed on the faces between them.
+/// Judges cells with further points on their spheres, and the facets and edges that are listed on the faces between them.
 pub(super) fn cells(
     structure: &Structure,
     points: Points,
@@ -108,7 +108,7 @@ pub(super) fn cells(
     let found: Vec<_> = spheres.par_iter().map(judge).collect::<Result<_, Cancelled>>()?;
     let mut findings: Vec<Finding> = found.into_iter().flatten().collect();
 
-    // The facets listed on each flat face with more than three corners.
+    // The facets that are listed on each flat face with more than three corners.
     let mut faces = BTreeMap::<Vec<u32>, Vec<u32>>::new();
     let mut cut = BTreeSet::new();
     for (on, rows) in &spheres {
@@ -153,7 +153,7 @@ pub(super) fn cells(
     Ok(findings)
 }
 
-/// The edges of a facet that have a vertex between their ends, of those `on` its sphere.
+/// The edges of a facet that have, between their ends, a vertex of those `on` its sphere.
 fn cut_edges(
     structure: &Structure,
     points: Points,
@@ -164,14 +164,14 @@ fn cut_edges(
         let [p, q] = points.positions_of(edge);
         on.iter().any(|&v| {
             let x = points.get(v).position;
-            // Comparing coordinates is cheap, and rules out nearly all.
+            // Comparing coordinates is cheap, and excludes nearly all.
             let between = (0..3).all(|k| p[k].min(q[k]) <= x[k] && x[k] <= p[k].max(q[k]));
             between && !edge.contains(&v) && structure.vertices.contains([v]) && collinear(p, q, x)
         })
     })
 }
 
-/// The edges listed between some points, which are ascending.
+/// The edges that are listed between some points, which are ascending.
 fn edges_between(structure: &Structure, on: &[u32]) -> impl Iterator<Item = [u32; 2]> {
     let pairs = on.iter().enumerate().flat_map(|(i, &a)| on[i + 1..].iter().map(move |&b| [a, b]));
     pairs.filter(|&pair| structure.edges.contains(pair))
@@ -212,8 +212,8 @@ fn spanned<const N: usize>(simplex: [u32; N], on: &[u32]) -> Finding {
     Finding::SpannedSphere { simplex: simplex.into(), point }
 }
 
-/// Findings on flat simplices as a whole triangulation of the points `on` a sphere: each other choice among
-/// ties, or a single finding if they are not a triangulation. `simplex` is the first of them.
+/// Findings for flat simplices as a whole triangulation of the points `on` a sphere: each other choice among ties, or a single
+/// finding if they are not a triangulation. `simplex` is the first of them.
 fn flat_findings(
     on: &[u32],
     complex: &Complex,

@@ -25,12 +25,12 @@ use crate::{Alpha, Complex, Placed, Simplices};
 pub(super) struct Torus {
     /// The number of points in the box. They come before all copies.
     pub points: u32,
-    /// Half of the diagonal, rounded up: of empty spheres no centre is further from a vertex.
+    /// Half of the diagonal, rounded up: the centre of an empty sphere is no farther from a vertex.
     pub largest_empty: f64,
 }
 
 impl Torus {
-    /// The copies of a simplex that are laid out, itself among them.
+    /// The copies of a simplex in the layout, including the simplex itself.
     pub(super) fn copies(self, row: &[u32]) -> Vec<Vec<u32>> {
         let moves = moves();
         let copy = |by: [i32; 3]| {

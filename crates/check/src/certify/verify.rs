@@ -1,4 +1,4 @@
-//! Judging a claim: the rules in order, which of them are skipped once others are broken, and the verdict.
+//! Judges a claim: the rules in order, the rules that are skipped after others are broken, and the verdict.
 
 use std::cell::Cell;
 use std::collections::BTreeSet;
@@ -54,8 +54,8 @@ impl Claim<'_> {
         self.findings_on(None, monitor)
     }
 
-    /// The findings, where a torus is given of its unwrapped complex: then only those that involve a vertex inside the box
-    /// are kept.
+    /// The findings. If `torus` is given, the complex is its unwrapped one, and only findings that involve a vertex inside the
+    /// box are kept.
     pub(super) fn findings_on(
         &self,
         torus: Option<Torus>,
@@ -70,7 +70,7 @@ impl Claim<'_> {
         Ok((all, certificate))
     }
 
-    /// Judges the complex, handing each finding to `visitor` until it breaks.
+    /// Judges the complex, and passes each finding to `visitor` until it breaks.
     ///
     /// The rules, each exact and each linear in the number of simplices (up to sorting):
     /// 1. rows name distinct input points, and no simplex is listed twice;
@@ -87,11 +87,11 @@ impl Claim<'_> {
     /// 8. every class is what the definition says, and regular facets turn counter-clockwise seen
     ///    from outside.
     ///
-    /// Points that span no volume are judged in their plane, on their line, or as a single point:
-    /// a whole triangulation then has no cells, and the rules on cells hold for its largest simplices.
+    /// Points that span no volume are judged in their plane, on their line, or as a single point: a whole triangulation then has
+    /// no cells, and the rules on cells apply to its largest simplices.
     ///
-    /// Rules that mean nothing once others are broken are then not applied; the certificate says
-    /// so. A choice that departs only from the rule for ties is a finding, too, and [is a tie](Finding::is_tie).
+    /// Rules that have no meaning after others are broken are then not applied; the certificate says so. A choice that departs
+    /// only from the tie rule is a finding, too, and [is a tie](Finding::is_tie).
     ///
     /// Findings come in the same order on any number of threads. In a shape alone, cost also
     /// grows with the number of points within √(α + largest weight) of a simplex.
@@ -129,7 +129,7 @@ impl Claim<'_> {
         self.judged(torus, visitor, &rest)
     }
 
-    /// Judges the complex with its points in the order in which they are.
+    /// Judges the complex with its points in their given order.
     fn judged(
         &self,
         torus: Option<Torus>,
@@ -193,7 +193,7 @@ impl Claim<'_> {
     }
 }
 
-/// Checks that the memory which the judgement takes piece by piece is available, that for copies of points included: it is
+/// Checks that the memory which the judgement allocates piece by piece is available, including that for copies of points: it is
 /// better to fail now than halfway.
 fn afford(complex: &Complex, copies: usize) -> Result<(), CertifyError> {
     let bytes = Structure::bytes(complex) + copies * size_of::<WeightedPoint>();
@@ -225,7 +225,8 @@ fn near_box(torus: Option<Torus>, mut findings: Vec<Finding>) -> Vec<Finding> {
     findings
 }
 
-/// Applies the rules in turn, and says what was not judged besides. The monitor's parts are shares of the time that each takes.
+/// Applies the rules in turn, and returns the parts that were not judged. The monitor's parts are shares of the time of each
+/// rule.
 fn apply(
     claim: &Claim,
     torus: Option<Torus>,
@@ -313,7 +314,7 @@ fn apply(
     apply_to((listed, of_cells), claim, &judge, &kept, &|_| true, report, &rest)
 }
 
-/// Applies the rules after those on rows. Of the cells, six times the volume is given. Only findings that last count.
+/// Applies the rules after those on rows. Six times the volume of the cells is given. Only findings with `lasts` count.
 fn apply_to(
     (linked, of_cells): (Linked, (IBig, i64)),
     claim: &Claim,
@@ -388,7 +389,7 @@ fn apply_to(
     }
 }
 
-/// Applies the rules to a whole triangulation of points that span no volume: those on cells to a cone over it.
+/// Applies the rules to a whole triangulation of points that span no volume: the rules on cells are applied to a cone over it.
 fn flat(
     claim: &Claim,
     points: Points,

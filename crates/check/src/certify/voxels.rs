@@ -1,13 +1,14 @@
-//! Judging the solid of labels: that its cells fill the voxels of a region, face to face, and nothing else.
+//! Judges the solid of labels: that its cells fill exactly the voxels of a region, face to face.
 //!
 //! Everything is judged in index space, where the corners of voxels are integers. Two further rules are that the position of a
 //! point equals that of the corner to the last bit, and that cells are positively oriented at these positions.
 //!
-//! **Why the rules imply it.** The cells are positively oriented. A facet has one cell or two, two lie on different sides, and one makes it half of a face between a
-//! voxel of the region and one outside, with the cell on the side of the region. Each such face is two of these facets, which share
-//! its diagonal. So the chain of all cells has the same boundary as the chain of the region's voxels. Their difference has no boundary, and in space only the
-//! chain of nothing has none. As all cells count positively, each place of the region is in one cell, and no other place is in any. Nothing is asked of voxels within:
-//! the cells may cut them in any way.
+//! **Why the rules imply it.** The cells are positively oriented. A facet has one cell or two. Two cells lie on different sides,
+//! and a single cell makes the facet half of a face between a voxel of the region and one outside, with the cell on the side of
+//! the region. Each such face consists of two of these facets, which share its diagonal. So the chain of all cells has the same
+//! boundary as the chain of the region's voxels. Their difference has no boundary, and in space only the empty chain has none. As
+//! all cells count positively, each place of the region is in one cell, and no other place is in any. There is no rule for voxels
+//! inside: the cells may cut them in any way.
 
 use rayon::prelude::*;
 use walpha_base::Monitor;
@@ -67,7 +68,7 @@ pub(super) fn findings(
     Ok((found, certificate))
 }
 
-/// Points that are listed as what a corner is not, or that are not vertices of a cell.
+/// Points that are listed in a role that a corner does not have, or that are not vertices of a cell.
 fn accounts(placed: &PlacedComplex) -> Vec<Finding> {
     let mut is_in_cell = vec![false; placed.positions.len()];
     for &v in placed.complex.cells.rows().as_flattened() {
@@ -86,7 +87,7 @@ fn accounts(placed: &PlacedComplex) -> Vec<Finding> {
     found
 }
 
-/// The corner that each point is at; findings on those at none, and on those that are not alone at theirs.
+/// The corner at each point; findings for points that are not at a corner, and for several points at the same one.
 fn corners(positions: &[[f64; 3]], voxels: &Voxels) -> (Vec<Place>, Vec<Finding>) {
     let [a, b, c] = voxels.axes;
     let cross = |u: [f64; 3], v: [f64; 3]| {
@@ -95,7 +96,7 @@ fn corners(positions: &[[f64; 3]], voxels: &Voxels) -> (Vec<Place>, Vec<Finding>
     let inverse = [cross(b, c), cross(c, a), cross(a, b)];
     let corner = |position: &[f64; 3]| {
         let from = [0, 1, 2].map(|k| position[k] - voxels.origin[k]);
-        // About where it is; what it is is decided by its position.
+        // The approximate place; the position decides the exact one.
         let at = inverse.map(|row| {
             let index = (0..3).map(|k| row[k] * from[k]).sum::<f64>() / voxels.determinant();
             (index + 0.5).round() as u32
@@ -144,7 +145,7 @@ fn cells(complex: &Complex, corners: &[Place], voxels: &Voxels) -> Vec<Finding> 
     complex.cells.rows().par_iter().zip(complex.cells.classes()).flat_map_iter(judge).collect()
 }
 
-/// The finding on a class, if it is not the expected one.
+/// The finding for a class, if it is not the expected one.
 fn wrong_class<const N: usize>(row: [u32; N], given: Class, expected: Class) -> Option<Finding> {
     (given != expected).then(|| Finding::Class {
         simplex: row.into(),
@@ -159,7 +160,7 @@ fn wrong_class<const N: usize>(row: [u32; N], given: Class, expected: Class) -> 
 /// leaves out, as two bits.
 type Half = (Place, usize, usize);
 
-/// Judges facets: their classes, which way they turn, and that those with one cell cover the border of the region.
+/// Judges facets: their classes, their orientation, and that those with one cell cover the border of the region.
 fn facets(structure: &Structure, corners: &[Place], voxels: &Voxels) -> Vec<Finding> {
     let facets = &structure.complex.facets;
     let judge = |row: usize| {
@@ -266,7 +267,8 @@ fn holds(voxels: &Voxels, at: [i64; 3]) -> bool {
     after.checked_sub(1).is_some_and(|at| number - voxels.runs[at][0] < voxels.runs[at][1])
 }
 
-/// Judges edges and vertices: that those of facets are listed, and no others, and that they are on the boundary where a facet with one cell is.
+/// Judges edges and vertices: that exactly those of facets are listed, and that they are on the boundary if a facet with one cell
+/// is at them.
 fn faces(structure: &Structure) -> Vec<Finding> {
     let Complex { facets, edges, vertices, .. } = structure.complex;
     let (mut of_edges, mut of_vertices) = (vec![None; edges.len()], vec![None; vertices.len()]);
@@ -306,7 +308,7 @@ fn faces(structure: &Structure) -> Vec<Finding> {
     found
 }
 
-/// The finding on a simplex that facets give a class, or none.
+/// The finding for a simplex to which facets give a class, or none.
 fn judged<const N: usize>(row: [u32; N], given: Class, expected: Option<Class>) -> Option<Finding> {
     match expected {
         None => Some(Finding::Stray { simplex: row.into() }),

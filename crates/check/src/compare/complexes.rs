@@ -20,14 +20,14 @@ use crate::{Alpha, Class, Complex, Placed, Simplices};
 pub struct Comparison {
     /// α of A and of B.
     pub alpha: [Alpha; 2],
-    /// Points at positions of both, whose weights differ. Of several points at one position the
-    /// heaviest counts, which is the one that is kept.
+    /// Common positions at which the weights differ. Of several points at one position the heaviest counts, which is the one that
+    /// is kept.
     pub weights: Vec<WeightDifference>,
     /// Points of A at positions where B has none, by A's indices.
     pub points_only_a: Vec<u32>,
     /// Points of B at positions where A has none, by B's indices.
     pub points_only_b: Vec<u32>,
-    /// Whether exterior simplices were compared: only if both complexes list some.
+    /// Whether exterior simplices were compared, which requires that both complexes list some.
     pub exterior: bool,
     /// Vertices, edges, facets and cells.
     pub dimensions: [Differences; 4],
@@ -105,10 +105,10 @@ impl Advise for CompareError {
     }
 }
 
-/// Compares two complexes with their weights and α, matching points by their positions, so that the
-/// two may number them differently.
+/// Compares two complexes with their weights and α, matching points by their positions, so that the two may number them
+/// differently.
 ///
-/// Windings do not count, nor do lists of hidden points and duplicates. Cost O(n log n).
+/// Windings and lists of hidden points and duplicates do not count. Cost O(n log n).
 ///
 /// # Errors
 /// [`CompareError`].
@@ -145,8 +145,7 @@ pub fn compare(a: Placed, b: Placed) -> Result<Comparison, CompareError> {
 }
 
 impl Comparison {
-    /// Whether the points, their weights, α and all compared simplices with their classes are the
-    /// same.
+    /// Whether the points, their weights, α and all compared simplices with their classes are the same.
     pub fn is_equal(&self) -> bool {
         let same =
             |d: &Differences| d.only_a.is_empty() && d.only_b.is_empty() && d.classes.is_empty();
@@ -216,7 +215,7 @@ fn differences<const N: usize>(
     Ok(differences)
 }
 
-/// The most differences of a kind that are listed.
+/// The maximum number of listed differences of a kind.
 pub(super) const PRINTED: usize = 10;
 
 impl Display for Comparison {

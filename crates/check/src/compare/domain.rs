@@ -25,11 +25,11 @@ pub enum Domain {
     SameRegion {
         /// Six times the volume of the region.
         six_volumes: Exact,
-        /// Whether the cells that differ also cover the same region on each orthogonal sphere. If not, one of
-        /// the two is not a regular triangulation.
+        /// Whether the cells that differ also cover the same region on each orthogonal sphere. If not, one of the two is not a
+        /// regular triangulation.
         tied: bool,
-        /// If they do, the verdicts on A and on B. Only if neither is wrong is this a choice among ties:
-        /// where more than four points lie on one empty sphere, their polytope may be cut in any way.
+        /// If they do, the verdicts on A and on B. This is a choice among ties only if neither is wrong: if more than four points
+        /// lie on one empty sphere, their polytope may be cut in any way.
         #[serde(skip_serializing_if = "Option::is_none")]
         verdicts: Option<[Verdict; 2]>,
     },
@@ -113,8 +113,8 @@ pub(super) fn compare(
     })
 }
 
-/// The verdict on a complex whose simplices are oriented canonically first, as windings are not compared.
-/// A complex that cannot be judged counts as wrong.
+/// The verdict on a complex whose simplices are oriented canonically first, because windings are not compared. A complex that
+/// cannot be judged counts as wrong.
 fn verdict(placed: Placed, monitor: &Monitor) -> Result<Verdict, Cancelled> {
     let mut complex = placed.complex.clone();
     orient(&mut complex, placed.positions, None);

@@ -20,8 +20,7 @@ use crate::schema::{Below, FiltrationFile, SchemaError};
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct FiltrationComparison {
-    /// Points at positions of both, whose weights differ; of several at one position the heaviest
-    /// counts.
+    /// Common positions at which the weights differ; of several points at one position the heaviest counts.
     pub weights: Vec<WeightDifference>,
     /// Points of A at positions where B has none, by A's indices.
     pub points_only_a: Vec<u32>,
@@ -156,7 +155,7 @@ impl FiltrationComparison {
         }
     }
 
-    /// Whether nothing that was compared differs.
+    /// Whether none of the compared properties differs.
     pub fn is_equal(&self) -> bool {
         let lists = [&self.only_a, &self.only_b, &self.gabriel, &self.intervals];
         lists.iter().all(|list| list.is_empty())

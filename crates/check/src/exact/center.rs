@@ -2,8 +2,8 @@ use super::formulas::{center3, center4};
 use super::frame::{WeightedPoint, approx, dot};
 use super::number::{Approx, Number};
 
-/// The smallest orthogonal sphere of a simplex in doubles, with a bound on the error, for deciding
-/// quickly that a point is outside.
+/// The smallest orthogonal sphere of a simplex in doubles, with a bound on the error, for a quick decision that a point is
+/// outside.
 pub(crate) struct RoundedSphere {
     /// An approximation of the centre.
     pub center: [f64; 3],
@@ -20,7 +20,7 @@ pub(crate) struct RoundedSphere {
     base: f64,
 }
 
-/// Bounds the rounding error of a power, relative to the sum of the magnitudes it is made of.
+/// Bounds the rounding error of a power, relative to the sum of the magnitudes of its terms.
 const ROUNDED: f64 = 4e-15;
 
 impl RoundedSphere {
@@ -43,8 +43,7 @@ impl RoundedSphere {
         Some(Self { center, error, vertex, distance, near, slope, base })
     }
 
-    /// A distance from `center` within which all points inside and on the sphere are whose weight is at most
-    /// `heaviest`.
+    /// A distance from `center` that includes all points inside and on the sphere whose weight is at most `heaviest`.
     ///
     /// With c the true centre and v the vertex, such a point q has |q − c|² ≤ |v − c|² − `ω_v` + `ω_q`.
     pub(crate) fn reach(&self, heaviest: f64) -> f64 {
@@ -193,7 +192,7 @@ mod tests {
         assert!(judged > 1000, "{judged}");
     }
 
-    /// Centres that no double holds are rounded, and so are powers of points far away.
+    /// Centres that a double cannot hold are rounded, and so are powers of points far away.
     #[test]
     fn points_on_a_sphere_with_a_rounded_center_are_not_outside() {
         let mut draw = draws(6);

@@ -198,7 +198,7 @@ mod tests {
         }
     }
 
-    /// Checks that doubles and `i128`, where they decide, agree with big integers; counts zeros, and how often each decides.
+    /// Checks that doubles and `i128`, if they decide, agree with big integers; counts zeros, and the decisions of each.
     fn agree<const N: usize>(
         formula: &impl Formula<N>,
         random: &mut Random,

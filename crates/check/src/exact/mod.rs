@@ -1,10 +1,9 @@
 //! Exact geometric predicates over doubles, independent of those that the checker judges.
 //!
-//! Every finite double is an integer times a power of two. A predicate brings its arguments to
-//! common powers of two (one for coordinates, one for squared lengths) and evaluates a polynomial
-//! without any rounding or division; only its sign is used. Doubles decide the cases that are far
-//! from a tie, by a bound that counts roundings; `i128` decides the others where the number of digits
-//! proves that it can; big integers decide the rest.
+//! Every finite double is an integer times a power of two. A predicate converts its arguments to common powers of two (one for
+//! coordinates, one for squared lengths) and evaluates a polynomial without any rounding or division; only its sign is used.
+//! Doubles decide the cases that are far from a tie, by a bound that counts roundings; `i128` decides the others if the number of
+//! digits proves that it can; big integers decide the rest.
 
 mod center;
 mod formulas;

@@ -217,8 +217,8 @@ mod tests {
 
     use super::*;
 
-    /// Random sums, differences and products of integers, which are known exactly, are within their errors of what they are; and these are not
-    /// much larger than they must be.
+    /// The errors of random sums, differences and products of integers, which are known exactly, are within their bounds, and
+    /// these are not much larger than necessary.
     #[test]
     fn errors_bound_the_distance() {
         let mut random = Random::new(3);
@@ -257,7 +257,7 @@ mod tests {
         assert!(off > 5000 && widest > 0.25, "{off}, {widest}");
     }
 
-    /// A difference of equal numbers is 0, and certainly so; that of what was rounded is not.
+    /// A difference of equal exact numbers is certainly 0; a difference of rounded numbers is not.
     #[test]
     fn what_cancels_leaves_its_error() {
         let third = Approx::exact(1.0 / 3.0);

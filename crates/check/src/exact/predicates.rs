@@ -84,9 +84,8 @@ fn rank(a: &WeightedPoint, b: &WeightedPoint) -> Ordering {
     a.position.partial_cmp(&b.position).expect("coordinates are not NaN")
 }
 
-/// Whether `q` refutes a positively oriented cell: whether it is strictly inside the cell's
-/// orthogonal sphere, after the symbolic perturbation when it is on it. `q` is at none of the
-/// cell's vertices.
+/// Whether `q` refutes a positively oriented cell: whether it is strictly inside the cell's orthogonal sphere, or, if it is on
+/// the sphere, inside after the symbolic perturbation. `q` is not at a vertex of the cell.
 ///
 /// **The perturbation** (Devillers & Teillaud, Comput. Geom. 44, 2011,
 /// doi:10.1016/j.comgeo.2010.09.010; CGAL's `Regular_triangulation_3` uses the same). The lifted
@@ -124,6 +123,6 @@ fn perturbed(cell: [&WeightedPoint; 4], q: &WeightedPoint) -> bool {
             sign => return sign.is_gt(),
         }
     }
-    // Only a flat cell gets here, which has no sphere to be inside of.
+    // Only a flat cell, which has no sphere, reaches this line.
     false
 }

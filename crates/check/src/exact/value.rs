@@ -191,7 +191,7 @@ impl Exact {
     /// The nearest double, of two equally near ones the even one; ±∞ beyond all doubles.
     ///
     /// # Panics
-    /// Never: no more than 53 digits are kept.
+    /// Never, because at most 53 digits are kept.
     pub fn nearest(&self) -> f64 {
         let negative = sign(&self.numerator).is_lt();
         let size = if negative { -&self.numerator } else { self.numerator.clone() };
@@ -216,7 +216,7 @@ impl Exact {
         };
         let digits = i64::try_from(digits).expect("at most 53 digits") + i64::from(up);
         let power = exponent + dropped as i64;
-        // Two powers, as one alone may be out of range; each product is exact, or infinite.
+        // Two powers, because a single one may be out of range; each product is exact, or infinite.
         let half = power / 2;
         let value = digits as f64 * 2f64.powi(half as i32) * 2f64.powi((power - half) as i32);
         if negative && value != 0.0 { -value } else { value }

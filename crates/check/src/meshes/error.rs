@@ -4,11 +4,11 @@ use std::path::Path;
 use walpha_base::advice::{Advice, Advise};
 use walpha_base::memory::NoMemory;
 
-/// Why a mesh cannot be read: where in the file, what is wrong, and what to do.
+/// The reason why a mesh cannot be read: the place in the file, the fault, and advice.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{place}{why}")]
 pub struct MeshError {
-    /// The file, if it is not the one that was named, and the line or byte; empty for the whole file.
+    /// The file, if it is not the named one, and the line or byte; empty for the whole file.
     place: String,
     why: String,
     next: Option<Advice>,

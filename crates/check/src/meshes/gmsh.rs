@@ -92,7 +92,7 @@ fn format(scan: &mut Scan) -> Result<(Version, Form), MeshError> {
     Ok((version, form))
 }
 
-/// Reads what a section holds, from the line after its name on.
+/// Reads the content of a section, from the line after its name on.
 fn section_of<'a, T>(
     scan: &mut Scan<'a>,
     numbers: Form,
@@ -114,7 +114,7 @@ fn count_of_two(scan: &mut Scan, numbers: Form, what: &str) -> Result<u64, MeshE
     Ok(count)
 }
 
-/// The least number of bytes of some integers and doubles, each with what separates it from the next.
+/// The minimum number of bytes of some integers and doubles, each with its separator.
 fn least(numbers: Form, in_text: u64, in_binary: u64) -> u64 {
     if numbers == Form::Text { 2 * in_text - 1 } else { in_binary }
 }

@@ -36,7 +36,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Mesh, MeshError> {
             }
             "Vertices" => {
                 let count = scan.size("the number of points")?;
-                // Three coordinates and a reference, a blank behind each but the last.
+                // Three coordinates and a reference, each but the last followed by a blank.
                 points = scan.room(count, 7, "points")?;
                 for _ in 0..count {
                     points.push(scan.position()?);

@@ -1,8 +1,8 @@
-//! Meshes of tetrahedra as other programs write them, read to be judged.
+//! Reads meshes of tetrahedra in the formats of other programs, to judge them.
 //!
-//! A [`Mesh`] is the points and the tetrahedra of a file, and is judged as the triangulation that it claims to be,
-//! at α = ∞ unless the file states an α. Each format is an entry of [`FORMATS`] and a module of its own. Text is
-//! read as what it is: decimal numbers, each taken to the nearest double.
+//! A [`Mesh`] consists of the points and the tetrahedra of a file, and is judged as the triangulation that it claims to be, at α
+//! = ∞ unless the file states an α. Each format is an entry of [`FORMATS`] and a separate module. Text contains decimal numbers,
+//! each of which is read as the nearest double.
 //!
 //! ```
 //! use walpha_check::meshes::Mesh;
@@ -45,10 +45,9 @@ pub use weights::open_weights;
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Mesh {
-    /// The points and the tetrahedra; of VTK also weights, and simplices of all dimensions if it states α.
+    /// The points and the tetrahedra; for VTK also weights, and simplices of all dimensions if it states α.
     pub complex: ComplexFile,
-    /// The first attribute of each point, where attributes have no names (`TetGen`). It is a weight only for those who
-    /// say so.
+    /// The first attribute of each point, if attributes have no names (`TetGen`). It is a weight only if the user says so.
     pub attribute: Option<Vec<f64>>,
     /// Notes for the reader of the verdict: how numbers were read, and what was left out.
     pub notes: Vec<String>,
@@ -98,7 +97,7 @@ pub static FORMATS: [MeshFormat; 4] = [
 impl MeshFormat {
     /// The format with this extension, in any letter case.
     pub fn named(extension: &str) -> Option<&'static Self> {
-        // The reader of Medit says what is wrong with its binary files.
+        // The reader of Medit reports binary files.
         let is_binary = extension.eq_ignore_ascii_case("meshb");
         let extension = if is_binary { "mesh" } else { extension };
         let is_it = |own: &&str| own.eq_ignore_ascii_case(extension);
@@ -119,8 +118,8 @@ impl MeshFormat {
         self.read_bytes(path, &std::fs::read(path)?)
     }
 
-    /// Reads the content of a file, for those who have opened it. Of `TetGen`'s two files, the other one is looked for
-    /// beside the path.
+    /// Reads the content of a file that was opened already. Of `TetGen`'s two files, the other one is searched for next to the
+    /// path.
     ///
     /// # Errors
     /// See [`MeshFormat::read`].
@@ -158,14 +157,14 @@ impl Mesh {
         self
     }
 
-    /// The mesh with a note that says how numbers in text were read.
+    /// The mesh with a note about the way in which numbers in text were read.
     #[doc(hidden)]
     #[must_use]
     pub fn with_decimal_note(self) -> Self {
         self.with_note("coordinates are decimal numbers, each taken to the nearest double")
     }
 
-    /// Says that findings number points from 0, where the file numbers them from another number.
+    /// Notes that findings number points from 0, if the file numbers them from another number.
     fn with_numbering_note(self, first: u64) -> Self {
         if first == 0 {
             return self;
@@ -173,7 +172,7 @@ impl Mesh {
         self.with_note(format!("points are numbered from 0 here, in the order of the file, which numbers them from {first}"))
     }
 
-    /// The mesh with a note that only its tetrahedra are judged, and of what else there is: kinds, and how many of each.
+    /// The mesh with a note that only its tetrahedra are judged, and of the other kinds of cells, with their numbers.
     #[doc(hidden)]
     #[must_use]
     pub fn with_ignored(self, ignored: &[(impl AsRef<str>, u64)]) -> Self {

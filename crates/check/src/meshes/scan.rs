@@ -1,6 +1,6 @@
-//! A file in memory: its words, lines and binary numbers, and where each of them is.
+//! A file in memory: its words, lines and binary numbers, with their places.
 //!
-//! Whatever a file says about its size is compared with its size, before anything is allocated for it.
+//! Any size that a file states is compared with its actual size, before memory is allocated.
 
 use std::str::{self, FromStr};
 
@@ -46,7 +46,7 @@ impl<'a> Scan<'a> {
         Self { comments: true, ..Self::new(bytes) }
     }
 
-    /// An error at what was read last.
+    /// An error at the part that was read last.
     pub(super) fn fault(&self, why: impl Into<String>) -> MeshError {
         let error = MeshError::new(why).with_advice(WRITE_AGAIN);
         let before = &self.bytes[..self.last];
@@ -86,7 +86,7 @@ impl<'a> Scan<'a> {
         (!word.is_empty()).then_some(word)
     }
 
-    /// The next word, which is left there.
+    /// The next word, without moving past it.
     pub(super) fn peek(&mut self) -> Option<&'a [u8]> {
         let (at, last) = (self.at, self.last);
         let word = self.word();
@@ -94,7 +94,7 @@ impl<'a> Scan<'a> {
         word
     }
 
-    /// The next word, which must be there.
+    /// The next word, which must exist.
     pub(super) fn expect(&mut self, what: &str) -> Result<&'a [u8], MeshError> {
         self.word().ok_or_else(|| self.truncated(what))
     }
@@ -114,7 +114,7 @@ impl<'a> Scan<'a> {
         self.bytes[self.last..self.at].trim_ascii()
     }
 
-    /// Puts the words of the next line that has some into `words`, without its comment.
+    /// Puts the words of the next line that is not empty into `words`, without its comment.
     pub(super) fn record(&mut self, words: &mut Vec<&'a [u8]>) -> bool {
         words.clear();
         while words.is_empty() && self.at < self.bytes.len() {
@@ -126,7 +126,7 @@ impl<'a> Scan<'a> {
         !words.is_empty()
     }
 
-    /// The words of the next line that has some.
+    /// The words of the next line that is not empty.
     pub(super) fn expect_record(
         &mut self,
         words: &mut Vec<&'a [u8]>,
@@ -152,7 +152,7 @@ impl<'a> Scan<'a> {
         value.ok_or_else(|| self.fault(format!("{:?} is not {what}", shown(word))))
     }
 
-    /// A number of `N` bytes in the order of little endian, or else the word that it is as text.
+    /// A number of `N` bytes in the order of little endian, or otherwise the next word as text.
     fn number<T: FromStr, const N: usize>(
         &mut self,
         what: &str,

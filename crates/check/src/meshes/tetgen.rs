@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use super::scan::Scan;
 use super::{Mesh, MeshError, no_such_point, not_tetrahedra};
 
-/// Reads both files. Either is named, and its content given.
+/// Reads both files. One of them is named, and its content is given.
 pub(super) fn read(path: &Path, named: &[u8]) -> Result<Mesh, MeshError> {
     let beside = |extension: &str| -> PathBuf {
         let is_it = path.extension().is_some_and(|own| own.eq_ignore_ascii_case(extension));
@@ -131,7 +131,7 @@ fn cells(bytes: &[u8], nodes: &Nodes) -> Result<Vec<[u32; 4]>, MeshError> {
     Ok(cells)
 }
 
-/// The numbers of the first line, and these where it has fewer.
+/// The numbers of the first line, with these for missing ones.
 fn header<const N: usize>(
     scan: &Scan,
     words: &[&[u8]],
@@ -152,7 +152,7 @@ fn has_fields(scan: &Scan, words: &[&[u8]], fields: u64, what: &str) -> Result<(
     Err(scan.fault(why))
 }
 
-/// Refuses lines behind the last one that the header states.
+/// Refuses lines after the last one that the header states.
 fn at_end<'a>(scan: &mut Scan<'a>, words: &mut Vec<&'a [u8]>, what: &str) -> Result<(), MeshError> {
     if scan.record(words) {
         return Err(

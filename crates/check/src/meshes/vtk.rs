@@ -129,7 +129,7 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// Cells as two arrays: where each begins, with one number more for the end, and all corners.
+    /// Cells as two arrays: the start of each cell, with one more number for the end, and all corners.
     fn offsets_and_corners(&mut self) -> Result<(), MeshError> {
         let offsets = self.scan.size("the number of offsets")?;
         let corners = self.scan.size("the number of corners")?;
@@ -150,7 +150,7 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// Reads the data of points or cells, up to the end or to those of the other.
+    /// Reads the data of points or cells, up to the end or to the data of the other.
     fn data(&mut self, of: Of) -> Result<(), MeshError> {
         let count = self.scan.size("the number of points or cells")?;
         let (points, cells) = (self.grid.points.len(), self.grid.types.len());
@@ -240,7 +240,7 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// Keeps an array that says something of the complex.
+    /// Keeps an array that describes the complex.
     fn keep(&mut self, name: &[u8], of: Of, components: u64, values: Vec<f64>) {
         let is_named = |wanted: &[u8]| components == 1 && name.eq_ignore_ascii_case(wanted);
         match of {
@@ -255,14 +255,14 @@ impl Reader<'_> {
         }
     }
 
-    /// Goes behind the description of an array, which ends at an empty line.
+    /// Skips the description of an array, which ends at an empty line.
     fn metadata(&mut self) {
         self.scan.skip_line();
         while !self.scan.line().is_empty() {}
     }
 
-    /// Goes behind texts: lines, or in binary each behind its length, which has 6, 14, 30 or 62 bits as the first two
-    /// bits of the first byte say.
+    /// Skips texts: lines, or in binary each after its length, which has 6, 14, 30 or 62 bits, as the first two bits of the first
+    /// byte say.
     fn skip_texts(&mut self, count: u64) -> Result<(), MeshError> {
         self.scan.skip_line();
         for _ in 0..count {
@@ -322,7 +322,7 @@ struct Kind {
     decode: fn(&[u8]) -> f64,
 }
 
-/// The type of numbers that Rust calls so.
+/// The type of numbers with this name in Rust.
 macro_rules! kind {
     ($type:ty) => {
         Kind {

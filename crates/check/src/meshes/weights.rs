@@ -5,10 +5,10 @@ use std::path::Path;
 use super::MeshError;
 use super::scan::Scan;
 
-/// Reads weights, one for each point: NPY with one axis, or text with a number on each line, perhaps behind a name.
+/// Reads weights, one for each point: NPY with one axis, or text with a number on each line, possibly after a name.
 ///
 /// # Errors
-/// A file that cannot be read, and anything but numbers.
+/// A file that cannot be read, or contains anything but numbers.
 pub fn open_weights(path: impl AsRef<Path>) -> Result<Vec<f64>, MeshError> {
     let bytes = std::fs::read(path)?;
     if bytes.starts_with(walpha_base::npy::MAGIC) {

@@ -41,8 +41,8 @@ use crate::Alpha;
 /// `facet_values`, `cell_values`, `vertex_gabriel` and so on, `component_pairs`, `lasting_components`,
 /// `loop_pairs`, `lasting_loops`, `void_pairs`, `lasting_voids` and `last_cell`.
 ///
-/// The fields are open, so that any program can fill them; with the others from `..FiltrationFile::default()`, as features add
-/// some.
+/// The fields are public, so that any program can fill them. The others should come from `..FiltrationFile::default()`, because
+/// features add some.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FiltrationFile {
@@ -91,7 +91,7 @@ pub struct FiltrationFile {
     pub info: Option<serde_json::Value>,
 }
 
-/// The value of each simplex, by dimension. Open: no dimension will be added.
+/// The value of each simplex, by dimension. The fields are public because no dimension will be added.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Values {
@@ -105,7 +105,7 @@ pub struct Values {
     pub cells: Vec<Alpha>,
 }
 
-/// A value for each vertex, edge and facet. Open: no dimension will be added.
+/// A value for each vertex, edge and facet. The fields are public because no dimension will be added.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Below<T> {
@@ -117,7 +117,7 @@ pub struct Below<T> {
     pub facets: Vec<T>,
 }
 
-/// Persistence pairs by numbers of simplices. Open, as any program may write them.
+/// Persistence pairs by numbers of simplices. The fields are public because any program may write them.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PairsFile {

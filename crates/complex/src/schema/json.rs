@@ -27,7 +27,7 @@ impl ComplexFile {
 }
 
 impl FiltrationFile {
-    /// Whether JSON holds a filtration: an object with a field `order`.
+    /// Whether JSON contains a filtration: an object with a field `order`.
     pub(super) fn is_json(reader: impl Read) -> bool {
         #[derive(Deserialize)]
         struct Ordered {

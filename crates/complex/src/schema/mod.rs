@@ -40,11 +40,11 @@
 //! `facet_classes`, `edge_classes` and `vertex_classes`, with 0 exterior, 1 interior, 2 regular,
 //! 3 singular. `voxels` is two arrays: `voxel_runs` m×2, and `voxel_grid` 5×3, rows of `dims`, `origin` and the three axes.
 //!
-//! [`AnyFile`] reads triangulations under the names that others use, too: cells as `simplices`, `tetra` or `t`, points
-//! as `points`, `p` or `vertices`, perhaps `weights` and `alpha`, and passes over the rest. Without `alpha` they, and
-//! files of `points` and `cells` alone, have α = ∞.
+//! [`AnyFile`] also reads triangulations under the names that other programs use: cells as `simplices`, `tetra` or `t`, points as
+//! `points`, `p` or `vertices`, possibly `weights` and `alpha`; it ignores the rest. Without `alpha`, these files, and files of
+//! only `points` and `cells`, have α = ∞.
 //!
-//! A [`FiltrationFile`] is a complex at all values of α; [`AnyFile`] opens either.
+//! A [`FiltrationFile`] is a complex at all values of α; [`AnyFile`] opens both kinds.
 
 mod error;
 mod filtration;
@@ -111,7 +111,7 @@ pub struct ComplexFile {
     pub info: Option<serde_json::Value>,
 }
 
-/// Classes by dimension; where present, one for each simplex.
+/// Classes by dimension; if present, one for each simplex.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 #[non_exhaustive]

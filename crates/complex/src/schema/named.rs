@@ -11,8 +11,8 @@ const CELLS: [&str; 3] = ["simplices", "tetra", "t"];
 const OUR_CELLS: &str = "cells";
 const BESIDE: [&str; 5] = ["points", "p", "vertices", "weights", OUR_CELLS];
 
-/// The names of points and cells among those of a file: such as others use, or no more than these two and weights. `None`
-/// for other names.
+/// The names of points and cells among the names in a file: those of other programs, or ours if there are only these two and
+/// weights. `None` for other names.
 pub(super) fn names_of(names: &[String]) -> Option<Names> {
     let first_of = |known: &[&'static str]| {
         known.iter().copied().find(|known| names.iter().any(|name| name == known))

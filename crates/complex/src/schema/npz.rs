@@ -11,17 +11,16 @@ use zip::read::ZipFile;
 use super::{Below, Classes, ComplexFile, FiltrationFile, PairsFile, SchemaError, Values};
 use crate::{Alpha, Class, Voxels};
 
-/// Deflate expands by no more than this factor (zlib's technical details), so a larger claim is false.
+/// Deflate expands at most by this factor (zlib's technical details), so a larger claim is false.
 const MAX_EXPANSION: u64 = 1032;
-/// Points and simplices differ from row to row, and deflate encodes a row that differs from all before
-/// it with at least two bits: rows of up to 32 bytes expand at most 128-fold, and twice that is allowed.
+/// Points and simplices differ from row to row, and deflate encodes a row that differs from all earlier ones with at least two
+/// bits: rows of up to 32 bytes expand at most 128-fold, and twice that is allowed.
 const MAX_EXPANSION_OF_ROWS: u64 = 256;
 /// Larger arrays of rows are held to [`MAX_EXPANSION_OF_ROWS`].
 const SMALL: u64 = 16 << 20;
 
 impl ComplexFile {
-    /// Reads NPZ. Before any array is read, what the headers claim is compared with the size of
-    /// the file and with each other.
+    /// Reads NPZ. Before any array is read, the claims of the headers are compared with the size of the file and with each other.
     ///
     /// # Errors
     /// Missing, ill-shaped or unreadable arrays; numbers that cannot be indices or classes.
@@ -55,7 +54,7 @@ impl ComplexFile {
     }
 }
 
-/// Calls a reader of archives. What panics in it, in a decoder that others wrote, is an error of the file.
+/// Calls a reader of archives. A panic in it, in a decoder of another crate, becomes an error of the file.
 fn unpacked<T>(read: impl FnOnce() -> Result<T, SchemaError>) -> Result<T, SchemaError> {
     decode(read).unwrap_or_else(|panicked| Err(SchemaError::Zip(panicked.to_string())))
 }
@@ -94,7 +93,7 @@ fn named(
     })
 }
 
-/// Reads NPY with one axis; `name` is what it holds.
+/// Reads NPY with one axis; `name` describes its content.
 ///
 /// # Errors
 /// A damaged or truncated file, another shape, and elements that are not numbers.
@@ -386,13 +385,12 @@ const FILTRATION_ARRAYS: [(&str, Kind); 30] = [
 struct ArrayNames([&'static str; 3]);
 
 impl FiltrationFile {
-    /// Whether NPZ holds a filtration: it has an array `order`.
+    /// Whether NPZ contains a filtration: it has an array `order`.
     pub(super) fn is_npz(reader: impl Read + Seek) -> bool {
         Npz::new(reader).is_ok_and(|mut file| matches!(file.member("order"), Ok(Some(_))))
     }
 
-    /// Reads NPZ. Before any array is read, what the headers claim is compared with the size of
-    /// the file and with each other.
+    /// Reads NPZ. Before any array is read, the claims of the headers are compared with the size of the file and with each other.
     ///
     /// # Errors
     /// Missing, ill-shaped or unreadable arrays; numbers that cannot be indices or values.
@@ -540,7 +538,7 @@ fn decoded<T: Send, const N: usize>(
     };
     let (mut chunk, mut next) = (Vec::new(), Vec::new());
     read(&mut chunk)?;
-    // Whether the archive is damaged is known at the end, and comes first.
+    // Damage of the archive is only known at the end, and takes precedence.
     let mut unexpected = None;
     while !chunk.is_empty() {
         let mut batches = Vec::new();

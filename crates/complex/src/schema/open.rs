@@ -50,11 +50,11 @@ pub enum AnyFile {
 }
 
 impl AnyFile {
-    /// Reads a file, as JSON or NPZ by its extension. It is a filtration if it has a field `order`; and a complex at
-    /// α = ∞ if it states no α, and has nothing but points, cells and weights, or calls its cells `simplices`, `tetra`
-    /// or `t`, as others do, and its points `points`, `p` or `vertices`.
+    /// Reads a file, as JSON or NPZ by its extension. It is a filtration if it has a field `order`. It is a complex at α = ∞ if
+    /// it states no α, and contains only points, cells and weights, or names its cells `simplices`, `tetra` or `t`, as in other
+    /// programs, and its points `points`, `p` or `vertices`.
     ///
-    /// The file is opened once, and what is not a complex is read again from its first byte on: a pipe can bring only
+    /// The file is opened once, and a file that is not a complex is read again from its first byte on: a pipe can only deliver
     /// complexes.
     ///
     /// # Errors
@@ -101,7 +101,7 @@ impl Format {
         }
     }
 
-    /// Opens a file whose format is that of its extension.
+    /// Opens a file in the format of its extension.
     fn open(path: &Path) -> Result<(Self, BufReader<File>), SchemaError> {
         let format = Self::of(path).ok_or(SchemaError::Extension)?;
         Ok((format, BufReader::new(File::open(path).map_err(SchemaError::Io)?)))

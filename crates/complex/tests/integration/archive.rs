@@ -1,4 +1,4 @@
-//! `NumPy`'s files, by hand.
+//! Writes `NumPy`'s files by hand.
 
 use std::io::{Cursor, Write};
 

@@ -7,7 +7,7 @@ use zip::CompressionMethod;
 
 use crate::archive::{archive, npy};
 
-/// Errors of a complex are those of a complex, although the file might be read as a filtration.
+/// Errors of a complex are reported as such, although the file might be read as a filtration.
 #[test]
 fn errors_are_those_of_the_kind_of_file() {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));

@@ -1,4 +1,4 @@
-//! NPZ as other programs write it, in any number type, byte order and order of axes; and NPZ that claims too much.
+//! NPZ of other programs, in any number type, byte order and order of axes; and NPZ with false claims.
 
 use std::io::Cursor;
 
@@ -72,7 +72,7 @@ fn other_types_and_numbers_are_refused() {
     }
 }
 
-/// The first axis fastest, as `numpy.asfortranarray` makes it.
+/// The first axis is fastest, as in `numpy.asfortranarray`.
 #[test]
 fn columns_may_come_first() {
     let cells: Vec<u8> = [[0, 4], [1, 5], [2, 6], [3, 7]].concat();
@@ -90,7 +90,7 @@ fn npz_error(arrays: &[(&str, Vec<u8>)], method: CompressionMethod) -> SchemaErr
     ComplexFile::read_npz(Cursor::new(archive(arrays, method))).unwrap_err()
 }
 
-/// A header is held against the bytes there are before anything is reserved.
+/// A header is compared with the existing bytes before memory is reserved.
 #[test]
 fn an_array_that_claims_what_is_not_there() {
     let alpha = ("alpha", npy("<f8", "()", &1f64.to_le_bytes()));
@@ -105,7 +105,7 @@ fn an_array_that_claims_what_is_not_there() {
     assert!(matches!(error, SchemaError::Lengths { name: "weights", .. }), "{error}");
 }
 
-/// A bomb: 48 MB of zeros in 48 kB. No points that differ pack so well.
+/// A bomb: 48 MB of zeros in 48 kB. Different points cannot be compressed so well.
 #[test]
 fn an_array_that_only_repeats_itself() {
     let zeros = npy("<f8", "(2000000, 3)", &vec![0; 48_000_000]);

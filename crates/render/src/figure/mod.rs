@@ -14,11 +14,11 @@ pub use drawing::{Drawing, Pen, Step};
 use svg::{FAMILIES, LEADING, escape, num, rasterise, text_width, wrap, write_lines};
 use ticks::ticks;
 
-/// A figure as in a paper: panels in rows, each with a letter, a title and captions, under a
-/// common title, with the meaning of the colours below. SVG and PNG are made from the same description.
+/// A figure as in a paper: panels in rows, each with a letter, a title and captions, under a common title, with the meaning of
+/// the colours below. SVG and PNG are made from the same description.
 ///
-/// Text in a PNG is set in Ubuntu Light, which has Greek and √ ² ₁ × − ≤ ≥ ∞; a line with a character
-/// that it lacks (arrows, ∈, ⊆, ‖, ₊) is set in Hack as a whole.
+/// Text in a PNG is set in Ubuntu Light, which has Greek and √ ² ₁ × − ≤ ≥ ∞; a line with a missing character (arrows, ∈, ⊆, ‖,
+/// ₊) is set entirely in Hack.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Figure {
     /// Above all panels; empty for none.
@@ -160,7 +160,7 @@ fn write_picture(
 /// A part of a figure.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Panel {
-    /// Above it, after its letter "(a)"; a single panel has no letter.
+    /// The text above it, after its letter "(a)"; a single panel has no letter.
     pub title: String,
     /// The content of the panel.
     pub content: Content,

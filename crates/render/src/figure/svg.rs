@@ -8,7 +8,7 @@ use resvg::{tiny_skia, usvg};
 use crate::error::RenderError;
 use crate::pixels::{Picture, Size};
 
-/// The font families for viewers, first that of PNG files.
+/// The font families for viewers, starting with that of PNG files.
 pub(super) const FAMILIES: &str =
     "Ubuntu, 'Noto Sans', 'DejaVu Sans', 'Helvetica Neue', Arial, sans-serif";
 
@@ -37,8 +37,7 @@ pub(super) fn escape(text: &str) -> String {
         .collect()
 }
 
-/// The fonts that come with the library, and no others: Ubuntu Light, and Hack for characters that it
-/// lacks.
+/// The fonts that come with the library, and no others: Ubuntu Light, and Hack for missing characters.
 static FONTS: LazyLock<Arc<usvg::fontdb::Database>> = LazyLock::new(|| {
     let mut fonts = usvg::fontdb::Database::new();
     fonts.load_font_data(epaint_default_fonts::UBUNTU_LIGHT.to_vec());

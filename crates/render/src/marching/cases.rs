@@ -1,13 +1,10 @@
-//! The triangles in a cell for each of the 256 patterns of high corners, worked out from one rule
-//! instead of copied from a table.
+//! The triangles in a cell for each of the 256 patterns of high corners, derived from one rule instead of copied from a table.
 //!
-//! Walk around each face of the cell, counter-clockwise seen from outside. Every run of high
-//! corners is cut off by a segment from the edge where the walk enters it to the edge where it
-//! leaves. The neighbour walks the other way round and gets the same segments reversed: no cracks.
-//! In one cell every crossed edge is entered on one of its two faces and left on the other, so the
-//! segments close up to loops. Each loop is cut into triangles by diagonals through the inside of
-//! the cell; a diagonal in a face could coincide with one of the neighbour, and four triangles would
-//! share an edge.
+//! Walk around each face of the cell, counter-clockwise as seen from outside. Every run of high corners is cut off by a segment
+//! from the edge where the walk enters it to the edge where it leaves. The neighbour walks in the opposite direction and gets the
+//! same segments reversed: no cracks. In one cell, every crossed edge is entered on one of its two faces and left on the other,
+//! so the segments form loops. Each loop is cut into triangles by diagonals through the inside of the cell; a diagonal in a face
+//! could coincide with one of the neighbour, and four triangles would share an edge.
 
 use std::sync::LazyLock;
 

@@ -11,11 +11,10 @@ use crate::scene::Mesh;
 
 /// The surface that separates the samples at or above a value from those below it.
 ///
-/// Each sign change between neighbouring samples is one vertex, linearly interpolated and shared
-/// by all triangles that meet there. On a face with two high and two low corners across, the low
-/// ones are taken to be connected, on both sides of the face; so the surface has no cracks and is
-/// a manifold, closed except at the border of the grid. A sample equal to the isovalue is high; its
-/// vertices coincide, and triangles between them have no area.
+/// Each sign change between neighbouring samples is one vertex, linearly interpolated and shared by all triangles that meet
+/// there. On a face with two high and two low corners at opposite places, the low ones are considered connected, on both sides of
+/// the face; so the surface has no cracks and is a manifold, closed except at the border of the grid. A sample equal to the
+/// isovalue is high; its vertices coincide, and triangles between them have no area.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Isosurface {
     /// Vertices, (x, y, z), in voxels: sample `[z, y, x]` is at (x, y, z).
@@ -24,8 +23,8 @@ pub struct Isosurface {
     pub triangles: Vec<[u32; 3]>,
     /// Number of samples that must be read to find it: all of them.
     pub samples_read: usize,
-    /// Number of samples that are corners of a cell that the surface crosses: the fewest that would suffice
-    /// if its location were known.
+    /// Number of samples that are corners of a cell that the surface crosses: the smallest number that would suffice if the
+    /// location of the surface were known.
     pub samples_at_surface: usize,
 }
 
@@ -73,8 +72,7 @@ impl Isosurface {
         double.sum::<f64>() / 2.0
     }
 
-    /// The surface as a mesh that is visible from both sides, as it may be cut open by the
-    /// border of the grid.
+    /// The surface as a mesh that is visible from both sides, because it may be cut open by the border of the grid.
     pub fn into_mesh(self) -> Mesh {
         Mesh { two_sided: true, ..Mesh::new(self.positions, self.triangles) }
     }

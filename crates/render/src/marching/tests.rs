@@ -78,7 +78,7 @@ fn a_plane_lies_where_it_should() {
 
 #[test]
 fn every_case_meets_every_neighbour_without_a_crack() {
-    // Each of the 256 patterns next to each that shares its face, along every axis.
+    // Each of the 256 patterns together with each pattern that fits its face, along every axis.
     for case in 0..256_usize {
         for other in 0..16_usize {
             for axis in 0..3 {
@@ -138,7 +138,7 @@ fn what_is_no_number_is_refused() {
     assert!(matches!(Isosurface::new(field.view(), 0.0), Err(RenderError::Isosurface(_))));
 }
 
-/// A field as the `isosurface` crate reads one: on the unit cube, negative inside.
+/// A field in the form that the `isosurface` crate reads: on the unit cube, negative inside.
 struct Published<'a>(&'a Array3<f32>);
 
 impl isosurface::source::ScalarSource for Published<'_> {

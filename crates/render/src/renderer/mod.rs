@@ -12,10 +12,9 @@ use crate::primitives::Primitive;
 use crate::scene::{Background, Camera, Lens, Scene};
 
 impl Scene {
-    /// Draws the scene: 16 samples for each pixel, key, fill and rim light fixed to the camera,
-    /// and sky light that reaches into hollows only as far as they are open. Solid surfaces of
-    /// zero area are invisible. 33 000 triangles and 20 000 balls at 1600×1200 take about a second
-    /// on two cores.
+    /// Draws the scene: 16 samples for each pixel, key, fill and rim light fixed to the camera, and sky light that reaches into
+    /// hollows only as far as they are open. Solid surfaces of zero area are invisible. 33 000 triangles and 20 000 balls at
+    /// 1600×1200 take about a second on two cores.
     ///
     /// # Errors
     /// [`RenderError::Camera`] for a camera without a direction; [`RenderError::Index`],

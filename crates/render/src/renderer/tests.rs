@@ -77,7 +77,7 @@ fn half_a_pixel_is_half_covered() {
     let corners = [[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [-1.0, 1.0, 0.0]];
     let scene = Scene { meshes: vec![triangle(corners, RED)], ..Scene::default() };
     let [_, _, _, opacity] = draw(&scene, 1, Background::Transparent).pixel(0, 0);
-    // Four of the sixteen samples lie on the diagonal, and belong to one of its sides together.
+    // Four of the sixteen samples lie on the diagonal, and all belong to the same side of it.
     assert!((96..=160).contains(&opacity), "{opacity}");
 
     // An upright edge in the middle splits the samples evenly.
@@ -136,7 +136,7 @@ fn the_nearer_hides_the_further_in_any_order() {
         assert!(is_red(&scene, projection));
         scene.balls.reverse();
         assert!(is_red(&scene, projection));
-        // A triangle between them hides the further one only, above them both.
+        // A triangle between them hides only the farther one, and above them it hides both.
         let at = |z| [[-5.0, -5.0, z], [5.0, -5.0, z], [0.0, 5.0, z]];
         scene.meshes.push(triangle(at(0.3), BLUE));
         assert!(is_red(&scene, projection));
@@ -188,7 +188,7 @@ fn empty_tiny_and_flat_scenes_are_pictures_too() {
     let flat = [line, point].map(|corners| triangle(corners, RED)).to_vec();
     assert!(white(&Scene { meshes: flat, ..Scene::default() }));
     assert!(white(&ball([0.0; 3], 0.0, RED)));
-    // Smaller than between two samples, and further away than doubles resolve.
+    // Smaller than the distance of two samples, and farther away than doubles resolve.
     draw(&ball([0.0; 3], 1e-300, RED), 5, Background::White);
     draw(&ball([1e90, 0.0, -1e90], 1e89, RED), 5, Background::White);
     let huge = triangle([[-1e99, -1e99, 0.0], [1e99, -1e99, 0.0], [0.0, 1e99, 0.0]], RED);

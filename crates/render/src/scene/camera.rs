@@ -12,8 +12,7 @@ pub enum Projection {
     Orthographic,
 }
 
-/// A view of a subject whose face is turned to −y and whose crown to +z, as in the
-/// CT convention of the sample head.
+/// A view of a subject whose face points to −y and whose crown points to +z, as in the CT convention of the sample head.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum View {
     /// Seen from −y.
@@ -33,7 +32,7 @@ pub enum View {
 }
 
 impl View {
-    /// The direction from the subject to the eye (not of length 1), and what is up in the picture.
+    /// The direction from the subject to the eye (not of length 1), and the direction that is up in the picture.
     pub fn direction_and_up(self) -> ([f64; 3], [f64; 3]) {
         const UP: V3 = [0.0, 0.0, 1.0];
         match self {
@@ -77,8 +76,8 @@ impl Camera {
     /// 2·tan(15°): height over distance of a field of view of 30°.
     const PORTRAIT_OPENING: f64 = 0.535_898_384_862_245_4;
 
-    /// The perspective camera at a position that looks at a target, with a vertical field of view of
-    /// 30° and +z up (+y, where it looks along z).
+    /// The perspective camera at a position that looks at a target, with a vertical field of view of 30° and +z up (+y, if it
+    /// looks along z).
     pub fn portrait(eye: [f64; 3], target: [f64; 3]) -> Self {
         let sight = sub(target, eye);
         let vertical = sight[0] == 0.0 && sight[1] == 0.0;
@@ -106,7 +105,7 @@ impl Camera {
         }
         let target = scale(add(low, high), 0.5);
         let (direction, up) = view.direction_and_up();
-        // Views have a direction, and their up is another.
+        // Views have a direction, and their up is another direction.
         let back = unit(direction).unwrap_or(direction);
         let right = unit(cross(up, back)).unwrap_or(up);
         let top = cross(back, right);

@@ -54,7 +54,7 @@ pub struct Mesh {
 }
 
 impl Mesh {
-    /// Opaque one-sided triangles the colour of bone, shaded smoothly by normals of their own.
+    /// Opaque one-sided triangles in the colour of bone, shaded smoothly by their own normals.
     pub fn new(positions: Vec<[f64; 3]>, triangles: Vec<[u32; 3]>) -> Self {
         Self {
             positions,

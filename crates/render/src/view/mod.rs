@@ -1,7 +1,7 @@
 //! An interactive page: a ladder of shapes in three dimensions, in any browser, without a network.
 //!
-//! `page.html` is made by `web/page/build.mjs`, of the scripts, the style and the markup that the page which computes has, too: it draws
-//! by three.js. Here its data are put into it.
+//! `page.html` is made by `web/page/build.mjs` from the scripts, the style and the markup that it shares with the page which
+//! computes; it draws with three.js. This module inserts its data.
 
 mod pack;
 mod subject;
@@ -24,17 +24,17 @@ pub struct Page {
 }
 
 impl Page {
-    /// A level of detail with more facets than this, those of all levels of α counted, is drawn simplified: as many take
-    /// about ten megabytes.
+    /// A level of detail with more facets than this, counted over all levels of α, is simplified for drawing: this many facets
+    /// take about ten megabytes.
     pub const MOST_FACETS: usize = 1_000_000;
-    /// The most levels of a page, as levels are stored in bytes.
+    /// The maximum number of levels of a page, because levels are stored in bytes.
     pub const MOST_LEVELS: usize = 250;
 
     /// Makes the page. The same subject gives the same bytes.
     ///
-    /// A slider goes over α, colours are by class, F, weight or difference, and singular facets and edges, points, balls, hidden points and
-    /// the isosurface are shown on request. A list chooses the level of detail, and a click or touch tells index, F, ω and class of a point.
-    /// The page includes three.js, which draws it.
+    /// A slider sets α, colours are by class, F, weight or difference, and singular facets and edges, points, balls, hidden
+    /// points and the isosurface are shown on request. A list selects the level of detail, and a click or touch tells index, F, ω
+    /// and class of a point. The page includes three.js, which draws it.
     ///
     /// # Errors
     /// [`RenderError::Isosurface`] for an isovalue that is not a finite number.
@@ -81,7 +81,7 @@ fn simplified(subject: &Subject<'_>, packed: &[Packed]) -> Option<String> {
 /// The page without its title and its data.
 const PAGE: &str = include_str!("page.html");
 
-/// Voids of a level that the page lists.
+/// The number of voids of a level that the page lists.
 const MOST_VOIDS: usize = 200;
 
 /// The content that does not depend on the level of detail.
@@ -101,8 +101,8 @@ fn whole(subject: &Subject<'_>, centre: [f64; 3]) -> Value {
     })
 }
 
-/// The facts that the page lists: those of the subject, and where the picture is seen from if single precision could not
-/// hold it elsewhere.
+/// The facts that the page lists: those of the subject, and the centre of the picture if single precision would not suffice
+/// otherwise.
 fn facts(subject: &Subject<'_>, centre: [f64; 3]) -> Vec<(String, String)> {
     let mut facts = subject.facts.to_vec();
     let single = |at: [f64; 3]| subject.details.iter().map(move |detail| single(detail, at));
@@ -153,7 +153,7 @@ fn level(level: &Level) -> Value {
     serde_json::to_value(level).expect("numbers and lists of them")
 }
 
-/// The centre of the box of the points: positions are as seen from it.
+/// The centre of the box of the points: positions are relative to it.
 fn centre(subject: &Subject<'_>) -> [f64; 3] {
     let points = || subject.details.iter().flat_map(|detail| detail.levels.points().positions());
     [0, 1, 2].map(|k| {
@@ -174,7 +174,7 @@ fn significant(number: f64) -> String {
     if number.is_infinite() {
         return if number > 0.0 { "∞".into() } else { "−∞".into() };
     }
-    // Rounded by way of a text with an exponent; parsing gives the nearest double.
+    // Rounded through a text with an exponent; parsing gives the nearest double.
     let rounded: f64 = format!("{number:.3e}").parse().unwrap_or(number);
     walpha_base::shown::number(rounded)
 }

@@ -12,7 +12,7 @@ use crate::error::RenderError;
 use crate::marching::Isosurface;
 use base64::prelude::{BASE64_STANDARD, Engine};
 
-/// Bytes between whose multiples numbers begin, as typed arrays of JavaScript ask.
+/// The alignment of numbers in bytes, which typed arrays of JavaScript require.
 const ALIGNMENT: usize = 8;
 
 /// Named arrays of little-endian numbers, one after the other.
@@ -53,13 +53,13 @@ impl Arrays {
         self.put(name, "Float64Array", numbers.map(f64::to_le_bytes));
     }
 
-    /// Positions as seen from a centre: in single precision, those of a map would be metres apart.
+    /// Positions relative to a centre: in single precision, those of a map would be metres apart otherwise.
     fn positions<'a>(&mut self, positions: impl Iterator<Item = &'a [f64; 3]>, centre: [f64; 3]) {
         self.f32("positions", positions.flat_map(|p| [0, 1, 2].map(|k| p[k] - centre[k])));
     }
 
-    /// The text of an element of the page: gzip, as base64, of the length of an object in JSON, this object with the
-    /// places of the arrays, and these.
+    /// The text of an element of the page: base64 of gzip of the length of an object in JSON, the object with the places of the
+    /// arrays, and the arrays.
     pub(super) fn packed(self, mut content: Value) -> String {
         content["arrays"] = self.places.into();
         let content = content.to_string();
@@ -144,8 +144,8 @@ fn bytes<'a>(spans: impl Iterator<Item = &'a Span>) -> impl Iterator<Item = u8> 
     spans.flat_map(|span| [span.first, span.regular, span.interior].map(|k| k as u8))
 }
 
-/// Merges the points in each box of a grid into the first one, with boxes as small as the number of facets
-/// allows; returns a description.
+/// Merges the points in each box of a grid into the first one, with boxes as small as the number of facets allows; returns a
+/// description.
 fn simplify(
     positions: &[[f64; 3]],
     facets: &mut Vec<([u32; 3], Span)>,
@@ -184,8 +184,7 @@ fn simplify(
     }
 }
 
-/// Simplices between the representatives of their vertices; without those that have collapsed, and
-/// each once.
+/// Simplices between the representatives of their vertices, each once, without collapsed ones.
 fn collapsed<const N: usize>(
     simplices: &[([u32; N], Span)],
     stands_for: &[u32],

@@ -29,7 +29,7 @@ pub struct Detail<'a> {
     pub ladder: &'a Ladder,
     /// The level shown first.
     pub first: usize,
-    /// The differences of F from the original, where they are known.
+    /// The differences of F from the original, if they are known.
     pub differences: Option<&'a Differences>,
 }
 

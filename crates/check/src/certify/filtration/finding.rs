@@ -13,7 +13,7 @@ use crate::exact::Exact;
 #[serde(tag = "rule", rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum FiltrationFinding {
-    /// A simplex does not enter, or become regular or interior, at the α that the file says.
+    /// A simplex does not enter, or become regular or interior, at the α in the file.
     When {
         /// The simplex.
         simplex: Simplex,
@@ -26,7 +26,7 @@ pub enum FiltrationFinding {
         /// The exact number; `None` for never.
         exact: Option<Exact>,
     },
-    /// A simplex is Gabriel, or attached, and the file says otherwise.
+    /// A simplex is Gabriel, or attached, but the file states the opposite.
     Gabriel {
         /// The simplex.
         simplex: Simplex,
@@ -151,7 +151,7 @@ impl fmt::Display for FiltrationFinding {
     }
 }
 
-/// Findings where given doubles are not those expected: for the i-th simplex the double, and the exact number.
+/// Findings for given doubles that differ from the expected ones: for the i-th simplex the double, and the exact number.
 pub(super) fn differences<'a, const N: usize>(
     bound: Bound,
     rows: &[[u32; N]],
@@ -171,7 +171,7 @@ pub(super) fn differences<'a, const N: usize>(
     rows.iter().zip(given).enumerate().filter_map(judge).collect()
 }
 
-/// Findings where the file is wrong about whether a simplex is Gabriel.
+/// Findings for simplices of which the file states wrongly whether they are Gabriel.
 pub(super) fn gabriel<const N: usize>(
     rows: &[[u32; N]],
     given: &[bool],

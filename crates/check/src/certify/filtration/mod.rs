@@ -1,4 +1,4 @@
-//! Certification of a filtration: is each simplex there, and does it enter when the file says?
+//! Certification of a filtration: whether each simplex exists, and enters at the α in the file.
 
 mod finding;
 mod order;
@@ -19,7 +19,7 @@ use crate::certify::certificate::{Certificate, CertifyError, Verdict, write_verd
 use crate::certify::structure::{self, Points, Structure};
 use crate::schema::{Below, ComplexFile, FiltrationFile, PlacedComplex, SchemaError};
 
-/// The verdict on a filtration, and what was not judged.
+/// The verdict on a filtration, and the parts that were not judged.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 #[non_exhaustive]
 pub struct FiltrationCertificate {
@@ -47,15 +47,15 @@ impl std::fmt::Display for FiltrationCertificate {
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum Unjudged {
-    /// Values, classes and order, as the triangulation is wrong.
+    /// Values, classes and order, because the triangulation is wrong.
     AfterFindings,
     /// Whether simplices are Gabriel, because the file does not tell.
     Gabriel,
     /// The α at which simplices become regular and interior, because the file does not tell.
     Intervals,
-    /// Persistence pairs, as the file lists none.
+    /// Persistence pairs, because the file lists none.
     Pairs,
-    /// Persistence pairs of dimension 1, as the file lists none.
+    /// Persistence pairs of dimension 1, because the file lists none.
     Loops,
 }
 
@@ -73,7 +73,7 @@ impl std::fmt::Display for Unjudged {
     }
 }
 
-/// Why a file cannot be judged as a filtration.
+/// The reason why a file cannot be judged as a filtration.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum CertifyFiltrationError {
@@ -105,14 +105,13 @@ impl Advise for CertifyFiltrationError {
 }
 
 /// Judges a filtration: that its simplices are a whole regular triangulation (by the rules of
-/// [`Claim::visit`](crate::Claim::visit) at α = ∞; of points that span no volume, the triangulation of their
-/// plane or line), the value of each simplex, whether it is Gabriel, from which α on it is regular and
-/// interior, the order and, where that is right, the persistence pairs. All by exact numbers; the doubles in
-/// a file must be the nearest ones.
+/// [`Claim::visit`](crate::Claim::visit) at α = ∞; for points that span no volume, the triangulation of their plane or line), the
+/// value of each simplex, whether it is Gabriel, the α from which on it is regular and interior, the order and, if that is right,
+/// the persistence pairs. Everything is judged in exact numbers; the doubles in a file must be the nearest ones.
 ///
-/// With the intervals every class at every α is judged: below its value a simplex is exterior, then
-/// singular, regular and interior. Faces come before their cofaces where the order is right: no value
-/// is smaller than that of a face, and equal ones are ordered by dimension.
+/// The intervals include the class at every α: below its value a simplex is exterior, then singular, regular and interior. Faces
+/// come before their cofaces if the order is right: no value is smaller than that of a face, and equal ones are ordered by
+/// dimension.
 ///
 /// Linear except for sorting, and a few microseconds for each simplex; but pairs of dimension 1 require a reduction of matrices.
 ///
@@ -171,7 +170,7 @@ fn whole(file: &FiltrationFile) -> Result<PlacedComplex, SchemaError> {
     PlacedComplex::try_from(complex)
 }
 
-/// Compares what the file says of the simplices, which are those of the triangulation, with the exact values.
+/// Compares the data of the file about the simplices, which are those of the triangulation, with the exact values.
 fn judge(
     file: &FiltrationFile,
     structure: &Structure,

@@ -1,6 +1,6 @@
-//! Persistence pairs. Those of dimensions 0 and 2 by the elder rule: which of two components of the shape, or of its
-//! complement, is the younger when a simplex joins them. Those of dimension 1 by reducing coboundaries of edges, last
-//! edge first (de Silva, Morozov and Vejdemo-Johansson 2011, doi:10.1088/0266-5611/27/12/124003).
+//! Persistence pairs. Those of dimensions 0 and 2 follow from the elder rule: when a simplex joins two components of the shape,
+//! or of its complement, the younger ends. Those of dimension 1 follow from reducing coboundaries of edges, last edge first (de
+//! Silva, Morozov and Vejdemo-Johansson 2011, doi:10.1088/0266-5611/27/12/124003).
 
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -1,5 +1,5 @@
-//! The exact squared radii of empty smallest orthogonal spheres, their order, and from which of them on each simplex is
-//! in the shape, regular and interior.
+//! The exact squared radii of empty smallest orthogonal spheres, their order, and the ones from which on each simplex is in the
+//! shape, regular and interior.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -27,8 +27,7 @@ pub(super) struct Ranks {
 }
 
 impl Ranks {
-    /// Ranks of a whole triangulation that was found regular: there a sphere that is not empty contains a
-    /// neighbour.
+    /// Ranks of a whole triangulation that was found regular, in which a sphere that is not empty contains a neighbour.
     pub(super) fn of(
         structure: &Structure,
         points: Points,
@@ -155,7 +154,7 @@ fn attached_vertices(
     Ok(attached)
 }
 
-/// Ranks of values; [`NEVER`] where there is none.
+/// Ranks of values; [`NEVER`] if there is no value.
 #[derive(Clone, Copy)]
 pub(super) struct Span {
     pub first: u32,
@@ -163,7 +162,7 @@ pub(super) struct Span {
     pub interior: u32,
 }
 
-/// The spans of all simplices, by row; of cells only the first rank, as they have no cofaces.
+/// The spans of all simplices, by row; for cells only the first rank, because they have no cofaces.
 pub(super) struct Spans {
     pub cells: Vec<u32>,
     pub facets: Vec<Span>,
