@@ -228,8 +228,8 @@ mod tests {
     /// Clusters of random points on a lattice, apart from each other.
     fn clusters(random: &mut Random) -> Vec<[f64; 3]> {
         let mut points = Vec::new();
-        for cluster in 0..1 + random.below(5) {
-            for _ in 0..1 + random.below(60) {
+        for cluster in 0..=random.below(5) {
+            for _ in 0..=random.below(60) {
                 let at = |side: usize, random: &mut Random| random.below(side) as f64;
                 let x = 40.0 * cluster as f64 + at(5, random);
                 points.push([x, at(4, random), at(4, random)]);

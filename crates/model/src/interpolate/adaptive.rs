@@ -51,7 +51,7 @@ const FIRST_BATCH: usize = 32;
 /// 1. the unweighted (ω = 0) Delaunay triangulation of the voxels so far is resampled on the grid;
 /// 2. cells are sorted by the squared error summed over their voxels, and each proposes its worst voxel;
 /// 3. in that order these voxels are added, except those that are among the 26 neighbours of a voxel just added, which would
-/// correct the same error; at most a fifth of the number of existing points.
+///    correct the same error; at most a fifth of the number of existing points.
 ///
 /// With a bound on the largest error, cells are sorted by their largest error instead, and voxels within the bound are not added.
 ///

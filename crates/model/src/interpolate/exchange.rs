@@ -36,7 +36,7 @@ const LEAST: f64 = 2e-3;
 ///    other values stay; and the *gain* of the worst sample of each cell, worst cells first, the decrease
 ///    when it is inserted with its optimal value: both by local retriangulation;
 /// 2. the greatest gain is paired with the least loss, the next with the next, as long as the gain is greater; points near others
-/// of the round have to wait;
+///    of the round have to wait;
 /// 3. values are fitted. If the error is not smaller, the round is undone and the next one is half as large.
 ///
 /// The corners of the volume stay. `voxels` are samples of the volume including its corners, in any order; those that were never

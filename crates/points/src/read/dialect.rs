@@ -32,7 +32,7 @@ impl Dialect {
     /// - Semicolons in most rows separate fields, and the commas of their numbers mark decimals.
     /// - If commas separate all fields, with or without blanks beside them, they are separators.
     /// - In numbers between blanks (or tabs), commas mark decimals, unless each of them could group thousands, as in `1,234`:
-    /// then the text is ambiguous.
+    ///   then the text is ambiguous.
     pub(super) fn of(
         rows: &Numbered<'_>,
         tabs: bool,
