@@ -103,3 +103,22 @@ fn components_of_labels_are_kept() {
     let one = &facts["labels"][0];
     assert_eq!((&one["kept"]["components"], &one["solid"]["vertices"]), (&1.into(), &1.into()));
 }
+
+/// The page has the points of the components alone.
+#[test]
+#[cfg(feature = "render")]
+fn a_page_shows_the_largest_component() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    cubes(f);
+    let view = |options: &[&str]| {
+        let view = ["view", "cubes.csv", "--alpha-ref", "0.75", "-o", "a.html"];
+        let facts = json(f, &[&view[..], options].concat());
+        (facts["details"][0]["points"].as_u64().unwrap(), facts["details"][0]["kept"].clone())
+    };
+    assert_eq!(view(&[]), (8 + 64 + 27 + 1, serde_json::Value::Null));
+    let (points, kept) = view(&["--keep", "largest"]);
+    assert_eq!((points, &kept["components"], &kept["of"]), (64, &1.into(), &4.into()));
+    assert!(fs::read_to_string(f.join("a.html")).unwrap().contains("1 of 4 components"));
+    assert_eq!(view(&["--min-volume", "8"]).0, 64 + 27);
+}

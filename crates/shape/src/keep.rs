@@ -270,11 +270,13 @@ mod tests {
             assert!(unlisted.iter().all(|&v| numbers[v as usize] == NO_COMPONENT));
             let expected = shape_of(&alone, alpha);
             assert_eq!(kept.betti(), expected.betti());
-            assert_eq!(kept.betti().unwrap(), direct_betti(expected.complex()));
             assert_eq!(kept.measures(), expected.measures());
-            assert_eq!(kept.components(), expected.components());
-            let (sheets, own) = (kept.sheets(), expected.sheets());
-            assert_eq!(sheets, own);
+            // Points in one plane are not triangulated in space, and have no sheets.
+            if expected.dimension() == 3 {
+                assert_eq!(kept.betti().unwrap(), direct_betti(expected.complex()));
+                assert_eq!(kept.sheets(), expected.sheets());
+                assert_eq!(kept.components(), expected.components());
+            }
             // Shapes of a filtration have no sheets.
             let filtration = Filtration::new(shape.points().clone()).unwrap();
             for exterior in [false, true] {
@@ -282,7 +284,8 @@ mod tests {
                 let at = levels.shape(0, exterior, levels.betti()[0]);
                 let taken = at.keep(&Keep::default().largest(Largest(count)));
                 assert_eq!(taken.complex(), kept.complex());
-                assert_eq!(taken.betti(), kept.betti().filter(|_| exterior));
+                let is_counted = exterior || at.dimension() < 3;
+                assert_eq!(taken.betti(), kept.betti().filter(|_| is_counted));
             }
             some += usize::from(counts.components < counts.of);
             voids += kept.betti().unwrap().b2;
