@@ -8,7 +8,7 @@ use walpha_volume::{OpenFile, Reason};
 
 /// All of a file as text whose lines end with `\n`: from UTF-8, UTF-16 of either byte order, with a mark or without, or
 /// else Latin-1. Lines may end with CR LF or CR.
-pub(super) fn text(file: &OpenFile) -> Result<String, PointsError> {
+pub(crate) fn text(file: &OpenFile) -> Result<String, PointsError> {
     let path = file.path();
     decoded(Content::of(file)?.bytes(path)?).map_err(|error| match error {
         Undecodable::Reason(reason) => format(path, reason),
