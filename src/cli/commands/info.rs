@@ -8,10 +8,10 @@ use serde_json::Value;
 use walpha_base::shown::number;
 
 use crate::check::meshes::Mesh;
-use crate::cli::process::errors::Result;
+use crate::cli::process::errors::{Result, option};
 use crate::labels::{LabelSize, LabelSizes};
 use crate::pipeline::Opened;
-use crate::points::{Cell, CellCount, ModelMetadata, Points};
+use crate::points::{Cell, CellCount, LeftOut, ModelMetadata, Molecule, Points};
 use crate::progress::Stage;
 use crate::volume::{self, Dtype, Nan, OpenVolume, ReadOptions, Reason, SampleStats, Series};
 use crate::{Alpha, Coordinates, Dims, Frame, LengthUnit, Units, VolumeError};
@@ -112,6 +112,9 @@ enum Content {
         /// Whether the weights are squares of radii, which the file has instead of weights.
         of_radii: bool,
         values: bool,
+        /// What the atoms are; absent if the points are no molecule.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        atoms: Option<AtomsSummary>,
         /// Cells that the file lists.
         #[serde(skip_serializing_if = "Vec::is_empty")]
         cells: Vec<CellCount>,
@@ -177,6 +180,21 @@ struct CellSummary {
     sides_text: String,
 }
 
+/// The atoms of a molecule.
+#[derive(Serialize)]
+struct AtomsSummary {
+    /// In a line: what they are, and what is left out.
+    summary: String,
+    left_out: LeftOut,
+}
+
+impl AtomsSummary {
+    fn of(molecule: &Molecule) -> Self {
+        let summary = molecule.summary().with_names(option);
+        Self { summary, left_out: molecule.left_out.clone() }
+    }
+}
+
 impl From<Cell> for CellSummary {
     fn from(cell: Cell) -> Self {
         let sides_text = match cell.sides() {
@@ -207,9 +225,7 @@ impl Info {
 
     fn describe(&self, input: &Path) -> Result<Content> {
         match self.input.recipe()?.opened(input).map_err(pipeline::unread)? {
-            Opened::Made(points) => {
-                Ok(Content::of_points(&points, ModelMetadata::default(), Vec::new()))
-            }
+            Opened::Made(points, metadata) => Ok(Content::of_points(&points, metadata, Vec::new())),
             Opened::Points(file) => {
                 let options = self.input.point_options()?;
                 let (points, metadata) = read_model_file(&file, &options)?;
@@ -352,6 +368,7 @@ impl Content {
             weights: points.weights.is_some(),
             of_radii: points.of_radii,
             values: points.values.is_some(),
+            atoms: points.molecule.as_ref().map(AtomsSummary::of),
             cells,
             cell: cell.map(Into::into),
             notes,
@@ -514,6 +531,7 @@ impl std::fmt::Display for Content {
                 weights,
                 of_radii,
                 values,
+                atoms,
                 cells,
                 cell,
                 grid,
@@ -521,6 +539,9 @@ impl std::fmt::Display for Content {
                 ..
             } => {
                 writeln!(f, "points    {count}")?;
+                if let Some(atoms) = atoms {
+                    writeln!(f, "molecule  {}", atoms.summary)?;
+                }
                 if !cells.is_empty() {
                     let cells: Vec<String> = cells.iter().map(ToString::to_string).collect();
                     writeln!(f, "cells     {}", cells.join(", "))?;

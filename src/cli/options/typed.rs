@@ -66,7 +66,7 @@ impl Args for TypedOptions {
 }
 
 /// Options that name files to read; positional arguments do so, too.
-const READ: [&str; 3] = ["config", "input", "points"];
+const READ: [&str; 4] = ["config", "input", "points", "radii"];
 /// Options that name files to write.
 const WRITTEN: [&str; 3] = ["output", "out", "mask"];
 /// The option that lets outputs replace inputs.

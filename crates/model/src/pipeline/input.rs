@@ -2,7 +2,7 @@ use std::path::Path;
 
 use super::{PipelineError, Recipe};
 use walpha_points::read_model_file;
-use walpha_points::{ModelMetadata, Points, PointsError, Units, hard};
+use walpha_points::{ModelMetadata, Points, PointsError, Units};
 use walpha_volume::{GrayRange, OpenFile, OpenVolume, Volume};
 
 /// The content of an input.
@@ -19,8 +19,8 @@ pub enum Input {
 /// An input whose kind is known, and whose content has not been read. A file is open: whatever is asked of it comes from
 /// this open file.
 pub enum Opened {
-    /// A set of points that is made by its name.
-    Made(Points),
+    /// Points that are made by their name, and their metadata.
+    Made(Points, ModelMetadata),
     /// A file of points.
     Points(OpenFile),
     /// A volume.
@@ -89,8 +89,8 @@ impl Recipe {
     /// # Errors
     /// [`PipelineError::Points`] if there is none, or it cannot be opened.
     pub fn opened(&self, input: &Path) -> Result<Opened, PipelineError> {
-        if let Some(points) = hard(input)? {
-            return Ok(Opened::Made(points));
+        if let Some((points, metadata)) = self.of_points().made(input)? {
+            return Ok(Opened::Made(points, metadata));
         }
         Ok(match OpenVolume::open(input).map_err(PointsError::from)? {
             OpenVolume::File(file)
@@ -112,7 +112,7 @@ impl Recipe {
         suited: impl FnOnce(&Self, &Volume) -> Option<Self>,
     ) -> Result<Input, PipelineError> {
         let volume = match opened {
-            Opened::Made(points) => return Ok(Input::Points(points, ModelMetadata::default())),
+            Opened::Made(points, metadata) => return Ok(Input::Points(points, metadata)),
             Opened::Points(file) => {
                 let (points, metadata) = self.read_points(&file)?;
                 return Ok(Input::Points(points, metadata));
