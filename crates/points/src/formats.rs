@@ -17,7 +17,9 @@ use super::write;
 use super::wvm;
 use super::{CellCount, ModelMetadata, Packing, PointOptions, Points, PointsError, WeightedPoints};
 use walpha_volume::VtkPoints;
-use walpha_volume::{OpenFile, Reason, UnknownFormat, built, is_npy, is_vtk, is_vtk_xml};
+use walpha_volume::{
+    OpenFile, Reason, UnknownFormat, built, is_cif, is_npy, is_pdb, is_vtk, is_vtk_xml,
+};
 
 /// Reads the points of a file and their metadata, which is empty where the format has none.
 type Read = fn(&OpenFile, &PointOptions) -> Result<(Points, ModelMetadata), PointsError>;
@@ -143,6 +145,7 @@ pub static FORMATS: [PointFormat; 18] = [
         extensions: &["pdb", "ent"],
         chooses: OF_ATOMS,
         fuzzed_by: "pdb",
+        begins: is_pdb,
         is_packed: true,
         read: Some(pdb::read),
         ..PLAIN
@@ -152,6 +155,7 @@ pub static FORMATS: [PointFormat; 18] = [
         extensions: &["cif", "mmcif"],
         chooses: OF_ATOMS,
         fuzzed_by: "mmcif",
+        begins: is_cif,
         is_packed: true,
         read: Some(mmcif::read),
         ..PLAIN
@@ -161,6 +165,7 @@ pub static FORMATS: [PointFormat; 18] = [
         extensions: &["pqr"],
         chooses: &[Setting::Radii, Setting::Chains],
         fuzzed_by: "pqr",
+        begins: is_pdb,
         is_packed: true,
         read: Some(pqr::read),
         ..PLAIN

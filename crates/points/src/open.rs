@@ -106,11 +106,14 @@ impl PointOptions {
     }
 
     fn format_that_is(&self, start: &[u8], path: &Path) -> Option<&'static PointFormat> {
-        let of_content = FORMATS.iter().find(|format| format.begins(start));
-        if of_content.is_some() || begins_as_volume(start) {
-            return of_content;
+        let named = self.format_named(path);
+        let mut of_content = FORMATS.iter().filter(|format| format.begins(start));
+        match (of_content.next(), of_content.next()) {
+            (Some(only), None) => Some(only),
+            (None, _) if begins_as_volume(start) => None,
+            // Of several that begin so, the name says which it is.
+            _ => named,
         }
-        self.format_named(path)
     }
 
     /// The format of the given extension, or else of the path's.

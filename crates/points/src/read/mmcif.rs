@@ -52,35 +52,66 @@ pub(crate) fn read(
 ) -> Result<(Points, ModelMetadata), PointsError> {
     let path = file.path();
     let text = text(file)?;
-    let mut reader =
-        Reader { path, tokens: Tokens::new(&text), found: Found::default(), single: Vec::new() };
+    let mut reader = Reader {
+        path,
+        tokens: Tokens::new(&text),
+        found: Found::default(),
+        single: Vec::new(),
+        instead: Instead::default(),
+    };
     let cell = reader.all()?;
     reader.found.cell = cell;
     if reader.found.last().is_none() {
-        return Err(format(path, without_atoms(&text)));
+        return Err(format(path, reader.instead.reason()));
     }
     reader.found.select(path, &options.atoms, options)
 }
 
-/// Why a file without atoms is not read.
-fn without_atoms(text: &str) -> Reason {
-    let lower = text.to_ascii_lowercase();
-    let has = |tag: &str| lower.contains(tag);
-    if has("_atom_site_fract_x") || has("_atom_site.fract_x") {
-        let what = "states places as fractions of a unit cell (_atom_site_fract_x), as CIF of small molecules does";
-        return Reason::unsupported(
-            what,
-            "convert it to coordinates in ångströms, as extended XYZ",
-        );
+/// What is there in place of atoms.
+#[derive(Clone, Copy, Default, PartialEq, PartialOrd)]
+enum Instead {
+    #[default]
+    Nothing,
+    /// Blocks of other things.
+    Blocks,
+    /// Tags of atoms without a category, as in CIF of small molecules.
+    Uncategorised,
+    /// Places as fractions of a unit cell.
+    Fractions,
+}
+
+impl Instead {
+    fn of(tag: &str) -> Self {
+        let begins =
+            |name: &str| tag.get(..name.len()).is_some_and(|own| own.eq_ignore_ascii_case(name));
+        if begins("_atom_site_fract_x") || begins("_atom_site.fract_x") {
+            Self::Fractions
+        } else if begins("_atom_site_") && !tag.contains('.') {
+            Self::Uncategorised
+        } else {
+            Self::Nothing
+        }
     }
-    if has("_atom_site_") {
-        let what = "is CIF of small molecules, whose tags have no category (_atom_site_label): mmCIF is read";
-        return Reason::unsupported(what, "convert it to mmCIF, PDB or extended XYZ");
+
+    /// Why a file without atoms is not read.
+    fn reason(self) -> Reason {
+        const CONVERT: &str = "convert it to coordinates in ångströms: mmCIF, PDB or extended XYZ";
+        match self {
+            Self::Fractions => {
+                let what = "states places as fractions of a unit cell (_atom_site_fract_x), as CIF of crystals does";
+                Reason::unsupported(what, CONVERT)
+            }
+            Self::Uncategorised => {
+                let what =
+                    "is CIF of small molecules, whose tags have no category (_atom_site_label)";
+                Reason::unsupported(what, CONVERT)
+            }
+            Self::Blocks => {
+                Reason::content("has no atoms (_atom_site)", "name a file of coordinates")
+            }
+            Self::Nothing => Reason::other("has no data_ block, with which CIF begins"),
+        }
     }
-    if !has("data_") {
-        return Reason::other("has no data_ block, with which CIF begins");
-    }
-    Reason::content("has no atoms (_atom_site)", "name a file of coordinates")
 }
 
 struct Reader<'a> {
@@ -89,6 +120,7 @@ struct Reader<'a> {
     found: Found,
     /// Items of atoms outside of a loop: those of a single atom.
     single: Vec<(&'a str, Token<'a>)>,
+    instead: Instead,
 }
 
 impl<'a> Reader<'a> {
@@ -99,26 +131,32 @@ impl<'a> Reader<'a> {
         let mut ahead = self.token()?;
         while let Some(token) = ahead {
             ahead = match token {
-                Token::Loop => {
-                    let next = self.looped()?;
-                    next
-                }
+                Token::Loop => self.looped()?,
                 Token::Tag(tag) => {
-                    let Some(value @ Token::Value(..)) = self.token()? else {
-                        return Err(self.wrong_here(&format!("has no value behind {tag}")));
+                    let value = match self.token()? {
+                        Some(value @ Token::Value(..)) => value,
+                        Some(_) => {
+                            return Err(self.wrong_here(&format!("has no value behind {tag}")));
+                        }
+                        None => {
+                            let what = format!("ends behind the tag {tag}: it is truncated");
+                            return Err(format(self.path, Reason::truncated(what)));
+                        }
                     };
+                    self.note(Instead::of(tag));
                     if of_atoms(tag).is_some() {
                         self.single.push((tag, value));
                     }
                     let is = |known: &&str| known.eq_ignore_ascii_case(tag);
-                    if let Some(at) = CELL.iter().position(|known| is(&known)) {
+                    if let Some(at) = CELL.iter().position(is) {
                         cell[at] = value.value();
-                    } else if GROUPS.iter().any(|known| is(&known)) {
+                    } else if GROUPS.iter().any(is) {
                         group = value.value().or(group);
                     }
                     self.token()?
                 }
                 Token::Block => {
+                    self.note(Instead::Blocks);
                     self.finish_single()?;
                     self.token()?
                 }
@@ -144,6 +182,7 @@ impl<'a> Reader<'a> {
         let mut tags = Vec::new();
         let mut ahead = self.token()?;
         while let Some(Token::Tag(tag)) = ahead {
+            self.note(Instead::of(tag));
             tags.push(tag);
             ahead = self.token()?;
         }
@@ -275,6 +314,12 @@ impl<'a> Reader<'a> {
             charge: None,
         };
         Ok(self.found.push(position, atom)?)
+    }
+
+    fn note(&mut self, found: Instead) {
+        if found > self.instead {
+            self.instead = found;
+        }
     }
 
     fn token(&mut self) -> Result<Option<Token<'a>>, PointsError> {

@@ -139,13 +139,13 @@ static KINDS: [Kind; 49] = [
     },
     Kind {
         begins: is_pdb,
-        what: "a PDB (or PQR) file of a molecule, which is not read",
-        advice: TABLE,
+        what: "a PDB or PQR file of a molecule",
+        advice: "call it .pdb or .pqr: the name says what its columns are",
     },
     Kind {
         begins: is_cif,
-        what: "a CIF file of a molecule or crystal, which is not read",
-        advice: TABLE,
+        what: "a CIF file of a molecule or crystal, which has points and no samples",
+        advice: "read it as points: call it .cif",
     },
     Kind { begins: is_gro, what: "a GRO file of GROMACS, which is not read", advice: TABLE },
     kind!(b"ITEM: TIMESTEP" | b"ITEM: UNITS", "a LAMMPS dump, which is not read", TABLE),
@@ -243,8 +243,8 @@ fn is_gro(start: &[u8]) -> bool {
         && (0..3).all(place)
 }
 
-/// Words that the first lines of CIF have.
-fn is_cif(start: &[u8]) -> bool {
+/// Whether a file that begins so is CIF: the first lines have one of some words.
+pub fn is_cif(start: &[u8]) -> bool {
     const WORDS: [&[u8]; 4] = [b"_entry", b"_audit", b"_cell", b"_atom_site"];
     let start = text(start);
     let has = |word: &&[u8]| start.windows(word.len()).any(|window| window == *word);
@@ -273,8 +273,8 @@ fn is_bmp(start: &[u8]) -> bool {
         && matches!(start.get(14..18), Some([12 | 40 | 52 | 56 | 64 | 108 | 124, 0, 0, 0]))
 }
 
-/// Records of six characters, the first of which there are not many.
-fn is_pdb(start: &[u8]) -> bool {
+/// Whether a file that begins so is PDB or PQR: its first record has six characters, and there are not many.
+pub fn is_pdb(start: &[u8]) -> bool {
     const RECORDS: [&[u8]; 9] = [
         b"HEADER  ",
         b"ATOM ",
