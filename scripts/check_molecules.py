@@ -57,7 +57,9 @@ class Checker:
         order = lambda rows: rows[np.lexsort(rows.T[::-1])]  # noqa: E731
         if len(found) != len(expected):
             return self.judge(name, f"{len(found)} atoms, not {len(expected)}")
-        found, expected = order(found), order(np.asarray(expected, float).reshape(-1, 4))
+        if not expected:
+            return self.judge(name, None)
+        found, expected = order(found), order(np.asarray(expected, float))
         differ = ~np.isclose(found, expected, rtol=0, atol=1e-6).all(axis=1)
         return self.judge(name, f"{differ.sum()} atoms differ: {found[differ][0]}, not {expected[differ][0]}" if differ.any() else None)
 
@@ -109,7 +111,15 @@ def check(checker, path, refused):
     if why:
         refused[why.split(": ", 1)[-1]].append(name)
         return
-    everything, default = expected(path)
+    try:
+        everything, default = expected(path)
+    except RuntimeError as error:
+        print(f"passed over by gemmi: {name} ({error})")
+        return
+    # Without columns of elements gemmi knows some, and walpha tells others by their residues.
+    if any(row[3] == 0 for row in everything):
+        checker.equal(f"{name}, places", found[:, :3], [row[:3] for row in everything])
+        return
     checker.equal(f"{name}, everything", found, everything)
     found, why = checker.read(path, *radii)
     if why and not default:

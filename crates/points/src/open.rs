@@ -65,10 +65,16 @@ impl PointOptions {
         name: impl AsRef<Path>,
     ) -> Result<Option<(Points, ModelMetadata)>, PointsError> {
         let name = name.as_ref();
-        if name.as_os_str() == PEPTIDE {
-            return peptide(self).map(Some);
+        let made = if name.as_os_str() == PEPTIDE {
+            Some(peptide(self)?)
+        } else {
+            hard(name)?.map(|points| (points, ModelMetadata::default()))
+        };
+        let Some((mut points, metadata)) = made else { return Ok(None) };
+        if let Some(side) = self.thin {
+            points.thin(side)?;
         }
-        Ok(hard(name)?.map(|points| (points, ModelMetadata::default())))
+        Ok(Some((points, metadata)))
     }
 
     /// Whether a file holds points rather than a volume under these options; see [`is_point_file`].

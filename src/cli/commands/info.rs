@@ -380,11 +380,15 @@ impl Content {
         }
     }
 
-    /// What the file says of its points, how they were made, and are meant to be used: notes, unit, recipe, α and gray range.
+    /// What the file says of its points, how they were made, and are meant to be used: atoms, notes, unit, recipe, α and gray range.
     fn fmt_usage(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self::Points { alpha, gray_range, grid, coordinates, recipe, notes, .. } = self else {
+        let Self::Points { atoms, alpha, gray_range, grid, coordinates, recipe, notes, .. } = self
+        else {
             return Ok(());
         };
+        if let Some(AtomsSummary { summary, .. }) = atoms {
+            writeln!(f, "molecule  {summary}")?;
+        }
         if !notes.is_empty() {
             writeln!(f, "of these  {}", notes.join(", "))?;
         }
@@ -531,7 +535,6 @@ impl std::fmt::Display for Content {
                 weights,
                 of_radii,
                 values,
-                atoms,
                 cells,
                 cell,
                 grid,
@@ -539,9 +542,6 @@ impl std::fmt::Display for Content {
                 ..
             } => {
                 writeln!(f, "points    {count}")?;
-                if let Some(atoms) = atoms {
-                    writeln!(f, "molecule  {}", atoms.summary)?;
-                }
                 if !cells.is_empty() {
                     let cells: Vec<String> = cells.iter().map(ToString::to_string).collect();
                     writeln!(f, "cells     {}", cells.join(", "))?;

@@ -7,6 +7,7 @@ use walpha_volume::{GrayRange, OpenFile, OpenVolume, Volume};
 
 /// The content of an input.
 #[derive(Debug)]
+#[expect(clippy::large_enum_variant, reason = "there is one")]
 pub enum Input {
     /// A grid of gray levels.
     Volume(GrayVolume),
@@ -18,6 +19,7 @@ pub enum Input {
 
 /// An input whose kind is known, and whose content has not been read. A file is open: whatever is asked of it comes from
 /// this open file.
+#[expect(clippy::large_enum_variant, reason = "there is one")]
 pub enum Opened {
     /// Points that are made by their name, and their metadata.
     Made(Points, ModelMetadata),

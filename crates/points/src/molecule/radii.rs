@@ -141,10 +141,7 @@ impl Table {
         for (number, line) in (1..).zip(text.lines()) {
             let content = line.split_once('#').map_or(line, |(content, _)| content);
             let words: Vec<&str> = content.split_whitespace().collect();
-            let (&radius, of) = match words.split_last() {
-                None => continue,
-                Some(split) => split,
-            };
+            let Some((&radius, of)) = words.split_last() else { continue };
             let valid = |radius: &f64| *radius >= 0.0 && (radius * radius).is_finite();
             let Some(radius) = radius.parse().ok().filter(valid) else {
                 return Err(format!("line {number}: {radius:?} is not a radius"));

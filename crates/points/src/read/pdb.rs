@@ -112,7 +112,7 @@ impl Reader<'_> {
                 self.has_end = true;
                 // Trajectories of some programs have no MODEL, and an END behind each frame.
                 if let (Model::Before(model), "END") = (&mut self.model, record) {
-                    *model = self.found.last().map_or(1, |last| last.model + 1);
+                    *model = self.found.last().map_or(1, |last| last.model.saturating_add(1));
                 }
                 Ok(())
             }
@@ -127,7 +127,9 @@ impl Reader<'_> {
 
     fn begin(&mut self, number: u64, line: &str) -> Result<(), PointsError> {
         let text = line.get(columns::MODEL.start..).unwrap_or_default().trim();
-        let Ok(model) = text.parse() else {
+        // Some programs do not number them.
+        let next = || self.found.last().map_or(1, |last| last.model.saturating_add(1));
+        let Some(model) = (if text.is_empty() { Some(next()) } else { text.parse().ok() }) else {
             return Err(self.wrong(number, &format!("has a MODEL {text:?}, which is no number")));
         };
         match self.model {

@@ -9,10 +9,12 @@ use walpha_points::{
 
 use crate::Told as _;
 
-/// A file of PDB: for each atom its record, name in four columns, alternate place, residue, chain, number and insertion code, and
-/// element. Its x is its index.
-fn pdb(atoms: &[(&str, &str, char, &str, char, i32, char, &str)]) -> String {
-    let line = |(index, atom): (usize, &(&str, &str, char, &str, char, i32, char, &str))| {
+/// A record, a name in four columns, an alternate place, a residue, its chain, number and insertion code, and an element.
+type Record = (&'static str, &'static str, char, &'static str, char, i32, char, &'static str);
+
+/// A file of PDB. The x of an atom is its index.
+fn pdb(atoms: &[Record]) -> String {
+    let line = |(index, atom): (usize, &Record)| {
         let (record, name, place, residue, chain, number, code, element) = *atom;
         format!(
             "{record:6}{index:5} {name:4}{place}{residue:>3} {chain}{number:4}{code}   {:8.3}{:8.3}{:8.3}  1.00  0.00          \
@@ -287,7 +289,7 @@ fn thinning_keeps_atoms_beside_their_points() {
     let options = PointOptions::default().thin(Some(3.0));
     let (points, molecule) = read(Path::new("sample:peptide"), &options).unwrap();
     let (all, of_all) = read(Path::new("sample:peptide"), &PointOptions::default()).unwrap();
-    assert!(points.len() > 10 && points.len() < all.len());
+    assert!(points.len() > 10 && points.len() < all.len(), "{} of {}", points.len(), all.len());
     for (place, atom) in points.positions.iter().zip(&molecule.atoms) {
         let at = all.positions.iter().position(|other| other == place).unwrap();
         assert_eq!(atom, &of_all.atoms[at]);

@@ -238,6 +238,15 @@ fn each_field_of_pdb() {
                 })
             ),
             row!(
+                "models without numbers",
+                "a.pdb",
+                format!("MODEL\n{0}ENDMDL\nMODEL  \n{0}ENDMDL\nEND\n", pdb(&[N, CA])),
+                Fate::Read(|path| {
+                    left_out(path, "left out: 2 atoms of other models (--models)");
+                    assert_eq!(model(path).1.atoms[0].model, 1);
+                })
+            ),
+            row!(
                 "frames that end with `END`",
                 "a.pdb",
                 two() + &two(),
