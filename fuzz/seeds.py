@@ -201,7 +201,38 @@ def table():
 
 
 def xyz():
-    return [b"0 0 0\n1 0 0\n", b"x y z value\n1 2 3 4\n", b"2\nwater\nH 0 0 0\nO 1 0 0\n", b"# a comment\n1 2 3 4\n"]
+    return [b"0 0 0\n1 0 0\n", b"x y z value\n1 2 3 4\n", b"2\nwater\nH 0 0 0\nO 1 0 0\n", b"# a comment\n1 2 3 4\n",
+            b"2\nProperties=species:S:1:pos:R:3:radius:R:1 Lattice=\"9 0 0 0 9 0 0 0 9\"\nC 0 0 0 1\nFe 1 0 0 2\n"]
+
+
+def pdb():
+    line = "{:6}{:5} {:4}{:1}{:4}{:1}{:4}{:1}   {:8.3f}{:8.3f}{:8.3f}  1.00  0.00          {:>2}\n"
+    atoms = line.format("ATOM", 1, " N", "", "ALA", "A", 1, "", 0, 0, 0, "N") + line.format("ATOM", 2, " CA", "B", "ALA", "A", 1, "C", 1, -2, 3.5, "")
+    water = line.format("HETATM", 3, " O", "", "HOH", "A", "A000", "", 1, 1, 1, "O")
+    cell = "CRYST1   10.000   20.000   30.000  90.00  80.00  90.00 P 1           1\n"
+    return [
+        f"HEADER    A\n{cell}{atoms}TER\n{water}END\n".encode(),
+        f"MODEL        1\n{atoms}ENDMDL\nMODEL        2\n{atoms}ENDMDL\nEND\n".encode(),
+        f"{atoms}END\n{atoms}END\n".replace("\n", "\r\n").encode(),
+    ]
+
+
+def mmcif():
+    items = "group_PDB type_symbol label_atom_id label_alt_id label_comp_id auth_asym_id auth_seq_id pdbx_PDB_ins_code Cartn_x Cartn_y Cartn_z"
+    tags = "".join(f"_atom_site.{item}\n" for item in items.split())
+    rows = "ATOM N N . ALA A 1 ? 0 0 0\nATOM C 'C A' B ALA \"A\" 1 C 1 -2 3.5(1)\nHETATM O\n;O\n; . HOH A 2 ? 1 1 1\n"
+    cell = "_cell.length_a 10\n_cell.length_b 20\n_cell.length_c 30\n_cell.angle_alpha 90\n_cell.angle_beta 80\n_cell.angle_gamma 90\n"
+    return [
+        f"data_1ABC\n# a comment\n{cell}_symmetry.space_group_name_H-M 'P 1'\nloop_\n{tags}{rows}#\n".encode(),
+        b"data_x\nsave_y\n_atom_site.type_symbol C\n_atom_site.Cartn_x 1\n_atom_site.Cartn_y 2\n_atom_site.Cartn_z 3\nsave_\n",
+    ]
+
+
+def pqr():
+    return [
+        b"REMARK 1\nATOM 1 N ALA A 1 0 0 0 -0.5 1.85\nATOM 2 CA ALA 1 1 0 0 0.25 2.0\nHETATM100003 ZN ZN B1000C 1 2 3 2.0 1.1\nTER\nEND\n",
+        b"ATOM      1  N   ALA     1       1.000   2.000   3.000 -0.500 1.850\n",
+    ]
 
 
 def pwn():
@@ -499,7 +530,7 @@ def plan_files(*names):
 TARGETS = {
     "inrimage": inrimage, "mgh": mgh, "npy": npys, "npz": npz, "nrrd": nrrd, "metaimage": metaimage, "nifti": nifti,
     "nifti_gzip": lambda: [gzip.compress(file) for file in nifti()], "vtk_legacy": vtk_legacy, "vti": vti,
-    "tiff": tiffs, "table": table, "xyz": xyz, "pwn": pwn, "npy_points": npy_points, "ply": ply, "vtk_geometry": vtk_geometry,
+    "tiff": tiffs, "table": table, "xyz": xyz, "pdb": pdb, "mmcif": mmcif, "pqr": pqr, "pwn": pwn, "npy_points": npy_points, "ply": ply, "vtk_geometry": vtk_geometry,
     "off": off, "obj": obj, "stl": stl, "gmsh": gmsh, "medit": medit, "tetgen": tetgen, "vtk_mesh": vtk_mesh, "weights": weights,
     "pcd": pcd, "las": las, "wvm": wvm, "dicom": dicom, "zarr": zarr, "slices": slices, "complex": complexes, "check_json": check_json, "check_npz": check_npz, "filtration": filtrations,
     "plan": plan_files("plan.json"), "block": plan_files("block-00000.walpha", "block-00001.walpha"),

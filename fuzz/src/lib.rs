@@ -9,7 +9,10 @@ use walpha::check::certify_filtration;
 use walpha::check::meshes::{Mesh, open_weights};
 use walpha::check::schema::{ComplexFile, FiltrationFile, PlacedComplex, SchemaError};
 use walpha::outofcore::{BlockwiseFormat, Cutting, Job, Plan, merge, run, whole};
-use walpha::points::{PointOptions, cells_of, is_point_file, read_complex, read_points};
+use walpha::points::{
+    AtomSelection, Models, PointOptions, Radii, cells_of, is_point_file, read_complex, read_model,
+    read_points,
+};
 use walpha::volume::{ReadOptions, Source, files_of, format_name, read, series};
 use walpha::{Decomposition, HaarOptions, Recipe, Tolerance};
 
@@ -37,6 +40,13 @@ pub fn points(name: &str, bytes: &[u8]) {
     let (_folder, path) = file(name, bytes);
     let _ = is_point_file(&path);
     let _ = read_points(&path, None);
+    // All atoms of a molecule: other formats refuse the choice.
+    let all = AtomSelection::default()
+        .hydrogens(true)
+        .waters(true)
+        .hetero(true)
+        .models(Some(Models::All));
+    let _ = read_model(&path, &PointOptions::default().atoms(all).radii(Some(Radii::ProtOr)));
     let options = PointOptions::default();
     if cells_of(&path, &options).is_ok_and(|cells| !cells.is_empty()) {
         let _ = read_complex(&path, &options).map(|mesh| PlacedComplex::try_from(mesh.complex));

@@ -59,10 +59,12 @@ def read_points(
     Parameters
     ----------
     path : str or path-like
-        CSV, XYZ, PTS, PLY, OFF, OBJ, STL, PCD, LAS, LAZ, VTU, VTP, VTK, NPY or WVM; text, PLY, OFF, OBJ, STL and PCD also
-        compressed with gzip, or alone in a ZIP archive. Weights are a column ``weight``, or else the squares of a column
-        ``radius``; a fourth column without a name has values. Or ``hard:NAME``, a set on which programs fail: the
-        documentation lists them under cross-checking.
+        CSV, XYZ, PTS, PDB, mmCIF, PQR, PLY, OFF, OBJ, STL, PCD, LAS, LAZ, VTU, VTP, VTK, NPY or WVM; text, molecules, PLY,
+        OFF, OBJ, STL and PCD also compressed with gzip, or alone in a ZIP archive. Weights are a column ``weight``, or else
+        the squares of a column ``radius``; a fourth column without a name has values. Of PDB and mmCIF the heavy atoms of
+        the polymers in the first model are read; the weight of an atom is its squared radius, of the file or Bondi's. Or
+        ``hard:NAME``, a set on which programs fail: the documentation lists them under cross-checking; or
+        ``sample:peptide``, a small molecule.
     level : int, optional
         For WVM in layers: how many of the last layers to leave out.
     columns : iterable of str, optional

@@ -279,7 +279,7 @@ impl Session {
         }
         let file = match recipe.opened(input)? {
             OpenInput::Volume(file) => file,
-            OpenInput::Made(points) => return Ok(self.keep(points, ModelMetadata::default())),
+            OpenInput::Made(points, metadata) => return Ok(self.keep(points, metadata)),
             OpenInput::Points(file) => {
                 let of_points = PointOptions::default().columns(recipe.columns.clone());
                 let (points, metadata) = read_model_file(&file, &of_points)?;

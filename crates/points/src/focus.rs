@@ -47,6 +47,7 @@ pub fn focus(fine: &Points, coarse: &Points, region: &Region) -> Points {
         differences: column(|points| points.differences.as_ref()),
         weights: column(|points| points.weights.as_ref()),
         of_radii: fine.of_radii && coarse.of_radii,
+        molecule: None,
     }
 }
 

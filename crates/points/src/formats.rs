@@ -12,12 +12,14 @@ use walpha_check::meshes::Mesh;
 use super::model::MODEL;
 use super::read::xyz::{self, TextLayout};
 use super::read::{format, npy};
-use super::read::{obj, off, pcd, ply, stated, stl, vtk};
+use super::read::{mmcif, obj, off, pcd, pdb, ply, pqr, stated, stl, vtk};
 use super::write;
 use super::wvm;
 use super::{CellCount, ModelMetadata, Packing, PointOptions, Points, PointsError, WeightedPoints};
 use walpha_volume::VtkPoints;
-use walpha_volume::{OpenFile, Reason, UnknownFormat, built, is_npy, is_vtk, is_vtk_xml};
+use walpha_volume::{
+    OpenFile, Reason, UnknownFormat, built, is_cif, is_npy, is_pdb, is_vtk, is_vtk_xml,
+};
 
 /// Reads the points of a file and their metadata, which is empty where the format has none.
 type Read = fn(&OpenFile, &PointOptions) -> Result<(Points, ModelMetadata), PointsError>;
@@ -87,7 +89,7 @@ const PLAIN: PointFormat = PointFormat {
 
 /// The formats of points, in the order in which they are tried. The first is the default for files of no
 /// recognised format.
-pub static FORMATS: [PointFormat; 15] = [
+pub static FORMATS: [PointFormat; 18] = [
     PointFormat {
         name: "CSV, TSV",
         extensions: &["csv", "tsv"],
@@ -105,7 +107,7 @@ pub static FORMATS: [PointFormat; 15] = [
     PointFormat {
         name: "XYZ",
         extensions: &["xyz", "txt", "asc"],
-        chooses: &[Setting::Columns, Setting::Frame],
+        chooses: &[Setting::Columns, Setting::Frame, Setting::Radii],
         fuzzed_by: "xyz",
         is_packed: true,
         read: Some(|file, options| xyz::read(file, options, TextLayout::Atoms)),
@@ -136,6 +138,36 @@ pub static FORMATS: [PointFormat; 15] = [
         fuzzed_by: "pwn",
         is_packed: true,
         read: Some(|file, options| xyz::read(file, options, TextLayout::PointsThenNormals)),
+        ..PLAIN
+    },
+    PointFormat {
+        name: "PDB",
+        extensions: &["pdb", "ent"],
+        chooses: OF_ATOMS,
+        fuzzed_by: "pdb",
+        begins: is_pdb,
+        is_packed: true,
+        read: Some(pdb::read),
+        ..PLAIN
+    },
+    PointFormat {
+        name: "mmCIF",
+        extensions: &["cif", "mmcif"],
+        chooses: OF_ATOMS,
+        fuzzed_by: "mmcif",
+        begins: is_cif,
+        is_packed: true,
+        read: Some(mmcif::read),
+        ..PLAIN
+    },
+    PointFormat {
+        name: "PQR",
+        extensions: &["pqr"],
+        chooses: &[Setting::Radii, Setting::Chains],
+        fuzzed_by: "pqr",
+        begins: is_pdb,
+        is_packed: true,
+        read: Some(pqr::read),
         ..PLAIN
     },
     PointFormat {
@@ -247,6 +279,16 @@ pub static FORMATS: [PointFormat; 15] = [
         writers: MODEL_WRITERS,
         ..PLAIN
     },
+];
+
+/// The settings that choose atoms and their radii.
+const OF_ATOMS: &[Setting] = &[
+    Setting::Radii,
+    Setting::Hydrogens,
+    Setting::Waters,
+    Setting::Hetero,
+    Setting::Chains,
+    Setting::Models,
 ];
 
 /// The writers of `.wvm`, if built in.

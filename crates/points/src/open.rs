@@ -8,6 +8,7 @@ use walpha_base::shown::shown;
 
 use super::formats::{FORMATS, PointFormat};
 use super::mesh::cells_of_file;
+use super::molecule::{AtomSelection, PEPTIDE, Radii, peptide};
 use super::read::content::Packed;
 use super::read::{COLUMNS, format};
 use super::{Columns, ModelMetadata, Points, PointsError, hard};
@@ -34,6 +35,11 @@ pub struct PointOptions {
     pub weights: bool,
     /// Keeps the first point in each cube of this side, in the unit of the points; `None` keeps all.
     pub thin: Option<f64>,
+    /// Where the radii of atoms come from; `None` takes those of the file, or else Bondi's.
+    pub radii: Option<Radii>,
+    /// Which atoms of PDB, mmCIF and the sample `sample:peptide` are read. PQR and XYZ are read as a whole, but for `chains`
+    /// of PQR.
+    pub atoms: AtomSelection,
 }
 
 impl PointOptions {
@@ -46,6 +52,30 @@ impl PointOptions {
         withheld: bool,
         weights: bool,
         thin: Option<f64>,
+        radii: Option<Radii>,
+        atoms: AtomSelection,
+    }
+
+    /// The points of a name that stands for no file: those of a [`hard`] set, or the molecule `sample:peptide`, an α-helix of
+    /// twelve alanines.
+    ///
+    /// # Errors
+    /// There is no such set, or a radius is not known.
+    pub fn made(
+        &self,
+        name: impl AsRef<Path>,
+    ) -> Result<Option<(Points, ModelMetadata)>, PointsError> {
+        let name = name.as_ref();
+        let made = if name.as_os_str() == PEPTIDE {
+            Some(peptide(self)?)
+        } else {
+            hard(name)?.map(|points| (points, ModelMetadata::default()))
+        };
+        let Some((mut points, metadata)) = made else { return Ok(None) };
+        if let Some(side) = self.thin {
+            points.thin(side)?;
+        }
+        Ok(Some((points, metadata)))
     }
 
     /// Whether a file holds points rather than a volume under these options; see [`is_point_file`].
@@ -54,7 +84,7 @@ impl PointOptions {
     /// As [`is_point_file`].
     pub fn is_point_file(&self, path: impl AsRef<Path>) -> Result<bool, PointsError> {
         let path = path.as_ref();
-        if hard(path)?.is_some() {
+        if path.as_os_str() == PEPTIDE || hard(path)?.is_some() {
             return Ok(true);
         }
         // A pipe is recognised by name alone, as bytes read from it are gone.
@@ -83,11 +113,14 @@ impl PointOptions {
     }
 
     fn format_that_is(&self, start: &[u8], path: &Path) -> Option<&'static PointFormat> {
-        let of_content = FORMATS.iter().find(|format| format.begins(start));
-        if of_content.is_some() || begins_as_volume(start) {
-            return of_content;
+        let named = self.format_named(path);
+        let mut of_content = FORMATS.iter().filter(|format| format.begins(start));
+        match (of_content.next(), of_content.next()) {
+            (Some(only), None) => Some(only),
+            (None, _) if begins_as_volume(start) => None,
+            // Of several that begin so, the name says which it is.
+            _ => named,
         }
-        self.format_named(path)
     }
 
     /// The format of the given extension, or else of the path's.
@@ -121,9 +154,11 @@ pub fn is_point_file(path: &Path) -> Result<bool, PointsError> {
 ///   point data of these names; VTK's active scalars are the values if no array is named so.
 /// - LAS and LAZ: coordinates, and the intensity as value, without the points that are withheld.
 /// - NPY: an array n×3 (x, y, z) or n×4 (…, value), or what `columns` say; of a structured array the fields of these names.
+/// - PDB, mmCIF: the heavy atoms of the polymers in the first model ([`AtomSelection`] has more), with the squares of Bondi's
+///   radii as weights ([`Radii`]). PQR: all atoms, with the radii of the file. XYZ with elements is read so, too.
 /// - WVM: all layers ([`read_model`] can leave some out).
 ///
-/// Text, OFF, OBJ, STL, PCD and PLY may be compressed with gzip, or be alone in a ZIP archive.
+/// Text, molecules, OFF, OBJ, STL, PCD and PLY may be compressed with gzip, or be alone in a ZIP archive.
 ///
 /// # Errors
 /// The file cannot be read, is truncated or longer than it claims, a column is missing or named twice,
@@ -136,7 +171,8 @@ pub fn read_points(
     Ok(read_model(path, &PointOptions::default().columns(columns.cloned()))?.0)
 }
 
-/// Reads points and their metadata, which is empty if the format stores none; or makes those of a [`hard`] set, by its name.
+/// Reads points and their metadata, which is empty if the format stores none; or makes those of a name
+/// ([`PointOptions::made`]).
 ///
 /// # Errors
 /// As [`read_points`]; a level that the file does not have; a stated format that contradicts the content.
@@ -145,8 +181,8 @@ pub fn read_model(
     options: &PointOptions,
 ) -> Result<(Points, ModelMetadata), PointsError> {
     let path = path.as_ref();
-    if let Some(points) = hard(path)? {
-        return Ok((points, ModelMetadata::default()));
+    if let Some(made) = options.made(path)? {
+        return Ok(made);
     }
     read_model_file(&OpenFile::open(path)?, options)
 }
@@ -193,6 +229,9 @@ pub fn read_model_file(
         );
         points.weights = points.values.take();
     }
+    if options.radii == Some(Radii::None) && points.of_radii {
+        (points.weights, points.of_radii) = (None, false);
+    }
     if let Some(side) = options.thin {
         points.thin(side)?;
     }
@@ -209,12 +248,24 @@ fn of_another_kind(known: &PointFormat, file: &OpenFile) -> Option<Reason> {
 
 /// Refuses settings that the format has no use for.
 fn accept(format: &PointFormat, path: &Path, options: &PointOptions) -> Result<(), PointsError> {
+    let PointOptions { columns, level, frame, classes, withheld, radii, atoms, .. } = options;
+    let of_atoms = if format.chooses.contains(&Setting::Radii) {
+        "is of a format of which all atoms are read"
+    } else {
+        "has no atoms"
+    };
     for (setting, given, what) in [
-        (Setting::Columns, options.columns.is_some(), "defines its own columns"),
-        (Setting::Level, options.level.is_some(), "has no layers of points"),
-        (Setting::Frame, options.frame.is_some(), "is of a format of one frame"),
-        (Setting::Class, options.classes.is_some(), "has no classes of points"),
-        (Setting::Withheld, options.withheld, "has no points that can be withheld"),
+        (Setting::Columns, columns.is_some(), "defines its own columns"),
+        (Setting::Level, level.is_some(), "has no layers of points"),
+        (Setting::Frame, frame.is_some(), "is of a format of one frame"),
+        (Setting::Class, classes.is_some(), "has no classes of points"),
+        (Setting::Withheld, *withheld, "has no points that can be withheld"),
+        (Setting::Radii, radii.as_ref().is_some_and(|radii| *radii != Radii::None), of_atoms),
+        (Setting::Hydrogens, atoms.hydrogens, of_atoms),
+        (Setting::Waters, atoms.waters, of_atoms),
+        (Setting::Hetero, atoms.hetero, of_atoms),
+        (Setting::Chains, atoms.chains.is_some(), of_atoms),
+        (Setting::Models, atoms.models.is_some(), of_atoms),
     ] {
         // Without its reader, the format says so itself.
         if given && format.is_built_in() && !format.chooses.contains(&setting) {

@@ -1,6 +1,6 @@
 use std::collections::HashSet;
 
-use super::PointsError;
+use super::{Molecule, PointsError};
 use walpha_shape::LengthsError;
 
 /// Points with their optional data: columns of equal length.
@@ -25,6 +25,8 @@ pub struct Points {
     pub weights: Option<Vec<f64>>,
     /// Whether the weights are squares of radii, which the input has instead of weights.
     pub of_radii: bool,
+    /// The atoms that the points are, if they are those of a molecule.
+    pub molecule: Option<Molecule>,
 }
 
 impl Points {
@@ -84,13 +86,12 @@ impl Points {
 
     /// Keeps only the marked points.
     pub(super) fn keep(&mut self, kept: &[bool]) {
-        let mut columns = [&mut self.values, &mut self.differences, &mut self.weights];
-        for column in columns.iter_mut().filter_map(|column| column.as_mut()) {
-            let mut kept = kept.iter();
-            column.retain(|_| kept.next() == Some(&true));
+        let columns = [&mut self.values, &mut self.differences, &mut self.weights];
+        columns.into_iter().flatten().for_each(|column| keep(column, kept));
+        if let Some(molecule) = &mut self.molecule {
+            keep(&mut molecule.atoms, kept);
         }
-        let mut kept = kept.iter();
-        self.positions.retain(|_| kept.next() == Some(&true));
+        keep(&mut self.positions, kept);
     }
 
     /// The number of points.
@@ -102,6 +103,12 @@ impl Points {
     pub fn is_empty(&self) -> bool {
         self.positions.is_empty()
     }
+}
+
+/// Keeps the items that are marked.
+pub(super) fn keep<T>(items: &mut Vec<T>, kept: &[bool]) {
+    let mut kept = kept.iter();
+    items.retain(|_| kept.next() == Some(&true));
 }
 
 /// Returns the column if it has an entry for each point.

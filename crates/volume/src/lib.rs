@@ -62,7 +62,9 @@ pub use walpha_base::{Conversion, Coordinates, LengthUnit, Space};
 #[doc(hidden)]
 pub use error::io_error;
 #[doc(hidden)]
-pub use formats::{begins_as_volume, built, is_npy, is_vtk, is_vtk_xml, other_kind, read_file};
+pub use formats::{
+    begins_as_volume, built, is_cif, is_npy, is_pdb, is_vtk, is_vtk_xml, other_kind, read_file,
+};
 #[doc(hidden)]
 pub use grid::{any_size, inverse};
 #[doc(hidden)]

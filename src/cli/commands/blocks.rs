@@ -15,7 +15,7 @@ use crate::cli::commands::folder;
 use crate::cli::commands::outline;
 use crate::cli::commands::pipeline;
 use crate::cli::options::global::{DIFFERENT, Global};
-use crate::cli::options::{Declared, InputArgs, OfShape, PipelineArgs, preset};
+use crate::cli::options::{self, Declared, InputArgs, OfShape, PipelineArgs, preset};
 use crate::cli::process::errors::{CommandError, Result, fail_usage};
 use crate::cli::process::output::{name, print_summary};
 use crate::cli::process::progress::Progress;
@@ -297,8 +297,7 @@ pub(crate) fn job(args: &InputArgs, recipe: Recipe) -> Result<Job> {
         let name = shown(input.path());
         fail_usage!("{name} holds points, and blocks are cut from volumes" => "start one process, and write another format than .pvtu and .pvtp");
     };
-    args.typed
-        .refuse(&["columns", "class", "withheld", "thin"], format!("{input} holds a volume"))?;
+    args.typed.refuse(&options::of_points(), format!("{input} holds a volume"))?;
     let alone = ["refit", "exchange", "max_error"];
     args.typed.refuse(&alone, "blocks look at a part of the volume each")?;
     let source = volume.source(&recipe.read).map_err(pipeline::with_points)?;

@@ -204,7 +204,7 @@ impl Check {
                     );
                 }
             }
-            Opened::Made(_) | Opened::Volume(OpenVolume::Named(_)) => {}
+            Opened::Made(..) | Opened::Volume(OpenVolume::Named(_)) => {}
         }
         let computed = self.compute(path, opened, &mut progress)?;
         let judged = format!("our own shape of {}", name(input));

@@ -8,10 +8,10 @@ use serde_json::Value;
 use walpha_base::shown::number;
 
 use crate::check::meshes::Mesh;
-use crate::cli::process::errors::Result;
+use crate::cli::process::errors::{Result, option};
 use crate::labels::{LabelSize, LabelSizes};
 use crate::pipeline::Opened;
-use crate::points::{Cell, CellCount, ModelMetadata, Points};
+use crate::points::{Cell, CellCount, LeftOut, ModelMetadata, Molecule, Points};
 use crate::progress::Stage;
 use crate::volume::{self, Dtype, Nan, OpenVolume, ReadOptions, Reason, SampleStats, Series};
 use crate::{Alpha, Coordinates, Dims, Frame, LengthUnit, Units, VolumeError};
@@ -112,6 +112,9 @@ enum Content {
         /// Whether the weights are squares of radii, which the file has instead of weights.
         of_radii: bool,
         values: bool,
+        /// What the atoms are; absent if the points are no molecule.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        atoms: Option<AtomsSummary>,
         /// The numbers of cells that the file lists.
         #[serde(skip_serializing_if = "Vec::is_empty")]
         cells: Vec<CellCount>,
@@ -177,6 +180,21 @@ struct CellSummary {
     sides_text: String,
 }
 
+/// The atoms of a molecule.
+#[derive(Serialize)]
+struct AtomsSummary {
+    /// In a line: what they are, and what is left out.
+    summary: String,
+    left_out: LeftOut,
+}
+
+impl AtomsSummary {
+    fn of(molecule: &Molecule) -> Self {
+        let summary = molecule.summary().with_names(option);
+        Self { summary, left_out: molecule.left_out.clone() }
+    }
+}
+
 impl From<Cell> for CellSummary {
     fn from(cell: Cell) -> Self {
         let sides_text = match cell.sides() {
@@ -207,9 +225,7 @@ impl Info {
 
     fn describe(&self, input: &Path) -> Result<Content> {
         match self.input.recipe()?.opened(input).map_err(pipeline::unread)? {
-            Opened::Made(points) => {
-                Ok(Content::of_points(&points, ModelMetadata::default(), Vec::new()))
-            }
+            Opened::Made(points, metadata) => Ok(Content::of_points(&points, metadata, Vec::new())),
             Opened::Points(file) => {
                 let options = self.input.point_options()?;
                 let (points, metadata) = read_model_file(&file, &options)?;
@@ -352,6 +368,7 @@ impl Content {
             weights: points.weights.is_some(),
             of_radii: points.of_radii,
             values: points.values.is_some(),
+            atoms: points.molecule.as_ref().map(AtomsSummary::of),
             cells,
             cell: cell.map(Into::into),
             notes,
@@ -363,12 +380,16 @@ impl Content {
         }
     }
 
-    /// Displays the file's remarks on its points, and how they were made and are meant to be used: notes, unit, recipe, α and
-    /// gray range.
+    /// Displays the file's remarks on its points, and how they were made and are meant to be used: atoms, notes, unit,
+    /// recipe, α and gray range.
     fn fmt_usage(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self::Points { alpha, gray_range, grid, coordinates, recipe, notes, .. } = self else {
+        let Self::Points { atoms, alpha, gray_range, grid, coordinates, recipe, notes, .. } = self
+        else {
             return Ok(());
         };
+        if let Some(AtomsSummary { summary, .. }) = atoms {
+            writeln!(f, "molecule  {summary}")?;
+        }
         if !notes.is_empty() {
             writeln!(f, "of these  {}", notes.join(", "))?;
         }

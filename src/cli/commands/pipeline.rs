@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use crate::cli::options::preset;
 use crate::cli::options::{self, InputArgs};
-use crate::cli::process::errors::{CommandError, Result, command_error};
+use crate::cli::process::errors::{CommandError, Result, command_error, option};
 use crate::cli::process::progress::Progress;
 use crate::export::Scratch;
 use crate::interpolate::{InterpolateError, fill};
@@ -188,14 +188,19 @@ pub(crate) fn accept(input: &Input, args: &InputArgs) -> Result<()> {
     let holds = |what| format!("{} holds {what}", args.input);
     match input {
         Input::Volume(..) | Input::Labels(..) => {
-            args.typed.refuse(&["columns", "class", "withheld", "thin"], holds("a volume"))
+            args.typed.refuse(&options::of_points(), holds("a volume"))
         }
-        Input::Points(_, facts) => {
+        Input::Points(points, facts) => {
             let what = holds("points, and no volume");
             if facts.range.is_none() {
                 args.typed.refuse(&["gray_out"], &what)?;
             }
-            args.typed.refuse(&options::of_volumes(), what)
+            args.typed.refuse(&options::of_volumes(), what)?;
+            // A part of a molecule is read unless options ask for more.
+            if let Some(molecule) = points.molecule.as_ref().filter(|molecule| molecule.is_part()) {
+                tracing::warn!("{}", molecule.summary().with_names(option));
+            }
+            Ok(())
         }
     }
 }

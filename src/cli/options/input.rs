@@ -26,7 +26,7 @@ pub(crate) struct InputArgs {
     /// All settings that the command was given.
     #[command(flatten)]
     pub given: Given,
-    /// Volume or point file, - (standard input), sample:ct, sample:skull, sample:phantom or sample:phantom@N.
+    /// Volume or point file, - (standard input), sample:ct, sample:skull, sample:phantom, sample:phantom@N or sample:peptide.
     #[arg(value_name = "INPUT", help_heading = None::<&str>)]
     pub input: InputName,
     #[command(flatten)]
@@ -37,8 +37,12 @@ pub(crate) struct InputArgs {
 struct Reading;
 
 impl Groups for Reading {
-    const GROUPS: &[(Group, &str)] =
-        &[(Group::Input, "Input"), (Group::Part, "Parts of a volume"), (Group::Raw, "Raw volumes")];
+    const GROUPS: &[(Group, &str)] = &[
+        (Group::Input, "Input"),
+        (Group::Molecule, "Molecules"),
+        (Group::Part, "Parts of a volume"),
+        (Group::Raw, "Raw volumes"),
+    ];
 }
 
 impl InputArgs {

@@ -132,6 +132,11 @@ pub(super) fn of_gray_levels() -> Vec<&'static str> {
     names(&groups).into_iter().chain(["gray"]).collect()
 }
 
+/// The names of the settings that apply to points only.
+pub(super) fn of_points() -> Vec<&'static str> {
+    names(&[Group::Molecule]).into_iter().chain(["columns", "class", "withheld", "thin"]).collect()
+}
+
 /// The names of the settings that apply to volumes only. `--level` and `--gray-out` apply to some files of points, too.
 pub(super) fn of_volumes() -> Vec<&'static str> {
     let groups =

@@ -42,6 +42,20 @@ const HELP: &[(&str, &str, &str)] = &[
     ),
     ("thin", "SIDE", "Keep the first point in each cube of this side, in the unit of the points"),
     (
+        "radii",
+        "SET",
+        "Radii of atoms, whose squares are weights: bondi (van der Waals, by element), protor (amino acids, hydrogens included), column (of the file), none, or a FILE with lines as `C 1.70` and `ALA CB 1.88` [default: of the file, otherwise bondi]",
+    ),
+    ("hydrogens", "", "Also take hydrogens of PDB and mmCIF"),
+    ("waters", "", "Also take water of PDB and mmCIF"),
+    ("hetero", "", "Also take ligands, ions and modified residues of PDB and mmCIF (HETATM)"),
+    ("chains", "A,B,…", "Chains to read from PDB, mmCIF and PQR [default: all]"),
+    (
+        "models",
+        "N",
+        "Model to read from PDB and mmCIF by its number, or all of them together (all) [default: the first]",
+    ),
+    (
         "level",
         "N",
         "Level of a pyramid (OME-Zarr), or of points in layers (WVM); 0 is the finest [default: 0]",

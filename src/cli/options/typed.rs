@@ -65,7 +65,7 @@ impl Args for TypedOptions {
 }
 
 /// The options that name files to read; positional arguments do so, too.
-const READ: [&str; 3] = ["config", "input", "points"];
+const READ: [&str; 4] = ["config", "input", "points", "radii"];
 /// The options that name files to write.
 const WRITTEN: [&str; 3] = ["output", "out", "mask"];
 /// The option that lets outputs replace inputs.

@@ -293,11 +293,11 @@ fn what_is_folded_and_stated_is_told() {
     let atoms: String = text.lines().map(|line| format!("Fe {line}\n")).collect();
     let cell = "Lattice=\"4 0 0 0 4 0 0 0 4\"";
     std::fs::write(f.join("e.xyz"), format!("{}\n{cell}\n{atoms}", text.lines().count())).unwrap();
-    let plain = ["shape", "e.xyz", "--alpha", "0.3125"];
+    let plain = ["shape", "e.xyz", "--radii", "none", "--alpha", "0.3125"];
     let warned = common::json(f, &plain)["warnings"].to_string();
     assert!(warned.contains("it is not used") && warned.contains("4,4,4"), "{warned}");
     for (command, output) in [("shape", "g.ply"), ("filtration", "g.json")] {
-        let args = [command, "e.xyz", "--periodic", "4,4,4", "-o", output];
+        let args = [command, "e.xyz", "--radii", "none", "--periodic", "4,4,4", "-o", output];
         let told = common::json(f, &args);
         assert_eq!(told.get("warnings"), None);
     }

@@ -11,7 +11,9 @@ use crate::labels::LabelChoice;
 use crate::settings::Settings;
 use walpha_points::haar::{HaarOptions, Tolerance};
 use walpha_points::internal::LEAST_GRAY;
-use walpha_points::{Columns, PointOptions, Points, PointsError, Selection, Units, Weighting};
+use walpha_points::{
+    AtomSelection, Columns, PointOptions, Points, PointsError, Radii, Selection, Units, Weighting,
+};
 use walpha_shape::{Alpha, Balls, Classifier, Engine, Keep, ShapeError, ShapeOptions, Torus};
 use walpha_volume::{Coordinates, Frame, Gray, GrayRange, LengthUnit, ReadOptions, Space};
 
@@ -57,6 +59,10 @@ pub struct Recipe {
     pub withheld: bool,
     /// Keeps the first point in each cube of this side ([`PointOptions::thin`]).
     pub thin: Option<f64>,
+    /// Where the radii of atoms come from ([`PointOptions::radii`]); not looked up where weights come from elsewhere.
+    pub radii: Option<Radii>,
+    /// Which atoms of a molecule are read ([`PointOptions::atoms`]).
+    pub atoms: AtomSelection,
     /// The labels whose [solid](Recipe::solid) is the shape; `None` selects points by gray levels. With labels, the rest of the
     /// recipe has no effect, except the options for reading a volume, its units and its space.
     pub labels: Option<LabelChoice>,
@@ -130,6 +136,8 @@ impl Recipe {
         classes: Option<Vec<u8>>,
         withheld: bool,
         thin: Option<f64>,
+        radii: Option<Radii>,
+        atoms: AtomSelection,
         labels: Option<LabelChoice>,
         gray_out: bool,
         haar: HaarOptions,
@@ -197,7 +205,10 @@ impl Recipe {
     /// The options for reading points.
     #[doc(hidden)]
     pub fn of_points(&self) -> PointOptions {
+        let needs_radii = self.weighting.is_none_or(|kind| kind == Weighting::Column);
         PointOptions::default()
+            .radii(if needs_radii { self.radii.clone() } else { Some(Radii::None) })
+            .atoms(self.atoms.clone())
             .columns(self.columns.clone())
             .level(self.read.level)
             .format(self.read.format.clone())
@@ -373,7 +384,7 @@ mod sides {
 mod tests {
     use super::*;
     use crate::pipeline::{Goal, Values};
-    use walpha_points::SelectionRule;
+    use walpha_points::{Models, SelectionRule};
 
     /// This includes an infinite α, for which JSON has no number, and one that must be found.
     #[test]
@@ -386,6 +397,12 @@ mod tests {
             .value_min(Some(-0.3))
             .refit(Refit::Shape)
             .weighting(Weighting::Common(2.5))
+            .radii(Some("a/b.txt".parse().unwrap()))
+            .atoms(
+                AtomSelection::default()
+                    .chains(Some(vec!["A".into()]))
+                    .models(Some(Models::One(2))),
+            )
             .blocks(NonZeroUsize::new(3))
             .memory(Some(1 << 40))
             .periodic(Some(Torus::new([1.0, 2.5, 0.7]).unwrap()));

@@ -13,7 +13,9 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use serde_json::{Map, Value};
 use walpha_base::advice::{Advice, Advise, Category, Setting, advice};
 use walpha_points::haar::{Decomposition, HaarOptions, Tolerance};
-use walpha_points::{Columns, Selection, SelectionRule, Units, Weighting};
+use walpha_points::{
+    AtomSelection, Columns, Models, Radii, Selection, SelectionRule, Units, Weighting,
+};
 use walpha_shape::{Alpha, Balls, Engine, Keep, Largest, Torus};
 use walpha_volume::{Dims, Dtype, Endian, GrayRange, Nan, RawLayout, ReadOptions, Region, Space};
 
@@ -167,6 +169,20 @@ settings! {
         withheld: bool = parse::switch,
         /// Side of the cubes of which one point is kept.
         thin: f64 = parse::positive,
+    }
+    Molecule {
+        /// Where the radii of atoms come from.
+        radii: Radii = parse::radii,
+        /// Whether hydrogens are read.
+        hydrogens: bool = parse::switch,
+        /// Whether water is read.
+        waters: bool = parse::switch,
+        /// Whether ligands are read.
+        hetero: bool = parse::switch,
+        /// Chains to read.
+        chains: Vec<String> = parse::chains,
+        /// Models to read.
+        models: Models = parse::models,
     }
     Part {
         /// Level of a pyramid.
@@ -430,6 +446,16 @@ impl Settings {
         }
     }
 
+    /// Which atoms of a molecule are read.
+    pub fn atoms(&self) -> AtomSelection {
+        AtomSelection::default()
+            .hydrogens(self.hydrogens == Some(true))
+            .waters(self.waters == Some(true))
+            .hetero(self.hetero == Some(true))
+            .chains(self.chains.clone())
+            .models(self.models)
+    }
+
     /// The value of α, or the rule that finds it.
     pub fn parameter(&self) -> AlphaRule {
         let given = self.alpha_radius.map(AlphaRule::Given);
@@ -510,6 +536,8 @@ impl Settings {
             .classes(self.class.clone())
             .withheld(is_set(self.withheld))
             .thin(self.thin)
+            .radii(self.radii.clone())
+            .atoms(self.atoms())
             .labels(self.label.clone())
             .gray(self.gray)
             .gray_out(is_set(self.gray_out))
@@ -549,6 +577,13 @@ impl Settings {
             return Err(SettingError::new(
                 advice![Setting::Blocks, " has no effect: the engine cgal does not work in blocks"],
                 advice!["omit it, or take ", Setting::Engine, " native"],
+            ));
+        }
+        let needs_radii = recipe.weighting.is_none_or(|kind| kind == Weighting::Column);
+        if !needs_radii && recipe.radii.as_ref().is_some_and(|radii| *radii != Radii::None) {
+            return Err(SettingError::new(
+                advice![Setting::Radii, " has no effect: weights come from elsewhere"],
+                advice!["omit it, or take column as weights"],
             ));
         }
         recipe.check().map_err(|error| SettingError::of(&error))?;

@@ -4,6 +4,7 @@ use std::fmt::Display;
 use std::str::FromStr;
 
 use walpha_base::advice::Advise;
+use walpha_points::{Models, Radii};
 use walpha_shape::{Alpha, Torus};
 use walpha_volume::{Dims, GrayRange, Nan, Region};
 
@@ -179,6 +180,32 @@ fn class(text: &str) -> Result<Vec<u8>, SettingError> {
             }
         },
     })
+}
+
+/// A set of radii, or the path of a table.
+pub(super) fn radii(text: &str) -> Result<Radii, SettingError> {
+    if text.is_empty() {
+        fail!("a set of radii is needed" => "give bondi, protor, column, none or the path of a table");
+    }
+    let Ok(radii) = text.parse();
+    Ok(radii)
+}
+
+/// Names of chains.
+pub(super) fn chains(text: &str) -> Result<Vec<String>, SettingError> {
+    let names: Vec<String> = text.split(',').map(|name| name.trim().to_owned()).collect();
+    if names.iter().any(String::is_empty) {
+        fail!("names of chains are needed" => "give them as in A,B");
+    }
+    Ok(names)
+}
+
+pub(super) fn models(text: &str) -> Result<Models, SettingError> {
+    match (text, text.parse()) {
+        ("all", _) => Ok(Models::All),
+        (_, Ok(number)) => Ok(Models::One(number)),
+        _ => fail!("{text:?} is not the number of a model" => "give all, or a number as in 2"),
+    }
 }
 
 pub(super) fn alpha_radius(text: &str) -> Result<Alpha, SettingError> {

@@ -11,6 +11,8 @@ use walpha_volume::Reason;
 pub(super) struct Comment {
     /// The columns from `Properties=species:S:1:pos:R:3:…`.
     pub columns: Option<Columns>,
+    /// The column of `species:S:1` among these.
+    pub species: Option<usize>,
     /// The cell from `Lattice="…"`, unless `pbc` states that the points do not repeat.
     pub cell: Option<Cell>,
 }
@@ -22,7 +24,10 @@ impl Comment {
         let mut repeats = [true; 3];
         for (key, value) in pairs(line) {
             match key.to_ascii_lowercase().as_str() {
-                "properties" => comment.columns = Some(columns(path, value)?),
+                "properties" => {
+                    let (columns, species) = columns(path, value)?;
+                    (comment.columns, comment.species) = (Some(columns), species);
+                }
                 "lattice" if comment.cell.is_some() => {
                     return Err(format(path, Reason::content("has Lattice twice", "remove one")));
                 }
@@ -61,8 +66,8 @@ fn pairs(line: &str) -> Vec<(&str, &str)> {
     pairs
 }
 
-/// The columns, from properties that each have a name, a type and a number of columns.
-fn columns(path: &Path, text: &str) -> Result<Columns, PointsError> {
+/// The columns, from properties that each have a name, a type and a number of columns; and which of them has species.
+fn columns(path: &Path, text: &str) -> Result<(Columns, Option<usize>), PointsError> {
     let wrong = |what: &str| {
         let what = format!("has Properties={text}, {what}");
         Err(format(path, Reason::content(what, "correct its second line")))
@@ -71,7 +76,7 @@ fn columns(path: &Path, text: &str) -> Result<Columns, PointsError> {
     let (properties, []) = words.as_chunks::<3>() else {
         return wrong("which are not names, types and numbers");
     };
-    let mut columns = Vec::new();
+    let (mut columns, mut species) = (Vec::new(), None);
     for [name, _, count] in properties {
         let Some(count) = count.parse().ok().filter(|count| (1..=1 << 10).contains(count)) else {
             return wrong("which are not names, types and numbers");
@@ -80,6 +85,10 @@ fn columns(path: &Path, text: &str) -> Result<Columns, PointsError> {
         match (name.to_ascii_lowercase().as_str(), known, count) {
             ("pos", _, 3) => columns.extend([Some(0), Some(1), Some(2)]),
             (_, Some(place), 1) => columns.push(Some(3 + place)),
+            ("species", _, 1) => {
+                species = Some(columns.len());
+                columns.push(None);
+            }
             _ => columns.extend(std::iter::repeat_n(None, count)),
         }
     }
@@ -87,7 +96,7 @@ fn columns(path: &Path, text: &str) -> Result<Columns, PointsError> {
     if times(0) != 1 || (3..COLUMNS.len()).any(|place| times(place) > 1) {
         return wrong("without pos:R:3, or with something twice");
     }
-    Ok(Columns(columns))
+    Ok((Columns(columns), species))
 }
 
 fn cell(path: &Path, text: &str) -> Result<Cell, PointsError> {

@@ -1,5 +1,7 @@
 //! Readers of the formats of points.
 
+mod cell;
+mod cif;
 mod columns;
 pub(super) mod content;
 #[cfg(feature = "las")]
@@ -12,15 +14,18 @@ pub(super) mod las;
 #[cfg(feature = "las")]
 mod laz;
 mod lines;
+pub(super) mod mmcif;
 pub(super) mod npy;
 pub(super) mod obj;
 pub(super) mod off;
 pub(super) mod pcd;
+pub(super) mod pdb;
 pub(super) mod ply;
+pub(super) mod pqr;
 mod rows;
 pub(super) mod stated;
 pub(super) mod stl;
-mod text;
+pub(super) mod text;
 pub(super) mod vtk;
 pub(super) mod xyz;
 
@@ -59,7 +64,7 @@ pub(super) fn no_complex(path: &Path) -> PointsError {
 }
 
 /// Sets the weights to the squares of radii, unless the file has weights.
-fn take_radii(
+pub(super) fn take_radii(
     path: &Path,
     points: &mut Points,
     radii: Option<Vec<f64>>,

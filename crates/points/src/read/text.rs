@@ -8,7 +8,7 @@ use walpha_volume::{OpenFile, Reason};
 
 /// The whole file as text whose lines end with `\n`. The encoding may be UTF-8, UTF-16 of either byte order, with or without a
 /// byte order mark, or else Latin-1. Lines may end with CR LF or CR.
-pub(super) fn text(file: &OpenFile) -> Result<String, PointsError> {
+pub(crate) fn text(file: &OpenFile) -> Result<String, PointsError> {
     let path = file.path();
     decoded(Content::of(file)?.bytes(path)?).map_err(|error| match error {
         Undecodable::Reason(reason) => format(path, reason),

@@ -1,4 +1,6 @@
+use std::collections::HashSet;
 use std::path::Path;
+use std::sync::Arc;
 
 use walpha_base::advice::{Setting, advice};
 use walpha_base::shown::shown;
@@ -10,8 +12,9 @@ use super::lines::{Frame, Miscount, Numbered, count, frames, is_comment};
 use super::rows::TextRows;
 use super::text::text;
 use super::{Columns, Points, PointsError, format};
+use crate::molecule::{Atom, Element, Molecule, Radii};
 use crate::{Cell, ModelMetadata, PointOptions};
-use walpha_volume::{Coordinates, OpenFile, Reason};
+use walpha_volume::{Coordinates, LengthUnit, OpenFile, Reason};
 
 /// The layout of lines of numbers that have no names.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -57,23 +60,25 @@ pub(crate) fn read(
     let text = text(file)?;
     let mut lines = Numbered::new(&text);
     let Header { columns, unit } = Header::read(path, &mut lines, options.columns.as_ref())?;
-    let metadata =
-        ModelMetadata::default().coordinates(Coordinates { unit, ..Coordinates::default() });
+    let in_unit =
+        |unit| ModelMetadata::default().coordinates(Coordinates { unit, ..Coordinates::default() });
     if lines.is_at_end() {
         return Err(format(path, Reason::content("has no rows of numbers", "name another file")));
     }
     if lines.contents().next().is_none_or(|(_, line)| count(line).is_none()) {
         choose(path, 1, options.frame)?;
-        return Ok((rows(path, &lines, columns, layout, false)?, metadata));
+        return Ok((rows(path, &lines, columns, layout)?, in_unit(unit)));
     }
     if layout == TextLayout::PointsThenNormals {
         choose(path, 1, options.frame)?;
-        return Ok((points_then_normals(path, lines)?, metadata));
+        return Ok((points_then_normals(path, lines)?, in_unit(unit)));
     }
     let frames = counted(path, &lines, layout)?;
     let frame = &frames[choose(path, frames.len(), options.frame)?];
-    let (points, cell) = of_frame(path, frame, columns, layout)?;
-    Ok((points, metadata.cell(cell)))
+    let (points, cell) = of_frame(path, frame, columns, layout, options.radii.as_ref())?;
+    // Elements are those of atoms, whose places chemistry states in this unit.
+    let unit = if points.molecule.is_some() { LengthUnit::Angstrom } else { unit };
+    Ok((points, in_unit(unit).cell(cell)))
 }
 
 /// The index of the requested frame.
@@ -140,11 +145,14 @@ fn of_frame(
     frame: &Frame<'_>,
     columns: Option<Columns>,
     layout: TextLayout,
+    radii: Option<&Radii>,
 ) -> Result<(Points, Option<Cell>), PointsError> {
-    let Comment { columns: stated, cell } = match frame.comment {
+    let Comment { columns: stated, species, cell } = match frame.comment {
         Some(comment) => Comment::read(path, comment)?,
         None => Comment::default(),
     };
+    // Columns that are named in another place are others.
+    let mut species = species.filter(|_| columns.is_none());
     let columns = columns.or(stated);
     let has_comment = frame.comment.is_some();
     let atoms = columns.is_none() && layout.has_comments() && are_atoms(&frame.rows, has_comment);
@@ -159,11 +167,79 @@ fn of_frame(
                 shown(path)
             );
         }
+        species = Some(0);
         Some(Columns(vec![None, Some(0), Some(1), Some(2)]))
     } else {
         columns
     };
-    Ok((rows(path, &frame.rows, columns, layout, atoms)?, cell))
+    let mut names = species.map(Species::new);
+    let mut points = rows_with(path, &frame.rows, columns, layout, atoms, names.as_mut())?;
+    if let Some(Species { names, .. }) = names {
+        take_atoms(path, &mut points, names, radii)?;
+    }
+    Ok((points, cell))
+}
+
+/// A column of names of elements.
+struct Species {
+    column: usize,
+    names: Vec<Arc<str>>,
+    /// One copy of each.
+    known: HashSet<Arc<str>>,
+}
+
+impl Species {
+    fn new(column: usize) -> Self {
+        Self { column, names: Vec::new(), known: HashSet::new() }
+    }
+
+    fn push(&mut self, fields: &[&str]) {
+        let name = fields.get(self.column).copied().unwrap_or_default();
+        let known = self.known.get(name).cloned().unwrap_or_else(|| {
+            let new: Arc<str> = name.into();
+            self.known.insert(new.clone());
+            new
+        });
+        self.names.push(known);
+    }
+}
+
+/// Makes points those of atoms with these names, and looks up their radii. Names of which none is an element are labels, unless
+/// radii are asked for.
+fn take_atoms(
+    path: &Path,
+    points: &mut Points,
+    names: Vec<Arc<str>>,
+    radii: Option<&Radii>,
+) -> Result<(), PointsError> {
+    let element = |name: &str| match name.parse() {
+        Ok(number) => Element::numbered(number),
+        Err(_) => Element::named(name),
+    };
+    let atoms = names.into_iter().map(|name| Atom {
+        element: element(&name),
+        name,
+        model: 1,
+        ..Atom::default()
+    });
+    let molecule = Molecule { atoms: atoms.collect(), ..Molecule::default() };
+    let is_asked = radii.is_some_and(|radii| *radii != Radii::None);
+    if !is_asked && molecule.atoms.iter().all(|atom| atom.element.is_none()) {
+        if let (None, Some(first)) = (radii, molecule.atoms.first()) {
+            tracing::warn!(
+                "{}: its names of atoms are not elements ({:?}), so they have no radii; `radii` FILE gives them",
+                shown(path),
+                first.name
+            );
+        }
+        return Ok(());
+    }
+    points.molecule = Some(molecule);
+    match radii {
+        None if points.weights.is_some() => Ok(()),
+        Some(Radii::Column) if points.of_radii => Ok(()),
+        _ => points.look_up_radii(path, None, radii),
+    }
 }
 
 /// Whether rows begin with elements before x, y and z, or, with `by_number`, with atomic numbers.
@@ -184,7 +260,18 @@ fn rows(
     lines: &Numbered<'_>,
     columns: Option<Columns>,
     layout: TextLayout,
+) -> Result<Points, PointsError> {
+    rows_with(path, lines, columns, layout, false, None)
+}
+
+/// The points of rows, which may have more columns than are known if they are open-ended, and the names in one column.
+fn rows_with(
+    path: &Path,
+    lines: &Numbered<'_>,
+    columns: Option<Columns>,
+    layout: TextLayout,
     open_ended: bool,
+    mut species: Option<&mut Species>,
 ) -> Result<Points, PointsError> {
     let width = columns.as_ref().map(Columns::len);
     let dialect = Dialect::of(lines, layout == TextLayout::Table, width)
@@ -199,7 +286,11 @@ fn rows(
     let mut labelled = 0;
     for (number, line) in lines.contents() {
         labelled += usize::from(is_comment(line));
-        rows.push(number, &dialect.fields(line))?;
+        let fields = dialect.fields(line);
+        rows.push(number, &fields)?;
+        if let Some(species) = &mut species {
+            species.push(&fields);
+        }
     }
     if labelled > 0 {
         tracing::warn!(
@@ -217,7 +308,7 @@ fn points_then_normals(path: &Path, mut lines: Numbered<'_>) -> Result<Points, P
     let count = first.and_then(|(_, line)| count(line)).unwrap_or_default();
     let columns = Columns(vec![Some(0), Some(1), Some(2)]);
     let layout = TextLayout::PointsThenNormals;
-    let mut points = rows(path, &lines, Some(columns), layout, false)?;
+    let mut points = rows(path, &lines, Some(columns), layout)?;
     let found = points.len() as u64;
     if found != count && Some(found) != count.checked_mul(2) {
         let what =

@@ -1,6 +1,7 @@
 //! Tests of what the crate offers: in Rust alone, without the command.
 
 mod haar;
+mod molecules;
 mod points;
 mod wvm;
 

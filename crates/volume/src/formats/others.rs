@@ -139,13 +139,13 @@ static KINDS: [Kind; 49] = [
     },
     Kind {
         begins: is_pdb,
-        what: "a PDB (or PQR) file of a molecule, which is not read",
-        advice: TABLE,
+        what: "a PDB or PQR file of a molecule",
+        advice: "call it .pdb or .pqr: the name says what its columns are",
     },
     Kind {
         begins: is_cif,
-        what: "a CIF file of a molecule or crystal, which is not read",
-        advice: TABLE,
+        what: "a CIF file of a molecule or crystal, which has points and no samples",
+        advice: "read it as points: call it .cif",
     },
     Kind { begins: is_gro, what: "a GRO file of GROMACS, which is not read", advice: TABLE },
     kind!(b"ITEM: TIMESTEP" | b"ITEM: UNITS", "a LAMMPS dump, which is not read", TABLE),
@@ -244,7 +244,7 @@ fn is_gro(start: &[u8]) -> bool {
 }
 
 /// Whether the first lines contain words that CIF files have.
-fn is_cif(start: &[u8]) -> bool {
+pub fn is_cif(start: &[u8]) -> bool {
     const WORDS: [&[u8]; 4] = [b"_entry", b"_audit", b"_cell", b"_atom_site"];
     let start = text(start);
     let has = |word: &&[u8]| start.windows(word.len()).any(|window| window == *word);
@@ -275,7 +275,7 @@ fn is_bmp(start: &[u8]) -> bool {
 }
 
 /// Whether the file begins as PDB: with a record of six characters, of which few come first in a file.
-fn is_pdb(start: &[u8]) -> bool {
+pub fn is_pdb(start: &[u8]) -> bool {
     const RECORDS: [&[u8]; 9] = [
         b"HEADER  ",
         b"ATOM ",

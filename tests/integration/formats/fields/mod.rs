@@ -12,6 +12,7 @@ mod las;
 mod meshes;
 mod metaimage;
 mod mgh;
+mod molecules;
 mod nifti;
 mod nrrd;
 mod numpy;

@@ -8,6 +8,15 @@ use super::points::*;
 use super::{Fate, walk};
 use crate::common::json;
 
+/// The two points as atoms of these radii, and nothing is said about them.
+fn bondi(path: &std::path::Path, radii: [f64; 2]) {
+    let points = points(path);
+    assert_eq!(points.positions, PLACES);
+    assert_eq!(points.weights, Some(radii.map(|r| r * r).to_vec()));
+    let told = json(path.parent().unwrap(), &["info", path.to_str().unwrap()]);
+    assert_eq!((told.get("warnings"), &told["coordinates"]["unit"]), (None, &"Å".into()), "{told}");
+}
+
 fn utf16(text: &str) -> Vec<u8> {
     text.encode_utf16().flat_map(u16::to_le_bytes).collect()
 }
@@ -241,13 +250,34 @@ fn each_field_of_xyz() {
                 "elements, or atomic numbers",
                 "a.xyz",
                 "2\nwater\n8 1 2 3\n1 4 5 6\n",
-                Fate::Read(without_a_word)
+                Fate::Read(|path| bondi(path, [1.52, 1.2]))
             ),
             row!(
                 "elements behind a count alone",
                 "a.xyz",
-                "2\nC 1 2 3\nH 4 5 6\n",
-                Fate::Read(without_a_word)
+                "2\nc 1 2 3\nD 4 5 6\n",
+                Fate::Read(|path| bondi(path, [1.7, 1.2]))
+            ),
+            row!(
+                "an element without a radius",
+                "a.xyz",
+                "2\n\nC 1 2 3\nFe 4 5 6\n",
+                Fate::Refused(&[
+                    "has an atom whose radius bondi does not tell: Fe",
+                    "--radii none"
+                ])
+            ),
+            row!(
+                "names of which some are elements",
+                "a.xyz",
+                "2\n\nC 1 2 3\nCA1 4 5 6\n",
+                Fate::Refused(&["does not say of which element", "CA1"])
+            ),
+            row!(
+                "names of which none is an element",
+                "a.xyz",
+                "2\n\nA 1 2 3\nA 4 5 6\n",
+                Fate::PassedOver(&["its names of atoms are not elements (\"A\")"])
             ),
             row!(
                 "a count without elements",
@@ -281,7 +311,13 @@ fn each_field_of_xyz() {
                 "`Properties`",
                 "a.xyz",
                 "2\nProperties=pos:R:3:id:I:1:radius:R:1:species:S:1\n1 2 3 9 2 C\n4 5 6 9 3 H\n",
-                Fate::Read(radii)
+                Fate::Read(|path| {
+                    radii(path);
+                    let (points, metadata) = read_model(path, &PointOptions::default()).unwrap();
+                    let atoms = points.molecule.unwrap().atoms;
+                    assert_eq!(atoms[1].element.unwrap().symbol(), "H");
+                    assert_eq!(metadata.coordinates.unit.symbol(), "Å");
+                })
             ),
             row!(
                 "columns behind z without `Properties`",
@@ -320,7 +356,7 @@ fn each_field_of_xyz() {
                 "other fields",
                 "a.xyz",
                 "2\n1.0 2.0 energy=3\nC 1 2 3\nH 4 5 6\n",
-                Fate::Read(without_a_word)
+                Fate::Read(|path| bondi(path, [1.7, 1.2]))
             ),
         ],
     );
@@ -480,7 +516,7 @@ fn kinds_that_are_no_text_of_points() {
             b"REMARK made here\nATOM      1  N   ALA A   1       0.0     1.0     2.0\n",
             "PDB",
         ),
-        ("b.txt", b"data_x\nloop_\n_atom_site.id\n_atom_site.Cartn_x\n1 2\n", "CIF"),
+        ("b.txt", b"data_x\nloop_\n_atom_site_fract_x\n0.1\n", "fractions"),
         ("c.xyz", b"ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n1\n", "LAMMPS"),
         ("d.csv", b"%PDF-1.4\n", "PDF"),
         ("e.xyz", b"1 2 3\n4 5 \0\0", "bytes that are 0"),
