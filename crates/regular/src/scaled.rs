@@ -50,6 +50,11 @@ impl<const D: usize> Scaled<D> {
         })
     }
 
+    /// The power of two that coordinates were multiplied by.
+    pub fn factor(&self) -> f64 {
+        self.factor
+    }
+
     /// A squared length at the same scale, as α is; `None` where it would lose bits or pass the range of doubles. An infinite one is
     /// infinite.
     pub fn square(&self, squared: f64) -> Option<f64> {

@@ -23,7 +23,6 @@
 //! # Ok::<(), walpha_shape::ShapeError>(())
 //! ```
 
-mod along;
 mod build;
 mod critical;
 mod filtration;

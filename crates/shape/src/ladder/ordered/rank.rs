@@ -12,7 +12,7 @@ use walpha_regular::internals::{Predicates, Ratio, SmallRadius};
 
 use super::numbers::Numbers;
 use crate::ladder::Filtration;
-use crate::ladder::along::Table;
+use crate::along::Table;
 use crate::ladder::build::Radii;
 use crate::ladder::values::{Key, is_small_lattice, key};
 

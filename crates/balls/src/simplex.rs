@@ -1,0 +1,358 @@
+//! Edges, triangles and tetrahedra of balls: lengths, angles and volumes with bounds on their errors.
+//!
+//! With the centres p and squared radii r² of balls, g_ij = (p_j − p_i)·(y − p_i) for all points y of the plane in which the powers of i and j
+//! are equal: (|p_j − p_i|² + r_i² − r_j²) / 2. The centre of a triangle, that of its smallest orthogonal sphere, is the point of its
+//! plane that lies in two such planes.
+
+use walpha_base::vector::V3;
+
+use crate::real::{Double, Real, Single};
+
+/// A ball: its centre and its weight ω. Its squared radius is α + ω.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Ball {
+    pub centre: V3,
+    pub weight: f64,
+}
+
+type Vector<N> = [N; 3];
+
+pub(crate) fn difference<N: Real>(from: V3, to: V3) -> Vector<N> {
+    [0, 1, 2].map(|k| N::sum(to[k], -from[k]))
+}
+
+#[inline(always)]
+pub(crate) fn dot<N: Real>(a: Vector<N>, b: Vector<N>) -> N {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+#[inline(always)]
+pub(crate) fn cross<N: Real>(a: Vector<N>, b: Vector<N>) -> Vector<N> {
+    let minor = |i: usize, j: usize| a[i] * b[j] - a[j] * b[i];
+    [minor(1, 2), minor(2, 0), minor(0, 1)]
+}
+
+/// g_ij of two balls, given their squared distance.
+#[inline(always)]
+fn reach<N: Real>(squared: N, [i, j]: [Ball; 2]) -> N {
+    (squared + N::sum(i.weight, -j.weight)).half()
+}
+
+/// What two balls share, and the circle in which their spheres meet.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Lens<N> {
+    /// The distance of the centres, d.
+    pub distance: N,
+    /// From either centre to the plane of equal powers, positive if the plane lies towards the other centre.
+    pub heights: [N; 2],
+    /// The height of the cap of either ball beyond that plane, seen from its centre.
+    pub caps: [N; 2],
+    /// The squared radius of the circle, ρ².
+    pub squared: N,
+    /// ρ times the angle between the outer normals of the two spheres on the circle.
+    pub bend: N,
+}
+
+impl<N: Real> Lens<N> {
+    #[inline(always)]
+    pub(crate) fn of(balls: [Ball; 2], alpha: f64) -> Self {
+        let [i, j] = balls;
+        let way: Vector<N> = difference(i.centre, j.centre);
+        let apart = dot(way, way);
+        let distance = apart.sqrt();
+        let squares: [N; 2] = balls.map(|ball| N::sum(alpha, ball.weight));
+        let heights = [reach(apart, [i, j]), reach(apart, [j, i])].map(|g: N| g / distance);
+        let radii = squares.map(N::sqrt);
+        let caps = [radii[0] - heights[0], radii[1] - heights[1]];
+        // The smaller ball loses fewer digits.
+        let of = usize::from(j.weight < i.weight);
+        let squared = caps[of] * (radii[of] + heights[of]);
+        let radius = squared.sqrt();
+        let cosine = (squares[0] + squares[1] - apart).half();
+        let bend = radius * N::angle(distance * radius, cosine);
+        Self { distance, heights, caps, squared, bend }
+    }
+
+    pub(crate) fn rounded(self) -> Lens<Single> {
+        Lens {
+            distance: self.distance.rounded(),
+            heights: self.heights.map(N::rounded),
+            caps: self.caps.map(N::rounded),
+            squared: self.squared.rounded(),
+            bend: self.bend.rounded(),
+        }
+    }
+}
+
+impl Lens<Single> {
+    /// Whether the bounds are narrow enough.
+    pub(crate) fn is_within(&self, limits: Limits) -> bool {
+        let lengths = [self.distance, self.heights[0], self.heights[1], self.bend];
+        lengths.into_iter().all(|length| limits.length(length)) && limits.square(self.squared)
+    }
+}
+
+/// A triangle of balls.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Triangle<N> {
+    balls: [Ball; 3],
+    /// From the first corner to the others.
+    pub rays: [Vector<N>; 2],
+    /// From the second corner to the third.
+    third: Vector<N>,
+    /// The squared length of the edge opposite each corner.
+    pub squares: [N; 3],
+    /// The inner product of the edges at each corner.
+    products: [N; 3],
+    /// g from the first corner to the others.
+    reaches: [N; 2],
+    /// The product of the two edges, twice the area long.
+    pub normal: Vector<N>,
+    /// Its squared length.
+    pub area: N,
+    /// For each corner, `area` times the barycentric coordinate of the triangle's centre. That is also the length of the opposite edge, times twice
+    /// the area, times the distance of the centre from that edge, positive on the side of the corner.
+    pub coordinates: [N; 3],
+}
+
+impl<N: Real> Triangle<N> {
+    #[inline(always)]
+    pub(crate) fn of(balls: [Ball; 3]) -> Self {
+        let [i, j, k] = balls;
+        let [a, b]: [Vector<N>; 2] = [j, k].map(|other| difference(i.centre, other.centre));
+        let third = difference(j.centre, k.centre);
+        let squares = [dot(third, third), dot(b, b), dot(a, a)];
+        let products = [dot(a, b), -dot(a, third), dot(b, third)];
+        let reaches = [reach(squares[2], [i, j]), reach(squares[1], [i, k])];
+        let [of_j, of_k] = reaches;
+        let normal = cross(a, b);
+        let along_third = reach(squares[0], [j, k]);
+        let coordinates = [
+            reach(squares[2], [j, i]) * squares[0] - along_third * products[1],
+            of_j * squares[1] - of_k * products[0],
+            of_k * squares[2] - of_j * products[0],
+        ];
+        let area = dot(normal, normal);
+        Self { balls, rays: [a, b], third, squares, products, reaches, normal, area, coordinates }
+    }
+
+    /// The tetrahedron of the triangle and another ball. With `angles`, those at the edges that are named.
+    #[inline(always)]
+    pub(crate) fn with(&self, apex: Ball, angles: [bool; 3]) -> Side<N> {
+        let [a, b] = self.rays;
+        let way = difference(self.balls[0].centre, apex.centre);
+        let det = dot(self.normal, way);
+        let det = if det.rounded().value < 0.0 { -det } else { det };
+        let [along_a, along_b] = [dot(a, way), dot(b, way)];
+        let reach = reach(dot(way, way), [self.balls[0], apex]);
+        let in_plane = self.coordinates[1] * along_a + self.coordinates[2] * along_b;
+        let height = (reach - in_plane / self.area) / det;
+        let mut side = Side { det, height, angles: [None; 3] };
+        if angles.contains(&true) {
+            let from_second: Vector<N> = difference(self.balls[1].centre, apex.centre);
+            let along_third = dot(self.third, from_second);
+            let back = -dot(a, from_second);
+            let cosines = [
+                self.squares[0] * back - along_third * self.products[1],
+                self.squares[1] * along_a - along_b * self.products[0],
+                self.squares[2] * along_b - along_a * self.products[0],
+            ];
+            for edge in 0..3 {
+                if angles[edge] {
+                    side.angles[edge] =
+                        Some(N::angle(det * self.squares[edge].sqrt(), cosines[edge]));
+                }
+            }
+        }
+        side
+    }
+
+    /// The squared distance from the plane of the points that the three spheres share; not negative for a triangle of the dual complex.
+    #[inline(always)]
+    pub(crate) fn squared_height(&self, alpha: f64) -> N {
+        let [_, of_j, of_k] = self.coordinates;
+        let away = (self.reaches[0] * of_j + self.reaches[1] * of_k) / self.area;
+        N::sum(alpha, self.balls[0].weight) - away
+    }
+
+    /// The tetrahedron of the triangle and one of the points that its three spheres share.
+    pub(crate) fn open(&self, alpha: f64) -> Open<N> {
+        let height = self.squared_height(alpha).sqrt();
+        let twice = self.area.sqrt();
+        let det = twice * height;
+        let lengths = self.squares.map(N::sqrt);
+        let squares = self.balls.map(|ball| N::sum(alpha, ball.weight));
+        let radii = squares.map(N::sqrt);
+        let reach = |from: usize, to: usize| {
+            reach(self.squares[3 - from - to], [self.balls[from], self.balls[to]])
+        };
+        let angles = [0, 1, 2].map(|edge| N::angle(det * lengths[edge], self.coordinates[edge]));
+        // Solid angles by the formula of van Oosterom and Strackee 1983, doi:10.1109/TBME.1983.325207.
+        let at = |corner: usize| {
+            let (next, last) = ((corner + 1) % 3, (corner + 2) % 3);
+            // The edge to each of the two others is opposite the other one.
+            let (to_next, to_last) = (lengths[last], lengths[next]);
+            let denominator = (to_next * to_last + self.products[corner]) * radii[corner]
+                + reach(corner, next) * to_last
+                + reach(corner, last) * to_next;
+            N::angle(det, denominator).times(2.0)
+        };
+        let apart = |corner: usize| {
+            let (next, last) = ((corner + 1) % 3, (corner + 2) % 3);
+            (squares[next] + squares[last] - self.squares[corner]).half() * radii[corner]
+        };
+        let denominator = radii[0] * radii[1] * radii[2] + apart(0) + apart(1) + apart(2);
+        Open {
+            height: height / twice,
+            det,
+            angles,
+            corners: [at(0), at(1), at(2)],
+            apex: N::angle(det, denominator).times(2.0),
+        }
+    }
+}
+
+/// One side of a triangle with a tetrahedron of the complex.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Side<N> {
+    /// Six times its volume.
+    pub det: N,
+    /// The height of its centre, that of its orthogonal sphere, above the triangle, divided by twice the triangle's area.
+    pub height: N,
+    /// Its angles at the edges opposite the corners of the triangle, if they were asked for.
+    pub angles: [Option<N>; 3],
+}
+
+/// One side of a triangle without a tetrahedron of the complex: the tetrahedron whose apex is the point there that the three spheres share.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Open<N> {
+    /// The height of the apex above the triangle, divided by twice the triangle's area.
+    pub height: N,
+    /// Six times its volume.
+    pub det: N,
+    /// Its angles at the edges opposite the corners of the triangle.
+    pub angles: [N; 3],
+    /// Its solid angles at the corners of the triangle.
+    pub corners: [N; 3],
+    /// The solid angle at the apex.
+    pub apex: N,
+}
+
+impl<N: Real> Side<N> {
+    /// For the edge opposite each corner of the triangle, twice its length times the part of its power facet at the triangle.
+    fn kites(&self, triangle: &Triangle<N>) -> [N; 3] {
+        triangle.coordinates.map(|coordinate| coordinate * self.height)
+    }
+}
+
+impl Side<Single> {
+    /// The same and its kites, if the bounds are narrow enough.
+    #[inline(always)]
+    pub(crate) fn checked(self, triangle: &Triangle<Single>, limits: Limits) -> Option<(Self, [Single; 3])> {
+        let kites = self.kites(triangle);
+        let narrow = self.angles.into_iter().flatten().all(Limits::angle)
+            && limits.cube(self.det)
+            && kites.into_iter().all(|kite| limits.cube(kite));
+        narrow.then_some((self, kites))
+    }
+
+    /// The side and its kites, in numbers of two doubles.
+    #[cold]
+    pub(crate) fn closely(
+        balls: [Ball; 3],
+        apex: Ball,
+        angles: [bool; 3],
+        alpha: f64,
+    ) -> (Self, [Single; 3]) {
+        let triangle = Triangle::<Double>::of(balls);
+        let side = triangle.with(apex, angles);
+        let mut kites = side.kites(&triangle).map(Double::rounded);
+        // The centre is in all four balls, so it is no higher than the points that the three spheres share.
+        let twice = triangle.area.sqrt();
+        let most = triangle.squared_height(alpha).sqrt();
+        for (kite, coordinate) in kites.iter_mut().zip(triangle.coordinates) {
+            let most = (coordinate * most / twice).rounded();
+            let most = most.value.abs() + most.error;
+            if !(kite.error <= most) {
+                *kite = Single { value: 0.0, error: most };
+            }
+        }
+        let angles = side.angles.map(|angle| angle.map(Double::rounded));
+        let (det, height) = (side.det.rounded(), side.height.rounded());
+        (Self { det, height, angles }, kites)
+    }
+}
+
+impl Open<Single> {
+    /// The open side of a triangle, and its kites: in doubles if that is narrow enough, or else in numbers of two doubles.
+    pub(crate) fn of(
+        triangle: &Triangle<Single>,
+        balls: [Ball; 3],
+        alpha: f64,
+        limits: Limits,
+    ) -> (Self, [Single; 3]) {
+        let open = triangle.open(alpha);
+        let kites = triangle.coordinates.map(|coordinate| coordinate * open.height);
+        let angles = open.angles.iter().chain(&open.corners);
+        if angles.copied().all(Limits::angle)
+            && limits.cube(open.det)
+            && kites.into_iter().all(|kite| limits.cube(kite))
+        {
+            return (open, kites);
+        }
+        Self::closely(balls, alpha)
+    }
+
+    #[cold]
+    fn closely(balls: [Ball; 3], alpha: f64) -> (Self, [Single; 3]) {
+        let triangle = Triangle::<Double>::of(balls);
+        let open = triangle.open(alpha);
+        let kites = triangle.coordinates.map(|coordinate| (coordinate * open.height).rounded());
+        let Open { height, det, angles, corners, apex } = open;
+        let open = Self {
+            height: height.rounded(),
+            det: det.rounded(),
+            angles: angles.map(Double::rounded),
+            corners: corners.map(Double::rounded),
+            apex: apex.rounded(),
+        };
+        (open, kites)
+    }
+}
+
+/// How wide bounds may be before a simplex is computed again in numbers of two doubles.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Limits {
+    /// The radius of the smallest ball of the simplex.
+    pub radius: f64,
+}
+
+impl Limits {
+    /// 2⁻⁴⁰: of angles, and of lengths, areas and volumes relative to those of the smallest ball. Errors of doubles are about 2⁻⁵⁰.
+    pub(crate) const PART: f64 = 1.0 / (1u64 << 40) as f64;
+
+    pub(crate) fn of(balls: &[Ball], alpha: f64) -> Self {
+        let least = balls.iter().map(|ball| alpha + ball.weight).fold(f64::INFINITY, f64::min);
+        Self { radius: least.max(0.0).sqrt() }
+    }
+
+    #[inline(always)]
+    pub(crate) fn angle(angle: Single) -> bool {
+        angle.is_within(Self::PART)
+    }
+
+    #[inline(always)]
+    pub(crate) fn length(self, length: Single) -> bool {
+        length.is_within(Self::PART * self.radius)
+    }
+
+    #[inline(always)]
+    pub(crate) fn square(self, area: Single) -> bool {
+        area.is_within(Self::PART * self.radius * self.radius)
+    }
+
+    #[inline(always)]
+    pub(crate) fn cube(self, volume: Single) -> bool {
+        volume.is_within(Self::PART * self.radius * self.radius * self.radius)
+    }
+}

@@ -1,0 +1,524 @@
+//! Volume, area and curvatures of the union, of each ball and of each contact.
+
+use std::borrow::Cow;
+use std::ops::Range;
+use std::sync::atomic::{AtomicU32, Ordering};
+
+use rayon::prelude::*;
+use walpha_base::{Monitor, memory};
+use walpha_shape::{AlphaShape, Class, Complex, FacetSides};
+
+use crate::BallsError;
+use crate::points::Points;
+use crate::real::{Bounded, Double, Real, Single};
+use crate::scatter::{ranges, scatter};
+use crate::simplex::{Lens, Limits, Open, Side, Triangle};
+
+/// Numbers with bounds, as two columns: of row i, the true number is within `bounds[i]` of `values[i]`.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct Measured {
+    /// The values.
+    pub values: Vec<f64>,
+    /// The bounds on their errors, in the same unit.
+    pub bounds: Vec<f64>,
+}
+
+impl Measured {
+    /// The number of rows.
+    pub fn len(&self) -> usize {
+        self.values.len()
+    }
+
+    /// Whether there is no row.
+    pub fn is_empty(&self) -> bool {
+        self.values.is_empty()
+    }
+
+    /// A row.
+    ///
+    /// # Panics
+    /// If there is no such row.
+    pub fn get(&self, row: usize) -> Bounded {
+        Bounded { value: self.values[row], bound: self.bounds[row] }
+    }
+
+    fn with_capacity(rows: usize, what: &'static str) -> Result<Self, BallsError> {
+        let column = || memory::try_with_capacity(rows, || what.into());
+        Ok(Self { values: column()?, bounds: column()? })
+    }
+
+    fn push(&mut self, Bounded { value, bound }: Bounded) {
+        self.values.push(value);
+        self.bounds.push(bound);
+    }
+
+    pub(crate) fn collect(
+        rows: usize,
+        what: &'static str,
+        row: impl Fn(usize) -> Bounded + Sync,
+    ) -> Result<Self, BallsError> {
+        let Self { mut values, mut bounds } = Self::with_capacity(rows, what)?;
+        let number = |i| {
+            let Bounded { value, bound } = row(i);
+            (value, bound)
+        };
+        (0..rows).into_par_iter().map(number).unzip_into_vecs(&mut values, &mut bounds);
+        Ok(Self { values, bounds })
+    }
+}
+
+/// The union of the balls of a classified α-complex: a point with weight ω is a ball of squared radius α + ω.
+///
+/// The complex is exact, so it is the dual complex of the union: a simplex belongs if and only if the balls of its vertices have a common
+/// point within their power cells. Volume and area follow by inclusion and exclusion over its simplices (Edelsbrunner 1995,
+/// doi:10.1007/BF02574053), here with angles as coefficients, so that nothing cancels but what is small. Every number comes with a bound
+/// on its error, for the balls whose centres and squared radii are exactly those of the input doubles. `docs/balls.md` has the formulas, and
+/// the proof of the bounds.
+///
+/// Removed duplicates and hidden points have no part in the union: their parts are 0.
+///
+/// ```
+/// use walpha_balls::BallUnion;
+/// use walpha_shape::{Alpha, ShapeOptions, WeightedPoints, alpha_shape};
+///
+/// // Two balls of radius 1, whose centres are 1 apart. The weight of a ball is its squared radius, at α = 0.
+/// let points = WeightedPoints::new(vec![[0.0; 3], [1.0, 0.0, 0.0]], vec![1.0; 2])?;
+/// let shape = alpha_shape(points, &ShapeOptions::new(Alpha::ZERO))?;
+/// let union = BallUnion::new(&shape)?;
+/// let volume = union.volume();
+/// assert!(volume.contains(9.0 / 4.0 * std::f64::consts::PI) && volume.bound < 1e-13);
+/// assert!(union.area().contains(6.0 * std::f64::consts::PI));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug)]
+pub struct BallUnion<'a> {
+    pub(crate) shape: &'a AlphaShape,
+    /// The simplices of the shape alone.
+    pub(crate) complex: Cow<'a, Complex>,
+    pub(crate) points: Points<'a>,
+    pub(crate) sides: FacetSides,
+    /// For each edge, the angle of its circle that no ball covers.
+    pub(crate) arcs: Vec<Single>,
+    contacts: Measured,
+    volumes: Measured,
+    areas: Measured,
+    totals: Totals,
+}
+
+/// The four intrinsic volumes of the union, but for factors.
+#[derive(Clone, Copy, Debug)]
+struct Totals {
+    volume: Bounded,
+    area: Bounded,
+    mean_curvature: Bounded,
+    gaussian_curvature: Bounded,
+}
+
+/// The contacts of the balls: the disc of each edge of the dual complex, as far as it is in the power cells of both balls.
+#[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
+pub struct Contacts<'a> {
+    /// Input indices of the two balls, in lexicographic order.
+    pub pairs: &'a [[u32; 2]],
+    /// The area of each.
+    pub areas: &'a Measured,
+}
+
+impl<'a> BallUnion<'a> {
+    /// Measures the union of the balls of a shape. Expected O(n), on all threads of the current rayon pool; the result does not depend on
+    /// their number.
+    ///
+    /// # Errors
+    /// α is infinite, or the shape is [of labels](AlphaShape::voxels) or [unwrapped](AlphaShape::unwrapped); out of memory; cancelled by a
+    /// [`Monitor`] that watches.
+    pub fn new(shape: &'a AlphaShape) -> Result<Self, BallsError> {
+        let monitor = &*Monitor::current();
+        let complex = complex_of_balls(shape)?;
+        let points = Points::of(shape);
+        let sides = FacetSides::new(&complex, &points.positions);
+        let work = Work { complex: &complex, points: &points, sides: &sides };
+        let passes = work.run(monitor)?;
+        let Passes { arcs, contacts, volumes, areas, totals } = passes;
+        Ok(Self { shape, complex, points, sides, arcs, contacts, volumes, areas, totals })
+    }
+
+    /// The volume of the union, in cubed units of the points; on a torus, of one box.
+    pub fn volume(&self) -> Bounded {
+        self.totals.volume
+    }
+
+    /// The area of its boundary, in squared units of the points; that of voids included.
+    pub fn area(&self) -> Bounded {
+        self.totals.area
+    }
+
+    /// The integrated mean curvature of the boundary, in units of the points: 4πr for a ball. Where two balls meet, the boundary turns inwards,
+    /// which counts as negative: half the length of the arc times the angle between the normals. So it is additive: a union has the sum
+    /// of its two parts less that of what they share.
+    pub fn mean_curvature(&self) -> Bounded {
+        self.totals.mean_curvature
+    }
+
+    /// The integrated Gaussian curvature of the boundary, summed from angles. By the theorem of Gauss and Bonnet it is 4π times the
+    /// [Euler characteristic](Self::euler_characteristic), which is exact: it is a check of the angles. Where three balls meet in the
+    /// very point in which two of them touch, the angles there are not determined, and the bound is wide.
+    pub fn gaussian_curvature(&self) -> Bounded {
+        self.totals.gaussian_curvature
+    }
+
+    /// The Euler characteristic of the union, which is that of its dual complex. Exact.
+    pub fn euler_characteristic(&self) -> i64 {
+        self.complex.euler_characteristic()
+    }
+
+    /// On a torus, the part of the box that the balls fill.
+    pub fn box_fraction(&self) -> Option<Bounded> {
+        let torus = self.shape.options().periodic?;
+        let [x, y, z] = torus.sides().map(Single::exact);
+        let Bounded { value, bound } = self.totals.volume;
+        Some((Single { value, error: bound } / (x * y * z)).bounded())
+    }
+
+    /// For each input point the volume of the union in its power cell.
+    pub fn volumes(&self) -> &Measured {
+        &self.volumes
+    }
+
+    /// For each input point the area of the boundary on its sphere.
+    pub fn areas(&self) -> &Measured {
+        &self.areas
+    }
+
+    /// The contacts of balls, one for each edge of the dual complex.
+    pub fn contacts(&self) -> Contacts<'_> {
+        Contacts { pairs: self.complex.edges.rows(), areas: &self.contacts }
+    }
+}
+
+/// The simplices of a shape alone, if they are the dual complex of balls.
+pub(crate) fn complex_of_balls(shape: &AlphaShape) -> Result<Cow<'_, Complex>, BallsError> {
+    if shape.voxels().is_some() {
+        return Err(BallsError::Labels);
+    }
+    if !shape.copies().is_empty() {
+        return Err(BallsError::Unwrapped);
+    }
+    if shape.power_alpha().squared() == f64::INFINITY {
+        return Err(BallsError::Infinite);
+    }
+    let listed = shape.complex();
+    if !listed.lists_exterior() {
+        return Ok(Cow::Borrowed(listed));
+    }
+    let mut complex = listed.clone();
+    complex.retain_shape();
+    Ok(Cow::Owned(complex))
+}
+
+/// Sums over the tetrahedra at an edge.
+#[derive(Clone, Copy, Debug, Default)]
+struct EdgeSums {
+    /// Twice the length of the edge times the area of its power facet in the tetrahedra.
+    kites: Single,
+    /// The angles of the tetrahedra of the complex,
+    closed: Single,
+    /// and of those with a point of the boundary as apex.
+    open: Single,
+}
+
+/// Sums over the simplices at a vertex.
+#[derive(Clone, Copy, Debug, Default)]
+struct VertexSums {
+    /// The solid angles of tetrahedra with a point of the boundary as apex.
+    open: Single,
+    /// Over the edges, the angles of the tetrahedra of the complex,
+    closed: Single,
+    /// the angle of the circle that no ball covers, times the height of the cap beyond its plane,
+    caps: Single,
+    /// and the contact area times the distance of its plane.
+    cones: Single,
+}
+
+struct Passes {
+    arcs: Vec<Single>,
+    contacts: Measured,
+    volumes: Measured,
+    areas: Measured,
+    totals: Totals,
+}
+
+/// The totals, as they are summed.
+#[derive(Clone, Copy, Default)]
+struct Sums {
+    volume: Double,
+    area: Double,
+    mean: Double,
+    gaussian: Double,
+}
+
+impl Sums {
+    fn join(&mut self, other: &Self) {
+        self.volume += other.volume;
+        self.area += other.area;
+        self.mean += other.mean;
+        self.gaussian += other.gaussian;
+    }
+}
+
+struct Work<'a> {
+    complex: &'a Complex,
+    points: &'a Points<'a>,
+    sides: &'a FacetSides,
+}
+
+/// What the triangles of some vertices add.
+struct OfTriangles {
+    edges: Vec<(u32, EdgeSums)>,
+    vertices: Vec<(u32, Single)>,
+    sums: Sums,
+}
+
+/// What some edges add, and their own numbers.
+#[derive(Default)]
+struct OfEdges {
+    arcs: Vec<Single>,
+    contacts: Vec<Bounded>,
+    vertices: Vec<(u32, VertexSums)>,
+    sums: Sums,
+}
+
+/// Vertices whose triangles are one piece of work, and pieces that are summed at a time.
+const VERTICES: usize = 1 << 6;
+const PIECES: usize = 1 << 8;
+/// Edges, or vertices, that are one piece of work.
+const ROWS: usize = 1 << 11;
+
+impl Work<'_> {
+    fn run(&self, monitor: &Monitor) -> Result<Passes, BallsError> {
+        let Self { complex, points, .. } = *self;
+        let count = complex.edges.len();
+        let steps = monitor.units(points.len() as u64 + count as u64);
+        let mut edges: Vec<EdgeSums> = zeros(count, "sums over the edges of the dual complex")?;
+        let mut vertices: Vec<VertexSums> = zeros(points.len(), "sums over balls")?;
+        let mut sums = Sums::default();
+        let groups: Vec<&[u32]> = self.sides.groups(VERTICES).collect();
+        for groups in groups.chunks(PIECES) {
+            let found: Vec<OfTriangles> =
+                groups.par_iter().map(|group| self.triangles(group)).collect();
+            scatter(found.iter().flat_map(|of| &of.edges), &mut edges, |sum, more| {
+                sum.kites += more.kites;
+                sum.closed += more.closed;
+                sum.open += more.open;
+            });
+            scatter(found.iter().flat_map(|of| &of.vertices), &mut vertices, |sum, more| {
+                sum.open += *more;
+            });
+            found.iter().for_each(|of| sums.join(&of.sums));
+            steps.add(groups.iter().map(|group| group.len() as u64).sum())?;
+        }
+        let mut arcs = memory::try_with_capacity(count, || "the arcs of balls".into())?;
+        let mut contacts = Measured::with_capacity(count, "the contacts of balls")?;
+        for window in ranges(0..count, ROWS * PIECES) {
+            let pieces: Vec<Range<usize>> = ranges(window.clone(), ROWS).collect();
+            let found: Vec<OfEdges> =
+                pieces.into_par_iter().map(|rows| self.edges(rows, &edges)).collect();
+            scatter(found.iter().flat_map(|of| &of.vertices), &mut vertices, |sum, more| {
+                sum.closed += more.closed;
+                sum.caps += more.caps;
+                sum.cones += more.cones;
+            });
+            for of in &found {
+                arcs.extend_from_slice(&of.arcs);
+                of.contacts.iter().for_each(|&contact| contacts.push(contact));
+                sums.join(&of.sums);
+            }
+            steps.add(window.len() as u64)?;
+        }
+        drop(edges);
+        let parts = self.parts(&vertices)?;
+        let of_balls = ranges(0..parts.len(), ROWS).collect::<Vec<_>>().into_par_iter().map(|rows| {
+            let mut sums = Sums::default();
+            parts[rows].iter().for_each(|part| sums.add_ball(part));
+            sums
+        });
+        of_balls.collect::<Vec<_>>().iter().for_each(|of| sums.join(of));
+        let column = |what, power, of: fn(&Part) -> Single| {
+            Measured::collect(parts.len(), what, |v| points.bounded(of(&parts[v]), power))
+        };
+        let total = |sum: Double, power| points.bounded(sum.rounded(), power);
+        Ok(Passes {
+            arcs,
+            contacts,
+            volumes: column("the volumes of balls", 3, |part| part.volume)?,
+            areas: column("the areas of balls", 2, |part| part.radius * part.mean)?,
+            totals: Totals {
+                volume: total(sums.volume, 3),
+                area: total(sums.area, 2),
+                mean_curvature: total(sums.mean, 1),
+                gaussian_curvature: total(sums.gaussian, 0),
+            },
+        })
+    }
+
+    /// What the triangles of a group of vertices add.
+    fn triangles(&self, group: &[u32]) -> OfTriangles {
+        let mut found = OfTriangles { edges: Vec::new(), vertices: Vec::new(), sums: Sums::default() };
+        for row in group.iter().flat_map(|&v| self.sides.facets_of(v)) {
+            self.triangle(row, &mut found);
+        }
+        found
+    }
+
+    fn triangle(&self, row: usize, found: &mut OfTriangles) {
+        let corners = self.sides.facet(row);
+        let apexes = self.sides.apexes(row);
+        let edges = self.sides.edges(self.complex, corners);
+        let balls = self.points.balls(corners);
+        let limits = Limits::of(&balls, self.points.alpha);
+        let triangle = Triangle::<Single>::of(balls);
+        let mut more = [EdgeSums::default(); 3];
+        for apex in apexes.into_iter().filter(|&apex| apex != FacetSides::OPEN) {
+            let ball = self.points.near(balls[0].centre, apex);
+            // An angle is found in both triangles at its edge, and taken from the one whose own corner is the smaller.
+            let asked = [0, 1, 2].map(|k| {
+                corners[k] < apex && self.complex.edges.classes()[edges[k] as usize] != Class::Interior
+            });
+            let side = triangle.with(ball, asked);
+            let (side, kites) = side.checked(&triangle, limits).unwrap_or_else(|| {
+                Side::closely(balls, ball, asked, self.points.alpha)
+            });
+            for k in 0..3 {
+                more[k].kites += kites[k];
+                more[k].closed += side.angles[k].unwrap_or(Single::ZERO);
+            }
+            // Each cell once, from the triangle of its three smaller corners.
+            if corners[2] < apex {
+                found.sums.volume += sixth(side.det.into());
+            }
+        }
+        let open = apexes.into_iter().filter(|&apex| apex == FacetSides::OPEN).count();
+        if open > 0 {
+            let (of, kites) = Open::<Single>::of(&triangle, balls, self.points.alpha, limits);
+            for _ in 0..open {
+                for k in 0..3 {
+                    more[k].kites += kites[k];
+                    more[k].open += of.angles[k];
+                    found.vertices.push((corners[k], of.corners[k]));
+                }
+                found.sums.volume += sixth(of.det.into());
+                found.sums.gaussian += of.apex.into();
+            }
+        }
+        found.edges.extend(edges.into_iter().zip(more));
+    }
+
+    /// What some edges add, and their own numbers.
+    fn edges(&self, rows: Range<usize>, sums: &[EdgeSums]) -> OfEdges {
+        let mut found = OfEdges::default();
+        for row in rows {
+            let ends = self.complex.edges.rows()[row];
+            let interior = self.complex.edges.classes()[row] == Class::Interior;
+            self.edge(ends, interior, &sums[row], &mut found);
+        }
+        found
+    }
+
+    fn edge(&self, ends: [u32; 2], interior: bool, sums: &EdgeSums, found: &mut OfEdges) {
+        let turn = Single::pi().times(2.0);
+        let (closed, arc) = if interior {
+            (turn, Single::ZERO)
+        } else {
+            (sums.closed, turn - sums.closed - sums.open)
+        };
+        let balls = self.points.balls(ends);
+        let lens = Lens::<Single>::of(balls, self.points.alpha);
+        let lens = if lens.is_within(Limits::of(&balls, self.points.alpha)) {
+            lens
+        } else {
+            Lens::<Double>::of(balls, self.points.alpha).rounded()
+        };
+        let contact = (arc * lens.squared + sums.kites / lens.distance).half();
+        for (k, v) in ends.into_iter().enumerate() {
+            let caps = arc * lens.caps[k];
+            let cones = contact * lens.heights[k];
+            found.vertices.push((v, VertexSums { closed, caps, cones, ..VertexSums::default() }));
+        }
+        if !interior {
+            found.sums.volume += sixth((arc * lens.squared * lens.distance).into());
+            found.sums.mean += -Double::from((arc * lens.bend).half());
+            found.sums.gaussian += -Double::from(arc.times(2.0));
+        }
+        found.arcs.push(arc);
+        found.contacts.push(self.points.bounded(contact, 2));
+    }
+
+    /// The part of each ball.
+    fn parts(&self, sums: &[VertexSums]) -> Result<Vec<Part>, BallsError> {
+        let Self { complex, points, .. } = *self;
+        let mut classes = zeros(points.len(), "the classes of balls")?;
+        for (&[v], class) in complex.vertices.iter() {
+            classes[v as usize] = Some(class);
+        }
+        let cells: Vec<AtomicU32> = (0..points.len()).map(|_| AtomicU32::new(0)).collect();
+        complex.cells.rows().as_flattened().par_iter().for_each(|&v| {
+            if classes[v as usize] != Some(Class::Interior) {
+                cells[v as usize].fetch_add(1, Ordering::Relaxed);
+            }
+        });
+        let mut parts = memory::try_with_capacity(points.len(), || "the parts of balls".into())?;
+        let part = |v: usize| {
+            let Some(class) = classes[v] else { return Part::default() };
+            let sums = &sums[v];
+            if class == Class::Interior {
+                return Part { volume: third(sums.cones), ..Part::default() };
+            }
+            // The solid angles of a cell at v are the angles at its edges, less π.
+            let cells = Single::exact(f64::from(cells[v].load(Ordering::Relaxed)));
+            let solid = Single::pi() * (cells + Single::exact(4.0)) - sums.closed - sums.open;
+            let radius = points.squared_radius::<Single>(v as u32).sqrt();
+            let mean = radius * solid - sums.caps;
+            let cone = radius.square() * mean;
+            Part { radius, solid, mean, cone, volume: third(cone + sums.cones) }
+        };
+        (0..points.len()).into_par_iter().map(part).collect_into_vec(&mut parts);
+        Ok(parts)
+    }
+}
+
+/// The part of a ball in the union.
+#[derive(Clone, Copy, Debug, Default)]
+struct Part {
+    radius: Single,
+    /// 4π less the solid angles of all tetrahedra.
+    solid: Single,
+    /// The area on its sphere, divided by the radius.
+    mean: Single,
+    /// That area times the radius: three times the volume below it.
+    cone: Single,
+    volume: Single,
+}
+
+impl Sums {
+    fn add_ball(&mut self, part: &Part) {
+        self.volume += third(part.cone).into();
+        self.area += (part.radius * part.mean).into();
+        self.mean += part.mean.into();
+        self.gaussian += part.solid.into();
+    }
+}
+
+fn third(number: Single) -> Single {
+    number / Single::exact(3.0)
+}
+
+/// A sixth, as a term of a total.
+fn sixth(number: Double) -> Double {
+    number / Double::exact(6.0)
+}
+
+fn zeros<T: Clone + Default>(count: usize, what: &'static str) -> Result<Vec<T>, BallsError> {
+    let mut items = memory::try_with_capacity(count, || what.into())?;
+    items.resize(count, T::default());
+    Ok(items)
+}
