@@ -22,9 +22,12 @@ fn main() -> Result<(), Box<dyn Error>> {
 fn measured(set: &str) -> Result<String, Box<dyn Error>> {
     let (mut positions, mut weights) = (Vec::new(), Vec::new());
     for line in set.lines() {
-        let numbers: Vec<f64> = line.split_whitespace().map(str::parse).collect::<Result<_, _>>()?;
+        let numbers: Vec<f64> =
+            line.split_whitespace().map(str::parse).collect::<Result<_, _>>()?;
         let &[x, y, z, squared] = numbers.as_slice() else {
-            return Err(format!("{line:?} is not a ball: give x, y, z and the squared radius").into());
+            return Err(
+                format!("{line:?} is not a ball: give x, y, z and the squared radius").into()
+            );
         };
         positions.push([x, y, z]);
         weights.push(squared);

@@ -13,7 +13,9 @@ pub enum BallsError {
     #[error("the shape is that of the voxels of a label: it has no balls")]
     Labels,
     /// The shape is that of a torus, cut open.
-    #[error("the shape is one of a periodic box, unwrapped into space: its copies of balls are not all of those that overlap")]
+    #[error(
+        "the shape is one of a periodic box, unwrapped into space: its copies of balls are not all of those that overlap"
+    )]
     Unwrapped,
     /// The exterior simplices are needed, and not listed.
     #[error("{what} consist of exterior cells, and the shape does not list them")]
@@ -49,7 +51,9 @@ impl Advise for BallsError {
     fn advice(&self) -> Option<Advice> {
         Some(match self {
             Self::Infinite => advice!["give a finite ", Setting::Alpha],
-            Self::Labels => "measure the solid of the label, or take the points of the volume as centres".into(),
+            Self::Labels => {
+                "measure the solid of the label, or take the points of the volume as centres".into()
+            }
             Self::Unwrapped => "measure the shape of the periodic box itself".into(),
             Self::NoExterior { .. } => advice!["set ", Setting::Exterior],
             Self::Solid => "measure the balls in space".into(),

@@ -9,6 +9,7 @@
 
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
 
+use walpha_base::vector::V3;
 use walpha_regular::internals::Twofold;
 use walpha_regular::internals::number::Number;
 
@@ -47,10 +48,33 @@ impl Bounded {
     }
 }
 
+/// The way from one place to another.
+pub(crate) type Ray<N> = [<N as Real>::Coordinate; 3];
+
 /// A number with a bound on its error, and the arithmetic of formulas.
 pub(crate) trait Real:
-    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
+    Copy
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
 {
+    /// A coordinate of a difference of two places.
+    type Coordinate: Copy;
+
+    /// The way from one place to another.
+    fn ray(from: V3, to: V3) -> Ray<Self>;
+    /// The inner product.
+    fn dot(a: Ray<Self>, b: Ray<Self>) -> Self;
+    /// The squared length.
+    fn squared(a: Ray<Self>) -> Self;
+    /// The cross product.
+    fn cross(a: Ray<Self>, b: Ray<Self>) -> [Self; 3];
+    /// The inner product of a cross product and a way.
+    fn triple(normal: [Self; 3], a: Ray<Self>) -> Self;
+    /// The squared length of a cross product.
+    fn squared_normal(normal: [Self; 3]) -> Self;
     /// The sum of two doubles.
     fn sum(a: f64, b: f64) -> Self;
     /// π.
@@ -182,7 +206,56 @@ impl Div for Single {
     }
 }
 
+/// Errors of vectors, each rounding counted with the magnitude of its term and rounded up to a whole number of u. Differences of coordinates
+/// err by u.
 impl Real for Single {
+    type Coordinate = f64;
+
+    #[inline(always)]
+    fn ray(from: V3, to: V3) -> Ray<Self> {
+        [to[0] - from[0], to[1] - from[1], to[2] - from[2]]
+    }
+
+    #[inline(always)]
+    fn dot(a: Ray<Self>, b: Ray<Self>) -> Self {
+        let [x, y, z] = [a[0] * b[0], a[1] * b[1], a[2] * b[2]];
+        // Two differences, a product, two sums.
+        Self { value: x + y + z, error: 6.0 * U * (x.abs() + y.abs() + z.abs()) + 4.0 * TINY }
+    }
+
+    #[inline(always)]
+    fn squared(a: Ray<Self>) -> Self {
+        let value = a[0] * a[0] + a[1] * a[1] + a[2] * a[2];
+        Self { value, error: 6.0 * U * value + 4.0 * TINY }
+    }
+
+    #[inline(always)]
+    fn cross(a: Ray<Self>, b: Ray<Self>) -> [Self; 3] {
+        let minor = |i: usize, j: usize| {
+            let (p, q) = (a[i] * b[j], a[j] * b[i]);
+            // Two differences, a product, a sum.
+            Self { value: p - q, error: 5.0 * U * (p.abs() + q.abs()) + 4.0 * TINY }
+        };
+        [minor(1, 2), minor(2, 0), minor(0, 1)]
+    }
+
+    #[inline(always)]
+    fn triple(n: [Self; 3], a: Ray<Self>) -> Self {
+        let value = n[0].value * a[0] + n[1].value * a[1] + n[2].value * a[2];
+        // A difference, a product, two sums.
+        let error = |k: usize| a[k].abs() * (n[k].error + 5.0 * U * n[k].value.abs());
+        Self { value, error: error(0) + error(1) + error(2) + 4.0 * TINY }
+    }
+
+    #[inline(always)]
+    fn squared_normal(n: [Self; 3]) -> Self {
+        let value = n[0].value * n[0].value + n[1].value * n[1].value + n[2].value * n[2].value;
+        // A product and two sums.
+        let error = |k: usize| n[k].error * (2.0 * n[k].value.abs() + n[k].error);
+        let error = error(0) + error(1) + error(2);
+        Self { value, error: error + (4.0 * U * value + 4.0 * TINY) }
+    }
+
     #[inline(always)]
     fn sum(a: f64, b: f64) -> Self {
         let value = a + b;
@@ -282,6 +355,13 @@ impl Add for Double {
     }
 }
 
+impl AddAssign<Single> for Double {
+    #[inline(always)]
+    fn add_assign(&mut self, other: Single) {
+        *self = *self + Self::from(other);
+    }
+}
+
 impl AddAssign for Double {
     #[inline(always)]
     fn add_assign(&mut self, other: Self) {
@@ -334,7 +414,35 @@ impl Div for Double {
     }
 }
 
+/// Differences of coordinates are exact.
 impl Real for Double {
+    type Coordinate = Self;
+
+    fn ray(from: V3, to: V3) -> Ray<Self> {
+        [0, 1, 2].map(|k| Self::sum(to[k], -from[k]))
+    }
+
+    fn dot(a: Ray<Self>, b: Ray<Self>) -> Self {
+        a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+    }
+
+    fn squared(a: Ray<Self>) -> Self {
+        Self::dot(a, a)
+    }
+
+    fn cross(a: Ray<Self>, b: Ray<Self>) -> [Self; 3] {
+        let minor = |i: usize, j: usize| a[i] * b[j] - a[j] * b[i];
+        [minor(1, 2), minor(2, 0), minor(0, 1)]
+    }
+
+    fn triple(normal: [Self; 3], a: Ray<Self>) -> Self {
+        Self::dot(normal, a)
+    }
+
+    fn squared_normal(normal: [Self; 3]) -> Self {
+        Self::dot(normal, normal)
+    }
+
     #[inline(always)]
     fn sum(a: f64, b: f64) -> Self {
         Self { value: Twofold::sum(a, b), error: 0.0 }

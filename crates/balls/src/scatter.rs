@@ -4,23 +4,26 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-/// Adds records to the sums that they name, each sum in the order of the records.
+/// Numbers, each with the index of the sum that it belongs to.
+pub(crate) type Records<R> = Vec<(u32, R)>;
+
+/// Adds records to their sums, each sum in the order of the records, which come in several lists.
 ///
 /// Each thread has a range of the sums, and passes over all records for those in it.
-pub(crate) fn scatter<'a, R, S>(
-    records: impl Iterator<Item = &'a (u32, R)> + Clone + Sync + Send,
+pub(crate) fn scatter<L: Sync, R, S: Send>(
+    lists: &[L],
+    records: impl Fn(&L) -> &Records<R> + Sync,
     sums: &mut [S],
     add: impl Fn(&mut S, &R) + Sync,
-) where
-    R: 'a,
-    S: Send,
-{
+) {
     let part = sums.len().div_ceil(rayon::current_num_threads()).max(1);
     sums.par_chunks_mut(part).enumerate().for_each(|(index, sums)| {
         let first = index * part;
-        for (to, record) in records.clone() {
-            if let Some(sum) = (*to as usize).checked_sub(first).and_then(|at| sums.get_mut(at)) {
-                add(sum, record);
+        for list in lists {
+            for (to, record) in records(list) {
+                if let Some(sum) = sums.get_mut((*to as usize).wrapping_sub(first)) {
+                    add(sum, record);
+                }
             }
         }
     });

@@ -6,7 +6,7 @@
 
 use walpha_base::vector::V3;
 
-use crate::real::{Double, Real, Single};
+use crate::real::{Double, Ray, Real, Single};
 
 /// A ball: its centre and its weight ω. Its squared radius is α + ω.
 #[derive(Clone, Copy, Debug)]
@@ -15,37 +15,55 @@ pub(crate) struct Ball {
     pub weight: f64,
 }
 
-type Vector<N> = [N; 3];
-
-pub(crate) fn difference<N: Real>(from: V3, to: V3) -> Vector<N> {
-    [0, 1, 2].map(|k| N::sum(to[k], -from[k]))
-}
-
-#[inline(always)]
-pub(crate) fn dot<N: Real>(a: Vector<N>, b: Vector<N>) -> N {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-#[inline(always)]
-pub(crate) fn cross<N: Real>(a: Vector<N>, b: Vector<N>) -> Vector<N> {
-    let minor = |i: usize, j: usize| a[i] * b[j] - a[j] * b[i];
-    [minor(1, 2), minor(2, 0), minor(0, 1)]
-}
-
 /// g_ij of two balls, given their squared distance.
 #[inline(always)]
 fn reach<N: Real>(squared: N, [i, j]: [Ball; 2]) -> N {
     (squared + N::sum(i.weight, -j.weight)).half()
 }
 
-/// What two balls share, and the circle in which their spheres meet.
+/// Two balls and the plane in which their powers are equal.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Lens<N> {
+pub(crate) struct Edge<N> {
     /// The distance of the centres, d.
     pub distance: N,
-    /// From either centre to the plane of equal powers, positive if the plane lies towards the other centre.
+    /// From either centre to the plane, positive if the plane lies towards the other centre.
     pub heights: [N; 2],
-    /// The height of the cap of either ball beyond that plane, seen from its centre.
+}
+
+impl<N: Real> Edge<N> {
+    #[inline(always)]
+    fn of([i, j]: [Ball; 2]) -> (Self, N) {
+        let apart = N::squared(N::ray(i.centre, j.centre));
+        let distance = apart.sqrt();
+        let heights = [reach(apart, [i, j]) / distance, reach(apart, [j, i]) / distance];
+        (Self { distance, heights }, apart)
+    }
+
+    fn rounded(self) -> Edge<Single> {
+        Edge { distance: self.distance.rounded(), heights: self.heights.map(N::rounded) }
+    }
+}
+
+impl Edge<Single> {
+    /// The edge, in doubles if that is narrow enough, or else in numbers of two doubles.
+    #[inline(always)]
+    pub(crate) fn measured(balls: [Ball; 2], alpha: f64) -> Self {
+        let (edge, _) = Self::of(balls);
+        let limits = Limits::of(&balls, alpha);
+        if edge.is_within(limits) { edge } else { Edge::<Double>::of(balls).0.rounded() }
+    }
+
+    fn is_within(&self, limits: Limits) -> bool {
+        [self.distance, self.heights[0], self.heights[1]]
+            .iter()
+            .all(|&length| limits.length(length))
+    }
+}
+
+/// The circle in which two spheres meet.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Circle<N> {
+    /// The height of the cap of either ball beyond the plane of the circle, seen from its centre.
     pub caps: [N; 2],
     /// The squared radius of the circle, ρ².
     pub squared: N,
@@ -53,86 +71,76 @@ pub(crate) struct Lens<N> {
     pub bend: N,
 }
 
-impl<N: Real> Lens<N> {
-    #[inline(always)]
-    pub(crate) fn of(balls: [Ball; 2], alpha: f64) -> Self {
-        let [i, j] = balls;
-        let way: Vector<N> = difference(i.centre, j.centre);
-        let apart = dot(way, way);
-        let distance = apart.sqrt();
+impl<N: Real> Circle<N> {
+    fn of(balls: [Ball; 2], alpha: f64) -> Self {
+        let (Edge { distance, heights }, apart) = Edge::of(balls);
         let squares: [N; 2] = balls.map(|ball| N::sum(alpha, ball.weight));
-        let heights = [reach(apart, [i, j]), reach(apart, [j, i])].map(|g: N| g / distance);
         let radii = squares.map(N::sqrt);
         let caps = [radii[0] - heights[0], radii[1] - heights[1]];
         // The smaller ball loses fewer digits.
-        let of = usize::from(j.weight < i.weight);
+        let of = usize::from(balls[1].weight < balls[0].weight);
         let squared = caps[of] * (radii[of] + heights[of]);
         let radius = squared.sqrt();
         let cosine = (squares[0] + squares[1] - apart).half();
-        let bend = radius * N::angle(distance * radius, cosine);
-        Self { distance, heights, caps, squared, bend }
-    }
-
-    pub(crate) fn rounded(self) -> Lens<Single> {
-        Lens {
-            distance: self.distance.rounded(),
-            heights: self.heights.map(N::rounded),
-            caps: self.caps.map(N::rounded),
-            squared: self.squared.rounded(),
-            bend: self.bend.rounded(),
-        }
+        Self { caps, squared, bend: radius * N::angle(distance * radius, cosine) }
     }
 }
 
-impl Lens<Single> {
-    /// Whether the bounds are narrow enough.
-    pub(crate) fn is_within(&self, limits: Limits) -> bool {
-        let lengths = [self.distance, self.heights[0], self.heights[1], self.bend];
-        lengths.into_iter().all(|length| limits.length(length)) && limits.square(self.squared)
+impl Circle<Single> {
+    /// The circle, in doubles if that is narrow enough, or else in numbers of two doubles.
+    pub(crate) fn measured(balls: [Ball; 2], alpha: f64) -> Self {
+        let circle = Self::of(balls, alpha);
+        let limits = Limits::of(&balls, alpha);
+        let lengths = [circle.caps[0], circle.caps[1], circle.bend];
+        if lengths.into_iter().all(|length| limits.length(length)) && limits.square(circle.squared)
+        {
+            return circle;
+        }
+        let Circle { caps, squared, bend } = Circle::<Double>::of(balls, alpha);
+        Self { caps: caps.map(Double::rounded), squared: squared.rounded(), bend: bend.rounded() }
     }
 }
 
 /// A triangle of balls.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Triangle<N> {
+pub(crate) struct Triangle<N: Real> {
     balls: [Ball; 3],
     /// From the first corner to the others.
-    pub rays: [Vector<N>; 2],
+    rays: [Ray<N>; 2],
     /// From the second corner to the third.
-    third: Vector<N>,
+    third: Ray<N>,
     /// The squared length of the edge opposite each corner.
-    pub squares: [N; 3],
+    squares: [N; 3],
     /// The inner product of the edges at each corner.
     products: [N; 3],
     /// g from the first corner to the others.
     reaches: [N; 2],
     /// The product of the two edges, twice the area long.
-    pub normal: Vector<N>,
+    normal: [N; 3],
     /// Its squared length.
-    pub area: N,
+    area: N,
     /// For each corner, `area` times the barycentric coordinate of the triangle's centre. That is also the length of the opposite edge, times twice
     /// the area, times the distance of the centre from that edge, positive on the side of the corner.
-    pub coordinates: [N; 3],
+    coordinates: [N; 3],
 }
 
 impl<N: Real> Triangle<N> {
     #[inline(always)]
     pub(crate) fn of(balls: [Ball; 3]) -> Self {
         let [i, j, k] = balls;
-        let [a, b]: [Vector<N>; 2] = [j, k].map(|other| difference(i.centre, other.centre));
-        let third = difference(j.centre, k.centre);
-        let squares = [dot(third, third), dot(b, b), dot(a, a)];
-        let products = [dot(a, b), -dot(a, third), dot(b, third)];
+        let [a, b] = [j, k].map(|other| N::ray(i.centre, other.centre));
+        let third = N::ray(j.centre, k.centre);
+        let squares = [N::squared(third), N::squared(b), N::squared(a)];
+        let products = [N::dot(a, b), -N::dot(a, third), N::dot(b, third)];
         let reaches = [reach(squares[2], [i, j]), reach(squares[1], [i, k])];
         let [of_j, of_k] = reaches;
-        let normal = cross(a, b);
+        let normal = N::cross(a, b);
         let along_third = reach(squares[0], [j, k]);
         let coordinates = [
             reach(squares[2], [j, i]) * squares[0] - along_third * products[1],
             of_j * squares[1] - of_k * products[0],
             of_k * squares[2] - of_j * products[0],
         ];
-        let area = dot(normal, normal);
+        let area = N::squared_normal(normal);
         Self { balls, rays: [a, b], third, squares, products, reaches, normal, area, coordinates }
     }
 
@@ -140,18 +148,18 @@ impl<N: Real> Triangle<N> {
     #[inline(always)]
     pub(crate) fn with(&self, apex: Ball, angles: [bool; 3]) -> Side<N> {
         let [a, b] = self.rays;
-        let way = difference(self.balls[0].centre, apex.centre);
-        let det = dot(self.normal, way);
+        let way = N::ray(self.balls[0].centre, apex.centre);
+        let det = N::triple(self.normal, way);
         let det = if det.rounded().value < 0.0 { -det } else { det };
-        let [along_a, along_b] = [dot(a, way), dot(b, way)];
-        let reach = reach(dot(way, way), [self.balls[0], apex]);
+        let [along_a, along_b] = [N::dot(a, way), N::dot(b, way)];
+        let reach = reach(N::squared(way), [self.balls[0], apex]);
         let in_plane = self.coordinates[1] * along_a + self.coordinates[2] * along_b;
         let height = (reach - in_plane / self.area) / det;
         let mut side = Side { det, height, angles: [None; 3] };
         if angles.contains(&true) {
-            let from_second: Vector<N> = difference(self.balls[1].centre, apex.centre);
-            let along_third = dot(self.third, from_second);
-            let back = -dot(a, from_second);
+            let from_second = N::ray(self.balls[1].centre, apex.centre);
+            let along_third = N::dot(self.third, from_second);
+            let back = -N::dot(a, from_second);
             let cosines = [
                 self.squares[0] * back - along_third * self.products[1],
                 self.squares[1] * along_a - along_b * self.products[0],
@@ -248,7 +256,11 @@ impl<N: Real> Side<N> {
 impl Side<Single> {
     /// The same and its kites, if the bounds are narrow enough.
     #[inline(always)]
-    pub(crate) fn checked(self, triangle: &Triangle<Single>, limits: Limits) -> Option<(Self, [Single; 3])> {
+    pub(crate) fn checked(
+        self,
+        triangle: &Triangle<Single>,
+        limits: Limits,
+    ) -> Option<(Self, [Single; 3])> {
         let kites = self.kites(triangle);
         let narrow = self.angles.into_iter().flatten().all(Limits::angle)
             && limits.cube(self.det)
@@ -285,7 +297,7 @@ impl Side<Single> {
 
 impl Open<Single> {
     /// The open side of a triangle, and its kites: in doubles if that is narrow enough, or else in numbers of two doubles.
-    pub(crate) fn of(
+    pub(crate) fn measured(
         triangle: &Triangle<Single>,
         balls: [Ball; 3],
         alpha: f64,

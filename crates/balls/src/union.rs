@@ -11,8 +11,8 @@ use walpha_shape::{AlphaShape, Class, Complex, FacetSides};
 use crate::BallsError;
 use crate::points::Points;
 use crate::real::{Bounded, Double, Real, Single};
-use crate::scatter::{ranges, scatter};
-use crate::simplex::{Lens, Limits, Open, Side, Triangle};
+use crate::scatter::{Records, ranges, scatter};
+use crate::simplex::{Circle, Edge, Limits, Open, Side, Triangle};
 
 /// Numbers with bounds, as two columns: of row i, the true number is within `bounds[i]` of `values[i]`.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -216,28 +216,22 @@ pub(crate) fn complex_of_balls(shape: &AlphaShape) -> Result<Cow<'_, Complex>, B
     Ok(Cow::Owned(complex))
 }
 
-/// Sums over the tetrahedra at an edge.
+/// Angles at an edge, summed over tetrahedra.
 #[derive(Clone, Copy, Debug, Default)]
-struct EdgeSums {
-    /// Twice the length of the edge times the area of its power facet in the tetrahedra.
-    kites: Single,
-    /// The angles of the tetrahedra of the complex,
+struct EdgeAngles {
+    /// Of the complex,
     closed: Single,
-    /// and of those with a point of the boundary as apex.
+    /// and with a point of the boundary as apex.
     open: Single,
 }
 
-/// Sums over the simplices at a vertex.
+/// Sums over the edges at a vertex on the boundary.
 #[derive(Clone, Copy, Debug, Default)]
-struct VertexSums {
-    /// The solid angles of tetrahedra with a point of the boundary as apex.
-    open: Single,
-    /// Over the edges, the angles of the tetrahedra of the complex,
+struct VertexRim {
+    /// The angles of the tetrahedra of the complex,
     closed: Single,
-    /// the angle of the circle that no ball covers, times the height of the cap beyond its plane,
+    /// and the angle of the circle that no ball covers, times the height of the cap beyond its plane.
     caps: Single,
-    /// and the contact area times the distance of its plane.
-    cones: Single,
 }
 
 struct Passes {
@@ -251,7 +245,8 @@ struct Passes {
 /// The totals, as they are summed.
 #[derive(Clone, Copy, Default)]
 struct Sums {
-    volume: Double,
+    /// Divided last.
+    six_volumes: Double,
     area: Double,
     mean: Double,
     gaussian: Double,
@@ -259,7 +254,7 @@ struct Sums {
 
 impl Sums {
     fn join(&mut self, other: &Self) {
-        self.volume += other.volume;
+        self.six_volumes += other.six_volumes;
         self.area += other.area;
         self.mean += other.mean;
         self.gaussian += other.gaussian;
@@ -273,9 +268,14 @@ struct Work<'a> {
 }
 
 /// What the triangles of some vertices add.
+#[derive(Default)]
 struct OfTriangles {
-    edges: Vec<(u32, EdgeSums)>,
-    vertices: Vec<(u32, Single)>,
+    /// For edges, twice the length times the part of the power facet in a tetrahedron;
+    kites: Records<Single>,
+    /// if they are not interior, angles;
+    angles: Records<EdgeAngles>,
+    /// for vertices, solid angles of tetrahedra with a point of the boundary as apex.
+    solids: Records<Single>,
     sums: Sums,
 }
 
@@ -284,7 +284,10 @@ struct OfTriangles {
 struct OfEdges {
     arcs: Vec<Single>,
     contacts: Vec<Bounded>,
-    vertices: Vec<(u32, VertexSums)>,
+    /// For vertices, the contact area times the distance of its plane;
+    cones: Records<Single>,
+    /// if they are not interior, what is at the rim.
+    rims: Records<VertexRim>,
     sums: Sums,
 }
 
@@ -299,35 +302,49 @@ impl Work<'_> {
         let Self { complex, points, .. } = *self;
         let count = complex.edges.len();
         let steps = monitor.units(points.len() as u64 + count as u64);
-        let mut edges: Vec<EdgeSums> = zeros(count, "sums over the edges of the dual complex")?;
-        let mut vertices: Vec<VertexSums> = zeros(points.len(), "sums over balls")?;
+        let classes = self.classes()?;
+        let mut kites: Vec<Single> = zeros(count, "the contacts of balls")?;
+        let mut angles: Vec<EdgeAngles> = zeros(count, "the angles of the dual complex")?;
+        let mut solids: Vec<Single> = zeros(points.len(), "the solid angles of balls")?;
         let mut sums = Sums::default();
         let groups: Vec<&[u32]> = self.sides.groups(VERTICES).collect();
         for groups in groups.chunks(PIECES) {
             let found: Vec<OfTriangles> =
                 groups.par_iter().map(|group| self.triangles(group)).collect();
-            scatter(found.iter().flat_map(|of| &of.edges), &mut edges, |sum, more| {
-                sum.kites += more.kites;
-                sum.closed += more.closed;
-                sum.open += more.open;
-            });
-            scatter(found.iter().flat_map(|of| &of.vertices), &mut vertices, |sum, more| {
-                sum.open += *more;
-            });
+            scatter(&found, |of| &of.kites, &mut kites, |sum, &more| *sum += more);
+            scatter(
+                &found,
+                |of| &of.angles,
+                &mut angles,
+                |sum, more| {
+                    sum.closed += more.closed;
+                    sum.open += more.open;
+                },
+            );
+            scatter(&found, |of| &of.solids, &mut solids, |sum, &more| *sum += more);
             found.iter().for_each(|of| sums.join(&of.sums));
             steps.add(groups.iter().map(|group| group.len() as u64).sum())?;
         }
+        let mut cones: Vec<Single> = zeros(points.len(), "the volumes of balls")?;
+        let mut rims: Vec<VertexRim> = zeros(points.len(), "the areas of balls")?;
         let mut arcs = memory::try_with_capacity(count, || "the arcs of balls".into())?;
         let mut contacts = Measured::with_capacity(count, "the contacts of balls")?;
         for window in ranges(0..count, ROWS * PIECES) {
             let pieces: Vec<Range<usize>> = ranges(window.clone(), ROWS).collect();
-            let found: Vec<OfEdges> =
-                pieces.into_par_iter().map(|rows| self.edges(rows, &edges)).collect();
-            scatter(found.iter().flat_map(|of| &of.vertices), &mut vertices, |sum, more| {
-                sum.closed += more.closed;
-                sum.caps += more.caps;
-                sum.cones += more.cones;
-            });
+            let found: Vec<OfEdges> = pieces
+                .into_par_iter()
+                .map(|rows| self.edges(rows, &kites, &angles, &classes))
+                .collect();
+            scatter(&found, |of| &of.cones, &mut cones, |sum, &more| *sum += more);
+            scatter(
+                &found,
+                |of| &of.rims,
+                &mut rims,
+                |sum, more| {
+                    sum.closed += more.closed;
+                    sum.caps += more.caps;
+                },
+            );
             for of in &found {
                 arcs.extend_from_slice(&of.arcs);
                 of.contacts.iter().for_each(|&contact| contacts.push(contact));
@@ -335,13 +352,14 @@ impl Work<'_> {
             }
             steps.add(window.len() as u64)?;
         }
-        drop(edges);
-        let parts = self.parts(&vertices)?;
-        let of_balls = ranges(0..parts.len(), ROWS).collect::<Vec<_>>().into_par_iter().map(|rows| {
-            let mut sums = Sums::default();
-            parts[rows].iter().for_each(|part| sums.add_ball(part));
-            sums
-        });
+        drop((kites, angles));
+        let parts = self.parts(&classes, &solids, &cones, &rims)?;
+        let of_balls =
+            ranges(0..parts.len(), ROWS).collect::<Vec<_>>().into_par_iter().map(|rows| {
+                let mut sums = Sums::default();
+                parts[rows].iter().for_each(|part| sums.add_ball(part));
+                sums
+            });
         of_balls.collect::<Vec<_>>().iter().for_each(|of| sums.join(of));
         let column = |what, power, of: fn(&Part) -> Single| {
             Measured::collect(parts.len(), what, |v| points.bounded(of(&parts[v]), power))
@@ -353,7 +371,7 @@ impl Work<'_> {
             volumes: column("the volumes of balls", 3, |part| part.volume)?,
             areas: column("the areas of balls", 2, |part| part.radius * part.mean)?,
             totals: Totals {
-                volume: total(sums.volume, 3),
+                volume: total(sums.six_volumes / Double::exact(6.0), 3),
                 area: total(sums.area, 2),
                 mean_curvature: total(sums.mean, 1),
                 gaussian_curvature: total(sums.gaussian, 0),
@@ -361,9 +379,18 @@ impl Work<'_> {
         })
     }
 
+    /// The class of each point, if it is in the shape.
+    fn classes(&self) -> Result<Vec<Option<Class>>, BallsError> {
+        let mut classes = zeros(self.points.len(), "the classes of balls")?;
+        for (&[v], class) in self.complex.vertices.iter() {
+            classes[v as usize] = Some(class);
+        }
+        Ok(classes)
+    }
+
     /// What the triangles of a group of vertices add.
     fn triangles(&self, group: &[u32]) -> OfTriangles {
-        let mut found = OfTriangles { edges: Vec::new(), vertices: Vec::new(), sums: Sums::default() };
+        let mut found = OfTriangles::default();
         for row in group.iter().flat_map(|&v| self.sides.facets_of(v)) {
             self.triangle(row, &mut found);
         }
@@ -377,110 +404,117 @@ impl Work<'_> {
         let balls = self.points.balls(corners);
         let limits = Limits::of(&balls, self.points.alpha);
         let triangle = Triangle::<Single>::of(balls);
-        let mut more = [EdgeSums::default(); 3];
+        let on_boundary =
+            edges.map(|edge| self.complex.edges.classes()[edge as usize] != Class::Interior);
+        let mut kites = [Single::ZERO; 3];
+        let mut angles = [EdgeAngles::default(); 3];
         for apex in apexes.into_iter().filter(|&apex| apex != FacetSides::OPEN) {
             let ball = self.points.near(balls[0].centre, apex);
             // An angle is found in both triangles at its edge, and taken from the one whose own corner is the smaller.
-            let asked = [0, 1, 2].map(|k| {
-                corners[k] < apex && self.complex.edges.classes()[edges[k] as usize] != Class::Interior
-            });
+            let asked = [0, 1, 2].map(|k| on_boundary[k] && corners[k] < apex);
             let side = triangle.with(ball, asked);
-            let (side, kites) = side.checked(&triangle, limits).unwrap_or_else(|| {
-                Side::closely(balls, ball, asked, self.points.alpha)
-            });
+            let (side, more) = side
+                .checked(&triangle, limits)
+                .unwrap_or_else(|| Side::closely(balls, ball, asked, self.points.alpha));
             for k in 0..3 {
-                more[k].kites += kites[k];
-                more[k].closed += side.angles[k].unwrap_or(Single::ZERO);
+                kites[k] += more[k];
+                angles[k].closed += side.angles[k].unwrap_or(Single::ZERO);
             }
             // Each cell once, from the triangle of its three smaller corners.
             if corners[2] < apex {
-                found.sums.volume += sixth(side.det.into());
+                found.sums.six_volumes += side.det;
             }
         }
         let open = apexes.into_iter().filter(|&apex| apex == FacetSides::OPEN).count();
         if open > 0 {
-            let (of, kites) = Open::<Single>::of(&triangle, balls, self.points.alpha, limits);
+            let (of, more) = Open::measured(&triangle, balls, self.points.alpha, limits);
             for _ in 0..open {
                 for k in 0..3 {
-                    more[k].kites += kites[k];
-                    more[k].open += of.angles[k];
-                    found.vertices.push((corners[k], of.corners[k]));
+                    kites[k] += more[k];
+                    angles[k].open += of.angles[k];
+                    found.solids.push((corners[k], of.corners[k]));
                 }
-                found.sums.volume += sixth(of.det.into());
-                found.sums.gaussian += of.apex.into();
+                found.sums.six_volumes += of.det;
+                found.sums.gaussian += of.apex;
             }
         }
-        found.edges.extend(edges.into_iter().zip(more));
+        found.kites.extend(edges.into_iter().zip(kites));
+        let angles = edges.into_iter().zip(angles).zip(on_boundary);
+        found
+            .angles
+            .extend(angles.filter(|(_, on_boundary)| *on_boundary).map(|(angles, _)| angles));
     }
 
     /// What some edges add, and their own numbers.
-    fn edges(&self, rows: Range<usize>, sums: &[EdgeSums]) -> OfEdges {
+    fn edges(
+        &self,
+        rows: Range<usize>,
+        kites: &[Single],
+        angles: &[EdgeAngles],
+        classes: &[Option<Class>],
+    ) -> OfEdges {
         let mut found = OfEdges::default();
         for row in rows {
             let ends = self.complex.edges.rows()[row];
-            let interior = self.complex.edges.classes()[row] == Class::Interior;
-            self.edge(ends, interior, &sums[row], &mut found);
+            let balls = self.points.balls(ends);
+            let Edge { distance, heights } = Edge::measured(balls, self.points.alpha);
+            let turn = Single::pi().times(2.0);
+            let mut twice = kites[row] / distance;
+            let (mut closed, mut arc, mut caps) = (turn, Single::ZERO, [Single::ZERO; 2]);
+            if self.complex.edges.classes()[row] != Class::Interior {
+                closed = angles[row].closed;
+                arc = turn - closed - angles[row].open;
+                let circle = Circle::measured(balls, self.points.alpha);
+                let disc = arc * circle.squared;
+                twice += disc;
+                caps = circle.caps.map(|cap| arc * cap);
+                found.sums.six_volumes += disc * distance;
+                found.sums.mean += -(arc * circle.bend).half();
+                found.sums.gaussian += -arc.times(2.0);
+            }
+            let contact = twice.half();
+            for k in 0..2 {
+                found.cones.push((ends[k], contact * heights[k]));
+                if classes[ends[k] as usize] != Some(Class::Interior) {
+                    found.rims.push((ends[k], VertexRim { closed, caps: caps[k] }));
+                }
+            }
+            found.arcs.push(arc);
+            found.contacts.push(self.points.bounded(contact, 2));
         }
         found
     }
 
-    fn edge(&self, ends: [u32; 2], interior: bool, sums: &EdgeSums, found: &mut OfEdges) {
-        let turn = Single::pi().times(2.0);
-        let (closed, arc) = if interior {
-            (turn, Single::ZERO)
-        } else {
-            (sums.closed, turn - sums.closed - sums.open)
-        };
-        let balls = self.points.balls(ends);
-        let lens = Lens::<Single>::of(balls, self.points.alpha);
-        let lens = if lens.is_within(Limits::of(&balls, self.points.alpha)) {
-            lens
-        } else {
-            Lens::<Double>::of(balls, self.points.alpha).rounded()
-        };
-        let contact = (arc * lens.squared + sums.kites / lens.distance).half();
-        for (k, v) in ends.into_iter().enumerate() {
-            let caps = arc * lens.caps[k];
-            let cones = contact * lens.heights[k];
-            found.vertices.push((v, VertexSums { closed, caps, cones, ..VertexSums::default() }));
-        }
-        if !interior {
-            found.sums.volume += sixth((arc * lens.squared * lens.distance).into());
-            found.sums.mean += -Double::from((arc * lens.bend).half());
-            found.sums.gaussian += -Double::from(arc.times(2.0));
-        }
-        found.arcs.push(arc);
-        found.contacts.push(self.points.bounded(contact, 2));
-    }
-
     /// The part of each ball.
-    fn parts(&self, sums: &[VertexSums]) -> Result<Vec<Part>, BallsError> {
+    fn parts(
+        &self,
+        classes: &[Option<Class>],
+        solids: &[Single],
+        cones: &[Single],
+        rims: &[VertexRim],
+    ) -> Result<Vec<Part>, BallsError> {
         let Self { complex, points, .. } = *self;
-        let mut classes = zeros(points.len(), "the classes of balls")?;
-        for (&[v], class) in complex.vertices.iter() {
-            classes[v as usize] = Some(class);
-        }
         let cells: Vec<AtomicU32> = (0..points.len()).map(|_| AtomicU32::new(0)).collect();
         complex.cells.rows().as_flattened().par_iter().for_each(|&v| {
             if classes[v as usize] != Some(Class::Interior) {
                 cells[v as usize].fetch_add(1, Ordering::Relaxed);
             }
         });
-        let mut parts = memory::try_with_capacity(points.len(), || "the parts of balls".into())?;
-        let part = |v: usize| {
-            let Some(class) = classes[v] else { return Part::default() };
-            let sums = &sums[v];
-            if class == Class::Interior {
-                return Part { volume: third(sums.cones), ..Part::default() };
+        let part = |v: usize| match classes[v] {
+            None => Part::default(),
+            Some(Class::Interior) => Part { volume: third(cones[v]), ..Part::default() },
+            _ => {
+                // The solid angle of a cell at v is the sum of the angles at its edges, less π.
+                let cells = Single::exact(f64::from(cells[v].load(Ordering::Relaxed)));
+                let four = Single::exact(4.0);
+                let solid = Single::pi() * (cells + four) - rims[v].closed - solids[v];
+                let radius = points.squared_radius::<Single>(v as u32).sqrt();
+                let mean = radius * solid - rims[v].caps;
+                let cone = radius.square() * mean;
+                Part { radius, solid, mean, cone, volume: third(cone + cones[v]) }
             }
-            // The solid angles of a cell at v are the angles at its edges, less π.
-            let cells = Single::exact(f64::from(cells[v].load(Ordering::Relaxed)));
-            let solid = Single::pi() * (cells + Single::exact(4.0)) - sums.closed - sums.open;
-            let radius = points.squared_radius::<Single>(v as u32).sqrt();
-            let mean = radius * solid - sums.caps;
-            let cone = radius.square() * mean;
-            Part { radius, solid, mean, cone, volume: third(cone + sums.cones) }
         };
+        let mut parts = memory::try_with_capacity(points.len(), || "the parts of balls".into())?;
         (0..points.len()).into_par_iter().map(part).collect_into_vec(&mut parts);
         Ok(parts)
     }
@@ -501,20 +535,15 @@ struct Part {
 
 impl Sums {
     fn add_ball(&mut self, part: &Part) {
-        self.volume += third(part.cone).into();
-        self.area += (part.radius * part.mean).into();
-        self.mean += part.mean.into();
-        self.gaussian += part.solid.into();
+        self.six_volumes += part.cone.times(2.0);
+        self.area += part.radius * part.mean;
+        self.mean += part.mean;
+        self.gaussian += part.solid;
     }
 }
 
 fn third(number: Single) -> Single {
     number / Single::exact(3.0)
-}
-
-/// A sixth, as a term of a total.
-fn sixth(number: Double) -> Double {
-    number / Double::exact(6.0)
 }
 
 fn zeros<T: Clone + Default>(count: usize, what: &'static str) -> Result<Vec<T>, BallsError> {
