@@ -47,7 +47,7 @@ fn measured(set: &str) -> Result<String, Box<dyn Error>> {
     }
     let contacts = union.contacts();
     for (name, column) in
-        [("volumes", union.volumes()), ("areas", union.areas()), ("contacts", contacts.areas)]
+        [("volumes", union.volumes()), ("areas", union.areas()), ("contacts", contacts.sizes)]
     {
         let numbers: Vec<String> = (0..column.len()).map(|row| pair(column.get(row))).collect();
         write!(line, ", \"{name}\": [{}]", numbers.join(", "))?;

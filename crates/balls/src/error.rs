@@ -23,6 +23,9 @@ pub enum BallsError {
         /// What they are needed for.
         what: &'static str,
     },
+    /// Pockets are open to the outside, and a torus has none.
+    #[error("pockets are open to the outside, and a periodic box has no outside")]
+    NoOutside,
     /// Discs are asked for, and the points span a volume.
     #[error("the points span a volume, and discs lie in one plane")]
     Solid,
@@ -55,6 +58,7 @@ impl Advise for BallsError {
                 "measure the solid of the label, or take the points of the volume as centres".into()
             }
             Self::Unwrapped => "measure the shape of the periodic box itself".into(),
+            Self::NoOutside => "take its voids, or repeat the points without a periodic box".into(),
             Self::NoExterior { .. } => advice!["set ", Setting::Exterior],
             Self::Solid => "measure the balls in space".into(),
             Self::Periodic => "measure the balls of the box".into(),

@@ -4,13 +4,23 @@
 #![forbid(unsafe_code)]
 #![warn(missing_debug_implementations, unreachable_pub)]
 
+mod cavities;
+mod components;
+mod curve;
+mod discs;
 mod error;
+mod gradient;
 mod points;
 mod real;
 mod scatter;
 mod simplex;
 mod union;
 
+pub use cavities::{Cavity, Pocket};
+pub use components::BallComponent;
+pub use curve::{UnionLevel, union_curve};
+pub use discs::DiscUnion;
 pub use error::BallsError;
+pub use gradient::{Gradient, Gradients};
 pub use real::Bounded;
 pub use union::{BallUnion, Contacts, Measured};

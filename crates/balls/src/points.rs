@@ -41,7 +41,7 @@ impl<'a> Points<'a> {
         }
     }
 
-    /// The same balls at another α.
+    /// The same balls at another α, in the unit of the shape.
     pub(crate) fn at(&self, alpha: f64) -> Points<'_> {
         Points {
             positions: Cow::Borrowed(&self.positions),
@@ -73,6 +73,12 @@ impl<'a> Points<'a> {
     /// The squared radius of a ball.
     pub(crate) fn squared_radius<N: crate::real::Real>(&self, v: u32) -> N {
         N::sum(self.alpha, self.weights[v as usize])
+    }
+
+    /// A length to this power in the unit of the balls, from one in the unit of the shape.
+    pub(crate) fn unscaled(&self, number: Bounded, power: i32) -> Single {
+        let Bounded { value, bound } = number.scaled(self.unit.powi(-power));
+        Single { value, error: bound }
     }
 
     /// A result in the unit of the shape: a length to this power.

@@ -65,6 +65,8 @@ pub(crate) trait Real:
 
     /// The way from one place to another.
     fn ray(from: V3, to: V3) -> Ray<Self>;
+    /// A coordinate of a way.
+    fn along(coordinate: Self::Coordinate) -> Self;
     /// The inner product.
     fn dot(a: Ray<Self>, b: Ray<Self>) -> Self;
     /// The squared length.
@@ -214,6 +216,11 @@ impl Real for Single {
     #[inline(always)]
     fn ray(from: V3, to: V3) -> Ray<Self> {
         [to[0] - from[0], to[1] - from[1], to[2] - from[2]]
+    }
+
+    #[inline(always)]
+    fn along(coordinate: f64) -> Self {
+        Self { value: coordinate, error: U * coordinate.abs() }
     }
 
     #[inline(always)]
@@ -420,6 +427,10 @@ impl Real for Double {
 
     fn ray(from: V3, to: V3) -> Ray<Self> {
         [0, 1, 2].map(|k| Self::sum(to[k], -from[k]))
+    }
+
+    fn along(coordinate: Self) -> Self {
+        coordinate
     }
 
     fn dot(a: Ray<Self>, b: Ray<Self>) -> Self {

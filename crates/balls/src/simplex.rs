@@ -109,18 +109,18 @@ pub(crate) struct Triangle<N: Real> {
     /// From the second corner to the third.
     third: Ray<N>,
     /// The squared length of the edge opposite each corner.
-    squares: [N; 3],
+    pub squares: [N; 3],
     /// The inner product of the edges at each corner.
-    products: [N; 3],
+    pub products: [N; 3],
     /// g from the first corner to the others.
     reaches: [N; 2],
     /// The product of the two edges, twice the area long.
-    normal: [N; 3],
+    pub normal: [N; 3],
     /// Its squared length.
-    area: N,
+    pub area: N,
     /// For each corner, `area` times the barycentric coordinate of the triangle's centre. That is also the length of the opposite edge, times twice
     /// the area, times the distance of the centre from that edge, positive on the side of the corner.
-    coordinates: [N; 3],
+    pub coordinates: [N; 3],
 }
 
 impl<N: Real> Triangle<N> {
@@ -173,6 +173,17 @@ impl<N: Real> Triangle<N> {
             }
         }
         side
+    }
+
+    /// For the edge opposite each corner, a vector in the plane and across the edge, towards the corner: the product of the normal and the edge.
+    pub(crate) fn inwards(&self) -> [[N; 3]; 3] {
+        let [a, b] = self.rays;
+        let n = self.normal;
+        [(self.third, 1.0), (b, -1.0), (a, 1.0)].map(|(edge, sign)| {
+            let edge = edge.map(N::along);
+            let minor = |i: usize, j: usize| (n[i] * edge[j] - n[j] * edge[i]).times(sign);
+            [minor(1, 2), minor(2, 0), minor(0, 1)]
+        })
     }
 
     /// The squared distance from the plane of the points that the three spheres share; not negative for a triangle of the dual complex.
@@ -332,11 +343,54 @@ impl Open<Single> {
     }
 }
 
+/// The angles of a tetrahedron of the triangulation.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Cell<N> {
+    /// Six times its volume.
+    pub det: N,
+    /// The angles at its edges, in the order of [`Cell::EDGES`].
+    pub angles: [N; 6],
+}
+
+impl Cell<()> {
+    /// The edges by their corners.
+    pub(crate) const EDGES: [[usize; 2]; 6] = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]];
+    /// The edges at each corner.
+    pub(crate) const AT: [[usize; 3]; 4] = [[0, 1, 2], [0, 3, 4], [1, 3, 5], [2, 4, 5]];
+    /// The facets by their corners.
+    pub(crate) const FACETS: [[usize; 3]; 4] = [[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]];
+}
+
+impl<N: Real> Cell<N> {
+    fn of([a, b, c, d]: [Ball; 4]) -> Self {
+        let side = |triangle, apex, asked| Triangle::of(triangle).with(apex, asked);
+        let angles = |side: &Side<N>| side.angles.map(|angle| angle.unwrap_or(N::exact(0.0)));
+        let first = side([a, b, c], d, [true; 3]);
+        let [bc, ac, ab] = angles(&first);
+        let [bd, ad, _] = angles(&side([a, b, d], c, [true, true, false]));
+        let [cd, ..] = angles(&side([a, c, d], b, [true, false, false]));
+        Self { det: first.det, angles: [ab, ac, ad, bc, bd, cd] }
+    }
+}
+
+impl Cell<Single> {
+    /// The cell, in doubles if that is narrow enough, or else in numbers of two doubles.
+    pub(crate) fn measured(balls: [Ball; 4], alpha: f64) -> Self {
+        let cell = Self::of(balls);
+        let limits = Limits::of(&balls, alpha);
+        if cell.angles.into_iter().all(Limits::angle) && limits.cube(cell.det) {
+            return cell;
+        }
+        let Cell { det, angles } = Cell::<Double>::of(balls);
+        Self { det: det.rounded(), angles: angles.map(Double::rounded) }
+    }
+}
+
 /// How wide bounds may be before a simplex is computed again in numbers of two doubles.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Limits {
     /// The radius of the smallest ball of the simplex.
-    pub radius: f64,
+    radius: f64,
 }
 
 impl Limits {

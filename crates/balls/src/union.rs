@@ -115,14 +115,15 @@ struct Totals {
     gaussian_curvature: Bounded,
 }
 
-/// The contacts of the balls: the disc of each edge of the dual complex, as far as it is in the power cells of both balls.
+/// The contacts of balls, one for each edge of the dual complex: the part of its disc that is in the power cells of both balls. In the plane,
+/// those of discs.
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub struct Contacts<'a> {
     /// Input indices of the two balls, in lexicographic order.
     pub pairs: &'a [[u32; 2]],
-    /// The area of each.
-    pub areas: &'a Measured,
+    /// The size of each: an area, or in the plane a length.
+    pub sizes: &'a Measured,
 }
 
 impl<'a> BallUnion<'a> {
@@ -136,7 +137,7 @@ impl<'a> BallUnion<'a> {
         let monitor = &*Monitor::current();
         let complex = complex_of_balls(shape)?;
         let points = Points::of(shape);
-        let sides = FacetSides::new(&complex, &points.positions);
+        let sides = FacetSides::apexes(&complex, &points.positions);
         let work = Work { complex: &complex, points: &points, sides: &sides };
         let passes = work.run(monitor)?;
         let Passes { arcs, contacts, volumes, areas, totals } = passes;
@@ -192,7 +193,7 @@ impl<'a> BallUnion<'a> {
 
     /// The contacts of balls, one for each edge of the dual complex.
     pub fn contacts(&self) -> Contacts<'_> {
-        Contacts { pairs: self.complex.edges.rows(), areas: &self.contacts }
+        Contacts { pairs: self.complex.edges.rows(), sizes: &self.contacts }
     }
 }
 
@@ -398,8 +399,8 @@ impl Work<'_> {
     }
 
     fn triangle(&self, row: usize, found: &mut OfTriangles) {
-        let corners = self.sides.facet(row);
-        let apexes = self.sides.apexes(row);
+        let corners = self.sides.facets()[row];
+        let apexes = self.sides.sides(row);
         let edges = self.sides.edges(self.complex, corners);
         let balls = self.points.balls(corners);
         let limits = Limits::of(&balls, self.points.alpha);
@@ -546,7 +547,10 @@ fn third(number: Single) -> Single {
     number / Single::exact(3.0)
 }
 
-fn zeros<T: Clone + Default>(count: usize, what: &'static str) -> Result<Vec<T>, BallsError> {
+pub(crate) fn zeros<T: Clone + Default>(
+    count: usize,
+    what: &'static str,
+) -> Result<Vec<T>, BallsError> {
     let mut items = memory::try_with_capacity(count, || what.into())?;
     items.resize(count, T::default());
     Ok(items)

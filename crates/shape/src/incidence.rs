@@ -101,36 +101,51 @@ pub(crate) fn sides([_, _, c, d]: [u32; 4]) -> [usize; 4] {
     if c < d { [1, 0, 1, 0] } else { [0, 1, 1, 0] }
 }
 
-/// The facets of a complex and the cells on both sides of each, for one visit of all facets along a Hilbert curve.
+/// The facets of a complex and what is on both sides of each, for visits along a Hilbert curve.
 #[derive(Debug)]
 pub struct FacetSides {
     along: Along,
     facets: Vec<[u32; 3]>,
-    apexes: Vec<[u32; 2]>,
+    sides: Vec<[u32; 2]>,
 }
 
 impl FacetSides {
-    /// Stands for the apex on a side without a cell.
+    /// Stands for a side without a cell.
     pub const OPEN: u32 = u32::MAX;
 
-    /// Finds the cells on both sides of each facet. All faces of all simplices must be listed, and exterior simplices must not.
+    /// Finds, on both sides of each facet, the vertex opposite the facet in the cell there. All faces of all simplices must be listed.
     /// Expected O(n log d), where d is the degree of a vertex.
-    pub fn new(complex: &Complex, positions: &[[f64; 3]]) -> Self {
+    pub fn apexes(complex: &Complex, positions: &[[f64; 3]]) -> Self {
+        Self::new(complex, positions, |row| complex.cells.rows()[row])
+    }
+
+    /// Finds the cells, by row, on both sides of each facet. All faces of all simplices must be listed. Expected O(n log d).
+    pub fn cells(complex: &Complex, positions: &[[f64; 3]]) -> Self {
+        Self::new(complex, positions, |row| [row as u32; 4])
+    }
+
+    /// Writes an element of each cell, by row, to each of its facets, in the order of the corners opposite them.
+    fn new(
+        complex: &Complex,
+        positions: &[[f64; 3]],
+        elements: impl Fn(usize) -> [u32; 4] + Sync,
+    ) -> Self {
         let along = Along::new(complex, positions);
         let facets = sorted_facets(complex);
         let faces = Faces::new(complex.edges.rows(), &facets, &along);
-        let apexes = Table::new(facets.len(), Self::OPEN);
+        let table = Table::new(facets.len(), Self::OPEN);
         along.each(&along.cells, |row| {
             let cell = complex.cells.rows()[row];
-            for ((facet, side), apex) in faces.facets(cell).into_iter().zip(sides(cell)).zip(cell) {
-                apexes.write_at(facet as usize, side, apex);
+            let places = faces.facets(cell).into_iter().zip(sides(cell));
+            for ((facet, side), element) in places.zip(elements(row)) {
+                table.write_at(facet as usize, side, element);
             }
         });
         drop(faces);
-        Self { along, facets, apexes: apexes.finished() }
+        Self { along, facets, sides: table.finished() }
     }
 
-    /// Groups of vertices that are close on the curve. Each facet, edge and cell belongs to its smallest vertex.
+    /// Groups of vertices that are close on the curve. Each facet belongs to its smallest vertex.
     pub fn groups(&self, vertices: usize) -> impl IndexedParallelIterator<Item = &[u32]> {
         self.along.order.par_chunks(vertices)
     }
@@ -140,19 +155,33 @@ impl FacetSides {
         rows(&self.along.facets, vertex)
     }
 
-    /// The vertices of a facet, which ascend.
-    pub fn facet(&self, row: usize) -> [u32; 3] {
-        self.facets[row]
+    /// All facets, sorted, each with ascending vertices.
+    pub fn facets(&self) -> &[[u32; 3]] {
+        &self.facets
     }
 
-    /// The vertices opposite a facet in the cells on its two sides; [`Self::OPEN`] where there is no cell. The cell on the first side is
-    /// positively oriented with its apex last.
-    pub fn apexes(&self, row: usize) -> [u32; 2] {
-        self.apexes[row]
+    /// What is on the two sides of a facet; [`Self::OPEN`] where there is no cell. The cell on the first side is positively oriented with
+    /// its apex last.
+    pub fn sides(&self, row: usize) -> [u32; 2] {
+        self.sides[row]
     }
 
     /// The edge opposite each vertex of a facet, by row among the edges of the complex. O(log d).
     pub fn edges(&self, complex: &Complex, facet: [u32; 3]) -> [u32; 3] {
         Edges { rows: complex.edges.rows(), of_vertices: &self.along.edges }.of_facet(facet)
+    }
+
+    /// The row of an edge among those of the complex, if it is there. Its ends ascend. O(log d).
+    pub fn find_edge(&self, complex: &Complex, edge: [u32; 2]) -> Option<usize> {
+        let range = rows(&self.along.edges, edge[0]);
+        let at = complex.edges.rows()[range.clone()].binary_search(&edge).ok()?;
+        Some(range.start + at)
+    }
+
+    /// The row of a facet, if it is there. Its vertices ascend. O(log d).
+    pub fn find_facet(&self, facet: [u32; 3]) -> Option<usize> {
+        let range = self.facets_of(facet[0]);
+        let at = self.facets[range.clone()].binary_search(&facet).ok()?;
+        Some(range.start + at)
     }
 }

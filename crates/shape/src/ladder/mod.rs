@@ -34,6 +34,8 @@ mod values;
 
 pub use critical::{Curve, Suggestions};
 pub use filtration::Filtration;
+#[doc(hidden)]
+pub use levels::{ByLevel, LevelRows};
 pub use levels::{Levels, Span};
 pub use ordered::{Derivative, Entry, Interval, Loops, Ordered, Pairs};
 pub use table::{Ladder, Level};
