@@ -124,7 +124,7 @@ impl<'a> Rest<'a> {
         }
         lining.sort_unstable();
         lining.dedup();
-        let volume = (six_volumes / Double::exact(6.0)).rounded();
+        let volume = six_volumes.sixth();
         Cavity {
             cells: cells.len(),
             volume: self.points.bounded(volume, 3),

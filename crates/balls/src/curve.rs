@@ -150,7 +150,7 @@ impl<'a> Climb<'a> {
         six_volumes += self.open_edges(points);
         let (more, area) = self.spheres(points);
         six_volumes += more;
-        let volume = (six_volumes / Double::exact(6.0)).rounded();
+        let volume = six_volumes.sixth();
         UnionLevel {
             alpha,
             volume: points.bounded(volume, 3),

@@ -71,7 +71,7 @@ impl<'a> DiscUnion<'a> {
             let Edge { distance, heights } = Edge::measured(balls, points.alpha);
             if at.triangles < 2 {
                 // The triangles to the points that both circles share.
-                let height = Circle::measured(balls, points.alpha).squared.sqrt();
+                let height = Circle::measured(balls, points.alpha).radius;
                 for _ in at.triangles..2 {
                     at.length += height;
                     twice += distance * height;

@@ -65,7 +65,8 @@ impl Edge<Single> {
 pub(crate) struct Circle<N> {
     /// The height of the cap of either ball beyond the plane of the circle, seen from its centre.
     pub caps: [N; 2],
-    /// The squared radius of the circle, ρ².
+    /// The radius of the circle, ρ, and its square.
+    pub radius: N,
     pub squared: N,
     /// ρ times the angle between the outer normals of the two spheres on the circle.
     pub bend: N,
@@ -82,7 +83,7 @@ impl<N: Real> Circle<N> {
         let squared = caps[of] * (radii[of] + heights[of]);
         let radius = squared.sqrt();
         let cosine = (squares[0] + squares[1] - apart).half();
-        Self { caps, squared, bend: radius * N::angle(distance * radius, cosine) }
+        Self { caps, radius, squared, bend: radius * N::angle(distance * radius, cosine) }
     }
 }
 
@@ -91,13 +92,18 @@ impl Circle<Single> {
     pub(crate) fn measured(balls: [Ball; 2], alpha: f64) -> Self {
         let circle = Self::of(balls, alpha);
         let limits = Limits::of(&balls, alpha);
-        let lengths = [circle.caps[0], circle.caps[1], circle.bend];
+        let lengths = [circle.caps[0], circle.caps[1], circle.radius, circle.bend];
         if lengths.into_iter().all(|length| limits.length(length)) && limits.square(circle.squared)
         {
             return circle;
         }
-        let Circle { caps, squared, bend } = Circle::<Double>::of(balls, alpha);
-        Self { caps: caps.map(Double::rounded), squared: squared.rounded(), bend: bend.rounded() }
+        let Circle { caps, radius, squared, bend } = Circle::<Double>::of(balls, alpha);
+        Self {
+            caps: caps.map(Double::rounded),
+            radius: radius.rounded(),
+            squared: squared.rounded(),
+            bend: bend.rounded(),
+        }
     }
 }
 

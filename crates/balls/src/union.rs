@@ -370,9 +370,9 @@ impl Work<'_> {
             arcs,
             contacts,
             volumes: column("the volumes of balls", 3, |part| part.volume)?,
-            areas: column("the areas of balls", 2, |part| part.radius * part.mean)?,
+            areas: column("the areas of balls", 2, |part| part.area)?,
             totals: Totals {
-                volume: total(sums.six_volumes / Double::exact(6.0), 3),
+                volume: points.bounded(sums.six_volumes.sixth(), 3),
                 area: total(sums.area, 2),
                 mean_curvature: total(sums.mean, 1),
                 gaussian_curvature: total(sums.gaussian, 0),
@@ -511,8 +511,9 @@ impl Work<'_> {
                 let solid = Single::pi() * (cells + four) - rims[v].closed - solids[v];
                 let radius = points.squared_radius::<Single>(v as u32).sqrt();
                 let mean = radius * solid - rims[v].caps;
-                let cone = radius.square() * mean;
-                Part { radius, solid, mean, cone, volume: third(cone + cones[v]) }
+                let area = radius * mean;
+                let cone = radius * area;
+                Part { solid, mean, area, cone, volume: third(cone + cones[v]) }
             }
         };
         let mut parts = memory::try_with_capacity(points.len(), || "the parts of balls".into())?;
@@ -524,12 +525,13 @@ impl Work<'_> {
 /// The part of a ball in the union.
 #[derive(Clone, Copy, Debug, Default)]
 struct Part {
-    radius: Single,
     /// 4π less the solid angles of all tetrahedra.
     solid: Single,
     /// The area on its sphere, divided by the radius.
     mean: Single,
-    /// That area times the radius: three times the volume below it.
+    /// That area,
+    area: Single,
+    /// and three times the volume below it.
     cone: Single,
     volume: Single,
 }
@@ -537,7 +539,7 @@ struct Part {
 impl Sums {
     fn add_ball(&mut self, part: &Part) {
         self.six_volumes += part.cone.times(2.0);
-        self.area += part.radius * part.mean;
+        self.area += part.area;
         self.mean += part.mean;
         self.gaussian += part.solid;
     }
