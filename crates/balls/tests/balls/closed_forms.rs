@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use walpha_balls::BallUnion;
 use walpha_shape::Torus;
 
-use crate::{assert_consistent, assert_is, shape, shape_on};
+use crate::{assert_consistent, assert_is, assert_same, shape, shape_on};
 
 #[test]
 fn one_ball_is_a_ball() {
@@ -106,7 +106,7 @@ fn hidden_balls_and_duplicates_have_no_part() {
     // A ball of radius 0 is a point of the union.
     assert_eq!(union.euler_characteristic(), 2);
     assert_eq!(union.components().len(), 2);
-    assert_eq!(union.components()[0].volume, union.volume());
+    assert_same(union.components()[0].volume, union.volume());
 }
 
 #[test]
