@@ -1,7 +1,8 @@
 //! Measures unions of balls for scripts: `measure < balls.txt`.
 //!
 //! Each line of the input is a ball, `x y z s` with its squared radius s; an empty line ends a set. For each set a line of JSON is
-//! printed, in which every number is a pair: the value and its bound. Doubles are printed so that they can be read back exactly.
+//! printed: the dual complex, by the numbers of balls, and measures, each a pair of the value and its bound. Contacts are in the order of
+//! the edges. Doubles are printed so that they can be read back exactly.
 
 use std::error::Error;
 use std::fmt::Write;
@@ -52,7 +53,11 @@ fn measured(set: &str) -> Result<String, Box<dyn Error>> {
         let numbers: Vec<String> = (0..column.len()).map(|row| pair(column.get(row))).collect();
         write!(line, ", \"{name}\": [{}]", numbers.join(", "))?;
     }
-    write!(line, ", \"pairs\": {:?}}}", contacts.pairs)?;
+    let complex = shape.complex();
+    write!(line, ", \"vertices\": {:?}", complex.vertices.rows())?;
+    write!(line, ", \"edges\": {:?}", complex.edges.rows())?;
+    write!(line, ", \"facets\": {:?}", complex.facets.rows())?;
+    write!(line, ", \"cells\": {:?}}}", complex.cells.rows())?;
     Ok(line)
 }
 
