@@ -54,19 +54,21 @@ impl<'a> DiscUnion<'a> {
         let complex = complex_of_balls(shape)?;
         let points = Points::of(shape);
         let sides = FacetSides::apexes(&complex, &points.positions);
-        let mut edges: Vec<AtEdge> = zeros(complex.edges.len(), "the contacts of discs")?;
+        let mut contacts: Vec<AtEdge> = zeros(complex.edges.len(), "the contacts of discs")?;
         let mut vertices: Vec<AtVertex> = zeros(points.len(), "the parts of discs")?;
         let (mut twice, mut perimeter) = (Double::default(), Double::default());
-        for &corners in sides.facets() {
+        let facets = (0..points.len() as u32).flat_map(|v| sides.facets_and_edges(&complex, v));
+        for (facet, edges) in facets {
+            let corners = sides.facets()[facet];
             let of = Filled::measured(points.balls(corners), points.alpha);
             twice += of.twice;
-            for (k, row) in sides.edges(&complex, corners).into_iter().enumerate() {
+            for (k, row) in edges.into_iter().enumerate() {
                 vertices[corners[k] as usize].angles += of.angles[k];
-                edges[row as usize].length += of.heights[k];
-                edges[row as usize].triangles += 1;
+                contacts[row as usize].length += of.heights[k];
+                contacts[row as usize].triangles += 1;
             }
         }
-        for (&ends, at) in complex.edges.rows().iter().zip(&mut edges) {
+        for (&ends, at) in complex.edges.rows().iter().zip(&mut contacts) {
             let balls = points.balls(ends);
             let Edge { distance, heights } = Edge::measured(balls, points.alpha);
             if at.triangles < 2 {
@@ -112,8 +114,8 @@ impl<'a> DiscUnion<'a> {
         let perimeter = points.bounded(perimeter.rounded(), 1);
         let perimeters = column("the perimeters of discs", 1, &|v| part(v).0)?;
         let areas = column("the areas of discs", 2, &|v| part(v).1)?;
-        let contacts = Measured::collect(edges.len(), "the contacts of discs", |row| {
-            points.bounded(edges[row].length, 1)
+        let contacts = Measured::collect(contacts.len(), "the contacts of discs", |row| {
+            points.bounded(contacts[row].length, 1)
         })?;
         Ok(Self { complex, areas, perimeters, contacts, area, perimeter })
     }

@@ -153,7 +153,8 @@ impl BallUnion<'_> {
     /// What the triangles of a group of vertices add to edges.
     fn at_edges(&self, group: &[u32]) -> Records<AtEdge> {
         let mut found = Records::new();
-        for row in group.iter().flat_map(|&v| self.sides.facets_of(v)) {
+        let facets = group.iter().flat_map(|&v| self.sides.facets_and_edges(&self.complex, v));
+        for (row, edges) in facets {
             let corners = self.sides.facets()[row];
             let apexes = self.sides.sides(row);
             let balls = self.points.balls(corners);
@@ -173,7 +174,7 @@ impl BallUnion<'_> {
             } else {
                 of_triangle::<Double>(balls, apexes, alpha)
             };
-            found.extend(self.sides.edges(&self.complex, corners).into_iter().zip(at));
+            found.extend(edges.into_iter().zip(at));
         }
         found
     }

@@ -11,6 +11,7 @@ mod discs;
 mod error;
 mod gradient;
 mod points;
+mod quick;
 mod real;
 mod scatter;
 mod simplex;

@@ -106,7 +106,7 @@ pub(crate) trait Real:
 }
 
 /// 2⁻⁵³: a double differs from the number that it was rounded from by at most this part of either.
-const U: f64 = f64::EPSILON / 2.0;
+pub(crate) const U: f64 = f64::EPSILON / 2.0;
 
 /// More than products and quotients lose that fall below the normal doubles.
 const TINY: f64 = f64::MIN_POSITIVE;

@@ -16,6 +16,12 @@ pub(crate) fn scatter<L: Sync, R, S: Send>(
     sums: &mut [S],
     add: impl Fn(&mut S, &R) + Sync,
 ) {
+    if rayon::current_num_threads() == 1 {
+        for (to, record) in lists.iter().flat_map(records) {
+            add(&mut sums[*to as usize], record);
+        }
+        return;
+    }
     let part = sums.len().div_ceil(rayon::current_num_threads()).max(1);
     sums.par_chunks_mut(part).enumerate().for_each(|(index, sums)| {
         let first = index * part;

@@ -10,6 +10,7 @@ use walpha_shape::{AlphaShape, Class, Complex, FacetSides};
 
 use crate::BallsError;
 use crate::points::Points;
+use crate::quick::Quick;
 use crate::real::{Bounded, Double, Real, Single};
 use crate::scatter::{Records, ranges, scatter};
 use crate::simplex::{Circle, Edge, Limits, Open, Side, Triangle};
@@ -138,8 +139,7 @@ impl<'a> BallUnion<'a> {
         let complex = complex_of_balls(shape)?;
         let points = Points::of(shape);
         let sides = FacetSides::apexes(&complex, &points.positions);
-        let work = Work { complex: &complex, points: &points, sides: &sides };
-        let passes = work.run(monitor)?;
+        let passes = Work::new(&complex, &points, &sides)?.run(monitor)?;
         let Passes { arcs, contacts, volumes, areas, totals } = passes;
         Ok(Self { shape, complex, points, sides, arcs, contacts, volumes, areas, totals })
     }
@@ -266,6 +266,8 @@ struct Work<'a> {
     complex: &'a Complex,
     points: &'a Points<'a>,
     sides: &'a FacetSides,
+    /// For each edge that is not interior, its place among them.
+    slots: Vec<u32>,
 }
 
 /// What the triangles of some vertices add.
@@ -292,29 +294,56 @@ struct OfEdges {
     sums: Sums,
 }
 
+/// What triangles have added to edges, and the classes of vertices.
+#[derive(Clone, Copy)]
+struct OnEdges<'a> {
+    kites: &'a [Single],
+    /// By slot.
+    angles: &'a [EdgeAngles],
+    classes: &'a [Option<Class>],
+}
+
 /// Vertices whose triangles are one piece of work, and pieces that are summed at a time.
 const VERTICES: usize = 1 << 6;
-const PIECES: usize = 1 << 8;
+const PIECES: usize = 1 << 6;
 /// Edges, or vertices, that are one piece of work.
 const ROWS: usize = 1 << 11;
 
-impl Work<'_> {
+impl<'a> Work<'a> {
+    fn new(
+        complex: &'a Complex,
+        points: &'a Points<'a>,
+        sides: &'a FacetSides,
+    ) -> Result<Self, BallsError> {
+        let mut slots =
+            memory::try_with_capacity(complex.edges.len(), || "the edges of balls".into())?;
+        let mut next = 0;
+        for &class in complex.edges.classes() {
+            slots.push(next);
+            next += u32::from(class != Class::Interior);
+        }
+        Ok(Self { complex, points, sides, slots })
+    }
+
     fn run(&self, monitor: &Monitor) -> Result<Passes, BallsError> {
         let Self { complex, points, .. } = *self;
+        let on_boundary = complex.edges.len() - complex.edges.counts().interior;
         let count = complex.edges.len();
         let steps = monitor.units(points.len() as u64 + count as u64);
         let classes = self.classes()?;
         let mut kites: Vec<Single> = zeros(count, "the contacts of balls")?;
-        let mut angles: Vec<EdgeAngles> = zeros(count, "the angles of the dual complex")?;
+        let mut angles: Vec<EdgeAngles> = zeros(on_boundary, "the angles of the dual complex")?;
         let mut solids: Vec<Single> = zeros(points.len(), "the solid angles of balls")?;
         let mut sums = Sums::default();
         let groups: Vec<&[u32]> = self.sides.groups(VERTICES).collect();
+        let mut found: Vec<OfTriangles> = Vec::new();
+        found.resize_with(PIECES.min(groups.len()), OfTriangles::default);
         for groups in groups.chunks(PIECES) {
-            let found: Vec<OfTriangles> =
-                groups.par_iter().map(|group| self.triangles(group)).collect();
-            scatter(&found, |of| &of.kites, &mut kites, |sum, &more| *sum += more);
+            let found = &mut found[..groups.len()];
+            found.par_iter_mut().zip(groups).for_each(|(of, group)| self.triangles(group, of));
+            scatter(found, |of| &of.kites, &mut kites, |sum, &more| *sum += more);
             scatter(
-                &found,
+                found,
                 |of| &of.angles,
                 &mut angles,
                 |sum, more| {
@@ -322,23 +351,25 @@ impl Work<'_> {
                     sum.open += more.open;
                 },
             );
-            scatter(&found, |of| &of.solids, &mut solids, |sum, &more| *sum += more);
+            scatter(found, |of| &of.solids, &mut solids, |sum, &more| *sum += more);
             found.iter().for_each(|of| sums.join(&of.sums));
             steps.add(groups.iter().map(|group| group.len() as u64).sum())?;
         }
+        drop(found);
         let mut cones: Vec<Single> = zeros(points.len(), "the volumes of balls")?;
         let mut rims: Vec<VertexRim> = zeros(points.len(), "the areas of balls")?;
         let mut arcs = memory::try_with_capacity(count, || "the arcs of balls".into())?;
         let mut contacts = Measured::with_capacity(count, "the contacts of balls")?;
+        let mut found: Vec<OfEdges> = Vec::new();
+        found.resize_with(PIECES.min(count.div_ceil(ROWS)), OfEdges::default);
         for window in ranges(0..count, ROWS * PIECES) {
             let pieces: Vec<Range<usize>> = ranges(window.clone(), ROWS).collect();
-            let found: Vec<OfEdges> = pieces
-                .into_par_iter()
-                .map(|rows| self.edges(rows, &kites, &angles, &classes))
-                .collect();
-            scatter(&found, |of| &of.cones, &mut cones, |sum, &more| *sum += more);
+            let found = &mut found[..pieces.len()];
+            let on_edges = OnEdges { kites: &kites, angles: &angles, classes: &classes };
+            found.par_iter_mut().zip(pieces).for_each(|(of, rows)| self.edges(rows, on_edges, of));
+            scatter(found, |of| &of.cones, &mut cones, |sum, &more| *sum += more);
             scatter(
-                &found,
+                found,
                 |of| &of.rims,
                 &mut rims,
                 |sum, more| {
@@ -346,13 +377,14 @@ impl Work<'_> {
                     sum.caps += more.caps;
                 },
             );
-            for of in &found {
+            for of in found {
                 arcs.extend_from_slice(&of.arcs);
                 of.contacts.iter().for_each(|&contact| contacts.push(contact));
                 sums.join(&of.sums);
             }
             steps.add(window.len() as u64)?;
         }
+        drop(found);
         drop((kites, angles));
         let parts = self.parts(&classes, &solids, &cones, &rims)?;
         let of_balls =
@@ -389,24 +421,41 @@ impl Work<'_> {
         Ok(classes)
     }
 
-    /// What the triangles of a group of vertices add.
-    fn triangles(&self, group: &[u32]) -> OfTriangles {
-        let mut found = OfTriangles::default();
-        for row in group.iter().flat_map(|&v| self.sides.facets_of(v)) {
-            self.triangle(row, &mut found);
+    /// Finds what the triangles of a group of vertices add.
+    fn triangles(&self, group: &[u32], found: &mut OfTriangles) {
+        let OfTriangles { kites, angles, solids, sums } = found;
+        kites.clear();
+        angles.clear();
+        solids.clear();
+        *sums = Sums::default();
+        for &v in group {
+            for (row, edges) in self.sides.facets_and_edges(self.complex, v) {
+                self.triangle(row, edges, found);
+            }
         }
-        found
     }
 
-    fn triangle(&self, row: usize, found: &mut OfTriangles) {
+    fn triangle(&self, row: usize, edges: [u32; 3], found: &mut OfTriangles) {
         let corners = self.sides.facets()[row];
         let apexes = self.sides.sides(row);
-        let edges = self.sides.edges(self.complex, corners);
         let balls = self.points.balls(corners);
         let limits = Limits::of(&balls, self.points.alpha);
-        let triangle = Triangle::<Single>::of(balls);
         let on_boundary =
             edges.map(|edge| self.complex.edges.classes()[edge as usize] != Class::Interior);
+        if !on_boundary.contains(&true) {
+            // So there are cells on both sides.
+            let at = apexes.map(|apex| self.points.near(balls[0].centre, apex));
+            if let Some(Quick { kites, dets }) = Quick::of(balls, at, limits) {
+                for (apex, det) in apexes.into_iter().zip(dets) {
+                    if corners[2] < apex {
+                        found.sums.six_volumes += det;
+                    }
+                }
+                found.kites.extend(edges.into_iter().zip(kites));
+                return;
+            }
+        }
+        let triangle = Triangle::<Single>::of(balls);
         let mut kites = [Single::ZERO; 3];
         let mut angles = [EdgeAngles::default(); 3];
         for apex in apexes.into_iter().filter(|&apex| apex != FacetSides::OPEN) {
@@ -421,7 +470,7 @@ impl Work<'_> {
                 kites[k] += more[k];
                 angles[k].closed += side.angles[k].unwrap_or(Single::ZERO);
             }
-            // Each cell once, from the triangle of its three smaller corners.
+            // Each cell once, from the triangle of its three smaller corners, as above.
             if corners[2] < apex {
                 found.sums.six_volumes += side.det;
             }
@@ -440,31 +489,30 @@ impl Work<'_> {
             }
         }
         found.kites.extend(edges.into_iter().zip(kites));
-        let angles = edges.into_iter().zip(angles).zip(on_boundary);
-        found
-            .angles
-            .extend(angles.filter(|(_, on_boundary)| *on_boundary).map(|(angles, _)| angles));
+        for k in (0..3).filter(|&k| on_boundary[k]) {
+            found.angles.push((self.slots[edges[k] as usize], angles[k]));
+        }
     }
 
-    /// What some edges add, and their own numbers.
-    fn edges(
-        &self,
-        rows: Range<usize>,
-        kites: &[Single],
-        angles: &[EdgeAngles],
-        classes: &[Option<Class>],
-    ) -> OfEdges {
-        let mut found = OfEdges::default();
+    /// Finds what some edges add, and their own numbers.
+    fn edges(&self, rows: Range<usize>, on: OnEdges<'_>, found: &mut OfEdges) {
+        let OfEdges { arcs, contacts, cones, rims, sums } = found;
+        arcs.clear();
+        contacts.clear();
+        cones.clear();
+        rims.clear();
+        *sums = Sums::default();
         for row in rows {
             let ends = self.complex.edges.rows()[row];
             let balls = self.points.balls(ends);
             let Edge { distance, heights } = Edge::measured(balls, self.points.alpha);
             let turn = Single::pi().times(2.0);
-            let mut twice = kites[row] / distance;
+            let mut twice = on.kites[row] / distance;
             let (mut closed, mut arc, mut caps) = (turn, Single::ZERO, [Single::ZERO; 2]);
             if self.complex.edges.classes()[row] != Class::Interior {
-                closed = angles[row].closed;
-                arc = turn - closed - angles[row].open;
+                let angles = &on.angles[self.slots[row] as usize];
+                closed = angles.closed;
+                arc = turn - closed - angles.open;
                 let circle = Circle::measured(balls, self.points.alpha);
                 let disc = arc * circle.squared;
                 twice += disc;
@@ -476,14 +524,13 @@ impl Work<'_> {
             let contact = twice.half();
             for k in 0..2 {
                 found.cones.push((ends[k], contact * heights[k]));
-                if classes[ends[k] as usize] != Some(Class::Interior) {
+                if on.classes[ends[k] as usize] != Some(Class::Interior) {
                     found.rims.push((ends[k], VertexRim { closed, caps: caps[k] }));
                 }
             }
             found.arcs.push(arc);
             found.contacts.push(self.points.bounded(contact, 2));
         }
-        found
     }
 
     /// The part of each ball.
@@ -494,7 +541,7 @@ impl Work<'_> {
         cones: &[Single],
         rims: &[VertexRim],
     ) -> Result<Vec<Part>, BallsError> {
-        let Self { complex, points, .. } = *self;
+        let Self { complex, points, .. } = self;
         let cells: Vec<AtomicU32> = (0..points.len()).map(|_| AtomicU32::new(0)).collect();
         complex.cells.rows().as_flattened().par_iter().for_each(|&v| {
             if classes[v as usize] != Some(Class::Interior) {

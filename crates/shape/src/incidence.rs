@@ -34,6 +34,7 @@ struct Edges<'a> {
 
 impl Edges<'_> {
     /// The edge between two vertices, the smaller first.
+    #[inline]
     fn row(self, a: u32, b: u32) -> u32 {
         let range = rows(self.of_vertices, a);
         range.start as u32 + index_of(&self.rows[range], b)
@@ -81,6 +82,7 @@ impl<'a> Faces<'a> {
 
 /// The index of the row with this last vertex, among rows whose last vertices ascend. There are nearly always few: then
 /// counting is faster than bisection, whose branches are mispredicted.
+#[inline]
 fn index_of<const N: usize>(rows: &[[u32; N]], last: u32) -> u32 {
     // Up to this many rows are counted.
     const FEW: usize = 32;
@@ -166,9 +168,23 @@ impl FacetSides {
         self.sides[row]
     }
 
-    /// The edge opposite each vertex of a facet, by row among the edges of the complex. O(log d).
-    pub fn edges(&self, complex: &Complex, facet: [u32; 3]) -> [u32; 3] {
-        Edges { rows: complex.edges.rows(), of_vertices: &self.along.edges }.of_facet(facet)
+    /// The facets of a vertex, each with the edge opposite each of its vertices; facets by row here, edges by row in the complex.
+    /// O(log d) each.
+    pub fn facets_and_edges<'a>(
+        &'a self,
+        complex: &'a Complex,
+        vertex: u32,
+    ) -> impl Iterator<Item = (usize, [u32; 3])> + 'a {
+        let edges = Edges { rows: complex.edges.rows(), of_vertices: &self.along.edges };
+        // Facets with a common edge to their second vertex follow each other.
+        let mut last = (vertex, 0);
+        self.facets_of(vertex).map(move |row| {
+            let [a, b, c] = self.facets[row];
+            if b != last.0 {
+                last = (b, edges.row(a, b));
+            }
+            (row, [edges.row(b, c), edges.row(a, c), last.1])
+        })
     }
 
     /// The row of an edge among those of the complex, if it is there. Its ends ascend. O(log d).
