@@ -143,7 +143,7 @@ impl<'a> Rest<'a> {
         let radius = |corner: usize| self.points.squared_radius::<Single>(cell[corner]).sqrt();
         for corner in (0..4).filter(|&corner| self.in_shape[cell[corner] as usize]) {
             let [a, b, c] = Cell::AT[corner].map(|edge| angles[edge]);
-            self.sector(radius(corner), a + b + c - Single::pi(), six_volumes, area);
+            take_sector(radius(corner), a + b + c - Single::pi(), six_volumes, area);
         }
         let sorted = |corners: &[usize; 2]| {
             let [a, b] = corners.map(|corner| cell[corner]);
@@ -167,19 +167,19 @@ impl<'a> Rest<'a> {
             let (open, _) = Open::measured(&Triangle::of(balls), balls, alpha, limits);
             *six_volumes += -open.det;
             for k in 0..3 {
-                self.sector(radius(corners[k]), -open.corners[k], six_volumes, area);
+                take_sector(radius(corners[k]), -open.corners[k], six_volumes, area);
                 let lens = Lens::of([balls[(k + 1) % 3], balls[(k + 2) % 3]], alpha);
                 lens.take(-open.angles[k], six_volumes, area);
             }
         }
     }
+}
 
-    /// Takes the sector of a ball in a solid angle from a volume, and adds its area.
-    fn sector(&self, radius: Single, solid: Single, six_volumes: &mut Double, area: &mut Double) {
-        let patch = radius.square() * solid;
-        *area += patch;
-        *six_volumes += -(patch * radius).times(2.0);
-    }
+/// Takes the sector of a ball in a solid angle from a volume, and adds its area.
+fn take_sector(radius: Single, solid: Single, six_volumes: &mut Double, area: &mut Double) {
+    let patch = radius.square() * solid;
+    *area += patch;
+    *six_volumes += -(patch * radius).times(2.0);
 }
 
 /// What two balls share, for each radian around their axis.

@@ -1,15 +1,18 @@
 //! Derivatives of volume and area by centres and radii.
 //!
-//! With u the unit vector from ball i to ball j, F the contact area, h the distance of its plane from i, ψ the open angle of the circle
-//! of radius ρ around its centre o, E the integral over it of the unit vectors from o, m the first moment of the contact about o, and
-//! q = (r_i² + r_j² − d²)/2:
+//! With u the unit vector from ball i to ball j, F the contact area, h the distance of its plane from the centre of i, ψ the open angle
+//! of the circle of radius ρ around its centre o, E the integral over it of the unit vectors from o, m the first moment of the contact
+//! about o, and q half of the sum of the squared radii less the squared distance d:
 //!
-//! - ∂(Σ w V)/∂p_i = Σ_j −w_i F u + (w_i − w_j)(F h u + m)/d, ∂(Σ w V)/∂r_i = w_i A_i + Σ_j (w_i − w_j) r_i F/d;
-//! - ∂(Σ w A)/∂p_i = Σ_j (−2 w_i F u + (w_i q − w_j r_i r_j)(h ψ u + ρ E)/d) / r_i,
-//!   ∂(Σ w A)/∂r_i = 2 w_i A_i / r_i + Σ_j (w_i q − w_j r_i r_j) ψ/d.
+//! ```text
+//! ∂(Σ w V)/∂p_i = Σ_j (w_i − w_j) (F h u + m)/d − w_i F u
+//! ∂(Σ w V)/∂r_i = w_i A_i + Σ_j (w_i − w_j) r_i F/d
+//! ∂(Σ w A)/∂p_i = Σ_j ((w_i q − w_j r_i r_j)(h ψ u + ρ E)/d − 2 w_i F u) / r_i
+//! ∂(Σ w A)/∂r_i = 2 w_i A_i / r_i + Σ_j (w_i q − w_j r_i r_j) ψ/d
+//! ```
 //!
-//! (Edelsbrunner and Koehl 2003, doi:10.1073/pnas.0537830100; Bryant, Edelsbrunner, Koehl and Levitt 2004, doi:10.1007/s00454-004-1099-1;
-//! in other terms.)
+//! They say how patches, arcs and contacts move, as in Edelsbrunner and Koehl 2003, doi:10.1073/pnas.0537830100, and Bryant, Edelsbrunner,
+//! Koehl and Levitt 2004, doi:10.1007/s00454-004-1099-1, who have other terms.
 
 use std::ops::Range;
 
@@ -165,9 +168,7 @@ impl BallUnion<'_> {
             let at = of_triangle::<Single>(balls, apexes, alpha);
             let limit = Limits::of(&balls, alpha);
             let narrow = |at: &AtEdge| {
-                let [arc, moment] = [at.arc, at.moment].map(|vector| vector.into_iter());
-                arc.into_iter().all(|x| limit.length(x))
-                    && moment.into_iter().all(|x| limit.cube(x))
+                at.arc.iter().all(|&x| limit.length(x)) && at.moment.iter().all(|&x| limit.cube(x))
             };
             let at = if at.iter().all(narrow) {
                 at

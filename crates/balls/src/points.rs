@@ -27,18 +27,14 @@ impl<'a> Points<'a> {
         let torus = shape.options().periodic;
         let scaled = Scaled::of(positions, weights).filter(|_| torus.is_none());
         let scaled = scaled.and_then(|scaled| Some((scaled.square(alpha)?, scaled)));
-        match scaled {
-            Some((alpha, scaled)) => {
-                let unit = 1.0 / scaled.factor();
-                let Scaled { positions, weights, .. } = scaled;
-                let (positions, weights) = (Cow::Owned(positions), Cow::Owned(weights));
-                Self { positions, weights, alpha, torus, unit }
-            }
-            None => {
-                let (positions, weights) = (positions.into(), weights.into());
-                Self { positions, weights, alpha, torus, unit: 1.0 }
-            }
-        }
+        let Some((alpha, scaled)) = scaled else {
+            let (positions, weights) = (positions.into(), weights.into());
+            return Self { positions, weights, alpha, torus, unit: 1.0 };
+        };
+        let unit = 1.0 / scaled.factor();
+        let Scaled { positions, weights, .. } = scaled;
+        let (positions, weights) = (Cow::Owned(positions), Cow::Owned(weights));
+        Self { positions, weights, alpha, torus, unit }
     }
 
     /// The same balls at another α, in the unit of the shape.

@@ -38,9 +38,9 @@ impl Quick {
         let (aa, bb, tt) = (dot(a, a), dot(b, b), dot(t, t));
         let (ab, at) = (dot(a, b), dot(a, t));
         let (to_j, to_k, across) = (i.weight - j.weight, i.weight - k.weight, j.weight - k.weight);
-        let (g_j, g_k) = ((aa + to_j) / 2.0, (bb + to_k) / 2.0);
+        let (g_j, g_k) = (0.5 * (aa + to_j), 0.5 * (bb + to_k));
         let coordinates = [
-            (aa - to_j) / 2.0 * tt + (tt + across) / 2.0 * at,
+            0.5 * (aa - to_j) * tt + 0.5 * (tt + across) * at,
             g_j * bb - g_k * ab,
             g_k * aa - g_j * ab,
         ];
@@ -64,7 +64,7 @@ impl Quick {
                 return None;
             }
             let in_plane = (coordinates[1] * dot(a, w) + coordinates[2] * dot(b, w)) * reciprocal;
-            let rise = (ww + to_apex) / 2.0 - in_plane;
+            let rise = 0.5 * (ww + to_apex) - in_plane;
             let over = 1.0 / value;
             let height = rise * over;
             let of_plane = (48.0 * U * r2 * r4 + in_plane.abs() * of_area) * reciprocal * LEFT

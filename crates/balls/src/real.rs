@@ -189,8 +189,8 @@ impl Mul for Single {
     }
 }
 
-/// The error of a quotient, before rounding: |a/b − ã/b̃| ≤ (e_a + |ã/b̃| e_b) / (|b̃| − e_b). Infinite unless e_b ≤ |b̃|/2, so that the
-/// rounding of errors stays small.
+/// The error of a quotient, before rounding: the dividend's error and the quotient times that of the divisor, divided by the least magnitude
+/// of the divisor. Infinite unless the divisor's error is at most half of it, so that the rounding of errors stays small.
 #[inline(always)]
 fn error_of_quotient(error: f64, quotient: f64, of_divisor: f64, divisor: f64) -> f64 {
     let least = divisor.abs() - of_divisor;
@@ -304,7 +304,7 @@ impl Real for Single {
             return Self::up_to(std::f64::consts::PI);
         }
         let value = angle::of(y.value, x.value);
-        Self { value, error: spread + angle::ROUNDING * value }
+        Self { value, error: spread + (angle::ROUNDING * value + TINY) }
     }
 
     #[inline(always)]
@@ -314,8 +314,8 @@ impl Real for Single {
 }
 
 /// How much the direction of a point changes within its error; at least π where it may be any. With r the distance from 0 and s the sum of
-/// the errors, all points within the errors are at least r − s away, and the angle changes by at most
-/// (|x| e_y + |y| e_x + 2 e_x e_y) / (r − s)².
+/// the errors a of x and b of y, all points within the errors are at least r − s away, and the angle changes by at most
+/// (|x| b + |y| a + 2 a b) / (r − s)².
 #[inline(always)]
 fn spread([y, x]: [Single; 2]) -> f64 {
     let squared = x.value * x.value + y.value * y.value;
@@ -500,7 +500,7 @@ impl Real for Double {
     }
 
     fn angle(y: Self, x: Self) -> Self {
-        if !(y.value.high > 0.0) {
+        if y.value.high.is_nan() || y.value.high <= 0.0 {
             // The first coordinate decides between 0 and π, and the error of the other what is between.
             let y = Single { value: 0.0, error: y.error };
             let x = x.rounded();
@@ -508,11 +508,11 @@ impl Real for Double {
         }
         let half = |number: Self| Single { value: number.value.high, error: number.error };
         let spread = spread([half(y), half(x)]) * (1.0 + 8.0 * U);
-        if !(spread < std::f64::consts::PI) {
+        if spread >= std::f64::consts::PI {
             return Single::up_to(std::f64::consts::PI).into();
         }
         let value = angle::of_twofold(y.value, x.value);
-        Self { value, error: spread + angle::ROUNDING_OF_TWOFOLD * value.high }
+        Self { value, error: spread + (angle::ROUNDING_OF_TWOFOLD * value.high + TINY_HALF) }
     }
 
     #[inline(always)]

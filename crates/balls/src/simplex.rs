@@ -1,8 +1,8 @@
 //! Edges, triangles and tetrahedra of balls: lengths, angles and volumes with bounds on their errors.
 //!
-//! With the centres p and squared radii r² of balls, g_ij = (p_j − p_i)·(y − p_i) for all points y of the plane in which the powers of i and j
-//! are equal: (|p_j − p_i|² + r_i² − r_j²) / 2. The centre of a triangle, that of its smallest orthogonal sphere, is the point of its
-//! plane that lies in two such planes.
+//! The *reach* from ball i to ball j is the inner product of the way from centre to centre and the way from the centre of i to any point of the plane in
+//! which the powers of i and j are equal: half of the squared distance and the difference of squared radii. The centre of a triangle,
+//! that of its smallest orthogonal sphere, is the point of its plane that lies in two such planes.
 
 use walpha_base::vector::V3;
 
@@ -15,7 +15,7 @@ pub(crate) struct Ball {
     pub weight: f64,
 }
 
-/// g_ij of two balls, given their squared distance.
+/// The reach from one ball to another, given their squared distance.
 #[inline(always)]
 fn reach<N: Real>(squared: N, [i, j]: [Ball; 2]) -> N {
     (squared + N::sum(i.weight, -j.weight)).half()
@@ -118,7 +118,7 @@ pub(crate) struct Triangle<N: Real> {
     pub squares: [N; 3],
     /// The inner product of the edges at each corner.
     pub products: [N; 3],
-    /// g from the first corner to the others.
+    /// The reaches from the first corner to the others.
     reaches: [N; 2],
     /// The product of the two edges, twice the area long.
     pub normal: [N; 3],
@@ -302,7 +302,7 @@ impl Side<Single> {
         for (kite, coordinate) in kites.iter_mut().zip(triangle.coordinates) {
             let most = (coordinate * most / twice).rounded();
             let most = most.value.abs() + most.error;
-            if !(kite.error <= most) {
+            if kite.error.is_nan() || kite.error > most {
                 *kite = Single { value: 0.0, error: most };
             }
         }

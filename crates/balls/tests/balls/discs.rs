@@ -87,9 +87,9 @@ fn parts_are_those_of_samples() {
             sampled[least.1] += step * step;
         }
     }
-    for v in 0..n {
+    for (v, sampled) in sampled.into_iter().enumerate() {
         let found = union.areas().get(v);
-        assert!((found.value - sampled[v]).abs() < 0.02, "{v}: {found:?} {}", sampled[v]);
+        assert!((found.value - sampled).abs() < 0.02, "{v}: {found:?} {sampled}");
         assert!(found.bound < 1e-12);
     }
     let [areas, perimeters] =

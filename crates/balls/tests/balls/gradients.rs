@@ -14,6 +14,9 @@ fn weighted(centers: &[[f64; 3]], radii: &[f64], weights: &[f64]) -> [f64; 2] {
     [sum(&union.volumes().values), sum(&union.areas().values)]
 }
 
+/// Changes centres or radii by a step.
+type Change<'a> = dyn Fn(f64, &mut [[f64; 3]], &mut [f64]) + 'a;
+
 #[test]
 fn derivatives_are_limits_of_differences() {
     for (seed, n, spread) in [(1, 3, 0.6), (2, 12, 0.8), (3, 30, 0.9), (4, 30, 1.3)] {
@@ -28,7 +31,7 @@ fn derivatives_are_limits_of_differences() {
             let ones = vec![1.0; n];
             let weights = weights.unwrap_or(&ones);
             let h = 1e-6;
-            let check = |change: &dyn Fn(f64, &mut Vec<[f64; 3]>, &mut Vec<f64>), got: [f64; 2]| {
+            let check = |change: &Change<'_>, got: [f64; 2]| {
                 let at = |step: f64| {
                     let (mut centers, mut radii) = (centers.clone(), radii.clone());
                     change(step, &mut centers, &mut radii);

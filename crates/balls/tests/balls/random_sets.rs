@@ -60,10 +60,10 @@ fn parts_are_those_of_samples() {
             }
         }
         let each = side.powi(3) / f64::from(samples);
-        for v in 0..n {
-            let (found, sampled) = (union.volumes().get(v).value, inside[v] * each);
+        for (v, inside) in inside.into_iter().enumerate() {
+            let (found, sampled) = (union.volumes().get(v).value, inside * each);
             // Five standard deviations.
-            let deviation = each * (inside[v] + 10.0f64).sqrt();
+            let deviation = each * (inside + 10.0f64).sqrt();
             assert!((found - sampled).abs() < 5.0 * deviation, "{v}: {found} {sampled}");
         }
         // Sample points of each sphere: a spiral.
@@ -197,10 +197,8 @@ fn neighbours_of_lattices_keep_their_bounds() {
     let n = 5;
     let exact: Vec<[f64; 3]> =
         (0..n * n * n).map(|i| [i % n, i / n % n, i / n / n].map(f64::from)).collect();
-    let centers: Vec<[f64; 3]> = exact
-        .iter()
-        .map(|p| p.map(|x| [x.next_down(), x, x.next_up()][random.below(3) as usize]))
-        .collect();
+    let centers: Vec<[f64; 3]> =
+        exact.iter().map(|p| p.map(|x| [x.next_down(), x, x.next_up()][random.below(3)])).collect();
     for squared in [0.25, 0.5, 0.75, 1.0] {
         let squares = vec![squared; centers.len()];
         let (near, at) = (shape(&centers, &squares), shape(&exact, &squares));

@@ -39,6 +39,7 @@ impl Twofold {
 
     /// The quotient, with a relative error below 2⁻⁹⁸.
     #[inline(always)]
+    #[must_use]
     pub fn over(self, other: Self) -> Self {
         let quotient = self.high / other.high;
         let product = Self::product(quotient, other.high);
