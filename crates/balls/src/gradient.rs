@@ -22,7 +22,7 @@ use walpha_shape::FacetSides;
 
 use crate::real::{Bounded, Double, Real, Single};
 use crate::scatter::{Records, ranges, scatter};
-use crate::simplex::{Ball, Circle, Edge, Limits, Triangle};
+use crate::simplex::{Ball, Circle, Edge, Limits, Triangle, by_size};
 use crate::union::zeros;
 use crate::{BallUnion, BallsError, Measured};
 
@@ -173,7 +173,15 @@ impl BallUnion<'_> {
             let at = if at.iter().all(narrow) {
                 at
             } else {
-                of_triangle::<Double>(balls, apexes, alpha)
+                let order = by_size(&balls);
+                // An odd permutation turns the normal.
+                let turned = (order[0] > order[1]) ^ (order[0] > order[2]) ^ (order[1] > order[2]);
+                let [first, second] = apexes;
+                let apexes = if turned { [second, first] } else { apexes };
+                let found = of_triangle::<Double>(order.map(|k| balls[k]), apexes, alpha);
+                let mut at = [AtEdge::default(); 3];
+                order.into_iter().zip(found).for_each(|(of, found)| at[of] = found);
+                at
             };
             found.extend(edges.into_iter().zip(at));
         }

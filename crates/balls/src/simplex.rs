@@ -107,6 +107,14 @@ impl Circle<Single> {
     }
 }
 
+/// The corners of a simplex by the sizes of their balls, the smallest first. Small balls are near each other, so that differences from one of
+/// them lose the fewest digits.
+pub(crate) fn by_size<const N: usize>(balls: &[Ball; N]) -> [usize; N] {
+    let mut order = std::array::from_fn(|k| k);
+    order.sort_by(|&a, &b| balls[a].weight.total_cmp(&balls[b].weight));
+    order
+}
+
 /// A triangle of balls.
 pub(crate) struct Triangle<N: Real> {
     balls: [Ball; 3],
@@ -293,22 +301,21 @@ impl Side<Single> {
         angles: [bool; 3],
         alpha: f64,
     ) -> (Self, [Single; 3]) {
-        let triangle = Triangle::<Double>::of(balls);
-        let side = triangle.with(apex, angles);
-        let mut kites = side.kites(&triangle).map(Double::rounded);
+        let order = by_size(&balls);
+        let triangle = Triangle::<Double>::of(order.map(|k| balls[k]));
+        let side = triangle.with(apex, order.map(|k| angles[k]));
         // The centre is in all four balls, so it is no higher than the points that the three spheres share.
-        let twice = triangle.area.sqrt();
-        let most = triangle.squared_height(alpha).sqrt();
-        for (kite, coordinate) in kites.iter_mut().zip(triangle.coordinates) {
-            let most = (coordinate * most / twice).rounded();
+        let most = triangle.squared_height(alpha).sqrt() / triangle.area.sqrt();
+        let (mut kites, mut angles) = ([Single::ZERO; 3], [None; 3]);
+        for (at, of) in order.into_iter().enumerate() {
+            let kite = (triangle.coordinates[at] * side.height).rounded();
+            let most = (triangle.coordinates[at] * most).rounded();
             let most = most.value.abs() + most.error;
-            if kite.error.is_nan() || kite.error > most {
-                *kite = Single { value: 0.0, error: most };
-            }
+            let known = kite.error <= most;
+            kites[of] = if known { kite } else { Single { value: 0.0, error: most } };
+            angles[of] = side.angles[at].map(Double::rounded);
         }
-        let angles = side.angles.map(|angle| angle.map(Double::rounded));
-        let (det, height) = (side.det.rounded(), side.height.rounded());
-        (Self { det, height, angles }, kites)
+        (Self { det: side.det.rounded(), height: side.height.rounded(), angles }, kites)
     }
 }
 
@@ -334,18 +341,23 @@ impl Open<Single> {
 
     #[cold]
     fn closely(balls: [Ball; 3], alpha: f64) -> (Self, [Single; 3]) {
-        let triangle = Triangle::<Double>::of(balls);
+        let order = by_size(&balls);
+        let triangle = Triangle::<Double>::of(order.map(|k| balls[k]));
         let open = triangle.open(alpha);
-        let kites = triangle.coordinates.map(|coordinate| (coordinate * open.height).rounded());
-        let Open { height, det, angles, corners, apex } = open;
-        let open = Self {
-            height: height.rounded(),
-            det: det.rounded(),
-            angles: angles.map(Double::rounded),
-            corners: corners.map(Double::rounded),
-            apex: apex.rounded(),
+        let mut found = Self {
+            height: open.height.rounded(),
+            det: open.det.rounded(),
+            angles: [Single::ZERO; 3],
+            corners: [Single::ZERO; 3],
+            apex: open.apex.rounded(),
         };
-        (open, kites)
+        let mut kites = [Single::ZERO; 3];
+        for (at, of) in order.into_iter().enumerate() {
+            kites[of] = (triangle.coordinates[at] * open.height).rounded();
+            found.angles[of] = open.angles[at].rounded();
+            found.corners[of] = open.corners[at].rounded();
+        }
+        (found, kites)
     }
 }
 
@@ -387,8 +399,17 @@ impl Cell<Single> {
         if cell.angles.into_iter().all(Limits::angle) && limits.cube(cell.det) {
             return cell;
         }
-        let Cell { det, angles } = Cell::<Double>::of(balls);
-        Self { det: det.rounded(), angles: angles.map(Double::rounded) }
+        let order = by_size(&balls);
+        let cell = Cell::<Double>::of(order.map(|k| balls[k]));
+        let angles = Cell::EDGES.map(|[i, j]| {
+            let is_same = |[a, b]: &[usize; 2]| {
+                let [a, b] = [order[*a], order[*b]];
+                [a.min(b), a.max(b)] == [i, j]
+            };
+            let at = Cell::EDGES.iter().position(is_same).expect("corners are exchanged");
+            cell.angles[at].rounded()
+        });
+        Self { det: cell.det.rounded(), angles }
     }
 }
 
