@@ -18,7 +18,7 @@ plain() { sed -E 's/\b(core|alloc|std)::([a-z0-9_]+)::([a-z0-9_]+::)*/std::\2::/
 listed=$(mktemp)
 trap 'rm -f "$listed" "$listed.log"' EXIT
 status=0
-for library in base check complex files model points regular render shape volume; do
+for library in balls base check complex files model points regular render shape volume; do
   # Without derived and blanket implementations. The target is its own, so that lints and tests stay built.
   CARGO_TARGET_DIR=target/api cargo public-api -p "walpha-$library" -sss 2> "$listed.log" | plain > "$listed" || { cat "$listed.log"; exit 1; }
   if [ "${1:-}" = write ]; then

@@ -53,6 +53,8 @@ pub mod cli;
 pub mod reproduce;
 pub mod shape;
 
+/// Unions of balls, measured with bounds on errors: a crate of its own, `walpha-balls`, for use in other programs.
+pub use walpha_balls as balls;
 /// The advice of errors.
 pub use walpha_base::advice;
 /// Selects weighted points from a volume: the separate crate `walpha-points`, for use in other programs.

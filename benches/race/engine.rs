@@ -2,6 +2,7 @@
 
 use std::time::Instant;
 
+use walpha::balls::BallUnion;
 use walpha::ladder::Filtration;
 use walpha::shape::{Engine, ShapeOptions};
 use walpha::triangulation::triangulate;
@@ -28,6 +29,12 @@ pub(super) fn run(arguments: &[String]) -> Result<()> {
     let counts = match what.as_str() {
         "native" => measured(&alpha_shape(points, &shape)?),
         "whole" => measured(&alpha_shape(points, &shape.exterior(true))?),
+        "balls" => {
+            let shape = alpha_shape(points, &shape)?;
+            let union = BallUnion::new(&shape)?;
+            assert!(union.volume().is_within(1e-9) && union.area().is_within(1e-9));
+            String::new()
+        }
         "filtration" => counts(Filtration::new(points)?.whole()),
         "order" => {
             let filtration = Filtration::new(points)?;

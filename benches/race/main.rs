@@ -4,6 +4,7 @@
 //! cargo build --release && cargo run --release -p walpha-benches -- shapes
 //! cargo run --release -p walpha-benches -- triangulations
 //! cargo run --release -p walpha-benches -- filtrations
+//! cargo run --release -p walpha-benches -- balls
 //! ```
 //!
 //! Sets follow, of those in `sets.rs`; without any, those of the README. `alpha` races shapes at growing α, `scale` our
@@ -13,6 +14,7 @@
 //!   the same on CGAL's parallel triangulation (Debian: `libtbb-dev`).
 //! - *Geogram* is `benches/race_geogram.cc`, where `GEOGRAM` names the folder that its wheel was unzipped to.
 //! - *HXT* is Gmsh's triangulation, where `GMSH_PYTHON` names a Python that has Gmsh.
+//! - *voronota-ltr* is Voronota-LT in Rust, where `VORONOTA` names the program (`cargo install voronota-ltr`).
 //! - *walpha shape* is the command, where `target/release/walpha` was built.
 //!
 //! Every run is a separate process that reads the points from a file. The time is that of the process, by the clock, and in
@@ -36,8 +38,8 @@ type Result<T> = std::result::Result<T, Box<dyn std::error::Error + Send + Sync>
 
 const THREADS: usize = 2;
 
-const USAGE: &str = "usage: race shapes|triangulations|filtrations|alpha|scale [SET…], where SET is skull@N, scan@N, random@N, \
-     terrain@N or sphere@N, with :min-max, :barycentric or :common=C for weights";
+const USAGE: &str = "usage: race shapes|triangulations|filtrations|balls|alpha|scale [SET…], where SET is skull@N, scan@N, random@N, \
+     terrain@N, atoms@N or sphere@N, with :min-max, :barycentric or :common=C for weights";
 
 fn main() -> Result<()> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -60,6 +62,7 @@ fn main() -> Result<()> {
             "sphere@100000",
         ])?),
         "filtrations" => filtrations(&sets(&["skull@256:min-max", "random@1000000"])?),
+        "balls" => balls(&sets(&["atoms@3545", "atoms@9745", "atoms@341075"])?),
         "alpha" => alpha(&sets(&["skull@128"])?),
         "scale" => {
             scale(&sets(&["random@10000", "random@100000", "random@1000000", "random@10000000"])?)
@@ -112,6 +115,16 @@ fn filtrations(sets: &[Set]) -> Result<()> {
     })
 }
 
+/// Unions of balls with all that is known of them: parts, contacts, and for us bounds.
+fn balls(sets: &[Set]) -> Result<()> {
+    table(sets, |_, points| {
+        let ours = [THREADS, 1].map(|threads| native("balls", points, "0", threads));
+        let others =
+            [THREADS, 1].into_iter().filter_map(|threads| Peers::voronota(points, threads));
+        ours.into_iter().chain(others).collect()
+    })
+}
+
 /// Shapes at growing α.
 fn alpha(sets: &[Set]) -> Result<()> {
     let peers = Peers::new()?;
@@ -153,7 +166,8 @@ fn table(sets: &[Set], contestants: impl Fn(&Set, &Path) -> Vec<Contestant>) -> 
             contestants.iter().zip(&runs)
         {
             let ratio = process / first;
-            println!("| {name} | {process:.2} s ({work:.2} s) | {ratio:.2} | {} MiB |", peak >> 20);
+            let peak = if *peak == 0 { "–".into() } else { format!("{} MiB", peak >> 20) };
+            println!("| {name} | {process:.3} s ({work:.3} s) | {ratio:.2} | {peak} |");
         }
     }
     Ok(())

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::time::Instant;
 
 use serde_json::Value;
 
@@ -122,6 +123,25 @@ impl Peers {
             command.arg(&points).arg(threads.to_string());
             command
         }))
+    }
+
+    /// Voronota-LT in Rust: contacts, areas and volumes of balls, without bounds. It writes them as JSON, which takes most of its process; its
+    /// seconds of work leave that out.
+    pub(super) fn voronota(points: &Path, threads: usize) -> Option<Contestant> {
+        let (program, points) = (std::env::var_os("VORONOTA")?, points.with_extension("xyzr"));
+        let run = move || {
+            let mut command = Command::new(&program);
+            command.args(["--measure-running-time", "-o", "/dev/null", "--processors"]);
+            let started = Instant::now();
+            let output = command.arg(threads.to_string()).arg(&points).output()?;
+            let process = started.elapsed().as_secs_f64();
+            let log = String::from_utf8_lossy(&output.stderr);
+            let work =
+                log.split("Tessellation time: ").nth(1).and_then(|rest| rest.split(' ').next());
+            let work: f64 = work.ok_or_else(|| format!("no time in {log}"))?.parse()?;
+            Ok(Run { process, work: work / 1000.0, peak: 0, counts: String::new() })
+        };
+        Some(Contestant { name: named("voronota-ltr", threads), run: Box::new(run) })
     }
 
     /// Gmsh's triangulation (HXT), without weights.

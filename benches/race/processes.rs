@@ -15,7 +15,7 @@ pub(super) struct Run {
     pub process: f64,
     /// Seconds of the work alone.
     pub work: f64,
-    /// The most memory it held, in bytes.
+    /// The most memory it held, in bytes; 0 where that is not known.
     pub peak: u64,
     /// Cells of the shape, and facets, edges and vertices by class; empty where it gives none.
     pub counts: String,

@@ -7,7 +7,7 @@ use std::str::FromStr;
 use ndarray_npy::write_npy;
 use walpha::ndarray::Array2;
 use walpha::points::{Points, Selection, Units, difference, select, weigh};
-use walpha::{Alpha, Frame, Gray, Volume, Weighting, volume};
+use walpha::{Alpha, Frame, Gray, Volume, WeightedPoints, Weighting, volume};
 use walpha_base::random::Random;
 
 use super::Result;
@@ -29,15 +29,18 @@ enum Kind {
     Random,
     /// This number of points of a hilly ground, as a laser scanner sees it from above.
     Terrain,
+    /// So many balls as dense as the atoms of a protein, of radii 1.2 to 1.9, and each 1.4 larger: their solvent-accessible surface.
+    Atoms,
     /// This number of random points on a sphere: all spheres through four of them are nearly equal.
     Sphere,
 }
 
-const KINDS: [(&str, Kind); 5] = [
+const KINDS: [(&str, Kind); 6] = [
     ("skull", Kind::Skull),
     ("scan", Kind::Scan),
     ("random", Kind::Random),
     ("terrain", Kind::Terrain),
+    ("atoms", Kind::Atoms),
     ("sphere", Kind::Sphere),
 ];
 
@@ -66,6 +69,7 @@ impl Set {
             Kind::Skull => 10.0,
             Kind::Scan => 10.0 * SCAN.spacing[0] * SCAN.spacing[0],
             Kind::Random | Kind::Terrain => 1.0,
+            Kind::Atoms => 0.0,
             Kind::Sphere => 40.0 / self.size as f64,
         }
     }
@@ -81,11 +85,18 @@ impl Set {
             Kind::Scan => return skull(self.size, SCAN),
             Kind::Random => (self.size as f64).cbrt(),
             Kind::Terrain => (self.size as f64).sqrt(),
+            Kind::Atoms => (self.size as f64).cbrt().ceil(),
             Kind::Sphere => 0.0,
         };
-        let point = |_| {
+        let point = |i: usize| {
             let [x, y, z] = [(); 3].map(|()| random.unit());
             match self.kind {
+                // On average 0.057 in a cubic ångström, and none too near to another.
+                Kind::Atoms => {
+                    let n = side as usize;
+                    let [i, j, k] = [i % n, i / n % n, i / n / n].map(|cell| cell as f64);
+                    [i + 0.7 * x, j + 0.7 * y, k + 0.7 * z].map(|x| 2.6 * x)
+                }
                 Kind::Skull | Kind::Scan | Kind::Random => [x, y, z].map(|x| x * side),
                 Kind::Terrain => {
                     let [x, y] = [x * side, y * side];
@@ -104,13 +115,30 @@ impl Set {
 
 /// Writes a set as plain CGAL reads it, and as NPY for the command; returns the number of points.
 pub(super) fn write(set: &Set, path: &Path) -> Result<usize> {
-    let points = weigh(set.points()?, set.weighting, Alpha::from_squared(set.alpha())?)?;
+    let points = match set.kind {
+        Kind::Atoms => atoms(set.points()?.positions, path)?,
+        _ => weigh(set.points()?, set.weighting, Alpha::from_squared(set.alpha())?)?,
+    };
     let rows = points.positions().iter().zip(points.weights());
     let numbers: Vec<f64> = rows.flat_map(|(p, w)| [p[0], p[1], p[2], *w]).collect();
     std::fs::write(path, numbers.iter().flat_map(|x| x.to_le_bytes()).collect::<Vec<u8>>())?;
     let count = points.positions().len();
     write_npy(path.with_extension("npy"), &Array2::from_shape_vec((count, 4), numbers)?)?;
     Ok(count)
+}
+
+/// Atoms with their radii, written as XYZR for programs that add the probe themselves.
+fn atoms(positions: Vec<[f64; 3]>, path: &Path) -> Result<WeightedPoints> {
+    const PROBE: f64 = 1.4;
+    let mut random = Random::new(2);
+    let radii: Vec<f64> = positions.iter().map(|_| 1.2 + 0.7 * random.unit()).collect();
+    let mut text = String::new();
+    for ([x, y, z], r) in positions.iter().zip(&radii) {
+        text += &format!("{x:?} {y:?} {z:?} {r:?}\n");
+    }
+    std::fs::write(path.with_extension("xyzr"), text)?;
+    let weights = radii.iter().map(|r| (r + PROBE).powi(2)).collect();
+    Ok(WeightedPoints::new(positions, weights)?)
 }
 
 const SCAN: Frame = Frame {

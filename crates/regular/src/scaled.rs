@@ -50,6 +50,11 @@ impl<const D: usize> Scaled<D> {
         })
     }
 
+    /// The power of two that coordinates were multiplied by.
+    pub fn factor(&self) -> f64 {
+        self.factor
+    }
+
     /// A squared length, such as α, at the same scale; `None` if it would lose bits or exceed the range of doubles. An infinite
     /// one is infinite.
     pub fn square(&self, squared: f64) -> Option<f64> {

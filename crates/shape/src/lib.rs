@@ -25,6 +25,7 @@
 #![warn(missing_debug_implementations, unreachable_pub)]
 
 mod agreement;
+mod along;
 mod alpha_shape;
 mod arrays;
 mod betti;
@@ -34,6 +35,7 @@ mod components;
 mod derived;
 mod error;
 mod flat;
+mod incidence;
 mod keep;
 pub mod ladder;
 mod make;
@@ -78,13 +80,15 @@ pub use walpha_base::{Cancelled, Coordinates, LengthUnit, Monitor, Space};
 pub use walpha_complex::{Alpha, AlphaError, ByClass, Class, Complex, Placed, Simplices, Voxels};
 pub use walpha_regular::{Torus, TorusError};
 
-// For walpha, which computes shapes in blocks from file to file. Not covered by semantic versioning.
+// For walpha, which computes shapes in blocks from file to file, and for walpha-balls. Not covered by semantic versioning.
 #[doc(hidden)]
 pub use alpha_shape::Assembled;
 #[doc(hidden)]
 pub use blocks::{AT_WORK, BlockShape, Own, Side, block_shape};
 #[doc(hidden)]
 pub use complement::between;
+#[doc(hidden)]
+pub use incidence::FacetSides;
 #[doc(hidden)]
 pub use measure::{facet_area, six_volumes};
 #[doc(hidden)]

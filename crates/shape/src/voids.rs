@@ -112,6 +112,12 @@ impl AlphaShape {
     ///
     /// Volumes are rounded sums in a fixed order. O(n log n).
     pub fn voids(&self) -> Option<Vec<Void>> {
+        Some(self.voids_and_cells()?.into_iter().map(|(void, _)| void).collect())
+    }
+
+    /// The [voids](Self::voids), each with its cells by row, which ascend.
+    #[doc(hidden)]
+    pub fn voids_and_cells(&self) -> Option<Vec<(Void, Vec<u32>)>> {
         // A flat shape encloses nothing.
         let flat = self.complex().cells.is_empty();
         self.options().exterior.then(|| if flat { Vec::new() } else { voids(self) })
@@ -150,7 +156,7 @@ impl Bounded {
     }
 }
 
-fn voids(shape: &AlphaShape) -> Vec<Void> {
+fn voids(shape: &AlphaShape) -> Vec<(Void, Vec<u32>)> {
     let cells = &shape.complex().cells;
     let mut bounded = Bounded::of(shape);
     let (positions, weights) = (&shape.points().positions, shape.power_weights());
@@ -171,16 +177,24 @@ fn voids(shape: &AlphaShape) -> Vec<Void> {
             Some(found) => found.join(&hollow),
             empty => *empty = Some(hollow),
         }
-        inside.push((component as usize, cell, radius));
+        inside.push((component as usize, id as u32, radius));
     }
     let mut filling = vec![f64::NEG_INFINITY; found.len()];
-    for (component, cell, radius) in inside {
+    for &(component, id, radius) in &inside {
         let hollow = found[component].expect("it has this cell");
-        hollow.raise(&mut filling[component], &spheres, cell, radius);
+        hollow.raise(&mut filling[component], &spheres, cells.rows()[id as usize], radius);
     }
-    let void = |(hollow, alpha): (Option<Hollow>, f64)| Some(hollow?.void(alpha));
-    let mut voids: Vec<Void> = found.into_iter().zip(filling).filter_map(void).collect();
-    voids.sort_by(Void::order);
+    // Stable: cells ascend within each component.
+    inside.sort_by_key(|&(component, ..)| component);
+    let mut voids: Vec<(Void, Vec<u32>)> = inside
+        .chunk_by(|a, b| a.0 == b.0)
+        .map(|of| {
+            let component = of[0].0;
+            let hollow = found[component].expect("it has these cells");
+            (hollow.void(filling[component]), of.iter().map(|&(_, id, _)| id).collect())
+        })
+        .collect();
+    voids.sort_by(|(a, _), (b, _)| a.order(b));
     voids
 }
 

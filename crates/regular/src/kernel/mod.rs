@@ -24,6 +24,7 @@ pub use ratio::Ratio;
 pub use screen::Screen;
 pub use shares::{Share, centre_shares};
 use size::{Size, View, ray};
+pub use twofold::Twofold;
 
 use super::Torus;
 use crate::Lattice;

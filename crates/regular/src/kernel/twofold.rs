@@ -7,9 +7,11 @@ use crate::number::{Number, Scale};
 ///
 /// With u = 2⁻⁵³, the error of each operation is at most 8u² = 2⁻¹⁰³ times the magnitudes of its terms, unless
 /// something overflows or falls below the smallest normal double.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Twofold {
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Twofold {
+    /// The first, the double nearest to the sum.
     pub high: f64,
+    /// The second.
     pub low: f64,
 }
 
@@ -20,7 +22,7 @@ impl Twofold {
 
     /// The exact sum of two doubles (Knuth's `TwoSum`).
     #[inline(always)]
-    pub(super) fn sum(a: f64, b: f64) -> Self {
+    pub fn sum(a: f64, b: f64) -> Self {
         let high = a + b;
         let of_b = high - a;
         Self { high, low: (a - (high - of_b)) + (b - of_b) }
@@ -28,7 +30,7 @@ impl Twofold {
 
     /// The exact product of two doubles (Dekker's): not every processor has fused multiplication and addition.
     #[inline(always)]
-    pub(super) fn product(a: f64, b: f64) -> Self {
+    pub fn product(a: f64, b: f64) -> Self {
         let high = a * b;
         let ((a, a_low), (b, b_low)) = (halves(a), halves(b));
         let low = a_low * b_low - (((high - a * b) - a_low * b) - a * b_low);
@@ -37,7 +39,8 @@ impl Twofold {
 
     /// The quotient, with a relative error below 2⁻⁹⁸.
     #[inline(always)]
-    pub(super) fn over(self, other: Self) -> Self {
+    #[must_use]
+    pub fn over(self, other: Self) -> Self {
         let quotient = self.high / other.high;
         let product = Self::product(quotient, other.high);
         let rest = ((self.high - product.high) - product.low) + (self.low - quotient * other.low);

@@ -1,8 +1,8 @@
 //! Incidences and radii, in one visit of each simplex: most of the time goes into waiting for memory.
 //!
-//! In a regular triangulation, if a smallest orthogonal sphere of a facet contains any point, it contains one of the two vertices
-//! opposite the facet; the sphere of an edge or a vertex contains a vertex of a facet or an edge that it is a face of. So cells
-//! determine the facets that are not Gabriel, then facets the edges, and edges the vertices.
+//! In a regular triangulation, a smallest orthogonal sphere of a facet that contains any point contains one of the two
+//! vertices opposite the facet; that of an edge or a vertex, one of a facet or an edge that it is a face of. So cells
+//! tell which facets are not Gabriel, then facets which edges, and edges which vertices.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -10,8 +10,9 @@ use rayon::prelude::*;
 use walpha_base::Cancelled;
 use walpha_regular::internals::Predicates;
 
-use super::along::{Along, Table, is_before, rows, starts};
 use crate::Complex;
+use crate::along::{Along, Table, is_before, starts};
+use crate::incidence::{Faces, sides, sorted_facets};
 
 /// The double nearest to the squared radius of the smallest orthogonal sphere of a simplex, if that is
 /// empty; otherwise no number.
@@ -27,16 +28,16 @@ impl Radius {
 /// Squared radii of the smallest orthogonal spheres, each the nearest double, by row.
 #[derive(Debug)]
 pub(super) struct Radii {
-    /// The radii of all cells, …
+    /// Of all cells, …
     pub cells: Vec<f64>,
-    /// … and those of the Gabriel simplices among the lower ones.
+    /// … and of what is Gabriel among lower simplices.
     pub facets: Vec<Radius>,
     pub edges: Vec<Radius>,
     pub vertices: Vec<Radius>,
 }
 
-/// Radii that threads write in the order in which they visit simplices. A slot becomes NaN as soon as any thread finds that its
-/// sphere is not empty; its radius is only set after that.
+/// Radii that threads write in the order in which they visit simplices. A slot is NaN once its sphere is known not to be
+/// empty, from any thread; its radius is set after that only.
 pub(super) struct Slots(Vec<AtomicU64>);
 
 impl Slots {
@@ -87,79 +88,8 @@ impl Incidence {
     pub(super) const OUTSIDE: u32 = u32::MAX;
 }
 
-/// The facets with ascending vertices, in lexicographic order. Only hull facets, which are oriented,
-/// have theirs in another, and are among those with one smallest vertex.
-pub(super) fn sorted_facets(whole: &Complex) -> Vec<[u32; 3]> {
-    let mut facets: Vec<_> = whole.facets.rows().par_iter().copied().collect();
-    facets.par_chunk_by_mut(|a, b| a[0] == b[0]).for_each(|near| {
-        let mut turned = false;
-        for [_, b, c] in near.iter_mut().filter(|[_, b, c]| b > c) {
-            (*b, *c, turned) = (*c, *b, true);
-        }
-        if turned {
-            near.sort_unstable();
-        }
-    });
-    facets
-}
-
-/// An index of edges by their ends, and of facets by the edge of their two smaller vertices, and their largest vertex.
-pub(super) struct Faces<'a> {
-    edges: &'a [[u32; 2]],
-    facets: &'a [[u32; 3]],
-    /// The first edge of each vertex, and the end.
-    of_vertices: &'a [u32],
-    /// The first facet of each edge, and the end.
-    of_edges: Vec<u32>,
-}
-
-impl<'a> Faces<'a> {
-    /// O(n).
-    pub(super) fn new(edges: &'a [[u32; 2]], facets: &'a [[u32; 3]], along: &'a Along) -> Self {
-        let of_edges = starts(facets, edges.len(), |&[a, b, _], edge| [a, b] < edges[edge]);
-        Self { edges, facets, of_vertices: &along.edges, of_edges }
-    }
-
-    /// The edge opposite each vertex of a facet. O(log d), where d is the degree of a vertex.
-    pub(super) fn edges(&self, [a, b, c]: [u32; 3]) -> [u32; 3] {
-        [self.edge(b, c), self.edge(a, c), self.edge(a, b)]
-    }
-
-    /// The facet opposite each vertex of a cell; of that, the last two may be exchanged. O(log d).
-    pub(super) fn facets(&self, [a, b, c, d]: [u32; 4]) -> [u32; 4] {
-        let (low, high) = (c.min(d), c.max(d));
-        let [ab, al, bl] = [self.edge(a, b), self.edge(a, low), self.edge(b, low)];
-        [(bl, high), (al, high), (ab, d), (ab, c)].map(|(edge, v)| self.facet(edge, v))
-    }
-
-    /// The edge between two vertices, the smaller first.
-    fn edge(&self, a: u32, b: u32) -> u32 {
-        let range = rows(self.of_vertices, a);
-        range.start as u32 + index_of(&self.edges[range], b)
-    }
-
-    fn facet(&self, edge: u32, v: u32) -> u32 {
-        let range = rows(&self.of_edges, edge);
-        range.start as u32 + index_of(&self.facets[range], v)
-    }
-}
-
-/// The index of the row with this last vertex, among rows whose last vertices ascend. There are nearly always few rows; then
-/// counting is faster than bisection, whose branches are mispredicted.
-fn index_of<const N: usize>(rows: &[[u32; N]], last: u32) -> u32 {
-    // Up to this many rows are counted.
-    const FEW: usize = 32;
-    let at = if rows.len() <= FEW {
-        rows.iter().map(|row| usize::from(row[N - 1] < last)).sum()
-    } else {
-        rows.partition_point(|row| row[N - 1] < last)
-    };
-    assert_eq!(rows[at][N - 1], last, "each face of a simplex is there");
-    at as u32
-}
-
-/// The incidences and radii of all simplices. Expected O(n log d), where d is the degree of a vertex, and exact arithmetic if
-/// doubles do not decide. Calls `done` after each of the three passes.
+/// The incidences and radii of all simplices. Expected O(n log d), where d is the degree of a vertex, and exact arithmetic
+/// where doubles do not decide. Calls `done` after each of the three passes.
 pub(super) fn incidence_and_radii(
     whole: &Complex,
     positions: &[[f64; 3]],
@@ -218,12 +148,4 @@ pub(super) fn incidence_and_radii(
         vertices: of_vertices.finished(Radius),
     };
     Ok((incidence, radii))
-}
-
-/// The side of the facet opposite each corner on which a cell lies. The corners of the cell are positively oriented, and those of
-/// the facet ascend. Two cells at a facet are on different sides, so each is written to its own place.
-fn sides([_, _, c, d]: [u32; 4]) -> [usize; 4] {
-    // An exchange of two corners changes the side: (a, b, c, d) is on side 0 of (a, b, c), so (a, b, d, c) is on
-    // side 1 of (a, b, d); (b, c, d, a) takes three exchanges and (a, c, d, b) two, and one more where c > d.
-    if c < d { [1, 0, 1, 0] } else { [0, 1, 1, 0] }
 }

@@ -233,15 +233,40 @@ fn level<const N: usize>(
     (out + doubtful.iter().take_while(|alpha| unfit(alpha)).count()) as u32
 }
 
+/// The simplices of a triangulation by row, with the levels at which they enter and change, and which are faces of which.
+#[doc(hidden)]
+#[derive(Clone, Copy, Debug)]
+pub struct LevelRows<'a> {
+    /// All simplices; the facets are in another order here.
+    pub complex: &'a Complex,
+    /// The level at which each cell enters.
+    pub cells: &'a [u32],
+    /// The facets, each sorted, in lexicographic order.
+    pub facets: &'a [[u32; 3]],
+    pub facet_spans: &'a [Span],
+    /// The cells on both sides of each facet; `u32::MAX` beyond the hull.
+    pub facet_cells: &'a [[u32; 2]],
+    /// The edge opposite each corner of each facet.
+    pub facet_edges: &'a [[u32; 3]],
+    /// The facet opposite each corner of each cell.
+    pub cell_facets: &'a [[u32; 4]],
+    pub edge_spans: &'a [Span],
+    /// In the order of the vertices of the complex.
+    pub vertex_spans: &'a [Span],
+}
+
 /// Rows grouped by the level at which they enter, ascending within each: `rows[starts[k]..starts[k + 1]]` at level k;
 /// those that never enter are last.
-pub(super) struct ByLevel {
+#[doc(hidden)]
+#[derive(Debug)]
+pub struct ByLevel {
     rows: Vec<u32>,
     starts: Vec<usize>,
 }
 
 impl ByLevel {
-    pub(super) fn new(levels: usize, first: impl ExactSizeIterator<Item = u32> + Clone) -> Self {
+    /// Rows by their levels; the number of levels stands for never.
+    pub fn new(levels: usize, first: impl ExactSizeIterator<Item = u32> + Clone) -> Self {
         let mut starts = vec![0; levels + 2];
         first.clone().for_each(|level| starts[level as usize + 1] += 1);
         for level in 0..=levels {
@@ -257,7 +282,7 @@ impl ByLevel {
     }
 
     /// The rows that enter at a level.
-    pub(super) fn at(&self, level: usize) -> &[u32] {
+    pub fn at(&self, level: usize) -> &[u32] {
         &self.rows[self.starts[level]..self.starts[level + 1]]
     }
 }
@@ -271,6 +296,23 @@ impl Levels<'_> {
     pub fn shape(&self, level: usize, exterior: bool, betti: Betti) -> AlphaShape {
         let alpha = self.alphas[level];
         self.filtration.whole.at(alpha, exterior, self.complex(level, exterior), betti)
+    }
+
+    /// All simplices of the triangulation with their levels, and which are faces of which.
+    #[doc(hidden)]
+    pub fn rows(&self) -> LevelRows<'_> {
+        let Filtration { whole, incidence, .. } = self.filtration;
+        LevelRows {
+            complex: whole.complex(),
+            cells: &self.cells,
+            facets: &incidence.facets,
+            facet_spans: &self.facets,
+            facet_cells: &incidence.facet_cells,
+            facet_edges: &incidence.facet_edges,
+            cell_facets: &incidence.cell_facets,
+            edge_spans: &self.edges,
+            vertex_spans: &self.vertices,
+        }
     }
 
     /// The facets that are regular or singular at some level, counter-clockwise seen from the side whose cell enters

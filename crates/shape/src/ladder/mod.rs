@@ -23,7 +23,6 @@
 //! # Ok::<(), walpha_shape::ShapeError>(())
 //! ```
 
-mod along;
 mod build;
 mod critical;
 mod filtration;
@@ -35,6 +34,8 @@ mod values;
 
 pub use critical::{Curve, Suggestions};
 pub use filtration::Filtration;
+#[doc(hidden)]
+pub use levels::{ByLevel, LevelRows};
 pub use levels::{Levels, Span};
 pub use ordered::{Derivative, Entry, Interval, Loops, Ordered, Pairs};
 pub use table::{Ladder, Level};

@@ -11,8 +11,8 @@ use walpha_base::memory::{self, NoMemory};
 use walpha_regular::internals::{Predicates, Ratio, SmallRadius};
 
 use super::numbers::Numbers;
+use crate::along::Table;
 use crate::ladder::Filtration;
-use crate::ladder::along::Table;
 use crate::ladder::build::Radii;
 use crate::ladder::values::{Key, is_small_lattice, key};
 

@@ -4,14 +4,15 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use rayon::prelude::*;
 use walpha_regular::internals::along_curve;
 
-use crate::Complex;
+use super::Complex;
 
 /// Vertices along a Hilbert curve, and the rows of the simplices of each dimension whose smallest vertex each is.
 ///
 /// Rows are in the order of input indices, which need not be close in space. In visits along the curve, most of the data of a
 /// simplex is still in a cache from the simplices before it.
-pub(super) struct Along {
-    order: Vec<u32>,
+#[derive(Debug)]
+pub(crate) struct Along {
+    pub order: Vec<u32>,
     /// The first row of each vertex, and the end.
     pub cells: Vec<u32>,
     pub facets: Vec<u32>,
@@ -23,7 +24,7 @@ const CHUNK: usize = 1 << 6;
 
 impl Along {
     /// O(n log n).
-    pub(super) fn new(whole: &Complex, positions: &[[f64; 3]]) -> Self {
+    pub(crate) fn new(whole: &Complex, positions: &[[f64; 3]]) -> Self {
         let points = positions.len();
         Self {
             order: along_curve(positions),
@@ -34,7 +35,7 @@ impl Along {
     }
 
     /// Visits all rows of a dimension on all threads, given the first ones of each vertex.
-    pub(super) fn each(&self, starts: &[u32], visit: impl Fn(usize) + Sync) {
+    pub(crate) fn each(&self, starts: &[u32], visit: impl Fn(usize) + Sync) {
         self.order.par_chunks(CHUNK).for_each(|chunk| {
             for &v in chunk {
                 rows(starts, v).for_each(&visit);
@@ -44,18 +45,18 @@ impl Along {
 }
 
 /// Whether the smallest vertex of a simplex comes before a vertex.
-pub(super) fn is_before<const N: usize>(row: &[u32; N], v: usize) -> bool {
+pub(crate) fn is_before<const N: usize>(row: &[u32; N], v: usize) -> bool {
     (row[0] as usize) < v
 }
 
 /// The rows of a group.
-pub(super) fn rows(starts: &[u32], group: u32) -> Range<usize> {
+pub(crate) fn rows(starts: &[u32], group: u32) -> Range<usize> {
     starts[group as usize] as usize..starts[group as usize + 1] as usize
 }
 
 /// The start of the rows of each group, and the end of the last ones. Groups ascend; `before` says whether a row belongs to a
 /// group before this one.
-pub(super) fn starts<T: Sync>(
+pub(crate) fn starts<T: Sync>(
     rows: &[T],
     groups: usize,
     before: impl Fn(&T, usize) -> bool + Sync,
@@ -74,26 +75,26 @@ pub(super) fn starts<T: Sync>(
 }
 
 /// A table that threads write in the order in which they visit simplices, each element once.
-pub(super) struct Table<const N: usize>(Vec<[AtomicU32; N]>);
+pub(crate) struct Table<const N: usize>(Vec<[AtomicU32; N]>);
 
 impl<const N: usize> Table<N> {
-    pub(super) fn new(rows: usize, element: u32) -> Self {
+    pub(crate) fn new(rows: usize, element: u32) -> Self {
         let row = |_| [0; N].map(|_| AtomicU32::new(element));
         Self((0..rows).into_par_iter().map(row).collect())
     }
 
-    pub(super) fn write(&self, row: usize, elements: [u32; N]) {
+    pub(crate) fn write(&self, row: usize, elements: [u32; N]) {
         for (to, element) in self.0[row].iter().zip(elements) {
             to.store(element, Ordering::Relaxed);
         }
     }
 
-    pub(super) fn write_at(&self, row: usize, place: usize, element: u32) {
+    pub(crate) fn write_at(&self, row: usize, place: usize, element: u32) {
         self.0[row][place].store(element, Ordering::Relaxed);
     }
 
     /// The rows, once all are written; in the same memory.
-    pub(super) fn finished(self) -> Vec<[u32; N]> {
+    pub(crate) fn finished(self) -> Vec<[u32; N]> {
         self.0.into_iter().map(|row| row.map(AtomicU32::into_inner)).collect()
     }
 }

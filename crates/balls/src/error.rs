@@ -1,0 +1,69 @@
+use walpha_base::Cancelled;
+use walpha_base::advice::{Advice, Advise, Setting, advice, wrapped};
+use walpha_base::memory::NoMemory;
+
+/// Why a union of balls cannot be measured.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum BallsError {
+    /// α is infinite, and so is the union.
+    #[error("at α = ∞ the balls are the whole space: their union has no volume")]
+    Infinite,
+    /// The shape is not one of balls: it fills voxels.
+    #[error("the shape is that of the voxels of a label: it has no balls")]
+    Labels,
+    /// The shape is that of a torus, cut open.
+    #[error(
+        "the shape is one of a periodic box, unwrapped into space: its copies of balls are not all of those that overlap"
+    )]
+    Unwrapped,
+    /// The exterior simplices are needed, and not listed.
+    #[error("{what} consist of exterior cells, and the shape does not list them")]
+    NoExterior {
+        /// What they are needed for.
+        what: &'static str,
+    },
+    /// Pockets are open to the outside, and a torus has none.
+    #[error("pockets are open to the outside, and a periodic box has no outside")]
+    NoOutside,
+    /// Discs are asked for, and the points span a volume.
+    #[error("the points span a volume, and discs lie in one plane")]
+    Solid,
+    /// Discs are asked for, and the shape is that of a torus.
+    #[error("discs lie in one plane, and a periodic box does not")]
+    Periodic,
+    /// Other numbers of weights than of points.
+    #[error("{weights} weights for {points} balls: each ball needs one")]
+    Weights {
+        /// Number of weights.
+        weights: usize,
+        /// Number of points.
+        points: usize,
+    },
+    /// Out of memory.
+    #[error(transparent)]
+    Memory(#[from] NoMemory),
+    /// Cancelled by the monitor.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}
+
+impl Advise for BallsError {
+    wrapped!(Memory, Cancelled);
+
+    fn advice(&self) -> Option<Advice> {
+        Some(match self {
+            Self::Infinite => advice!["give a finite ", Setting::Alpha],
+            Self::Labels => {
+                "measure the solid of the label, or take the points of the volume as centres".into()
+            }
+            Self::Unwrapped => "measure the shape of the periodic box itself".into(),
+            Self::NoOutside => "take its voids, or repeat the points without a periodic box".into(),
+            Self::NoExterior { .. } => advice!["set ", Setting::Exterior],
+            Self::Solid => "measure the balls in space".into(),
+            Self::Periodic => "measure the balls of the box".into(),
+            Self::Weights { .. } => "give a weight for each ball, in the order of the input".into(),
+            Self::Memory(_) | Self::Cancelled(_) => return self.wrapped()?.advice(),
+        })
+    }
+}

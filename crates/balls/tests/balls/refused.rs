@@ -1,0 +1,33 @@
+//! What has no union of balls.
+
+use walpha_balls::{BallUnion, BallsError, DiscUnion};
+use walpha_base::advice::Advise;
+use walpha_shape::{Alpha, ShapeOptions, Torus, alpha_shape};
+
+#[test]
+fn shapes_without_balls_are_refused() {
+    let square = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.0]];
+    let infinite = alpha_shape(&square, &ShapeOptions::new(Alpha::INFINITE)).unwrap();
+    for error in [BallUnion::new(&infinite).err(), DiscUnion::new(&infinite).err()] {
+        let error = error.unwrap();
+        assert_eq!(error, BallsError::Infinite);
+        assert_eq!(error.advice().unwrap().to_string(), "give a finite `alpha`");
+    }
+    let shape = alpha_shape(&square, &ShapeOptions::new(Alpha::ZERO)).unwrap();
+    let union = BallUnion::new(&shape).unwrap();
+    assert_eq!(union.voids(), Err(BallsError::NoExterior { what: "voids" }));
+    assert_eq!(union.pockets(), Err(BallsError::NoExterior { what: "pockets" }));
+    let cube: Vec<[f64; 3]> = (0..64).map(|i| [i % 4, i / 4 % 4, i / 16].map(f64::from)).collect();
+    // An empty shape of points in space.
+    let shape = alpha_shape(&cube, &ShapeOptions::new(Alpha::from_squared(-1.0).unwrap())).unwrap();
+    assert_eq!(DiscUnion::new(&shape).err(), Some(BallsError::Solid));
+    let torus = Torus::new([4.0; 3]).unwrap();
+    let options =
+        ShapeOptions::new(Alpha::from_squared(0.3).unwrap()).periodic(Some(torus)).exterior(true);
+    let shape = alpha_shape(&cube, &options).unwrap();
+    assert_eq!(DiscUnion::new(&shape).err(), Some(BallsError::Periodic));
+    let union = BallUnion::new(&shape).unwrap();
+    assert_eq!(union.pockets(), Err(BallsError::NoOutside));
+    let unwrapped = shape.unwrapped();
+    assert_eq!(BallUnion::new(&unwrapped).err(), Some(BallsError::Unwrapped));
+}
