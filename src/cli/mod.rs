@@ -23,8 +23,8 @@ use commands::reproduce;
 #[cfg(feature = "render")]
 use commands::view;
 use commands::{
-    blocks, check, compare, completions, filtration, haar, info, interpolate, ladder, man, points,
-    shape, shape_in_blocks,
+    balls, blocks, check, compare, completions, filtration, haar, info, interpolate, ladder, man,
+    points, shape, shape_in_blocks,
 };
 use options::global::{Global, INTERRUPTED, USAGE};
 use options::{config, formats, help, typed};
@@ -63,6 +63,7 @@ enum Command {
     View(view::View),
     Ladder(ladder::Ladder),
     Filtration(filtration::Filtration),
+    Balls(balls::Balls),
     Interpolate(interpolate::Interpolate),
     Check(check::Check),
     Compare(compare::Compare),
@@ -202,6 +203,7 @@ fn execute(global: Global, command: Command, ranks: &Ranks) -> Result<ExitCode> 
         Command::Shape(shape) => shape.run(global, ranks.team())?,
         Command::Points(points) => points.run(global)?,
         Command::Haar(haar) => haar.run(global)?,
+        Command::Balls(balls) => balls.run(global)?,
         Command::Interpolate(interpolate) => interpolate.run(global)?,
         #[cfg(feature = "zarr")]
         Command::Convert(convert) => convert.run(global)?,

@@ -1,5 +1,6 @@
 //! All integration tests in one program, because each program links everything again.
 
+mod balls;
 #[cfg(feature = "cgal")]
 mod binding;
 mod blocks_command;

@@ -44,6 +44,18 @@ impl Measured {
         Bounded { value: self.values[row], bound: self.bounds[row] }
     }
 
+    /// The sum of some rows.
+    ///
+    /// # Panics
+    /// If there is no such row.
+    pub fn sum(&self, rows: impl IntoIterator<Item = usize>) -> Bounded {
+        let mut sum = Double::default();
+        for row in rows {
+            sum += Single { value: self.values[row], error: self.bounds[row] };
+        }
+        sum.rounded().bounded()
+    }
+
     fn with_capacity(rows: usize, what: &'static str) -> Result<Self, BallsError> {
         let column = || memory::try_with_capacity(rows, || what.into());
         Ok(Self { values: column()?, bounds: column()? })

@@ -1,5 +1,6 @@
 //! The commands, and the steps that several of them share.
 
+pub(super) mod balls;
 pub(super) mod blocks;
 pub(super) mod check;
 pub(super) mod compare;

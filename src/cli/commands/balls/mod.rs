@@ -1,0 +1,378 @@
+//! `walpha balls`: the union of the balls of points, of atoms above all.
+
+mod tables;
+
+use std::collections::BTreeMap;
+use std::fmt::{self, Display};
+use std::io::Write;
+use std::path::PathBuf;
+
+use clap::Args;
+use serde::Serialize;
+use walpha_base::shown::{counted, number, six_digits};
+
+use crate::balls::{BallUnion, Cavity, Pocket};
+use crate::cli::commands::pipeline;
+use crate::cli::options::global::Global;
+use crate::cli::options::{self, Declared, InputArgs, OutputArgs, Periodic, WithAlpha};
+use crate::cli::process::errors::{Result, command_error, fail_usage, option};
+use crate::cli::process::output::{name, print_summary};
+use crate::cli::process::progress::Progress;
+use crate::cli::report::{MovedIntoBox, SCHEMA_VERSION, ending};
+use crate::export::{Content, Target, write_all};
+use crate::pipeline::{AlphaRule, Input, Values};
+use crate::points::Molecule;
+use crate::progress::Stage;
+use crate::shape::{Betti, Engine, ShapeOptions};
+use crate::{Alpha, AlphaShape, Coordinates, WeightedPoints};
+use tables::Table;
+
+/// Measure the union of balls: volume and area, those of each ball, contacts, voids and pockets.
+///
+/// A point with a radius is a ball: an atom of a molecule (PDB, mmCIF, PQR, XYZ), or a row of a table with a column radius. Volumes
+/// and areas are those of the balls, not of tetrahedra. Each has a bound on its error; the report prints the digits that are
+/// certain. With --probe R all radii grow by R: the area is then the solvent-accessible surface of a molecule.
+///
+/// Examples:
+///
+/// walpha balls 1crn.pdb
+///
+/// walpha balls 1crn.pdb --probe 1.4 -o atoms.csv residues.csv
+///
+/// walpha balls 1hvr.cif --hetero -o pockets.csv pockets.pdb
+///
+/// walpha balls foam.csv --periodic 20,20,20 -o contacts.csv
+#[derive(Args)]
+pub(crate) struct Balls {
+    #[arg(
+        short,
+        long,
+        value_name = "FILE",
+        num_args = 1..,
+        help = "Tables to write, named by their content: residues.csv, contacts.csv, voids.csv, pockets.csv; any other .csv has a row for each ball, as atoms.csv; pockets.pdb has the atoms at pockets, with the number of the pocket as temperature factor. Names may begin with anything, as in 1crn-pockets.csv"
+    )]
+    output: Vec<PathBuf>,
+    /// Add this length to all radii: the radius of a probe that rolls over the balls, as in 1.4 for water in Å.
+    #[arg(long, value_name = "R", value_parser = options::not_negative)]
+    probe: Option<f64>,
+    #[command(flatten)]
+    input: InputArgs,
+    #[command(flatten)]
+    weights: Declared<WithAlpha>,
+    #[command(flatten)]
+    periodic: Declared<Periodic>,
+    #[command(flatten)]
+    format: OutputArgs,
+}
+
+impl Balls {
+    pub(crate) fn run(self, global: Global) -> Result<()> {
+        self.format.check(self.output.iter())?;
+        let mut targets = Vec::new();
+        for path in &self.output {
+            let table = Table::of(&self.format.named(path)?, path)?;
+            targets.push((Target::open(path)?, table));
+        }
+        let input = &self.input;
+        let recipe = input.recipe()?;
+        let torus = recipe.periodic;
+        if torus.is_some() && targets.iter().any(|(_, table)| table.needs_pockets()) {
+            fail_usage!("pockets are open to the outside, and a periodic box has no outside" => "write voids.csv, or omit --periodic");
+        }
+        let mut progress = Progress::new(global);
+        let read = pipeline::read(input, &recipe, &mut progress)?;
+        pipeline::accept(&read, input)?;
+        let Input::Points(points, metadata) = read else {
+            fail_usage!("{} holds a volume, whose samples have no radii", name(&input.input) => "give a molecule, or a table with the columns x, y, z and radius");
+        };
+        let molecule = points.molecule.clone();
+        if molecule.is_none() && targets.iter().any(|(_, table)| *table == Table::Residues) {
+            fail_usage!("{} is not a molecule, and has no residues", name(&input.input) => "write balls.csv");
+        }
+        let has_weights = points.weights.is_some() || recipe.weighting.is_some();
+        let alpha = match recipe.alpha {
+            AlphaRule::Given(alpha) => alpha,
+            AlphaRule::Default if has_weights => Alpha::ZERO,
+            AlphaRule::Default => {
+                fail_usage!("{} has no radii", name(&input.input) => "give a table with a column radius, or one radius for all points, as in --alpha-radius 1.5")
+            }
+            _ => {
+                fail_usage!("--alpha finds α for a shape, and balls have given radii" => "give a number, or omit it")
+            }
+        };
+        // α is settled, so nothing looks for it.
+        let recipe = recipe.alpha(AlphaRule::Given(alpha));
+        let weigh = || recipe.weigh(Input::Points(points, metadata), Values::Written);
+        let (mut weighed, _) = progress.watch(weigh)?;
+        weighed.on_torus(torus)?;
+        let (coordinates, folded) = (weighed.origin.coordinates, weighed.origin.folded);
+        let (points, alpha) = enlarged(weighed.points, alpha, self.probe.unwrap_or_default())?;
+        let shape = progress.stage(Stage::Shape, || {
+            let options = ShapeOptions::new(alpha).engine(Engine::Native).exterior(true);
+            crate::alpha_shape(points, &options.periodic(torus))
+        })?;
+        let measured = progress.stage(Stage::Measure, || Measured::of(&shape))?;
+        let radii: Vec<f64> = shape
+            .power_weights()
+            .iter()
+            .map(|weight| (alpha.squared() + weight).max(0.0).sqrt())
+            .collect();
+        let subject = Subject {
+            shape: &shape,
+            radii: &radii,
+            molecule: molecule.as_ref(),
+            measured: &measured,
+        };
+        progress.stage(Stage::Write, || {
+            write_all(targets.into_iter().map(|(target, table)| {
+                let subject = &subject;
+                let content = move |out: &mut dyn Write| table.write(subject, out);
+                (target, Box::new(content) as Content<'_>)
+            }))
+        })?;
+        let summary = BallsSummary {
+            schema_version: SCHEMA_VERSION,
+            input: input.input.to_string(),
+            molecule: molecule.map(|molecule| molecule.summary().with_names(option)),
+            points: shape.points().len(),
+            duplicates: shape.duplicates().len(),
+            hidden: shape.hidden().map_or(0, <[u32]>::len),
+            folded,
+            coordinates,
+            radii: radii
+                .iter()
+                .copied()
+                .reduce(f64::min)
+                .zip(radii.iter().copied().reduce(f64::max)),
+            probe: self.probe,
+            balls: Numbers::of(&shape, &measured),
+            files: self.output.iter().map(|path| path.display().to_string()).collect(),
+            seconds: progress.finish().into_iter().collect(),
+        };
+        print_summary(global, &summary)
+    }
+}
+
+/// Balls whose radii are larger by that of a probe, and their α. Without a probe nothing changes, and nothing is rounded.
+fn enlarged(points: WeightedPoints, alpha: Alpha, probe: f64) -> Result<(WeightedPoints, Alpha)> {
+    if probe == 0.0 {
+        return Ok((points, alpha));
+    }
+    let (positions, mut weights, _) = points.into_parts();
+    for (row, weight) in weights.iter_mut().enumerate() {
+        let squared = alpha.squared() + *weight;
+        if squared < 0.0 {
+            return Err(
+                command_error!("point {row} has a negative squared radius, {squared}, so no probe can roll over its ball" => "omit --probe, or give weights that are squares of radii"),
+            );
+        }
+        *weight = (squared.sqrt() + probe).powi(2);
+    }
+    let points = WeightedPoints::new(positions, weights).expect("a weight for each point");
+    Ok((points, Alpha::ZERO))
+}
+
+/// What is measured of balls.
+struct Measured<'a> {
+    union: BallUnion<'a>,
+    voids: Vec<Cavity>,
+    /// Largest first, voids included; empty in a periodic box.
+    pockets: Vec<Pocket>,
+}
+
+impl<'a> Measured<'a> {
+    fn of(shape: &'a AlphaShape) -> Result<Self> {
+        let union = BallUnion::new(shape)?;
+        // Points in a plane enclose nothing.
+        let encloses = !shape.complex().cells.is_empty();
+        let voids = if encloses { union.voids()? } else { Vec::new() };
+        let is_open = encloses && shape.options().periodic.is_none();
+        let pockets = if is_open { union.pockets()? } else { Vec::new() };
+        Ok(Self { union, voids, pockets })
+    }
+}
+
+/// What tables are made of.
+struct Subject<'a> {
+    shape: &'a AlphaShape,
+    /// Of the balls, by input index; 0 where there is no ball.
+    radii: &'a [f64],
+    molecule: Option<&'a Molecule>,
+    measured: &'a Measured<'a>,
+}
+
+#[derive(Serialize)]
+struct BallsSummary {
+    schema_version: u32,
+    input: String,
+    /// The atoms, in words; null unless INPUT is a molecule.
+    molecule: Option<String>,
+    points: usize,
+    duplicates: usize,
+    hidden: usize,
+    /// Points outside the periodic box that were moved into it; absent without a box.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    folded: Option<usize>,
+    /// The unit of lengths: areas are in its square, volumes in its cube.
+    coordinates: Coordinates,
+    /// The smallest and the largest radius, with the probe's.
+    radii: Option<(f64, f64)>,
+    probe: Option<f64>,
+    balls: Numbers,
+    files: Vec<String>,
+    seconds: BTreeMap<&'static str, f64>,
+}
+
+/// The measures of the union. The true number is within the bound of each.
+#[derive(Serialize)]
+struct Numbers {
+    volume: f64,
+    volume_bound: f64,
+    area: f64,
+    area_bound: f64,
+    /// 4πr for one ball.
+    mean_curvature: f64,
+    mean_curvature_bound: f64,
+    /// 4π times the Euler characteristic.
+    gaussian_curvature: f64,
+    gaussian_curvature_bound: f64,
+    euler_characteristic: i64,
+    betti: Option<Betti>,
+    /// The share of a periodic box that is filled.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    box_fraction: Option<f64>,
+    contacts: usize,
+    voids: Vec<Hollow>,
+    /// Largest first, voids included.
+    pockets: Vec<Hollow>,
+}
+
+/// A void or a pocket.
+#[derive(Serialize)]
+struct Hollow {
+    volume: f64,
+    volume_bound: f64,
+    area: f64,
+    area_bound: f64,
+    mouths: usize,
+    /// Number of balls at it.
+    balls: usize,
+}
+
+impl Hollow {
+    fn of(cavity: &Cavity, mouths: usize) -> Self {
+        let Cavity { volume, area, lining, .. } = cavity;
+        Self {
+            volume: volume.value,
+            volume_bound: volume.bound,
+            area: area.value,
+            area_bound: area.bound,
+            mouths,
+            balls: lining.len(),
+        }
+    }
+}
+
+impl Numbers {
+    fn of(shape: &AlphaShape, Measured { union, voids, pockets }: &Measured) -> Self {
+        let [volume, area, mean, gaussian] =
+            [union.volume(), union.area(), union.mean_curvature(), union.gaussian_curvature()];
+        Self {
+            volume: volume.value,
+            volume_bound: volume.bound,
+            area: area.value,
+            area_bound: area.bound,
+            mean_curvature: mean.value,
+            mean_curvature_bound: mean.bound,
+            gaussian_curvature: gaussian.value,
+            gaussian_curvature_bound: gaussian.bound,
+            euler_characteristic: union.euler_characteristic(),
+            betti: shape.betti(),
+            box_fraction: union.box_fraction().map(|share| share.value),
+            contacts: union.contacts().pairs.len(),
+            voids: voids.iter().map(|void| Hollow::of(void, 0)).collect(),
+            pockets: pockets
+                .iter()
+                .map(|pocket| Hollow::of(&pocket.cavity, pocket.mouths.len()))
+                .collect(),
+        }
+    }
+}
+
+/// A number with the decimals that its bound leaves certain, at most twelve digits.
+fn certain(value: f64, bound: f64) -> String {
+    if !bound.is_finite() {
+        return "not known".into();
+    }
+    let digits_before = value.abs().max(1.0).log10().floor() as i32 + 1;
+    let certain = if bound > 0.0 { (-(2.0 * bound).log10()).floor() as i32 } else { 12 };
+    let decimals = certain.min(12 - digits_before).max(0);
+    format!("{value:.*}", decimals as usize)
+}
+
+impl Display for BallsSummary {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let unit = self.coordinates.unit.symbol();
+        writeln!(f, "input     {}", name(&self.input))?;
+        if let Some(molecule) = &self.molecule {
+            writeln!(f, "molecule  {molecule}")?;
+        }
+        let Self { points, duplicates, hidden, .. } = self;
+        write!(f, "balls     {points}, {duplicates} duplicates, {hidden} hidden")?;
+        writeln!(f, "{}", MovedIntoBox(self.folded))?;
+        if let Some((least, most)) = self.radii {
+            let [least, most] = [least, most].map(|radius| number(six_digits(radius)));
+            write!(f, "radii     {least} to {most} {unit}")?;
+            match self.probe {
+                Some(probe) => writeln!(f, ", with the probe's {probe} {unit}")?,
+                None => writeln!(f)?,
+            }
+        }
+        let Numbers { volume, volume_bound, area, area_bound, .. } = self.balls;
+        write!(f, "volume    {} {unit}³", certain(volume, volume_bound))?;
+        match self.balls.box_fraction {
+            Some(share) => writeln!(f, ", {} % of the box", number(six_digits(100.0 * share)))?,
+            None => writeln!(f)?,
+        }
+        writeln!(f, "area      {} {unit}²", certain(area, area_bound))?;
+        let Numbers { mean_curvature, mean_curvature_bound, euler_characteristic, .. } = self.balls;
+        writeln!(
+            f,
+            "curvature mean {} {unit}, Gaussian 4π·{euler_characteristic}, integrated",
+            certain(mean_curvature, mean_curvature_bound)
+        )?;
+        if let Some(betti) = self.balls.betti {
+            writeln!(f, "topology  {betti}")?;
+        }
+        writeln!(f, "contacts  {}", counted(self.balls.contacts as u64, "pair of balls"))?;
+        self.print_hollows(f, "voids", &self.balls.voids)?;
+        self.print_hollows(f, "pockets", &self.balls.pockets)?;
+        ending(
+            f,
+            &self.files,
+            &["read", "points", "shape", "measure", "write", "total"],
+            &self.seconds,
+        )
+    }
+}
+
+impl BallsSummary {
+    fn print_hollows(
+        &self,
+        f: &mut fmt::Formatter<'_>,
+        what: &str,
+        hollows: &[Hollow],
+    ) -> fmt::Result {
+        let unit = self.coordinates.unit.symbol();
+        let largest = hollows.iter().max_by(|a, b| a.volume.total_cmp(&b.volume));
+        let Some(Hollow { volume, volume_bound, area, area_bound, balls, .. }) = largest else {
+            return Ok(());
+        };
+        let (volume, area) = (certain(*volume, *volume_bound), certain(*area, *area_bound));
+        writeln!(
+            f,
+            "{what:<9} {}; the largest has {volume} {unit}³ and {area} {unit}², and {balls} balls at it",
+            hollows.len()
+        )
+    }
+}
