@@ -28,6 +28,7 @@ mod ladder;
 #[cfg(feature = "las")]
 mod las;
 mod laws;
+mod molecules;
 #[cfg(feature = "mpi")]
 mod mpi;
 #[cfg(target_os = "linux")]

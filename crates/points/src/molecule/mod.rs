@@ -17,7 +17,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use walpha_base::advice::{Setting, advice};
-use walpha_base::memory::{NoMemory, try_reserve, try_with_capacity};
+use walpha_base::memory::{NoMemory, afford, try_reserve, try_with_capacity};
 use walpha_base::shown::shown;
 
 pub use element::Element;
@@ -127,14 +127,10 @@ impl Found {
             radii
         });
         points.look_up_radii(path, radii, options.radii.as_ref())?;
-        let places: HashSet<[u64; 3]> =
-            points.positions.iter().map(|place| place.map(|x| (x + 0.0).to_bits())).collect();
-        if places.len() < points.len() {
-            tracing::warn!(
-                "{}: {} atoms lie exactly where others do: is the file two copies in one?",
-                shown(path),
-                points.len() - places.len()
-            );
+        match points.len() - points.count_places()? {
+            0 => {}
+            1 => tracing::warn!("{}: an atom lies exactly where another does", shown(path)),
+            n => tracing::warn!("{}: {n} atoms lie exactly where others do", shown(path)),
         }
         let coordinates = Coordinates { unit: LengthUnit::Angstrom, space: Space::default() };
         Ok((points, ModelMetadata::default().coordinates(coordinates).cell(cell)))
@@ -142,6 +138,14 @@ impl Found {
 }
 
 impl Points {
+    /// The number of different places. O(n).
+    fn count_places(&self) -> Result<usize, NoMemory> {
+        // A set has room for up to twice as many.
+        afford(2 * size_of_val(&self.positions[..]), || "the set of places of atoms".into())?;
+        let bits = |place: &[f64; 3]| place.map(|x| (x + 0.0).to_bits());
+        Ok(self.positions.iter().map(bits).collect::<HashSet<_>>().len())
+    }
+
     /// Sets the weights to the squares of the atoms' radii: of those of the file, if there are any and no others are asked for.
     ///
     /// # Errors

@@ -236,8 +236,15 @@ mod tests {
 
     #[test]
     fn names_survive() {
-        for text in ["bondi", "protor", "column", "none", "a/b.txt"] {
-            assert_eq!(Radii::from(text.to_owned()).to_string(), text);
+        for (text, radii) in [
+            ("bondi", Radii::Bondi),
+            ("protor", Radii::ProtOr),
+            ("column", Radii::Column),
+            ("none", Radii::None),
+            ("a/b.txt", Radii::File("a/b.txt".into())),
+        ] {
+            assert_eq!(Radii::from(text.to_owned()), radii);
+            assert_eq!(radii.to_string(), text);
         }
     }
 }

@@ -17,7 +17,7 @@ use walpha_volume::Reason;
 /// Which atoms of a molecule become points. By default the heavy atoms of the polymers in the first model, as in
 /// `FreeSASA` (Mitternacht 2016, [doi:10.12688/f1000research.7931.1]).
 ///
-/// Where an atom has alternate places, it has the one whose label comes first in its residue; this is no choice.
+/// An atom with alternate places has the one whose label comes first in its residue.
 ///
 /// [doi:10.12688/f1000research.7931.1]: https://doi.org/10.12688/f1000research.7931.1
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]

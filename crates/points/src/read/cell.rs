@@ -13,7 +13,7 @@ impl UnitCell {
     /// The cell of a record CRYST1; `None` if its columns are blank.
     ///
     /// # Errors
-    /// What is wrong with it: a number that is none.
+    /// Which of its fields is not a number.
     pub(super) fn of_pdb(line: &str) -> Result<Option<Self>, String> {
         let columns = [6..15, 15..24, 24..33, 33..40, 40..47, 47..54];
         let fields = columns.map(|columns| line.get(columns).unwrap_or_default().trim());
@@ -24,7 +24,7 @@ impl UnitCell {
         for (number, field) in numbers.iter_mut().zip(fields) {
             *number = field
                 .parse()
-                .map_err(|_| format!("has a CRYST1 with {field:?}, which is no number"))?;
+                .map_err(|_| format!("has a CRYST1 with {field:?}, which is not a number"))?;
         }
         let [a, b, c, alpha, beta, gamma] = numbers;
         let group = line.get(55..).unwrap_or_default();

@@ -104,7 +104,7 @@ impl<'a> Tokens<'a> {
                 return Err(SyntaxError::at(self.line, &format!("has {word}, which CIF reserves")));
             }
             _ if word.starts_with(['$', '[', ']']) => {
-                let what = format!("has {word:?}, which is no value unless it is in quotes");
+                let what = format!("has {word:?}, which is not a value unless it is in quotes");
                 return Err(SyntaxError::at(self.line, &what));
             }
             _ => Token::Value(word, false),

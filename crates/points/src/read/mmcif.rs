@@ -44,8 +44,8 @@ const GROUPS: [&str; 2] = ["_symmetry.space_group_name_h-m", "_space_group.name_
 /// Reads atoms, with the author's names of chains and numbers of residues; without those, with the archive's.
 ///
 /// # Errors
-/// The text is no CIF, or ends too early; an item is missing, a number is none; it has no atoms, or those of several blocks; its
-/// coordinates are fractions of a unit cell.
+/// The text is not CIF, or ends too early; an item is missing, or has text in place of a number; there are no atoms, or those of
+/// several blocks; coordinates are fractions of a unit cell.
 pub(crate) fn read(
     file: &OpenFile,
     options: &PointOptions,
@@ -266,7 +266,7 @@ impl<'a> Reader<'a> {
         for (k, text) in [x, y, z].into_iter().enumerate() {
             position[k] = text.and_then(number).ok_or_else(|| {
                 let text = text.unwrap_or("none");
-                self.wrong_here(&format!("has {text:?} as {}, which is no number", COLUMNS[k]))
+                self.wrong_here(&format!("has {text:?} as {}, which is not a number", COLUMNS[k]))
             })?;
         }
         let character = |text: Option<&str>, what: &str| {
@@ -281,7 +281,7 @@ impl<'a> Reader<'a> {
         let whole = |text: Option<&str>, what: &str| match text {
             None => Ok(None),
             Some(text) => text.parse::<i32>().map(Some).map_err(|_| {
-                self.wrong_here(&format!("has {text:?} as {what}, which is no whole number"))
+                self.wrong_here(&format!("has {text:?} as {what}, which is not a whole number"))
             }),
         };
         let residue_number = whole(sequence, "the number of a residue")?;
@@ -293,7 +293,7 @@ impl<'a> Reader<'a> {
         let occupancy = match occupancy {
             None => None,
             Some(text) => Some(number(text).ok_or_else(|| {
-                self.wrong_here(&format!("has {text:?} as occupancy, which is no number"))
+                self.wrong_here(&format!("has {text:?} as occupancy, which is not a number"))
             })?),
         };
         let (name, residue) = (name.unwrap_or_default(), residue.unwrap_or_default());

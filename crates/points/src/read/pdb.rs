@@ -29,8 +29,9 @@ mod columns {
     pub(super) const AXES: [Range<usize>; 3] = [30..38, 38..46, 46..54];
     pub(super) const OCCUPANCY: Range<usize> = 54..60;
     pub(super) const ELEMENT: Range<usize> = 76..78;
-    pub(super) const MODEL: Range<usize> = 6..14;
-    /// As many at least.
+    /// Up to the end of the line.
+    pub(super) const MODEL: usize = 6;
+    /// The least number of columns of an atom.
     pub(super) const LEAST: usize = 54;
 }
 
@@ -41,7 +42,7 @@ const NEXT: &str = "correct it, or write the file anew, with the fixed columns o
 /// beyond 99 999 do not matter; numbers of residues may be decimal or hybrid-36.
 ///
 /// # Errors
-/// A line is too short, or a number in it is none; a model has no end; there are no atoms.
+/// A line is too short, or has text in place of a number; a model has no end; there are no atoms.
 pub(crate) fn read(
     file: &OpenFile,
     options: &PointOptions,
@@ -126,11 +127,11 @@ impl Reader<'_> {
     }
 
     fn begin(&mut self, number: u64, line: &str) -> Result<(), PointsError> {
-        let text = line.get(columns::MODEL.start..).unwrap_or_default().trim();
+        let text = line.get(columns::MODEL..).unwrap_or_default().trim();
         // Some programs do not number them.
         let next = || self.found.last().map_or(1, |last| last.model.saturating_add(1));
         let Some(model) = (if text.is_empty() { Some(next()) } else { text.parse().ok() }) else {
-            return Err(self.wrong(number, &format!("has a MODEL {text:?}, which is no number")));
+            return Err(self.wrong(number, &format!("has a MODEL {text:?}, which is not a number")));
         };
         match self.model {
             Model::Within(_) => return Err(self.wrong(number, "has a MODEL inside another one")),
@@ -231,7 +232,7 @@ impl Reader<'_> {
         text.trim().parse().ok().filter(|x: &f64| x.is_finite()).ok_or_else(|| {
             let Range { start, end } = columns;
             let what = format!(
-                "has {text:?} as {what}, in columns {} to {end}, which is no number",
+                "has {text:?} as {what}, in columns {} to {end}, which is not a number",
                 start + 1
             );
             self.wrong(number, &what)

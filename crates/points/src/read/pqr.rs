@@ -18,7 +18,7 @@ const NEXT: &str = "write it with blanks between all fields, as pdb2pqr --whites
 /// is told from it by its letter.
 ///
 /// # Errors
-/// A line has other fields, or a number in it is none; there are no atoms.
+/// A line has other fields, or text in place of a number; there are no atoms.
 pub(crate) fn read(
     file: &OpenFile,
     options: &PointOptions,
@@ -78,8 +78,8 @@ fn atom(
     let mut values = [0.0; 5];
     for ((value, name), text) in values.iter_mut().zip(names).zip(numbers) {
         let parsed = text.parse().ok().filter(|number: &f64| number.is_finite());
-        *value =
-            parsed.ok_or_else(|| wrong(&format!("has {text:?} as {name}, which is no number")))?;
+        *value = parsed
+            .ok_or_else(|| wrong(&format!("has {text:?} as {name}, which is not a number")))?;
     }
     let [x, y, z, charge, radius] = values;
     let (chain, of_residue) = match chain {

@@ -220,7 +220,7 @@ fn radii_are_those_that_are_asked_for() {
     assert_eq!(radii(&xyz, Some(Radii::Column)), squares([1.0, 2.0, 3.0]));
     assert_eq!(radii(&xyz, Some(Radii::Bondi)), squares([1.7, 1.2, 1.52]));
     assert_eq!(radii(&xyz, Some(Radii::None)), None);
-    // A weight that is no radius stays, unless radii are asked for.
+    // A weight that is not a radius stays, unless radii are asked for.
     let xyz = "3\nProperties=species:S:1:pos:R:3:weight:R:1\nC 0 0 0 1\nH 1 0 0 2\nO 2 0 0 3\n";
     let xyz = save(f, "b.xyz", xyz);
     let read_weights = read(&xyz, &PointOptions::default()).unwrap().0;

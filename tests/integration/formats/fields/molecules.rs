@@ -192,7 +192,7 @@ fn each_field_of_pdb() {
             row!(
                 "occupancy",
                 "a.pdb",
-                two().replacen("1.00", "0.50", 1),
+                two().replacen("  1.00  0.00", "  0.50  0.00", 1),
                 Fate::Read(|path| {
                     quietly(path);
                     let of =
@@ -296,7 +296,7 @@ fn each_field_of_pdb() {
                 two().replace("   4.000   5.000   6.000", "   1.000   2.000   3.000"),
                 Fate::Read(|path| {
                     assert_eq!(model(path).0.positions, [PLACES[0]; 2]);
-                    assert!(warnings(path).contains("1 atoms lie exactly where others do"));
+                    assert!(warnings(path).contains("an atom lies exactly where another does"));
                 })
             ),
             row!(
@@ -540,7 +540,7 @@ fn each_field_of_pqr() {
                 Fate::Refused(&["line 1", "--whitespace"])
             ),
             row!(
-                "a field that is no number",
+                "a field that is not a number",
                 "a.pqr",
                 ROWS.replace("0.25", "q"),
                 Fate::Refused(&["line 2 has \"q\" as charge"])

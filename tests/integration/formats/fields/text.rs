@@ -277,7 +277,7 @@ fn each_field_of_xyz() {
                 "names of which none is an element",
                 "a.xyz",
                 "2\n\nA 1 2 3\nA 4 5 6\n",
-                Fate::PassedOver(&["its names of atoms are not elements (\"A\")"])
+                Fate::PassedOver(&["its names of atoms are not elements", "`radii` FILE"])
             ),
             row!(
                 "a count without elements",
