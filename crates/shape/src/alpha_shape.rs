@@ -25,6 +25,8 @@ pub struct AlphaShape {
     pub(super) copies: Vec<u32>,
     /// The voxels that the cells fill, if the shape is of labels.
     pub(super) voxels: Option<Arc<Voxels>>,
+    /// The value at whose isosurface the shape ends, if it is the solid inside one.
+    pub(super) isovalue: Option<f64>,
     pub(super) duplicates: Vec<[u32; 2]>,
     pub(super) hidden: Option<Vec<u32>>,
     pub(super) betti: Option<Betti>,
@@ -66,6 +68,7 @@ impl AlphaShape {
             complex,
             copies: Vec::new(),
             voxels: None,
+            isovalue: None,
             duplicates: Vec::new(),
             hidden,
             betti: Some(parts.betti),
@@ -87,6 +90,7 @@ impl AlphaShape {
             complex,
             copies: Vec::new(),
             voxels: None,
+            isovalue: None,
             duplicates: self.duplicates.clone(),
             hidden: self.hidden.clone(),
             betti: Some(betti),
@@ -134,6 +138,11 @@ impl AlphaShape {
     /// The voxels that the shape fills, if it [is of labels](super::voxel_shape()) and not of α.
     pub fn voxels(&self) -> Option<&Voxels> {
         self.voxels.as_deref()
+    }
+
+    /// The value at whose isosurface the shape ends, if it is [the solid inside one](super::isosurface_shape()) and not of α.
+    pub fn isovalue(&self) -> Option<f64> {
+        self.isovalue
     }
 
     /// The options that the shape was computed with.

@@ -146,6 +146,7 @@ fn shape_by(
         complex,
         copies: Vec::new(),
         voxels: None,
+        isovalue: None,
         duplicates,
         hidden,
         betti: betti.or(counted),

@@ -7,7 +7,7 @@ use walpha_complex::canonical::{outward_facets, smallest_even, sorted};
 use walpha_regular::triangulate;
 
 use super::VoxelsError;
-use super::bits::{Bits, Numbered};
+use crate::bits::{Bits, Numbered};
 use crate::ShapeError;
 
 /// As many corners as the 32-bit numbers of their octants leave room for.

@@ -8,7 +8,7 @@ use walpha_base::memory::{NoMemory, try_with_capacity};
 use walpha_complex::canonical::{outward_facets, smallest_even, sorted};
 use walpha_regular::triangulate;
 
-use super::bits::Bits;
+use crate::bits::Bits;
 use super::cells::{Filling, Lattice, written};
 use crate::{Class, Complex, ShapeError, Simplices};
 

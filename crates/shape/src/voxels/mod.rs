@@ -16,13 +16,12 @@
 //! All of this is in integers. At last corners get their positions in the world, each coordinate rounded: an affine map, so cells keep their orientation or
 //! all change it, in which case they are turned over. [`voxel_shape`] refuses a grid so fine, so far from the origin, that rounding could matter.
 
-mod bits;
 mod cells;
 mod closure;
 mod sheets;
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 
 use std::sync::Arc;
 
@@ -32,9 +31,9 @@ use walpha_base::{Coordinates, Monitor};
 use walpha_complex::Voxels;
 
 use super::alpha_shape::Assembled;
+use super::bits::Bits;
 use super::topology::{components, sheet_betti};
 use super::{Alpha, AlphaShape, Engine, ShapeError, ShapeOptions, WeightedPoints};
-use bits::Bits;
 use cells::Lattice;
 
 /// Why voxels have no solid.

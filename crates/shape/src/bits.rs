@@ -1,9 +1,10 @@
-//! Sets of voxels and of corners, a bit each.
+//! Sets of voxels, of their corners or of samples, a bit each.
 
+use rayon::prelude::*;
 use walpha_base::memory::{NoMemory, try_with_capacity};
 use walpha_complex::Voxels;
 
-use super::VoxelsError;
+use super::voxels::VoxelsError;
 use crate::ShapeError;
 
 /// A set of places (x, y, z) of a box, a bit each, in rows along x of whole words.
@@ -22,6 +23,21 @@ impl Bits {
         let mut bits = try_with_capacity(all, || "the voxels of a region".into())?;
         bits.resize(all, 0);
         Ok(Self { size, words, bits })
+    }
+
+    /// The places of a box that belong to a set.
+    pub(super) fn filled(
+        size: [usize; 3],
+        belongs: impl Fn([usize; 3]) -> bool + Sync,
+    ) -> Result<Self, NoMemory> {
+        let mut set = Self::new(size)?;
+        let (words, rows) = (set.words.max(1), size[1].max(1));
+        set.bits.par_chunks_mut(words).enumerate().for_each(|(row, out)| {
+            for x in (0..size[0]).filter(|&x| belongs([x, row % rows, row / rows])) {
+                out[x / 64] |= 1 << (x % 64);
+            }
+        });
+        Ok(set)
     }
 
     /// The voxels of a region in the smallest box around it, and the indices of that box's first voxel.
@@ -125,6 +141,10 @@ impl Bits {
                 out.iter_mut().zip(row).for_each(|(out, word)| *out |= word);
             }
             along(out, |word, before, after| word | before | after);
+            // Past the end of the row there are no places.
+            if let (Some(last), left @ 1..) = (out.last_mut(), set.size[0] % 64) {
+                *last &= (1 << left) - 1;
+            }
         })
     }
 
