@@ -82,8 +82,8 @@ impl Points {
         Ok(())
     }
 
-    /// Keeps the points that are marked.
-    pub(super) fn keep(&mut self, kept: &[bool]) {
+    /// Keeps the points that are marked, one mark for each. O(n).
+    pub fn keep(&mut self, kept: &[bool]) {
         let mut columns = [&mut self.values, &mut self.differences, &mut self.weights];
         for column in columns.iter_mut().filter_map(|column| column.as_mut()) {
             let mut kept = kept.iter();
