@@ -68,7 +68,7 @@ pub(super) fn findings(
 }
 
 /// Points that are listed as what a corner is not, or that are not vertices of a cell.
-fn accounts(placed: &PlacedComplex) -> Vec<Finding> {
+pub(super) fn accounts(placed: &PlacedComplex) -> Vec<Finding> {
     let mut is_in_cell = vec![false; placed.positions.len()];
     for &v in placed.complex.cells.rows().as_flattened() {
         is_in_cell[v as usize] = true;
@@ -145,7 +145,11 @@ fn cells(complex: &Complex, corners: &[Place], voxels: &Voxels) -> Vec<Finding> 
 }
 
 /// The finding on a class, if it is not the expected one.
-fn wrong_class<const N: usize>(row: [u32; N], given: Class, expected: Class) -> Option<Finding> {
+pub(super) fn wrong_class<const N: usize>(
+    row: [u32; N],
+    given: Class,
+    expected: Class,
+) -> Option<Finding> {
     (given != expected).then(|| Finding::Class {
         simplex: row.into(),
         given,
@@ -267,7 +271,7 @@ fn holds(voxels: &Voxels, at: [i64; 3]) -> bool {
 }
 
 /// Judges edges and vertices: that those of facets are listed, and no others, and that they are on the boundary where a facet with one cell is.
-fn faces(structure: &Structure) -> Vec<Finding> {
+pub(super) fn faces(structure: &Structure) -> Vec<Finding> {
     let Complex { facets, edges, vertices, .. } = structure.complex;
     let (mut of_edges, mut of_vertices) = (vec![None; edges.len()], vec![None; vertices.len()]);
     let mut found = Vec::new();
