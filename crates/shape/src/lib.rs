@@ -60,7 +60,7 @@ pub use arrays::ArrayError;
 pub use betti::{Betti, BettiError};
 pub use components::NO_COMPONENT;
 pub use error::{CgalError, OutlineError, PlanError, ShapeError, Whole};
-pub use isosurface::{IsosurfaceError, SampleLattice, isosurface_shape};
+pub use isosurface::{Extent, IsosurfaceError, SampleLattice, isosurface_shape};
 pub use make::alpha_shape;
 pub use manifold::ManifoldDefects;
 pub use measure::Measures;

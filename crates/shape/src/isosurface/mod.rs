@@ -3,7 +3,8 @@
 //!
 //! A sample is *inside* if it is at least the value. An edge of the grid between a sample inside and one outside has a *crossing*, where linear interpolation
 //! takes the value, as marching cubes has it. All this is in *index space*, in which samples are integers and cubes of the grid have side 1. Crossings are rounded
-//! to 1/1024 of an edge, and never to its ends, so that they too are integers, in steps of 1/1024.
+//! to 1/1024 of an edge, so that they too are integers, in steps of 1/1024, and kept 1/128 away from its ends, so that no edge of the boundary is so short that
+//! single precision would lose it.
 //!
 //! A cube of the grid is *mixed* if it has corners inside and outside. The points are the corners of mixed cubes, the crossings, and the samples inside
 //! at the border of the grid. Their Delaunay triangulation has four properties, which make the solid.
@@ -31,6 +32,11 @@
 //! for both cells alike. Where the solid meets the border of the grid it ends there, and the border closes it. Every sample inside is inside of the solid, or on that
 //! border, and no sample outside is in it: a gap one sample wide stays open.
 //!
+//! A **closed** solid has the largest part of the samples inside, of those that edges of the grid join, and its cavities are filled: samples outside that such edges do not join to the
+//! border of the grid count as inside. No edge of the grid joins two parts, or a cavity and what is open, so crossings are where they were. Edges of the
+//! grid without a crossing are edges of cells (their smallest spheres are empty), so the solid is in one piece. Cells between crossings alone
+//! that it shuts in are added, so that there is no void.
+//!
 //! At last points get their positions in the world, each coordinate rounded. That is an affine map up to rounding; the orientation of every cell after it is verified exactly.
 
 #[cfg(test)]
@@ -41,6 +47,7 @@ use std::cmp::Ordering;
 use rayon::prelude::*;
 use walpha_base::advice::{Advice, Advise};
 use walpha_base::memory::try_with_capacity;
+use walpha_base::shown::number;
 use walpha_base::{Coordinates, Monitor, UnionFind};
 use walpha_complex::canonical::{outward_facets, smallest_even, sorted};
 use walpha_regular::predicates::orientation;
@@ -80,6 +87,16 @@ impl SampleLattice {
     }
 }
 
+/// Which part of what is at least a value a solid is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Extent {
+    /// All of it.
+    #[default]
+    Whole,
+    /// Its largest part, with cavities filled: one piece without a void. Samples are of one part if edges of the grid join them.
+    Closed,
+}
+
 /// Why there is no solid inside an isosurface.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -91,7 +108,7 @@ pub enum IsosurfaceError {
         dims: [usize; 3],
     },
     /// No sample is inside.
-    #[error("no sample reaches {value}: the largest is {largest}")]
+    #[error("no sample reaches the value {}: the largest is {}", number(*value), number(*largest))]
     Empty {
         /// The value asked for.
         value: f64,
@@ -122,17 +139,19 @@ impl Advise for IsosurfaceError {
 /// them, and those at the border of the grid; it has no others deep within. `sample` gives the value of sample i + X·(j + Y·k); where it is not a number there is no sample,
 /// and the surface cuts edges to it in the middle. The values of points are `value` and those of samples.
 ///
+/// With [`Extent::Closed`] it is one piece without a void.
+///
 /// The cells are those of the Delaunay triangulation in index space that are inside by their samples: the result is not an α-shape, and its
 /// options say α = ∞ ([`AlphaShape::isovalue`]). Every simplex is a face of a cell, so nothing is singular. Time and memory
 /// grow with the surface, but for one bit for each sample.
 ///
 /// ```
-/// use walpha_shape::{SampleLattice, isosurface_shape};
+/// use walpha_shape::{Extent, SampleLattice, isosurface_shape};
 ///
 /// let axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 /// let lattice = SampleLattice { dims: [3; 3], origin: [0.0; 3], axes };
 /// // One sample of 1 among zeros: an octahedron about it.
-/// let shape = isosurface_shape(&lattice, |i| if i == 13 { 1.0 } else { 0.0 }, 0.5)?;
+/// let shape = isosurface_shape(&lattice, |i| if i == 13 { 1.0 } else { 0.0 }, 0.5, Extent::Whole)?;
 /// assert_eq!(shape.points().len(), 7);
 /// assert_eq!(shape.measures().volume, 1.0 / 6.0);
 /// # Ok::<(), walpha_shape::ShapeError>(())
@@ -144,14 +163,15 @@ pub fn isosurface_shape(
     lattice: &SampleLattice,
     sample: impl Fn(usize) -> f64 + Sync,
     value: f64,
+    extent: Extent,
 ) -> Result<AlphaShape, ShapeError> {
     let monitor = &*Monitor::current();
     let field = Field { dims: lattice.dims, sample, value };
-    let Points { places, values, inside } = field.points()?;
+    let Points { places, values, inside } = field.points(extent)?;
     monitor.part(0, 1, 10).report(1, 1)?;
     let mesh = monitor.part(1, 7, 10).watch(|| triangulate(&places, None))?;
     let kept = Kept { field: &field, places: &places, inside, mesh: &mesh };
-    let (complex, sheets) = kept.complex(lattice.is_mirrored())?;
+    let (complex, sheets) = kept.complex(extent, lattice.is_mirrored())?;
     drop(mesh);
     monitor.part(7, 9, 10).report(1, 1)?;
     let mut positions = try_with_capacity(inside, || WHAT.into())?;
@@ -175,6 +195,9 @@ pub fn isosurface_shape(
 
 /// The steps into which an edge of the grid is divided.
 const STEPS: f64 = 1024.0;
+
+/// The least number of steps from a crossing to a sample.
+const MARGIN: f64 = 8.0;
 
 /// What memory is for.
 const WHAT: &str = "the solid inside an isosurface";
@@ -201,7 +224,7 @@ impl<F: Fn(usize) -> f64 + Sync> Field<F> {
         (self.sample)(x + self.dims[0] * (y + self.dims[1] * z))
     }
 
-    fn points(&self) -> Result<Points, ShapeError> {
+    fn points(&self, extent: Extent) -> Result<Points, ShapeError> {
         let dims = self.dims;
         if dims.iter().any(|&n| n < 2) {
             return Err(IsosurfaceError::Flat { dims }.into());
@@ -212,6 +235,10 @@ impl<F: Fn(usize) -> f64 + Sync> Field<F> {
             let largest = all.reduce(|| f64::NEG_INFINITY, f64::max);
             return Err(IsosurfaceError::Empty { value: self.value, largest }.into());
         }
+        let inside = match extent {
+            Extent::Whole => inside,
+            Extent::Closed => inside.largest_part()?.filled_up()?,
+        };
         let outside = inside.dilated()?.without(&inside)?;
         let shell = inside.without(&inside.deep()?)?;
         let mut count = shell.count() as usize;
@@ -245,7 +272,8 @@ impl<F: Fn(usize) -> f64 + Sync> Field<F> {
         sides.filter_map(move |(axis, up)| {
             let mut towards = at;
             towards[axis] = if up { at[axis] + 1 } else { at[axis].checked_sub(1)? };
-            let is_outside = towards[axis] < self.dims[axis] && !inside.has(towards.map(|i| i as i64));
+            let is_outside =
+                towards[axis] < self.dims[axis] && !inside.has(towards.map(|i| i as i64));
             is_outside.then_some((axis, towards))
         })
     }
@@ -256,7 +284,7 @@ impl<F: Fn(usize) -> f64 + Sync> Field<F> {
         let share = (high - self.value) / (high - low);
         // Of two infinite samples, or towards none, the share is not a number.
         let share = if share.is_nan() { 0.5 } else { share };
-        (STEPS * share).round().clamp(1.0, STEPS - 1.0)
+        (STEPS * share).round().clamp(MARGIN, STEPS - MARGIN)
     }
 
     /// Whether the trilinear interpolant in the cube that a place is in, in steps, is at least the value.
@@ -305,9 +333,13 @@ impl<F: Fn(usize) -> f64 + Sync> Kept<'_, F> {
     }
 
     /// The complex of the kept cells and its sheets. Cells are turned over where axes are `mirrored`.
-    fn complex(&self, mirrored: bool) -> Result<(Complex, Sheets), ShapeError> {
+    fn complex(&self, extent: Extent, mirrored: bool) -> Result<(Complex, Sheets), ShapeError> {
         let (cells, adjacency) = (self.mesh.cells(), self.mesh.adjacency());
-        let kept: Vec<bool> = cells.par_iter().map(|&cell| self.keeps(cell)).collect();
+        let mut kept: Vec<bool> = cells.par_iter().map(|&cell| self.keeps(cell)).collect();
+        if extent == Extent::Closed {
+            self.fill_voids(&mut kept);
+        }
+        let kept = kept;
         let turned = |mut cell: [u32; 4]| {
             if mirrored {
                 cell.swap(2, 3);
@@ -363,6 +395,23 @@ impl<F: Fn(usize) -> f64 + Sync> Kept<'_, F> {
         let names: Vec<u32> = seen.map(|&(_, corner)| corners.find(corner)).collect();
         let sheets = Sheets::numbered(&complex, &names, &[]);
         Ok((complex, sheets))
+    }
+
+    /// Keeps the cells, all of whose corners are crossings, that others shut in.
+    fn fill_voids(&self, kept: &mut [bool]) {
+        let (cells, adjacency) = (self.mesh.cells(), self.mesh.adjacency());
+        let infinite = cells.iter().position(|cell| cell.contains(&self.mesh.infinite_vertex()));
+        let sets = UnionFind::new(cells.len());
+        (0..cells.len()).into_par_iter().filter(|&cell| !kept[cell]).for_each(|cell| {
+            let beyond = adjacency[cell].iter().map(|side| side / 4);
+            beyond.filter(|&next| !kept[next as usize]).for_each(|next| {
+                sets.unite(cell as u32, next);
+            });
+        });
+        let open = sets.find(infinite.expect("a hull has outsides") as u32);
+        kept.par_iter_mut().enumerate().for_each(|(cell, kept)| {
+            *kept |= sets.find(cell as u32) != open;
+        });
     }
 
     /// The corners of cells, 4·cell + corner, those on one sheet united. Around a vertex of the solid, cells outside of it that share a facet
