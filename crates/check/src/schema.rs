@@ -31,6 +31,8 @@ pub struct PlacedComplex {
     pub lowest: usize,
     /// The voxels that the cells fill, if the complex is of labels.
     pub voxels: Option<Voxels>,
+    /// The value at whose isosurface the cells end, if the complex is the solid inside one.
+    pub isovalue: Option<f64>,
 }
 
 impl PlacedComplex {
@@ -49,6 +51,12 @@ impl PlacedComplex {
     #[must_use]
     pub fn with_voxels(self, voxels: Option<Voxels>) -> Self {
         Self { voxels, ..self }
+    }
+
+    /// The same complex as the solid inside the isosurface of a value, or as one of α.
+    #[must_use]
+    pub fn with_isovalue(self, isovalue: Option<f64>) -> Self {
+        Self { isovalue, ..self }
     }
 }
 
@@ -91,10 +99,18 @@ impl TryFrom<ComplexFile> for PlacedComplex {
                 expected: "ascending runs of voxels of the grid",
             });
         }
-        if file.voxels.is_some() && file.periodic.is_some() {
+        let is_solid = file.voxels.is_some() || file.isovalue.is_some();
+        if is_solid && file.periodic.is_some() {
             return Err(SchemaError::Value {
                 name: "periodic",
                 value: "the sides of a box".into(),
+                expected: "none, as the complex is of labels or inside an isosurface",
+            });
+        }
+        if file.voxels.is_some() && file.isovalue.is_some() {
+            return Err(SchemaError::Value {
+                name: "isovalue",
+                value: "a value".into(),
                 expected: "none, as the complex is of labels",
             });
         }
@@ -145,6 +161,7 @@ impl TryFrom<ComplexFile> for PlacedComplex {
             periodic: file.periodic,
             lowest,
             voxels: file.voxels,
+            isovalue: file.isovalue,
         })
     }
 }

@@ -17,6 +17,7 @@
 #![deny(unsafe_code)]
 #![warn(unreachable_pub)]
 
+pub mod distance;
 pub mod export;
 pub mod interpolate;
 pub mod labels;

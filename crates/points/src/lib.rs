@@ -39,6 +39,7 @@ mod open;
 mod read;
 mod select;
 mod sets;
+mod spread;
 mod weigh;
 mod weighting;
 mod write;
@@ -57,6 +58,7 @@ pub use open::{PointOptions, is_point_file, read_model, read_model_file, read_po
 pub use read::{Columns, UnknownColumns};
 pub use select::{Selection, SelectionRule, Units, points_at, select};
 pub use sets::{Points, bounding_box};
+pub use spread::spread_order;
 pub use walpha_base::advice::Advise;
 pub use walpha_shape::{WeightSummary, WeightedPoints};
 pub use weigh::{weigh, weights};

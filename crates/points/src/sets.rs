@@ -84,8 +84,8 @@ impl Points {
         Ok(())
     }
 
-    /// Keeps only the marked points.
-    pub(super) fn keep(&mut self, kept: &[bool]) {
+    /// Keeps only the marked points, with one mark for each. O(n).
+    pub fn keep(&mut self, kept: &[bool]) {
         let columns = [&mut self.values, &mut self.differences, &mut self.weights];
         columns.into_iter().flatten().for_each(|column| keep(column, kept));
         if let Some(molecule) = &mut self.molecule {

@@ -27,6 +27,8 @@ pub struct AlphaShape {
     pub(super) voxels: Option<Arc<Voxels>>,
     /// What was kept of it, if not all.
     pub(super) kept: Option<Kept>,
+    /// The value at whose isosurface the shape ends, if it is the solid inside one.
+    pub(super) isovalue: Option<f64>,
     pub(super) duplicates: Vec<[u32; 2]>,
     pub(super) hidden: Option<Vec<u32>>,
     pub(super) betti: Option<Betti>,
@@ -69,6 +71,7 @@ impl AlphaShape {
             copies: Vec::new(),
             voxels: None,
             kept: None,
+            isovalue: None,
             duplicates: Vec::new(),
             hidden,
             betti: Some(parts.betti),
@@ -91,6 +94,7 @@ impl AlphaShape {
             copies: Vec::new(),
             voxels: None,
             kept: None,
+            isovalue: None,
             duplicates: self.duplicates.clone(),
             hidden: self.hidden.clone(),
             betti: Some(betti),
@@ -143,6 +147,11 @@ impl AlphaShape {
     /// How many of its components the shape consists of, if only [some were kept](Self::keep).
     pub fn kept(&self) -> Option<Kept> {
         self.kept
+    }
+
+    /// The value at whose isosurface the shape ends, if it is [the solid inside one](super::isosurface_shape()) and not of α.
+    pub fn isovalue(&self) -> Option<f64> {
+        self.isovalue
     }
 
     /// The options that the shape was computed with.

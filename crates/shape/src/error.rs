@@ -5,7 +5,7 @@ use walpha_base::monitor::wraps;
 use walpha_regular::internals::is_flat;
 use walpha_regular::{MAX_COORDINATE, SitesError, TriangulationError};
 
-use super::{Disagreement, VoxelsError};
+use super::{Disagreement, IsosurfaceError, VoxelsError};
 
 /// Why a shape cannot be computed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -84,6 +84,9 @@ pub enum ShapeError {
     /// The voxels have no solid.
     #[error(transparent)]
     Voxels(#[from] VoxelsError),
+    /// There is no solid inside an isosurface.
+    #[error(transparent)]
+    Isosurface(#[from] IsosurfaceError),
     /// With [`Engine::Both`](super::Engine::Both), the engines differ.
     #[error(transparent)]
     Differ(#[from] Box<Disagreement>),
@@ -145,7 +148,7 @@ impl Whole {
 }
 
 impl Advise for ShapeError {
-    wrapped!(Triangulation, Cgal, Plan, Cancelled, Memory, Voxels, Differ);
+    wrapped!(Triangulation, Cgal, Plan, Cancelled, Memory, Voxels, Isosurface, Differ);
 
     fn advice(&self) -> Option<Advice> {
         Some(match self {

@@ -150,6 +150,7 @@ fn shape_by(
         copies: Vec::new(),
         voxels: None,
         kept: None,
+        isovalue: None,
         duplicates,
         hidden,
         betti: betti.or(counted),

@@ -83,8 +83,10 @@ impl Certificate {
 
     /// Concludes the verdict from the findings and from the parts that were not judged.
     pub(super) fn conclude(&mut self) {
-        let is_declined =
-            self.not_judged.iter().any(|rule| matches!(rule, NotJudged::MissingSimplices(_)));
+        let is_declined = self
+            .not_judged
+            .iter()
+            .any(|rule| matches!(rule, NotJudged::MissingSimplices(_) | NotJudged::Samples));
         self.verdict = match Verdict::of(self.findings, self.ties) {
             Verdict::Exact if is_declined => Verdict::ExactAsFarAsJudged,
             Verdict::Valid if is_declined => Verdict::ValidAsFarAsJudged,
@@ -135,9 +137,11 @@ pub(super) fn write_verdict(
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum NotJudged {
-    /// Whether simplices of the shape are missing, because the search for them was declined. It is the only rule without which a
-    /// shape is not exact.
+    /// Whether simplices of the shape are missing, because the search for them was declined. Without this rule and `Samples` a shape
+    /// is not exact.
     MissingSimplices(Declined),
+    /// Which cells the solid inside an isosurface has: the samples of the volume decide, which are not given.
+    Samples,
     /// Singular simplices below the lowest dimension that is [claimed](crate::Claim::lowest) to be listed.
     SingularSimplices,
     /// Whether points that are not vertices are hidden, and the hull: these require the whole triangulation.
@@ -156,6 +160,9 @@ impl std::fmt::Display for NotJudged {
                     f,
                     "whether simplices of the shape are missing: about {pairs} pairs of points are near enough for an edge, and {most} are searched; for these simplices that is so beyond α = {alpha}"
                 );
+            }
+            Self::Samples => {
+                "which cells the solid inside the isosurface has (samples of the volume decide, which the file does not hold)"
             }
             Self::SingularSimplices => {
                 "singular simplices of the kinds that are not listed: of these there are faces alone"

@@ -13,6 +13,7 @@ mod gaps;
 mod gathered;
 mod geometry;
 mod grid;
+mod isosurface;
 mod message;
 mod missing;
 mod non_vertices;

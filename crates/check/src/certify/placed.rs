@@ -5,7 +5,7 @@ use walpha_base::Monitor;
 use super::certificate::{Certificate, CertifyError};
 use super::claim::Claim;
 use super::finding::Finding;
-use super::{torus, voxels};
+use super::{isosurface, torus, voxels};
 use crate::Placed;
 use crate::schema::{ComplexFile, PlacedComplex};
 
@@ -19,7 +19,8 @@ impl PlacedComplex {
     }
 
     /// All broken rules, and the certificate. For labels, the rules are that the cells fill exactly the voxels, face to face, and
-    /// that classes follow from the cells. In space the rules are those of [`Claim::visit`]. On a torus they are the same around
+    /// that classes follow from the cells. Inside an isosurface the rules are that cells meet face to face, and that classes follow
+    /// from the cells: which cells belong to it is not judged, as the samples of the volume decide. In space the rules are those of [`Claim::visit`]. On a torus they are the same around
     /// each simplex; in addition, no edge may span half of the box, and a whole triangulation must fill the box, instead of the
     /// rules for the hull.
     ///
@@ -29,6 +30,9 @@ impl PlacedComplex {
         let monitor = &*Monitor::current();
         if let Some(region) = &self.voxels {
             return voxels::findings(self, region, monitor);
+        }
+        if self.isovalue.is_some() {
+            return isosurface::findings(self, monitor);
         }
         match self.periodic {
             None => monitor.watch(|| self.claim().findings()),
@@ -50,6 +54,7 @@ impl From<Claim<'_>> for PlacedComplex {
             periodic: None,
             lowest: claim.lowest,
             voxels: None,
+            isovalue: None,
         }
     }
 }

@@ -69,7 +69,7 @@ pub(super) fn findings(
 }
 
 /// Points that are listed in a role that a corner does not have, or that are not vertices of a cell.
-fn accounts(placed: &PlacedComplex) -> Vec<Finding> {
+pub(super) fn accounts(placed: &PlacedComplex) -> Vec<Finding> {
     let mut is_in_cell = vec![false; placed.positions.len()];
     for &v in placed.complex.cells.rows().as_flattened() {
         is_in_cell[v as usize] = true;
@@ -146,7 +146,11 @@ fn cells(complex: &Complex, corners: &[Place], voxels: &Voxels) -> Vec<Finding> 
 }
 
 /// The finding for a class, if it is not the expected one.
-fn wrong_class<const N: usize>(row: [u32; N], given: Class, expected: Class) -> Option<Finding> {
+pub(super) fn wrong_class<const N: usize>(
+    row: [u32; N],
+    given: Class,
+    expected: Class,
+) -> Option<Finding> {
     (given != expected).then(|| Finding::Class {
         simplex: row.into(),
         given,
@@ -269,7 +273,7 @@ fn holds(voxels: &Voxels, at: [i64; 3]) -> bool {
 
 /// Judges edges and vertices: that exactly those of facets are listed, and that they are on the boundary if a facet with one cell
 /// is at them.
-fn faces(structure: &Structure) -> Vec<Finding> {
+pub(super) fn faces(structure: &Structure) -> Vec<Finding> {
     let Complex { facets, edges, vertices, .. } = structure.complex;
     let (mut of_edges, mut of_vertices) = (vec![None; edges.len()], vec![None; vertices.len()]);
     let mut found = Vec::new();

@@ -32,13 +32,15 @@
 //!   `dims` are the voxels of the grid along its x, y and z; `origin` is the position of the first sample, `axes` are the
 //!   steps from a sample to the next along x, y and z; a voxel is the box of half a step around its sample. `runs` are rows [first, number]
 //!   of the voxels in the region, ascending, voxel (i, j, k) being number i + X·(j + Y·k). The points are corners of voxels.
+//! - `isovalue` says that the complex is no α-shape but the solid inside the isosurface of a volume at this value, and `alpha` is `"inf"`. The
+//!   samples of the volume, which the file does not hold, decide which cells it has.
 //! - `info` is for whatever the writer wants to add.
 //!
 //! In NPZ (`numpy.savez`, `numpy.savez_compressed`) the same names are arrays of any integer or
 //! floating-point type: `points` n×3, `weights` n, `alpha` a scalar, `cells` m×4, `facets` m×3,
 //! `edges` m×2, `vertices` m, `hidden` m, `duplicates` m×2. Classes are arrays `cell_classes`,
 //! `facet_classes`, `edge_classes` and `vertex_classes`, with 0 exterior, 1 interior, 2 regular,
-//! 3 singular. `voxels` is two arrays: `voxel_runs` m×2, and `voxel_grid` 5×3, rows of `dims`, `origin` and the three axes.
+//! 3 singular. `voxels` is two arrays: `voxel_runs` m×2, and `voxel_grid` 5×3, rows of `dims`, `origin` and the three axes. `isovalue` is a scalar.
 //!
 //! [`AnyFile`] also reads triangulations under the names that other programs use: cells as `simplices`, `tetra` or `t`, points as
 //! `points`, `p` or `vertices`, possibly `weights` and `alpha`; it ignores the rest. Without `alpha`, these files, and files of
@@ -105,6 +107,9 @@ pub struct ComplexFile {
     /// The voxels that the cells fill, if the complex is of labels.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub voxels: Option<Voxels>,
+    /// The value at whose isosurface the cells end, if the complex is the solid inside one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub isovalue: Option<f64>,
     /// Any further data of the writer.
     #[cfg(feature = "json")]
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -158,7 +163,8 @@ impl ComplexFile {
 
     /// Whether this may be a triangulation whose file states no α: α is ∞, and no simplex has a class.
     pub fn states_no_alpha(&self) -> bool {
-        self.alpha == Alpha::INFINITE && self.classes.is_empty() && self.voxels.is_none()
+        let is_of_alpha = self.voxels.is_none() && self.isovalue.is_none();
+        self.alpha == Alpha::INFINITE && self.classes.is_empty() && is_of_alpha
     }
 
     /// Whether this is a triangulation of which only the cells are listed.
@@ -182,6 +188,7 @@ impl ComplexFile {
             duplicates: None,
             periodic: None,
             voxels: None,
+            isovalue: None,
             #[cfg(feature = "json")]
             info: None,
         }

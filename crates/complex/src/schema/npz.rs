@@ -49,6 +49,7 @@ impl ComplexFile {
             duplicates: file.rows("duplicates", index)?,
             periodic: file.sides()?,
             voxels: file.voxels()?,
+            isovalue: file.numbers("isovalue")?.map(|value| value[0]),
             ..Self::of_points(file.rows("points", |_, x| Ok(x))?.unwrap_or_default(), alpha)
         })
     }
@@ -118,9 +119,10 @@ enum Kind {
     Rows(u64),
 }
 
-const COMPLEX_ARRAYS: [(&str, Kind); 16] = [
+const COMPLEX_ARRAYS: [(&str, Kind); 17] = [
     ("points", Kind::Rows(3)),
     ("alpha", Kind::Scalar),
+    ("isovalue", Kind::Scalar),
     ("periodic", Kind::Rows(1)),
     ("cells", Kind::Rows(4)),
     ("facets", Kind::Rows(3)),

@@ -4,6 +4,7 @@
 mod choice;
 mod error;
 mod input;
+mod level;
 mod parameter;
 mod recipe;
 mod spacing;

@@ -1,5 +1,6 @@
 //! Tests of what the crate offers: in Rust alone, without the command.
 
+mod levels;
 mod numbers;
 mod outofcore;
 mod progress;

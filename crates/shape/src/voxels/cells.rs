@@ -7,8 +7,8 @@ use walpha_complex::canonical::{outward_facets, smallest_even, sorted};
 use walpha_regular::triangulate;
 
 use super::VoxelsError;
-use super::bits::{Bits, Numbered};
 use crate::ShapeError;
+use crate::bits::{Bits, Numbered};
 
 /// The maximum number of corners, limited by the 32-bit numbers of their octants.
 pub(super) const MOST_CORNERS: u64 = 1 << 29;

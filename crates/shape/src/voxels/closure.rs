@@ -8,8 +8,8 @@ use walpha_base::memory::{NoMemory, try_with_capacity};
 use walpha_complex::canonical::{outward_facets, smallest_even, sorted};
 use walpha_regular::triangulate;
 
-use super::bits::Bits;
 use super::cells::{Filling, Lattice, written};
+use crate::bits::Bits;
 use crate::{Class, Complex, ShapeError, Simplices};
 
 /// The complex of a region: each corner lists the simplices whose smallest vertex it is. A facet of one cell is regular, and so

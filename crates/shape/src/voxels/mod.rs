@@ -18,13 +18,12 @@
 //! so all cells keep their orientation or all change it; in the latter case they are turned over. [`voxel_shape`] refuses a grid
 //! that is so fine, and so far from the origin, that rounding could matter.
 
-mod bits;
 mod cells;
 mod closure;
 mod sheets;
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 
 use std::sync::Arc;
 
@@ -34,9 +33,9 @@ use walpha_base::{Coordinates, Monitor};
 use walpha_complex::Voxels;
 
 use super::alpha_shape::Assembled;
+use super::bits::Bits;
 use super::topology::{components, sheet_betti};
 use super::{Alpha, AlphaShape, Engine, ShapeError, ShapeOptions, WeightedPoints};
-use bits::Bits;
 use cells::Lattice;
 
 /// Why voxels have no solid.

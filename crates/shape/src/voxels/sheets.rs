@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 use walpha_base::UnionFind;
 
-use super::bits::Bits;
+use crate::bits::Bits;
 use crate::{Class, Complex, Sheets};
 
 /// The sheets: the boundary facets that are seen from one part of the space outside. Around a corner the space outside consists

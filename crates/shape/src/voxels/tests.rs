@@ -56,16 +56,18 @@ fn regions() -> Vec<Voxels> {
     regions
 }
 
-/// The whole triangulation of points, in which a cell is interior if its centroid lies in the region, by definition.
-fn by_definition(points: &[[f64; 3]], inside: impl Fn([i64; 3]) -> bool) -> Complex {
+/// The whole triangulation of points, in which a cell is interior if its corners say so, and all else follows by definition.
+pub(crate) fn by_definition(
+    points: &[[f64; 3]],
+    is_inside: impl Fn([[f64; 3]; 4]) -> bool,
+) -> Complex {
     let triangulation = triangulate(points, None).unwrap();
     let mut cells = Vec::new();
     let mut cofaces: BTreeMap<Vec<u32>, Vec<(Class, [u32; 3])>> = BTreeMap::new();
     for (_, cell) in triangulation.finite_cells() {
         let cell = smallest_even(cell);
-        let sum = |k: usize| cell.iter().map(|&v| points[v as usize][k]).sum::<f64>();
-        let centroid = [0, 1, 2].map(|k| (sum(k) / 4.0).floor() as i64);
-        let class = if inside(centroid) { Class::Interior } else { Class::Exterior };
+        let inside = is_inside(cell.map(|v| points[v as usize]));
+        let class = if inside { Class::Interior } else { Class::Exterior };
         cells.push((cell, class));
         for facet in outward_facets(cell) {
             let side = (class, smallest_even(facet));
@@ -114,6 +116,11 @@ fn by_definition(points: &[[f64; 3]], inside: impl Fn([i64; 3]) -> bool) -> Comp
     complex
 }
 
+/// The voxel that the centroid of a cell is in.
+fn voxel_of(corners: [[f64; 3]; 4]) -> [i64; 3] {
+    [0, 1, 2].map(|k| (corners.iter().map(|corner| corner[k]).sum::<f64>() / 4.0).floor() as i64)
+}
+
 /// Whether a voxel is in a region.
 fn holds(voxels: &Voxels, at: [i64; 3]) -> bool {
     let dims = voxels.dims.map(i64::from);
@@ -133,7 +140,7 @@ fn the_solid_is_that_of_the_definition() {
         let expected = alpha_shape_by(
             points,
             &ShapeOptions::new(Alpha::INFINITE),
-            |_, _| Ok(by_definition(&positions, |at| holds(&voxels, at))),
+            |_, _| Ok(by_definition(&positions, |corners| holds(&voxels, voxel_of(corners)))),
             &Monitor::noop(),
         )
         .unwrap();

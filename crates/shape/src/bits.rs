@@ -1,9 +1,10 @@
-//! Sets of voxels and of corners, a bit each.
+//! Sets of voxels, of their corners or of samples, a bit each.
 
-use walpha_base::memory::{NoMemory, try_with_capacity};
+use rayon::prelude::*;
+use walpha_base::memory::{NoMemory, try_reserve, try_with_capacity};
 use walpha_complex::Voxels;
 
-use super::VoxelsError;
+use super::voxels::VoxelsError;
 use crate::ShapeError;
 
 /// A set of places (x, y, z) of a box, with a bit for each, in rows along x of whole words.
@@ -22,6 +23,21 @@ impl Bits {
         let mut bits = try_with_capacity(all, || "the voxels of a region".into())?;
         bits.resize(all, 0);
         Ok(Self { size, words, bits })
+    }
+
+    /// The places of a box that belong to a set.
+    pub(super) fn filled(
+        size: [usize; 3],
+        belongs: impl Fn([usize; 3]) -> bool + Sync,
+    ) -> Result<Self, NoMemory> {
+        let mut set = Self::new(size)?;
+        let (words, rows) = (set.words.max(1), size[1].max(1));
+        set.bits.par_chunks_mut(words).enumerate().for_each(|(row, out)| {
+            for x in (0..size[0]).filter(|&x| belongs([x, row % rows, row / rows])) {
+                out[x / 64] |= 1 << (x % 64);
+            }
+        });
+        Ok(set)
     }
 
     /// The voxels of a region in the smallest box around it, and the indices of that box's first voxel.
@@ -125,6 +141,10 @@ impl Bits {
                 out.iter_mut().zip(row).for_each(|(out, word)| *out |= word);
             }
             along(out, |word, before, after| word | before | after);
+            // Past the end of the row there are no places.
+            if let (Some(last), left @ 1..) = (out.last_mut(), set.size[0] % 64) {
+                *last &= (1 << left) - 1;
+            }
         })
     }
 
@@ -143,6 +163,63 @@ impl Bits {
         let both = self.bits.iter().zip(&other.bits);
         set.bits.iter_mut().zip(both).for_each(|(word, (&a, &b))| *word = of(a, b));
         Ok(set)
+    }
+
+    /// Its largest part, of those that join across faces; of equally large ones that of the first place. O(n).
+    pub(super) fn largest_part(&self) -> Result<Self, NoMemory> {
+        let (mut left, mut largest) = (self.combined(self, |word, _| word)?, Self::new(self.size)?);
+        let mut most = 0;
+        for place in self.places() {
+            if left.has(place.map(|i| i as i64)) {
+                let part = left.take_part(std::iter::once(place))?;
+                let count = part.count();
+                if count > most {
+                    (largest, most) = (part, count);
+                }
+            }
+        }
+        Ok(largest)
+    }
+
+    /// The set and the places of the box that it keeps apart from the border of the box, where places join across faces. O(n).
+    pub(super) fn filled_up(&self) -> Result<Self, NoMemory> {
+        let all = Self::filled(self.size, |_| true)?;
+        let mut outside = all.without(self)?;
+        let is_at_border =
+            |at: &[usize; 3]| (0..3).any(|k| at[k] == 0 || at[k] + 1 == self.size[k]);
+        let border = all.places().filter(is_at_border);
+        let open = outside.take_part(border)?;
+        all.without(&open)
+    }
+
+    /// Takes out of the set what joins to some places across faces, these included as far as they are in the set.
+    fn take_part(&mut self, from: impl Iterator<Item = [usize; 3]>) -> Result<Self, NoMemory> {
+        let mut part = Self::new(self.size)?;
+        let mut next: Vec<[usize; 3]> = Vec::new();
+        for first in from {
+            let mut reached = Some(first);
+            while let Some(at) = reached {
+                let (word, bit) = (at[0] / 64, 1 << (at[0] % 64));
+                if self.row_mut(at[1], at[2])[word] & bit != 0 {
+                    self.row_mut(at[1], at[2])[word] &= !bit;
+                    part.row_mut(at[1], at[2])[word] |= bit;
+                    try_reserve(&mut next, 6, || "the parts of a region".into())?;
+                    for k in 0..3 {
+                        let along = |i: usize| [0, 1, 2].map(|j| if j == k { i } else { at[j] });
+                        next.extend(at[k].checked_sub(1).map(along));
+                        next.extend(Some(at[k] + 1).filter(|&i| i < self.size[k]).map(along));
+                    }
+                }
+                reached = next.pop();
+            }
+        }
+        Ok(part)
+    }
+
+    /// All places of the box, in the order of z, y and x.
+    fn places(&self) -> impl Iterator<Item = [usize; 3]> + use<> {
+        let [x, y, z] = self.size;
+        (0..z).flat_map(move |k| (0..y).flat_map(move |j| (0..x).map(move |i| [i, j, k])))
     }
 
     /// The corners of the voxels in the set.
