@@ -25,6 +25,7 @@ import atexit as _atexit
 
 from . import _walpha
 from ._alpha_shape import alpha_shape
+from ._balls import Balls, Bounded, BoundedArray, Cavity, Contacts, Gradients
 from ._check import Comparison, Complex, Finding, Verdict, check, compare
 from ._class import Class
 from ._curves import BettiCurve, Level, Suggestions, TorusBettiCurve
@@ -41,16 +42,22 @@ __version__ = _walpha.__version__
 
 __all__ = [
     "AlphaShape",
+    "Balls",
     "Betti",
     "BettiCurve",
+    "Bounded",
+    "BoundedArray",
     "Boundary",
+    "Cavity",
     "Class",
     "Comparison",
     "Complex",
     "Component",
+    "Contacts",
     "Cuts",
     "Filtration",
     "Finding",
+    "Gradients",
     "Level",
     "Outline",
     "PointFile",

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _arrays, _meshes, _parts, _walpha
+from ._balls import Balls
 from ._class import Class
 from ._classified import Classified
 from ._parts import Betti, Boundary, Component, Cuts, Outline, TorusBetti, Void
@@ -364,6 +365,18 @@ class AlphaShape(Classified):
         1.0
         """
         return Outline._of(self._shape.outline())
+
+    @functools.cached_property
+    def balls(self) -> Balls:
+        """Balls: the union of the balls of the points, of squared radius α + ω: its volume and area, those of each ball, contacts,
+        voids and pockets, derivatives. :attr:`volume` and :attr:`area` are those of the tetrahedra.
+
+        Raises
+        ------
+        ValueError
+            α is infinite, or the shape is one of labels.
+        """
+        return Balls._of(self)
 
     def contains(self, places: Arrays) -> NDArray[np.bool_]:
         """Whether places are in the shape.

@@ -1,5 +1,6 @@
 //! An alpha shape in Python.
 
+mod balls;
 mod boundary;
 mod make;
 mod outline;
@@ -298,6 +299,30 @@ impl Shape {
     /// moved, the largest move, vertices that are still together.
     fn boundary<'py>(&self, py: Python<'py>, solid: bool) -> PyResult<Boundary<'py>> {
         boundary(py, Arc::clone(&self.shape), solid)
+    }
+
+    /// The union of the balls of the points.
+    fn union<'py>(&self, py: Python<'py>) -> PyResult<balls::Union<'py>> {
+        balls::union(py, Arc::clone(&self.shape))
+    }
+
+    /// The voids of this union.
+    fn union_voids<'py>(&self, py: Python<'py>) -> PyResult<Vec<balls::Hollow<'py>>> {
+        balls::voids(py, Arc::clone(&self.shape))
+    }
+
+    /// The pockets of this union.
+    fn union_pockets<'py>(&self, py: Python<'py>) -> PyResult<Vec<balls::Open<'py>>> {
+        balls::pockets(py, Arc::clone(&self.shape))
+    }
+
+    /// The derivatives of the volume and the area of this union, by centres and radii.
+    fn union_gradients<'py>(
+        &self,
+        py: Python<'py>,
+        weights: Option<PyReadonlyArray1<'_, f64>>,
+    ) -> PyResult<[balls::Column<'py>; 4]> {
+        balls::gradients(py, Arc::clone(&self.shape), weights)
     }
 
     /// Polygons, singular edges and vertices, area, perimeter, and axes of points in a plane.
