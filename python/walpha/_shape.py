@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 class AlphaShape(Classified):
     """The alpha shape of weighted points, by input index.
 
-    Made by :func:`alpha_shape`, :func:`pipeline`, :func:`label_shape` and :meth:`Filtration.shape`. It does
+    Made by :func:`alpha_shape`, :func:`pipeline`, :func:`label_shape`, :func:`surface_shape` and :meth:`Filtration.shape`. It does
     not change: its arrays cannot be written to.
 
     Notes
@@ -65,6 +65,8 @@ class AlphaShape(Classified):
     def __reduce__(self) -> tuple[Any, ...]:
         if self._wrapped is not None:
             return operator.methodcaller("unwrapped"), (self._wrapped,)
+        if self.isovalue is not None:
+            raise TypeError("the solid inside an isosurface cannot be pickled, as its volume decided it: save it as NPZ")
         return _restored, (self.points, self.weights, self.values, self._shape.state())
 
     @property
@@ -96,7 +98,7 @@ class AlphaShape(Classified):
     @property
     def alpha_origin(self) -> str:
         """str: ``given``, ``default`` (10 h² for a volume), ``auto`` or ``connected``, or these
-        with ``-unweighted``, where weights are proportional to α; ``labels`` where the shape has no α."""
+        with ``-unweighted``, where weights are proportional to α; ``labels`` or ``surface`` where the shape has no α."""
         return cast(str, self._facts["alpha_origin"])
 
     @property
@@ -104,6 +106,12 @@ class AlphaShape(Classified):
         """int or None: of a :func:`label_shape` the number of voxels that its cells fill. Its ``alpha`` is infinite,
         as no α has a part in it."""
         return self._shape.voxels
+
+    @property
+    def isovalue(self) -> float | None:
+        """float or None: of a :func:`surface_shape` the value at whose isosurface it ends. Its ``alpha`` is infinite,
+        as no α has a part in it."""
+        return self._shape.isovalue
 
     @property
     def truncation(self) -> dict[str, Any] | None:
@@ -508,6 +516,8 @@ class AlphaShape(Classified):
     def __repr__(self) -> str:
         alpha = f"alpha={self.alpha:g} (radius {self.alpha_radius:g})"
         made = alpha if self.voxels is None else f"of labels ({self.voxels} voxels)"
+        if self.isovalue is not None:
+            made = f"inside the isosurface at {self.isovalue:g}"
         return (
             f"<walpha.AlphaShape {made}: {len(self.points)} points, "
             f"{len(self.cells)} cells, volume {self.volume:g}, betti {tuple(self.betti)}>"

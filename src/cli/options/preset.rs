@@ -83,7 +83,7 @@ pub(crate) fn looks_for_gray_levels(args: &InputArgs) -> bool {
 /// [`suited`] for a volume in memory: for a segmentation whose labels nobody named the solid of all of them, with a warning that
 /// says how to have it otherwise.
 pub(crate) fn suited_to(args: &InputArgs, recipe: &Recipe, volume: &Volume) -> Option<Recipe> {
-    if recipe.labels.is_some() {
+    if recipe.labels.is_some() || recipe.surface.is_some() {
         return None;
     }
     let by_labels = !looks_for_gray_levels(args);

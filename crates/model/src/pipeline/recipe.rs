@@ -9,6 +9,7 @@ use super::{AlphaRule, Choice, Parameter, PipelineError};
 use crate::interpolate::Refit;
 use crate::labels::LabelChoice;
 use crate::settings::Settings;
+use crate::surface::SurfaceChoice;
 use walpha_points::haar::{HaarOptions, Tolerance};
 use walpha_points::internal::LEAST_GRAY;
 use walpha_points::{Columns, PointOptions, Points, PointsError, Selection, Units, Weighting};
@@ -56,6 +57,9 @@ pub struct Recipe {
     /// The labels whose [solid](Recipe::solid) the shape is; `None` selects points by gray levels. With labels nothing else of
     /// the recipe has an effect, except how a volume is read, its units and its space.
     pub labels: Option<LabelChoice>,
+    /// The value at whose isosurface the [solid](Recipe::solid_inside) ends that the shape is; `None` selects points by gray levels. With it nothing
+    /// else of the recipe has an effect, except how a volume is read, its units and its space.
+    pub surface: Option<SurfaceChoice>,
     /// The values that become gray 0 and 255; `None` leaves unsigned bytes unchanged, and otherwise takes the
     /// smallest and largest value.
     pub gray: Option<GrayRange>,
@@ -124,6 +128,7 @@ impl Recipe {
         withheld: bool,
         thin: Option<f64>,
         labels: Option<LabelChoice>,
+        surface: Option<SurfaceChoice>,
         gray_out: bool,
         haar: HaarOptions,
         choice: Choice,
