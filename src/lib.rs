@@ -77,8 +77,8 @@ pub use walpha_check as check;
 /// The recipe and its execution, interpolation, files and work in blocks: the separate crate `walpha-model`, for use in other
 /// programs.
 pub use walpha_model::{
-    Interpolant, LabelChoice, Recipe, Save, Settings, export, interpolate, labels, outofcore,
-    pipeline, progress, settings,
+    Interpolant, LabelChoice, Recipe, Save, Settings, SurfaceChoice, distance, export, interpolate,
+    labels, outofcore, pipeline, progress, settings, surface,
 };
 
 pub use haar::{Coefficients, Decomposition, HaarOptions, Tolerance, Truncation};

@@ -23,7 +23,7 @@ OTHER = {
     "array", "frame", "series", "skip_damaged", "shape", "dtype", "offset", "decomposition", "weighting", "select", "exchange",
     "refit", "roi", "solid", "allow_empty", "labels", "masked", "resample", "withheld", "what", "ranks", "dimension", "homology_dimensions", "radius", "reduced_homology", "deep",
     "parameters", "y", "duplicates", "cells", "facets", "edges", "vertices", "cell_classes", "facet_classes", "edge_classes",
-    "vertex_classes", "most", "ties", "a", "b", "space", "unit", "gray", "copy", "components", "coefficients", "count", "downsample",
+    "vertex_classes", "closed", "most", "ties", "a", "b", "space", "unit", "gray", "copy", "components", "coefficients", "count", "downsample",
 }  # fmt: skip
 
 
@@ -198,6 +198,16 @@ CALLS = {
         lambda **given: walpha.label_shape(**{"volume": np.ones((3, 4, 5), np.uint8), "spacing": (1, 1, 1), **given}),
         # Samples that are not whole numbers are refused as such, whichever they are.
         {"volume": (samples, set(WRONG)), "spacing": (triple, HUGE), "origin": (triple, HUGE)},
+    ),
+    "surface_shape": (
+        lambda **given: walpha.surface_shape(**{"volume": VOLUME, "value": 9, "spacing": (1, 1, 1), **given}),
+        {
+            "volume": (samples, ()),
+            "value": (itself, ()),
+            "spacing": (triple, HUGE),
+            "origin": (triple, HUGE),
+            "nan": (itself, set(WRONG)),
+        },
     ),
     "haar": (
         lambda **given: walpha.haar(**{"volume": VOLUME, **given}),

@@ -265,6 +265,33 @@ def test_labels_fill_their_voxels():
     assert again.alpha_origin == "labels"
 
 
+def test_an_isosurface_has_a_solid_inside():
+    z, y, x = np.mgrid[:20, :21, :22]
+    ball = 100 + 8 - np.sqrt((x - 10.3) ** 2 + (y - 10.1) ** 2 + (z - 9.7) ** 2)
+    solid = walpha.surface_shape(ball, 100, spacing=(0.5, 1, 2), origin=(1, 2, 3))
+    assert abs(solid.volume / (4 / 3 * np.pi * 8**3) - 1) < 0.02
+    assert solid.betti == (1, 0, 0) and (solid.isovalue, solid.alpha_origin) == (100, "surface")
+    assert "inside the isosurface at 100" in repr(solid) and solid.voxels is None
+    at_surface = np.unique(solid.facets[solid.facet_classes == walpha.Class.REGULAR])
+    assert np.all(solid.values >= 100) and np.all(solid.values[at_surface] == 100)
+    judged = walpha.check(solid)
+    assert not judged and judged.verdict == "exact as far as judged" and not judged.findings
+    with pytest.raises(TypeError, match="pickled"):
+        pickle.dumps(solid)
+    # Two classes, of which the surface lies between.
+    two = np.where(ball > 104, 50.0, 10.0)
+    assert 10 < walpha.surface_shape(two, "auto").isovalue < 50
+    masked = np.where(ball > 107, np.nan, ball)
+    assert walpha.surface_shape(masked, 100, nan=np.nan).betti == (1, 0, 1)
+    assert walpha.surface_shape(masked, 100, nan=np.nan, closed=True).betti == (1, 0, 0)
+    with pytest.raises(ValueError, match="no sample reaches the value 200: the largest is 10"):
+        walpha.surface_shape(ball, 200)
+    with pytest.raises(ValueError, match="two or more along each axis"):
+        walpha.surface_shape(ball[:1], 100)
+    with pytest.raises(ValueError, match="is not a value"):
+        walpha.surface_shape(ball, "much")
+
+
 def test_labels_that_are_none_are_refused():
     with pytest.raises(ValueError, match="no voxel has the label 3; there are 1"):
         walpha.label_shape(np.ones((2, 2, 2), int), 3)

@@ -31,7 +31,7 @@ from ._class import Class
 from ._curves import BettiCurve, Level, Suggestions, TorusBettiCurve
 from ._filtration import Filtration, filtration
 from ._parts import Betti, Boundary, Component, Cuts, Outline, Polygon, TorusBetti, Void
-from ._pipeline import Selected, difference, haar, label_shape, pipeline, select, weigh
+from ._pipeline import Selected, difference, haar, label_shape, pipeline, select, surface_shape, weigh
 from ._points import PointFile, read_points, write_points
 from ._shape import AlphaShape
 from ._simplices import Simplices
@@ -83,6 +83,7 @@ __all__ = [
     "read",
     "read_points",
     "select",
+    "surface_shape",
     "triangulation",
     "weigh",
     "write_points",

@@ -395,6 +395,66 @@ def label_shape(
     return AlphaShape._of(shape)
 
 
+def surface_shape(
+    volume: Arrays | Volume,
+    value: float | Literal["auto"],
+    *,
+    closed: bool = False,
+    spacing: Place | None = None,
+    origin: Place | None = None,
+    nan: float | None = None,
+    progress: Progress = None,
+    threads: int | None = None,
+) -> AlphaShape:
+    """The solid inside an isosurface, without α: of the samples that are at least a value.
+
+    Its boundary has its vertices where edges of the grid take the value, by linear interpolation, as marching cubes places them, and
+    where the grid ends. The samples say which tetrahedra of a triangulation it has, so a gap one sample wide stays open.
+
+    Parameters
+    ----------
+    volume : array_like or Volume, (nz, ny, nx)
+        ``[z, y, x]``, as scikit-image has it. Masked samples are outside.
+    value : float or "auto"
+        The value; "auto" is the one that best divides the histogram of the samples (Otsu 1979).
+    closed : bool
+        Keep the largest part alone, and fill its cavities: one piece without a void.
+    spacing : tuple of float, optional
+        Distances between samples along x, y and z. Without, coordinates are indices (voxels).
+    origin : tuple of float, optional
+        The place (x, y, z) of the first sample.
+    nan : float, optional
+        What replaces samples that are NaN or infinite, an error otherwise. NaN masks them.
+    progress, threads
+        As in :func:`alpha_shape`.
+
+    Returns
+    -------
+    AlphaShape
+        Its points are the vertices of its boundary and the samples inside near it; deep within it has no others. Its values are
+        ``isovalue`` at the former, and those of the samples. It cannot be pickled.
+
+    Raises
+    ------
+    ValueError
+        No sample reaches the value; fewer than two samples along an axis; samples that are not finite.
+    MemoryError
+        The system gives no more.
+
+    Examples
+    --------
+    >>> solid = walpha.surface_shape(walpha.read("sample:ct"), 250)
+    >>> solid.isovalue, solid.betti.b0 > 0
+    (250.0, True)
+    """
+    samples, is_gray, frame = _grid(volume, spacing, origin)
+    surface = _settings.surface(value, closed)
+    settings = _settings.written(surface=surface, nan=_settings.replacement(nan, _masked(volume)))
+    with task(progress, threads) as how:
+        shape = _walpha.pipeline(samples, is_gray, frame, settings, how)
+    return AlphaShape._of(shape)
+
+
 def _decomposition(name: str) -> str:
     """The name that the library has for a decomposition."""
     if name not in _DECOMPOSITIONS:

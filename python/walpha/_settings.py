@@ -36,6 +36,11 @@ def window(gray: tuple[float, float] | None) -> str | None:
     return f"{low!r}..{high!r}"
 
 
+def surface(value: float | str, closed: bool) -> str:
+    """The isosurface at a value, or its outer part."""
+    return _text("surface", value) + (":closed" if closed else "")
+
+
 def replacement(nan: float | None, masked: bool) -> float | str | None:
     """What replaces samples that are NaN; NaN itself masks them."""
     if nan is None:

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 class AlphaShape(Classified):
     """The alpha shape of weighted points, by input index.
 
-    Made by :func:`alpha_shape`, :func:`pipeline`, :func:`label_shape` and :meth:`Filtration.shape`. It does
+    Made by :func:`alpha_shape`, :func:`pipeline`, :func:`label_shape`, :func:`surface_shape` and :meth:`Filtration.shape`. It does
     not change: its arrays cannot be written to.
 
     Notes
@@ -72,6 +72,8 @@ class AlphaShape(Classified):
         if self._made is not None:
             call, other = self._made
             return call, (other,)
+        if self.isovalue is not None:
+            raise TypeError("the solid inside an isosurface cannot be pickled, as its volume decided it: save it as NPZ")
         return _restored, (self.points, self.weights, self.values, self._shape.state())
 
     @property
@@ -103,7 +105,7 @@ class AlphaShape(Classified):
     @property
     def alpha_origin(self) -> str:
         """str: ``given``, ``default`` (10 h² for a volume), ``auto`` or ``connected``, or these
-        with ``-unweighted``, where weights are proportional to α; ``labels`` where the shape has no α."""
+        with ``-unweighted``, where weights are proportional to α; ``labels`` or ``surface`` where the shape has no α."""
         return cast(str, self._facts["alpha_origin"])
 
     @property
@@ -111,6 +113,12 @@ class AlphaShape(Classified):
         """int or None: of a :func:`label_shape` the number of voxels that its cells fill. Its ``alpha`` is infinite,
         as no α has a part in it."""
         return self._shape.voxels
+
+    @property
+    def isovalue(self) -> float | None:
+        """float or None: of a :func:`surface_shape` the value at whose isosurface it ends. Its ``alpha`` is infinite,
+        as no α has a part in it."""
+        return self._shape.isovalue
 
     @property
     def truncation(self) -> dict[str, Any] | None:
@@ -641,6 +649,8 @@ class AlphaShape(Classified):
         alpha = f"alpha={self.alpha:g} (radius {self.alpha_radius:g})"
         made = alpha if self.voxels is None else f"of labels ({self.voxels} voxels)"
         kept = "" if self.kept is None else f", {self.kept[0]} of {self.kept[1]} components"
+        if self.isovalue is not None:
+            made = f"inside the isosurface at {self.isovalue:g}"
         return (
             f"<walpha.AlphaShape {made}: {len(self.points)} points{kept}, "
             f"{self._size()}, betti {tuple(self.betti)}>"

@@ -39,6 +39,7 @@ class Shape:
     vertices: _Rows
     alpha: float
     voxels: int | None
+    isovalue: float | None
     engine: Literal["cgal", "native", "both"]
     exterior: bool
     measures: tuple[float, float, float, float]

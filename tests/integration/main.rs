@@ -47,6 +47,7 @@ mod refit;
 mod reproduce;
 mod single;
 mod skull;
+mod surface;
 mod triangulation;
 #[cfg(feature = "render")]
 mod view;

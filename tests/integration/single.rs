@@ -121,16 +121,7 @@ fn each_command_states_it() {
     let samples = (0..512).flat_map(|i| (((i * 7919) % 255) as f32).to_le_bytes());
     fs::write(f.join("far.nrrd"), header.bytes().chain(samples).collect::<Vec<u8>>()).unwrap();
     let args = [
-        "ladder",
-        "far.nrrd",
-        "--counts",
-        "200",
-        "--alpha-ref",
-        "0.01",
-        "--mesh",
-        "stl",
-        "-o",
-        "detail",
+        "ladder", "far.nrrd", "--counts", "200", "--alpha", "0.01", "--mesh", "stl", "-o", "detail",
     ];
     ok(f, &args);
     let report: Value =

@@ -15,7 +15,7 @@ const FORMATS = [
   ["ply", "PLY"], ["stl", "STL, solid"], ["3mf", "3MF"], ["glb", "GLB"], ["vtu", "VTU"], ["npz", "NPZ"], ["csv", "points, CSV"], ["wvm", "points, WVM"],
 ];
 
-const state = { input: null, facts: null, grayMin: null, opened: null, presets: {} };
+const state = { input: null, facts: null, grayMin: null, surface: null, opened: null, presets: {} };
 let engine = null;
 const panel = new ShapePanel({
   at: (alpha) => engine.call({ do: "at", alpha }),
@@ -228,6 +228,8 @@ function apply(name) {
   const [low, high] = preset.gray?.split("..") ?? ["", ""];
   [byId("gray-low").value, byId("gray-high").value] = [low, high];
   state.grayMin = preset["gray-min"] ? Number(preset["gray-min"]) : null;
+  // An isosurface has no field: whatever is changed takes its place.
+  state.surface = preset.surface ?? null;
   byId("value-min").value = state.grayMin === null ? "" : short(valueOf(state.grayMin));
   const rule = ["threshold", "count", "ratio"].find((rule) => preset[rule] !== undefined);
   byId("rule").value = rule ?? "ratio";
@@ -290,6 +292,7 @@ function optionsOfForm() {
   const options = { ...reading(), weights: given("weights"), alpha: given("alpha-ref"), keep };
   if (state.facts.kind === "points") return options;
   if (ofLabels()) return { ...reading(), label: byId("labels").value, keep };
+  if (state.surface) return { ...reading(), surface: state.surface };
   if (given("gray-low") !== undefined || given("gray-high") !== undefined) options.gray = grayRange().join("..");
   if (state.grayMin !== null) options["gray-min"] = state.grayMin;
   else options["value-min"] = number("value-min");
@@ -400,6 +403,7 @@ const histogram = new Histogram(byId("histogram"), (mark, value, done) => {
     byId(mark === "low" ? "gray-low" : "gray-high").value = shown;
   }
   byId("preset").value = "";
+  state.surface = null;
   marks();
   if (done) byId("options").requestSubmit();
 });
@@ -418,6 +422,11 @@ function wire() {
     return task("Computing …", compute);
   });
   byId("cancel").addEventListener("click", () => engine.cancel());
+  for (const id of ["of-grays", "of-shape"]) {
+    byId(id).addEventListener("input", ({ target }) => {
+      if (target !== byId("preset")) state.surface = null;
+    });
+  }
   byId("preset").addEventListener("change", () => apply(byId("preset").value));
   byId("rule").addEventListener("change", ruled);
   byId("labels").addEventListener("change", labelled);

@@ -70,36 +70,36 @@ struct Made {
 enum What {
     /// Points, which have a shape at each α.
     Weighed(Weighed),
-    /// Labels, which have one solid.
-    Labels(Model),
+    /// A solid of labels or inside an isosurface, which no α changes.
+    Solid(Model),
 }
 
 impl What {
     fn points(&self) -> &WeightedPoints {
         match self {
             Self::Weighed(weighed) => &weighed.points,
-            Self::Labels(model) => model.shape.points(),
+            Self::Solid(model) => model.shape.points(),
         }
     }
 
     fn origin(&self) -> &Origin {
         match self {
             Self::Weighed(weighed) => &weighed.origin,
-            Self::Labels(model) => &model.origin,
+            Self::Solid(model) => &model.origin,
         }
     }
 }
 
-/// The shapes at all α. The solid of labels stands at α = 0 alone.
+/// The shapes at all α. A solid without α stands at α = 0 alone.
 struct All {
-    /// `None` of labels.
+    /// `None` of a solid.
     filtration: Option<Filtration>,
     stops: Shown,
 }
 
 impl All {
     fn filtration(&self) -> Result<&Filtration, Failure> {
-        let none = || Failure::new("the solid of labels is the same at all α");
+        let none = || Failure::new("a solid without α is the same at all α");
         self.filtration.as_ref().ok_or_else(none)
     }
 }
@@ -336,9 +336,9 @@ impl Session {
         let input =
             match self.opened.as_ref().ok_or_else(|| Failure::new("nothing has been opened"))? {
                 Opened::Points(points, metadata) => Input::Points(points.clone(), metadata.clone()),
-                Opened::Volume(volume) if recipe.labels.is_some() => {
-                    let model = recipe.solid(volume)?;
-                    return Ok(self.made_of_labels(settings, recipe, model));
+                Opened::Volume(volume) if recipe.labels.is_some() || recipe.surface.is_some() => {
+                    let model = recipe.run(volume.clone())?;
+                    return Ok(self.made_without_alpha(settings, recipe, model));
                 }
                 Opened::Volume(volume) => Input::Volume(recipe.grays(volume.clone())?),
             };
@@ -367,8 +367,8 @@ impl Session {
         Ok(answer)
     }
 
-    /// Keeps the solid of labels, and describes it.
-    fn made_of_labels(&mut self, settings: Settings, recipe: Recipe, model: Model) -> Answer {
+    /// Keeps a solid that has no α, and describes it.
+    fn made_without_alpha(&mut self, settings: Settings, recipe: Recipe, model: Model) -> Answer {
         let [low, high] = bounding_box(model.shape.points().positions());
         let shape = model.shape.clone();
         let mut reference = model.parameter;
@@ -381,7 +381,7 @@ impl Session {
             all: None,
             domain: [0, 1, 2].iter().map(|&k| high[k] - low[k]).product(),
             centre: [0, 1, 2].map(|k| f64::midpoint(low[k], high[k])),
-            what: What::Labels(model),
+            what: What::Solid(model),
         };
         let answer = made.described(&shape);
         self.made = Some(made);
@@ -393,7 +393,7 @@ impl Session {
         Stage::Filtration.begin()?;
         let weighed = match &made.what {
             What::Weighed(weighed) => weighed,
-            What::Labels(model) => {
+            What::Solid(model) => {
                 let stops = Shown::of(&model.shape)?;
                 return Ok(made.all.insert(All { filtration: None, stops }).described());
             }
@@ -496,7 +496,12 @@ impl Made {
         arrays.extend(drawn(shape));
         let truncation = origin.truncation.map(|t| json!({ "kept": t.kept, "total": t.total }));
         let labels = match &self.what {
-            What::Labels(model) => model.labels.as_ref().map(ToString::to_string),
+            What::Solid(model) => {
+                let of_labels = model.labels.as_ref().map(ToString::to_string);
+                of_labels.or_else(|| {
+                    Some(format!("the solid inside the isosurface at {}", model.isovalue?))
+                })
+            }
             What::Weighed(_) => None,
         };
         let head = json!({
@@ -567,7 +572,7 @@ impl Made {
     }
 
     fn measure(&self, alpha: f64) -> Result<Answer, Failure> {
-        if let What::Labels(model) = &self.what {
+        if let What::Solid(model) = &self.what {
             return Ok(Answer::of(self.measured(&model.shape), Vec::new()));
         }
         if let Some(shape) = self.kept(alpha)? {
@@ -706,7 +711,7 @@ impl Made {
                 &ExportOptions::default().solid(solid && is_shape).input(Some(input.to_owned())),
             );
             let shape = match &self.what {
-                What::Labels(model) => model.shape.clone(),
+                What::Solid(model) => model.shape.clone(),
                 What::Weighed(weighed) => {
                     let mut weighed = weighed.clone();
                     let mut parameter = self.reference;
@@ -734,7 +739,7 @@ impl Made {
         let input = quoted(input);
         let points = point_writer(Path::new(name));
         let is_shape = self.is_shape(alpha);
-        let (program, output) = if matches!(self.what, What::Labels(_)) {
+        let (program, output) = if matches!(self.what, What::Solid(_)) {
             let solid = if solid { " --solid" } else { "" };
             ("shape", format!("{solid} -o {}", quoted(name)))
         } else if is_shape || points.is_some() {

@@ -25,10 +25,12 @@ pub mod outofcore;
 pub mod pipeline;
 pub mod progress;
 pub mod settings;
+pub mod surface;
 
 pub use export::Save;
 pub use interpolate::Interpolant;
 pub use labels::LabelChoice;
 pub use pipeline::Recipe;
 pub use settings::Settings;
+pub use surface::SurfaceChoice;
 pub use walpha_base::advice::Advise;

@@ -168,6 +168,12 @@ impl Shape {
         self.shape.options().alpha.squared()
     }
 
+    /// The value at whose isosurface the solid inside one ends.
+    #[getter]
+    fn isovalue(&self) -> Option<f64> {
+        self.shape.isovalue()
+    }
+
     /// The number of voxels that the solid of labels fills.
     #[getter]
     fn voxels(&self) -> Option<u64> {

@@ -301,6 +301,9 @@ pub(crate) fn job(args: &InputArgs, recipe: Recipe) -> Result<Job> {
     let alone = ["refit", "exchange", "max_error"];
     args.typed.refuse(&alone, "blocks look at a part of the volume each")?;
     let source = volume.source(&recipe.read).map_err(pipeline::with_points)?;
+    if recipe.surface.is_some() {
+        return Err(PipelineError::OfSurface.into());
+    }
     if recipe.labels.is_some()
         || !preset::looks_for_gray_levels(args)
             && Labels::of(&source).map_err(pipeline::with_points)?.is_some()

@@ -7,7 +7,7 @@ use std::time::Instant;
 
 use clap::{Args, ValueEnum};
 use serde::{Serialize, Serializer};
-use walpha_base::shown::shown;
+use walpha_base::shown::{number, shown};
 
 use crate::check::meshes::{Mesh, MeshFormat};
 use crate::check::schema::{
@@ -249,8 +249,11 @@ impl Check {
             _ => None,
         };
         if alpha.is_some() && !file.states_no_alpha() {
-            let states =
-                if file.voxels.is_some() { "is of labels, without α" } else { "states its α" };
+            let states = match (&file.voxels, file.isovalue) {
+                (Some(_), _) => "is of labels, without α",
+                (None, Some(_)) => "is inside an isosurface, without α",
+                (None, None) => "states its α",
+            };
             fail_usage!("--alpha has no effect: {} {states}", name(input) => "omit it");
         }
         let takes_column = self.pipeline.settings().weights() == Some(&Weighting::Column);
@@ -270,6 +273,9 @@ impl Check {
         }
         if let Some(voxels) = &file.voxels {
             judged += &format!(", the solid of {} voxels", voxels.count());
+        }
+        if let Some(isovalue) = file.isovalue {
+            judged += &format!(", the solid inside the isosurface at {}", number(isovalue));
         }
         let is_cells_alone = file.is_cells_alone();
         let path = self.pipeline.input.input.path();
@@ -335,6 +341,10 @@ impl Check {
             let model = progress.watch(|| recipe.solid(&volume))?;
             return Ok(placed_complex(&model.shape));
         }
+        if let (Input::Surface(volume), Some(surface)) = (&read, recipe.surface) {
+            let model = progress.watch(|| recipe.solid_inside(volume, surface))?;
+            return Ok(placed_complex(&model.shape));
+        }
         let (weighed, _) = pipeline::weigh(read, input, &recipe, Values::Written, progress)?;
         // In the whole triangulation every rule can be judged. Shapes made in several blocks are judged as they are; and on a
         // torus the whole triangulation may have an edge that is too long, unlike the shape.
@@ -359,6 +369,9 @@ impl Check {
         }
         if self.enumerate && judged.voxels.is_some() {
             fail!("--enumerate builds α-shapes, and this is the solid of labels" => "omit it");
+        }
+        if self.enumerate && judged.isovalue.is_some() {
+            fail!("--enumerate builds α-shapes, and this is the solid inside an isosurface" => "omit it");
         }
         if self.enumerate && n > MOST_ENUMERATED {
             fail!("--enumerate takes at most {MOST_ENUMERATED} points, and there are {n}" => "omit it");
@@ -407,6 +420,7 @@ impl Check {
             ],
             extent: Some(match claim.extent {
                 _ if judged.voxels.is_some() => "labels",
+                _ if judged.isovalue.is_some() => "isosurface",
                 Extent::Whole => "whole",
                 Extent::Shape => "shape",
             }),

@@ -159,7 +159,7 @@ impl Interpolate {
         let grid = self.grid(original, &weighed)?;
         let written = original.map(|original| original.written).or(weighed.origin.range);
         let model = pipeline::shape(weighed, &recipe, &mut progress)?;
-        report.add_model(&model);
+        report.add_model(&model)?;
         let shape = model.shape;
         let sampled = progress.stage(Stage::Interpolate, || sample(&shape, &grid, original))?;
         let on_shape = sampled.resampled.covered();

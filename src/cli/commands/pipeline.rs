@@ -187,7 +187,7 @@ pub(crate) fn with_file<T>(args: &InputArgs, work: impl FnOnce(&Path) -> Result<
 pub(crate) fn accept(input: &Input, args: &InputArgs) -> Result<()> {
     let holds = |what| format!("{} holds {what}", args.input);
     match input {
-        Input::Volume(..) | Input::Labels(..) => {
+        Input::Volume(..) | Input::Labels(..) | Input::Surface(..) => {
             args.typed.refuse(&options::of_points(), holds("a volume"))
         }
         Input::Points(points, facts) => {

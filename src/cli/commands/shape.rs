@@ -46,6 +46,8 @@ use crate::{AlphaShape, Recipe};
 ///
 /// walpha shape foam.xyz --periodic 20,20,20 --alpha 1.5 -o foam.npz foam.vtu
 ///
+/// walpha shape ct.nii.gz --surface 250 --solid -o bone.stl
+///
 /// walpha shape labels.nrrd --label 3,5 --solid -o organ.stl
 ///
 /// walpha shape labels.nrrd --each-label --solid -o organs
@@ -69,7 +71,7 @@ pub(crate) struct Shape {
     /// Refuse points that span no volume. Otherwise points in one plane or on one line get the shape that
     /// they have there: triangles or edges, and no cells.
     #[arg(long)]
-    require_3d: bool,
+    pub(crate) require_3d: bool,
     /// Go on with a shape of nothing, which otherwise is an error: write files that hold nothing of it, such as an
     /// STL without a facet.
     #[arg(long)]
@@ -106,7 +108,7 @@ fn formats(names: &[PathBuf]) -> impl Iterator<Item = &'static Format> {
 }
 
 /// Refuses a switch that has no effect.
-fn unused(name: &str, given: bool, why: &str) -> Result<()> {
+pub(crate) fn unused(name: &str, given: bool, why: &str) -> Result<()> {
     if given {
         fail_usage!("{name} has no effect: {why}" => "omit it");
     }
@@ -252,7 +254,10 @@ impl Shape {
         pipeline::accept(&read, input)?;
         let read = match read {
             Input::Labels(volume) => {
-                return self.of_labels(volume, recipe, outputs, global, progress);
+                return self.of_labels(&volume, recipe, outputs, global, progress);
+            }
+            Input::Surface(volume) => {
+                return self.of_surface(&volume, recipe, outputs, global, progress);
             }
             read => read,
         };
@@ -272,7 +277,7 @@ impl Shape {
             progress.watch(|| outputs.refuse_empty(&model.shape))?;
         }
         facts.alpha = Some(model.parameter.alpha);
-        progress.stage(Stage::Measure, || report.add_model(&model));
+        progress.stage(Stage::Measure, || report.add_model(&model))?;
         self.deliver(&model.shape, &facts, report, outputs, global, progress)
     }
 

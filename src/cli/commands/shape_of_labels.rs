@@ -1,4 +1,5 @@
-//! `walpha shape` for a segmentation: writes the solid of its labels, in one file or in one for each label.
+//! `walpha shape` without α: the solid of the labels of a segmentation, in one file or in one for each label, and the solid inside
+//! an isosurface.
 
 use std::collections::BTreeMap;
 use std::fmt::{self, Display};
@@ -10,7 +11,7 @@ use walpha_base::shown::number;
 use crate::cli::commands::folder::Folder;
 use crate::cli::commands::ladder::{Mesh, meshes};
 use crate::cli::commands::pipeline;
-use crate::cli::commands::shape::{Outputs, Shape};
+use crate::cli::commands::shape::{Outputs, Shape, unused};
 use crate::cli::options::global::Global;
 use crate::cli::options::refuse_gray_levels;
 use crate::cli::process::errors::{Result, fail_usage};
@@ -19,7 +20,7 @@ use crate::cli::process::progress::Progress;
 use crate::cli::report::offsets::FileOffset;
 use crate::cli::report::{Report, SCHEMA_VERSION, ending, print_cuts, print_kept};
 use crate::labels::{LabelChoice, LabelSize, chosen};
-use crate::pipeline::Input;
+use crate::pipeline::{Input, Model};
 use crate::points::ModelMetadata;
 use crate::progress::Stage;
 use crate::shape::{Betti, Cuts, Kept};
@@ -33,20 +34,53 @@ impl Shape {
     /// Computes the solid of the labels that the recipe names.
     pub(crate) fn of_labels(
         &self,
-        volume: Volume,
+        volume: &Volume,
         recipe: &Recipe,
         outputs: Outputs,
         global: Global,
         progress: &mut Progress,
     ) -> Result<Report> {
-        let input = &self.pipeline.input;
-        refuse_gray_levels(input)?;
-        refuse_points_alone(&outputs)?;
-        let dims = volume.dims().xyz();
-        let model = progress.watch(|| recipe.solid(&volume))?;
-        drop(volume);
-        let mut report = Report::of_labels(&input.input, dims, &model);
-        progress.stage(Stage::Measure, || report.add_shape(&model));
+        refuse_gray_levels(&self.pipeline.input)?;
+        self.refuse_for("the solid of labels", &outputs)?;
+        let model = progress.watch(|| recipe.solid(volume))?;
+        self.deliver_solid(volume, &model, outputs, global, progress)
+    }
+
+    /// Makes the solid inside the isosurface that the recipe names.
+    pub(crate) fn of_surface(
+        &self,
+        volume: &Volume,
+        recipe: &Recipe,
+        outputs: Outputs,
+        global: Global,
+        progress: &mut Progress,
+    ) -> Result<Report> {
+        self.refuse_for("the solid inside an isosurface", &outputs)?;
+        let surface = recipe.surface.expect("the recipe names one");
+        let model = progress.watch(|| recipe.solid_inside(volume, surface))?;
+        self.deliver_solid(volume, &model, outputs, global, progress)
+    }
+
+    /// Refuses outputs that hold points alone, from which a shape is made by α, and what has no effect on a solid that has none.
+    fn refuse_for(&self, solid: &str, outputs: &Outputs) -> Result<()> {
+        unused("--require-3d", self.require_3d, &format!("{solid} spans a volume"))?;
+        if let Some((target, _)) = outputs.models.first() {
+            let name = walpha_base::shown::shown(target.path());
+            fail_usage!("{name} holds points, of which shapes are made by α, and this is {solid}" => "write a mesh, .json or .npz");
+        }
+        Ok(())
+    }
+
+    fn deliver_solid(
+        &self,
+        volume: &Volume,
+        model: &Model,
+        outputs: Outputs,
+        global: Global,
+        progress: &mut Progress,
+    ) -> Result<Report> {
+        let mut report = Report::of_solid(&self.pipeline.input.input, volume.dims().xyz(), model);
+        progress.stage(Stage::Measure, || report.add_shape(model));
         self.deliver(&model.shape, &ModelMetadata::default(), report, outputs, global, progress)
     }
 
@@ -56,6 +90,9 @@ impl Shape {
             fail_usage!("--each-label writes a file for each label to one folder" => "name it, as in -o labels");
         };
         let meshes = self.meshes()?;
+        if recipe.surface.is_some() {
+            fail_usage!("--each-label has no effect: an isosurface has no labels" => "omit it, or --surface");
+        }
         let choice = recipe.labels.clone().unwrap_or(LabelChoice::All);
         let recipe = recipe.clone().labels(Some(choice.clone()));
         refuse_gray_levels(&self.pipeline.input)?;
@@ -106,15 +143,6 @@ impl Shape {
     pub(crate) fn meshes(&self) -> Result<Vec<Mesh>> {
         meshes(&self.mesh, &[DEFAULT_MESH], &self.export())
     }
-}
-
-/// Refuses outputs that contain only points, from which a shape would be made by α.
-fn refuse_points_alone(outputs: &Outputs) -> Result<()> {
-    if let Some((target, _)) = outputs.models.first() {
-        let name = walpha_base::shown::shown(target.path());
-        fail_usage!("{name} holds points, of which shapes are made by α, and this is the solid of labels" => "write a mesh, .json or .npz");
-    }
-    Ok(())
 }
 
 /// The summary printed after writing a solid for each label.

@@ -125,6 +125,7 @@ impl View {
                 return Ok((vec![weighed], None));
             }
             Input::Labels(..) => return Err(PipelineError::OfLabels.into()),
+            Input::Surface(..) => return Err(PipelineError::OfSurface.into()),
             Input::Volume(grays) => grays,
         };
         let source = recipe.source(grays)?;

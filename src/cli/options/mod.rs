@@ -149,7 +149,7 @@ pub(super) fn of_volumes() -> Vec<&'static str> {
 pub(super) fn refuse_gray_levels(input: &InputArgs) -> Result<()> {
     let mut refused = of_gray_levels();
     refused.extend(names(&[Group::Frozen, Group::Shape, Group::Periodic]));
-    refused.extend(["gray_out", "require_3d"]);
+    refused.push("gray_out");
     let why = "the solid of labels fills their voxels, without gray levels, weights and α";
     input.typed.refuse(&refused, why)
 }

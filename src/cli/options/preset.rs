@@ -80,7 +80,7 @@ pub(crate) fn looks_for_gray_levels(args: &InputArgs) -> bool {
 /// Like [`suited`], for a volume in memory. For a segmentation without named labels, it is the recipe for the solid of all
 /// labels, with a warning that says how to get another.
 pub(crate) fn suited_to(args: &InputArgs, recipe: &Recipe, volume: &Volume) -> Option<Recipe> {
-    if recipe.labels.is_some() {
+    if recipe.labels.is_some() || recipe.surface.is_some() {
         return None;
     }
     let by_labels = !looks_for_gray_levels(args);

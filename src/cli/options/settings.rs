@@ -101,6 +101,11 @@ const HELP: &[(&str, &str, &str)] = &[
         "N,N,…",
         "Make the solid of labels of a segmentation, as in 3 or 3,5, or of all that are not 0 (all): its cells fill their voxels, without α [default: all, where values are labels and no option says what to look for]",
     ),
+    (
+        "surface",
+        "VALUE",
+        "Make the solid inside the isosurface of a volume at this value of INPUT, as in --surface 250 for Hounsfield units: its boundary has its vertices where edges of the grid take the value, and samples inside say which cells it has, without α; auto takes the value that divides the histogram best, and :closed after either keeps the largest part and fills its cavities, as in --surface auto:closed",
+    ),
     ("haar", "KIND", "Decomposition: all axes once per level, or each axis fully"),
     ("rms", "E", "Root mean square error allowed, in gray levels"),
     ("epsilon", "E", "L² norm of the error allowed, in gray levels"),
@@ -156,7 +161,7 @@ const HELP: &[(&str, &str, &str)] = &[
     (
         "alpha",
         "A",
-        "The parameter α, a squared length in the units of the points: auto takes it from the spacing of the points, auto:connected is the smallest at which all points lie in one solid component, and inf gives the convex hull [default: auto for scattered points; 10·h² for a volume, where h³ is the volume of a voxel]",
+        "The parameter α, a squared length in the units of the points: auto takes it from the spacing of the points, auto:connected is the smallest at which all points lie in one solid component, and inf gives the convex hull [default: auto for scattered points; 10·h² for a volume, where h³ is the volume of a voxel, and for its levels of detail no less than auto]",
     ),
     ("alpha-radius", "R", "The parameter as a radius: α = R²"),
     (
@@ -232,7 +237,7 @@ fn option(name: &'static str, heading: &'static str) -> Arg {
         None => arg.value_parser(checked(name)),
     };
     match name {
-        "gray" | "label" => arg.allow_hyphen_values(true),
+        "gray" | "label" | "surface" => arg.allow_hyphen_values(true),
         "weights" => arg.allow_hyphen_values(true).long_help(weights_help()),
         "class" => arg.action(ArgAction::Append).value_delimiter(','),
         "nan" => arg.num_args(0..=1).default_missing_value("mask"),

@@ -16,7 +16,8 @@ use crate::labels::LabelSizes;
 use crate::outofcore::{Merged, Plan};
 use crate::pipeline::{Model, Parameter, Weighed};
 use crate::points::WeightSummary;
-use crate::shape::{Cuts, Engine, Kept};
+use crate::shape::{Alpha, Cuts, Engine, Kept, ShapeError};
+use crate::surface::Isovalue;
 use crate::{Coordinates, GrayRange};
 
 use crate::cli::commands::pipeline::VolumeSummary;
@@ -56,16 +57,22 @@ pub(super) struct Report {
     /// The labels whose solid the shape is; absent if it is a shape of α.
     #[serde(skip_serializing_if = "Option::is_none")]
     labels: Option<LabelSizes>,
+    /// The value at whose isosurface the shape ends; absent where it is one of α.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    isovalue: Option<Isovalue>,
     haar: Option<HaarReport>,
     points: PointsReport,
     /// The fit of values; null if they are those of samples.
     fit: Option<Fit>,
     /// Null if no α was needed.
     alpha: Option<Parameter>,
-    /// Null for labels, which have no weights.
+    /// Null for labels and isosurfaces, which have no weights.
     weights: Option<WeightsReport>,
     #[serde(skip_serializing_if = "Option::is_none")]
     shape: Option<ShapeReport>,
+    /// α that joins 95 % of the points, where the default leaves the shape in pieces.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    joining_alpha: Option<Alpha>,
     #[serde(skip_serializing_if = "Option::is_none")]
     engine: Option<Engine>,
     /// How many components were kept, if not all were to be; `shape` is what is kept.
@@ -90,12 +97,14 @@ impl Report {
             input,
             coordinates,
             labels: None,
+            isovalue: None,
             haar: None,
             points,
             fit: None,
             alpha: None,
             weights: None,
             shape: None,
+            joining_alpha: None,
             engine: None,
             kept: None,
             solid: None,
@@ -132,18 +141,27 @@ impl Report {
         }
     }
 
-    /// The report on the solid of labels, on a grid of `dims` samples, before its shape is added.
-    pub(super) fn of_labels(name: &str, dims: [usize; 3], model: &Model) -> Self {
+    /// The report on a solid without α, on a grid of `dims` samples, before its shape is added.
+    pub(super) fn of_solid(name: &str, dims: [usize; 3], model: &Model) -> Self {
         let input = InputReport { name: name.to_owned(), dims: Some(dims), gray_range: None };
         let points = PointsReport::new(model.shape.points().len());
-        Self { labels: model.labels.clone(), ..Self::new(input, model.origin.coordinates, points) }
+        Self {
+            labels: model.labels.clone(),
+            isovalue: model.isovalue,
+            ..Self::new(input, model.origin.coordinates, points)
+        }
     }
 
     /// Adds a shape that was made by α.
-    pub(super) fn add_model(&mut self, model: &Model) {
+    ///
+    /// # Errors
+    /// Those of [`Model::joining_alpha`].
+    pub(super) fn add_model(&mut self, model: &Model) -> Result<(), ShapeError> {
         self.alpha = Some(model.parameter);
         self.engine = Some(model.shape.options().engine);
         self.add_shape(model);
+        self.joining_alpha = model.joining_alpha()?;
+        Ok(())
     }
 
     /// Adds a shape, whether it was made by α or not.
@@ -226,6 +244,9 @@ impl Display for Report {
         if let Some(labels) = &self.labels {
             writeln!(f, "labels    {labels}, and the cells fill these voxels, without α")?;
         }
+        if let Some(isovalue) = &self.isovalue {
+            writeln!(f, "surface   at {isovalue}; the cells are inside by the samples, without α")?;
+        }
         if let Some(weights) = &self.weights {
             writeln!(f, "weights   {weights} (squared lengths)")?;
         }
@@ -244,15 +265,7 @@ impl Display for Report {
         if let Some(shape) = &self.shape {
             shape.print(f, unit)?;
         }
-        // If α was given, the user knows which parts are connected.
-        let (found, apart) =
-            (self.alpha.filter(Parameter::is_found), self.shape.as_ref().map(|s| s.apart));
-        if let (Some(_), Some(apart @ 1..), Some(all)) = (found, apart, self.points.in_shape) {
-            writeln!(
-                f,
-                "apart     {apart} of {all} points are not connected to the others; raise --alpha to join them"
-            )?;
-        }
+        self.print_apart(f)?;
         if self.points.in_shape == Some(0) {
             writeln!(f, "the shape is empty: every α + ω is negative; raise --alpha")?;
         }
@@ -261,6 +274,24 @@ impl Display for Report {
         }
         self.offsets.iter().try_for_each(|offset| offset.fmt(f))?;
         ending(f, &self.files, &STAGES, &self.seconds)
+    }
+}
+
+impl Report {
+    /// Prints how many points are not connected to the others, and what to do about it. Where α was given, the user knows
+    /// what holds together.
+    fn print_apart(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let apart = self.shape.as_ref().map(|shape| shape.apart);
+        let (Some(apart @ 1..), Some(all)) = (apart, self.points.in_shape) else { return Ok(()) };
+        let text =
+            format_args!("apart     {apart} of {all} points are not connected to the others");
+        if let Some(alpha) = self.joining_alpha {
+            return writeln!(f, "{text}; --alpha {alpha} joins 95 % of all");
+        }
+        match self.alpha.filter(Parameter::is_found) {
+            Some(_) => writeln!(f, "{text}; raise --alpha to join them"),
+            None => Ok(()),
+        }
     }
 }
 

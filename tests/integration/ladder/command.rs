@@ -99,6 +99,50 @@ fn the_command_makes_levels_of_detail() {
     assert!(epsilon(0) <= 100.0 && epsilon(1) > 100.0 && epsilon(1) <= 1000.0);
 }
 
+/// Levels of bone keep together, and about its volume: α follows from the spacing of each, and does not grow with the number of points.
+#[test]
+fn levels_of_detail_hold_together() {
+    let folder = tempfile::tempdir().unwrap();
+    let args = ["ladder", "sample:ct", "--preset", "ct-bone", "-o", "out"];
+    let made = common::json(
+        folder.path(),
+        &[&args[..], &["--counts", "20000,2000,51410,5000", "--mesh", "npz"]].concat(),
+    );
+    let number = |value: &serde_json::Value| value.as_f64().unwrap();
+    let full = number(&made["full"]["volume"]);
+    let levels = made["levels"].as_array().unwrap();
+    let [many, few, all, some] = &levels[..] else { panic!("{made}") };
+    for level in levels {
+        assert!(number(&level["largest_part"]) >= 0.95, "{level}");
+        assert!((number(&level["volume"]) / full - 1.0).abs() < 0.2, "{level}");
+    }
+    assert!((number(&many["volume"]) / full - 1.0).abs() < 0.1, "{many}");
+    let alpha = |level: &serde_json::Value| number(&level["alpha"]["squared"]);
+    let away = |level: &serde_json::Value| number(&level["distance"]["mean"]);
+    assert!(alpha(few) > alpha(some) && alpha(some) > alpha(many) && alpha(many) >= alpha(all));
+    assert!(away(few) > away(some) && away(some) > away(many) && away(many) > 0.1, "{levels:?}");
+    // Full detail is the shape itself.
+    assert_eq!(
+        (&all["points"], &all["volume"]),
+        (&made["full"]["points"], &made["full"]["volume"])
+    );
+    assert_eq!(all["alpha"], made["alpha"]);
+    assert!(away(all) < 1e-9 && number(&all["distance"]["max"]) < 1e-9, "{all}");
+    let csv = std::fs::read_to_string(folder.path().join("out/detail.csv")).unwrap();
+    let columns = ["alpha,largest_part,distance_mean,distance_max"];
+    assert!(csv.lines().next().unwrap().ends_with(columns[0]), "{csv}");
+
+    let given = [&args[..], &["--counts", "5000,20000", "--alpha", "60"]].concat();
+    let made = common::json(folder.path(), &given);
+    assert_eq!(
+        (&made["alpha"]["squared"], &made["levels"][0]["alpha"]),
+        (&serde_json::json!(60.0), &made["alpha"])
+    );
+    assert_eq!(made["levels"][1]["alpha"], made["alpha"]);
+    let text = common::ok(folder.path(), &given);
+    common::names(&text, &["full      51410 points", "largest", "farthest", "60.000"]);
+}
+
 /// The levels tell the same error as `interpolate` for the same number of points, for any values in the file.
 #[test]
 fn levels_of_detail_tell_the_error_of_the_interpolant() {
@@ -106,11 +150,13 @@ fn levels_of_detail_tell_the_error_of_the_interpolant() {
     let scan = ["haar", "sample:phantom@20", "--rms", "0", "-o", "a.npy"];
     common::ok(folder.path(), &scan);
     let told = |args: &[&str]| common::json(folder.path(), args);
-    let levels =
-        told(&["ladder", "a.npy", "--counts", "300,900", "--gray", "-50..300", "-o", "out"]);
+    // Beyond the count of the shape, levels have the samples of largest difference, too.
+    let shared = ["--gray", "-50..300", "--alpha", "10"];
+    let levels = ["ladder", "a.npy", "--counts", "300,900", "--count", "200", "-o", "out"];
+    let levels = told(&[&levels[..], &shared].concat());
     for (level, count) in ["300", "900"].iter().enumerate() {
-        let options = ["--count", count, "--gray", "-50..300", "--fill"];
-        let alone = told(&[&["interpolate", "a.npy"][..], &options].concat());
+        let options = [&["--count", count, "--fill"][..], &shared].concat();
+        let alone = told(&[&["interpolate", "a.npy"][..], &options[..]].concat());
         for (ours, theirs) in [("rmse_inside", "inside"), ("rmse_filled", "filled")] {
             let expected = &alone["interpolation"][theirs]["rmse"];
             assert!(expected.as_f64().unwrap() > 1.0);
@@ -174,6 +220,8 @@ fn bad_wishes_leave_nothing_behind() {
             "--focus",
         ),
         (&["ladder", phantom, "-o", "out", "--counts", "9", "--alphas", "1"], 2, "--counts"),
+        (&["ladder", phantom, "-o", "out", "--counts", "9", "--alpha-ref", "1"], 2, "--alpha-ref"),
+        (&["ladder", phantom, "-o", "out", "--alphas", "9", "--alpha", "1"], 2, "--alpha has no"),
     ] {
         let (got, _, stderr) = common::run(folder.path(), args);
         assert_eq!(got, code, "{stderr}");

@@ -12,5 +12,8 @@ pub fn claim(shape: &AlphaShape) -> Claim<'_> {
 /// A copy of a shape's complex with its points, for the checker; also for a shape on a torus.
 pub fn placed_complex(shape: &AlphaShape) -> PlacedComplex {
     let sides = shape.options().periodic.map(|torus| torus.sides());
-    PlacedComplex::from(claim(shape)).with_periodic(sides).with_voxels(shape.voxels().cloned())
+    PlacedComplex::from(claim(shape))
+        .with_periodic(sides)
+        .with_voxels(shape.voxels().cloned())
+        .with_isovalue(shape.isovalue())
 }

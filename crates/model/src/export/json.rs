@@ -21,6 +21,7 @@ impl Exporter for Json {
         let mut file = ComplexFile::from(claim(shape));
         file.periodic = shape.options().periodic.map(|torus| torus.sides());
         file.voxels = shape.voxels().cloned();
+        file.isovalue = shape.isovalue();
         file.info = Some(serde_json::json!({
             "program": concat!("walpha ", env!("CARGO_PKG_VERSION")),
             "balls": shape.options().balls,

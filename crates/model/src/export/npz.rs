@@ -46,6 +46,9 @@ impl Exporter for Npz {
             archive.rows("voxel_grid", &[dims.map(f64::from), *origin, *a, *b, *c])?;
             archive.rows("voxel_runs", runs)?;
         }
+        if let Some(isovalue) = shape.isovalue() {
+            archive.array("isovalue", arr0(isovalue))?;
+        }
         if let Some(values) = points.values() {
             archive.list("values", values)?;
         }

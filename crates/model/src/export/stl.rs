@@ -66,8 +66,11 @@ fn head(shape: &AlphaShape, single: &SinglePrecision) -> io::Result<[u8; 80]> {
         let [x, y, z] = single.offset.map(number);
         format!("walpha OFFSET={x},{y},{z}{stated}")
     } else {
-        let of =
-            if shape.voxels().is_some() { "solid of labels" } else { "boundary of an alpha shape" };
+        let of = match (shape.voxels(), shape.isovalue()) {
+            (Some(_), _) => "solid of labels",
+            (None, Some(_)) => "solid inside an isosurface",
+            (None, None) => "boundary of an alpha shape",
+        };
         format!("walpha, {of}{stated}")
     };
     let mut head = [b' '; 80];

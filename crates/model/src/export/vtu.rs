@@ -1,8 +1,8 @@
 use std::io::{self, Write};
 
-use super::about::of_labels;
+use super::about::solid;
 use super::{ExportOptions, Exporter};
-use walpha_shape::{Alpha, AlphaShape, Complex, Simplices, Voxels};
+use walpha_shape::{Alpha, AlphaShape, Complex, Simplices};
 use walpha_volume::{Coordinates, annotation};
 
 /// Writes VTU, VTK's unstructured grid: every simplex of the shape, vertices first, with its class as cell data (1 interior, 2
@@ -29,21 +29,20 @@ pub(crate) struct Provenance<'a> {
     pub alpha: Alpha,
     pub coordinates: Coordinates,
     pub input: Option<&'a str>,
-    /// The number of voxels that the shape fills, if it is the solid of labels, which has no α.
-    pub voxels: Option<u64>,
+    /// What the shape is, if it is a solid of labels or inside an isosurface, which has no α.
+    pub solid: Option<String>,
 }
 
 impl<'a> Provenance<'a> {
     /// The record for a shape that was made from the input in the options.
     pub(crate) fn of(shape: &AlphaShape, options: &'a ExportOptions) -> Self {
         let (alpha, coordinates) = (shape.power_alpha(), shape.coordinates());
-        let voxels = shape.voxels().map(Voxels::count);
-        Self { alpha, coordinates, input: options.input.as_deref(), voxels }
+        Self { alpha, coordinates, input: options.input.as_deref(), solid: solid(shape) }
     }
 
     /// Describes the shape: by `alpha`, a text about α, or as a solid of labels.
     pub(super) fn about(&self, alpha: String) -> String {
-        self.voxels.map_or(alpha, of_labels)
+        self.solid.clone().unwrap_or(alpha)
     }
 }
 
@@ -227,7 +226,7 @@ impl Appended {
         let alpha = made.alpha;
         writeln!(self.xml, "<FieldData>")?;
         for (name, number) in [("alpha", Some(alpha.squared())), ("alpha_radius", alpha.radius())] {
-            if let Some(number) = number.filter(|_| made.voxels.is_none()) {
+            if let Some(number) = number.filter(|_| made.solid.is_none()) {
                 // The number is binary, as VTK cannot read "inf".
                 self.field("DataArray", "Float64", name, 1, &number.to_le_bytes())?;
             }

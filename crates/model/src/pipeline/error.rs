@@ -30,6 +30,11 @@ pub enum PipelineError {
         "the volume holds labels, and their solid comes from voxels, without α, differences or weights"
     )]
     OfLabels,
+    /// The solid inside an isosurface, where points are to be selected.
+    #[error(
+        "the solid inside an isosurface is no shape of selected points, and has neither α nor weights"
+    )]
+    OfSurface,
     /// An error in computing the shape.
     #[error(transparent)]
     Shape(ShapeError),
@@ -93,6 +98,13 @@ impl Advise for PipelineError {
                 "take their solid by `walpha shape`, or say what to look for in gray levels, as in ",
                 Setting::Threshold,
                 " 30"
+            ],
+            Self::OfSurface => advice![
+                "make it by `walpha shape`, or select points by gray levels, as by ",
+                Setting::Threshold,
+                " 12 and ",
+                Setting::GrayMin,
+                " 24"
             ],
             Self::SpaceOfVoxels | Self::UnknownSpace => advice!["omit ", Setting::Space],
             Self::NoComponent { .. } => advice!["give ", Setting::MinVolume, " less, or omit it"],

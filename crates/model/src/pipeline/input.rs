@@ -13,6 +13,8 @@ pub enum Input {
     Volume(GrayVolume),
     /// A segmentation, whose labels the recipe [requests](Recipe::labels).
     Labels(Volume),
+    /// A volume inside whose isosurface the recipe [asks for](Recipe::surface) the solid.
+    Surface(Volume),
     /// Points, perhaps with weights and values, and the metadata of their file.
     Points(Points, ModelMetadata),
 }
@@ -126,6 +128,9 @@ impl Recipe {
         }
         if self.labels.is_some() {
             return Ok(Input::Labels(volume));
+        }
+        if self.surface.is_some() {
+            return Ok(Input::Surface(volume));
         }
         Ok(Input::Volume(self.grays(volume)?))
     }

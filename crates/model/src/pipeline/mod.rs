@@ -26,6 +26,7 @@ use walpha_base::{LengthUnit, Monitor};
 use crate::interpolate::{Refit, refit};
 use crate::labels::{self, LabelChoice, LabelSizes};
 use crate::progress::Stage;
+use crate::surface::{self, Isovalue, SurfaceChoice};
 use walpha_points::haar::smooth;
 use walpha_points::{ModelMetadata, Points, SampleGrid};
 use walpha_shape::{Alpha, AlphaShape, Engine, Kept, NO_COMPONENT, alpha_shape};
@@ -43,17 +44,22 @@ pub struct Model {
     pub origin: Origin,
     /// The labels whose solid the shape is, if it is a solid of labels.
     pub labels: Option<LabelSizes>,
+    /// The value at whose isosurface it ends, if it is the solid inside one.
+    pub isovalue: Option<Isovalue>,
 }
 
 impl Recipe {
-    /// Computes the shape of a volume: the solid of its [labels](Recipe::labels), if the recipe names some; otherwise its values
-    /// are first mapped to gray levels if needed.
+    /// Computes the shape of a volume: the solid of its [labels](Recipe::labels), if the recipe names some, or the solid inside an
+    /// [isosurface](Recipe::surface); otherwise its values are first mapped to gray levels if needed.
     ///
     /// # Errors
     /// The errors of its stages, and [`PipelineError::Cancelled`].
     pub fn run(&self, volume: Volume) -> Result<Model, PipelineError> {
         if self.labels.is_some() {
             return self.solid(&volume);
+        }
+        if let Some(surface) = self.surface {
+            return self.solid_inside(&volume, surface);
         }
         let source = self.source(self.grays(volume)?)?;
         self.finish(self.weighed(&source, Values::Written)?)
@@ -82,9 +88,29 @@ impl Recipe {
         let shape = labels::solid(volume, &frame, units, &chosen)?;
         let sizes = LabelSizes::new(counts, &frame, units);
         let parameter = Parameter::of_labels(sizes.unit);
-        let origin = Origin::of_labels(units.coordinates_of(&frame));
+        let origin = Origin::without_alpha(units.coordinates_of(&frame));
         let shape = self.kept(shape, parameter.unit)?;
-        Ok(Model { shape, parameter, origin, labels: Some(sizes) })
+        Ok(Model { shape, parameter, origin, labels: Some(sizes), isovalue: None })
+    }
+
+    /// Computes the solid inside an isosurface of a volume ([`surface::solid`]).
+    ///
+    /// # Errors
+    /// [`PipelineError::Shape`], and the errors of [`Recipe::place`].
+    pub fn solid_inside(
+        &self,
+        volume: &Volume,
+        surface: SurfaceChoice,
+    ) -> Result<Model, PipelineError> {
+        Stage::Shape.begin()?;
+        let (frame, units) = self.place(*volume.frame())?;
+        let isovalue = Isovalue::of(surface, volume);
+        let shape = surface::solid(volume, &frame, units, isovalue.value, surface.extent)?;
+        let coordinates = units.coordinates_of(&frame);
+        let parameter = Parameter::of_surface(coordinates.unit);
+        let origin = Origin::without_alpha(coordinates);
+        let shape = self.kept(shape, parameter.unit)?;
+        Ok(Model { shape, parameter, origin, labels: None, isovalue: Some(isovalue) })
     }
 
     /// Computes the shape of scattered points.
@@ -110,6 +136,7 @@ impl Recipe {
                 Ok((self.weighed_points(points, &metadata, values)?, None))
             }
             Input::Labels(_) => Err(PipelineError::OfLabels),
+            Input::Surface(_) => Err(PipelineError::OfSurface),
             Input::Volume(grays) => {
                 let source = self.source(grays)?;
                 Ok((self.weighed(&source, values)?, Some(source)))
@@ -206,7 +233,7 @@ impl Recipe {
         let Weighed { points, origin, .. } = weighed;
         let shape = alpha_shape(points, &options)?.with_coordinates(origin.coordinates);
         let shape = self.kept(shape, parameter.unit)?;
-        Ok(Model { shape, parameter, origin, labels: None })
+        Ok(Model { shape, parameter, origin, labels: None, isovalue: None })
     }
 
     /// The points of the components that are [to be kept](Recipe::keep) of the shape at α, with α as their parameter: at α and below, their shapes consist of

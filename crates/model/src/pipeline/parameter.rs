@@ -104,6 +104,8 @@ pub enum ParameterOrigin {
     ConnectedUnweighted,
     /// There is no α, as the shape is the solid of labels.
     Labels,
+    /// There is none: the shape is the solid inside an isosurface.
+    Surface,
 }
 
 /// The value of α as a squared length and as a radius.
@@ -226,6 +228,11 @@ impl Parameter {
         Self { alpha: Alpha::INFINITE, unit, origin: ParameterOrigin::Labels }
     }
 
+    /// That of the solid inside an isosurface, which has none: infinite.
+    pub(super) fn of_surface(unit: LengthUnit) -> Self {
+        Self { alpha: Alpha::INFINITE, unit, origin: ParameterOrigin::Surface }
+    }
+
     /// Whether α was found and not given.
     pub fn is_found(&self) -> bool {
         use ParameterOrigin::{Auto, AutoUnweighted, Connected, ConnectedUnweighted};
@@ -244,6 +251,9 @@ impl Display for Parameter {
         if self.origin == ParameterOrigin::Labels {
             return f.write_str("none: the cells are those of voxels, by their labels");
         }
+        if self.origin == ParameterOrigin::Surface {
+            return f.write_str("none: the cells are those inside an isosurface, by the samples");
+        }
         let (squared, unit) = (number(self.alpha.squared()), self.unit.symbol());
         write!(f, "α = {squared} {unit}² (squared length; ")?;
         match self.alpha.radius() {
@@ -251,7 +261,7 @@ impl Display for Parameter {
             None => f.write_str("negative, so no radius)")?,
         }
         f.write_str(match self.origin {
-            ParameterOrigin::Given | ParameterOrigin::Labels => "",
+            ParameterOrigin::Given | ParameterOrigin::Labels | ParameterOrigin::Surface => "",
             ParameterOrigin::Default => ", the default",
             ParameterOrigin::Stored => ", that of the file",
             ParameterOrigin::Auto => ", from the spacing of the points",

@@ -9,6 +9,7 @@ use super::{AlphaRule, Choice, Parameter, PipelineError, Weighed};
 use crate::interpolate::Refit;
 use crate::labels::LabelChoice;
 use crate::settings::Settings;
+use crate::surface::SurfaceChoice;
 use walpha_points::haar::{HaarOptions, Tolerance};
 use walpha_points::internal::LEAST_GRAY;
 use walpha_points::{
@@ -66,6 +67,9 @@ pub struct Recipe {
     /// The labels whose [solid](Recipe::solid) is the shape; `None` selects points by gray levels. With labels, the rest of the
     /// recipe has no effect, except the options for reading a volume, its units and its space.
     pub labels: Option<LabelChoice>,
+    /// The value at whose isosurface the [solid](Recipe::solid_inside) ends that the shape is; `None` selects points by gray levels. With it nothing
+    /// else of the recipe has an effect, except how a volume is read, its units and its space.
+    pub surface: Option<SurfaceChoice>,
     /// The values that become gray 0 and 255; `None` leaves unsigned bytes unchanged, and otherwise takes the
     /// smallest and largest value.
     pub gray: Option<GrayRange>,
@@ -139,6 +143,7 @@ impl Recipe {
         radii: Option<Radii>,
         atoms: AtomSelection,
         labels: Option<LabelChoice>,
+        surface: Option<SurfaceChoice>,
         gray_out: bool,
         haar: HaarOptions,
         choice: Choice,

@@ -64,8 +64,8 @@ pub struct Origin {
 }
 
 impl Origin {
-    /// The origin of the corners of voxels, in these coordinates.
-    pub(super) fn of_labels(coordinates: Coordinates) -> Self {
+    /// The origin of points that were not selected, in these coordinates: of labels or of an isosurface.
+    pub(super) fn without_alpha(coordinates: Coordinates) -> Self {
         Self {
             coordinates,
             weighting: Weighting::Common(0.0),

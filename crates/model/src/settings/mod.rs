@@ -23,6 +23,7 @@ use crate::Recipe;
 use crate::interpolate::Refit;
 use crate::labels::LabelChoice;
 use crate::pipeline::{AlphaRule, Choice, Goal};
+use crate::surface::SurfaceChoice;
 pub use choices::Select;
 
 /// An error of a setting, and advice about it. Both may name settings.
@@ -94,6 +95,16 @@ const EXCLUSIVE: &[&[&str]] = &[
     &["dims", "skip_damaged"],
     &["dims", "no_resample"],
 ];
+
+/// The setting that makes the solid inside an isosurface.
+const SURFACE: &str = "surface";
+
+/// Whether a setting has no effect on the solid inside an isosurface: it is about gray levels, points, α or how a shape of α is computed.
+fn is_not_of_surface(name: &str, group: Group) -> bool {
+    use Group::{Frozen, Haar, Periodic, Points, Refit, Shape, Weighting, Weights};
+    [Frozen, Haar, Periodic, Points, Refit, Shape, Weighting, Weights].contains(&group)
+        || ["gray", "gray_out", "label"].contains(&name)
+}
 
 macro_rules! settings {
     ($($group:ident { $($(#[$doc:meta])* $name:ident: $kind:ty = $parse:expr,)* })*) => {
@@ -217,6 +228,8 @@ settings! {
     Labels {
         /// Labels whose solid the shape is.
         label: LabelChoice = parse::own,
+        /// Value at whose isosurface the shape ends.
+        surface: SurfaceChoice = parse::own,
     }
     Haar {
         /// Kind of decomposition.
@@ -315,8 +328,15 @@ impl Settings {
 
     /// The names of the settings that this one excludes, and that exclude it.
     pub fn excluded_by(name: &str) -> impl Iterator<Item = &'static str> {
-        let groups = EXCLUSIVE.iter().filter(move |names| names.contains(&name));
-        groups.copied().flatten().copied().filter(move |other| *other != name)
+        let sets = EXCLUSIVE.iter().filter(move |names| names.contains(&name));
+        let of_sets = sets.copied().flatten().copied().filter(move |other| *other != name);
+        // Each of the others excludes the surface, and the surface all of them.
+        let of_surface = Self::NAMES.iter().filter(move |(known, group)| {
+            is_not_of_surface(known, *group) && (name == SURFACE || name == *known)
+        });
+        let of_surface =
+            of_surface.map(move |(known, _)| if name == SURFACE { *known } else { SURFACE });
+        of_sets.chain(of_surface)
     }
 
     /// The given settings that this one excludes. A switch that is off does not exclude others, nor is it excluded.
@@ -539,6 +559,7 @@ impl Settings {
             .radii(self.radii.clone())
             .atoms(self.atoms())
             .labels(self.label.clone())
+            .surface(self.surface)
             .gray(self.gray)
             .gray_out(is_set(self.gray_out))
             .units(self.units)

@@ -10,29 +10,30 @@ use serde::Serialize;
 use super::{Ladder, LevelErrors, Mesh, short};
 use crate::cli::commands::folder::Folder;
 use crate::cli::commands::outline;
-use crate::cli::commands::pipeline::{Domain, read};
+use crate::cli::commands::pipeline::{Domain, read_suited};
 use crate::cli::options::global::Global;
-use crate::cli::options::one_alpha;
 use crate::cli::process::errors::{Result, fail, fail_usage};
 use crate::cli::process::output::{name, print_summary};
 use crate::cli::process::progress::Progress;
 use crate::cli::report::SCHEMA_VERSION;
 use crate::cli::report::offsets::FileOffset;
+use crate::distance::SurfaceDistance;
 use crate::haar::smooth;
-use crate::pipeline::{Input, Parameter, PlacedVolume};
-use crate::points::{Points, Region, difference, focus, select, weigh};
+use crate::pipeline::{Input, Parameter, PipelineError, PlacedVolume};
+use crate::points::{Points, Region, difference, focus, select, spread_order, weigh};
 use crate::progress::Stage;
-use crate::shape::{AlphaShape, Betti, Measures, ShapeOptions, Surface, alpha_shape};
+use crate::shape::{Alpha, AlphaShape, Betti, Measures, ShapeOptions, Surface, alpha_shape};
 use crate::{
     Coordinates, HaarOptions, Recipe, Selection, SelectionRule, Tolerance, Truncation, Volume,
     Weighting,
 };
 
-/// How a level selects its points.
-struct LevelOptions {
+/// A level of detail, before its shape is made.
+struct LevelPoints {
     name: String,
-    haar: HaarOptions,
-    selection: Selection,
+    points: Points,
+    truncation: Truncation,
+    parameter: Parameter,
 }
 
 impl Ladder {
@@ -46,45 +47,65 @@ impl Ladder {
     ) -> Result<()> {
         let given = &self.pipeline.input.typed;
         given.refuse(&["refit"], "levels of detail keep the values of the samples")?;
+        given.refuse(
+            &["alpha_ref"],
+            "weights of a level of detail are computed for its own α, --alpha",
+        )?;
         let mut progress = Progress::new(global);
-        let recipe = self.pipeline.recipe()?;
-        let Input::Volume(grays) = read(&self.pipeline.input, &recipe, &mut progress)? else {
-            fail!("levels of detail are made of a volume, and this is a point file" => "use --alphas");
+        let mut recipe = self.pipeline.recipe()?;
+        let grays = match read_suited(&self.pipeline.input, &mut recipe, &mut progress)? {
+            Input::Volume(grays) => grays,
+            Input::Labels(_) => return Err(PipelineError::OfLabels.into()),
+            Input::Surface(_) => return Err(PipelineError::OfSurface.into()),
+            Input::Points(..) => {
+                fail!("levels of detail are made of a volume, and this is a point file" => "use --alphas")
+            }
         };
         let weighting = recipe.weighting.unwrap_or(Weighting::Common(0.0));
         let source = recipe.source(grays)?;
-        let parameter = one_alpha(recipe.alpha, &source)?;
         let PlacedVolume { ref volume, units, written, .. } = source;
-        let alpha = parameter.alpha;
         let coordinates = units.coordinates(volume);
         let domain = Domain::of_grid(volume, units);
         let Some(selection) = recipe.selection(&source.range) else {
             fail_usage!("--select adaptive has no effect: levels of detail are selected by differences" => "omit it");
         };
         let mut front_end = FrontEnd { source: &source, recipe: &recipe, smoothed: None };
-        let full =
-            progress.stage(Stage::Points, || self.full(&mut front_end, &recipe, selection))?;
+        let selected = || front_end.points(&recipe.haar, &selection);
+        let (full, truncation) = progress.stage(Stage::Points, selected)?;
+        if let Some(region) = &self.focus
+            && inside(&full, region) == 0
+        {
+            fail!("no point lies in --focus: it is in the units of the points, x first");
+        }
+        let shape_at = |points: Points, alpha: Alpha| -> Result<AlphaShape> {
+            let shape = alpha_shape(weigh(points, weighting, alpha)?, &ShapeOptions::new(alpha))?;
+            Ok(shape.with_coordinates(coordinates))
+        };
+        let found = || self.level_points(&mut front_end, selection, &full, truncation);
+        let levels = progress.stage(Stage::Points, found)?;
+        let parameter = match recipe.alpha.of_volume(volume, units)? {
+            Some(parameter) => parameter,
+            None => progress.stage(Stage::Alpha, || recipe.level_parameter(&full, &source))?,
+        };
+        let whole = progress.stage(Stage::Shape, || shape_at(full.clone(), parameter.alpha))?;
         let mut rows = Vec::new();
-        for level in self.level_options(&recipe, selection) {
-            let found = || front_end.points(&level.haar, &level.selection);
-            let (mut points, truncation) = progress.stage(Stage::Points, found)?;
-            if let Some((full, region)) = &full {
-                points = focus(full, &points, region);
+        for LevelPoints { name, mut points, truncation, parameter } in levels {
+            if let Some(region) = &self.focus {
+                points = focus(&full, &points, region);
             }
             let grays = points.values.clone().unwrap_or_default();
             if let Some(values) = &mut points.values {
                 values.iter_mut().for_each(|value| *value = written.value(*value));
             }
             outline::check(meshes.iter().map(|mesh| mesh.format), &points.positions)?;
-            let weighted = weigh(points, weighting, alpha)?;
-            let options = ShapeOptions::new(alpha);
-            let shape = progress.stage(Stage::Shape, || alpha_shape(weighted, &options))?;
-            let shape = shape.with_coordinates(coordinates);
+            let shape = progress.stage(Stage::Shape, || shape_at(points, parameter.alpha))?;
+            let distance = || SurfaceDistance::between(&shape, &whole);
+            let distance = progress.stage(Stage::Measure, distance)?;
             let errors = || LevelErrors::of(&shape, &grays, volume, units);
             let errors = progress.stage(Stage::Interpolate, errors)?;
-            let mut row = Row::of(&shape, &truncation, &domain, errors);
+            let mut row = Row::of(&shape, parameter, &truncation, &domain, errors, distance);
             progress.stage(Stage::Write, || {
-                write_meshes(&shape, &level.name, meshes, &mut folder, &mut row)
+                write_meshes(&shape, &name, meshes, &mut folder, &mut row)
             })?;
             rows.push(row);
         }
@@ -95,7 +116,8 @@ impl Ladder {
             alpha: parameter,
             weights: weighting.to_string(),
             domain,
-            points_in_region: full.as_ref().map(|(points, region)| inside(points, region)),
+            points_in_region: self.focus.as_ref().map(|region| inside(&full, region)),
+            full: FullDetail::of(&whole),
             levels: rows,
             seconds: progress.finish().into_iter().collect(),
         };
@@ -105,34 +127,55 @@ impl Ladder {
         print_summary(global, &facts)
     }
 
-    /// The points of full detail, and the region that keeps them, if `--focus` is given.
-    fn full(
+    /// The points of each level, without those of the region, and its α.
+    fn level_points(
         &self,
         front_end: &mut FrontEnd<'_>,
-        recipe: &Recipe,
         selection: Selection,
-    ) -> Result<Option<(Points, &Region)>> {
-        let Some(region) = &self.focus else { return Ok(None) };
-        let (points, _) = front_end.points(&recipe.haar, &selection)?;
-        if inside(&points, region) == 0 {
-            fail!("no point lies in --focus: it is in the units of the points, x first");
+        full: &Points,
+        truncation: Truncation,
+    ) -> Result<Vec<LevelPoints>> {
+        let (recipe, source) = (front_end.recipe, front_end.source);
+        let order = if self.counts.is_empty() { Vec::new() } else { spread_order(full)? };
+        let mut levels = Vec::new();
+        for &count in &self.counts {
+            let points = match order.get(..count as usize) {
+                Some(first @ [_, ..]) => {
+                    let mut kept = vec![false; full.len()];
+                    first.iter().for_each(|&index| kept[index as usize] = true);
+                    let mut points = full.clone();
+                    points.keep(&kept);
+                    points
+                }
+                // More than the shape has.
+                _ => {
+                    front_end.points(&recipe.haar, &selection.rule(SelectionRule::Count(count)))?.0
+                }
+            };
+            let parameter = recipe.level_parameter(&points, source)?;
+            levels.push(LevelPoints { name: count.to_string(), points, truncation, parameter });
         }
-        Ok(Some((points, region)))
+        never_below_finer(&mut levels);
+        for &epsilon in &self.epsilons {
+            let haar = recipe.haar.tolerance(Tolerance::Epsilon(epsilon));
+            let (points, truncation) = front_end.points(&haar, &selection)?;
+            let parameter = recipe.level_parameter(&points, source)?;
+            let name = format!("epsilon-{}", short(epsilon));
+            levels.push(LevelPoints { name, points, truncation, parameter });
+        }
+        Ok(levels)
     }
+}
 
-    fn level_options(&self, recipe: &Recipe, selection: Selection) -> Vec<LevelOptions> {
-        let haar = recipe.haar;
-        let by_count = self.counts.iter().map(|&count| LevelOptions {
-            name: count.to_string(),
-            haar,
-            selection: selection.rule(SelectionRule::Count(count)),
-        });
-        let by_epsilon = self.epsilons.iter().map(|&epsilon| LevelOptions {
-            name: format!("epsilon-{}", short(epsilon)),
-            haar: haar.tolerance(Tolerance::Epsilon(epsilon)),
-            selection,
-        });
-        by_count.chain(by_epsilon).collect()
+/// Raises α of levels to that of levels with more points, which have all of their points: a coarser level closes all that a finer one does.
+fn never_below_finer(levels: &mut [LevelPoints]) {
+    let mut order: Vec<usize> = (0..levels.len()).collect();
+    order.sort_by_key(|&level| std::cmp::Reverse(levels[level].points.len()));
+    for pair in order.windows(2) {
+        let finer = levels[pair[0]].parameter;
+        if levels[pair[1]].parameter.alpha < finer.alpha {
+            levels[pair[1]].parameter = finer;
+        }
     }
 }
 
@@ -192,18 +235,44 @@ pub(super) struct DetailSummary {
     pub input: String,
     /// Unit of points and all lengths.
     pub coordinates: Coordinates,
+    /// α of full detail.
     pub alpha: Parameter,
     pub weights: String,
     pub domain: Domain,
     /// Points with full detail, which each level has besides its own; null without a region.
     pub points_in_region: Option<usize>,
+    /// The shape of all points that are selected, which levels are compared with.
+    pub full: FullDetail,
     pub levels: Vec<Row>,
     pub seconds: BTreeMap<&'static str, f64>,
+}
+
+/// The shape of full detail.
+#[derive(Serialize)]
+pub(super) struct FullDetail {
+    points: usize,
+    largest_part: Option<f64>,
+    #[serde(flatten)]
+    measures: Measures,
+}
+
+impl FullDetail {
+    fn of(shape: &AlphaShape) -> Self {
+        let (points, measures) = (shape.points().len(), shape.measures());
+        Self { points, largest_part: largest_part(shape), measures }
+    }
+}
+
+/// The share of the vertices of a shape that are in the component with the most of them; `None` without a vertex.
+fn largest_part(shape: &AlphaShape) -> Option<f64> {
+    let largest = shape.components().iter().map(|component| component.vertices).max()?;
+    Some(largest as f64 / shape.points_in_shape() as f64)
 }
 
 #[derive(Serialize)]
 pub(super) struct Row {
     pub points: usize,
+    pub alpha: Parameter,
     /// Of the wavelet stage: coefficients kept, ‖f − f̂‖ and its root mean square, gray levels.
     pub kept: u64,
     pub epsilon: f64,
@@ -214,6 +283,10 @@ pub(super) struct Row {
     #[serde(flatten)]
     pub measures: Measures,
     pub coverage: f64,
+    /// Share of the vertices in the component that has the most; null without a vertex.
+    pub largest_part: Option<f64>,
+    /// Distance from the surface of full detail; null where one of both has no facet.
+    pub distance: Option<SurfaceDistance>,
     /// RMSE of F, in gray levels: on the samples of the shape, and on all.
     #[serde(flatten)]
     pub errors: LevelErrors,
@@ -229,12 +302,17 @@ impl Row {
     /// The row of a level, before its meshes are written.
     pub(super) fn of(
         shape: &AlphaShape,
+        alpha: Parameter,
         truncation: &Truncation,
         domain: &Domain,
         errors: LevelErrors,
+        distance: Option<SurfaceDistance>,
     ) -> Self {
         Self {
             errors,
+            distance,
+            alpha,
+            largest_part: largest_part(shape),
             points: shape.points().len(),
             kept: truncation.kept,
             epsilon: truncation.epsilon,
@@ -260,7 +338,13 @@ impl Display for DetailSummary {
         writeln!(f, "input     {}", name(&self.input))?;
         writeln!(f, "lengths   in {}", self.coordinates)?;
         writeln!(f, "weights   {}", self.weights)?;
-        writeln!(f, "parameter {}", self.alpha)?;
+        let FullDetail { points, measures, .. } = &self.full;
+        let unit = self.coordinates.unit.symbol();
+        writeln!(
+            f,
+            "full      {points} points, volume {:.1} {unit}³, {}",
+            measures.volume, self.alpha
+        )?;
         if let Some(points) = self.points_in_region {
             writeln!(
                 f,
@@ -269,8 +353,9 @@ impl Display for DetailSummary {
         }
         writeln!(
             f,
-            "{:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>12} {:>9} {:>10}  files",
+            "{:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>12} {:>9} {:>8} {:>8} {:>8} {:>10}  files",
             "points",
+            "α",
             "rms",
             "F inside",
             "F filled",
@@ -278,20 +363,31 @@ impl Display for DetailSummary {
             "boundary",
             "volume",
             "coverage",
+            "largest",
+            "mean",
+            "farthest",
             "bytes"
         )?;
+        let or_none = |number: Option<f64>, digits: usize| {
+            number.map_or("–".into(), |number| format!("{number:.digits$}"))
+        };
         for row in &self.levels {
+            let distance = row.distance;
             writeln!(
                 f,
-                "{:>9} {:>9.4} {:>9} {:>9.4} {:>9} {:>9} {:>12.1} {:>8.2}% {:>10}  {}",
+                "{:>9} {:>9.3} {:>9.4} {:>9} {:>9.4} {:>9} {:>9} {:>12.1} {:>8.2}% {:>7}% {:>8} {:>8} {:>10}  {}",
                 row.points,
+                row.alpha.alpha.squared(),
                 row.rms,
-                row.errors.inside.map_or("–".into(), |rmse| format!("{rmse:.4}")),
+                or_none(row.errors.inside, 4),
                 row.errors.filled,
                 row.cells,
                 row.boundary_facets,
                 row.measures.volume,
                 100.0 * row.coverage,
+                or_none(row.largest_part.map(|share| 100.0 * share), 1),
+                or_none(distance.map(|distance| distance.mean), 3),
+                or_none(distance.map(|distance| distance.max), 3),
                 row.bytes,
                 row.files.join(", ")
             )?;
@@ -301,7 +397,8 @@ impl Display for DetailSummary {
         writeln!(
             f,
             "rms: the error of the wavelet stage; F: RMSE of the interpolant, on the samples of the \
-             shape, and filled, on all; in gray levels"
+             shape, and filled, on all; in gray levels. largest: share of the vertices in the largest part. \
+             mean, farthest: distance from the surface of full detail, in {unit}"
         )
     }
 }
@@ -325,7 +422,12 @@ pub(super) fn write_rows(rows: &[Row], out: &mut dyn io::Write) -> io::Result<()
         "rmse_inside",
         "rmse_filled",
         "bytes",
+        "alpha",
+        "largest_part",
+        "distance_mean",
+        "distance_max",
     ])?;
+    let or_empty = |number: Option<f64>| number.map_or(String::new(), |number| number.to_string());
     for row in rows {
         let betti = row.betti.map(<[u64; 3]>::from);
         let betti = [0, 1, 2].map(|k| betti.map_or(String::new(), |betti| betti[k].to_string()));
@@ -343,9 +445,13 @@ pub(super) fn write_rows(rows: &[Row], out: &mut dyn io::Write) -> io::Result<()
             row.measures.volume.to_string(),
             row.measures.area.to_string(),
             row.coverage.to_string(),
-            row.errors.inside.map_or(String::new(), |rmse| rmse.to_string()),
+            or_empty(row.errors.inside),
             row.errors.filled.to_string(),
             row.bytes.to_string(),
+            row.alpha.alpha.to_string(),
+            or_empty(row.largest_part),
+            or_empty(row.distance.map(|distance| distance.mean)),
+            or_empty(row.distance.map(|distance| distance.max)),
         ])?;
     }
     csv.flush()

@@ -12,8 +12,8 @@ use serde::Serialize;
 use crate::cli::commands::folder::Folder;
 use crate::cli::commands::outline;
 use crate::cli::commands::pipeline::{self, filled_in};
-use crate::cli::options::global::Global;
-use crate::cli::options::{Alphas, FrozenPipelineArgs};
+use crate::cli::options::{self, global::Global};
+use crate::cli::options::{Alphas, Declared, FrozenPipelineArgs, Groups};
 use crate::cli::process::errors::{CommandError, Result, fail_usage};
 use crate::cli::process::output::print_summary;
 use crate::cli::process::progress::Progress;
@@ -25,6 +25,7 @@ use crate::points::Region;
 use crate::progress::Stage;
 #[cfg(feature = "render")]
 use crate::render::ladder_figure;
+use crate::settings::Group;
 use crate::{AlphaShape, Coordinates, Units, Volume};
 use summary::{LadderSummary, write_levels, write_voids};
 
@@ -34,9 +35,13 @@ use summary::{LadderSummary, write_levels, write_voids};
 /// Betti numbers, volume and area of each level, voids.csv has every void with the α that fills
 #[cfg_attr(feature = "render", doc = " it, ladder.png and ladder.svg draw it.")]
 #[cfg_attr(not(feature = "render"), doc = " it.")]
-/// Values of α to try are suggested. Over points (--counts) or the
-/// error of the wavelet stage (--epsilons) there is a mesh for each level of detail, at α = --alpha-ref,
-/// and detail.csv and detail.json list error and size.
+/// Values of α to try are suggested.
+///
+/// Over points (--counts) or the error of the wavelet stage (--epsilons) there is a mesh for each level of detail.
+/// Unless --alpha is given, α of a level is 10·h² as for the whole volume, or α from the spacing of its own points (as
+/// --alpha auto) where that is greater, and no less than that of a level with more points. detail.csv and detail.json list for each level α, sizes,
+/// errors, the share of the vertices in the largest part, and the distance from the surface of full detail: the mean over
+/// both surfaces, and the greatest.
 ///
 /// Examples:
 ///
@@ -59,7 +64,9 @@ pub(crate) struct Ladder {
         allow_hyphen_values = true
     )]
     alphas: Alphas,
-    /// Levels of detail: numbers of points, those of largest gray difference.
+    /// Levels of detail: numbers of points. They are of those that --count, --ratio or --threshold selects, spread over all of
+    /// these, and of neighbours the ones of largest gray difference; if there are not as many, further samples of
+    /// largest difference are added.
     #[arg(long, value_name = "N,N,…", value_delimiter = ',', group = "levels")]
     counts: Vec<u64>,
     /// Levels of detail: L² norms of the error allowed in the wavelet stage, in gray levels.
@@ -76,7 +83,16 @@ pub(crate) struct Ladder {
     #[arg(long, value_name = "EXT,EXT,…", value_delimiter = ',')]
     mesh: Vec<String>,
     #[command(flatten)]
+    alpha: Declared<OfLevels>,
+    #[command(flatten)]
     pipeline: FrozenPipelineArgs,
+}
+
+/// α of levels of detail.
+struct OfLevels;
+
+impl Groups for OfLevels {
+    const GROUPS: &[(Group, &str)] = &[(Group::Weights, "Levels of detail")];
 }
 
 /// Number of levels that `--alphas auto` chooses, besides the suggested ones.
@@ -114,8 +130,11 @@ impl Ladder {
 
     fn over_alpha(&self, global: Global, meshes: &[Mesh], mut folder: Folder) -> Result<()> {
         let mut progress = Progress::new(global);
-        let recipe = self.pipeline.recipe()?;
         let input = &self.pipeline.input;
+        let why = "it belongs to levels of detail (--counts, --epsilons), and here α varies";
+        input.typed.refuse(&options::names(&[Group::Weights]), why)?;
+        let reference = input.settings().alpha_ref().copied().unwrap_or_default();
+        let recipe = self.pipeline.recipe()?.alpha(reference);
         let (weighed, volume) = pipeline::weighted_points(input, &recipe, &mut progress)?;
         outline::check(meshes.iter().map(|mesh| mesh.format), weighed.points.positions())?;
         let domain = pipeline::domain(&weighed, volume.as_ref());
