@@ -292,7 +292,7 @@ function optionsOfForm() {
   const options = { ...reading(), weights: given("weights"), alpha: given("alpha-ref"), keep };
   if (state.facts.kind === "points") return options;
   if (ofLabels()) return { ...reading(), label: byId("labels").value, keep };
-  if (state.surface) return { ...reading(), surface: state.surface };
+  if (state.surface) return { ...reading(), surface: state.surface, keep };
   if (given("gray-low") !== undefined || given("gray-high") !== undefined) options.gray = grayRange().join("..");
   if (state.grayMin !== null) options["gray-min"] = state.grayMin;
   else options["value-min"] = number("value-min");

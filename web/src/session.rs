@@ -43,6 +43,7 @@ pub(crate) struct Session {
 }
 
 /// The content of the input, without changes.
+#[expect(clippy::large_enum_variant, reason = "there is one")]
 enum Opened {
     Volume(Volume),
     Points(Points, ModelMetadata),
@@ -536,7 +537,7 @@ impl Made {
 
     /// The components that are to be kept of the shape at an α, if not all are.
     fn kept(&self, alpha: f64) -> Result<Option<AlphaShape>, Failure> {
-        if self.recipe.keep.is_all() || matches!(self.what, What::Labels(_)) {
+        if self.recipe.keep.is_all() || matches!(self.what, What::Solid(_)) {
             return Ok(None);
         }
         let levels = self.all()?.filtration()?.levels(&[Alpha::from_squared(alpha)?]);
