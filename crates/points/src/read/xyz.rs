@@ -3,6 +3,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use walpha_base::advice::{Setting, advice};
+use walpha_base::memory::{NoMemory, try_reserve, try_with_capacity};
 use walpha_base::shown::shown;
 
 use super::dialect::{Dialect, number};
@@ -193,7 +194,8 @@ impl Species {
         Self { column, names: Vec::new(), known: HashSet::new() }
     }
 
-    fn push(&mut self, fields: &[&str]) {
+    fn push(&mut self, fields: &[&str]) -> Result<(), NoMemory> {
+        try_reserve(&mut self.names, 1, || "the names of atoms".into())?;
         let name = fields.get(self.column).copied().unwrap_or_default();
         let known = self.known.get(name).cloned().unwrap_or_else(|| {
             let new: Arc<str> = name.into();
@@ -201,6 +203,7 @@ impl Species {
             new
         });
         self.names.push(known);
+        Ok(())
     }
 }
 
@@ -222,7 +225,9 @@ fn take_atoms(
         model: 1,
         ..Atom::default()
     });
-    let molecule = Molecule { atoms: atoms.collect(), ..Molecule::default() };
+    let mut molecule = Molecule::default();
+    molecule.atoms = try_with_capacity(atoms.len(), || "the atoms of a file".into())?;
+    molecule.atoms.extend(atoms);
     let is_asked = radii.is_some_and(|radii| *radii != Radii::None);
     if !is_asked && molecule.atoms.iter().all(|atom| atom.element.is_none()) {
         if let (None, Some(first)) = (radii, molecule.atoms.first()) {
@@ -289,7 +294,7 @@ fn rows_with(
         let fields = dialect.fields(line);
         rows.push(number, &fields)?;
         if let Some(species) = &mut species {
-            species.push(&fields);
+            species.push(&fields)?;
         }
     }
     if labelled > 0 {
