@@ -150,6 +150,9 @@ impl<'a> BallUnion<'a> {
         let monitor = &*Monitor::current();
         let complex = complex_of_balls(shape)?;
         let points = Points::of(shape);
+        memory::afford(bytes(&complex, points.len()), || {
+            format!("the union of {} balls", complex.vertices.len())
+        })?;
         let sides = FacetSides::apexes(&complex, &points.positions);
         let passes = Work::new(&complex, &points, &sides)?.run(monitor)?;
         let Passes { arcs, contacts, volumes, areas, totals } = passes;
@@ -207,6 +210,14 @@ impl<'a> BallUnion<'a> {
     pub fn contacts(&self) -> Contacts<'_> {
         Contacts { pairs: self.complex.edges.rows(), sizes: &self.contacts }
     }
+}
+
+/// About the most bytes that the union of the balls of a complex takes at once.
+fn bytes(complex: &Complex, points: usize) -> usize {
+    let facet = size_of::<[u32; 5]>();
+    let edge = size_of::<[Single; 2]>() + size_of::<EdgeAngles>() + size_of::<Bounded>();
+    let point = size_of::<[Single; 2]>() + size_of::<VertexRim>() + size_of::<Part>();
+    facet * complex.facets.len() + edge * complex.edges.len() + point * points
 }
 
 /// The simplices of a shape alone, if they are the dual complex of balls.

@@ -190,6 +190,25 @@ fn radii_of_all_sizes_are_measured() {
     }
 }
 
+/// Small balls on one that is ten billion times larger, in one cell with it: whatever is computed from its centre has lost most digits.
+#[test]
+fn cells_of_unequal_balls_are_measured_from_the_smallest() {
+    let far = 118727.5644;
+    let spots = [
+        [1.3340818094650596e-05, 1.4560433449960817e-06, far + 2.7639e-5],
+        [-2.386999944447273e-07, 6.528247552160568e-06, far + 3.48251e-5],
+        [-8.613440783743593e-06, 1.5401272648043557e-05, far + 3.843662e-5],
+        [-6.026915224023847e-06, 1.003997133104311e-05, far + 3.166937e-5],
+    ];
+    let centers: Vec<_> = [[0.0; 3]].into_iter().chain(spots).collect();
+    let squares = [14096234556.608887, 7.276e-11, 1.1356e-10, 8.371e-11, 8.0098e-11];
+    let shape = shape(&centers, &squares);
+    assert_eq!(shape.complex().cells.counts().interior, 1);
+    let union = BallUnion::new(&shape).unwrap();
+    assert!(union.volume().is_within(1e-13) && union.area().is_within(1e-13), "{:?}", union.area());
+    assert_consistent(&union);
+}
+
 /// Coordinates that differ from those of a lattice by one unit in the last place: slivers, and circles of radius 10⁻⁸.
 #[test]
 fn neighbours_of_lattices_keep_their_bounds() {
