@@ -60,7 +60,12 @@ fn volumes_and_areas_of_few_balls_are_those_of_closed_forms() {
     let text = ok(f, &["balls", "three.csv"]);
     names(
         &text,
-        &["volume    40.5789", "area      69.115", "contacts  1 pair of balls", "radii     1 to 2"],
+        &[
+            "volume    40.5789",
+            "area      69.115",
+            "contacts  1 between two balls",
+            "radii     1 to 2",
+        ],
     );
 }
 
@@ -110,9 +115,17 @@ fn voids_and_pockets_are_listed() {
         assert_eq!((line.len(), line[60..66].trim()), (78, "1.00"));
     }
     // In a periodic box there is no outside.
-    let periodic = json(f, &["balls", "cube.csv", "--periodic", "9,9,9", "-o", "voids.csv"]);
+    let periodic = json(f, &["balls", "cube.csv", "--periodic", "9,9,9"]);
     assert!(periodic["balls"]["box_fraction"].as_f64().unwrap() < 0.02);
     fails(f, 2, "balls cube.csv --periodic 9,9,9 -o pockets.csv", &["no outside"]);
+    // Voids take the whole triangulation, which a lattice has.
+    let lattice = (0..125).map(|i| format!("{},{},{},0.6\n", i % 5, i / 5 % 5, i / 25));
+    write(f, "lattice.csv", &format!("x,y,z,radius\n{}", lattice.collect::<String>()));
+    let facts = json(f, &["balls", "lattice.csv", "--periodic", "5,5,5", "-o", "voids.csv"]);
+    assert_eq!(
+        facts["balls"]["voids"].as_array().unwrap().len(),
+        table(&f.join("voids.csv"))["void"].len()
+    );
 }
 
 #[test]

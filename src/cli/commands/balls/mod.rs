@@ -9,7 +9,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use serde::Serialize;
-use walpha_base::shown::{counted, number, six_digits};
+use walpha_base::shown::{number, six_digits};
 
 use crate::balls::{BallUnion, Cavity, Pocket};
 use crate::cli::commands::pipeline;
@@ -106,9 +106,11 @@ impl Balls {
         let (mut weighed, _) = progress.watch(weigh)?;
         weighed.on_torus(torus)?;
         let (coordinates, folded) = (weighed.origin.coordinates, weighed.origin.folded);
+        // A periodic box is triangulated as a whole only where voids are asked for: that takes short edges.
+        let exterior = torus.is_none() || targets.iter().any(|(_, table)| *table == Table::Voids);
         let (points, alpha) = enlarged(weighed.points, alpha, self.probe.unwrap_or_default())?;
         let shape = progress.stage(Stage::Shape, || {
-            let options = ShapeOptions::new(alpha).engine(Engine::Native).exterior(true);
+            let options = ShapeOptions::new(alpha).engine(Engine::Native).exterior(exterior);
             crate::alpha_shape(points, &options.periodic(torus))
         })?;
         let measured = progress.stage(Stage::Measure, || Measured::of(&shape))?;
@@ -175,6 +177,7 @@ fn enlarged(points: WeightedPoints, alpha: Alpha, probe: f64) -> Result<(Weighte
 /// What is measured of balls.
 struct Measured<'a> {
     union: BallUnion<'a>,
+    /// Empty in a periodic box, unless they are asked for.
     voids: Vec<Cavity>,
     /// Largest first, voids included; empty in a periodic box.
     pockets: Vec<Pocket>,
@@ -184,7 +187,7 @@ impl<'a> Measured<'a> {
     fn of(shape: &'a AlphaShape) -> Result<Self> {
         let union = BallUnion::new(shape)?;
         // Points in a plane enclose nothing.
-        let encloses = !shape.complex().cells.is_empty();
+        let encloses = shape.options().exterior && !shape.complex().cells.is_empty();
         let voids = if encloses { union.voids()? } else { Vec::new() };
         let is_open = encloses && shape.options().periodic.is_none();
         let pockets = if is_open { union.pockets()? } else { Vec::new() };
@@ -344,7 +347,7 @@ impl Display for BallsSummary {
         if let Some(betti) = self.balls.betti {
             writeln!(f, "topology  {betti}")?;
         }
-        writeln!(f, "contacts  {}", counted(self.balls.contacts as u64, "pair of balls"))?;
+        writeln!(f, "contacts  {} between two balls", self.balls.contacts)?;
         self.print_hollows(f, "voids", &self.balls.voids)?;
         self.print_hollows(f, "pockets", &self.balls.pockets)?;
         ending(
