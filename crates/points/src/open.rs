@@ -7,7 +7,6 @@ use walpha_base::setters;
 use walpha_base::shown::shown;
 
 use super::formats::{FORMATS, PointFormat};
-use super::mesh::cells_of_file;
 use super::molecule::{AtomSelection, PEPTIDE, Radii, peptide};
 use super::read::content::Packed;
 use super::read::{COLUMNS, format};
@@ -214,14 +213,6 @@ pub fn read_model_file(
         return Err(format(path, Reason::content("holds no points", "name another file")));
     }
     finite(path, &points)?;
-    let cells = if file.is_ordinary() { cells_of_file(file, options)? } else { Vec::new() };
-    if !cells.is_empty() {
-        let listed = cells.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
-        tracing::warn!(
-            "{}: its {listed} are not used: a shape is made of its points alone",
-            shown(path)
-        );
-    }
     if options.weights && points.weights.is_none() && points.values.is_some() {
         tracing::warn!(
             "{} has no column weight or radius: its values are taken for weights, as is asked for",

@@ -1,6 +1,8 @@
 use std::path::Path;
 
 use super::{PipelineError, Recipe};
+use walpha_base::shown::shown;
+use walpha_points::internal::cells_of_file;
 use walpha_points::read_model_file;
 use walpha_points::{ModelMetadata, Points, PointsError, Units};
 use walpha_volume::{GrayRange, OpenFile, OpenVolume, Volume};
@@ -137,7 +139,16 @@ impl Recipe {
 
     /// Reads points, with the values that are to be written.
     fn read_points(&self, file: &OpenFile) -> Result<(Points, ModelMetadata), PipelineError> {
-        let (mut points, mut metadata) = read_model_file(file, &self.of_points())?;
+        let options = self.of_points();
+        let (mut points, mut metadata) = read_model_file(file, &options)?;
+        let cells = if file.is_ordinary() { cells_of_file(file, &options)? } else { Vec::new() };
+        if !cells.is_empty() {
+            let listed = cells.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
+            tracing::warn!(
+                "{}: its {listed} are not used: a shape is made of its points alone",
+                shown(file.path())
+            );
+        }
         if let Some(range) = &mut metadata.range {
             let written = self.written(*range);
             if written != *range {

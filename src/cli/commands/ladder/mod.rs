@@ -73,8 +73,8 @@ pub(crate) struct Ladder {
     #[arg(long, value_name = "E,E,…", value_delimiter = ',', group = "levels",
           value_parser = crate::cli::options::not_negative)]
     epsilons: Vec<f64>,
-    /// A region that keeps full detail (the points of --count, --ratio or --threshold, besides those
-    /// of the level) at every level of detail; borders included. In the units of the points.
+    /// A region of full detail at every level: it has the points of --count, --ratio or
+    /// --threshold besides those of the level. Borders are included, in the units of the points.
     #[arg(long, value_name = "X0:X1,Y0:Y1,Z0:Z1", value_parser = crate::cli::options::places,
           allow_hyphen_values = true)]
     focus: Option<Region>,

@@ -2,7 +2,7 @@
 
 use super::points::*;
 use super::{Fate, walk};
-use crate::common::json;
+use crate::common::{json, ok, run};
 
 /// A PLY of this format, with these lines between the first and the last of the header.
 fn ply(format: &str, lines: &str, data: &[u8]) -> Vec<u8> {
@@ -446,4 +446,29 @@ fn each_field_of_stl() {
             ),
         ],
     );
+}
+
+/// What our own meshes state is kept: axes, unit, and the offset of single precision. Their facets are not used, which is said.
+#[test]
+fn a_mesh_keeps_what_it_states() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    ok(f, &["haar", "sample:ct", "--downsample", "4", "-o", "ct.nrrd"]);
+    let made = ["ct.ply", "ct.obj", "ct.off", "ct.stl", "ct.vtu", "ct.vtp"];
+    ok(f, &[&["shape", "ct.nrrd", "--threshold", "20", "-o"][..], &made].concat());
+    for mesh in made {
+        let (code, out, warned) = run(f, &["shape", mesh, "--alpha", "40", "--json"]);
+        assert_eq!(code, 0, "{mesh}: {warned}");
+        let facts: serde_json::Value = serde_json::from_str(&out).unwrap();
+        let stated = &facts["coordinates"];
+        assert_eq!((&stated["space"], &stated["unit"]), (&"LPS".into(), &"mm".into()), "{mesh}");
+        assert!(warned.contains("are not used: a shape is made of its points alone"), "{warned}");
+    }
+    // Far from the origin single precision needs an offset, which is added again.
+    let far = "x,y,z\n10000000,0,0\n10000001,0,0\n10000000,1,0\n10000000,0,1\n";
+    std::fs::write(f.join("far.csv"), far).unwrap();
+    ok(f, &["shape", "far.csv", "--alpha", "1", "-o", "far.stl"]);
+    let facts = json(f, &["shape", "far.stl", "--alpha", "1"]);
+    assert!((facts["shape"]["volume"].as_f64().unwrap() - 1.0 / 6.0).abs() < 1e-12);
+    assert_eq!(facts["shape"]["components"][0]["low"][0].as_f64(), Some(1e7), "{facts}");
 }
