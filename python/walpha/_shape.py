@@ -7,6 +7,7 @@ import math
 import operator
 import os
 import warnings
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Literal, cast, overload
 
 import numpy as np
@@ -53,7 +54,7 @@ class AlphaShape(Classified):
 
     _shape: _walpha.Shape
     #: How it was made of another shape, if it was: the call that makes it, and the other.
-    _made: tuple[operator.methodcaller[AlphaShape], AlphaShape] | None
+    _made: tuple[Callable[[AlphaShape], AlphaShape], AlphaShape] | None
 
     def __init__(self) -> None:
         raise TypeError("an AlphaShape is made by walpha.alpha_shape(points, alpha)")
@@ -62,7 +63,7 @@ class AlphaShape(Classified):
     def _of(
         cls,
         shape: _walpha.Shape,
-        made: tuple[operator.methodcaller[AlphaShape], AlphaShape] | None = None,
+        made: tuple[Callable[[AlphaShape], AlphaShape], AlphaShape] | None = None,
     ) -> AlphaShape:
         one = cls.__new__(cls)
         one._shape, one._made = shape, made
