@@ -141,7 +141,7 @@ const HELP: &[(&str, &str, &str)] = &[
     (
         "value-min",
         "V",
-        "Drop samples below this value of INPUT, as in --value-min 300 for Hounsfield units",
+        "Drop samples below this value of INPUT: in Hounsfield units, 300 leaves bone",
     ),
     (
         "units",
