@@ -132,7 +132,7 @@ say("filtration", filtration)
 say("simplices", filtration.simplices())
 volume = np.arange(32.0**3).reshape(32, 32, 32) % 91
 say("pipeline", walpha.pipeline(volume))
-print("haar", hashlib.sha256(np.ascontiguousarray(walpha.haar(volume, rms=2)[0]).tobytes()).hexdigest())
+print("haar", "array", hashlib.sha256(np.ascontiguousarray(walpha.haar(volume, rms=2)[0]).tobytes()).hexdigest())
 """
 
 
@@ -142,7 +142,8 @@ def package():
         return None
     if ran.returncode != 0:
         sys.exit(ran.stderr)
-    return {f"package: {number}": digest(line.encode()) for number, line in enumerate(ran.stdout.splitlines())}
+    lines = ran.stdout.splitlines()
+    return {f"package: {' '.join(line.split()[:2])}": digest(line.encode()) for line in lines}
 
 
 def main():

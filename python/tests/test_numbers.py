@@ -21,7 +21,7 @@ CORNERS = np.eye(4, 3)
 OTHER = {
     "self", "cls", "progress", "threads", "engine", "exterior", "hidden", "balls", "path", "level", "columns", "classes", "format",
     "array", "frame", "series", "skip_damaged", "shape", "dtype", "offset", "decomposition", "weighting", "select", "exchange",
-    "refit", "roi", "solid", "allow_empty", "labels", "masked", "resample", "withheld", "what", "ranks", "dimension", "homology_dimensions", "radius", "reduced_homology", "deep",
+    "refit", "roi", "keep", "largest", "solid", "allow_empty", "labels", "masked", "resample", "withheld", "what", "ranks", "dimension", "homology_dimensions", "radius", "reduced_homology", "deep",
     "parameters", "y", "duplicates", "cells", "facets", "edges", "vertices", "cell_classes", "facet_classes", "edge_classes",
     "vertex_classes", "closed", "most", "ties", "a", "b", "space", "unit", "gray", "copy", "components", "coefficients", "count", "downsample",
 }  # fmt: skip
@@ -128,6 +128,11 @@ CALLS = {
             "values": (column(), HUGE),
         },
     ),
+    # Places that are none are outside.
+    "AlphaShape.contains": (lambda **given: shape().contains(**given), {"places": (rows(), set(WRONG))}),
+    "AlphaShape.keep": (lambda **given: shape().keep(1, **given), {"min_volume": (itself, {INF, 1e308})}),
+    "AlphaShape.boundary": (lambda **given: shape().boundary(**given), {"min_volume": (itself, {INF, 1e308})}),
+    "Balls.gradients": (lambda **given: shape().balls.gradients(**given), {"weights": (column(), HUGE)}),
     "triangulation": (
         lambda **given: walpha.triangulation(**{"points": CLOUD, **given}),
         {"points": (rows(), ()), "weights": (column(), ())},
@@ -262,7 +267,7 @@ CALLS = {
 }  # fmt: skip
 #: What nobody calls: the results of others.
 RESULTS = {
-    "Betti", "BettiCurve", "Boundary", "Class", "Comparison", "Component", "Cuts", "Finding", "Level", "Outline", "PointFile", "Polygon",
+    "Betti", "BettiCurve", "Boundary", "Bounded", "BoundedArray", "Cavity", "Class", "Comparison", "Component", "Contacts", "Cuts", "Finding", "Gradients", "Level", "Outline", "PointFile", "Polygon",
     "PowerDiagram", "Selected", "Simplices", "Suggestions", "TorusBetti", "TorusBettiCurve", "Verdict", "Void",
 }  # fmt: skip
 

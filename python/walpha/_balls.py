@@ -237,6 +237,8 @@ class Balls:
         array([16.])
         """
         given = _arrays.optional("weights", weights)
+        if given is not None:
+            _arrays.finite("weights", given)
         parts = [_arrays.frozen(values) for values, _ in self._shape.union_gradients(given)]
         volume_by_centers, volume_by_radii, area_by_centers, area_by_radii = parts
         return Gradients(

@@ -446,9 +446,10 @@ fn verify(complex: &Complex, positions: &[[f64; 3]]) -> Result<(), IsosurfaceErr
         let [a, b, c, d] = cell.map(|v| positions[v as usize]);
         orientation(a, b, c, d) == Ordering::Greater
     };
-    if complex.cells.rows().par_iter().all(is_positive) {
+    let far = positions.iter().flatten().fold(0.0, |far: f64, x| far.max(x.abs()));
+    let is_finite = positions.as_flattened().iter().all(|x| x.is_finite());
+    if is_finite && complex.cells.rows().par_iter().all(is_positive) {
         return Ok(());
     }
-    let far = positions.iter().flatten().fold(0.0, |far: f64, x| far.max(x.abs()));
     Err(IsosurfaceError::Rounded { far })
 }

@@ -278,4 +278,8 @@ fn what_has_no_isosurface_is_refused() {
     let ball = ball(12, 4.3);
     let far = SampleLattice { origin: [1e15, 0.0, 0.0], ..ball.lattice() };
     assert!(matches!(refused(&ball, far), ShapeError::Isosurface(IsosurfaceError::Rounded { .. })));
+    // Places beyond all doubles.
+    let mut wide = ball.lattice();
+    wide.axes[1] = [0.0, 1e308, 0.0];
+    assert!(matches!(refused(&ball, wide), ShapeError::Isosurface(IsosurfaceError::Rounded { .. })));
 }
