@@ -281,5 +281,8 @@ fn what_has_no_isosurface_is_refused() {
     // Places beyond all doubles.
     let mut wide = ball.lattice();
     wide.axes[1] = [0.0, 1e308, 0.0];
-    assert!(matches!(refused(&ball, wide), ShapeError::Isosurface(IsosurfaceError::Rounded { .. })));
+    assert!(matches!(
+        refused(&ball, wide),
+        ShapeError::Isosurface(IsosurfaceError::Rounded { .. })
+    ));
 }
