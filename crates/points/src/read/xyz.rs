@@ -225,9 +225,9 @@ fn take_atoms(
         model: 1,
         ..Atom::default()
     });
-    let mut molecule = Molecule::default();
-    molecule.atoms = try_with_capacity(atoms.len(), || "the atoms of a file".into())?;
-    molecule.atoms.extend(atoms);
+    let mut list = try_with_capacity(atoms.len(), || "the atoms of a file".into())?;
+    list.extend(atoms);
+    let molecule = Molecule { atoms: list, ..Molecule::default() };
     let is_asked = radii.is_some_and(|radii| *radii != Radii::None);
     if !is_asked && molecule.atoms.iter().all(|atom| atom.element.is_none()) {
         if let (None, Some(first)) = (radii, molecule.atoms.first()) {
