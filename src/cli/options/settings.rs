@@ -165,16 +165,6 @@ const HELP: &[(&str, &str, &str)] = &[
     ),
     ("alpha-radius", "R", "The parameter as a radius: α = R²"),
     (
-        "keep",
-        "N",
-        "Keep the N largest components of the shape, compared by volume, or the largest one, as in --keep largest [default: all]",
-    ),
-    (
-        "min-volume",
-        "V",
-        "Keep the components of at least this volume, in cubes of the unit of the points [default: all]",
-    ),
-    (
         "alpha-ref",
         "A",
         "The α, a squared length, for which weights are computed; they are the same at every level, so that levels are nested [default: as --alpha of walpha shape]",
@@ -202,6 +192,16 @@ const HELP: &[(&str, &str, &str)] = &[
         "periodic",
         "X,Y,Z",
         "Sides of a periodic box along x, y and z, in the unit of the points, which then lie on a torus. No edge may span half of the box; with 4·√(α + largest weight) less than each side none does",
+    ),
+    (
+        "keep",
+        "N",
+        "Keep the N largest components of the shape, compared by volume, or the largest one, as in --keep largest [default: all]",
+    ),
+    (
+        "min-volume",
+        "V",
+        "Keep the components of at least this volume, in cubes of the unit of the points [default: all]",
     ),
 ];
 
