@@ -44,7 +44,7 @@ const HELP: &[(&str, &str, &str)] = &[
     (
         "radii",
         "SET",
-        "Radii of atoms, whose squares are weights: bondi (van der Waals, by element), protor (amino acids, hydrogens included), column (of the file), none, or a FILE with lines as `C 1.70` and `ALA CB 1.88` [default: of the file, otherwise bondi]",
+        "Radii of atoms, whose squares are weights: bondi (van der Waals, by element), protor (amino acids, hydrogens included), column (of the file), none, or a FILE with lines as 'C 1.70' and 'ALA CB 1.88' [default: of the file, otherwise bondi]",
     ),
     ("hydrogens", "", "Also take hydrogens of PDB and mmCIF"),
     ("waters", "", "Also take water of PDB and mmCIF"),
