@@ -22,6 +22,7 @@ mod coordinates;
 pub mod foreign;
 #[cfg(feature = "serde")]
 mod infinite;
+mod keep;
 pub mod memory;
 pub mod monitor;
 pub mod npy;
@@ -29,6 +30,7 @@ pub mod npy;
 pub mod random;
 mod setters;
 pub mod shown;
+mod spread_bits;
 #[cfg(feature = "cli")]
 pub mod standard_output;
 mod sum;
@@ -40,8 +42,10 @@ pub mod vector;
 pub use coordinates::{Conversion, Coordinates, LengthUnit, Space};
 #[cfg(feature = "serde")]
 pub use infinite::number_or_null_or_name;
+pub use keep::keep;
 pub use monitor::{Cancelled, Monitor};
 pub use setters::setters;
+pub use spread_bits::spread_bits;
 pub use sum::Sum;
 pub use union_find::UnionFind;
 

@@ -1,5 +1,7 @@
 use std::collections::HashSet;
 
+use walpha_base::keep;
+
 use super::{Molecule, PointsError};
 use walpha_shape::LengthsError;
 
@@ -103,12 +105,6 @@ impl Points {
     pub fn is_empty(&self) -> bool {
         self.positions.is_empty()
     }
-}
-
-/// Keeps the items that are marked.
-pub(super) fn keep<T>(items: &mut Vec<T>, kept: &[bool]) {
-    let mut kept = kept.iter();
-    items.retain(|_| kept.next() == Some(&true));
 }
 
 /// Returns the column if it has an entry for each point.

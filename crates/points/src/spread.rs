@@ -1,4 +1,5 @@
 use walpha_base::memory::try_with_capacity;
+use walpha_base::spread_bits;
 
 use super::{Points, PointsError, bounding_box};
 
@@ -26,7 +27,7 @@ pub fn spread_order(points: &Points) -> Result<Vec<u32>, PointsError> {
     let step = |x: f64| if side > 0.0 { (x / side * cubes).min(cubes - 1.0) as u64 } else { 0 };
     let mut places: Vec<(u64, u32)> = try_with_capacity(points.len(), what)?;
     places.extend((0..).zip(&points.positions).map(|(index, place)| {
-        let [x, y, z] = [0, 1, 2].map(|k| apart(step(place[k] - low[k])));
+        let [x, y, z] = [0, 1, 2].map(|k| spread_bits(step(place[k] - low[k])));
         (x | y << 1 | z << 2, index)
     }));
     places.sort_unstable();
@@ -48,21 +49,6 @@ pub fn spread_order(points: &Points) -> Result<Vec<u32>, PointsError> {
         halvings[a as usize].cmp(&halvings[b as usize]).then_with(|| sooner(a, b))
     });
     Ok(order)
-}
-
-/// The lowest 21 bits with two zeros after each.
-fn apart(x: u64) -> u64 {
-    let mut x = x & 0x1f_ffff;
-    for (shift, mask) in [
-        (32, 0x001f_0000_0000_ffff),
-        (16, 0x001f_0000_ff00_00ff),
-        (8, 0x100f_00f0_0f00_f00f),
-        (4, 0x10c3_0c30_c30c_30c3),
-        (2, 0x1249_2492_4924_9249),
-    ] {
-        x = (x | x << shift) & mask;
-    }
-    x
 }
 
 #[cfg(test)]

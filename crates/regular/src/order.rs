@@ -2,6 +2,7 @@
 //! doi:10.1145/777792.777824), and along a Hilbert curve within a round, so that consecutive points are close in space.
 
 use rayon::prelude::*;
+use walpha_base::spread_bits;
 
 /// Bits of a grid coordinate: the longest side of the bounding box has 2¹⁶ grid steps.
 const BITS: u32 = 16;
@@ -86,22 +87,8 @@ fn hilbert_index(mut x: [u32; 3]) -> u64 {
         }
         bit >>= 1;
     }
-    let spread = x.map(|x| spread(u64::from(x ^ flips)));
+    let spread = x.map(|x| spread_bits(u64::from(x ^ flips)));
     spread[0] << 2 | spread[1] << 1 | spread[2]
-}
-
-/// Moves bits 0, 1, 2, … of a number below 2²¹ to positions 0, 3, 6, …
-fn spread(mut x: u64) -> u64 {
-    for (shift, mask) in [
-        (32, 0x001f_0000_0000_ffff),
-        (16, 0x001f_0000_ff00_00ff),
-        (8, 0x100f_00f0_0f00_f00f),
-        (4, 0x10c3_0c30_c30c_30c3),
-        (2, 0x1249_2492_4924_9249),
-    ] {
-        x = (x | x << shift) & mask;
-    }
-    x
 }
 
 /// The numbers 0..n in rounds, each about three times as large as all earlier ones together; ascending within a round.

@@ -1,4 +1,5 @@
 use rayon::prelude::*;
+use walpha_base::keep;
 
 use super::{AlphaRule, Parameter, PipelineError};
 use crate::interpolate::{Adaptive, Fit};
@@ -80,12 +81,6 @@ impl Origin {
     }
 }
 
-/// Keeps the items that are marked.
-fn retain<T>(items: &mut Vec<T>, is_kept: &[bool]) {
-    let mut marks = is_kept.iter();
-    items.retain(|_| marks.next() == Some(&true));
-}
-
 impl Weighed {
     /// Gives points their weights, and finds α first if the weights are proportional to it.
     pub(super) fn new(
@@ -121,9 +116,9 @@ impl Weighed {
     /// Some of the points, without their order of importance.
     pub(super) fn only(&self, is_kept: &[bool]) -> Self {
         let (mut positions, mut weights, mut values) = self.points.clone().into_parts();
-        retain(&mut positions, is_kept);
-        retain(&mut weights, is_kept);
-        values.iter_mut().for_each(|values| retain(values, is_kept));
+        keep(&mut positions, is_kept);
+        keep(&mut weights, is_kept);
+        values.iter_mut().for_each(|values| keep(values, is_kept));
         let points = WeightedPoints::new(positions, weights);
         let points = points.and_then(|points| points.with_values(values));
         let points = points.expect("a weight and a value for each point");

@@ -17,6 +17,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use walpha_base::advice::{Setting, advice};
+use walpha_base::keep;
 use walpha_base::memory::{NoMemory, afford, try_reserve, try_with_capacity};
 use walpha_base::shown::shown;
 
@@ -28,7 +29,6 @@ pub use selection::{AtomSelection, Models};
 pub use summary::LeftOut;
 
 use crate::read::{format, take_radii};
-use crate::sets::keep;
 use crate::{Cell, ModelMetadata, PointOptions, Points, PointsError};
 use walpha_volume::{Coordinates, LengthUnit, Reason, Space};
 
