@@ -4,10 +4,10 @@ use rayon::prelude::*;
 use rstar::{AABB, PointDistance, RTree, RTreeObject};
 use serde::Serialize;
 use walpha_base::memory::{NoMemory, try_with_capacity};
-use walpha_base::vector::{V3, add, cross, dot, length, scale, sub};
+use walpha_base::vector::{V3, add, cross, dot, scale, sub};
 use walpha_base::{Cancelled, Monitor, Sum};
 
-use walpha_shape::{AlphaShape, ShapeError, Surface};
+use walpha_shape::{AlphaShape, ShapeError, Surface, facet_area};
 
 /// The distance of two surfaces, in the unit of their coordinates. Of each surface the distances to the nearest place of the
 /// other are taken (P. Cignoni, C. Rocchini and R. Scopigno, Metro, 1998, doi:10.1111/1467-8659.00236): `mean` is the mean
@@ -62,7 +62,7 @@ fn one_sided(
             let inside = triangle.sampled().map(distance);
             let corners = triangle.0.map(distance);
             let max = inside.into_iter().chain(corners).fold(0.0, f64::max);
-            (triangle.area(), inside.iter().sum::<f64>() / 3.0, max)
+            (facet_area(triangle.0), inside.iter().sum::<f64>() / 3.0, max)
         });
         for (of_one, mean, greatest) in sampled.collect::<Vec<_>>() {
             area.add(of_one);
@@ -101,11 +101,6 @@ impl Triangle {
         let all = self.0.map(sixth).into_iter().fold([0.0; 3], add);
         self.0.map(|corner| add(all, scale(corner, 0.5)))
     }
-
-    fn area(&self) -> f64 {
-        let [a, b, c] = self.0;
-        length(cross(sub(b, a), sub(c, a))) / 2.0
-    }
 }
 
 impl RTreeObject for Triangle {
@@ -143,6 +138,7 @@ impl PointDistance for Triangle {
 #[cfg(test)]
 mod tests {
     use walpha_base::random::Random;
+    use walpha_base::vector::length;
     use walpha_shape::{Alpha, ShapeOptions, alpha_shape};
 
     use super::*;
