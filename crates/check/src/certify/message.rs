@@ -111,10 +111,14 @@ pub(super) fn number(exact: &Exact, f: &Formatter<'_>) -> String {
     if f.alternate() { format!("{exact:#}") } else { exact.to_string() }
 }
 
-/// Two numbers that differ: exact where six digits do not tell them apart.
+/// Two numbers, exact where they differ and six digits do not tell them apart.
 pub(super) fn apart(numbers: [&Exact; 2], f: &Formatter<'_>) -> [String; 2] {
     let [a, b] = numbers.map(|exact| number(exact, f));
-    if a == b { numbers.map(|exact| format!("{exact:#}")) } else { [a, b] }
+    if a == b && numbers[0] != numbers[1] {
+        numbers.map(|exact| format!("{exact:#}"))
+    } else {
+        [a, b]
+    }
 }
 
 fn orientation(f: &mut Formatter<'_>, cell: &Simplex, six_volumes: &Exact) -> fmt::Result {

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use crate::Alpha;
 use crate::certify::finding::{Finding, Simplex};
-use crate::certify::message::{apart, number};
+use crate::certify::message::apart;
 use crate::exact::Exact;
 
 /// An error of a filtration: the rule that is broken, the simplex that breaks it, and the exact
@@ -141,7 +141,7 @@ impl fmt::Display for FiltrationFinding {
                 )
             }
             Self::Order { before, after, values: [a, b] } => {
-                let [a, b] = if a == b { [number(a, f), number(b, f)] } else { apart([a, b], f) };
+                let [a, b] = apart([a, b], f);
                 write!(
                     f,
                     "{before} must come after {after}: by value ({a}, {b}), then dimension, then vertices"
@@ -185,4 +185,25 @@ pub(super) fn gabriel<const N: usize>(
             expected: expected(i),
         })
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use dashu_int::IBig;
+
+    use super::*;
+
+    /// Equal numbers are rounded like any others; different ones that round alike are fractions.
+    #[test]
+    fn numbers_in_the_wrong_order() {
+        let text = |numerators: [u32; 2], denominator: u32| {
+            let values = numerators
+                .map(|numerator| Exact::new(IBig::from(numerator), IBig::from(denominator), 0));
+            let (before, after) = ([1, 2].into(), [0].into());
+            FiltrationFinding::Order { before, after, values }.to_string()
+        };
+        assert!(text([1, 1], 3).contains("by value (≈0.333333, ≈0.333333)"), "{}", text([1, 1], 3));
+        let alike = text([10_000_001, 10_000_000], 30_000_001);
+        assert!(alike.contains("by value (10000001/30000001, 10000000/30000001)"), "{alike}");
+    }
 }
