@@ -102,18 +102,19 @@ impl<'a> DiscUnion<'a> {
             let arc = radius * (Single::pi().times(2.0) - at.angles);
             (arc, (radius * arc + at.cones).half())
         };
-        for v in 0..points.len() {
-            let (arc, _) = part(v);
-            perimeter += arc;
-            twice += points.squared_radius::<Single>(v as u32).sqrt() * arc;
+        let mut parts: Vec<(Single, Single)> = zeros(points.len(), "the parts of discs")?;
+        for (v, at) in parts.iter_mut().enumerate() {
+            *at = part(v);
+            perimeter += at.0;
+            twice += points.squared_radius::<Single>(v as u32).sqrt() * at.0;
         }
-        let column = |what, power, of: &(dyn Fn(usize) -> Single + Sync)| {
-            Measured::collect(points.len(), what, |v| points.bounded(of(v), power))
+        let column = |what, power, of: fn(&(Single, Single)) -> Single| {
+            Measured::collect(points.len(), what, |v| points.bounded(of(&parts[v]), power))
         };
         let area = points.bounded(twice.rounded().half(), 2);
         let perimeter = points.bounded(perimeter.rounded(), 1);
-        let perimeters = column("the perimeters of discs", 1, &|v| part(v).0)?;
-        let areas = column("the areas of discs", 2, &|v| part(v).1)?;
+        let perimeters = column("the perimeters of discs", 1, |part| part.0)?;
+        let areas = column("the areas of discs", 2, |part| part.1)?;
         let contacts = Measured::collect(contacts.len(), "the contacts of discs", |row| {
             points.bounded(contacts[row].length, 1)
         })?;
