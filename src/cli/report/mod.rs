@@ -283,8 +283,8 @@ impl Report {
     fn print_apart(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let apart = self.shape.as_ref().map(|shape| shape.apart);
         let (Some(apart @ 1..), Some(all)) = (apart, self.points.in_shape) else { return Ok(()) };
-        let text =
-            format_args!("apart     {apart} of {all} points are not connected to the others");
+        // Not `format_args!`, which Rust cannot bind to a name before 1.89.
+        let text = format!("apart     {apart} of {all} points are not connected to the others");
         if let Some(alpha) = self.joining_alpha {
             return writeln!(f, "{text}; --alpha {alpha} joins 95 % of all");
         }
