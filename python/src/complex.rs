@@ -5,14 +5,14 @@ use std::sync::Arc;
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use walpha::Class;
-use walpha::check::schema::{ComplexFile, PlacedComplex};
+use walpha::check::schema::{BoxVectors, ComplexFile, PlacedComplex};
 use walpha::check::{self, Alpha, CertifyError, CompareError};
 use walpha::progress::Stage;
 use walpha::shape::placed_complex;
 
 use crate::arrays::{column, lend, numbers, rows};
 use crate::errors::{told, wrong};
-use crate::shape::{Shape, all_classes, json};
+use crate::shape::{Shape, all_classes, json, numbers_of_box};
 use crate::work::{Task, run};
 
 /// A complex with its points, in canonical order.
@@ -42,7 +42,7 @@ impl Complex {
         vertices: Listed<'_>,
         hidden: Option<PyReadonlyArray1<'_, u32>>,
         duplicates: Option<PyReadonlyArray2<'_, u32>>,
-        periodic: Option<[f64; 3]>,
+        periodic: Option<Vec<f64>>,
         task: Task<'_>,
     ) -> PyResult<Self> {
         let alpha = Alpha::from_squared(alpha).map_err(told)?;
@@ -58,7 +58,7 @@ impl Complex {
         file.classes.vertices = classes("vertex_classes", vertices.1)?;
         file.hidden = hidden.map(numbers).transpose()?;
         file.duplicates = duplicates.map(|pairs| rows("duplicates", pairs)).transpose()?;
-        file.periodic = periodic;
+        file.periodic = periodic.as_deref().and_then(BoxVectors::of_numbers);
         Ok(Self(Arc::new(run(py, &task, move || PlacedComplex::try_from(file))?)))
     }
 
@@ -129,10 +129,10 @@ impl Complex {
         duplicates.map(|pairs| unsafe { lend(pairs, slf.as_any()) }).transpose()
     }
 
-    /// The sides of the periodic box.
+    /// The sides of the periodic box, or the components of its vectors.
     #[getter]
-    fn periodic(&self) -> Option<[f64; 3]> {
-        self.0.periodic
+    fn periodic(&self) -> Option<Vec<f64>> {
+        self.0.periodic.map(numbers_of_box)
     }
 
     /// The lowest dimension of which all simplices are listed, and not faces of others alone.

@@ -7,6 +7,7 @@ use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2}
 use pyo3::prelude::*;
 use rayon::prelude::*;
 use self_cell::self_cell;
+use walpha::check::schema::BoxVectors;
 use walpha::ladder::{self, Ordered};
 use walpha::progress::Stage;
 use walpha::shape::ShapeError;
@@ -14,7 +15,7 @@ use walpha::{Alpha, WeightedPoints};
 
 use crate::arrays::{column, lend, numbers};
 use crate::errors::{told, wrong};
-use crate::shape::{Shape, json, torus, weighted};
+use crate::shape::{Shape, json, numbers_of_box, torus, weighted};
 use crate::work::{Task, run};
 
 /// A filtration, which is never changed.
@@ -31,10 +32,10 @@ impl Filtration {
         py: Python<'_>,
         points: PyReadonlyArray2<'_, f64>,
         weights: Option<PyReadonlyArray1<'_, f64>>,
-        periodic: Option<[f64; 3]>,
+        periodic: Option<Vec<f64>>,
         task: Task<'_>,
     ) -> PyResult<Self> {
-        let torus = torus(periodic)?;
+        let torus = torus(periodic.as_deref())?;
         let points = weighted(points, weights, None)?;
         let made = run(py, &task, move || {
             Stage::Filtration.begin()?;
@@ -114,10 +115,10 @@ impl Filtration {
         column(py, self.0.whole().points().weights().iter().copied())
     }
 
-    /// The sides of the periodic box.
+    /// The sides of the periodic box, or the components of its vectors.
     #[getter]
-    fn periodic(&self) -> Option<[f64; 3]> {
-        self.0.torus().map(|torus| torus.sides())
+    fn periodic(&self) -> Option<Vec<f64>> {
+        self.0.torus().map(|torus| numbers_of_box(BoxVectors(torus.vectors())))
     }
 
     /// All simplices in order.

@@ -56,11 +56,12 @@ def alpha_shape(
         Find the points that heavier ones hide (:attr:`AlphaShape.hidden`), which takes the whole triangulation, too.
     balls : {"power", "radius"}
         "radius": a point is a ball of radius α + ω instead.
-    periodic : array_like, (3,), or float, optional
-        Sides of a box that repeats along x, y and z: the points are those of a torus, moved into the box
-        (:attr:`AlphaShape.points`). A row of input indices means the copies nearest to its first vertex,
-        along each axis; no edge may span half of the box. With ``4 * sqrt(alpha + max(weights))`` less
-        than each side, none does. ``betti.b3`` is 1 where the shape is the whole torus.
+    periodic : array_like, (3,) or (3, 3), or float, optional
+        Sides of a box that repeats along x, y and z, or three vectors, as rows, along which it repeats: the
+        points are those of a torus, moved into the box (:attr:`AlphaShape.points`). Vectors are reduced
+        (:attr:`AlphaShape.periodic`). A row of input indices means the copies nearest to its first vertex,
+        along each vector; no edge may span half of the box. With ``4 * sqrt(alpha + max(weights))`` less
+        than each height of the box, none does. ``betti.b3`` is 1 where the shape is the whole torus.
     progress : callable or True, optional
         ``progress(stage, done, total)``, called in this thread, at most 20 times a second: so many
         of ``total`` equal parts of a stage ("alpha", "shape", …) are done. A total of 0 says that a

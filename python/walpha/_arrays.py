@@ -156,16 +156,30 @@ def place(name: str, given: Arrays) -> list[float]:
     return [float(number) for number in doubles(name, array)]
 
 
+Box = tuple[float, float, float] | tuple[tuple[float, float, float], ...]
+
+
 def sides(given: Arrays | None) -> list[float] | None:
-    """The sides of a periodic box, or None."""
+    """The sides of a periodic box, or the components of its vectors, or None."""
     if given is None:
         return None
     array = numbers("periodic", given)
     if array.ndim == 0:
         array = np.repeat(array, 3)
-    if array.shape != (3,):
-        raise ValueError(f"periodic has shape {array.shape}: give the sides of the box along x, y and z")
-    return [float(side) for side in doubles("periodic", array)]
+    if array.shape not in ((3,), (3, 3)):
+        raise ValueError(
+            f"periodic has shape {array.shape}: give the sides of the box along x, y and z, or its three vectors as rows"
+        )
+    return [float(number) for number in doubles("periodic", array).ravel()]
+
+
+def box(numbers: list[float] | None) -> Box | None:
+    """The sides or vectors of a periodic box, of :func:`sides`."""
+    if numbers is None:
+        return None
+    if len(numbers) == 3:
+        return numbers[0], numbers[1], numbers[2]
+    return tuple((numbers[k], numbers[k + 1], numbers[k + 2]) for k in (0, 3, 6))
 
 
 def samples(given: Arrays) -> tuple[Samples, bool, bool]:

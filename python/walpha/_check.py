@@ -42,7 +42,7 @@ class Complex(Classified):
         Points that are not vertices of the regular triangulation.
     duplicates : array_like of int, (m, 2); optional
         Pairs: a point that went, and the one at its place that stayed.
-    periodic : array_like, (3,), or float, optional
+    periodic : array_like, (3,) or (3, 3), or float, optional
         Sides of a box that repeats, as in :func:`alpha_shape`.
 
     Raises
@@ -186,10 +186,9 @@ class Complex(Classified):
         return None if duplicates is None else _arrays.kept(duplicates)
 
     @property
-    def periodic(self) -> tuple[float, ...] | None:
-        """tuple of float or None: the sides of the box that repeats, if one does."""
-        sides = self._complex.periodic
-        return None if sides is None else tuple(sides)
+    def periodic(self) -> _arrays.Box | None:
+        """tuple or None: the sides of the box that repeats, if one does, or its vectors, reduced, if it is not along the axes."""
+        return _arrays.box(self._complex.periodic)
 
     def __reduce__(self) -> tuple[Any, ...]:
         names = ("alpha", "weights", "cells", "facets", "edges", "vertices", "cell_classes", "facet_classes",

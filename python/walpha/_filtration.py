@@ -28,7 +28,7 @@ class Filtration(Frozen):
         As in :func:`alpha_shape`.
     weights : array_like, (n,), optional
         ω, squared lengths, the same for every α. By default 0.
-    periodic : array_like, (3,), or float, optional
+    periodic : array_like, (3,) or (3, 3), or float, optional
         Sides of a box that repeats, as in :func:`alpha_shape`. No edge of the whole triangulation may
         span half of it.
     progress, threads
@@ -96,10 +96,9 @@ class Filtration(Frozen):
         return _arrays.frozen(self._filtration.weights)
 
     @property
-    def periodic(self) -> tuple[float, ...] | None:
-        """tuple of float or None: the sides of the box that repeats, if one does."""
-        sides = self._filtration.periodic
-        return None if sides is None else tuple(sides)
+    def periodic(self) -> _arrays.Box | None:
+        """tuple or None: the sides of the box that repeats, if one does, or its vectors, reduced, if it is not along the axes."""
+        return _arrays.box(self._filtration.periodic)
 
     def simplices(self, *, progress: Progress = None, threads: int | None = None) -> Simplices:
         """Every simplex with its exact value, in order.
@@ -401,5 +400,5 @@ def filtration(
     return Filtration(points, weights=weights, periodic=periodic, progress=progress, threads=threads)
 
 
-def _again(points: Floats, weights: Floats, periodic: tuple[float, ...] | None) -> Filtration:
+def _again(points: Floats, weights: Floats, periodic: _arrays.Box | None) -> Filtration:
     return Filtration(points, weights=weights, periodic=periodic)

@@ -232,10 +232,9 @@ class AlphaShape(Classified):
         return sorted((void for voids in shut_in for void in voids or ()), key=lambda void: -void.volume)
 
     @property
-    def periodic(self) -> tuple[float, ...] | None:
-        """tuple of float or None: the sides of the box that repeats, if one does."""
-        sides = self._shape.periodic
-        return None if sides is None else tuple(sides)
+    def periodic(self) -> _arrays.Box | None:
+        """tuple or None: the sides of the box that repeats, if one does, or its vectors, reduced, if it is not along the axes."""
+        return _arrays.box(self._shape.periodic)
 
     @functools.cached_property
     def copies(self) -> Indices:

@@ -191,9 +191,11 @@ impl<'a> BallUnion<'a> {
     /// On a torus, the part of the box that the balls fill.
     pub fn box_fraction(&self) -> Option<Bounded> {
         let torus = self.shape.options().periodic?;
-        let [x, y, z] = torus.sides().map(Single::exact);
+        let [a, b, c] = torus.vectors();
+        let signed = Single::triple(Single::cross(a, b), c);
+        let volume = if signed.value < 0.0 { -signed } else { signed };
         let Bounded { value, bound } = self.totals.volume;
-        Some((Single { value, error: bound } / (x * y * z)).bounded())
+        Some((Single { value, error: bound } / volume).bounded())
     }
 
     /// For each input point the volume of the union in its power cell.

@@ -37,6 +37,7 @@ mod flat;
 mod index;
 pub mod meshes;
 mod parallel;
+mod period;
 mod rules;
 pub mod schema;
 

@@ -7,6 +7,7 @@ use walpha_complex::canonical::{outward_facets, smallest_even, sort, sorted};
 
 use crate::exact::orientation;
 use crate::index::Index;
+use crate::period::Period;
 use crate::{Alpha, Class, Complex, Placed, Simplices, Voxels};
 
 /// A complex with its points, in canonical order, ready to be judged.
@@ -24,8 +25,8 @@ pub struct PlacedComplex {
     pub hidden: Option<Vec<u32>>,
     /// Duplicates, if they are listed.
     pub duplicates: Option<Vec<[u32; 2]>>,
-    /// The sides of the periodic box, if there is one.
-    pub periodic: Option<[f64; 3]>,
+    /// The vectors of the periodic box, if there is one.
+    pub periodic: Option<BoxVectors>,
     /// The lowest dimension of which it lists all simplices: 0, unless the file leaves a dimension out. That dimension and those
     /// below have only faces.
     pub lowest: usize,
@@ -41,9 +42,9 @@ impl PlacedComplex {
         Placed::new(&self.positions, &self.weights, self.alpha, &self.complex)
     }
 
-    /// Returns this complex in a periodic box with these sides, or in space.
+    /// Returns this complex in a periodic box, or in space.
     #[must_use]
-    pub fn with_periodic(self, periodic: Option<[f64; 3]>) -> Self {
+    pub fn with_periodic(self, periodic: Option<BoxVectors>) -> Self {
         Self { periodic, ..self }
     }
 
@@ -82,13 +83,12 @@ impl TryFrom<ComplexFile> for PlacedComplex {
         {
             return Err(SchemaError::NoSimplices);
         }
-        if let Some(side) =
-            file.periodic.iter().flatten().find(|side| !(side.is_finite() && **side > 0.0))
-        {
+        if let Some(vectors) = file.periodic.filter(|vectors| !Period::is_sound(*vectors)) {
+            let BoxVectors(vectors) = vectors;
             return Err(SchemaError::Value {
                 name: "periodic",
-                value: side.to_string(),
-                expected: "the length of a side",
+                value: format!("{vectors:?}"),
+                expected: "positive sides, or vectors that span a volume",
             });
         }
         let lowest = lowest_listed(&file);
@@ -266,13 +266,16 @@ fn complete<const N: usize, const M: usize, const F: usize>(
 }
 
 /// Orients cells positively and regular facets outward, and sorts the vertices of other rows.
-pub(crate) fn orient(complex: &mut Complex, points: &[[f64; 3]], periodic: Option<[f64; 3]>) {
+pub(crate) fn orient(complex: &mut Complex, points: &[[f64; 3]], periodic: Option<BoxVectors>) {
+    let period = periodic.map(Period::new);
     complex.cells.rows_mut().par_iter_mut().for_each(|cell| {
         let mut corners = cell.map(|v| points[v as usize]);
-        if let Some(sides) = periodic {
+        if let Some(period) = &period {
             let first = corners[0];
-            corners =
-                corners.map(|corner| moved(sides, corner, nearest_copy(sides, first, corner)));
+            let near = |corner| period.moved(corner, period.nearest_copy(first, corner));
+            if finite(&corners) {
+                corners = corners.map(near);
+            }
         }
         let [a, b, c, d] = corners;
         if finite(&[a, b, c, d]) && orientation(a, b, c, d).is_lt() {
@@ -307,17 +310,4 @@ pub(crate) fn orient(complex: &mut Complex, points: &[[f64; 3]], periodic: Optio
 /// Whether coordinates are finite. The checker reports those that are not.
 fn finite(positions: &[[f64; 3]]) -> bool {
     positions.as_flattened().iter().all(|x| x.is_finite())
-}
-
-/// The multiples of the sides that move `to` to its copy nearest to `from`.
-pub(crate) fn nearest_copy(sides: [f64; 3], from: [f64; 3], to: [f64; 3]) -> [i32; 3] {
-    [0, 1, 2].map(|k| {
-        let (way, half) = (to[k] - from[k], sides[k] / 2.0);
-        i32::from(way < -half) - i32::from(way > half)
-    })
-}
-
-/// A position moved by multiples of the sides.
-pub(crate) fn moved(sides: [f64; 3], position: [f64; 3], by: [i32; 3]) -> [f64; 3] {
-    [0, 1, 2].map(|k| position[k] + f64::from(by[k]) * sides[k])
 }

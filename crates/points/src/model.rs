@@ -27,6 +27,21 @@ pub struct Cell {
 }
 
 impl Cell {
+    /// The cell of three vectors of these lengths that repeats along all of them, by its angles in degrees: α between b and c, β between a
+    /// and c, γ between a and b. The first vector is along x, and the second in the plane of x and y. `None` if no three
+    /// vectors have these angles.
+    pub fn of_angles([a, b, c]: [f64; 3], angles: [f64; 3]) -> Option<Self> {
+        // Right angles are exact, so that boxes are along the axes.
+        let cosine = |angle: f64| if angle == 90.0 { 0.0 } else { angle.to_radians().cos() };
+        let [alpha, beta, gamma] = angles.map(cosine);
+        let sine = if gamma == 0.0 { 1.0 } else { (1.0 - gamma * gamma).sqrt() };
+        let y = (alpha - beta * gamma) / sine;
+        let z = (1.0 - beta * beta - y * y).sqrt();
+        let vectors = [[a, 0.0, 0.0], [b * gamma, b * sine, 0.0], [c * beta, c * y, c * z]];
+        let is_finite = vectors.as_flattened().iter().all(|x| x.is_finite());
+        (is_finite && sine > 0.0 && z > 0.0).then_some(Self { vectors, repeats: [true; 3] })
+    }
+
     /// The sides, if the cell is an axis-aligned box that repeats along all axes: the points then lie on a torus.
     pub fn sides(&self) -> Option<[f64; 3]> {
         let [[x, a, b], [c, y, d], [e, f, z]] = self.vectors;
@@ -39,19 +54,14 @@ impl fmt::Display for Cell {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let list = |numbers: [f64; 3]| numbers.map(|x| x.to_string()).join(",");
         match self.sides() {
-            Some(sides) => {
-                write!(f, "a box of sides {0}, and `periodic` {0} makes its torus", list(sides))
-            }
+            Some(sides) => write!(f, "a box of sides {}", list(sides)),
             None if self.repeats == [true; 3] => {
                 let [a, b, c] = self.vectors.map(list);
-                write!(
-                    f,
-                    "the vectors ({a}), ({b}), ({c}), which are not a box along the axes: it is not supported"
-                )
+                write!(f, "the vectors ({a}), ({b}), ({c})")
             }
-            None => {
-                f.write_str("points repeat along some of its vectors only: it is not supported")
-            }
+            None => f.write_str(
+                "one along some of whose vectors only points repeat, which is not supported",
+            ),
         }
     }
 }

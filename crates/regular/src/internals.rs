@@ -15,7 +15,7 @@ pub use crate::lattice::{BitRange, Lattice};
 pub use crate::merging::triangulate_along;
 pub use crate::scaled::Scaled;
 pub use crate::sites::{Sites, check as check_numbers};
-pub use crate::torus::AXES;
+pub use crate::torus::{AXES, VECTORS};
 
 /// The points along a Hilbert curve, including hidden and equal ones. O(n log n).
 pub fn along_curve(positions: &[[f64; 3]]) -> Vec<u32> {

@@ -1,18 +1,33 @@
-//! Periodic boxes: sets of points that repeat along the axes.
+//! Periodic boxes: sets of points that repeat along three vectors.
 
+use std::cmp::Ordering;
+
+use dashu_int::IBig;
+use dashu_int::ops::DivEuclid;
 use walpha_base::advice::{Advice, Advise, Setting, advice};
 
+use crate::number::{cross, dot, integer, lowest_bit};
+
 /// A box whose opposite faces are identified: a flat three-dimensional torus. A point stands for all its
-/// copies, which are displaced along the axes by multiples of the sides.
+/// copies, which are displaced by multiples of three vectors. The box is one along the axes, or the
+/// parallelepiped of any three vectors.
 ///
 /// Copies must be exact; otherwise ties between points and ties between their copies would be broken
-/// differently. Sides and coordinates are therefore rounded to multiples of a common
-/// [`step`](Self::step), a power of two below 2⁻⁴⁹ times the diagonal. Coordinates on a voxel grid are
-/// unchanged. Every statement about a shape is exact for the rounded points, which the shape lists.
+/// differently. Vectors and coordinates are therefore rounded to multiples of a common
+/// [`step`](Self::step), a power of two of at most 2⁻⁴⁹ times the longest side of the bounding box. Coordinates on a voxel
+/// grid are unchanged. Every statement about a shape is exact for the rounded points, which the shape
+/// lists.
+///
+/// Vectors are reduced ([`Self::of_vectors`]), so the copies that count are near: at most half of each vector
+/// away, as measured along the three of them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Torus {
-    sides: [f64; 3],
+    /// Along the axes, if `is_box`.
+    vectors: [[f64; 3]; 3],
+    /// The rows of the inverse matrix, rounded: the scalar product with a way is about its part along a vector.
+    inverse: [[f64; 3]; 3],
     step: f64,
+    is_box: bool,
 }
 
 /// Why a box cannot be periodic.
@@ -42,6 +57,28 @@ pub enum TorusError {
         /// The longest side.
         longest: f64,
     },
+    /// A vector has a component that is not a number, or is too long or too short.
+    #[error(
+        "vector {name} of a periodic box is {length} long: its length must be between {low:e} and {high:e}",
+        low = Torus::MIN_SIDE,
+        high = Torus::MAX_SIDE
+    )]
+    Vector {
+        /// a, b or c.
+        name: char,
+        /// Its length.
+        length: f64,
+    },
+    /// The three vectors lie in one plane, or nearly.
+    #[error(
+        "the vectors of a periodic box span almost no volume: the longest is {longest} long, and the box is {height} high"
+    )]
+    Flat {
+        /// The length of the longest vector.
+        longest: f64,
+        /// The smallest height of the box, rounded.
+        height: f64,
+    },
 }
 
 impl Advise for TorusError {
@@ -51,12 +88,27 @@ impl Advise for TorusError {
                 advice!["give ", Setting::Periodic, " three sides, in the unit of the points"]
             }
             Self::Elongated { .. } => "repeat the points along the shortest side".into(),
+            Self::Vector { .. } => {
+                advice!["give ", Setting::Periodic, " three vectors, in the unit of the points"]
+            }
+            Self::Flat { .. } => "give three vectors that span a volume".into(),
         })
     }
 }
 
+/// The names of the vectors of a box.
+pub const VECTORS: [char; 3] = ['a', 'b', 'c'];
+
 /// The names of the axes.
 pub const AXES: [char; 3] = ['x', 'y', 'z'];
+
+/// The vectors of a box along the axes.
+const fn along_axes([x, y, z]: [f64; 3]) -> [[f64; 3]; 3] {
+    [[x, 0.0, 0.0], [0.0, y, 0.0], [0.0, 0.0, z]]
+}
+
+/// A vector in units of the step.
+type Steps = [i128; 3];
 
 impl Torus {
     /// The shortest side accepted.
@@ -68,8 +120,12 @@ impl Torus {
 
     /// Bits that differences of coordinates of copies have beyond those of the longest side: copies are searched
     /// within one diagonal, at most √3 times that side, so all coordinates are below 4 times that side, and
-    /// differences below 8 times.
+    /// differences below 8 times. Of a slanted box, that side is the longest of its bounding box.
     const HEADROOM_BITS: i32 = 3;
+
+    /// Parts along vectors that are farther than this from a half or a whole number are decided by doubles: reduced vectors are
+    /// nearly orthogonal, so the error is a few roundings of a part that is at most 8 [`MAX_ASPECT_RATIO`](Self::MAX_ASPECT_RATIO).
+    const PART_MARGIN: f64 = 1e-9;
 
     /// A box by its sides along x, y and z, in the unit of the points.
     ///
@@ -87,36 +143,122 @@ impl Torus {
         if longest > Self::MAX_ASPECT_RATIO * shortest {
             return Err(TorusError::Elongated { shortest, longest });
         }
-        let above = 2f64.powi(longest.log2().floor() as i32 + 1);
-        let step = above * 2f64.powi(Self::HEADROOM_BITS - f64::MANTISSA_DIGITS as i32);
-        let sides = sides.map(|side| (side / step).round_ties_even() * step);
-        Ok(Self { sides, step })
+        let step = step_of(longest);
+        let vectors = along_axes(sides.map(|side| (side / step).round_ties_even() * step));
+        Ok(Self::of_reduced(vectors, step, true))
     }
 
-    /// The sides, along x, y and z.
-    pub fn sides(&self) -> [f64; 3] {
-        self.sides
+    /// A box by the three vectors along which points repeat, in the unit of the points. The vectors are rounded,
+    /// by at most 2⁻⁴⁸ of the longest, and then reduced (Minkowski): each is replaced by a shorter one of the same lattice while
+    /// there is one among its sums with the others and their differences. Vectors of a lattice along the axes give the box of [`Self::new`].
+    ///
+    /// # Errors
+    /// Numbers out of range, or vectors that span almost no volume; see [`TorusError`].
+    pub fn of_vectors(vectors: [[f64; 3]; 3]) -> Result<Self, TorusError> {
+        let length = |v: &[f64; 3]| v[0].hypot(v[1]).hypot(v[2]);
+        for (name, vector) in VECTORS.into_iter().zip(&vectors) {
+            let length = length(vector);
+            if !(Self::MIN_SIDE..=Self::MAX_SIDE).contains(&length) {
+                return Err(TorusError::Vector { name, length });
+            }
+        }
+        let longest = vectors.iter().map(length).fold(0.0, f64::max);
+        let coarse = step_of(extent(&vectors));
+        let steps = vectors.map(|v| v.map(|x| (x / coarse).round_ties_even() as i128));
+        let reduced = reduced(steps);
+        let vectors = reduced.map(|v| v.map(|x| x as f64 * coarse));
+        let [a, b, c] = &vectors;
+        let volume = dot(a, &cross(b, c)).abs();
+        let heights = [0, 1, 2].map(|k| {
+            let [u, v] = [(k + 1) % 3, (k + 2) % 3].map(|other| vectors[other]);
+            volume / length(&cross(&u, &v))
+        });
+        let height = heights.into_iter().fold(f64::INFINITY, f64::min);
+        // Vectors of length 0 have heights that are not numbers.
+        if volume == 0.0 || height * Self::MAX_ASPECT_RATIO < longest {
+            let height = if volume == 0.0 { 0.0 } else { height };
+            return Err(TorusError::Flat { longest, height });
+        }
+        if let Some(sides) = sides_of(&vectors) {
+            return Self::new(sides);
+        }
+        Ok(Self::of_reduced(vectors, step_of(extent(&vectors)), false))
     }
 
-    /// The power of two of which all coordinates and sides are multiples.
+    fn of_reduced(vectors: [[f64; 3]; 3], step: f64, is_box: bool) -> Self {
+        let [a, b, c] = vectors;
+        let rows = [cross(&b, &c), cross(&c, &a), cross(&a, &b)];
+        let volume = dot(&a, &rows[0]);
+        Self { vectors, inverse: rows.map(|row| row.map(|x| x / volume)), step, is_box }
+    }
+
+    /// The three vectors; along x, y and z if the box is.
+    pub fn vectors(&self) -> [[f64; 3]; 3] {
+        self.vectors
+    }
+
+    /// The sides along x, y and z, if the box is along the axes.
+    pub fn sides(&self) -> Option<[f64; 3]> {
+        self.is_box.then(|| self.diagonal_components())
+    }
+
+    fn diagonal_components(&self) -> [f64; 3] {
+        [0, 1, 2].map(|k| self.vectors[k][k])
+    }
+
+    /// The lowest and the highest corner of the bounding box.
+    pub fn extent(&self) -> [[f64; 3]; 2] {
+        let sum = |k: usize, choose: fn(f64, f64) -> f64| {
+            self.vectors.iter().map(|vector| choose(vector[k], 0.0)).sum::<f64>()
+        };
+        [[0, 1, 2].map(|k| sum(k, f64::min)), [0, 1, 2].map(|k| sum(k, f64::max))]
+    }
+
+    /// The power of two of which all coordinates and vectors are multiples.
     pub fn step(&self) -> f64 {
         self.step
     }
 
     /// The volume of the box.
     pub fn volume(&self) -> f64 {
-        self.sides.iter().product()
+        let [a, b, c] = self.vectors;
+        dot(&a, &cross(&b, &c)).abs()
     }
 
-    /// The copy of a position in the box, rounded to the step. Along each axis it is at least 0 and less than the side.
+    /// The part of a way along each vector: the way is the sum of the vectors, each times its part. Rounded.
+    pub fn parts(&self, way: [f64; 3]) -> [f64; 3] {
+        [0, 1, 2].map(|k| dot(&self.inverse[k], &way))
+    }
+
+    /// A range of the part along a vector of the ways in a box from `low` to `high`. Rounded outward.
+    pub fn part_range(&self, k: usize, low: [f64; 3], high: [f64; 3]) -> [f64; 2] {
+        let mut range = [0.0; 2];
+        for axis in 0..3 {
+            let ends = [low[axis], high[axis]].map(|end| self.inverse[k][axis] * end);
+            range[0] += ends[0].min(ends[1]);
+            range[1] += ends[0].max(ends[1]);
+        }
+        [range[0] - Self::PART_MARGIN, range[1] + Self::PART_MARGIN]
+    }
+
+    /// The copy of a position in the box, rounded to the step. Its part along each vector is at least 0 and less than 1.
     pub fn wrap(&self, position: [f64; 3]) -> [f64; 3] {
         let mut position = position;
-        for (x, side) in position.iter_mut().zip(self.sides) {
+        for x in &mut position {
             let steps = *x / self.step;
             // Doubles of 2⁵² steps or more are multiples of the step already.
             if steps.abs() < (1u64 << 52) as f64 {
                 *x = steps.round_ties_even() * self.step;
             }
+        }
+        if !self.is_box {
+            return if position.iter().all(|x| x.is_finite()) {
+                self.wrap_exactly(position)
+            } else {
+                position
+            };
+        }
+        for (x, side) in position.iter_mut().zip(self.diagonal_components()) {
             // Exact. −0 becomes 0.
             *x = x.rem_euclid(side) + 0.0;
             if *x >= side {
@@ -126,39 +268,123 @@ impl Torus {
         position
     }
 
-    /// Whether a position is in the box: at least 0 and less than the side along each axis.
-    pub fn holds(&self, position: [f64; 3]) -> bool {
-        position.iter().zip(self.sides).all(|(x, side)| (0.0..side).contains(x))
+    /// The copy in a slanted box of a position that is a multiple of the step.
+    fn wrap_exactly(&self, position: [f64; 3]) -> [f64; 3] {
+        let parts = self.parts(position);
+        let clearly = |part: f64| {
+            part.abs() < 1.0 / Self::PART_MARGIN
+                && (part - part.round()).abs() > Self::PART_MARGIN * (1.0 + part.abs())
+        };
+        if parts.iter().all(|&part| clearly(part) && part > 0.0 && part < 1.0) {
+            return position.map(|x| x + 0.0);
+        }
+        let unit = self.unit();
+        let way = position.map(|x| integer(x, unit));
+        let vectors = self.vectors.map(|v| v.map(|x| integer(x, unit)));
+        let whole = [0, 1, 2].map(|k| {
+            if clearly(parts[k]) {
+                return IBig::from(parts[k].floor() as i64);
+            }
+            let [part, volume] = part_of(&vectors, k, &way);
+            part.div_euclid(volume)
+        });
+        let in_box = |axis: usize| {
+            let moved = dot(&whole, &[0, 1, 2].map(|k| vectors[k][axis].clone()));
+            let steps = i64::try_from(&way[axis] - moved).expect("positions in the box are small");
+            // Exact: positions in the box have at most 53 bits.
+            steps as f64 * self.step
+        };
+        [in_box(0), in_box(1), in_box(2)]
     }
 
-    /// The copy of `to` that is nearest to `from` along each axis, for two positions in the box; if two copies are equally near,
+    /// The exponent of the step.
+    fn unit(&self) -> i32 {
+        lowest_bit(self.step).expect("the step is a power of two")
+    }
+
+    /// Whether a position is in the box: its part along each vector is at least 0 and less than 1.
+    pub fn holds(&self, position: [f64; 3]) -> bool {
+        if self.is_box {
+            let mut sides = position.iter().zip(self.diagonal_components());
+            return sides.all(|(x, side)| (0.0..side).contains(x));
+        }
+        let is_multiple = |x: f64| (x / self.step).fract() == 0.0;
+        if position.into_iter().all(|x| x.is_finite() && is_multiple(x)) {
+            self.wrap_exactly(position) == position
+        } else {
+            self.parts(position).iter().all(|part| (0.0..1.0).contains(part))
+        }
+    }
+
+    /// The copy of `to` that is nearest to `from` along each vector, for two positions in the box; if two copies are equally near,
     /// `to` itself. Exact.
     #[inline]
     pub fn near(&self, from: [f64; 3], to: [f64; 3]) -> [f64; 3] {
-        let mut near = to;
-        for k in 0..3 {
-            near[k] -= f64::from(self.winding(k, from[k], to[k])) * self.sides[k];
+        if self.is_box {
+            let mut near = to;
+            for k in 0..3 {
+                let side = self.vectors[k][k];
+                near[k] -= f64::from(beyond_half(to[k] - from[k], side)) * side;
+            }
+            return near;
         }
-        near
+        self.moved(to, self.windings(from, to))
     }
 
-    /// The number of times the way from one position in the box to the nearest copy of another crosses its faces: along each
-    /// axis, the multiple of the side by which that copy differs from `to`.
+    /// The number of times the way from one position in the box to the nearest copy of another crosses its faces: for each
+    /// vector, the multiple of it by which that copy differs from `to`.
     #[inline]
     pub fn windings(&self, from: [f64; 3], to: [f64; 3]) -> [i32; 3] {
-        [0, 1, 2].map(|k| -self.winding(k, from[k], to[k]))
+        let way = [0, 1, 2].map(|k| to[k] - from[k]);
+        if self.is_box {
+            return [0, 1, 2].map(|k| -beyond_half(way[k], self.vectors[k][k]));
+        }
+        [0, 1, 2].map(|k| {
+            let part = dot(&self.inverse[k], &way);
+            // Two copies are equally near if the part is a half: `to` itself stays.
+            if self.compare_with_half(k, &way, part).is_gt() { -(part.signum() as i32) } else { 0 }
+        })
     }
 
+    /// Whether the way between two positions spans less than half of each vector, so that they are the nearest copies of their
+    /// points. Exact for multiples of the step.
+    pub fn are_near(&self, from: [f64; 3], to: [f64; 3]) -> bool {
+        let way = [0, 1, 2].map(|k| to[k] - from[k]);
+        if self.is_box {
+            return (0..3).all(|k| 2.0 * way[k].abs() < self.vectors[k][k]);
+        }
+        let parts = self.parts(way);
+        (0..3).all(|k| self.compare_with_half(k, &way, parts[k]).is_lt())
+    }
+
+    /// Compares the magnitude of the part of a way along a vector, which is known about, with a half. Exact.
     #[inline(always)]
-    fn winding(&self, k: usize, from: f64, to: f64) -> i32 {
-        let (way, half) = (to - from, self.sides[k] / 2.0);
-        i32::from(way > half) - i32::from(way < -half)
+    fn compare_with_half(&self, k: usize, way: &[f64; 3], part: f64) -> Ordering {
+        let beyond = part.abs() - 0.5;
+        if beyond.abs() > Self::PART_MARGIN {
+            return if beyond > 0.0 { Ordering::Greater } else { Ordering::Less };
+        }
+        self.compare_exactly(k, way)
     }
 
-    /// A position moved by multiples of the sides. Exact for positions near the box.
+    #[cold]
+    fn compare_exactly(&self, k: usize, way: &[f64; 3]) -> Ordering {
+        let unit = self.unit();
+        let vectors = self.vectors.map(|v| v.map(|x| integer(x, unit)));
+        let [part, volume] = part_of(&vectors, k, &way.map(|x| integer(x, unit)));
+        let magnitude = if part < IBig::ZERO { -part } else { part };
+        (magnitude << 1).cmp(&volume)
+    }
+
+    /// A position moved by multiples of the vectors. Exact for positions near the box.
     #[inline]
     pub fn moved(&self, position: [f64; 3], windings: [i32; 3]) -> [f64; 3] {
-        [0, 1, 2].map(|k| position[k] + f64::from(windings[k]) * self.sides[k])
+        let times = windings.map(f64::from);
+        if self.is_box {
+            return [0, 1, 2].map(|k| position[k] + times[k] * self.vectors[k][k]);
+        }
+        let [a, b, c] = self.vectors;
+        [0, 1, 2].map(|k| position[k] + (times[0] * a[k] + times[1] * b[k] + times[2] * c[k]))
     }
 
     /// The corners of a simplex: the first one, and for each other corner the copy nearest to it.
@@ -169,9 +395,91 @@ impl Torus {
         corners
     }
 
-    /// An upper bound of the length of the diagonal, larger by about 10⁻¹⁵ of it.
+    /// An upper bound of the length of the longest diagonal, larger by about 10⁻¹⁵ of it. No place is farther than half of it from
+    /// all copies of a point.
     pub fn diagonal(&self) -> f64 {
-        self.sides.iter().map(|side| side * side).sum::<f64>().sqrt() * (1.0 + 1e-15)
+        let [a, b, c] = self.vectors;
+        let squared = |[v, w]: [f64; 2]| {
+            let diagonal = [0, 1, 2].map(|k| a[k] + v * b[k] + w * c[k]);
+            dot(&diagonal, &diagonal)
+        };
+        let ways = [[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]];
+        ways.map(squared).into_iter().fold(0.0, f64::max).sqrt() * (1.0 + 1e-15)
+    }
+}
+
+/// The multiple of a side by which a way along an axis is to be shortened: 1 or −1 beyond half of the side, else 0.
+#[inline(always)]
+fn beyond_half(way: f64, side: f64) -> i32 {
+    let half = side / 2.0;
+    i32::from(way > half) - i32::from(way < -half)
+}
+
+/// The step of coordinates in a box that is `longest` along an axis.
+fn step_of(longest: f64) -> f64 {
+    let above = 2f64.powi(longest.log2().floor() as i32 + 1);
+    above * 2f64.powi(Torus::HEADROOM_BITS - f64::MANTISSA_DIGITS as i32)
+}
+
+/// The longest side of the bounding box of three vectors.
+fn extent(vectors: &[[f64; 3]; 3]) -> f64 {
+    (0..3).map(|k| vectors.iter().map(|vector| vector[k].abs()).sum()).fold(0.0, f64::max)
+}
+
+/// The part of a way along vector `k`, times the volume of the box, and that volume.
+fn part_of(vectors: &[[IBig; 3]; 3], k: usize, way: &[IBig; 3]) -> [IBig; 2] {
+    let normal = cross(&vectors[(k + 1) % 3], &vectors[(k + 2) % 3]);
+    let [part, volume] = [way, &vectors[k]].map(|of| dot(of, &normal));
+    if volume < IBig::ZERO { [-part, -volume] } else { [part, volume] }
+}
+
+/// Sides along x, y and z, if each vector is along another axis.
+fn sides_of(vectors: &[[f64; 3]; 3]) -> Option<[f64; 3]> {
+    let mut sides = [0.0; 3];
+    for vector in vectors {
+        let axis = (0..3).find(|&k| vector[k] != 0.0)?;
+        if vector[axis + 1..].iter().any(|x| *x != 0.0) || sides[axis] != 0.0 {
+            return None;
+        }
+        sides[axis] = vector[axis].abs();
+    }
+    Some(sides)
+}
+
+/// A Minkowski-reduced basis of the same lattice: no vector is longer than its sum with another two, each of them
+/// added, subtracted or left out (which suffices in three dimensions). Vectors that are reduced already stay as they are.
+fn reduced(mut vectors: [Steps; 3]) -> [Steps; 3] {
+    let dot = |u: &Steps, v: &Steps| (0..3).map(|k| u[k] * v[k]).sum::<i128>();
+    let with = |u: &Steps, n: i128, v: &Steps| [0, 1, 2].map(|k| u[k] + n * v[k]);
+    loop {
+        let mut shorter = false;
+        for i in 0..3 {
+            let [j, k] = [(i + 1) % 3, (i + 2) % 3];
+            let mut best = vectors[i];
+            // A whole multiple of one other vector, which takes long steps, then sums with both.
+            for other in [j, k] {
+                let square = dot(&vectors[other], &vectors[other]);
+                if square == 0 {
+                    return vectors;
+                }
+                let times = (2 * dot(&best, &vectors[other]) + square).div_euclid(2 * square);
+                let tried = with(&best, -times, &vectors[other]);
+                if dot(&tried, &tried) < dot(&best, &best) {
+                    best = tried;
+                }
+            }
+            for [n, m] in [[1, 1], [1, -1], [-1, 1], [-1, -1]] {
+                let tried = with(&with(&best, n, &vectors[j]), m, &vectors[k]);
+                if dot(&tried, &tried) < dot(&best, &best) {
+                    best = tried;
+                }
+            }
+            shorter |= best != vectors[i];
+            vectors[i] = best;
+        }
+        if !shorter {
+            return vectors;
+        }
     }
 }
 
@@ -182,7 +490,7 @@ mod tests {
     #[test]
     fn places_are_wrapped_exactly() {
         let torus = Torus::new([4.0, 5.0, 6.0]).unwrap();
-        assert_eq!(torus.sides(), [4.0, 5.0, 6.0]);
+        assert_eq!(torus.sides(), Some([4.0, 5.0, 6.0]));
         assert_eq!(torus.wrap([4.0, -1.0, 17.5]), [0.0, 4.0, 5.5]);
         assert_eq!(torus.wrap([-1e-30, 5.0 - 1e-30, 0.25]), [0.0, 0.0, 0.25]);
         assert_eq!(torus.wrap([-0.0, 0.0, 1e300])[0].to_bits(), 0);
@@ -199,6 +507,94 @@ mod tests {
             let moved = torus.moved(place, windings);
             let back = torus.moved(moved, windings.map(|w| -w));
             assert_eq!((back, torus.wrap(moved)), (place, place));
+        }
+    }
+
+    /// The lattice of face-centred cubes, by its primitive vectors.
+    const FCC: [[f64; 3]; 3] = [[0.0, 0.5, 0.5], [0.5, 0.0, 0.5], [0.5, 0.5, 0.0]];
+
+    #[test]
+    fn vectors_are_reduced() {
+        let torus = Torus::of_vectors(FCC).unwrap();
+        assert_eq!((torus.vectors(), torus.sides(), torus.volume()), (FCC, None, 0.25));
+        // A long basis of the same lattice.
+        let [a, b, c] = FCC;
+        let sum = |u: [f64; 3], n: f64, v: [f64; 3]| [0, 1, 2].map(|k| u[k] + n * v[k]);
+        let long = [sum(sum(a, 7.0, b), -3.0, c), sum(b, 11.0, c), c];
+        let reduced = Torus::of_vectors(long).unwrap();
+        assert_eq!(reduced.volume(), 0.25);
+        for [x, y, z] in reduced.vectors() {
+            assert_eq!(x * x + y * y + z * z, 0.5);
+        }
+        // A box, askew and out of order.
+        let askew = [[0.0, 5.0, 0.0], [4.0, 15.0, 0.0], [8.0, -5.0, -6.0]];
+        assert_eq!(Torus::of_vectors(askew).unwrap(), Torus::new([4.0, 5.0, 6.0]).unwrap());
+    }
+
+    /// Reduced vectors are moved into the box, and nearest copies found, as by integers.
+    #[test]
+    fn copies_in_slanted_boxes_are_exact() {
+        let random = &mut walpha_base::random::Random::new(3);
+        let mut halves = 0;
+        for round in 0..200 {
+            // Some on a coarse lattice, where ways of half a vector are common.
+            let fine = if round % 2 == 0 { 0.0 } else { 2f64.powi(-40) };
+            let mut number = |most: usize| (random.below(2 * most + 1) as f64) - most as f64;
+            let mut vector = || [0; 3].map(|_| number(6) + fine * number(1000));
+            let Ok(torus) = Torus::of_vectors([vector(), vector(), vector()]) else { continue };
+            if torus.sides().is_some() {
+                continue;
+            }
+            let mut place = || torus.wrap(vector());
+            for _ in 0..50 {
+                let [p, q] = [place(), place()];
+                for place in [p, q] {
+                    assert!(torus.holds(place) && torus.wrap(place) == place);
+                    let moved = torus.moved(place, [2, -1, 1]);
+                    assert_eq!(torus.wrap(moved), place);
+                    assert!(!torus.holds(moved));
+                }
+                let unit = torus.unit();
+                let vectors = torus.vectors().map(|v| v.map(|x| integer(x, unit)));
+                let way = [0, 1, 2].map(|k| integer(q[k], unit) - integer(p[k], unit));
+                let expected = [0, 1, 2].map(|k| {
+                    let [part, volume] = part_of(&vectors, k, &way);
+                    halves += u32::from(&part + &part == volume || &part + &part == -&volume);
+                    i32::from(-(&part << 1) > volume) - i32::from(part << 1 > volume)
+                });
+                assert_eq!(torus.windings(p, q), expected);
+                let near = torus.near(p, q);
+                assert_eq!(near, torus.moved(q, expected));
+                assert!(torus.windings(p, near) == [0; 3]);
+            }
+        }
+        assert!(halves > 100, "{halves}");
+    }
+
+    #[test]
+    fn far_positions_are_moved_into_a_slanted_box() {
+        let torus = Torus::of_vectors(FCC).unwrap();
+        for far in [[1e300, 2.5, -7.25], [1e18, -1e20, 3.0], [-0.0, -0.0, 0.0]] {
+            let place = torus.wrap(far);
+            assert!(torus.holds(place), "{far:?} {place:?}");
+            assert!(place.iter().all(|x| x.to_bits() != (-0.0f64).to_bits()));
+        }
+        assert!(torus.wrap([f64::NAN, 0.0, 0.0])[0].is_nan());
+    }
+
+    #[test]
+    fn bad_vectors_are_refused() {
+        let of = |vectors| Torus::of_vectors(vectors).unwrap_err();
+        let [a, b, c] = FCC;
+        assert!(matches!(of([a, [f64::NAN; 3], c]), TorusError::Vector { name: 'b', .. }));
+        assert!(matches!(of([a, b, [0.0; 3]]), TorusError::Vector { name: 'c', .. }));
+        let sum = [0, 1, 2].map(|k| a[k] - 2.0 * b[k]);
+        assert!(matches!(of([a, b, sum]), TorusError::Flat { height: 0.0, .. }));
+        assert!(matches!(of([a, b, [0.5, 0.5, 1.0 - 1e-4]]), TorusError::Flat { .. }));
+        // The smallest and the largest vectors.
+        for scale in [1e-99, 1e99] {
+            let torus = Torus::of_vectors(FCC.map(|v| v.map(|x| scale * x))).unwrap();
+            assert!(torus.holds(torus.wrap([scale, 0.1 * scale, -0.3 * scale])));
         }
     }
 

@@ -45,7 +45,7 @@ pub(super) fn complement_on(torus: Torus, whole: &Complex, positions: &[[f64; 3]
     sets
 }
 
-/// The translation, in multiples of the sides, that makes the shared vertex of two cells coincide. Each cell is represented
+/// The translation, in multiples of the vectors, that makes the shared vertex of two cells coincide. Each cell is represented
 /// by its copy whose first vertex lies in the box.
 pub fn between(torus: Torus, cells: [[u32; 4]; 2], vertex: u32, positions: &[[f64; 3]]) -> Winding {
     let way =

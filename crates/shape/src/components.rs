@@ -102,8 +102,9 @@ impl AlphaShape {
             let Some(directions) = windings.rounds(root).filter(|_| root == v) else { continue };
             let component = &mut components[numbers[v as usize] as usize];
             component.rounds = Some(directions.rank());
-            for axis in (0..3).filter(|&axis| directions.has(axis)) {
-                (component.low[axis], component.high[axis]) = (0.0, torus.sides()[axis]);
+            let [low, high] = torus.extent();
+            for axis in (0..3).filter(|&axis| directions.have(axis, torus)) {
+                (component.low[axis], component.high[axis]) = (low[axis], high[axis]);
             }
         }
     }

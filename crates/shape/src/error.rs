@@ -74,11 +74,11 @@ pub enum ShapeError {
     Wraps {
         /// Input indices; equal for an edge from a point to its own copy.
         edge: [u32; 2],
-        /// The axis along which it spans most of the box.
+        /// The axis along which it spans most of the box, or of a slanted box the vector, a, b or c.
         axis: char,
-        /// The length that it spans.
+        /// The length that it spans, along that vector.
         span: f64,
-        /// The side of the box along that axis.
+        /// The side of the box along that axis, or the length of that vector.
         side: f64,
     },
     /// The voxels have no solid.

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::{AlphaShape, Simplices, Torus};
 
-/// A copy of a point: the point, and the multiples of the sides by which the copy is moved.
+/// A copy of a point: the point, and the multiples of the vectors by which the copy is moved.
 type Copied = (u32, [i32; 3]);
 
 /// The copies that are needed, numbered after the points in the order of their first use.
@@ -21,7 +21,7 @@ impl<'a> Layout<'a> {
         Self { torus, positions, numbers: BTreeMap::new(), copied: Vec::new() }
     }
 
-    /// Places each simplex in the copy whose lowest coordinates are in the box, so that simplices extend beyond only the upper
+    /// Places each simplex in the copy whose lowest parts along the vectors are in the box, so that simplices extend beyond only the upper
     /// faces of the box.
     pub(super) fn lay_out<const N: usize>(&mut self, simplices: &Simplices<N>) -> Simplices<N> {
         simplices.iter().map(|(&row, class)| (self.row(row), class)).collect()

@@ -2,7 +2,9 @@
 
 use std::collections::BTreeMap;
 
-/// A translation by multiples of the sides of the box, one for each axis.
+use walpha_regular::Torus;
+
+/// A translation by multiples of the vectors of the box.
 pub(crate) type Winding = [i32; 3];
 
 /// Linearly independent directions, at most three.
@@ -37,9 +39,9 @@ impl Directions {
         others.0.iter().for_each(|&way| _ = self.add(way));
     }
 
-    /// Whether a direction has a component along an axis.
-    pub fn has(&self, axis: usize) -> bool {
-        self.0.iter().any(|way| way[axis] != 0)
+    /// Whether one of them leads along an axis of space.
+    pub fn have(&self, axis: usize, torus: Torus) -> bool {
+        self.0.iter().any(|&way| torus.moved([0.0; 3], way)[axis] != 0.0)
     }
 }
 

@@ -2,6 +2,7 @@
 
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
+use walpha::check::schema::BoxVectors;
 use walpha::shape::Torus;
 use walpha::{Points, Recipe, Settings};
 
@@ -41,9 +42,22 @@ pub fn recipe_from(settings: &Settings) -> PyResult<Recipe> {
     Ok(settings.recipe().map_err(told)?.classifier(walpha::shape::CGAL))
 }
 
-/// The periodic box by its sides.
-pub fn torus(sides: Option<[f64; 3]>) -> PyResult<Option<Torus>> {
-    sides.map(|sides| Torus::new(sides).map_err(told)).transpose()
+/// The periodic box by its sides, or by the components of its vectors.
+pub fn torus(numbers: Option<&[f64]>) -> PyResult<Option<Torus>> {
+    let Some(vectors) = numbers.and_then(BoxVectors::of_numbers) else { return Ok(None) };
+    let torus = match vectors.sides() {
+        Some(sides) => Torus::new(sides),
+        None => Torus::of_vectors(vectors.0),
+    };
+    torus.map(Some).map_err(told)
+}
+
+/// The sides of a box along the axes, or the components of its vectors, by rows.
+pub fn numbers_of_box(vectors: BoxVectors) -> Vec<f64> {
+    match vectors.sides() {
+        Some(sides) => sides.to_vec(),
+        None => vectors.0.as_flattened().to_vec(),
+    }
 }
 
 /// The shape of scattered points.

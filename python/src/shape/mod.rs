@@ -13,6 +13,7 @@ use numpy::ndarray::Array3;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArray3, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use serde_json::Value;
+use walpha::check::schema::BoxVectors;
 use walpha::export::{EmptyShape, ExportOptions, Format, Target, TargetError};
 use walpha::interpolate::{Grid, Interpolant, InterpolateError};
 use walpha::pipeline::Model;
@@ -25,7 +26,7 @@ use crate::arrays::{column, copied, lend, numbers, rows};
 use crate::errors::{Refused, told, wrong};
 use crate::work::{Task, run};
 use boundary::{Boundary, boundary};
-pub use make::{Written, alpha_shape, recipe_from, settings_of, torus, weighted};
+pub use make::{Written, alpha_shape, numbers_of_box, recipe_from, settings_of, torus, weighted};
 use outline::{Outline, outline};
 pub use state::restored;
 use state::{State, state};
@@ -240,10 +241,11 @@ impl Shape {
         (betti.b0, betti.b1, betti.b2, betti.b3)
     }
 
-    /// The sides of the periodic box.
+    /// The sides of the periodic box, or the components of its vectors.
     #[getter]
-    fn periodic(&self) -> Option<[f64; 3]> {
-        self.shape.options().periodic.map(|torus| torus.sides())
+    fn periodic(&self) -> Option<Vec<f64>> {
+        let torus = self.shape.options().periodic?;
+        Some(numbers_of_box(BoxVectors(torus.vectors())))
     }
 
     /// The data from which [`restored`] makes it again.

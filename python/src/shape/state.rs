@@ -5,7 +5,7 @@ use std::cell::Cell;
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use serde_json::Value;
-use walpha::pipeline::AlphaRule;
+use walpha::pipeline::{AlphaRule, PeriodicBox};
 use walpha::shape::{Coordinates, LengthsError, Voxels, alpha_shape, voxel_shape};
 use walpha::{AlphaShape, Recipe, WeightedPoints};
 
@@ -39,7 +39,7 @@ pub fn state(shape: &AlphaShape, facts: &str) -> State {
         .engine(options.engine)
         .exterior(options.exterior)
         .hidden(options.hidden || shape.hidden().is_some())
-        .periodic(options.periodic);
+        .periodic(options.periodic.map(PeriodicBox::Given));
     (recipe.to_json(), json(&shape.coordinates()), facts)
 }
 

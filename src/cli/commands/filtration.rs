@@ -113,10 +113,8 @@ impl Filtration {
         let mut progress = Progress::new(global);
         input.typed.refuse(&["refit"], "a filtration has no values")?;
         let recipe = self.pipeline.recipe()?;
-        let torus = recipe.periodic;
-        let (mut weighed, _) = pipeline::weighted_points(input, &recipe, &mut progress)?;
-        weighed.on_torus(torus)?;
-        let filtration = progress.watch(|| pipeline::filtration(torus, &weighed))?;
+        let (weighed, _) = pipeline::weighted_points(input, &recipe, &mut progress)?;
+        let filtration = progress.watch(|| pipeline::filtration(&weighed))?;
         let ordered = progress.stage(Stage::Order, || filtration.simplices())?;
         if global.json || targets.iter().any(|(_, format)| format.pairs) {
             progress.stage(Stage::Pairs, || ordered.loops())?;

@@ -174,10 +174,10 @@ impl std::fmt::Display for LabelSummary {
 struct CellSummary {
     vectors: [[f64; 3]; 3],
     repeats: [bool; 3],
-    /// The value for --periodic; null if the cell is not a box along the axes.
+    /// The sides; null if the cell is not a box along the axes.
     sides: Option<[f64; 3]>,
     #[serde(skip)]
-    sides_text: String,
+    text: String,
 }
 
 /// The atoms of a molecule.
@@ -197,14 +197,10 @@ impl AtomsSummary {
 
 impl From<Cell> for CellSummary {
     fn from(cell: Cell) -> Self {
-        let sides_text = match cell.sides() {
-            Some(sides) => {
-                let sides = sides.map(number).join(",");
-                format!("a box of sides {sides}, and --periodic {sides} makes its torus")
-            }
-            None => cell.to_string(),
-        };
-        Self { vectors: cell.vectors, repeats: cell.repeats, sides: cell.sides(), sides_text }
+        let use_of_it =
+            if cell.repeats == [true; 3] { ": --periodic cell makes its torus" } else { "" };
+        let text = format!("{cell}{use_of_it}");
+        Self { vectors: cell.vectors, repeats: cell.repeats, sides: cell.sides(), text }
     }
 }
 
@@ -553,8 +549,8 @@ impl std::fmt::Display for Content {
                 let has = |there: bool| if there { "yes" } else { "no" };
                 let squares = if *of_radii { ", squares of its radii" } else { "" };
                 writeln!(f, "weights   {}{squares}\nvalues    {}", has(*weights), has(*values))?;
-                if let Some(CellSummary { sides_text, .. }) = cell {
-                    writeln!(f, "cell      {sides_text}")?;
+                if let Some(CellSummary { text, .. }) = cell {
+                    writeln!(f, "cell      {text}")?;
                 }
                 if let Some([x, y, z]) = grid {
                     writeln!(f, "grid      {x}×{y}×{z} samples, coordinates in {coordinates}")?;

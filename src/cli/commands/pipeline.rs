@@ -15,7 +15,7 @@ use crate::ladder::{Curve, Filtration};
 use crate::pipeline::{Input, Model, Opened, PipelineError, PlacedVolume, Values, Weighed};
 use crate::points::bounding_box;
 use crate::progress::Stage;
-use crate::shape::{ShapeError, Torus};
+use crate::shape::ShapeError;
 use crate::volume::Reason;
 use crate::{
     Alpha, AlphaShape, GrayRange, LengthUnit, PointsError, Recipe, Units, Volume, VolumeError,
@@ -81,13 +81,10 @@ pub(crate) fn shape(weighed: Weighed, recipe: &Recipe, progress: &mut Progress) 
     })
 }
 
-/// Computes the filtration of weighted points with their weights; on a torus, if one is given.
-pub(crate) fn filtration(
-    torus: Option<Torus>,
-    weighed: &Weighed,
-) -> Result<Filtration, ShapeError> {
+/// Computes the filtration of weighted points with their weights; on a torus, if they lie on one.
+pub(crate) fn filtration(weighed: &Weighed) -> Result<Filtration, ShapeError> {
     Stage::Filtration.begin()?;
-    Filtration::on(torus, weighed.points.clone())
+    Filtration::on(weighed.origin.torus, weighed.points.clone())
 }
 
 /// The α of a ladder: at most `count` critical values, the suggested ones, and the α of the weights.

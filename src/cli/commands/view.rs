@@ -271,7 +271,7 @@ impl Detail {
         source: Option<&PlacedVolume>,
         progress: &mut Progress,
     ) -> Result<Self> {
-        let filtration = progress.watch(|| pipeline::filtration(None, &weighed))?;
+        let filtration = progress.watch(|| pipeline::filtration(&weighed))?;
         let differences = match source {
             Some(source) => {
                 let measure = || differences(&weighed, source, &filtration);
@@ -294,7 +294,7 @@ impl Detail {
         let part = || recipe.part(&self.weighed, opening);
         let (mut weighed, kept, is_kept) = progress.watch(part)?;
         weighed.parameter = parameter;
-        let filtration = progress.watch(|| pipeline::filtration(None, &weighed))?;
+        let filtration = progress.watch(|| pipeline::filtration(&weighed))?;
         let differences = self.differences.map(|Differences { local, rmse }| {
             let rows = local.into_iter().zip(is_kept).filter(|(_, is_kept)| *is_kept);
             Differences { local: rows.map(|(difference, _)| difference).collect(), rmse }

@@ -90,7 +90,7 @@ fn extended_xyz_states_columns_and_a_cell() {
     assert_eq!((points.positions.as_slice(), points.values), (&PLACES[..], None));
     assert!(facts.cell.is_some());
     let told = ok(f, &["info", "e.xyz"]);
-    names(&told, &["sides 10,20,30", "--periodic 10,20,30"]);
+    names(&told, &["sides 10,20,30", "--periodic cell makes its torus"]);
     let facts = json(f, &["info", "e.xyz"]);
     assert_eq!(facts["cell"]["sides"], serde_json::json!([10.0, 20.0, 30.0]));
     assert_eq!(
@@ -99,10 +99,13 @@ fn extended_xyz_states_columns_and_a_cell() {
     );
     assert_eq!(read("plain title").unwrap().1.cell, None);
     for (oblique, words) in [
-        ("Lattice='1 0 0 0.5 1 0 0 0 1'", "not a box along the axes: it is not supported"),
+        (
+            "Lattice='1 0 0 0.5 1 0 0 0 1'",
+            "the vectors (1,0,0), (0.5,1,0), (0,0,1): --periodic cell makes its torus",
+        ),
         (
             "Lattice=\"1 0 0 0 1 0 0 0 1\" pbc=\"T T F\"",
-            "some of its vectors only: it is not supported",
+            "one along some of whose vectors only points repeat, which is not supported",
         ),
     ] {
         assert_eq!(read(oblique).unwrap().1.cell.unwrap().sides(), None);

@@ -1,12 +1,12 @@
 //! `--periodic` on the command line, and the exact checker on complexes of a torus.
 
 use walpha::AlphaShape;
-use walpha::check::schema::{ComplexFile, PlacedComplex};
+use walpha::check::schema::{BoxVectors, ComplexFile, PlacedComplex};
 use walpha::check::{CertifyError, Finding, NotJudged, Verdict};
 use walpha::export::{ExportOptions, Exporter, Format, Json, Npz, Save, SaveError};
 use walpha::shape::{Class, placed_complex};
 
-use super::{BCC, CUBIC, WeightedPoints, alpha_shape, crystal, dense, options, sets, shape};
+use super::{BCC, CUBIC, FCC, WeightedPoints, alpha_shape, crystal, dense, options, sets, shape};
 use crate::common;
 
 fn findings(placed: &PlacedComplex) -> Vec<Finding> {
@@ -117,7 +117,7 @@ fn hidden_points_of_a_torus_are_judged() {
 
 #[test]
 fn what_is_wrong_on_a_torus_is_found() {
-    let (points, sides) = dense(3);
+    let (points, sides) = dense(7);
     let whole = options(sides, 0.3).exterior(true);
     let right = placed_complex(&alpha_shape(points, &whole).unwrap());
     let count = right.complex.cells.len();
@@ -151,10 +151,12 @@ fn what_is_wrong_on_a_torus_is_found() {
         assert_eq!(named.count(), 1, "{found:?}");
     }
     let mut damaged = right.clone();
-    damaged.periodic = Some([sides[0] + 1.0, sides[1], sides[2]]);
+    let [a, b, c] = sides.vectors();
+    assert_eq!((a, sides.sides()), ([4.0, 0.0, 0.0], Some([4.0, 4.0, 5.0])));
+    damaged.periodic = Some(BoxVectors([[5.0, 0.0, 0.0], b, c]));
     assert!(!findings(&damaged).is_empty());
     let mut damaged = right.clone();
-    damaged.periodic = Some([2.0, sides[1], sides[2]]);
+    damaged.periodic = Some(BoxVectors([[2.0, 0.0, 0.0], b, c]));
     assert!(matches!(damaged.findings(), Err(CertifyError::NotInBox(_))));
     let mut damaged = right;
     damaged.complex.edges.rows_mut()[0] = [0, 40];
@@ -190,16 +192,19 @@ fn files_of_other_formats_hold_the_shape_in_space() {
 
 #[test]
 fn files_hold_the_box() {
-    let (points, sides) = dense(1);
-    let shape = shape(&points, sides, 0.3).unwrap();
-    let (mut json, mut npz) = (Vec::new(), Vec::new());
-    Json.write(&shape, &mut json).unwrap();
-    Npz.write(&shape, &mut npz).unwrap();
-    let json = PlacedComplex::try_from(ComplexFile::read_json(&json[..]).unwrap()).unwrap();
-    let npz =
-        PlacedComplex::try_from(ComplexFile::read_npz(std::io::Cursor::new(npz)).unwrap()).unwrap();
-    assert_eq!(json.periodic, Some(sides));
-    assert_eq!((&json, &json), (&npz, &placed_complex(&shape)));
+    for (seed, is_slanted) in [(1, false), (9, true)] {
+        let (points, torus) = dense(seed);
+        assert_eq!(torus.sides().is_none(), is_slanted);
+        let shape = shape(&points, torus, 0.3).unwrap();
+        let (mut json, mut npz) = (Vec::new(), Vec::new());
+        Json.write(&shape, &mut json).unwrap();
+        Npz.write(&shape, &mut npz).unwrap();
+        let json = PlacedComplex::try_from(ComplexFile::read_json(&json[..]).unwrap()).unwrap();
+        let npz = ComplexFile::read_npz(std::io::Cursor::new(npz)).unwrap();
+        let npz = PlacedComplex::try_from(npz).unwrap();
+        assert_eq!(json.periodic, Some(BoxVectors(torus.vectors())));
+        assert_eq!((&json, &json), (&npz, &placed_complex(&shape)));
+    }
 }
 
 fn points(folder: &std::path::Path) {
@@ -253,6 +258,14 @@ fn what_is_refused() {
         assert!(!f.join("a.ply").exists());
     };
     refused(&["--periodic", "4,4"], 2, "three sides");
+    refused(
+        &["--periodic", "4,4,4,90,90,181"],
+        2,
+        "no three vectors have the angles 90°, 90° and 181°",
+    );
+    refused(&["--periodic", "4,0,0,0,4,0,4,4,0"], 2, "span almost no volume");
+    refused(&["--periodic", "4,0,0,0,nan,0,4,4,0"], 2, "nan");
+    refused(&["--periodic", "cell"], 1, "does not state a cell");
     refused(&["--periodic", "4,4,-4"], 2, "along z");
     refused(&["--periodic", "4,4,4", "--solid"], 2, "--solid");
     refused(&["--periodic", "4,4,4", "--engine", "cgal"], 2, "engine cgal");
@@ -301,4 +314,70 @@ fn what_is_folded_and_stated_is_told() {
         let told = common::json(f, &args);
         assert_eq!(told.get("warnings"), None);
     }
+}
+
+/// The lattice of face-centred cubes in its primitive cell and in cubes: what is counted for each point is the same.
+#[test]
+fn primitive_and_conventional_cells_agree() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    // Four primitive cells along each vector, and two cubes along each axis: 64 and 32 points.
+    let (mut primitive, mut cubes) = (String::new(), String::new());
+    for [i, j, k] in (0..64).map(|n| [n % 4, n / 4 % 4, n / 16].map(f64::from)) {
+        primitive += &format!("{} {} {}\n", (j + k) / 2.0, (i + k) / 2.0, (i + j) / 2.0);
+    }
+    for [x, y, z] in crystal([3; 3], &FCC).positions() {
+        cubes += &format!("{x} {y} {z}\n");
+    }
+    std::fs::write(f.join("primitive.xyz"), primitive).unwrap();
+    std::fs::write(f.join("cubes.xyz"), cubes).unwrap();
+    let counted = |file: &str, cell: &str, points: f64| {
+        let told =
+            common::json(f, &["shape", file, "--periodic", cell, "--alpha", "0.2", "-o", "a.npz"]);
+        assert!(common::ok(f, &["check", "a.npz"]).contains("exact: no findings"));
+        let shape = &told["shape"];
+        let of = |value: &serde_json::Value| value.as_f64().unwrap() / points;
+        let cells = &shape["classes"]["cells"];
+        let pairs = common::json(f, &["filtration", file, "--periodic", cell]);
+        (
+            [of(&shape["volume"]), of(&shape["area"]), of(&cells["interior"])],
+            pairs["values"].clone(),
+            pairs["persistence"]["lasting_loops"].clone(),
+        )
+    };
+    // The same cell by its lengths and angles, askew, and by vectors.
+    let vectors = "0,2,2,2,0,2,2,2,0";
+    let expected = counted("cubes.xyz", "3,3,3", 108.0);
+    assert_eq!(counted("primitive.xyz", vectors, 64.0), expected);
+    assert_eq!(counted("primitive.xyz", "0,2,2,2,2,4,4,6,6", 64.0), expected);
+}
+
+/// A cell that the file states, of three angles of 120, 90 and 90 degrees.
+#[test]
+fn the_cell_of_the_file_is_used() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    let mut atoms = String::new();
+    for n in 0..6 * 6 * 5 {
+        let [i, j, k] = [n % 6, n / 6 % 6, n / 36].map(f64::from);
+        atoms += &format!("C {} {} {}\n", i - 0.5 * j, 0.875 * j, k);
+    }
+    let head = "180\nLattice=\"6 0 0 -3 5.25 0 0 0 5\" Properties=species:S:1:pos:R:3";
+    std::fs::write(f.join("a.xyz"), format!("{head}\n{atoms}")).unwrap();
+    let make = |cell: &str| {
+        let more = ["--periodic", cell, "--radii", "none", "--alpha", "0.6"];
+        common::json(f, &[&["shape", "a.xyz", "-o", "a.json"][..], &more].concat())
+    };
+    let stated = make("cell");
+    assert_eq!(stated["shape"]["betti"], serde_json::json!([1, 3, 3, 1]));
+    assert_eq!(stated["shape"]["volume"], 6.0 * 5.25 * 5.0);
+    assert!(common::ok(f, &["check", "a.json"]).contains("exact: no findings"));
+    assert_eq!(make("6,0,0,-3,5.25,0,0,0,5")["shape"], stated["shape"]);
+    let told = common::ok(f, &["info", "a.xyz", "--radii", "none"]);
+    assert!(told.contains("--periodic cell makes its torus"), "{told}");
+    let slab = head.replace("Properties", "pbc=\"T T F\" Properties");
+    std::fs::write(f.join("slab.xyz"), format!("{slab}\n{atoms}")).unwrap();
+    let (code, _, said) =
+        common::run(f, &["shape", "slab.xyz", "--periodic", "cell", "--radii", "none"]);
+    assert!(code == 1 && said.contains("along some vectors of its cell only"), "{code}: {said}");
 }

@@ -16,14 +16,41 @@ fn alpha(squared: f64) -> Alpha {
     Alpha::from_squared(squared).unwrap()
 }
 
-fn options(sides: [f64; 3], squared: f64) -> ShapeOptions {
-    let periodic = Some(Torus::new(sides).unwrap());
-    let engine = Engine::Native;
-    ShapeOptions::new(alpha(squared)).periodic(periodic).engine(engine)
+/// A box along the axes, or any other.
+trait Periodic {
+    fn torus(self) -> Torus;
 }
 
-fn shape(points: &WeightedPoints, sides: [f64; 3], squared: f64) -> Result<AlphaShape, ShapeError> {
-    alpha_shape(points.clone(), &options(sides, squared))
+impl Periodic for [f64; 3] {
+    fn torus(self) -> Torus {
+        Torus::new(self).unwrap()
+    }
+}
+
+impl Periodic for Torus {
+    fn torus(self) -> Torus {
+        self
+    }
+}
+
+fn options(periodic: impl Periodic, squared: f64) -> ShapeOptions {
+    let engine = Engine::Native;
+    ShapeOptions::new(alpha(squared)).periodic(Some(periodic.torus())).engine(engine)
+}
+
+fn shape(
+    points: &WeightedPoints,
+    periodic: impl Periodic,
+    squared: f64,
+) -> Result<AlphaShape, ShapeError> {
+    alpha_shape(points.clone(), &options(periodic, squared))
+}
+
+/// A box of these sides along the axes, or one that is slanted by multiples of a unit: points of the one, moved into the other, are
+/// points of the other, as the box along the axes holds one copy of each.
+fn boxed([x, y, z]: [f64; 3], slanted: bool, random: &mut Random) -> Torus {
+    let mut shear = || if slanted { random.below(5) as f64 - 2.0 } else { 0.0 };
+    Torus::of_vectors([[x, 0.0, 0.0], [shear(), y, 0.0], [shear(), shear(), z]]).unwrap()
 }
 
 fn unweighted(positions: Vec<[f64; 3]>) -> WeightedPoints {
@@ -50,7 +77,7 @@ const BCC: [[f64; 3]; 2] = [[0.0; 3], [0.5; 3]];
 const FCC: [[f64; 3]; 4] = [[0.0; 3], [0.5, 0.5, 0.0], [0.5, 0.0, 0.5], [0.0, 0.5, 0.5]];
 
 /// Points of a box: of a lattice or anywhere, weighted or not, each place once.
-fn sets(count: u64) -> impl Iterator<Item = (WeightedPoints, [f64; 3])> {
+fn sets(count: u64) -> impl Iterator<Item = (WeightedPoints, Torus)> {
     (0..count).map(|seed| {
         let mut random = Random::new(1000 + seed);
         let sides = [0; 3].map(|_| [4.0, 5.0, 6.0, 8.0][random.below(4)]);
@@ -60,7 +87,7 @@ fn sets(count: u64) -> impl Iterator<Item = (WeightedPoints, [f64; 3])> {
             let place = [0, 1, 2].map(|k: usize| match seed % 4 {
                 0 | 1 => random.below(sides[k] as usize) as f64,
                 2 => random.below(2 * sides[k] as usize) as f64 / 2.0,
-                _ => (random.below(1 << 40) as f64) / (1u64 << 40) as f64 * sides[k],
+                _ => (random.below(1 << 30) as f64) / (1u64 << 30) as f64 * sides[k],
             });
             let weight = match seed % 5 {
                 0 | 1 => 0.0,
@@ -72,12 +99,14 @@ fn sets(count: u64) -> impl Iterator<Item = (WeightedPoints, [f64; 3])> {
                 weights.push(weight);
             }
         }
-        (WeightedPoints::new(positions, weights).unwrap(), sides)
+        let torus = boxed(sides, seed % 7 >= 4, &mut random);
+        positions.iter_mut().for_each(|place| *place = torus.wrap(*place));
+        (WeightedPoints::new(positions, weights).unwrap(), torus)
     })
 }
 
 /// Points so dense that the whole triangulation has no long edge: on a lattice, on half of one, anywhere.
-fn dense(seed: u64) -> (WeightedPoints, [f64; 3]) {
+fn dense(seed: u64) -> (WeightedPoints, Torus) {
     let mut random = Random::new(seed);
     let sides = [4.0, 4.0, 5.0];
     let points = crystal([4, 4, 5], [&CUBIC[..], &BCC, &FCC][seed as usize % 3]);
@@ -93,7 +122,9 @@ fn dense(seed: u64) -> (WeightedPoints, [f64; 3]) {
             }
         }
     }
-    (WeightedPoints::new(positions, weights).unwrap(), sides)
+    let torus = boxed(sides, seed % 5 >= 3, &mut random);
+    positions.iter_mut().for_each(|place| *place = torus.wrap(*place));
+    (WeightedPoints::new(positions, weights).unwrap(), torus)
 }
 
 #[test]
@@ -318,7 +349,7 @@ fn whole_triangulations_are_those_of_copies_in_space() {
 /// Spheres across the gap are larger than those that a block looks for first.
 #[test]
 fn a_gap_is_looked_across() {
-    let (points, sides) = (crystal([12, 12, 8], &CUBIC), [12.0; 3]);
+    let (points, sides) = (crystal([12, 12, 8], &CUBIC), [12.0; 3].torus());
     let all = options(sides, f64::INFINITY);
     let whole = alpha_shape(points.clone(), &options(sides, 1.0).exterior(true)).unwrap();
     assert!(*whole.complex() == by_copies(&points, sides, alpha(1.0), true).unwrap());
@@ -338,8 +369,8 @@ fn chi(shape: &AlphaShape) -> i64 {
 #[test]
 fn a_laid_out_shape_has_the_sizes_of_the_torus() {
     for seed in 0..6 {
-        let (points, sides) = dense(seed);
-        let shape = shape(&points, sides, 0.3).unwrap();
+        let (points, torus) = dense(seed);
+        let shape = shape(&points, torus, 0.3).unwrap();
         let flat = shape.unwrapped();
         assert_eq!(flat.complex().cells.len(), shape.complex().cells.len());
         assert_eq!(flat.points().len(), shape.points().len() + flat.copies().len());
@@ -350,7 +381,10 @@ fn a_laid_out_shape_has_the_sizes_of_the_torus() {
         for (at, &of) in flat.copies().iter().enumerate() {
             assert_eq!(numbers[shape.points().len() + at], numbers[of as usize]);
         }
-        let inside = |p: &[f64; 3]| (0..3).all(|k| p[k] >= 0.0 && p[k] < 1.5 * sides[k]);
+        let inside = |&p: &[f64; 3]| {
+            let parts = torus.parts(p);
+            parts.iter().all(|part| (-1e-12..1.5).contains(part))
+        };
         assert!(flat.points().positions().iter().all(inside));
     }
 }
@@ -359,7 +393,7 @@ fn a_laid_out_shape_has_the_sizes_of_the_torus() {
 fn filtrations_hold_all_shapes_of_the_torus() {
     for seed in 0..8 {
         let (points, sides) = dense(seed);
-        let filtration = Filtration::on(Some(Torus::new(sides).unwrap()), points.clone()).unwrap();
+        let filtration = Filtration::on(Some(sides), points.clone()).unwrap();
         let curve = filtration.curve();
         for (k, squared) in curve.alphas().enumerate().step_by(1 + curve.len() / 12) {
             let one = shape(&points, sides, squared).unwrap();
@@ -397,7 +431,7 @@ fn assert_same_voids(some: &[Void], others: &[Void]) {
 fn persistence_pairs_of_a_torus() {
     for seed in 0..8 {
         let (points, sides) = dense(seed);
-        let filtration = Filtration::on(Some(Torus::new(sides).unwrap()), points).unwrap();
+        let filtration = Filtration::on(Some(sides), points).unwrap();
         let ordered = filtration.simplices().unwrap();
         let (pairs, loops) = (ordered.pairs(), ordered.loops().unwrap());
         let lasting = [&pairs.lasting, &loops.lasting, &pairs.lasting_voids].map(Vec::len);

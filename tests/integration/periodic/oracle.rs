@@ -3,18 +3,19 @@
 
 use std::collections::BTreeMap;
 
-use walpha::shape::{Engine, ShapeOptions, Simplices};
+use walpha::shape::{Engine, ShapeOptions, Simplices, Torus};
 use walpha::{Alpha, AlphaShape, Class, Complex, WeightedPoints, alpha_shape};
 
 /// Copies of points of a box, those of the box itself first.
-pub fn copies(points: &WeightedPoints, sides: [f64; 3], around: i32) -> WeightedPoints {
+pub fn copies(points: &WeightedPoints, torus: Torus, around: i32) -> WeightedPoints {
     let range = || -around..=around;
     let mut moves: Vec<[i32; 3]> =
         range().flat_map(|x| range().flat_map(move |y| range().map(move |z| [x, y, z]))).collect();
     moves.sort_by_key(|m| *m != [0; 3]);
     let (mut positions, mut weights) = (Vec::new(), Vec::new());
     for by in moves {
-        let place = |p: &[f64; 3]| [0, 1, 2].map(|k| p[k] + f64::from(by[k]) * sides[k]);
+        let along = |axis: usize| (0..3).map(|k| f64::from(by[k]) * torus.vectors()[k][axis]);
+        let place = |p: &[f64; 3]| [0, 1, 2].map(|axis| p[axis] + along(axis).sum::<f64>());
         positions.extend(points.positions().iter().map(place));
         weights.extend(points.weights());
     }
@@ -25,20 +26,36 @@ pub fn copies(points: &WeightedPoints, sides: [f64; 3], around: i32) -> Weighted
 /// copy of, is in the box.
 fn orbits(
     points: &WeightedPoints,
-    sides: [f64; 3],
+    torus: Torus,
     all: &WeightedPoints,
     complex: &Complex,
 ) -> Option<Complex> {
     let n = points.positions().len() as u32;
     let long = complex.edges.rows().iter().any(|&[a, b]| {
         let [p, q] = [a, b].map(|v| all.positions()[v as usize]);
-        (a < n || b < n) && (0..3).any(|k| 2.0 * (p[k] - q[k]).abs() >= sides[k])
+        (a < n || b < n) && spans_half(torus, [0, 1, 2].map(|k| q[k] - p[k]))
     });
     (!long).then(|| Complex {
         cells: of_box(&complex.cells, n, even),
         facets: of_box(&complex.facets, n, turned),
         edges: of_box(&complex.edges, n, |row, _| ascending(row)),
         vertices: of_box(&complex.vertices, n, |row, _| row),
+    })
+}
+
+/// Whether a way spans half of a vector of the box or more, in integers of 2⁻³⁰.
+fn spans_half(torus: Torus, way: [f64; 3]) -> bool {
+    let unit = f64::from(1 << 30);
+    let integers = |v: [f64; 3]| v.map(|x| (x * unit) as i128);
+    let det = |[a, b, c]: [[i128; 3]; 3]| {
+        let minor = |i: usize, j: usize| b[i] * c[j] - b[j] * c[i];
+        a[0] * minor(1, 2) + a[1] * minor(2, 0) + a[2] * minor(0, 1)
+    };
+    let (vectors, way) = (torus.vectors().map(integers), integers(way));
+    (0..3).any(|k| {
+        let mut replaced = vectors;
+        replaced[k] = way;
+        2 * det(replaced).abs() >= det(vectors).abs()
     })
 }
 
@@ -86,14 +103,14 @@ fn even(row: [u32; 4], _: Class) -> [u32; 4] {
 /// an edge that spans half of the box.
 pub fn by_copies(
     points: &WeightedPoints,
-    sides: [f64; 3],
+    torus: Torus,
     alpha: Alpha,
     exterior: bool,
 ) -> Option<Complex> {
-    let all = copies(points, sides, 2);
+    let all = copies(points, torus, 2);
     let options = ShapeOptions::new(alpha).exterior(exterior).engine(Engine::Native);
     let shape = alpha_shape(all.clone(), &options).unwrap();
-    orbits(points, sides, &all, shape.complex())
+    orbits(points, torus, &all, shape.complex())
 }
 
 /// Betti numbers by ranks of the boundary matrices modulo a prime.

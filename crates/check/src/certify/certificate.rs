@@ -218,7 +218,7 @@ impl Advise for CertifyError {
     fn advice(&self) -> Option<Advice> {
         let advice = match self {
             Self::NotFinite(_) => "remove such points from the input",
-            Self::NotInBox(_) => "give coordinates from 0 to less than the sides of the box",
+            Self::NotInBox(_) => "move the points into the box, by multiples of its vectors",
             Self::Memory { .. } => "judge a part of it",
             _ => return None,
         };

@@ -36,7 +36,7 @@ impl PlacedComplex {
         }
         match self.periodic {
             None => monitor.watch(|| self.claim().findings()),
-            Some(sides) => torus::findings(self, sides, monitor),
+            Some(vectors) => torus::findings(self, vectors, monitor),
         }
     }
 }

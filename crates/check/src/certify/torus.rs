@@ -17,7 +17,8 @@ use super::finding::Finding;
 use super::geometry;
 use super::structure::{self, Points};
 use crate::exact::Exact;
-use crate::schema::{PlacedComplex, moved, nearest_copy};
+use crate::period::Period;
+use crate::schema::{BoxVectors, PlacedComplex};
 use crate::{Alpha, Complex, Placed, Simplices};
 
 /// The torus whose copies are in a complex in space.
@@ -46,30 +47,28 @@ impl Torus {
         ways.filter_map(copy).collect()
     }
 
-    fn new(points: usize, [x, y, z]: [f64; 3]) -> Self {
+    fn new(points: usize, period: &Period) -> Self {
         // A copy of the heaviest point is within half a diagonal of any centre.
-        Self { points: points as u32, largest_empty: 0.5001 * x.hypot(y).hypot(z) }
+        Self { points: points as u32, largest_empty: period.reach() }
     }
 }
 
-/// All broken rules of a complex of a torus with these sides, and the certificate.
+/// All broken rules of a complex of a torus with these vectors, and the certificate.
 ///
 /// # Errors
 /// [`CertifyError`]; points whose copies cannot be represented exactly.
 pub(super) fn findings(
     placed: &PlacedComplex,
-    sides: [f64; 3],
+    vectors: BoxVectors,
     monitor: &Monitor,
 ) -> Result<(Vec<Finding>, Certificate), CertifyError> {
-    let bad = |index| Err(CertifyError::NotInBox(index));
-    if let Some(index) =
-        placed.positions.iter().position(|position| !has_exact_copies(position, sides))
-    {
-        return bad(index);
+    let period = &Period::new(vectors);
+    if let Some(index) = placed.positions.iter().position(|&position| !period.holds(position)) {
+        return Err(CertifyError::NotInBox(index));
     }
     let mut broken = structure::rows(&placed.complex, placed.positions.len());
     if broken.is_empty() {
-        broken.extend(long_edges(placed, sides));
+        broken.extend(long_edges(placed, period));
     }
     if !broken.is_empty() {
         let certificate = Certificate {
@@ -81,9 +80,9 @@ pub(super) fn findings(
         };
         return Ok((broken, certificate));
     }
-    let copies = Copies::of(placed, sides);
+    let copies = Copies::of(placed, period);
     let extent = Extent::of(&placed.complex, placed.alpha);
-    let torus = Torus::new(placed.positions.len(), sides);
+    let torus = Torus::new(placed.positions.len(), period);
     let count = torus.points;
     let (all, mut certificate) = copies.claim(extent).findings_on(Some(torus), monitor)?;
     let mut seen = BTreeSet::new();
@@ -91,7 +90,7 @@ pub(super) fn findings(
     let mut found: Vec<Finding> =
         near.filter(|finding| seen.insert(format!("{finding:?}"))).collect();
     let whole = extent == Extent::Whole;
-    let (volume, missing) = copies.volume(count, sides, &monitor.unreported())?;
+    let (volume, missing) = copies.volume(count, period, &monitor.unreported())?;
     certificate.six_volumes = volume;
     if whole {
         found.extend(missing);
@@ -102,21 +101,10 @@ pub(super) fn findings(
     Ok((found, certificate))
 }
 
-/// Whether a position is in the box, and its nearby copies are exact.
-fn has_exact_copies(position: &[f64; 3], sides: [f64; 3]) -> bool {
-    position.iter().zip(sides).all(|(&x, side)| {
-        let exact = |by: f64| (x + by) - by == x && (x + by) - x == by;
-        (0.0..side).contains(&x) && [-2.0, -1.0, 1.0, 2.0].iter().all(|n| exact(n * side))
-    })
-}
-
-fn long_edges(placed: &PlacedComplex, sides: [f64; 3]) -> Vec<Finding> {
+fn long_edges(placed: &PlacedComplex, period: &Period) -> Vec<Finding> {
     let is_long = |&&[a, b]: &&[u32; 2]| {
         let [p, q] = [a, b].map(|v| placed.positions[v as usize]);
-        (0..3).any(|k| {
-            let apart = (p[k] - q[k]).abs();
-            2.0 * apart.min(sides[k] - apart) >= sides[k]
-        })
+        period.is_long(p, q)
     };
     let long = placed.complex.edges.rows().iter().filter(is_long);
     long.map(|&edge| Finding::LongEdge { edge: edge.into() }).collect()
@@ -134,9 +122,9 @@ struct Copies {
 }
 
 impl Copies {
-    fn of(placed: &PlacedComplex, sides: [f64; 3]) -> Self {
+    fn of(placed: &PlacedComplex, period: &Period) -> Self {
         let PlacedComplex { positions, weights, complex, .. } = placed;
-        let layout = Layout::new(positions, sides);
+        let layout = Layout::new(positions, period);
         let mut copied = Complex {
             cells: layout.copied(&complex.cells),
             facets: layout.copied(&complex.facets),
@@ -150,7 +138,7 @@ impl Copies {
         let moves = &layout.moves;
         Self {
             positions: (moves.iter())
-                .flat_map(|&by| positions.iter().map(move |&position| moved(sides, position, by)))
+                .flat_map(|&by| positions.iter().map(move |&position| period.moved(position, by)))
                 .collect(),
             weights: moves.iter().flat_map(|_| weights.iter().copied()).collect(),
             alpha: placed.alpha,
@@ -174,7 +162,7 @@ impl Copies {
     fn volume(
         &self,
         count: u32,
-        sides: [f64; 3],
+        period: &Period,
         monitor: &Monitor,
     ) -> Result<(Exact, Option<Finding>), Cancelled> {
         // Each cell once: the copy whose smallest vertex, by its number in the box, is in the box.
@@ -183,8 +171,7 @@ impl Copies {
         let cells: Vec<_> = self.complex.cells.rows().iter().filter(of_box).copied().collect();
         let sites = structure::sites(&self.positions, &self.weights);
         let points = Points { sites: &sites };
-        let corner = |i: u32| [0, 1, 2].map(|k| f64::from(i >> k & 1) * sides[k]);
-        let corners: Vec<[f64; 3]> = (0..8).map(corner).collect();
+        let corners = period.corners();
         let corners = structure::sites(&corners, &[0.0; 8]);
         let corners = Points { sites: &corners };
         let volume = |cells: &[[u32; 4]], points: Points| {
@@ -197,11 +184,11 @@ impl Copies {
     }
 }
 
-/// A box cut into cells around its diagonal, positively oriented; the bits of a corner are x, y, z.
+/// A box cut into cells around its diagonal, positively oriented; the bits of a corner are its vectors.
 const BOX: [[u32; 4]; 6] =
     [[0, 1, 3, 7], [0, 3, 2, 7], [0, 2, 6, 7], [0, 6, 4, 7], [0, 4, 5, 7], [0, 5, 1, 7]];
 
-/// The multiples of the sides by which each copy of the box is moved; 0 for the first.
+/// The multiples of the vectors by which each copy of the box is moved; 0 for the first.
 fn moves() -> Vec<[i32; 3]> {
     let mut moves: Vec<[i32; 3]> = (0..27).map(|i| [i / 9 - 1, i / 3 % 3 - 1, i % 3 - 1]).collect();
     moves.sort_by_key(|by| *by != [0; 3]);
@@ -211,31 +198,42 @@ fn moves() -> Vec<[i32; 3]> {
 /// The numbering of copies.
 struct Layout<'a> {
     positions: &'a [[f64; 3]],
-    sides: [f64; 3],
+    period: &'a Period,
     moves: Vec<[i32; 3]>,
     numbers: BTreeMap<[i32; 3], u32>,
 }
 
 impl<'a> Layout<'a> {
     /// Creates the layout of the copies that touch the box.
-    fn new(positions: &'a [[f64; 3]], sides: [f64; 3]) -> Self {
+    fn new(positions: &'a [[f64; 3]], period: &'a Period) -> Self {
         let moves = moves();
         let numbers = moves.iter().copied().zip(0..).collect();
-        Self { positions, sides, moves, numbers }
+        Self { positions, period, moves, numbers }
     }
 
     /// The copies of simplices whose vertices are all in the box or in a neighbouring copy.
     fn copied<const N: usize>(&self, simplices: &Simplices<N>) -> Simplices<N> {
         let copies = simplices.iter().flat_map(|(&row, class)| {
-            self.moves.iter().filter_map(move |&by| Some((self.row(row, by)?, class)))
+            let ways = self.ways(row);
+            let copy = move |by: &[i32; 3]| Some((self.row(row, ways, *by)?, class));
+            self.moves.iter().filter_map(copy)
         });
         copies.collect()
     }
 
-    fn row<const N: usize>(&self, mut row: [u32; N], by: [i32; 3]) -> Option<[u32; N]> {
-        let first = self.positions[row[0] as usize];
-        for v in &mut row {
-            let way = nearest_copy(self.sides, first, self.positions[*v as usize]);
+    /// For each vertex, the multiples of the vectors that move it to its copy nearest to the first.
+    fn ways<const N: usize>(&self, row: [u32; N]) -> [[i32; 3]; N] {
+        let place = |v: u32| self.positions[v as usize];
+        row.map(|v| self.period.nearest_copy(place(row[0]), place(v)))
+    }
+
+    fn row<const N: usize>(
+        &self,
+        mut row: [u32; N],
+        ways: [[i32; 3]; N],
+        by: [i32; 3],
+    ) -> Option<[u32; N]> {
+        for (v, way) in row.iter_mut().zip(ways) {
             let by = [0, 1, 2].map(|k| by[k] + way[k]);
             *v += self.numbers.get(&by)? * self.positions.len() as u32;
         }

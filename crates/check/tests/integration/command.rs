@@ -95,7 +95,7 @@ fn what_cannot_be_judged_comes_with_advice() {
         (POINTS.to_owned(), "next: give at least one of cells, facets, edges, vertices"),
         (
             format!(r#"{POINTS},"cells":[[0,1,2,3]],"periodic":[1,1,1]"#),
-            "next: give coordinates from 0 to less than the sides of the box",
+            "next: move the points into the box, by multiples of its vectors",
         ),
         (
             format!(r#"{filtration},"periodic":[4,4,4]"#),

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::SchemaError;
+use super::{BoxVectors, SchemaError};
 use crate::Alpha;
 
 /// The contents of a file with a filtration: every simplex of a regular triangulation, and the α at which it enters.
@@ -34,7 +34,7 @@ use crate::Alpha;
 ///   end), `loops` (an edge that closes a loop, and the facet that fills it; may be missing), `voids` (a facet that
 ///   closes a void, and the cell that fills it). For a torus also `lasting_loops` and `lasting_voids`, the edges and
 ///   facets that close loops and surfaces which are never filled, and `last`, the cell that completes the torus.
-/// - `periodic` are the sides of a periodic box, as in a complex.
+/// - `periodic` are the sides or vectors of a periodic box, as in a complex.
 /// - `hidden`, `duplicates` and `info` are as in a complex.
 ///
 /// In NPZ the same names are arrays; those with dimensions are `vertex_values`, `edge_values`,
@@ -82,9 +82,9 @@ pub struct FiltrationFile {
     /// Pairs (removed, kept) of points at one position.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub duplicates: Option<Vec<[u32; 2]>>,
-    /// The sides of the periodic box, if there is one.
+    /// The vectors of the periodic box, if there is one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub periodic: Option<[f64; 3]>,
+    pub periodic: Option<BoxVectors>,
     /// Any further data of the writer.
     #[cfg(feature = "json")]
     #[serde(default, skip_serializing_if = "Option::is_none")]

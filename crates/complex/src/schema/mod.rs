@@ -25,9 +25,10 @@
 //!   a facet with two cells is interior, with one regular, with none singular, and so on down.
 //! - `hidden` lists the points that are not vertices, `duplicates` pairs (removed, kept) of points
 //!   at one position. Both are optional.
-//! - `periodic` are the sides of a box that repeats along x, y and z: the complex is then one of a
-//!   torus. All points are in the box, from 0 to less than its sides. A row means the copies of its vertices
-//!   nearest to the first one, which must be nearer than half a side along each axis.
+//! - `periodic` are the sides of a box that repeats along x, y and z, or three vectors, as rows, along which any other box
+//!   repeats: the complex is then one of a torus. All points are in the box: the sum of the vectors, each times a part from 0 to
+//!   less than 1, is the point. A row means the copies of its vertices nearest to the first one, which must be nearer than
+//!   half of each vector, as measured by these parts.
 //! - `voxels` says that the complex is no α-shape but the solid of labels: its cells fill these voxels of a grid, and `alpha` is `"inf"`.
 //!   `dims` are the voxels of the grid along its x, y and z; `origin` is the position of the first sample, `axes` are the
 //!   steps from a sample to the next along x, y and z; a voxel is the box of half a step around its sample. `runs` are rows [first, number]
@@ -48,6 +49,7 @@
 //!
 //! A [`FiltrationFile`] is a complex at all values of α; [`AnyFile`] opens both kinds.
 
+mod box_vectors;
 mod error;
 mod filtration;
 #[cfg(feature = "json")]
@@ -61,6 +63,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{Alpha, Class, Placed, Voxels};
 
+pub use box_vectors::BoxVectors;
 pub use error::SchemaError;
 pub use filtration::{Below, FiltrationFile, PairsFile, Values};
 #[cfg(feature = "npz")]
@@ -101,9 +104,9 @@ pub struct ComplexFile {
     /// Pairs (removed, kept) of points at one position.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub duplicates: Option<Vec<[u32; 2]>>,
-    /// The sides of the periodic box, if there is one.
+    /// The vectors of the periodic box, if there is one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub periodic: Option<[f64; 3]>,
+    pub periodic: Option<BoxVectors>,
     /// The voxels that the cells fill, if the complex is of labels.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub voxels: Option<Voxels>,

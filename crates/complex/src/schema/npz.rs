@@ -8,7 +8,9 @@ use walpha_base::npy::Header;
 use zip::ZipArchive;
 use zip::read::ZipFile;
 
-use super::{Below, Classes, ComplexFile, FiltrationFile, PairsFile, SchemaError, Values};
+use super::{
+    Below, BoxVectors, Classes, ComplexFile, FiltrationFile, PairsFile, SchemaError, Values,
+};
 use crate::{Alpha, Class, Voxels};
 
 /// Deflate expands at most by this factor (zlib's technical details), so a larger claim is false.
@@ -47,7 +49,7 @@ impl ComplexFile {
             classes,
             hidden: file.list("hidden", index)?,
             duplicates: file.rows("duplicates", index)?,
-            periodic: file.sides()?,
+            periodic: file.box_vectors()?,
             voxels: file.voxels()?,
             isovalue: file.numbers("isovalue")?.map(|value| value[0]),
             ..Self::of_points(file.rows("points", |_, x| Ok(x))?.unwrap_or_default(), alpha)
@@ -117,13 +119,15 @@ enum Kind {
     Column(&'static str),
     /// Rows with this number of columns.
     Rows(u64),
+    /// Three sides, or three rows of three.
+    Box,
 }
 
 const COMPLEX_ARRAYS: [(&str, Kind); 17] = [
     ("points", Kind::Rows(3)),
     ("alpha", Kind::Scalar),
     ("isovalue", Kind::Scalar),
-    ("periodic", Kind::Rows(1)),
+    ("periodic", Kind::Box),
     ("cells", Kind::Rows(4)),
     ("facets", Kind::Rows(3)),
     ("edges", Kind::Rows(2)),
@@ -204,6 +208,8 @@ impl<R: Read + Seek> Npz<R> {
             // NumPy turns an empty list of rows into a flat array.
             (Kind::Rows(_), _) if shape.contains(&0) => 0,
             (Kind::Rows(columns), _) => return wrong(format!("shape [m, {columns}]")),
+            (Kind::Box, &[3] | &[3, 3]) => 3,
+            (Kind::Box, _) => return wrong("shape [3] or [3, 3]".into()),
         };
         Ok(Some(rows))
     }
@@ -240,14 +246,14 @@ impl<R: Read + Seek> Npz<R> {
         }))
     }
 
-    /// The sides of the periodic box, if there is one.
-    fn sides(&mut self) -> Result<Option<[f64; 3]>, SchemaError> {
-        let Some(sides) = self.numbers("periodic")? else { return Ok(None) };
-        let count = sides.len();
-        sides.try_into().map(Some).map_err(|_| SchemaError::Array {
+    /// The vectors of the periodic box, if there is one.
+    fn box_vectors(&mut self) -> Result<Option<BoxVectors>, SchemaError> {
+        let Some(numbers) = self.numbers("periodic")? else { return Ok(None) };
+        let vectors = BoxVectors::of_numbers(&numbers);
+        vectors.map(Some).ok_or_else(|| SchemaError::Array {
             name: "periodic",
-            got: format!("{count} numbers"),
-            expected: "three sides".into(),
+            got: format!("{} numbers", numbers.len()),
+            expected: "three sides, or three vectors as rows".into(),
         })
     }
 
@@ -378,7 +384,7 @@ const FILTRATION_ARRAYS: [(&str, Kind); 30] = [
     ("void_pairs", Kind::Rows(2)),
     ("lasting_voids", Kind::Rows(1)),
     ("last_cell", Kind::Rows(1)),
-    ("periodic", Kind::Rows(1)),
+    ("periodic", Kind::Box),
     ("hidden", Kind::Rows(1)),
     ("duplicates", Kind::Rows(2)),
 ];
@@ -451,7 +457,7 @@ impl FiltrationFile {
             pairs,
             hidden: file.list("hidden", index)?,
             duplicates: file.rows("duplicates", index)?,
-            periodic: file.sides()?,
+            periodic: file.box_vectors()?,
             #[cfg(feature = "json")]
             info: None,
         })

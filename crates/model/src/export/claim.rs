@@ -1,7 +1,7 @@
 //! Converts shapes to the claims that the checker judges.
 
 use walpha_check::Claim;
-use walpha_check::schema::PlacedComplex;
+use walpha_check::schema::{BoxVectors, PlacedComplex};
 use walpha_shape::AlphaShape;
 
 /// The claim of a shape, for the checker, as a complex in space.
@@ -11,9 +11,9 @@ pub fn claim(shape: &AlphaShape) -> Claim<'_> {
 
 /// A copy of a shape's complex with its points, for the checker; also for a shape on a torus.
 pub fn placed_complex(shape: &AlphaShape) -> PlacedComplex {
-    let sides = shape.options().periodic.map(|torus| torus.sides());
+    let vectors = shape.options().periodic.map(|torus| BoxVectors(torus.vectors()));
     PlacedComplex::from(claim(shape))
-        .with_periodic(sides)
+        .with_periodic(vectors)
         .with_voxels(shape.voxels().cloned())
         .with_isovalue(shape.isovalue())
 }

@@ -8,7 +8,7 @@ use walpha_base::{Monitor, memory};
 use zip::ZipWriter;
 
 use super::npz::Archive;
-use walpha_check::schema::{Below, FiltrationFile, PairsFile, SchemaError, Values};
+use walpha_check::schema::{Below, BoxVectors, FiltrationFile, PairsFile, SchemaError, Values};
 use walpha_shape::Alpha;
 use walpha_shape::ladder::{Entry, Interval, Loops, Ordered};
 use walpha_volume::UnknownFormat;
@@ -156,7 +156,7 @@ fn write_npz(ordered: &Ordered<'_>, out: &mut dyn Write, monitor: &Monitor) -> i
         archive.list("lasting_loops", &loops.lasting)?;
         archive.list("lasting_voids", &pairs.lasting_voids)?;
         archive.list("last_cell", pairs.last.as_slice())?;
-        archive.list("periodic", &torus.sides())?;
+        archive.box_vectors(torus)?;
     }
     archive.list("hidden", whole.hidden().unwrap_or_default())?;
     archive.rows("duplicates", whole.duplicates())?;
@@ -222,7 +222,7 @@ fn filtration_file(ordered: &Ordered<'_>, loops: &Loops) -> FiltrationFile {
             lasting_voids: pairs.lasting_voids.clone(),
             last: pairs.last,
         }),
-        periodic: ordered.filtration().torus().map(|torus| torus.sides()),
+        periodic: ordered.filtration().torus().map(|torus| BoxVectors(torus.vectors())),
         hidden: whole.hidden().map(<[u32]>::to_vec),
         duplicates: Some(whole.duplicates().to_vec()),
         info: Some(serde_json::json!({

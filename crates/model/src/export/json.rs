@@ -1,7 +1,7 @@
 use std::io::{self, Write};
 
 use super::Exporter;
-use walpha_check::schema::{ComplexFile, SchemaError};
+use walpha_check::schema::{BoxVectors, ComplexFile, SchemaError};
 use walpha_shape::AlphaShape;
 
 use super::claim;
@@ -19,7 +19,7 @@ impl Exporter for Json {
 
     fn encode(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
         let mut file = ComplexFile::from(claim(shape));
-        file.periodic = shape.options().periodic.map(|torus| torus.sides());
+        file.periodic = shape.options().periodic.map(|torus| BoxVectors(torus.vectors()));
         file.voxels = shape.voxels().cloned();
         file.isovalue = shape.isovalue();
         file.info = Some(serde_json::json!({

@@ -6,7 +6,7 @@ use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
 
 use super::Exporter;
-use walpha_shape::{AlphaShape, Class, NO_COMPONENT, Voxels};
+use walpha_shape::{AlphaShape, Class, NO_COMPONENT, Torus, Voxels};
 
 /// Writes NPZ, `NumPy`'s archive of arrays: the complex with its points, power weights and α, in the
 /// [`schema`](walpha_check::schema) that `walpha check` and `walpha compare` read, as in [`Json`](super::Json). If known, it also
@@ -40,7 +40,7 @@ impl Exporter for Npz {
         }
         archive.rows("duplicates", shape.duplicates())?;
         if let Some(torus) = shape.options().periodic {
-            archive.list("periodic", &torus.sides())?;
+            archive.box_vectors(torus)?;
         }
         if let Some(Voxels { dims, origin, axes: [a, b, c], runs }) = shape.voxels() {
             archive.rows("voxel_grid", &[dims.map(f64::from), *origin, *a, *b, *c])?;
@@ -93,6 +93,14 @@ impl<W: Write + Seek> Archive<W> {
     fn array(&mut self, name: &str, array: impl WriteNpyExt) -> io::Result<()> {
         self.zip.start_file(format!("{name}.npy"), self.options).map_err(io::Error::other)?;
         array.write_npy(&mut self.zip).map_err(io::Error::other)
+    }
+
+    /// The sides of a periodic box along the axes, or its vectors as rows.
+    pub(super) fn box_vectors(&mut self, torus: Torus) -> io::Result<()> {
+        match torus.sides() {
+            Some(sides) => self.list("periodic", &sides),
+            None => self.rows("periodic", &torus.vectors()),
+        }
     }
 
     pub(super) fn list<T: WritableElement>(&mut self, name: &str, list: &[T]) -> io::Result<()> {

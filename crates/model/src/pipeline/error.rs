@@ -7,7 +7,7 @@ use crate::interpolate::InterpolateError;
 use crate::labels::LabelsError;
 use walpha_points::PointsError;
 use walpha_points::haar::HaarError;
-use walpha_shape::{AlphaError, ShapeError};
+use walpha_shape::{AlphaError, ShapeError, TorusError};
 
 /// An error of a pipeline: of one of its stages, or of contradicting options.
 #[derive(Debug, thiserror::Error)]
@@ -80,6 +80,17 @@ pub enum PipelineError {
         "these weights come from differences to neighbours, and neighbours across the sides of a periodic box are not considered"
     )]
     PeriodicWeights,
+    /// The periodic box was to be the cell that the input states, and it states none.
+    #[error("the input does not state a cell in which its points repeat")]
+    NoCell,
+    /// The periodic box was to be the cell that the input states, along some of whose vectors points do not repeat.
+    #[error(
+        "the points of the input repeat along some vectors of its cell only, which is not supported"
+    )]
+    PartlyPeriodic,
+    /// The cell that the input states cannot be periodic.
+    #[error(transparent)]
+    Torus(#[from] TorusError),
 }
 
 wraps! {
@@ -90,7 +101,7 @@ wraps! {
 }
 
 impl Advise for PipelineError {
-    wrapped!(Haar, Points, Interpolate, Labels, Shape, Alpha, Cancelled);
+    wrapped!(Haar, Points, Interpolate, Labels, Shape, Alpha, Cancelled, Torus);
 
     fn advice(&self) -> Option<Advice> {
         Some(match self {
@@ -111,6 +122,12 @@ impl Advise for PipelineError {
             Self::PeriodicWeights => {
                 advice!["give weights as a column of the input, or omit ", Setting::Periodic]
             }
+            Self::NoCell => advice!["give ", Setting::Periodic, " the sides or vectors of the box"],
+            Self::PartlyPeriodic => advice![
+                "give ",
+                Setting::Periodic,
+                " vectors that are long enough to keep copies apart where points do not repeat"
+            ],
             Self::Radii { radius } => {
                 advice!["give a number, as in ", Setting::Alpha, format!(" {radius}")]
             }

@@ -6,6 +6,7 @@ mod error;
 mod input;
 mod level;
 mod parameter;
+mod periodic;
 mod recipe;
 mod spacing;
 mod weighed;
@@ -14,6 +15,7 @@ pub use choice::{Choice, Goal};
 pub use error::PipelineError;
 pub use input::{GrayVolume, Input, Opened, PlacedVolume, Values};
 pub use parameter::{AlphaRule, Parameter, ParameterOrigin};
+pub use periodic::PeriodicBox;
 pub use recipe::Recipe;
 #[doc(hidden)]
 pub use recipe::paper;
@@ -169,10 +171,12 @@ impl Recipe {
             range: None,
             ended,
             of_radii: false,
+            torus: None,
             folded: None,
             fit: None,
         };
         let mut weighed = Weighed::new(points, origin, self.alpha, parameter)?.ordered(importance);
+        weighed.place_on(self.periodic.map(|periodic| periodic.of(None)).transpose()?)?;
         weighed.recipe = Some(self.to_json());
         if let Some(to) = self.refit {
             self.fit(&mut weighed, source, to)?;
@@ -204,12 +208,13 @@ impl Recipe {
             range: metadata.range,
             ended: None,
             of_radii: points.of_radii,
+            torus: None,
             folded: None,
             fit: None,
         };
         if let (Some(cell), None) = (metadata.cell, self.periodic) {
             tracing::warn!(
-                "the file states a cell in which points repeat, and it is not used: {cell}"
+                "the file states a cell in which points repeat, {cell}, and it is not used: with `periodic` = cell it is"
             );
         }
         let unit = origin.coordinates.unit;
@@ -217,6 +222,7 @@ impl Recipe {
         let stored = stored.map(|alpha| Parameter { alpha, unit, origin: ParameterOrigin::Stored });
         let parameter = stored.or_else(|| self.alpha.given(unit));
         let mut weighed = Weighed::new(points, origin, self.alpha, parameter)?;
+        weighed.place_on(self.periodic.map(|periodic| periodic.of(metadata.cell)).transpose()?)?;
         weighed.recipe = Some(metadata.recipe.clone().unwrap_or_else(|| self.to_json()));
         Ok(weighed)
     }
@@ -226,8 +232,7 @@ impl Recipe {
     /// # Errors
     /// The errors of its stages, and [`PipelineError::Radii`].
     pub fn finish(&self, mut weighed: Weighed) -> Result<Model, PipelineError> {
-        weighed.on_torus(self.periodic)?;
-        let parameter = weighed.find_parameter_on(self.periodic)?;
+        let parameter = weighed.find_parameter()?;
         let options = self.shape_of(&weighed, parameter)?;
         Stage::Shape.begin()?;
         let Weighed { points, origin, .. } = weighed;

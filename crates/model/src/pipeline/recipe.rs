@@ -5,7 +5,7 @@ use serde_json::Value;
 use walpha_base::advice::Setting;
 use walpha_base::setters;
 
-use super::{AlphaRule, Choice, Parameter, PipelineError, Weighed};
+use super::{AlphaRule, Choice, Parameter, PeriodicBox, PipelineError, Weighed};
 use crate::interpolate::Refit;
 use crate::labels::LabelChoice;
 use crate::settings::Settings;
@@ -15,7 +15,7 @@ use walpha_points::internal::LEAST_GRAY;
 use walpha_points::{
     AtomSelection, Columns, PointOptions, Points, PointsError, Radii, Selection, Units, Weighting,
 };
-use walpha_shape::{Alpha, Balls, Classifier, Engine, Keep, ShapeError, ShapeOptions, Torus};
+use walpha_shape::{Alpha, Balls, Classifier, Engine, Keep, ShapeError, ShapeOptions};
 use walpha_volume::{Coordinates, Frame, Gray, GrayRange, LengthUnit, ReadOptions, Space};
 
 /// The largest number of points for which [`Engine::Auto`] takes CGAL: about the paper's size, which takes CGAL a third of
@@ -106,9 +106,8 @@ pub struct Recipe {
     pub memory: Option<u64>,
     /// Whether points that span no volume are an error ([`ShapeOptions::refuse_flat`]).
     pub refuse_flat: bool,
-    /// The periodic box, if there is one; serialised as its sides.
-    #[serde(with = "sides")]
-    pub periodic: Option<Torus>,
+    /// The periodic box, if there is one.
+    pub periodic: Option<PeriodicBox>,
     /// Which components of the shape are kept.
     #[serde(skip_serializing_if = "Keep::is_all")]
     pub keep: Keep,
@@ -155,7 +154,7 @@ impl Recipe {
         blocks: Option<NonZeroUsize>,
         memory: Option<u64>,
         refuse_flat: bool,
-        periodic: Option<Torus>,
+        periodic: Option<PeriodicBox>,
         keep: Keep,
         classifier: Option<Classifier>,
     }
@@ -299,7 +298,7 @@ impl Recipe {
         self.weighting.unwrap_or(of_input)
     }
 
-    /// The options of the shape at this α.
+    /// The options of the shape at this α. A periodic box that the input states is not among them.
     pub fn shape_at(&self, alpha: Alpha) -> ShapeOptions {
         ShapeOptions::new(alpha)
             .balls(self.balls)
@@ -309,7 +308,7 @@ impl Recipe {
             .blocks(self.blocks)
             .memory(self.memory)
             .refuse_flat(self.refuse_flat)
-            .periodic(self.periodic)
+            .periodic(self.periodic.and_then(PeriodicBox::given))
             .classifier(self.classifier)
     }
 
@@ -335,7 +334,8 @@ impl Recipe {
         if self.balls == Balls::Radius && parameter.is_found() {
             return Err(PipelineError::Radii { radius: parameter.alpha.squared().abs().sqrt() });
         }
-        Ok(self.shape_at(parameter.alpha).engine(self.engine_for(weighed)))
+        let options = self.shape_at(parameter.alpha).periodic(weighed.origin.torus);
+        Ok(options.engine(self.engine_for(weighed)))
     }
 
     /// The engine that computes the shape of weighted points. [`Engine::Auto`] takes CGAL, if it is at hand, for what the paper
@@ -363,30 +363,10 @@ fn drop_nulls(value: &mut Value) {
     }
 }
 
-/// Serialises a periodic box as its sides.
-mod sides {
-    use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
-
-    use walpha_shape::Torus;
-
-    #[expect(clippy::ref_option, reason = "serde hands over the field")]
-    pub(super) fn serialize<S: Serializer>(
-        torus: &Option<Torus>,
-        serializer: S,
-    ) -> Result<S::Ok, S::Error> {
-        torus.map(|torus| torus.sides()).serialize(serializer)
-    }
-
-    pub(super) fn deserialize<'de, D: Deserializer<'de>>(
-        deserializer: D,
-    ) -> Result<Option<Torus>, D::Error> {
-        let sides = Option::<[f64; 3]>::deserialize(deserializer)?;
-        sides.map(|sides| Torus::new(sides).map_err(D::Error::custom)).transpose()
-    }
-}
-
 #[cfg(test)]
 mod tests {
+    use walpha_shape::Torus;
+
     use super::*;
     use crate::pipeline::{Goal, Values};
     use walpha_points::{Models, SelectionRule};
@@ -410,7 +390,7 @@ mod tests {
             )
             .blocks(NonZeroUsize::new(3))
             .memory(Some(1 << 40))
-            .periodic(Some(Torus::new([1.0, 2.5, 0.7]).unwrap()));
+            .periodic(Some(PeriodicBox::Given(Torus::new([1.0, 2.5, 0.7]).unwrap())));
         let goal = Goal { ratio: Some(0.1), max_error: Some(3.5), ..Goal::default() };
         let selection = Selection::default().rule(SelectionRule::Threshold(30.0)).gray_min(64.5);
         let alphas = ["auto", "auto:connected", "inf", "0.1", "-3"];
@@ -452,7 +432,7 @@ mod tests {
         let mut scattered = selected.clone();
         scattered.origin.grid = None;
         assert_eq!(recipe.engine_for(&scattered), Engine::Native);
-        let torus = Torus::new([64.0; 3]).unwrap();
+        let torus = PeriodicBox::Given(Torus::new([64.0; 3]).unwrap());
         for other in [
             recipe.clone().classifier(None),
             recipe.clone().blocks(NonZeroUsize::new(2)),

@@ -81,19 +81,20 @@ fn eighth(tree: &RTree<Neighbour>, from: &[f64; 3], torus: Option<Torus>) -> f64
     let Some(torus) = torus else {
         return squares.get(NEIGHBOURS).or(squares.last()).copied().unwrap_or_default();
     };
-    let sides = torus.sides();
-    // Within this distance along the shortest side, in both directions, there are eight copies of the position itself.
-    let enough = (NEIGHBOURS / 2) as f64 * sides.iter().copied().fold(f64::INFINITY, f64::min);
+    // Within this distance along the shortest vector, in both directions, there are eight copies of the position itself.
+    let shortest = torus.vectors().map(|[x, y, z]| x.hypot(y).hypot(z));
+    let enough = (NEIGHBOURS / 2) as f64 * shortest.into_iter().fold(f64::INFINITY, f64::min);
     let steps = |k: usize| {
-        let most = (enough / sides[k]) as i32 + 1;
-        -most..=most
+        let [below, above] = torus.part_range(k, [-enough; 3], [enough; 3]);
+        below.floor() as i32 - 1..=above.ceil() as i32 + 1
     };
+    let extent = torus.extent();
     let copies =
         steps(0).flat_map(|x| steps(1).flat_map(move |y| steps(2).map(move |z| [x, y, z])));
     for windings in copies.filter(|&windings| windings != [0; 3]) {
         let copy = torus.moved(*from, windings);
         let known = squares.get(NEIGHBOURS).copied().unwrap_or(f64::INFINITY);
-        if squared_distance_to_box(copy, sides) <= known.min(enough * enough) {
+        if squared_distance_to_box(copy, extent) <= known.min(enough * enough) {
             squares.extend(nearest(copy));
             squares.sort_unstable_by(f64::total_cmp);
             squares.truncate(NEIGHBOURS + 1);
@@ -102,9 +103,9 @@ fn eighth(tree: &RTree<Neighbour>, from: &[f64; 3], torus: Option<Torus>) -> f64
     squares[NEIGHBOURS]
 }
 
-/// The squared distance from a position to a box from the origin to its `sides`.
-fn squared_distance_to_box(place: [f64; 3], sides: [f64; 3]) -> f64 {
-    let outside = |k: usize| (-place[k]).max(place[k] - sides[k]).max(0.0);
+/// The squared distance from a position to a box between two corners.
+fn squared_distance_to_box(place: [f64; 3], [low, high]: [[f64; 3]; 2]) -> f64 {
+    let outside = |k: usize| (low[k] - place[k]).max(place[k] - high[k]).max(0.0);
     (0..3).map(|k| outside(k) * outside(k)).sum()
 }
 

@@ -58,6 +58,8 @@ pub struct Origin {
     pub ended: Option<Adaptive>,
     /// Whether the weights are squares of radii.
     pub of_radii: bool,
+    /// The periodic box that the points lie in.
+    pub torus: Option<Torus>,
     /// The number of points outside the periodic box, which are moved to their copies inside; `None` without a box.
     pub folded: Option<usize>,
     /// The fit of values to the volume; `None` if they are those of its samples.
@@ -75,6 +77,7 @@ impl Origin {
             range: None,
             ended: None,
             of_radii: false,
+            torus: None,
             folded: None,
             fit: None,
         }
@@ -159,30 +162,23 @@ impl Weighed {
     /// # Errors
     /// For [`AlphaRule::Connected`], the errors of a [`Filtration`](walpha_shape::ladder::Filtration).
     pub fn find_parameter(&mut self) -> Result<Parameter, PipelineError> {
-        self.find_parameter_on(None)
-    }
-
-    /// Like [`find_parameter`](Self::find_parameter), on a torus if there is one.
-    pub(super) fn find_parameter_on(
-        &mut self,
-        torus: Option<Torus>,
-    ) -> Result<Parameter, PipelineError> {
         if let Some(parameter) = self.parameter {
             return Ok(parameter);
         }
         Stage::Alpha.begin()?;
         let unit = self.origin.coordinates.unit;
-        let found = Parameter::find(self.rule, &self.points, torus, unit)?;
+        let found = Parameter::find(self.rule, &self.points, self.origin.torus, unit)?;
         self.parameter = Some(found);
         Ok(found)
     }
 
-    /// Marks the points as those of a torus, if there is one, and counts the points outside its box.
+    /// Places the points on a torus, if there is one, and counts the points outside its box.
     ///
     /// # Errors
     /// [`PipelineError::PeriodicWeights`]: differences to neighbours of scattered points do not take the copies across the sides
     /// of the box into account.
-    pub fn on_torus(&mut self, torus: Option<Torus>) -> Result<(), PipelineError> {
+    pub(super) fn place_on(&mut self, torus: Option<Torus>) -> Result<(), PipelineError> {
+        self.origin.torus = torus;
         let Some(torus) = torus else { return Ok(()) };
         let Origin { weighting, truncation, .. } = self.origin;
         if truncation.is_none() && weighting.needs_differences() {

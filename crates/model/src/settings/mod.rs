@@ -16,13 +16,13 @@ use walpha_points::haar::{Decomposition, HaarOptions, Tolerance};
 use walpha_points::{
     AtomSelection, Columns, Models, Radii, Selection, SelectionRule, Units, Weighting,
 };
-use walpha_shape::{Alpha, Balls, Engine, Keep, Largest, Torus};
+use walpha_shape::{Alpha, Balls, Engine, Keep, Largest};
 use walpha_volume::{Dims, Dtype, Endian, GrayRange, Nan, RawLayout, ReadOptions, Region, Space};
 
 use crate::Recipe;
 use crate::interpolate::Refit;
 use crate::labels::LabelChoice;
-use crate::pipeline::{AlphaRule, Choice, Goal};
+use crate::pipeline::{AlphaRule, Choice, Goal, PeriodicBox};
 use crate::surface::SurfaceChoice;
 pub use choices::Select;
 
@@ -300,8 +300,8 @@ settings! {
         hidden: bool = parse::switch,
     }
     Periodic {
-        /// Sides of a periodic box.
-        periodic: Torus = parse::torus,
+        /// The periodic box.
+        periodic: PeriodicBox = parse::periodic,
     }
     Keep {
         /// How many of the largest components are kept.

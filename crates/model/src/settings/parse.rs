@@ -4,12 +4,13 @@ use std::fmt::Display;
 use std::str::FromStr;
 
 use walpha_base::advice::Advise;
-use walpha_points::{Models, Radii};
+use walpha_points::{Cell, Models, Radii};
 use walpha_shape::{Alpha, Torus};
 use walpha_volume::{Dims, GrayRange, Nan, Region};
 
 use super::SettingError;
 use super::choices::Named;
+use crate::pipeline::PeriodicBox;
 
 /// Returns an error: what is wrong, and after `=>` what to do.
 macro_rules! fail {
@@ -212,12 +213,28 @@ pub(super) fn alpha_radius(text: &str) -> Result<Alpha, SettingError> {
     Alpha::from_radius(number(text)?).map_err(|error| SettingError::of(&error))
 }
 
-pub(super) fn torus(text: &str) -> Result<Torus, SettingError> {
-    let sides: Vec<f64> = text.split(',').map(number).collect::<Result<_, _>>()?;
-    let &[x, y, z] = &sides[..] else {
-        fail!("three sides are needed" => "give those along x, y and z, as in 10,10,20");
+/// Three sides, three lengths and angles, or three vectors of a periodic box, or that of the input.
+pub(super) fn periodic(text: &str) -> Result<PeriodicBox, SettingError> {
+    if text == "cell" {
+        return Ok(PeriodicBox::Stated);
+    }
+    let numbers: Vec<f64> = text.split(',').map(number).collect::<Result<_, _>>()?;
+    let torus = match numbers[..] {
+        [x, y, z] => Torus::new([x, y, z]),
+        [a, b, c, alpha, beta, gamma] => {
+            let Some(cell) = Cell::of_angles([a, b, c], [alpha, beta, gamma]) else {
+                fail!("no three vectors have the angles {alpha}°, {beta}° and {gamma}°" => "give the angles of b with c, a with c, and a with b in degrees, as in 10,10,15,90,90,120");
+            };
+            Torus::of_vectors(cell.vectors)
+        }
+        [ax, ay, az, bx, by, bz, cx, cy, cz] => {
+            Torus::of_vectors([[ax, ay, az], [bx, by, bz], [cx, cy, cz]])
+        }
+        _ => {
+            fail!("{} numbers do not describe a periodic box", numbers.len() => "give three sides, as in 10,10,20, three lengths and three angles, as in 10,10,15,90,90,120, nine numbers of three vectors, or `cell` for the cell that the file states")
+        }
     };
-    Torus::new([x, y, z]).map_err(|error| SettingError::of(&error))
+    torus.map(PeriodicBox::Given).map_err(|error| SettingError::of(&error))
 }
 
 /// Splits a text into the ends of three ranges, without surrounding white space.

@@ -40,15 +40,7 @@ impl UnitCell {
         if !is_p1 || [a, b, c].iter().any(|length| !(*length > 1.0 && length.is_finite())) {
             return None;
         }
-        // Right angles are exact, so that boxes are along the axes.
-        let cosine = |angle: f64| if angle == 90.0 { 0.0 } else { angle.to_radians().cos() };
-        let [alpha, beta, gamma] = angles.map(cosine);
-        let sine = if gamma == 0.0 { 1.0 } else { (1.0 - gamma * gamma).sqrt() };
-        let y = (alpha - beta * gamma) / sine;
-        let z = (1.0 - beta * beta - y * y).sqrt();
-        let vectors = [[a, 0.0, 0.0], [b * gamma, b * sine, 0.0], [c * beta, c * y, c * z]];
-        let is_finite = vectors.as_flattened().iter().all(|x| x.is_finite());
-        (is_finite && sine > 0.0 && z > 0.0).then_some(Cell { vectors, repeats: [true; 3] })
+        Cell::of_angles([a, b, c], angles)
     }
 }
 

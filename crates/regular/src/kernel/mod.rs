@@ -90,7 +90,7 @@ impl<'a> Predicates<'a> {
     }
 
     /// Predicates on points of a torus, if one is given. The other corners of a simplex, and a point tested against
-    /// it, must be nearer to its first corner than half a side along each axis. O(n).
+    /// it, must be nearer to its first corner than half of each vector of the box. O(n).
     pub fn on_torus(positions: &'a [[f64; 3]], weights: &'a [f64], torus: Option<Torus>) -> Self {
         let lattice = lattice(positions, weights, torus);
         Self { torus, ..Self::on(lattice, positions, weights) }
@@ -332,7 +332,7 @@ impl<'a> Predicates<'a> {
 pub fn lattice(positions: &[[f64; 3]], weights: &[f64], torus: Option<Torus>) -> Lattice {
     match torus {
         None => Lattice::of(positions, weights),
-        Some(torus) => Lattice::of(&[positions, &[torus.sides()]].concat(), weights),
+        Some(torus) => Lattice::of(&[positions, &torus.vectors()].concat(), weights),
     }
 }
 

@@ -51,12 +51,12 @@ pub(crate) struct Block {
 /// The copies that a halo consists of, on a torus.
 pub(crate) struct Copies {
     pub torus: Torus,
-    /// The multiples of the sides by which each copy is moved.
+    /// The multiples of the vectors by which each copy is moved.
     pub windings: Vec<[i32; 3]>,
 }
 
 impl Block {
-    /// The multiples of the sides by which a point is moved; 0 for the block's own.
+    /// The multiples of the vectors by which a point is moved; 0 for the block's own.
     pub(super) fn windings(&self, v: u32) -> [i32; 3] {
         let beyond = v.checked_sub(self.own).zip(self.copies.as_ref());
         beyond.map_or([0; 3], |(at, copies)| copies.windings[at as usize])

@@ -118,7 +118,7 @@ impl Partition {
     }
 
     /// Visits the points of the halo of a block in unspecified order: the rank of each on the curve, and the
-    /// multiples of the sides by which it is moved.
+    /// multiples of the vectors by which it is moved.
     ///
     /// Points with α + ω < 0 have no ball and can refute nothing: they are left out.
     fn halo(
@@ -160,18 +160,18 @@ impl Partition {
         }
     }
 
-    /// The multiples of the sides by which points of the halo of a block may be moved: all that may be in reach, and possibly
+    /// The multiples of the vectors by which points of the halo of a block may be moved: all that may be in reach, and possibly
     /// more.
     fn windings(&self, sites: &Sites<'_>, own: &Node, reach: Reach) -> Vec<[i32; 3]> {
         let Some(torus) = sites.torus() else { return vec![[0; 3]] };
         let all = &self.nodes[0];
         let reach = reach.distance(own.heaviest, all.heaviest).max(0.0);
+        let low = [0, 1, 2].map(|k| own.low[k] - all.high[k] - reach);
+        let high = [0, 1, 2].map(|k| own.high[k] - all.low[k] + reach);
         let along = |k: usize| {
-            let side = torus.sides()[k];
             // Rounded outward, so that no copy in reach is missed.
-            let below = ((own.low[k] - all.high[k] - reach) / side).floor() as i32;
-            let above = ((own.high[k] - all.low[k] + reach) / side).ceil() as i32;
-            below..=above
+            let [below, above] = torus.part_range(k, low, high);
+            below.floor() as i32..=above.ceil() as i32
         };
         let mut windings = Vec::new();
         for x in along(0) {

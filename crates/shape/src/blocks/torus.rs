@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 use walpha_base::monitor::Units;
 use walpha_regular::internals::Lattice;
-use walpha_regular::internals::{AXES, CellArrays, Predicates, Sites};
+use walpha_regular::internals::{AXES, CellArrays, Predicates, Sites, VECTORS};
 use walpha_regular::{SitesError, Torus, TriangulationError};
 
 use super::block::{Block, BlockParams, triangulate};
@@ -68,10 +68,12 @@ impl BlockParams {
 
 /// The error for an edge that spans half of the box.
 pub(super) fn too_long(torus: Torus, Long { edge, ends }: Long) -> ShapeError {
-    let spans = |k: usize| (ends[1][k] - ends[0][k]).abs() / torus.sides()[k];
-    let axis = (0..3).max_by(|&a, &b| spans(a).total_cmp(&spans(b))).unwrap_or(0);
-    let span = spans(axis) * torus.sides()[axis];
-    ShapeError::Wraps { edge, axis: AXES[axis], span, side: torus.sides()[axis] }
+    let parts = torus.parts([0, 1, 2].map(|k| ends[1][k] - ends[0][k]));
+    let longest = (0..3).max_by(|&a, &b| parts[a].abs().total_cmp(&parts[b].abs())).unwrap_or(0);
+    let [x, y, z] = torus.vectors()[longest];
+    let side = x.hypot(y).hypot(z);
+    let axis = if torus.sides().is_some() { AXES[longest] } else { VECTORS[longest] };
+    ShapeError::Wraps { edge, axis, span: parts[longest].abs() * side, side }
 }
 
 #[cfg(test)]

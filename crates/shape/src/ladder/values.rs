@@ -187,9 +187,9 @@ const LOWEST_UNIT: i32 = -500;
 /// Whether coordinates are multiples of a power of two, by integers below 2²⁴, so that squared distances are integers below 2⁵³
 /// in units of its square.
 pub(super) fn is_small_lattice(points: &WeightedPoints, torus: Option<Torus>) -> bool {
-    let sides = torus.map(|torus| torus.sides());
-    let sides = sides.as_slice().as_flattened();
-    let coordinates = || points.positions.as_flattened().par_iter().chain(sides).copied();
+    let vectors = torus.map(|torus| torus.vectors());
+    let vectors = vectors.as_slice().as_flattened().as_flattened();
+    let coordinates = || points.positions.as_flattened().par_iter().chain(vectors).copied();
     let lowest = coordinates().filter_map(lowest_bit).min().unwrap_or(0);
     let largest = coordinates().map(f64::abs).reduce(|| 0.0, f64::max);
     lowest > LOWEST_UNIT && largest < 2f64.powi(lowest.saturating_add(SMALL_BITS))

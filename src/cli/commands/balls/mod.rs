@@ -20,7 +20,7 @@ use crate::cli::process::output::{name, print_summary};
 use crate::cli::process::progress::Progress;
 use crate::cli::report::{MovedIntoBox, SCHEMA_VERSION, ending};
 use crate::export::{Content, Target, write_all};
-use crate::pipeline::{AlphaRule, Input, Values};
+use crate::pipeline::{AlphaRule, Input, Origin, Values};
 use crate::points::Molecule;
 use crate::progress::Stage;
 use crate::shape::{Betti, Engine, ShapeOptions};
@@ -75,8 +75,8 @@ impl Balls {
         }
         let input = &self.input;
         let recipe = input.recipe()?;
-        let torus = recipe.periodic;
-        if torus.is_some() && targets.iter().any(|(_, table)| table.needs_pockets()) {
+        let is_periodic = recipe.periodic.is_some();
+        if is_periodic && targets.iter().any(|(_, table)| table.needs_pockets()) {
             fail_usage!("pockets are open to the outside, and a periodic box has no outside" => "write voids.csv, or omit --periodic");
         }
         let mut progress = Progress::new(global);
@@ -103,11 +103,10 @@ impl Balls {
         // α is settled, so nothing looks for it.
         let recipe = recipe.alpha(AlphaRule::Given(alpha));
         let weigh = || recipe.weigh(Input::Points(points, metadata), Values::Written);
-        let (mut weighed, _) = progress.watch(weigh)?;
-        weighed.on_torus(torus)?;
-        let (coordinates, folded) = (weighed.origin.coordinates, weighed.origin.folded);
+        let (weighed, _) = progress.watch(weigh)?;
+        let Origin { coordinates, torus, folded, .. } = weighed.origin;
         // A periodic box is triangulated as a whole only where voids are asked for: that takes short edges.
-        let exterior = torus.is_none() || targets.iter().any(|(_, table)| *table == Table::Voids);
+        let exterior = !is_periodic || targets.iter().any(|(_, table)| *table == Table::Voids);
         let (points, alpha) = enlarged(weighed.points, alpha, self.probe.unwrap_or_default())?;
         let shape = progress.stage(Stage::Shape, || {
             let options = ShapeOptions::new(alpha).engine(Engine::Native).exterior(exterior);

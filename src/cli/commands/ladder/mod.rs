@@ -138,7 +138,7 @@ impl Ladder {
         let (weighed, volume) = pipeline::weighted_points(input, &recipe, &mut progress)?;
         outline::check(meshes.iter().map(|mesh| mesh.format), weighed.points.positions())?;
         let domain = pipeline::domain(&weighed, volume.as_ref());
-        let filtration = progress.watch(|| pipeline::filtration(None, &weighed))?;
+        let filtration = progress.watch(|| pipeline::filtration(&weighed))?;
         let coordinates = weighed.origin.coordinates;
         let found = || weighed.rule.on(&filtration, coordinates.unit);
         let reference = weighed.parameter.unwrap_or_else(found);

@@ -10,7 +10,7 @@ use walpha_base::random::Random;
 use walpha_model::export::{ExportOptions, Format};
 use walpha_model::interpolate::Refit;
 use walpha_model::outofcore::{BlocksError, Cutting, Job, Merged, Plan, merge, run, whole};
-use walpha_model::pipeline::{AlphaRule, Choice, Goal, Model};
+use walpha_model::pipeline::{AlphaRule, Choice, Goal, Model, PeriodicBox};
 use walpha_model::{Advise, Recipe};
 use walpha_points::haar::{Decomposition, Tolerance};
 use walpha_points::{Selection, SelectionRule, Units, Weighting};
@@ -299,7 +299,7 @@ fn what_is_not_local_is_refused() {
         Recipe::new().exterior(true),
         Recipe::new().hidden(true),
         Recipe::new().refit(Refit::Shape),
-        Recipe::new().periodic(Torus::new([20.0; 3]).ok()),
+        Recipe::new().periodic(Torus::new([20.0; 3]).ok().map(PeriodicBox::Given)),
     ];
     for recipe in recipes {
         let mut job = fresh.clone();

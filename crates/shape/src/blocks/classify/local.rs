@@ -30,11 +30,11 @@ impl Local<'_> {
         self.alpha == f64::INFINITY || self.predicates.fits(simplex, self.alpha)
     }
 
-    /// Whether an edge spans half of the box of a torus or more, along one axis at least. Exact.
+    /// Whether an edge spans half of the box of a torus or more, along one of its vectors at least. Exact.
     pub(super) fn is_long(&self, [v, u]: [u32; 2]) -> bool {
         self.block.copies.as_ref().is_some_and(|copies| {
             let [p, q] = [v, u].map(|v| self.block.positions[v as usize]);
-            (0..3).any(|k| 2.0 * (p[k] - q[k]).abs() >= copies.torus.sides()[k])
+            !copies.torus.are_near(p, q)
         })
     }
 }

@@ -1,0 +1,135 @@
+//! The copies of points in a periodic box.
+
+use std::cmp::Ordering;
+
+use crate::exact::{Lattice, orientation};
+use crate::schema::BoxVectors;
+
+/// The vectors along which the points of a torus repeat. A way is the sum of the vectors, each times its *part*; comparisons of
+/// parts are exact for points whose copies are exact.
+#[derive(Clone, Copy)]
+pub(crate) struct Period {
+    vectors: [[f64; 3]; 3],
+    /// The sign of the determinant of the vectors.
+    sign: Ordering,
+}
+
+impl Period {
+    pub(crate) fn new(vectors: BoxVectors) -> Self {
+        let [a, b, c] = vectors.0;
+        Self { vectors: vectors.0, sign: orientation([0.0; 3], a, b, c) }
+    }
+
+    /// Whether the vectors are finite and span a volume, and, if they are along the axes, whether their sides are positive.
+    pub(crate) fn is_sound(vectors: BoxVectors) -> bool {
+        vectors.0.as_flattened().iter().all(|x| x.is_finite())
+            && Self::new(vectors).sign.is_ne()
+            && vectors.sides().is_none_or(|sides| sides.iter().all(|side| *side > 0.0))
+    }
+
+    /// Compares the part of a way along a vector with `halves` halves.
+    fn compare(&self, k: usize, way: [f64; 3], halves: f64) -> Ordering {
+        let [u, v] = [(k + 1) % 3, (k + 2) % 3].map(|other| self.vectors[other]);
+        let beyond = [0, 1, 2].map(|axis| 2.0 * way[axis] - halves * self.vectors[k][axis]);
+        let side = orientation([0.0; 3], beyond, u, v);
+        if self.sign.is_gt() { side } else { side.reverse() }
+    }
+
+    /// The multiples of the vectors that move `to` to its copy nearest to `from`.
+    pub(crate) fn nearest_copy(&self, from: [f64; 3], to: [f64; 3]) -> [i32; 3] {
+        let way = [0, 1, 2].map(|axis| to[axis] - from[axis]);
+        [0, 1, 2].map(|k| {
+            let before = self.compare(k, way, -1.0).is_lt();
+            let beyond = self.compare(k, way, 1.0).is_gt();
+            i32::from(before) - i32::from(beyond)
+        })
+    }
+
+    /// Whether the way to the nearest copy spans half of a vector or more.
+    pub(crate) fn is_long(&self, from: [f64; 3], to: [f64; 3]) -> bool {
+        let to = self.moved(to, self.nearest_copy(from, to));
+        let way = [0, 1, 2].map(|axis| to[axis] - from[axis]);
+        (0..3).any(|k| !(self.compare(k, way, -1.0).is_gt() && self.compare(k, way, 1.0).is_lt()))
+    }
+
+    /// Whether a position is in the box, and its nearby copies are exact.
+    pub(crate) fn holds(&self, position: [f64; 3]) -> bool {
+        if position.iter().any(|x| !x.is_finite()) {
+            return false;
+        }
+        let numbers = [position, self.vectors[0], self.vectors[1], self.vectors[2]];
+        // Sums of a position and four times each vector, in units of the lowest bit.
+        let magnitude = |axis: usize| {
+            let along: f64 = self.vectors.iter().map(|vector| vector[axis].abs()).sum();
+            position[axis].abs() + 4.0 * along
+        };
+        let largest = (0..3).map(magnitude).fold(0.0, f64::max);
+        let is_exact = largest <= 2f64.powi(Lattice::through(numbers).exponent() + 53);
+        let in_box = |k: usize| {
+            self.compare(k, position, 0.0).is_ge() && self.compare(k, position, 2.0).is_lt()
+        };
+        is_exact && (0..3).all(in_box)
+    }
+
+    /// A position moved by multiples of the vectors.
+    pub(crate) fn moved(&self, position: [f64; 3], by: [i32; 3]) -> [f64; 3] {
+        let by = by.map(f64::from);
+        let [a, b, c] = self.vectors;
+        [0, 1, 2].map(|axis| position[axis] + (by[0] * a[axis] + by[1] * b[axis] + by[2] * c[axis]))
+    }
+
+    /// Half of the longest diagonal, rounded up: no place is farther from all copies of a point.
+    pub(crate) fn reach(&self) -> f64 {
+        let diagonals = [[1, 1, 1], [1, 1, -1], [1, -1, 1], [1, -1, -1]];
+        let lengths = diagonals.map(|by| {
+            let [x, y, z] = self.moved([0.0; 3], by);
+            x.hypot(y).hypot(z)
+        });
+        0.5001 * lengths.into_iter().fold(0.0, f64::max)
+    }
+
+    /// The corners of the box, whose bits are the vectors: of a right-handed box, in the order of the vectors.
+    pub(crate) fn corners(&self) -> [[f64; 3]; 8] {
+        [0, 1, 2, 3, 4, 5, 6, 7].map(|corner: i32| {
+            let mut by = [corner & 1, corner >> 1 & 1, corner >> 2 & 1];
+            if self.sign.is_lt() {
+                by.swap(1, 2);
+            }
+            self.moved([0.0; 3], by)
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A lattice of hexagons, one layer above the other, left-handed.
+    fn slanted() -> Period {
+        Period::new(BoxVectors([[4.0, 0.0, 0.0], [0.0, 0.0, 8.0], [-2.0, 3.5, 0.0]]))
+    }
+
+    #[test]
+    fn copies_are_nearest_by_parts() {
+        let period = slanted();
+        assert!(period.sign.is_lt());
+        // The way has parts −¾, ½ and ¾; a half stays.
+        let to = [-4.5, 2.625, 4.0];
+        assert_eq!(period.nearest_copy([0.0; 3], to), [1, 0, -1]);
+        assert!(period.is_long([0.0; 3], to));
+        assert!(!period.is_long([0.0; 3], [-4.5, 2.625, 3.75]));
+    }
+
+    #[test]
+    fn positions_are_in_the_box_if_their_parts_are() {
+        let period = slanted();
+        assert!(period.holds([-1.0, 1.75, 0.0]) && period.holds([0.0; 3]));
+        assert!(!period.holds([-2.0, 1.75, 0.0]) && !period.holds([-2.0, 3.5, 0.0]));
+        assert!(!period.holds([f64::NAN, 0.0, 0.0]));
+        // Its copies would be rounded.
+        assert!(!period.holds([1e-15, 0.0, 0.0]));
+        assert!(!Period::is_sound(BoxVectors([[1.0, 0.0, 0.0], [2.0, 0.0, 0.0], [0.0, 1.0, 1.0]])));
+        assert!(!Period::is_sound(BoxVectors::of_sides([1.0, -1.0, 1.0])));
+        assert!(Period::is_sound(BoxVectors::of_sides([1.0, 2.0, 1.0])));
+    }
+}
