@@ -2,8 +2,11 @@
 //! other programs are in [`predicates`](crate::predicates).
 
 pub mod number;
+pub mod parallel;
 
 use rayon::prelude::*;
+
+use parallel::Coarse;
 
 pub use crate::arrays::CellArrays;
 pub use crate::flat::{Flat, auxiliary_positions, check_span, is_flat, spanning, triangulate_flat};
@@ -19,5 +22,5 @@ pub use crate::torus::{AXES, VECTORS};
 
 /// The points along a Hilbert curve, including hidden and equal ones. O(n log n).
 pub fn along_curve(positions: &[[f64; 3]]) -> Vec<u32> {
-    crate::order::along_curve(positions).into_par_iter().map(|(_, point)| point).collect()
+    crate::order::along_curve(positions).into_par_iter().coarse().map(|(_, point)| point).collect()
 }

@@ -1,6 +1,7 @@
 //! The order in which points are inserted: in rounds (a biased randomized insertion order: Amenta, Choi and Rote 2003,
 //! doi:10.1145/777792.777824), and along a Hilbert curve within a round, so that consecutive points are close in space.
 
+use crate::internals::parallel::Coarse;
 use rayon::prelude::*;
 use walpha_base::spread_bits;
 
@@ -14,8 +15,12 @@ pub(super) type Keyed = (u64, u32);
 /// Points in one cell of the grid, such as equal points, are in ascending order. O(n log n).
 pub(super) fn along_curve<const D: usize>(positions: &[[f64; D]]) -> Vec<Keyed> {
     let curve = Curve::through(positions);
-    let mut keyed: Vec<Keyed> =
-        positions.par_iter().enumerate().map(|(i, p)| (curve.index(p), i as u32)).collect();
+    let mut keyed: Vec<Keyed> = positions
+        .par_iter()
+        .coarse()
+        .enumerate()
+        .map(|(i, p)| (curve.index(p), i as u32))
+        .collect();
     keyed.par_sort_unstable();
     keyed
 }
@@ -31,7 +36,7 @@ impl<const D: usize> Curve<D> {
     /// The curve through the cube around points. O(n).
     pub(super) fn through(positions: &[[f64; D]]) -> Self {
         let ends = |k: usize| {
-            let at = positions.par_iter().map(|p| p[k]);
+            let at = positions.par_iter().coarse().map(|p| p[k]);
             at.map(|x| (x, x)).reduce(
                 || (f64::INFINITY, f64::NEG_INFINITY),
                 |(low, high), (a, b)| (low.min(a), high.max(b)),

@@ -1,5 +1,6 @@
 //! Points scaled to a size for which doubles decide.
 
+use crate::internals::parallel::Coarse;
 use rayon::prelude::*;
 
 use crate::number::highest_bit;
@@ -27,7 +28,7 @@ impl<const D: usize> Scaled<D> {
     /// bits, or would exceed the range of doubles. O(n).
     pub fn of(positions: &[[f64; D]], weights: &[f64]) -> Option<Self> {
         let coordinates = positions.as_flattened();
-        let largest = coordinates.par_iter().map(|x| x.abs()).reduce(|| 0.0, f64::max);
+        let largest = coordinates.par_iter().coarse().map(|x| x.abs()).reduce(|| 0.0, f64::max);
         let exponent = highest_bit(largest)?;
         let in_range = largest <= MAX_COORDINATE && weights.iter().all(|w| w.abs() <= MAX_WEIGHT);
         if exponent.abs() <= Self::NEAR || !in_range {
@@ -44,8 +45,12 @@ impl<const D: usize> Scaled<D> {
             Some(scaled)
         };
         Some(Self {
-            positions: positions.par_iter().map(place).collect::<Option<_>>()?,
-            weights: weights.par_iter().map(|&w| square(w, factor)).collect::<Option<_>>()?,
+            positions: positions.par_iter().coarse().map(place).collect::<Option<_>>()?,
+            weights: weights
+                .par_iter()
+                .coarse()
+                .map(|&w| square(w, factor))
+                .collect::<Option<_>>()?,
             factor,
         })
     }

@@ -1,5 +1,6 @@
 use std::borrow::Cow;
 
+use crate::internals::parallel::Coarse;
 use rayon::prelude::*;
 
 use super::order::{self, Keyed, position_bits};
@@ -101,7 +102,7 @@ impl<'a, const D: usize> Sites<'a, D> {
                 weights: Cow::Borrowed(weights),
                 input: (0..positions.len() as u32).collect(),
                 duplicates,
-                curve: curve.into_par_iter().map(|(_, point)| point).collect(),
+                curve: curve.into_par_iter().coarse().map(|(_, point)| point).collect(),
                 torus: None,
             });
         }
@@ -158,7 +159,9 @@ pub fn check<const D: usize>(positions: &[[f64; D]], weights: &[f64]) -> Result<
     let sane = |(p, w): (&[f64; D], &f64)| {
         p.iter().all(|x| x.abs() <= MAX_COORDINATE) && w.abs() <= MAX_WEIGHT
     };
-    let Some(index) = positions.par_iter().zip(weights).position_first(|point| !sane(point)) else {
+    let Some(index) =
+        positions.par_iter().zip(weights).coarse().position_first(|point| !sane(point))
+    else {
         return Ok(());
     };
     let coordinates = ["x", "y", "z"].into_iter().zip(positions[index]);

@@ -2,6 +2,7 @@
 
 use std::collections::HashSet;
 
+use crate::internals::parallel::Coarse;
 use rayon::prelude::*;
 use walpha_base::Monitor;
 
@@ -43,8 +44,10 @@ pub fn triangulate(
     let zeros = if weights.is_none() { filled(points.len(), 0.0)? } else { Vec::new() };
     let sites = Sites::new(points, weights.unwrap_or(&zeros))?;
     let along = sites.curve();
-    let mut places: Vec<_> = along.par_iter().map(|&i| sites.positions()[i as usize]).collect();
-    let mut heights: Vec<_> = along.par_iter().map(|&i| sites.weights()[i as usize]).collect();
+    let mut places: Vec<_> =
+        along.par_iter().coarse().map(|&i| sites.positions()[i as usize]).collect();
+    let mut heights: Vec<_> =
+        along.par_iter().coarse().map(|&i| sites.weights()[i as usize]).collect();
     if let Some(scaled) = Scaled::of(&places, &heights) {
         (places, heights) = (scaled.positions, scaled.weights);
     }
@@ -54,7 +57,7 @@ pub fn triangulate(
     drop((places, heights));
     let index = |v: u32| along.get(v as usize).map(|&site| sites.input()[site as usize]);
     let at_infinity = points.len() as u32;
-    arrays.cells.par_iter_mut().with_min_len(MIN_LEN).for_each(|cell| {
+    arrays.cells.par_iter_mut().coarse().for_each(|cell| {
         *cell = cell.map(|v| index(v).unwrap_or(at_infinity));
     });
     arrays.at_infinity = at_infinity;
@@ -64,9 +67,6 @@ pub fn triangulate(
     positions.extend_from_slice(points);
     Triangulation::new(positions, arrays, duplicates)
 }
-
-/// The minimum number of cells that one thread renumbers in one piece.
-const MIN_LEN: usize = 1 << 12;
 
 /// A regular triangulation of points; [`triangulate`] makes it.
 ///

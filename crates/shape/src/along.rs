@@ -3,6 +3,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 use rayon::prelude::*;
 use walpha_regular::internals::along_curve;
+use walpha_regular::internals::parallel::Coarse;
 
 use super::Complex;
 
@@ -80,7 +81,7 @@ pub(crate) struct Table<const N: usize>(Vec<[AtomicU32; N]>);
 impl<const N: usize> Table<N> {
     pub(crate) fn new(rows: usize, element: u32) -> Self {
         let row = |_| [0; N].map(|_| AtomicU32::new(element));
-        Self((0..rows).into_par_iter().map(row).collect())
+        Self((0..rows).into_par_iter().coarse().map(row).collect())
     }
 
     pub(crate) fn write(&self, row: usize, elements: [u32; N]) {

@@ -4,6 +4,7 @@ use rayon::prelude::*;
 use walpha_base::UnionFind;
 use walpha_complex::canonical::sorted;
 use walpha_regular::Torus;
+use walpha_regular::internals::parallel::Coarse;
 
 use super::winding::{Winding, WindingSets, minus};
 use super::{Class, Complex};
@@ -16,6 +17,7 @@ pub(super) fn sides(whole: &Complex, of: impl Fn(Class) -> bool + Sync) -> Vec<(
         .rows()
         .par_iter()
         .zip(whole.cells.classes())
+        .coarse()
         .enumerate()
         .filter(|(_, (_, class))| of(**class))
         .flat_map_iter(|(id, (&[a, b, c, d], _))| {

@@ -4,6 +4,7 @@
 use std::ops::Range;
 
 use rayon::prelude::*;
+use walpha_regular::internals::parallel::{Coarse, FEW};
 
 use crate::Complex;
 use crate::along::{Along, Table, rows, starts};
@@ -11,8 +12,9 @@ use crate::along::{Along, Table, rows, starts};
 /// The facets with ascending vertices, in lexicographic order. Only hull facets, which are oriented,
 /// have theirs in another, and are among those with one smallest vertex.
 pub(crate) fn sorted_facets(whole: &Complex) -> Vec<[u32; 3]> {
-    let mut facets: Vec<_> = whole.facets.rows().par_iter().copied().collect();
-    facets.par_chunk_by_mut(|a, b| a[0] == b[0]).for_each(|near| {
+    let mut facets: Vec<_> = whole.facets.rows().par_iter().coarse().copied().collect();
+    let is_near = |a: &[u32; 3], b: &[u32; 3]| a[0] == b[0];
+    let sort = |near: &mut [[u32; 3]]| {
         let mut turned = false;
         for [_, b, c] in near.iter_mut().filter(|[_, b, c]| b > c) {
             (*b, *c, turned) = (*c, *b, true);
@@ -20,7 +22,12 @@ pub(crate) fn sorted_facets(whole: &Complex) -> Vec<[u32; 3]> {
         if turned {
             near.sort_unstable();
         }
-    });
+    };
+    if facets.len() > FEW {
+        facets.par_chunk_by_mut(is_near).for_each(sort);
+    } else {
+        facets.chunk_by_mut(is_near).for_each(sort);
+    }
     facets
 }
 

@@ -3,6 +3,7 @@ use std::num::NonZeroUsize;
 use rayon::prelude::*;
 use walpha_base::{Coordinates, Monitor};
 use walpha_regular::SitesError;
+use walpha_regular::internals::parallel::Coarse;
 use walpha_regular::internals::{Scaled, Sites, check_numbers, lattice};
 
 use super::agreement::agree;
@@ -98,7 +99,7 @@ fn shape_by(
     options.check()?;
     if let Some(torus) = options.periodic {
         check_numbers(&points.positions, &points.weights)?;
-        points.positions.par_iter_mut().for_each(|place| *place = torus.wrap(*place));
+        points.positions.par_iter_mut().coarse().for_each(|place| *place = torus.wrap(*place));
     }
     if let Some(values) = points.values()
         && let Some(index) = values.iter().position(|value| !value.is_finite())

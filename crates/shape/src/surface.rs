@@ -1,4 +1,5 @@
 use rayon::prelude::*;
+use walpha_regular::internals::parallel::Coarse;
 
 use super::{Class, Complex};
 
@@ -122,7 +123,7 @@ impl Surface {
                 sides.filter(move |(ends, _)| range.contains(&ends[0]))
             };
             let mut sides: Vec<Side> =
-                self.regular.par_iter().enumerate().flat_map_iter(of_facet).collect();
+                self.regular.par_iter().coarse().enumerate().flat_map_iter(of_facet).collect();
             sides.par_sort_unstable();
             sides.chunk_by(|a, b| a.0 == b.0).for_each(&mut visit);
         }

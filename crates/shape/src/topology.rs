@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 use walpha_base::UnionFind;
 use walpha_regular::Torus;
+use walpha_regular::internals::parallel::Coarse;
 
 use super::complement::Complement;
 use super::winding::WindingSets;
@@ -86,10 +87,12 @@ pub(super) fn connected_on_torus(
 pub(super) fn connected(complex: &Complex) -> UnionFind {
     let points = complex.vertices.rows().last().map_or(0, |&[v]| v as usize + 1);
     let sets = UnionFind::new(points);
-    complex.edges.rows().par_iter().zip(complex.edges.classes()).for_each(|(&[a, b], class)| {
-        if *class != Class::Exterior {
-            sets.unite(a, b);
-        }
-    });
+    complex.edges.rows().par_iter().zip(complex.edges.classes()).coarse().for_each(
+        |(&[a, b], class)| {
+            if *class != Class::Exterior {
+                sets.unite(a, b);
+            }
+        },
+    );
     sets
 }

@@ -14,7 +14,7 @@ pub fn copies(points: &WeightedPoints, torus: Torus, around: i32) -> WeightedPoi
     moves.sort_by_key(|m| *m != [0; 3]);
     let (mut positions, mut weights) = (Vec::new(), Vec::new());
     for by in moves {
-        let along = |axis: usize| (0..3).map(|k| f64::from(by[k]) * torus.vectors()[k][axis]);
+        let along = |axis: usize| (0..3).map(move |k| f64::from(by[k]) * torus.vectors()[k][axis]);
         let place = |p: &[f64; 3]| [0, 1, 2].map(|axis| p[axis] + along(axis).sum::<f64>());
         positions.extend(points.positions().iter().map(place));
         weights.extend(points.weights());

@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, OnceLock};
 
 use rayon::ThreadPoolBuilder;
 use walpha_base::random::Random;
-use walpha_check::schema::{ComplexFile, FiltrationFile, PairsFile, PlacedComplex};
+use walpha_check::schema::{BoxVectors, ComplexFile, FiltrationFile, PairsFile, PlacedComplex};
 use walpha_check::{
     CertifyError, CertifyFiltrationError, Claim, CompareError, CompareFiltrationsError,
     EnumerateError, Extent, Monitor, certify_filtration, compare, compare_filtrations, enumerate,
@@ -110,7 +110,7 @@ fn a_judgement_of_a_torus_moves() {
     let mut file = ComplexFile::of_points(case.positions.clone(), case.alpha());
     file.edges = Some(Vec::new());
     file.vertices = Some(vec![0, 1, 2]);
-    file.periodic = Some([4.0; 3]);
+    file.periodic = Some(BoxVectors::of_sides([4.0; 3]));
     let placed = PlacedComplex::try_from(file).unwrap();
     assert_moves(4, || placed.findings(), |error| matches!(error, CertifyError::Cancelled(_)));
 }

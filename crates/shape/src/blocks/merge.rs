@@ -110,7 +110,7 @@ fn unite_sheets(blocks: &mut [Owned]) -> usize {
     }
     for (block, start) in blocks.iter_mut().zip(&starts) {
         let common: Vec<u32> = (0..block.sheets).map(|sheet| sets.find(start + sheet).0).collect();
-        block.sheets_mut().for_each(|sheet| *sheet = common[*sheet as usize]);
+        block.each_sheet(|sheet| *sheet = common[*sheet as usize]);
     }
     sets.directions().rank()
 }

@@ -9,6 +9,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use rayon::prelude::*;
 use walpha_base::Cancelled;
 use walpha_regular::internals::Predicates;
+use walpha_regular::internals::parallel::{Coarse, join};
 
 use crate::Complex;
 use crate::along::{Along, Table, is_before, starts};
@@ -42,7 +43,7 @@ pub(super) struct Slots(Vec<AtomicU64>);
 
 impl Slots {
     pub(super) fn new(rows: usize) -> Self {
-        Self((0..rows).into_par_iter().map(|_| AtomicU64::new(0)).collect())
+        Self((0..rows).into_par_iter().coarse().map(|_| AtomicU64::new(0)).collect())
     }
 
     pub(super) fn set(&self, row: usize, radius: f64) {
@@ -132,14 +133,14 @@ pub(super) fn incidence_and_radii(
         let ends = [b, a].map(|v| vertex_rows[v as usize]);
         of_vertices.refute(spheres.inside_opposite(edge), ends);
     });
-    whole.vertices.rows().par_iter().enumerate().for_each(|(row, &vertex)| {
+    whole.vertices.rows().par_iter().coarse().enumerate().for_each(|(row, &vertex)| {
         of_vertices.set_if_empty(row, || spheres.nearest_radius(vertex));
     });
     let mut facet_cells: Vec<[u32; 2]> = facet_cells.finished();
     // The lower cell first.
-    facet_cells.par_iter_mut().for_each(|sides| sides.sort_unstable());
+    facet_cells.par_iter_mut().coarse().for_each(|sides| sides.sort_unstable());
     let (cell_facets, facet_edges) =
-        rayon::join(|| cell_facets.finished(), || facet_edges.finished());
+        join(facets.len(), || cell_facets.finished(), || facet_edges.finished());
     let incidence = Incidence { facets, cell_facets, facet_cells, facet_edges, vertex_rows };
     let radii = Radii {
         cells: of_cells.finished(|radius| radius),

@@ -2,6 +2,7 @@ use std::num::NonZeroU64;
 
 use rayon::prelude::*;
 use serde::Serialize;
+use walpha_regular::internals::parallel::join;
 
 use super::levels::ByLevel;
 use super::values::Value;
@@ -75,7 +76,7 @@ impl Filtration {
     fn curve_of(&self, values: Vec<Value>) -> Curve {
         let levels = self.levels_of(&values);
         let (betti, solid_components) =
-            rayon::join(|| levels.betti(), || levels.solid_components());
+            join(levels.cells.len(), || levels.betti(), || levels.solid_components());
         let weights = &self.points().weights;
         Curve {
             betti,
@@ -99,7 +100,8 @@ impl Filtration {
     pub fn optimal_alpha(&self, components: NonZeroU64) -> Alpha {
         let values = self.values();
         let levels = self.levels_of(&values);
-        let (loose, solid) = rayon::join(|| self.loose(&levels), || levels.solid_components());
+        let (loose, solid) =
+            join(levels.cells.len(), || self.loose(&levels), || levels.solid_components());
         let first = (0..values.len()).find(|&k| loose[k] == 0 && solid[k] <= components.get());
         let first = values[first.expect("the whole triangulation is one solid")];
         self.first_alpha(first)

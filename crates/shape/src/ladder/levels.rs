@@ -1,6 +1,7 @@
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use rayon::prelude::*;
+use walpha_regular::internals::parallel::Coarse;
 use walpha_regular::internals::{Interval, Predicates};
 
 use super::Filtration;
@@ -77,7 +78,7 @@ impl Filtration {
         let spheres = self.spheres();
         let complex = self.whole.complex();
         let never = alphas.len() as u32;
-        let cells: Vec<u32> = (complex.cells.rows().par_iter().zip(&self.radii.cells))
+        let cells: Vec<u32> = (complex.cells.rows().par_iter().zip(&self.radii.cells).coarse())
             .map(|(&cell, &radius)| level(&spheres, cell, radius, &alphas))
             .collect();
         let own = OwnLevels {
@@ -124,17 +125,17 @@ impl Filtration {
             span
         };
         let facets: Vec<Span> =
-            incidence.facet_cells.par_iter().enumerate().map(of_facet).collect();
+            incidence.facet_cells.par_iter().coarse().enumerate().map(of_facet).collect();
         // Without cells, the points span no volume, and no simplex is ever interior.
         let faces =
             Span { interior: if cells.is_empty() { never } else { 0 }, ..Span::until(never) };
         let edges = Cofaces::new(complex.edges.len(), faces);
-        facets.par_iter().zip(&incidence.facet_edges).for_each(|(&facet, on)| {
+        facets.par_iter().zip(&incidence.facet_edges).coarse().for_each(|(&facet, on)| {
             on.iter().for_each(|&edge| edges.add(edge as usize, facet));
         });
         let edges = edges.finished(own.edges);
         let vertices = Cofaces::new(complex.vertices.len(), faces);
-        edges.par_iter().zip(complex.edges.rows()).for_each(|(&edge, ends)| {
+        edges.par_iter().zip(complex.edges.rows()).coarse().for_each(|(&edge, ends)| {
             for &v in ends {
                 vertices.add(incidence.vertex_rows[v as usize] as usize, edge);
             }
@@ -150,7 +151,7 @@ struct Cofaces(Vec<[AtomicU32; 2]>);
 impl Cofaces {
     fn new(rows: usize, span: Span) -> Self {
         let row = |_| [span.regular, span.interior].map(AtomicU32::new);
-        Self((0..rows).into_par_iter().map(row).collect())
+        Self((0..rows).into_par_iter().coarse().map(row).collect())
     }
 
     /// Accounts for a coface, like [`Span::add_coface`].
@@ -173,7 +174,7 @@ impl Cofaces {
             span.set_first(own(row));
             span
         };
-        self.0.into_par_iter().enumerate().map(span).collect()
+        self.0.into_par_iter().coarse().enumerate().map(span).collect()
     }
 }
 
@@ -319,7 +320,7 @@ impl Levels<'_> {
     /// later: each once for all levels. O(n).
     pub fn facets(&self) -> Vec<([u32; 3], Span)> {
         let incidence = &self.filtration.incidence;
-        let shown = self.facets.par_iter().enumerate();
+        let shown = self.facets.par_iter().coarse().enumerate();
         let shown = shown.filter(|(_, span)| span.first < span.interior);
         shown.map(|(row, span)| (self.oriented(row, incidence.facet_cells[row]), *span)).collect()
     }
@@ -375,7 +376,7 @@ impl Levels<'_> {
     /// of their sorted rows.
     fn outward(&self, level: u32) -> Vec<[u32; 3]> {
         let incidence = &self.filtration.incidence;
-        let regular = self.facets.par_iter().enumerate();
+        let regular = self.facets.par_iter().coarse().enumerate();
         let regular = regular.filter(|(_, span)| span.class(level) == Class::Regular);
         regular.map(|(row, _)| self.oriented(row, incidence.facet_cells[row])).collect()
     }

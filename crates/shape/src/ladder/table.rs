@@ -1,5 +1,6 @@
 use rayon::prelude::*;
 use serde::Serialize;
+use walpha_regular::internals::parallel::join;
 
 use super::levels::{ByLevel, Span};
 use super::topology::UpperBetti;
@@ -65,7 +66,8 @@ impl Filtration {
 impl Levels<'_> {
     /// The measurements of each level; see [`Filtration::ladder`].
     pub fn ladder(&self, domain: f64) -> Ladder {
-        let ((voids, betti), (solid, measures)) = rayon::join(
+        let ((voids, betti), (solid, measures)) = join(
+            self.cells.len(),
             || {
                 let mut voids = vec![Vec::new(); self.len()];
                 let mut closed = vec![UpperBetti::default(); self.len()];

@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use rayon::prelude::*;
 use walpha_regular::Torus;
 use walpha_regular::internals::number::lowest_bit;
+use walpha_regular::internals::parallel::Coarse;
 use walpha_regular::internals::{Interval, Predicates};
 
 use super::Filtration;
@@ -57,7 +58,7 @@ impl Filtration {
                 alphas.into_iter().map(Value::First).collect()
             }
         };
-        clusters(&radii).par_iter().map_init(HashMap::new, split).flatten_iter().collect()
+        clusters(&radii).par_iter().coarse().map_init(HashMap::new, split).flatten_iter().collect()
     }
 
     /// About `most` of the critical values, with ranks as even as possible, without exact arithmetic: for values that rounded
@@ -76,7 +77,7 @@ impl Filtration {
     /// The squared radii of all spheres that are empty, as intervals, ascending.
     fn sorted_radii(&self) -> Vec<(Interval, Row)> {
         let own = |radii: &[Radius], row: fn(u32) -> Row| -> Vec<(Interval, Row)> {
-            let known = radii.par_iter().enumerate();
+            let known = radii.par_iter().coarse().enumerate();
             known
                 .filter_map(|(i, radius)| Some((Interval::around(radius.known()?), row(i as u32))))
                 .collect()
@@ -189,7 +190,8 @@ const LOWEST_UNIT: i32 = -500;
 pub(super) fn is_small_lattice(points: &WeightedPoints, torus: Option<Torus>) -> bool {
     let vectors = torus.map(|torus| torus.vectors());
     let vectors = vectors.as_slice().as_flattened().as_flattened();
-    let coordinates = || points.positions.as_flattened().par_iter().chain(vectors).copied();
+    let coordinates =
+        || points.positions.as_flattened().par_iter().chain(vectors).coarse().copied();
     let lowest = coordinates().filter_map(lowest_bit).min().unwrap_or(0);
     let largest = coordinates().map(f64::abs).reduce(|| 0.0, f64::max);
     lowest > LOWEST_UNIT && largest < 2f64.powi(lowest.saturating_add(SMALL_BITS))

@@ -14,6 +14,7 @@ mod view;
 
 use rayon::prelude::*;
 use walpha_regular::MAX_COORDINATE;
+use walpha_regular::internals::parallel::Coarse;
 
 use super::{AlphaShape, Class, Complex, OutlineError};
 pub use rings::Polygon;
@@ -66,7 +67,7 @@ impl Outline {
     fn of(complex: &Complex, positions: &[[f64; 3]], area: f64) -> Result<Self, OutlineError> {
         let view = View::of(positions)?;
         let seen = view.seen();
-        let in_shape = complex.facets.rows().par_iter().zip(complex.facets.classes());
+        let in_shape = complex.facets.rows().par_iter().zip(complex.facets.classes()).coarse();
         let in_shape = in_shape.filter(|&(_, &class)| class != Class::Exterior);
         let triangles = Triangles::new(in_shape.map(|(&row, _)| seen.turned(row)).collect());
         let complex = classes::in_plane(complex, &triangles);

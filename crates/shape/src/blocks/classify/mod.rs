@@ -21,6 +21,7 @@ use std::sync::Mutex;
 use rayon::prelude::*;
 use walpha_base::monitor::Units;
 use walpha_base::{Cancelled, UnionFind};
+use walpha_regular::internals::parallel::Coarse;
 use walpha_regular::internals::{CellArrays, Predicates};
 
 use super::block::{Block, BlockParams, TRIANGULATION, WORK};
@@ -102,5 +103,5 @@ fn component_pairs(components: &UnionFind, input: &[u32]) -> Vec<[u32; 2]> {
         let root = components.find(v);
         (root != v).then(|| [input[v as usize], input[root as usize]])
     };
-    (0..input.len() as u32).into_par_iter().filter_map(pair).collect()
+    (0..input.len() as u32).into_par_iter().coarse().filter_map(pair).collect()
 }

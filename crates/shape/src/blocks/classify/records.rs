@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use rayon::prelude::*;
+use walpha_regular::internals::parallel::Coarse;
 
 use crate::Class;
 use crate::blocks::gather::Counts;
@@ -236,11 +237,11 @@ impl Owned {
         self.buckets.par_iter().flatten()
     }
 
-    /// The sheets at all records, and those of shared sides.
-    pub(in crate::blocks) fn sheets_mut(&mut self) -> impl ParallelIterator<Item = &mut u32> {
+    /// Visits the sheets at all records, and those of shared sides.
+    pub(in crate::blocks) fn each_sheet(&mut self, visit: impl Fn(&mut u32) + Sync) {
         let records = self.buckets.par_iter_mut().flatten();
-        let recorded = records.flat_map_iter(|records| &mut records.sheets);
-        recorded.chain(self.shared.par_iter_mut().map(|side| &mut side.sheet))
+        records.for_each(|records| records.sheets.iter_mut().for_each(&visit));
+        self.shared.par_iter_mut().coarse().for_each(|side| visit(&mut side.sheet));
     }
 
     /// The number of points.

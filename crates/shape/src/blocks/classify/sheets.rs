@@ -39,12 +39,12 @@ impl Sheets {
     /// Replaces corners by the numbers of their sheets, which count from 0.
     pub(super) fn number(self, owned: &mut Owned) {
         let is_sheet: Vec<_> = (0..self.sets.members()).map(|_| AtomicBool::new(false)).collect();
-        owned.sheets_mut().for_each(|corner| {
+        owned.each_sheet(|corner| {
             *corner = self.sets.find(self.at(*corner));
             is_sheet[*corner as usize].store(true, Relaxed);
         });
         let (number, count) = ranks(&is_sheet, |is_sheet| is_sheet.load(Relaxed));
-        owned.sheets_mut().for_each(|root| *root = number[*root as usize]);
+        owned.each_sheet(|root| *root = number[*root as usize]);
         owned.sheets = count;
     }
 }

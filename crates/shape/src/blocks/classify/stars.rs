@@ -1,4 +1,5 @@
 use rayon::prelude::*;
+use walpha_regular::internals::parallel::FEW;
 
 use super::state::State;
 
@@ -31,7 +32,7 @@ impl<'a> Stars<'a> {
     /// The stars of the vertices below `own`. O(cells).
     pub(super) fn new(cells: &'a [[u32; 4]], own: u32, states: &[State]) -> Self {
         let ranges = (own as usize).div_ceil(RANGE);
-        let length = cells.len().div_ceil(CHUNKS).max(1);
+        let length = cells.len().div_ceil(CHUNKS).max(FEW);
         // The chunk's corners at own points, each with its range.
         let near = |chunk: usize| {
             let cells = (chunk * length..).zip(&cells[chunk * length..]).take(length);

@@ -12,6 +12,7 @@ use std::sync::OnceLock;
 use rayon::prelude::*;
 use walpha_base::{Monitor, memory};
 use walpha_regular::TriangulationError;
+use walpha_regular::internals::parallel::{Coarse, FEW, join};
 
 use super::build::{Radii, Radius};
 use super::levels::OwnLevels;
@@ -102,7 +103,8 @@ impl Filtration {
             format!("the order of {} simplices", numbers.all())
         })?;
         let done = |parts| monitor.report(parts, 4);
-        let (levels, (cells, cell_rows)) = rayon::join(
+        let (levels, (cells, cell_rows)) = join(
+            numbers.all(),
             || {
                 let Ranks { values, of } = Ranks::of(self, numbers)?;
                 done(2)?;
@@ -150,10 +152,11 @@ fn sorted_cells(rows: &[[u32; 4]]) -> (Vec<[u32; 4]>, Vec<u32>) {
         row.sort_unstable();
         row
     };
-    let mut numbered: Vec<_> = rows.par_iter().map(sorted).zip(0..rows.len() as u32).collect();
+    let mut numbered: Vec<_> =
+        rows.par_iter().coarse().map(sorted).zip(0..rows.len() as u32).collect();
     let runs = numbered.par_chunk_by_mut(|(a, _), (b, _)| a[..2] == b[..2]);
     runs.for_each(<[_]>::sort_unstable);
-    numbered.into_par_iter().unzip()
+    numbered.into_par_iter().coarse().unzip()
 }
 
 impl Ordered<'_> {
@@ -300,6 +303,11 @@ const CHUNK: usize = 1 << 20;
 ///
 /// Two counting sorts: into ranges of consecutive ranks, and within each range, where counters fit a cache. O(n).
 pub(super) fn by_rank(all: usize, ranks: usize, rank: impl Fn(u32) -> u32 + Sync) -> Vec<u32> {
+    if all <= FEW {
+        let mut order: Vec<u32> = (0..all as u32).collect();
+        order.sort_by_key(|&simplex| rank(simplex));
+        return order;
+    }
     let shift = ranks.div_ceil(PARTS).next_power_of_two().ilog2();
     let distribute = |from: usize| {
         let to = all.min(from + CHUNK);

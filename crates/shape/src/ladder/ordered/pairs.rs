@@ -3,6 +3,7 @@
 //! doi:10.1016/0167-8396(95)00016-Y).
 
 use walpha_base::UnionFind;
+use walpha_regular::internals::parallel::join;
 
 use super::{Ordered, Pairs};
 use crate::ladder::Filtration;
@@ -15,7 +16,7 @@ impl Ordered<'_> {
     pub fn pairs(&self) -> &Pairs {
         self.pairs.get(|| {
             let ((components, lasting), voids) =
-                rayon::join(|| self.component_pairs(), || self.void_pairs());
+                join(self.order().len(), || self.component_pairs(), || self.void_pairs());
             Pairs { components, lasting, ..voids }
         })
     }

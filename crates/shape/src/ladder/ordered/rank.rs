@@ -8,6 +8,7 @@ use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 use walpha_base::memory::{self, NoMemory};
+use walpha_regular::internals::parallel::{Coarse, FEW};
 use walpha_regular::internals::{Predicates, Ratio, SmallRadius};
 
 use super::numbers::Numbers;
@@ -46,13 +47,16 @@ impl Ranks {
         })?;
         collect(filtration, numbers, &mut radii);
         radii.par_sort_unstable();
+        let radii_count = radii.len();
         let lattice = is_small_lattice(filtration.points(), filtration.torus());
         let exact = ExactOrder { filtration, numbers, spheres, lattice };
         let several: Vec<_> =
             radii.chunk_by_mut(|a, b| a.0 == b.0).filter(|run| run.len() > 1).collect();
         // Simplices whose values differ from those before them, though the nearest doubles are equal.
-        let mut steps: Vec<u32> =
-            several.into_par_iter().flat_map_iter(|run| exact.split_ties(run)).collect();
+        let least = if radii_count <= FEW { FEW } else { 1 };
+        let mut steps: Vec<u32> = (several.into_par_iter().with_min_len(least))
+            .flat_map_iter(|run| exact.split_ties(run))
+            .collect();
         steps.par_sort_unstable();
         let is_first = |at: usize| {
             let (key, simplex) = radii[at];
@@ -123,7 +127,10 @@ impl ExactOrder<'_> {
     /// Sorts a run of equal doubles by exact value, and returns the first simplex of each value but the smallest.
     fn split_ties(&self, run: &mut [Radius]) -> Vec<u32> {
         if let Some(first) = self.small(run[0].1)
-            && run.par_iter().all(|&(_, s)| self.small(s).is_some_and(|small| small.equals(first)))
+            && run
+                .par_iter()
+                .coarse()
+                .all(|&(_, s)| self.small(s).is_some_and(|small| small.equals(first)))
         {
             return Vec::new();
         }

@@ -1,0 +1,27 @@
+//! Work on all threads where it is worth waking them. That takes some ten microseconds, in which one thread does a thousand simple
+//! steps.
+
+use rayon::iter::{IndexedParallelIterator, MinLen};
+
+/// The number of items, each of which takes some ten nanoseconds, that one thread does alone.
+pub const FEW: usize = 1 << 11;
+
+/// Parallel iterators over many small items.
+pub trait Coarse: IndexedParallelIterator {
+    /// Leaves parts of [`FEW`] items to one thread. Fewer than twice as many items are done by the calling thread, and no other is
+    /// woken.
+    fn coarse(self) -> MinLen<Self> {
+        self.with_min_len(FEW)
+    }
+}
+
+impl<I: IndexedParallelIterator> Coarse for I {}
+
+/// Calls two functions, at the same time if they work on more than [`FEW`] items.
+pub fn join<A: Send, B: Send>(
+    items: usize,
+    a: impl FnOnce() -> A + Send,
+    b: impl FnOnce() -> B + Send,
+) -> (A, B) {
+    if items > FEW { rayon::join(a, b) } else { (a(), b()) }
+}
