@@ -37,7 +37,7 @@ impl Filtration {
     ) -> PyResult<Self> {
         let torus = torus(periodic.as_deref())?;
         let points = weighted(points, weights, None)?;
-        let made = run(py, &task, move || {
+        let made = run(py, &task.of(points.positions.len()), move || {
             Stage::Filtration.begin()?;
             let positions = points.positions;
             let weights = points.weights.unwrap_or_else(|| vec![0.0; positions.len()]);
@@ -60,7 +60,7 @@ impl Filtration {
     fn shape(&self, py: Python<'_>, alpha: f64, exterior: bool, task: Task<'_>) -> PyResult<Shape> {
         let alpha = Alpha::from_squared(alpha).map_err(told)?;
         let filtration = Arc::clone(&self.0);
-        let shape = run(py, &task, move || {
+        let shape = run(py, &task.of(self.0.points().len()), move || {
             Stage::Ladder.begin()?;
             let levels = filtration.levels(&[alpha]);
             Ok::<_, ShapeError>(levels.shape(0, exterior, levels.betti()[0]))
@@ -78,7 +78,7 @@ impl Filtration {
         let alphas = numbers(alphas)?.into_iter().map(Alpha::from_squared);
         let alphas: Vec<Alpha> = alphas.collect::<Result<_, _>>().map_err(told)?;
         let filtration = Arc::clone(&self.0);
-        run(py, &task, move || {
+        run(py, &task.of(self.0.points().len()), move || {
             Stage::Ladder.begin()?;
             let hull = filtration.whole().measures().volume;
             Ok::<_, ShapeError>(json(&filtration.ladder(&alphas, hull).levels))
@@ -88,7 +88,7 @@ impl Filtration {
     /// The topology at every critical value.
     fn curve<'py>(&self, py: Python<'py>, task: Task<'_>) -> PyResult<Columns<'py>> {
         let filtration = Arc::clone(&self.0);
-        let (alphas, columns) = run(py, &task, move || {
+        let (alphas, columns) = run(py, &task.of(self.0.points().len()), move || {
             Stage::Curve.begin()?;
             let curve = filtration.curve();
             let alphas: Vec<f64> = curve.alphas().collect();
@@ -124,7 +124,7 @@ impl Filtration {
     /// All simplices in order.
     fn simplices(&self, py: Python<'_>, task: Task<'_>) -> PyResult<Simplices> {
         let filtration = Arc::clone(&self.0);
-        run(py, &task, move || {
+        run(py, &task.of(self.0.points().len()), move || {
             Stage::Order.begin()?;
             let ordered = Owned::try_new(filtration, |own| own.simplices())?;
             Ok::<_, ShapeError>(Simplices { ordered: Arc::new(ordered), entries: OnceLock::new() })
@@ -142,7 +142,7 @@ impl Filtration {
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let vertices = numbers(vertices)?;
         let filtration = Arc::clone(&self.0);
-        let found = run(py, &task, move || {
+        let found = run(py, &task.of(self.0.points().len()), move || {
             let mut found = Vec::with_capacity(4 * vertices.len());
             for simplex in vertices.chunks_exact(corners) {
                 for ladder::Derivative { position: [x, y, z], weight, .. } in
@@ -159,7 +159,7 @@ impl Filtration {
     /// Values of α to try, as JSON.
     fn suggestions(&self, py: Python<'_>, task: Task<'_>) -> PyResult<String> {
         let filtration = Arc::clone(&self.0);
-        run(py, &task, move || {
+        run(py, &task.of(self.0.points().len()), move || {
             Stage::Curve.begin()?;
             Ok::<_, ShapeError>(json(&filtration.suggest(&filtration.curve())))
         })
@@ -170,7 +170,7 @@ impl Filtration {
         let components = NonZeroU64::new(components)
             .ok_or_else(|| wrong("components=0 makes no sense: give a number from 1 up"))?;
         let filtration = Arc::clone(&self.0);
-        run(py, &task, move || {
+        run(py, &task.of(self.0.points().len()), move || {
             Stage::Alpha.begin()?;
             Ok::<_, ShapeError>(filtration.optimal_alpha(components).squared())
         })
@@ -251,7 +251,8 @@ impl Simplices {
         work: impl FnOnce(&Ordered<'_>) -> Result<T, ShapeError> + Send + 'static,
     ) -> PyResult<T> {
         let ordered = Arc::clone(&self.ordered);
-        run(py, &Task::default(), move || {
+        let points = self.ordered().filtration().points().len();
+        run(py, &Task::default().of(points), move || {
             Stage::Pairs.begin()?;
             work(ordered.borrow_dependent())
         })

@@ -49,6 +49,7 @@ impl Triangulation {
     ) -> PyResult<Self> {
         let Points { positions, weights, .. } = weighted(points, weights, None)?;
         let weights = weights.unwrap_or_else(|| vec![0.0; positions.len()]);
+        let task = task.of(positions.len());
         let arrays = run(py, &task, move || Arrays::of(positions, weights))?;
         Ok(Self(Arc::new(arrays)))
     }

@@ -4,7 +4,6 @@ use std::num::NonZeroUsize;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::Arc;
 use std::sync::mpsc::{RecvTimeoutError, sync_channel};
-use std::thread;
 use std::time::{Duration, Instant};
 
 use pyo3::exceptions::PyMemoryError;
@@ -29,6 +28,18 @@ const STACK: usize = 8 << 20;
 #[derive(FromPyObject, Default)]
 pub struct Task<'py>(Option<NonZeroUsize>, Option<Bound<'py, PyAny>>);
 
+impl Task<'_> {
+    /// The task with one thread, unless another number was asked for, if it works on so few points that more threads would take
+    /// longer to start than the work.
+    #[must_use]
+    pub fn of(self, points: usize) -> Self {
+        /// They take some milliseconds.
+        const FEW: usize = 2000;
+        let Self(threads, progress) = self;
+        Self(threads.or_else(|| (points <= FEW).then_some(NonZeroUsize::MIN)), progress)
+    }
+}
+
 /// Does work in separate threads while other threads of Python run, and returns its result.
 ///
 /// This thread waits; it asks Python for interrupts and calls the task's `progress`. After an
@@ -49,14 +60,11 @@ where
     call.reserve();
     let (sender, mut receiver) = sync_channel(1);
     let mut starved = None;
-    let waiting = thread::Builder::new().name("walpha".into());
-    let started = waiting.spawn(move || {
-        let outcome =
-            catch_unwind(AssertUnwindSafe(|| threads.install(|| call.monitor().watch(work))));
+    threads.spawn(move || {
+        let outcome = catch_unwind(AssertUnwindSafe(|| call.monitor().watch(work)));
         // After an interrupt there is no receiver.
         let _ = sender.send(outcome);
     });
-    started.map_err(|_| no_threads())?;
     loop {
         // A receiver may be sent to where Python is not, but not lent.
         let (back, received) = py.detach(move || {
@@ -98,9 +106,7 @@ fn no_memory() -> PyErr {
 /// `RAYON_NUM_THREADS` or the number of cores does; if so many are not available, there are fewer.
 fn pool(call: &Arc<Call>, asked: Option<NonZeroUsize>) -> PyResult<ThreadPool> {
     let call = Arc::clone(call);
-    // The last is for the thread that waits for them.
-    let available = threads::available(threads::wanted(asked.map(NonZeroUsize::get)) + 1, STACK)
-        .saturating_sub(1);
+    let available = threads::available(threads::wanted(asked.map(NonZeroUsize::get)), STACK);
     if available == 0 {
         return Err(no_threads());
     }

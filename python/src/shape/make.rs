@@ -72,6 +72,7 @@ pub fn alpha_shape(
 ) -> PyResult<Shape> {
     let recipe = recipe_of(settings)?;
     let points = weighted(points, weights, values)?;
+    let task = task.of(points.positions.len());
     let model = run(py, &task, move || recipe.run_points(points))?;
     Ok(Shape::of(model))
 }
