@@ -37,6 +37,7 @@ mod quick;
 mod real;
 mod scatter;
 mod simplex;
+mod surface;
 mod union;
 
 pub use cavities::{Cavity, Pocket};
@@ -46,6 +47,7 @@ pub use discs::DiscUnion;
 pub use error::BallsError;
 pub use gradient::{Gradient, Gradients};
 pub use real::Bounded;
+pub use surface::BallSurface;
 pub use union::{BallUnion, Contacts, Measured};
 
 /// Compiles and runs the example in the README.
