@@ -25,7 +25,8 @@ use sphere::Sphere;
 /// The boundary of a union of balls as triangles, each on the sphere of one ball.
 ///
 /// The mesh is closed: each edge belongs to two triangles, once in each direction. At single vertices it may touch itself. A patch
-/// that is smaller than a millionth of its ball may be missing; those around it meet there.
+/// that is smaller than a millionth of its ball may be missing, and where such are crowded, one smaller than a thousandth; those around it
+/// meet there.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct BallSurface {
@@ -66,10 +67,27 @@ impl BallUnion<'_> {
         if self.shape.options().periodic.is_some() {
             return Err(BallsError::Seam);
         }
-        let monitor = &*Monitor::current();
         let sphere = Sphere::new(tolerance);
         self.afford(&sphere)?;
-        let arcs = Arcs::of(self, tolerance)?;
+        let monitor = &*Monitor::current();
+        let first = self.triangulated(&sphere, 1.0, monitor);
+        let Err(BallsError::Unresolved { .. }) = first else { return first };
+        // What became one vertex was too near to others. With larger parts for points it is not.
+        let again = monitor.unreported();
+        self.triangulated(&sphere, 32.0, &again).or_else(|error| match error {
+            BallsError::Unresolved { .. } => self.triangulated(&sphere, 1024.0, &again),
+            _ => Err(error),
+        })
+    }
+
+    /// The surface, in which lengths below this factor of the shortest that can be told are points.
+    fn triangulated(
+        &self,
+        sphere: &Sphere,
+        factor: f64,
+        monitor: &Monitor,
+    ) -> Result<BallSurface, BallsError> {
+        let arcs = Arcs::of(self, sphere.tolerance, factor)?;
         let pairs = self.complex.edges.rows().iter().copied();
         let (edges, at_ball) = rows_of(pairs, self.points.len())?;
         let work = Work { union: self, sphere, arcs, edges, at_ball };
@@ -159,7 +177,7 @@ struct Arcs {
 }
 
 impl Arcs {
-    fn of(union: &BallUnion<'_>, tolerance: f64) -> Result<Self, BallsError> {
+    fn of(union: &BallUnion<'_>, tolerance: f64, factor: f64) -> Result<Self, BallsError> {
         let BallUnion { complex, points, .. } = union;
         let (mut vertices, ends) = corners(union)?;
         let joined = UnionFind::new(vertices.len());
@@ -174,7 +192,7 @@ impl Arcs {
             if class == Class::Interior {
                 continue;
             }
-            let circle = OnCircle::of(union, balls);
+            let circle = OnCircle::of(union, balls, factor);
             let Some(circle) = circle else {
                 // Spheres that touch share no arc; of triangles there, all points are one.
                 ends[first..at].windows(2).for_each(|two| {
@@ -214,16 +232,16 @@ impl Arcs {
         }
         let (rows, of_ball) = rows_of(chains.iter().map(|(balls, _)| *balls), points.len())?;
         let mut arcs = Self { vertices, chains, rows, of_ball };
-        arcs.join(union);
+        arcs.join(union, factor);
         Ok(arcs)
     }
 
     /// Makes one vertex of those on a ball that rounding hardly tells apart: where more than three spheres share a point, or more than two a circle.
-    fn join(&mut self, union: &BallUnion<'_>) {
+    fn join(&mut self, union: &BallUnion<'_>, factor: f64) {
         let joined = UnionFind::new(self.vertices.len());
         (0..union.points.len() as u32).into_par_iter().for_each(|v| {
             let radius = union.points.squared_radius::<Single>(v).sqrt().value;
-            let near = shortest(radius, union.points.positions[v as usize]);
+            let near = factor * shortest(radius, union.points.positions[v as usize]);
             let mut on_ball: Vec<u32> =
                 self.chains_of(v).flat_map(|(_, chain)| chain).copied().collect();
             let place = |v: u32| self.vertices[v as usize];
@@ -364,14 +382,14 @@ struct OnCircle {
 
 impl OnCircle {
     /// `None` if the circle is a point.
-    fn of(union: &BallUnion<'_>, ends: [u32; 2]) -> Option<Self> {
+    fn of(union: &BallUnion<'_>, ends: [u32; 2], factor: f64) -> Option<Self> {
         let points = &union.points;
         let balls = points.balls(ends);
         let height = Edge::measured(balls, points.alpha).heights[0].value;
         let radius = Circle::measured(balls, points.alpha).radius.value;
         let axis = unit(sub(balls[1].centre, balls[0].centre))?;
         let of = |v: u32| points.squared_radius::<Single>(v).sqrt().value;
-        let shortest = shortest(of(ends[0]).min(of(ends[1])), balls[0].centre);
+        let shortest = factor * shortest(of(ends[0]).min(of(ends[1])), balls[0].centre);
         let least = (0..3).min_by(|&a, &b| axis[a].abs().total_cmp(&axis[b].abs()))?;
         let mut across = [0.0; 3];
         across[least] = 1.0;
@@ -491,7 +509,7 @@ impl OnCircle {
 /// What the patches are made of.
 struct Work<'a> {
     union: &'a BallUnion<'a>,
-    sphere: Sphere,
+    sphere: &'a Sphere,
     arcs: Arcs,
     /// The edges of each ball: `edges[at_ball[v]..at_ball[v + 1]]`.
     edges: Vec<u32>,
@@ -520,7 +538,7 @@ impl Work<'_> {
             return Ok(if is_whole { self.sphere.whole(centre, radius) } else { Patch::default() });
         }
         let caps = self.caps(v);
-        patch::triangulate(centre, radius, &self.arcs.vertices, rim, &caps, &self.sphere)
+        patch::triangulate(centre, radius, &self.arcs.vertices, rim, &caps, self.sphere)
             .ok_or(BallsError::Unresolved { ball: v })
     }
 

@@ -201,7 +201,7 @@ fn hard_sets_have_closed_surfaces() {
         }
         let shape = shape(&centers, &squares);
         let union = BallUnion::new(&shape).unwrap();
-        let surface = union.surface(0.05).unwrap();
+        let surface = union.surface(0.05).unwrap_or_else(|error| panic!("seed {seed}: {error}"));
         assert_closed(&surface);
         let (volume, _) = measures(&surface, count);
         let wanted = union.volume().value;
