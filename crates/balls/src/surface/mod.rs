@@ -10,6 +10,8 @@
 mod patch;
 mod sphere;
 
+use std::ops::RangeInclusive;
+
 use rayon::prelude::*;
 use walpha_base::vector::{V3, add, along, cross, dot, sub, unit};
 use walpha_base::{Monitor, UnionFind, memory};
@@ -41,9 +43,11 @@ pub struct BallSurface {
 impl BallUnion<'_> {
     /// The tolerance of [`surface`](Self::surface) that suits pictures and meshes: 0.01.
     pub const SURFACE_TOLERANCE: f64 = 0.01;
+    /// The tolerances that a surface may have.
+    pub const SURFACE_TOLERANCES: RangeInclusive<f64> = 1e-6..=0.5;
 
     /// The boundary of the union as a closed mesh of triangles. Those of a ball are chords of its sphere, and no farther from it than `tolerance`
-    /// times its radius, from 10⁻⁶ to 0.5: a sphere has about 2.4/`tolerance` vertices. The boundaries of voids are included. The mesh does not
+    /// times its radius ([`Self::SURFACE_TOLERANCES`]): a sphere has about 2.4/`tolerance` vertices. The boundaries of voids are included. The mesh does not
     /// depend on the number of threads, and has no error but the tolerance and rounding.
     ///
     /// ```
@@ -61,7 +65,7 @@ impl BallUnion<'_> {
     /// A tolerance that is out of range; a torus, whose sides would cut the mesh; a patch that cannot be resolved, as its features are no larger than
     /// the rounding of coordinates; out of memory; cancelled by a [`Monitor`] that watches.
     pub fn surface(&self, tolerance: f64) -> Result<BallSurface, BallsError> {
-        if !(1e-6..=0.5).contains(&tolerance) {
+        if !Self::SURFACE_TOLERANCES.contains(&tolerance) {
             return Err(BallsError::Tolerance { tolerance });
         }
         if self.shape.options().periodic.is_some() {
