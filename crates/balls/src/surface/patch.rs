@@ -4,10 +4,10 @@
 //! circle of that cap are a face of the hull, and neighbours on the circle are joined by an edge: the hull has all edges of the arcs, and what
 //! is on their left is the patch. It is computed exactly as the link of the ball's centre in a triangulation in space.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::HashSet;
 
 use walpha_base::vector::{V3, add, along, cross, dot, length, scale, sub, unit};
-use walpha_regular::triangulate as triangulate_in_space;
+use walpha_regular::internals::Growing;
 
 use super::sphere::Sphere;
 use crate::BallUnion;
@@ -101,11 +101,12 @@ pub(super) fn triangulate(
     points.extend(on_rim.iter().map(|&v| scale(sub(vertices[v as usize], centre), 1.0 / radius)));
     let margin = APART * sphere.spacing;
     points.extend(sphere.points.iter().filter(|point| outside(point, margin)));
-    let mut triangles = on_left(&points, &edges)?;
+    let mut hull = Hull::new(&points, edges)?;
+    let mut triangles = hull.on_left()?;
     for _ in 0..ROUNDS {
         let mut more: Vec<V3> = Vec::new();
         for corners in &triangles {
-            let places = corners.map(|v| points[v as usize + 1]);
+            let places = corners.map(|v| hull.place(v));
             let Some((point, off)) = farthest(places) else { continue };
             if off <= sphere.tolerance {
                 continue;
@@ -120,8 +121,9 @@ pub(super) fn triangulate(
         if more.is_empty() {
             break;
         }
+        hull.insert(&more)?;
         points.extend(more);
-        triangles = on_left(&points, &edges)?;
+        triangles = hull.on_left()?;
     }
     let inner = points[on_rim.len() + 1..].iter().map(|&point| along(centre, radius, point));
     Some(Patch { inner: inner.collect(), rim: on_rim, triangles })
@@ -152,65 +154,93 @@ fn longest_edge([a, b, c]: [V3; 3]) -> V3 {
     unit(add(p, q)).unwrap_or(p)
 }
 
-/// The triangles of the hull of points around the first, those on the left of the edges and what is joined to them by others. Vertices are counted
-/// from the second point. `None` if an edge is not one of the hull, or has the patch on both sides.
-fn on_left(points: &[V3], edges: &[[u32; 2]]) -> Option<Vec<[u32; 3]>> {
-    let triangulation = triangulate_in_space(points, None).ok()?;
-    let infinite = triangulation.infinite_vertex();
-    let mut link = Vec::new();
-    for &[a, b, c, d] in triangulation.cells() {
-        if [a, b, c, d].contains(&infinite) {
-            continue;
-        }
-        // Seen from the centre, a, b, c turn counter-clockwise if it is the last corner.
-        link.push(
-            match [a, b, c, d].iter().position(|&v| v == 0) {
-                Some(3) => [b, a, c],
-                Some(2) => [a, b, d],
-                Some(1) => [c, a, d],
-                Some(_) => [b, c, d],
-                // Points of a circle that rounding takes out of its plane.
-                None => continue,
+/// The convex hull of points on a sphere around its centre, which is their Delaunay triangulation there: the link of the centre in a triangulation
+/// in space.
+struct Hull {
+    growing: Growing,
+    /// The edges that have the patch on their left, sorted.
+    edges: Vec<[u32; 2]>,
+}
+
+impl Hull {
+    /// The number of the centre, and of the first of the other points.
+    const CENTRE: u32 = Growing::FIRST;
+    const FIRST: u32 = Self::CENTRE + 1;
+
+    /// The hull of the points after the first, which is the centre.
+    fn new(points: &[V3], mut edges: Vec<[u32; 2]>) -> Option<Self> {
+        edges.sort_unstable();
+        Some(Self { growing: Growing::new(points).ok()?, edges })
+    }
+
+    fn insert(&mut self, points: &[V3]) -> Option<()> {
+        let numbers = self.growing.register(points, &vec![0.0; points.len()]);
+        self.growing.insert(&numbers.collect::<Vec<_>>()).ok()
+    }
+
+    /// The place of a point that is not the centre.
+    fn place(&self, v: u32) -> V3 {
+        self.growing.positions()[(v + Self::FIRST) as usize]
+    }
+
+    /// The triangle of a cell at the centre, counter-clockwise seen from outside, and the corner of the cell opposite the edge from each of its vertices to
+    /// the next.
+    fn outwards(&self, cell: u32) -> Option<([u32; 3], [usize; 3])> {
+        let corners = self.growing.cells()[cell as usize].corners;
+        // Seen from the centre, the first three turn counter-clockwise if it is the last corner.
+        let [a, b, c] = match corners.iter().position(|&v| v == Self::CENTRE)? {
+            3 => [1, 0, 2],
+            2 => [0, 1, 3],
+            1 => [2, 0, 3],
+            _ => [1, 2, 3],
+        };
+        Some(([a, b, c].map(|k| corners[k] - Self::FIRST), [c, a, b]))
+    }
+
+    fn is_rim(&self, edge: [u32; 2]) -> bool {
+        self.edges.binary_search(&edge).is_ok()
+    }
+
+    /// The triangles on the left of the edges, and those that are joined to them by other edges. `None` if an edge is not one of the hull, or has the
+    /// patch on both sides.
+    fn on_left(&self) -> Option<Vec<[u32; 3]>> {
+        let cells = self.growing.cells();
+        let at_centre = (0..cells.len() as u32)
+            .filter(|&cell| self.growing.is_cell(cell))
+            .filter_map(|cell| Some((cell, self.outwards(cell)?)));
+        let mut is_left = vec![false; cells.len()];
+        let (mut stack, mut found) = (Vec::new(), 0);
+        for (cell, ([a, b, c], _)) in at_centre {
+            let on_rim = [[a, b], [b, c], [c, a]].into_iter().filter(|&edge| self.is_rim(edge));
+            let count = on_rim.count();
+            if count > 0 {
+                found += count;
+                is_left[cell as usize] = true;
+                stack.push(cell);
             }
-            .map(|v| v - 1),
-        );
-    }
-    let mut at: HashMap<[u32; 2], u32> = HashMap::with_capacity(3 * link.len());
-    for (row, &[a, b, c]) in (0..).zip(&link) {
-        at.extend([([a, b], row), ([b, c], row), ([c, a], row)]);
-    }
-    let mut on_rim: HashMap<[u32; 2], bool> = HashMap::with_capacity(2 * edges.len());
-    for &[a, b] in edges {
-        on_rim.insert([a, b], true);
-        on_rim.entry([b, a]).or_insert(false);
-    }
-    let mut is_left = vec![false; link.len()];
-    let mut stack = Vec::new();
-    for edge in edges {
-        let &row = at.get(edge)?;
-        if !std::mem::replace(&mut is_left[row as usize], true) {
-            stack.push(row);
         }
-    }
-    while let Some(row) = stack.pop() {
-        let [a, b, c] = link[row as usize];
-        for [p, q] in [[a, b], [b, c], [c, a]] {
-            match on_rim.get(&[p, q]) {
-                Some(true) => {}
-                Some(false) => return None,
-                None => {
-                    let &next = at.get(&[q, p])?;
-                    if !std::mem::replace(&mut is_left[next as usize], true) {
-                        stack.push(next);
-                    }
+        if found < self.edges.len() {
+            return None;
+        }
+        let mut triangles = Vec::new();
+        while let Some(cell) = stack.pop() {
+            let (triangle, across) = self.outwards(cell)?;
+            triangles.push(triangle);
+            let [a, b, c] = triangle;
+            for ([p, q], corner) in [[a, b], [b, c], [c, a]].into_iter().zip(across) {
+                if self.is_rim([p, q]) {
+                    continue;
+                }
+                let next = cells[cell as usize].neighbors[corner] / 4;
+                if self.is_rim([q, p]) || !self.growing.is_cell(next) {
+                    return None;
+                }
+                if !std::mem::replace(&mut is_left[next as usize], true) {
+                    stack.push(next);
                 }
             }
         }
+        triangles.sort_unstable();
+        Some(triangles)
     }
-    let mut row = 0;
-    link.retain(|_| {
-        row += 1;
-        is_left[row - 1]
-    });
-    Some(link)
 }
