@@ -190,7 +190,7 @@ fn surfaces_are_written_with_their_balls() {
     let folder = tempfile::tempdir().unwrap();
     let f = folder.path();
     write(f, "three.csv", THREE);
-    for (tolerance, off) in [("0.05", 0.06), ("0.001", 0.0012)] {
+    for (tolerance, off) in [("0.05", 0.1), ("0.001", 0.002)] {
         let outputs = ["--tolerance", tolerance, "-o", "a.stl", "a.ply", "a.vtp"];
         let facts = json(f, &[&["balls", "three.csv"][..], &outputs].concat());
         let [volume, area] = measures_of_stl(&f.join("a.stl"));
@@ -232,15 +232,11 @@ fn a_picture_shows_elements() {
     ok(f, &["balls", "water.xyz", "--size", "80x60", "--view", "top", "-o", "water.png"]);
     let picture = image::open(f.join("water.png")).unwrap().to_rgb8();
     assert_eq!(picture.dimensions(), (80, 60));
-    // Oxygen is red, hydrogens are white or gray, and so is what is around them.
-    let is_red = |[r, g, b]: [u8; 3]| r > 2 * g.max(b) && r > 100;
-    let red = picture.pixels().filter(|pixel| is_red(pixel.0)).count();
-    assert!((300..4000).contains(&red), "{red}");
-    assert!(
-        picture
-            .pixels()
-            .all(|pixel| is_red(pixel.0) || pixel.0[0] <= pixel.0[1].max(pixel.0[2]) + 150)
-    );
+    // Oxygen is red; hydrogens are white or gray, and so is what is around them.
+    let pixels = || picture.pixels().map(|pixel| pixel.0.map(u32::from));
+    let red = pixels().filter(|[r, g, b]| *r > 100 && *r > 2 * g.max(b)).count();
+    let gray = pixels().filter(|[r, g, b]| r.abs_diff(*g).max(r.abs_diff(*b)) < 30).count();
+    assert!((300..2400).contains(&red) && red + gray > 4600, "{red} {gray}");
 }
 
 #[test]

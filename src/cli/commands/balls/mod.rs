@@ -60,11 +60,12 @@ pub(crate) struct Balls {
     /// Add this length to all radii: the radius of a probe that rolls over the balls, as in 1.4 for water in Å.
     #[arg(long, value_name = "R", value_parser = options::not_negative)]
     probe: Option<f64>,
-    /// How far a facet of a surface may be from the sphere of its ball, as a part of the radius [default: 0.01].
-    #[arg(long, value_name = "PART", value_parser = tolerance)]
-    tolerance: Option<f64>,
+    // What `input` refuses comes after it, as what comes before is no longer there when it looks.
     #[command(flatten)]
     input: InputArgs,
+    /// How far a facet of a surface may be from the sphere of its ball, as a part of the radius [default: 0.01].
+    #[arg(long, value_name = "PART", value_parser = tolerance, help_heading = "Surfaces (.ply, .stl, .vtp)")]
+    tolerance: Option<f64>,
     #[command(flatten)]
     weights: Declared<WithAlpha>,
     #[command(flatten)]
