@@ -1,16 +1,21 @@
 #!/usr/bin/env python3
-"""Checks walpha's readers of molecules against gemmi and FreeSASA.
+"""Checks walpha's readers of molecules against gemmi and FreeSASA, and `walpha balls` against Voronota-LT, FreeSASA and published numbers.
 
-    scripts/check_molecules.py [--walpha target/release/walpha] [--env /tmp/walpha-molecules] [FILE...]
+    scripts/check_molecules.py [--walpha target/release/walpha] [--env /tmp/walpha-molecules] [--alphamol FOLDER] [FILE...]
 
-Makes a Python environment (once) with gemmi, FreeSASA, and MDAnalysisTests, which ships files of many programs, and reads each PDB, mmCIF
-and PQR file of it, or those named: atoms, places and elements of the first model are those of gemmi, with everything and by default, and the
-default has as many atoms as FreeSASA takes. PQR is compared with its own words. Files that walpha refuses are listed with the reason.
+Makes a Python environment (once) with gemmi, FreeSASA, Voronota-LT, and MDAnalysisTests, which ships files of many programs, and reads each PDB,
+mmCIF and PQR file of it, or those named: atoms, places and elements of the first model are those of gemmi, with everything and by default, and
+the default has as many atoms as FreeSASA takes. PQR is compared with its own words. Files that walpha refuses are listed with the reason.
+
+Then, unless files are named, it measures balls: of HIV protease (1HVR) against published numbers, and of some molecules against Voronota-LT, for
+each atom, and against FreeSASA. The balls of the crate voronota-ltr are measured if cargo has it, and the examples of AlphaMol if
+--alphamol names their folder, each against the number that is published for them.
 Prints a line for each difference; exits with 1 when there is one, and with 77 when the packages cannot be had.
 """
 
 import argparse
 import collections
+import csv
 import gzip
 import json
 import pathlib
@@ -20,13 +25,24 @@ import tempfile
 
 from environment import enter
 
-PACKAGES = ["numpy", "gemmi", "freesasa"]
+PACKAGES = ["numpy", "gemmi", "freesasa", "voronotalt"]
 # It ships files and needs MDAnalysis only for its tests.
 FILES = "MDAnalysisTests"
 # Seconds for the installation of all of them.
 PATIENCE = 600
 WATERS = {"HOH", "DOD", "H2O", "SOL", "TIP", "TIP2", "TIP3", "TIP4", "TIP5", "WAT"}
 EVERYTHING = ["--hydrogens", "--waters", "--hetero"]
+# Radii of Bondi 1964, as the published numbers of 1HVR have them.
+BONDI = {"C": 1.7, "N": 1.55, "O": 1.52, "S": 1.8}
+# Volume and area of 1HVR: the heavy atoms of the protein, without the inhibitor XK2. They were sampled, to half a percent.
+PUBLISHED_1HVR = 1514, 16511, 19832, 0.005
+# Files of the crate voronota-ltr, the probe, and the volume and the area that Voronota-LT is said to find.
+OF_VORONOTA = {
+    "balls_2zsk.xyzr": (1.4, 83956.43577433, 18649.94224553),
+    "balls_3dlb.xyzr": (1.4, 240565.9288, 58651.0195),
+}
+# Of its examples, AlphaMol prints ten digits.
+OF_ALPHAMOL = ["Vol1", "Vol2", "Vol3", "Vol4", "Vol10", "Vol30", "Vol100"]
 
 
 class Checker:
@@ -52,6 +68,23 @@ class Checker:
             return None, next(line for line in run.stderr.splitlines() if "why:" in line).split("why:")[1].strip()
         points = np.load(out)
         return np.column_stack([points["x"], points["y"], points["z"], points["weight"]]), None
+
+    def measure(self, rows, probe):
+        """The measures of balls, and those of each: volume, area."""
+        table, atoms = self.folder / "balls.csv", self.folder / "atoms.csv"
+        with table.open("w") as file:
+            file.write("x,y,z,radius\n")
+            file.writelines(",".join(map(repr, row)) + "\n" for row in rows)
+        command = [self.walpha, "balls", table, "--json", "--probe", str(probe), "-o", atoms]
+        run = subprocess.run(command, capture_output=True, text=True, check=True, timeout=600)
+        with atoms.open() as file:
+            parts = [[float(row["volume"]), float(row["area"])] for row in csv.DictReader(file)]
+        return json.loads(run.stdout)["balls"], np.array(parts)
+
+    def near(self, name, what, found, expected, tolerance):
+        """Judges a number by a relative tolerance."""
+        wrong = abs(found - expected) > tolerance * abs(expected)
+        self.judge(f"{name}, {what}", f"{found!r}, not {expected!r}" if wrong else None)
 
     def equal(self, name, found, expected):
         order = lambda rows: rows[np.lexsort(rows.T[::-1])]  # noqa: E731
@@ -141,10 +174,71 @@ def check(checker, path, refused):
             print(f"FreeSASA takes {count} atoms of {name}, not {len(found)}; left out: {left_out}")
 
 
+def xyzr(path):
+    """The last four words of each line."""
+    return [tuple(map(float, line.split()[-4:])) for line in path.read_text().splitlines() if line.strip()]
+
+
+def against_programs(checker, name, rows, probe):
+    """Volume and area of balls, as Voronota-LT and FreeSASA find them."""
+    measures, parts = checker.measure(rows, probe)
+    # The cells are freed with it.
+    tessellation = voronotalt.RadicalTessellation([voronotalt.Ball(*row) for row in rows], probe=probe)
+    cells = tessellation.cells
+    theirs = np.array([[cell.volume, cell.sas_area] for cell in cells])
+    for k, what in enumerate(("volume", "area")):
+        # It sums in doubles, without bounds: nine digits of a total are common.
+        checker.near(name, f"{what} by Voronota-LT", measures[what], theirs[:, k].sum(), 1e-7)
+        off = np.abs(parts[:, k] - theirs[:, k])
+        worst = off.argmax()
+        complaint = f"atom {worst}: {parts[worst, k]!r}, not {theirs[worst, k]!r}" if off[worst] > 1e-4 else None
+        checker.judge(f"{name}, {what} of each atom by Voronota-LT", complaint)
+    options = {"algorithm": freesasa.ShrakeRupley, "n-points": 10000, "probe-radius": probe}
+    coordinates = [x for row in rows for x in row[:3]]
+    sampled = freesasa.calcCoord(coordinates, [row[3] for row in rows], freesasa.Parameters(options))
+    # Each atom's part is a number of 10 000 points.
+    checker.near(name, "area by FreeSASA", measures["area"], sampled.totalArea(), 5e-4)
+
+
+def check_measures(checker, files, alphamol):
+    structure = gemmi.read_structure(str(next(file for file in files if file.name == "1hvr.pdb")))
+    atoms = [at for at in structure[0].all() if at.atom.element.name != "H" and at.residue.name != "XK2"]
+    rows = [(*at.atom.pos.tolist(), BONDI[at.atom.element.name]) for at in atoms]
+    count, volume, area, tolerance = PUBLISHED_1HVR
+    checker.judge("1HVR", None if len(rows) == count else f"{len(rows)} atoms, not {count}")
+    measures, _ = checker.measure(rows, 0)
+    checker.near("1HVR", "volume", measures["volume"], volume, tolerance)
+    checker.near("1HVR", "area", measures["area"], area, tolerance)
+    for probe in (0.0, 1.4):
+        against_programs(checker, f"1HVR with probe {probe}", rows, probe)
+    for folder in sorted(pathlib.Path.home().glob(".cargo/registry/src/*/voronota-ltr-*/benches/data"))[:1]:
+        for name, (probe, volume, area) in OF_VORONOTA.items():
+            measures, _ = checker.measure(xyzr(folder / name), probe)
+            checker.near(name, "volume", measures["volume"], volume, 1e-9)
+            checker.near(name, "area", measures["area"], area, 1e-9)
+    for name in OF_ALPHAMOL if alphamol else []:
+        said = dict(line.split(":", 1) for line in (alphamol / f"{name}.info").read_text().splitlines() if ":" in line)
+        said = {words.strip(): number.strip() for words, number in said.items()}
+        rows = xyzr(alphamol / f"{name}.crd")
+        measures, parts = checker.measure(rows, 0)
+        # It counts an arc with its length times the angle between the spheres, and not half of that, by which a rounded arc would have
+        # the mean of its two curvatures.
+        spheres = sum(area / row[3] for row, (_, area) in zip(rows, parts, strict=True))
+        for words, found in (
+            ("volume", measures["volume"]),
+            ("surface area", measures["area"]),
+            ("mean curvature", 2 * measures["mean_curvature"] - spheres),
+            ("Gauss curvature", measures["gaussian_curvature"]),
+        ):
+            expected = said[f"Unweighted {words}"]
+            checker.judge(f"{name}, {words}", None if f"{found:.8f}" == expected else f"{found}, not {expected}")
+
+
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--walpha", default="target/release/walpha")
     parser.add_argument("--env", default="/tmp/walpha-molecules")
+    parser.add_argument("--alphamol", type=pathlib.Path, help="AlphaMol's folder of examples")
     parser.add_argument("--inside", action="store_true", help=argparse.SUPPRESS)
     parser.add_argument("files", nargs="*")
     args = parser.parse_args()
@@ -161,6 +255,8 @@ def main():
         checker = Checker(args.walpha, folder)
         for file in files:
             check(checker, file, refused)
+        if not args.files:
+            check_measures(checker, files, args.alphamol)
     for why, names in sorted(refused.items()):
         print(f"refused: {', '.join(names)}: {why}")
     print(f"{len(files)} files, {checker.done} comparisons, {checker.wrong} wrong, {sum(map(len, refused.values()))} refused")
@@ -172,4 +268,5 @@ if __name__ == "__main__":
         import freesasa
         import gemmi
         import numpy as np
+        import voronotalt
     main()

@@ -32,7 +32,7 @@ mod _walpha {
     #[pymodule_export]
     use super::points::{columns, read_points, write_points};
     #[pymodule_export]
-    use super::shape::{Shape, alpha_shape, restored};
+    use super::shape::{Shape, Union, alpha_shape, restored};
     #[pymodule_export]
     use super::triangulation::{PowerDiagram, Triangulation};
     #[pymodule_export]

@@ -82,6 +82,27 @@ def test_a_box_is_filled():
     assert holds(balls.box_fraction, math.pi / 6)
 
 
+def test_the_surface_is_closed_and_tends_to_the_union(atoms):
+    balls = union(*atoms)
+    errors = []
+    for tolerance in (0.05, 0.0125):
+        vertices, triangles, owners = balls.surface(tolerance)
+        edges = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
+        assert len(np.unique(edges, axis=0)) == len(edges)
+        assert {*map(tuple, edges)} == {*map(tuple, edges[:, ::-1])}
+        radii = np.linalg.norm(vertices[triangles[:, 0]] - atoms[0][owners], axis=1)
+        assert radii == pytest.approx(atoms[1][owners], rel=1e-6)
+        a, b, c = vertices[triangles.T]
+        volume = (a * np.cross(b, c)).sum() / 6
+        area = np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2
+        errors.append([1 - volume / balls.volume.value, 1 - area / balls.area.value])
+    assert np.abs(errors[1]).max() < 0.0125
+    assert (np.abs(errors[0]) > 2.5 * np.abs(errors[1])).all()
+    for tolerance in (0, 1, math.nan):
+        with pytest.raises(ValueError, match="tolerance"):
+            balls.surface(tolerance)
+
+
 def test_what_has_no_union():
     with pytest.raises(ValueError, match="∞"):
         walpha.alpha_shape(np.eye(4)[:, :3], alpha=np.inf).balls

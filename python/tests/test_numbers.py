@@ -133,6 +133,7 @@ CALLS = {
     "AlphaShape.keep": (lambda **given: shape().keep(1, **given), {"min_volume": (itself, {INF, 1e308})}),
     "AlphaShape.boundary": (lambda **given: shape().boundary(**given), {"min_volume": (itself, {INF, 1e308})}),
     "Balls.gradients": (lambda **given: shape().balls.gradients(**given), {"weights": (column(), HUGE)}),
+    "Balls.surface": (lambda **given: shape().balls.surface(**given), {"tolerance": (itself, ())}),
     "triangulation": (
         lambda **given: walpha.triangulation(**{"points": CLOUD, **given}),
         {"points": (rows(), ()), "weights": (column(), ())},

@@ -25,7 +25,7 @@ import atexit as _atexit
 
 from . import _walpha
 from ._alpha_shape import alpha_shape
-from ._balls import Balls, Bounded, BoundedArray, Cavity, Contacts, Gradients
+from ._balls import Balls, BallSurface, Bounded, BoundedArray, Cavity, Contacts, Gradients
 from ._check import Comparison, Complex, Finding, Verdict, check, compare
 from ._class import Class
 from ._curves import BettiCurve, Level, Suggestions, TorusBettiCurve
@@ -42,6 +42,7 @@ __version__ = _walpha.__version__
 
 __all__ = [
     "AlphaShape",
+    "BallSurface",
     "Balls",
     "Betti",
     "BettiCurve",

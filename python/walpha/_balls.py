@@ -107,6 +107,24 @@ class Gradients(NamedTuple):
     area_by_radii: Floats
 
 
+class BallSurface(NamedTuple):
+    """The boundary of a union of balls as a closed mesh of triangles.
+
+    Attributes
+    ----------
+    vertices : ndarray of float64, (k, 3)
+        Each on the spheres of the balls that it belongs to.
+    triangles : ndarray of int64, (t, 3)
+        Counter-clockwise seen from outside.
+    balls : ndarray of int64, (t,)
+        The ball of each triangle.
+    """
+
+    vertices: Floats
+    triangles: Indices
+    balls: Indices
+
+
 class Balls:
     """The union of the balls of a shape, measured; made by :attr:`AlphaShape.balls`.
 
@@ -133,13 +151,14 @@ class Balls:
 
     #: The shape whose balls they are.
     _owner: AlphaShape
-    _shape: _walpha.Shape
-    _parts: _walpha.Union
+    _union: _walpha.Union
+    _parts: _walpha.UnionParts
 
     @classmethod
     def _of(cls, owner: AlphaShape) -> Balls:
         made = cls.__new__(cls)
-        made._owner, made._shape, made._parts = owner, owner._shape, owner._shape.union()
+        made._owner, made._union = owner, owner._shape.union()
+        made._parts = made._union.parts()
         return made
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -200,7 +219,7 @@ class Balls:
         ValueError
             The shape does not list its exterior: make it with ``exterior=True``.
         """
-        return [Cavity._of(parts) for parts in self._shape.union_voids()]
+        return [Cavity._of(parts) for parts in self._union.voids()]
 
     @functools.cached_property
     def pockets(self) -> list[Cavity]:
@@ -216,7 +235,7 @@ class Balls:
         H. Edelsbrunner, M. Facello and J. Liang, On the definition and the construction of pockets in macromolecules,
         Discrete Applied Mathematics 88 (1998), doi:10.1016/S0166-218X(98)00067-5.
         """
-        return [Cavity._of(*parts) for parts in self._shape.union_pockets()]
+        return [Cavity._of(*parts) for parts in self._union.pockets()]
 
     def gradients(self, weights: Arrays | None = None) -> Gradients:
         """The derivatives of volume and area by centres and radii.
@@ -239,11 +258,40 @@ class Balls:
         given = _arrays.optional("weights", weights)
         if given is not None:
             _arrays.finite("weights", given)
-        parts = [_arrays.frozen(values) for values, _ in self._shape.union_gradients(given)]
+        parts = [_arrays.frozen(values) for values, _ in self._union.gradients(given)]
         volume_by_centers, volume_by_radii, area_by_centers, area_by_radii = parts
         return Gradients(
             volume_by_centers.reshape(-1, 3), volume_by_radii, area_by_centers.reshape(-1, 3), area_by_radii
         )
+
+    def surface(self, tolerance: float = 0.01) -> BallSurface:
+        """The boundary of the union as a closed mesh; its area and volume tend to those of the union.
+
+        Parameters
+        ----------
+        tolerance : float, optional
+            How far a triangle may be from the sphere of its ball, as a part of the radius, from 10⁻⁶ to 0.5. A sphere has
+            about 2.4/tolerance vertices.
+
+        Returns
+        -------
+        BallSurface
+
+        Raises
+        ------
+        ValueError
+            The tolerance is out of range, the shape is one of a torus, or some patch is too small for its coordinates.
+
+        Examples
+        --------
+        >>> vertices, triangles, balls = walpha.alpha_shape([[0, 0, 0]], alpha=1).balls.surface(0.1)
+        >>> len(vertices), len(triangles)
+        (42, 80)
+        >>> bool(np.allclose(np.linalg.norm(vertices, axis=1), 1))
+        True
+        """
+        vertices, triangles, balls = self._union.surface(tolerance)
+        return BallSurface(_arrays.frozen(vertices), _arrays.int64(triangles), _arrays.int64(balls))
 
     def __repr__(self) -> str:
         return f"<walpha.Balls: volume {self.volume.value:g}, area {self.area.value:g}, {len(self.contacts.pairs)} contacts>"

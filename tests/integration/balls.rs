@@ -5,6 +5,8 @@ use std::f64::consts::PI;
 use std::fs;
 use std::path::Path;
 
+use walpha_base::vector::{cross, dot, sub};
+
 use crate::common::{fails, json, names, ok};
 
 fn write(folder: &Path, name: &str, text: &str) {
@@ -162,7 +164,161 @@ fn what_has_no_balls_is_an_error() {
     fails(f, 1, "balls places.csv --alpha inf", &["∞"]);
     fails(f, 2, "balls sample:phantom@16", &["holds a volume", "radius"]);
     fails(f, 2, "balls three.csv -o residues.csv", &["is not a molecule"]);
-    fails(f, 2, "balls three.csv -o a.txt", &["a.txt", ".csv"]);
+    fails(f, 2, "balls three.csv -o a.txt", &["a.txt", ".csv", ".ply"]);
     fails(f, 1, "balls negative.csv --probe 1", &["point 1 has a negative squared radius"]);
     assert_eq!(json(f, &["balls", "negative.csv"])["balls"]["euler_characteristic"], 1);
+}
+
+/// The volume that the facets of an STL file enclose, and their area.
+fn measures_of_stl(path: &Path) -> [f64; 2] {
+    let bytes = fs::read(path).unwrap();
+    let facets = bytes[84..].chunks_exact(50);
+    assert_eq!(facets.len(), u32::from_le_bytes(bytes[80..84].try_into().unwrap()) as usize);
+    facets.fold([0.0; 2], |[volume, area], facet| {
+        let number = |k: usize| {
+            let at = 12 + 4 * k;
+            f64::from(f32::from_le_bytes(facet[at..at + 4].try_into().unwrap()))
+        };
+        let [a, b, c] = [0, 3, 6].map(|at| [0, 1, 2].map(|k| number(at + k)));
+        let normal = cross(sub(b, a), sub(c, a));
+        [volume + dot(a, cross(b, c)) / 6.0, area + dot(normal, normal).sqrt() / 2.0]
+    })
+}
+
+#[test]
+fn surfaces_are_written_with_their_balls() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    write(f, "three.csv", THREE);
+    for (tolerance, off) in [("0.05", 0.1), ("0.001", 0.002)] {
+        let outputs = ["--tolerance", tolerance, "-o", "a.stl", "a.ply", "a.vtp"];
+        let facts = json(f, &[&["balls", "three.csv"][..], &outputs].concat());
+        let [volume, area] = measures_of_stl(&f.join("a.stl"));
+        for (found, name) in [(volume, "volume"), (area, "area")] {
+            let share = found / facts["balls"][name].as_f64().unwrap();
+            assert!((1.0 - off..1.0).contains(&share), "{name}: {share}");
+        }
+    }
+    let stl = fs::read(f.join("a.stl")).unwrap();
+    let facets = u32::from_le_bytes(stl[80..84].try_into().unwrap()) as usize;
+    let ply = fs::read(f.join("a.ply")).unwrap();
+    let end = ply.windows(11).position(|text| text == b"end_header\n").unwrap() + 11;
+    let head = String::from_utf8_lossy(&ply[..end]);
+    names(&head, &["property uint ball\nend_header", &format!("element face {facets}")]);
+    // A face is a count, three vertices and the ball. Those of a ball follow each other.
+    let faces: Vec<&[u8]> = ply[ply.len() - 17 * facets..].chunks(17).collect();
+    let ball = |face: &&[u8]| u32::from_le_bytes(face[13..17].try_into().unwrap());
+    assert_eq!((ball(&faces[0]), ball(&faces[facets - 1])), (0, 2));
+    assert!(faces.iter().all(|face| face[0] == 3));
+    assert!(faces.iter().map(ball).is_sorted());
+    let vtp = fs::read(f.join("a.vtp")).unwrap();
+    let text = String::from_utf8_lossy(&vtp);
+    names(
+        &text,
+        &[&format!("NumberOfPolys=\"{facets}\""), "Name=\"ball\"", "off by at most 0.001"],
+    );
+    // Atoms have the colours of their elements, hydrogen white.
+    ok(f, &["balls", "sample:peptide", "-o", "b.ply", "b.vtp"]);
+    names(&String::from_utf8_lossy(&fs::read(f.join("b.ply")).unwrap()), &["uchar blue\nend"]);
+    names(&String::from_utf8_lossy(&fs::read(f.join("b.vtp")).unwrap()), &["Name=\"colour\""]);
+}
+
+#[test]
+#[cfg(feature = "render")]
+fn a_picture_shows_elements() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    write(f, "water.xyz", "3\n\nO 0 0 0\nH 0.96 0 0\nH -0.24 0.93 0\n");
+    ok(f, &["balls", "water.xyz", "--size", "80x60", "--view", "top", "-o", "water.png"]);
+    let picture = image::open(f.join("water.png")).unwrap().to_rgb8();
+    assert_eq!(picture.dimensions(), (80, 60));
+    // Oxygen is red; hydrogens are white or gray, and so is what is around them.
+    let pixels = || picture.pixels().map(|pixel| pixel.0.map(u32::from));
+    let red = pixels().filter(|[r, g, b]| *r > 100 && *r > 2 * g.max(b)).count();
+    let gray = pixels().filter(|[r, g, b]| r.abs_diff(*g).max(r.abs_diff(*b)) < 30).count();
+    assert!((300..2400).contains(&red) && red + gray > 4600, "{red} {gray}");
+}
+
+#[test]
+fn options_of_surfaces_and_pictures_are_refused_without_them() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    write(f, "three.csv", THREE);
+    fails(f, 2, "balls three.csv --tolerance 0.1", &["--tolerance has no effect"]);
+    fails(f, 2, "balls three.csv --tolerance 0.7 -o a.ply", &["from 0.000001 to 0.5"]);
+    fails(f, 2, "balls three.csv --tolerance 0 -o a.ply", &["from 0.000001 to 0.5"]);
+    #[cfg(feature = "render")]
+    fails(f, 2, "balls three.csv --view top -o a.ply", &["--view has no effect"]);
+    fails(f, 2, "balls three.csv --periodic 20,20,20 -o a.ply", &["periodic box", "cut"]);
+}
+
+/// One ball, balls without a radius, duplicates, hidden balls, and balls that touch.
+#[test]
+fn odd_sets_are_measured() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    let ball = 4.0 / 3.0 * PI;
+    for (rows, volume, area, components, parts) in [
+        ("0,0,0,1\n", ball, 4.0 * PI, 1, &[ball][..]),
+        ("0,0,0,1\n5,0,0,0\n", ball, 4.0 * PI, 2, &[ball, 0.0]),
+        ("1,2,3,0\n", 0.0, 0.0, 1, &[0.0]),
+        ("0,0,0,1\n0,0,0,1\n0,0,0,0.5\n", ball, 4.0 * PI, 1, &[ball, 0.0, 0.0]),
+        ("0,0,0,0.5\n0,0,0,1\n", ball, 4.0 * PI, 1, &[0.0, ball]),
+        ("0.1,0,0,0.5\n0,0,0,1\n", ball, 4.0 * PI, 1, &[0.0, ball]),
+        ("0,0,0,1\n2,0,0,1\n0,2,0,1\n", 3.0 * ball, 12.0 * PI, 1, &[ball; 3]),
+        ("0,0,0,1\n0.5,0,0,0.5\n", ball, 4.0 * PI, 1, &[ball, 0.0]),
+    ] {
+        write(f, "balls.csv", &format!("x,y,z,radius\n{rows}"));
+        let facts = json(f, &["balls", "balls.csv", "-o", "atoms.csv", "s.stl"]);
+        let balls = &facts["balls"];
+        let value = |name: &str| balls[name].as_f64().unwrap();
+        assert!((value("volume") - volume).abs() <= 1e-12 * volume, "{rows}: {balls}");
+        assert!((value("area") - area).abs() <= 1e-12 * area, "{rows}: {balls}");
+        // Three that touch in a row of two have no loop.
+        assert_eq!(balls["euler_characteristic"], components, "{rows}");
+        let found = numbers(&table(&f.join("atoms.csv"))["volume"]);
+        assert_eq!(found.len(), parts.len(), "{rows}");
+        assert!(found.iter().zip(parts).all(|(a, b)| (a - b).abs() < 1e-12), "{rows}: {found:?}");
+        let [enclosed, _] = measures_of_stl(&f.join("s.stl"));
+        assert!((enclosed - volume).abs() <= 0.02 * volume, "{rows}: {enclosed}");
+    }
+}
+
+#[test]
+fn points_in_a_plane_are_discs_too() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    // Two columns of places are a plane.
+    write(f, "discs.csv", "x,y,radius\n0,0,1\n2,0,1\n0,2,1\n2,2,1\n");
+    let facts = json(f, &["balls", "discs.csv"]);
+    let discs = &facts["balls"]["discs"];
+    assert!((discs["area"].as_f64().unwrap() - 4.0 * PI).abs() < 1e-12, "{discs}");
+    assert!((discs["perimeter"].as_f64().unwrap() - 8.0 * PI).abs() < 1e-12, "{discs}");
+    names(&ok(f, &["balls", "discs.csv"]), &["discs     area 12.5663706"]);
+    let space = json(f, &["balls", "sample:peptide"]);
+    assert!(space["balls"].get("discs").is_none());
+}
+
+/// Volume and area of a shape of balls are those of tetrahedra, and those of the balls are beside them.
+#[test]
+fn a_shape_of_balls_says_whose_volume_is_whose() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    let balls = &json(f, &["balls", "sample:peptide"])["balls"];
+    let facts = json(f, &["shape", "sample:peptide", "--preset", "molecule"]);
+    for name in ["volume", "volume_bound", "area", "area_bound"] {
+        assert_eq!(facts["balls"][name], balls[name], "{name}");
+    }
+    assert!(facts["shape"]["volume"].as_f64().unwrap() < 0.2 * balls["volume"].as_f64().unwrap());
+    let text = ok(f, &["shape", "sample:peptide", "--preset", "molecule"]);
+    names(&text, &["of tetrahedra", "balls     volume "]);
+    // Points without radii are not balls of their own.
+    write(f, "points.csv", "x,y,z\n0,0,0\n1,0,0\n0,1,0\n0,0,1\n");
+    let facts = json(f, &["shape", "points.csv", "--alpha", "1"]);
+    assert!(facts.get("balls").is_none());
+    let text = ok(f, &["shape", "points.csv", "--alpha", "1"]);
+    assert!(!text.contains("tetrahedra"), "{text}");
+    // A part that was kept is no union of all balls.
+    let facts = json(f, &["shape", "sample:peptide", "--preset", "molecule", "--keep", "1"]);
+    assert!(facts.get("balls").is_none());
 }

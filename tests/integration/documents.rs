@@ -22,9 +22,10 @@ const TEACHING: [&str; 7] = [
 ];
 
 /// Commands whose help has examples that are run, in an order in which each finds the files of those before.
-const COMMANDS: [&str; 12] = [
+const COMMANDS: [&str; 13] = [
     "info",
     "shape",
+    "balls",
     "view",
     "ladder",
     "filtration",
@@ -83,6 +84,32 @@ fn reader_files(folder: &Path) {
     write("outline.csv", &table("x,y", 2));
     write("trees.csv", &table("x,y", 2));
     write("buckyball.csv", &buckyball());
+    let bubble = |row: String| if row.starts_with('x') { row + ",radius" } else { row + ",1.5" };
+    write("foam.csv", &table("x,y,z", 3).into_iter().map(bubble).collect::<Vec<_>>());
+    // Carbon atoms of glycine, in a lattice.
+    let atoms = (0..27).map(|i| (i + 1, [i % 3, i / 3 % 3, i / 9].map(|k| 3 * k)));
+    let of_pdb = |(number, [x, y, z]): (i32, [i32; 3])| {
+        format!(
+            "ATOM  {number:>5}  CA  GLY A{number:>4}    {x:>8}{y:>8}{z:>8}  1.00  0.00           C"
+        )
+    };
+    write("1crn.pdb", &atoms.clone().map(of_pdb).collect::<Vec<_>>());
+    let names = [
+        "group_PDB",
+        "id",
+        "type_symbol",
+        "label_atom_id",
+        "label_comp_id",
+        "label_asym_id",
+        "label_seq_id",
+    ];
+    let names = names.into_iter().chain(["Cartn_x", "Cartn_y", "Cartn_z"]);
+    let head = ["data_1HVR".to_owned(), "loop_".to_owned()].into_iter();
+    let head = head.chain(names.map(|name| format!("_atom_site.{name}")));
+    let of_cif = |(number, [x, y, z]): (i32, [i32; 3])| {
+        format!("ATOM {number} C CA GLY A {number} {x} {y} {z}")
+    };
+    write("1hvr.cif", &head.chain(atoms.map(of_cif)).collect::<Vec<_>>());
     // Two organs.
     let header = "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 12 10 8\nencoding: raw\n\n";
     let organ = |i: usize| match [i % 12, i / 12 % 10, i / 120] {

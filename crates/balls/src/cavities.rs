@@ -12,7 +12,7 @@ use walpha_shape::{Alpha, Class, Complex, FacetSides};
 use crate::points::Points;
 use crate::real::{Bounded, Double, Real, Single};
 use crate::simplex::{Ball, Cell, Circle, Edge, Limits, Open, Triangle};
-use crate::union::zeros;
+use crate::union::in_shape;
 use crate::{BallUnion, BallsError};
 
 /// A void or a pocket, as the balls leave it.
@@ -109,8 +109,7 @@ struct Rest<'a> {
 impl<'a> Rest<'a> {
     fn of(union: &'a BallUnion<'_>) -> Result<Self, BallsError> {
         let BallUnion { shape, complex, points, sides, .. } = union;
-        let mut in_shape = zeros(points.len(), "voids")?;
-        complex.vertices.rows().iter().for_each(|&[v]| in_shape[v as usize] = true);
+        let in_shape = in_shape(complex, points.len(), "voids")?;
         Ok(Self { points, whole: shape.complex(), complex, sides, in_shape })
     }
 

@@ -8,7 +8,7 @@ use walpha_shape::{AlphaShape, Complex, FacetSides};
 use crate::points::Points;
 use crate::real::{Bounded, Double, Real, Single};
 use crate::simplex::{Ball, Circle, Edge, Limits, Triangle};
-use crate::union::{Contacts, complex_of_balls, zeros};
+use crate::union::{Contacts, complex_of_balls, in_shape, zeros};
 use crate::{BallsError, Measured};
 
 /// The union of the discs of points that lie in one plane, on one line or at one place: in that plane, a point with weight ω is a disc of
@@ -90,8 +90,7 @@ impl<'a> DiscUnion<'a> {
                 vertex.edges += 1;
             }
         }
-        let mut in_shape = zeros(points.len(), "the parts of discs")?;
-        complex.vertices.rows().iter().for_each(|&[v]| in_shape[v as usize] = true);
+        let in_shape = in_shape(&complex, points.len(), "the parts of discs")?;
         let part = |v: usize| {
             let at = &vertices[v];
             // A vertex whose edges all have triangles on both sides has no arc.

@@ -32,6 +32,21 @@ pub enum BallsError {
     /// Discs are asked for, and the shape is that of a torus.
     #[error("discs lie in one plane, and a periodic box does not")]
     Periodic,
+    /// A surface is asked for, and the shape is that of a torus.
+    #[error("the sides of a periodic box would cut the surface open")]
+    Seam,
+    /// A tolerance of a surface is out of range.
+    #[error("the tolerance {tolerance} is not from 0.000001 to 0.5")]
+    Tolerance {
+        /// What was asked for.
+        tolerance: f64,
+    },
+    /// The patch of a ball cannot be triangulated.
+    #[error("the surface of ball {ball} has features as small as the rounding of its coordinates")]
+    Unresolved {
+        /// The ball, by input index.
+        ball: u32,
+    },
     /// Other numbers of weights than of points.
     #[error("{weights} weights for {points} balls: each ball needs one")]
     Weights {
@@ -62,6 +77,11 @@ impl Advise for BallsError {
             Self::NoExterior { .. } => advice!["set ", Setting::Exterior],
             Self::Solid => "measure the balls in space".into(),
             Self::Periodic => "measure the balls of the box".into(),
+            Self::Seam => "repeat the points without a periodic box".into(),
+            Self::Tolerance { .. } => "give a part of the radius, such as 0.01".into(),
+            Self::Unresolved { .. } => {
+                "move or remove that ball by a little, or give coordinates nearer to 0".into()
+            }
             Self::Weights { .. } => "give a weight for each ball, in the order of the input".into(),
             Self::Memory(_) | Self::Cancelled(_) => return self.wrapped()?.advice(),
         })

@@ -1,5 +1,5 @@
 //! Unions of balls in space, with a bound on the error of every number: volume, area and curvatures, the part of each
-//! ball, contacts, components, voids and pockets, derivatives by centres and radii, and curves over α.
+//! ball, contacts, components, voids and pockets, derivatives by centres and radii, and curves over α. Its boundary as a mesh of triangles.
 //!
 //! A point with weight ω is a ball of squared radius α + ω. The α-complex of the points is the dual complex of the union of these balls, and it
 //! is exact. What is measured is a sum over its simplices, in arithmetic that keeps a bound on its error. `docs/balls.md` in the repository has the
@@ -37,6 +37,7 @@ mod quick;
 mod real;
 mod scatter;
 mod simplex;
+mod surface;
 mod union;
 
 pub use cavities::{Cavity, Pocket};
@@ -46,6 +47,7 @@ pub use discs::DiscUnion;
 pub use error::BallsError;
 pub use gradient::{Gradient, Gradients};
 pub use real::Bounded;
+pub use surface::BallSurface;
 pub use union::{BallUnion, Contacts, Measured};
 
 /// Compiles and runs the example in the README.

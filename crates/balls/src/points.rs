@@ -71,6 +71,11 @@ impl<'a> Points<'a> {
         N::sum(self.alpha, self.weights[v as usize])
     }
 
+    /// The unit of lengths: a power of two, in the unit of the shape.
+    pub(crate) fn unit(&self) -> f64 {
+        self.unit
+    }
+
     /// A length to this power in the unit of the balls, from one in the unit of the shape.
     pub(crate) fn unscaled(&self, number: Bounded, power: i32) -> Single {
         let Bounded { value, bound } = number.scaled(self.unit.powi(-power));

@@ -208,6 +208,17 @@ impl<N: Real> Triangle<N> {
         N::sum(alpha, self.balls[0].weight) - away
     }
 
+    /// From the first corner, the ways to the two points that the three spheres share; the first is where the normal points.
+    pub(crate) fn shared(&self, alpha: f64) -> [[N; 3]; 2] {
+        let height = (self.squared_height(alpha) / self.area).sqrt();
+        let [a, b] = self.rays.map(|ray| ray.map(N::along));
+        let [_, of_j, of_k] = self.coordinates;
+        [height, -height].map(|height| {
+            let along = |x: usize| (a[x] * of_j + b[x] * of_k) / self.area;
+            [0, 1, 2].map(|x| along(x) + self.normal[x] * height)
+        })
+    }
+
     /// The tetrahedron of the triangle and one of the points that its three spheres share.
     pub(crate) fn open(&self, alpha: f64) -> Open<N> {
         let height = self.squared_height(alpha).sqrt();

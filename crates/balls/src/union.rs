@@ -621,6 +621,17 @@ fn third(number: Single) -> Single {
     number / Single::exact(3.0)
 }
 
+/// For each of so many points whether it is in a shape.
+pub(crate) fn in_shape(
+    complex: &Complex,
+    points: usize,
+    what: &'static str,
+) -> Result<Vec<bool>, BallsError> {
+    let mut in_shape = zeros(points, what)?;
+    complex.vertices.rows().iter().for_each(|&[v]| in_shape[v as usize] = true);
+    Ok(in_shape)
+}
+
 pub(crate) fn zeros<T: Clone + Default>(
     count: usize,
     what: &'static str,

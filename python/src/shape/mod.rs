@@ -25,6 +25,7 @@ use walpha::{AlphaShape, Complex, PointsError, Simplices, Weighting};
 use crate::arrays::{column, copied, lend, numbers, rows};
 use crate::errors::{Refused, told, wrong};
 use crate::work::{Task, run};
+pub use balls::Union;
 use boundary::{Boundary, boundary};
 pub use make::{Written, alpha_shape, numbers_of_box, recipe_from, settings_of, torus, weighted};
 use outline::{Outline, outline};
@@ -310,27 +311,8 @@ impl Shape {
     }
 
     /// The union of the balls of the points.
-    fn union<'py>(&self, py: Python<'py>) -> PyResult<balls::Union<'py>> {
+    fn union(&self, py: Python<'_>) -> PyResult<balls::Union> {
         balls::union(py, Arc::clone(&self.shape))
-    }
-
-    /// The voids of this union.
-    fn union_voids<'py>(&self, py: Python<'py>) -> PyResult<Vec<balls::Hollow<'py>>> {
-        balls::voids(py, Arc::clone(&self.shape))
-    }
-
-    /// The pockets of this union.
-    fn union_pockets<'py>(&self, py: Python<'py>) -> PyResult<Vec<balls::Open<'py>>> {
-        balls::pockets(py, Arc::clone(&self.shape))
-    }
-
-    /// The derivatives of the volume and the area of this union, by centres and radii.
-    fn union_gradients<'py>(
-        &self,
-        py: Python<'py>,
-        weights: Option<PyReadonlyArray1<'_, f64>>,
-    ) -> PyResult<[balls::Column<'py>; 4]> {
-        balls::gradients(py, Arc::clone(&self.shape), weights)
     }
 
     /// Polygons, singular edges and vertices, area, perimeter, and axes of points in a plane.

@@ -7,6 +7,21 @@ use clap::Args;
 use crate::export::Exporter;
 
 #[derive(Args, Clone, Copy)]
+pub(crate) struct SightArgs {}
+
+impl SightArgs {
+    pub(crate) const NAMES: [&str; 0] = [];
+
+    #[expect(clippy::unused_self, reason = "there are no options")]
+    pub(crate) fn draw_balls(
+        &self,
+        _: impl Iterator<Item = ([f64; 3], f64, Option<[u8; 3]>)>,
+    ) -> Result<Vec<u8>, std::io::Error> {
+        unreachable!("no path asks for a picture")
+    }
+}
+
+#[derive(Args, Clone, Copy)]
 pub(crate) struct PictureArgs {}
 
 impl PictureArgs {

@@ -12,16 +12,16 @@ use crate::AlphaShape;
 use crate::export::{Exporter, Needs};
 use crate::points::bounding_box;
 use crate::render::{
-    Background, Camera, ColourMap, Colouring, Projection, RenderError, Scene, ShapeStyle, Size,
-    View,
+    Background, Ball, Camera, ColourMap, Colouring, Projection, RenderError, Rgb, Scene,
+    ShapeStyle, Size, View,
 };
 
 use crate::cli::process::errors::{Result, command_error, fail};
 
-/// How a shape is drawn.
+/// Where a picture is taken from, and its size.
 #[derive(Args, Clone, Copy)]
 #[command(next_help_heading = "Pictures (.png)")]
-pub(crate) struct PictureArgs {
+pub(crate) struct SightArgs {
     /// Viewpoint, for a subject whose face is turned to −y and whose crown to +z [default:
     /// three-quarter].
     #[arg(long, value_enum, value_name = "VIEW", group = "eye")]
@@ -30,12 +30,55 @@ pub(crate) struct PictureArgs {
     #[arg(long, value_name = "EX,EY,EZ,TX,TY,TZ", value_parser = camera, group = "eye",
           allow_hyphen_values = true)]
     camera: Option<Camera>,
-    /// What colours show: nothing, the values F, or the classes of simplices.
-    #[arg(long, value_enum, default_value_t, value_name = "MEANING")]
-    colour: ColourArg,
     /// Size of the picture in pixels.
     #[arg(long, value_name = "WxH", value_parser = size, default_value = "1600x1360")]
     size: Size,
+}
+
+impl SightArgs {
+    /// The names of these options.
+    pub(crate) const NAMES: [&str; 3] = ["view", "camera", "size"];
+
+    /// The picture of a scene within a box, as PNG.
+    fn draw(&self, scene: &Scene, bounds: [[f64; 3]; 2]) -> Result<Vec<u8>, RenderError> {
+        let view = self.view.map_or(View::ThreeQuarter, View::from);
+        let camera = match self.camera {
+            Some(camera) => camera,
+            None => Camera::fit(bounds, view, Projection::Perspective, self.size)?,
+        };
+        scene.render(&camera, self.size, Background::White)?.to_png()
+    }
+
+    /// The picture of balls with radii and colours, as PNG; those without a colour have that of bone.
+    pub(crate) fn draw_balls(
+        &self,
+        balls: impl Iterator<Item = ([f64; 3], f64, Option<[u8; 3]>)>,
+    ) -> Result<Vec<u8>, RenderError> {
+        let ball = |(centre, radius, colour): (_, _, Option<_>)| Ball {
+            centre,
+            radius,
+            colour: colour.map_or(Rgb::BONE, Rgb),
+        };
+        let balls = balls.filter(|&(_, radius, _)| radius > 0.0).map(ball).collect();
+        let scene = Scene { balls, ..Scene::default() };
+        self.draw(&scene, scene.bounds().unwrap_or([[-1.0; 3], [1.0; 3]]))
+    }
+}
+
+/// How a shape is drawn.
+#[derive(Args, Clone, Copy)]
+pub(crate) struct PictureArgs {
+    #[command(flatten)]
+    sight: SightArgs,
+    /// What colours show: nothing, the values F, or the classes of simplices.
+    #[arg(
+        long,
+        value_enum,
+        default_value_t,
+        value_name = "MEANING",
+        help_heading = "Pictures (.png)"
+    )]
+    colour: ColourArg,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -103,12 +146,7 @@ impl PictureArgs {
         let edge_radius = diagonal * 0.0011;
         let style = ShapeStyle { colouring, edge_radius, ..ShapeStyle::default() };
         let scene = Scene::of_shape(positions, shape.complex(), &style)?;
-        let view = self.view.map_or(View::ThreeQuarter, View::from);
-        let camera = match self.camera {
-            Some(camera) => camera,
-            None => Camera::fit(bounds, view, Projection::Perspective, self.size)?,
-        };
-        scene.render(&camera, self.size, Background::White)?.to_png()
+        self.sight.draw(&scene, bounds)
     }
 }
 

@@ -16,16 +16,16 @@ use crate::labels::LabelSizes;
 use crate::outofcore::{Merged, Plan};
 use crate::pipeline::{Model, Parameter, Weighed};
 use crate::points::WeightSummary;
-use crate::shape::{Alpha, Cuts, Engine, Kept, ShapeError};
+use crate::shape::{Alpha, Cuts, Engine, Kept};
 use crate::surface::Isovalue;
 use crate::{Coordinates, GrayRange};
 
 use crate::cli::commands::pipeline::VolumeSummary;
+use crate::cli::process::errors::Result;
 use crate::cli::process::output::name;
 use crate::cli::report::offsets::FileOffset;
-use parts::ShapeReport;
-use parts::{EndedEarly, InputReport, PointsReport};
-pub(super) use parts::{HaarReport, MovedIntoBox, WeightsReport};
+use parts::{BallsReport, EndedEarly, InputReport, PointsReport, ShapeReport};
+pub(super) use parts::{HaarReport, MovedIntoBox, WeightsReport, certain};
 
 /// The version of the schema. It is incremented when a field is removed or changes its meaning; new fields may be added at any
 /// time.
@@ -70,6 +70,9 @@ pub(super) struct Report {
     weights: Option<WeightsReport>,
     #[serde(skip_serializing_if = "Option::is_none")]
     shape: Option<ShapeReport>,
+    /// The union of the balls; absent unless points have radii. The volume and area of `shape` are those of its simplices.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    balls: Option<BallsReport>,
     /// α that joins 95 % of the points, where the default leaves the shape in pieces.
     #[serde(skip_serializing_if = "Option::is_none")]
     joining_alpha: Option<Alpha>,
@@ -104,6 +107,7 @@ impl Report {
             alpha: None,
             weights: None,
             shape: None,
+            balls: None,
             joining_alpha: None,
             engine: None,
             kept: None,
@@ -156,10 +160,11 @@ impl Report {
     ///
     /// # Errors
     /// Those of [`Model::joining_alpha`].
-    pub(super) fn add_model(&mut self, model: &Model) -> Result<(), ShapeError> {
+    pub(super) fn add_model(&mut self, model: &Model) -> Result<()> {
         self.alpha = Some(model.parameter);
         self.engine = Some(model.shape.options().engine);
         self.add_shape(model);
+        self.balls = BallsReport::of(model)?;
         self.joining_alpha = model.joining_alpha()?;
         Ok(())
     }
@@ -263,7 +268,7 @@ impl Display for Report {
             print_kept(f, kept, unit)?;
         }
         if let Some(shape) = &self.shape {
-            shape.print(f, unit)?;
+            shape.print(f, unit, self.balls.as_ref())?;
         }
         self.print_apart(f)?;
         if self.points.in_shape == Some(0) {

@@ -6,9 +6,10 @@ use serde::Serialize;
 use walpha_base::shown::number;
 
 use super::plane::PlaneReport;
+use crate::balls::{BallUnion, BallsError};
 use crate::cli::process::output::name;
 use crate::outofcore::Merged;
-use crate::pipeline::Weighed;
+use crate::pipeline::{Model, Weighed};
 use crate::points::WeightSummary;
 use crate::shape::{Betti, ByClass, Component, Void};
 use crate::{AlphaShape, GrayRange, LengthUnit, Truncation, Weighting};
@@ -274,8 +275,13 @@ impl ShapeReport {
         writeln!(f, "vertices  {}", Line(&self.vertices))
     }
 
-    /// Prints the numbers of the shape, with lengths in `unit`.
-    pub(super) fn print(&self, f: &mut fmt::Formatter<'_>, unit: &str) -> fmt::Result {
+    /// Prints the numbers of the shape, with lengths in `unit`, and those of the balls that it is of.
+    pub(super) fn print(
+        &self,
+        f: &mut fmt::Formatter<'_>,
+        unit: &str,
+        balls: Option<&BallsReport>,
+    ) -> fmt::Result {
         match &self.plane {
             Some(plane) => plane.print_classes(f)?,
             None => self.print_classes(f)?,
@@ -286,7 +292,8 @@ impl ShapeReport {
         if let Some(plane) = &self.plane {
             return plane.print_sizes(f, unit);
         }
-        writeln!(f, "volume    {:.6} {unit}³", self.volume)?;
+        let of = if balls.is_some() { " of tetrahedra" } else { "" };
+        writeln!(f, "volume    {:.6} {unit}³{of}", self.volume)?;
         let (area, singular) = (self.area, self.singular_area);
         write!(f, "area      {area:.6} {unit}²")?;
         if singular > 0.0 {
@@ -297,6 +304,10 @@ impl ShapeReport {
             )?;
         }
         writeln!(f)?;
+        if let Some(BallsReport { volume, volume_bound, area, area_bound }) = balls {
+            let (volume, area) = (certain(*volume, *volume_bound), certain(*area, *area_bound));
+            writeln!(f, "balls     volume {volume} {unit}³, area {area} {unit}²")?;
+        }
         if let [largest, _, ..] = &self.components[..] {
             let Component { vertices, volume, .. } = largest;
             writeln!(f, "largest   component: {vertices} vertices, volume {volume:.6} {unit}³")?;
@@ -314,6 +325,46 @@ impl ShapeReport {
         }
         Ok(())
     }
+}
+
+/// The union of the balls of a shape whose points have radii. The true numbers are within the bounds.
+#[derive(Serialize)]
+pub(super) struct BallsReport {
+    volume: f64,
+    volume_bound: f64,
+    area: f64,
+    area_bound: f64,
+}
+
+impl BallsReport {
+    /// `None` if the points have no radii, lie in one plane, or are only kept in part: then there is no union of balls that belongs to the shape.
+    pub(super) fn of(model: &Model) -> Result<Option<Self>, BallsError> {
+        let Model { shape, origin, .. } = model;
+        let is_of_balls = origin.of_radii && origin.weighting == Weighting::Column;
+        let is_whole = shape.kept().is_none() && PlaneReport::of(shape).is_none();
+        if !is_of_balls || !is_whole || shape.power_alpha().squared() == f64::INFINITY {
+            return Ok(None);
+        }
+        let union = BallUnion::new(shape)?;
+        let [volume, area] = [union.volume(), union.area()];
+        Ok(Some(Self {
+            volume: volume.value,
+            volume_bound: volume.bound,
+            area: area.value,
+            area_bound: area.bound,
+        }))
+    }
+}
+
+/// A number with the decimals that its bound leaves certain, at most twelve digits.
+pub(in crate::cli) fn certain(value: f64, bound: f64) -> String {
+    if !bound.is_finite() {
+        return "not known".into();
+    }
+    let digits_before = value.abs().max(1.0).log10().floor() as i32 + 1;
+    let certain = if bound > 0.0 { (-(2.0 * bound).log10()).floor() as i32 } else { 12 };
+    let decimals = certain.min(12 - digits_before).max(0);
+    format!("{value:.*}", decimals as usize)
 }
 
 /// The number of points outside the largest component, by points.

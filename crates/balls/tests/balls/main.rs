@@ -7,6 +7,7 @@ mod gradients;
 mod levels;
 mod random_sets;
 mod refused;
+mod surface;
 
 use walpha_balls::{BallUnion, Bounded, Measured};
 use walpha_shape::{Alpha, AlphaShape, ShapeOptions, Torus, WeightedPoints, alpha_shape};

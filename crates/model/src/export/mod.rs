@@ -33,6 +33,7 @@ mod format;
 mod geojson;
 mod glb;
 mod json;
+mod labelled;
 mod npz;
 mod obj;
 mod off;
@@ -56,6 +57,9 @@ pub use format::{FORMATS, Format};
 pub use geojson::GeoJson;
 pub use glb::Glb;
 pub use json::Json;
+// For the surface of balls, which the command writes. Not covered by semantic versioning.
+#[doc(hidden)]
+pub use labelled::LabelledMesh;
 pub use npz::Npz;
 pub use obj::Obj;
 pub use off::Off;

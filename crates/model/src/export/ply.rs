@@ -105,14 +105,21 @@ fn vertices(row: &mut Row<'_>, shape: &AlphaShape, surface: &Surface) -> io::Res
 }
 
 /// The numbers of one element, as text on a line or as bytes.
-struct Row<'a> {
+pub(super) struct Row<'a> {
     ascii: bool,
     out: &'a mut dyn Write,
     started: bool,
 }
 
+impl<'a> Row<'a> {
+    /// Bytes.
+    pub(super) fn binary(out: &'a mut dyn Write) -> Self {
+        Self { ascii: false, out, started: false }
+    }
+}
+
 impl Row<'_> {
-    fn put<T: std::fmt::Display + Copy, const B: usize>(
+    pub(super) fn put<T: std::fmt::Display + Copy, const B: usize>(
         &mut self,
         value: T,
         bytes: impl Fn(T) -> [u8; B],

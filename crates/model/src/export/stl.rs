@@ -19,19 +19,8 @@ impl Exporter for Stl {
         let surface = self.0.surface(shape);
         let positions: Vec<_> = surface.positions(shape.points().positions()).collect();
         let single = SinglePrecision::of_surface(&surface, shape.points().positions());
-        out.write_all(&head(shape, &single)?)?;
-        let count = u32::try_from(surface.regular.len())
-            .map_err(|_| io::Error::other("more facets than STL can count"))?;
-        out.write_all(&count.to_le_bytes())?;
-        for facet in &surface.regular {
-            let corners = facet.map(|v| positions[v as usize]);
-            let [a, b, c] = corners.map(|corner| single.round(corner));
-            for component in [normal(corners).map(|x| x as f32), a, b, c].as_flattened() {
-                out.write_all(&component.to_le_bytes())?;
-            }
-            out.write_all(&[0; 2])?;
-        }
-        Ok(())
+        out.write_all(&head(&about(shape, &single))?)?;
+        facets(&positions, &surface.regular, &single, out)
     }
 
     fn needs(&self) -> Needs {
@@ -55,24 +44,27 @@ impl Exporter for Stl {
     }
 }
 
+/// What the header says.
+fn about(shape: &AlphaShape, single: &SinglePrecision) -> String {
+    let stated = annotation::comment(shape.coordinates());
+    // The header must not begin with "solid", as some readers would take the file for text.
+    if single.has_offset() {
+        let [x, y, z] = single.offset.map(number);
+        return format!("walpha OFFSET={x},{y},{z}{stated}");
+    }
+    let of = match (shape.voxels(), shape.isovalue()) {
+        (Some(_), _) => "solid of labels",
+        (None, Some(_)) => "solid inside an isosurface",
+        (None, None) => "boundary of an alpha shape",
+    };
+    format!("walpha, {of}{stated}")
+}
+
 /// The header of 80 bytes.
 ///
 /// # Errors
 /// The numbers of an offset do not fit into the header.
-fn head(shape: &AlphaShape, single: &SinglePrecision) -> io::Result<[u8; 80]> {
-    let stated = annotation::comment(shape.coordinates());
-    // The header must not begin with "solid", as some readers would take the file for text.
-    let about = if single.has_offset() {
-        let [x, y, z] = single.offset.map(number);
-        format!("walpha OFFSET={x},{y},{z}{stated}")
-    } else {
-        let of = match (shape.voxels(), shape.isovalue()) {
-            (Some(_), _) => "solid of labels",
-            (None, Some(_)) => "solid inside an isosurface",
-            (None, None) => "boundary of an alpha shape",
-        };
-        format!("walpha, {of}{stated}")
-    };
+pub(super) fn head(about: &str) -> io::Result<[u8; 80]> {
     let mut head = [b' '; 80];
     let room = head.get_mut(..about.len());
     let room = room.ok_or_else(|| {
@@ -82,6 +74,27 @@ fn head(shape: &AlphaShape, single: &SinglePrecision) -> io::Result<[u8; 80]> {
     })?;
     room.copy_from_slice(about.as_bytes());
     Ok(head)
+}
+
+/// Writes the number of facets, and each with its normal.
+pub(super) fn facets(
+    positions: &[[f64; 3]],
+    facets: &[[u32; 3]],
+    single: &SinglePrecision,
+    out: &mut dyn Write,
+) -> io::Result<()> {
+    let count = u32::try_from(facets.len())
+        .map_err(|_| io::Error::other("more facets than STL can count"))?;
+    out.write_all(&count.to_le_bytes())?;
+    for facet in facets {
+        let corners = facet.map(|v| positions[v as usize]);
+        let [a, b, c] = corners.map(|corner| single.round(corner));
+        for component in [normal(corners).map(|x| x as f32), a, b, c].as_flattened() {
+            out.write_all(&component.to_le_bytes())?;
+        }
+        out.write_all(&[0; 2])?;
+    }
+    Ok(())
 }
 
 /// The unit normal of a triangle; 0 if it has no area.

@@ -113,7 +113,12 @@ fn cell_data(
 }
 
 /// Writes cells of `size` vertices each.
-fn cells(file: &mut Appended, name: &str, size: usize, vertices: &[u32]) -> io::Result<()> {
+pub(super) fn cells(
+    file: &mut Appended,
+    name: &str,
+    size: usize,
+    vertices: &[u32],
+) -> io::Result<()> {
     writeln!(file.xml, "<{name}>")?;
     let most = vertices.len().max(vertices.iter().max().map_or(0, |&v| v as usize));
     let (mut corners, mut ends) = (Ids::up_to(most), Ids::up_to(most));

@@ -57,6 +57,30 @@ impl Element {
         self.0
     }
 
+    /// Its colour in pictures, red, green and blue: those of Corey, Pauling and Koltun (CPK), as molecular viewers have them for the
+    /// elements that are common in molecules, and pink for the others.
+    pub fn colour(self) -> [u8; 3] {
+        match self.symbol() {
+            "H" => [255, 255, 255],
+            "C" => [144, 144, 144],
+            "N" => [48, 80, 248],
+            "O" => [255, 13, 13],
+            "F" | "Cl" => [31, 220, 31],
+            "Na" | "K" | "Li" => [143, 64, 212],
+            "Mg" | "Ca" => [61, 190, 0],
+            "Si" => [240, 200, 160],
+            "P" => [255, 128, 0],
+            "S" => [255, 230, 48],
+            "Fe" => [224, 102, 51],
+            "Cu" => [200, 128, 51],
+            "Zn" => [125, 128, 176],
+            "Se" => [255, 161, 0],
+            "Br" => [166, 41, 41],
+            "I" => [148, 0, 148],
+            _ => [221, 119, 180],
+        }
+    }
+
     /// The element of an atom whose file states none, from its name and its residue; `None` where two readings differ.
     /// `begins` says whether the name begins in the first of its four columns in a PDB file, where that is known: there
     /// the symbol of the element ends in the second column (wwPDB, Atomic Coordinate Entry Format 3.3, ATOM), so `CA` in

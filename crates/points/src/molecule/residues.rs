@@ -14,7 +14,8 @@ const NUCLEOTIDES: &[&str] = &[
 ];
 
 /// Water: as the Protein Data Bank calls it, and as simulations do.
-const WATERS: &[&str] = &["HOH", "DOD", "H2O", "SOL", "TIP", "TIP2", "TIP3", "TIP4", "TIP5", "WAT"];
+const WATERS: &[&str] =
+    &["HOH", "DOD", "H2O", "SOL", "SOLV", "TIP", "TIP2", "TIP3", "TIP4", "TIP5", "WAT"];
 
 /// Whether a residue is an amino acid.
 pub(super) fn is_amino_acid(name: &str) -> bool {

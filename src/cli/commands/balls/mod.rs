@@ -1,5 +1,6 @@
 //! `walpha balls`: the union of the balls of points, of atoms above all.
 
+mod outputs;
 mod tables;
 
 use std::collections::BTreeMap;
@@ -11,20 +12,22 @@ use clap::Args;
 use serde::Serialize;
 use walpha_base::shown::{number, six_digits};
 
-use crate::balls::{BallUnion, Cavity, Pocket};
+use crate::balls::{BallUnion, BallsError, Cavity, DiscUnion, Pocket};
 use crate::cli::commands::pipeline;
 use crate::cli::options::global::Global;
+use crate::cli::options::picture::SightArgs;
 use crate::cli::options::{self, Declared, InputArgs, OutputArgs, Periodic, WithAlpha};
 use crate::cli::process::errors::{Result, command_error, fail_usage, option};
 use crate::cli::process::output::{name, print_summary};
 use crate::cli::process::progress::Progress;
-use crate::cli::report::{MovedIntoBox, SCHEMA_VERSION, ending};
+use crate::cli::report::{MovedIntoBox, SCHEMA_VERSION, certain, ending};
 use crate::export::{Content, Target, write_all};
 use crate::pipeline::{AlphaRule, Input, Origin, Values};
 use crate::points::Molecule;
 use crate::progress::Stage;
 use crate::shape::{Betti, Engine, ShapeOptions};
 use crate::{Alpha, AlphaShape, Coordinates, WeightedPoints};
+use outputs::{Looks, Output};
 use tables::Table;
 
 /// Measure the union of balls: volume and area, those of each ball, contacts, voids and pockets.
@@ -41,6 +44,8 @@ use tables::Table;
 ///
 /// walpha balls 1hvr.cif --hetero -o pockets.csv pockets.pdb
 ///
+/// walpha balls 1crn.pdb -o surface.ply picture.png
+///
 /// walpha balls foam.csv --periodic 20,20,20 -o contacts.csv
 #[derive(Args)]
 pub(crate) struct Balls {
@@ -49,20 +54,35 @@ pub(crate) struct Balls {
         long,
         value_name = "FILE",
         num_args = 1..,
-        help = "Tables to write, named by their content: residues.csv, contacts.csv, voids.csv, pockets.csv; any other .csv has a row for each ball, as atoms.csv; pockets.pdb has the atoms at pockets, with the number of the pocket as temperature factor. Names may begin with anything, as in 1crn-pockets.csv"
+        help = "Files to write. Tables, named by their content: residues.csv, contacts.csv, voids.csv, pockets.csv; any other .csv has a row for each ball, as atoms.csv; pockets.pdb has the atoms at pockets, with the number of the pocket as temperature factor. Names may begin with anything, as in 1crn-pockets.csv. The surface of the union: .ply and .vtp, whose facets have the number of their ball, or .stl. A picture of the balls, coloured by element: .png"
     )]
     output: Vec<PathBuf>,
     /// Add this length to all radii: the radius of a probe that rolls over the balls, as in 1.4 for water in Å.
     #[arg(long, value_name = "R", value_parser = options::not_negative)]
     probe: Option<f64>,
+    // What `input` refuses comes after it, as what comes before is no longer there when it looks.
     #[command(flatten)]
     input: InputArgs,
+    /// How far a facet of a surface may be from the sphere of its ball, as a part of the radius [default: 0.01].
+    #[arg(long, value_name = "PART", value_parser = tolerance, help_heading = "Surfaces (.ply, .stl, .vtp)")]
+    tolerance: Option<f64>,
     #[command(flatten)]
     weights: Declared<WithAlpha>,
     #[command(flatten)]
     periodic: Declared<Periodic>,
     #[command(flatten)]
     format: OutputArgs,
+    #[command(flatten)]
+    sight: SightArgs,
+}
+
+/// Parses a tolerance of surfaces.
+fn tolerance(text: &str) -> Result<f64> {
+    let tolerance = options::not_negative(text)?;
+    if !BallUnion::SURFACE_TOLERANCES.contains(&tolerance) {
+        return Err(BallsError::Tolerance { tolerance }.into());
+    }
+    Ok(tolerance)
 }
 
 impl Balls {
@@ -70,13 +90,25 @@ impl Balls {
         self.format.check(self.output.iter())?;
         let mut targets = Vec::new();
         for path in &self.output {
-            let table = Table::of(&self.format.named(path)?, path)?;
-            targets.push((Target::open(path)?, table));
+            let output = Output::of(&self.format.named(path)?, path)?;
+            targets.push((Target::open(path)?, output));
         }
         let input = &self.input;
+        let has = |is: fn(Output) -> bool| targets.iter().any(|&(_, output)| is(output));
+        let has_table = |table| has_output(&targets, Output::Table(table));
+        if !has(|output| output == Output::Picture) {
+            input.typed.refuse(&SightArgs::NAMES, "no picture (.png) is written")?;
+        }
+        let is_surface = has(Output::is_surface);
+        if !is_surface {
+            input.typed.refuse(&["tolerance"], "no surface (.ply, .stl, .vtp) is written")?;
+        }
         let recipe = input.recipe()?;
         let is_periodic = recipe.periodic.is_some();
-        if is_periodic && targets.iter().any(|(_, table)| table.needs_pockets()) {
+        if is_periodic && is_surface {
+            fail_usage!("the sides of a periodic box would cut the surface open" => "omit --periodic, or write tables");
+        }
+        if is_periodic && has(Output::needs_pockets) {
             fail_usage!("pockets are open to the outside, and a periodic box has no outside" => "write voids.csv, or omit --periodic");
         }
         let mut progress = Progress::new(global);
@@ -86,7 +118,7 @@ impl Balls {
             fail_usage!("{} holds a volume, whose samples have no radii", name(&input.input) => "give a molecule, or a table with the columns x, y, z and radius");
         };
         let molecule = points.molecule.clone();
-        if molecule.is_none() && targets.iter().any(|(_, table)| *table == Table::Residues) {
+        if molecule.is_none() && has_table(Table::Residues) {
             fail_usage!("{} is not a molecule, and has no residues", name(&input.input) => "write balls.csv");
         }
         let has_weights = points.weights.is_some() || recipe.weighting.is_some();
@@ -106,13 +138,24 @@ impl Balls {
         let (weighed, _) = progress.watch(weigh)?;
         let Origin { coordinates, torus, folded, .. } = weighed.origin;
         // A periodic box is triangulated as a whole only where voids are asked for: that takes short edges.
-        let exterior = !is_periodic || targets.iter().any(|(_, table)| *table == Table::Voids);
+        let exterior = !is_periodic || has_table(Table::Voids);
         let (points, alpha) = enlarged(weighed.points, alpha, self.probe.unwrap_or_default())?;
         let shape = progress.stage(Stage::Shape, || {
             let options = ShapeOptions::new(alpha).engine(Engine::Native).exterior(exterior);
             crate::alpha_shape(points, &options.periodic(torus))
         })?;
-        let measured = progress.stage(Stage::Measure, || Measured::of(&shape))?;
+        let measured =
+            progress.stage(Stage::Measure, || Measured::of(&shape, molecule.is_none()))?;
+        let surface = is_surface.then(|| {
+            let tolerance = self.tolerance.unwrap_or(BallUnion::SURFACE_TOLERANCE);
+            let surface = progress.stage(Stage::Measure, || measured.union.surface(tolerance))?;
+            Ok::<_, BallsError>((surface, tolerance))
+        });
+        let looks = Looks {
+            surface: surface.transpose()?,
+            sight: self.sight,
+            input: &input.input.to_string(),
+        };
         let radii: Vec<f64> = shape
             .power_weights()
             .iter()
@@ -125,9 +168,9 @@ impl Balls {
             measured: &measured,
         };
         progress.stage(Stage::Write, || {
-            write_all(targets.into_iter().map(|(target, table)| {
-                let subject = &subject;
-                let content = move |out: &mut dyn Write| table.write(subject, out);
+            write_all(targets.into_iter().map(|(target, output)| {
+                let (subject, looks) = (&subject, &looks);
+                let content = move |out: &mut dyn Write| output.write(subject, looks, out);
                 (target, Box::new(content) as Content<'_>)
             }))
         })?;
@@ -152,6 +195,10 @@ impl Balls {
         };
         print_summary(global, &summary)
     }
+}
+
+fn has_output(targets: &[(Target, Output)], wanted: Output) -> bool {
+    targets.iter().any(|&(_, output)| output == wanted)
 }
 
 /// Balls whose radii are larger by that of a probe, and their α. Without a probe nothing changes, and nothing is rounded.
@@ -180,17 +227,25 @@ struct Measured<'a> {
     voids: Vec<Cavity>,
     /// Largest first, voids included; empty in a periodic box.
     pockets: Vec<Pocket>,
+    /// Of points in one plane.
+    discs: Option<DiscUnion<'a>>,
 }
 
 impl<'a> Measured<'a> {
-    fn of(shape: &'a AlphaShape) -> Result<Self> {
+    /// The measures of balls, and if they may be discs and lie in one plane, those of discs.
+    fn of(shape: &'a AlphaShape, may_be_discs: bool) -> Result<Self> {
         let union = BallUnion::new(shape)?;
         // Points in a plane enclose nothing.
         let encloses = shape.options().exterior && !shape.complex().cells.is_empty();
         let voids = if encloses { union.voids()? } else { Vec::new() };
         let is_open = encloses && shape.options().periodic.is_none();
         let pockets = if is_open { union.pockets()? } else { Vec::new() };
-        Ok(Self { union, voids, pockets })
+        let discs = match DiscUnion::new(shape) {
+            _ if !may_be_discs => None,
+            Err(BallsError::Solid | BallsError::Periodic) => None,
+            discs => Some(discs?),
+        };
+        Ok(Self { union, voids, pockets, discs })
     }
 }
 
@@ -244,9 +299,33 @@ struct Numbers {
     #[serde(skip_serializing_if = "Option::is_none")]
     box_fraction: Option<f64>,
     contacts: usize,
+    /// The discs of points in one plane, in that plane; absent for others, and for molecules.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    discs: Option<Discs>,
     voids: Vec<Hollow>,
     /// Largest first, voids included.
     pockets: Vec<Hollow>,
+}
+
+/// The union of discs.
+#[derive(Serialize)]
+struct Discs {
+    area: f64,
+    area_bound: f64,
+    perimeter: f64,
+    perimeter_bound: f64,
+}
+
+impl Discs {
+    fn of(union: &DiscUnion<'_>) -> Self {
+        let (area, perimeter) = (union.area(), union.perimeter());
+        Self {
+            area: area.value,
+            area_bound: area.bound,
+            perimeter: perimeter.value,
+            perimeter_bound: perimeter.bound,
+        }
+    }
 }
 
 /// A void or a pocket.
@@ -276,7 +355,8 @@ impl Hollow {
 }
 
 impl Numbers {
-    fn of(shape: &AlphaShape, Measured { union, voids, pockets }: &Measured) -> Self {
+    fn of(shape: &AlphaShape, measured: &Measured<'_>) -> Self {
+        let Measured { union, voids, pockets, discs } = measured;
         let [volume, area, mean, gaussian] =
             [union.volume(), union.area(), union.mean_curvature(), union.gaussian_curvature()];
         Self {
@@ -292,6 +372,7 @@ impl Numbers {
             betti: shape.betti(),
             box_fraction: union.box_fraction().map(|share| share.value),
             contacts: union.contacts().pairs.len(),
+            discs: discs.as_ref().map(Discs::of),
             voids: voids.iter().map(|void| Hollow::of(void, 0)).collect(),
             pockets: pockets
                 .iter()
@@ -299,17 +380,6 @@ impl Numbers {
                 .collect(),
         }
     }
-}
-
-/// A number with the decimals that its bound leaves certain, at most twelve digits.
-fn certain(value: f64, bound: f64) -> String {
-    if !bound.is_finite() {
-        return "not known".into();
-    }
-    let digits_before = value.abs().max(1.0).log10().floor() as i32 + 1;
-    let certain = if bound > 0.0 { (-(2.0 * bound).log10()).floor() as i32 } else { 12 };
-    let decimals = certain.min(12 - digits_before).max(0);
-    format!("{value:.*}", decimals as usize)
 }
 
 impl Display for BallsSummary {
@@ -337,6 +407,14 @@ impl Display for BallsSummary {
             None => writeln!(f)?,
         }
         writeln!(f, "area      {} {unit}²", certain(area, area_bound))?;
+        if let Some(Discs { area, area_bound, perimeter, perimeter_bound }) = &self.balls.discs {
+            let (area, perimeter) =
+                (certain(*area, *area_bound), certain(*perimeter, *perimeter_bound));
+            writeln!(
+                f,
+                "discs     area {area} {unit}², perimeter {perimeter} {unit}, in their plane"
+            )?;
+        }
         let Numbers { mean_curvature, mean_curvature_bound, euler_characteristic, .. } = self.balls;
         writeln!(
             f,

@@ -6,7 +6,6 @@ use std::path::Path;
 use super::{Measured, Subject};
 use crate::balls::{Bounded, Cavity, Pocket};
 use crate::points::Atom;
-use crate::volume::UnknownFormat;
 
 /// What is written, by the end of a file's name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,18 +25,21 @@ pub(super) enum Table {
 }
 
 impl Table {
-    /// The table that a name asks for; `path` is the name as it was given.
-    pub(super) fn of(name: &Path, path: &Path) -> Result<Self, UnknownFormat> {
+    /// The extensions of tables.
+    pub(super) const EXTENSIONS: [&str; 2] = ["csv", "pdb"];
+
+    /// The table that a name asks for, if it asks for one.
+    pub(super) fn of(name: &Path) -> Option<Self> {
         let stem = name.file_stem().unwrap_or_default().to_string_lossy().to_lowercase();
         let extension = name.extension().unwrap_or_default().to_string_lossy().to_lowercase();
         match extension.as_str() {
-            "csv" if stem.ends_with("residues") => Ok(Self::Residues),
-            "csv" if stem.ends_with("contacts") => Ok(Self::Contacts),
-            "csv" if stem.ends_with("voids") => Ok(Self::Voids),
-            "csv" if stem.ends_with("pockets") => Ok(Self::Pockets),
-            "csv" => Ok(Self::Balls),
-            "pdb" => Ok(Self::PocketAtoms),
-            _ => Err(UnknownFormat::new(path, "the measures of balls", ["csv", "pdb"])),
+            "csv" if stem.ends_with("residues") => Some(Self::Residues),
+            "csv" if stem.ends_with("contacts") => Some(Self::Contacts),
+            "csv" if stem.ends_with("voids") => Some(Self::Voids),
+            "csv" if stem.ends_with("pockets") => Some(Self::Pockets),
+            "csv" => Some(Self::Balls),
+            "pdb" => Some(Self::PocketAtoms),
+            _ => None,
         }
     }
 
