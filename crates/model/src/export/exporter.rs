@@ -5,6 +5,7 @@ use walpha_base::advice::Advice;
 use walpha_base::setters;
 
 use super::Needs;
+use walpha_points::{Column, Crs};
 use walpha_shape::{AlphaShape, SinglePrecision, Surface};
 
 /// A writer of shapes in one format.
@@ -50,7 +51,7 @@ pub trait Exporter {
 }
 
 /// Options of the writers.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct ExportOptions {
     /// Writes text, if the format also has a binary form: PLY.
@@ -63,10 +64,14 @@ pub struct ExportOptions {
     pub groups: bool,
     /// The input of the shape, recorded in VTP and VTU files.
     pub input: Option<String>,
+    /// The coordinate reference system of the points, from which `GeoJSON` is converted to longitude and latitude.
+    pub crs: Option<Crs>,
+    /// Further columns of the points, written beside their weights and values: PLY, VTU and VTP.
+    pub columns: Vec<Column>,
 }
 
 impl ExportOptions {
-    setters! { ascii: bool, solid: bool, groups: bool, input: Option<String> }
+    setters! { ascii: bool, solid: bool, groups: bool, input: Option<String>, crs: Option<Crs>, columns: Vec<Column> }
 
     /// The boundary to write.
     pub(super) fn surface<'a>(&self, shape: &'a AlphaShape) -> Cow<'a, Surface> {

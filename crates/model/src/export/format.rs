@@ -132,7 +132,7 @@ pub static FORMATS: [Format; 13] = [
         extension: "geojson",
         about: "Points in a plane: polygons with holes, with area and perimeter; singular edges and vertices.",
         outline: true,
-        exporter: |_| Box::new(GeoJson),
+        exporter: |options| Box::new(GeoJson(options)),
         ..PLAIN
     },
     Format {

@@ -8,10 +8,11 @@ use walpha_base::advice::{Setting, advice};
 use walpha_base::shown::shown;
 
 use super::crs::ReferenceSystem;
+use super::las_fields::{Field, GPS_TIME, fields};
 use super::laz::{Claims, Records};
 use super::{COLUMNS, Points, PointsError, format};
-use crate::{ModelMetadata, PointOptions};
-use walpha_volume::{OpenFile, Reason, io_error};
+use crate::{Column, Flags, ModelMetadata, PointOptions, ScanSummary};
+use walpha_volume::{Coordinates, OpenFile, Reason, io_error};
 
 /// The number of bytes of points read at once: a header may claim records of up to 64 KiB, and more of them than the file has.
 const BATCH: u64 = 1 << 22;
@@ -33,8 +34,22 @@ pub(crate) fn read(
         las::Reader::new(WithoutOldCount { reader, at: 0 })
     };
     let mut reader = reader.map_err(fail)?;
-    let records = reader.header().vlrs().iter().chain(reader.header().evlrs());
-    ReferenceSystem::of(records).check().map_err(|reason| format(path, reason))?;
+    let records = || reader.header().vlrs().iter().chain(reader.header().evlrs());
+    let system = ReferenceSystem::of(records());
+    if !options.describe {
+        system.check().map_err(|reason| format(path, reason))?;
+    }
+    let crs = system.crs();
+    let described = records()
+        .find(|record| (record.user_id.as_str(), record.record_id) == ("LASF_Spec", EXTRA_BYTES));
+    let described = described.map_or(&[][..], |record| &record.data);
+    let fields = fields(reader.header().point_format(), described);
+    let mut summaries: Vec<_> = fields.iter().map(Field::summary).collect();
+    let kept: Vec<_> =
+        fields.iter().filter(|field| options.attributes.keeps(&field.name)).collect();
+    let mut columns: Vec<Column> =
+        kept.iter().map(|field| Column { name: field.name.clone(), values: Vec::new() }).collect();
+    let mut scan = scan(reader.header());
     let mut points = Points { values: Some(Vec::new()), ..Points::default() };
     let record = u64::from(reader.header().point_format().len()).max(1);
     let at_once = (BATCH / record).max(1);
@@ -70,6 +85,15 @@ pub(crate) fn read(
             // In formats 0 to 5 the flags are above the class, in the others in the byte before it (LAS 1.4 R15, tables 8 and
             // 16).
             let flags = if is_extended { record[15] & 15 } else { record[15] >> 5 };
+            let number = if is_extended { record[14] & 15 } else { record[14] & 7 };
+            *scan.classes.entry(class).or_default() += 1;
+            *scan.returns.entry(number).or_default() += 1;
+            count_flags(&mut scan.flags, flags);
+            if options.describe {
+                for (summary, field) in summaries.iter_mut().zip(&fields) {
+                    summary.add(field.value(record));
+                }
+            }
             if options.classes.as_ref().is_some_and(|classes| !classes.contains(&class)) {
                 continue;
             }
@@ -78,6 +102,9 @@ pub(crate) fn read(
                 kinds.count(flags, class);
                 points.positions.push(place);
                 points.values.get_or_insert_default().push(f64::from(intensity));
+                for (column, field) in columns.iter_mut().zip(&kept) {
+                    column.values.push(field.value(record));
+                }
             }
         }
     }
@@ -104,7 +131,57 @@ pub(crate) fn read(
     if reader.header().point_format().has_waveform {
         tracing::warn!("{}: waveforms of its points are passed over", shown(path));
     }
-    Ok((points, ModelMetadata::default().notes(kinds.notes())))
+    if let (true, Some(classes)) = (points.is_empty(), &options.classes) {
+        let asked = listed(classes.iter().copied());
+        let what = format!(
+            "has no point of class {asked}, but of {}",
+            listed(scan.classes.keys().copied())
+        );
+        return Err(format(path, Reason::content(what, "choose among these, or read all")));
+    }
+    points.columns = columns;
+    let time = summaries.iter().find(|summary| summary.name == GPS_TIME);
+    scan.time = time.and_then(|time| Some([time.min?, time.max?]));
+    let unit = crs.as_ref().map(|crs| crs.length).unwrap_or_default();
+    let metadata = ModelMetadata::default()
+        .coordinates(Coordinates { unit, ..Coordinates::default() })
+        .crs(crs)
+        .scan(Some(scan))
+        .columns(summaries)
+        .notes(kinds.notes());
+    Ok((points, metadata))
+}
+
+/// The id of the record that describes extra bytes.
+const EXTRA_BYTES: u16 = 4;
+
+/// What the header states of a scan, before its points are counted.
+fn scan(header: &las::Header) -> ScanSummary {
+    let version = header.version();
+    let format = header.point_format();
+    ScanSummary {
+        version: format!("{}.{}", version.major, version.minor),
+        point_format: format.to_u8().unwrap_or_default() & 63,
+        compressed: format.is_compressed,
+        time_of: match header.gps_time_type() {
+            las::GpsTimeType::Week => "GPS week",
+            las::GpsTimeType::Standard => "GPS, less 10⁹ s",
+        },
+        ..ScanSummary::default()
+    }
+}
+
+fn count_flags(counts: &mut Flags, flags: u8) {
+    let Flags { withheld, overlap, synthetic, key_point } = counts;
+    for (count, flag) in [(synthetic, 1), (key_point, 2), (withheld, WITHHELD), (overlap, 8)] {
+        *count += u64::from(flags & flag != 0);
+    }
+}
+
+/// Classes with their names, as in `2 (ground), 5 (high vegetation)`.
+fn listed(classes: impl Iterator<Item = u8>) -> String {
+    let one = |class: u8| format!("{class} ({})", ScanSummary::class_name(class));
+    classes.map(one).collect::<Vec<_>>().join(", ")
 }
 
 /// The flag of points that must not be processed.
