@@ -25,6 +25,8 @@ pub enum Attributes {
     None,
     /// Those with these names.
     Named(Vec<String>),
+    /// Those with these names that are there.
+    IfThere(Vec<String>),
     /// All that are numbers.
     All,
 }
@@ -148,7 +150,9 @@ impl Attributes {
     pub(crate) fn keeps(&self, name: &str) -> bool {
         match self {
             Self::None => false,
-            Self::Named(names) => names.iter().any(|named| is_same(named, name)),
+            Self::Named(names) | Self::IfThere(names) => {
+                names.iter().any(|named| is_same(named, name))
+            }
             Self::All => true,
         }
     }
@@ -157,15 +161,20 @@ impl Attributes {
     pub(crate) fn names(&self) -> &[String] {
         match self {
             Self::Named(names) => names,
-            Self::None | Self::All => &[],
+            Self::None | Self::IfThere(_) | Self::All => &[],
         }
     }
 
     /// These, and one more if there is one.
     pub(crate) fn and(&self, name: Option<&String>) -> Self {
-        match (self, name) {
-            (Self::All, _) | (_, None) => self.clone(),
-            (_, Some(name)) => Self::Named([self.names(), std::slice::from_ref(name)].concat()),
+        let Some(name) = name else { return self.clone() };
+        match self {
+            Self::All => Self::All,
+            Self::None => Self::Named(vec![name.clone()]),
+            Self::Named(names) => Self::Named([&names[..], std::slice::from_ref(name)].concat()),
+            Self::IfThere(names) => {
+                Self::IfThere([&names[..], std::slice::from_ref(name)].concat())
+            }
         }
     }
 }

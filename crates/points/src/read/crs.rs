@@ -141,7 +141,9 @@ impl ReferenceSystem {
                 *keys().find(|[key, place, ..]| (key, *place) == (wanted, ASCII))?;
             let start = usize::from(start);
             let bytes = ascii.get(start..start + usize::from(count))?;
-            let text = String::from_utf8_lossy(bytes);
+            // ASCII by the standard; writers in Europe use Latin-1.
+            let latin = || bytes.iter().map(|&byte| char::from(byte)).collect();
+            let text = str::from_utf8(bytes).map_or_else(|_| latin(), str::to_owned);
             let text = text.trim_matches(['|', '\0', ' ']);
             (!text.is_empty()).then(|| text.to_owned())
         };
