@@ -42,6 +42,7 @@ mod read;
 mod select;
 mod sets;
 mod spread;
+mod tile;
 mod weigh;
 mod weighting;
 mod write;

@@ -11,6 +11,7 @@ use super::formats::{FORMATS, PointFormat};
 use super::molecule::{AtomSelection, PEPTIDE, Radii, peptide};
 use super::read::content::Packed;
 use super::read::{COLUMNS, format};
+use super::tile::{TILE, tile};
 use super::{Attributes, Columns, ModelMetadata, Points, PointsError, hard};
 use walpha_volume::{OpenFile, Reason, begins_as_volume, other_kind};
 
@@ -101,7 +102,7 @@ impl PointOptions {
     }
 
     /// The points of a name that stands for no file: those of a [`hard`] set, or the molecule `sample:peptide`, an α-helix of
-    /// twelve alanines.
+    /// twelve alanines; or the laser scan `sample:tile`, with ground, a roof and five trees.
     ///
     /// # Errors
     /// There is no such set, or a radius is not known.
@@ -112,11 +113,15 @@ impl PointOptions {
         let name = name.as_ref();
         let made = if name.as_os_str() == PEPTIDE {
             Some(peptide(self)?)
+        } else if name.as_os_str() == TILE {
+            Some(tile(self)?)
         } else {
             hard(name)?.map(|points| (points, ModelMetadata::default()))
         };
         let Some((mut points, metadata)) = made else { return Ok(None) };
-        self.take_columns(name, &mut points, || Ok(Vec::new()))?;
+        let names: Vec<String> = points.columns.iter().map(|column| column.name.clone()).collect();
+        self.take_columns(name, &mut points, || Ok(names))?;
+        points.columns.retain(|column| self.attributes.keeps(&column.name));
         if let Some(side) = self.thin {
             points.thin(side)?;
         }
@@ -129,7 +134,7 @@ impl PointOptions {
     /// As [`is_point_file`].
     pub fn is_point_file(&self, path: impl AsRef<Path>) -> Result<bool, PointsError> {
         let path = path.as_ref();
-        if path.as_os_str() == PEPTIDE || hard(path)?.is_some() {
+        if [PEPTIDE, TILE].iter().any(|name| path.as_os_str() == *name) || hard(path)?.is_some() {
             return Ok(true);
         }
         // A pipe is recognised by name alone, as bytes read from it are gone.

@@ -43,9 +43,9 @@ use crate::{AlphaShape, Recipe};
 ///
 /// walpha shape scan.xyz --alpha auto --solid --keep largest -o scan.stl
 ///
-/// walpha shape tile.laz --class building --flat --alpha-radius 2 -o footprints.geojson
+/// walpha shape sample:tile --class building --flat --alpha-radius 2 -o footprints.geojson
 ///
-/// walpha shape trees.laz --by treeID --alpha-radius 1 -o trees.csv crowns.geojson
+/// walpha shape sample:tile --by treeID --alpha-radius 3 -o trees.csv crowns.geojson
 ///
 /// walpha shape trees.csv --alpha-radius 50 -o forest.geojson forest.svg
 ///

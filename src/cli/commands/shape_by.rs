@@ -74,7 +74,7 @@ impl Shape {
         let mut rows: Vec<GroupRow> =
             progress.stage(Stage::Measure, || shapes.iter().map(GroupRow::of).collect());
         let (mut filled, mut folders) = (Vec::new(), Vec::new());
-        let (mut files, mut empty) = (Vec::new(), 0);
+        let (mut files, mut files_of_groups, mut empty) = (Vec::new(), 0, 0);
         let unit = weighed.origin.coordinates.unit.symbol();
         for output in outputs {
             match output {
@@ -107,8 +107,12 @@ impl Shape {
                         empty += u32::from(meshes.iter().any(|mesh| is_empty(&*mesh.exporter)));
                         let whole = meshes.iter().filter(|mesh| !is_empty(&*mesh.exporter));
                         let stem = format!("{}-{value}", plain(column));
+                        // One warning is enough for all.
+                        let first = files_of_groups == 0;
+                        let offset = if first { FileOffset::of } else { FileOffset::quietly };
                         let (written, offsets) =
-                            write_part(&mut folder, whole, &stem, shape, &mut progress)?;
+                            write_part(&mut folder, whole, &stem, shape, offset, &mut progress)?;
+                        files_of_groups += written.len();
                         row.files.extend(written);
                         row.offsets.extend(offsets);
                     }
@@ -119,7 +123,7 @@ impl Shape {
         put_all(filled)?;
         folders.into_iter().try_for_each(Folder::finish)?;
         if empty > 0 && !global.quiet {
-            remark(&format!("walpha: {empty} groups have nothing that a mesh holds, and no file"));
+            remark(&format!("walpha: groups without a file, as a mesh would be empty: {empty}"));
         }
         print_summary(
             global,

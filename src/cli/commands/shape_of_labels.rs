@@ -19,6 +19,7 @@ use crate::cli::process::output::print_summary;
 use crate::cli::process::progress::Progress;
 use crate::cli::report::offsets::FileOffset;
 use crate::cli::report::{Report, SCHEMA_VERSION, ending, print_cuts, print_kept};
+use crate::export::Exporter;
 use crate::labels::{LabelChoice, LabelSize, chosen};
 use crate::pipeline::{Input, Model};
 use crate::points::ModelMetadata;
@@ -112,7 +113,8 @@ impl Shape {
             coordinates = model.origin.coordinates;
             let shape = &model.shape;
             let stem = format!("label-{label}");
-            let (files, offsets) = write_part(&mut folder, &meshes, &stem, shape, &mut progress)?;
+            let (files, offsets) =
+                write_part(&mut folder, &meshes, &stem, shape, FileOffset::of, &mut progress)?;
             let size = model.labels.as_ref().and_then(|sizes| sizes.labels.first().copied());
             let size = size.expect("a label that is there");
             let solid = self.solid.then(|| shape.solid().1);
@@ -139,18 +141,19 @@ impl Shape {
 }
 
 /// Writes the meshes of a part to a folder, under a name with the extension of each. Returns the paths, and the offsets that files
-/// in single precision have subtracted from coordinates.
+/// in single precision have subtracted from coordinates, which `offset` finds.
 pub(crate) fn write_part<'a>(
     folder: &mut Folder,
     meshes: impl IntoIterator<Item = &'a Mesh>,
     stem: &str,
     shape: &AlphaShape,
+    offset: fn(&Path, &dyn Exporter, &AlphaShape) -> Option<FileOffset>,
     progress: &mut Progress,
 ) -> Result<(Vec<String>, Vec<FileOffset>)> {
     let (mut files, mut offsets) = (Vec::new(), Vec::new());
     for mesh in meshes {
         let name = format!("{stem}.{}", mesh.extension);
-        offsets.extend(FileOffset::of(Path::new(&name), mesh.exporter.as_ref(), shape));
+        offsets.extend(offset(Path::new(&name), mesh.exporter.as_ref(), shape));
         progress
             .stage(Stage::Write, || folder.write(&name, |out| mesh.exporter.write(shape, out)))?;
         files.extend(folder.written().last().cloned());
