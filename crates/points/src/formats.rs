@@ -231,7 +231,7 @@ pub static FORMATS: [PointFormat; 18] = [
         fuzzed_by: "vtk_geometry",
         begins: is_vtk_xml,
         holds_points: vtk::holds_points,
-        read: Some(|file, _| stated::in_vtk(file, vtk::read(file)?)),
+        read: Some(|file, options| stated::in_vtk(file, vtk::read(file, &options.attributes)?)),
         cells: Some(vtk::cells),
         read_complex: Some(vtk::read_complex),
         ..PLAIN

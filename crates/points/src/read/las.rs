@@ -56,12 +56,18 @@ pub(crate) fn read(
     let mut batch = las::PointDataBuilder::new().for_header(reader.header()).build();
     let is_extended = reader.header().point_format().is_extended;
     let (mut found, mut withheld, mut kinds) = (0, 0, Kinds::default());
+    let whole = options.describe || !kept.is_empty();
     let mut packed = match claims {
         None => None,
         Some(claims) => {
             let description = reader.header().laz_vlr().map_err(fail)?;
-            let records =
-                Records::new(file.owned_reader()?, claims.data, claims.compressor, description);
+            let records = Records::new(
+                file.owned_reader()?,
+                claims.data,
+                claims.compressor,
+                description,
+                whole,
+            );
             Some(records.map_err(|error| fail(error.into()))?)
         }
     };

@@ -156,7 +156,11 @@ pub(super) fn fields(format: &Format, described: &[u8]) -> Vec<Field> {
     }
     let mut place = if format.is_extended { 22 } else { 20 };
     if format.has_gps_time {
-        all.push(Field::new(GPS_TIME, place, Code::F64));
+        // In layers the library decodes changes of their sequence by recursion, which damaged data can repeat until the stack is
+        // exhausted; so these are not decompressed.
+        if !(format.is_compressed && format.is_extended) {
+            all.push(Field::new(GPS_TIME, place, Code::F64));
+        }
         place += 8;
     }
     if format.has_color {
