@@ -19,7 +19,7 @@ _CLASSES: dict[object, list[int]] = {
 }
 
 
-class PointColumns(Mapping[str, "Floats"]):
+class PointColumns(Mapping[str, Floats]):
     """The columns of a file of points by name, each read when it is asked for, and then kept.
 
     A name may be in any letter case, and ``class`` is the classification of LAS. Numbers are NaN where a point has none.
