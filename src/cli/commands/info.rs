@@ -55,6 +55,7 @@ struct InfoSummary {
 
 #[derive(Serialize)]
 #[serde(tag = "kind", rename_all = "lowercase")]
+#[expect(clippy::large_enum_variant, reason = "there is one")]
 enum Content {
     Volume {
         format: String,
@@ -426,6 +427,50 @@ impl Content {
         }
     }
 
+    /// Displays points, with what is known of them.
+    fn fmt_points(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self::Points {
+            count,
+            low,
+            high,
+            weights,
+            of_radii,
+            values,
+            cells,
+            cell,
+            grid,
+            coordinates,
+            scan,
+            ..
+        } = self
+        else {
+            return Ok(());
+        };
+        if let Some(ScanSummary { version, point_format, compressed, .. }) = scan {
+            let packed = if *compressed { ", compressed (LAZ)" } else { "" };
+            writeln!(f, "format    LAS {version}, points of format {point_format}{packed}")?;
+        }
+        writeln!(f, "points    {count}")?;
+        if !cells.is_empty() {
+            let cells: Vec<String> = cells.iter().map(ToString::to_string).collect();
+            writeln!(f, "cells     {}", cells.join(", "))?;
+        }
+        for (i, axis) in ["x", "y", "z"].iter().enumerate() {
+            writeln!(f, "{axis}         {} to {}", number(low[i]), number(high[i]))?;
+        }
+        let has = |there: bool| if there { "yes" } else { "no" };
+        let squares = if *of_radii { ", squares of its radii" } else { "" };
+        writeln!(f, "weights   {}{squares}\nvalues    {}", has(*weights), has(*values))?;
+        if let Some(CellSummary { sides_text, .. }) = cell {
+            writeln!(f, "cell      {sides_text}")?;
+        }
+        if let Some([x, y, z]) = grid {
+            writeln!(f, "grid      {x}×{y}×{z} samples, coordinates in {coordinates}")?;
+        }
+        self.fmt_scan(f)?;
+        self.fmt_usage(f)
+    }
+
     /// Displays what is known of the Earth and of the scan: the reference system, classes, returns, flags, times and columns.
     fn fmt_scan(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let Self::Points { scan, crs, unit, density, columns, .. } = self else { return Ok(()) };
@@ -629,47 +674,7 @@ impl std::fmt::Display for Content {
                 writeln!(f, "series    {} in the folder; --series N reads one", series.len())?;
                 series.iter().try_for_each(|one| writeln!(f, "          {one}"))
             }
-            Self::Points {
-                count,
-                low,
-                high,
-                weights,
-                of_radii,
-                values,
-                cells,
-                cell,
-                grid,
-                coordinates,
-                scan,
-                ..
-            } => {
-                if let Some(ScanSummary { version, point_format, compressed, .. }) = scan {
-                    let packed = if *compressed { ", compressed (LAZ)" } else { "" };
-                    writeln!(
-                        f,
-                        "format    LAS {version}, points of format {point_format}{packed}"
-                    )?;
-                }
-                writeln!(f, "points    {count}")?;
-                if !cells.is_empty() {
-                    let cells: Vec<String> = cells.iter().map(ToString::to_string).collect();
-                    writeln!(f, "cells     {}", cells.join(", "))?;
-                }
-                for (i, axis) in ["x", "y", "z"].iter().enumerate() {
-                    writeln!(f, "{axis}         {} to {}", number(low[i]), number(high[i]))?;
-                }
-                let has = |there: bool| if there { "yes" } else { "no" };
-                let squares = if *of_radii { ", squares of its radii" } else { "" };
-                writeln!(f, "weights   {}{squares}\nvalues    {}", has(*weights), has(*values))?;
-                if let Some(CellSummary { sides_text, .. }) = cell {
-                    writeln!(f, "cell      {sides_text}")?;
-                }
-                if let Some([x, y, z]) = grid {
-                    writeln!(f, "grid      {x}×{y}×{z} samples, coordinates in {coordinates}")?;
-                }
-                self.fmt_scan(f)?;
-                self.fmt_usage(f)
-            }
+            Self::Points { .. } => self.fmt_points(f),
         }
     }
 }

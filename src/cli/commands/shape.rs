@@ -77,7 +77,7 @@ pub(crate) struct Shape {
     /// they have there: triangles or edges, and no cells.
     #[arg(long)]
     pub(crate) require_3d: bool,
-    /// See points from above: drop z, so that they lie in a plane and have an outline (GeoJSON, WKT, SVG).
+    /// See points from above: drop z, so that they lie in a plane and have an outline, as the footprint of a building.
     #[arg(long, conflicts_with_all = ["each_label", "require_3d"])]
     pub(crate) flat: bool,
     /// Go on with a shape of nothing, which otherwise is an error: write files that hold nothing of it, such as an
@@ -255,6 +255,17 @@ impl Shape {
         work.lead(outputs, progress, team)
     }
 
+    /// The columns of points that outputs with these names hold, or that pictures need.
+    fn columns(&self, names: &[PathBuf]) -> Attributes {
+        if formats(names).any(|format| format.columns) {
+            Attributes::All
+        } else if names.iter().any(|name| PictureArgs::wanted(name)) {
+            self.picture.columns()
+        } else {
+            Attributes::None
+        }
+    }
+
     /// Computes the shape in memory.
     fn at_once(
         &self,
@@ -266,7 +277,7 @@ impl Shape {
         let input = &self.pipeline.input;
         let names = self.names()?;
         // If the input is a CT, the recipe may be chosen for it.
-        let attributes = outputs.columns(self)?;
+        let attributes = self.columns(&names);
         let mut recipe = recipe.clone().attributes(attributes);
         let mut read = pipeline::read_suited(input, &mut recipe, progress)?;
         let recipe = &recipe;
@@ -366,18 +377,6 @@ impl Outputs {
             }
         }
         Ok(outputs)
-    }
-
-    /// The columns of points that the outputs hold, or that pictures need.
-    fn columns(&self, shape: &Shape) -> Result<Attributes> {
-        let names = shape.names()?;
-        Ok(if formats(&names).any(|format| format.columns) {
-            Attributes::All
-        } else if names.iter().any(|name| PictureArgs::wanted(name)) {
-            shape.picture.columns()
-        } else {
-            Attributes::None
-        })
     }
 
     /// Tells the writers of shapes what a file says about its points: their coordinate system and columns.

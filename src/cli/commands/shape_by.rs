@@ -332,7 +332,7 @@ impl Display for GroupsReport {
         let files: Vec<String> = self.files.iter().cloned().chain(written).collect();
         let stages = ["read", "points", "alpha", "shape", "measure", "write", "total"];
         match &files[..] {
-            [all @ ..] if all.len() > MOST_PRINTED => {
+            all if all.len() > MOST_PRINTED => {
                 let (first, last) = (name(&all[0]), name(&all[all.len() - 1]));
                 writeln!(f, "wrote     {} files, {first} to {last}", all.len())?;
                 ending(f, &[], &stages, &self.seconds)

@@ -162,7 +162,6 @@ type Place = Vec<f64>;
 
 #[derive(Serialize)]
 #[serde(tag = "type", content = "coordinates")]
-#[expect(clippy::enum_variant_names, reason = "these are the names of the format")]
 enum Geometry {
     Polygon(Vec<Vec<Place>>),
     MultiPolygon(Vec<Vec<Vec<Place>>>),

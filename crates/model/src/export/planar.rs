@@ -57,12 +57,12 @@ impl<'a> Planar<'a> {
             let origin = self.positions[first as usize];
             let arm = |v: u32| [0, 1, 2].map(|k| self.positions[v as usize][k] - origin[k]);
             // Twice the area, as a vector across the plane.
-            let mut normal = [0.0; 3];
+            let mut normal = [0.0_f64; 3];
             for pair in rest.windows(2) {
                 let (a, b) = (arm(pair[0]), arm(pair[1]));
-                for k in 0..3 {
+                for (k, sum) in normal.iter_mut().enumerate() {
                     let (i, j) = ((k + 1) % 3, (k + 2) % 3);
-                    normal[k] += a[i] * b[j] - a[j] * b[i];
+                    *sum += a[i] * b[j] - a[j] * b[i];
                 }
             }
             normal.iter().map(|x| x * x).sum::<f64>().sqrt() / 2.0

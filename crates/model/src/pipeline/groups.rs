@@ -97,8 +97,8 @@ impl Groups {
         let is_whole = |value: f64| value.fract() == 0.0 && value.abs() < MOST_WHOLE;
         let is_wrong = |value: &f64| !value.is_nan() && !is_whole(*value);
         let column = column.to_owned();
-        if let Some(point) = values.iter().position(|value| is_wrong(value)) {
-            let count = values.iter().filter(|value| is_wrong(value)).count();
+        if let Some(point) = values.iter().position(is_wrong) {
+            let count = values.iter().filter(|&value| is_wrong(value)).count();
             return Err(GroupsError::NotWhole { column, point, value: values[point], count });
         }
         let mut members: BTreeMap<i64, Vec<u32>> = BTreeMap::new();

@@ -11,7 +11,7 @@ use super::crs::ReferenceSystem;
 use super::las_fields::{Field, GPS_TIME, fields};
 use super::laz::{Claims, Records};
 use super::{COLUMNS, Points, PointsError, format};
-use crate::{Column, Flags, ModelMetadata, PointOptions, ScanSummary};
+use crate::{Column, ColumnSummary, Crs, Flags, ModelMetadata, PointOptions, ScanSummary};
 use walpha_volume::{Coordinates, OpenFile, Reason, io_error};
 
 /// The number of bytes of points read at once: a header may claim records of up to 64 KiB, and more of them than the file has.
@@ -39,24 +39,15 @@ pub(crate) fn read(
     if !options.describe {
         system.check().map_err(|reason| format(path, reason))?;
     }
-    let crs = system.crs();
     let described = records()
         .find(|record| (record.user_id.as_str(), record.record_id) == ("LASF_Spec", EXTRA_BYTES));
     let described = described.map_or(&[][..], |record| &record.data);
-    let fields = fields(reader.header().point_format(), described);
-    let mut summaries: Vec<_> = fields.iter().map(Field::summary).collect();
-    let kept: Vec<_> =
-        fields.iter().filter(|field| options.attributes.keeps(&field.name)).collect();
-    let mut columns: Vec<Column> =
-        kept.iter().map(|field| Column { name: field.name.clone(), values: Vec::new() }).collect();
-    let mut scan = scan(reader.header());
-    let mut points = Points { values: Some(Vec::new()), ..Points::default() };
+    let mut taken = Taken::new(reader.header(), described, options);
     let record = u64::from(reader.header().point_format().len()).max(1);
     let at_once = (BATCH / record).max(1);
     let mut batch = las::PointDataBuilder::new().for_header(reader.header()).build();
-    let is_extended = reader.header().point_format().is_extended;
-    let (mut found, mut withheld, mut kinds) = (0, 0, Kinds::default());
-    let whole = options.describe || !kept.is_empty();
+    let mut found = 0;
+    let whole = options.describe || !taken.kept.is_empty();
     let mut packed = match claims {
         None => None,
         Some(claims) => {
@@ -88,30 +79,7 @@ pub(crate) fn read(
         let rows = places.zip(batch.intensity()).zip(batch.classification()).zip(records);
         for (((place, intensity), class), record) in rows {
             found += 1;
-            // In formats 0 to 5 the flags are above the class, in the others in the byte before it (LAS 1.4 R15, tables 8 and
-            // 16).
-            let flags = if is_extended { record[15] & 15 } else { record[15] >> 5 };
-            let number = if is_extended { record[14] & 15 } else { record[14] & 7 };
-            *scan.classes.entry(class).or_default() += 1;
-            *scan.returns.entry(number).or_default() += 1;
-            count_flags(&mut scan.flags, flags);
-            if options.describe {
-                for (summary, field) in summaries.iter_mut().zip(&fields) {
-                    summary.add(field.value(record));
-                }
-            }
-            if options.classes.as_ref().is_some_and(|classes| !classes.contains(&class)) {
-                continue;
-            }
-            withheld += u64::from(flags & WITHHELD != 0);
-            if flags & WITHHELD == 0 || options.withheld {
-                kinds.count(flags, class);
-                points.positions.push(place);
-                points.values.get_or_insert_default().push(f64::from(intensity));
-                for (column, field) in columns.iter_mut().zip(&kept) {
-                    column.values.push(field.value(record));
-                }
-            }
+            taken.take(place, intensity, class, record);
         }
     }
     if found != claimed {
@@ -119,43 +87,114 @@ pub(crate) fn read(
             Reason::truncated(format!("claims {claimed} points, but has {found}: it is truncated"));
         return Err(format(path, reason));
     }
-    if withheld > 0 && !options.withheld {
-        if points.is_empty() {
-            let reason = Reason::choice(
-                Setting::Withheld,
-                format!("holds {withheld} points, all of them withheld"),
-                advice!["give ", Setting::Withheld, " to take them"],
-            );
-            return Err(format(path, reason));
-        }
-        tracing::warn!(
-            "{}: {withheld} points are flagged as withheld, which are not to be processed: they are left out \
-             unless `withheld` asks for them",
-            shown(path)
-        );
-    }
     if reader.header().point_format().has_waveform {
         tracing::warn!("{}: waveforms of its points are passed over", shown(path));
     }
-    if let (true, Some(classes)) = (points.is_empty(), &options.classes) {
-        let asked = listed(classes.iter().copied());
-        let what = format!(
-            "has no point of class {asked}, but of {}",
-            listed(scan.classes.keys().copied())
-        );
-        return Err(format(path, Reason::content(what, "choose among these, or read all")));
+    taken.finish(path, system.crs())
+}
+
+/// The points that were read, and what is counted of all.
+struct Taken<'a> {
+    options: &'a PointOptions,
+    is_extended: bool,
+    fields: Vec<Field>,
+    /// The indices of the fields whose columns are kept.
+    kept: Vec<usize>,
+    summaries: Vec<ColumnSummary>,
+    scan: ScanSummary,
+    withheld: u64,
+    kinds: Kinds,
+    points: Points,
+}
+
+impl<'a> Taken<'a> {
+    fn new(header: &las::Header, described: &[u8], options: &'a PointOptions) -> Self {
+        let format = *header.point_format();
+        let fields = fields(format, described);
+        let is_kept = |&index: &usize| options.attributes.keeps(&fields[index].name);
+        let kept: Vec<usize> = (0..fields.len()).filter(is_kept).collect();
+        let column =
+            |&index: &usize| Column { name: fields[index].name.clone(), values: Vec::new() };
+        Self {
+            options,
+            is_extended: format.is_extended,
+            points: Points {
+                values: Some(Vec::new()),
+                columns: kept.iter().map(column).collect(),
+                ..Points::default()
+            },
+            kept,
+            summaries: fields.iter().map(Field::summary).collect(),
+            fields,
+            scan: scan(header),
+            withheld: 0,
+            kinds: Kinds::default(),
+        }
     }
-    points.columns = columns;
-    let time = summaries.iter().find(|summary| summary.name == GPS_TIME);
-    scan.time = time.and_then(|time| Some([time.min?, time.max?]));
-    let unit = crs.as_ref().map(|crs| crs.length).unwrap_or_default();
-    let metadata = ModelMetadata::default()
-        .coordinates(Coordinates { unit, ..Coordinates::default() })
-        .crs(crs)
-        .scan(Some(scan))
-        .columns(summaries)
-        .notes(kinds.notes());
-    Ok((points, metadata))
+
+    /// Counts a point, and takes it unless the options leave it out.
+    fn take(&mut self, place: [f64; 3], intensity: u16, class: u8, record: &[u8]) {
+        let Self { options, scan, points, .. } = self;
+        // In formats 0 to 5 the flags are above the class, in the others in the byte before it (LAS 1.4 R15, tables 8 and 16).
+        let flags = if self.is_extended { record[15] & 15 } else { record[15] >> 5 };
+        let number = if self.is_extended { record[14] & 15 } else { record[14] & 7 };
+        *scan.classes.entry(class).or_default() += 1;
+        *scan.returns.entry(number).or_default() += 1;
+        count_flags(&mut scan.flags, flags);
+        if options.describe {
+            for (summary, field) in self.summaries.iter_mut().zip(&self.fields) {
+                summary.add(field.value(record));
+            }
+        }
+        if options.classes.as_ref().is_some_and(|classes| !classes.contains(&class)) {
+            return;
+        }
+        self.withheld += u64::from(flags & WITHHELD != 0);
+        if flags & WITHHELD == 0 || options.withheld {
+            self.kinds.count(flags, class);
+            points.positions.push(place);
+            points.values.get_or_insert_default().push(f64::from(intensity));
+            for (column, &index) in points.columns.iter_mut().zip(&self.kept) {
+                column.values.push(self.fields[index].value(record));
+            }
+        }
+    }
+
+    /// The points and their metadata. Says how many are withheld, and refuses a file without any of those that are asked for.
+    fn finish(self, path: &Path, crs: Option<Crs>) -> Result<(Points, ModelMetadata), PointsError> {
+        let Self { options, points, mut scan, withheld, .. } = self;
+        if withheld > 0 && !options.withheld {
+            if points.is_empty() {
+                let reason = Reason::choice(
+                    Setting::Withheld,
+                    format!("holds {withheld} points, all of them withheld"),
+                    advice!["give ", Setting::Withheld, " to take them"],
+                );
+                return Err(format(path, reason));
+            }
+            tracing::warn!(
+                "{}: {withheld} points are flagged as withheld, which are not to be processed: they are left out \
+                 unless `withheld` asks for them",
+                shown(path)
+            );
+        }
+        if let (true, Some(classes)) = (points.is_empty(), &options.classes) {
+            let asked = listed(classes.iter().copied());
+            let there = listed(scan.classes.keys().copied());
+            let what = format!("has no point of class {asked}, but of {there}");
+            return Err(format(path, Reason::content(what, "choose among these, or read all")));
+        }
+        let time = self.summaries.iter().find(|summary| summary.name == GPS_TIME);
+        scan.time = time.and_then(|time| Some([time.min?, time.max?]));
+        let unit = crs.as_ref().map(|crs| crs.length).unwrap_or_default();
+        let metadata = ModelMetadata::default()
+            .coordinates(Coordinates { unit, ..Coordinates::default() })
+            .crs(crs)
+            .scan(Some(scan))
+            .columns(self.summaries)
+            .notes(self.kinds.notes());
+        Ok((points, metadata))
+    }
 }
 
 /// The id of the record that describes extra bytes.

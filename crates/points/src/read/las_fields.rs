@@ -116,7 +116,7 @@ impl Field {
 }
 
 /// The fields of a format, in the order of its bytes, and the described extra bytes.
-pub(super) fn fields(format: &Format, described: &[u8]) -> Vec<Field> {
+pub(super) fn fields(format: Format, described: &[u8]) -> Vec<Field> {
     let mut all = vec![Field::new("intensity", 12, Code::U16)];
     let mut bits = |named: &[(&str, usize, u8, u8)]| {
         let field =
