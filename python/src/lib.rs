@@ -30,7 +30,7 @@ mod _walpha {
     #[pymodule_export]
     use super::filtration::{Filtration, Simplices};
     #[pymodule_export]
-    use super::points::{columns, read_points, write_points};
+    use super::points::{columns, point_column, point_columns, read_points, write_points};
     #[pymodule_export]
     use super::shape::{Shape, Union, alpha_shape, restored};
     #[pymodule_export]

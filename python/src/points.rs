@@ -5,46 +5,67 @@ use std::path::PathBuf;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use walpha::export::Target;
-use walpha::points::{Columns, ModelMetadata, Packing, PointOptions, PointWriter, read_model};
+use walpha::points::internal::describe_file;
+use walpha::points::{
+    Attributes, Columns, ModelMetadata, Packing, PointOptions, PointWriter, read_model,
+};
 use walpha::progress::Stage;
+use walpha::volume::OpenFile;
 use walpha::{Alpha, WeightedPoints};
 
 use crate::errors::{told, wrong};
 use crate::shape::{json, weighted};
 use crate::work::{Task, run};
 
-/// Places, weights, values, samples along (x, y, z), α, and the unit of lengths as JSON.
+/// Places, weights, values, samples along (x, y, z), α, and as JSON the unit of lengths, the system of coordinates, and the numbers
+/// of points of each class.
 type Read<'py> = (
     Bound<'py, PyArray2<f64>>,
     Option<Bound<'py, PyArray1<f64>>>,
     Option<Bound<'py, PyArray1<f64>>>,
     Option<[usize; 3]>,
     Option<f64>,
-    String,
+    [String; 3],
 );
 
-/// A file of points: without this number of its last layers, with these columns of a table, one frame of several, of these
-/// classes, with the withheld ones, and thinned to one point in each cube of this side.
-#[pyfunction]
-#[expect(clippy::too_many_arguments, reason = "they have names in Python")]
-pub fn read_points<'py>(
-    py: Python<'py>,
-    path: PathBuf,
+/// How a file of points is read: without this number of its last layers, with these columns of a table, one frame of several, of these
+/// classes, with the withheld ones, thinned to one point in each cube of this side, and with the values of this column.
+#[derive(FromPyObject)]
+pub struct Reading {
+    #[pyo3(item)]
     level: Option<u32>,
-    columns: Option<&str>,
+    #[pyo3(item)]
+    columns: Option<String>,
+    #[pyo3(item)]
     frame: Option<u64>,
+    #[pyo3(item)]
     classes: Option<Vec<u8>>,
+    #[pyo3(item)]
     withheld: bool,
+    #[pyo3(item)]
     thin: Option<f64>,
-) -> PyResult<Read<'py>> {
-    let columns = columns.map(str::parse::<Columns>).transpose().map_err(told)?;
-    let options = PointOptions::default()
-        .level(level)
-        .columns(columns)
-        .frame(frame)
-        .classes(classes)
-        .withheld(withheld)
-        .thin(thin);
+    #[pyo3(item)]
+    value: Option<String>,
+}
+
+impl Reading {
+    fn options(self) -> PyResult<PointOptions> {
+        let columns = self.columns.as_deref().map(str::parse::<Columns>);
+        Ok(PointOptions::default()
+            .level(self.level)
+            .columns(columns.transpose().map_err(told)?)
+            .frame(self.frame)
+            .classes(self.classes)
+            .withheld(self.withheld)
+            .thin(self.thin)
+            .value(self.value))
+    }
+}
+
+/// The points of a file.
+#[pyfunction]
+pub fn read_points(py: Python<'_>, path: PathBuf, reading: Reading) -> PyResult<Read<'_>> {
+    let options = reading.options()?;
     let (points, facts) = run(py, &Task::default(), move || {
         let _ = Stage::Read.begin();
         read_model(&path, &options)
@@ -57,16 +78,41 @@ pub fn read_points<'py>(
         points.values.map(|values| values.into_pyarray(py)),
         facts.grid.map(|grid| grid.dims.xyz()),
         facts.alpha.map(Alpha::squared),
-        json(&facts.coordinates),
+        [json(&facts.coordinates), json(&facts.crs), json(&facts.scan.map(|scan| scan.classes))],
     ))
+}
+
+/// The names of the columns that a file has beside coordinates.
+#[pyfunction]
+pub fn point_columns(py: Python<'_>, path: PathBuf, reading: Reading) -> PyResult<Vec<String>> {
+    let options = reading.options()?;
+    let (_, facts) = run(py, &Task::default(), move || match options.made(&path)? {
+        Some(made) => Ok(made),
+        None => describe_file(&OpenFile::open(&path)?, &options),
+    })?;
+    Ok(facts.columns.into_iter().map(|column| column.name).collect())
+}
+
+/// The numbers in a column of a file, NaN where a point has none.
+#[pyfunction]
+pub fn point_column(
+    py: Python<'_>,
+    path: PathBuf,
+    name: String,
+    reading: Reading,
+) -> PyResult<Bound<'_, PyArray1<f64>>> {
+    let options = reading.options()?.attributes(Attributes::Named(vec![name.clone()]));
+    let (points, _) = run(py, &Task::default(), move || read_model(&path, &options))?;
+    let column = points.column(&name).expect("the reader refuses a file without it");
+    Ok(column.into_owned().into_pyarray(py))
 }
 
 /// The meaning of each column of a table by its name: x, y, z, weight, value, radius, or nothing that is read.
 #[pyfunction]
 pub fn columns(names: Vec<String>) -> PyResult<Vec<Option<String>>> {
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
-    let columns = String::from(Columns::named(&names).map_err(told)?);
-    Ok(columns.split(',').map(|name| (name != "-").then(|| name.to_owned())).collect())
+    let columns = Columns::named(&names).map_err(told)?;
+    Ok(columns.meanings().into_iter().map(|name| name.map(str::to_owned)).collect())
 }
 
 /// Writes points under an extension of points.

@@ -1,5 +1,6 @@
 import hashlib
 import os
+import pickle
 import subprocess
 import sys
 
@@ -127,3 +128,28 @@ def test_single_precision_far_away_has_an_offset(tmp_path):
     wanted = shape.boundary(solid=False).points
     assert len(found) == len(wanted)
     assert np.abs(found - wanted[np.lexsort(wanted.T[::-1])]).max() < 5e-5
+
+
+def test_a_scan_has_classes_a_system_and_columns():
+    tile = walpha.read_points("sample:tile", classes=["vegetation"], value="height")
+    assert (tile.crs["epsg"], tile.unit, tile.classes[5]) == (25832, "m", len(tile.points))
+    assert set(tile.classes) == {2, 5, 6}
+    np.testing.assert_array_equal(tile.values, tile.points[:, 2])
+    assert list(tile.columns) == ["intensity", "classification", "treeID"]
+    assert set(tile.columns["treeid"]) == {1, 2, 3, 4, 5}
+    assert "treeID" in tile.columns and "height" not in tile.columns
+    with pytest.raises(KeyError, match="treeID"):
+        tile.columns["nope"]
+    again = pickle.loads(pickle.dumps(tile))
+    np.testing.assert_array_equal(again.columns["class"], np.full(len(tile.points), 5.0))
+
+
+def test_columns_of_a_table(tmp_path):
+    path = tmp_path / "t.csv"
+    path.write_text("x,y,z,label,kind\n0,0,0,1,oak\n1,0,0,,ash\n")
+    points = walpha.read_points(path)
+    assert (points.classes, points.crs) == (None, None)
+    assert list(points.columns) == ["label"]
+    np.testing.assert_array_equal(points.columns["label"], [1, np.nan])
+    with pytest.raises(ValueError, match="no column nope"):
+        walpha.read_points(path, value="nope")

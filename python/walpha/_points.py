@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Literal, NamedTuple, TypeAlias
 
 from . import _alpha, _arrays, _walpha
@@ -19,6 +19,45 @@ _CLASSES: dict[object, list[int]] = {
 }
 
 
+class PointColumns(Mapping[str, Floats]):
+    """The columns of a file of points by name, each read when it is asked for, and then kept.
+
+    A name may be in any letter case, and ``class`` is the classification of LAS. Numbers are NaN where a point has none.
+    """
+
+    def __init__(self, path: str, reading: dict[str, object]) -> None:
+        self._path, self._reading = path, reading
+        self._names: list[str] | None = None
+        self._read: dict[str, Floats] = {}
+
+    def __getitem__(self, name: str) -> Floats:
+        if name not in self._read:
+            try:
+                self._read[name] = _walpha.point_column(self._path, name, self._reading)
+            except ValueError as error:
+                if "has no column" in str(error):
+                    raise KeyError(str(error)) from None
+                raise
+        return self._read[name]
+
+    def _all(self) -> list[str]:
+        if self._names is None:
+            self._names = _walpha.point_columns(self._path, self._reading)
+        return self._names
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._all()
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._all())
+
+    def __len__(self) -> int:
+        return len(self._all())
+
+    def __repr__(self) -> str:
+        return f"PointColumns({self._all()})"
+
+
 class PointFile(NamedTuple):
     """Points as a file has them.
 
@@ -33,7 +72,15 @@ class PointFile(NamedTuple):
     alpha : float or None
         The α that their shape is meant to be made at, a **squared** length.
     unit : str
-        Of lengths: "mm", say; "voxel" where coordinates are indices, "unit" where nobody says.
+        Of lengths: "mm", say; "voxel" where coordinates are indices, "ft" and "ftUS" for the two feet, "unit" where
+        nobody says.
+    classes : dict of int to int, or None
+        How many points of LAS and LAZ have each class, by its ASPRS code, whether it was read or not.
+    crs : dict or None
+        The coordinate reference system, where the file states one: "epsg" and "name" (or None), "geographic", "unit", and
+        "vertical" for heights.
+    columns : mapping of str to ndarray
+        The other columns, such as "gps_time" or "treeID". Each is read from the file when it is asked for.
     """
 
     points: Floats
@@ -42,6 +89,9 @@ class PointFile(NamedTuple):
     grid: tuple[int, int, int] | None
     alpha: float | None
     unit: str
+    classes: dict[int, int] | None
+    crs: dict[str, object] | None
+    columns: Mapping[str, Floats]
 
 
 def read_points(
@@ -53,6 +103,7 @@ def read_points(
     classes: Iterable[int | Ground] | None = None,
     withheld: bool = False,
     thin: float | None = None,
+    value: str | None = None,
 ) -> PointFile:
     """Read points.
 
@@ -64,7 +115,7 @@ def read_points(
         the squares of a column ``radius``; a fourth column without a name has values. Of PDB and mmCIF the heavy atoms of
         the polymers in the first model are read; the weight of an atom is its squared radius, of the file or Bondi's. Or
         ``hard:NAME``, a set on which programs fail: the documentation lists them under cross-checking; or
-        ``sample:peptide``, a small molecule.
+        ``sample:peptide``, a small molecule; or ``sample:tile``, a small laser scan.
     level : int, optional
         For WVM in layers: how many of the last layers to leave out.
     columns : iterable of str, optional
@@ -79,6 +130,8 @@ def read_points(
         For LAS and LAZ: also take the points that are flagged as withheld, which are not to be processed.
     thin : float, optional
         Keep the first point in each cube of this side, in the unit of the points.
+    value : str, optional
+        The column whose numbers are F: "height" (z), or one of ``columns``. By default a column value, or the intensity.
 
     Returns
     -------
@@ -102,11 +155,23 @@ def read_points(
     if thin is not None and not 0 < thin < float("inf"):
         raise ValueError(f"thin={thin} is not the side of a cube: give a length above 0")
     named = None if columns is None else ",".join([columns] if isinstance(columns, str) else columns)
-    points, weights, values, sizes, alpha, coordinates = _walpha.read_points(
-        os.fspath(path), level, named, frame, None if classes is None else _codes(classes), withheld, thin
-    )
+    reading: dict[str, object] = {
+        "level": level,
+        "columns": named,
+        "frame": frame,
+        "classes": None if classes is None else _codes(classes),
+        "withheld": withheld,
+        "thin": thin,
+        "value": value,
+    }
+    points, weights, values, sizes, alpha, texts = _walpha.read_points(os.fspath(path), reading)
+    coordinates, crs, counts = map(json.loads, texts)
     grid = None if sizes is None else (sizes[2], sizes[1], sizes[0])
-    return PointFile(points, weights, values, grid, alpha, json.loads(coordinates)["unit"])
+    by_class = None if counts is None else {int(code): count for code, count in counts.items()}
+    # A sample has a name and no path.
+    where = os.path.abspath(path) if os.path.exists(path) else os.fspath(path)
+    columns_of_file = PointColumns(where, reading)
+    return PointFile(points, weights, values, grid, alpha, coordinates["unit"], by_class, crs, columns_of_file)
 
 
 def _codes(classes: Iterable[int | Ground]) -> list[int]:

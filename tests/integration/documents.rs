@@ -126,8 +126,6 @@ fn reader_files(folder: &Path) {
     ok(folder, &["points", "sample:phantom@16", "-o", "skull.csv"]);
     let theirs = ["shape", "skull.csv", "--weights", "common=0", "--alpha", "2", "-o"];
     ok(folder, &[&theirs[..], &["gudhi.json", "theirs.json", "theirs.vtu"]].concat());
-    #[cfg(feature = "las")]
-    tile(&folder.join("tile.laz"));
 }
 
 /// The atoms of C₆₀, as `docs/tutorials/molecules.md` makes them.
@@ -148,32 +146,6 @@ fn buckyball() -> Vec<String> {
     }
     assert_eq!(atoms.len(), 60);
     std::iter::once("x,y,z,radius".to_owned()).chain(atoms).collect()
-}
-
-/// A tile of ground, with points of a building and of vegetation above it.
-#[cfg(feature = "las")]
-fn tile(path: &Path) {
-    use las::point::Classification;
-
-    let mut builder = las::Builder::from((1, 2));
-    builder.point_format.is_compressed = true;
-    let transform = las::Transform { scale: 0.001, offset: 0.0 };
-    builder.transforms = las::Vector { x: transform, y: transform, z: transform };
-    let header = builder.into_header().expect("a header");
-    let mut writer = las::Writer::from_path(path, header).expect("a file");
-    let mut random = Random::new(1);
-    for k in 0..3000 {
-        let (classification, side, floor, height) = match k % 3 {
-            0 => (Classification::Ground, 30.0, 0.0, 0.1),
-            1 => (Classification::Building, 12.0, 8.0, 0.1),
-            _ => (Classification::HighVegetation, 6.0, 2.0, 6.0),
-        };
-        let (x, y) = (side * random.unit(), side * random.unit());
-        let z = floor + height * random.unit();
-        let point = las::Point { x, y, z, classification, ..las::Point::default() };
-        writer.write_point(point).expect("a point");
-    }
-    writer.close().expect("a file");
 }
 
 /// The lines of a document's shell blocks that begin with `walpha` or make a folder, without their comments.
@@ -222,10 +194,9 @@ fn is_run_here(command: &str) -> bool {
     let of_others = has(&[" ct/", "/scratch", "phantom1024"]);
     // Minutes each; the reproduction is a step of CI.
     let long = has(&["--count 100000", "--curve", "walpha reproduce"]);
-    let without_las = !cfg!(feature = "las") && has(&["tile.laz", "building.csv"]);
     let without_zarr = !cfg!(feature = "zarr") && has(&[".zarr", "walpha blocks"]);
     let without_skull = has(&["sample:skull", "skull.json"]) && !crate::common::has_skull();
-    !(of_others || long || without_las || without_zarr || without_skull)
+    !(of_others || long || without_zarr || without_skull)
 }
 
 /// Runs a command in a shell that finds the built program.

@@ -114,7 +114,7 @@ fn classes_and_thinning() {
     assert_eq!(selected(&["--class", "ground"]), 3);
     assert_eq!(selected(&["--class", "vegetation,6"]), 2);
     assert_eq!(selected(&["--class", "ground", "--thin", "2.5"]), 2);
-    fails(f, 1, "points a.laz --class water", &["of these classes"]);
+    fails(f, 1, "points a.laz --class water", &["no point of class 9 (water)", "2 (ground)"]);
     fails(f, 2, "points a.laz --class trees", &["ground"]);
     fails(f, 2, "points sample:phantom@8 --thin 1", &["--thin", "a volume"]);
     std::fs::write(f.join("a.xyz"), "0 0 0\n1 0 0\n").unwrap();

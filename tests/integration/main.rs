@@ -28,6 +28,8 @@ mod ladder;
 #[cfg(feature = "las")]
 mod las;
 mod laws;
+#[cfg(feature = "las")]
+mod lidar;
 mod molecules;
 #[cfg(feature = "mpi")]
 mod mpi;

@@ -48,6 +48,12 @@ pub enum LengthUnit {
     /// Ångströms.
     #[serde(rename = "Å")]
     Angstrom,
+    /// International feet, 0.3048 m.
+    #[serde(rename = "ft")]
+    Foot,
+    /// US survey feet, 1200/3937 m.
+    #[serde(rename = "ftUS")]
+    SurveyFoot,
 }
 
 /// The meaning of coordinates: the directions of their axes and their unit.
@@ -87,7 +93,7 @@ impl Space {
 }
 
 impl LengthUnit {
-    const ALL: [Self; 8] = [
+    const ALL: [Self; 10] = [
         Self::Voxel,
         Self::Unstated,
         Self::Metre,
@@ -96,12 +102,14 @@ impl LengthUnit {
         Self::Micrometre,
         Self::Nanometre,
         Self::Angstrom,
+        Self::Foot,
+        Self::SurveyFoot,
     ];
 
-    /// The unit as a power of ten metres; `None` if it is not a known length.
+    /// The unit as a power of ten metres; `None` if it is not one, as feet are not.
     fn exponent(self) -> Option<i32> {
         match self {
-            Self::Voxel | Self::Unstated => None,
+            Self::Voxel | Self::Unstated | Self::Foot | Self::SurveyFoot => None,
             Self::Metre => Some(0),
             Self::Centimetre => Some(-2),
             Self::Millimetre => Some(-3),
@@ -111,9 +119,21 @@ impl LengthUnit {
         }
     }
 
-    /// Whether the unit is a known length, so that others can be converted to it.
+    /// Whether the unit is a known length.
     pub fn is_known(self) -> bool {
-        self.exponent().is_some()
+        !matches!(self, Self::Voxel | Self::Unstated)
+    }
+
+    /// The unit of this length in metres: one of metres, parts of them, or feet. The two feet differ by 2 in a million.
+    pub fn of_metres(metres: f64) -> Self {
+        let length = |unit: &Self| match unit {
+            Self::Foot => Some(0.3048),
+            Self::SurveyFoot => Some(1200.0 / 3937.0),
+            other => other.exponent().map(|exponent| 10f64.powi(exponent)),
+        };
+        let is_it =
+            |unit: &Self| length(unit).is_some_and(|length| (metres / length - 1.0).abs() < 1e-7);
+        Self::ALL.into_iter().find(is_it).unwrap_or_default()
     }
 
     /// The symbol that follows a number: `mm`, `voxel`; `unit` if the unit is not known.
@@ -127,6 +147,8 @@ impl LengthUnit {
             Self::Micrometre => "µm",
             Self::Nanometre => "nm",
             Self::Angstrom => "Å",
+            Self::Foot => "ft",
+            Self::SurveyFoot => "ftUS",
         }
     }
 
@@ -154,6 +176,8 @@ impl LengthUnit {
             | "micrometers" => Self::Micrometre,
             "nanometer" | "nanometre" | "nanometers" => Self::Nanometre,
             "angstrom" | "ångström" => Self::Angstrom,
+            "foot" | "feet" => Self::Foot,
+            "us-ft" | "us survey foot" | "us survey feet" => Self::SurveyFoot,
             _ => Self::ALL.into_iter().find(of_symbol).unwrap_or_default(),
         }
     }
@@ -234,6 +258,15 @@ mod tests {
             assert_eq!(LengthUnit::named(name), LengthUnit::Micrometre, "{name}");
         }
         assert_eq!(LengthUnit::named("furlong"), LengthUnit::Unstated);
+        for (metres, unit) in [
+            (1.0, LengthUnit::Metre),
+            (0.01, LengthUnit::Centimetre),
+            (0.3048, LengthUnit::Foot),
+            (0.3048006096012192, LengthUnit::SurveyFoot),
+            (0.9144, LengthUnit::Unstated),
+        ] {
+            assert_eq!(LengthUnit::of_metres(metres), unit);
+        }
     }
 
     #[test]

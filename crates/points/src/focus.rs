@@ -48,6 +48,7 @@ pub fn focus(fine: &Points, coarse: &Points, region: &Region) -> Points {
         weights: column(|points| points.weights.as_ref()),
         of_radii: fine.of_radii && coarse.of_radii,
         molecule: None,
+        columns: Vec::new(),
     }
 }
 

@@ -50,6 +50,8 @@ pub struct PointFormat {
     holds_points: fn(&OpenFile) -> Result<bool, PointsError>,
     /// Whether its files are also read compressed with gzip, or alone in a ZIP archive.
     pub(super) is_packed: bool,
+    /// Whether its reader describes all columns, also those that it does not keep.
+    pub(super) describes: bool,
     /// Its reader, unless it was left out of the build.
     read: Option<Read>,
     /// Counts its cells, if the format has any.
@@ -82,6 +84,7 @@ const PLAIN: PointFormat = PointFormat {
     holds_points: |_| Ok(true),
     writers: &[],
     is_packed: false,
+    describes: false,
     read: None,
     cells: None,
     read_complex: None,
@@ -178,8 +181,9 @@ pub static FORMATS: [PointFormat; 18] = [
             start.starts_with(b"ply") && start.get(3).is_some_and(u8::is_ascii_whitespace)
         },
         is_packed: true,
-        read: Some(|file, _| {
-            Ok(stated::in_comments(file, ply::read(file)?, &["comment", "obj_info"]))
+        read: Some(|file, options| {
+            let points = ply::read(file, &options.attributes)?;
+            Ok(stated::in_comments(file, points, &["comment", "obj_info"]))
         }),
         cells: Some(ply::cells),
         read_complex: Some(ply::read_complex),
@@ -227,7 +231,7 @@ pub static FORMATS: [PointFormat; 18] = [
         fuzzed_by: "vtk_geometry",
         begins: is_vtk_xml,
         holds_points: vtk::holds_points,
-        read: Some(|file, _| stated::in_vtk(file, vtk::read(file)?)),
+        read: Some(|file, options| stated::in_vtk(file, vtk::read(file, &options.attributes)?)),
         cells: Some(vtk::cells),
         read_complex: Some(vtk::read_complex),
         ..PLAIN
@@ -251,7 +255,7 @@ pub static FORMATS: [PointFormat; 18] = [
         begins: is_npy,
         chooses: &[Setting::Columns],
         holds_points: |file| Ok(is_npy(file.start()) && npy::holds_points(file)?),
-        read: Some(|file, options| plain(npy::read(file, options.columns.as_ref()))),
+        read: Some(|file, options| plain(npy::read(file, options))),
         writers: &[PointWriter {
             extension: "npy",
             packs: false,
@@ -266,6 +270,7 @@ pub static FORMATS: [PointFormat; 18] = [
         fuzzed_by: "las",
         begins: |start| start.starts_with(b"LASF"),
         chooses: &[Setting::Class, Setting::Withheld],
+        describes: true,
         read: built!("las", super::read::las::read),
         ..PLAIN
     },

@@ -25,7 +25,9 @@
 
 pub mod haar;
 
+mod attributes;
 mod cell_count;
+mod crs;
 mod difference;
 mod error;
 mod focus;
@@ -40,12 +42,15 @@ mod read;
 mod select;
 mod sets;
 mod spread;
+mod tile;
 mod weigh;
 mod weighting;
 mod write;
 mod wvm;
 
+pub use attributes::{Attributes, Column, ColumnSummary, Flags, ScanSummary};
 pub use cell_count::CellCount;
+pub use crs::{Crs, Vertical};
 pub use difference::{difference, scattered_difference};
 pub use error::PointsError;
 pub use focus::{Region, focus};
@@ -71,6 +76,7 @@ pub mod internal {
     pub use crate::haar::internal::{Bricks, Slabs};
     pub use crate::largest::{Budget, Counts, Cut, Search};
     pub use crate::mesh::{cells_of_file, read_complex_file};
+    pub use crate::open::describe_file;
     pub use crate::select::{Asked, LEAST_GRAY, check_least};
     pub use crate::weighting::{Differences, Shares};
 }

@@ -3,7 +3,7 @@ use std::fmt;
 use walpha_base::setters;
 use walpha_complex::Alpha;
 
-use super::Units;
+use super::{ColumnSummary, Crs, ScanSummary, Units};
 use walpha_volume::{Coordinates, Dims, Frame, GrayRange};
 
 /// The grid that points are samples of.
@@ -85,6 +85,12 @@ pub struct ModelMetadata {
     pub order: Option<Vec<u32>>,
     /// The unit cell of periodic points.
     pub cell: Option<Cell>,
+    /// The coordinate reference system, if a file states one.
+    pub crs: Option<Crs>,
+    /// What the file of a laser scan says about all its points.
+    pub scan: Option<ScanSummary>,
+    /// The columns beside x, y and z: of LAS all, of other files those that were [kept](crate::Attributes).
+    pub columns: Vec<ColumnSummary>,
     /// Remarks of a file on some of its points, for people: how many are synthetic, or noise.
     pub notes: Vec<String>,
 }
@@ -110,6 +116,9 @@ impl ModelMetadata {
         recipe: Option<String>,
         order: Option<Vec<u32>>,
         cell: Option<Cell>,
+        crs: Option<Crs>,
+        scan: Option<ScanSummary>,
+        columns: Vec<ColumnSummary>,
         notes: Vec<String>,
     }
 }

@@ -1,5 +1,6 @@
 //! Reading points from files. The format is recognised by the content first, then by the extension.
 
+use std::borrow::Cow;
 use std::path::Path;
 
 use walpha_base::advice::Setting;
@@ -10,7 +11,8 @@ use super::formats::{FORMATS, PointFormat};
 use super::molecule::{AtomSelection, PEPTIDE, Radii, peptide};
 use super::read::content::Packed;
 use super::read::{COLUMNS, format};
-use super::{Columns, ModelMetadata, Points, PointsError, hard};
+use super::tile::{TILE, tile};
+use super::{Attributes, Columns, ModelMetadata, Points, PointsError, hard};
 use walpha_volume::{OpenFile, Reason, begins_as_volume, other_kind};
 
 /// What a user may state about a file of points.
@@ -30,6 +32,12 @@ pub struct PointOptions {
     pub classes: Option<Vec<u8>>,
     /// Whether points of LAS and LAZ are read that are flagged *withheld*, which are not to be processed.
     pub withheld: bool,
+    /// The column whose numbers are the values F, by its name; `height` is z. `None` takes a column `value`, or the intensity.
+    pub value: Option<String>,
+    /// The columns that are kept beside coordinates, weights and values.
+    pub attributes: Attributes,
+    /// Whether the points are only described: ranges of columns are found, and coordinates need not be lengths in one unit.
+    pub(crate) describe: bool,
     /// Whether a column that is not a weight by its name is one where the file has no other: the values.
     pub weights: bool,
     /// Keeps the first point in each cube of this side, in the unit of the points; `None` keeps all.
@@ -49,14 +57,52 @@ impl PointOptions {
         frame: Option<u64>,
         classes: Option<Vec<u8>>,
         withheld: bool,
+        value: Option<String>,
+        attributes: Attributes,
         weights: bool,
         thin: Option<f64>,
         radii: Option<Radii>,
         atoms: AtomSelection,
     }
 
+    /// These options for a description of a file: all columns are kept, unless the reader describes them.
+    fn describing(&self, file: &OpenFile) -> Self {
+        let describes = self.format_of(file).is_some_and(|format| format.describes);
+        let attributes = if describes { Attributes::None } else { Attributes::All };
+        Self { describe: true, ..self.clone().attributes(attributes) }
+    }
+
+    /// Checks that all columns that are asked for are there, and takes the values from the one that is named.
+    fn take_columns(
+        &self,
+        path: &Path,
+        points: &mut Points,
+        others: impl FnOnce() -> Result<Vec<String>, PointsError>,
+    ) -> Result<(), PointsError> {
+        let mut asked = self.attributes.names().iter().chain(&self.value);
+        if let Some(name) = asked.find(|name| points.column(name).is_none()) {
+            let known = [("weight", points.weights.is_some()), ("value", points.values.is_some())];
+            let known = known.iter().filter(|(_, is_there)| *is_there).map(|(name, _)| *name);
+            let mut names: Vec<String> = ["x", "y", "z"].map(str::to_owned).to_vec();
+            names.extend(known.map(str::to_owned));
+            names.extend(others()?);
+            let what = format!("has no column {name} of numbers, but {}", names.join(", "));
+            return Err(format(path, Reason::content(what, "name one of these")));
+        }
+        if let Some(name) = &self.value {
+            let values = points.column(name).map(Cow::into_owned);
+            points.values = values;
+            if !self.attributes.keeps(name) {
+                points
+                    .columns
+                    .retain(|column| !Attributes::Named(vec![name.clone()]).keeps(&column.name));
+            }
+        }
+        Ok(())
+    }
+
     /// The points of a name that stands for no file: those of a [`hard`] set, or the molecule `sample:peptide`, an α-helix of
-    /// twelve alanines.
+    /// twelve alanines; or the laser scan `sample:tile`, with ground, a roof and five trees.
     ///
     /// # Errors
     /// There is no such set, or a radius is not known.
@@ -67,10 +113,15 @@ impl PointOptions {
         let name = name.as_ref();
         let made = if name.as_os_str() == PEPTIDE {
             Some(peptide(self)?)
+        } else if name.as_os_str() == TILE {
+            Some(tile(self)?)
         } else {
             hard(name)?.map(|points| (points, ModelMetadata::default()))
         };
         let Some((mut points, metadata)) = made else { return Ok(None) };
+        let names: Vec<String> = points.columns.iter().map(|column| column.name.clone()).collect();
+        self.take_columns(name, &mut points, || Ok(names))?;
+        points.columns.retain(|column| self.attributes.keeps(&column.name));
         if let Some(side) = self.thin {
             points.thin(side)?;
         }
@@ -83,7 +134,7 @@ impl PointOptions {
     /// As [`is_point_file`].
     pub fn is_point_file(&self, path: impl AsRef<Path>) -> Result<bool, PointsError> {
         let path = path.as_ref();
-        if path.as_os_str() == PEPTIDE || hard(path)?.is_some() {
+        if [PEPTIDE, TILE].iter().any(|name| path.as_os_str() == *name) || hard(path)?.is_some() {
             return Ok(true);
         }
         // A pipe is recognised by name alone, as bytes read from it are gone.
@@ -204,13 +255,19 @@ pub fn read_model_file(
     if let Some(reason) = of_another_kind(known, file) {
         return Err(format(path, reason));
     }
-    let (mut points, metadata) = known.read(file, options)?;
-    if points.is_empty() && options.classes.is_some() {
-        let what = "holds no point of these classes";
-        return Err(format(path, Reason::content(what, "see which classes it has, or read all")));
-    }
+    let keep = options.attributes.and(options.value.as_ref());
+    let (mut points, mut metadata) = known.read(file, &options.clone().attributes(keep))?;
     if points.is_empty() {
         return Err(format(path, Reason::content("holds no points", "name another file")));
+    }
+    let names = || -> Result<Vec<String>, PointsError> {
+        let (all, metadata) = known.read(file, &options.describing(file))?;
+        let of_scan = metadata.columns.into_iter().map(|column| column.name);
+        Ok(of_scan.chain(all.columns.into_iter().map(|column| column.name)).collect())
+    };
+    options.take_columns(path, &mut points, names)?;
+    if metadata.scan.is_none() {
+        metadata.columns = points.columns.iter().map(|column| column.summary("float64")).collect();
     }
     finite(path, &points)?;
     if options.weights && points.weights.is_none() && points.values.is_some() {
@@ -227,6 +284,19 @@ pub fn read_model_file(
         points.thin(side)?;
     }
     Ok((points, metadata))
+}
+
+/// Reads a file of points to describe it, with all its columns, whatever its coordinates are. Of a scan they are described and
+/// not kept.
+///
+/// # Errors
+/// Those of [`read_model`].
+#[doc(hidden)]
+pub fn describe_file(
+    file: &OpenFile,
+    options: &PointOptions,
+) -> Result<(Points, ModelMetadata), PointsError> {
+    read_model_file(file, &options.describing(file))
 }
 
 /// Why a file is not read that has the name of a format, and begins as one of another kind does.

@@ -2,7 +2,8 @@ use std::collections::HashSet;
 
 use walpha_base::keep;
 
-use super::{Molecule, PointsError};
+use super::attributes::keep_rows;
+use super::{Column, Molecule, PointsError};
 use walpha_shape::LengthsError;
 
 /// Points with their optional data: columns of equal length.
@@ -29,6 +30,8 @@ pub struct Points {
     pub of_radii: bool,
     /// The atoms that the points are, if they are those of a molecule.
     pub molecule: Option<Molecule>,
+    /// The other columns that were [kept](crate::Attributes).
+    pub columns: Vec<Column>,
 }
 
 impl Points {
@@ -93,6 +96,7 @@ impl Points {
         if let Some(molecule) = &mut self.molecule {
             keep(&mut molecule.atoms, kept);
         }
+        keep_rows(&mut self.columns, kept);
         keep(&mut self.positions, kept);
     }
 

@@ -12,6 +12,8 @@ pub enum Colouring<'a> {
     Plain,
     /// A value at each input point, such as F, through a colour map.
     Values(&'a [f64], ColourMap),
+    /// A colour at each input point.
+    Points(&'a [Rgb]),
     /// The classes: boundary facets, singular facets, singular edges and lone vertices each have their colour of
     /// [`class_colours`].
     Classes,
@@ -82,10 +84,13 @@ impl Scene {
         complex: &Complex,
         style: &ShapeStyle<'_>,
     ) -> Result<Self, RenderError> {
-        if let Colouring::Values(values, _) = style.colouring
-            && values.len() != positions.len()
-        {
-            return Err(RenderError::Values { got: values.len(), points: positions.len() });
+        let given = match style.colouring {
+            Colouring::Values(values, _) => Some(values.len()),
+            Colouring::Points(colours) => Some(colours.len()),
+            Colouring::Plain | Colouring::Classes => None,
+        };
+        if let Some(got) = given.filter(|&got| got != positions.len()) {
+            return Err(RenderError::Values { got, points: positions.len() });
         }
         let facets = complex.facets.rows().as_flattened().iter();
         let edges = complex.edges.rows().as_flattened().iter();
@@ -127,6 +132,7 @@ impl ShapeStyle<'_> {
     fn colour(&self, vertex: u32, kind: Kind) -> Rgb {
         match (self.colouring, kind) {
             (Colouring::Values(values, map), _) => map.colour(values[vertex as usize]),
+            (Colouring::Points(colours), _) => colours[vertex as usize],
             (Colouring::Classes, kind) => class_colours()[kind as usize].1,
             (Colouring::Plain, Kind::Regular) => Rgb::BONE,
             (Colouring::Plain, _) => SINGULAR_TINT,
@@ -157,7 +163,7 @@ fn surface(
     let normals = (shading == Shading::Smooth)
         .then(|| smoothed(vertex_normals(&positions, &triangles), &triangles, LATTICE_ROUNDS));
     let colours = match style.colouring {
-        Colouring::Values(..) => {
+        Colouring::Values(..) | Colouring::Points(_) => {
             Colours::Vertex(used.iter().map(|&v| style.colour(v, kind)).collect())
         }
         _ => Colours::Uniform(style.colour(0, kind)),
@@ -228,7 +234,11 @@ mod tests {
             ShapeStyle { colouring, opacity: 0.5, edge_radius: 0.0, ..ShapeStyle::default() };
         let scene = Scene::of_shape(&positions, &complex, &style).unwrap();
         let expected = [4.0, 5.0, 6.0].map(|v| map.colour(v)).to_vec();
-        assert_eq!(scene.meshes[1].colours, Colours::Vertex(expected));
+        assert_eq!(scene.meshes[1].colours, Colours::Vertex(expected.clone()));
+        let colours: Vec<Rgb> = values.iter().map(|&value| map.colour(value)).collect();
+        let by_points = ShapeStyle { colouring: Colouring::Points(&colours), ..style };
+        let same = Scene::of_shape(&positions, &complex, &by_points).unwrap();
+        assert_eq!(same.meshes[1].colours, Colours::Vertex(expected));
         assert!(scene.meshes.iter().all(|m| m.two_sided && m.opacity == 0.5));
         assert!(scene.tubes.is_empty() && scene.balls.is_empty());
     }

@@ -1,22 +1,25 @@
 //! `walpha info`: describes the content of a file.
 
+use std::collections::{BTreeMap, HashSet};
 use std::path::Path;
 
 use clap::Args;
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 use serde_json::Value;
-use walpha_base::shown::number;
+use walpha_base::shown::{number, six_digits};
 
 use crate::check::meshes::Mesh;
 use crate::cli::process::errors::{Result, option};
 use crate::labels::{LabelSize, LabelSizes};
 use crate::pipeline::Opened;
-use crate::points::{Cell, CellCount, LeftOut, ModelMetadata, Molecule, Points};
+use crate::points::{
+    Cell, CellCount, ColumnSummary, Crs, Flags, LeftOut, ModelMetadata, Molecule, Points,
+    ScanSummary, bounding_box,
+};
 use crate::progress::Stage;
 use crate::volume::{self, Dtype, Nan, OpenVolume, ReadOptions, Reason, SampleStats, Series};
 use crate::{Alpha, Coordinates, Dims, Frame, LengthUnit, Units, VolumeError};
-use walpha_points::internal::cells_of_file;
-use walpha_points::read_model_file;
+use walpha_points::internal::{cells_of_file, describe_file};
 
 use crate::cli::commands::check::{mesh_format, read_mesh};
 use crate::cli::commands::pipeline;
@@ -52,6 +55,7 @@ struct InfoSummary {
 
 #[derive(Serialize)]
 #[serde(tag = "kind", rename_all = "lowercase")]
+#[expect(clippy::large_enum_variant, reason = "there is one")]
 enum Content {
     Volume {
         format: String,
@@ -121,6 +125,20 @@ enum Content {
         /// The cell in which the points repeat; absent if the file states none.
         #[serde(skip_serializing_if = "Option::is_none")]
         cell: Option<CellSummary>,
+        #[serde(flatten)]
+        scan: Option<ScanSummary>,
+        /// The ASPRS names of the classes that occur, by their codes.
+        #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+        class_names: BTreeMap<u8, &'static str>,
+        /// The coordinate reference system; null if the file states none.
+        crs: Option<Crs>,
+        /// The unit of x and y: a length, degree, or unit if it is not known.
+        unit: &'static str,
+        /// Points in a square of the unit, of the squares of a grid in which there are points; null for a single point or a line.
+        density: Option<f64>,
+        /// The columns beside x, y and z, by name.
+        #[serde(serialize_with = "by_name")]
+        columns: Vec<ColumnSummary>,
         /// Remarks of the file on some of its points, for example how many are synthetic.
         #[serde(skip_serializing_if = "Vec::is_empty")]
         notes: Vec<String>,
@@ -204,6 +222,26 @@ impl From<Cell> for CellSummary {
     }
 }
 
+/// Writes columns as an object, in their order.
+fn by_name<S: Serializer>(columns: &[ColumnSummary], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_map(columns.iter().map(|column| (&column.name, column)))
+}
+
+/// The number of points in a square of the unit: squares of a grid for about 16 points each are counted if there are points in
+/// them, so that neither holes nor the corners of a slanted tile matter. O(n).
+fn density(positions: &[[f64; 3]]) -> Option<f64> {
+    const POINTS: f64 = 16.0;
+    let [low, high] = bounding_box(positions);
+    let area = (high[0] - low[0]) * (high[1] - low[1]);
+    let side = (POINTS * area / positions.len() as f64).sqrt();
+    if !(side > 0.0 && side.is_finite()) {
+        return None;
+    }
+    let square = |place: &[f64; 3]| [0, 1].map(|k| ((place[k] - low[k]) / side) as u32);
+    let taken: HashSet<[u32; 2]> = positions.iter().map(square).collect();
+    Some(positions.len() as f64 / (taken.len() as f64 * side * side))
+}
+
 impl Info {
     pub(crate) fn run(self, global: Global) -> Result<()> {
         let mut progress = Progress::new(global);
@@ -224,7 +262,7 @@ impl Info {
             Opened::Made(points, metadata) => Ok(Content::of_points(&points, metadata, Vec::new())),
             Opened::Points(file) => {
                 let options = self.input.point_options()?;
-                let (points, metadata) = read_model_file(&file, &options)?;
+                let (points, metadata) = describe_file(&file, &options)?;
                 Ok(Content::of_points(&points, metadata, cells_of_file(&file, &options)?))
             }
             Opened::Volume(volume) => self.describe_volume(input, &volume),
@@ -357,6 +395,9 @@ impl Content {
             points.positions.iter().fold(start, |so_far, p| pick(so_far, p[axis]))
         };
         let ModelMetadata { grid, coordinates, alpha, range, recipe, cell, notes, .. } = metadata;
+        let ModelMetadata { scan, crs, columns, .. } = metadata;
+        let classes = scan.iter().flat_map(|scan| scan.classes.keys());
+        let is_geographic = crs.as_ref().is_some_and(|crs| crs.geographic);
         Self::Points {
             count: points.len(),
             low: [0, 1, 2].map(|i| extreme(f64::min, f64::INFINITY, i)),
@@ -367,6 +408,12 @@ impl Content {
             atoms: points.molecule.as_ref().map(AtomsSummary::of),
             cells,
             cell: cell.map(Into::into),
+            class_names: classes.map(|&class| (class, ScanSummary::class_name(class))).collect(),
+            unit: if is_geographic { "degree" } else { coordinates.unit.symbol() },
+            density: density(&points.positions),
+            scan,
+            crs,
+            columns,
             notes,
             grid: grid.map(|grid| grid.dims.xyz()),
             coordinates,
@@ -374,6 +421,88 @@ impl Content {
             gray_range: range.map(|range| [range.low, range.high]),
             recipe: recipe.map(|text| serde_json::from_str(&text).unwrap_or(text.into())),
         }
+    }
+
+    /// Displays points, with what is known of them.
+    fn fmt_points(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self::Points {
+            count,
+            low,
+            high,
+            weights,
+            of_radii,
+            values,
+            cells,
+            cell,
+            grid,
+            coordinates,
+            scan,
+            ..
+        } = self
+        else {
+            return Ok(());
+        };
+        if let Some(ScanSummary { version, point_format, compressed, .. }) = scan {
+            let packed = if *compressed { ", compressed (LAZ)" } else { "" };
+            writeln!(f, "format    LAS {version}, points of format {point_format}{packed}")?;
+        }
+        writeln!(f, "points    {count}")?;
+        if !cells.is_empty() {
+            let cells: Vec<String> = cells.iter().map(ToString::to_string).collect();
+            writeln!(f, "cells     {}", cells.join(", "))?;
+        }
+        for (i, axis) in ["x", "y", "z"].iter().enumerate() {
+            writeln!(f, "{axis}         {} to {}", number(low[i]), number(high[i]))?;
+        }
+        let has = |there: bool| if there { "yes" } else { "no" };
+        let squares = if *of_radii { ", squares of its radii" } else { "" };
+        writeln!(f, "weights   {}{squares}\nvalues    {}", has(*weights), has(*values))?;
+        if let Some(CellSummary { text, .. }) = cell {
+            writeln!(f, "cell      {text}")?;
+        }
+        if let Some([x, y, z]) = grid {
+            writeln!(f, "grid      {x}×{y}×{z} samples, coordinates in {coordinates}")?;
+        }
+        self.fmt_scan(f)?;
+        self.fmt_usage(f)
+    }
+
+    /// Displays what is known of the Earth and of the scan: the reference system, classes, returns, flags, times and columns.
+    fn fmt_scan(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self::Points { scan, crs, unit, density, columns, .. } = self else { return Ok(()) };
+        match crs {
+            Some(crs) => writeln!(f, "system    {}", crs.label())?,
+            None if scan.is_some() => writeln!(f, "system    none stated")?,
+            None => {}
+        }
+        if let Some(Crs { vertical, .. }) = crs {
+            let code = vertical.epsg.map(|epsg| format!("EPSG:{epsg}"));
+            let unit = vertical.unit.as_ref().map(|unit| format!("in {unit}"));
+            let stated: Vec<String> =
+                [vertical.name.clone(), code, unit].into_iter().flatten().collect();
+            if !stated.is_empty() {
+                writeln!(f, "heights   {}", stated.join(", "))?;
+            }
+        }
+        let Some(scan) = scan else { return fmt_columns(f, columns) };
+        if let Some(density) = density {
+            writeln!(f, "density   {} points in a square {unit}", number(six_digits(*density)))?;
+        }
+        for (index, (class, count)) in scan.classes.iter().enumerate() {
+            let head = if index == 0 { "classes   " } else { "          " };
+            writeln!(f, "{head}{class} ({}): {count}", ScanSummary::class_name(*class))?;
+        }
+        let returns = scan.returns.iter().map(|(number, count)| format!("{number}: {count}"));
+        writeln!(f, "returns   {}", returns.collect::<Vec<_>>().join(", "))?;
+        let Flags { withheld, overlap, synthetic, key_point } = scan.flags;
+        writeln!(
+            f,
+            "flags     withheld {withheld}, overlap {overlap}, synthetic {synthetic}, key point {key_point}"
+        )?;
+        if let Some([first, last]) = scan.time {
+            writeln!(f, "time      {first} to {last} s ({})", scan.time_of)?;
+        }
+        fmt_columns(f, columns)
     }
 
     /// Displays the file's remarks on its points, and how they were made and are meant to be used: atoms, notes, unit,
@@ -445,6 +574,22 @@ fn fmt_values(
     let (min, max) = (number(f64::from(min)), number(f64::from(max)));
     let gray = if gray_levels { ", gray levels as they are" } else { "" };
     writeln!(f, "values    {min} to {max}{gray}")
+}
+
+/// Displays the columns of points, each with its type and range.
+fn fmt_columns(f: &mut std::fmt::Formatter<'_>, columns: &[ColumnSummary]) -> std::fmt::Result {
+    for (index, ColumnSummary { name, kind, min, max, missing }) in columns.iter().enumerate() {
+        let head = if index == 0 { "columns   " } else { "          " };
+        write!(f, "{head}{name}: {kind}")?;
+        if let (Some(min), Some(max)) = (min, max) {
+            write!(f, ", {} to {}", number(*min), number(*max))?;
+        }
+        if *missing > 0 {
+            write!(f, ", none for {missing} points")?;
+        }
+        writeln!(f)?;
+    }
+    Ok(())
 }
 
 /// Displays the files with the samples of a volume, if these are not in the file that describes it.
@@ -525,38 +670,7 @@ impl std::fmt::Display for Content {
                 writeln!(f, "series    {} in the folder; --series N reads one", series.len())?;
                 series.iter().try_for_each(|one| writeln!(f, "          {one}"))
             }
-            Self::Points {
-                count,
-                low,
-                high,
-                weights,
-                of_radii,
-                values,
-                cells,
-                cell,
-                grid,
-                coordinates,
-                ..
-            } => {
-                writeln!(f, "points    {count}")?;
-                if !cells.is_empty() {
-                    let cells: Vec<String> = cells.iter().map(ToString::to_string).collect();
-                    writeln!(f, "cells     {}", cells.join(", "))?;
-                }
-                for (i, axis) in ["x", "y", "z"].iter().enumerate() {
-                    writeln!(f, "{axis}         {} to {}", number(low[i]), number(high[i]))?;
-                }
-                let has = |there: bool| if there { "yes" } else { "no" };
-                let squares = if *of_radii { ", squares of its radii" } else { "" };
-                writeln!(f, "weights   {}{squares}\nvalues    {}", has(*weights), has(*values))?;
-                if let Some(CellSummary { text, .. }) = cell {
-                    writeln!(f, "cell      {text}")?;
-                }
-                if let Some([x, y, z]) = grid {
-                    writeln!(f, "grid      {x}×{y}×{z} samples, coordinates in {coordinates}")?;
-                }
-                self.fmt_usage(f)
-            }
+            Self::Points { .. } => self.fmt_points(f),
         }
     }
 }

@@ -20,6 +20,7 @@ pub(super) mod points;
 #[cfg(feature = "paper")]
 pub(super) mod reproduce;
 pub(super) mod shape;
+mod shape_by;
 pub(super) mod shape_in_blocks;
 mod shape_of_labels;
 #[cfg(feature = "render")]

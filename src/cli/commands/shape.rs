@@ -2,6 +2,7 @@
 
 use std::io::Write;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use clap::Args;
 use walpha_base::shown::shown;
@@ -27,7 +28,7 @@ use crate::export::{
 };
 use crate::outofcore::{BlockwiseFormat, Team};
 use crate::pipeline::{Input, Values};
-use crate::points::{ModelMetadata, Packing, PointWriter};
+use crate::points::{Attributes, Column, ModelMetadata, Packing, PointWriter};
 use crate::progress::Stage;
 use crate::volume::UnknownFormat;
 use crate::{AlphaShape, Recipe};
@@ -41,6 +42,10 @@ use crate::{AlphaShape, Recipe};
 /// walpha shape sample:skull --weights min-max --alpha 10 -o skull.ply skull.vtu
 ///
 /// walpha shape scan.xyz --alpha auto --solid --keep largest -o scan.stl
+///
+/// walpha shape sample:tile --class building --flat --alpha-radius 2 -o footprints.geojson
+///
+/// walpha shape sample:tile --by treeID --alpha-radius 3 -o trees.csv crowns.geojson
 ///
 /// walpha shape trees.csv --alpha-radius 50 -o forest.geojson forest.svg
 ///
@@ -72,20 +77,27 @@ pub(crate) struct Shape {
     /// they have there: triangles or edges, and no cells.
     #[arg(long)]
     pub(crate) require_3d: bool,
+    /// See points from above: drop z, so that they lie in a plane and have an outline, as the footprint of a building.
+    #[arg(long, conflicts_with_all = ["each_label", "require_3d"])]
+    pub(crate) flat: bool,
     /// Go on with a shape of nothing, which otherwise is an error: write files that hold nothing of it, such as an
     /// STL without a facet.
     #[arg(long)]
     allow_empty: bool,
     /// Write the solid of each label of a segmentation to a file of its own, label-N, in the folder that --output names.
-    #[arg(long, help_heading = "Labels")]
+    #[arg(long, help_heading = "Labels", group = "each")]
     each_label: bool,
-    /// With --each-label: formats to write, by extension, as in ply,vtu [default: stl].
+    /// Make a shape for each value of a column of points, such as treeID, class or label, all at one α. Outputs are a table
+    /// (.csv), outlines from above (.geojson), or a folder for meshes.
+    #[arg(long, value_name = "COLUMN", help_heading = "Groups of points", group = "each")]
+    pub(crate) by: Option<String>,
+    /// With --each-label, or --by and a folder: formats to write, by extension, as in ply,vtu [default: stl].
     #[arg(
         long,
         value_name = "EXT,EXT,…",
         value_delimiter = ',',
-        requires = "each_label",
-        help_heading = "Labels"
+        requires = "each",
+        help_heading = "Groups of points"
     )]
     pub(crate) mesh: Vec<String>,
     #[command(flatten)]
@@ -97,7 +109,7 @@ pub(crate) struct Shape {
     #[command(flatten)]
     kept: Declared<Kept>,
     #[command(flatten)]
-    format: OutputArgs,
+    pub(crate) format: OutputArgs,
     #[command(flatten)]
     picture: PictureArgs,
 }
@@ -121,7 +133,9 @@ impl Shape {
         let input = &self.pipeline.input;
         self.format.check(self.output.iter())?;
         let names = self.names()?;
-        let of_each = if self.each_label { self.meshes()? } else { Vec::new() };
+        let writes_each = self.each_label || self.writes_groups()?;
+        let of_each = if writes_each { self.meshes()? } else { Vec::new() };
+        unused("--mesh", !writes_each && !self.mesh.is_empty(), "no folder for meshes is named")?;
         let formats: Vec<&Format> =
             formats(&names).chain(of_each.iter().map(|mesh| mesh.format)).collect();
         let written = |has: fn(&Format) -> bool| formats.iter().any(|format| has(format));
@@ -179,7 +193,7 @@ impl Shape {
     }
 
     /// The outputs, as paths whose extensions determine their formats.
-    fn names(&self) -> Result<Vec<PathBuf>> {
+    pub(crate) fn names(&self) -> Result<Vec<PathBuf>> {
         self.output.iter().map(|path| self.format.named(path)).collect()
     }
 
@@ -188,6 +202,9 @@ impl Shape {
         let recipe = self.recipe()?;
         if self.each_label {
             return self.each_label(&recipe, global);
+        }
+        if let Some(column) = &self.by {
+            return self.by_column(column, &recipe, global);
         }
         let folder = shape_in_blocks::working_folder(&self.output, &self.pipeline.input.input);
         let in_blocks =
@@ -225,6 +242,7 @@ impl Shape {
         outline::refuse(formats(&self.names()?), "there are blocks, which span a volume")?;
         let parts = "it takes the whole boundary, and there are blocks";
         unused("--solid", self.solid, parts)?;
+        unused("--flat", self.flat, "points of a plane are not cut into blocks")?;
         let given = &self.pipeline.input.typed;
         given.refuse(&["refit", "periodic", "keep", "min_volume"], "there are blocks")?;
         if let Some((target, _)) = outputs.models.first() {
@@ -237,21 +255,42 @@ impl Shape {
         work.lead(outputs, progress, team)
     }
 
+    /// The columns of points that outputs with these names hold, or that pictures need.
+    fn columns(&self, names: &[PathBuf]) -> Attributes {
+        if formats(names).any(|format| format.columns) {
+            Attributes::All
+        } else if names.iter().any(|name| PictureArgs::wanted(name)) {
+            self.picture.columns()
+        } else {
+            Attributes::None
+        }
+    }
+
     /// Computes the shape in memory.
     fn at_once(
         &self,
         recipe: &Recipe,
-        outputs: Outputs,
+        mut outputs: Outputs,
         global: Global,
         progress: &mut Progress,
     ) -> Result<Report> {
         let input = &self.pipeline.input;
         let names = self.names()?;
         // If the input is a CT, the recipe may be chosen for it.
-        let mut recipe = recipe.clone();
-        let read = pipeline::read_suited(input, &mut recipe, progress)?;
+        let attributes = self.columns(&names);
+        let mut recipe = recipe.clone().attributes(attributes);
+        let mut read = pipeline::read_suited(input, &mut recipe, progress)?;
         let recipe = &recipe;
         pipeline::accept(&read, input)?;
+        if let Input::Points(points, facts) = &mut read {
+            if self.flat {
+                points.positions.iter_mut().for_each(|place| place[2] = 0.0);
+            }
+            let columns = std::mem::take(&mut points.columns);
+            outputs.describe(self, facts, columns)?;
+        } else {
+            unused("--flat", self.flat, "a volume is not a set of points")?;
+        }
         let read = match read {
             Input::Labels(volume) => {
                 return self.of_labels(&volume, recipe, outputs, global, progress);
@@ -328,7 +367,9 @@ impl Outputs {
             } else if let Some(writer) = PointWriter::of(&name).ok().filter(|writer| writer.packs) {
                 outputs.models.push((Target::open(path)?, writer));
             } else if PictureArgs::wanted(&name) {
-                outputs.whole.push((Target::open(path)?, shape.picture.exporter()));
+                outputs
+                    .whole
+                    .push((Target::open(path)?, shape.picture.exporter(Arc::default(), false)));
             } else {
                 let unknown = |_| UnknownFormat::new(path, "a shape", extensions());
                 let format = Format::of(&name).map_err(unknown)?;
@@ -336,6 +377,26 @@ impl Outputs {
             }
         }
         Ok(outputs)
+    }
+
+    /// Tells the writers of shapes what a file says about its points: their coordinate system and columns.
+    fn describe(
+        &mut self,
+        shape: &Shape,
+        facts: &ModelMetadata,
+        columns: Vec<Column>,
+    ) -> Result<()> {
+        let columns: Arc<[Column]> = columns.into();
+        let export = shape.export().crs(facts.crs.clone()).columns(columns.clone());
+        for (target, exporter) in &mut self.whole {
+            let name = shape.format.named(target.path())?;
+            if let Ok(format) = Format::of(&name) {
+                *exporter = format.exporter(&export);
+            } else if PictureArgs::wanted(&name) {
+                *exporter = shape.picture.exporter(columns.clone(), facts.scan.is_some());
+            }
+        }
+        Ok(())
     }
 
     /// Refuses a shape for which a file would be empty; without files, refuses an empty shape.

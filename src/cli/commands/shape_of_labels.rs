@@ -19,13 +19,14 @@ use crate::cli::process::output::print_summary;
 use crate::cli::process::progress::Progress;
 use crate::cli::report::offsets::FileOffset;
 use crate::cli::report::{Report, SCHEMA_VERSION, ending, print_cuts, print_kept};
+use crate::export::Exporter;
 use crate::labels::{LabelChoice, LabelSize, chosen};
 use crate::pipeline::{Input, Model};
 use crate::points::ModelMetadata;
 use crate::progress::Stage;
 use crate::shape::{Betti, Cuts, Kept};
 use crate::volume::Volume;
-use crate::{Coordinates, Recipe};
+use crate::{AlphaShape, Coordinates, Recipe};
 
 /// The default format of the solids.
 const DEFAULT_MESH: &str = "stl";
@@ -111,15 +112,9 @@ impl Shape {
             let model = progress.watch(|| recipe.solid_of(&volume, one))?;
             coordinates = model.origin.coordinates;
             let shape = &model.shape;
-            let (mut files, mut offsets) = (Vec::new(), Vec::new());
-            for mesh in &meshes {
-                let name = format!("label-{label}.{}", mesh.extension);
-                offsets.extend(FileOffset::of(Path::new(&name), mesh.exporter.as_ref(), shape));
-                progress.stage(Stage::Write, || {
-                    folder.write(&name, |out| mesh.exporter.write(shape, out))
-                })?;
-                files.extend(folder.written().last().cloned());
-            }
+            let stem = format!("label-{label}");
+            let (files, offsets) =
+                write_part(&mut folder, &meshes, &stem, shape, FileOffset::of, &mut progress)?;
             let size = model.labels.as_ref().and_then(|sizes| sizes.labels.first().copied());
             let size = size.expect("a label that is there");
             let solid = self.solid.then(|| shape.solid().1);
@@ -143,6 +138,27 @@ impl Shape {
     pub(crate) fn meshes(&self) -> Result<Vec<Mesh>> {
         meshes(&self.mesh, &[DEFAULT_MESH], &self.export())
     }
+}
+
+/// Writes the meshes of a part to a folder, under a name with the extension of each. Returns the paths, and the offsets that files
+/// in single precision have subtracted from coordinates, which `offset` finds.
+pub(crate) fn write_part<'a>(
+    folder: &mut Folder,
+    meshes: impl IntoIterator<Item = &'a Mesh>,
+    stem: &str,
+    shape: &AlphaShape,
+    offset: fn(&Path, &dyn Exporter, &AlphaShape) -> Option<FileOffset>,
+    progress: &mut Progress,
+) -> Result<(Vec<String>, Vec<FileOffset>)> {
+    let (mut files, mut offsets) = (Vec::new(), Vec::new());
+    for mesh in meshes {
+        let name = format!("{stem}.{}", mesh.extension);
+        offsets.extend(offset(Path::new(&name), mesh.exporter.as_ref(), shape));
+        progress
+            .stage(Stage::Write, || folder.write(&name, |out| mesh.exporter.write(shape, out)))?;
+        files.extend(folder.written().last().cloned());
+    }
+    Ok((files, offsets))
 }
 
 /// The summary printed after writing a solid for each label.

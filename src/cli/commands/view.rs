@@ -1,5 +1,6 @@
 //! `walpha view`: writes an interactive page.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::fmt::{self, Display};
 use std::path::PathBuf;
@@ -73,7 +74,7 @@ impl View {
         }
         let target = Target::open(&self.output)?;
         let mut progress = Progress::new(global);
-        let (weighed, source) = self.weighed(&mut progress)?;
+        let (weighed, source, column) = self.weighed(&mut progress)?;
         let recipe = self.pipeline.recipe()?;
         let details = weighed.into_iter().map(|weighed| {
             let detail = Detail::new(weighed, source.as_ref(), &mut progress)?;
@@ -84,7 +85,7 @@ impl View {
             }
         });
         let details = details.collect::<Result<Vec<_>>>()?;
-        let (page, facts) = self.page(&details, source.as_ref(), &mut progress)?;
+        let (page, facts) = self.page(&details, source.as_ref(), &column, &mut progress)?;
         if !global.quiet {
             let size = page.html.len() as f64 / 1e6;
             remark(&format!("walpha: {} takes {size:.1} MB", shown(&self.output)));
@@ -105,24 +106,35 @@ impl View {
         print_summary(global, &facts)
     }
 
-    /// The weighted points of each level of detail, the fewest first and those of the shape last, and the volume that they come
-    /// from.
-    fn weighed(&self, progress: &mut Progress) -> Result<(Vec<Weighed>, Option<PlacedVolume>)> {
+    /// The weighted points of each level of detail, the fewest first and those of the shape last; the volume that they come
+    /// from; and without one what their values are.
+    fn weighed(
+        &self,
+        progress: &mut Progress,
+    ) -> Result<(Vec<Weighed>, Option<PlacedVolume>, String)> {
         let input = &self.pipeline.input;
         let mut recipe = self.pipeline.recipe()?;
         let read = pipeline::read_suited(input, &mut recipe, progress)?;
         pipeline::accept(&read, input)?;
         let grays = match read {
-            Input::Points(..) => {
+            Input::Points(mut points, facts) => {
                 if self.isovalue.is_some() {
                     fail_usage!("--isovalue has no effect: points have no isosurface" => "omit it");
                 }
                 if !self.counts.is_empty() {
                     fail_usage!("--counts chooses samples of a volume, and {} holds points", input.input => "omit it");
                 }
+                // Scans are seen by height, unless values have a purpose.
+                let by_height = facts.scan.is_some() && recipe.weighting.is_none();
+                if by_height && recipe.value.is_none() {
+                    points.values = points.column("height").map(Cow::into_owned);
+                    recipe.value = Some("height".into());
+                }
+                let column = recipe.value.clone().unwrap_or_else(|| "value".into());
+                let read = Input::Points(points, facts);
                 let weigh = || recipe.weigh(read, Values::Written);
                 let (weighed, _) = progress.watch(weigh)?;
-                return Ok((vec![weighed], None));
+                return Ok((vec![weighed], None, format!("the column {column} of the input")));
             }
             Input::Labels(..) => return Err(PipelineError::OfLabels.into()),
             Input::Surface(..) => return Err(PipelineError::OfSurface.into()),
@@ -136,7 +148,7 @@ impl View {
         let coarse: Vec<Recipe> = counts.into_iter().map(selected).collect();
         let weigh = |recipe: &Recipe| progress.watch(|| recipe.weighed(&source, Values::Written));
         let details = coarse.iter().chain([&recipe]).map(weigh).collect::<Result<_, _>>()?;
-        Ok((details, Some(source)))
+        Ok((details, Some(source), String::new()))
     }
 
     /// Makes the page of the shapes, and a summary of each level of detail.
@@ -144,6 +156,7 @@ impl View {
         &self,
         details: &[Detail],
         source: Option<&PlacedVolume>,
+        column: &str,
         progress: &mut Progress,
     ) -> Result<(Page, Vec<DetailSummary>)> {
         let last = details.last().expect("the level of the shape");
@@ -200,7 +213,7 @@ impl View {
             value: match facts {
                 Some(_) if grays => "value of the original volume, in gray levels",
                 Some(_) => "value of the original volume",
-                None => "the column value of the input",
+                None => column,
             },
             difference: if grays { "gray levels" } else { "values of the file" },
             details: &rendered,

@@ -8,7 +8,7 @@ fn inputs() -> String {
     let volumes: Vec<&str> = volume::FORMATS.iter().map(|format| format.name).collect();
     let points: Vec<&str> = points::FORMATS.iter().map(|format| format.name).collect();
     format!(
-        "INPUT is a volume ({} with --dims), a point file ({}), one of {}, sample:peptide, or a set of points that is hard to triangulate (hard:NAME). α and weights are squared \
+        "INPUT is a volume ({} with --dims), a point file ({}), one of {}, sample:peptide, sample:tile, or a set of points that is hard to triangulate (hard:NAME). α and weights are squared \
          lengths.",
         volumes.join(", "),
         points.join(", "),

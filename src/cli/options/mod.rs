@@ -134,7 +134,10 @@ pub(super) fn of_gray_levels() -> Vec<&'static str> {
 
 /// The names of the settings that apply to points only.
 pub(super) fn of_points() -> Vec<&'static str> {
-    names(&[Group::Molecule]).into_iter().chain(["columns", "class", "withheld", "thin"]).collect()
+    names(&[Group::Molecule])
+        .into_iter()
+        .chain(["columns", "class", "withheld", "value", "thin"])
+        .collect()
 }
 
 /// The names of the settings that apply to volumes only. `--level` and `--gray-out` apply to some files of points, too.

@@ -1,10 +1,12 @@
 //! Replaces pictures if the command is built without them: there are no options and no files.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use clap::Args;
 
 use crate::export::Exporter;
+use crate::points::{Attributes, Column};
 
 #[derive(Args, Clone, Copy)]
 pub(crate) struct SightArgs {}
@@ -33,7 +35,12 @@ impl PictureArgs {
     }
 
     #[expect(clippy::unused_self, reason = "there are no options")]
-    pub(crate) fn exporter(self) -> Box<dyn Exporter> {
+    pub(crate) fn exporter(self, _: Arc<[Column]>, _: bool) -> Box<dyn Exporter> {
         unreachable!("no path asks for a picture")
+    }
+
+    #[expect(clippy::unused_self, reason = "there are no options")]
+    pub(crate) fn columns(self) -> Attributes {
+        Attributes::None
     }
 }

@@ -5,12 +5,13 @@ use std::fmt::Display;
 use std::io::{self, Write};
 use std::path::Path;
 use std::str::FromStr;
+use std::sync::Arc;
 
 use clap::{Args, ValueEnum};
 
 use crate::AlphaShape;
 use crate::export::{Exporter, Needs};
-use crate::points::bounding_box;
+use crate::points::{Attributes, Column, bounding_box};
 use crate::render::{
     Background, Ball, Camera, ColourMap, Colouring, Projection, RenderError, Rgb, Scene,
     ShapeStyle, Size, View,
@@ -70,15 +71,10 @@ impl SightArgs {
 pub(crate) struct PictureArgs {
     #[command(flatten)]
     sight: SightArgs,
-    /// What colours show: nothing, the values F, or the classes of simplices.
-    #[arg(
-        long,
-        value_enum,
-        default_value_t,
-        value_name = "MEANING",
-        help_heading = "Pictures (.png)"
-    )]
-    colour: ColourArg,
+    /// What colours show: nothing, the values F, the classes of simplices, the height (z), or of a laser scan its ASPRS
+    /// classes or colours [default: of a laser scan asprs, or height where it has no classes; otherwise plain].
+    #[arg(long, value_enum, value_name = "MEANING", help_heading = "Pictures (.png)")]
+    colour: Option<ColourArg>,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -106,13 +102,42 @@ impl From<ViewArg> for View {
     }
 }
 
-#[derive(Clone, Copy, Default, PartialEq, ValueEnum)]
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
 enum ColourArg {
-    #[default]
     Plain,
     Value,
     Class,
+    Height,
+    Asprs,
+    Rgb,
 }
+
+/// The columns of classes and of colours.
+const CLASS: &str = "classification";
+const RGB: [&str; 3] = ["red", "green", "blue"];
+
+/// The colours of the ASPRS classes 0 to 18, as QGIS has them.
+const ASPRS: [Rgb; 19] = [
+    Rgb([170, 170, 170]),
+    Rgb([170, 170, 170]),
+    Rgb([170, 85, 0]),
+    Rgb([0, 170, 170]),
+    Rgb([85, 255, 85]),
+    Rgb([0, 128, 0]),
+    Rgb([255, 85, 85]),
+    Rgb([170, 0, 0]),
+    Rgb([85, 85, 85]),
+    Rgb([85, 170, 255]),
+    Rgb([170, 0, 170]),
+    Rgb([60, 60, 60]),
+    Rgb([85, 85, 85]),
+    Rgb([255, 255, 85]),
+    Rgb([255, 255, 85]),
+    Rgb([85, 85, 255]),
+    Rgb([255, 85, 255]),
+    Rgb([85, 85, 85]),
+    Rgb([170, 0, 0]),
+];
 
 impl PictureArgs {
     /// The names of these options.
@@ -127,17 +152,86 @@ impl PictureArgs {
         extension.is_some_and(|e| Self::EXTENSIONS.iter().any(|png| e.eq_ignore_ascii_case(png)))
     }
 
-    /// The exporter that writes the picture.
-    pub(crate) fn exporter(self) -> Box<dyn Exporter> {
-        Box::new(self)
+    /// The exporter that writes the picture of a shape whose points have these columns, and may be those of a laser scan.
+    pub(crate) fn exporter(self, columns: Arc<[Column]>, is_scan: bool) -> Box<dyn Exporter> {
+        Box::new(Picture { args: self, columns, is_scan })
+    }
+
+    /// The columns that the colours need: without an option, those that are there.
+    pub(crate) fn columns(self) -> Attributes {
+        match self.colour {
+            None => Attributes::IfThere(vec![CLASS.to_owned()]),
+            Some(ColourArg::Asprs) => Attributes::Named(vec![CLASS.to_owned()]),
+            Some(ColourArg::Rgb) => Attributes::Named(RGB.map(str::to_owned).to_vec()),
+            Some(_) => Attributes::None,
+        }
+    }
+}
+
+/// A picture of a shape, whose points have these columns.
+struct Picture {
+    args: PictureArgs,
+    columns: Arc<[Column]>,
+    is_scan: bool,
+}
+
+impl Picture {
+    fn column(&self, name: &str) -> Option<&[f64]> {
+        let named = |column: &&Column| {
+            column.name.eq_ignore_ascii_case(name)
+                || name == CLASS && column.name.eq_ignore_ascii_case("class")
+        };
+        self.columns.iter().find(named).map(|column| &column.values[..])
+    }
+
+    /// What colours show: what was asked for, or what suits the points.
+    fn colour(&self) -> ColourArg {
+        // 0 and 1 stand for points without a class.
+        let has_classes = || self.column(CLASS).is_some_and(|all| all.iter().any(|&c| c > 1.0));
+        match self.args.colour {
+            Some(colour) => colour,
+            None if self.is_scan && has_classes() => ColourArg::Asprs,
+            None if self.is_scan => ColourArg::Height,
+            None => ColourArg::Plain,
+        }
+    }
+
+    /// The colours of the points, if they have their own.
+    fn colours(&self) -> Option<Vec<Rgb>> {
+        match self.colour() {
+            ColourArg::Asprs => {
+                let class = |class: &f64| ASPRS.get(*class as usize).copied().unwrap_or(ASPRS[0]);
+                Some(self.column(CLASS)?.iter().map(class).collect())
+            }
+            ColourArg::Rgb => {
+                let [red, green, blue] = RGB.map(|name| self.column(name));
+                let (red, green, blue) = (red?, green?, blue?);
+                // LAS has 16 bits, of which some writers use the lower 8 alone.
+                let most =
+                    [red, green, blue].into_iter().flatten().fold(0.0, |a: f64, &b| a.max(b));
+                let scale = if most > 255.0 { 256.0 } else { 1.0 };
+                let byte = |number: f64| (number / scale) as u8;
+                let colours = red.iter().zip(green).zip(blue);
+                Some(colours.map(|((&r, &g), &b)| Rgb([byte(r), byte(g), byte(b)])).collect())
+            }
+            _ => None,
+        }
     }
 
     fn draw(&self, shape: &AlphaShape) -> Result<Vec<u8>, RenderError> {
         let positions = shape.points().positions();
-        let values = shape.points().values();
-        let colouring = match (self.colour, values) {
-            (ColourArg::Value, Some(values)) => Colouring::Values(values, ColourMap::over(values)),
-            (ColourArg::Class, _) => Colouring::Classes,
+        let (values, colours) = (shape.points().values(), self.colours());
+        let heights: Vec<f64> = match self.colour() {
+            ColourArg::Height => positions.iter().map(|place| place[2]).collect(),
+            _ => Vec::new(),
+        };
+        let colouring = match (self.colour(), values, &colours) {
+            (ColourArg::Value, Some(values), _) => {
+                Colouring::Values(values, ColourMap::over(values))
+            }
+            (ColourArg::Class, ..) => Colouring::Classes,
+            (ColourArg::Height, ..) => Colouring::Values(&heights, ColourMap::over(&heights)),
+            (.., Some(colours)) => Colouring::Points(colours),
             _ => Colouring::Plain,
         };
         let bounds = bounding_box(positions);
@@ -146,15 +240,15 @@ impl PictureArgs {
         let edge_radius = diagonal * 0.0011;
         let style = ShapeStyle { colouring, edge_radius, ..ShapeStyle::default() };
         let scene = Scene::of_shape(positions, shape.complex(), &style)?;
-        self.sight.draw(&scene, bounds)
+        self.args.sight.draw(&scene, bounds)
     }
 }
 
-impl Exporter for PictureArgs {
+impl Exporter for Picture {
     fn encode(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
-        if self.colour == ColourArg::Value && shape.points().values().is_none() {
+        if self.colour() == ColourArg::Value && shape.points().values().is_none() {
             return Err(io::Error::other(
-                "the points have no values to colour by; choose --colour plain or class",
+                "the points have no values to colour by; choose --colour plain, height or class",
             ));
         }
         out.write_all(&self.draw(shape).map_err(io::Error::other)?)

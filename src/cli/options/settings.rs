@@ -40,6 +40,11 @@ const HELP: &[(&str, &str, &str)] = &[
         "",
         "Also take points of LAS and LAZ that are flagged as withheld, which are not to be processed",
     ),
+    (
+        "value",
+        "COLUMN",
+        "Column of points whose numbers are the values F: height (z), or a column of LAS, PLY, NPY or a table, as walpha info lists them [default: value, or intensity]",
+    ),
     ("thin", "SIDE", "Keep the first point in each cube of this side, in the unit of the points"),
     (
         "radii",

@@ -23,6 +23,16 @@ impl FileOffset {
     pub(crate) fn of(path: &Path, exporter: &dyn Exporter, shape: &AlphaShape) -> Option<Self> {
         let single = exporter.single_precision(shape)?;
         tracing::warn!("{}: {}", shown(path), single.remark()?);
+        Self::quietly(path, exporter, shape)
+    }
+
+    /// Like [`of`](Self::of), without a warning.
+    pub(crate) fn quietly(
+        path: &Path,
+        exporter: &dyn Exporter,
+        shape: &AlphaShape,
+    ) -> Option<Self> {
+        let single = exporter.single_precision(shape)?;
         single
             .has_offset()
             .then(|| Self { file: path.display().to_string(), offset: single.offset })

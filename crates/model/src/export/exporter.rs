@@ -1,10 +1,12 @@
 use std::borrow::Cow;
 use std::io::{self, Write};
+use std::sync::Arc;
 
 use walpha_base::advice::Advice;
 use walpha_base::setters;
 
 use super::Needs;
+use walpha_points::{Column, Crs};
 use walpha_shape::{AlphaShape, SinglePrecision, Surface};
 
 /// A writer of shapes in one format.
@@ -50,7 +52,7 @@ pub trait Exporter {
 }
 
 /// Options of the writers.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct ExportOptions {
     /// Writes text, if the format also has a binary form: PLY.
@@ -63,10 +65,45 @@ pub struct ExportOptions {
     pub groups: bool,
     /// The input of the shape, recorded in VTP and VTU files.
     pub input: Option<String>,
+    /// The coordinate reference system of the points, from which `GeoJSON` is converted to longitude and latitude.
+    pub crs: Option<Crs>,
+    /// Further columns of the points, written beside their weights and values: PLY, VTU and VTP.
+    pub columns: Arc<[Column]>,
 }
 
 impl ExportOptions {
-    setters! { ascii: bool, solid: bool, groups: bool, input: Option<String> }
+    setters! { ascii: bool, solid: bool, groups: bool, input: Option<String>, crs: Option<Crs>, columns: Arc<[Column]> }
+
+    /// The further columns of a shape's points, each with a name that is none of `taken` and has no blanks, quotes or brackets. An
+    /// unwrapped shape has the numbers of the originals at its copies.
+    pub(super) fn columns_of(
+        &self,
+        shape: &AlphaShape,
+        taken: &[&str],
+    ) -> Vec<(String, Cow<'_, [f64]>)> {
+        let copies = shape.copies();
+        let originals = shape.points().len() - copies.len();
+        let mut names: Vec<String> = taken.iter().map(|&name| name.to_owned()).collect();
+        let mut columns = Vec::new();
+        for Column { name, values } in
+            self.columns.iter().filter(|column| column.values.len() == originals)
+        {
+            let kept = |c: char| if c.is_alphanumeric() || "_-.".contains(c) { c } else { '_' };
+            let mut name: String = name.chars().map(kept).collect();
+            while names.contains(&name) {
+                name.insert_str(0, "file_");
+            }
+            names.push(name.clone());
+            let numbers = if copies.is_empty() {
+                Cow::Borrowed(&values[..])
+            } else {
+                let of_copies = copies.iter().map(|&original| values[original as usize]);
+                Cow::Owned(values.iter().copied().chain(of_copies).collect())
+            };
+            columns.push((name, numbers));
+        }
+        columns
+    }
 
     /// The boundary to write.
     pub(super) fn surface<'a>(&self, shape: &'a AlphaShape) -> Cow<'a, Surface> {

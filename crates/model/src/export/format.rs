@@ -25,6 +25,8 @@ pub struct Format {
     pub whole: bool,
     /// Whether the format has both a text form and a binary form.
     pub ascii: bool,
+    /// Whether it holds further columns of the points ([`ExportOptions::columns`]).
+    pub columns: bool,
     /// Whether the format can separate regular and singular facets in a way that some programs do not expect.
     pub groups: bool,
     exporter: fn(ExportOptions) -> Box<dyn Exporter>,
@@ -39,6 +41,7 @@ const PLAIN: Format = Format {
     outline: false,
     whole: false,
     ascii: false,
+    columns: false,
     groups: false,
     exporter: |_| Box::new(Json),
 };
@@ -52,6 +55,7 @@ pub static FORMATS: [Format; 13] = [
         boundary: true,
         ascii: true,
         groups: true,
+        columns: true,
         exporter: |options| Box::new(Ply(options)),
         ..PLAIN
     },
@@ -101,6 +105,7 @@ pub static FORMATS: [Format; 13] = [
         name: "VTU",
         extension: "vtu",
         about: "VTK unstructured grid: simplices of all dimensions with their data.",
+        columns: true,
         exporter: |options| Box::new(Vtu(options)),
         ..PLAIN
     },
@@ -109,6 +114,7 @@ pub static FORMATS: [Format; 13] = [
         extension: "vtp",
         about: "VTK polygons: boundary, singular edges and vertices with their data.",
         boundary: true,
+        columns: true,
         exporter: |options| Box::new(Vtp(options)),
         ..PLAIN
     },
@@ -132,7 +138,7 @@ pub static FORMATS: [Format; 13] = [
         extension: "geojson",
         about: "Points in a plane: polygons with holes, with area and perimeter; singular edges and vertices.",
         outline: true,
-        exporter: |_| Box::new(GeoJson),
+        exporter: |options| Box::new(GeoJson(options)),
         ..PLAIN
     },
     Format {

@@ -30,6 +30,7 @@ mod exporter;
 mod filtration;
 mod findings;
 mod format;
+mod geographic;
 mod geojson;
 mod glb;
 mod json;
@@ -54,7 +55,7 @@ pub use filtration::{FILTRATION_FORMATS, FiltrationFormat};
 #[doc(hidden)]
 pub use findings::write_findings;
 pub use format::{FORMATS, Format};
-pub use geojson::GeoJson;
+pub use geojson::{GeoJson, OutlineFeature, write_features};
 pub use glb::Glb;
 pub use json::Json;
 // For the surface of balls, which the command writes. Not covered by semantic versioning.

@@ -4,7 +4,7 @@ use std::io;
 
 use walpha_base::advice::Advice;
 
-use walpha_shape::{AlphaShape, Outline};
+use walpha_shape::{AlphaShape, Outline, Polygon};
 
 /// An outline and the positions of its points, for text formats of geographic data: x and y, and z unless it is 0 for all points.
 pub(super) struct Planar<'a> {
@@ -48,6 +48,38 @@ impl<'a> Planar<'a> {
     /// The positions of points, in their order.
     pub(super) fn places(&self, points: &[u32]) -> Vec<&'a [f64]> {
         points.iter().map(|&v| self.place(v)).collect()
+    }
+
+    /// The area of a polygon in its plane, in squared units of the points.
+    pub(super) fn area(&self, polygon: &Polygon) -> f64 {
+        let area = |ring: &Vec<u32>| {
+            let Some((&first, rest)) = ring.split_first() else { return 0.0 };
+            let origin = self.positions[first as usize];
+            let arm = |v: u32| [0, 1, 2].map(|k| self.positions[v as usize][k] - origin[k]);
+            // Twice the area, as a vector across the plane.
+            let mut normal = [0.0_f64; 3];
+            for pair in rest.windows(2) {
+                let (a, b) = (arm(pair[0]), arm(pair[1]));
+                for (k, sum) in normal.iter_mut().enumerate() {
+                    let (i, j) = ((k + 1) % 3, (k + 2) % 3);
+                    *sum += a[i] * b[j] - a[j] * b[i];
+                }
+            }
+            normal.iter().map(|x| x * x).sum::<f64>().sqrt() / 2.0
+        };
+        area(&polygon.outer) - polygon.holes.iter().map(area).sum::<f64>()
+    }
+
+    /// The length of all rings of a polygon, in units of the points.
+    pub(super) fn perimeter(&self, polygon: &Polygon) -> f64 {
+        let length = |[a, b]: [u32; 2]| {
+            let [a, b] = [a, b].map(|v| self.positions[v as usize]);
+            (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>().sqrt()
+        };
+        let rings = [&polygon.outer].into_iter().chain(&polygon.holes);
+        let sides =
+            rings.flat_map(|ring| (0..ring.len()).map(|k| [ring[k], ring[(k + 1) % ring.len()]]));
+        sides.map(length).sum()
     }
 
     /// The positions of a ring, with the first repeated at the end.

@@ -1,3 +1,4 @@
+use std::borrow::Cow;
 use std::io::{self, Write};
 
 use walpha_base::advice::Advice;
@@ -7,7 +8,8 @@ use super::{ExportOptions, Exporter, Needs, colour};
 use walpha_shape::{AlphaShape, Class, Surface};
 use walpha_volume::annotation;
 
-/// Writes PLY: vertices of the boundary with weight, input index and, if known, value and its colour (red, green, blue); facets.
+/// Writes PLY: vertices of the boundary with weight, input index and, if known, value and its colour (red, green, blue), and
+/// further columns of the points ([`ExportOptions::columns`]); facets.
 /// With groups, facets have their class (2 regular, 3 singular), their component and, if known and not of a solid, the
 /// [sheets](walpha_shape::Sheets) in front and behind, −1 for none. Coordinates are doubles. The file is binary little-endian, or
 /// text.
@@ -24,22 +26,24 @@ impl Exporter for Ply {
         let sheets = shape.sheets().filter(|_| options.groups && !options.solid);
         let sheets: Option<Vec<_>> = sheets.map(|sheets| sheets.sides().collect());
         let valued = shape.points().values().is_some();
+        let columns = options.columns_of(shape, &OWN);
         write!(
             out,
             "ply\nformat {} 1.0\ncomment walpha: {}\n{}element vertex {}\n\
              property double x\nproperty double y\nproperty double z\nproperty double weight\n{}\
-             property uint index\nelement face {}\nproperty list uchar uint vertex_indices\n{}{}end_header\n",
+             property uint index\n{}element face {}\nproperty list uchar uint vertex_indices\n{}{}end_header\n",
             if options.ascii { "ascii" } else { "binary_little_endian" },
             about(shape),
             annotation::line("comment", shape.coordinates()),
             surface.vertex_count(),
             if valued { VALUED } else { "" },
+            columns.iter().map(|(name, _)| format!("property double {name}\n")).collect::<String>(),
             surface.regular.len() + surface.singular.len(),
             if options.groups { "property uchar class\nproperty uint component\n" } else { "" },
             if sheets.is_some() { "property int sheet\nproperty int sheet_behind\n" } else { "" },
         )?;
         let mut row = Row { ascii: options.ascii, out, started: false };
-        vertices(&mut row, shape, &surface)?;
+        vertices(&mut row, shape, &surface, &columns)?;
         let (components, indices) =
             (shape.component_numbers(), surface.indices().collect::<Vec<_>>());
         for (i, facet) in surface.facets().enumerate() {
@@ -83,7 +87,15 @@ impl Exporter for Ply {
 const VALUED: &str =
     "property double value\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n";
 
-fn vertices(row: &mut Row<'_>, shape: &AlphaShape, surface: &Surface) -> io::Result<()> {
+/// The names of properties of vertices that are not those of further columns.
+const OWN: [&str; 9] = ["x", "y", "z", "weight", "value", "red", "green", "blue", "index"];
+
+fn vertices(
+    row: &mut Row<'_>,
+    shape: &AlphaShape,
+    surface: &Surface,
+    columns: &[(String, Cow<'_, [f64]>)],
+) -> io::Result<()> {
     let points = shape.points();
     let values: Option<Vec<f64>> = points.values().map(|v| surface.numbers(v).collect());
     let colours = values.as_deref().map(colour::bytes);
@@ -99,6 +111,9 @@ fn vertices(row: &mut Row<'_>, shape: &AlphaShape, surface: &Surface) -> io::Res
             }
         }
         row.put(index, u32::to_le_bytes)?;
+        for (_, numbers) in columns {
+            row.put(numbers[index as usize], f64::to_le_bytes)?;
+        }
         row.end()?;
     }
     Ok(())

@@ -92,6 +92,7 @@ fn unit_of(unit: LengthUnit) -> Option<&'static str> {
         LengthUnit::Centimetre => Some("centimeter"),
         LengthUnit::Millimetre => Some("millimeter"),
         LengthUnit::Micrometre => Some("micron"),
+        LengthUnit::Foot => Some("foot"),
         _ => None,
     }
 }

@@ -7,7 +7,7 @@ use walpha_volume::annotation;
 
 /// Writes VTP, VTK's polygons: the boundary, singular edges and singular vertices. Cell data are their `class` (2 regular, 3
 /// singular), the `component` of the shape that they belong to and, if known, the [sheets](walpha_shape::Sheets) in front
-/// (`sheet`) and behind (`sheet_behind`), −1 for none; point data are `weight`, `value` and `input_index`. Field data are those
+/// (`sheet`) and behind (`sheet_behind`), −1 for none; point data are `weight`, `value`, `input_index` and further columns. Field data are those
 /// of [`Vtu`](super::Vtu), with texts as strings. Solids have no sheets. Arrays are appended raw, little-endian, with 64-bit
 /// sizes.
 #[derive(Clone, Debug, Default)]
@@ -20,7 +20,13 @@ impl Exporter for Vtp {
             sheets: shape.sheets().filter(|_| !self.0.solid),
         };
         let made = Provenance::of(shape, &self.0);
-        write_surface(&self.0.surface(shape), &PointData::of(shape), &membership, &made, out)
+        write_surface(
+            &self.0.surface(shape),
+            &PointData::of(shape, &self.0),
+            &membership,
+            &made,
+            out,
+        )
     }
 
     fn needs(&self) -> Needs {
@@ -68,6 +74,9 @@ pub(crate) fn write_surface(
         file.array("Float64", "value", 1, of(values))?;
     }
     corners.write_ids(&mut file, surface.indices())?;
+    for (name, numbers) in &corners.columns {
+        file.array("Float64", name, 1, of(numbers))?;
+    }
     write!(file.xml, "</PointData>\n<CellData>\n")?;
     cell_data(&mut file, surface, membership)?;
     write!(file.xml, "</CellData>\n<Points>\n")?;

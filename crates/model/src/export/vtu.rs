@@ -1,3 +1,4 @@
+use std::borrow::Cow;
 use std::io::{self, Write};
 
 use super::about::solid;
@@ -6,7 +7,8 @@ use walpha_shape::{Alpha, AlphaShape, Complex, Simplices};
 use walpha_volume::{Coordinates, annotation};
 
 /// Writes VTU, VTK's unstructured grid: every simplex of the shape, vertices first, with its class as cell data (1 interior, 2
-/// regular, 3 singular); `weight`, `value` and `input_index` as point data. Field data record how it was made: `alpha` (a squared
+/// regular, 3 singular); `weight`, `value`, `input_index` and further columns as
+/// point data. Field data record how it was made: `alpha` (a squared
 /// length), `alpha_radius` unless α is negative, `class_legend`, `made_by` (program and version) and, if known, `input` and
 /// `unit`, the unit of length. Texts are arrays of UTF-8 bytes, as meshio refuses files with strings. Arrays are appended raw,
 /// little-endian, with 64-bit sizes.
@@ -19,7 +21,7 @@ impl Exporter for Vtu {
     fn encode(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
         let vertices: Vec<u32> = shape.complex().vertices.rows().iter().map(|&[v]| v).collect();
         let made = Provenance::of(shape, &self.0);
-        write_grid(shape.complex(), &vertices, &PointData::of(shape), &made, out)
+        write_grid(shape.complex(), &vertices, &PointData::of(shape, &self.0), &made, out)
     }
 }
 
@@ -54,17 +56,23 @@ pub(crate) struct PointData<'a> {
     /// The indices of the points in a volume, if they are numbered within a block; otherwise their numbers are indices of the
     /// input.
     pub voxels: Option<&'a [u64]>,
+    /// Further columns, by name.
+    pub columns: Vec<(String, Cow<'a, [f64]>)>,
 }
+
+/// The names of point data that are not those of further columns.
+const OWN: [&str; 4] = ["weight", "value", "input_index", "Points"];
 
 impl<'a> PointData<'a> {
     /// The data of a shape's points.
-    pub(crate) fn of(shape: &'a AlphaShape) -> Self {
+    pub(crate) fn of(shape: &'a AlphaShape, options: &'a ExportOptions) -> Self {
         let points = shape.points();
         Self {
             positions: points.positions(),
             weights: shape.power_weights(),
             values: points.values(),
             voxels: None,
+            columns: options.columns_of(shape, &OWN),
         }
     }
 
@@ -114,6 +122,9 @@ pub(crate) fn write_grid(
         file.array("Float64", "value", 1, of(values))?;
     }
     corners.write_ids(&mut file, vertices.iter().copied())?;
+    for (name, numbers) in &corners.columns {
+        file.array("Float64", name, 1, of(numbers))?;
+    }
     write!(file.xml, "</PointData>\n<CellData>\n")?;
     file.array("UInt8", "class", 1, grid.classes)?;
     writeln!(file.xml, "</CellData>")?;

@@ -274,6 +274,7 @@ impl MergedBlock {
             weights: squared.as_deref().unwrap_or(&self.weights),
             values: Some(&self.values),
             voxels: Some(&self.voxels),
+            columns: Vec::new(),
         };
         let coordinates = job.units.coordinates_of(&job.frame);
         let input = Some(job.input.as_str());

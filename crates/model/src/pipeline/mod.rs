@@ -3,6 +3,7 @@
 
 mod choice;
 mod error;
+mod groups;
 mod input;
 mod level;
 mod parameter;
@@ -13,6 +14,7 @@ mod weighed;
 
 pub use choice::{Choice, Goal};
 pub use error::PipelineError;
+pub use groups::{GroupShape, Groups, GroupsError};
 pub use input::{GrayVolume, Input, Opened, PlacedVolume, Values};
 pub use parameter::{AlphaRule, Parameter, ParameterOrigin};
 pub use periodic::PeriodicBox;

@@ -13,7 +13,8 @@ use crate::surface::SurfaceChoice;
 use walpha_points::haar::{HaarOptions, Tolerance};
 use walpha_points::internal::LEAST_GRAY;
 use walpha_points::{
-    AtomSelection, Columns, PointOptions, Points, PointsError, Radii, Selection, Units, Weighting,
+    AtomSelection, Attributes, Columns, PointOptions, Points, PointsError, Radii, Selection, Units,
+    Weighting,
 };
 use walpha_shape::{Alpha, Balls, Classifier, Engine, Keep, ShapeError, ShapeOptions};
 use walpha_volume::{Coordinates, Frame, Gray, GrayRange, LengthUnit, ReadOptions, Space};
@@ -58,6 +59,12 @@ pub struct Recipe {
     pub classes: Option<Vec<u8>>,
     /// Whether withheld points of LAS and LAZ are read ([`PointOptions::withheld`]).
     pub withheld: bool,
+    /// The column of points whose numbers are the values F ([`PointOptions::value`]).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub value: Option<String>,
+    /// The columns of points that are kept beside them ([`PointOptions::attributes`]). They are not stored with the other options.
+    #[serde(skip)]
+    pub attributes: Attributes,
     /// Keeps the first point in each cube of this side ([`PointOptions::thin`]).
     pub thin: Option<f64>,
     /// Where the radii of atoms come from ([`PointOptions::radii`]); not looked up where weights come from elsewhere.
@@ -138,6 +145,8 @@ impl Recipe {
         columns: Option<Columns>,
         classes: Option<Vec<u8>>,
         withheld: bool,
+        value: Option<String>,
+        attributes: Attributes,
         thin: Option<f64>,
         radii: Option<Radii>,
         atoms: AtomSelection,
@@ -219,6 +228,8 @@ impl Recipe {
             .frame(self.read.frame)
             .classes(self.classes.clone())
             .withheld(self.withheld)
+            .value(self.value.clone())
+            .attributes(self.attributes.clone())
             .weights(self.weighting == Some(Weighting::Column))
             .thin(self.thin)
     }

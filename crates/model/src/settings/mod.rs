@@ -178,6 +178,8 @@ settings! {
         class: Vec<u8> = parse::classes,
         /// Whether withheld points in LAS are read.
         withheld: bool = parse::switch,
+        /// Column of points that is F.
+        value: String = parse::column,
         /// Side of the cubes of which one point is kept.
         thin: f64 = parse::positive,
     }
@@ -555,6 +557,7 @@ impl Settings {
             .columns(self.columns.clone())
             .classes(self.class.clone())
             .withheld(is_set(self.withheld))
+            .value(self.value.clone())
             .thin(self.thin)
             .radii(self.radii.clone())
             .atoms(self.atoms())

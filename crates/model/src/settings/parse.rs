@@ -183,6 +183,15 @@ fn class(text: &str) -> Result<Vec<u8>, SettingError> {
     })
 }
 
+/// The name of a column of points.
+pub(super) fn column(text: &str) -> Result<String, SettingError> {
+    let name = text.trim();
+    if name.is_empty() {
+        fail!("the name of a column is needed" => "give it as in intensity or height; walpha info lists those of a file");
+    }
+    Ok(name.to_owned())
+}
+
 /// A set of radii, or the path of a table.
 pub(super) fn radii(text: &str) -> Result<Radii, SettingError> {
     if text.is_empty() {

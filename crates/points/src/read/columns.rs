@@ -33,7 +33,12 @@ pub(super) const RADIUS: usize = 5;
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(into = "String", try_from = "String")]
-pub struct Columns(pub(super) Vec<Option<usize>>);
+pub struct Columns {
+    /// The index in [`COLUMNS`] of each; `None` for others.
+    pub(super) places: Vec<Option<usize>>,
+    /// The names of all; empty if they have none.
+    pub(super) names: Vec<String>,
+}
 
 /// The error for names that do not identify x, y and z.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -137,7 +142,25 @@ pub(super) fn places(names: &[&str]) -> Vec<Option<usize>> {
 impl Columns {
     /// The number of columns.
     pub fn len(&self) -> usize {
-        self.0.len()
+        self.places.len()
+    }
+
+    /// The meaning of each column: x, y, z, weight, value or radius, or nothing that is read.
+    pub fn meanings(&self) -> Vec<Option<&'static str>> {
+        self.places.iter().map(|place| place.map(|place| COLUMNS[place])).collect()
+    }
+
+    /// Columns of which only these places are known.
+    pub(super) fn without_names(places: Vec<Option<usize>>) -> Self {
+        Self { places, names: Vec::new() }
+    }
+
+    /// The columns that are none of the known ones: their indices and names.
+    pub(super) fn others(&self) -> impl Iterator<Item = (usize, &str)> {
+        let others = self.places.iter().zip(&self.names).enumerate();
+        others
+            .filter(|(_, (place, name))| place.is_none() && !["", "-"].contains(&name.as_str()))
+            .map(|(index, (_, name))| (index, name.as_str()))
     }
 
     /// The columns with these names.
@@ -161,7 +184,8 @@ impl Columns {
             };
             return Err(UnknownColumns { names: names.join(","), what, next });
         }
-        Ok(Self(columns))
+        let names = names.iter().map(|name| name_and_unit(name).0.to_owned()).collect();
+        Ok(Self { places: columns, names })
     }
 }
 
@@ -214,7 +238,7 @@ impl Columns {
             );
         }
         let column = |place: usize| known.get(place).copied();
-        Ok(Self((0..count).map(column).collect()))
+        Ok(Self::without_names((0..count).map(column).collect()))
     }
 }
 
@@ -229,7 +253,7 @@ impl Columns {
         units: &[Option<&'a str>],
     ) -> Result<Option<&'a str>, UnknownColumns> {
         let lengths = self
-            .0
+            .places
             .iter()
             .zip(units)
             .filter(|(place, _)| place.is_some_and(|place| place < 3 || place == RADIUS));
@@ -249,11 +273,16 @@ impl Columns {
     }
 }
 
-/// Lists the names, with `-` for a skipped column.
+/// Lists the names, with `-` for a column without one.
 impl From<Columns> for String {
-    fn from(columns: Columns) -> Self {
-        let name = |column: &Option<usize>| column.map_or("-", |column| COLUMNS[column]);
-        columns.0.iter().map(name).collect::<Vec<_>>().join(",")
+    fn from(Columns { places, names }: Columns) -> Self {
+        let name = |(index, place): (usize, &Option<usize>)| match place {
+            Some(place) => COLUMNS[*place],
+            None => {
+                names.get(index).map(Self::as_str).filter(|name| !name.is_empty()).unwrap_or("-")
+            }
+        };
+        places.iter().enumerate().map(name).collect::<Vec<_>>().join(",")
     }
 }
 

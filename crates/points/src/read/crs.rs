@@ -3,7 +3,10 @@
 //!
 //! Sources: OGC 19-008r4, `GeoTIFF`; OGC 01-009, 12-063r5 and 18-010r7, well-known text, versions 1 and 2; LAS 1.4 R15, section 3.
 
-use walpha_volume::Reason;
+use crs_definitions::from_code;
+use walpha_volume::{LengthUnit, Reason};
+
+use crate::{Crs, Vertical};
 
 /// The known properties of a reference system.
 #[derive(Default)]
@@ -12,6 +15,10 @@ pub(super) struct ReferenceSystem {
     is_geographic: bool,
     /// The units of x and y, and of z, as far as they are stated.
     units: [Option<Unit>; 2],
+    /// The names of the systems of x and y, and of z.
+    names: [Option<String>; 2],
+    /// The codes of EPSG of the systems of x and y, and of z.
+    codes: [Option<u16>; 2],
 }
 
 /// A unit of lengths.
@@ -26,11 +33,16 @@ impl ReferenceSystem {
     /// Reads the reference system from the records of a file.
     pub(super) fn of<'a>(records: impl Iterator<Item = &'a las::Vlr>) -> Self {
         const DIRECTORY: u16 = 34735;
+        const ASCII: u16 = 34737;
         const TEXT: u16 = 2112;
+        let records: Vec<_> =
+            records.filter(|record| record.user_id == "LASF_Projection").collect();
+        let ascii = records.iter().find(|record| record.record_id == ASCII);
+        let ascii = ascii.map_or(&[][..], |record| &record.data);
         let mut all = Self::default();
-        for record in records.filter(|record| record.user_id == "LASF_Projection") {
+        for record in records {
             let own = match record.record_id {
-                DIRECTORY => Self::of_keys(&record.data),
+                DIRECTORY => Self::of_keys(&record.data, ascii),
                 TEXT => Self::of_text(&String::from_utf8_lossy(&record.data)),
                 _ => continue,
             };
@@ -38,8 +50,48 @@ impl ReferenceSystem {
             for (unit, own) in all.units.iter_mut().zip(own.units) {
                 *unit = own.or(unit.take());
             }
+            for (name, own) in all.names.iter_mut().zip(own.names) {
+                *name = own.or(name.take());
+            }
+            for (code, own) in all.codes.iter_mut().zip(own.codes) {
+                *code = own.or(*code);
+            }
         }
+        all.complete();
         all
+    }
+
+    /// Adds the name and unit that EPSG has for a stated code, where the file does not state them.
+    fn complete(&mut self) {
+        let Some(known) = self.codes[0].and_then(from_code) else { return };
+        self.units[0] = self.units[0].take().or_else(|| Unit::of_definition(known.proj4));
+        #[cfg(not(target_family = "wasm"))]
+        {
+            let [name, _] = Self::of_text(known.wkt).names;
+            self.names[0] = self.names[0].take().or(name);
+        }
+    }
+
+    /// The system as far as it is stated; `None` if nothing is.
+    pub(super) fn crs(&self) -> Option<Crs> {
+        let [unit, height] = &self.units;
+        let name = |unit: &Option<Unit>| unit.as_ref().map(|unit| unit.name.clone());
+        let [own, vertical] = self.names.clone();
+        let crs = Crs {
+            epsg: self.codes[0],
+            name: own,
+            geographic: self.is_geographic,
+            unit: name(unit),
+            vertical: Vertical { epsg: self.codes[1], name: vertical, unit: name(height) },
+            length: unit.as_ref().map_or(LengthUnit::Unstated, |unit| {
+                if self.is_geographic {
+                    LengthUnit::Unstated
+                } else {
+                    LengthUnit::of_metres(unit.metres)
+                }
+            }),
+        };
+        (crs != Crs::default()).then_some(crs)
     }
 
     /// Refuses angles, and heights in another unit than x and y.
@@ -58,8 +110,16 @@ impl ReferenceSystem {
         Ok(())
     }
 
-    /// Reads a directory of keys. Each entry is a number, the place of its values (0: here), their count, and the value.
-    fn of_keys(bytes: &[u8]) -> Self {
+    /// Reads a directory of keys. Each entry is a number, the place of its values (0: here), their count, and the value, or
+    /// where it begins in the text of another record.
+    fn of_keys(bytes: &[u8], ascii: &[u8]) -> Self {
+        const ASCII: u16 = 34737;
+        const UNDEFINED: u16 = 32767;
+        /// The keys of codes, and those of names by the system that they belong to.
+        const CODES: [u16; 2] = [3072, 4096];
+        const GEOGRAPHIC_CODE: u16 = 2048;
+        const NAMES: [&[u16]; 2] = [&[3073, 1026], &[4097]];
+        const GEOGRAPHIC_NAMES: &[u16] = &[2049, 1026];
         const MODEL: u16 = 1024;
         const GEOGRAPHIC: [u16; 2] = [2048, 2054];
         const UNITS: [u16; 2] = [3076, 4099];
@@ -76,7 +136,29 @@ impl ReferenceSystem {
             // A writer may omit the kind of system, and state the system or its unit of angles.
             _ => GEOGRAPHIC.iter().any(|&key| value(key).is_some()) && !is_projected(),
         };
-        Self { is_geographic, units: UNITS.map(|key| value(key).and_then(Unit::of_code)) }
+        let text = |wanted: &u16| {
+            let [_, _, count, start] =
+                *keys().find(|[key, place, ..]| (key, *place) == (wanted, ASCII))?;
+            let start = usize::from(start);
+            let bytes = ascii.get(start..start + usize::from(count))?;
+            // ASCII by the standard; writers in Europe use Latin-1.
+            let latin = || bytes.iter().map(|&byte| char::from(byte)).collect();
+            let text = str::from_utf8(bytes).map_or_else(|_| latin(), str::to_owned);
+            let text = text.trim_matches(['|', '\0', ' ']);
+            (!text.is_empty()).then(|| text.to_owned())
+        };
+        let mut codes = CODES.map(value);
+        let mut names = NAMES.map(|keys| keys.iter().find_map(text));
+        if is_geographic {
+            codes[0] = value(GEOGRAPHIC_CODE);
+            names[0] = GEOGRAPHIC_NAMES.iter().find_map(text);
+        }
+        Self {
+            is_geographic,
+            units: UNITS.map(|key| value(key).and_then(Unit::of_code)),
+            names,
+            codes: codes.map(|code| code.filter(|&code| code != 0 && code != UNDEFINED)),
+        }
     }
 
     /// Reads well-known text of either version: nested lists, each with a keyword before its bracket.
@@ -85,6 +167,7 @@ impl ReferenceSystem {
         let [mut has_angles, mut has_lengths] = [false; 2];
         let (mut quoted, mut word) = (false, 0);
         let mut open: Vec<Part> = Vec::new();
+        let (mut angles, mut base) = ((None, None), None);
         for (at, c) in text.char_indices() {
             quoted ^= c == '"';
             if quoted || !"[(]),".contains(c) {
@@ -96,8 +179,21 @@ impl ReferenceSystem {
                 let (part, content) = (Part::of(text[word..at].trim()), &text[at + 1..]);
                 let inside = open.iter().rev().find(|part| **part != Part::Axis);
                 match (part, inside) {
-                    (Part::Angles, _) => has_angles = true,
-                    (Part::Plane, _) => has_lengths = true,
+                    (Part::Angles, _) => {
+                        has_angles = true;
+                        base = base.or_else(|| Some(quoted_name(content).map(str::to_owned)));
+                    }
+                    (Part::Plane, _) => {
+                        has_lengths = true;
+                        system.name(0, content);
+                    }
+                    (Part::Height, _) => system.name(1, content),
+                    (Part::Code, _) => match open.last() {
+                        Some(Part::Plane) => system.code(0, content),
+                        Some(Part::Height) => system.code(1, content),
+                        Some(Part::Angles) => angles.1 = angles.1.or_else(|| epsg_code(content)),
+                        _ => {}
+                    },
                     (Part::Axes, _) => has_lengths |= is_cartesian(content),
                     (Part::Unit, Some(Part::Plane)) => system.add(0, Unit::of_text(content)),
                     (Part::Unit, Some(Part::Height)) => system.add(1, Unit::of_text(content)),
@@ -108,7 +204,22 @@ impl ReferenceSystem {
             word = at + 1;
         }
         system.is_geographic = has_angles && !has_lengths;
+        angles.0 = base.flatten();
+        if system.is_geographic {
+            (system.names[0], system.codes[0]) = angles;
+        }
         system
+    }
+
+    /// Sets the name of a system, unless it is already known.
+    fn name(&mut self, axis: usize, content: &str) {
+        let known = &mut self.names[axis];
+        *known = known.take().or_else(|| quoted_name(content).map(str::to_owned));
+    }
+
+    /// Sets the code of a system, unless it is already known.
+    fn code(&mut self, axis: usize, content: &str) {
+        self.codes[axis] = self.codes[axis].or_else(|| epsg_code(content));
     }
 
     /// Sets the unit of an axis, unless it is already known.
@@ -129,6 +240,8 @@ enum Part {
     Axes,
     Axis,
     Unit,
+    /// The code of an authority.
+    Code,
     Other,
 }
 
@@ -142,9 +255,22 @@ impl Part {
             "CS" => Self::Axes,
             "AXIS" => Self::Axis,
             "UNIT" | "LENGTHUNIT" => Self::Unit,
+            "AUTHORITY" | "ID" => Self::Code,
             _ => Self::Other,
         }
     }
+}
+
+/// The text in quotes at the start of the content of brackets.
+fn quoted_name(content: &str) -> Option<&str> {
+    let (name, _) = content.trim_start().strip_prefix('"')?.split_once('"')?;
+    (!name.is_empty()).then_some(name)
+}
+
+/// The code in the content of `AUTHORITY[…]` or `ID[…]`, if EPSG is the authority.
+fn epsg_code(content: &str) -> Option<u16> {
+    let rest = content.trim_start().strip_prefix("\"EPSG\"")?.trim_start().strip_prefix(',')?;
+    rest.split([',', ']', ')']).next()?.trim_matches(['"', ' ']).parse().ok()
 }
 
 /// Whether axes are Cartesian, according to the text after `CS[`.
@@ -164,6 +290,23 @@ impl Unit {
             other => (format!("EPSG's unit {other}"), 0.0),
         };
         Some(Self { name, metres })
+    }
+
+    /// The unit in a definition in the form of PROJ.
+    fn of_definition(definition: &str) -> Option<Self> {
+        let value = |key: &str| definition.split(' ').find_map(|word| word.strip_prefix(key));
+        if let Some(metres) = value("+to_meter=") {
+            let metres: f64 = metres.parse().ok()?;
+            return Some(Self { name: format!("{metres} m"), metres });
+        }
+        let (name, metres) = match value("+units=")? {
+            "m" => ("metre", 1.0),
+            "km" => ("kilometre", 1000.0),
+            "ft" => ("foot", 0.3048),
+            "us-ft" => ("US survey foot", 1200.0 / 3937.0),
+            _ => return None,
+        };
+        Some(Self { name: name.to_owned(), metres })
     }
 
     /// The unit with a name in quotes and a number of metres.
@@ -247,7 +390,7 @@ mod tests {
             let keys = keys.iter().flat_map(|&[key, value]| [key, 0, 1, value]);
             let bytes: Vec<u8> =
                 [1, 1, 0, count].into_iter().chain(keys).flat_map(u16::to_le_bytes).collect();
-            told(&ReferenceSystem::of_keys(&bytes))
+            told(&ReferenceSystem::of_keys(&bytes, &[]))
         };
         for keys in
             [&[[1024, 2], [2048, 4326]][..], &[[2048, 4326]], &[[1024, 32767], [2054, 9102]]]
@@ -269,5 +412,43 @@ mod tests {
         ] {
             assert_eq!(told_of_keys(keys), "", "{keys:?}");
         }
+    }
+
+    #[test]
+    fn systems_have_the_names_and_codes_that_are_stated() {
+        let of_text = |text: &str| {
+            let mut system = ReferenceSystem::of_text(&text.replace('*', DEGREES));
+            system.complete();
+            system.crs().unwrap()
+        };
+        let utm = r#"PROJCS["NAD83 / UTM zone 12N",GEOGCS*,AUTHORITY["EPSG","4269"]],UNIT["metre",1,AUTHORITY["EPSG","9001"]],AUTHORITY["EPSG","26912"]]"#;
+        let crs = of_text(utm);
+        assert_eq!(crs.label(), "NAD83 / UTM zone 12N (EPSG:26912)");
+        assert_eq!((crs.length, crs.geographic), (LengthUnit::Metre, false));
+        let both = of_text(&format!(
+            r#"COMPD_CS["both",{utm},VERT_CS["NAVD88 height",UNIT["foot",0.3048],AUTHORITY["EPSG","6360"]]]"#
+        ));
+        assert_eq!((both.epsg, both.vertical.epsg), (Some(26912), Some(6360)));
+        assert_eq!(both.vertical.name.as_deref(), Some("NAVD88 height"));
+        assert_eq!(both.vertical.unit.as_deref(), Some("foot"));
+        let second = of_text(r#"PROJCRS["UTM",BASEGEOGCRS*,ID["EPSG",4269]],ID["EPSG",26912]]"#);
+        assert_eq!((second.epsg, second.name.as_deref()), (Some(26912), Some("UTM")));
+        // The unit is that of EPSG's register.
+        assert_eq!(second.length, LengthUnit::Metre);
+        let degrees = of_text(r#"GEOGCS*,AUTHORITY["EPSG","4326"]]"#);
+        assert_eq!((degrees.epsg, degrees.geographic), (Some(4326), true));
+        assert_eq!(degrees.length, LengthUnit::Unstated);
+        let keys = [
+            [1, 1, 0, 4],
+            [1024, 0, 1, 1],
+            [1026, 34737, 5, 2],
+            [3072, 0, 1, 2994],
+            [3076, 0, 1, 9002],
+        ];
+        let bytes: Vec<u8> =
+            keys.as_flattened().iter().flat_map(|x: &u16| x.to_le_bytes()).collect();
+        let crs = ReferenceSystem::of_keys(&bytes, b"x|Name|").crs().unwrap();
+        assert_eq!((crs.epsg, crs.name.as_deref()), (Some(2994), Some("Name")));
+        assert_eq!(crs.length, LengthUnit::Foot);
     }
 }

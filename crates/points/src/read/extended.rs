@@ -76,7 +76,7 @@ fn columns(path: &Path, text: &str) -> Result<(Columns, Option<usize>), PointsEr
     let (properties, []) = words.as_chunks::<3>() else {
         return wrong("which are not names, types and numbers");
     };
-    let (mut columns, mut species) = (Vec::new(), None);
+    let (mut columns, mut names, mut species) = (Vec::new(), Vec::new(), None);
     for [name, _, count] in properties {
         let Some(count) = count.parse().ok().filter(|count| (1..=1 << 10).contains(count)) else {
             return wrong("which are not names, types and numbers");
@@ -91,12 +91,14 @@ fn columns(path: &Path, text: &str) -> Result<(Columns, Option<usize>), PointsEr
             }
             _ => columns.extend(std::iter::repeat_n(None, count)),
         }
+        let own = |k: usize| if count == 1 { (*name).to_owned() } else { format!("{name}_{k}") };
+        names.extend((0..count).map(own));
     }
     let times = |place| columns.iter().filter(|&&column| column == Some(place)).count();
     if times(0) != 1 || (3..COLUMNS.len()).any(|place| times(place) > 1) {
         return wrong("without pos:R:3, or with something twice");
     }
-    Ok((Columns(columns), species))
+    Ok((Columns { places: columns, names }, species))
 }
 
 fn cell(path: &Path, text: &str) -> Result<Cell, PointsError> {

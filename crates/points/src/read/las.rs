@@ -8,10 +8,11 @@ use walpha_base::advice::{Setting, advice};
 use walpha_base::shown::shown;
 
 use super::crs::ReferenceSystem;
+use super::las_fields::{Field, GPS_TIME, fields};
 use super::laz::{Claims, Records};
 use super::{COLUMNS, Points, PointsError, format};
-use crate::{ModelMetadata, PointOptions};
-use walpha_volume::{OpenFile, Reason, io_error};
+use crate::{Column, ColumnSummary, Crs, Flags, ModelMetadata, PointOptions, ScanSummary};
+use walpha_volume::{Coordinates, OpenFile, Reason, io_error};
 
 /// The number of bytes of points read at once: a header may claim records of up to 64 KiB, and more of them than the file has.
 const BATCH: u64 = 1 << 22;
@@ -33,20 +34,31 @@ pub(crate) fn read(
         las::Reader::new(WithoutOldCount { reader, at: 0 })
     };
     let mut reader = reader.map_err(fail)?;
-    let records = reader.header().vlrs().iter().chain(reader.header().evlrs());
-    ReferenceSystem::of(records).check().map_err(|reason| format(path, reason))?;
-    let mut points = Points { values: Some(Vec::new()), ..Points::default() };
+    let records = || reader.header().vlrs().iter().chain(reader.header().evlrs());
+    let system = ReferenceSystem::of(records());
+    if !options.describe {
+        system.check().map_err(|reason| format(path, reason))?;
+    }
+    let described = records()
+        .find(|record| (record.user_id.as_str(), record.record_id) == ("LASF_Spec", EXTRA_BYTES));
+    let described = described.map_or(&[][..], |record| &record.data);
+    let mut taken = Taken::new(reader.header(), described, options);
     let record = u64::from(reader.header().point_format().len()).max(1);
     let at_once = (BATCH / record).max(1);
     let mut batch = las::PointDataBuilder::new().for_header(reader.header()).build();
-    let is_extended = reader.header().point_format().is_extended;
-    let (mut found, mut withheld, mut kinds) = (0, 0, Kinds::default());
+    let mut found = 0;
+    let whole = options.describe || !taken.kept.is_empty();
     let mut packed = match claims {
         None => None,
         Some(claims) => {
             let description = reader.header().laz_vlr().map_err(fail)?;
-            let records =
-                Records::new(file.owned_reader()?, claims.data, claims.compressor, description);
+            let records = Records::new(
+                file.owned_reader()?,
+                claims.data,
+                claims.compressor,
+                description,
+                whole,
+            );
             Some(records.map_err(|error| fail(error.into()))?)
         }
     };
@@ -67,18 +79,7 @@ pub(crate) fn read(
         let rows = places.zip(batch.intensity()).zip(batch.classification()).zip(records);
         for (((place, intensity), class), record) in rows {
             found += 1;
-            // In formats 0 to 5 the flags are above the class, in the others in the byte before it (LAS 1.4 R15, tables 8 and
-            // 16).
-            let flags = if is_extended { record[15] & 15 } else { record[15] >> 5 };
-            if options.classes.as_ref().is_some_and(|classes| !classes.contains(&class)) {
-                continue;
-            }
-            withheld += u64::from(flags & WITHHELD != 0);
-            if flags & WITHHELD == 0 || options.withheld {
-                kinds.count(flags, class);
-                points.positions.push(place);
-                points.values.get_or_insert_default().push(f64::from(intensity));
-            }
+            taken.take(place, intensity, class, record);
         }
     }
     if found != claimed {
@@ -86,25 +87,146 @@ pub(crate) fn read(
             Reason::truncated(format!("claims {claimed} points, but has {found}: it is truncated"));
         return Err(format(path, reason));
     }
-    if withheld > 0 && !options.withheld {
-        if points.is_empty() {
-            let reason = Reason::choice(
-                Setting::Withheld,
-                format!("holds {withheld} points, all of them withheld"),
-                advice!["give ", Setting::Withheld, " to take them"],
-            );
-            return Err(format(path, reason));
-        }
-        tracing::warn!(
-            "{}: {withheld} points are flagged as withheld, which are not to be processed: they are left out \
-             unless `withheld` asks for them",
-            shown(path)
-        );
-    }
     if reader.header().point_format().has_waveform {
         tracing::warn!("{}: waveforms of its points are passed over", shown(path));
     }
-    Ok((points, ModelMetadata::default().notes(kinds.notes())))
+    taken.finish(path, system.crs())
+}
+
+/// The points that were read, and what is counted of all.
+struct Taken<'a> {
+    options: &'a PointOptions,
+    is_extended: bool,
+    fields: Vec<Field>,
+    /// The indices of the fields whose columns are kept.
+    kept: Vec<usize>,
+    summaries: Vec<ColumnSummary>,
+    scan: ScanSummary,
+    withheld: u64,
+    kinds: Kinds,
+    points: Points,
+}
+
+impl<'a> Taken<'a> {
+    fn new(header: &las::Header, described: &[u8], options: &'a PointOptions) -> Self {
+        let format = *header.point_format();
+        let fields = fields(format, described);
+        let is_kept = |&index: &usize| options.attributes.keeps(&fields[index].name);
+        let kept: Vec<usize> = (0..fields.len()).filter(is_kept).collect();
+        let column =
+            |&index: &usize| Column { name: fields[index].name.clone(), values: Vec::new() };
+        Self {
+            options,
+            is_extended: format.is_extended,
+            points: Points {
+                values: Some(Vec::new()),
+                columns: kept.iter().map(column).collect(),
+                ..Points::default()
+            },
+            kept,
+            summaries: fields.iter().map(Field::summary).collect(),
+            fields,
+            scan: scan(header),
+            withheld: 0,
+            kinds: Kinds::default(),
+        }
+    }
+
+    /// Counts a point, and takes it unless the options leave it out.
+    fn take(&mut self, place: [f64; 3], intensity: u16, class: u8, record: &[u8]) {
+        let Self { options, scan, points, .. } = self;
+        // In formats 0 to 5 the flags are above the class, in the others in the byte before it (LAS 1.4 R15, tables 8 and 16).
+        let flags = if self.is_extended { record[15] & 15 } else { record[15] >> 5 };
+        let number = if self.is_extended { record[14] & 15 } else { record[14] & 7 };
+        *scan.classes.entry(class).or_default() += 1;
+        *scan.returns.entry(number).or_default() += 1;
+        count_flags(&mut scan.flags, flags);
+        if options.describe {
+            for (summary, field) in self.summaries.iter_mut().zip(&self.fields) {
+                summary.add(field.value(record));
+            }
+        }
+        if options.classes.as_ref().is_some_and(|classes| !classes.contains(&class)) {
+            return;
+        }
+        self.withheld += u64::from(flags & WITHHELD != 0);
+        if flags & WITHHELD == 0 || options.withheld {
+            self.kinds.count(flags, class);
+            points.positions.push(place);
+            points.values.get_or_insert_default().push(f64::from(intensity));
+            for (column, &index) in points.columns.iter_mut().zip(&self.kept) {
+                column.values.push(self.fields[index].value(record));
+            }
+        }
+    }
+
+    /// The points and their metadata. Says how many are withheld, and refuses a file without any of those that are asked for.
+    fn finish(self, path: &Path, crs: Option<Crs>) -> Result<(Points, ModelMetadata), PointsError> {
+        let Self { options, points, mut scan, withheld, .. } = self;
+        if withheld > 0 && !options.withheld {
+            if points.is_empty() {
+                let reason = Reason::choice(
+                    Setting::Withheld,
+                    format!("holds {withheld} points, all of them withheld"),
+                    advice!["give ", Setting::Withheld, " to take them"],
+                );
+                return Err(format(path, reason));
+            }
+            tracing::warn!(
+                "{}: {withheld} points are flagged as withheld, which are not to be processed: they are left out \
+                 unless `withheld` asks for them",
+                shown(path)
+            );
+        }
+        if let (true, Some(classes)) = (points.is_empty(), &options.classes) {
+            let asked = listed(classes.iter().copied());
+            let there = listed(scan.classes.keys().copied());
+            let what = format!("has no point of class {asked}, but of {there}");
+            return Err(format(path, Reason::content(what, "choose among these, or read all")));
+        }
+        let time = self.summaries.iter().find(|summary| summary.name == GPS_TIME);
+        scan.time = time.and_then(|time| Some([time.min?, time.max?]));
+        let unit = crs.as_ref().map(|crs| crs.length).unwrap_or_default();
+        let metadata = ModelMetadata::default()
+            .coordinates(Coordinates { unit, ..Coordinates::default() })
+            .crs(crs)
+            .scan(Some(scan))
+            .columns(self.summaries)
+            .notes(self.kinds.notes());
+        Ok((points, metadata))
+    }
+}
+
+/// The id of the record that describes extra bytes.
+const EXTRA_BYTES: u16 = 4;
+
+/// What the header states of a scan, before its points are counted.
+fn scan(header: &las::Header) -> ScanSummary {
+    let version = header.version();
+    let format = header.point_format();
+    ScanSummary {
+        version: format!("{}.{}", version.major, version.minor),
+        point_format: format.to_u8().unwrap_or_default() & 63,
+        compressed: format.is_compressed,
+        time_of: match header.gps_time_type() {
+            las::GpsTimeType::Week => "GPS week",
+            las::GpsTimeType::Standard => "GPS, less 10⁹ s",
+        },
+        ..ScanSummary::default()
+    }
+}
+
+fn count_flags(counts: &mut Flags, flags: u8) {
+    let Flags { withheld, overlap, synthetic, key_point } = counts;
+    for (count, flag) in [(synthetic, 1), (key_point, 2), (withheld, WITHHELD), (overlap, 8)] {
+        *count += u64::from(flags & flag != 0);
+    }
+}
+
+/// Classes with their names, as in `2 (ground), 5 (high vegetation)`.
+fn listed(classes: impl Iterator<Item = u8>) -> String {
+    let one = |class: u8| format!("{class} ({})", ScanSummary::class_name(class));
+    classes.map(one).collect::<Vec<_>>().join(", ")
 }
 
 /// The flag of points that must not be processed.

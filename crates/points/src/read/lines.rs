@@ -109,7 +109,7 @@ pub(super) struct Labelled {
 }
 
 impl Labelled {
-    pub(super) fn new(Columns(columns): &Columns, mark: Option<char>) -> Self {
+    pub(super) fn new(Columns { places: columns, .. }: &Columns, mark: Option<char>) -> Self {
         let axis = |axis: usize| columns.iter().position(|&column| column == Some(axis));
         Self { mark, width: columns.len(), axes: [axis(0), axis(1), axis(2)] }
     }

@@ -12,6 +12,8 @@ mod header;
 #[cfg(feature = "las")]
 pub(super) mod las;
 #[cfg(feature = "las")]
+mod las_fields;
+#[cfg(feature = "las")]
 mod laz;
 mod lines;
 pub(super) mod mmcif;

@@ -6,6 +6,7 @@ use walpha_base::npy::Header;
 
 use super::columns::{RADIUS, VALUE, WEIGHT};
 use super::{Columns, Points, PointsError, format, take_radii};
+use crate::{Attributes, Column, PointOptions};
 use walpha_volume::{Dtype, Element as _, Endian, NpyFile, OpenFile, Reason, npy_element};
 
 /// Whether an array lists points: its elements have fields, or it has two axes.
@@ -19,10 +20,10 @@ pub(crate) fn holds_points(file: &OpenFile) -> Result<bool, PointsError> {
 
 /// Reads an array of two axes with the given columns, by default x, y, z and perhaps a value; or an array whose elements have
 /// fields with these names.
-pub(crate) fn read(file: &OpenFile, columns: Option<&Columns>) -> Result<Points, PointsError> {
+pub(crate) fn read(file: &OpenFile, options: &PointOptions) -> Result<Points, PointsError> {
     match fields_of(file)? {
-        Some(header) => structured(file, &header, columns),
-        None => plain(file, columns),
+        Some(header) => structured(file, &header, options),
+        None => plain(file, options),
     }
 }
 
@@ -33,7 +34,7 @@ fn fields_of(file: &OpenFile) -> Result<Option<Header>, PointsError> {
     Ok(header.filter(|header| header.descr.starts_with('[')))
 }
 
-fn plain(file: &OpenFile, columns: Option<&Columns>) -> Result<Points, PointsError> {
+fn plain(file: &OpenFile, options: &PointOptions) -> Result<Points, PointsError> {
     /// The number of rows from which columns without names are guessed, as in text.
     const ROWS: usize = 100;
     let path = file.path();
@@ -52,7 +53,7 @@ fn plain(file: &OpenFile, columns: Option<&Columns>) -> Result<Points, PointsErr
     if rows == 0 {
         return Ok(Points::default());
     }
-    let columns = if let Some(columns) = columns {
+    let columns = if let Some(columns) = &options.columns {
         columns.clone()
     } else {
         let row = |row| (0..width).map(|column| at(row, column)).collect();
@@ -62,7 +63,7 @@ fn plain(file: &OpenFile, columns: Option<&Columns>) -> Result<Points, PointsErr
     if columns.len() != width {
         return Err(format(path, wrong_width(width, columns.len())));
     }
-    points(path, rows, &columns, |column| {
+    points(path, rows, &columns, &options.attributes, |column| {
         let numbers: Vec<f64> = (0..rows).map(|row| at(row, column)).collect();
         check_integers(path, dtype, &numbers)?;
         Ok(numbers)
@@ -96,10 +97,21 @@ fn wrong_width(found: usize, named: usize) -> Reason {
 fn points(
     path: &Path,
     rows: usize,
-    Columns(columns): &Columns,
+    columns: &Columns,
+    attributes: &Attributes,
     read: impl Fn(usize) -> Result<Vec<f64>, PointsError>,
 ) -> Result<Points, PointsError> {
-    let column = |place| columns.iter().position(|&column| column == Some(place));
+    let places = &columns.places;
+    let column = |place| places.iter().position(|&column| column == Some(place));
+    let mut others = Vec::new();
+    for (index, name) in columns.others().filter(|(_, name)| attributes.keeps(name)) {
+        match read(index) {
+            Ok(values) => others.push(Column { name: name.to_owned(), values }),
+            // Where all are kept, others than numbers are not.
+            Err(_) if *attributes == Attributes::All => {}
+            Err(error) => return Err(error),
+        }
+    }
     let read = |place| column(place).map(&read).transpose();
     let axes = [read(0)?, read(1)?, read(2)?];
     let axis = |axis: usize, row: usize| axes[axis].as_ref().map_or(0.0, |numbers| numbers[row]);
@@ -107,6 +119,7 @@ fn points(
         positions: (0..rows).map(|row| [axis(0, row), axis(1, row), axis(2, row)]).collect(),
         weights: read(WEIGHT)?,
         values: read(VALUE)?,
+        columns: others,
         ..Points::default()
     };
     take_radii(path, &mut points, read(RADIUS)?)?;
@@ -125,7 +138,7 @@ struct Field<'a> {
 fn structured(
     file: &OpenFile,
     header: &Header,
-    columns: Option<&Columns>,
+    options: &PointOptions,
 ) -> Result<Points, PointsError> {
     let path = file.path();
     let Some((fields, size)) = fields(&header.descr).filter(|(_, size)| *size > 0) else {
@@ -143,7 +156,7 @@ fn structured(
         return Err(format(path, Reason::Length { claim, needed, found, bound: "" }));
     }
     let names: Vec<&str> = fields.iter().map(|field| field.name).collect();
-    let columns = match columns {
+    let columns = match &options.columns {
         Some(columns) if columns.len() == fields.len() => columns.clone(),
         Some(columns) => return Err(format(path, wrong_width(fields.len(), columns.len()))),
         None => Columns::named(&names)
@@ -153,7 +166,7 @@ fn structured(
     let mut reader = file.reader_at(header.length)?;
     walpha_base::memory::try_reserve(&mut bytes, found as usize, || "an array of points".into())?;
     reader.read_to_end(&mut bytes).map_err(walpha_volume::io_error(path))?;
-    points(path, count as usize, &columns, |column| {
+    points(path, count as usize, &columns, &options.attributes, |column| {
         let Field { name, kind, offset } = fields[column];
         let Some((dtype, endian)) = kind else {
             let what = format!("has a field {name} of a type that is not read");

@@ -8,19 +8,20 @@ use super::content::{Content, HeaderLines};
 use super::{
     COLUMNS, CellCount, Points, PointsError, RADIUS, format, mesh_error, no_complex, take_radii,
 };
+use crate::{Attributes, Column};
 use walpha_volume::{Dtype, Element as _, Endian, OpenFile, Reason, io_error};
 
 /// Reads the vertices of a PLY file, text or binary of either byte order: properties x, y and z, optionally weight or radius, and
 /// value. All other elements must be as the header declares.
-pub(crate) fn read(file: &OpenFile) -> Result<Points, PointsError> {
-    Ok(content(file, &mut None)?.0)
+pub(crate) fn read(file: &OpenFile, attributes: &Attributes) -> Result<Points, PointsError> {
+    Ok(content(file, &mut None, attributes)?.0)
 }
 
 /// Reads the vertices and the tetrahedra. In an element with one of [these names](TETRAHEDRA), the corners are the list
 /// `vertex_indices` or `vertex_index`, or else the first list.
 pub(crate) fn read_complex(file: &OpenFile) -> Result<Mesh, PointsError> {
     let mut corners = Some(Corners::default());
-    let (points, header) = content(file, &mut corners)?;
+    let (points, header) = content(file, &mut corners, &Attributes::None)?;
     let Some(corners) = corners.filter(|corners| !corners.ends.is_empty()) else {
         return Err(no_complex(file.path()));
     };
@@ -53,6 +54,7 @@ const TETRAHEDRA: [&str; 5] = ["tetra", "tet", "tetrahedra", "tetrahedron", "cel
 fn content(
     file: &OpenFile,
     corners: &mut Option<Corners>,
+    attributes: &Attributes,
 ) -> Result<(Points, Header), PointsError> {
     let path = file.path();
     let fail = |reason: Reason| format(path, reason);
@@ -72,7 +74,7 @@ fn content(
     for element in &header.elements {
         element.fits(header.endian.is_some(), left).map_err(fail)?;
         if element.name == "vertex" && points.is_none() {
-            points = Some(vertices(path, element, &mut numbers)?);
+            points = Some(vertices(path, element, attributes, &mut numbers)?);
         } else if element.name == "vertex" {
             let reason = Reason::content("has two elements vertex", "write one of them alone");
             return Err(fail(reason));
@@ -131,6 +133,7 @@ pub(crate) fn cells(file: &OpenFile) -> Result<Vec<CellCount>, PointsError> {
 fn vertices(
     path: &Path,
     element: &Element,
+    attributes: &Attributes,
     numbers: &mut Numbers<impl Read>,
 ) -> Result<Points, PointsError> {
     let fail = |reason: Reason| format(path, reason);
@@ -151,21 +154,30 @@ fn vertices(
     let has = |column| columns.contains(&Some(column));
     (points.weights, points.values) = (has(3).then(Vec::new), has(4).then(Vec::new));
     let mut radii = has(RADIUS).then(Vec::new);
+    let kept = |place: usize| columns[place].is_none() && attributes.keeps(&names[place]);
+    let mut others: Vec<Option<Column>> = (0..names.len())
+        .map(|place| {
+            let is_kept = kept(place) && !names[place].is_empty();
+            is_kept.then(|| Column { name: names[place].clone(), values: Vec::new() })
+        })
+        .collect();
     for _ in 0..element.count {
         let mut position = [0.0; 3];
-        for (property, column) in element.properties.iter().zip(&columns) {
+        for ((property, column), other) in element.properties.iter().zip(&columns).zip(&mut others)
+        {
             let number = property.read(numbers, &mut |_| ()).map_err(fail)?;
             match *column {
                 Some(3) => points.weights.get_or_insert_default().push(number),
                 Some(4) => points.values.get_or_insert_default().push(number),
                 Some(RADIUS) => radii.get_or_insert_default().push(number),
                 Some(axis) => position[axis] = number,
-                None => {}
+                None => other.iter_mut().for_each(|other| other.values.push(number)),
             }
         }
         points.positions.push(position);
         numbers.end_row().map_err(fail)?;
     }
+    points.columns = others.into_iter().flatten().collect();
     take_radii(path, &mut points, radii)?;
     Ok(points)
 }

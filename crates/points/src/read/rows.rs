@@ -2,6 +2,7 @@ use std::path::Path;
 
 use super::dialect::{PLAINLY, number, without_marks};
 use super::{COLUMNS, Columns, Points, PointsError, RADIUS, format, take_radii};
+use crate::{Attributes, Column};
 use walpha_volume::Reason;
 
 /// The number of rows from which columns without names are guessed.
@@ -20,12 +21,25 @@ pub(super) struct TextRows<'a> {
     /// The columns to assume without names, if their number matches.
     pub default_columns: Option<Columns>,
     points: Points,
+    /// The other columns that are kept, each with its index, while all of it are numbers.
+    others: Vec<(usize, Column)>,
+    attributes: &'a Attributes,
     radii: Option<Vec<f64>>,
 }
 
 impl<'a> TextRows<'a> {
-    pub(super) fn new(path: &'a Path, columns: Option<Columns>) -> Self {
+    pub(super) fn new(
+        path: &'a Path,
+        columns: Option<Columns>,
+        attributes: &'a Attributes,
+    ) -> Self {
+        let column = |name: &str| Column { name: name.to_owned(), values: Vec::new() };
+        let others = columns.iter().flat_map(Columns::others);
+        let others = others.filter(|(_, name)| attributes.keeps(name));
+        let others = others.map(|(index, name)| (index, column(name))).collect();
         Self {
+            others,
+            attributes,
             path,
             columns,
             pending: Vec::new(),
@@ -59,6 +73,7 @@ impl<'a> TextRows<'a> {
     pub(super) fn finish(mut self) -> Result<Points, PointsError> {
         self.flush()?;
         take_radii(self.path, &mut self.points, self.radii)?;
+        self.points.columns = self.others.into_iter().map(|(_, column)| column).collect();
         Ok(self.points)
     }
 
@@ -88,10 +103,11 @@ impl<'a> TextRows<'a> {
     }
 
     fn add(&mut self, line: u64, words: &[&str]) -> Result<(), PointsError> {
-        let Some(Columns(columns)) = self.columns.take() else { return Ok(()) };
+        let Some(columns) = self.columns.take() else { return Ok(()) };
         self.check_width(line, words.len(), columns.len())?;
+        self.add_others(line, words)?;
         let mut position = [0.0; 3];
-        for (word, column) in words.iter().zip(&columns) {
+        for (word, column) in words.iter().zip(&columns.places) {
             let Some(column) = *column else { continue };
             let number = self.number(line, COLUMNS[column], word)?;
             match column {
@@ -102,8 +118,32 @@ impl<'a> TextRows<'a> {
             }
         }
         self.points.positions.push(position);
-        self.columns = Some(Columns(columns));
+        self.columns = Some(columns);
         Ok(())
+    }
+
+    /// Adds the words of a line to the other columns that are kept. Where all are kept, those with other words than numbers are
+    /// not.
+    fn add_others(&mut self, line: u64, words: &[&str]) -> Result<(), PointsError> {
+        let mut others = std::mem::take(&mut self.others);
+        let mut wrong = None;
+        others.retain_mut(|(index, column)| {
+            let word = words.get(*index).copied().unwrap_or_default();
+            let number =
+                if is_missing(word) { Ok(f64::NAN) } else { self.number(line, &column.name, word) };
+            match number {
+                Ok(number) => {
+                    column.values.push(number);
+                    true
+                }
+                Err(error) => {
+                    wrong = Some(error);
+                    false
+                }
+            }
+        });
+        self.others = others;
+        wrong.filter(|_| *self.attributes != Attributes::All).map_or(Ok(()), Err)
     }
 
     fn check_width(&self, line: u64, found: usize, expected: usize) -> Result<(), PointsError> {

@@ -5,10 +5,14 @@ use walpha_check::meshes::{Grid, Mesh, MeshFormat};
 use walpha_complex::Alpha;
 
 use super::{CellCount, Points, PointsError, format, mesh_error, take_radii};
+use crate::{Attributes, Column};
 use walpha_volume::{OpenFile, Reason, VtkPoints, VtkXml};
 
 /// The names of arrays that are not read as values, even if they are the active scalars.
 const WEIGHT_NAMES: [&str; 2] = ["weight", "radius"];
+
+/// The names of arrays that are not other columns.
+const KNOWN_NAMES: [&str; 4] = ["weight", "radius", "value", GHOSTS];
 
 /// Whether a file contains points and not a volume.
 pub(crate) fn holds_points(file: &OpenFile) -> Result<bool, PointsError> {
@@ -22,12 +26,14 @@ fn is_geometry(file: &VtkXml) -> bool {
 /// Reads the points of VTU or VTP, VTK's unstructured grids and polygons in XML, with the point data `weight` (or `radius`) and
 /// `value`, in any letter case. Without a `value`, the active scalars are read. Pieces follow each other; points that VTK marks
 /// as hidden, or as copies of those in another piece, are left out.
-pub(crate) fn read(file: &OpenFile) -> Result<Points, PointsError> {
+///
+/// Other arrays of one number for each point are kept as `attributes` say.
+pub(crate) fn read(file: &OpenFile, attributes: &Attributes) -> Result<Points, PointsError> {
     let path = file.path();
     let file = VtkXml::open(file)?;
     let mut all: Option<Points> = None;
     for piece in file.pieces()?.1 {
-        let mut points = points(path, &file, piece)?;
+        let mut points = points(path, &file, piece, attributes)?;
         let ghosts = point_array(&file, piece, GHOSTS);
         let ghosts = ghosts.map(|array| file.values(array, points.len() as u64)).transpose()?;
         leave_out_ghosts(path, &mut points, ghosts);
@@ -75,6 +81,12 @@ fn join(path: &Path, all: &mut Points, piece: Points) -> Result<(), PointsError>
         }
     }
     all.positions.extend(piece.positions);
+    // Columns that a piece lacks are those of no point.
+    all.columns.retain_mut(|column| {
+        let other = piece.columns.iter().find(|other| other.name == column.name);
+        column.values.extend(other.iter().flat_map(|other| &other.values));
+        other.is_some()
+    });
     Ok(())
 }
 
@@ -88,7 +100,12 @@ fn point_array(file: &VtkXml, piece: usize, wanted: &str) -> Option<usize> {
     file.children(data, "DataArray").find(is_it)
 }
 
-fn points(path: &Path, file: &VtkXml, piece: usize) -> Result<Points, PointsError> {
+fn points(
+    path: &Path,
+    file: &VtkXml,
+    piece: usize,
+    attributes: &Attributes,
+) -> Result<Points, PointsError> {
     if !is_geometry(file) {
         let reason = Reason::unsupported(
             format!("holds {}: points are read from .vtu and .vtp", file.kind()),
@@ -129,6 +146,16 @@ fn points(path: &Path, file: &VtkXml, piece: usize) -> Result<Points, PointsErro
         ..Points::default()
     };
     take_radii(path, &mut points, column(named("radius"))?)?;
+    let arrays = data.into_iter().flat_map(|data| file.children(data, "DataArray"));
+    for array in arrays.filter(|&array| file.components(array) == "1") {
+        let name = file.attribute(array, "Name").unwrap_or_default();
+        let is_known = KNOWN_NAMES.iter().any(|known| known.eq_ignore_ascii_case(name));
+        let is_there = points.columns.iter().any(|column| column.name == name);
+        if !name.is_empty() && !is_known && !is_there && attributes.keeps(name) {
+            let values = file.values(array, count)?;
+            points.columns.push(Column { name: name.to_owned(), values });
+        }
+    }
     Ok(points)
 }
 
@@ -196,7 +223,7 @@ pub(crate) fn read_complex(file: &OpenFile) -> Result<Mesh, PointsError> {
     let path = file.path();
     let file = VtkXml::open(file)?;
     let (dataset, piece) = file.piece()?;
-    let Points { positions: points, weights, .. } = points(path, &file, piece)?;
+    let Points { positions: points, weights, .. } = points(path, &file, piece, &Attributes::None)?;
     if file.kind() != "UnstructuredGrid" {
         let reason = Reason::unsupported(
             "lists polygons, which cannot be read as a complex",

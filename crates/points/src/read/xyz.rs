@@ -14,7 +14,7 @@ use super::rows::TextRows;
 use super::text::text;
 use super::{Columns, Points, PointsError, format};
 use crate::molecule::{Atom, Element, Molecule, Radii};
-use crate::{Cell, ModelMetadata, PointOptions};
+use crate::{Attributes, Cell, ModelMetadata, PointOptions};
 use walpha_volume::{Coordinates, LengthUnit, OpenFile, Reason};
 
 /// The layout of lines of numbers that have no names.
@@ -39,8 +39,10 @@ impl TextLayout {
         let axes = [Some(0), Some(1), Some(2)];
         match self {
             Self::Table | Self::Atoms | Self::PointsThenNormals => None,
-            Self::Vectors => Some(Columns([axes, [None; 3]].concat())),
-            Self::Scan => Some(Columns([&axes[..], &[Some(4)], &[None; 3]].concat())),
+            Self::Vectors => Some(Columns::without_names([axes, [None; 3]].concat())),
+            Self::Scan => {
+                Some(Columns::without_names([&axes[..], &[Some(4)], &[None; 3]].concat()))
+            }
         }
     }
 
@@ -68,7 +70,8 @@ pub(crate) fn read(
     }
     if lines.contents().next().is_none_or(|(_, line)| count(line).is_none()) {
         choose(path, 1, options.frame)?;
-        return Ok((rows(path, &lines, columns, layout)?, in_unit(unit)));
+        let rows = rows(path, &lines, columns, layout, &options.attributes)?;
+        return Ok((rows, in_unit(unit)));
     }
     if layout == TextLayout::PointsThenNormals {
         choose(path, 1, options.frame)?;
@@ -76,7 +79,7 @@ pub(crate) fn read(
     }
     let frames = counted(path, &lines, layout)?;
     let frame = &frames[choose(path, frames.len(), options.frame)?];
-    let (points, cell) = of_frame(path, frame, columns, layout, options.radii.as_ref())?;
+    let (points, cell) = of_frame(path, frame, columns, layout, options)?;
     // Elements are those of atoms, whose places chemistry states in this unit.
     let unit = if points.molecule.is_some() { LengthUnit::Angstrom } else { unit };
     Ok((points, in_unit(unit).cell(cell)))
@@ -146,8 +149,9 @@ fn of_frame(
     frame: &Frame<'_>,
     columns: Option<Columns>,
     layout: TextLayout,
-    radii: Option<&Radii>,
+    options: &PointOptions,
 ) -> Result<(Points, Option<Cell>), PointsError> {
+    let PointOptions { radii, attributes, .. } = options;
     let Comment { columns: stated, species, cell } = match frame.comment {
         Some(comment) => Comment::read(path, comment)?,
         None => Comment::default(),
@@ -169,14 +173,15 @@ fn of_frame(
             );
         }
         species = Some(0);
-        Some(Columns(vec![None, Some(0), Some(1), Some(2)]))
+        Some(Columns::without_names(vec![None, Some(0), Some(1), Some(2)]))
     } else {
         columns
     };
     let mut names = species.map(Species::new);
-    let mut points = rows_with(path, &frame.rows, columns, layout, atoms, names.as_mut())?;
+    let rows = Rows { layout, open_ended: atoms, attributes };
+    let mut points = rows_with(path, &frame.rows, columns, rows, names.as_mut())?;
     if let Some(Species { names, .. }) = names {
-        take_atoms(path, &mut points, names, radii)?;
+        take_atoms(path, &mut points, names, radii.as_ref())?;
     }
     Ok((points, cell))
 }
@@ -265,17 +270,26 @@ fn rows(
     lines: &Numbered<'_>,
     columns: Option<Columns>,
     layout: TextLayout,
+    attributes: &Attributes,
 ) -> Result<Points, PointsError> {
-    rows_with(path, lines, columns, layout, false, None)
+    rows_with(path, lines, columns, Rows { layout, open_ended: false, attributes }, None)
 }
 
-/// The points of rows, which may have more columns than are known if they are open-ended, and the names in one column.
+/// What is known of rows beside their columns.
+struct Rows<'a> {
+    layout: TextLayout,
+    /// Whether they may have more columns than are known.
+    open_ended: bool,
+    /// The other columns to keep.
+    attributes: &'a Attributes,
+}
+
+/// The points of rows, and the names in one column.
 fn rows_with(
     path: &Path,
     lines: &Numbered<'_>,
     columns: Option<Columns>,
-    layout: TextLayout,
-    open_ended: bool,
+    Rows { layout, open_ended, attributes }: Rows<'_>,
     mut species: Option<&mut Species>,
 ) -> Result<Points, PointsError> {
     let width = columns.as_ref().map(Columns::len);
@@ -284,7 +298,7 @@ fn rows_with(
     if dialect.decimal_comma && !dialect.has_semicolons() {
         tracing::warn!("{}: the commas of its numbers mark decimals", shown(path));
     }
-    let mut rows = TextRows::new(path, columns);
+    let mut rows = TextRows::new(path, columns, attributes);
     rows.decimal_comma = dialect.decimal_comma;
     rows.default_columns = layout.default_columns();
     rows.open_ended = open_ended;
@@ -311,9 +325,9 @@ fn rows_with(
 fn points_then_normals(path: &Path, mut lines: Numbered<'_>) -> Result<Points, PointsError> {
     let first = lines.next_content();
     let count = first.and_then(|(_, line)| count(line)).unwrap_or_default();
-    let columns = Columns(vec![Some(0), Some(1), Some(2)]);
+    let columns = Columns::without_names(vec![Some(0), Some(1), Some(2)]);
     let layout = TextLayout::PointsThenNormals;
-    let mut points = rows(path, &lines, Some(columns), layout)?;
+    let mut points = rows(path, &lines, Some(columns), layout, &Attributes::None)?;
     let found = points.len() as u64;
     if found != count && Some(found) != count.checked_mul(2) {
         let what =

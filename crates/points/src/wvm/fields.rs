@@ -6,7 +6,7 @@ use walpha_volume::{Coordinates, Frame, LengthUnit, Reason, Space};
 
 const SPACES: [Space; 4] = [Space::Unknown, Space::Lps, Space::Ras, Space::Las];
 
-const UNITS: [LengthUnit; 8] = [
+const UNITS: [LengthUnit; 10] = [
     LengthUnit::Unstated,
     LengthUnit::Voxel,
     LengthUnit::Metre,
@@ -15,6 +15,8 @@ const UNITS: [LengthUnit; 8] = [
     LengthUnit::Micrometre,
     LengthUnit::Nanometre,
     LengthUnit::Angstrom,
+    LengthUnit::Foot,
+    LengthUnit::SurveyFoot,
 ];
 
 /// The code of an item: its index in the list.

@@ -155,14 +155,16 @@ pub(super) fn one_unit(
         if unit == first {
             continue;
         }
-        if !unit.is_known() || !first.is_known() {
+        let [from, to] = [unit, first].map(|unit| Coordinates { unit, ..Coordinates::default() });
+        let conversion = from.to(to);
+        if conversion.to != to {
             let [first, other] = [first, unit].map(|unit| format!("{:?}", unit.symbol()));
-            let what =
-                format!("has axes in the units {first} and {other}, of which one is not a length");
+            let what = format!(
+                "has axes in the units {first} and {other}, which are not converted to each other"
+            );
             return Err(format_error(path, Reason::header(what)));
         }
-        let [from, to] = [unit, first].map(|unit| Coordinates { unit, ..Coordinates::default() });
-        *factor = from.to(to).length(1.0);
+        *factor = conversion.length(1.0);
     }
     Ok((first, factors))
 }

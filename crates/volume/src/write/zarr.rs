@@ -112,6 +112,7 @@ fn ome(frame: &Frame) -> serde_json::Value {
         LengthUnit::Micrometre => Some("micrometer"),
         LengthUnit::Nanometre => Some("nanometer"),
         LengthUnit::Angstrom => Some("angstrom"),
+        LengthUnit::Foot | LengthUnit::SurveyFoot => Some("foot"),
     };
     let axis = |name: &str| match unit {
         Some(unit) => json!({"name": name, "type": "space", "unit": unit}),

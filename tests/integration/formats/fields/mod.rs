@@ -83,8 +83,11 @@ pub fn walk(format: &str, fields: &[Field]) {
     for Field { name, file, fate } in fields {
         let folder = tempfile::tempdir().unwrap();
         let path = file(folder.path());
+        // Of a scan whose coordinates make no shape, `info` describes the rest.
+        let of_shapes = matches!(fate, Fate::Refused(_)) && format == "LAS, LAZ";
+        let command = if of_shapes { "points" } else { "info" };
         let (code, stdout, stderr) =
-            run(folder.path(), &["info", path.to_str().unwrap(), "--json"]);
+            run(folder.path(), &[command, path.to_str().unwrap(), "--json"]);
         let has = |text: &str, words: &[&str]| {
             for word in words {
                 assert!(text.contains(word), "{format}, {name}: no {word:?} in\n{text}");

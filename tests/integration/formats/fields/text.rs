@@ -148,8 +148,8 @@ fn each_field_of_tables() {
             row!(
                 "a unit that is not known",
                 "a.csv",
-                "x [ft],y [ft],z [ft]\n1,2,3\n",
-                Fate::PassedOver(&["the unit ft is not known"])
+                "x [furlong],y [furlong],z [furlong]\n1,2,3\n",
+                Fate::PassedOver(&["the unit furlong is not known"])
             ),
             row!(
                 "units that differ",

@@ -27,7 +27,8 @@ enum Kind<R: Read + Seek + Send + Sync + 'static> {
 }
 
 impl<R: Read + Seek + Send + Sync + 'static> Records<R> {
-    /// Decompresses the points that begin at byte `data`, with the compressor that the file names.
+    /// Decompresses the points that begin at byte `data`, with the compressor that the file names: of layers those of coordinates,
+    /// intensities, classes and flags, or, with `whole`, all but the times.
     ///
     /// # Errors
     /// Errors of the stream, or of the record that describes the compression.
@@ -36,14 +37,19 @@ impl<R: Read + Seek + Send + Sync + 'static> Records<R> {
         data: u64,
         compressor: u16,
         description: LazVlr,
+        whole: bool,
     ) -> Result<Self, LasZipError> {
         stream.seek(SeekFrom::Start(data))?;
         if compressor == LAYERED {
-            let selection = DecompressionSelection::base()
-                .decompress_z()
-                .decompress_intensity()
-                .decompress_classification()
-                .decompress_flags();
+            let selection = if whole {
+                DecompressionSelection::all().skip_gps_time().skip_wavepacket()
+            } else {
+                DecompressionSelection::base()
+                    .decompress_z()
+                    .decompress_intensity()
+                    .decompress_classification()
+                    .decompress_flags()
+            };
             let decompressor = LasZipDecompressor::selective(stream, description, selection)?;
             return Ok(Self(Kind::Layered(decompressor)));
         }
@@ -185,7 +191,7 @@ mod tests {
             compressor.done().unwrap();
             let mut packed = compressor.into_inner();
             packed.set_position(0);
-            let mut read = Records::new(packed, 9, CHUNKED, description).unwrap();
+            let mut read = Records::new(packed, 9, CHUNKED, description, false).unwrap();
             let mut found = vec![0; whole.len()];
             let (begin, rest) = found.split_at_mut(BYTES * 777);
             read.fill(begin).unwrap();

@@ -1,0 +1,262 @@
+//! The fields of a point of LAS beside its coordinates: those of its format, and the extra bytes that a record describes.
+//!
+//! Source: LAS 1.4 R15, tables 7 to 16 and 24 to 26. The names are those of laspy.
+
+use las::point::Format;
+
+use crate::ColumnSummary;
+
+/// The name of the time of a point.
+pub(super) const GPS_TIME: &str = "gps_time";
+
+/// A field: its name, its type, and how it is read.
+pub(super) struct Field {
+    pub name: String,
+    kind: &'static str,
+    place: usize,
+    code: Code,
+    /// What a stored number is multiplied by.
+    scale: f64,
+    /// What is added then.
+    offset: f64,
+    /// The stored number that stands for none.
+    missing: Option<f64>,
+}
+
+/// How a number is stored.
+#[derive(Clone, Copy)]
+enum Code {
+    /// Some bits of a byte: the lowest, and how many.
+    Bits(u8, u8),
+    U8,
+    I8,
+    U16,
+    I16,
+    U32,
+    I32,
+    U64,
+    I64,
+    F32,
+    F64,
+}
+
+impl Code {
+    /// The types of extra bytes from 1 on, with their names and sizes.
+    const EXTRA: [(Self, &'static str, usize); 10] = [
+        (Self::U8, "uint8", 1),
+        (Self::I8, "int8", 1),
+        (Self::U16, "uint16", 2),
+        (Self::I16, "int16", 2),
+        (Self::U32, "uint32", 4),
+        (Self::I32, "int32", 4),
+        (Self::U64, "uint64", 8),
+        (Self::I64, "int64", 8),
+        (Self::F32, "float32", 4),
+        (Self::F64, "float64", 8),
+    ];
+
+    /// The number at the start of some bytes; NaN behind the end of a record.
+    fn read(self, bytes: &[u8]) -> f64 {
+        fn first<const N: usize>(bytes: &[u8]) -> Option<[u8; N]> {
+            bytes.first_chunk().copied()
+        }
+        let number = match self {
+            Self::Bits(low, count) => {
+                bytes.first().map(|byte| f64::from(byte >> low & ((1u16 << count) - 1) as u8))
+            }
+            Self::U8 => bytes.first().map(|&byte| f64::from(byte)),
+            Self::I8 => first(bytes).map(|bytes| f64::from(i8::from_le_bytes(bytes))),
+            Self::U16 => first(bytes).map(|bytes| f64::from(u16::from_le_bytes(bytes))),
+            Self::I16 => first(bytes).map(|bytes| f64::from(i16::from_le_bytes(bytes))),
+            Self::U32 => first(bytes).map(|bytes| f64::from(u32::from_le_bytes(bytes))),
+            Self::I32 => first(bytes).map(|bytes| f64::from(i32::from_le_bytes(bytes))),
+            Self::U64 => first(bytes).map(|bytes| u64::from_le_bytes(bytes) as f64),
+            Self::I64 => first(bytes).map(|bytes| i64::from_le_bytes(bytes) as f64),
+            Self::F32 => first(bytes).map(|bytes| f64::from(f32::from_le_bytes(bytes))),
+            Self::F64 => first(bytes).map(f64::from_le_bytes),
+        };
+        number.unwrap_or(f64::NAN)
+    }
+}
+
+impl Field {
+    fn new(name: &str, place: usize, code: Code) -> Self {
+        let kind = match code {
+            Code::Bits(..) | Code::U8 => "uint8",
+            Code::I8 => "int8",
+            Code::U16 => "uint16",
+            Code::I16 => "int16",
+            Code::U32 => "uint32",
+            Code::I32 => "int32",
+            Code::U64 => "uint64",
+            Code::I64 => "int64",
+            Code::F32 => "float32",
+            Code::F64 => "float64",
+        };
+        Self { name: name.to_owned(), kind, place, code, scale: 1.0, offset: 0.0, missing: None }
+    }
+
+    fn scaled(self, scale: f64) -> Self {
+        Self { scale, ..self }
+    }
+
+    /// The number of a point; NaN if it has none.
+    pub(super) fn value(&self, record: &[u8]) -> f64 {
+        let stored = self.code.read(record.get(self.place..).unwrap_or_default());
+        if self.missing == Some(stored) {
+            return f64::NAN;
+        }
+        stored * self.scale + self.offset
+    }
+
+    /// A description without its range.
+    pub(super) fn summary(&self) -> ColumnSummary {
+        ColumnSummary::new(&self.name, self.kind)
+    }
+}
+
+/// The fields of a format, in the order of its bytes, and the described extra bytes.
+pub(super) fn fields(format: Format, described: &[u8]) -> Vec<Field> {
+    let mut all = vec![Field::new("intensity", 12, Code::U16)];
+    let mut bits = |named: &[(&str, usize, u8, u8)]| {
+        let field =
+            |&(name, place, low, count): &_| Field::new(name, place, Code::Bits(low, count));
+        all.extend(named.iter().map(field));
+    };
+    if format.is_extended {
+        bits(&[
+            ("return_number", 14, 0, 4),
+            ("number_of_returns", 14, 4, 4),
+            ("synthetic", 15, 0, 1),
+            ("key_point", 15, 1, 1),
+            ("withheld", 15, 2, 1),
+            ("overlap", 15, 3, 1),
+            ("scanner_channel", 15, 4, 2),
+            ("scan_direction_flag", 15, 6, 1),
+            ("edge_of_flight_line", 15, 7, 1),
+        ]);
+        all.push(Field::new("classification", 16, Code::U8));
+        all.push(Field::new("user_data", 17, Code::U8));
+        all.push(Field::new("scan_angle", 18, Code::I16).scaled(0.006));
+        all.push(Field::new("point_source_id", 20, Code::U16));
+    } else {
+        bits(&[
+            ("return_number", 14, 0, 3),
+            ("number_of_returns", 14, 3, 3),
+            ("scan_direction_flag", 14, 6, 1),
+            ("edge_of_flight_line", 14, 7, 1),
+            ("classification", 15, 0, 5),
+            ("synthetic", 15, 5, 1),
+            ("key_point", 15, 6, 1),
+            ("withheld", 15, 7, 1),
+        ]);
+        all.push(Field::new("scan_angle", 16, Code::I8));
+        all.push(Field::new("user_data", 17, Code::U8));
+        all.push(Field::new("point_source_id", 18, Code::U16));
+    }
+    let mut place = if format.is_extended { 22 } else { 20 };
+    if format.has_gps_time {
+        // In layers the library decodes changes of their sequence by recursion, which damaged data can repeat until the stack is
+        // exhausted; so these are not decompressed.
+        if !(format.is_compressed && format.is_extended) {
+            all.push(Field::new(GPS_TIME, place, Code::F64));
+        }
+        place += 8;
+    }
+    if format.has_color {
+        for (k, name) in ["red", "green", "blue"].into_iter().enumerate() {
+            all.push(Field::new(name, place + 2 * k, Code::U16));
+        }
+        place += 6;
+    }
+    if format.has_nir {
+        all.push(Field::new("nir", place, Code::U16));
+    }
+    let start = usize::from(format.len() - format.extra_bytes);
+    all.extend(extra(start, described));
+    all
+}
+
+/// The fields that descriptions of extra bytes, 192 bytes each, place behind those of the format. An array of several numbers has
+/// a field for each.
+fn extra(mut place: usize, described: &[u8]) -> Vec<Field> {
+    const SIZE: usize = 192;
+    let mut fields = Vec::new();
+    for one in described.as_chunks::<SIZE>().0 {
+        let (kind, options) = (usize::from(one[2]), one[3]);
+        if kind == 0 {
+            // Bytes without a meaning: the options are their number.
+            place += usize::from(options);
+            continue;
+        }
+        let Some(&(code, kind_name, size)) = Code::EXTRA.get((kind - 1) % 10) else { break };
+        let count = (kind - 1) / 10 + 1;
+        if count > 3 {
+            break;
+        }
+        let name = one[4..36].split(|&byte| byte == 0).next().unwrap_or_default();
+        let name = String::from_utf8_lossy(name).trim().to_owned();
+        let number = |start: usize, k: usize| Code::F64.read(&one[start + 8 * k..]);
+        for k in 0..count {
+            let has = |bit: u8| options & 1 << bit != 0;
+            // What stands for no number is stored in eight bytes of the kind of the type.
+            let none = &one[40 + 8 * k..];
+            let missing = match code {
+                Code::F32 | Code::F64 => Code::F64.read(none),
+                Code::I8 | Code::I16 | Code::I32 | Code::I64 => Code::I64.read(none),
+                _ => Code::U64.read(none),
+            };
+            fields.push(Field {
+                name: if count == 1 { name.clone() } else { format!("{name}_{k}") },
+                kind: kind_name,
+                place,
+                code,
+                scale: if has(3) { number(112, k) } else { 1.0 },
+                offset: if has(4) { number(136, k) } else { 0.0 },
+                missing: has(0).then_some(missing),
+            });
+            place += size;
+        }
+    }
+    fields
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A description with this type, options and name, a number that stands for none, a scale and an offset.
+    fn described(kind: u8, options: u8, name: &str, none: i64, scale: f64, offset: f64) -> Vec<u8> {
+        let mut bytes = vec![0; 192];
+        (bytes[2], bytes[3]) = (kind, options);
+        bytes[4..4 + name.len()].copy_from_slice(name.as_bytes());
+        bytes[40..48].copy_from_slice(&none.to_le_bytes());
+        bytes[112..120].copy_from_slice(&scale.to_le_bytes());
+        bytes[136..144].copy_from_slice(&offset.to_le_bytes());
+        bytes
+    }
+
+    #[test]
+    fn extra_bytes_are_read_as_they_are_described() {
+        let all = [
+            described(0, 3, "", 0, 0.0, 0.0),
+            described(6, 1, "treeID", i64::from(i32::MIN), 0.0, 0.0),
+            described(4, 24, "height", 0, 0.01, 100.0),
+            described(13, 0, "rgb", 0, 0.0, 0.0),
+        ]
+        .concat();
+        let fields = extra(2, &all);
+        let names: Vec<&str> = fields.iter().map(|field| field.name.as_str()).collect();
+        assert_eq!(names, ["treeID", "height", "rgb_0", "rgb_1"]);
+        let mut record = vec![0; 5];
+        record.extend((-7i32).to_le_bytes());
+        record.extend(250i16.to_le_bytes());
+        record.extend(3u16.to_le_bytes());
+        record.extend(4u16.to_le_bytes());
+        let values: Vec<f64> = fields.iter().map(|field| field.value(&record)).collect();
+        assert_eq!(values, [-7.0, 102.5, 3.0, 4.0]);
+        record[5..9].copy_from_slice(&i32::MIN.to_le_bytes());
+        assert!(fields[0].value(&record).is_nan());
+        assert!(fields[3].value(&record[..13]).is_nan(), "behind the end");
+    }
+}
