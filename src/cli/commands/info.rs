@@ -5,7 +5,7 @@ use std::path::Path;
 use clap::Args;
 use serde::Serialize;
 use serde_json::Value;
-use walpha_base::shown::number;
+use walpha_base::shown::{number, rounded, rounded_within};
 
 use crate::check::meshes::Mesh;
 use crate::cli::process::errors::{Result, option};
@@ -160,7 +160,7 @@ impl std::fmt::Display for LabelSummary {
         )?;
         let unit = unit.symbol();
         for LabelSize { label, voxels, volume, .. } in labels.iter().take(MOST_LABELS) {
-            writeln!(f, "          {label}: {voxels} voxels, {} {unit}³", number(*volume))?;
+            writeln!(f, "          {label}: {voxels} voxels, {} {unit}³", rounded(*volume))?;
         }
         match labels.len().saturating_sub(MOST_LABELS) {
             0 => Ok(()),
@@ -400,11 +400,16 @@ impl Content {
             writeln!(f, "recipe    {recipe}")?;
         }
         if let Some(alpha) = alpha {
-            writeln!(f, "α         {} {}²", number(alpha.squared()), coordinates.unit.symbol())?;
+            writeln!(f, "α         {} {}²", rounded(alpha.squared()), coordinates.unit.symbol())?;
         }
         match gray_range {
             Some([low, high]) => {
-                writeln!(f, "gray      values {} to {} were 0 to 255", number(*low), number(*high))
+                writeln!(
+                    f,
+                    "gray      values {} to {} were 0 to 255",
+                    rounded(*low),
+                    rounded(*high)
+                )
             }
             None => Ok(()),
         }
@@ -426,11 +431,11 @@ fn fmt_frame(
     };
     writeln!(f, "space     {stated}")?;
     let unit = unit.symbol();
-    writeln!(f, "spacing   {} {unit}", spacing.map(number).join(" "))?;
-    writeln!(f, "origin    {} {unit}", origin.map(number).join(" "))?;
+    writeln!(f, "spacing   {} {unit}", spacing.map(rounded).join(" "))?;
+    writeln!(f, "origin    {} {unit}", origin.map(rounded).join(" "))?;
     if *direction != Frame::VOXEL.direction {
         for (i, axis) in ["x", "y", "z"].iter().enumerate() {
-            let steps = direction.map(|row| number(row[i]));
+            let steps = direction.map(|row| rounded(row[i]));
             writeln!(f, "axis {axis}    {}", steps.join(" "))?;
         }
     }
@@ -446,7 +451,7 @@ fn fmt_values(
     let Some((min, max)) = range else {
         return writeln!(f, "values    none that is a finite number");
     };
-    let (min, max) = (number(f64::from(min)), number(f64::from(max)));
+    let (min, max) = (rounded(f64::from(min)), rounded(f64::from(max)));
     let gray = if gray_levels { ", gray levels as they are" } else { "" };
     writeln!(f, "values    {min} to {max}{gray}")
 }
@@ -548,7 +553,9 @@ impl std::fmt::Display for Content {
                     writeln!(f, "cells     {}", cells.join(", "))?;
                 }
                 for (i, axis) in ["x", "y", "z"].iter().enumerate() {
-                    writeln!(f, "{axis}         {} to {}", number(low[i]), number(high[i]))?;
+                    let [low, high] =
+                        [low[i], high[i]].map(|end| rounded_within(end, high[i] - low[i]));
+                    writeln!(f, "{axis}         {low} to {high}")?;
                 }
                 let has = |there: bool| if there { "yes" } else { "no" };
                 let squares = if *of_radii { ", squares of its radii" } else { "" };

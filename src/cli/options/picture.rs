@@ -10,11 +10,8 @@ use clap::{Args, ValueEnum};
 
 use crate::AlphaShape;
 use crate::export::{Exporter, Needs};
-use crate::points::bounding_box;
-use crate::render::{
-    Background, Camera, ColourMap, Colouring, Projection, RenderError, Scene, ShapeStyle, Size,
-    View,
-};
+use crate::pictures::{self, Look};
+use crate::render::{Camera, ColourMap, Colouring, RenderError, Size, View};
 
 use crate::cli::process::errors::{Result, command_error, fail};
 
@@ -31,7 +28,7 @@ pub(crate) struct PictureArgs {
           allow_hyphen_values = true)]
     camera: Option<Camera>,
     /// What colours show: nothing, the values F, or the classes of simplices.
-    #[arg(long, value_enum, default_value_t, value_name = "MEANING")]
+    #[arg(long, visible_alias = "color", value_enum, default_value_t, value_name = "MEANING")]
     colour: ColourArg,
     /// Size of the picture in pixels.
     #[arg(long, value_name = "WxH", value_parser = size, default_value = "1600x1360")]
@@ -90,25 +87,15 @@ impl PictureArgs {
     }
 
     fn draw(&self, shape: &AlphaShape) -> Result<Vec<u8>, RenderError> {
-        let positions = shape.points().positions();
         let values = shape.points().values();
         let colouring = match (self.colour, values) {
             (ColourArg::Value, Some(values)) => Colouring::Values(values, ColourMap::over(values)),
             (ColourArg::Class, _) => Colouring::Classes,
             _ => Colouring::Plain,
         };
-        let bounds = bounding_box(positions);
-        let diagonal = (0..3).map(|k| (bounds[1][k] - bounds[0][k]).powi(2)).sum::<f64>().sqrt();
-        // The edges are thin compared with the shape, in any unit: 0.12 for 64³ voxels, as in the figures.
-        let edge_radius = diagonal * 0.0011;
-        let style = ShapeStyle { colouring, edge_radius, ..ShapeStyle::default() };
-        let scene = Scene::of_shape(positions, shape.complex(), &style)?;
         let view = self.view.map_or(View::ThreeQuarter, View::from);
-        let camera = match self.camera {
-            Some(camera) => camera,
-            None => Camera::fit(bounds, view, Projection::Perspective, self.size)?,
-        };
-        scene.render(&camera, self.size, Background::White)?.to_png()
+        let look = self.camera.map_or(Look::View(view), Look::Camera);
+        pictures::png(shape, look, colouring, self.size)
     }
 }
 
