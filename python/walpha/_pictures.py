@@ -214,8 +214,8 @@ def gray_png(levels: NDArray[np.uint8]) -> bytes:
     return b"\x89PNG\r\n\x1a\n" + b"".join(parts)
 
 
-#: Colours that most people tell apart: M. Okabe and K. Ito, Color Universal Design (2008).
-_COLOURS = ("#0072b2", "#e69f00", "#009e73")
+#: Colours that most people tell apart, after M. Okabe and K. Ito, Color Universal Design (2008), and dark enough for text.
+_COLOURS = ("#0072b2", "#b34700", "#00785a")
 
 
 def steps_chart(
@@ -235,12 +235,12 @@ def steps_chart(
     decades = max(1, math.ceil(math.log10(max(most, 1))))
 
     def x(place: NDArray[Any]) -> NDArray[Any]:
-        return left + (np.log10(place) - first) / (last - first) * (width - left - right)
+        return np.asarray(left + (np.log10(place) - first) / (last - first) * (width - left - right))
 
     def y(count: NDArray[Any]) -> NDArray[Any]:
         # One decade more, whose lower end is 0.
         power = np.where(count > 0, np.log10(np.maximum(count, 1)) + 1, 0)
-        return height - bottom - power / (decades + 1) * (height - top - bottom)
+        return np.asarray(height - bottom - power / (decades + 1) * (height - top - bottom))
 
     lines = []
     for power in range(first, last + 1):
@@ -257,7 +257,8 @@ def steps_chart(
         seen = places > 0
         heights, across_at = y(counts[seen]), x(places[seen])
         # Changes that are less than a pixel apart cannot be seen.
-        path, before = [], None
+        path: list[str] = []
+        before = None
         for at, up in zip(np.round(across_at, 1), np.round(heights, 1)):
             if (at, up) != before:
                 path.append(f"{'H' if path else 'M'}{at:g}{'V' if path else ','}{up:g}")
@@ -265,9 +266,10 @@ def steps_chart(
         path.append(f"H{width - right}")
         lines.append(f'<path d="{"".join(path)}" fill="none" stroke="{colour}" stroke-width="2"/>')
         ends.append((float(heights[-1]) if len(heights) else float(y(np.array(0))), name, colour))
-    at = -math.inf
-    for up, name, colour in sorted(ends):
-        at = max(up, at + 16)
+    # From below upwards, as the numbers of the axis are below.
+    at = math.inf
+    for up, name, colour in sorted(ends, reverse=True):
+        at = min(up, at - 16)
         lines.append(f'<text x="{width - right + 8}" y="{at + 5:.1f}" fill="{colour}">{html.escape(name)}</text>')
     return Chart(
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" width="{width}" '
