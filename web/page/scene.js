@@ -63,6 +63,10 @@ void main() {
   #include <colorspace_fragment>
 }`;
 
+// The opacity of a surface through which something is shown.
+const FADED = 0.25;
+// Pixels that a scale bar is long, about.
+const BAR = 110;
 // The colour of what a plane cuts, beside a material.
 const CUT = "#b9a58c";
 
@@ -156,6 +160,7 @@ export class ShapeScene {
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.draw());
     element.addEventListener("keydown", (event) => this.key(event));
     [this.waiting, this.moving, this.slow, this.turned] = [false, false, false, false];
+    this.opacity = 1;
     this.controls.addEventListener("start", () => { this.turned = true; });
   }
 
@@ -221,6 +226,8 @@ export class ShapeScene {
       return make("span", { textContent: `${axis}: ${low} to ${high} ${unit}` });
     }));
     this.group.add(this.section, this.lit, this.parts.box);
+    this.unit = unit;
+    this.fade(this.opacity);
     if (keep) return;
     this.turned = false;
     this.resize();
@@ -354,7 +361,24 @@ export class ShapeScene {
   light(low, high) {
     this.lit.visible = low !== undefined;
     if (low) this.lit.box.set(new Vector3(...low), new Vector3(...high));
+    // What lies within is seen through the surface.
+    this.fade(low ? Math.min(this.opacity, FADED) : this.opacity);
     this.draw();
+  }
+
+  // How opaque the surface is, from 0 to 1.
+  setOpacity(opacity) {
+    this.opacity = opacity;
+    this.fade(opacity);
+    this.draw();
+  }
+
+  fade(opacity) {
+    for (const name of ["regular", "singular"]) {
+      const { material } = this.parts[name];
+      Object.assign(material, { opacity, transparent: opacity < 1, depthWrite: opacity === 1 });
+      material.needsUpdate = true;
+    }
   }
 
   // The point of the shape at a place on the screen, if there is one: the dot there, where points are drawn, or the nearest corner.
@@ -391,6 +415,19 @@ export class ShapeScene {
     const corner = new Vector3();
     const distance = (v) => corner.fromBufferAttribute(this.position, v).distanceTo(hit.point);
     return [hit.face.a, hit.face.b, hit.face.c].reduce((near, v) => (distance(v) < distance(near) ? v : near));
+  }
+
+  // A bar of a round length, as long as that is at the middle of the shape.
+  measureBar() {
+    const bar = this.bar;
+    if (!bar || !this.box) return;
+    const distance = this.camera.position.distanceTo(this.controls.target);
+    const pixel = 2 * distance * Math.tan(Math.PI / 360 * this.camera.fov) / this.element.clientHeight;
+    const power = 10 ** Math.floor(Math.log10(BAR * pixel));
+    const length = power * [5, 2, 1].find((digit) => digit * power <= BAR * pixel);
+    if (!Number.isFinite(length)) return;
+    bar.style.width = `${length / pixel}px`;
+    bar.textContent = `${short(length)} ${this.unit}`;
   }
 
   // Writes what the box measures beside three of its edges that the viewer sees, within the picture.
@@ -568,6 +605,7 @@ export class ShapeScene {
       this.measure(started);
     }
     this.label();
+    this.measureBar();
     if (this.moving) {
       clearTimeout(this.timer);
       this.timer = setTimeout(() => this.rest(), REST);

@@ -63,6 +63,7 @@ export class ShapePanel {
     [this.made, this.shape, this.alpha] = [made, made, null];
     for (const id of ["shape", "cut-row", "alpha-row"]) byId(id).hidden = false;
     this.scene ??= new ShapeScene(byId("scene"));
+    this.scene.bar = byId("bar");
     const { scene } = this;
     const box = new Box3();
     box.setFromArray(made.positions);
@@ -339,6 +340,7 @@ export class ShapePanel {
     }
     byId("cut").addEventListener("change", () => this.cut());
     byId("cut-place").addEventListener("input", () => this.cut());
+    byId("opacity").addEventListener("input", ({ target }) => this.scene?.setOpacity(Number(target.value)));
     byId("home").addEventListener("click", () => this.scene.home());
     let down = null;
     byId("scene").addEventListener("pointerdown", (event) => { down = [event.clientX, event.clientY]; });

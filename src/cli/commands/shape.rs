@@ -17,7 +17,7 @@ use crate::cli::options::global::Global;
 use crate::cli::options::picture::PictureArgs;
 use crate::cli::options::{Declared, Kept, OfShape, OutputArgs, Periodic, PipelineArgs};
 use crate::cli::process::errors::{CommandError, Result, fail_usage, option};
-use crate::cli::process::output::print_summary;
+use crate::cli::process::output::{OF_OUTPUTS, print_summary};
 use crate::cli::process::progress::Progress;
 use crate::cli::process::usage;
 use crate::cli::report::Report;
@@ -310,7 +310,7 @@ impl Shape {
         let remarks = outputs.remarks(shape);
         report.offsets = offsets(&outputs.whole, shape);
         progress.stage(Stage::Write, || outputs.write(shape, facts))?;
-        remarks.iter().for_each(|text| tracing::info!("{text}"));
+        remarks.iter().for_each(|text| tracing::info!(target: OF_OUTPUTS, "{text}"));
         Ok(report)
     }
 }

@@ -13,7 +13,7 @@ use crate::cli::commands::pipeline::{self, VolumeSummary, filled_in};
 use crate::cli::options::global::Global;
 use crate::cli::options::{self, Alphas, Declared, FrozenPipelineArgs};
 use crate::cli::process::errors::{CommandError, Result, fail, fail_usage};
-use crate::cli::process::output::{name, print_summary};
+use crate::cli::process::output::{OF_OUTPUTS, name, print_summary};
 use crate::cli::process::progress::Progress;
 use crate::cli::process::usage;
 use crate::cli::report::{SCHEMA_VERSION, WeightsReport};
@@ -94,7 +94,7 @@ impl View {
         let details = details.collect::<Result<Vec<_>>>()?;
         let (page, facts) = self.page(&details, source.as_ref(), &mut progress)?;
         if let Some(simplified) = &page.simplified {
-            tracing::info!("{simplified}");
+            tracing::info!(target: OF_OUTPUTS, "{simplified}");
         }
         progress.stage(Stage::Write, || target.write(|out| out.write_all(page.html.as_bytes())))?;
         let facts = ViewSummary {

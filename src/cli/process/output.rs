@@ -132,6 +132,9 @@ where
     }
 }
 
+/// The target of notes on outputs, which reports do not repeat: they say nothing of the input or the result.
+pub(crate) const OF_OUTPUTS: &str = "walpha::outputs";
+
 /// The distinct warnings and notes so far.
 static WARNINGS: Mutex<Vec<String>> = Mutex::new(Vec::new());
 
@@ -140,7 +143,9 @@ pub(crate) struct WarningCollector;
 
 impl<S: Subscriber> Layer<S> for WarningCollector {
     fn event_enabled(&self, event: &Event<'_>, _: Context<'_, S>) -> bool {
-        if !matches!(*event.metadata().level(), Level::WARN | Level::INFO) {
+        let metadata = event.metadata();
+        let is_kept = matches!(*metadata.level(), Level::WARN | Level::INFO);
+        if !is_kept || metadata.target() == OF_OUTPUTS {
             return true;
         }
         let mut message = Message::default();
