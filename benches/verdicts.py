@@ -251,9 +251,9 @@ def judge():
     print(f"Made by `benches/verdicts.py` on {datetime.date.today()}, {platform.system()} on {platform.machine()}, one run. Each program triangulates")
     print("the [hard sets](cross-checking.md#hard-inputs), with the same doubles and, of its settings, the most robust one that does not move points;")
     print("`walpha check` judges the cells as a triangulation of all points, exactly. *Exact* has ties decided by [the rule](ties.md), which nobody else")
-    print("is obliged to; *valid* is as right. A dash: the program has no weights. Programs for meshes of bodies, as Gmsh and Open3D, may not promise what is asked here.\n")
+    print("is obliged to; *valid* is as right. Programs without weights are not given sets with weights. Programs for meshes of bodies, as Gmsh and Open3D, may not promise what is asked here.\n")
     table(programs, {name: [f"hard:{name}"] for name in sets if name not in LEFT_OUT})
-    print("`oblique-plane` and `line` span no volume: *no cells* and an error are both right there, and they are not counted.\n")
+    print("`oblique-plane` and `line` span no volume: *no cells* and an error are both right there, and they are left out.\n")
     print("What is wrong is counted by rule, as `walpha check` prints it: *orientation* is a flat cell, *hull bends* a hull that is not convex, *not regular* a point inside a cell's sphere.\n")
     if "Geogram" in programs:
         print("Geogram gets weights as it takes them, as a fourth coordinate √(max ω − ω), which is rounded.\n")
@@ -298,10 +298,7 @@ def real_sets():
 
 def table(programs, sets):
     """Prints the verdict on what each program makes of each set, which `walpha points` makes with these arguments."""
-    print("| set | " + " | ".join(programs) + " |")
-    print("|---" * (1 + len(programs)) + "|")
-    right = dict.fromkeys(programs, 0)
-    tried = dict.fromkeys(programs, 0)
+    verdicts = {program: {} for program in programs}
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         for one, arguments in sets.items():
@@ -310,17 +307,34 @@ def table(programs, sets):
             points = np.column_stack([rows[axis] for axis in "xyz"])
             weights = np.ascontiguousarray(rows["weight"]) if rows["weight"].any() else None
             np.savez(folder / "set.npz", points=points, **({} if weights is None else {"weights": weights}))
-            row = []
             for program in programs:
-                if weights is not None and not PROGRAMS[program][1]:
-                    row.append("–")
-                    continue
-                row.append(cell(folder, program, points, weights))
-                if one not in FLAT:
-                    tried[program] += 1
-                    right[program] += row[-1].startswith("**")
-            print(f"| `{one}` | " + " | ".join(row) + " |", flush=True)
-    print("| right | " + " | ".join(f"{right[program]} of {tried[program]}" for program in programs) + " |\n")
+                # Without a word: the program has no weights.
+                if weights is None or PROGRAMS[program][1]:
+                    verdicts[program][one] = cell(folder, program, points, weights)
+    print(arranged(verdicts))
+
+
+def arranged(verdicts):
+    """A table with a line for each program, and the sets by what it makes of them; verdicts by program and set."""
+    lines = ["| program | right | exact | valid | wrong, with what is wrong, or failed |", "|---|--:|---|---|---|"]
+    for program, found in verdicts.items():
+        of = lambda word: [one for one, verdict in found.items() if verdict == f"**{word}**"]
+        exact, valid = of("exact"), of("valid")
+        tried = [one for one in found if one not in FLAT]
+        # The volume does not sum up as a consequence of cells that are flat.
+        text = lambda one: found[one].removeprefix("wrong: ").removesuffix(", 1 volume")
+        wrong = [f"`{one}`: {text(one)}" for one in tried if one not in exact + valid]
+        quoted = lambda sets: ", ".join(f"`{one}`" for one in sets)
+
+        def names(sets):
+            rest = [one for one in tried if one not in sets]
+            if len(rest) == 0:
+                return f"all {len(sets)}"
+            return f"all but {quoted(rest)}" if len(rest) == 1 else quoted(sets)
+
+        cells = [f"{len(exact) + len(valid)} of {len(tried)}", names(exact), names(valid), "; ".join(wrong)]
+        lines.append(f"| {program} | " + " | ".join(cell or "–" for cell in cells) + " |")
+    return "\n".join(lines) + "\n"
 
 
 if __name__ == "__main__":

@@ -166,7 +166,7 @@ def foreign_points(check):
     for extension in ["off", "obj", "stl", "ply"]:
         hull.export(check.path("t." + extension))
         found = check.run("info", check.path("t." + extension), "--json")
-        count = json.loads(found.stdout)["count"] if found.returncode == 0 else found.stderr.strip()
+        count = json.loads(found.stdout)["count"] if found.returncode == 0 else found.stdout.strip()
         check.judge(f"trimesh {extension}", None if count == len(hull.vertices) else f"{count}, not {len(hull.vertices)} points")
     meshio.write_points_cells(check.path("m.stl"), hull.vertices, [("triangle", hull.faces)], file_format="stl", binary=False)
     found = check.run("info", check.path("m.stl"), "--json")

@@ -51,7 +51,7 @@ class Checker:
         out = self.path("back.npy")
         read = self.run("haar", file, "--rms", "0", "--gray", "0..255", "-o", out)
         if info.returncode or read.returncode:
-            return self.judge(name, (info.stderr or read.stderr).strip())
+            return self.judge(name, (info.stdout if info.returncode else read.stderr).strip())
         info, found = json.loads(info.stdout), np.load(out)
         if found.shape != expected.shape:
             return self.judge(name, f"shape {found.shape}, not {expected.shape}")

@@ -4,7 +4,7 @@
     scripts/check_view.py page.html [--chromium /usr/bin/chromium] [--out DIR]
 
 From a file: URL, at the width of a desk and of a phone: no error on the console, no request to a network, the first picture comes soon, the
-scene is not blank and fills its place, the legend names what is drawn in its colours, moving the slider, changing the colour and the level
+scene is not blank and fills its place, in the material of walpha's pictures or by height, drawers open and are remembered, the legend names what is drawn in its colours, moving the slider, changing the colour and the level
 of detail change the picture, a click on the shape tells index, weight and class, a cut, points, balls and isosurface can be shown, voids light up,
 and nothing is wider than the screen. Leaves two screenshots.
 Prints a line for each check; exits with 1 when one fails, and with 77 without Chromium.
@@ -28,6 +28,7 @@ FLAGS = [
 ]
 # Seconds until the first picture; generous, as others may use the machine.
 SOON = 20
+# The second finds the drawers open that the first has left open.
 SCREENS = {"desk": (1280, 900, False), "phone": (390, 844, True)}
 
 
@@ -135,7 +136,10 @@ def picture(browser):
         " return [b.x + scrollX, b.y + scrollY, b.width, b.height] })()"
     )
     clip = dict(zip(["x", "y", "width", "height"], box), scale=1)
-    return browser.call("Page.captureScreenshot", format="png", clip=clip)["data"]
+    browser.evaluate(BARE % "true")
+    data = browser.call("Page.captureScreenshot", format="png", clip=clip)["data"]
+    browser.evaluate(BARE % "false")
+    return data
 
 
 COLOURS = """(async () => {
@@ -188,24 +192,29 @@ INKED = """(async () => {
 })()"""
 
 
-# The empty rows below and above what is drawn, as shares of the picture.
+# The empty rows and columns below, above, right and left of what is drawn, as shares of the picture; captions lie on its left.
 EMPTY = """(async () => {
   const image = await createImageBitmap(new Blob([Uint8Array.from(atob('%s'), (byte) => byte.charCodeAt(0))]));
   const context = new OffscreenCanvas(image.width, image.height).getContext('2d');
   context.drawImage(image, 0, 0);
-  const inked = [];
-  // Its corners are round.
-  for (let row = 0; row < image.height; row++) {
-    const pixels = new Uint32Array(context.getImageData(8, row, image.width - 16, 1).data.buffer);
-    inked.push(pixels.some((pixel) => pixel !== 0xffffffff));
-  }
-  return [inked.reverse().indexOf(true), inked.reverse().indexOf(true)].map((rows) => rows / image.height);
+  const { data } = context.getImageData(0, 0, image.width, image.height);
+  const pixels = new Uint32Array(data.buffer);
+  const [rows, columns] = [new Array(image.height).fill(false), new Array(image.width).fill(false)];
+  pixels.forEach((pixel, k) => {
+    if (pixel === 0xffffffff) return;
+    rows[Math.floor(k / image.width)] = true;
+    columns[k %% image.width] = true;
+  });
+  const ends = (inked) => [inked.toReversed().indexOf(true), inked.indexOf(true)].map((count) => count / inked.length);
+  return [...ends(rows), ...ends(columns)];
 })()"""
+# Captions lie on the picture, and are not part of it.
+BARE = "document.getElementById('captions').hidden = %s"
 
 
 # The entries of the legend: what, how many, in which colour.
 LEGEND = """[...document.querySelectorAll('#legend span')].map((entry) => {
-  const [, count, name] = /^(\\d+) (.*)$/.exec(entry.textContent) ?? [null, null, entry.textContent];
+  const [, count, name] = /^(\\d+) (.*)$/.exec(entry.textContent.replaceAll('\u202f', '')) ?? [null, null, entry.textContent];
   return [name, Number(count), getComputedStyle(entry.querySelector('i')).backgroundColor];
 })"""
 # How a class is drawn: red, green and blue of the facets and edges.
@@ -215,7 +224,7 @@ COLOUR_OF = {
 }
 # Counts of a level as the page's table has them, by the names of the legend.
 TOLD = """Object.fromEntries([...document.querySelectorAll('#measures tr')].flatMap((row) => {
-  const [kind, text] = [row.children[0].textContent, row.children[1].textContent];
+  const [kind, text] = [row.children[0].textContent, row.children[1].textContent.replaceAll('\u202f', '')];
   if (!['facets', 'edges', 'vertices'].includes(kind)) return [];
   return text.split(', ').map((part) => [part.split(' ')[1] + ' ' + kind.replace('vertices', 'points'), Number(part.split(' ')[0])]);
 }))"""
@@ -234,6 +243,22 @@ HUED = """(async () => {
   }
   return 4 * found / data.length;
 })()"""
+# The share of pixels that are not background, and as yellow as bone in any light.
+HUED_LIKE_BONE = """(async () => {
+  const image = await createImageBitmap(new Blob([Uint8Array.from(atob('%s'), (byte) => byte.charCodeAt(0))]));
+  const context = new OffscreenCanvas(image.width, image.height).getContext('2d');
+  context.drawImage(image, 0, 0);
+  const { data } = context.getImageData(0, 0, image.width, image.height);
+  let found = 0;
+  for (let i = 0; i < data.length; i += 4) {
+    const [r, g, b] = data.subarray(i, i + 3);
+    if (r > g && g > b && r - b > 8 && r - b < 60) found += 1;
+  }
+  return 4 * found / data.length;
+})()"""
+# Targets that a finger may miss; a label is one with its box.
+SMALL = """[...document.querySelectorAll('button, input, select')].filter((e) => e.checkVisibility()).map((e) =>
+  [e.id || e.textContent, Math.round((e.closest('label') ?? e).getBoundingClientRect().height)]).filter(([, height]) => height < 44)"""
 # The numbers are those of the α that is shown.
 RESTED = "document.body.dataset.measured !== undefined && document.body.dataset.measured === document.body.dataset.alpha"
 
@@ -329,6 +354,28 @@ def look(browser, checks, page, screen, out):
         checks.say(f"{screen}: console", False, str(faults(browser.events)))
         return
     settle(browser)
+    controls = browser.evaluate("[...document.querySelectorAll('button, input, select')].filter((e) => e.checkVisibility() && e.closest('footer, .drawer') === null).length")
+    before = browser.evaluate("[...document.querySelectorAll('.drawer')].filter((drawer) => drawer.checkVisibility()).length")
+    checks.say(f"{screen}: drawers are as they were left", (before > 0) == (screen == "phone"), f"{before} open")
+    checks.say(f"{screen}: at most 12 controls before a drawer is opened", controls <= 12, str(controls))
+    if mobile:
+        small = browser.evaluate(SMALL)
+        checks.say(f"{screen}: every target is 44 pixels high", not small, str(small))
+        top = browser.evaluate("document.getElementById('scene').getBoundingClientRect().top")
+        checks.say(f"{screen}: the picture comes first", top < 120, f"at {top:.0f} pixels")
+    numbers = browser.evaluate("document.getElementById('summary').textContent")
+    checks.say(f"{screen}: the numbers that matter are in a line", all(word in numbers for word in ["Volume", "surface", "part", "void"]), numbers)
+    material = browser.evaluate("document.getElementById('colour').value")
+    tinted = browser.evaluate(HUED_LIKE_BONE % picture(browser))
+    checks.say(f"{screen}: opens in the material of pictures, or by height", material == "height" or (material == "plain" and tinted > 0.05), f"{material}, {100 * tinted:.0f} % of the pixels")
+    # Drawers stay open from here on, so that the picture keeps its size.
+    browser.evaluate("document.querySelectorAll('[data-drawer]').forEach((button) => button.ariaExpanded === 'true' || button.click())")
+    settle(browser)
+    there = browser.evaluate("[...document.querySelectorAll('.drawer')].filter((drawer) => drawer.checkVisibility()).map((drawer) => drawer.id)")
+    checks.say(f"{screen}: drawers open", set(there) >= {"display", "numbers"}, str(there))
+    change(browser, "colour", "class")
+    if not browser.evaluate("document.getElementById('show-singular').checked"):
+        press(browser, "show-singular")
     wide = browser.evaluate("document.documentElement.scrollWidth")
     checks.say(f"{screen}: fits the width", wide <= width, f"{wide} of {width} pixels")
     first = picture(browser)
@@ -337,10 +384,10 @@ def look(browser, checks, page, screen, out):
         f"{screen}: not blank", colours > 100 and share > 0.1,
         f"{colours} colours, {100 * share:.0f} % of the pixels not background",
     )
-    below, above = browser.evaluate(EMPTY % first)
+    below, above, right, left = browser.evaluate(EMPTY % first)
     checks.say(
-        f"{screen}: nothing is empty above and below the shape", max(below, above) < 0.08,
-        f"{100 * below:.0f} % of the scene below, {100 * above:.0f} % above",
+        f"{screen}: the shape fills the height or the width of its place", min(max(below, above), max(right, left)) < 0.08,
+        f"{100 * below:.0f} % empty below, {100 * above:.0f} % above, {100 * right:.0f} % right, {100 * left:.0f} % left",
     )
     whole = browser.call("Page.captureScreenshot", format="png")["data"]
     (out / f"{screen}.png").write_bytes(base64.b64decode(whole))
@@ -373,7 +420,7 @@ def look(browser, checks, page, screen, out):
         for k in range(int(browser.evaluate("document.getElementById('detail').options.length"))):
             browser.evaluate("delete document.body.dataset.measured")
             change(browser, "detail", str(k))
-            names.append(int(browser.evaluate("[...document.querySelectorAll('#measures tr')].find((row) => row.children[0].textContent === 'points').children[1].textContent")))
+            names.append(int(browser.evaluate("[...document.querySelectorAll('#measures tr')].find((row) => row.children[0].textContent === 'points').children[1].textContent.replaceAll('\u202f', '')")))
             coarse = coarse and same(browser, picture(browser), first) == (k == int(shown))
         checks.say(
             f"{screen}: levels of detail are pictures of their own",

@@ -286,6 +286,10 @@ class Page:
         else:
             self.browser.choose("files", [path])
 
+    def drawer(self, name):
+        """Opens a drawer."""
+        self.browser.evaluate(f"(() => {{ const button = document.querySelector('[data-drawer={name}]'); if (button.ariaExpanded !== 'true') button.click(); }})()")
+
     def settled(self, seconds=120):
         return self.browser.wait(SETTLED, seconds) and self.browser.wait(MEASURED, seconds)
 
@@ -339,6 +343,14 @@ def saved(page, checks, downloads, extension):
 
 def look_at_all(browser, page, checks, files, downloads, out, large):
     """All checks, in Chromium."""
+    # Without a file, there are examples to press, and nothing that cannot be used.
+    (out / "web-empty.png").write_bytes(browser.screenshot())
+    cards, controls = browser.evaluate("[document.querySelectorAll('#cards button').length, [...document.querySelectorAll('button, input, select')].filter((e) => e.checkVisibility() && !e.closest('#cards, footer')).map((e) => e.id)]")
+    checks.say("the empty page has three examples, and controls for files alone", (cards, controls) == (3, ["choose", "choose-folder", "examples"]), f"{cards}, {controls}")
+    page.forget()
+    browser.evaluate("document.querySelector('#cards button').click()")
+    if agrees(page, checks, "the first example"):
+        checks.say("and the examples are gone", not browser.evaluate("document.getElementById('drop').checkVisibility()"))
     for name in files:
         page.choose(name)
         if agrees(page, checks, name):
@@ -372,6 +384,11 @@ def look_at_all(browser, page, checks, files, downloads, out, large):
     page.choose("ball.nii.gz")
     page.settled()
 
+    # A radius is taken as it is, too, and α is its square.
+    page.forget()
+    browser.evaluate("(() => { const e = document.getElementById('radius-value'); e.value = '1.5'; document.body.dataset.state = 'ready'; e.dispatchEvent(new Event('change')); })()")
+    if agrees(page, checks, "a ball radius of 1.5"):
+        checks.say("α is the square of the radius", page.state()["alpha"] == "2.25", page.state()["alpha"])
     # α: the slider moves among stops, a number is taken as it is.
     for alpha in ["3.7", "0.3"]:
         page.forget()
@@ -414,6 +431,7 @@ def look_at_all(browser, page, checks, files, downloads, out, large):
     page.choose("ball.xyz")
     page.settled()
     opened = float(page.state()["alpha"])
+    page.drawer("numbers")
     browser.evaluate("document.getElementById('compute-diagram').click()")
     browser.wait("document.body.dataset.pairs", 60)
     page.run("walpha filtration ball.xyz -o pairs.csv")
@@ -433,7 +451,7 @@ def look_at_all(browser, page, checks, files, downloads, out, large):
       const scale = canvas.width / b.width;
       for (let y = Math.round(20 * scale); y < height; y++) for (let x = 0; x < width; x++) {
         const [r, g, blue] = data.subarray(4 * (y * width + x), 4 * (y * width + x) + 3);
-        if (r < 90 && g > 140 && blue < 160 && g > blue + 30) return [b.x + x / scale, b.y + y / scale + 1];
+        if (r < 90 && g > 140 && blue < 160 && g > blue + 15) return [b.x + x / scale, b.y + y / scale + 1];
       }
       return [b.x, b.y];
     })()""")
@@ -472,6 +490,7 @@ def look_at_all(browser, page, checks, files, downloads, out, large):
         agrees(page, checks, f"{name}, dropped")
     page.choose("ball.nii.gz")
     page.settled()
+    page.drawer("numbers")
     lit = browser.evaluate(SCENE)
     browser.evaluate("document.querySelector('#voids li').focus()")
     time.sleep(0.7)

@@ -49,6 +49,8 @@ pub use ndarray;
 #[cfg(feature = "cgal")]
 pub mod cgal;
 pub mod cli;
+#[cfg(feature = "render")]
+pub mod pictures;
 #[cfg(feature = "paper")]
 pub mod reproduce;
 pub mod shape;

@@ -1,5 +1,5 @@
 //! The command `walpha`: see `walpha --help`.
 
 fn main() -> std::process::ExitCode {
-    walpha::cli::run()
+    walpha::cli::run(std::env::args_os().collect()).into()
 }

@@ -28,3 +28,11 @@ pub fn alpha_shape(
     let options = options.classifier(options.classifier.or(CGAL));
     walpha_shape::alpha_shape(points, &options)
 }
+
+/// The suggested values of α, if they are finite.
+pub(crate) fn suggested(filtration: &ladder::Filtration, curve: &ladder::Curve) -> Vec<Alpha> {
+    let suggested = filtration.suggest(curve);
+    let [low, high] = suggested.plateau;
+    let also = [suggested.all_points, suggested.one_region, suggested.no_void, low, high];
+    also.into_iter().filter(|alpha| alpha.squared().is_finite()).collect()
+}

@@ -32,7 +32,7 @@ mod _walpha {
     #[pymodule_export]
     use super::points::{columns, point_column, point_columns, read_points, write_points};
     #[pymodule_export]
-    use super::shape::{Shape, Union, alpha_shape, restored};
+    use super::shape::{Shape, Union, alpha_shape, restored, write_whole};
     #[pymodule_export]
     use super::triangulation::{PowerDiagram, Triangulation};
     #[pymodule_export]
@@ -41,6 +41,12 @@ mod _walpha {
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
         module.add("__version__", env!("CARGO_PKG_VERSION"))
+    }
+
+    /// Runs the command line `walpha`, whose arguments these are, and returns its exit code.
+    #[pyfunction]
+    fn command(py: Python<'_>, arguments: Vec<std::ffi::OsString>) -> u8 {
+        py.detach(|| walpha::cli::run(arguments))
     }
 
     /// Removes files that are not complete: for the end of the process, which may come in the midst of

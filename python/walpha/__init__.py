@@ -31,6 +31,7 @@ from ._class import Class
 from ._curves import BettiCurve, Level, Suggestions, TorusBettiCurve
 from ._filtration import Filtration, filtration
 from ._parts import Betti, Boundary, Component, Cuts, Outline, Polygon, TorusBetti, Void
+from ._pictures import Chart, Page, Picture
 from ._pipeline import Selected, difference, haar, label_shape, pipeline, select, surface_shape, weigh
 from ._points import PointFile, read_points, write_points
 from ._shape import AlphaShape
@@ -50,6 +51,7 @@ __all__ = [
     "BoundedArray",
     "Boundary",
     "Cavity",
+    "Chart",
     "Class",
     "Comparison",
     "Complex",
@@ -61,6 +63,8 @@ __all__ = [
     "Gradients",
     "Level",
     "Outline",
+    "Page",
+    "Picture",
     "PointFile",
     "Polygon",
     "PowerDiagram",

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from ._parts import Betti, TorusBetti, Void, betti
+from ._pictures import Chart, steps_chart
 from ._typing import Floats, Indices
 
 
@@ -29,6 +32,25 @@ class BettiCurve(NamedTuple):
     b2: Indices
     solid_components: Indices
 
+    def plot(self) -> Chart:
+        """Components, tunnels and voids over the radius of the ball, which a notebook shows.
+
+        Returns
+        -------
+        Chart
+            Both axes are logarithmic; the lowest line is 0. What there is at radius 0 is left out.
+
+        Examples
+        --------
+        >>> cube = [[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)]
+        >>> walpha.filtration(cube).betti_curve().plot()
+        <walpha.Chart of the Betti numbers at 4 values of α>
+        """
+        return _plotted(self)
+
+    def _repr_html_(self) -> str:
+        return str(self.plot())
+
 
 class TorusBettiCurve(NamedTuple):
     """The topology of a torus's shapes at every critical value of α.
@@ -47,6 +69,26 @@ class TorusBettiCurve(NamedTuple):
     b2: Indices
     solid_components: Indices
     b3: Indices
+
+    def plot(self) -> Chart:
+        """As :meth:`BettiCurve.plot`.
+
+        Returns
+        -------
+        Chart
+            Of b0, b1 and b2.
+        """
+        return _plotted(self)
+
+    def _repr_html_(self) -> str:
+        return str(self.plot())
+
+
+def _plotted(curve: BettiCurve | TorusBettiCurve) -> Chart:
+    radii = np.sqrt(np.maximum(curve.alpha, 0))
+    curves = [("components", radii, curve.b0), ("tunnels", radii, curve.b1), ("voids", radii, curve.b2)]
+    what = f"the Betti numbers at {len(radii)} values of α"
+    return steps_chart("Components, tunnels and voids", "ball radius √α", curves, what)
 
 
 class Level(NamedTuple):

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from . import _alpha, _arrays, _walpha
+from . import _alpha, _arrays, _pictures, _walpha
 from ._classified import Frozen
 from ._curves import BettiCurve, Level, Suggestions, TorusBettiCurve
 from ._meshes import wanted
@@ -84,6 +84,16 @@ class Filtration(Frozen):
     def __repr__(self) -> str:
         box = "" if self.periodic is None else f" in a periodic box {self.periodic}"
         return f"<walpha.Filtration of {len(self.points)} points{box}>"
+
+    def _repr_html_(self) -> str:
+        points = _pictures.brief(len(self.points))
+        box = "none" if self.periodic is None else " × ".join(map(_pictures.brief, self.periodic))
+        shown = "none"
+        if self.weights.any():
+            shown = f"{_pictures.brief(float(self.weights.min()))} to {_pictures.brief(float(self.weights.max()))}"
+        rows = [("points", points), ("weights", shown), ("periodic box", box)]
+        rows += [("next", "betti_curve().plot(), suggestions(), shape(α)")]
+        return _pictures.summary("walpha.Filtration", rows)
 
     @property
     def points(self) -> Floats:

@@ -1,7 +1,6 @@
 from __future__ import annotations
 
 import functools
-import html
 import json
 import math
 import operator
@@ -13,11 +12,12 @@ from typing import TYPE_CHECKING, Any, Literal, cast, overload
 import numpy as np
 from numpy.typing import NDArray
 
-from . import _arrays, _meshes, _parts, _walpha
+from . import _arrays, _meshes, _parts, _pictures, _walpha
 from ._balls import Balls
 from ._class import Class
 from ._classified import Classified
 from ._parts import Betti, Boundary, Component, Cuts, Outline, TorusBetti, Void
+from ._pictures import Colour, Page, Picture, View
 from ._typing import Arrays, Classes, Floats, Indices, Progress, Samples
 from ._work import task
 
@@ -493,6 +493,68 @@ class AlphaShape(Classified):
         with task(progress, threads) as how:
             return self._shape.interpolate([nx, ny, nz], first, last, own, how)
 
+    # Pictures.
+
+    def plot(
+        self, *, view: View = "three-quarter", colour: Colour = "plain", size: tuple[int, int] = (800, 680)
+    ) -> Picture:
+        """A picture of the boundary and of what hangs loose, which a notebook shows.
+
+        Parameters
+        ----------
+        view : {"three-quarter", "front", "back", "left", "right", "top", "bottom"}
+            The side that is seen, of a subject whose face is turned to −y and whose crown to +z.
+        colour : {"plain", "value", "class"}
+            What colours show: nothing, the values of the points, or the classes of simplices.
+        size : tuple of int
+            Width and height in pixels.
+
+        Returns
+        -------
+        Picture
+            A torus is laid out in space, cut open along the sides of its box.
+
+        Raises
+        ------
+        ValueError
+            No view or colour has this name; the points have no values; the picture has no pixels, or too many.
+
+        Examples
+        --------
+        >>> walpha.alpha_shape(np.eye(4)[:, :3], alpha=1).plot(view="top", size=(80, 60))
+        <walpha.Picture of 80×60 pixels>
+        """
+        width, height = map(operator.index, size)
+        return Picture(self._shape.picture(view, colour, (width, height)))
+
+    def show(self, *, height: int = 640) -> Page:
+        """The interactive page of ``walpha view``: in a notebook in a frame, otherwise in a browser.
+
+        It opens at the α of the shape, and a slider moves through the others. The page needs no network.
+
+        Parameters
+        ----------
+        height : int
+            The height of the frame in pixels.
+
+        Returns
+        -------
+        Page
+            A notebook shows it, and it can be saved.
+
+        Raises
+        ------
+        ValueError
+            The shape is one of a torus, or has no α.
+        """
+        page = self._page(height)
+        if not _pictures.in_notebook():
+            page.open()
+        return page
+
+    def _page(self, height: int = 640) -> Page:
+        return Page(self._shape.page("Alpha shapes", self._rows()), height)
+
     # Elsewhere.
 
     def save(self, path: str | os.PathLike[str], *, solid: bool = False, allow_empty: bool = False) -> None:
@@ -503,7 +565,7 @@ class AlphaShape(Classified):
         path : str or path-like
             Its extension says the format: ``.ply .off .obj .stl .3mf .glb .vtp`` (the boundary),
             ``.vtu .npz .json`` (all simplices), ``.geojson .wkt .svg`` (the :meth:`outline` of points
-            in a plane).
+            in a plane), ``.png`` (a picture, as :meth:`plot` makes it), ``.html`` (the page of :meth:`show`).
         solid : bool
             For boundaries: a closed manifold, as :meth:`boundary` makes it.
         allow_empty : bool
@@ -531,6 +593,15 @@ class AlphaShape(Classified):
         >>> shape = walpha.alpha_shape(np.eye(4)[:, :3], alpha=1)
         >>> shape.save("shape.ply", solid=True)
         """
+        extension = _pictures.extension(path)
+        if extension in (".png", ".html"):
+            if solid:
+                raise ValueError(f"solid=True is for formats of boundaries, and {extension} shows the shape: omit it")
+            if extension == ".png":
+                self.plot(size=(1600, 1360)).save(path)
+            else:
+                self._page().save(path)
+            return
         remark = self._shape.save(os.fspath(path), solid, allow_empty)
         if remark is not None:
             warnings.warn(f"{os.fspath(path)}: {remark}", stacklevel=2)
@@ -664,13 +735,41 @@ class AlphaShape(Classified):
             return f"{len(self.facets)} facets in a plane, area {self.area:g}"
         return f"{len(self.edges)} edges on a line" if self.dimension == 1 else "at one place"
 
+    def _rows(self) -> list[tuple[str, str]]:
+        """Five numbers, with their names."""
+        radius = f"{_pictures.brief(self.alpha_radius)} (α = {_pictures.brief(self.alpha)})"
+        if self.voxels is not None or self.isovalue is not None:
+            radius = "none: the cells do not depend on α"
+        sizes = f"volume {_pictures.brief(self.volume)}, surface {_pictures.brief(self.area)}"
+        if self.dimension < 3:
+            sizes = f"area {_pictures.brief(self.area)}"
+        loose = ((np.count_nonzero(classes == Class.SINGULAR), name) for classes, name in zip(self._classes[1:], _LOOSE))
+        return [
+            ("points", _pictures.brief(len(self.points))),
+            ("ball radius", radius),
+            ("shape", _topology(self.betti)),
+            ("size", sizes),
+            ("loose", ", ".join(f"{count:,} {name}".replace(",", " ") for count, name in loose if count) or "nothing"),
+        ]
+
     def _repr_html_(self) -> str:
-        head = "".join(f"<th>{c.name.lower()}</th>" for c in Class)
-        rows = "".join(
-            f"<tr><th>{name}</th>" + "".join(f"<td>{n}</td>" for n in counts.values()) + "</tr>"
-            for name, counts in self.counts().items()
-        )
-        return f"<p>{html.escape(repr(self))}</p><table><tr><th></th>{head}</tr>{rows}</table>"
+        picture = ""
+        # Beyond, a picture takes longer than one waits for it.
+        if len(self.facets) <= _MOST_DRAWN and len(self.vertices):
+            picture = _pictures.image(bytes(self.plot(size=(480, 400))), repr(self), 240)
+        return _pictures.summary("walpha.AlphaShape", self._rows(), picture)
+
+
+#: Facets of a shape that a notebook shows without being asked to.
+_MOST_DRAWN = 2_000_000
+#: What simplices are called that are part of no other: facets, edges, vertices.
+_LOOSE = ("triangles", "edges", "points")
+
+
+def _topology(betti: Betti | TorusBetti) -> str:
+    """Betti numbers in words."""
+    names = (("component", betti.b0), ("tunnel", betti.b1), ("void", betti.b2))
+    return ", ".join(f"{count} {name}{'' if count == 1 else 's'}" for name, count in names)
 
 
 def _restored(points: Floats, weights: Floats, values: Floats | None, state: tuple[str, str, str]) -> AlphaShape:

@@ -2,7 +2,7 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from . import _arrays, _walpha
+from . import _arrays, _pictures, _walpha
 from ._classified import Frozen
 from ._typing import Arrays, Floats, Indices, Progress
 from ._work import task
@@ -166,6 +166,10 @@ class Triangulation(Frozen):
             f"<walpha.Triangulation of {len(self.points)} points: {len(self.simplices)} cells, "
             f"{len(self.hidden)} hidden, {len(self.duplicates)} duplicates>"
         )
+
+    def _repr_html_(self) -> str:
+        counts = [("points", self.points), ("cells", self.simplices), ("hidden", self.hidden), ("duplicates", self.duplicates)]
+        return _pictures.summary("walpha.Triangulation", [(name, _pictures.brief(len(of))) for name, of in counts])
 
 
 def triangulation(

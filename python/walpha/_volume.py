@@ -6,12 +6,13 @@ import math
 import operator
 import os
 import sys
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
-from . import _arrays, _walpha
+from . import _arrays, _pictures, _walpha
+from ._pictures import Picture
 from ._typing import Floats, Place, Progress, Samples
 from ._work import task
 
@@ -106,6 +107,70 @@ class Volume:
     def __repr__(self) -> str:
         sizes = "×".join(map(str, self.samples.shape))
         return f"<walpha.Volume of {sizes} samples [z, y, x], spacing {self.spacing} {self.unit}>"
+
+    def plot(self, *, low: float | None = None, high: float | None = None) -> Picture:
+        """The slices through the middle, across z, y and x, which a notebook shows.
+
+        Parameters
+        ----------
+        low, high : float, optional
+            The values that are black and white; by default those which 1 % of the samples are below and above.
+
+        Returns
+        -------
+        Picture
+            With z upwards, and as wide as the volume is in its unit. Samples that are NaN are black.
+
+        Raises
+        ------
+        ValueError
+            ``low`` is not below ``high``.
+
+        Examples
+        --------
+        >>> walpha.Volume(np.random.default_rng(1).random((40, 30, 20))).plot()
+        <walpha.Picture of 512×402 pixels>
+        """
+        finite = self.samples[np.isfinite(self.samples)]
+        ends = np.percentile(finite, (1, 99)) if finite.size else np.array([0.0, 1.0])
+        first, last = (float(ends[0]) if low is None else low), (float(ends[1]) if high is None else high)
+        if not first < last:
+            if low is not None or high is not None:
+                raise ValueError(f"low={first:g} is not below high={last:g}")
+            last = first + 1
+        nz, ny, nx = self.samples.shape
+        sx, sy, sz = self.spacing
+        slices = [
+            (self.samples[nz // 2], sy, sx),
+            (self.samples[::-1, ny // 2], sz, sx),
+            (self.samples[::-1, :, nx // 2], sz, sy),
+        ]
+        longest = max(max(plane.shape[0] * up, plane.shape[1] * across) for plane, up, across in slices)
+        pixel = longest / _SIDE
+        tiles = [_resampled(plane, up, across, pixel) for plane, up, across in slices]
+        tall = max(tile.shape[0] for tile in tiles)
+        rows = [np.pad(tile, ((0, tall - tile.shape[0]), (0, 0))) for tile in tiles]
+        gap = np.zeros((tall, 8), np.float32)
+        image = np.concatenate([rows[0], gap, rows[1], gap, rows[2]], axis=1)
+        levels = np.nan_to_num((image - first) / (last - first), nan=0.0, posinf=1.0, neginf=0.0)
+        return Picture(_pictures.gray_png((255 * levels.clip(0, 1)).round().astype(np.uint8)))
+
+    def _repr_html_(self) -> str:
+        nz, ny, nx = self.samples.shape
+        finite = self.samples[np.isfinite(self.samples)]
+        values = "none that is a number"
+        if finite.size:
+            values = f"{_pictures.brief(float(finite.min()))} to {_pictures.brief(float(finite.max()))}"
+        place = " × ".join(_pictures.brief(step) for step in self.spacing)
+        rows = [
+            ("samples", f"{nx} × {ny} × {nz} (x, y, z)"),
+            ("spacing", f"{place} {self.unit}"),
+            ("origin", ", ".join(map(_pictures.brief, self.origin))),
+            ("space", self.space),
+            ("values", values),
+        ]
+        picture = _pictures.image(bytes(self.plot()), repr(self), 480)
+        return _pictures.summary("walpha.Volume", rows, picture)
 
     def _frame(self) -> str | None:
         """Where it lies, as the library reads it; None where coordinates are indices."""
@@ -250,3 +315,14 @@ def _block(downsample: int | None) -> int | None:
     if downsample is not None and operator.index(downsample) < 1:
         raise ValueError(f"downsample={downsample}: give a number of samples from 1 up")
     return downsample
+
+
+#: Pixels along the longest side of a slice.
+_SIDE = 240
+
+
+def _resampled(plane: Samples, up: float, across: float, pixel: float) -> Samples:
+    """The nearest samples of a slice, with distances ``up`` and ``across``, at each pixel of this size."""
+    sides = [max(1, round(count * step / pixel)) for count, step in zip(plane.shape, (up, across))]
+    rows, columns = ((np.arange(side) * count // side) for side, count in zip(sides, plane.shape))
+    return cast(Samples, plane[rows][:, columns])

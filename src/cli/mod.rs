@@ -6,8 +6,8 @@ mod process;
 mod report;
 
 use std::ffi::OsString;
-use std::process::ExitCode;
 
+use clap::error::ErrorKind;
 use clap::{ArgMatches, CommandFactory, FromArgMatches, Parser, Subcommand};
 use tracing::level_filters::LevelFilter;
 use tracing_subscriber::Layer;
@@ -26,12 +26,12 @@ use commands::{
     balls, blocks, check, compare, completions, filtration, haar, info, interpolate, ladder, man,
     points, shape, shape_in_blocks,
 };
-use options::global::{Global, INTERRUPTED, USAGE};
+use options::global::{Global, INTERRUPTED, SUCCESS, USAGE};
 use options::{config, formats, help, typed};
-use process::errors::{self, Result};
+use process::errors::{self, ErrorForm, Result};
 use process::output::{self, print, print_with};
 use process::ranks::Ranks;
-use process::{progress, signals, threads};
+use process::{progress, signals, threads, usage};
 
 /// Volume modelling of scattered data with wavelet-weighted alpha shapes.
 #[derive(Parser)]
@@ -85,12 +85,12 @@ fn build_command() -> clap::Command {
     command
 }
 
-/// Runs the command line of this process.
-pub fn run() -> ExitCode {
+/// Runs a command line, which begins with the name of the program, and returns the exit code. Handles signals from then on: it
+/// is for processes that do nothing else.
+pub fn run(typed: Vec<OsString>) -> u8 {
     signals::prepare();
     let command = build_command();
-    let typed: Vec<OsString> = std::env::args_os().collect();
-    let name = command_name(&command, &typed);
+    let (_, name) = usage::named(&command, &typed);
     let ranks = Ranks::find(&name);
     ranks.run(
         &name,
@@ -105,14 +105,15 @@ fn lead(
     name: &str,
     typed: Vec<OsString>,
     ranks: &Ranks,
-) -> Result<ExitCode, u8> {
+) -> Result<u8, u8> {
     let args = match config::with_settings(&command, typed.clone()) {
         Ok(args) => args,
         Err(error) => {
-            errors::print_error(name, &error);
+            errors::print_error(name, &error, error_form(&command, &typed));
             return Err(USAGE);
         }
     };
+    let form = error_form(&command, &args);
     if typed.iter().any(|arg| arg == "--print-config") {
         // Positional arguments are not options, and need not be given to print these.
         command = command.mut_subcommands(|sub| {
@@ -135,10 +136,16 @@ fn lead(
         // Help and version are not errors.
         Err(error) if !error.use_stderr() => {
             let printed = print_with(|_| error.print());
-            printed.map(|()| ExitCode::SUCCESS)
+            printed.map(|()| SUCCESS)
         }
         Err(error) => {
-            errors::print_usage_error(name, &error, args.len() > typed.len());
+            if error.kind() == ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
+                // A failure to print help cannot be told of either.
+                let _ = error.print();
+            } else {
+                let configured = args.len() > typed.len();
+                usage::wrong(&command, &args, &error, configured).print(form, USAGE);
+            }
             return Err(USAGE);
         }
     };
@@ -149,7 +156,7 @@ fn lead(
             if progress::is_cancelled() {
                 return Err(INTERRUPTED as u8);
             }
-            errors::print_error(name, &error);
+            errors::print_error(name, &error, form);
             return Err(errors::exit_code(&error));
         }
     };
@@ -157,14 +164,13 @@ fn lead(
     Ok(code)
 }
 
-/// The command as the user types it: `walpha shape`.
-fn command_name(command: &clap::Command, args: &[OsString]) -> String {
-    let names =
-        |arg: &&OsString| arg.to_str().is_some_and(|arg| command.find_subcommand(arg).is_some());
-    match args.iter().skip(1).find(names) {
-        Some(name) => format!("walpha {}", name.to_string_lossy()),
-        None => "walpha".into(),
+/// How errors of this command line are printed, which may be one that cannot be parsed.
+fn error_form(command: &clap::Command, args: &[OsString]) -> ErrorForm {
+    if !args.iter().any(|arg| arg == "--json") {
+        return ErrorForm::Text;
     }
+    let lenient = command.clone().ignore_errors(true).try_get_matches_from(args);
+    ErrorForm::Json { piped: lenient.is_ok_and(|matches| is_piped(&matches)) }
 }
 
 /// Whether a file goes to standard output.
@@ -174,26 +180,27 @@ fn is_piped(matches: &ArgMatches) -> bool {
     output.is_some_and(|mut paths| paths.any(|path| path == Target::STDOUT))
 }
 
-fn print_config(command: &clap::Command, matches: &ArgMatches) -> Result<ExitCode> {
+fn print_config(command: &clap::Command, matches: &ArgMatches) -> Result<u8> {
     if let Some((name, matches)) = matches.subcommand()
         && let Some(command) = command.find_subcommand(name)
     {
         print(&config::print(command, matches))?;
     }
-    Ok(ExitCode::SUCCESS)
+    Ok(SUCCESS)
 }
 
-fn execute(global: Global, command: Command, ranks: &Ranks) -> Result<ExitCode> {
+fn execute(global: Global, command: Command, ranks: &Ranks) -> Result<u8> {
     let level = match global {
         Global { quiet: true, .. } => LevelFilter::ERROR,
         Global { verbose: true, .. } => LevelFilter::DEBUG,
-        _ => LevelFilter::WARN,
+        _ => LevelFilter::INFO,
     };
-    let log = tracing_subscriber::fmt::layer().with_ansi(errors::coloured()).with_target(false);
+    let log = tracing_subscriber::fmt::layer().with_ansi(errors::coloured());
+    let log = log.event_format(output::Labelled);
     // A message that cannot be logged must not end the command.
     let log = log.log_internal_errors(false);
-    let log = log.with_writer(std::io::stderr).without_time().with_filter(level);
-    let warnings = output::WarningCollector.with_filter(LevelFilter::WARN);
+    let log = log.with_writer(std::io::stderr).with_filter(level);
+    let warnings = output::WarningCollector.with_filter(LevelFilter::INFO);
     tracing_subscriber::registry().with(warnings).with(log).init();
     let alone = ranks.team().size() == 1;
     threads::start(global.threads.or((!alone).then_some(1)))?;
@@ -218,5 +225,5 @@ fn execute(global: Global, command: Command, ranks: &Ranks) -> Result<ExitCode> 
         #[cfg(feature = "render")]
         Command::View(view) => view.run(global)?,
     }
-    Ok(ExitCode::SUCCESS)
+    Ok(SUCCESS)
 }

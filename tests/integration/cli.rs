@@ -4,7 +4,7 @@ use std::fs;
 
 use walpha_base::random::Random;
 
-use crate::common::{fails, json, ok, run};
+use crate::common::{fails, json, names, ok, run};
 
 fn cube() -> String {
     let corner = |i: usize| format!("{},{},{},0,{}\n", i & 1, i >> 1 & 1, i >> 2, 10 * i);
@@ -48,6 +48,50 @@ fn json_has_what_is_promised() {
     }
     assert_eq!(report["points"]["selected"], (0.0609f64 * 24.0 * 24.0 * 24.0).round() as u64);
     assert_eq!(report["weights"]["max"], 10.0);
+}
+
+/// The report of a shape is for people: a few lines, and no number has more than six digits.
+#[test]
+fn reports_are_short() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    let text = ok(f, &["shape", "sample:ct", "-o", "bone.ply"]);
+    assert!((5..=8).contains(&text.lines().count()), "{text}");
+    names(
+        &text,
+        &[
+            "input     sample:ct, 128×128×72 samples, lengths in mm, LPS\n",
+            "points    51 410 selected\n",
+            "parameter ball radius 6.623 mm (α = 43.87 mm²), the default\n",
+            "shape     1 component, 5 tunnels, 20 voids; volume 709.2 cm³, surface 1 776 cm²\n",
+            "loose     104 triangles (820.4 mm²), 2 edges, which are part of no cell\n",
+            "wrote     bone.ply, 1.3 MB\n",
+        ],
+    );
+    let info = ok(f, &["info", "sample:ct"]);
+    names(&info, &["origin    -111.125 -76.86 -133.355 mm\n"]);
+    let all = ok(f, &["shape", "sample:ct", "--verbose"]);
+    names(
+        &all,
+        &["facets       521979 interior     35306 regular       104 singular\n", "haar 0."],
+    );
+    // Counts have all of their digits.
+    let measured = |text: &str| {
+        let words = text.split(|c: char| !(c.is_ascii_digit() || c == '.'));
+        words.filter(|word| word.contains('.')).map(str::to_owned).collect::<Vec<_>>()
+    };
+    for number in [&text, &info, &all].into_iter().flat_map(|text| measured(text)) {
+        let digits = number.trim_start_matches(['0', '.']).matches(|c: char| c.is_ascii_digit());
+        assert!(digits.count() <= 6, "{number} in\n{all}");
+    }
+    // The surface of a sphere without an inside is what is said first.
+    let sphere = ok(f, &["shape", "hard:sphere"]);
+    let area = sphere.split("surface ").nth(1).unwrap().split(' ').next().unwrap();
+    let area: f64 = area.parse().unwrap();
+    assert!((area / (4.0 * std::f64::consts::PI) - 1.0).abs() < 0.01, "{sphere}");
+    names(&sphere, &["nothing written: add -o bone.ply"]);
+    names(&ok(f, &["points", "hard:sphere"]), &["nothing written: add -o points.csv"]);
+    names(&ok(f, &["interpolate", "sample:phantom@8"]), &["nothing written: add -o values.nrrd"]);
 }
 
 #[test]
@@ -193,7 +237,7 @@ fn a_stray_point_does_not_decide_alpha() {
     assert_eq!((numbers(&ball), numbers(&stray)), ((Some(1), Some(0)), (Some(2), Some(1))));
     assert!(ball["shape"]["volume"].as_f64().unwrap() > 0.8, "the cube is filled");
     let told = ok(f, &["shape", "stray.xyz"]);
-    assert!(told.contains("apart     1 of 5001 points"), "{told}");
+    assert!(told.contains("apart     1 of 5 001 points"), "{told}");
     assert!(!ok(f, &["shape", "ball.xyz"]).contains("apart"));
     // By the other rule the stray point decides.
     let connected = json(f, &["shape", "stray.xyz", "--alpha", "auto:connected"]);

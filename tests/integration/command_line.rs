@@ -57,13 +57,13 @@ fn errors_say_what_why_and_what_next() {
         (2, "shape sample:phantom --balls pwer", "invalid value 'pwer'", "'power'"),
         (2, "shape sample:phantom --alpha ten", "invalid value 'ten'", "as in 10"),
         (2, "shape sample:phantom --weights minmax", "invalid value 'minmax'", "min-max"),
-        (2, "shape sample:phantom --count 1 --ratio 0.5", "cannot be used with", "--help"),
+        (2, "shape sample:phantom --count 1 --ratio 0.5", "cannot be used with", "keep one of"),
         (2, "shape sample:phantom --memory 1G --alpha inf", "cannot do this", "a finite --alpha"),
         (2, "shape sample:phantom --memory 1G --exterior", "cannot do this", "omit --exterior"),
         (2, "check a.csv --memory 1G --engine cgal", "cannot do this", "--engine native"),
         (2, "interpolate a --memory 1G --alpha-radius inf", "cannot do this", "a finite --alpha"),
-        (2, "interpolate sample:phantom --memory 1G --fill", "cannot be used with", "--help"),
-        (2, "shape", "required arguments", "walpha shape --help"),
+        (2, "interpolate sample:phantom --memory 1G --fill", "cannot be used with", "keep one of"),
+        (2, "shape", "required arguments", "sample:ct"),
         (2, "shape a.raw --dims 2,2 --dtype u8", "invalid value '2,2'", "64,64,64"),
         (2, "completions basch", "invalid value 'basch'", "'bash'"),
     ];
@@ -96,7 +96,10 @@ fn files_go_into_pipes() {
         ok(f, &[args, &["-o", &file]].concat());
         let (bytes, report) = piped(&[args, &["-o", "-", "--output-format", format]].concat());
         assert_eq!(bytes, fs::read(f.join(&file)).unwrap(), "{args:?}");
-        assert!(report.contains("coefficients kept"), "the report is elsewhere: {report}");
+        assert!(
+            report.contains("12×12×12 samples") || report.contains("coefficients kept"),
+            "the report is elsewhere: {report}"
+        );
         let (_, report) =
             piped(&[args, &["-o", "-", "--output-format", format, "--quiet"]].concat());
         assert_eq!(report, "");
@@ -312,10 +315,10 @@ fn walpha(folder: &Path, args: &[&str]) -> Command {
     command
 }
 
-/// A reader that goes away early, as `head` does: what it did not read is lost, and the code says so, as that
-/// of a program which the signal PIPE ends.
+/// If a reader goes away early, as `head` does, the exit code says so, as that of a program which the signal PIPE ends, and
+/// nothing else does.
 #[test]
-fn a_reader_that_goes_away_is_told_of() {
+fn a_reader_that_goes_away_is_left_in_peace() {
     let folder = folder();
     for args in PRINTING {
         let mut child = walpha(folder.path(), args).stdout(Stdio::piped()).spawn().unwrap();
@@ -323,8 +326,7 @@ fn a_reader_that_goes_away_is_told_of() {
         let mut said = String::new();
         child.stderr.take().unwrap().read_to_string(&mut said).unwrap();
         assert_eq!(child.wait().unwrap().code(), Some(141), "{args:?}: {said}");
-        assert!(said.contains("error: ") && said.contains("roken pipe"), "{args:?}: {said}");
-        assert!(!said.contains("panicked"), "{args:?}: {said}");
+        assert!(!said.contains("error") && !said.contains("panicked"), "{args:?}: {said}");
     }
 }
 
@@ -421,7 +423,7 @@ fn presets_are_options() {
     assert_eq!(both, shape(&["--preset", "ct-bone", "--threshold", "60"]));
     let warned = run(f, &["points", "sample:ct", "-o", "of bone.csv"]).2;
     assert!(warned.contains("--gray 0..1000") && warned.contains("ct-bone"), "{warned}");
-    assert!(warned.contains("walpha points sample:ct -o 'of bone.csv' --gray"), "{warned}");
+    assert!(!warned.contains("warning"), "{warned}");
     let printed = ok(f, &["shape", "--preset", "paper", "--print-config"]);
     assert!(printed.contains("weights = \"min-max\"") && !printed.contains("preset"), "{printed}");
     let paper = json(f, &["points", "sample:phantom", "--preset", "paper"]);

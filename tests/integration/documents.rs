@@ -167,10 +167,13 @@ fn quoted_reports(document: &str) -> Vec<String> {
     quotes.filter(|quote| quote.split_whitespace().count() > 2).map(without_numbers).collect()
 }
 
+/// A text with a mark for each number, whose thousands may stand apart.
 fn without_numbers(text: &str) -> String {
     let mut kept = String::new();
-    for c in text.chars() {
+    for (at, c) in text.char_indices() {
+        let is_group = |rest: &str| rest.bytes().take_while(u8::is_ascii_digit).count() == 3;
         match c {
+            ' ' if kept.ends_with('#') && is_group(&text[at + 1..]) => {}
             '0'..='9' if kept.ends_with('#') => {}
             '0'..='9' => kept.push('#'),
             '\n' => kept.push(' '),
@@ -245,8 +248,12 @@ fn quoted_reports_are_printed() {
     rows.push("9 9 9".into());
     fs::write(folder.join("strays.xyz"), rows.join("\n")).expect("a file");
     fs::write(folder.join("buckyball.csv"), buckyball().join("\n")).expect("a file");
-    let printed = [&["shape", "strays.xyz"][..], &["shape", "buckyball.csv", "--alpha", "1"]];
-    let printed = printed.map(|command| without_numbers(&ok(folder, command))).concat();
+    let commands = [&["shape", "strays.xyz"][..], &["shape", "buckyball.csv", "--alpha", "1"]];
+    let printed = commands.map(|command| {
+        let all = ok(folder, &[command, &["--verbose"]].concat());
+        without_numbers(&(ok(folder, command) + &all))
+    });
+    let printed = printed.concat();
     let mut quotes = 0;
     for path in documents() {
         for quote in quoted_reports(&fs::read_to_string(&path).expect("a document")) {

@@ -56,6 +56,7 @@ mod view;
 mod volume;
 #[cfg(unix)]
 mod working_folders;
+mod wrong_answers;
 mod wvm;
 #[cfg(feature = "zarr")]
 mod zarr;

@@ -1,5 +1,12 @@
 // The histogram, the curve of Betti numbers and the persistence diagram, on canvases.
 
+import { brief } from "./colours.js";
+
+// Components, tunnels and voids, in colours that are readable as text on a light and on a dark page.
+const KINDS = ["components", "tunnels", "voids"];
+const ON_LIGHT = ["#0072b2", "#b34700", "#00785a"];
+const ON_DARK = ["#56b4e9", "#ff9a57", "#2fc79b"];
+
 // A canvas as wide as its place, drawn again when that changes.
 class Chart {
   constructor(canvas) {
@@ -18,8 +25,9 @@ class Chart {
     this.canvas.style.height = `${this.height}px`;
     const context = this.canvas.getContext("2d");
     context.scale(ratio, ratio);
-    context.font = "11px system-ui, sans-serif";
+    context.font = "12px system-ui, sans-serif";
     this.text = getComputedStyle(this.canvas).color;
+    this.colours = matchMedia("(prefers-color-scheme: dark)").matches ? ON_DARK : ON_LIGHT;
     return width > 0 ? context : null;
   }
 
@@ -28,10 +36,6 @@ class Chart {
     return [event.clientX - rectangle.left, event.clientY - rectangle.top];
   }
 }
-
-const BLUE = "#0072b2";
-const RED = "#d55e00";
-const GREEN = "#009e73";
 
 // Bars of a volume's values, with the window and the lowest value selected as lines to drag.
 export class Histogram extends Chart {
@@ -82,9 +86,11 @@ export class Histogram extends Chart {
       context.textAlign = x > this.width / 2 ? "right" : "left";
       context.fillText(label, x, 11);
     };
-    line(this.marks?.low, BLUE, "0");
-    line(this.marks?.high, BLUE, "255");
-    line(this.marks?.least, RED, "lowest");
+    const [window, least] = this.colours;
+    const told = (value) => (value === null || value === undefined || Number.isNaN(value) ? "" : brief(value));
+    line(this.marks?.low, window, told(this.marks?.low));
+    line(this.marks?.high, window, told(this.marks?.high));
+    line(this.marks?.least, least, "lowest");
   }
 
   grab(event) {
@@ -155,13 +161,24 @@ export class StopScale {
   }
 }
 
-// Components, tunnels and voids over α.
+// A radius as an axis has it: two digits.
+const tick = (alpha) => (alpha >= 0 ? (Number.isFinite(alpha) ? brief(Number(Math.sqrt(alpha).toPrecision(2))) : "∞") : "0");
+
+// The place of a chart's axes: pixels at its left and below it.
+const [LEFT, BELOW] = [38, 34];
+
+// Components, tunnels and voids over α, which is told as the radius of the ball.
 export class Curve extends Chart {
   constructor(canvas, chosen) {
     super(canvas);
-    const choose = (event) => this.scale && chosen(this.scale.alpha(Math.min(1, Math.max(0, (this.at(event)[0] - 4) / (this.width - 8)))));
+    const share = (event) => Math.min(1, Math.max(0, (this.at(event)[0] - LEFT) / (this.width - LEFT - 4)));
+    const choose = (event) => this.scale && chosen(this.scale.alpha(share(event)));
     canvas.addEventListener("pointerdown", choose);
-    canvas.addEventListener("pointermove", (event) => event.buttons && choose(event));
+    canvas.addEventListener("pointermove", (event) => {
+      if (event.buttons) return choose(event);
+      if (this.scale) canvas.title = this.tell(this.scale.alpha(share(event)));
+      return undefined;
+    });
   }
 
   set(scale, data) {
@@ -174,21 +191,45 @@ export class Curve extends Chart {
     this.draw();
   }
 
+  // What there is at an α, in words.
+  tell(alpha) {
+    const { alphas, b0, b1, b2, unit } = this.data;
+    let at = alphas.findIndex((one) => one > alpha);
+    at = Math.max(0, (at < 0 ? alphas.length : at) - 1);
+    const radius = alpha >= 0 ? `ball radius ${brief(Math.sqrt(alpha))} ${unit}, ` : "";
+    return `${radius}α = ${brief(alpha)}: ${[b0, b1, b2].map((counts, k) => `${brief(counts[at])} ${KINDS[k]}`).join(", ")}`;
+  }
+
   draw() {
     const context = this.data && this.begin();
     if (!context) return;
-    const { alphas, b0, b1, b2 } = this.data;
-    const most = Math.log1p(Math.max(1, ...b0, ...b1, ...b2));
-    const y = (count) => this.height - 4 - Math.log1p(count) / most * (this.height - 24);
-    const x = (alpha) => 4 + this.scale.share(alpha) * (this.width - 8);
-    const series = [["components", b0, BLUE], ["tunnels", b1, RED], ["voids", b2, GREEN]];
-    let left = 6;
-    for (const [name, counts, colour] of series) {
-      context.strokeStyle = context.fillStyle = colour;
+    const { alphas, b0, b1, b2, unit } = this.data;
+    const most = Math.max(1, ...b0, ...b1, ...b2);
+    const y = (count) => this.height - BELOW - Math.log1p(count) / Math.log1p(most) * (this.height - BELOW - 24);
+    const x = (alpha) => LEFT + this.scale.share(alpha) * (this.width - LEFT - 4);
+    context.fillStyle = context.strokeStyle = this.text;
+    context.textAlign = "right";
+    for (let count = 0; count <= most; count = count === 0 ? 1 : 10 * count) {
+      context.globalAlpha = 0.2;
+      context.fillRect(LEFT, y(count), this.width - LEFT, 1);
+      context.globalAlpha = 1;
+      context.fillText(count >= 1000 ? `${count / 1000}k` : count, LEFT - 4, y(count) + 4);
+    }
+    for (const [share, align] of [[0, "left"], [0.5, "center"], [1, "right"]]) {
+      const alpha = this.scale.alpha(share);
+      context.textAlign = align;
+      context.fillText(tick(alpha), LEFT + share * (this.width - LEFT - 4), this.height - BELOW + 15);
+    }
+    context.textAlign = "center";
+    context.fillText(`ball radius in ${unit}`, (LEFT + this.width) / 2, this.height - 4);
+    context.textAlign = "left";
+    let left = LEFT + 4;
+    [b0, b1, b2].forEach((counts, kind) => {
+      context.strokeStyle = context.fillStyle = this.colours[kind];
       context.lineWidth = 1.5;
       context.beginPath();
       let before = 0;
-      context.moveTo(4, y(0));
+      context.moveTo(LEFT, y(0));
       alphas.forEach((alpha, k) => {
         context.lineTo(x(alpha), y(before));
         context.lineTo(x(alpha), y(counts[k]));
@@ -196,14 +237,14 @@ export class Curve extends Chart {
       });
       context.lineTo(this.width - 4, y(before));
       context.stroke();
-      context.fillText(name, left, 11);
-      left += context.measureText(name).width + 14;
-    }
+      context.fillText(KINDS[kind], left, 12);
+      left += context.measureText(KINDS[kind]).width + 14;
+    });
     context.strokeStyle = this.text;
     context.lineWidth = 1;
     context.beginPath();
-    context.moveTo(x(this.alpha), 16);
-    context.lineTo(x(this.alpha), this.height);
+    context.moveTo(x(this.alpha), 18);
+    context.lineTo(x(this.alpha), this.height - BELOW);
     context.stroke();
   }
 }
@@ -233,7 +274,7 @@ export class Diagram extends Chart {
     const context = this.drawn.getContext("2d");
     context.scale(ratio, ratio);
     context.globalAlpha = 0.7;
-    [BLUE, RED, GREEN].forEach((colour, dimension) => {
+    this.colours.forEach((colour, dimension) => {
       context.fillStyle = colour;
       for (const pair of this.pairs[dimension]) {
         const [x, y] = this.place(pair);
@@ -246,9 +287,9 @@ export class Diagram extends Chart {
   }
 
   place([birth, death]) {
-    const size = [this.width - 12, this.height - 24];
+    const size = [this.width - LEFT - 6, this.height - BELOW - 18];
     const up = Number.isFinite(death) ? this.scale.share(death) : 1;
-    return [6 + this.scale.share(birth) * size[0], this.height - 6 - up * size[1]];
+    return [LEFT + this.scale.share(birth) * size[0], this.height - BELOW - up * size[1]];
   }
 
   draw() {
@@ -257,21 +298,40 @@ export class Diagram extends Chart {
     context.strokeStyle = this.text;
     context.globalAlpha = 0.4;
     context.beginPath();
-    context.moveTo(6, this.height - 6);
+    context.moveTo(LEFT, this.height - BELOW);
     context.lineTo(this.width - 6, 18);
     const [x, y] = this.place([this.alpha, this.alpha]);
-    context.moveTo(x, this.height - 6);
+    context.moveTo(x, this.height - BELOW);
     context.lineTo(x, y);
-    context.lineTo(6, y);
+    context.lineTo(LEFT, y);
+    context.moveTo(LEFT, 18);
+    context.lineTo(LEFT, this.height - BELOW);
+    context.lineTo(this.width - 6, this.height - BELOW);
     context.stroke();
     context.globalAlpha = 1;
     context.drawImage(this.dots(), 0, 0, this.width, this.height);
-    let left = 6;
-    [["components", BLUE], ["tunnels", RED], ["voids", GREEN]].forEach(([name, colour]) => {
-      context.fillStyle = colour;
-      context.fillText(name, left, 11);
+    let left = LEFT + 4;
+    KINDS.forEach((name, kind) => {
+      context.fillStyle = this.colours[kind];
+      context.fillText(name, left, 12);
       left += context.measureText(name).width + 14;
     });
+    context.fillStyle = this.text;
+    for (const [share, align] of [[0, "left"], [1, "right"]]) {
+      const alpha = this.scale.alpha(share);
+      const label = tick(alpha);
+      context.textAlign = align;
+      context.fillText(label, LEFT + share * (this.width - LEFT - 6), this.height - BELOW + 15);
+      context.textAlign = "right";
+      context.fillText(label, LEFT - 4, this.height - BELOW - share * (this.height - BELOW - 18) + (share ? 8 : 0));
+    }
+    context.textAlign = "center";
+    context.fillText("born at this ball radius", (LEFT + this.width) / 2, this.height - 4);
+    context.save();
+    context.translate(12, (this.height - BELOW) / 2);
+    context.rotate(-Math.PI / 2);
+    context.fillText("gone at this ball radius", 0, 0);
+    context.restore();
   }
 
   // Between a birth and a death, in the middle of the scale, what they bound is there.

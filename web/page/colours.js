@@ -4,6 +4,8 @@
 export const [EXTERIOR, SINGULAR, REGULAR, INTERIOR, HIDDEN] = [0, 1, 2, 3, 4];
 export const CLASSES = ["exterior", "singular", "regular", "interior", "hidden"];
 export const OF_CLASS = ["#9aa3b2", "#d55e00", "#0072b2", "#009e73", "#cc79a7"];
+// The material of walpha's pictures, and of what hangs loose in them.
+export const [BONE, LOOSE] = ["#ded4c2", "#d68a5c"];
 export const EDGES = "#e69f00";
 export const SELECTED = "#e69f00";
 
@@ -34,6 +36,23 @@ export function range(numbers) {
 export function short(number) {
   if (number === "inf" || number === Infinity) return "∞";
   return Number(Number(number).toPrecision(4)).toLocaleString("en", { maximumSignificantDigits: 4, useGrouping: false });
+}
+
+// A number for people: four digits at most, and thousands apart by thin spaces.
+export function brief(number) {
+  const text = short(number);
+  if (!/^-?\d+(\.\d+)?$/.test(text)) return text;
+  const [whole, fraction] = text.split(".");
+  return whole.replace(/\B(?=(\d{3})+$)/g, "\u202f") + (fraction ? `.${fraction}` : "");
+}
+
+// A count, with thousands apart.
+export const grouped = (count) => String(count).replace(/\B(?=(\d{3})+$)/g, "\u202f");
+
+// A length, area or volume with its unit; large ones in millimetres are in centimetres.
+export function measured(size, unit, power) {
+  const isLarge = unit === "mm" && power > 1 && size >= 1e4;
+  return `${brief(isLarge ? size / 10 ** power : size)} ${isLarge ? "cm" : unit}${["", "", "²", "³"][power]}`;
 }
 
 // A coordinate, with digits enough to tell places apart that are a ten-thousandth of the whole from each other, however far they lie.

@@ -1,11 +1,11 @@
 // The page: what the user does, what the worker answers, and what is seen of it.
 
 import { AlphaScale, Diagram, Histogram } from "./charts.js";
-import { short } from "./colours.js";
+import { brief, grouped, placed, short } from "./colours.js";
 import { byId, download, element, remark, rows, showNotices, shown, unpacked } from "./dom.js";
 import { Cancelled, Engine, Failure } from "./engine.js";
 import { EXAMPLES } from "./examples.js";
-import { ShapePanel } from "./shape.js";
+import { openDrawer, ShapePanel, wireDrawers } from "./shape.js";
 import { Slices } from "./slices.js";
 
 // The presets of the command for volumes, and for points.
@@ -30,7 +30,8 @@ function busy(text) {
   byId("working").hidden = !working;
   // What is shown of a shape that is gone, or not there yet, does nothing.
   byId("shape").inert = !panel.made;
-  for (const id of ["alpha-row", "marks", "numbers", "output"]) byId(id).inert = working || !panel.made?.alphas;
+  byId("drop").hidden = working || Boolean(panel.made) || !byId("failure").hidden;
+  for (const id of ["alpha-row", "cut-row", "marks", "numbers", "output"]) byId(id).inert = working || !panel.made?.alphas;
   byId("slices").inert = working || !state.opened;
   document.body.dataset.state = text === null ? "ready" : "busy";
   if (text !== null) byId("status").textContent = text;
@@ -41,7 +42,8 @@ function fail(error) {
   // An input that cannot be read has no options but those that may help.
   if (state.facts === null) offer(null, Object.keys(READING).filter((id) => error.next?.includes(`“${id}”`)));
   if (error instanceof Cancelled) {
-    byId("status").textContent = "Cancelled.";
+    const again = element("button", { type: "button", textContent: "Compute again", onclick: () => task("Computing …", compute) });
+    byId("status").replaceChildren("Cancelled. ", ...(state.input === null ? [] : [again]));
     document.body.dataset.state = "cancelled";
     return;
   }
@@ -54,7 +56,12 @@ function show(error) {
   const failure = byId("failure");
   failure.replaceChildren(element("b", { textContent: error.message }));
   if (error.next) failure.append(element("div", { textContent: `Next: ${error.next}.` }));
+  // Without a shape, there is something else to open; beside one, the message can go.
+  const other = element("button", { type: "button", textContent: "Open another file", onclick: () => byId("files").click() });
+  const close = element("button", { type: "button", textContent: "Close", onclick: () => { failure.hidden = true; busy(null); } });
+  failure.append(other, close);
   failure.hidden = false;
+  byId("drop").hidden = true;
   if (!(error instanceof Failure)) console.error(error);
 }
 
@@ -101,9 +108,10 @@ function restarted() {
 
 function factsOf(facts) {
   if (facts.kind === "points") {
-    const corner = (at) => at.map(short).join(", ");
+    const extent = Math.max(...facts.high.map((high, k) => high - facts.low[k]));
+    const corner = (at) => at.map((x) => placed(x, extent)).join(", ");
     return [
-      ["input", inputName()], ["points", facts.count], ["box", `${corner(facts.low)} to ${corner(facts.high)} ${facts.unit}`],
+      ["input", inputName()], ["points", grouped(facts.count)], ["box", `${corner(facts.low)} to ${corner(facts.high)} ${facts.unit}`],
       ["also", [facts.weights && "weights", facts.values && "values"].filter(Boolean).join(", ") || "no weights, no values"],
     ];
   }
@@ -159,10 +167,16 @@ function offer(kind, others = []) {
     byId(id).parentElement.hidden = !(isKnown || kinds.includes(kind) || others.includes(id));
   }
   byId("of-volume").hidden = kind !== "volume";
-  byId("of-points").hidden = kind !== "points";
   byId("of-shape").hidden = kind !== "volume" && kind !== "points";
   byId("options").hidden = kind === null && others.length === 0;
-  byId("slices").hidden = kind !== "volume";
+  byId("preset-label").hidden = kind !== "volume" && kind !== "points";
+  // What has nothing in it has no drawer.
+  const has = { input: kind !== null || others.length > 0, slices: kind === "volume", output: kind !== null, numbers: kind !== null, display: kind !== null };
+  for (const [name, there] of Object.entries(has)) {
+    document.querySelector(`[data-drawer="${name}"]`).hidden = !there;
+    if (!there && !byId(name).hidden) openDrawer(name, false);
+  }
+  if (others.length > 0 || kind === "series") openDrawer("input", true);
 }
 
 function reading() {
@@ -209,9 +223,7 @@ function suit(facts) {
   const isVolume = facts.kind === "volume";
   const names = isVolume ? ["", ...OF_VOLUMES] : ["", ...OF_POINTS];
   byId("preset").replaceChildren(...names.map((name) => element("option", { value: name, textContent: name || "none" })));
-  // Points have presets, too; their control is moved beside their columns.
-  (isVolume ? byId("of-grays") : byId("of-points")).prepend(byId("preset").parentElement);
-  const labels = facts.labels?.map(([label, voxels]) => [String(label), `label ${label}, ${voxels} voxels`]) ?? [];
+  const labels = facts.labels?.map(([label, voxels]) => [String(label), `label ${label}, ${grouped(voxels)} voxels`]) ?? [];
   const choices = [["all", "all but 0"], ...labels, ["", "none: by gray levels"]];
   byId("labels").replaceChildren(...choices.map(([value, textContent]) => element("option", { value, textContent })));
   byId("labels").value = facts.labels ? "all" : "";
@@ -259,6 +271,7 @@ const ofLabels = () => state.facts?.kind === "volume" && byId("labels").value !=
 function labelled() {
   byId("labels-label").hidden = !state.facts?.labels;
   byId("of-grays").hidden = ofLabels();
+  byId("preset-label").hidden = ofLabels() || !["volume", "points"].includes(state.facts?.kind);
   byId("of-shape").hidden = ofLabels();
 }
 
@@ -319,11 +332,10 @@ async function compute() {
   panel.look(made);
   suggestions([]);
   if (made.samples) slices.setPoints(made.samples);
-  if (innerWidth < 760) byId("shape").scrollIntoView();
+  if (innerWidth < 760) byId("stage").scrollIntoView();
   busy(`${STAGES.filtration} …`);
   const all = await engine.call({ do: "filtration" });
   if (panel.made !== made) return;
-  byId("output").hidden = false;
   diagram.set(new AlphaScale({ ...made, ...all }), null);
   byId("diagram").hidden = true;
   byId("compute-diagram").hidden = Boolean(made.labels);
@@ -331,8 +343,12 @@ async function compute() {
   for (const extension of ["csv", "wvm"]) byId(`save-${extension}`).hidden = Boolean(made.labels);
   // It states the whole shape, so that it can be checked.
   byId("save-npz").hidden = byId("keep-largest").checked;
-  const kept = made.truncation ? `; ${made.truncation.kept} of ${made.truncation.total} Haar coefficients kept` : "";
-  byId("status").textContent = `${made.points} points, ${all.cells} cells in all${kept}.`;
+  made.rows = [["points", grouped(made.points)], ["triangulation", `${grouped(all.cells)} cells`]];
+  if (made.truncation) {
+    const { kept, total } = made.truncation;
+    made.rows.push(["detail kept", `${brief(100 * kept / total)} % of the wavelet coefficients`]);
+  }
+  byId("status").textContent = "";
   if (made.labels) byId("status").textContent = `${made.labels}.`;
   if (made.kept) byId("status").textContent += ` ${made.kept}.`;
   await panel.open(all, diagram.scale);
@@ -341,7 +357,7 @@ async function compute() {
   engine.call({ do: "suggest" }).then((found) => {
     if (panel.made !== made) return;
     suggestions([
-      ["all points by", found.all_points], ["one region by", found.one_region], ["no void by", found.no_void], ["longest plateau from", found.plateau[0]],
+      ["all points from", found.all_points], ["one piece from", found.one_region], ["no void from", found.no_void], ["steadiest from", found.plateau[0]],
     ]);
   }, quietly);
 }
@@ -351,8 +367,10 @@ function suggestions(others) {
   const { reference, origin } = panel.made;
   const name = { default: "default", given: "given", stored: "stored" }[origin.origin] ?? "auto";
   const finite = [[name, reference], ...others].filter(([, alpha]) => Number.isFinite(alpha));
+  const { unit } = panel.made;
+  const told = (alpha) => (alpha >= 0 ? `${brief(Math.sqrt(alpha))} ${unit}` : `α = ${brief(alpha)}`);
   byId("marks").replaceChildren(...finite.map(([text, alpha]) =>
-    element("button", { type: "button", textContent: `${text} ${short(alpha)}`, onclick: () => panel.moveTo(alpha) })));
+    element("button", { type: "button", textContent: `${text} ${told(alpha)}`, title: `α = ${alpha} ${unit}²`, onclick: () => panel.moveTo(alpha) })));
 }
 
 // What ends with a task that was cancelled is not a failure of its own.
@@ -427,7 +445,10 @@ function wire() {
       if (target !== byId("preset")) state.surface = null;
     });
   }
-  byId("preset").addEventListener("change", () => apply(byId("preset").value));
+  byId("preset").addEventListener("change", () => {
+    apply(byId("preset").value);
+    byId("options").requestSubmit();
+  });
   byId("rule").addEventListener("change", ruled);
   byId("labels").addEventListener("change", labelled);
   byId("value-min").addEventListener("input", () => { state.grayMin = null; marks(); });
@@ -450,7 +471,11 @@ function wire() {
     element("button", { type: "button", id: `save-${extension}`, textContent: name, onclick: () => save(extension) })));
   byId("save-toml").addEventListener("click", () => state.toml && download(state.toml, "recipe.toml"));
   showNotices();
-  byId("copy").addEventListener("click", () => navigator.clipboard?.writeText(byId("command").textContent));
+  byId("copy").addEventListener("click", async () => {
+    await navigator.clipboard?.writeText(byId("command").textContent);
+    byId("copy").textContent = "Copied";
+    setTimeout(() => { byId("copy").textContent = "Copy"; }, 1500);
+  });
 
   const chosen = (list) => {
     const files = [...list].filter((file) => !file.name.startsWith("."));
@@ -462,11 +487,11 @@ function wire() {
     byId(button).addEventListener("click", () => byId(input).click());
     byId(input).addEventListener("change", () => { chosen(byId(input).files); byId(input).value = ""; });
   }
-  addEventListener("dragover", (event) => { event.preventDefault(); byId("drop").classList.add("over"); });
-  addEventListener("dragleave", () => byId("drop").classList.remove("over"));
+  addEventListener("dragover", (event) => { event.preventDefault(); document.body.classList.add("over"); });
+  addEventListener("dragleave", () => document.body.classList.remove("over"));
   addEventListener("drop", (event) => {
     event.preventDefault();
-    byId("drop").classList.remove("over");
+    document.body.classList.remove("over");
     // All that is asked of an item has to be asked at once.
     const dropped = [...event.dataTransfer.items].filter((item) => item.kind === "file").map((item) => {
       const entry = item.webkitGetAsEntry?.();
@@ -474,14 +499,24 @@ function wire() {
     });
     return Promise.all(dropped.map(filesOf)).then((files) => take(files.flat())).catch(quietly);
   });
+  const show = (example) => {
+    const files = example.make ? [{ path: example.input, file: new File([example.make()], example.input) }] : [];
+    return choose(example.input, files);
+  };
   byId("examples").append(...EXAMPLES.map(({ input, name }) => element("option", { value: input, textContent: name })));
   byId("examples").addEventListener("change", ({ target }) => {
     const example = EXAMPLES.find(({ input }) => input === target.value);
     target.value = "";
-    if (!example) return;
-    const files = example.make ? [{ path: example.input, file: new File([example.make()], example.input) }] : [];
-    choose(example.input, files);
+    if (example) show(example);
   });
+  byId("cards").replaceChildren(...EXAMPLES.filter(({ card }) => card).map((example) => {
+    const { title, text, picture } = example.card;
+    const card = element("button", { type: "button", onclick: () => show(example) }, element("b", { textContent: title }), element("span", { textContent: text }));
+    card.insertAdjacentHTML("afterbegin", picture);
+    return card;
+  }));
+  wireDrawers();
+  offer(null);
 }
 
 // What was dropped, with paths: a file, or those of a folder. Chromium opens no entries of pages from disk, but has handles.

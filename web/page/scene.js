@@ -6,14 +6,16 @@ import {
   Sphere, Vector2, Vector3, WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
-import { EDGES, EXTERIOR, HIDDEN, INTERIOR, OF_CLASS, range, REGULAR, short, SINGULAR, viridis } from "./colours.js";
+import { BONE, EDGES, EXTERIOR, HIDDEN, INTERIOR, LOOSE, OF_CLASS, range, REGULAR, short, SINGULAR, viridis } from "./colours.js";
 import { element as make } from "./dom.js";
 
 const SPHERES = ["points", "balls", "hidden"];
+// Where the angle between a facet and the normal blended from those around it has a smaller cosine than this, there is an edge.
+const CREASE = 0.25;
+// Rounds in which normals are blended, which removes the steps of a grid of samples, as in walpha's pictures.
+const ROUNDS = 2;
 // From where the shape is seen at first.
 const HOME = new Vector3(-0.55, -0.75, 0.4);
-// Pixels that the picture is high at least.
-const LEAST_HEIGHT = 160;
 // Points by which the picture is fitted, at most.
 const FITTED = 10000;
 // What takes longer than these milliseconds to draw is drawn coarsely while it moves, if it has more triangles than these.
@@ -61,6 +63,69 @@ void main() {
   #include <colorspace_fragment>
 }`;
 
+// The opacity of a surface through which something is shown.
+const FADED = 0.25;
+// Pixels that a scale bar is long, about.
+const BAR = 110;
+// The colour of what a plane cuts, beside a material.
+const CUT = "#b9a58c";
+
+// A surface is smooth, but for its edges: there, a fragment has the normal of its facet.
+function creased(shader) {
+  shader.fragmentShader = shader.fragmentShader.replace("#include <normal_fragment_begin>", `#include <normal_fragment_begin>
+    vec3 ofFacet = normalize(cross(dFdx(vViewPosition), dFdy(vViewPosition)));
+    float agreement = dot(normal, ofFacet);
+    if (abs(agreement) < ${CREASE.toFixed(2)} || !(dot(normal, normal) > 0.5)) normal = ofFacet;
+    else if (agreement < 0.0) normal = -normal;`);
+}
+
+// Normals at points: means of those of the triangles around them, by area, and then of their neighbours. Triangles that are not
+// oriented are turned to agree with the first ones.
+function smoothNormals(positions, rows, oriented) {
+  let normals = new Float32Array(positions.length);
+  const add = (to, v, x, y, z) => {
+    to[3 * v] += x;
+    to[3 * v + 1] += y;
+    to[3 * v + 2] += z;
+  };
+  for (let row = 0; row < rows.length; row += 3) {
+    const [a, b, c] = [3 * rows[row], 3 * rows[row + 1], 3 * rows[row + 2]];
+    const [ux, uy, uz] = [positions[b] - positions[a], positions[b + 1] - positions[a + 1], positions[b + 2] - positions[a + 2]];
+    const [vx, vy, vz] = [positions[c] - positions[a], positions[c + 1] - positions[a + 1], positions[c + 2] - positions[a + 2]];
+    let [x, y, z] = [uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx];
+    // The ground of a scan is seen from above.
+    const turned = !oriented && (0.1 * x + 0.2 * y + z < 0);
+    if (turned) [x, y, z] = [-x, -y, -z];
+    for (let k = 0; k < 3; k++) add(normals, rows[row + k], x, y, z);
+  }
+  const unify = () => {
+    for (let v = 0; v < normals.length; v += 3) {
+      const length = Math.hypot(normals[v], normals[v + 1], normals[v + 2]) || 1;
+      normals[v] /= length;
+      normals[v + 1] /= length;
+      normals[v + 2] /= length;
+    }
+  };
+  unify();
+  for (let round = 0; round < ROUNDS; round++) {
+    const blended = normals.slice();
+    for (let row = 0; row < rows.length; row += 3) {
+      for (let k = 0; k < 3; k++) {
+        const [v, w] = [rows[row + k], rows[row + (k + 1) % 3]];
+        const [i, j] = [3 * v, 3 * w];
+        // Across an edge normals stay apart.
+        const along = normals[i] * normals[j] + normals[i + 1] * normals[j + 1] + normals[i + 2] * normals[j + 2];
+        if (along < CREASE) continue;
+        add(blended, v, 0.5 * normals[j], 0.5 * normals[j + 1], 0.5 * normals[j + 2]);
+        add(blended, w, 0.5 * normals[i], 0.5 * normals[i + 1], 0.5 * normals[i + 2]);
+      }
+    }
+    normals = blended;
+    unify();
+  }
+  return normals;
+}
+
 export class ShapeScene {
   constructor(element) {
     this.element = element;
@@ -81,16 +146,22 @@ export class ShapeScene {
     this.camera.up.set(0, 0, 1);
     this.controls = new OrbitControls(this.camera, this.renderer?.domElement ?? element);
     this.controls.addEventListener("change", () => this.moved());
-    this.scene.add(new AmbientLight(0xffffff, 1.3));
-    this.lamp = new DirectionalLight(0xffffff, 2.2);
-    this.scene.add(this.lamp, this.lamp.target);
+    // A studio: a sky, a lamp over the viewer's left shoulder, and a weak one at the right that keeps the shadow readable.
+    this.scene.add(new AmbientLight(0xffffff, 1.25));
+    this.lamps = [[[-0.7, 0.72, 0.5], 2.1], [[0.8, 0.05, 0.6], 0.45]].map(([from, strength]) => {
+      const lamp = new DirectionalLight(0xffffff, strength);
+      this.scene.add(lamp, lamp.target);
+      return { lamp, from: new Vector3(...from) };
+    });
     this.plane = new Plane(new Vector3(1, 0, 0), 0);
     this.group = new Group();
     this.scene.add(this.group);
     new ResizeObserver(() => this.resize()).observe(element);
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.draw());
     element.addEventListener("keydown", (event) => this.key(event));
-    [this.waiting, this.moving, this.slow] = [false, false, false];
+    [this.waiting, this.moving, this.slow, this.turned] = [false, false, false, false];
+    this.opacity = 1;
+    this.controls.addEventListener("start", () => { this.turned = true; });
   }
 
   // Other points: what was drawn goes. The camera stays where it is to be kept.
@@ -103,11 +174,17 @@ export class ShapeScene {
     this.parts = {};
     [this.classes, this.shades, this.standsFor] = [null, null, null];
     this.box = box;
-    this.data = { positions, weights, values, differences };
+    // Heights are drawn by the coordinates of the input.
+    const heights = () => Float32Array.from({ length: positions.length / 3 }, (_, v) => positions[3 * v + 2] + centre[2]);
+    this.data = { positions, weights, values, differences, heights };
     this.weightRange = range(weights);
     this.position = new BufferAttribute(positions, 3);
     this.colour = new BufferAttribute(new Float32Array(positions.length), 3);
-    const surface = (colour) => new MeshLambertMaterial({ color: colour, flatShading: true, side: DoubleSide });
+    const surface = (colour) => {
+      const material = new MeshLambertMaterial({ color: colour, side: DoubleSide });
+      material.onBeforeCompile = creased;
+      return material;
+    };
     const add = (name, Kind, material, attributes = {}) => {
       const geometry = new BufferGeometry();
       geometry.setAttribute("position", attributes.position ?? this.position);
@@ -149,8 +226,10 @@ export class ShapeScene {
       return make("span", { textContent: `${axis}: ${low} to ${high} ${unit}` });
     }));
     this.group.add(this.section, this.lit, this.parts.box);
+    this.unit = unit;
+    this.fade(this.opacity);
     if (keep) return;
-    this.settled = null;
+    this.turned = false;
     this.resize();
   }
 
@@ -160,6 +239,10 @@ export class ShapeScene {
       const part = this.parts[name];
       part.geometry.setIndex(part.whole = new BufferAttribute(rows, 1));
       part.coarse = null;
+      if (name !== "edges") {
+        const normals = smoothNormals(this.data.positions, rows, name === "regular");
+        part.geometry.setAttribute("normal", new BufferAttribute(normals, 3));
+      }
     }
     // Whether it is slow is found out by drawing it a second time: at first, programs and arrays go to the graphics card.
     this.slow = regular.length + singular.length > 3 * MANY ? "at first" : false;
@@ -202,11 +285,13 @@ export class ShapeScene {
     }
   }
 
-  // Colours by class, or by numbers of the points.
+  // Colours of the material, by class, or by numbers of the points.
   setColour(by) {
-    const { values, weights, differences } = this.data;
-    const scale = { value: values, weight: weights, difference: differences }[by];
+    const { values, weights, differences, heights } = this.data;
+    const scale = by === "height" ? heights() : { value: values, weight: weights, difference: differences }[by];
+    this.plain = by === "plain";
     this.scale = scale && range(scale);
+    this.valueScale = by === "value" ? this.scale : null;
     if (scale) {
       const [low, high] = this.scale;
       const colour = new Color();
@@ -216,7 +301,9 @@ export class ShapeScene {
       });
       this.colour.needsUpdate = true;
     }
-    for (const [name, colour] of [["regular", OF_CLASS[REGULAR]], ["singular", OF_CLASS[SINGULAR]], ["edges", EDGES]]) {
+    const colours = this.plain ? [BONE, LOOSE, LOOSE] : [OF_CLASS[REGULAR], OF_CLASS[SINGULAR], EDGES];
+    for (const [k, name] of ["regular", "singular", "edges"].entries()) {
+      const colour = colours[k];
       const { material } = this.parts[name];
       material.vertexColors = scale !== undefined;
       material.color.set(scale ? "#ffffff" : colour);
@@ -258,8 +345,8 @@ export class ShapeScene {
   paintSection() {
     if (!this.shades) return;
     const { values } = this.data;
-    const [low, high] = this.scale && values ? range(values) : [0, 0];
-    const plain = new Color(OF_CLASS[INTERIOR]);
+    const [low, high] = this.scale && values && this.scale === this.valueScale ? range(values) : [0, 0];
+    const plain = new Color(this.plain ? CUT : OF_CLASS[INTERIOR]);
     const colours = new Float32Array(3 * this.shades.length);
     const colour = new Color();
     this.shades.forEach((shade, k) => {
@@ -274,7 +361,24 @@ export class ShapeScene {
   light(low, high) {
     this.lit.visible = low !== undefined;
     if (low) this.lit.box.set(new Vector3(...low), new Vector3(...high));
+    // What lies within is seen through the surface.
+    this.fade(low ? Math.min(this.opacity, FADED) : this.opacity);
     this.draw();
+  }
+
+  // How opaque the surface is, from 0 to 1.
+  setOpacity(opacity) {
+    this.opacity = opacity;
+    this.fade(opacity);
+    this.draw();
+  }
+
+  fade(opacity) {
+    for (const name of ["regular", "singular"]) {
+      const { material } = this.parts[name];
+      Object.assign(material, { opacity, transparent: opacity < 1, depthWrite: opacity === 1 });
+      material.needsUpdate = true;
+    }
   }
 
   // The point of the shape at a place on the screen, if there is one: the dot there, where points are drawn, or the nearest corner.
@@ -311,6 +415,19 @@ export class ShapeScene {
     const corner = new Vector3();
     const distance = (v) => corner.fromBufferAttribute(this.position, v).distanceTo(hit.point);
     return [hit.face.a, hit.face.b, hit.face.c].reduce((near, v) => (distance(v) < distance(near) ? v : near));
+  }
+
+  // A bar of a round length, as long as that is at the middle of the shape.
+  measureBar() {
+    const bar = this.bar;
+    if (!bar || !this.box) return;
+    const distance = this.camera.position.distanceTo(this.controls.target);
+    const pixel = 2 * distance * Math.tan(Math.PI / 360 * this.camera.fov) / this.element.clientHeight;
+    const power = 10 ** Math.floor(Math.log10(BAR * pixel));
+    const length = power * [5, 2, 1].find((digit) => digit * power <= BAR * pixel);
+    if (!Number.isFinite(length)) return;
+    bar.style.width = `${length / pixel}px`;
+    bar.textContent = `${short(length)} ${this.unit}`;
   }
 
   // Writes what the box measures beside three of its edges that the viewer sees, within the picture.
@@ -358,6 +475,7 @@ export class ShapeScene {
 
   // All of it, from the front and a little above.
   home() {
+    this.turned = false;
     const { clientWidth: width, clientHeight: height } = this.element;
     // Points may all be one, or lie behind each other, and there may be none.
     const radius = this.box.getBoundingSphere(new Sphere()).radius || 1;
@@ -375,25 +493,13 @@ export class ShapeScene {
     this.draw();
   }
 
-  // Where the width decides how large the shape is, the picture is no higher than that.
-  settle() {
-    this.element.style.height = "";
-    const { clientWidth: width, clientHeight: most } = this.element;
-    if (this.position.count === 0 || width === 0) return;
-    let height = most;
-    for (; height > LEAST_HEIGHT; height -= 8) {
-      const { upright, across } = this.fit(width, height);
-      if (across <= upright) break;
-    }
-    if (height < most) this.element.style.height = `${height}px`;
-  }
-
   key(event) {
     const turns = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }[event.key];
     const zoom = { "+": 0.9, "-": 1 / 0.9 }[event.key];
     if (!turns && !zoom && event.key !== "Home") return;
     event.preventDefault();
     if (event.key === "Home") return this.home();
+    this.turned = true;
     const arm = this.camera.position.clone().sub(this.controls.target);
     if (zoom) arm.multiplyScalar(zoom);
     else {
@@ -408,18 +514,14 @@ export class ShapeScene {
     this.draw();
   }
 
+  // The picture fills its place. Until somebody turns it, all of the shape is in view.
   resize() {
-    const settled = this.box && this.element.clientWidth === this.settled;
-    if (this.box && !settled) {
-      this.settled = this.element.clientWidth;
-      this.settle();
-    }
     const { clientWidth: width, clientHeight: height } = this.element;
     if (width === 0 || height === 0) return;
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
     this.renderer?.setSize(width, height);
-    if (this.box && !settled) this.home();
+    if (this.box && !this.turned) this.home();
     this.draw();
   }
 
@@ -477,10 +579,11 @@ export class ShapeScene {
       const near = this.camera.position.getComponent(axis) > this.controls.target.getComponent(axis);
       this.plane.set(new Vector3().setComponent(axis, near ? -1 : 1), near ? place : -place);
     }
-    // The lamp is over the viewer's left shoulder.
-    const { position, quaternion } = this.camera;
-    this.lamp.position.copy(position).add(new Vector3(-0.5, 0.6, 0.2).applyQuaternion(quaternion).multiplyScalar(position.length() + 1));
-    this.lamp.target.position.copy(this.controls.target);
+    // The lamps move with the viewer.
+    for (const { lamp, from } of this.lamps) {
+      lamp.target.position.copy(this.controls.target);
+      lamp.position.copy(from).applyQuaternion(this.camera.quaternion).add(this.controls.target);
+    }
     const pixels = this.renderer.getDrawingBufferSize(new Vector2()).y;
     for (const name of SPHERES) {
       const part = this.parts?.[name];
@@ -502,6 +605,7 @@ export class ShapeScene {
       this.measure(started);
     }
     this.label();
+    this.measureBar();
     if (this.moving) {
       clearTimeout(this.timer);
       this.timer = setTimeout(() => this.rest(), REST);

@@ -2,9 +2,44 @@
 
 import { Box3, Vector3 } from "three";
 import { Curve } from "./charts.js";
-import { CLASSES, EDGES, INTERIOR, OF_CLASS, placed, REGULAR, short, SINGULAR } from "./colours.js";
+import { BONE, brief, CLASSES, EDGES, grouped, INTERIOR, LOOSE, measured, OF_CLASS, placed, REGULAR, short, SINGULAR } from "./colours.js";
 import { byId, download, element, rows } from "./dom.js";
 import { ShapeScene } from "./scene.js";
+
+// Drawers beside the picture, of which those open are remembered.
+const DRAWERS = "walpha-drawers";
+function remembered() {
+  // A page from disk may have no store.
+  try {
+    return (localStorage.getItem(DRAWERS) ?? "").split(" ");
+  } catch {
+    return [];
+  }
+}
+
+export function openDrawer(name, open) {
+  byId(name).hidden = !open;
+  document.querySelector(`[data-drawer="${name}"]`).ariaExpanded = open;
+  const all = [...document.querySelectorAll("[data-drawer]")].filter((button) => button.ariaExpanded === "true");
+  try {
+    localStorage.setItem(DRAWERS, all.map((button) => button.dataset.drawer).join(" "));
+  } catch {
+    // It is not remembered.
+  }
+}
+
+export function wireDrawers() {
+  const before = remembered();
+  for (const button of document.querySelectorAll("[data-drawer]")) {
+    const name = button.dataset.drawer;
+    if (before.includes(name)) openDrawer(name, true);
+    button.addEventListener("click", () => {
+      const open = byId(name).hidden;
+      openDrawer(name, open);
+      if (open) byId(name).scrollIntoView({ block: "nearest" });
+    });
+  }
+}
 
 export class ShapePanel {
   // A source has `at(α)` and `measure(α)`, which promise simplices and numbers, and may have `section(α, axis, place)`, which promises
@@ -26,8 +61,9 @@ export class ShapePanel {
   // Points, and the first look at their shape. The view stays if it is to be kept.
   look(made, keep = false) {
     [this.made, this.shape, this.alpha] = [made, made, null];
-    byId("shape").hidden = false;
+    for (const id of ["shape", "cut-row", "alpha-row"]) byId(id).hidden = false;
     this.scene ??= new ShapeScene(byId("scene"));
+    this.scene.bar = byId("bar");
     const { scene } = this;
     const box = new Box3();
     box.setFromArray(made.positions);
@@ -35,19 +71,24 @@ export class ShapePanel {
     scene.setPoints(made, box, keep);
     byId("picked").textContent = "";
     const colour = byId("colour");
-    const scales = { value: made.values, difference: made.differences };
+    // Weights that are all the same say nothing.
+    const weights = made.weights.some((weight) => weight !== made.weights[0]);
+    const scales = { value: made.values, difference: made.differences, weight: weights };
     for (const option of colour.options) {
       option.hidden = option.value in scales && !scales[option.value];
-      if (option.hidden && option.selected) colour.value = "class";
+      if (option.hidden && option.selected) colour.value = "plain";
     }
+    // A scan has much that is a surface without an inside, and its height shows it best; a solid has a material.
+    const isScan = made.singular.length > 0.1 * made.regular.length;
+    if (!keep && ["plain", "height"].includes(colour.value)) colour.value = isScan ? "height" : "plain";
+    if (!keep) byId("show-singular").checked = isScan || colour.value !== "plain";
     byId("show-original").parentElement.hidden = !made.original;
     scene.setColour(colour.value);
     for (const name of ["points", "balls", "hidden", "original", "box"]) scene.show(name, byId(`show-${name}`).checked);
     this.showSingular();
     scene.setShape(made, made.reference);
     this.legend();
-    byId("alpha-unit").textContent = `${made.unit}²`;
-    byId("alpha-value").value = made.reference;
+    this.tellAlpha(made.reference);
     document.body.dataset.looked = made.positions.length / 3;
   }
 
@@ -55,7 +96,6 @@ export class ShapePanel {
   open(all, scale) {
     Object.assign(this.made, all);
     this.scale = scale;
-    byId("numbers").hidden = false;
     this.curve.set(scale, this.made);
     return this.setAlpha(this.made.reference);
   }
@@ -72,12 +112,24 @@ export class ShapePanel {
     return alphas[Math.max(0, low - 1)];
   }
 
+  // The radius of the ball, and α beside it.
+  tellAlpha(alpha) {
+    const { unit } = this.made;
+    const radius = byId("radius-value");
+    if (document.activeElement !== radius) radius.value = alpha >= 0 ? short(Math.sqrt(alpha)) : "";
+    radius.placeholder = alpha >= 0 ? "" : "α < 0";
+    byId("alpha-unit").replaceChildren(element("b", { textContent: unit }), ` α = ${brief(alpha)} ${unit}²`);
+    byId("alpha-unit").title = `α = ${alpha} ${unit}²`;
+    if (document.activeElement !== byId("alpha-value")) byId("alpha-value").value = alpha;
+  }
+
   async setAlpha(alpha) {
     if (!this.made || Number.isNaN(alpha)) return;
     [this.next, this.alpha] = [alpha, alpha];
     byId("alpha").value = this.scale.share(alpha);
-    byId("alpha").ariaValueText = `${short(alpha)} ${this.made.unit}²`;
-    if (document.activeElement !== byId("alpha-value")) byId("alpha-value").value = alpha;
+    const { unit } = this.made;
+    byId("alpha").ariaValueText = alpha >= 0 ? `${short(Math.sqrt(alpha))} ${unit}` : `α = ${short(alpha)} ${unit}²`;
+    this.tellAlpha(alpha);
     this.curve.mark(alpha);
     this.heard.moved?.(alpha);
     if (this.drawing) return;
@@ -132,21 +184,27 @@ export class ShapePanel {
 
   measures(level) {
     const { unit, domain, centre } = this.made;
-    const classes = (counts) => ["interior", "regular", "singular"].map((name) => `${counts[name]} ${name}`).join(", ");
+    const classes = (counts) => ["interior", "regular", "singular"].map((name) => `${grouped(counts[name])} ${name}`).join(", ");
+    const counted = (count, noun) => `${grouped(count)} ${noun}${count === 1 ? "" : "s"}`;
     const [b0, b1, b2] = level.betti;
-    const radius = this.alpha >= 0 ? ` (√α = ${short(Math.sqrt(this.alpha))} ${unit})` : "";
+    const [volume, area] = [measured(level.volume, unit, 3), measured(level.area, unit, 2)];
+    const topology = [counted(b0, "part"), counted(b1, "tunnel"), counted(b2, "void")].join(", ");
+    byId("summary").textContent = `Volume ${volume}, surface ${area}, ${topology}`;
+    byId("summary").title = `${level.volume} ${unit}³, ${level.area} ${unit}²`;
+    const radius = this.alpha >= 0 ? [["ball radius", `${brief(Math.sqrt(this.alpha))} ${unit}`]] : [];
     rows(byId("measures"), [
-      this.made.labels ? ["labels", this.made.labels] : ["α", `${short(this.alpha)} ${unit}²${radius}`],
-      ["cells", level.cells], ["facets", classes(level.facets)], ["edges", classes(level.edges)], ["vertices", classes(level.vertices)],
-      ["components", b0], ["tunnels", b1], ["voids", b2],
-      ["volume", `${short(level.volume)} ${unit}³, ${(100 * level.coverage).toFixed(1)} % of ${domain}`],
-      ["area", `${short(level.area)} ${unit}²`],
+      ...(this.made.labels ? [["labels", this.made.labels]] : [...radius, ["α", `${brief(this.alpha)} ${unit}²`]]),
+      ["volume", `${volume}, ${(100 * level.coverage).toFixed(1)} % of ${domain}`],
+      ["surface", area],
+      ["parts", grouped(b0)], ["tunnels", grouped(b1)], ["voids", grouped(b2)],
+      ["cells", grouped(level.cells)], ["facets", classes(level.facets)], ["edges", classes(level.edges)], ["vertices", classes(level.vertices)],
       ...(this.made.rows ?? []),
     ]);
     document.body.dataset.cells = level.cells;
     const shown = (level.voids ?? []).slice(0, 200).map((hole) => {
       const [low, high] = [hole.low, hole.high].map((corner) => corner.map((x, k) => x - centre[k]));
-      const item = element("li", { tabIndex: 0, textContent: `${short(hole.volume)} ${unit}³, ${hole.cells} cells, filled at α = ${short(hole.filling_alpha)}` });
+      const item = element("li", { tabIndex: 0, textContent: `${measured(hole.volume, unit, 3)}, filled by a ball of radius ${brief(Math.sqrt(Math.max(0, hole.filling_alpha)))} ${unit}` });
+      item.title = `${hole.volume} ${unit}³, ${hole.cells} cells, filled at α = ${hole.filling_alpha}`;
       item.onpointerenter = item.onfocus = () => this.scene.light(low, high);
       item.onpointerleave = item.onblur = () => this.scene.light();
       return item;
@@ -158,16 +216,18 @@ export class ShapePanel {
   legend() {
     const box = (colour) => element("i", { style: `background: ${colour}` });
     const by = byId("colour").value;
-    if (by !== "class" && this.scene.scale) {
+    if (this.scene.scale) {
       const [low, high] = this.scene.scale;
-      const title = this.made.titles?.[by] ?? { value: "F", weight: "ω" }[by];
+      const title = this.made.titles?.[by] ?? { value: "F", weight: "ω", height: `height in ${this.made.unit}` }[by];
       byId("legend").replaceChildren(element("span", {}, `${title}: ${short(low)} `, element("i", { className: "scale" }), ` ${short(high)}`));
       return;
     }
     const { regular, singular, edges, classes } = this.shape;
-    const parts = [[OF_CLASS[REGULAR], regular.length / 3, "regular facets"]];
+    const plain = by === "plain";
+    const parts = [[plain ? BONE : OF_CLASS[REGULAR], regular.length / 3, plain ? "boundary triangles" : "regular facets"]];
     if (byId("show-singular").checked) {
-      parts.push([OF_CLASS[SINGULAR], singular.length / 3, "singular facets"], [EDGES, edges.length / 2, "singular edges"]);
+      parts.push([plain ? LOOSE : OF_CLASS[SINGULAR], singular.length / 3, plain ? "loose triangles" : "singular facets"]);
+      parts.push([plain ? LOOSE : EDGES, edges.length / 2, plain ? "loose edges" : "singular edges"]);
     }
     if (byId("show-points").checked) {
       const counts = CLASSES.map(() => 0);
@@ -175,7 +235,7 @@ export class ShapePanel {
       for (const kind of [INTERIOR, REGULAR, SINGULAR]) parts.push([OF_CLASS[kind], counts[kind], `${CLASSES[kind]} points`]);
     }
     const shown = parts.filter(([, count]) => count > 0);
-    byId("legend").replaceChildren(...shown.map(([colour, count, name]) => element("span", {}, box(colour), `${count} ${name}`)));
+    byId("legend").replaceChildren(...shown.map(([colour, count, name]) => element("span", {}, box(colour), `${grouped(count)} ${name}`)));
     if (regular.length + singular.length + edges.length > 0) return;
     const pointsToo = [INTERIOR, REGULAR, SINGULAR].some((kind) => classes.includes(kind));
     byId("legend").append(`${pointsToo ? "Only points are" : "Nothing is"} in the shape at this α.`);
@@ -216,8 +276,8 @@ export class ShapePanel {
 
   cut() {
     const on = byId("cut").value !== "";
-    byId("cut-place").disabled = !on;
-    if (!on) return this.scene.setCut(null);
+    byId("cut-place").hidden = !on;
+    if (!on) return this.scene?.setCut(null);
     return this.alpha === null ? undefined : this.moveTo(this.alpha);
   }
 
@@ -258,6 +318,11 @@ export class ShapePanel {
       this.pause();
       this.step(count);
     });
+    byId("radius-value").addEventListener("change", ({ target }) => {
+      const radius = Number(target.value.replace(",", "."));
+      if (target.value.trim() !== "" && radius >= 0) return this.moveTo(this.nearest(radius * radius));
+      return this.made && this.alpha !== null && this.tellAlpha(this.alpha);
+    });
     byId("play").addEventListener("click", () => this.play());
     byId("colour").addEventListener("change", () => {
       this.scene.setColour(byId("colour").value);
@@ -275,6 +340,7 @@ export class ShapePanel {
     }
     byId("cut").addEventListener("change", () => this.cut());
     byId("cut-place").addEventListener("input", () => this.cut());
+    byId("opacity").addEventListener("input", ({ target }) => this.scene?.setOpacity(Number(target.value)));
     byId("home").addEventListener("click", () => this.scene.home());
     let down = null;
     byId("scene").addEventListener("pointerdown", (event) => { down = [event.clientX, event.clientY]; });
@@ -289,6 +355,11 @@ export class ShapePanel {
       if (event.pointerType === "mouse" && event.buttons === 0) resting = setTimeout(() => this.tell(event), 150);
     });
     byId("scene").addEventListener("pointerleave", () => clearTimeout(resting));
+  }
+
+  // The α that a number stands for: that itself, or a stop where there are no shapes between.
+  nearest(alpha) {
+    return this.source.section ? alpha : this.stop(alpha);
   }
 
   async savePicture(name) {

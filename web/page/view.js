@@ -3,7 +3,7 @@
 import { StopScale } from "./charts.js";
 import { EXTERIOR, HIDDEN, INTERIOR, REGULAR, SINGULAR } from "./colours.js";
 import { byId, element, remark, rows, showNotices, unpacked } from "./dom.js";
-import { ShapePanel } from "./shape.js";
+import { ShapePanel, wireDrawers } from "./shape.js";
 
 // The first level of what is in no shape, whatever α: the point is hidden.
 const NEVER = 255;
@@ -97,6 +97,7 @@ try {
   byId("alpha-value").addEventListener("change", ({ target }) => target.value !== "" && panel.moveTo(panel.stop(Number(target.value))));
   byId("save-png").addEventListener("click", () => panel.savePicture(`${document.title}, α = ${panel.alpha}.png`));
   showNotices();
+  wireDrawers();
   await choose(page.points.length - 1);
   document.body.dataset.state = "ready";
 } catch (error) {

@@ -28,6 +28,50 @@ pub fn six_digits(number: f64) -> f64 {
     format!("{number:.5e}").parse().unwrap_or(number)
 }
 
+/// A number as text with at most six significant digits, as in reports.
+pub fn rounded(value: f64) -> String {
+    number(six_digits(value))
+}
+
+/// A coordinate as text, as precise as six digits of an extent of this size: two ends of a box that are far from the origin stay
+/// apart.
+pub fn rounded_within(value: f64, extent: f64) -> String {
+    if extent <= 0.0 || !extent.is_finite() {
+        return rounded(value);
+    }
+    let decimals = (5.0 - extent.log10().floor()).clamp(0.0, 17.0) as usize;
+    number(format!("{value:.decimals$}").parse().unwrap_or(value))
+}
+
+/// A measure for people: four significant digits, and thousands apart, as in "1 776" and "709.2".
+pub fn brief(value: f64) -> String {
+    let text = number(format!("{value:.3e}").parse().unwrap_or(value));
+    if text.contains(['e', 'n']) {
+        return text;
+    }
+    let (sign, digits) = text.strip_prefix('-').map_or(("", &*text), |digits| ("-", digits));
+    let (whole, fraction) = digits.split_once('.').map_or((digits, ""), |(w, f)| (w, f));
+    let point = if fraction.is_empty() { "" } else { "." };
+    format!("{sign}{}{point}{fraction}", in_groups(whole))
+}
+
+/// A count with its thousands apart: "51 410".
+pub fn grouped(count: u64) -> String {
+    in_groups(&count.to_string())
+}
+
+/// Digits in groups of three from the right.
+fn in_groups(digits: &str) -> String {
+    let mut text = String::with_capacity(digits.len() * 4 / 3);
+    for (place, digit) in digits.chars().enumerate() {
+        if place > 0 && (digits.len() - place) % 3 == 0 {
+            text.push(' ');
+        }
+        text.push(digit);
+    }
+    text
+}
+
 /// Escapes the [unseen](is_unseen) characters of a text, except those for which `kept` holds.
 pub fn escaped(text: &str, kept: impl Fn(char) -> bool) -> String {
     let mut shown = String::with_capacity(text.len());
@@ -85,6 +129,20 @@ mod tests {
         let texts =
             [0.0, -2.5, 0.000_000_000_000_217_145_52, 1e-4, 3e300, f64::INFINITY].map(number);
         assert_eq!(texts, ["0", "-2.5", "2.1714552e-13", "0.0001", "3e300", "inf"]);
+    }
+
+    #[test]
+    fn numbers_are_short_for_people() {
+        let measures = [709_169.34, 1776.17, 8.204_46, 0.000_123_45, -43.866_357, 0.0, 1e20];
+        let texts = measures.map(brief);
+        assert_eq!(texts, ["709 200", "1 776", "8.204", "0.0001235", "-43.87", "0", "1e20"]);
+        assert_eq!([f64::INFINITY, f64::NAN].map(brief), ["inf", "NaN"]);
+        assert_eq!([0, 999, 1000, 1_234_567].map(grouped), ["0", "999", "1 000", "1 234 567"]);
+        assert_eq!([-76.859_999_999_999_99, 8_123_456.0].map(rounded), ["-76.86", "8123460"]);
+        // A box of 100 m by UTM coordinates, which six digits would make flat.
+        let ends = [5_400_000.0, 5_400_123.456_789].map(|end| rounded_within(end, 123.456_789));
+        assert_eq!(ends, ["5400000", "5400123.457"]);
+        assert_eq!([2.5, 1e9].map(|value| rounded_within(value, 0.0)), ["2.5", "1000000000"]);
     }
 
     #[test]

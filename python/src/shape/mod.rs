@@ -4,6 +4,7 @@ mod balls;
 mod boundary;
 mod make;
 mod outline;
+mod pictures;
 mod state;
 
 use std::path::PathBuf;
@@ -12,6 +13,7 @@ use std::sync::Arc;
 use numpy::ndarray::Array3;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArray3, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
+use pyo3::types::PyBytes;
 use serde_json::Value;
 use walpha::check::schema::BoxVectors;
 use walpha::export::{EmptyShape, ExportOptions, Format, Target, TargetError};
@@ -29,6 +31,7 @@ pub use balls::Union;
 use boundary::{Boundary, boundary};
 pub use make::{Written, alpha_shape, numbers_of_box, recipe_from, settings_of, torus, weighted};
 use outline::{Outline, outline};
+pub use pictures::write_whole;
 pub use state::restored;
 use state::{State, state};
 
@@ -403,6 +406,27 @@ impl Shape {
                 exporter.single_precision(&shape).and_then(|single| single.remark()),
             )
         })
+    }
+
+    /// A picture of it, as PNG; the view and the meaning of colours by name, and the size in pixels.
+    fn picture<'py>(
+        &self,
+        py: Python<'py>,
+        view: &str,
+        colour: &str,
+        size: (u32, u32),
+    ) -> PyResult<Bound<'py, PyBytes>> {
+        pictures::picture(py, Arc::clone(&self.shape), view, colour, size)
+    }
+
+    /// The interactive page of its points, as HTML, with a title and facts.
+    fn page(
+        &self,
+        py: Python<'_>,
+        title: String,
+        facts: Vec<(String, String)>,
+    ) -> PyResult<String> {
+        pictures::page(py, Arc::clone(&self.shape), title, facts)
     }
 }
 

@@ -2,7 +2,6 @@
 
 use std::fmt::{self, Display};
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 
 use clap::{Args, Subcommand};
 use serde::Serialize;
@@ -14,7 +13,7 @@ use crate::Recipe;
 use crate::cli::commands::folder;
 use crate::cli::commands::outline;
 use crate::cli::commands::pipeline;
-use crate::cli::options::global::{DIFFERENT, Global};
+use crate::cli::options::global::{DIFFERENT, Global, SUCCESS};
 use crate::cli::options::{self, Declared, InputArgs, OfShape, PipelineArgs, preset};
 use crate::cli::process::errors::{CommandError, Result, fail_usage};
 use crate::cli::process::output::{name, print_summary};
@@ -108,19 +107,19 @@ struct CheckStep {
 }
 
 impl Blocks {
-    pub(crate) fn run(self, global: Global) -> Result<ExitCode> {
+    pub(crate) fn run(self, global: Global) -> Result<u8> {
         match self.step {
             Step::Plan(step) => step.run(global)?,
             Step::Run(step) => step.run(global)?,
             Step::Merge(step) => step.run(global)?,
             Step::Check(step) => return step.run(global),
         }
-        Ok(ExitCode::SUCCESS)
+        Ok(SUCCESS)
     }
 }
 
 impl CheckStep {
-    fn run(self, global: Global) -> Result<ExitCode> {
+    fn run(self, global: Global) -> Result<u8> {
         let mut progress = Progress::new(global);
         let folder = &self.folder;
         let facts = match Plan::open(folder) {
@@ -137,7 +136,7 @@ impl CheckStep {
         };
         progress.finish();
         print_summary(global, &facts)?;
-        Ok(if facts.whole { ExitCode::SUCCESS } else { DIFFERENT.into() })
+        Ok(if facts.whole { SUCCESS } else { DIFFERENT })
     }
 }
 

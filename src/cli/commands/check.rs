@@ -2,7 +2,6 @@
 
 use std::fmt::{self, Display};
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 use std::time::Instant;
 
 use clap::{Args, ValueEnum};
@@ -28,7 +27,7 @@ use walpha_points::internal::{cells_of_file, read_complex_file};
 
 use crate::cli::commands::compare;
 use crate::cli::commands::pipeline;
-use crate::cli::options::global::{DIFFERENT, Global, UNDECIDED};
+use crate::cli::options::global::{DIFFERENT, Global, SUCCESS, UNDECIDED};
 use crate::cli::options::{Declared, OfShape, Periodic, PipelineArgs, preset, refuse_gray_levels};
 use crate::cli::process::errors::{CommandError, Result, command_error, fail, fail_usage};
 use crate::cli::process::output::{name, print_summary};
@@ -61,6 +60,7 @@ use crate::settings::Settings;
 ///
 /// walpha check theirs.msh -o findings.vtu
 #[derive(Args)]
+#[command(mut_arg("input", |input| input.help(JUDGED)))]
 pub(crate) struct Check {
     /// Points of the complex, filtration or mesh, if its file lists none or has rounded them, with their weights
     /// if they have any: .csv or .npy.
@@ -94,6 +94,8 @@ enum Ties {
     Exact,
 }
 
+/// What INPUT is.
+const JUDGED: &str = "Complex, filtration or mesh to judge, or a volume or points whose shape is computed and judged";
 /// The largest number of points for `--enumerate`: more would take hours.
 const MOST_ENUMERATED: usize = 200;
 /// The largest number of findings printed as text; all are counted.
@@ -147,7 +149,7 @@ fn as_map<S: Serializer>(pairs: &[(&str, usize)], serializer: S) -> Result<S::Ok
 }
 
 impl Check {
-    pub(crate) fn run(self, global: Global) -> Result<ExitCode> {
+    pub(crate) fn run(self, global: Global) -> Result<u8> {
         let input = self.pipeline.input.clone();
         // All steps read one file; standard input is copied to a temporary one.
         pipeline::with_file(&input, |file| {
@@ -158,7 +160,7 @@ impl Check {
     }
 
     /// Judges INPUT, and reports it under the name `input`.
-    fn judge(self, global: Global, input: &str) -> Result<ExitCode> {
+    fn judge(self, global: Global, input: &str) -> Result<u8> {
         let file = self.pipeline.input.input.clone();
         let path = file.path();
         let mut progress = Progress::new(global);
@@ -220,7 +222,7 @@ impl Check {
         file: &OpenFile,
         cells: &[CellCount],
         mut progress: Progress,
-    ) -> Result<ExitCode> {
+    ) -> Result<u8> {
         let listed = cells.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
         let read = || {
             read_complex_file(file, &self.pipeline.input.point_options()?).map_err(|error| {
@@ -242,7 +244,7 @@ impl Check {
         JudgedInput { input, kind, why }: JudgedInput,
         mesh: Mesh,
         progress: Progress,
-    ) -> Result<ExitCode> {
+    ) -> Result<u8> {
         let Mesh { complex: mut file, attribute, notes, .. } = mesh;
         let alpha = match self.pipeline.settings().parameter() {
             AlphaRule::Given(alpha) => Some(alpha),
@@ -299,7 +301,7 @@ impl Check {
         input: &str,
         mut file: FiltrationFile,
         progress: Progress,
-    ) -> Result<ExitCode> {
+    ) -> Result<u8> {
         self.refuse_shape_options(&[], format!("{} is a filtration, made already", name(input)))?;
         if self.output.is_some() {
             fail_usage!("--output is for findings on a complex or mesh, and {} is a filtration", name(input) => "omit it, or check a complex");
@@ -362,7 +364,7 @@ impl Check {
         Subject { input, judged: subject, notes, is_cells_alone }: Subject,
         judged: &PlacedComplex,
         mut progress: Progress,
-    ) -> Result<ExitCode> {
+    ) -> Result<u8> {
         let n = judged.positions.len();
         if self.enumerate && judged.periodic.is_some() {
             fail!("--enumerate does not support a periodic box" => "omit it");
@@ -448,7 +450,7 @@ impl Check {
         input: &str,
         file: &FiltrationFile,
         mut progress: Progress,
-    ) -> Result<ExitCode> {
+    ) -> Result<u8> {
         let started = Instant::now();
         let (mut findings, certificate) = progress.watch(|| {
             Stage::Certify.begin()?;
@@ -570,15 +572,13 @@ fn differs_from_definition(comparison: &Comparison) -> String {
 
 impl<F: Serialize + Display, C: Serialize> CheckSummary<F, C> {
     /// Prints the summary, and returns the exit code.
-    fn print(mut self, global: Global) -> Result<ExitCode> {
+    fn print(mut self, global: Global) -> Result<u8> {
         self.findings.truncate(MOST_LISTED);
         print_summary(global, &self)?;
         Ok(match self.verdict {
-            _ if self.valid => ExitCode::SUCCESS,
-            verdict if self.findings_total == 0 && !verdict.is_complete() => {
-                ExitCode::from(UNDECIDED)
-            }
-            _ => ExitCode::from(DIFFERENT),
+            _ if self.valid => SUCCESS,
+            verdict if self.findings_total == 0 && !verdict.is_complete() => UNDECIDED,
+            _ => DIFFERENT,
         })
     }
 }

@@ -3,7 +3,6 @@
 use std::fmt::{self, Display};
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 
 use clap::Args;
 use serde::Serialize;
@@ -11,7 +10,7 @@ use walpha_base::shown::shown;
 
 use crate::check::schema::{AnyFile, ComplexFile, FiltrationFile, PlacedComplex, SchemaError};
 use crate::check::{compare, compare_filtrations};
-use crate::cli::options::global::{DIFFERENT, Global};
+use crate::cli::options::global::{DIFFERENT, Global, SUCCESS};
 use crate::cli::process::errors::{CommandError, Result, command_error, fail};
 use crate::cli::process::output::{name, print_summary};
 use crate::cli::process::progress::Progress;
@@ -53,7 +52,7 @@ struct CompareSummary<C> {
 }
 
 impl Compare {
-    pub(crate) fn run(self, global: Global) -> Result<ExitCode> {
+    pub(crate) fn run(self, global: Global) -> Result<u8> {
         let mut progress = Progress::new(global);
         let mut read = |path: &Path| progress.stage(Stage::Read, || read(path));
         match (read(&self.a)?, read(&self.b)?) {
@@ -87,13 +86,13 @@ impl Compare {
         global: Global,
         equal: bool,
         comparison: impl Serialize + Display,
-    ) -> Result<ExitCode> {
+    ) -> Result<u8> {
         let [a, b] = [&self.a, &self.b].map(|path| path.display().to_string());
         print_summary(
             global,
             &CompareSummary { schema_version: SCHEMA_VERSION, a, b, equal, comparison },
         )?;
-        Ok(if equal { ExitCode::SUCCESS } else { ExitCode::from(DIFFERENT) })
+        Ok(if equal { SUCCESS } else { DIFFERENT })
     }
 }
 

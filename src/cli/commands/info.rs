@@ -6,7 +6,7 @@ use std::path::Path;
 use clap::Args;
 use serde::{Serialize, Serializer};
 use serde_json::Value;
-use walpha_base::shown::{number, six_digits};
+use walpha_base::shown::{number, rounded, rounded_within, six_digits};
 
 use crate::check::meshes::Mesh;
 use crate::cli::process::errors::{Result, option};
@@ -178,7 +178,7 @@ impl std::fmt::Display for LabelSummary {
         )?;
         let unit = unit.symbol();
         for LabelSize { label, voxels, volume, .. } in labels.iter().take(MOST_LABELS) {
-            writeln!(f, "          {label}: {voxels} voxels, {} {unit}³", number(*volume))?;
+            writeln!(f, "          {label}: {voxels} voxels, {} {unit}³", rounded(*volume))?;
         }
         match labels.len().saturating_sub(MOST_LABELS) {
             0 => Ok(()),
@@ -525,11 +525,16 @@ impl Content {
             writeln!(f, "recipe    {recipe}")?;
         }
         if let Some(alpha) = alpha {
-            writeln!(f, "α         {} {}²", number(alpha.squared()), coordinates.unit.symbol())?;
+            writeln!(f, "α         {} {}²", rounded(alpha.squared()), coordinates.unit.symbol())?;
         }
         match gray_range {
             Some([low, high]) => {
-                writeln!(f, "gray      values {} to {} were 0 to 255", number(*low), number(*high))
+                writeln!(
+                    f,
+                    "gray      values {} to {} were 0 to 255",
+                    rounded(*low),
+                    rounded(*high)
+                )
             }
             None => Ok(()),
         }
@@ -551,11 +556,11 @@ fn fmt_frame(
     };
     writeln!(f, "space     {stated}")?;
     let unit = unit.symbol();
-    writeln!(f, "spacing   {} {unit}", spacing.map(number).join(" "))?;
-    writeln!(f, "origin    {} {unit}", origin.map(number).join(" "))?;
+    writeln!(f, "spacing   {} {unit}", spacing.map(rounded).join(" "))?;
+    writeln!(f, "origin    {} {unit}", origin.map(rounded).join(" "))?;
     if *direction != Frame::VOXEL.direction {
         for (i, axis) in ["x", "y", "z"].iter().enumerate() {
-            let steps = direction.map(|row| number(row[i]));
+            let steps = direction.map(|row| rounded(row[i]));
             writeln!(f, "axis {axis}    {}", steps.join(" "))?;
         }
     }
@@ -571,7 +576,7 @@ fn fmt_values(
     let Some((min, max)) = range else {
         return writeln!(f, "values    none that is a finite number");
     };
-    let (min, max) = (number(f64::from(min)), number(f64::from(max)));
+    let (min, max) = (rounded(f64::from(min)), rounded(f64::from(max)));
     let gray = if gray_levels { ", gray levels as they are" } else { "" };
     writeln!(f, "values    {min} to {max}{gray}")
 }

@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use serde::Serialize;
 use walpha_base::number_or_null_or_name;
+use walpha_base::shown::rounded;
 
 use crate::cli::commands::folder;
 use crate::cli::commands::pipeline::{self, VolumeSummary, read};
@@ -156,6 +157,7 @@ impl Interpolate {
         let original = source.as_ref();
         let facts = original.map(VolumeSummary::of);
         let mut report = Report::of_points(&input.input, &weighed, facts.as_ref());
+        report.example = "values.nrrd (or .nii.gz, .npy)";
         let grid = self.grid(original, &weighed)?;
         let written = original.map(|original| original.written).or(weighed.origin.range);
         let model = pipeline::shape(weighed, &recipe, &mut progress)?;
@@ -268,7 +270,11 @@ fn write(volumes: [(Option<Output>, Option<&Volume>); 2]) -> Result<(), TargetEr
 impl Display for InterpolateSummary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Interpolation { grid: [x, y, z], on_shape, inside, filled } = &self.interpolation;
-        write!(f, "{}", self.report)?;
+        if f.alternate() {
+            write!(f, "{:#}", self.report)?;
+        } else {
+            write!(f, "{}", self.report)?;
+        }
         writeln!(f, "grid      {x}×{y}×{z} samples, {on_shape} on the shape")?;
         for (what, error) in [("inside", inside), ("filled", filled)] {
             if let Some(error) = error {
@@ -284,9 +290,10 @@ impl Display for Error {
         let Deviation { samples, rmse, max, .. } = self.deviation;
         write!(f, "{:.2} % of {samples} samples", 100.0 * self.covered_share)?;
         if let (Some(rmse), Some(max), Some(psnr)) = (rmse, max, self.psnr) {
-            write!(f, ", RMSE {rmse:.6}, largest error {max:.6} gray levels")?;
+            let (rmse, max) = (rounded(rmse), rounded(max));
+            write!(f, ", RMSE {rmse}, largest error {max} gray levels")?;
             if let (Some(rmse), Some(max)) = (self.rmse_in_values, self.max_in_values) {
-                write!(f, " ({rmse:.6} and {max:.6} in values)")?;
+                write!(f, " ({} and {} in values)", rounded(rmse), rounded(max))?;
             }
             write!(f, ", PSNR {psnr:.2} dB")?;
         }
@@ -406,7 +413,8 @@ impl Display for CurveSummary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let unit = self.unit.symbol();
         let input = name(&self.input);
-        writeln!(f, "input     {input}, α = {} {unit}² (squared length)", self.alpha)?;
+        let alpha = rounded(self.alpha);
+        writeln!(f, "input     {input}, α = {alpha} {unit}² (squared length)")?;
         writeln!(
             f,
             "{:<20}{:<12}{:>8}{:>8}{:>11}{:>13}{:>13}",

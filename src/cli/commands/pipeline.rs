@@ -4,6 +4,7 @@ use std::fmt::{self, Display};
 use std::path::Path;
 
 use serde::Serialize;
+use walpha_base::shown::rounded;
 
 use crate::cli::options::preset;
 use crate::cli::options::{self, InputArgs};
@@ -15,7 +16,7 @@ use crate::ladder::{Curve, Filtration};
 use crate::pipeline::{Input, Model, Opened, PipelineError, PlacedVolume, Values, Weighed};
 use crate::points::bounding_box;
 use crate::progress::Stage;
-use crate::shape::ShapeError;
+use crate::shape::{ShapeError, suggested};
 use crate::volume::Reason;
 use crate::{
     Alpha, AlphaShape, GrayRange, LengthUnit, PointsError, Recipe, Units, Volume, VolumeError,
@@ -98,14 +99,6 @@ pub(crate) fn readable(
     alphas.push(reference);
     alphas.extend(suggested(filtration, curve));
     alphas
-}
-
-/// The suggested values of α, if they are finite.
-pub(crate) fn suggested(filtration: &Filtration, curve: &Curve) -> Vec<Alpha> {
-    let suggested = filtration.suggest(curve);
-    let [low, high] = suggested.plateau;
-    let also = [suggested.all_points, suggested.one_region, suggested.no_void, low, high];
-    also.into_iter().filter(|alpha| alpha.squared().is_finite()).collect()
 }
 
 /// Reads INPUT.
@@ -222,7 +215,7 @@ impl Domain {
 
 impl Display for Domain {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}, volume {} {}³", self.of, self.volume, self.unit.symbol())
+        write!(f, "{}, volume {} {}³", self.of, rounded(self.volume), self.unit.symbol())
     }
 }
 

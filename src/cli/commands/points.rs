@@ -81,6 +81,7 @@ impl Points {
             })?;
         }
         let mut report = Report::of_points(&self.pipeline.input.input, &weighed, volume.as_ref());
+        report.example = "points.csv (or .npy, .wvm)";
         let files = self.output.iter().map(|path| path.display().to_string()).collect();
         report.finish(progress.finish(), files);
         print_summary(global, &report)

@@ -17,7 +17,7 @@ use crate::{Gray, Volume, VolumeError};
 use crate::cli::commands::folder::Folder;
 use crate::cli::options::global::Global;
 use crate::cli::process::errors::Result;
-use crate::cli::process::output::{json, print, remark};
+use crate::cli::process::output::{json, print};
 use crate::cli::process::progress::Progress;
 
 /// Reproduce the paper: Table 1, the figures, and a report on its claims.
@@ -43,7 +43,13 @@ pub(crate) struct Reproduce {
     #[arg(long, value_name = "NAME,…", value_delimiter = ',', value_parser = item_names())]
     only: Vec<ItemName>,
     /// Folder to write to, created if needed; existing files in it are replaced, all at the end.
-    #[arg(long, value_name = "DIR", default_value = "reproduction")]
+    #[arg(
+        short,
+        long,
+        visible_alias = "output",
+        value_name = "DIR",
+        default_value = "reproduction"
+    )]
     out: PathBuf,
 }
 
@@ -62,7 +68,7 @@ impl Reproduce {
         // The folder is opened before the long work.
         let mut folder =
             Folder::open(&self.out, "--out", &["report.html", "report.json", "reproduction.md"])?;
-        let (name, volume) = progress.stage(Stage::Read, || self.volume(global))?;
+        let (name, volume) = progress.stage(Stage::Read, || self.volume())?;
         let (volume, range) = volume.into_gray(Gray::Automatic)?;
         let date = today();
         let subject = Subject { volume: &volume, range, name: &name, date: &date };
@@ -99,18 +105,16 @@ impl Reproduce {
         Ok(())
     }
 
-    fn volume(&self, global: Global) -> Result<(String, Volume)> {
+    fn volume(&self) -> Result<(String, Volume)> {
         if let Some(name) = &self.input {
             return Ok((name.clone(), open(name, &ReadOptions::default())?));
         }
         match open(SKULL, &ReadOptions::default()) {
             Err(VolumeError::NoSkull { .. }) => {
-                if !global.quiet {
-                    remark(&format!(
-                        "walpha: {SKULL} is not installed (on Debian and Ubuntu, `apt-get install \
-                         libcgal-demo` installs it); continuing with {PHANTOM}"
-                    ));
-                }
+                tracing::info!(
+                    "{SKULL} is not installed (on Debian and Ubuntu, `apt-get install libcgal-demo` installs it); \
+                     continuing with {PHANTOM}"
+                );
                 Ok((PHANTOM.into(), open(PHANTOM, &ReadOptions::default())?))
             }
             other => Ok((SKULL.into(), other?)),

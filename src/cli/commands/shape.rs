@@ -1,7 +1,7 @@
 //! `walpha shape`: runs the whole pipeline, and writes its outputs.
 
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use clap::Args;
@@ -18,8 +18,9 @@ use crate::cli::options::global::Global;
 use crate::cli::options::picture::PictureArgs;
 use crate::cli::options::{Declared, Kept, OfShape, OutputArgs, Periodic, PipelineArgs};
 use crate::cli::process::errors::{CommandError, Result, fail_usage, option};
-use crate::cli::process::output::{print_summary, remark};
+use crate::cli::process::output::{OF_OUTPUTS, print_summary};
 use crate::cli::process::progress::Progress;
+use crate::cli::process::usage;
 use crate::cli::report::Report;
 use crate::cli::report::offsets::offsets;
 use crate::export::{
@@ -192,6 +193,20 @@ impl Shape {
             .input(Some(self.pipeline.input.input.to_string()))
     }
 
+    /// The error for an output whose extension is that of no shape.
+    fn unknown(&self, path: &Path) -> CommandError {
+        let error = UnknownFormat::new(path, "a shape", extensions());
+        if !path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("html")) {
+            return error.into();
+        }
+        let [input, page] =
+            [&*self.pipeline.input.input, &path.to_string_lossy()].map(usage::quoted);
+        CommandError {
+            next: Some(format!("a page is written by walpha view {input} -o {page}")),
+            ..error.into()
+        }
+    }
+
     /// The outputs, as paths whose extensions determine their formats.
     pub(crate) fn names(&self) -> Result<Vec<PathBuf>> {
         self.output.iter().map(|path| self.format.named(path)).collect()
@@ -217,7 +232,7 @@ impl Shape {
         let mut report = if in_blocks {
             self.in_blocks(recipe, outputs, folder, global, &mut progress, team)?
         } else {
-            self.at_once(&recipe, outputs, global, &mut progress)?
+            self.at_once(&recipe, outputs, &mut progress)?
         };
         let files = self.output.iter().map(|path| path.display().to_string()).collect();
         report.finish(progress.finish(), files);
@@ -271,7 +286,6 @@ impl Shape {
         &self,
         recipe: &Recipe,
         mut outputs: Outputs,
-        global: Global,
         progress: &mut Progress,
     ) -> Result<Report> {
         let input = &self.pipeline.input;
@@ -293,10 +307,10 @@ impl Shape {
         }
         let read = match read {
             Input::Labels(volume) => {
-                return self.of_labels(&volume, recipe, outputs, global, progress);
+                return self.of_labels(&volume, recipe, outputs, progress);
             }
             Input::Surface(volume) => {
-                return self.of_surface(&volume, recipe, outputs, global, progress);
+                return self.of_surface(&volume, recipe, outputs, progress);
             }
             read => read,
         };
@@ -317,7 +331,7 @@ impl Shape {
         }
         facts.alpha = Some(model.parameter.alpha);
         progress.stage(Stage::Measure, || report.add_model(&model))?;
-        self.deliver(&model.shape, &facts, report, outputs, global, progress)
+        self.deliver(&model.shape, &facts, report, outputs, progress)
     }
 
     /// Writes a shape, and adds the changes that files make to its boundary and its coordinates to its report.
@@ -327,7 +341,6 @@ impl Shape {
         facts: &ModelMetadata,
         mut report: Report,
         outputs: Outputs,
-        global: Global,
         progress: &mut Progress,
     ) -> Result<Report> {
         if self.solid {
@@ -336,9 +349,7 @@ impl Shape {
         let remarks = outputs.remarks(shape);
         report.offsets = offsets(&outputs.whole, shape);
         progress.stage(Stage::Write, || outputs.write(shape, facts))?;
-        if !global.quiet {
-            remarks.iter().for_each(|text| remark(&format!("walpha: {text}")));
-        }
+        remarks.iter().for_each(|text| tracing::info!(target: OF_OUTPUTS, "{text}"));
         Ok(report)
     }
 }
@@ -371,8 +382,7 @@ impl Outputs {
                     .whole
                     .push((Target::open(path)?, shape.picture.exporter(Arc::default(), false)));
             } else {
-                let unknown = |_| UnknownFormat::new(path, "a shape", extensions());
-                let format = Format::of(&name).map_err(unknown)?;
+                let format = Format::of(&name).map_err(|_| shape.unknown(path))?;
                 outputs.whole.push((Target::open(path)?, format.exporter(&export)));
             }
         }

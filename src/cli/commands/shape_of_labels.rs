@@ -6,7 +6,7 @@ use std::fmt::{self, Display};
 use std::path::Path;
 
 use serde::Serialize;
-use walpha_base::shown::number;
+use walpha_base::shown::grouped;
 
 use crate::cli::commands::folder::Folder;
 use crate::cli::commands::ladder::{Mesh, meshes};
@@ -18,7 +18,7 @@ use crate::cli::process::errors::{Result, fail_usage};
 use crate::cli::process::output::print_summary;
 use crate::cli::process::progress::Progress;
 use crate::cli::report::offsets::FileOffset;
-use crate::cli::report::{Report, SCHEMA_VERSION, ending, print_cuts, print_kept};
+use crate::cli::report::{Report, SCHEMA_VERSION, ending, measure, print_cuts, print_kept};
 use crate::export::Exporter;
 use crate::labels::{LabelChoice, LabelSize, chosen};
 use crate::pipeline::{Input, Model};
@@ -38,13 +38,12 @@ impl Shape {
         volume: &Volume,
         recipe: &Recipe,
         outputs: Outputs,
-        global: Global,
         progress: &mut Progress,
     ) -> Result<Report> {
         refuse_gray_levels(&self.pipeline.input)?;
         self.refuse_for("the solid of labels", &outputs)?;
         let model = progress.watch(|| recipe.solid(volume))?;
-        self.deliver_solid(volume, &model, outputs, global, progress)
+        self.deliver_solid(volume, &model, outputs, progress)
     }
 
     /// Makes the solid inside the isosurface that the recipe names.
@@ -53,13 +52,12 @@ impl Shape {
         volume: &Volume,
         recipe: &Recipe,
         outputs: Outputs,
-        global: Global,
         progress: &mut Progress,
     ) -> Result<Report> {
         self.refuse_for("the solid inside an isosurface", &outputs)?;
         let surface = recipe.surface.expect("the recipe names one");
         let model = progress.watch(|| recipe.solid_inside(volume, surface))?;
-        self.deliver_solid(volume, &model, outputs, global, progress)
+        self.deliver_solid(volume, &model, outputs, progress)
     }
 
     /// Refuses outputs that hold points alone, from which a shape is made by α, and what has no effect on a solid that has none.
@@ -77,12 +75,11 @@ impl Shape {
         volume: &Volume,
         model: &Model,
         outputs: Outputs,
-        global: Global,
         progress: &mut Progress,
     ) -> Result<Report> {
         let mut report = Report::of_solid(&self.pipeline.input.input, volume.dims().xyz(), model);
         progress.stage(Stage::Measure, || report.add_shape(model));
-        self.deliver(&model.shape, &ModelMetadata::default(), report, outputs, global, progress)
+        self.deliver(&model.shape, &ModelMetadata::default(), report, outputs, progress)
     }
 
     /// Computes the solid of each label, and writes it to a separate file.
@@ -191,12 +188,13 @@ struct SolidSummary {
 
 impl Display for EachLabel {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let unit = self.coordinates.unit.symbol();
+        let unit = self.coordinates.unit;
         writeln!(f, "input     {}", crate::cli::process::output::name(&self.input))?;
         writeln!(f, "lengths   in {}", self.coordinates)?;
         for SolidSummary { size, betti, kept, solid, .. } in &self.labels {
             let LabelSize { label, voxels, volume, .. } = size;
-            write!(f, "label     {label}: {voxels} voxels, {} {unit}³", number(*volume))?;
+            let volume = measure(*volume, unit, 3);
+            write!(f, "label     {label}: {} voxels, {volume}", grouped(*voxels as u64))?;
             match betti {
                 Some(betti) => writeln!(f, "; {betti}")?,
                 None => writeln!(f)?,

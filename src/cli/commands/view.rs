@@ -8,18 +8,20 @@ use std::str::FromStr;
 
 use clap::Args;
 use serde::Serialize;
-use walpha_base::shown::{number, shown};
+use walpha_base::shown::{number, rounded};
 
 use crate::cli::commands::pipeline::{self, VolumeSummary, filled_in};
 use crate::cli::options::global::Global;
 use crate::cli::options::{self, Alphas, Declared, FrozenPipelineArgs};
 use crate::cli::process::errors::{CommandError, Result, fail, fail_usage};
-use crate::cli::process::output::{name, print_summary, remark};
+use crate::cli::process::output::{OF_OUTPUTS, name, print_summary};
 use crate::cli::process::progress::Progress;
+use crate::cli::process::usage;
 use crate::cli::report::{SCHEMA_VERSION, WeightsReport};
 use crate::export::Target;
 use crate::interpolate::{Deviation, Grid, Interpolant};
 use crate::ladder::Filtration;
+use crate::pictures;
 use crate::pipeline::{AlphaRule, Input, Parameter, PipelineError, PlacedVolume, Values, Weighed};
 use crate::progress::Stage;
 use crate::render::{self, Differences, Original, Page, Subject};
@@ -70,7 +72,13 @@ impl View {
     pub(crate) fn run(self, global: Global) -> Result<()> {
         let html = self.output.extension().is_some_and(|e| e.eq_ignore_ascii_case("html"));
         if !html {
-            return Err(UnknownFormat::new(&self.output, "a page", ["html"]).into());
+            let error = UnknownFormat::new(&self.output, "a page", ["html"]);
+            let [input, output] =
+                [&*self.pipeline.input.input, &self.output.to_string_lossy()].map(usage::quoted);
+            let next = format!(
+                "-o page.html; a mesh or picture is written by walpha shape {input} -o {output}"
+            );
+            return Err(CommandError { next: Some(next), ..error.into() });
         }
         let target = Target::open(&self.output)?;
         let mut progress = Progress::new(global);
@@ -86,12 +94,8 @@ impl View {
         });
         let details = details.collect::<Result<Vec<_>>>()?;
         let (page, facts) = self.page(&details, source.as_ref(), &column, &mut progress)?;
-        if !global.quiet {
-            let size = page.html.len() as f64 / 1e6;
-            remark(&format!("walpha: {} takes {size:.1} MB", shown(&self.output)));
-            if let Some(simplified) = &page.simplified {
-                remark(&format!("walpha: {simplified}"));
-            }
+        if let Some(simplified) = &page.simplified {
+            tracing::info!(target: OF_OUTPUTS, "{simplified}");
         }
         progress.stage(Stage::Write, || target.write(|out| out.write_all(page.html.as_bytes())))?;
         let facts = ViewSummary {
@@ -182,7 +186,9 @@ impl View {
                 Alphas::Given(alphas) => {
                     [&alphas[..], self.alpha.map(|_| opening).as_slice()].concat()
                 }
-                Alphas::Auto => progress.stage(Stage::Curve, || detail.stops(opening)),
+                Alphas::Auto => {
+                    progress.stage(Stage::Curve, || pictures::stops(&detail.filtration, opening))
+                }
             };
             let levels = detail.filtration.levels(&alphas);
             let count = levels.len() as u32;
@@ -264,11 +270,6 @@ impl View {
     }
 }
 
-/// The number of levels that `--alphas auto` chooses, besides the suggested ones.
-const STOPS: usize = 28;
-/// The number of critical values that are considered: all of them would take longer than the shape.
-const CANDIDATES: usize = 1024;
-
 pub(crate) struct Detail {
     pub weighed: Weighed,
     pub filtration: Filtration,
@@ -327,17 +328,6 @@ impl Detail {
 
     fn by_rule(&self, rule: AlphaRule) -> Parameter {
         rule.on(&self.filtration, self.weighed.origin.coordinates.unit)
-    }
-
-    /// The stops of the slider: the one to open at, the suggested ones, and others between. Each is not empty and differs from
-    /// the previous one.
-    pub(crate) fn stops(&self, opening: Alpha) -> Vec<Alpha> {
-        let curve = self.filtration.coarse_curve(CANDIDATES);
-        let mut alphas = self.filtration.stops(&curve, STOPS);
-        alphas.push(opening);
-        alphas.extend(pipeline::suggested(&self.filtration, &curve));
-        let distinct = self.filtration.levels(&alphas).distinct(opening);
-        if distinct.is_empty() { vec![opening] } else { distinct }
     }
 }
 
@@ -476,7 +466,7 @@ impl Display for ViewSummary {
                 write!(f, ", {kept}")?;
             }
             match rmse_filled {
-                Some(rmse) => writeln!(f, ", RMSE of F {rmse:.4} (filled in)")?,
+                Some(rmse) => writeln!(f, ", RMSE of F {} (filled in)", rounded(*rmse))?,
                 None => writeln!(f)?,
             }
         }

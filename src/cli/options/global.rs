@@ -2,6 +2,8 @@
 
 use clap::Args;
 
+use crate::cli::process::errors::{Result, fail};
+
 /// Options of every command.
 #[derive(Args, Clone, Copy, Default)]
 #[command(next_help_heading = EVERY_COMMAND)]
@@ -13,12 +15,12 @@ pub(crate) struct Global {
     /// Print nothing but errors (and JSON, if asked for).
     #[arg(short, long, global = true)]
     pub(crate) quiet: bool,
-    /// Log to standard error what is being done.
+    /// Print all numbers of a report, and log to standard error what is being done.
     #[arg(short, long, global = true, conflicts_with = "quiet")]
     pub(crate) verbose: bool,
     /// Number of threads, at most four per processor; results do not depend on it [default: one per
     /// processor, or one for each process that mpirun starts].
-    #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    #[arg(long, global = true, value_name = "N", value_parser = threads)]
     pub(crate) threads: Option<u16>,
     /// Let outputs replace inputs, or what is in the working folder of a plan.
     #[arg(long, global = true)]
@@ -30,6 +32,8 @@ pub(crate) struct Global {
 
 /// The heading of the options that all commands share.
 pub(crate) const EVERY_COMMAND: &str = "Every command";
+/// The exit code of success.
+pub(crate) const SUCCESS: u8 = 0;
 /// The exit code of a failure.
 pub(crate) const FAILURE: u8 = 1;
 /// The exit code of wrong arguments.
@@ -46,3 +50,13 @@ pub(crate) const UNDECIDED: u8 = 4;
 pub(crate) const STACK: usize = 2 << 20;
 /// The exit code after Ctrl-C, as in shells.
 pub(crate) const INTERRUPTED: i32 = 130;
+
+/// Parses a number of threads.
+fn threads(text: &str) -> Result<u16> {
+    match text.parse() {
+        Ok(0) | Err(_) => {
+            fail!("{text:?} is not a number of threads" => "give a number from 1 to {}", u16::MAX)
+        }
+        Ok(count) => Ok(count),
+    }
+}

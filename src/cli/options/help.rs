@@ -14,11 +14,12 @@ const HEADINGS: [&str; 7] =
 /// The headings of advanced options, which come last before those of every command.
 const ADVANCED: [&str; 4] = ["Parts of a volume", "Raw volumes", "Pictures (.png)", "Packing"];
 /// The options with a heading that `-h` shows.
-const COMMON: [&str; 12] = [
+const COMMON: [&str; 13] = [
     "preset",
     "gray",
     "columns",
     "alpha",
+    "alpha_radius",
     "alpha_ref",
     "weights",
     "output",

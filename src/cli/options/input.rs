@@ -26,7 +26,7 @@ pub(crate) struct InputArgs {
     /// All settings that the command was given.
     #[command(flatten)]
     pub given: Given,
-    /// Volume or point file, - (standard input), sample:ct, sample:skull, sample:phantom, sample:phantom@N, sample:peptide or sample:tile.
+    /// Volume or point file, - (standard input), or a sample (sample:ct, sample:phantom, …).
     #[arg(value_name = "INPUT", help_heading = None::<&str>)]
     pub input: InputName,
     #[command(flatten)]

@@ -11,10 +11,10 @@ use clap::{Args, ValueEnum};
 
 use crate::AlphaShape;
 use crate::export::{Exporter, Needs};
-use crate::points::{Attributes, Column, bounding_box};
+use crate::pictures::{self, Look};
+use crate::points::{Attributes, Column};
 use crate::render::{
-    Background, Ball, Camera, ColourMap, Colouring, Projection, RenderError, Rgb, Scene,
-    ShapeStyle, Size, View,
+    Background, Ball, Camera, ColourMap, Colouring, Projection, RenderError, Rgb, Scene, Size, View,
 };
 
 use crate::cli::process::errors::{Result, command_error, fail};
@@ -73,7 +73,13 @@ pub(crate) struct PictureArgs {
     sight: SightArgs,
     /// What colours show: nothing, the values F, the classes of simplices, the height (z), or of a laser scan its ASPRS
     /// classes or colours [default: of a laser scan asprs, or height where it has no classes; otherwise plain].
-    #[arg(long, value_enum, value_name = "MEANING", help_heading = "Pictures (.png)")]
+    #[arg(
+        long,
+        visible_alias = "color",
+        value_enum,
+        value_name = "MEANING",
+        help_heading = "Pictures (.png)"
+    )]
     colour: Option<ColourArg>,
 }
 
@@ -234,13 +240,9 @@ impl Picture {
             (.., Some(colours)) => Colouring::Points(colours),
             _ => Colouring::Plain,
         };
-        let bounds = bounding_box(positions);
-        let diagonal = (0..3).map(|k| (bounds[1][k] - bounds[0][k]).powi(2)).sum::<f64>().sqrt();
-        // The edges are thin compared with the shape, in any unit: 0.12 for 64³ voxels, as in the figures.
-        let edge_radius = diagonal * 0.0011;
-        let style = ShapeStyle { colouring, edge_radius, ..ShapeStyle::default() };
-        let scene = Scene::of_shape(positions, shape.complex(), &style)?;
-        self.args.sight.draw(&scene, bounds)
+        let SightArgs { view, camera, size } = self.args.sight;
+        let view = view.map_or(View::ThreeQuarter, View::from);
+        pictures::png(shape, camera.map_or(Look::View(view), Look::Camera), colouring, size)
     }
 }
 

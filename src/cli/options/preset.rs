@@ -39,7 +39,7 @@ impl FromArgMatches for PresetArgs {
     }
 }
 
-/// The recipe for a CT if the user stated no selection: that for bone, with a warning that shows how to state it. `None` for
+/// The recipe for a CT if the user stated no selection: that for bone, with a note that shows how to state it. `None` for
 /// other volumes.
 pub(crate) fn suited(
     args: &InputArgs,
@@ -52,9 +52,9 @@ pub(crate) fn suited(
     let bone = args.settings().for_ct(recipe)?;
     let Hounsfield { air, soft_tissue, .. } = found()?;
     let settings = Settings::preset(CT_BONE).expect("a preset");
-    tracing::warn!(
-        "the values look like Hounsfield units ({:.0} % air, {:.0} % soft tissue), so bone is selected, as by \
-         --preset {CT_BONE}. The same, stated: {}",
+    tracing::info!(
+        "the values look like Hounsfield units ({:.0} % air, {:.0} % soft tissue): bone is selected, as by --preset \
+         {CT_BONE} ({})",
         100.0 * air,
         100.0 * soft_tissue,
         stated(&settings),
@@ -62,14 +62,9 @@ pub(crate) fn suited(
     Some(bone)
 }
 
-/// The command line with these settings added.
+/// Settings as options on a command line.
 fn stated(settings: &Settings) -> String {
-    // Arguments are quoted for a shell; none of them contains a zero byte.
-    let typed: Vec<String> = std::env::args_os()
-        .skip(1)
-        .map(|arg| shlex::try_quote(&arg.to_string_lossy()).unwrap_or_default().into_owned())
-        .collect();
-    format!("walpha {} {}", typed.join(" "), settings.arguments().join(" ").replace('=', " "))
+    settings.arguments().join(" ").replace('=', " ")
 }
 
 /// Whether an option says what to look for by gray levels, weights or α, so that a volume is not taken for labels.
@@ -78,7 +73,7 @@ pub(crate) fn looks_for_gray_levels(args: &InputArgs) -> bool {
 }
 
 /// Like [`suited`], for a volume in memory. For a segmentation without named labels, it is the recipe for the solid of all
-/// labels, with a warning that says how to get another.
+/// labels, with a note that says how to get another.
 pub(crate) fn suited_to(args: &InputArgs, recipe: &Recipe, volume: &Volume) -> Option<Recipe> {
     if recipe.labels.is_some() || recipe.surface.is_some() {
         return None;
@@ -88,11 +83,10 @@ pub(crate) fn suited_to(args: &InputArgs, recipe: &Recipe, volume: &Volume) -> O
         let there: Vec<i32> = found.foreground().map(|(label, _)| label).collect();
         let how =
             if found.stated { "the file states labels" } else { "the values look like labels" };
-        tracing::warn!(
-            "{how} ({}), so the shape is the solid of all but 0, as by --preset {LABELS}; --label takes some of \
-             them, and --threshold, --count or --ratio selects points by gray levels. The same, stated: {}",
+        tracing::info!(
+            "{how} ({}): the shape is the solid of all but 0, as by --preset {LABELS}; --label takes some of them, \
+             and --threshold, --count or --ratio selects points by gray levels",
             labels::list(there.into_iter()),
-            stated(&Settings::preset(LABELS).expect("a preset")),
         );
         return Some(recipe.clone().labels(Some(LabelChoice::All)));
     }

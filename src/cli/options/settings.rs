@@ -168,7 +168,7 @@ const HELP: &[(&str, &str, &str)] = &[
         "A",
         "The parameter α, a squared length in the units of the points: auto takes it from the spacing of the points, auto:connected is the smallest at which all points lie in one solid component, and inf gives the convex hull [default: auto for scattered points; 10·h² for a volume, where h³ is the volume of a voxel, and for its levels of detail no less than auto]",
     ),
-    ("alpha-radius", "R", "The parameter as a radius: α = R²"),
+    ("alpha-radius", "R", "Radius of the ball: the parameter α is its square"),
     (
         "alpha-ref",
         "A",
@@ -247,6 +247,7 @@ fn option(name: &'static str, heading: &'static str) -> Arg {
         "class" => arg.action(ArgAction::Append).value_delimiter(','),
         "nan" => arg.num_args(0..=1).default_missing_value("mask"),
         "refit" => arg.num_args(0..=1).require_equals(true).default_missing_value("whole"),
+        "alpha_radius" => arg.visible_alias("radius"),
         "dims" => arg.requires("dtype"),
         "dtype" => arg
             .requires("dims")

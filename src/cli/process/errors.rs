@@ -1,15 +1,15 @@
 //! Errors of the command, and the printing of all errors: what failed, why, and what to do next.
 
-use std::error::Error;
-use std::io::{self, IsTerminal};
+use std::io::{self, IsTerminal, Write};
 
-use clap::error::ErrorKind;
+use serde::Serialize;
 use walpha_base::advice::{Advise, Category, Setting, told};
 use walpha_base::shown::escaped;
 
 use crate::cli::options::global::{DIFFERENT, FAILURE, UNREAD, USAGE};
-use crate::cli::process::output::remark;
+use crate::cli::process::output::{json, remark, write_all};
 use crate::cli::process::progress;
+use crate::cli::report::SCHEMA_VERSION;
 
 /// The result of a command or of one of its steps.
 pub(crate) type Result<T, E = CommandError> = std::result::Result<T, E>;
@@ -93,15 +93,20 @@ pub(crate) fn coloured() -> bool {
     io::stderr().is_terminal() && !forbidden
 }
 
-/// An error, printed as three lines on standard error.
-struct ErrorMessage {
-    what: String,
-    why: String,
-    next: String,
+/// An error: what failed, why, and what to do next.
+pub(crate) struct ErrorMessage {
+    pub(super) what: String,
+    pub(super) why: String,
+    pub(super) next: String,
 }
 
-/// Prints why a command failed. The stage that failed is the last one announced.
-pub(crate) fn print_error(command: &str, error: &CommandError) {
+/// Prints why a command failed. The stage that failed is the last one announced. A reader that went away, as `head` does, is not
+/// told of: the exit code is that of a program which the signal PIPE ends.
+pub(crate) fn print_error(command: &str, error: &CommandError, form: ErrorForm) {
+    let code = exit_code(error);
+    if code == UNREAD {
+        return;
+    }
     let what = match progress::current().as_str() {
         _ if error.category == Category::Usage => "cannot do this".to_owned(),
         _ if error.unprinted => "could not print its result".into(),
@@ -115,7 +120,9 @@ pub(crate) fn print_error(command: &str, error: &CommandError) {
     };
     let CommandError { why, next, .. } = error.clone();
     let next = next.unwrap_or_else(|| help(command));
-    ErrorMessage { what: format!("{command} {what}"), why, next }.print();
+    // What cannot be printed on standard output is told on standard error.
+    let form = if error.unprinted { ErrorForm::Text } else { form };
+    ErrorMessage { what: format!("{command} {what}"), why, next }.print(form, code);
 }
 
 /// The exit code after an error.
@@ -128,56 +135,20 @@ pub(crate) fn exit_code(error: &CommandError) -> u8 {
     }
 }
 
-/// Prints what is wrong with a command line; `configured` means that some of it comes from a file.
-pub(crate) fn print_usage_error(command: &str, error: &clap::Error, configured: bool) {
-    if matches!(error.kind(), ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand) {
-        let _ = error.print();
-        return;
-    }
-    let text = error.render().to_string();
-    let (mut said, mut tips, mut usage) = (Vec::new(), Vec::new(), None);
-    for line in text.lines().map(str::trim).filter(|line| !line.is_empty()) {
-        if let Some(tip) = line.strip_prefix("tip: ") {
-            tips.push(tip.to_owned());
-        } else if let Some(line) = line.strip_prefix("Usage: ") {
-            usage = Some(line.to_owned());
-        } else if !line.starts_with("For more information") && usage.is_none() {
-            said.push(line);
-        }
-    }
-    let mut what = said.first().map_or("", |line| line.trim_start_matches("error: ")).to_owned();
-    let mut rest = said.get(1..).unwrap_or_default().join(" ");
-    // The form is "invalid value 'x' for '--option <X>': message of its parser".
-    if rest.is_empty()
-        && let Some((head, tail)) = what.split_once("': ")
-    {
-        (what, rest) = (format!("{head}'"), tail.to_owned());
-    }
-    if what.ends_with(':') {
-        what = format!("{what} {rest}");
-        rest = String::new();
-    }
-    // Parsers of values return errors of the command, which clap wraps in a trait object.
-    let next = || error.source()?.downcast_ref::<CommandError>()?.next.clone();
-    let (why, next) = match rest.strip_prefix("[possible values: ") {
-        Some(values) => (format!("it is one of {}", values.trim_end_matches(']')), None),
-        None => (rest, next()),
-    };
-    let why = if why.is_empty() {
-        usage.map_or_else(|| format!("{command} does not take it"), |u| format!("the usage is {u}"))
-    } else {
-        why
-    };
-    tips.extend(next);
-    if configured {
-        tips.push("note that --config sets options, too".into());
-    }
-    let next = if tips.is_empty() { help(command) } else { tips.join("; ") };
-    ErrorMessage { what, why, next }.print();
-}
-
 impl ErrorMessage {
-    fn print(&self) {
+    /// Prints the message: as text on standard error, or as JSON where the report would be.
+    pub(crate) fn print(&self, form: ErrorForm, exit_code: u8) {
+        if let ErrorForm::Json { piped } = form {
+            let Self { what, why, next } = self;
+            let error = ErrorReport { what, why, next, exit_code };
+            let text = json(&WithError { schema_version: SCHEMA_VERSION, error });
+            let print = |text: String| {
+                if piped { io::stderr().write_all(text.as_bytes()) } else { write_all(&text) }
+            };
+            if text.and_then(print).is_ok() {
+                return;
+            }
+        }
         let (red, bold, plain) =
             if coloured() { ("\x1b[1;31m", "\x1b[1m", "\x1b[0m") } else { ("", "", "") };
         // These contain names of files and arguments, which may contain control characters.
@@ -189,7 +160,33 @@ impl ErrorMessage {
     }
 }
 
-fn help(command: &str) -> String {
+/// How an error is printed.
+#[derive(Clone, Copy)]
+pub(crate) enum ErrorForm {
+    Text,
+    /// One object on standard output, or on standard error if a file goes to standard output.
+    Json {
+        piped: bool,
+    },
+}
+
+/// The report of `--json` after a failure.
+#[derive(Serialize)]
+struct WithError<'a> {
+    schema_version: u32,
+    error: ErrorReport<'a>,
+}
+
+#[derive(Serialize)]
+struct ErrorReport<'a> {
+    what: &'a str,
+    why: &'a str,
+    next: &'a str,
+    exit_code: u8,
+}
+
+/// Where the help of a command is.
+pub(super) fn help(command: &str) -> String {
     format!("`{command} --help` lists its options")
 }
 

@@ -8,3 +8,4 @@ pub(super) mod progress;
 pub(super) mod ranks;
 pub(super) mod signals;
 pub(super) mod threads;
+pub(super) mod usage;

@@ -8,7 +8,10 @@ use serde::Serialize;
 use tracing::field::{Field, Visit};
 use tracing::{Event, Level, Subscriber};
 use tracing_subscriber::Layer;
+use tracing_subscriber::fmt::format::Writer;
+use tracing_subscriber::fmt::{FmtContext, FormatEvent, FormatFields};
 use tracing_subscriber::layer::Context;
+use tracing_subscriber::registry::LookupSpan;
 use walpha_base::advice::Category;
 use walpha_base::shown::escaped;
 use walpha_base::standard_output;
@@ -16,7 +19,8 @@ use walpha_base::standard_output;
 use crate::cli::options::global::Global;
 use crate::cli::process::errors::{CommandError, Result, command_error};
 
-/// Prints facts in the form that the options request: as JSON, as text, or not at all. They go to standard error if a file goes
+/// Prints facts in the form that the options request: as JSON, as text (with `--verbose` in its alternate form, which is longer),
+/// or not at all. They go to standard error if a file goes
 /// to standard output (`-o -`).
 pub(crate) fn print_summary<T: Serialize + Display>(global: Global, facts: &T) -> Result<()> {
     if global.json {
@@ -25,7 +29,8 @@ pub(crate) fn print_summary<T: Serialize + Display>(global: Global, facts: &T) -
             if warnings.is_empty() { json(facts) } else { json(&WithWarnings { facts, warnings }) };
         write_text(global, &text?)?;
     } else if !global.quiet {
-        write_text(global, &escaped(&facts.to_string(), |c| c == '\n'))?;
+        let text = if global.verbose { format!("{facts:#}") } else { facts.to_string() };
+        write_text(global, &escaped(&text, |c| c == '\n'))?;
     }
     Ok(())
 }
@@ -71,13 +76,21 @@ pub(crate) fn print(text: &str) -> Result<()> {
 pub(crate) fn print_with(
     write: impl FnOnce(&mut io::StdoutLock<'static>) -> io::Result<()>,
 ) -> Result<()> {
-    let print = || {
-        standard_output::check()?;
-        let mut out = io::stdout().lock();
-        write(&mut out)?;
-        out.flush()
-    };
-    print().map_err(|error| unprinted(&error))
+    write_with(write).map_err(|error| unprinted(&error))
+}
+
+/// Writes text to standard output, and flushes it.
+pub(super) fn write_all(text: &str) -> io::Result<()> {
+    write_with(|out| out.write_all(text.as_bytes()))
+}
+
+fn write_with(
+    write: impl FnOnce(&mut io::StdoutLock<'static>) -> io::Result<()>,
+) -> io::Result<()> {
+    standard_output::check()?;
+    let mut out = io::stdout().lock();
+    write(&mut out)?;
+    out.flush()
 }
 
 /// Prints a remark to standard error. A failure is ignored, where `eprintln!` would panic.
@@ -89,15 +102,50 @@ pub(crate) fn json(value: &impl Serialize) -> io::Result<String> {
     Ok(serde_json::to_string_pretty(value)? + "\n")
 }
 
-/// The distinct warnings so far.
+/// Prints warnings and notes of the run as `warning: …` and `note: …`, which errors resemble.
+pub(crate) struct Labelled;
+
+impl<S, N> FormatEvent<S, N> for Labelled
+where
+    S: Subscriber + for<'a> LookupSpan<'a>,
+    N: for<'a> FormatFields<'a> + 'static,
+{
+    fn format_event(
+        &self,
+        context: &FmtContext<'_, S, N>,
+        mut out: Writer<'_>,
+        event: &Event<'_>,
+    ) -> fmt::Result {
+        let (label, colour) = match *event.metadata().level() {
+            Level::ERROR => ("error", "\x1b[1;31m"),
+            Level::WARN => ("warning", "\x1b[1;33m"),
+            Level::INFO => ("note", "\x1b[1m"),
+            Level::DEBUG | Level::TRACE => ("debug", "\x1b[2m"),
+        };
+        if out.has_ansi_escapes() {
+            write!(out, "{colour}{label}:\x1b[0m ")?;
+        } else {
+            write!(out, "{label}: ")?;
+        }
+        context.format_fields(out.by_ref(), event)?;
+        writeln!(out)
+    }
+}
+
+/// The target of notes on outputs, which reports do not repeat: they say nothing of the input or the result.
+pub(crate) const OF_OUTPUTS: &str = "walpha::outputs";
+
+/// The distinct warnings and notes so far.
 static WARNINGS: Mutex<Vec<String>> = Mutex::new(Vec::new());
 
-/// Collects warnings, and passes each on once: a file that is examined before it is read would otherwise cause them twice.
+/// Collects warnings and notes, and passes each on once: a file that is examined before it is read would otherwise cause them twice.
 pub(crate) struct WarningCollector;
 
 impl<S: Subscriber> Layer<S> for WarningCollector {
     fn event_enabled(&self, event: &Event<'_>, _: Context<'_, S>) -> bool {
-        if *event.metadata().level() != Level::WARN {
+        let metadata = event.metadata();
+        let is_kept = matches!(*metadata.level(), Level::WARN | Level::INFO);
+        if !is_kept || metadata.target() == OF_OUTPUTS {
             return true;
         }
         let mut message = Message::default();
@@ -124,7 +172,7 @@ impl Visit for Message {
     }
 }
 
-/// The warnings so far.
+/// The warnings and notes so far.
 pub(crate) fn warnings() -> Vec<String> {
     WARNINGS.lock().unwrap_or_else(PoisonError::into_inner).clone()
 }

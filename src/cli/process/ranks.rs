@@ -2,12 +2,11 @@
 
 use std::ffi::OsString;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::process::ExitCode;
 
 use walpha_base::advice::Category;
 
-use crate::cli::options::global::{PANICKED, USAGE};
-use crate::cli::process::errors::{self, CommandError, Result, command_error};
+use crate::cli::options::global::{PANICKED, SUCCESS, USAGE};
+use crate::cli::process::errors::{self, CommandError, ErrorForm, Result, command_error};
 use crate::outofcore::{Alone, Team};
 
 /// The role of this process among those started for the command.
@@ -109,24 +108,22 @@ impl Ranks {
     pub(crate) fn run(
         &self,
         command: &str,
-        lead: impl FnOnce() -> Result<ExitCode, u8>,
+        lead: impl FnOnce() -> Result<u8, u8>,
         serve: impl FnOnce() -> Result<()>,
-    ) -> ExitCode {
+    ) -> u8 {
         let is_first = self.team().rank() == 0;
         if let Self::Unconnected(launched) = self {
             if launched.rank > 0 {
-                return ExitCode::SUCCESS;
+                return SUCCESS;
             }
-            errors::print_error(command, &launched.refusal(command));
-            return ExitCode::from(USAGE);
+            errors::print_error(command, &launched.refusal(command), ErrorForm::Text);
+            return USAGE;
         }
         let done = if is_first {
             catch_unwind(AssertUnwindSafe(lead))
         } else {
             catch_unwind(AssertUnwindSafe(|| {
-                serve()
-                    .map(|()| ExitCode::SUCCESS)
-                    .map_err(|error| self.report_failure(command, &error))
+                serve().map(|()| SUCCESS).map_err(|error| self.report_failure(command, &error))
             }))
         };
         match done {
@@ -142,16 +139,20 @@ impl Ranks {
         /// If all processes fail, the first reports it and ends the others within this time.
         const PATIENCE: std::time::Duration = std::time::Duration::from_secs(2);
         std::thread::sleep(PATIENCE);
-        errors::print_error(&format!("{command} (rank {})", self.team().rank()), error);
+        errors::print_error(
+            &format!("{command} (rank {})", self.team().rank()),
+            error,
+            ErrorForm::Text,
+        );
         errors::exit_code(error)
     }
 
     /// Ends all processes.
-    fn end(&self, code: u8) -> ExitCode {
+    fn end(&self, code: u8) -> u8 {
         match self {
             #[cfg(feature = "mpi")]
             Self::Connected(world) => world.abort(code),
-            _ => ExitCode::from(code),
+            _ => code,
         }
     }
 }

@@ -6,10 +6,11 @@ mod plane;
 
 use std::collections::BTreeMap;
 use std::fmt::{self, Display};
+use std::fs;
 
 use serde::Serialize;
 use walpha_base::memory;
-use walpha_base::shown::{number, six_digits};
+use walpha_base::shown::{brief, counted, grouped, rounded, six_digits};
 
 use crate::interpolate::{Adaptive, Fit, Refit};
 use crate::labels::LabelSizes;
@@ -18,7 +19,7 @@ use crate::pipeline::{Model, Parameter, Weighed};
 use crate::points::WeightSummary;
 use crate::shape::{Alpha, Cuts, Engine, Kept};
 use crate::surface::Isovalue;
-use crate::{Coordinates, GrayRange};
+use crate::{Coordinates, GrayRange, LengthUnit};
 
 use crate::cli::commands::pipeline::VolumeSummary;
 use crate::cli::process::errors::Result;
@@ -85,6 +86,9 @@ pub(super) struct Report {
     #[serde(skip_serializing_if = "Option::is_none")]
     solid: Option<Cuts>,
     files: Vec<String>,
+    /// Outputs that the command could have written.
+    #[serde(skip)]
+    pub(super) example: &'static str,
     /// The offsets that files in single precision have subtracted from coordinates, if they have.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(super) offsets: Vec<FileOffset>,
@@ -113,6 +117,7 @@ impl Report {
             kept: None,
             solid: None,
             files: Vec::new(),
+            example: "bone.ply (or .stl, .vtu, .png)",
             offsets: Vec::new(),
             seconds: BTreeMap::new(),
             peak_memory_bytes: None,
@@ -226,60 +231,130 @@ impl Report {
     }
 }
 
+/// In a few lines, or with classes, the wavelet stage and the time of each stage where the form is alternate (`{:#}`).
 impl Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let unit = self.coordinates.unit.symbol();
-        writeln!(f, "input     {}", self.input)?;
-        if let Some(haar) = &self.haar {
-            writeln!(f, "haar      {haar}")?;
-        }
-        write!(f, "points    {}", self.points)?;
-        if let Some(ended) = &self.points.ended_early {
-            write!(f, "\n          {ended}")?;
-        }
-        if let Some(Fit { to, steps, residual }) = self.fit {
-            let samples = match to {
-                Refit::Whole => "all samples",
-                Refit::Shape => "the samples on the shape",
-            };
-            write!(f, "\nvalues    fitted to {samples} by least squares: {steps} steps, ")?;
-            write!(f, "relative residual {residual:.1e}")?;
-        }
-        writeln!(f, "\nlengths   in {}", self.coordinates)?;
-        if let Some(labels) = &self.labels {
-            writeln!(f, "labels    {labels}, and the cells fill these voxels, without α")?;
-        }
-        if let Some(isovalue) = &self.isovalue {
-            writeln!(f, "surface   at {isovalue}; the cells are inside by the samples, without α")?;
-        }
-        if let Some(weights) = &self.weights {
-            writeln!(f, "weights   {weights} (squared lengths)")?;
-        }
-        if let Some(alpha) = &self.alpha {
-            writeln!(f, "parameter {alpha}")?;
-        }
-        match self.engine {
-            None => {}
-            Some(Engine::Cgal) => writeln!(f, "engine    cgal; native gives the same")?,
-            Some(Engine::Both) => writeln!(f, "engine    both: cgal and native give the same")?,
-            Some(_) => writeln!(f, "engine    native; cgal gives the same")?,
+        self.print_origin(f)?;
+        if f.alternate() {
+            self.print_stages(f)?;
+        } else {
+            self.print_parameters(f)?;
         }
         if let Some(kept) = &self.kept {
-            print_kept(f, kept, unit)?;
+            print_kept(f, kept, self.coordinates.unit)?;
         }
         if let Some(shape) = &self.shape {
-            shape.print(f, unit, self.balls.as_ref())?;
+            if f.alternate() {
+                shape.print_all(f, self.coordinates.unit, self.balls.as_ref())?;
+            } else {
+                shape.print(f, self.coordinates.unit, self.balls.as_ref())?;
+            }
         }
         self.print_apart(f)?;
         if self.points.in_shape == Some(0) {
             writeln!(f, "the shape is empty: every α + ω is negative; raise --alpha")?;
         }
         if let Some(cuts) = &self.solid {
-            print_cuts(f, cuts, unit)?;
+            print_cuts(f, cuts, self.coordinates.unit)?;
         }
         self.offsets.iter().try_for_each(|offset| offset.fmt(f))?;
-        ending(f, &self.files, &STAGES, &self.seconds)
+        if f.alternate() {
+            return ending(f, &self.files, &STAGES, &self.seconds);
+        }
+        print_files(f, &self.files)?;
+        if self.files.is_empty() {
+            writeln!(f, "nothing written: add -o {}", self.example)?;
+        }
+        match self.seconds.get("total") {
+            Some(total) => writeln!(f, "time      {total:.2} s (-v: all numbers)"),
+            None => Ok(()),
+        }
     }
+}
+
+impl Report {
+    /// Prints what was read, and what of it was selected.
+    fn print_origin(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if f.alternate() {
+            writeln!(f, "input     {:#}", self.input)?;
+        } else {
+            write!(f, "input     {}", self.input)?;
+            if self.coordinates.unit != LengthUnit::Unstated {
+                write!(f, ", lengths in {}", self.coordinates)?;
+            }
+            writeln!(f)?;
+        }
+        if let Some(haar) = self.haar.as_ref().filter(|_| f.alternate()) {
+            writeln!(f, "haar      {haar}")?;
+        }
+        if f.alternate() {
+            writeln!(f, "points    {:#}", self.points)?;
+        } else {
+            writeln!(f, "points    {}", self.points)?;
+        }
+        if let Some(ended) = &self.points.ended_early {
+            writeln!(f, "          {ended}")?;
+        }
+        if let Some(Fit { to, steps, residual }) = self.fit {
+            let samples = match to {
+                Refit::Whole => "all samples",
+                Refit::Shape => "the samples on the shape",
+            };
+            write!(f, "values    fitted to {samples} by least squares: {steps} steps, ")?;
+            writeln!(f, "relative residual {residual:.1e}")?;
+        }
+        if f.alternate() {
+            writeln!(f, "lengths   in {}", self.coordinates)?;
+        }
+        if let Some(labels) = &self.labels {
+            writeln!(f, "labels    {labels}, and the cells fill these voxels, without α")?;
+        }
+        if let Some(isovalue) = &self.isovalue {
+            writeln!(f, "surface   at {isovalue}; the cells are inside by the samples, without α")?;
+        }
+        Ok(())
+    }
+
+    /// Prints the weights, if there are any, and α.
+    fn print_parameters(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(weights) = self.weights.as_ref().filter(|weights| weights.are_there()) {
+            writeln!(f, "weights   {weights}")?;
+        }
+        match &self.alpha {
+            Some(alpha) => writeln!(f, "parameter {alpha}"),
+            None => Ok(()),
+        }
+    }
+
+    /// Prints the weights, α and the engine.
+    fn print_stages(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(weights) = &self.weights {
+            writeln!(f, "weights   {weights}")?;
+        }
+        if let Some(alpha) = &self.alpha {
+            writeln!(f, "parameter {alpha:#}")?;
+        }
+        match self.engine {
+            None => Ok(()),
+            Some(Engine::Cgal) => writeln!(f, "engine    cgal; native gives the same"),
+            Some(Engine::Both) => writeln!(f, "engine    both: cgal and native give the same"),
+            Some(_) => writeln!(f, "engine    native; cgal gives the same"),
+        }
+    }
+}
+
+/// A size in a power of a unit, for people. Large ones in mm² and mm³ are in cm² and cm³.
+pub(super) fn measure(size: f64, unit: LengthUnit, power: u32) -> String {
+    /// From here on, the larger unit is easier to read.
+    const LARGE: f64 = 1e4;
+    let (size, unit) = match unit {
+        LengthUnit::Millimetre if power > 1 && size >= LARGE => {
+            (size / f64::from(10_u32.pow(power)), LengthUnit::Centimetre)
+        }
+        unit => (size, unit),
+    };
+    let exponent = ["", "", "²", "³"][power as usize];
+    format!("{} {}{exponent}", brief(size), unit.symbol())
 }
 
 impl Report {
@@ -289,8 +364,10 @@ impl Report {
         let apart = self.shape.as_ref().map(|shape| shape.apart);
         let (Some(apart @ 1..), Some(all)) = (apart, self.points.in_shape) else { return Ok(()) };
         // Not `format_args!`, which Rust cannot bind to a name before 1.89.
+        let [apart, all] = [apart, all].map(|count| grouped(count as u64));
         let text = format!("apart     {apart} of {all} points are not connected to the others");
         if let Some(alpha) = self.joining_alpha {
+            let alpha = rounded_up(alpha.squared());
             return writeln!(f, "{text}; --alpha {alpha} joins 95 % of all");
         }
         match self.alpha.filter(Parameter::is_found) {
@@ -300,8 +377,15 @@ impl Report {
     }
 }
 
+/// A number that is not less, with six digits.
+pub(super) fn rounded_up(least: f64) -> String {
+    let near = six_digits(least);
+    // One unit of the last digit, of which there are at least 10⁵.
+    rounded(if near < least { near + near.abs() * 1e-5 } else { near })
+}
+
 /// Where a boundary was cut apart.
-pub(super) fn print_cuts(f: &mut fmt::Formatter<'_>, cuts: &Cuts, unit: &str) -> fmt::Result {
+pub(super) fn print_cuts(f: &mut fmt::Formatter<'_>, cuts: &Cuts, unit: LengthUnit) -> fmt::Result {
     if *cuts == Cuts::default() {
         return writeln!(f, "solid     the boundary is a manifold as it is");
     }
@@ -309,8 +393,8 @@ pub(super) fn print_cuts(f: &mut fmt::Formatter<'_>, cuts: &Cuts, unit: &str) ->
     writeln!(
         f,
         "solid     the boundary is not a manifold: cut apart at {edges} edges, with {vertices} more \
-         vertices and {midpoints} midpoints of edges; {moved} are moved, by {} {unit} at most",
-        number(six_digits(*largest_move))
+         vertices and {midpoints} midpoints of edges; {moved} are moved, by {} at most",
+        measure(*largest_move, unit, 1)
     )?;
     if *together > 0 {
         writeln!(
@@ -322,9 +406,32 @@ pub(super) fn print_cuts(f: &mut fmt::Formatter<'_>, cuts: &Cuts, unit: &str) ->
 }
 
 /// What was kept of a shape.
-pub(super) fn print_kept(f: &mut fmt::Formatter<'_>, kept: &Kept, unit: &str) -> fmt::Result {
-    let volume = number(six_digits(kept.of_volume));
-    writeln!(f, "kept      {kept}, which had a volume of {volume} {unit}³ together")
+pub(super) fn print_kept(f: &mut fmt::Formatter<'_>, kept: &Kept, unit: LengthUnit) -> fmt::Result {
+    let volume = measure(kept.of_volume, unit, 3);
+    writeln!(f, "kept      {kept}, which had a volume of {volume} together")
+}
+
+/// Prints the files written, and how large they are.
+fn print_files(f: &mut fmt::Formatter<'_>, files: &[String]) -> fmt::Result {
+    for file in files {
+        write!(f, "wrote     {}", name(file))?;
+        match fs::metadata(file) {
+            Ok(found) if found.is_file() => {
+                writeln!(f, ", {}", file_size(found.len()))?;
+            }
+            _ => writeln!(f)?,
+        }
+    }
+    Ok(())
+}
+
+/// The size of a file, in units of powers of 1000.
+fn file_size(bytes: u64) -> String {
+    match bytes {
+        0..1000 => counted(bytes, "byte"),
+        1000..1_000_000 => format!("{:.1} kB", bytes as f64 / 1e3),
+        _ => format!("{:.1} MB", bytes as f64 / 1e6),
+    }
 }
 
 /// Prints the last lines of a report: the files written, and the time of each stage.
@@ -334,14 +441,8 @@ pub(super) fn ending(
     stages: &[&str],
     seconds: &BTreeMap<&'static str, f64>,
 ) -> fmt::Result {
-    for file in files {
-        writeln!(f, "wrote     {}", name(file))?;
-    }
-    write!(f, "time     ")?;
-    for stage in stages {
-        if let Some(seconds) = seconds.get(stage) {
-            write!(f, " {stage} {seconds:.2} s")?;
-        }
-    }
-    writeln!(f)
+    print_files(f, files)?;
+    let time = |stage: &&str| Some(format!("{stage} {:.2} s", seconds.get(stage)?));
+    let times: Vec<String> = stages.iter().filter_map(time).collect();
+    writeln!(f, "time      {}", times.join(", "))
 }

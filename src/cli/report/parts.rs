@@ -3,8 +3,9 @@
 use std::fmt::{self, Display};
 
 use serde::Serialize;
-use walpha_base::shown::number;
+use walpha_base::shown::{grouped, rounded};
 
+use super::measure;
 use super::plane::PlaneReport;
 use crate::balls::{BallUnion, BallsError};
 use crate::cli::process::output::name;
@@ -113,11 +114,20 @@ impl WeightsReport {
     }
 }
 
+impl WeightsReport {
+    /// Whether any weight differs from 0.
+    pub(super) fn are_there(&self) -> bool {
+        self.min != 0.0 || self.max != 0.0
+    }
+}
+
 impl Display for WeightsReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { kind, of_radii, min, mean, max, unit } = self;
         let squares = if *of_radii { ", squares of its radii" } else { "" };
-        write!(f, "{kind}{squares}: min {min:.6}, mean {mean:.6}, max {max:.6} {}²", unit.symbol())
+        let [min, mean, max] = [min, mean, max].map(|weight| rounded(*weight));
+        let unit = unit.symbol();
+        write!(f, "{kind}{squares}: {min} to {max} {unit}², mean {mean} {unit}²")
     }
 }
 
@@ -132,12 +142,10 @@ impl HaarReport {
 impl Display for HaarReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { kept, total, epsilon, rms, rms_in_values } = self;
-        write!(
-            f,
-            "{kept} of {total} coefficients kept, ε = {epsilon:.6}, rms {rms:.6} gray levels"
-        )?;
+        let [epsilon, rms] = [epsilon, rms].map(|error| rounded(*error));
+        write!(f, "{kept} of {total} coefficients kept, ε = {epsilon}, rms {rms} gray levels")?;
         match rms_in_values {
-            Some(rms) => write!(f, " ({rms:.6} in values)"),
+            Some(rms) => write!(f, " ({} in values)", rounded(*rms)),
             None => Ok(()),
         }
     }
@@ -147,10 +155,10 @@ impl Display for InputReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}", name(&self.name))?;
         if let Some([x, y, z]) = self.dims {
-            write!(f, "  {x}×{y}×{z} samples")?;
+            write!(f, ", {x}×{y}×{z} samples")?;
         }
-        if let (Some(_), Some([low, high])) = (self.dims, self.gray_range) {
-            let (low, high) = (number(low), number(high));
+        if let (Some(_), Some([low, high]), true) = (self.dims, self.gray_range, f.alternate()) {
+            let (low, high) = (rounded(low), rounded(high));
             write!(f, ", values {low}..{high} are gray 0..255")?;
         }
         Ok(())
@@ -159,15 +167,18 @@ impl Display for InputReport {
 
 impl Display for PointsReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} selected", self.selected)?;
+        write!(f, "{} selected", grouped(self.selected as u64))?;
+        let in_shape = self.in_shape.filter(|&count| count < self.selected || f.alternate());
+        // Without `-v`, what there is none of is left out.
+        let some = |count: Option<usize>| count.filter(|&count| count > 0 || f.alternate());
         let counts = [
-            (self.duplicates, "duplicates"),
-            (self.hidden, "hidden"),
-            (self.in_shape, "in the shape"),
+            (some(self.duplicates), "duplicates"),
+            (some(self.hidden), "hidden"),
+            (in_shape, "in the shape"),
         ];
         for (count, what) in counts {
             if let Some(count) = count {
-                write!(f, ", {count} {what}")?;
+                write!(f, ", {} {what}", grouped(count as u64))?;
             }
         }
         MovedIntoBox(self.folded).fmt(f)
@@ -275,11 +286,61 @@ impl ShapeReport {
         writeln!(f, "vertices  {}", Line(&self.vertices))
     }
 
-    /// Prints the numbers of the shape, with lengths in `unit`, and those of the balls that it is of.
+    /// Prints the topology and sizes of the shape and of the balls that it is of, and what hangs loose.
     pub(super) fn print(
         &self,
         f: &mut fmt::Formatter<'_>,
-        unit: &str,
+        unit: LengthUnit,
+        balls: Option<&BallsReport>,
+    ) -> fmt::Result {
+        let betti = self.betti.map(|betti| format!("{betti}; ")).unwrap_or_default();
+        let (loose, whole) = if let Some(plane) = &self.plane {
+            writeln!(f, "shape     {betti}in a plane: {}", plane.sizes(unit))?;
+            (plane.loose(), "triangle")
+        } else {
+            let [volume, area] = [measure(self.volume, unit, 3), measure(self.area, unit, 2)];
+            let of = if balls.is_some() { " of tetrahedra" } else { "" };
+            writeln!(f, "shape     {betti}volume {volume}{of}, surface {area}")?;
+            balls.map_or(Ok(()), |balls| balls.print(f, unit))?;
+            let area = (self.singular_area > 0.0).then(|| measure(self.singular_area, unit, 2));
+            let area = area.map(|area| format!(" ({area})")).unwrap_or_default();
+            let singular = [&self.facets, &self.edges, &self.vertices].map(|one| one.singular);
+            (loose(singular, &area), "cell")
+        };
+        if let Some(loose) = loose {
+            writeln!(f, "loose     {loose}, which are part of no {whole}")?;
+        }
+        self.print_largest(f, unit)
+    }
+
+    /// Prints the largest component, if there are several, and the voids, if they are known.
+    fn print_largest(&self, f: &mut fmt::Formatter<'_>, unit: LengthUnit) -> fmt::Result {
+        if let ([largest, _, ..], None) = (&self.components[..], &self.plane) {
+            let Component { vertices, volume, .. } = largest;
+            let (vertices, volume) = (grouped(*vertices as u64), measure(*volume, unit, 3));
+            writeln!(f, "largest   component: {vertices} vertices, volume {volume}")?;
+        }
+        if let Some(voids) = &self.voids
+            && let Some(largest) = voids.first()
+        {
+            let sum = voids.iter().fold(0.0, |sum, void| sum + void.volume);
+            let Void { volume, filling_alpha, .. } = largest;
+            let [sum, volume] = [sum, *volume].map(|volume| measure(volume, unit, 3));
+            let alpha = rounded(filling_alpha.squared());
+            writeln!(
+                f,
+                "voids     {sum} in all, the largest {volume}, filled at α = {alpha} {}²",
+                unit.symbol()
+            )?;
+        }
+        Ok(())
+    }
+
+    /// Prints all numbers of the shape, and those of the balls that it is of.
+    pub(super) fn print_all(
+        &self,
+        f: &mut fmt::Formatter<'_>,
+        unit: LengthUnit,
         balls: Option<&BallsReport>,
     ) -> fmt::Result {
         match &self.plane {
@@ -290,40 +351,23 @@ impl ShapeReport {
             writeln!(f, "topology  {betti}")?;
         }
         if let Some(plane) = &self.plane {
-            return plane.print_sizes(f, unit);
+            return writeln!(f, "outline   {}", plane.sizes(unit));
         }
         let of = if balls.is_some() { " of tetrahedra" } else { "" };
-        writeln!(f, "volume    {:.6} {unit}³{of}", self.volume)?;
-        let (area, singular) = (self.area, self.singular_area);
-        write!(f, "area      {area:.6} {unit}²")?;
-        if singular > 0.0 {
-            let regular = self.regular_area;
+        writeln!(f, "volume    {} {}³{of}", rounded(self.volume), unit.symbol())?;
+        let [area, regular, singular] =
+            [self.area, self.regular_area, self.singular_area].map(rounded);
+        let squared = format!("{}²", unit.symbol());
+        write!(f, "area      {area} {squared}")?;
+        if self.singular_area > 0.0 {
             write!(
                 f,
-                ": regular facets {regular:.6} {unit}², singular facets {singular:.6} {unit}²"
+                ": regular facets {regular} {squared}, singular facets {singular} {squared}"
             )?;
         }
         writeln!(f)?;
-        if let Some(BallsReport { volume, volume_bound, area, area_bound }) = balls {
-            let (volume, area) = (certain(*volume, *volume_bound), certain(*area, *area_bound));
-            writeln!(f, "balls     volume {volume} {unit}³, area {area} {unit}²")?;
-        }
-        if let [largest, _, ..] = &self.components[..] {
-            let Component { vertices, volume, .. } = largest;
-            writeln!(f, "largest   component: {vertices} vertices, volume {volume:.6} {unit}³")?;
-        }
-        if let Some(voids) = &self.voids
-            && let Some(largest) = voids.first()
-        {
-            let sum = voids.iter().fold(0.0, |sum, void| sum + void.volume);
-            let Void { volume, filling_alpha, .. } = largest;
-            writeln!(
-                f,
-                "voids     {sum:.6} {unit}³ in all, the largest {volume:.6} {unit}³, filled at α = \
-                 {filling_alpha} {unit}²"
-            )?;
-        }
-        Ok(())
+        balls.map_or(Ok(()), |balls| balls.print(f, unit))?;
+        self.print_largest(f, unit)
     }
 }
 
@@ -354,6 +398,13 @@ impl BallsReport {
             area_bound: area.bound,
         }))
     }
+
+    fn print(&self, f: &mut fmt::Formatter<'_>, unit: LengthUnit) -> fmt::Result {
+        let Self { volume, volume_bound, area, area_bound } = *self;
+        let (volume, area) = (certain(volume, volume_bound), certain(area, area_bound));
+        let unit = unit.symbol();
+        writeln!(f, "balls     volume {volume} {unit}³, area {area} {unit}²")
+    }
 }
 
 /// A number with the decimals that its bound leaves certain, at most twelve digits.
@@ -365,6 +416,18 @@ pub(in crate::cli) fn certain(value: f64, bound: f64) -> String {
     let certain = if bound > 0.0 { (-(2.0 * bound).log10()).floor() as i32 } else { 12 };
     let decimals = certain.min(12 - digits_before).max(0);
     format!("{value:.*}", decimals as usize)
+}
+
+/// The facets (of this area), edges and vertices that hang loose, as a list; `None` if there are none.
+pub(super) fn loose([facets, edges, vertices]: [usize; 3], area: &str) -> Option<String> {
+    let named = |count: usize, one: &str, more: &str| {
+        (count > 0)
+            .then(|| format!("{} {}", grouped(count as u64), if count == 1 { one } else { more }))
+    };
+    let facets = named(facets, "triangle", "triangles").map(|facets| facets + area);
+    let parts = [facets, named(edges, "edge", "edges"), named(vertices, "point", "points")];
+    let parts: Vec<String> = parts.into_iter().flatten().collect();
+    (!parts.is_empty()).then(|| parts.join(", "))
 }
 
 /// The number of points outside the largest component, by points.

@@ -5,9 +5,10 @@ use std::fmt;
 use serde::Serialize;
 use walpha_base::shown::counted;
 
-use super::parts::Line;
-use crate::AlphaShape;
+use super::measure;
+use super::parts::{Line, loose};
 use crate::shape::ByClass;
+use crate::{AlphaShape, LengthUnit};
 
 /// The shape of points in a plane, as a region of that plane.
 #[derive(Serialize)]
@@ -49,12 +50,17 @@ impl PlaneReport {
         writeln!(f, "vertices  {}", Line(&self.vertices))
     }
 
-    /// Prints the sizes, with lengths in `unit`.
-    pub(super) fn print_sizes(&self, f: &mut fmt::Formatter<'_>, unit: &str) -> fmt::Result {
+    /// The outline and its sizes, in words.
+    pub(super) fn sizes(&self, unit: LengthUnit) -> String {
         let Self { polygons, holes, area, perimeter, .. } = self;
         let (polygons, holes) =
             (counted(*polygons as u64, "polygon"), counted(*holes as u64, "hole"));
-        writeln!(f, "outline   {polygons} with {holes}")?;
-        writeln!(f, "area      {area:.6} {unit}², perimeter {perimeter:.6} {unit}")
+        let (area, perimeter) = (measure(*area, unit, 2), measure(*perimeter, unit, 1));
+        format!("{polygons} with {holes}, area {area}, perimeter {perimeter}")
+    }
+
+    /// The edges and vertices that hang loose, in words.
+    pub(super) fn loose(&self) -> Option<String> {
+        loose([0, self.edges.singular, self.vertices.singular], "")
     }
 }

@@ -3,7 +3,7 @@ use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 use walpha_base::number_or_null_or_name;
-use walpha_base::shown::{number, six_digits};
+use walpha_base::shown::{brief, rounded};
 
 use super::PipelineError;
 use super::spacing::spacing_alpha;
@@ -246,6 +246,7 @@ impl From<Parameter> for ParameterFields {
     }
 }
 
+/// The radius of the ball and α, with four digits, or with six where the form is alternate (`{:#}`); and where they come from.
 impl Display for Parameter {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if self.origin == ParameterOrigin::Labels {
@@ -254,11 +255,14 @@ impl Display for Parameter {
         if self.origin == ParameterOrigin::Surface {
             return f.write_str("none: the cells are those inside an isosurface, by the samples");
         }
-        let (squared, unit) = (number(self.alpha.squared()), self.unit.symbol());
-        write!(f, "α = {squared} {unit}² (squared length; ")?;
+        let shown = if f.alternate() { rounded } else { brief };
+        let (squared, unit) = (shown(self.alpha.squared()), self.unit.symbol());
         match self.alpha.radius() {
-            Some(radius) => write!(f, "√α = {} {unit})", number(six_digits(radius)))?,
-            None => f.write_str("negative, so no radius)")?,
+            Some(radius) if radius.is_finite() => {
+                write!(f, "ball radius {} {unit} (α = {squared} {unit}²)", shown(radius))?;
+            }
+            Some(_) => f.write_str("α = inf, the convex hull")?,
+            None => write!(f, "α = {squared} {unit}² (negative, so no ball radius)")?,
         }
         f.write_str(match self.origin {
             ParameterOrigin::Given | ParameterOrigin::Labels | ParameterOrigin::Surface => "",

@@ -84,6 +84,12 @@ impl Header {
                 break;
             }
             if given.is_none() {
+                if is_prose(lines) {
+                    let what =
+                        "holds text without numbers, and does not look like a table of points";
+                    let next = "name a file of points or a volume";
+                    return Err(format(path, Reason::content(what, next)));
+                }
                 let Err(error) = Columns::named(&names) else { unreachable!("tried above") };
                 return Err(unknown(path, &error));
             }
@@ -136,6 +142,13 @@ impl Header {
 /// The error for names that do not identify x, y and z.
 fn unknown(path: &Path, error: &UnknownColumns) -> PointsError {
     format(path, Reason::content(format!("{FIRST_LINE}: {error}"), error.next))
+}
+
+/// Whether none of the first lines holds a number.
+fn is_prose(lines: &Numbered<'_>) -> bool {
+    /// Enough lines for a header of several, with units.
+    const FIRST: usize = 20;
+    !lines.contents().take(FIRST).any(|(_, line)| holds_number(line))
 }
 
 /// The names in a line.

@@ -7,7 +7,7 @@ use walpha_base::shown::shown;
 
 /// The error for an extension that no writer has.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{path}: no format has the extension `{extension}`, {thing} can be written as {known}")]
+#[error("{path}: {}; {thing} can be written as {known}", unknown(.extension))]
 pub struct UnknownFormat {
     path: String,
     extension: String,
@@ -50,6 +50,14 @@ impl UnknownFormat {
             thing,
             known: dotted.join(", "),
         }
+    }
+}
+
+fn unknown(extension: &str) -> String {
+    if extension.is_empty() {
+        "it has no extension".into()
+    } else {
+        format!("cannot write .{extension}")
     }
 }
 

@@ -1,10 +1,11 @@
 //! What `walpha ladder` prints: JSON, text, and tables.
 
 use std::collections::BTreeMap;
-use std::fmt::{self, Display, Write as _};
+use std::fmt::{self, Display};
 use std::io;
 
 use serde::Serialize;
+use walpha_base::shown::rounded;
 
 use crate::Coordinates;
 use crate::ladder::{Curve, Filtration, Ladder, Level, Suggestions};
@@ -14,7 +15,7 @@ use crate::shape::{Alpha, Betti, ByClass, Measures, Void};
 use crate::cli::commands::pipeline::Domain;
 use crate::cli::process::output::name;
 use crate::cli::report::offsets::FileOffset;
-use crate::cli::report::{SCHEMA_VERSION, WeightsReport, ending};
+use crate::cli::report::{SCHEMA_VERSION, WeightsReport, ending, rounded_up};
 
 /// Summary of `walpha ladder` over α.
 #[derive(Serialize)]
@@ -164,14 +165,17 @@ const STAGES: [&str; 8] =
 impl LadderSummary {
     fn print_suggested(&self, f: &mut fmt::Formatter<'_>, s: &Suggestions) -> fmt::Result {
         writeln!(f, "curve     {} critical values; α to try:", self.critical_values)?;
-        writeln!(f, "          {:<12} the first with every point in a cell", s.all_points)?;
-        writeln!(f, "          {:<12} the first with that and one solid component", s.one_region)?;
-        writeln!(f, "          {:<12} the first with that and no void", s.no_void)?;
+        let shown = |alpha: Alpha| rounded_up(alpha.squared());
+        let [all, one, none] = [s.all_points, s.one_region, s.no_void].map(shown);
+        writeln!(f, "          {all:<12} the first with every point in a cell")?;
+        writeln!(f, "          {one:<12} the first with that and one solid component")?;
+        writeln!(f, "          {none:<12} the first with that and no void")?;
         let [low, high] = s.plateau;
+        let low = shown(low);
         if high == Alpha::INFINITE {
             writeln!(f, "          {low:<12} to inf: b0, b1, b2 change no more")?;
         } else {
-            let all = s.all_points;
+            let high = rounded(high.squared());
             writeln!(
                 f,
                 "          {low:<12} to {high}: the longest stretch without a change of b0, b1, b2, from {all} on"
@@ -198,19 +202,17 @@ impl LadderSummary {
         )?;
         for level in &self.levels {
             let Betti { b0, b1, b2, .. } = level.betti;
-            let mut alpha = String::new();
-            // Digits that do not fit the column are in the files.
-            write!(alpha, "{}", (level.alpha.squared() * 1e6).round() / 1e6)?;
+            // All digits are in the files.
+            let [alpha, volume, voids] =
+                [level.alpha.squared(), level.measures.volume, level.void_volume].map(rounded);
             writeln!(
                 f,
-                "{alpha:>12} {:>8} {:>8} {:>8} {b0:>6} {b1:>6} {b2:>6} {:>6} {:>12.1} {:>8.2}% {:>12.1}",
+                "{alpha:>12} {:>8} {:>8} {:>8} {b0:>6} {b1:>6} {b2:>6} {:>6} {volume:>12} {:>8.2}% {voids:>12}",
                 level.cells,
                 level.facets.in_shape(),
                 level.edges.in_shape(),
                 level.solid_components,
-                level.measures.volume,
                 100.0 * level.coverage,
-                level.void_volume,
             )?;
         }
         Ok(())

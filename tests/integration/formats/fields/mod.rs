@@ -97,7 +97,11 @@ pub fn walk(format: &str, fields: &[Field]) {
         assert_eq!(code, expected, "{format}, {name}\n{stdout}\n{stderr}");
         match fate {
             Fate::Read(check) => check(&path),
-            Fate::Refused(words) => has(&stderr, words),
+            Fate::Refused(words) => {
+                let report: serde_json::Value = serde_json::from_str(&stdout).unwrap();
+                let part = |name| report["error"][name].as_str().unwrap().to_owned();
+                has(&["what", "why", "next"].map(part).join("\n"), words);
+            }
             Fate::PassedOver(words) => {
                 let report: serde_json::Value = serde_json::from_str(&stdout).unwrap();
                 has(&report["warnings"].to_string(), words);

@@ -1,0 +1,130 @@
+//! Pictures of a shape as a whole: as PNG, and as the interactive page of `walpha view`.
+
+use crate::ladder::Filtration;
+use crate::points::bounding_box;
+use crate::render::{
+    Background, Camera, Colouring, Detail, Page, Projection, RenderError, Scene, ShapeStyle, Size,
+    Subject, View,
+};
+use crate::shape::{Alpha, AlphaShape, ShapeError, suggested};
+use walpha_base::advice::{Advice, Advise, Category, wrapped};
+
+/// Where a picture is seen from.
+#[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
+pub enum Look {
+    /// From this side, all of the points in view.
+    View(View),
+    /// From a place of choice.
+    Camera(Camera),
+}
+
+/// The boundary of a shape on white, as PNG: bone-coloured and smooth, unless colours show more. That of a torus is laid out in
+/// space.
+///
+/// # Errors
+/// [`RenderError`] if there are not as many values as points, or the camera has no view.
+pub fn png(
+    shape: &AlphaShape,
+    look: Look,
+    colouring: Colouring<'_>,
+    size: Size,
+) -> Result<Vec<u8>, RenderError> {
+    let positions = shape.points().positions();
+    let bounds = bounding_box(positions);
+    let diagonal = (0..3).map(|k| (bounds[1][k] - bounds[0][k]).powi(2)).sum::<f64>().sqrt();
+    // The edges are thin compared with the shape, in any unit: 0.12 for 64³ voxels, as in the figures.
+    let edge_radius = diagonal * 0.0011;
+    let style = ShapeStyle { colouring, edge_radius, ..ShapeStyle::default() };
+    let scene = Scene::of_shape(positions, shape.complex(), &style)?;
+    let camera = match look {
+        Look::Camera(camera) => camera,
+        Look::View(view) => Camera::fit(bounds, view, Projection::Perspective, size)?,
+    };
+    scene.render(&camera, size, Background::White)?.to_png()
+}
+
+/// Why there is no page of a shape.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum PageError {
+    /// The cells of a solid of labels or inside an isosurface do not depend on α.
+    #[error("a page moves through α, on which the cells of this shape do not depend")]
+    WithoutAlpha,
+    /// A torus has no place in space.
+    #[error("a page shows shapes in space, and this is one of a torus")]
+    Torus,
+    /// The points have no filtration.
+    #[error(transparent)]
+    Shape(#[from] ShapeError),
+    /// The page cannot be made.
+    #[error(transparent)]
+    Render(#[from] RenderError),
+}
+
+impl Advise for PageError {
+    fn advice(&self) -> Option<Advice> {
+        match self {
+            Self::WithoutAlpha | Self::Torus => Some("write a picture, as .png".into()),
+            other => other.wrapped()?.advice(),
+        }
+    }
+
+    fn category(&self) -> Category {
+        self.wrapped().map_or(Category::Usage, Advise::category)
+    }
+
+    wrapped!(Shape, Render);
+}
+
+/// The interactive page of the points of a shape, which opens at its α: that of `walpha view` for points.
+///
+/// Computes the filtration of the points.
+///
+/// # Errors
+/// The shape is one of a torus, or has no α.
+pub fn page(
+    shape: &AlphaShape,
+    title: &str,
+    facts: &[(String, String)],
+) -> Result<Page, PageError> {
+    if shape.options().periodic.is_some() {
+        return Err(PageError::Torus);
+    }
+    if shape.voxels().is_some() || shape.isovalue().is_some() {
+        return Err(PageError::WithoutAlpha);
+    }
+    let opening = shape.options().alpha;
+    let filtration = Filtration::on(None, shape.points().clone())?;
+    let levels = filtration.levels(&stops(&filtration, opening));
+    let [low, high] = bounding_box(shape.points().positions());
+    let ladder = levels.ladder((0..3).map(|k| high[k] - low[k]).product());
+    let first = levels.alphas().partition_point(|alpha| *alpha <= opening).saturating_sub(1);
+    let detail = Detail { levels: &levels, ladder: &ladder, first, differences: None };
+    let page = Page::new(&Subject {
+        title,
+        facts,
+        unit: shape.coordinates().unit.symbol(),
+        value: "the values of the points",
+        difference: "values",
+        details: &[detail],
+        original: None,
+    })?;
+    Ok(page)
+}
+
+/// The number of levels of a page, besides the suggested ones.
+const STOPS: usize = 28;
+/// The number of critical values that are considered: all of them would take longer than the shape.
+const CANDIDATES: usize = 1024;
+
+/// The stops of the slider of a page: the one to open at, the suggested ones, and others between. Each is not empty and differs
+/// from the previous one.
+pub fn stops(filtration: &Filtration, opening: Alpha) -> Vec<Alpha> {
+    let curve = filtration.coarse_curve(CANDIDATES);
+    let mut alphas = filtration.stops(&curve, STOPS);
+    alphas.push(opening);
+    alphas.extend(suggested(filtration, &curve));
+    let distinct = filtration.levels(&alphas).distinct(opening);
+    if distinct.is_empty() { vec![opening] } else { distinct }
+}
