@@ -452,7 +452,8 @@ impl Content {
             writeln!(f, "cells     {}", cells.join(", "))?;
         }
         for (i, axis) in ["x", "y", "z"].iter().enumerate() {
-            writeln!(f, "{axis}         {} to {}", number(low[i]), number(high[i]))?;
+            let [low, high] = [low[i], high[i]].map(|end| rounded_within(end, high[i] - low[i]));
+            writeln!(f, "{axis}         {low} to {high}")?;
         }
         let has = |there: bool| if there { "yes" } else { "no" };
         let squares = if *of_radii { ", squares of its radii" } else { "" };
