@@ -39,7 +39,9 @@ impl Cell {
         let z = (1.0 - beta * beta - y * y).sqrt();
         let vectors = [[a, 0.0, 0.0], [b * gamma, b * sine, 0.0], [c * beta, c * y, c * z]];
         let is_finite = vectors.as_flattened().iter().all(|x| x.is_finite());
-        (is_finite && sine > 0.0 && z > 0.0).then_some(Self { vectors, repeats: [true; 3] })
+        let is_angle = |angle: &f64| *angle > 0.0 && *angle < 180.0;
+        let exists = angles.iter().all(is_angle) && sine > 0.0 && z > 0.0;
+        (is_finite && exists).then_some(Self { vectors, repeats: [true; 3] })
     }
 
     /// The sides, if the cell is an axis-aligned box that repeats along all axes: the points then lie on a torus.

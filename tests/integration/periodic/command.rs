@@ -337,10 +337,9 @@ fn primitive_and_conventional_cells_agree() {
         assert!(common::ok(f, &["check", "a.npz"]).contains("exact: no findings"));
         let shape = &told["shape"];
         let of = |value: &serde_json::Value| value.as_f64().unwrap() / points;
-        let cells = &shape["classes"]["cells"];
         let pairs = common::json(f, &["filtration", file, "--periodic", cell]);
         (
-            [of(&shape["volume"]), of(&shape["area"]), of(&cells["interior"])],
+            [of(&shape["volume"]), of(&shape["area"]), of(&shape["cells"]["interior"])],
             pairs["values"].clone(),
             pairs["persistence"]["lasting_loops"].clone(),
         )

@@ -46,10 +46,10 @@ fn shape(
     alpha_shape(points.clone(), &options(periodic, squared))
 }
 
-/// A box of these sides along the axes, or one that is slanted by multiples of a unit: points of the one, moved into the other, are
-/// points of the other, as the box along the axes holds one copy of each.
-fn boxed([x, y, z]: [f64; 3], slanted: bool, random: &mut Random) -> Torus {
-    let mut shear = || if slanted { random.below(5) as f64 - 2.0 } else { 0.0 };
+/// A box of these sides along the axes, slanted by up to so many units: the box along the axes holds one copy of each point of
+/// the torus.
+fn boxed([x, y, z]: [f64; 3], most: usize, random: &mut Random) -> Torus {
+    let mut shear = || random.below(2 * most + 1) as f64 - most as f64;
     Torus::of_vectors([[x, 0.0, 0.0], [shear(), y, 0.0], [shear(), shear(), z]]).unwrap()
 }
 
@@ -99,7 +99,7 @@ fn sets(count: u64) -> impl Iterator<Item = (WeightedPoints, Torus)> {
                 weights.push(weight);
             }
         }
-        let torus = boxed(sides, seed % 7 >= 4, &mut random);
+        let torus = boxed(sides, if seed % 7 >= 4 { 2 } else { 0 }, &mut random);
         positions.iter_mut().for_each(|place| *place = torus.wrap(*place));
         (WeightedPoints::new(positions, weights).unwrap(), torus)
     })
@@ -108,8 +108,11 @@ fn sets(count: u64) -> impl Iterator<Item = (WeightedPoints, Torus)> {
 /// Points so dense that the whole triangulation has no long edge: on a lattice, on half of one, anywhere.
 fn dense(seed: u64) -> (WeightedPoints, Torus) {
     let mut random = Random::new(seed);
-    let sides = [4.0, 4.0, 5.0];
-    let points = crystal([4, 4, 5], [&CUBIC[..], &BCC, &FCC][seed as usize % 3]);
+    // In a slanted box, edges span more of it.
+    let slanted = seed % 5 >= 3;
+    let x = if slanted { 5 } else { 4 };
+    let sides = [f64::from(x), 4.0, 5.0];
+    let points = crystal([x, 4, 5], [&CUBIC[..], &BCC, &FCC][seed as usize % 3]);
     let (mut positions, mut weights, _) = points.into_parts();
     for (place, weight) in positions.iter_mut().zip(&mut weights) {
         match seed % 4 {
@@ -122,7 +125,7 @@ fn dense(seed: u64) -> (WeightedPoints, Torus) {
             }
         }
     }
-    let torus = boxed(sides, seed % 5 >= 3, &mut random);
+    let torus = boxed(sides, usize::from(slanted), &mut random);
     positions.iter_mut().for_each(|place| *place = torus.wrap(*place));
     (WeightedPoints::new(positions, weights).unwrap(), torus)
 }
