@@ -106,7 +106,7 @@ impl Union {
 
     /// Its voids.
     fn voids<'py>(&self, py: Python<'py>) -> PyResult<Vec<Hollow<'py>>> {
-        let voids = self.run(py, BallUnion::voids)?;
+        let voids = self.run(py, |union| union.voids())?;
         Ok(voids.into_iter().map(|void| hollow(py, void)).collect())
     }
 
@@ -116,7 +116,7 @@ impl Union {
             let closing = pocket.closing_alpha.map_or(f64::NAN, walpha::Alpha::squared);
             (hollow(py, pocket.cavity), pocket.mouths, closing)
         };
-        Ok(self.run(py, BallUnion::pockets)?.into_iter().map(open).collect())
+        Ok(self.run(py, |union| union.pockets())?.into_iter().map(open).collect())
     }
 
     /// The derivatives of volume and area, each by the coordinates of the centres (three for each ball) and by the radii.
