@@ -163,9 +163,8 @@ fn volume_and_area_converge() {
         [volume / union.volume().value - 1.0, area / union.area().value - 1.0].map(f64::abs)
     });
     for two in errors.windows(2) {
-        for k in 0..2 {
-            let factor = two[0][k] / two[1][k];
-            assert!((2.5..6.5).contains(&factor), "{errors:?}");
+        for (coarse, fine) in two[0].iter().zip(&two[1]) {
+            assert!((2.5..6.5).contains(&(coarse / fine)), "{errors:?}");
         }
     }
     assert!(errors[2].iter().all(|&error| error < 0.0025), "{errors:?}");
