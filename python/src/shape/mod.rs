@@ -309,7 +309,7 @@ impl Shape {
     }
 
     /// The union of the balls of the points.
-    fn union(&self, py: Python<'_>) -> PyResult<balls::Union> {
+    fn union(&self, py: Python<'_>) -> PyResult<Union> {
         balls::union(py, Arc::clone(&self.shape))
     }
 
