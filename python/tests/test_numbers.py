@@ -268,7 +268,7 @@ CALLS = {
 }  # fmt: skip
 #: What nobody calls: the results of others.
 RESULTS = {
-    "Betti", "BettiCurve", "Boundary", "Bounded", "BoundedArray", "Cavity", "Class", "Comparison", "Component", "Contacts", "Cuts", "Finding", "Gradients", "Level", "Outline", "PointFile", "Polygon",
+    "BallSurface", "Betti", "BettiCurve", "Boundary", "Bounded", "BoundedArray", "Cavity", "Class", "Comparison", "Component", "Contacts", "Cuts", "Finding", "Gradients", "Level", "Outline", "PointFile", "Polygon",
     "PowerDiagram", "Selected", "Simplices", "Suggestions", "TorusBetti", "TorusBettiCurve", "Verdict", "Void",
 }  # fmt: skip
 

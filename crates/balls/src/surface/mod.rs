@@ -142,11 +142,8 @@ impl BallSurface {
     fn drop_unused(&mut self) {
         let mut numbers = vec![u32::MAX; self.positions.len()];
         self.triangles.as_flattened().iter().for_each(|&v| numbers[v as usize] = 0);
-        let mut next = 0;
-        for number in numbers.iter_mut().filter(|number| **number == 0) {
-            *number = next;
-            next += 1;
-        }
+        let used = numbers.iter_mut().filter(|number| **number == 0);
+        used.zip(0..).for_each(|(number, next)| *number = next);
         let mut row = 0;
         self.positions.retain(|_| {
             row += 1;
@@ -183,7 +180,7 @@ struct Arcs {
 impl Arcs {
     fn of(union: &BallUnion<'_>, tolerance: f64, factor: f64) -> Result<Self, BallsError> {
         let BallUnion { complex, points, .. } = union;
-        let (mut vertices, ends) = corners(union)?;
+        let (mut vertices, ends) = corners(union);
         let joined = UnionFind::new(vertices.len());
         // The arcs, and those too short to have two ends.
         let mut arcs: Vec<(Arc, Option<[u32; 2]>)> = Vec::new();
@@ -308,7 +305,7 @@ fn rows_of(
 }
 
 /// The points that the spheres of triangles with open sides share, and the ends of arcs at them, by edge.
-fn corners(union: &BallUnion<'_>) -> Result<(Vec<V3>, Vec<End>), BallsError> {
+fn corners(union: &BallUnion<'_>) -> (Vec<V3>, Vec<End>) {
     let BallUnion { complex, points, sides, .. } = union;
     let mut open: Vec<(usize, usize)> = Vec::new();
     let mut ends: Vec<End> = Vec::new();
@@ -341,7 +338,7 @@ fn corners(union: &BallUnion<'_>) -> Result<(Vec<V3>, Vec<End>), BallsError> {
         let way = ways[side].map(|coordinate| coordinate.rounded().value);
         add(balls[0].centre, way)
     };
-    Ok((open.par_iter().map(place).collect(), ends))
+    (open.par_iter().map(place).collect(), ends)
 }
 
 /// The arcs of a circle from corner to corner, counter-clockwise about its axis; `None` if the order of its ends is lost in rounding.
@@ -461,37 +458,36 @@ impl Arc {
         // no two arcs have the same edge. It is the same for all circles, so that those which coincide have the same vertices.
         let largest = (8.0 * tolerance).sqrt().min(std::f64::consts::FRAC_PI_2);
         let mut chain = Vec::new();
-        match (ends, self.turn) {
-            (Some([from, to]), Some(turn)) => {
-                let direction = |vertices: &[V3], v: u32| {
-                    let way = sub(vertices[v as usize], circle.centre);
-                    unit(along(way, -dot(way, circle.axis), circle.axis)).unwrap_or(circle.right)
-                };
-                let [a, b] = [from, to].map(|v| direction(vertices, v));
-                chain.push(from);
-                let steps = (1..).find(|&k| turn / f64::from(1u32 << k) <= largest).unwrap_or(1);
-                let mut add = |direction| {
-                    chain.push(vertices.len() as u32);
-                    vertices.push(circle.place(direction));
-                };
-                circle.divide([a, b], turn, steps, &mut add);
-                chain.push(to);
+        let steps = |turn: f64, least: u32| {
+            (least..31).find(|&k| turn / f64::from(1u32 << k) <= largest).unwrap_or(31)
+        };
+        if let (Some([from, to]), Some(turn)) = (ends, self.turn) {
+            let direction = |vertices: &[V3], v: u32| {
+                let way = sub(vertices[v as usize], circle.centre);
+                unit(along(way, -dot(way, circle.axis), circle.axis)).unwrap_or(circle.right)
+            };
+            let [a, b] = [from, to].map(|v| direction(vertices, v));
+            chain.push(from);
+            let mut add = |direction| {
+                chain.push(vertices.len() as u32);
+                vertices.push(circle.place(direction));
+            };
+            circle.divide([a, b], turn, steps(turn, 1), &mut add);
+            chain.push(to);
+        } else {
+            let quarter = std::f64::consts::FRAC_PI_2;
+            let (right, up) = (circle.right, circle.up);
+            let corners = [right, up, right.map(|x| -x), up.map(|x| -x)];
+            let mut add = |direction| {
+                chain.push(vertices.len() as u32);
+                vertices.push(circle.place(direction));
+            };
+            for k in 0..4 {
+                add(corners[k]);
+                let two = [corners[k], corners[(k + 1) % 4]];
+                circle.divide(two, quarter, steps(quarter, 0), &mut add);
             }
-            _ => {
-                let quarter = std::f64::consts::FRAC_PI_2;
-                let steps = (0..).find(|&k| quarter / f64::from(1u32 << k) <= largest).unwrap_or(0);
-                let (right, up) = (circle.right, circle.up);
-                let corners = [right, up, right.map(|x| -x), up.map(|x| -x)];
-                let mut add = |direction| {
-                    chain.push(vertices.len() as u32);
-                    vertices.push(circle.place(direction));
-                };
-                for k in 0..4 {
-                    add(corners[k]);
-                    circle.divide([corners[k], corners[(k + 1) % 4]], quarter, steps, &mut add);
-                }
-                chain.push(chain[0]);
-            }
+            chain.push(chain[0]);
         }
         chain
     }

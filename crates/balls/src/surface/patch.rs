@@ -2,7 +2,7 @@
 //!
 //! The convex hull of points on a sphere is their Delaunay triangulation there. No point of a patch lies in the cap that another ball cuts off, so the points on the
 //! circle of that cap are a face of the hull, and neighbours on the circle are joined by an edge: the hull has all edges of the arcs, and what
-//! is on their left is the patch. It is computed exactly as the link of the ball's centre in a triangulation in space.
+//! is on their left is the patch. It is computed exactly as the link of a point inside in a triangulation in space.
 
 use std::collections::HashSet;
 
@@ -96,11 +96,19 @@ pub(super) fn triangulate(
 ) -> Option<Patch> {
     let outside = |&point: &V3, margin: f64| caps.iter().all(|cap| cap.distance(point) > margin);
     let Rim { vertices: on_rim, edges } = rim;
-    // The centre, the rim, and points between.
+    // A point inside, the rim, and points between.
     let mut points = vec![[0.0; 3]];
     points.extend(on_rim.iter().map(|&v| scale(sub(vertices[v as usize], centre), 1.0 / radius)));
     let margin = APART * sphere.spacing;
     points.extend(sphere.points.iter().filter(|point| outside(point, margin)));
+    if points.len() == 1 + on_rim.len() {
+        // A single circle would span no volume.
+        let middle = unit(points.iter().fold([0.0; 3], |sum, &point| add(sum, point)));
+        points.extend(middle.filter(|point| outside(point, 0.0)));
+    }
+    // Not the centre, which is outside of the hull of a small patch.
+    let sum = points.iter().fold([0.0; 3], |sum, &point| add(sum, point));
+    points[0] = scale(sum, 1.0 / (points.len() - 1) as f64);
     let mut hull = Hull::new(&points, edges)?;
     let mut triangles = hull.on_left()?;
     for _ in 0..ROUNDS {
@@ -154,7 +162,7 @@ fn longest_edge([a, b, c]: [V3; 3]) -> V3 {
     unit(add(p, q)).unwrap_or(p)
 }
 
-/// The convex hull of points on a sphere around its centre, which is their Delaunay triangulation there: the link of the centre in a triangulation
+/// The convex hull of points on a sphere, which is their Delaunay triangulation there: the link of a point inside in a triangulation
 /// in space.
 struct Hull {
     growing: Growing,
@@ -163,11 +171,11 @@ struct Hull {
 }
 
 impl Hull {
-    /// The number of the centre, and of the first of the other points.
-    const CENTRE: u32 = Growing::FIRST;
-    const FIRST: u32 = Self::CENTRE + 1;
+    /// The number of the point inside, and of the first of the others.
+    const INSIDE: u32 = Growing::FIRST;
+    const FIRST: u32 = Self::INSIDE + 1;
 
-    /// The hull of the points after the first, which is the centre.
+    /// The hull of the points after the first, which is inside.
     fn new(points: &[V3], mut edges: Vec<[u32; 2]>) -> Option<Self> {
         edges.sort_unstable();
         Some(Self { growing: Growing::new(points).ok()?, edges })
@@ -178,17 +186,17 @@ impl Hull {
         self.growing.insert(&numbers.collect::<Vec<_>>()).ok()
     }
 
-    /// The place of a point that is not the centre.
+    /// The place of a point of the hull.
     fn place(&self, v: u32) -> V3 {
         self.growing.positions()[(v + Self::FIRST) as usize]
     }
 
-    /// The triangle of a cell at the centre, counter-clockwise seen from outside, and the corner of the cell opposite the edge from each of its vertices to
+    /// The triangle of a cell at the point inside, counter-clockwise seen from outside, and the corner of the cell opposite the edge from each of its vertices to
     /// the next.
     fn outwards(&self, cell: u32) -> Option<([u32; 3], [usize; 3])> {
         let corners = self.growing.cells()[cell as usize].corners;
-        // Seen from the centre, the first three turn counter-clockwise if it is the last corner.
-        let [a, b, c] = match corners.iter().position(|&v| v == Self::CENTRE)? {
+        // Seen from inside, the first three turn counter-clockwise if it is the last corner.
+        let [a, b, c] = match corners.iter().position(|&v| v == Self::INSIDE)? {
             3 => [1, 0, 2],
             2 => [0, 1, 3],
             1 => [2, 0, 3],
@@ -205,12 +213,12 @@ impl Hull {
     /// patch on both sides.
     fn on_left(&self) -> Option<Vec<[u32; 3]>> {
         let cells = self.growing.cells();
-        let at_centre = (0..cells.len() as u32)
+        let at_hull = (0..cells.len() as u32)
             .filter(|&cell| self.growing.is_cell(cell))
             .filter_map(|cell| Some((cell, self.outwards(cell)?)));
         let mut is_left = vec![false; cells.len()];
         let (mut stack, mut found) = (Vec::new(), 0);
-        for (cell, ([a, b, c], _)) in at_centre {
+        for (cell, ([a, b, c], _)) in at_hull {
             let on_rim = [[a, b], [b, c], [c, a]].into_iter().filter(|&edge| self.is_rim(edge));
             let count = on_rim.count();
             if count > 0 {

@@ -36,7 +36,7 @@ impl Sphere {
     }
 
     fn divided(parts: u32, tolerance: f64) -> Self {
-        let golden = (1.0 + 5f64.sqrt()) / 2.0;
+        let golden = f64::midpoint(1.0, 5f64.sqrt());
         let mut corners = Vec::new();
         for (a, b) in [(1.0, golden), (1.0, -golden), (-1.0, golden), (-1.0, -golden)] {
             corners.extend([[0.0, a, b], [a, b, 0.0], [b, 0.0, a]]);

@@ -86,30 +86,32 @@ fn tolerance(text: &str) -> Result<f64> {
 }
 
 impl Balls {
-    pub(crate) fn run(self, global: Global) -> Result<()> {
+    /// The outputs. Refuses options that none of them uses.
+    fn targets(&self) -> Result<Vec<(Target, Output)>> {
         self.format.check(self.output.iter())?;
         let mut targets = Vec::new();
         for path in &self.output {
             let output = Output::of(&self.format.named(path)?, path)?;
             targets.push((Target::open(path)?, output));
         }
-        let input = &self.input;
-        let has = |is: fn(Output) -> bool| targets.iter().any(|&(_, output)| is(output));
+        let typed = &self.input.typed;
+        if !has_output(&targets, Output::Picture) {
+            typed.refuse(&SightArgs::NAMES, "no picture (.png) is written")?;
+        }
+        if !targets.iter().any(|(_, output)| output.is_surface()) {
+            typed.refuse(&["tolerance"], "no surface (.ply, .stl, .vtp) is written")?;
+        }
+        Ok(targets)
+    }
+
+    pub(crate) fn run(self, global: Global) -> Result<()> {
+        let targets = self.targets()?;
         let has_table = |table| has_output(&targets, Output::Table(table));
-        if !has(|output| output == Output::Picture) {
-            input.typed.refuse(&SightArgs::NAMES, "no picture (.png) is written")?;
-        }
-        let is_surface = has(Output::is_surface);
-        if !is_surface {
-            input.typed.refuse(&["tolerance"], "no surface (.ply, .stl, .vtp) is written")?;
-        }
+        let input = &self.input;
         let recipe = input.recipe()?;
         let is_periodic = recipe.periodic.is_some();
-        if is_periodic && is_surface {
-            fail_usage!("the sides of a periodic box would cut the surface open" => "omit --periodic, or write tables");
-        }
-        if is_periodic && has(Output::needs_pockets) {
-            fail_usage!("pockets are open to the outside, and a periodic box has no outside" => "write voids.csv, or omit --periodic");
+        if is_periodic {
+            refuse_on_torus(&targets)?;
         }
         let mut progress = Progress::new(global);
         let read = pipeline::read(input, &recipe, &mut progress)?;
@@ -146,6 +148,7 @@ impl Balls {
         })?;
         let measured =
             progress.stage(Stage::Measure, || Measured::of(&shape, molecule.is_none()))?;
+        let is_surface = targets.iter().any(|(_, output)| output.is_surface());
         let surface = is_surface.then(|| {
             let tolerance = self.tolerance.unwrap_or(BallUnion::SURFACE_TOLERANCE);
             let surface = progress.stage(Stage::Measure, || measured.union.surface(tolerance))?;
@@ -199,6 +202,17 @@ impl Balls {
 
 fn has_output(targets: &[(Target, Output)], wanted: Output) -> bool {
     targets.iter().any(|&(_, output)| output == wanted)
+}
+
+/// Refuses outputs that a periodic box does not have.
+fn refuse_on_torus(targets: &[(Target, Output)]) -> Result<()> {
+    if targets.iter().any(|(_, output)| output.is_surface()) {
+        fail_usage!("the sides of a periodic box would cut the surface open" => "omit --periodic, or write tables");
+    }
+    if targets.iter().any(|(_, output)| output.needs_pockets()) {
+        fail_usage!("pockets are open to the outside, and a periodic box has no outside" => "write voids.csv, or omit --periodic");
+    }
+    Ok(())
 }
 
 /// Balls whose radii are larger by that of a probe, and their α. Without a probe nothing changes, and nothing is rounded.
