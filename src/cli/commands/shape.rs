@@ -46,7 +46,7 @@ use crate::{AlphaShape, Recipe};
 ///
 /// walpha shape sample:tile --class building --flat --alpha-radius 2 -o footprints.geojson
 ///
-/// walpha shape sample:tile --by treeID --alpha-radius 3 -o trees.csv crowns.geojson
+/// walpha shape sample:tile --by treeID --alpha-radius 3 -o crowns.csv crowns.geojson
 ///
 /// walpha shape trees.csv --alpha-radius 50 -o forest.geojson forest.svg
 ///
@@ -84,7 +84,7 @@ pub(crate) struct Shape {
     /// Go on with a shape of nothing, which otherwise is an error: write files that hold nothing of it, such as an
     /// STL without a facet.
     #[arg(long)]
-    allow_empty: bool,
+    pub(crate) allow_empty: bool,
     /// Write the solid of each label of a segmentation to a file of its own, label-N, in the folder that --output names.
     #[arg(long, help_heading = "Labels", group = "each")]
     each_label: bool,

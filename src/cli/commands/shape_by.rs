@@ -52,6 +52,8 @@ impl Shape {
         unused("--flat", self.flat, "outlines of groups are from above as it is")?;
         let given = &self.pipeline.input.typed;
         given.refuse(&["periodic"], "groups of points are shapes in space")?;
+        given.refuse(&["hidden"], "hidden points of groups are not listed")?;
+        unused("--allow-empty", self.allow_empty, "a group of which nothing is left has a row")?;
         let meshes = if self.writes_groups()? { self.meshes()? } else { Vec::new() };
         let outputs = self.outputs_of_groups()?;
         let mut progress = Progress::new(global);
