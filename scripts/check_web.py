@@ -451,7 +451,7 @@ def look_at_all(browser, page, checks, files, downloads, out, large):
       const scale = canvas.width / b.width;
       for (let y = Math.round(20 * scale); y < height; y++) for (let x = 0; x < width; x++) {
         const [r, g, blue] = data.subarray(4 * (y * width + x), 4 * (y * width + x) + 3);
-        if (r < 90 && g > 140 && blue < 160 && g > blue + 15) return [b.x + x / scale, b.y + y / scale + 1];
+        if (r < 60 && g > 100 && g > blue + 15) return [b.x + x / scale, b.y + y / scale + 1];
       }
       return [b.x, b.y];
     })()""")

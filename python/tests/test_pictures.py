@@ -58,12 +58,12 @@ def test_the_page_is_that_of_the_shape(shape, tmp_path, monkeypatch):
     monkeypatch.setattr("webbrowser.open", opened.append)
     page = shape.show()
     assert opened and opened[0].startswith("file:")
-    assert str(page).startswith("<!DOCTYPE html>") and "ball radius" in str(page)
+    assert page.html.startswith("<!DOCTYPE html>") and "ball radius" in page.html
     frame = page._repr_html_()
     assert frame.startswith("<iframe") and "srcdoc" in frame and "<script" not in frame, "escaped"
     page.save(tmp_path / "page.html")
     shape.save(tmp_path / "shape.html")
-    assert (tmp_path / "page.html").read_bytes() == (tmp_path / "shape.html").read_bytes() == str(page).encode()
+    assert (tmp_path / "page.html").read_bytes() == (tmp_path / "shape.html").read_bytes() == page.html.encode()
 
 
 def test_files_have_their_extensions(shape, tmp_path):
@@ -105,6 +105,8 @@ def test_a_volume_is_shown_by_its_slices():
     packed = data[data.index(b"IDAT") + 4:data.index(b"IEND") - 8]
     rows = np.frombuffer(zlib.decompress(packed), np.uint8).reshape(height, width + 1)
     assert (rows[:, 0] == 0).all() and (rows == 255).sum() > 0
+    # Gaps are black, whatever the values are.
+    assert walpha.Volume(samples + 9, spacing=(1, 1, 2)).plot(low=9, high=16)._repr_png_() == data
     assert "40 × 20 × 10 (x, y, z)" in volume._repr_html_()
     with pytest.raises(ValueError, match="is not below"):
         volume.plot(low=2, high=1)
@@ -113,7 +115,7 @@ def test_a_volume_is_shown_by_its_slices():
 
 def test_curves_have_axes(cloud):
     curve = walpha.filtration(cloud).betti_curve()
-    chart = str(curve.plot())
+    chart = curve.plot().svg
     for word in ("ball radius", "components", "tunnels", "voids", ">0.01<", ">100<"):
         assert word in chart, word
     assert curve._repr_html_() == chart == curve.plot()._repr_svg_()

@@ -123,7 +123,7 @@ def test_balls_of_radii(cloud):
 def test_html_has_the_counts(cloud):
     shape = walpha.alpha_shape(cloud, alpha=0.01)
     text = shape._repr_html_()
-    assert f"<td>{shape.counts()['cells']['interior']}</td>" in text and "&lt;walpha.AlphaShape" in text
+    assert f"{shape.counts()['facets']['singular']} triangles" in text and "&lt;walpha.AlphaShape" in text
     assert sum(shape.counts()["facets"].values()) == len(shape.facets)
 
 

@@ -49,7 +49,7 @@ class BettiCurve(NamedTuple):
         return _plotted(self)
 
     def _repr_html_(self) -> str:
-        return str(self.plot())
+        return self.plot().svg
 
 
 class TorusBettiCurve(NamedTuple):
@@ -81,7 +81,7 @@ class TorusBettiCurve(NamedTuple):
         return _plotted(self)
 
     def _repr_html_(self) -> str:
-        return str(self.plot())
+        return self.plot().svg
 
 
 def _plotted(curve: BettiCurve | TorusBettiCurve) -> Chart:

@@ -71,17 +71,19 @@ class Picture:
 class Chart:
     """A chart: the last line of a notebook's cell shows it.
 
-    Made by :meth:`BettiCurve.plot`. ``str(chart)`` is the text of an SVG file.
+    Made by :meth:`BettiCurve.plot`.
+
+    Attributes
+    ----------
+    svg : str
+        The text of an SVG file.
     """
 
     def __init__(self, svg: str, what: str) -> None:
-        self._svg, self._what = svg, what
-
-    def __str__(self) -> str:
-        return self._svg
+        self.svg, self._what = svg, what
 
     def _repr_svg_(self) -> str:
-        return self._svg
+        return self.svg
 
     def __repr__(self) -> str:
         return f"<walpha.Chart of {self._what}>"
@@ -100,28 +102,30 @@ class Chart:
             The name ends with something else.
         """
         _extension(path, ".svg")
-        _write(path, self._svg.encode())
+        _write(path, self.svg.encode())
 
 
 class Page:
     """An interactive page, which needs no network: the last line of a notebook's cell shows it.
 
-    Made by :meth:`AlphaShape.show`. ``str(page)`` is the text of an HTML file.
+    Made by :meth:`AlphaShape.show`.
+
+    Attributes
+    ----------
+    html : str
+        The text of an HTML file.
     """
 
     def __init__(self, text: str, height: int) -> None:
-        self._text, self._height = text, height
-
-    def __str__(self) -> str:
-        return self._text
+        self.html, self._height = text, height
 
     def _repr_html_(self) -> str:
-        inside = html.escape(self._text)
+        inside = html.escape(self.html)
         style = f"width:100%;height:{self._height}px;border:0"
         return f'<iframe title="walpha" style="{style}" sandbox="allow-scripts allow-downloads" srcdoc="{inside}"></iframe>'
 
     def __repr__(self) -> str:
-        return f"<walpha.Page of {len(self._text) / 1e6:.1f} MB>"
+        return f"<walpha.Page of {len(self.html) / 1e6:.1f} MB>"
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write it to a file, as HTML.
@@ -137,7 +141,7 @@ class Page:
             The name ends with something else.
         """
         _extension(path, ".html")
-        _write(path, self._text.encode())
+        _write(path, self.html.encode())
 
     def open(self) -> str:
         """Write it to a temporary file, and open that in a browser.
@@ -149,7 +153,7 @@ class Page:
         """
         handle, path = tempfile.mkstemp(prefix="walpha-", suffix=".html")
         with os.fdopen(handle, "wb") as file:
-            file.write(self._text.encode())
+            file.write(self.html.encode())
         webbrowser.open(pathlib.Path(path).as_uri())
         return path
 
@@ -228,7 +232,9 @@ def steps_chart(
     width, height, left, right, top, bottom = 640, 400, 64, 100, 36, 52
     placed = [places[places > 0] for _, places, _ in curves]
     low = min((float(places[0]) for places in placed if len(places)), default=1.0)
-    high = max((float(places[-1]) for places in placed if len(places)), default=10.0)
+    # From the last change on, all stays as it is.
+    changes = [places[1:][np.diff(counts) != 0] for _, places, counts in curves]
+    high = max((float(places[-1]) for places in changes if len(places) and places[-1] > 0), default=10.0 * low)
     first = math.floor(math.log10(low))
     last = max(math.ceil(math.log10(high)), first + 1)
     most = max((int(counts.max()) for _, _, counts in curves if len(counts)), default=1)
@@ -254,7 +260,7 @@ def steps_chart(
         lines.append(f'<text x="{left - 8}" y="{at + 5:.1f}" text-anchor="end">{count:,}</text>'.replace(",", " "))
     ends = []
     for (name, places, counts), colour in zip(curves, _COLOURS):
-        seen = places > 0
+        seen = (places > 0) & (places <= 10.0**last)
         heights, across_at = y(counts[seen]), x(places[seen])
         # Changes that are less than a pixel apart cannot be seen.
         path: list[str] = []

@@ -129,7 +129,7 @@ class Volume:
         Examples
         --------
         >>> walpha.Volume(np.random.default_rng(1).random((40, 30, 20))).plot()
-        <walpha.Picture of 512×402 pixels>
+        <walpha.Picture of 436×240 pixels>
         """
         finite = self.samples[np.isfinite(self.samples)]
         ends = np.percentile(finite, (1, 99)) if finite.size else np.array([0.0, 1.0])
@@ -149,8 +149,9 @@ class Volume:
         pixel = longest / _SIDE
         tiles = [_resampled(plane, up, across, pixel) for plane, up, across in slices]
         tall = max(tile.shape[0] for tile in tiles)
-        rows = [np.pad(tile, ((0, tall - tile.shape[0]), (0, 0))) for tile in tiles]
-        gap = np.zeros((tall, 8), np.float32)
+        # What is no part of the volume is black.
+        rows = [np.pad(tile, ((0, tall - tile.shape[0]), (0, 0)), constant_values=first) for tile in tiles]
+        gap = np.full((tall, 8), first, np.float32)
         image = np.concatenate([rows[0], gap, rows[1], gap, rows[2]], axis=1)
         levels = np.nan_to_num((image - first) / (last - first), nan=0.0, posinf=1.0, neginf=0.0)
         return Picture(_pictures.gray_png((255 * levels.clip(0, 1)).round().astype(np.uint8)))

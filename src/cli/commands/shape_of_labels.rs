@@ -194,7 +194,7 @@ impl Display for EachLabel {
         for SolidSummary { size, betti, kept, solid, .. } in &self.labels {
             let LabelSize { label, voxels, volume, .. } = size;
             let volume = measure(*volume, unit, 3);
-            write!(f, "label     {label}: {} voxels, {volume}", grouped(*voxels as u64))?;
+            write!(f, "label     {label}: {} voxels, {volume}", grouped(*voxels))?;
             match betti {
                 Some(betti) => writeln!(f, "; {betti}")?,
                 None => writeln!(f)?,
