@@ -127,7 +127,7 @@ impl AlphaShape {
 /// The components of the complement, of which voids are the bounded ones.
 enum Bounded {
     InSpace(Complement),
-    OnTorus(Torus, WindingSets),
+    OnTorus(Box<Torus>, WindingSets),
 }
 
 impl Bounded {
@@ -135,7 +135,7 @@ impl Bounded {
         let (whole, positions) = (shape.complex(), &shape.points().positions);
         match shape.options().periodic {
             None => Self::InSpace(Complement::of(whole)),
-            Some(torus) => Self::OnTorus(torus, complement_on(torus, whole, positions)),
+            Some(torus) => Self::OnTorus(Box::new(torus), complement_on(torus, whole, positions)),
         }
     }
 

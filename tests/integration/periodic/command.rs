@@ -324,7 +324,7 @@ fn primitive_and_conventional_cells_agree() {
     // Four primitive cells along each vector, and two cubes along each axis: 64 and 32 points.
     let (mut primitive, mut cubes) = (String::new(), String::new());
     for [i, j, k] in (0..64).map(|n| [n % 4, n / 4 % 4, n / 16].map(f64::from)) {
-        primitive += &format!("{} {} {}\n", (j + k) / 2.0, (i + k) / 2.0, (i + j) / 2.0);
+        primitive += &format!("{} {} {}\n", 0.5 * (j + k), 0.5 * (i + k), 0.5 * (i + j));
     }
     for [x, y, z] in crystal([3; 3], &FCC).positions() {
         cubes += &format!("{x} {y} {z}\n");

@@ -117,7 +117,7 @@ enum Sets {
     /// Includes the outside, whose number follows that of the last cell.
     InSpace(UnionFind),
     /// Includes the directions in which all of them together wind round.
-    OnTorus(Torus, WindingSets, Directions),
+    OnTorus(Box<Torus>, WindingSets, Directions),
 }
 
 impl Sets {
@@ -153,7 +153,7 @@ impl Levels<'_> {
             None => (Sets::InSpace(UnionFind::new(self.cells.len() + 1)), 1),
             Some(torus) => {
                 let sets = WindingSets::new(self.cells.len());
-                (Sets::OnTorus(torus, sets, Directions::default()), 0)
+                (Sets::OnTorus(Box::new(torus), sets, Directions::default()), 0)
             }
         };
         let mut complement = LevelComplement {
@@ -194,12 +194,12 @@ impl LevelComplement<'_> {
             Sets::OnTorus(torus, sets, rounds) => {
                 let cells = filtration.whole.complex().cells.rows();
                 let cells = [cells[a as usize], cells[b as usize]];
-                let way = between(*torus, cells, vertex, &filtration.points().positions);
+                let way = between(**torus, cells, vertex, &filtration.points().positions);
                 let united = sets.unite(a, b, way);
                 if let United::Round(way) = united {
                     rounds.add(way);
                 }
-                self.hollows[high as usize].moved(*torus, sets.find(high).1);
+                self.hollows[high as usize].moved(**torus, sets.find(high).1);
                 united == United::Two
             }
         };
