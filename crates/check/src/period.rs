@@ -64,7 +64,7 @@ impl Period {
             position[axis].abs() + 4.0 * along
         };
         let largest = (0..3).map(magnitude).fold(0.0, f64::max);
-        let is_exact = largest <= 2f64.powi(Lattice::through(numbers).exponent() + 53);
+        let is_exact = largest < 2f64.powi(Lattice::through(numbers).exponent() + 53);
         let in_box = |k: usize| {
             self.compare(k, position, 0.0).is_ge() && self.compare(k, position, 2.0).is_lt()
         };

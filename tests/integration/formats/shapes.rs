@@ -233,7 +233,7 @@ fn the_report_says_where_a_solid_was_cut() {
     let args = ["shape", "two.xyz", "--alpha", "0.75", "--solid", "-o", "two.stl", "two.ply"];
     let said = common::ok(folder.path(), &args);
     assert!(said.contains("cut apart at 0 edges, with 1 more vertices"), "{said}");
-    assert!(said.contains("; 1 are moved, by 0.000976562 unit at most"), "{said}");
+    assert!(said.contains("; 1 are moved, by 0.0009766 unit at most"), "{said}");
     let made = common::json(folder.path(), &args);
     let solid = &made["solid"];
     let counts = ["edges", "vertices", "midpoints", "moved", "together"].map(|name| &solid[name]);

@@ -252,7 +252,7 @@ fn the_report_says_that_weights_are_squares() {
     );
     assert_ne!(told["points"]["in_shape"], 0, "balls of their radii are not empty");
     let text = ok(f, &["shape", "r.csv", "--alpha", "0"]);
-    assert!(text.contains("column, squares of its radii: min 1"), "{text}");
+    assert!(text.contains("column, squares of its radii: 1 to 4 unit²"), "{text}");
     assert!(ok(f, &["info", "r.csv"]).contains("weights   yes, squares of its radii"));
     assert_eq!(json(f, &["info", "r.csv"])["of_radii"], true);
     // Requested options take precedence.

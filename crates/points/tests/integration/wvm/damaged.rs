@@ -74,7 +74,7 @@ fn headers_are_not_believed() {
     refuses(&head(0, &claims(&[9], 8), &[]), &[0; 8], "does not hold");
     refuses(&head(1, &[0xff; 10], &large), &[0; 8], "64 bits");
     refuses(&[0, 9, 0, 0], &[], "space 9");
-    refuses(&[0, 0, 8, 0], &[], "unit of length 8");
+    refuses(&[0, 0, 10, 0], &[], "unit of length 10");
     refuses(&[&[0, 0, 0, 0][..], &f64::NAN.to_le_bytes()].concat(), &[], "NaN");
     let with_recipe = [&head(0, &claims(&[9], 8), &[])[..], b"{\xff}"].concat();
     let error = refused(&forged(&with_recipe, &[0; 8]));
