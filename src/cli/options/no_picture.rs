@@ -16,7 +16,7 @@ impl SightArgs {
 
     #[expect(clippy::unused_self, reason = "there are no options")]
     pub(crate) fn draw_balls(
-        &self,
+        self,
         _: impl Iterator<Item = ([f64; 3], f64, Option<[u8; 3]>)>,
     ) -> Result<Vec<u8>, std::io::Error> {
         unreachable!("no path asks for a picture")

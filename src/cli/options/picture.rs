@@ -52,7 +52,7 @@ impl SightArgs {
 
     /// The picture of balls with radii and colours, as PNG; those without a colour have that of bone.
     pub(crate) fn draw_balls(
-        &self,
+        self,
         balls: impl Iterator<Item = ([f64; 3], f64, Option<[u8; 3]>)>,
     ) -> Result<Vec<u8>, RenderError> {
         let ball = |(centre, radius, colour): (_, _, Option<_>)| Ball {

@@ -40,7 +40,7 @@ impl ToWgs84 {
     }
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "las"))]
 mod tests {
     use super::*;
 
@@ -50,7 +50,6 @@ mod tests {
 
     /// The central meridian of zone 32 is 9° east; the other place was converted by PROJ 9.
     #[test]
-    #[cfg(feature = "las")]
     fn places_are_those_of_proj() {
         let conversion = ToWgs84::of(&utm()).unwrap();
         assert_eq!(conversion.place(500_000.0, 0.0), Some([9.0, 0.0]));
@@ -60,7 +59,6 @@ mod tests {
     }
 
     #[test]
-    #[cfg(feature = "las")]
     fn an_unknown_system_is_said() {
         let unknown = Crs { name: Some("mine".into()), ..Crs::default() };
         let why = ToWgs84::of(&unknown).err().unwrap();
