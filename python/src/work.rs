@@ -106,7 +106,10 @@ fn no_memory() -> PyErr {
 /// `RAYON_NUM_THREADS` or the number of cores does; if so many are not available, there are fewer.
 fn pool(call: &Arc<Call>, asked: Option<NonZeroUsize>) -> PyResult<ThreadPool> {
     let call = Arc::clone(call);
-    let available = threads::available(threads::wanted(asked.map(NonZeroUsize::get)), STACK);
+    let available = match threads::wanted(asked.map(NonZeroUsize::get)) {
+        1 => usize::from(threads::has_room(STACK)),
+        wanted => threads::available(wanted, STACK),
+    };
     if available == 0 {
         return Err(no_threads());
     }

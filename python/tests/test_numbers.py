@@ -22,6 +22,7 @@ OTHER = {
     "self", "cls", "progress", "threads", "engine", "exterior", "hidden", "balls", "path", "level", "columns", "classes", "format",
     "array", "frame", "series", "skip_damaged", "shape", "dtype", "offset", "decomposition", "weighting", "select", "exchange",
     "refit", "roi", "keep", "largest", "solid", "allow_empty", "labels", "masked", "resample", "withheld", "what", "ranks", "dimension", "homology_dimensions", "radius", "reduced_homology", "deep",
+    "view", "colour", "size", "height", "low", "high", "value",
     "parameters", "y", "duplicates", "cells", "facets", "edges", "vertices", "cell_classes", "facet_classes", "edge_classes",
     "vertex_classes", "closed", "most", "ties", "a", "b", "space", "unit", "gray", "copy", "components", "coefficients", "count", "downsample",
 }  # fmt: skip
@@ -268,7 +269,7 @@ CALLS = {
 }  # fmt: skip
 #: What nobody calls: the results of others.
 RESULTS = {
-    "BallSurface", "Betti", "BettiCurve", "Boundary", "Bounded", "BoundedArray", "Cavity", "Class", "Comparison", "Component", "Contacts", "Cuts", "Finding", "Gradients", "Level", "Outline", "PointFile", "Polygon",
+    "BallSurface", "Chart", "Page", "Picture", "Betti", "BettiCurve", "Boundary", "Bounded", "BoundedArray", "Cavity", "Class", "Comparison", "Component", "Contacts", "Cuts", "Finding", "Gradients", "Level", "Outline", "PointFile", "Polygon",
     "PowerDiagram", "Selected", "Simplices", "Suggestions", "TorusBetti", "TorusBettiCurve", "Verdict", "Void",
 }  # fmt: skip
 
