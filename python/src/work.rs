@@ -4,6 +4,7 @@ use std::num::NonZeroUsize;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::Arc;
 use std::sync::mpsc::{RecvTimeoutError, sync_channel};
+use std::thread;
 use std::time::{Duration, Instant};
 
 use pyo3::exceptions::PyMemoryError;
@@ -60,11 +61,14 @@ where
     call.reserve();
     let (sender, mut receiver) = sync_channel(1);
     let mut starved = None;
-    threads.spawn(move || {
-        let outcome = catch_unwind(AssertUnwindSafe(|| call.monitor().watch(work)));
+    let waiting = thread::Builder::new().name("walpha".into());
+    let started = waiting.spawn(move || {
+        let outcome =
+            catch_unwind(AssertUnwindSafe(|| threads.install(|| call.monitor().watch(work))));
         // After an interrupt there is no receiver.
         let _ = sender.send(outcome);
     });
+    started.map_err(|_| no_threads())?;
     loop {
         // A receiver may be sent to where Python is not, but not lent.
         let (back, received) = py.detach(move || {
@@ -106,10 +110,9 @@ fn no_memory() -> PyErr {
 /// `RAYON_NUM_THREADS` or the number of cores does; if so many are not available, there are fewer.
 fn pool(call: &Arc<Call>, asked: Option<NonZeroUsize>) -> PyResult<ThreadPool> {
     let call = Arc::clone(call);
-    let available = match threads::wanted(asked.map(NonZeroUsize::get)) {
-        1 => usize::from(threads::has_room(STACK)),
-        wanted => threads::available(wanted, STACK),
-    };
+    // The last is for the thread that waits for them.
+    let available = threads::available(threads::wanted(asked.map(NonZeroUsize::get)) + 1, STACK)
+        .saturating_sub(1);
     if available == 0 {
         return Err(no_threads());
     }

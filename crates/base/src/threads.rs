@@ -35,6 +35,7 @@ pub fn wanted(asked: Option<usize>) -> usize {
 /// If one of its threads does not start, rayon fails or waits forever. A thread that has started allocates its own data; if there
 /// is no memory for it, the C library ends the process. So each start is preceded by a check for that memory.
 pub fn available(wanted: usize, stack: usize) -> usize {
+    share_heaps();
     let (ready, started) = mpsc::channel();
     thread::scope(|scope| {
         let mut gates = Vec::new();
@@ -46,10 +47,9 @@ pub fn available(wanted: usize, stack: usize) -> usize {
                 let _ = ready.send(());
                 let _ = wait.recv();
             };
+            let room = afford(stack.saturating_add(ROOM), || "a thread".into());
             let thread = thread::Builder::new().stack_size(stack);
-            if !has_room(stack)
-                || thread.spawn_scoped(scope, work).is_err()
-                || started.recv().is_err()
+            if room.is_err() || thread.spawn_scoped(scope, work).is_err() || started.recv().is_err()
             {
                 break;
             }
@@ -57,13 +57,6 @@ pub fn available(wanted: usize, stack: usize) -> usize {
         }
         gates.len()
     })
-}
-
-/// Whether there is memory for one more thread with a stack of `stack` bytes. For a single thread of rayon this is enough, since
-/// rayon reports it if the first thread does not start.
-pub fn has_room(stack: usize) -> bool {
-    share_heaps();
-    afford(stack.saturating_add(ROOM), || "a thread".into()).is_ok()
 }
 
 /// Much more than a thread's own data besides its stack. So large a block comes from the system each time, as a thread's blocks
