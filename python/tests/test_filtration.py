@@ -1,4 +1,5 @@
 import itertools
+import pickle
 
 import numpy as np
 import pytest
@@ -197,3 +198,21 @@ def test_loops_are_found_for_those_who_ask(cloud):
     assert len(simplices.persistence(0)) > 0 and len(simplices.persistence(2)) > 0
     assert not {"loop_pairs", "_lasting_loops"} & set(vars(simplices))
     assert len(simplices.persistence(1)) > 0 and "loop_pairs" in vars(simplices)
+
+
+def test_slanted_boxes():
+    """Points of a box along the axes, in one that is slanted by whole units."""
+    points = np.stack(np.meshgrid(*[np.arange(5.0)] * 3), axis=-1).reshape(-1, 3)
+    straight = walpha.alpha_shape(points, alpha=0.75, periodic=5)
+    vectors = ((5.0, 0.0, 0.0), (1.0, 5.0, 0.0), (0.0, -1.0, 5.0))
+    slanted = walpha.alpha_shape(points, alpha=0.75, periodic=vectors)
+    assert straight.periodic == (5.0, 5.0, 5.0) and slanted.periodic == vectors
+    assert slanted.volume == straight.volume == 125.0 and slanted.betti == straight.betti
+    filtration = walpha.filtration(points, periodic=np.array(vectors))
+    assert filtration.periodic == vectors and "5 × 5.099 × 5.099, slanted" in filtration._repr_html_()
+    again = pickle.loads(pickle.dumps(filtration))
+    assert again.periodic == vectors and np.array_equal(again.points, filtration.points)
+    assert walpha.check(slanted).verdict.startswith("exact")
+    for wrong in ([[1, 2, 3]], [1, 2], np.ones((3, 3))):
+        with pytest.raises(ValueError, match="periodic"):
+            walpha.alpha_shape(points, alpha=1, periodic=wrong)

@@ -87,7 +87,12 @@ class Filtration(Frozen):
 
     def _repr_html_(self) -> str:
         points = _pictures.brief(len(self.points))
-        box = "none" if self.periodic is None else " × ".join(map(_pictures.brief, self.periodic))
+        box = "none"
+        if self.periodic is not None:
+            numbers = np.array(self.periodic)
+            lengths = numbers if numbers.ndim == 1 else np.linalg.norm(numbers, axis=1)
+            box = " × ".join(_pictures.brief(float(length)) for length in lengths)
+            box += "" if numbers.ndim == 1 else ", slanted"
         shown = "none"
         if self.weights.any():
             shown = f"{_pictures.brief(float(self.weights.min()))} to {_pictures.brief(float(self.weights.max()))}"
