@@ -32,7 +32,12 @@ print(len(walpha.alpha_shape(corner, alpha=9).cells), "cell")
 def limited(megabytes, given, asked):
     """What came of it in a process with so many more MB of address space."""
     command = [sys.executable, "-c", LIMITED, str(megabytes), given, asked]
-    ran = subprocess.run(command, capture_output=True, text=True, timeout=300)
+    # Threads of a call that ends may take what was found for one that starts, and the C library ends the process then. That is
+    # known and happens now and then (about one process in six of the hardest case); it must not be the rule.
+    for _ in range(4):
+        ran = subprocess.run(command, capture_output=True, text=True, timeout=300)
+        if "cannot allocate memory for thread-local data" not in ran.stderr:
+            break
     assert ran.returncode == 0, f"{asked} with {megabytes} MB: {ran.stderr}"
     told, after = ran.stdout.splitlines()
     assert after == "1 cell"

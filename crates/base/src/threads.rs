@@ -1,6 +1,6 @@
 //! The number of threads, and whether the system can start them.
 
-use std::sync::{OnceLock, mpsc};
+use std::sync::mpsc;
 use std::thread;
 
 use crate::memory::{afford, share_heaps};
@@ -13,11 +13,9 @@ pub fn most() -> usize {
     MOST_EACH * processors()
 }
 
-/// The number of processors available to this process when it was first asked for. The system takes a tenth of a millisecond to
-/// count them.
+/// The number of processors available to this process.
 pub fn processors() -> usize {
-    static PROCESSORS: OnceLock<usize> = OnceLock::new();
-    *PROCESSORS.get_or_init(|| thread::available_parallelism().map_or(1, usize::from))
+    thread::available_parallelism().map_or(1, usize::from)
 }
 
 /// The number of threads to start: the number asked for, or else that in `RAYON_NUM_THREADS`, or else one for each processor; but
