@@ -6,7 +6,7 @@ use std::str::FromStr;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use walpha_base::advice::Advise;
-use walpha_base::shown::{number, six_digits};
+use walpha_base::shown::rounded;
 
 use walpha_points::Units;
 use walpha_shape::{AlphaShape, Extent, SampleLattice, ShapeError, isosurface_shape};
@@ -89,7 +89,7 @@ impl Isovalue {
 
 impl fmt::Display for Isovalue {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&number(six_digits(self.value)))?;
+        f.write_str(&rounded(self.value))?;
         if self.found {
             f.write_str(", which divides the histogram of the samples best (Otsu)")?;
         }

@@ -1,7 +1,7 @@
 //! Coordinates in single precision, which some formats use and in which all pages draw.
 
 use rayon::prelude::*;
-use walpha_base::shown::{number, six_digits};
+use walpha_base::shown::{number, rounded};
 
 use super::Surface;
 
@@ -93,7 +93,7 @@ impl SinglePrecision {
             1 => " and lets 1 vertex fall onto another".to_owned(),
             merged => format!(" and lets {merged} vertices fall onto others"),
         };
-        let error = number(six_digits(self.error));
+        let error = rounded(self.error);
         match (self.has_offset(), self.is_lossy) {
             (false, false) => None,
             (true, false) => Some(format!(

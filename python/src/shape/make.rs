@@ -3,6 +3,7 @@
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use walpha::check::schema::BoxVectors;
+use walpha::pipeline::PeriodicBox;
 use walpha::shape::Torus;
 use walpha::{Points, Recipe, Settings};
 
@@ -45,11 +46,7 @@ pub fn recipe_from(settings: &Settings) -> PyResult<Recipe> {
 /// The periodic box by its sides, or by the components of its vectors.
 pub fn torus(numbers: Option<&[f64]>) -> PyResult<Option<Torus>> {
     let Some(vectors) = numbers.and_then(BoxVectors::of_numbers) else { return Ok(None) };
-    let torus = match vectors.sides() {
-        Some(sides) => Torus::new(sides),
-        None => Torus::of_vectors(vectors.0),
-    };
-    torus.map(Some).map_err(told)
+    PeriodicBox::try_from(vectors).map(PeriodicBox::given).map_err(told)
 }
 
 /// The sides of a box along the axes, or the components of its vectors, by rows.

@@ -6,7 +6,7 @@ use std::path::Path;
 use clap::Args;
 use serde::{Serialize, Serializer};
 use serde_json::Value;
-use walpha_base::shown::{number, rounded, rounded_within, six_digits};
+use walpha_base::shown::{number, rounded, rounded_within};
 
 use crate::check::meshes::Mesh;
 use crate::cli::process::errors::{Result, option};
@@ -487,7 +487,7 @@ impl Content {
         }
         let Some(scan) = scan else { return fmt_columns(f, columns) };
         if let Some(density) = density {
-            writeln!(f, "density   {} points in a square {unit}", number(six_digits(*density)))?;
+            writeln!(f, "density   {} points in a square {unit}", rounded(*density))?;
         }
         for (index, (class, count)) in scan.classes.iter().enumerate() {
             let head = if index == 0 { "classes   " } else { "          " };

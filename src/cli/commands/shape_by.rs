@@ -6,7 +6,7 @@ use std::io;
 
 use serde::Serialize;
 use serde_json::{Map, Value, json};
-use walpha_base::shown::{number, shown, six_digits};
+use walpha_base::shown::{rounded, shown};
 use walpha_files::put_all;
 
 use crate::Recipe;
@@ -299,7 +299,6 @@ impl Display for GroupsReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { column, points, left_out, groups, .. } = self;
         let unit = self.coordinates.unit.symbol();
-        let brief = |x: f64| number(six_digits(x));
         writeln!(f, "input     {}", name(&self.input))?;
         write!(f, "points    {points} in {} groups by {column}", groups.len())?;
         match left_out {
@@ -314,10 +313,10 @@ impl Display for GroupsReport {
                 "group     {}: {} points, {} {unit}³, surface {} {unit}², height {} {unit}, outline {} {unit}²",
                 row.value,
                 row.points,
-                brief(row.volume),
-                brief(row.area),
-                brief(row.height),
-                brief(row.outline_area)
+                rounded(row.volume),
+                rounded(row.area),
+                rounded(row.height),
+                rounded(row.outline_area)
             )?;
         }
         if let more @ 1.. = groups.len().saturating_sub(MOST_PRINTED) {
@@ -327,7 +326,7 @@ impl Display for GroupsReport {
                 plain(column)
             )?;
         }
-        writeln!(f, "volume    {} {unit}³ together", brief(self.volume))?;
+        writeln!(f, "volume    {} {unit}³ together", rounded(self.volume))?;
         let offsets = groups.iter().flat_map(|group| &group.offsets);
         offsets.into_iter().take(1).try_for_each(|offset| offset.fmt(f))?;
         let written = groups.iter().flat_map(|group| group.files.clone());

@@ -1,6 +1,6 @@
 use walpha_base::advice::{Advice, Advise, Setting, advice, wrapped};
 use walpha_base::monitor::wraps;
-use walpha_base::shown::{number, six_digits};
+use walpha_base::shown::{number, rounded};
 use walpha_base::{Cancelled, LengthUnit};
 
 use crate::interpolate::InterpolateError;
@@ -64,7 +64,7 @@ pub enum PipelineError {
     #[error(
         "no component of the shape has a volume of {} {symbol}³: the largest has {} {symbol}³",
         number(*.least),
-        number(six_digits(*.largest)),
+        rounded(*.largest),
         symbol = .unit.symbol()
     )]
     NoComponent {

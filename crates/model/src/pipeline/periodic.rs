@@ -59,16 +59,26 @@ impl From<PeriodicBox> for Written {
     }
 }
 
+impl TryFrom<BoxVectors> for PeriodicBox {
+    type Error = TorusError;
+
+    /// The box of these vectors.
+    fn try_from(vectors: BoxVectors) -> Result<Self, TorusError> {
+        let torus = match vectors.sides() {
+            Some(sides) => Torus::new(sides),
+            None => Torus::of_vectors(vectors.0),
+        };
+        torus.map(Self::Given)
+    }
+}
+
 impl TryFrom<Written> for PeriodicBox {
     type Error = TorusError;
 
     fn try_from(written: Written) -> Result<Self, TorusError> {
-        Ok(match written {
-            Written::Stated(Stated::Cell) => Self::Stated,
-            Written::Vectors(vectors) => Self::Given(match vectors.sides() {
-                Some(sides) => Torus::new(sides)?,
-                None => Torus::of_vectors(vectors.0)?,
-            }),
-        })
+        match written {
+            Written::Stated(Stated::Cell) => Ok(Self::Stated),
+            Written::Vectors(vectors) => vectors.try_into(),
+        }
     }
 }

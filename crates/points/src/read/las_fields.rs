@@ -41,18 +41,18 @@ enum Code {
 }
 
 impl Code {
-    /// The types of extra bytes from 1 on, with their names and sizes.
-    const EXTRA: [(Self, &'static str, usize); 10] = [
-        (Self::U8, "uint8", 1),
-        (Self::I8, "int8", 1),
-        (Self::U16, "uint16", 2),
-        (Self::I16, "int16", 2),
-        (Self::U32, "uint32", 4),
-        (Self::I32, "int32", 4),
-        (Self::U64, "uint64", 8),
-        (Self::I64, "int64", 8),
-        (Self::F32, "float32", 4),
-        (Self::F64, "float64", 8),
+    /// The types of extra bytes from 1 on, with their sizes.
+    const EXTRA: [(Self, usize); 10] = [
+        (Self::U8, 1),
+        (Self::I8, 1),
+        (Self::U16, 2),
+        (Self::I16, 2),
+        (Self::U32, 4),
+        (Self::I32, 4),
+        (Self::U64, 8),
+        (Self::I64, 8),
+        (Self::F32, 4),
+        (Self::F64, 8),
     ];
 
     /// The number at the start of some bytes; NaN behind the end of a record.
@@ -189,7 +189,7 @@ fn extra(mut place: usize, described: &[u8]) -> Vec<Field> {
             place += usize::from(options);
             continue;
         }
-        let Some(&(code, kind_name, size)) = Code::EXTRA.get((kind - 1) % 10) else { break };
+        let Some(&(code, size)) = Code::EXTRA.get((kind - 1) % 10) else { break };
         let count = (kind - 1) / 10 + 1;
         if count > 3 {
             break;
@@ -206,14 +206,12 @@ fn extra(mut place: usize, described: &[u8]) -> Vec<Field> {
                 Code::I8 | Code::I16 | Code::I32 | Code::I64 => Code::I64.read(none),
                 _ => Code::U64.read(none),
             };
+            let name = if count == 1 { name.clone() } else { format!("{name}_{k}") };
             fields.push(Field {
-                name: if count == 1 { name.clone() } else { format!("{name}_{k}") },
-                kind: kind_name,
-                place,
-                code,
                 scale: if has(3) { number(112, k) } else { 1.0 },
                 offset: if has(4) { number(136, k) } else { 0.0 },
                 missing: has(0).then_some(missing),
+                ..Field::new(&name, place, code)
             });
             place += size;
         }

@@ -4,7 +4,7 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use walpha_base::Monitor;
-use walpha_base::shown::{number, shown, six_digits};
+use walpha_base::shown::{rounded, shown};
 
 use super::OpenFile;
 use super::detached::naming;
@@ -376,7 +376,7 @@ impl Header {
                 tracing::warn!(
                     "{}: sform and qform place samples up to {} {} apart: sform is taken",
                     shown(path),
-                    number(six_digits(apart)),
+                    rounded(apart),
                     unit.symbol()
                 );
             }

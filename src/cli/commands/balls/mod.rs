@@ -10,7 +10,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use serde::Serialize;
-use walpha_base::shown::{number, six_digits};
+use walpha_base::shown::rounded;
 
 use crate::balls::{BallUnion, BallsError, Cavity, DiscUnion, Pocket};
 use crate::cli::commands::pipeline;
@@ -407,7 +407,7 @@ impl Display for BallsSummary {
         write!(f, "balls     {points}, {duplicates} duplicates, {hidden} hidden")?;
         writeln!(f, "{}", MovedIntoBox(self.folded))?;
         if let Some((least, most)) = self.radii {
-            let [least, most] = [least, most].map(|radius| number(six_digits(radius)));
+            let [least, most] = [least, most].map(rounded);
             write!(f, "radii     {least} to {most} {unit}")?;
             match self.probe {
                 Some(probe) => writeln!(f, ", with the probe's {probe} {unit}")?,
@@ -417,7 +417,7 @@ impl Display for BallsSummary {
         let Numbers { volume, volume_bound, area, area_bound, .. } = self.balls;
         write!(f, "volume    {} {unit}³", certain(volume, volume_bound))?;
         match self.balls.box_fraction {
-            Some(share) => writeln!(f, ", {} % of the box", number(six_digits(100.0 * share)))?,
+            Some(share) => writeln!(f, ", {} % of the box", rounded(100.0 * share))?,
             None => writeln!(f)?,
         }
         writeln!(f, "area      {} {unit}²", certain(area, area_bound))?;
