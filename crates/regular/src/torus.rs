@@ -192,6 +192,24 @@ impl Torus {
         Self { vectors, inverse: rows.map(|row| row.map(|x| x / volume)), step, is_box }
     }
 
+    /// This box and the box of several of its copies, as many along each vector as stated. The step of both is the larger one's, so
+    /// that each point of the larger box is exactly a point of this one, moved by multiples of the vectors. Vectors are
+    /// rounded to that step: by at most 2⁻⁵⁰ of the longest side of the larger bounding box.
+    ///
+    /// # Panics
+    /// If a number of copies is 0.
+    pub fn covered(&self, copies: [u32; 3]) -> [Self; 2] {
+        assert!(!copies.contains(&0), "a box has at least one copy along each vector");
+        let large = |vectors: [[f64; 3]; 3]| {
+            [0, 1, 2].map(|k| vectors[k].map(|x| f64::from(copies[k]) * x))
+        };
+        let longest = large(self.vectors);
+        // Rounding may lengthen the vectors to the next power of two.
+        let step = step_of(extent(&longest) * (1.0 + f64::EPSILON)).max(self.step);
+        let small = self.vectors.map(|v| v.map(|x| (x / step).round_ties_even() * step));
+        [small, large(small)].map(|vectors| Self::of_reduced(vectors, step, self.is_box))
+    }
+
     /// The three vectors; along x, y and z if the box is.
     pub fn vectors(&self) -> [[f64; 3]; 3] {
         self.vectors

@@ -6,6 +6,7 @@ use walpha_complex::{Placed, Voxels};
 use super::derived::Derived;
 use super::measure::together;
 use super::solid::Cuts;
+use super::winding::Winding;
 use super::{
     Alpha, Betti, Complex, ComponentSums, Engine, Kept, Measures, Outline, OutlineError,
     ShapeError, ShapeOptions, Sheets, Surface, WeightedPoints,
@@ -21,8 +22,11 @@ pub struct AlphaShape {
     /// Weights (α + ω)², with [`Balls::Radius`](super::Balls::Radius).
     pub(super) squared: Option<Vec<f64>>,
     pub(super) complex: Complex,
-    /// The points that the last points are copies of, if the shape is that of a torus unwrapped into space.
+    /// The points that the last points are copies of, if the shape is that of a torus unwrapped into space, or of a box that is too
+    /// small for vertices to tell simplices.
     pub(super) copies: Vec<u32>,
+    /// The multiples of the vectors of the box by which each of these copies is moved.
+    pub(super) shifts: Vec<Winding>,
     /// The voxels that the cells fill, if the shape is of labels.
     pub(super) voxels: Option<Arc<Voxels>>,
     /// What was kept of it, if not all.
@@ -69,6 +73,7 @@ impl AlphaShape {
             squared,
             complex,
             copies: Vec::new(),
+            shifts: Vec::new(),
             voxels: None,
             kept: None,
             isovalue: None,
@@ -91,7 +96,8 @@ impl AlphaShape {
             options: ShapeOptions { alpha, exterior, ..self.options },
             squared: self.squared.clone(),
             complex,
-            copies: Vec::new(),
+            copies: self.copies.clone(),
+            shifts: self.shifts.clone(),
             voxels: None,
             kept: None,
             isovalue: None,
@@ -122,21 +128,28 @@ impl AlphaShape {
         self.coordinates
     }
 
-    /// The points as they were given, including duplicates and hidden ones; for a torus, moved into its box.
+    /// The points as they were given, including duplicates and hidden ones; for a torus, moved into its box. [Copies](Self::copies) that rows name
+    /// come after them.
     pub fn points(&self) -> &WeightedPoints {
         &self.points
     }
 
     /// The positions of a simplex's vertices; on a torus the first is in the box, and the others are the
-    /// copies nearest to it.
+    /// copies nearest to it, or those that the row names.
     pub fn corners<const N: usize>(&self, row: [u32; N]) -> [[f64; 3]; N] {
-        together(self.options.periodic, row.map(|v| self.points.positions[v as usize]))
+        together(self.nearest(), row.map(|v| self.points.positions[v as usize]))
     }
 
     /// In an [unwrapped](Self::unwrapped) shape of n points, `copies()[i]` is the original of point
-    /// n − `copies().len()` + i.
+    /// n − `copies().len()` + i. So it is in the shape of a periodic box if an edge of the triangulation spans half of the box or more: rows name
+    /// copies of points then, and the first vertex of each is a point itself.
     pub fn copies(&self) -> &[u32] {
         &self.copies
+    }
+
+    /// The multiples of the vectors of the box by which each of the [copies](Self::copies) is moved.
+    pub fn shifts(&self) -> &[[i32; 3]] {
+        &self.shifts
     }
 
     /// The voxels that the shape fills, if it [is of labels](super::voxel_shape()) and not of α.

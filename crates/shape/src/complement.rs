@@ -1,13 +1,16 @@
 //! The complement of a shape within the whole triangulation.
 
+use std::collections::BTreeMap;
+
 use rayon::prelude::*;
 use walpha_base::UnionFind;
 use walpha_complex::canonical::sorted;
 use walpha_regular::Torus;
 use walpha_regular::internals::parallel::Coarse;
 
+use super::copies::{Key, faces, key};
 use super::winding::{Winding, WindingSets, minus};
-use super::{Class, Complex};
+use super::{AlphaShape, Class, Complex};
 
 /// The facets of the cells of some classes as sorted rows, each with its cell; ascending, so that the two cells of a facet are
 /// consecutive.
@@ -30,7 +33,11 @@ pub(super) fn sides(whole: &Complex, of: impl Fn(Class) -> bool + Sync) -> Vec<(
 
 /// The complement of a shape within the *whole* triangulation of a torus: exterior cells joined through
 /// exterior facets. Each cell stands for the copy whose first vertex is in the box. O(n log n).
-pub(super) fn complement_on(torus: Torus, whole: &Complex, positions: &[[f64; 3]]) -> WindingSets {
+pub(super) fn complement_on(torus: Torus, shape: &AlphaShape) -> WindingSets {
+    if shape.nearest().is_none() {
+        return complement_by_copies(shape);
+    }
+    let (whole, positions) = (shape.complex(), &shape.points().positions);
     let cells = whole.cells.rows();
     let mut sets = WindingSets::new(cells.len());
     let sides = sides(whole, |class| class == Class::Exterior);
@@ -43,6 +50,29 @@ pub(super) fn complement_on(torus: Torus, whole: &Complex, positions: &[[f64; 3]
         };
         let pair = [cells[a as usize], cells[b as usize]];
         sets.unite(a, b, between(torus, pair, facet[0], positions));
+    }
+    sets
+}
+
+/// The complement where rows name copies of points.
+fn complement_by_copies(shape: &AlphaShape) -> WindingSets {
+    let whole = shape.complex();
+    let mut sets = WindingSets::new(whole.cells.len());
+    let mut sides = BTreeMap::<Key<3>, Vec<(u32, Winding)>>::new();
+    for (cell, (&row, class)) in (0..).zip(whole.cells.iter()) {
+        if class == Class::Exterior {
+            for corners in faces(shape.shifted(row)) {
+                let (facet, shift) = key(corners);
+                sides.entry(facet).or_default().push((cell, shift));
+            }
+        }
+    }
+    for &facet in whole.facets.of(Class::Exterior) {
+        let Some([(a, of_a), (b, of_b)]) = sides.get(&key(shape.shifted(facet)).0).map(|s| &s[..])
+        else {
+            unreachable!("an exterior facet of a torus has exterior cells on both sides")
+        };
+        sets.unite(*a, *b, minus(*of_a, *of_b));
     }
     sets
 }

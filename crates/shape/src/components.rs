@@ -5,6 +5,7 @@ use walpha_regular::Torus;
 
 use super::sums::{ByNumber, ComponentSums, SheetSums, by_number, components_of_sums};
 use super::topology::{connected, connected_on_torus};
+use super::winding::WindingSets;
 use super::{AlphaShape, Class, Component, Measures, Sheets};
 
 /// Stands in [`AlphaShape::component_numbers`] for points that are not vertices of the shape.
@@ -14,10 +15,9 @@ impl AlphaShape {
     /// For each input point the number of its component, [`NO_COMPONENT`] if it is not in the shape.
     /// Components are numbered in the order of their smallest vertices. O(n).
     pub fn component_numbers(&self) -> Vec<u32> {
-        let sets = connected(self.complex());
+        let sets = connected(self.complex(), self.points().len());
         // Copies of a point are in its component.
-        let first_copy = (self.points().len() - self.copies.len()) as u32;
-        for (copy, &of) in (first_copy..).zip(&self.copies) {
+        for (copy, &of) in (self.own_points() as u32..).zip(&self.copies) {
             sets.unite(copy, of);
         }
         let mut numbers = vec![NO_COMPONENT; self.points().len()];
@@ -34,6 +34,9 @@ impl AlphaShape {
                 numbers[v as usize] = numbers[root as usize];
             }
         }
+        for (copy, &of) in (self.own_points()..).zip(&self.copies) {
+            numbers[copy] = numbers[of as usize];
+        }
         numbers
     }
 
@@ -41,8 +44,7 @@ impl AlphaShape {
     pub(crate) fn summed(&self, numbers: &[u32]) -> (Vec<ComponentSums>, Measures) {
         let positions = &self.points().positions;
         let torus = self.options().periodic;
-        let mut windings =
-            torus.map(|torus| (torus, connected_on_torus(self.complex(), positions, torus)));
+        let mut windings = torus.map(|torus| (torus, self.connected_on_torus()));
         let number = |v: u32| numbers[v as usize] as usize;
         let mut components: Vec<ComponentSums> = Vec::new();
         for &[v] in self.complex().vertices.rows() {
@@ -93,9 +95,13 @@ impl AlphaShape {
         components
     }
 
+    fn connected_on_torus(&self) -> WindingSets {
+        connected_on_torus(self.complex(), |edge| self.shifted(edge))
+    }
+
     /// Sets `rounds` and the boxes of components that wind round a torus.
     fn set_rounds(&self, components: &mut [Component], numbers: &[u32], torus: Torus) {
-        let mut windings = connected_on_torus(self.complex(), &self.points().positions, torus);
+        let mut windings = self.connected_on_torus();
         components.iter_mut().for_each(|component| component.rounds = Some(0));
         for &[v] in self.complex().vertices.rows() {
             let (root, _) = windings.find(v);

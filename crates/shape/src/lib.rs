@@ -33,6 +33,7 @@ mod bits;
 mod blocks;
 mod complement;
 mod components;
+mod copies;
 mod derived;
 mod error;
 mod flat;

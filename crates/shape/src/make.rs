@@ -2,14 +2,15 @@ use std::num::NonZeroUsize;
 
 use rayon::prelude::*;
 use walpha_base::{Coordinates, Monitor};
-use walpha_regular::SitesError;
 use walpha_regular::internals::parallel::Coarse;
 use walpha_regular::internals::{Scaled, Sites, check_numbers, lattice};
+use walpha_regular::{SitesError, Torus};
 
 use super::agreement::agree;
 use super::blocks::{self, BlockParams, Limits, Plan, Reach};
 use super::derived::Derived;
 use super::flat::{self, flat};
+use super::ladder::Filtration;
 use super::topology::{components, connected_on_torus, sheet_betti, torus_betti};
 use super::{
     Alpha, AlphaShape, Balls, Betti, CgalError, Classifier, Complex, Engine, ShapeError,
@@ -31,8 +32,8 @@ use super::{
 /// With [`ShapeOptions::periodic`] the shape is that of a torus. Its points are the given ones, moved into the box and rounded as
 /// in [`Torus::wrap`](super::Torus::wrap). A simplex of the torus is listed once, by the input indices of its vertices. Its
 /// copies in space are those in which all other vertices are nearer to the first than half of the box, along each axis
-/// ([`AlphaShape::corners`]). If a listed edge were longer, this would not hold: [`ShapeError::Wraps`]. If 4 √(α + max ω) is less
-/// than the shortest side, there is no such edge. At α = ∞ the shape is the whole torus.
+/// ([`AlphaShape::corners`]). If 4 √(α + max ω) is less than the shortest side, no edge is longer. In a smaller box an edge may be longer; rows then
+/// name copies of points ([`AlphaShape::copies`]), and the shape is taken from the filtration of several copies of the box. At α = ∞ the shape is the whole torus.
 ///
 /// # Errors
 /// [`CgalError::Absent`] for [`Engine::Cgal`] without a [classifier](ShapeOptions::classifier), and other errors of that engine; numbers that are not finite or too large, no
@@ -46,6 +47,19 @@ pub fn alpha_shape(
 ) -> Result<AlphaShape, ShapeError> {
     let monitor = &*Monitor::current();
     let points = points.into();
+    let Some(torus) = options.periodic else { return in_large_box(points, options, monitor) };
+    match in_large_box(points.clone(), options, monitor) {
+        Err(ShapeError::Wraps { .. }) => in_small_box(torus, points, *options, monitor),
+        found => found,
+    }
+}
+
+/// The shape in space, or in a box in which no edge of it spans half of a vector.
+pub(crate) fn in_large_box(
+    points: WeightedPoints,
+    options: &ShapeOptions,
+    monitor: &Monitor,
+) -> Result<AlphaShape, ShapeError> {
     let options = match options.engine {
         Engine::Auto => options.engine(Engine::Native),
         _ => *options,
@@ -138,7 +152,10 @@ fn shape_by(
     let counted = boundary.as_ref().map(|(b0, sheets, windings)| match options.periodic {
         None => sheet_betti(&complex, *b0, sheets),
         Some(torus) => {
-            let wound = connected_on_torus(&complex, &points.positions, torus);
+            let place = |v: u32| points.positions[v as usize];
+            let wound = connected_on_torus(&complex, |[a, b]| {
+                [(a, [0; 3]), (b, torus.windings(place(a), place(b)))]
+            });
             torus_betti(&complex, wound.directions().rank(), sheets, *windings)
         }
     });
@@ -149,6 +166,7 @@ fn shape_by(
         squared,
         complex,
         copies: Vec::new(),
+        shifts: Vec::new(),
         voxels: None,
         kept: None,
         isovalue: None,
@@ -160,6 +178,23 @@ fn shape_by(
         solid: Derived::default(),
         outline: Derived::default(),
     })
+}
+
+/// The shape in a box that is so small that an edge spans half of it or more, taken from the filtration.
+fn in_small_box(
+    torus: Torus,
+    points: WeightedPoints,
+    options: ShapeOptions,
+    monitor: &Monitor,
+) -> Result<AlphaShape, ShapeError> {
+    let squared = options.balls.power_weights(&points.weights, options.alpha)?;
+    let weights = squared.as_ref().unwrap_or(&points.weights).clone();
+    let power = WeightedPoints { positions: points.positions, weights, values: None };
+    let filtration = monitor.watch(|| Filtration::of_small_box(torus, power))?;
+    let levels = filtration.levels(&[options.power_alpha()]);
+    let [betti] = levels.betti()[..] else { unreachable!("one level") };
+    let shape = levels.shape(0, options.exterior, betti);
+    Ok(shape.of_points(points.weights, points.values, squared, options))
 }
 
 /// The result of an engine.

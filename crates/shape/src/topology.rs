@@ -2,10 +2,10 @@
 
 use rayon::prelude::*;
 use walpha_base::UnionFind;
-use walpha_regular::Torus;
 use walpha_regular::internals::parallel::Coarse;
 
 use super::complement::Complement;
+use super::copies::Copied;
 use super::winding::WindingSets;
 use super::{Betti, Class, Complex, Sheets};
 
@@ -61,31 +61,34 @@ pub(super) fn flat_betti(complex: &Complex) -> Betti {
 
 /// The number of components of the shape, counted by its edges.
 pub(super) fn components(complex: &Complex) -> u64 {
-    let sets = connected(complex);
+    let sets = connected(complex, points(complex));
     let of_shape = complex.vertices.iter().filter(|&(_, class)| class != Class::Exterior);
     of_shape.filter(|&(&[v], _)| sets.find(v) == v).count() as u64
 }
 
-/// The vertices of a shape of a torus, united along its edges.
+/// The vertices of a shape of a torus, united along its edges, each of which is given by its ends and by the multiples of the vectors by which
+/// the second is moved.
 pub(super) fn connected_on_torus(
     complex: &Complex,
-    positions: &[[f64; 3]],
-    torus: Torus,
+    shifted: impl Fn([u32; 2]) -> [Copied; 2],
 ) -> WindingSets {
-    let points = complex.vertices.rows().last().map_or(0, |&[v]| v as usize + 1);
-    let mut sets = WindingSets::new(points);
-    for (&[a, b], class) in complex.edges.iter() {
+    let mut sets = WindingSets::new(points(complex));
+    for (&edge, class) in complex.edges.iter() {
         if class != Class::Exterior {
-            let [from, to] = [a, b].map(|v| positions[v as usize]);
-            sets.unite(a, b, torus.windings(from, to));
+            let [(a, _), (b, shift)] = shifted(edge);
+            sets.unite(a, b, shift);
         }
     }
     sets
 }
 
-/// The vertices of a shape, united along its edges.
-pub(super) fn connected(complex: &Complex) -> UnionFind {
-    let points = complex.vertices.rows().last().map_or(0, |&[v]| v as usize + 1);
+/// A bound of the indices of vertices.
+fn points(complex: &Complex) -> usize {
+    complex.vertices.rows().last().map_or(0, |&[v]| v as usize + 1)
+}
+
+/// The vertices of a shape of this many points, united along its edges.
+pub(super) fn connected(complex: &Complex, points: usize) -> UnionFind {
     let sets = UnionFind::new(points);
     complex.edges.rows().par_iter().zip(complex.edges.classes()).coarse().for_each(
         |(&[a, b], class)| {

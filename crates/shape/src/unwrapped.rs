@@ -2,51 +2,24 @@
 
 use std::collections::BTreeMap;
 
-use super::{AlphaShape, Simplices, Torus};
+use super::copies::Copier;
+use super::winding::minus;
+use super::{AlphaShape, Simplices};
 
-/// A copy of a point: the point, and the multiples of the vectors by which the copy is moved.
-type Copied = (u32, [i32; 3]);
-
-/// The copies that are needed, numbered after the points in the order of their first use.
-pub(super) struct Layout<'a> {
-    torus: Torus,
-    positions: &'a [[f64; 3]],
-    numbers: BTreeMap<Copied, u32>,
-    /// The copies, in the order of their numbers.
-    pub copied: Vec<Copied>,
-}
-
-impl<'a> Layout<'a> {
-    pub(super) fn new(torus: Torus, positions: &'a [[f64; 3]]) -> Self {
-        Self { torus, positions, numbers: BTreeMap::new(), copied: Vec::new() }
-    }
-
-    /// Places each simplex in the copy whose lowest parts along the vectors are in the box, so that simplices extend beyond only the upper
-    /// faces of the box.
-    pub(super) fn lay_out<const N: usize>(&mut self, simplices: &Simplices<N>) -> Simplices<N> {
-        simplices.iter().map(|(&row, class)| (self.row(row), class)).collect()
-    }
-
-    fn row<const N: usize>(&mut self, row: [u32; N]) -> [u32; N] {
-        let place = |v: u32| self.positions[v as usize];
-        let ways = row.map(|v| self.torus.windings(place(row[0]), place(v)));
-        let lowest = [0, 1, 2].map(|k| ways.iter().map(|way| way[k]).min().unwrap_or(0));
-        let mut laid_out = row;
-        for (v, way) in laid_out.iter_mut().zip(ways) {
-            *v = self.number((*v, [0, 1, 2].map(|k| way[k] - lowest[k])));
-        }
-        laid_out
-    }
-
-    fn number(&mut self, copied: Copied) -> u32 {
-        if copied.1 == [0; 3] {
-            return copied.0;
-        }
-        *self.numbers.entry(copied).or_insert_with(|| {
-            self.copied.push(copied);
-            (self.positions.len() + self.copied.len()) as u32 - 1
-        })
-    }
+/// Places each simplex in the copy whose lowest parts along the vectors are in the box, so that simplices extend beyond only the upper
+/// faces of the box.
+fn lay_out<const N: usize>(
+    shape: &AlphaShape,
+    simplices: &Simplices<N>,
+    copier: &mut Copier,
+) -> Simplices<N> {
+    let row = |row: [u32; N]| {
+        let copied = shape.shifted(row);
+        let lowest = [0, 1, 2].map(|k| copied.iter().map(|(_, way)| way[k]).min().unwrap_or(0));
+        copied.map(|(v, way)| copier.number((v, minus(way, lowest))))
+    };
+    let mut row = row;
+    simplices.iter().map(|(&vertices, class)| (row(vertices), class)).collect()
 }
 
 impl AlphaShape {
@@ -57,39 +30,22 @@ impl AlphaShape {
     #[must_use]
     pub fn unwrapped(&self) -> Self {
         let Some(torus) = self.options.periodic else { return self.clone() };
-        let mut layout = Layout::new(torus, &self.points.positions);
+        let mut copier = Copier::new(self.own_points());
         let mut complex = self.complex.clone();
-        complex.cells = layout.lay_out(&self.complex.cells);
-        complex.facets = layout.lay_out(&self.complex.facets);
-        complex.edges = layout.lay_out(&self.complex.edges);
+        complex.cells = lay_out(self, &self.complex.cells, &mut copier);
+        complex.facets = lay_out(self, &self.complex.facets, &mut copier);
+        complex.edges = lay_out(self, &self.complex.edges, &mut copier);
         let classes: BTreeMap<u32, _> =
             self.complex.vertices.iter().map(|(&[v], class)| (v, class)).collect();
-        let points = self.points.len() as u32;
-        let copied = layout.copied;
-        for (copy, (v, _)) in (points..).zip(&copied) {
+        let points = self.own_points() as u32;
+        for (copy, (v, _)) in (points..).zip(&copier.copied) {
             complex.vertices.push([copy], classes[v]);
         }
         let mut unwrapped = self.clone();
         unwrapped.complex = complex;
         unwrapped.options.periodic = None;
         (unwrapped.sums, unwrapped.solid, unwrapped.outline) = Default::default();
-        for (v, way) in copied {
-            let place = torus.moved(self.points.positions[v as usize], way);
-            unwrapped.push_copy(v, place);
-        }
+        unwrapped.set_copies(torus, copier.copied);
         unwrapped
-    }
-
-    fn push_copy(&mut self, v: u32, place: [f64; 3]) {
-        let at = v as usize;
-        self.points.positions.push(place);
-        self.points.weights.push(self.points.weights[at]);
-        if let Some(values) = &mut self.points.values {
-            values.push(values[at]);
-        }
-        if let Some(squared) = &mut self.squared {
-            squared.push(squared[at]);
-        }
-        self.copies.push(v);
     }
 }

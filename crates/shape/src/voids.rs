@@ -132,10 +132,9 @@ enum Bounded {
 
 impl Bounded {
     fn of(shape: &AlphaShape) -> Self {
-        let (whole, positions) = (shape.complex(), &shape.points().positions);
         match shape.options().periodic {
-            None => Self::InSpace(Complement::of(whole)),
-            Some(torus) => Self::OnTorus(Box::new(torus), complement_on(torus, whole, positions)),
+            None => Self::InSpace(Complement::of(shape.complex())),
+            Some(torus) => Self::OnTorus(Box::new(torus), complement_on(torus, shape)),
         }
     }
 
@@ -160,7 +159,7 @@ fn voids(shape: &AlphaShape) -> Vec<(Void, Vec<u32>)> {
     let cells = &shape.complex().cells;
     let mut bounded = Bounded::of(shape);
     let (positions, weights) = (&shape.points().positions, shape.power_weights());
-    let spheres = Predicates::on_torus(positions, weights, shape.options().periodic);
+    let spheres = Predicates::on_torus(positions, weights, shape.nearest());
     // Indexed by component, whose number is that of its smallest cell.
     let mut found: Vec<Option<Hollow>> = vec![None; cells.len() + 1];
     let mut inside = Vec::new();

@@ -14,6 +14,7 @@ use walpha_regular::internals::parallel::{Coarse, join};
 use crate::Complex;
 use crate::along::{Along, Table, is_before, starts};
 use crate::incidence::{Faces, sides, sorted_facets};
+use crate::winding::Winding;
 
 /// The double nearest to the squared radius of the smallest orthogonal sphere of a simplex, if that is
 /// empty; otherwise no number.
@@ -78,9 +79,12 @@ pub(super) struct Incidence {
     pub cell_facets: Vec<[u32; 4]>,
     /// The cells on both sides of each facet; [`Incidence::OUTSIDE`] beyond the hull.
     pub facet_cells: Vec<[u32; 2]>,
+    /// For each facet, the multiples of the vectors by which its second cell is to be moved so that the vertices of the facet coincide in
+    /// both; empty unless rows name copies of points.
+    pub ways: Vec<Winding>,
     /// The edge opposite each corner of each facet.
     pub facet_edges: Vec<[u32; 3]>,
-    /// The row of each point among the vertices; undefined for hidden points, and one past the last point.
+    /// The row of each point, and of each copy of one, among the vertices; undefined for hidden points, and one past the last point.
     pub vertex_rows: Vec<u32>,
 }
 
@@ -141,7 +145,8 @@ pub(super) fn incidence_and_radii(
     facet_cells.par_iter_mut().coarse().for_each(|sides| sides.sort_unstable());
     let (cell_facets, facet_edges) =
         join(facets.len(), || cell_facets.finished(), || facet_edges.finished());
-    let incidence = Incidence { facets, cell_facets, facet_cells, facet_edges, vertex_rows };
+    let incidence =
+        Incidence { facets, cell_facets, facet_cells, ways: Vec::new(), facet_edges, vertex_rows };
     let radii = Radii {
         cells: of_cells.finished(|radius| radius),
         facets: of_facets.finished(Radius),

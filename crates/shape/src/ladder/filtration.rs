@@ -5,8 +5,11 @@ use walpha_regular::internals::Predicates;
 use super::build::Incidence;
 use super::build::incidence_and_radii;
 use super::build::{Radii, Radius};
-use crate::WeightedPoints;
-use crate::{Alpha, AlphaShape, Complex, Engine, ShapeError, ShapeOptions, alpha_shape};
+use crate::make::in_large_box;
+use crate::winding::Winding;
+use crate::{
+    Alpha, AlphaShape, Complex, Engine, ShapeError, ShapeOptions, WeightedPoints, between,
+};
 
 /// All alpha shapes of a set of points: the regular triangulation, and for each simplex the α at which it enters.
 ///
@@ -39,8 +42,22 @@ impl Filtration {
     /// [`ShapeOptions::periodic`].
     ///
     /// # Errors
-    /// See [`alpha_shape`](crate::alpha_shape()), at α = ∞; so no edge of the whole triangulation may span half of the box.
+    /// See [`alpha_shape`](crate::alpha_shape()), at α = ∞.
     pub fn on(torus: Option<Torus>, points: impl Into<WeightedPoints>) -> Result<Self, ShapeError> {
+        let points = points.into();
+        let Some(torus) = torus else { return Self::of_large_box(None, points) };
+        // Points are few where edges are long.
+        match Self::of_large_box(Some(torus), points.clone()) {
+            Err(ShapeError::Wraps { .. }) => Self::of_small_box(torus, points),
+            found => found,
+        }
+    }
+
+    /// The filtration in space, or in a box in which no edge spans half of a vector.
+    pub(super) fn of_large_box(
+        torus: Option<Torus>,
+        points: WeightedPoints,
+    ) -> Result<Self, ShapeError> {
         let monitor = &*Monitor::current();
         let options = ShapeOptions {
             engine: Engine::Native,
@@ -48,7 +65,7 @@ impl Filtration {
             periodic: torus,
             ..ShapeOptions::new(Alpha::INFINITE)
         };
-        let whole = monitor.part(0, 4, 8).watch(|| alpha_shape(points, &options))?;
+        let whole = in_large_box(points, &options, &monitor.part(0, 4, 8))?;
         let complex = whole.complex();
         memory::afford(Self::bytes(complex), || {
             format!("the filtration of {} cells", complex.cells.len())
@@ -100,7 +117,18 @@ impl Filtration {
 
     pub(super) fn spheres(&self) -> Predicates<'_> {
         let WeightedPoints { positions, weights, .. } = self.points();
-        Predicates::on_torus(positions, weights, self.torus())
+        Predicates::on_torus(positions, weights, self.whole.nearest())
+    }
+
+    /// The multiples of the vectors by which the second cell of a facet of a torus is to be moved so that the facet coincides in both.
+    pub(super) fn way_across(&self, torus: Torus, facet: usize) -> Winding {
+        if let Some(&way) = self.incidence.ways.get(facet) {
+            return way;
+        }
+        let rows = self.whole.complex().cells.rows();
+        let cells = self.incidence.facet_cells[facet].map(|cell| rows[cell as usize]);
+        let vertex = self.incidence.facets[facet][0];
+        between(torus, cells, vertex, self.points().positions())
     }
 }
 

@@ -28,6 +28,7 @@ mod critical;
 mod filtration;
 mod levels;
 mod ordered;
+mod small;
 mod table;
 mod topology;
 mod values;

@@ -13,7 +13,7 @@ use walpha_regular::internals::{Interval, Predicates};
 use super::Levels;
 use super::build::Incidence;
 use super::levels::ByLevel;
-use crate::{Betti, Directions, Hollow, United, Void, WindingSets, between};
+use crate::{Betti, Directions, Hollow, United, Void, WindingSets};
 
 impl Levels<'_> {
     /// Connected components of each level. O(n α(n)).
@@ -26,7 +26,8 @@ impl Levels<'_> {
         let grow = |level| {
             count += vertices.at(level).len() as u64;
             for &edge in edges.at(level) {
-                let [a, b] = complex.edges.rows()[edge as usize];
+                let [a, b] =
+                    complex.edges.rows()[edge as usize].map(|v| self.filtration.whole.copied(v).0);
                 count -= u64::from(sets.unite(a, b));
             }
             count
@@ -173,7 +174,7 @@ impl Levels<'_> {
             for &facet in facets.at(level + 1) {
                 let sides = incidence.facet_cells[facet as usize]
                     .map(|side| if side == Incidence::OUTSIDE { outside } else { side });
-                complement.join(sides, incidence.facets[facet as usize][0]);
+                complement.join(sides, facet);
             }
             visit(level, &mut complement);
         }
@@ -181,8 +182,8 @@ impl Levels<'_> {
 }
 
 impl LevelComplement<'_> {
-    /// Unites the two cells of a facet with this vertex.
-    fn join(&mut self, [a, b]: [u32; 2], vertex: u32) {
+    /// Unites the two cells of a facet.
+    fn join(&mut self, [a, b]: [u32; 2], facet: u32) {
         let roots = [self.sets.find(a), self.sets.find(b)];
         let (low, high) = (roots[0].min(roots[1]), roots[0].max(roots[1]));
         let filtration = self.levels.filtration;
@@ -192,9 +193,7 @@ impl LevelComplement<'_> {
                 low != high
             }
             Sets::OnTorus(torus, sets, rounds) => {
-                let cells = filtration.whole.complex().cells.rows();
-                let cells = [cells[a as usize], cells[b as usize]];
-                let way = between(**torus, cells, vertex, &filtration.points().positions);
+                let way = filtration.way_across(**torus, facet as usize);
                 let united = sets.unite(a, b, way);
                 if let United::Round(way) = united {
                     rounds.add(way);

@@ -84,7 +84,7 @@ impl Filtration {
         let weights = simplex.map(|v| self.points().weights[v as usize]);
         let shares = centre_shares(self.whole.corners(simplex), weights);
         std::array::from_fn(|k| Derivative {
-            vertex: simplex[k],
+            vertex: self.whole.copied(simplex[k]).0,
             position: shares[k].moment.map(|moment| 2.0 * moment),
             weight: -shares[k].share,
         })

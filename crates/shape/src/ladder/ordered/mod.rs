@@ -18,7 +18,7 @@ use super::build::{Radii, Radius};
 use super::levels::OwnLevels;
 use super::{Filtration, Levels};
 use crate::derived::Derived;
-use crate::{Alpha, Betti, ShapeError};
+use crate::{Alpha, AlphaShape, Betti, ShapeError};
 pub use gradient::Derivative;
 pub use intervals::Interval;
 pub use loops::Loops;
@@ -110,7 +110,7 @@ impl Filtration {
                 done(2)?;
                 Ok::<_, ShapeError>(self.levels_by_rank(&values, &of, numbers))
             },
-            || sorted_cells(complex.cells.rows()),
+            || sorted_cells(&self.whole),
         );
         let levels = levels?;
         done(3)?;
@@ -145,8 +145,17 @@ impl Filtration {
 }
 
 /// Cells with ascending vertices in lexicographic order, and the row of each. They come in the
-/// order of rows whose last two vertices may be exchanged.
-fn sorted_cells(rows: &[[u32; 4]]) -> (Vec<[u32; 4]>, Vec<u32>) {
+/// order of rows whose last two vertices may be exchanged; where rows name copies of points, by point and shift.
+fn sorted_cells(whole: &AlphaShape) -> (Vec<[u32; 4]>, Vec<u32>) {
+    let rows = whole.complex().cells.rows();
+    if !whole.copies().is_empty() {
+        let sorted = |&row: &[u32; 4]| {
+            let mut row = row;
+            row.sort_unstable_by_key(|&v| whole.copied(v));
+            row
+        };
+        return (rows.iter().map(sorted).collect(), (0..rows.len() as u32).collect());
+    }
     let sorted = |row: &[u32; 4]| {
         let mut row = *row;
         row.sort_unstable();

@@ -8,7 +8,7 @@ use walpha_regular::internals::parallel::join;
 use super::{Ordered, Pairs};
 use crate::ladder::Filtration;
 use crate::ladder::build::Incidence;
-use crate::{Directions, Torus, United, WindingSets, between};
+use crate::{Directions, Torus, United, WindingSets};
 
 impl Ordered<'_> {
     /// Persistence pairs of dimensions 0 and 2. O(n α(n)). Those of dimension 1 are [`loops`](Self::loops), between
@@ -109,10 +109,7 @@ impl<'a> ComplementWindings<'a> {
 
     /// Joins the cells of a facet; returns whether the complement now winds round in a new direction.
     fn open(&mut self, facet: usize, sides: [u32; 2]) -> bool {
-        let Filtration { whole, incidence, .. } = self.filtration;
-        let cells = sides.map(|side| whole.complex().cells.rows()[side as usize]);
-        let vertex = incidence.facets[facet][0];
-        let way = between(self.torus, cells, vertex, &whole.points().positions);
+        let way = self.filtration.way_across(self.torus, facet);
         match self.sets.unite(sides[0], sides[1], way) {
             United::Round(way) => self.rounds.add(way),
             _ => false,
