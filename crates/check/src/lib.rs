@@ -38,6 +38,7 @@ mod index;
 pub mod meshes;
 mod parallel;
 mod period;
+mod repeated;
 mod rules;
 pub mod schema;
 

@@ -52,6 +52,26 @@ impl Period {
         (0..3).any(|k| !(self.compare(k, way, -1.0).is_gt() && self.compare(k, way, 1.0).is_lt()))
     }
 
+    /// Raises the numbers of copies of the box until the way between two places spans less than half of them, or until one is above `most`.
+    pub(crate) fn lengthen(
+        &self,
+        times: &mut [i32; 3],
+        from: [f64; 3],
+        to: [f64; 3],
+        most: i32,
+    ) {
+        let way = [0, 1, 2].map(|axis| to[axis] - from[axis]);
+        for (k, times) in times.iter_mut().enumerate() {
+            let is_long = |times: i32| {
+                self.compare(k, way, f64::from(times)).is_ge()
+                    || self.compare(k, way, -f64::from(times)).is_le()
+            };
+            while *times <= most && is_long(*times) {
+                *times += 1;
+            }
+        }
+    }
+
     /// Whether a position is in the box, and its nearby copies are exact.
     pub(crate) fn holds(&self, position: [f64; 3]) -> bool {
         if position.iter().any(|x| !x.is_finite()) {

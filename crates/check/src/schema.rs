@@ -8,6 +8,7 @@ use walpha_complex::canonical::{outward_facets, smallest_even, sort, sorted};
 use crate::exact::orientation;
 use crate::index::Index;
 use crate::period::Period;
+use crate::repeated::repeated;
 use crate::{Alpha, Class, Complex, Placed, Simplices, Voxels};
 
 /// A complex with its points, in canonical order, ready to be judged.
@@ -30,6 +31,9 @@ pub struct PlacedComplex {
     /// The lowest dimension of which it lists all simplices: 0, unless the file leaves a dimension out. That dimension and those
     /// below have only faces.
     pub lowest: usize,
+    /// The number of copies of the box of which this is the complex: several where rows of the file [name copies](ComplexFile::copies). Each
+    /// simplex of the file then has so many rows; the points of the file come first.
+    pub copies: usize,
     /// The voxels that the cells fill, if the complex is of labels.
     pub voxels: Option<Voxels>,
     /// The value at whose isosurface the cells end, if the complex is the solid inside one.
@@ -40,6 +44,11 @@ impl PlacedComplex {
     /// The complex, borrowed for comparison.
     pub fn placed(&self) -> Placed<'_> {
         Placed::new(&self.positions, &self.weights, self.alpha, &self.complex)
+    }
+
+    /// The number of points in the box.
+    pub fn points_in_box(&self) -> usize {
+        self.positions.len() / self.copies
     }
 
     /// Returns this complex in a periodic box, or in space.
@@ -68,7 +77,7 @@ impl TryFrom<ComplexFile> for PlacedComplex {
     /// the checker to find.
     ///
     /// # Errors
-    /// Fields of different lengths, point numbers out of range, no points or no simplices.
+    /// Fields of different lengths, point numbers out of range, no points or no simplices, copies of points without a box or too far from it.
     fn try_from(file: ComplexFile) -> Result<Self, SchemaError> {
         let n = file.points.len();
         if n == 0 {
@@ -92,6 +101,8 @@ impl TryFrom<ComplexFile> for PlacedComplex {
             });
         }
         let lowest = lowest_listed(&file);
+        let (file, copies) = repeated(file)?;
+        let n = file.points.len();
         if file.voxels.as_ref().is_some_and(|voxels| !voxels.is_sound()) {
             return Err(SchemaError::Value {
                 name: "voxels",
@@ -159,6 +170,7 @@ impl TryFrom<ComplexFile> for PlacedComplex {
             hidden: file.hidden,
             duplicates: file.duplicates,
             periodic: file.periodic,
+            copies,
             lowest,
             voxels: file.voxels,
             isovalue: file.isovalue,

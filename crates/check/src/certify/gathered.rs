@@ -59,6 +59,7 @@ fn renumbered(claim: &Claim) -> Option<PlacedComplex> {
         periodic: None,
         lowest: claim.lowest,
         voxels: None,
+        copies: 1,
         isovalue: None,
     })
 }

@@ -54,6 +54,7 @@ impl From<Claim<'_>> for PlacedComplex {
             periodic: None,
             lowest: claim.lowest,
             voxels: None,
+            copies: 1,
             isovalue: None,
         }
     }

@@ -95,6 +95,12 @@ pub(super) fn findings(
     if whole {
         found.extend(missing);
     }
+    if placed.copies > 1 {
+        let count = placed.points_in_box() as u32;
+        let mut seen = BTreeSet::new();
+        found = found.into_iter().filter_map(|finding| finding.at_box(count)).collect();
+        found.retain(|finding| seen.insert(format!("{finding:?}")));
+    }
     certificate.findings = found.len();
     certificate.ties = found.iter().filter(|finding| finding.is_tie()).count();
     certificate.conclude();

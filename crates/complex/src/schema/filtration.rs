@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{BoxVectors, SchemaError};
+use super::{BoxVectors, PointCopy, SchemaError};
 use crate::Alpha;
 
 /// The contents of a file with a filtration: every simplex of a regular triangulation, and the α at which it enters.
@@ -34,7 +34,7 @@ use crate::Alpha;
 ///   end), `loops` (an edge that closes a loop, and the facet that fills it; may be missing), `voids` (a facet that
 ///   closes a void, and the cell that fills it). For a torus also `lasting_loops` and `lasting_voids`, the edges and
 ///   facets that close loops and surfaces which are never filled, and `last`, the cell that completes the torus.
-/// - `periodic` are the sides or vectors of a periodic box, as in a complex.
+/// - `periodic` are the sides or vectors of a periodic box, and `copies` the copies of its points that rows name, as in a complex.
 /// - `hidden`, `duplicates` and `info` are as in a complex.
 ///
 /// In NPZ the same names are arrays; those with dimensions are `vertex_values`, `edge_values`,
@@ -85,6 +85,9 @@ pub struct FiltrationFile {
     /// The vectors of the periodic box, if there is one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub periodic: Option<BoxVectors>,
+    /// Copies of points, which rows name by indices after those of the points.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub copies: Option<Vec<PointCopy>>,
     /// Any further data of the writer.
     #[cfg(feature = "json")]
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -153,9 +156,10 @@ impl FiltrationFile {
         }
         SchemaError::paired("weights", self.weights.as_ref().map_or(n, Vec::len), "points", n)?;
         SchemaError::in_range("vertices", self.vertices.iter(), n)?;
-        SchemaError::in_range("edges", self.edges.iter().flatten(), n)?;
-        SchemaError::in_range("facets", self.facets.iter().flatten(), n)?;
-        SchemaError::in_range("cells", self.cells.iter().flatten(), n)?;
+        let named = n + self.copies.as_ref().map_or(0, Vec::len);
+        SchemaError::in_range("edges", self.edges.iter().flatten(), named)?;
+        SchemaError::in_range("facets", self.facets.iter().flatten(), named)?;
+        SchemaError::in_range("cells", self.cells.iter().flatten(), named)?;
         let (values, cells) = (&self.values, self.cells.len());
         let of_values = [&values.vertices, &values.edges, &values.facets].map(Vec::len);
         self.paired(["values.vertices", "values.edges", "values.facets"], of_values)?;

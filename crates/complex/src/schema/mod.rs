@@ -29,6 +29,9 @@
 //!   repeats: the complex is then one of a torus. All points are in the box: the sum of the vectors, each times a part from 0 to
 //!   less than 1, is the point. A row means the copies of its vertices nearest to the first one, which must be nearer than
 //!   half of each vector, as measured by these parts.
+//! - `copies` are rows [point, i, j, k], for a periodic box that is so small that the nearest copies are not meant: with n points, vertex n + r of a
+//!   simplex is the copy that row r describes, the point moved by i, j and k times the vectors. All vertices are then meant as they are, and a
+//!   simplex that lies in one of its copies in space stands for all of them.
 //! - `voxels` says that the complex is no α-shape but the solid of labels: its cells fill these voxels of a grid, and `alpha` is `"inf"`.
 //!   `dims` are the voxels of the grid along its x, y and z; `origin` is the position of the first sample, `axes` are the
 //!   steps from a sample to the next along x, y and z; a voxel is the box of half a step around its sample. `runs` are rows [first, number]
@@ -39,7 +42,7 @@
 //!
 //! In NPZ (`numpy.savez`, `numpy.savez_compressed`) the same names are arrays of any integer or
 //! floating-point type: `points` n×3, `weights` n, `alpha` a scalar, `cells` m×4, `facets` m×3,
-//! `edges` m×2, `vertices` m, `hidden` m, `duplicates` m×2. Classes are arrays `cell_classes`,
+//! `edges` m×2, `vertices` m, `hidden` m, `duplicates` m×2, `copies` m×4. Classes are arrays `cell_classes`,
 //! `facet_classes`, `edge_classes` and `vertex_classes`, with 0 exterior, 1 interior, 2 regular,
 //! 3 singular. `voxels` is two arrays: `voxel_runs` m×2, and `voxel_grid` 5×3, rows of `dims`, `origin` and the three axes. `isovalue` is a scalar.
 //!
@@ -69,6 +72,9 @@ pub use filtration::{Below, FiltrationFile, PairsFile, Values};
 #[cfg(feature = "npz")]
 pub use npz::read_npy;
 pub use open::AnyFile;
+
+/// A copy of a point of a periodic box: the index of the point, and the multiples of the three vectors by which it is moved.
+pub type PointCopy = [i32; 4];
 
 /// The contents of a file with a complex; see the [module](self) for the meaning of the fields.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -107,6 +113,9 @@ pub struct ComplexFile {
     /// The vectors of the periodic box, if there is one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub periodic: Option<BoxVectors>,
+    /// Copies of points, which rows name by indices after those of the points.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub copies: Option<Vec<PointCopy>>,
     /// The voxels that the cells fill, if the complex is of labels.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub voxels: Option<Voxels>,
@@ -190,6 +199,7 @@ impl ComplexFile {
             hidden: None,
             duplicates: None,
             periodic: None,
+            copies: None,
             voxels: None,
             isovalue: None,
             #[cfg(feature = "json")]

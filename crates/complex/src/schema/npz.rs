@@ -50,6 +50,7 @@ impl ComplexFile {
             hidden: file.list("hidden", index)?,
             duplicates: file.rows("duplicates", index)?,
             periodic: file.box_vectors()?,
+            copies: file.rows("copies", integer)?,
             voxels: file.voxels()?,
             isovalue: file.numbers("isovalue")?.map(|value| value[0]),
             ..Self::of_points(file.rows("points", |_, x| Ok(x))?.unwrap_or_default(), alpha)
@@ -123,11 +124,12 @@ enum Kind {
     Box,
 }
 
-const COMPLEX_ARRAYS: [(&str, Kind); 17] = [
+const COMPLEX_ARRAYS: [(&str, Kind); 18] = [
     ("points", Kind::Rows(3)),
     ("alpha", Kind::Scalar),
     ("isovalue", Kind::Scalar),
     ("periodic", Kind::Box),
+    ("copies", Kind::Rows(4)),
     ("cells", Kind::Rows(4)),
     ("facets", Kind::Rows(3)),
     ("edges", Kind::Rows(2)),
@@ -331,6 +333,15 @@ fn index(name: &'static str, value: f64) -> Result<u32, SchemaError> {
     }
 }
 
+fn integer(name: &'static str, value: f64) -> Result<i32, SchemaError> {
+    let number = value as i32;
+    if f64::from(number) == value {
+        Ok(number)
+    } else {
+        Err(unexpected(name, value, "a point number, or a multiple of a vector"))
+    }
+}
+
 fn whole(name: &'static str, value: f64) -> Result<u64, SchemaError> {
     let number = value as u64;
     if number as f64 == value {
@@ -356,7 +367,7 @@ fn class(name: &'static str, value: f64) -> Result<Class, SchemaError> {
     class.ok_or_else(|| unexpected(name, value, expected))
 }
 
-const FILTRATION_ARRAYS: [(&str, Kind); 30] = [
+const FILTRATION_ARRAYS: [(&str, Kind); 31] = [
     ("points", Kind::Rows(3)),
     ("weights", Kind::Column("points")),
     ("vertices", Kind::Rows(1)),
@@ -385,6 +396,7 @@ const FILTRATION_ARRAYS: [(&str, Kind); 30] = [
     ("lasting_voids", Kind::Rows(1)),
     ("last_cell", Kind::Rows(1)),
     ("periodic", Kind::Box),
+    ("copies", Kind::Rows(4)),
     ("hidden", Kind::Rows(1)),
     ("duplicates", Kind::Rows(2)),
 ];
@@ -458,6 +470,7 @@ impl FiltrationFile {
             hidden: file.list("hidden", index)?,
             duplicates: file.rows("duplicates", index)?,
             periodic: file.box_vectors()?,
+            copies: file.rows("copies", integer)?,
             #[cfg(feature = "json")]
             info: None,
         })

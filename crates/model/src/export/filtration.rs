@@ -7,6 +7,7 @@ use std::path::Path;
 use walpha_base::{Monitor, memory};
 use zip::ZipWriter;
 
+use super::claim::point_copies;
 use super::npz::Archive;
 use walpha_check::schema::{Below, BoxVectors, FiltrationFile, PairsFile, SchemaError, Values};
 use walpha_shape::Alpha;
@@ -123,8 +124,13 @@ fn write_npz(ordered: &Ordered<'_>, out: &mut dyn Write, monitor: &Monitor) -> i
     let pairs = ordered.pairs();
     let mut archive = Archive::compressed(ZipWriter::new_stream(out));
     let whole = ordered.filtration().whole();
-    archive.rows("points", whole.points().positions())?;
-    archive.list("weights", whole.power_weights())?;
+    let copies = point_copies(whole);
+    let own = whole.points().len() - copies.as_ref().map_or(0, Vec::len);
+    archive.rows("points", &whole.points().positions()[..own])?;
+    archive.list("weights", &whole.power_weights()[..own])?;
+    if let Some(copies) = copies {
+        archive.rows("copies", &copies)?;
+    }
     archive.list("vertices", ordered.vertices().as_flattened())?;
     archive.rows("edges", ordered.edges())?;
     archive.rows("facets", ordered.facets())?;
@@ -183,6 +189,8 @@ fn filtration_file(ordered: &Ordered<'_>, loops: &Loops) -> FiltrationFile {
     for dimension in 1..4 {
         first[dimension] = first[dimension - 1] + ordered.count(dimension - 1) as u32;
     }
+    let copies = point_copies(whole);
+    let own = whole.points().len() - copies.as_ref().map_or(0, Vec::len);
     let entries = |dimension: usize| {
         let numbers = first[dimension]..first[dimension] + ordered.count(dimension) as u32;
         numbers.map(|number| ordered.simplex(number))
@@ -197,8 +205,9 @@ fn filtration_file(ordered: &Ordered<'_>, loops: &Loops) -> FiltrationFile {
         Below { vertices, edges, facets }
     }
     FiltrationFile {
-        points: whole.points().positions().to_vec(),
-        weights: Some(whole.power_weights().to_vec()),
+        points: whole.points().positions()[..own].to_vec(),
+        weights: Some(whole.power_weights()[..own].to_vec()),
+        copies,
         vertices: ordered.vertices().as_flattened().to_vec(),
         edges: ordered.edges().to_vec(),
         facets: ordered.facets().to_vec(),
@@ -248,7 +257,8 @@ fn write_text(ordered: &Ordered<'_>, out: &mut dyn Write, monitor: &Monitor) -> 
         // The debug format uses an exponent for numbers that would have hundreds of digits.
         let (value, gabriel) = (simplex.value, u8::from(simplex.gabriel));
         write!(out, "{value:?} {gabriel} {:?} {:?}", simplex.regular, simplex.interior)?;
-        simplex.vertices.iter().try_for_each(|v| write!(out, " {v}"))?;
+        out.write_all(b" ")?;
+        write_vertices(ordered, simplex.vertices, out)?;
         writeln!(out)?;
     }
     Ok(())
@@ -260,21 +270,29 @@ fn write_csv(ordered: &Ordered<'_>, out: &mut dyn Write, monitor: &Monitor) -> i
     for (dimension, intervals) in persistence(ordered, monitor)?.into_iter().enumerate() {
         for Interval { birth, death, begins, ends, .. } in intervals {
             write!(out, "{dimension},{birth:?},{death:?},")?;
-            write_vertices(ordered, begins, out)?;
+            write_vertices(ordered, ordered.simplex(begins).vertices, out)?;
             out.write_all(b",")?;
-            ends.map_or(Ok(()), |ends| write_vertices(ordered, ends, out))?;
+            let ends = ends.map(|ends| ordered.simplex(ends).vertices);
+            write_vertices(ordered, ends.unwrap_or_default(), out)?;
             writeln!(out)?;
         }
     }
     Ok(())
 }
 
-/// Writes the vertices of a simplex, separated by spaces.
-fn write_vertices(ordered: &Ordered<'_>, number: u32, out: &mut dyn Write) -> io::Result<()> {
-    let vertices = ordered.simplex(number).vertices;
-    vertices.iter().enumerate().try_for_each(|(at, v)| match at {
-        0 => write!(out, "{v}"),
-        _ => write!(out, " {v}"),
+/// Writes the vertices of a simplex, separated by spaces. `3:0:0:1` is the copy of point 3 that is moved by the third vector of a periodic box.
+fn write_vertices(ordered: &Ordered<'_>, vertices: &[u32], out: &mut dyn Write) -> io::Result<()> {
+    let whole = ordered.filtration().whole();
+    let own = whole.points().len() - whole.copies().len();
+    vertices.iter().enumerate().try_for_each(|(at, &v)| {
+        let space = if at == 0 { "" } else { " " };
+        match (v as usize).checked_sub(own) {
+            None => write!(out, "{space}{v}"),
+            Some(copy) => {
+                let (of, [a, b, c]) = (whole.copies()[copy], whole.shifts()[copy]);
+                write!(out, "{space}{of}:{a}:{b}:{c}")
+            }
+        }
     })
 }
 

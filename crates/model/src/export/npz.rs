@@ -6,6 +6,7 @@ use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
 
 use super::Exporter;
+use super::claim::point_copies;
 use walpha_shape::{AlphaShape, Class, NO_COMPONENT, Torus, Voxels};
 
 /// Writes NPZ, `NumPy`'s archive of arrays: the complex with its points, power weights and α, in the
@@ -24,8 +25,10 @@ impl Exporter for Npz {
     fn encode(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
         let (points, complex) = (shape.points(), shape.complex());
         let mut archive = Archive::new(ZipWriter::new(Cursor::new(Vec::new())));
-        archive.rows("points", points.positions())?;
-        archive.list("weights", shape.power_weights())?;
+        let copies = point_copies(shape);
+        let own = points.len() - copies.as_ref().map_or(0, Vec::len);
+        archive.rows("points", &points.positions()[..own])?;
+        archive.list("weights", &shape.power_weights()[..own])?;
         archive.array("alpha", arr0(shape.power_alpha().squared()))?;
         archive.rows("cells", complex.cells.rows())?;
         archive.rows("facets", complex.facets.rows())?;
@@ -42,6 +45,9 @@ impl Exporter for Npz {
         if let Some(torus) = shape.options().periodic {
             archive.box_vectors(torus)?;
         }
+        if let Some(copies) = copies {
+            archive.rows("copies", &copies)?;
+        }
         if let Some(Voxels { dims, origin, axes: [a, b, c], runs }) = shape.voxels() {
             archive.rows("voxel_grid", &[dims.map(f64::from), *origin, *a, *b, *c])?;
             archive.rows("voxel_runs", runs)?;
@@ -50,10 +56,10 @@ impl Exporter for Npz {
             archive.array("isovalue", arr0(isovalue))?;
         }
         if let Some(values) = points.values() {
-            archive.list("values", values)?;
+            archive.list("values", &values[..own])?;
         }
         let number = |n: u32| if n == NO_COMPONENT { -1 } else { i64::from(n) };
-        let components: Vec<i64> = shape.component_numbers().into_iter().map(number).collect();
+        let components: Vec<i64> = shape.component_numbers()[..own].iter().copied().map(number).collect();
         archive.list("components", &components)?;
         if let Some(sheets) = shape.sheets() {
             archive.rows("boundary_sheets", &sheets.sides().collect::<Vec<_>>())?;
