@@ -51,6 +51,7 @@ impl BallUnion<'_> {
     /// # Errors
     /// [`BallsError::NoExterior`] unless the shape lists its [exterior](walpha_shape::ShapeOptions::exterior) simplices.
     pub fn voids(&self) -> Result<Vec<Cavity>, BallsError> {
+        self.refuse_small_box("voids")?;
         let voids = self.shape.voids_and_cells().ok_or(BallsError::NoExterior { what: "voids" })?;
         let rest = Rest::of(self)?;
         let cavity =

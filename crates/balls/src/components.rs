@@ -21,7 +21,8 @@ impl BallUnion<'_> {
     /// The components of the union, in the order of [`AlphaShape::component_numbers`](walpha_shape::AlphaShape::component_numbers), which
     /// says for each ball the number of its component. O(n).
     pub fn components(&self) -> Vec<BallComponent> {
-        let numbers = self.shape.component_numbers();
+        let mut numbers = self.shape.component_numbers();
+        numbers.truncate(self.volumes().len());
         let mut sums: Vec<(usize, Double, Double)> = Vec::new();
         let in_shape = numbers.iter().enumerate().filter(|&(_, &number)| number != NO_COMPONENT);
         for (v, &number) in in_shape {

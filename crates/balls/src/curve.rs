@@ -5,12 +5,12 @@ use walpha_base::Monitor;
 use walpha_shape::ladder::{ByLevel, Filtration, LevelRows, Span};
 use walpha_shape::{Alpha, FacetSides};
 
-use crate::BallsError;
 use crate::points::Points;
 use crate::real::{Bounded, Double, Real, Single};
 use crate::scatter::{Records, scatter};
 use crate::simplex::{Cell, Circle, Edge, Limits, Open, Triangle};
 use crate::union::zeros;
+use crate::{BallUnion, BallsError};
 
 /// The union of balls at one α.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,6 +56,20 @@ pub fn union_curve(
         return Err(BallsError::Infinite);
     }
     let levels = filtration.levels(alphas);
+    // In a box so small that balls meet their own copies, angles are shared in ways that rows do not tell.
+    if !filtration.whole().copies().is_empty() {
+        let level = |&alpha: &Alpha| {
+            let shape = filtration.shape(alpha);
+            let union = monitor.watch(|| BallUnion::new(&shape))?;
+            Ok(UnionLevel {
+                alpha,
+                volume: union.volume(),
+                area: union.area(),
+                euler_characteristic: union.euler_characteristic(),
+            })
+        };
+        return levels.alphas().iter().map(level).collect();
+    }
     let points = Points::of(filtration.whole());
     let mut climb = Climb::new(levels.rows(), levels.len(), points.len())?;
     let steps = monitor.units(levels.len() as u64);

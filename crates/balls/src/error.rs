@@ -1,6 +1,7 @@
 use walpha_base::Cancelled;
 use walpha_base::advice::{Advice, Advise, Setting, advice, wrapped};
 use walpha_base::memory::NoMemory;
+use walpha_shape::ShapeError;
 
 /// Why a union of balls cannot be measured.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -32,6 +33,14 @@ pub enum BallsError {
     /// Discs are asked for, and the shape is that of a torus.
     #[error("discs lie in one plane, and a periodic box does not")]
     Periodic,
+    /// The box is so small that the balls of its points cannot be told from their copies.
+    #[error(
+        "the balls meet copies of themselves across the periodic box, where {what} are not measured"
+    )]
+    SmallBox {
+        /// What was asked for.
+        what: &'static str,
+    },
     /// A surface is asked for, and the shape is that of a torus.
     #[error("the sides of a periodic box would cut the surface open")]
     Seam,
@@ -55,6 +64,9 @@ pub enum BallsError {
         /// Number of points.
         points: usize,
     },
+    /// The shape of several copies of a small box cannot be had.
+    #[error(transparent)]
+    Shape(#[from] ShapeError),
     /// Out of memory.
     #[error(transparent)]
     Memory(#[from] NoMemory),
@@ -64,7 +76,7 @@ pub enum BallsError {
 }
 
 impl Advise for BallsError {
-    wrapped!(Memory, Cancelled);
+    wrapped!(Memory, Cancelled, Shape);
 
     fn advice(&self) -> Option<Advice> {
         Some(match self {
@@ -83,7 +95,13 @@ impl Advise for BallsError {
                 "move or remove that ball by a little, or give coordinates nearer to 0".into()
             }
             Self::Weights { .. } => "give a weight for each ball, in the order of the input".into(),
-            Self::Memory(_) | Self::Cancelled(_) => return self.wrapped()?.advice(),
+            Self::SmallBox { .. } => {
+                "repeat the points along the vectors of the box, and give the box that holds them"
+                    .into()
+            }
+            Self::Memory(_) | Self::Cancelled(_) | Self::Shape(_) => {
+                return self.wrapped()?.advice();
+            }
         })
     }
 }

@@ -73,13 +73,16 @@ impl BallUnion<'_> {
     /// Another number of weights than of points; out of memory; cancelled by a [`Monitor`] that watches.
     pub fn gradients(&self, weights: Option<&[f64]>) -> Result<Gradients, BallsError> {
         let monitor = &*Monitor::current();
-        let points = self.points.len();
+        let (points, own) = (self.points.len(), self.volumes().len());
         if let Some(weights) = weights
-            && weights.len() != points
+            && weights.len() != own
         {
-            return Err(BallsError::Weights { weights: weights.len(), points });
+            return Err(BallsError::Weights { weights: weights.len(), points: own });
         }
-        let weight = |v: u32| Single::exact(weights.map_or(1.0, |weights| weights[v as usize]));
+        // In several copies of a small box, all copies of a ball have its weight, and the derivative by one copy of the sum over all of them is that of the
+        // sum over a box by the ball with its copies.
+        let weight =
+            |v: u32| Single::exact(weights.map_or(1.0, |weights| weights[v as usize % own]));
         let count = self.complex.edges.len();
         let mut at_edges: Vec<AtEdge> = zeros(count, "derivatives")?;
         let groups: Vec<&[u32]> = self.sides.groups(VERTICES).collect();
@@ -143,12 +146,12 @@ impl BallUnion<'_> {
         };
         Ok(Gradients {
             volume: Gradient {
-                by_centers: column(3 * points, &|row| unit(sums[row / 3].volume[row % 3], 2))?,
-                by_radii: column(points, &by_radius_of_volume)?,
+                by_centers: column(3 * own, &|row| unit(sums[row / 3].volume[row % 3], 2))?,
+                by_radii: column(own, &by_radius_of_volume)?,
             },
             area: Gradient {
-                by_centers: column(3 * points, &|row| unit(sums[row / 3].area[row % 3], 1))?,
-                by_radii: column(points, &by_radius)?,
+                by_centers: column(3 * own, &|row| unit(sums[row / 3].area[row % 3], 1))?,
+                by_radii: column(own, &by_radius)?,
             },
         })
     }
@@ -194,7 +197,7 @@ impl BallUnion<'_> {
         let (alpha, arc) = (self.points.alpha, self.arcs[row]);
         let balls = self.points.balls(ends);
         let Edge { distance, heights } = Edge::measured(balls, alpha);
-        let contact = self.points.unscaled(self.contacts().sizes.get(row), 2);
+        let contact = self.points.unscaled(self.contact_sizes().get(row), 2);
         let squares = balls.map(|ball| Single::sum(alpha, ball.weight));
         let radii = squares.map(Single::sqrt);
         let cosine = (squares[0] + squares[1] - distance.square()).half();

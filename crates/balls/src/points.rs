@@ -24,7 +24,7 @@ impl<'a> Points<'a> {
     pub(crate) fn of(shape: &'a AlphaShape) -> Self {
         let (positions, weights) = (shape.points().positions(), shape.power_weights());
         let alpha = shape.power_alpha().squared();
-        let torus = shape.options().periodic;
+        let torus = shape.nearest();
         let scaled = Scaled::of(positions, weights).filter(|_| torus.is_none());
         let scaled = scaled.and_then(|scaled| Some((scaled.square(alpha)?, scaled)));
         let Some((alpha, scaled)) = scaled else {
@@ -35,6 +35,14 @@ impl<'a> Points<'a> {
         let Scaled { positions, weights, .. } = scaled;
         let (positions, weights) = (Cow::Owned(positions), Cow::Owned(weights));
         Self { positions, weights, alpha, torus, unit }
+    }
+
+    pub(crate) fn into_owned(self) -> Points<'static> {
+        Points {
+            positions: Cow::Owned(self.positions.into_owned()),
+            weights: Cow::Owned(self.weights.into_owned()),
+            ..self
+        }
     }
 
     /// The same balls at another α, in the unit of the shape.

@@ -6,6 +6,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 use rayon::prelude::*;
 use walpha_base::{Monitor, memory};
+use walpha_shape::ladder::Covering;
 use walpha_shape::{AlphaShape, Class, Complex, FacetSides};
 
 use crate::BallsError;
@@ -117,6 +118,16 @@ pub struct BallUnion<'a> {
     volumes: Measured,
     areas: Measured,
     totals: Totals,
+    /// The contacts of the balls of a box, if this is the union of several copies of it.
+    of_box: Option<OfBox>,
+}
+
+/// The contacts of the balls of a small box.
+#[derive(Debug)]
+struct OfBox {
+    pairs: Vec<[u32; 2]>,
+    sizes: Measured,
+    copies: usize,
 }
 
 /// The four intrinsic volumes of the union, but for factors.
@@ -128,12 +139,19 @@ struct Totals {
     gaussian_curvature: Bounded,
 }
 
+impl Totals {
+    fn each(&mut self) -> [&mut Bounded; 4] {
+        let Self { volume, area, mean_curvature, gaussian_curvature } = self;
+        [volume, area, mean_curvature, gaussian_curvature]
+    }
+}
+
 /// The contacts of balls, one for each edge of the dual complex: the part of its disc that is in the power cells of both balls. In the plane,
 /// those of discs.
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub struct Contacts<'a> {
-    /// Input indices of the two balls, in lexicographic order.
+    /// Input indices of the two balls, in lexicographic order. In a periodic box two balls may meet several times, and a ball copies of itself.
     pub pairs: &'a [[u32; 2]],
     /// The size of each: an area, or in the plane a length.
     pub sizes: &'a Measured,
@@ -148,15 +166,68 @@ impl<'a> BallUnion<'a> {
     /// [`Monitor`] that watches.
     pub fn new(shape: &'a AlphaShape) -> Result<Self, BallsError> {
         let monitor = &*Monitor::current();
-        let complex = complex_of_balls(shape)?;
-        let points = Points::of(shape);
+        if let Some(covering) = monitor.watch(|| shape.covering())? {
+            return Self::of_small_box(shape, &covering, monitor);
+        }
+        Self::of(shape, complex_of_balls(shape)?, Points::of(shape), monitor)
+    }
+
+    fn of(
+        shape: &'a AlphaShape,
+        complex: Cow<'a, Complex>,
+        points: Points<'a>,
+        monitor: &Monitor,
+    ) -> Result<Self, BallsError> {
         memory::afford(bytes(&complex, points.len()), || {
             format!("the union of {} balls", complex.vertices.len())
         })?;
         let sides = FacetSides::apexes(&complex, &points.positions);
         let passes = Work::new(&complex, &points, &sides)?.run(monitor)?;
         let Passes { arcs, contacts, volumes, areas, totals } = passes;
-        Ok(Self { shape, complex, points, sides, arcs, contacts, volumes, areas, totals })
+        let of_box = None;
+        Ok(Self { shape, complex, points, sides, arcs, contacts, volumes, areas, totals, of_box })
+    }
+
+    /// The union of balls that meet copies of themselves: the union in several copies of the box, divided by their number.
+    fn of_small_box(
+        shape: &'a AlphaShape,
+        covering: &Covering,
+        monitor: &Monitor,
+    ) -> Result<Self, BallsError> {
+        let complex = Cow::Owned(complex_of_balls(&covering.shape)?.into_owned());
+        let points = Points::of(&covering.shape).into_owned();
+        let mut union = Self::of(shape, complex, points, monitor)?;
+        let copies = covering.copies();
+        for total in union.totals.each() {
+            let Bounded { value, bound } = *total;
+            *total = (Single { value, error: bound } / Single::exact(copies as f64)).bounded();
+        }
+        for column in [&mut union.volumes, &mut union.areas] {
+            column.values.truncate(shape.own_points());
+            column.bounds.truncate(shape.own_points());
+        }
+        let edges = shape.complex().edges.iter().filter(|(_, class)| *class != Class::Exterior);
+        let edges: Vec<[u32; 2]> = edges.map(|(&edge, _)| edge).collect();
+        let size = |at: usize| {
+            let mut row = covering.row(shape, edges[at]);
+            row.sort_unstable();
+            let row = union.complex.edges.rows().binary_search(&row);
+            union.contacts.get(row.expect("a translate of each edge"))
+        };
+        let sizes = Measured::collect(edges.len(), "contacts", size)?;
+        let own = shape.own_points() as u32;
+        let original = |v: u32| match v.checked_sub(own) {
+            None => v,
+            Some(copy) => shape.copies()[copy as usize],
+        };
+        let pairs = edges.iter().map(|edge| edge.map(original)).collect();
+        union.of_box = Some(OfBox { pairs, sizes, copies });
+        Ok(union)
+    }
+
+    /// An error if balls meet copies of themselves.
+    pub(crate) fn refuse_small_box(&self, what: &'static str) -> Result<(), BallsError> {
+        if self.of_box.is_some() { Err(BallsError::SmallBox { what }) } else { Ok(()) }
     }
 
     /// The volume of the union, in cubed units of the points; on a torus, of one box.
@@ -185,7 +256,8 @@ impl<'a> BallUnion<'a> {
 
     /// The Euler characteristic of the union, which is that of its dual complex. Exact.
     pub fn euler_characteristic(&self) -> i64 {
-        self.complex.euler_characteristic()
+        let copies = self.of_box.as_ref().map_or(1, |of_box| of_box.copies as i64);
+        self.complex.euler_characteristic() / copies
     }
 
     /// On a torus, the part of the box that the balls fill.
@@ -210,7 +282,15 @@ impl<'a> BallUnion<'a> {
 
     /// The contacts of balls, one for each edge of the dual complex.
     pub fn contacts(&self) -> Contacts<'_> {
-        Contacts { pairs: self.complex.edges.rows(), sizes: &self.contacts }
+        match &self.of_box {
+            None => Contacts { pairs: self.complex.edges.rows(), sizes: &self.contacts },
+            Some(OfBox { pairs, sizes, .. }) => Contacts { pairs, sizes },
+        }
+    }
+
+    /// The sizes of contacts, one for each edge of the complex that was measured.
+    pub(crate) fn contact_sizes(&self) -> &Measured {
+        &self.contacts
     }
 }
 
@@ -227,7 +307,7 @@ pub(crate) fn complex_of_balls(shape: &AlphaShape) -> Result<Cow<'_, Complex>, B
     if shape.voxels().is_some() {
         return Err(BallsError::Labels);
     }
-    if !shape.copies().is_empty() {
+    if !shape.copies().is_empty() && shape.options().periodic.is_none() {
         return Err(BallsError::Unwrapped);
     }
     if shape.power_alpha().squared() == f64::INFINITY {

@@ -53,13 +53,7 @@ impl Period {
     }
 
     /// Raises the numbers of copies of the box until the way between two places spans less than half of them, or until one is above `most`.
-    pub(crate) fn lengthen(
-        &self,
-        times: &mut [i32; 3],
-        from: [f64; 3],
-        to: [f64; 3],
-        most: i32,
-    ) {
+    pub(crate) fn lengthen(&self, times: &mut [i32; 3], from: [f64; 3], to: [f64; 3], most: i32) {
         let way = [0, 1, 2].map(|axis| to[axis] - from[axis]);
         for (k, times) in times.iter_mut().enumerate() {
             let is_long = |times: i32| {

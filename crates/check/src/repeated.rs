@@ -32,7 +32,8 @@ pub(crate) fn repeated(file: ComplexFile) -> Result<(ComplexFile, usize), Schema
         expected: "copies near the box",
     };
     let fits = u32::try_from(count.saturating_mul(file.points.len())).is_ok();
-    if !fits || afford(count.saturating_mul(all).saturating_mul(each), || "copies".into()).is_err() {
+    if !fits || afford(count.saturating_mul(all).saturating_mul(each), || "copies".into()).is_err()
+    {
         return Err(too_far());
     }
     let all = All { named: &named, times };

@@ -66,12 +66,13 @@ impl AlphaShape {
     }
 
     /// The torus on which rows name the copies nearest to their first vertices; `None` in space, and where copies have names of their own.
-    pub(crate) fn nearest(&self) -> Option<Torus> {
+    #[doc(hidden)]
+    pub fn nearest(&self) -> Option<Torus> {
         self.options.periodic.filter(|_| self.copies.is_empty())
     }
 
-    /// The number of points that are not copies.
-    pub(crate) fn own_points(&self) -> usize {
+    /// The number of points that are not [copies](Self::copies).
+    pub fn own_points(&self) -> usize {
         self.points.len() - self.copies.len()
     }
 

@@ -7,6 +7,7 @@ mod gradients;
 mod levels;
 mod random_sets;
 mod refused;
+mod small_boxes;
 mod surface;
 
 use walpha_balls::{BallUnion, Bounded, Measured};

@@ -59,7 +59,8 @@ impl Exporter for Npz {
             archive.list("values", &values[..own])?;
         }
         let number = |n: u32| if n == NO_COMPONENT { -1 } else { i64::from(n) };
-        let components: Vec<i64> = shape.component_numbers()[..own].iter().copied().map(number).collect();
+        let components: Vec<i64> =
+            shape.component_numbers()[..own].iter().copied().map(number).collect();
         archive.list("components", &components)?;
         if let Some(sheets) = shape.sheets() {
             archive.rows("boundary_sheets", &sheets.sides().collect::<Vec<_>>())?;

@@ -39,4 +39,6 @@ pub use filtration::Filtration;
 pub use levels::{ByLevel, LevelRows};
 pub use levels::{Levels, Span};
 pub use ordered::{Derivative, Entry, Interval, Loops, Ordered, Pairs};
+#[doc(hidden)]
+pub use small::Covering;
 pub use table::{Ladder, Level};

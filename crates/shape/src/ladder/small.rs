@@ -12,14 +12,16 @@
 
 use std::collections::BTreeMap;
 
+use walpha_base::Monitor;
 use walpha_regular::internals::{AXES, VECTORS};
 use walpha_regular::{SitesError, Torus};
 
 use super::Filtration;
 use super::build::{Incidence, Radii};
 use crate::copies::{Copier, Divided, Key, faces, key};
+use crate::make::in_large_box;
 use crate::winding::{minus, plus};
-use crate::{Class, Complex, ShapeError, Simplices, WeightedPoints};
+use crate::{AlphaShape, Class, Complex, ShapeError, ShapeOptions, Simplices, WeightedPoints};
 
 /// Copies of a box along its three vectors.
 type Times = [u32; 3];
@@ -27,17 +29,79 @@ type Times = [u32; 3];
 impl Filtration {
     /// The filtration of the smallest cover in which no edge spans half of the torus, divided by the translations.
     pub(crate) fn of_small_box(torus: Torus, points: WeightedPoints) -> Result<Self, ShapeError> {
-        let mut times = [1; 3];
-        loop {
-            let cover = Cover::new(torus, times, points.clone())?;
-            match Self::of_large_box(Some(cover.torus), cover.repeated()) {
-                Err(ShapeError::Wraps { axis, span, side, .. }) => {
-                    let k = AXES.iter().chain(&VECTORS).position(|&name| name == axis);
-                    let k = k.expect("the name of an axis or of a vector") % 3;
-                    times[k] = (2.0 * f64::from(times[k]) * span / side).floor() as u32 + 1;
-                }
-                covering => return Ok(cover.divide(covering?)),
+        let (times, covering) = covered(torus, &points, |cover| {
+            Self::of_large_box(Some(cover.torus), cover.repeated())
+        })?;
+        Ok(Cover::new(torus, times, points)?.divide(covering))
+    }
+}
+
+/// The shape of several copies of a box, and their number, for a shape whose rows name [copies](AlphaShape::copies).
+#[derive(Debug)]
+pub struct Covering {
+    /// The shape of the larger box. Its first points are those of the box.
+    pub shape: AlphaShape,
+    /// The numbers of copies along the vectors.
+    pub times: [u32; 3],
+}
+
+impl Covering {
+    /// The number of copies.
+    pub fn copies(&self) -> usize {
+        self.times.iter().map(|&n| n as usize).product()
+    }
+
+    /// The row of one of the translates of a simplex of the box.
+    pub fn row<const N: usize>(&self, of: &AlphaShape, row: [u32; N]) -> [u32; N] {
+        let [a, b, _] = self.times;
+        of.shifted(row).map(|(v, shift)| {
+            let [i, j, k] = [0, 1, 2].map(|k| shift[k].rem_euclid(self.times[k] as i32) as u32);
+            v + (i + a * (j + b * k)) * of.own_points() as u32
+        })
+    }
+}
+
+impl AlphaShape {
+    /// The shape of several copies of the box, as few as make each edge of it span less than half of them, if rows of this one name copies.
+    ///
+    /// # Errors
+    /// See [`alpha_shape`](crate::alpha_shape()).
+    #[doc(hidden)]
+    pub fn covering(&self) -> Result<Option<Covering>, ShapeError> {
+        let monitor = &*Monitor::current();
+        let Some(torus) = self.options().periodic.filter(|_| !self.copies().is_empty()) else {
+            return Ok(None);
+        };
+        let WeightedPoints { positions, weights, .. } = self.points();
+        let own = self.own_points();
+        let points = WeightedPoints {
+            positions: positions[..own].to_vec(),
+            weights: weights[..own].to_vec(),
+            values: None,
+        };
+        let (times, shape) = covered(torus, &points, |cover| {
+            let options = ShapeOptions { periodic: Some(cover.torus), ..*self.options() };
+            in_large_box(cover.repeated(), &options, monitor)
+        })?;
+        Ok(Some(Covering { times, shape }))
+    }
+}
+
+/// Finds something of the smallest cover in which no edge of it spans half of the torus.
+fn covered<T>(
+    torus: Torus,
+    points: &WeightedPoints,
+    find: impl Fn(&Cover) -> Result<T, ShapeError>,
+) -> Result<(Times, T), ShapeError> {
+    let mut times = [1; 3];
+    loop {
+        match find(&Cover::new(torus, times, points.clone())?) {
+            Err(ShapeError::Wraps { axis, span, side, .. }) => {
+                let k = AXES.iter().chain(&VECTORS).position(|&name| name == axis);
+                let k = k.expect("the name of an axis or of a vector") % 3;
+                times[k] = (2.0 * f64::from(times[k]) * span / side).floor() as u32 + 1;
             }
+            found => return Ok((times, found?)),
         }
     }
 }
@@ -244,7 +308,7 @@ mod tests {
 
     use super::*;
     use crate::ladder::Ordered;
-    use crate::{Alpha, AlphaShape, Betti, ShapeOptions, alpha_shape};
+    use crate::{Alpha, Betti, alpha_shape};
 
     const UNIT: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     const FCC: [[f64; 3]; 3] = [[0.0, 0.5, 0.5], [0.5, 0.0, 0.5], [0.5, 0.5, 0.0]];
