@@ -258,13 +258,13 @@ def page():
             headings += [f"{node.name}.{name}" for name, member in sources.members(module, node).items() if not is_property(member)]
     markdown = Markdown(headings)
     made = [HEAD.strip()]
-    for title, is_class in (("functions", False), ("classes", True)):
+    for title, is_class in (("Functions", False), ("Classes", True)):
         rows = [
             f"| {markdown.link(node.name, node.name)} | {markdown.inline(summary(ast.get_docstring(node)), node.name)} |"
             for _, _, node in parts
             if isinstance(node, ast.ClassDef) == is_class
         ]
-        made.append(f"| {title} | |\n|---|---|\n" + "\n".join(rows))
+        made += [f"**{title}**", "| name | summary |\n|---|---|\n" + "\n".join(rows)]
     for prefix, module, node in parts:
         made.append(f"## {node.name}")
         if isinstance(node, ast.ClassDef):
