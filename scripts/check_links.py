@@ -2,12 +2,13 @@
 """Checks the links of documents and of the built site: files and anchors that they name exist, and the DOIs that sources name are
 those of the bibliography. Standard library only; nothing is fetched.
 
-    python3 scripts/check_links.py              # README.md and its neighbours, docs/, crates/*/README.md, python/README.md
+    python3 scripts/check_links.py              # README.md and its neighbours, docs/ with its notebooks, crates/*/README.md, python/README.md
     python3 scripts/check_links.py SITE         # the pages that mdBook made, too
 
 Exit code 1 where a link leads nowhere.
 """
 
+import json
 import re
 import sys
 from html.parser import HTMLParser
@@ -28,7 +29,7 @@ BIBLIOGRAPHY = ROOT / "docs/bibliography.md"
 def documents():
     """The documents of this repository."""
     some = [ROOT / name for name in ("README.md", "ARCHITECTURE.md", "CHANGELOG.md", "SECURITY.md", "python/README.md")]
-    return some + sorted(ROOT.glob("crates/*/README.md")) + sorted((ROOT / "docs").rglob("*.md"))
+    return some + sorted(ROOT.glob("crates/*/README.md")) + sorted((ROOT / "docs").rglob("*.md")) + sorted((ROOT / "docs").rglob("*.ipynb"))
 
 
 def anchors(text):
@@ -66,6 +67,8 @@ def read(path):
     if path.suffix == ".html":
         page = Page(text)
         return page.links, page.anchors
+    if path.suffix == ".ipynb":
+        text = "\n\n".join("".join(cell["source"]) for cell in json.loads(text)["cells"] if cell["cell_type"] == "markdown")
     prose = CODE.sub("", FENCE.sub("", text))
     return LINK.findall(prose) + REFERENCE.findall(prose), anchors(text)
 
