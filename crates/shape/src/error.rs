@@ -65,7 +65,8 @@ pub enum ShapeError {
         "the engine cgal is CGAL's alpha shape of points in space, which does not support a periodic box"
     )]
     Unrepeated,
-    /// An edge is so long that its ends do not determine which of their copies it joins.
+    /// An edge is so long that its ends do not determine which of their copies it joins. Within this crate alone: rows then name copies.
+    #[doc(hidden)]
     #[error(
         "the edge between points {} and {} spans {span} along {axis}, half of the periodic box ({side}) or \
          more: its ends would not determine which of their copies it joins",

@@ -108,6 +108,11 @@ impl WindingSets {
         self.rounds.get(&root)
     }
 
+    /// The number of sets that wind round.
+    pub fn winding_sets(&self) -> usize {
+        self.rounds.len()
+    }
+
     /// The directions in which all sets together wind round.
     pub fn directions(&self) -> Directions {
         let mut all = Directions::default();

@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use clap::{Args, ValueEnum};
 use serde::{Serialize, Serializer};
-use walpha_base::shown::{number, shown};
+use walpha_base::shown::{counted, number, shown};
 
 use crate::check::meshes::{Mesh, MeshFormat};
 use crate::check::schema::{
@@ -413,13 +413,14 @@ impl Check {
             schema_version: SCHEMA_VERSION,
             input: input.to_owned(),
             judged: subject,
-            points: n,
+            points: judged.points_in_box(),
             simplices: [
                 complex.cells.len(),
                 complex.facets.len(),
                 complex.edges.len(),
                 complex.vertices.len(),
-            ],
+            ]
+            .map(|count| count / judged.copies),
             extent: Some(match claim.extent {
                 _ if judged.voxels.is_some() => "labels",
                 _ if judged.isovalue.is_some() => "isosurface",
@@ -586,7 +587,7 @@ impl<F: Serialize + Display, C: Serialize> CheckSummary<F, C> {
 impl<F: Display, C> Display for CheckSummary<F, C> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [cells, facets, edges, vertices] = self.simplices;
-        writeln!(f, "judged    {}, over {} points", self.judged, self.points)?;
+        writeln!(f, "judged    {}, over {}", self.judged, counted(self.points as u64, "point"))?;
         writeln!(
             f,
             "          {cells} cells, {facets} facets, {edges} edges, {vertices} vertices"

@@ -146,7 +146,7 @@ impl FiltrationSummary {
         Self {
             schema_version: SCHEMA_VERSION,
             input: input.to_owned(),
-            points: whole.points().len(),
+            points: whole.own_points(),
             hidden: whole.hidden().map_or(0, <[u32]>::len),
             duplicates: whole.duplicates().len(),
             folded: weighed.origin.folded,

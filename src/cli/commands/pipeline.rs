@@ -219,11 +219,14 @@ impl Display for Domain {
     }
 }
 
-/// The domain of weighted points: that of their grid, or their own box.
+/// The domain of weighted points: that of their grid, the periodic box, or their own box.
 pub(crate) fn domain(weighed: &Weighed, volume: Option<&VolumeSummary>) -> Domain {
     let unit = weighed.origin.coordinates.unit;
     if let Some(volume) = volume {
         return Domain { volume: volume.extent, unit, of: "the box of the samples" };
+    }
+    if let Some(torus) = weighed.origin.torus {
+        return Domain { volume: torus.volume(), unit, of: "the periodic box" };
     }
     let [low, high] = bounding_box(weighed.points.positions());
     let volume = [0, 1, 2].map(|k| high[k] - low[k]).iter().product();

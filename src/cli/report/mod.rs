@@ -153,7 +153,7 @@ impl Report {
     /// The report on a solid without α, on a grid of `dims` samples, before its shape is added.
     pub(super) fn of_solid(name: &str, dims: [usize; 3], model: &Model) -> Self {
         let input = InputReport { name: name.to_owned(), dims: Some(dims), gray_range: None };
-        let points = PointsReport::new(model.shape.points().len());
+        let points = PointsReport::new(model.shape.own_points());
         Self {
             labels: model.labels.clone(),
             isovalue: model.isovalue,

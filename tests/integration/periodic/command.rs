@@ -6,7 +6,10 @@ use walpha::check::{CertifyError, Finding, NotJudged, Verdict};
 use walpha::export::{ExportOptions, Exporter, Format, Json, Npz, Save, SaveError};
 use walpha::shape::{Class, placed_complex};
 
-use super::{BCC, CUBIC, FCC, WeightedPoints, alpha_shape, crystal, dense, options, sets, shape};
+use super::{
+    BCC, CUBIC, FCC, WeightedPoints, alpha_shape, crystal, dense, in_large_box, options, sets,
+    shape,
+};
 use crate::common;
 
 fn findings(placed: &PlacedComplex) -> Vec<Finding> {
@@ -44,7 +47,7 @@ fn what_is_missing_on_a_torus_is_found() {
     let (mut exact, mut wrong, mut right_cells) = (0, 0, 0);
     for (points, sides) in sets(48) {
         for squared in [0.3, 0.5, 0.7, 1.0] {
-            let Ok(large) = shape(&points, sides, squared) else { continue };
+            let Some(large) = in_large_box(&points, sides, squared) else { continue };
             let large = placed_complex(&large);
             for smaller in [0.3, 0.8, 1.0] {
                 let small = placed_complex(&shape(&points, sides, smaller * squared).unwrap());
@@ -269,7 +272,6 @@ fn what_is_refused() {
     refused(&["--periodic", "4,4,-4"], 2, "along z");
     refused(&["--periodic", "4,4,4", "--solid"], 2, "--solid");
     refused(&["--periodic", "4,4,4", "--engine", "cgal"], 2, "engine cgal");
-    refused(&["--periodic", "4,4,2", "--alpha", "0.3125"], 1, "repeat the points along z");
 }
 
 /// Points outside of the box are counted, and a cell that the file states is not passed over in silence.
@@ -349,6 +351,55 @@ fn primitive_and_conventional_cells_agree() {
     let expected = counted("cubes.xyz", "3,3,3", 108.0);
     assert_eq!(counted("primitive.xyz", "0,3,3,3,0,3,3,3,0", 216.0), expected);
     assert_eq!(counted("primitive.xyz", "0,3,3,3,3,6,6,9,9", 216.0), expected);
+    // One point and four: the edges join points to their own copies.
+    std::fs::write(f.join("one.xyz"), "0.25 0.5 0.125\n").unwrap();
+    std::fs::write(f.join("four.xyz"), "0 0 0\n0 0.5 0.5\n0.5 0 0.5\n0.5 0.5 0\n").unwrap();
+    assert_eq!(counted("one.xyz", "0,0.5,0.5,0.5,0,0.5,0.5,0.5,0", 1.0), expected);
+    assert_eq!(counted("four.xyz", "1,1,1", 4.0), expected);
+}
+
+/// A lone point, through all commands that take a periodic box.
+#[test]
+fn a_lone_point_goes_through_every_command() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    std::fs::write(f.join("one.xyz"), "0 0 0\n").unwrap();
+    let fcc = "0,2,2,2,0,2,2,2,0";
+    let args = ["shape", "one.xyz", "--periodic", fcc, "--alpha", "3"];
+    let outputs = ["-o", "a.npz", "a.json", "a.vtu", "a.ply", "a.png"];
+    common::ok(f, &[&args[..], &outputs].concat());
+    let told = common::json(f, &[&args[..], &["--exterior"]].concat());
+    assert_eq!(
+        (&told["points"]["selected"], &told["shape"]["cells"]["interior"]),
+        (&1.into(), &2.into())
+    );
+    assert_eq!(told["shape"]["betti"], serde_json::json!([1, 3, 3, 0]));
+    for file in ["a.npz", "a.json"] {
+        let told = common::json(f, &["check", file]);
+        assert_eq!((&told["points"], &told["simplices"][0]), (&1.into(), &2.into()), "{told}");
+        assert_eq!(told["valid"], true);
+    }
+    let args = ["filtration", "one.xyz", "--periodic", fcc];
+    common::ok(f, &[&args[..], &["-o", "f.npz", "f.json", "f.csv", "f.txt"]].concat());
+    assert!(common::ok(f, &["compare", "f.npz", "f.json"]).contains("equal in all"));
+    let pairs = std::fs::read_to_string(f.join("f.csv")).unwrap();
+    let ends = |line: &&str| line.contains(",inf,");
+    assert_eq!(pairs.lines().filter(ends).count(), 1 + 3 + 3 + 1, "{pairs}");
+    assert!(pairs.contains("\n1,2.0,2.6666666666666665,0 0:0:1:0,0 0:0:0:1 0:0:1:0\n"), "{pairs}");
+    let text = std::fs::read_to_string(f.join("f.txt")).unwrap();
+    assert_eq!(text.lines().count(), 1 + 1 + 7 + 12 + 6);
+    let args = ["balls", "one.xyz", "--periodic", fcc, "--alpha-radius", "1.5"];
+    let told = common::json(f, &[&args[..], &["-o", "b.csv", "b.png"]].concat());
+    // Twelve neighbours at √8: of each, half of a lens.
+    let (r, d) = (1.5f64, 8f64.sqrt());
+    let cap = std::f64::consts::PI * (r - d / 2.0).powi(2) * (2.0 * r + d / 2.0) / 3.0;
+    let volume = 4.0 / 3.0 * std::f64::consts::PI * r.powi(3) - 12.0 * cap;
+    assert!((told["balls"]["volume"].as_f64().unwrap() - volume).abs() < 1e-12, "{told}");
+    assert_eq!(std::fs::read_to_string(f.join("b.csv")).unwrap().lines().count(), 2);
+    let args = ["ladder", "one.xyz", "--periodic", fcc, "--alphas", "1,3,inf", "-o", "ladder"];
+    let told = common::json(f, &[&args[..], &["--mesh", "ply"]].concat());
+    assert_eq!(told["levels"][2]["volume"], 16.0);
+    assert!(f.join("ladder/level-2-alpha-3.ply").exists());
 }
 
 /// A cell that the file states, of three angles of 120, 90 and 90 degrees.

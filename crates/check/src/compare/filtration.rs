@@ -97,9 +97,10 @@ pub fn compare_filtrations(
     finite(a)?;
     finite(b)?;
     let common = CommonPositions::new(&a.points, &b.points);
+    let [of_copies_a, of_copies_b] = common_copies([a, b], [&common.a, &common.b]);
     let work = monitor.units(2 * a.order.len() as u64 + b.order.len() as u64);
-    let of_a = simplices(a, &common.a, &work)?;
-    let mut of_b = simplices(b, &common.b, &work)?;
+    let of_a = simplices(a, &of_copies_a, &work)?;
+    let mut of_b = simplices(b, &of_copies_b, &work)?;
     let mut found = FiltrationComparison {
         weights: common.weight_differences(&weights(a), &weights(b)),
         points_only_a: common.only_a(),
@@ -185,6 +186,22 @@ fn weights(file: &FiltrationFile) -> Cow<'_, [f64]> {
         Some(weights) => Cow::Borrowed(weights),
         None => Cow::Owned(vec![0.0; file.points.len()]),
     }
+}
+
+/// The common numbers of the points of two files, and after them those of the copies that their rows name.
+fn common_copies(files: [&FiltrationFile; 2], positions: [&[u32]; 2]) -> [Vec<u32>; 2] {
+    let mut numbers = BTreeMap::<[i64; 4], u32>::new();
+    let first = positions.iter().flat_map(|of| of.iter()).max().map_or(0, |&most| most + 1);
+    [0, 1].map(|side| {
+        let own = positions[side];
+        let copies = files[side].copies.iter().flatten().map(|&[v, a, b, c]| {
+            let key = [i64::from(own[v as usize]), a.into(), b.into(), c.into()];
+            let next = first + numbers.len() as u32;
+            *numbers.entry(key).or_insert(next)
+        });
+        let copies: Vec<u32> = copies.collect();
+        own.iter().copied().chain(copies).collect()
+    })
 }
 
 /// All simplices by the positions of their vertices.

@@ -156,6 +156,13 @@ impl FiltrationFile {
         }
         SchemaError::paired("weights", self.weights.as_ref().map_or(n, Vec::len), "points", n)?;
         SchemaError::in_range("vertices", self.vertices.iter(), n)?;
+        let copies = self.copies.iter().flatten();
+        if let Some(copy) = copies.clone().find(|copy| u32::try_from(copy[0]).is_err()) {
+            let value = copy[0].to_string();
+            return Err(SchemaError::Value { name: "copies", value, expected: "a point number" });
+        }
+        let points: Vec<u32> = copies.map(|copy| copy[0] as u32).collect();
+        SchemaError::in_range("copies", points.iter(), n)?;
         let named = n + self.copies.as_ref().map_or(0, Vec::len);
         SchemaError::in_range("edges", self.edges.iter().flatten(), named)?;
         SchemaError::in_range("facets", self.facets.iter().flatten(), named)?;

@@ -82,7 +82,7 @@ impl ExportOptions {
         taken: &[&str],
     ) -> Vec<(String, Cow<'_, [f64]>)> {
         let copies = shape.copies();
-        let originals = shape.points().len() - copies.len();
+        let originals = shape.own_points();
         let mut names: Vec<String> = taken.iter().map(|&name| name.to_owned()).collect();
         let mut columns = Vec::new();
         for Column { name, values } in

@@ -125,7 +125,7 @@ fn write_npz(ordered: &Ordered<'_>, out: &mut dyn Write, monitor: &Monitor) -> i
     let mut archive = Archive::compressed(ZipWriter::new_stream(out));
     let whole = ordered.filtration().whole();
     let copies = point_copies(whole);
-    let own = whole.points().len() - copies.as_ref().map_or(0, Vec::len);
+    let own = whole.own_points();
     archive.rows("points", &whole.points().positions()[..own])?;
     archive.list("weights", &whole.power_weights()[..own])?;
     if let Some(copies) = copies {
@@ -190,7 +190,7 @@ fn filtration_file(ordered: &Ordered<'_>, loops: &Loops) -> FiltrationFile {
         first[dimension] = first[dimension - 1] + ordered.count(dimension - 1) as u32;
     }
     let copies = point_copies(whole);
-    let own = whole.points().len() - copies.as_ref().map_or(0, Vec::len);
+    let own = whole.own_points();
     let entries = |dimension: usize| {
         let numbers = first[dimension]..first[dimension] + ordered.count(dimension) as u32;
         numbers.map(|number| ordered.simplex(number))
@@ -283,7 +283,7 @@ fn write_csv(ordered: &Ordered<'_>, out: &mut dyn Write, monitor: &Monitor) -> i
 /// Writes the vertices of a simplex, separated by spaces. `3:0:0:1` is the copy of point 3 that is moved by the third vector of a periodic box.
 fn write_vertices(ordered: &Ordered<'_>, vertices: &[u32], out: &mut dyn Write) -> io::Result<()> {
     let whole = ordered.filtration().whole();
-    let own = whole.points().len() - whole.copies().len();
+    let own = whole.own_points();
     vertices.iter().enumerate().try_for_each(|(at, &v)| {
         let space = if at == 0 { "" } else { " " };
         match (v as usize).checked_sub(own) {

@@ -26,7 +26,7 @@ impl Exporter for Npz {
         let (points, complex) = (shape.points(), shape.complex());
         let mut archive = Archive::new(ZipWriter::new(Cursor::new(Vec::new())));
         let copies = point_copies(shape);
-        let own = points.len() - copies.as_ref().map_or(0, Vec::len);
+        let own = copies.as_ref().map_or(points.len(), |_| shape.own_points());
         archive.rows("points", &points.positions()[..own])?;
         archive.list("weights", &shape.power_weights()[..own])?;
         archive.array("alpha", arr0(shape.power_alpha().squared()))?;

@@ -18,6 +18,8 @@ pub struct Curve {
     pub(super) values: Vec<Value>,
     /// The Betti numbers from each value on.
     pub betti: Vec<Betti>,
+    /// The number of voids from each value on.
+    pub voids: Vec<u64>,
     /// The solid components from each value on.
     pub solid_components: Vec<u64>,
     /// Number of vertices of the triangulation that are in no cell of the shape, from each value on; if points span no volume, in
@@ -75,11 +77,12 @@ impl Filtration {
 
     fn curve_of(&self, values: Vec<Value>) -> Curve {
         let levels = self.levels_of(&values);
-        let (betti, solid_components) =
-            join(levels.cells.len(), || levels.betti(), || levels.solid_components());
+        let ((betti, voids), solid_components) =
+            join(levels.cells.len(), || levels.betti_and_voids(), || levels.solid_components());
         let weights = &self.points().weights;
         Curve {
             betti,
+            voids,
             solid_components,
             loose: self.loose(&levels),
             visible: levels.visible(),
@@ -143,7 +146,7 @@ impl Filtration {
         };
         let all_points = from(0, &|k| curve.loose[k] == 0);
         let one_region = from(all_points, &|k| curve.solid_components[k] == 1);
-        let no_void = from(one_region, &|k| curve.betti[k].b2 == 0);
+        let no_void = from(one_region, &|k| curve.voids[k] == 0);
         let (from, to) = curve.plateau(all_points);
         let [all_points, one_region, no_void, low] =
             [all_points, one_region, no_void, from].map(|k| self.first_alpha(curve.values[k]));

@@ -6,6 +6,7 @@ use walpha_regular::internals::{Interval, Predicates};
 
 use super::Filtration;
 use super::build::Incidence;
+use super::small::is_even;
 use crate::{Alpha, AlphaShape, Betti, Class, Complex, WeightedPoints};
 
 /// The levels at which the class of a simplex changes. Levels count from 0; the number of levels stands for never. The fields are
@@ -400,6 +401,15 @@ impl Levels<'_> {
         let mut facet = [1, 2, 3].map(|step| cell[(opposite + step) % 4]);
         if opposite % 2 == 1 {
             facet.swap(1, 2);
+        }
+        let whole = &self.filtration.whole;
+        if !whole.copies().is_empty() {
+            // The corners of the cell may be other copies than those of the row.
+            let mut row = incidence.facets[row];
+            if !is_even(facet.map(|v| whole.copied(v))) {
+                row.swap(1, 2);
+            }
+            return row;
         }
         let first = (0..3).min_by_key(|&k| facet[k]).unwrap_or(0);
         facet.rotate_left(first);

@@ -289,7 +289,7 @@ impl<const N: usize> Translates<N> {
 }
 
 /// Whether sorting is an even permutation.
-fn is_even<const N: usize>(vertices: Key<N>) -> bool {
+pub(super) fn is_even<const N: usize>(vertices: Key<N>) -> bool {
     let inversions = |i: usize| (i + 1..N).filter(|&j| vertices[j] < vertices[i]).count();
     (0..N).map(inversions).sum::<usize>() % 2 == 0
 }
@@ -592,6 +592,12 @@ mod tests {
             let shape = alpha_shape(points.clone(), &options).unwrap();
             let copies = shape.copies();
             assert!(!copies.is_empty());
+            // The first vertex of each row is a point of the box.
+            let complex = shape.complex();
+            assert!(complex.cells.rows().iter().all(|row| row[0] < 2));
+            assert!(complex.facets.rows().iter().all(|row| row[0] < 2));
+            assert!(complex.edges.rows().iter().all(|row| row[0] < 2));
+            assert!(complex.facets.of(Class::Regular).count() > 0);
             assert_eq!(
                 shape.options(),
                 &ShapeOptions { periodic: shape.options().periodic, ..options }

@@ -84,9 +84,17 @@ impl Levels<'_> {
 
     /// The Betti numbers of each level. O(n α(n)).
     pub fn betti(&self) -> Vec<Betti> {
+        self.betti_and_voids().0
+    }
+
+    /// The Betti numbers and the number of [voids](Self::voids) of each level. O(n α(n)).
+    pub(super) fn betti_and_voids(&self) -> (Vec<Betti>, Vec<u64>) {
         let mut closed = vec![UpperBetti::default(); self.len()];
-        self.descend(|level, complement| closed[level] = complement.closed());
-        self.betti_with(&closed)
+        let mut voids = vec![0; self.len()];
+        self.descend(|level, complement| {
+            (closed[level], voids[level]) = (complement.closed(), complement.bounded());
+        });
+        (self.betti_with(&closed), voids)
     }
 }
 
@@ -228,6 +236,14 @@ impl LevelComplement<'_> {
                 let b3 = u64::from(self.count == 0);
                 UpperBetti { b2: self.count + b3 + 2 - rounds.rank() as u64, b3: Some(b3) }
             }
+        }
+    }
+
+    /// The number of bounded components.
+    fn bounded(&self) -> u64 {
+        match &self.sets {
+            Sets::InSpace(_) => self.count - 1,
+            Sets::OnTorus(_, sets, _) => self.count - sets.winding_sets() as u64,
         }
     }
 

@@ -181,7 +181,7 @@ impl Balls {
             schema_version: SCHEMA_VERSION,
             input: input.input.to_string(),
             molecule: molecule.map(|molecule| molecule.summary().with_names(option)),
-            points: shape.points().len(),
+            points: shape.own_points(),
             duplicates: shape.duplicates().len(),
             hidden: shape.hidden().map_or(0, <[u32]>::len),
             folded,

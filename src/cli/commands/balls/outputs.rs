@@ -70,7 +70,8 @@ impl Output {
                 unreachable!("a surface is made for the files that have it")
             }
             (Self::Picture, _) => {
-                let positions = of.shape.points().positions().iter().zip(of.radii).enumerate();
+                let positions = &of.shape.points().positions()[..of.shape.own_points()];
+                let positions = positions.iter().zip(of.radii).enumerate();
                 let ball = |(v, (&centre, &radius))| (centre, radius, colour(of, v));
                 let png = looks.sight.draw_balls(positions.map(ball)).map_err(io::Error::other)?;
                 out.write_all(&png)

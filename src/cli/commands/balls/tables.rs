@@ -92,7 +92,7 @@ fn balls(of: &Subject<'_>, csv: &mut Csv<impl Write>) -> io::Result<()> {
     let numbers = ["x", "y", "z", "radius", "volume", "volume_bound", "area", "area_bound"];
     let names = of.molecule.map_or(&[][..], |_| &OF_ATOM);
     csv.write_record(names.iter().chain(&numbers))?;
-    let positions = of.shape.points().positions();
+    let positions = &of.shape.points().positions()[..of.shape.own_points()];
     for (row, (place, radius)) in positions.iter().zip(of.radii).enumerate() {
         let atom = of.molecule.map(|molecule| of_atom(&molecule.atoms[row]));
         let place = place.iter().chain([radius]).map(ToString::to_string);

@@ -13,7 +13,7 @@ use crate::cli::commands::folder::Folder;
 use crate::cli::commands::outline;
 use crate::cli::commands::pipeline::{self, filled_in};
 use crate::cli::options::{self, global::Global};
-use crate::cli::options::{Alphas, Declared, FrozenPipelineArgs, Groups};
+use crate::cli::options::{Alphas, Declared, FrozenPipelineArgs, Groups, Periodic};
 use crate::cli::process::errors::{CommandError, Result, fail_usage};
 use crate::cli::process::output::print_summary;
 use crate::cli::process::progress::Progress;
@@ -86,6 +86,8 @@ pub(crate) struct Ladder {
     alpha: Declared<OfLevels>,
     #[command(flatten)]
     pipeline: FrozenPipelineArgs,
+    #[command(flatten)]
+    periodic: Declared<Periodic>,
 }
 
 /// α of levels of detail.
@@ -123,6 +125,8 @@ impl Ladder {
         };
         let folder = Folder::open(&self.output, "--output", names)?;
         if detail {
+            let why = "levels of detail are of volumes, and points repeat in a periodic box";
+            self.pipeline.input.typed.refuse(&["periodic"], why)?;
             return self.over_detail(global, &meshes, folder);
         }
         self.over_alpha(global, &meshes, folder)
