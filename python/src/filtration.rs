@@ -105,6 +105,17 @@ impl Filtration {
     }
 
     #[getter]
+    fn copies<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<u32>>> {
+        column(py, self.0.whole().copies().iter().copied())
+    }
+
+    #[getter]
+    fn shifts<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray2<i32>>> {
+        // SAFETY: the filtration is frozen.
+        unsafe { lend(slf.get().0.whole().shifts(), slf.as_any()) }
+    }
+
+    #[getter]
     fn points<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         // SAFETY: the filtration is frozen.
         unsafe { lend(slf.get().0.whole().points().positions(), slf.as_any()) }

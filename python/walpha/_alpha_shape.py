@@ -60,8 +60,8 @@ def alpha_shape(
         Sides of a box that repeats along x, y and z, or three vectors, as rows, along which it repeats: the
         points are those of a torus, moved into the box (:attr:`AlphaShape.points`). Vectors are reduced
         (:attr:`AlphaShape.periodic`). A row of input indices means the copies nearest to its first vertex,
-        along each vector; no edge may span half of the box. With ``4 * sqrt(alpha + max(weights))`` less
-        than each height of the box, none does. ``betti.b3`` is 1 where the shape is the whole torus.
+        along each vector; where an edge spans half of the box, rows name copies instead (:attr:`AlphaShape.copies`).
+        ``betti.b3`` is 1 where the shape is the whole torus.
     progress : callable or True, optional
         ``progress(stage, done, total)``, called in this thread, at most 20 times a second: so many
         of ``total`` equal parts of a stage ("alpha", "shape", …) are done. A total of 0 says that a
@@ -77,8 +77,7 @@ def alpha_shape(
     Raises
     ------
     ValueError
-        Numbers that are NaN, infinite or absurd, no points, an edge that spans half of the periodic box,
-        options that contradict each other.
+        Numbers that are NaN, infinite or absurd, no points, options that contradict each other.
     MemoryError
         The system gives no more.
 

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import functools
 import json
 from typing import TYPE_CHECKING, Any
 
@@ -12,7 +13,7 @@ from ._meshes import wanted
 from ._parts import Void
 from ._shape import AlphaShape
 from ._simplices import Simplices
-from ._typing import Arrays, Floats, Progress
+from ._typing import Arrays, Floats, Indices, Progress
 from ._work import task
 
 if TYPE_CHECKING:
@@ -79,14 +80,18 @@ class Filtration(Frozen):
         self._simplices: Simplices | None = None
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _again, (self.points, self.weights, self.periodic)
+        own = self._own_points()
+        return _again, (self.points[:own], self.weights[:own], self.periodic)
+
+    def _own_points(self) -> int:
+        return len(self.points) - len(self.copies)
 
     def __repr__(self) -> str:
         box = "" if self.periodic is None else f" in a periodic box {self.periodic}"
-        return f"<walpha.Filtration of {len(self.points)} points{box}>"
+        return f"<walpha.Filtration of {self._own_points()} points{box}>"
 
     def _repr_html_(self) -> str:
-        points = _pictures.brief(len(self.points))
+        points = _pictures.brief(self._own_points())
         box = "none"
         if self.periodic is not None:
             numbers = np.array(self.periodic)
@@ -102,7 +107,7 @@ class Filtration(Frozen):
 
     @property
     def points(self) -> Floats:
-        """ndarray of float64, (n, 3): the points as given; of a torus, in its box."""
+        """ndarray of float64, (n, 3): the points as given; of a torus, in its box, and after them :attr:`copies`."""
         return self._filtration.points
 
     @property
@@ -114,6 +119,16 @@ class Filtration(Frozen):
     def periodic(self) -> _arrays.Box | None:
         """tuple or None: the sides of the box that repeats, if one does, or its vectors, reduced, if it is not along the axes."""
         return _arrays.box(self._filtration.periodic)
+
+    @functools.cached_property
+    def copies(self) -> Indices:
+        """ndarray of int64, (k,): of which points the last k are copies, in a small periodic box (:attr:`AlphaShape.copies`)."""
+        return _arrays.kept(self._filtration.copies)
+
+    @functools.cached_property
+    def shifts(self) -> Indices:
+        """ndarray of int64, (k, 3): the multiples of the vectors of the box by which each of these :attr:`copies` is moved."""
+        return _arrays.kept(self._filtration.shifts)
 
     def simplices(self, *, progress: Progress = None, threads: int | None = None) -> Simplices:
         """Every simplex with its exact value, in order.
@@ -200,6 +215,7 @@ class Filtration(Frozen):
         gudhi.SimplexTree
             Its filtration values are squared lengths, as those of ``gudhi.AlphaComplex``.
         """
+        self._refuse_copies("simplex_tree")
         gudhi = wanted("gudhi", "simplex_tree")
         simplices = self.simplices()
         values = simplices.ranks.astype(np.float64) if ranks else simplices.values
@@ -225,6 +241,7 @@ class Filtration(Frozen):
         dionysus.Filtration
             Not to be sorted again: faces come before what they are faces of.
         """
+        self._refuse_copies("dionysus")
         dionysus = wanted("dionysus", "dionysus")
         simplices = self.simplices()
         values = simplices.ranks if ranks else simplices.values
@@ -233,6 +250,14 @@ class Filtration(Frozen):
         for number in simplices.order.tolist():
             made.append(dionysus.Simplex(tables[number], float(values[number])))
         return made
+
+    def _refuse_copies(self, name: str) -> None:
+        """A simplicial complex is asked for, where vertices do not tell simplices."""
+        if len(self.copies):
+            raise ValueError(
+                f"{name}: in this periodic box several simplices have the same points, so it is no simplicial complex: "
+                "repeat the points along the vectors of the box, and give the box that holds them"
+            )
 
     def whole(self) -> AlphaShape:
         """The whole regular triangulation as a shape.

@@ -75,7 +75,9 @@ class AlphaShape(Classified):
             return call, (other,)
         if self.isovalue is not None:
             raise TypeError("the solid inside an isosurface cannot be pickled, as its volume decided it: save it as NPZ")
-        return _restored, (self.points, self.weights, self.values, self._shape.state())
+        own = len(self.points) - len(self.copies)
+        values = None if self.values is None else self.values[:own]
+        return _restored, (self.points[:own], self.weights[:own], values, self._shape.state())
 
     @property
     def _held(self) -> _walpha.Shape:
@@ -238,8 +240,18 @@ class AlphaShape(Classified):
 
     @functools.cached_property
     def copies(self) -> Indices:
-        """ndarray of int64, (k,): of which points the last k are copies, in a shape laid out."""
+        """ndarray of int64, (k,): of which points the last k are copies, in a shape laid out, or in a small periodic box.
+
+        In a box in which an edge spans half of a vector or more, vertices do not tell simplices. Rows name copies of points
+        there, which come after all points: ``points[cells]`` are the corners of the cells, and the first vertex of each row is a
+        point of the box.
+        """
         return _arrays.kept(self._shape.copies)
+
+    @functools.cached_property
+    def shifts(self) -> Indices:
+        """ndarray of int64, (k, 3): the multiples of the vectors of the box by which each of these :attr:`copies` is moved."""
+        return _arrays.kept(self._shape.shifts)
 
     def unwrapped(self) -> AlphaShape:
         """A shape of a torus laid out in space.
@@ -723,9 +735,13 @@ class AlphaShape(Classified):
         if self.isovalue is not None:
             made = f"inside the isosurface at {self.isovalue:g}"
         return (
-            f"<walpha.AlphaShape {made}: {len(self.points)} points{kept}, "
+            f"<walpha.AlphaShape {made}: {self._own_points()} points{kept}, "
             f"{self._size()}, betti {tuple(self.betti)}>"
         )
+
+    def _own_points(self) -> int:
+        """Without the copies of a small box; a shape laid out has its copies as points."""
+        return len(self.points) - (0 if self.periodic is None else len(self.copies))
 
     def _size(self) -> str:
         """What fills the space that the points span."""
@@ -745,7 +761,7 @@ class AlphaShape(Classified):
             sizes = f"area {_pictures.brief(self.area)}"
         loose = ((np.count_nonzero(classes == Class.SINGULAR), name) for classes, name in zip(self._classes[1:], _LOOSE))
         return [
-            ("points", _pictures.brief(len(self.points))),
+            ("points", _pictures.brief(self._own_points())),
             ("ball radius", radius),
             ("shape", _topology(self.betti)),
             ("size", sizes),

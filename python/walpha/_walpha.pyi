@@ -56,6 +56,7 @@ class Shape:
     betti: tuple[int, int, int, int | None]
     periodic: list[float] | None
     copies: _Rows
+    shifts: NDArray[np.int32]
     hidden: _Rows | None
     duplicates: _Rows
     def state(self) -> _State: ...
@@ -86,6 +87,8 @@ class Filtration:
     points: Floats
     weights: Floats
     periodic: list[float] | None
+    copies: _Rows
+    shifts: NDArray[np.int32]
     def __init__(
         self, points: Floats, weights: Floats | None, periodic: list[float] | None, task: _Task
     ) -> None: ...

@@ -271,6 +271,13 @@ impl Shape {
         column(py, self.shape.copies().iter().copied())
     }
 
+    /// The multiples of the vectors of the box by which each of these is moved.
+    #[getter]
+    fn shifts<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray2<i32>>> {
+        // SAFETY: the shape is frozen.
+        unsafe { lend(slf.get().shape.shifts(), slf.as_any()) }
+    }
+
     #[getter]
     fn hidden<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray1<u32>>>> {
         let hidden = self.shape.hidden();
