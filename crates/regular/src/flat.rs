@@ -30,11 +30,13 @@ pub fn triangulate_flat(
     sites: &Sites<'_>,
     inserted: impl FnMut(usize) -> Result<(), Cancelled>,
 ) -> Result<Flat, TriangulationError> {
-    let auxiliary = auxiliary_positions(sites.positions());
+    let near = moved_to_first(sites.positions());
+    let places = near.as_deref().unwrap_or(sites.positions());
+    let auxiliary = auxiliary_positions(places);
     let along = sites.curve();
     let extra = auxiliary.len() as u32;
     let mut positions = auxiliary;
-    positions.extend(along.iter().map(|&i| sites.positions()[i as usize]));
+    positions.extend(along.iter().map(|&i| places[i as usize]));
     // With any weights, they are vertices, because they are extreme points of the hull.
     let mut weights = vec![0.0; extra as usize];
     weights.extend(along.iter().map(|&i| sites.weights()[i as usize]));
@@ -55,6 +57,26 @@ pub fn triangulate_flat(
     flat.triangles.sort_unstable();
     flat.edges.sort_unstable();
     Ok(flat)
+}
+
+/// All positions, moved so that the first is the origin, if that is exact and makes coordinates smaller. Moving changes no triangulation, but auxiliary points
+/// are nearer then, so that doubles decide more predicates: of points on a map, far from its origin, nearly all instead of hardly any.
+fn moved_to_first(all: &[[f64; 3]]) -> Option<Vec<[f64; 3]>> {
+    let first = all.first()?;
+    let moved = |place: &[f64; 3]| {
+        let near = [0, 1, 2].map(|k| place[k] - first[k]);
+        // The error of a difference, by Knuth's two-sum.
+        let is_exact = (0..3).all(|k| {
+            let virtual_first = place[k] - near[k];
+            let virtual_place = near[k] + virtual_first;
+            (place[k] - virtual_place) + (virtual_first - first[k]) == 0.0
+        });
+        is_exact.then_some(near)
+    };
+    let near: Vec<_> = all.iter().map(moved).collect::<Option<_>>()?;
+    let largest =
+        |of: &[[f64; 3]]| of.as_flattened().iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+    (largest(&near) < largest(all)).then_some(near)
 }
 
 /// Checks that sites span a volume. O(n) if they do not, usually less if they do.
@@ -140,6 +162,20 @@ mod tests {
         let weights = vec![0.0; positions.len()];
         let sites = Sites::any(positions, &weights).unwrap();
         triangulate_flat(&sites, |_| Ok(())).unwrap()
+    }
+
+    /// The triangulation of points far from the origin is that of the same points near it, with their ties.
+    #[test]
+    fn where_points_lie_changes_nothing() {
+        let grid = (0..100).map(|i| [f64::from(i % 10), f64::from(i / 10), 0.0]);
+        let tilted: Vec<_> = grid.map(|[x, y, _]| [x, y, x - 2.0 * y]).collect();
+        let far: Vec<_> = tilted.iter().map(|p| p.map(|x| x + 2f64.powi(22))).collect();
+        assert_eq!(moved_to_first(&far).unwrap()[..], tilted[..]);
+        assert_eq!(flat(&far).triangles, flat(&tilted).triangles);
+        // Differences that would be rounded, and none that is smaller.
+        assert_eq!(moved_to_first(&[[1e-20, 0.0, 0.0], [1.0, 0.0, 0.0]]), None);
+        assert_eq!(moved_to_first(&[[0.0; 3], [1.0, 0.0, 0.0]]), None);
+        assert_eq!(moved_to_first(&[]), None);
     }
 
     #[test]
