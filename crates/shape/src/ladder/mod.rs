@@ -38,7 +38,9 @@ pub use filtration::Filtration;
 #[doc(hidden)]
 pub use levels::{ByLevel, LevelRows};
 pub use levels::{Levels, Span};
-pub use ordered::{Derivative, Entry, Interval, Loops, Ordered, Pairs};
+pub use ordered::{
+    Cycles, Derivative, Entry, Interval, LoopCycle, Loops, Ordered, Pairs, VoidCycle,
+};
 #[doc(hidden)]
 pub use small::Covering;
 pub use table::{Ladder, Level};

@@ -99,7 +99,9 @@ fn covered<T>(
             Err(ShapeError::Wraps { axis, span, side, .. }) => {
                 let k = AXES.iter().chain(&VECTORS).position(|&name| name == axis);
                 let k = k.expect("the name of an axis or of a vector") % 3;
-                times[k] = (2.0 * f64::from(times[k]) * span / side).floor() as u32 + 1;
+                // The span is rounded, and may be half of the side exactly.
+                let enough = (2.0 * f64::from(times[k]) * span / side).floor() as u32 + 1;
+                times[k] = enough.max(times[k] + 1);
             }
             found => return Ok((times, found?)),
         }

@@ -48,11 +48,12 @@ impl Ordered<'_> {
         if let Some(loops) = self.loops.get() {
             return Ok(loops);
         }
-        let loops = self.reduce(monitor)?;
+        let (loops, _) = self.reduce(monitor)?;
         Ok(self.loops.get_or_init(|| loops))
     }
 
-    fn reduce(&self, monitor: &Monitor) -> Result<Loops, ShapeError> {
+    /// The pairs, and the reduced matrix.
+    pub(super) fn reduce(&self, monitor: &Monitor) -> Result<(Loops, Reduced), ShapeError> {
         let [_, of_edges, of_facets, of_cells] = self.numbers.first;
         let pairs = self.pairs();
         let mut is_paired = vec![false; self.len()];
@@ -96,12 +97,36 @@ impl Ordered<'_> {
             found.push([edges[last as usize], facet]);
             reduced.take(last, &mut column)?;
         }
-        let lasting = (0..).zip(edges).filter(|&(row, _)| reduced.ending_with(row).is_none());
-        Ok(Loops { pairs: found, lasting: lasting.map(|(_, edge)| edge).collect() })
+        let lasting = (0..).zip(&edges).filter(|&(row, _)| reduced.ending_with(row).is_none());
+        let lasting = lasting.map(|(_, &edge)| edge).collect();
+        let reduced = Reduced { columns: reduced, edges, rows, first: of_edges };
+        Ok((Loops { pairs: found, lasting }, reduced))
+    }
+}
+
+/// The reduced boundary matrix of the facets that end loops, on the edges that begin loops.
+#[derive(Debug)]
+pub(super) struct Reduced {
+    columns: Columns,
+    /// The edge of each row, by number.
+    edges: Vec<u32>,
+    /// The row of each edge.
+    rows: Vec<u32>,
+    /// The number of the first edge.
+    first: u32,
+}
+
+impl Reduced {
+    /// The column whose youngest edge is this one: the edges with their coefficients, 1 of this one; `None` if no facet ends its loop.
+    pub(super) fn column(&self, edge: u32) -> Option<Vec<(u32, u32)>> {
+        let row = self.rows[(edge - self.first) as usize];
+        let members = self.columns.ending_with(Some(row).filter(|&row| row != NONE)?)?;
+        Some(members.iter().map(|&(row, value)| (self.edges[row as usize], value)).collect())
     }
 }
 
 /// Reduced columns by their last rows.
+#[derive(Debug)]
 struct Columns {
     /// For each last row, the range of the column among the members; empty if there is none.
     ranges: Vec<Range<usize>>,
@@ -138,7 +163,12 @@ impl Columns {
 }
 
 /// The order of the field of coefficients.
-const PRIME: u32 = (1 << 31) - 1;
+pub(super) const PRIME: u32 = (1 << 31) - 1;
+
+/// The sum in the field.
+pub(super) fn plus_mod(a: u32, b: u32) -> u32 {
+    ((u64::from(a) + u64::from(b)) % u64::from(PRIME)) as u32
+}
 
 /// The product in the field.
 fn times(a: u32, b: u32) -> u32 {
@@ -146,7 +176,7 @@ fn times(a: u32, b: u32) -> u32 {
 }
 
 /// The inverse in the field: a to the power of p − 2.
-fn inverse(a: u32) -> u32 {
+pub(super) fn inverse(a: u32) -> u32 {
     // Nearly all are 1 or −1.
     if a == 1 || a == PRIME - 1 {
         return a;
@@ -178,7 +208,7 @@ impl Column {
     fn add(&mut self, row: u32, value: u32) {
         let own = &mut self.values[row as usize];
         let before = *own;
-        *own = ((u64::from(before) + u64::from(value)) % u64::from(PRIME)) as u32;
+        *own = plus_mod(before, value);
         if (before == 0) != (*own == 0) {
             self.rows.toggle(row);
         }

@@ -1,5 +1,6 @@
 //! All simplices of a filtration in the order in which they enter.
 
+mod cycles;
 mod gradient;
 mod intervals;
 mod loops;
@@ -19,6 +20,7 @@ use super::levels::OwnLevels;
 use super::{Filtration, Levels};
 use crate::derived::Derived;
 use crate::{Alpha, AlphaShape, Betti, ShapeError};
+pub use cycles::{Cycles, LoopCycle, VoidCycle};
 pub use gradient::Derivative;
 pub use intervals::Interval;
 pub use loops::Loops;

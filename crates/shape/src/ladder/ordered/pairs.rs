@@ -39,7 +39,7 @@ impl Ordered<'_> {
             } else if (of_edges..of_facets).contains(&simplex) {
                 let ends = self.edges()[(simplex - of_edges) as usize];
                 let [a, b] = ends.map(|v| rows[v as usize]);
-                if let Some(younger) = sets.unite(a, b) {
+                if let Some([_, younger]) = sets.unite(a, b) {
                     pairs.push([of_vertices + younger, simplex]);
                 }
             }
@@ -55,22 +55,53 @@ impl Ordered<'_> {
     /// Pairs of dimension 2, by the same rule for the complement, backwards: there a cell creates a component, and a
     /// facet merges two; or, on a torus, it makes the complement wind round in a new direction.
     fn void_pairs(&self) -> Pairs {
-        let incidence = &self.filtration().incidence;
-        let [_, _, of_facets, of_cells] = self.numbers.first;
+        let [_, _, _, of_cells] = self.numbers.first;
         let cells = self.cells.len();
         let mut sorted = vec![0; cells];
         self.cell_rows.iter().zip(0..).for_each(|(&row, at): (_, u32)| sorted[row as usize] = at);
-        let mut sets = ElderSets::new(cells + 1);
         let mut ways = self
             .filtration()
             .torus()
             .map(|torus| ComplementWindings::new(torus, self.filtration()));
         let mut found = Pairs { voids: Vec::with_capacity(cells), ..Pairs::default() };
-        match ways {
-            // The outside is the oldest component.
-            None => sets.add(cells as u32, 0),
-            Some(_) => found.last = self.order.iter().rev().copied().find(|&s| s >= of_cells),
+        if ways.is_some() {
+            found.last = self.order.iter().rev().copied().find(|&s| s >= of_cells);
         }
+        self.each_facet_of_complement(|simplex, row, sides, merged| {
+            let round = ways.as_mut().is_some_and(|ways| ways.open(row, sides));
+            if let Some([_, younger]) = merged {
+                found.voids.push([simplex, of_cells + sorted[younger as usize]]);
+            } else if round {
+                found.lasting_voids.push(simplex);
+            }
+        });
+        found.voids.reverse();
+        found.lasting_voids.reverse();
+        found
+    }
+
+    /// Visits the mergers of components of the complement, backwards: the eldest cells, by row, of the older component and of the younger one. The
+    /// outside of points in space is the oldest; its number follows that of the last cell.
+    pub(super) fn merge_complement(&self, mut visit: impl FnMut(u32, u32)) {
+        self.each_facet_of_complement(|_, _, _, merged| {
+            if let Some([older, younger]) = merged {
+                visit(older, younger);
+            }
+        });
+    }
+
+    /// Visits the facets, backwards, with their numbers, their rows, the rows of the cells on both sides, and the eldest cells of the
+    /// two components that each merges, if it does.
+    fn each_facet_of_complement(
+        &self,
+        mut visit: impl FnMut(u32, usize, [u32; 2], Option<[u32; 2]>),
+    ) {
+        let incidence = &self.filtration().incidence;
+        let [_, _, of_facets, of_cells] = self.numbers.first;
+        let cells = self.cells.len();
+        let mut sets = ElderSets::new(cells + 1);
+        // The outside is the oldest component.
+        sets.add(cells as u32, 0);
         for (age, &simplex) in (1..).zip(self.order.iter().rev()) {
             if simplex >= of_cells {
                 sets.add(self.cell_rows[(simplex - of_cells) as usize], age);
@@ -79,17 +110,9 @@ impl Ordered<'_> {
                 let sides = incidence.facet_cells[row];
                 let [a, b] =
                     sides.map(|side| if side == Incidence::OUTSIDE { cells as u32 } else { side });
-                let round = ways.as_mut().is_some_and(|ways| ways.open(row, [a, b]));
-                if let Some(younger) = sets.unite(a, b) {
-                    found.voids.push([simplex, of_cells + sorted[younger as usize]]);
-                } else if round {
-                    found.lasting_voids.push(simplex);
-                }
+                visit(simplex, row, sides, sets.unite(a, b));
             }
         }
-        found.voids.reverse();
-        found.lasting_voids.reverse();
-        found
     }
 }
 
@@ -143,15 +166,16 @@ impl ElderSets {
         self.eldest[self.sets.find(member) as usize]
     }
 
-    /// Unites two sets, and returns the younger of their eldest members; `None` if they are already one set.
-    fn unite(&mut self, a: u32, b: u32) -> Option<u32> {
+    /// Unites two sets, and returns their eldest members, the older one first; `None` if they are already one set.
+    fn unite(&mut self, a: u32, b: u32) -> Option<[u32; 2]> {
         let [a, b] = [self.eldest_of(a), self.eldest_of(b)];
         if !self.sets.unite(a, b) {
             return None;
         }
-        let younger = if self.ages[a as usize] > self.ages[b as usize] { a } else { b };
+        let is_a_younger = self.ages[a as usize] > self.ages[b as usize];
+        let [older, younger] = if is_a_younger { [b, a] } else { [a, b] };
         let root = self.sets.find(a);
-        self.eldest[root as usize] = if younger == a { b } else { a };
-        Some(younger)
+        self.eldest[root as usize] = older;
+        Some([older, younger])
     }
 }
