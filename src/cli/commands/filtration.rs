@@ -10,7 +10,7 @@ use serde::Serialize;
 
 use crate::Coordinates;
 use crate::cli::process::errors::Result;
-use crate::export::{Content, FiltrationFormat, Target, write_all};
+use crate::export::{Content, FiltrationFormat, Target, UnknownFormat, write_all, write_cycles};
 use crate::ladder::Ordered;
 use crate::pipeline::{Parameter, Weighed};
 use crate::progress::Stage;
@@ -41,11 +41,20 @@ use crate::cli::report::{MovedIntoBox, SCHEMA_VERSION, WeightsReport, ending};
 ///
 /// walpha filtration sample:skull --weights min-max -o skull.json skull.txt
 ///
+/// walpha filtration foam.xyz --periodic 20,20,20 --cycles cycles.vtp
+///
 /// walpha check skull.json
 #[derive(Args)]
 pub(crate) struct Filtration {
     #[arg(short, long, value_name = "FILE", num_args = 1.., help = filtration_output())]
     output: Vec<PathBuf>,
+    /// Cycles that represent persistence pairs, as VTP: for each loop a short closed line through the edge that creates it, for each void the
+    /// triangles around it, with `dimension`, `birth` and `death`. Of each dimension the 100 that last longest.
+    #[arg(long, value_name = "FILE.vtp")]
+    cycles: Option<PathBuf>,
+    /// All cycles instead whose death is this much above their birth: a squared length.
+    #[arg(long, value_name = "α", requires = "cycles", value_parser = crate::cli::options::not_negative)]
+    cycles_above: Option<f64>,
     #[command(flatten)]
     pipeline: FrozenPipelineArgs,
     #[command(flatten)]
@@ -110,13 +119,14 @@ impl Filtration {
             let format = FiltrationFormat::of(&self.format.named(path)?)?;
             targets.push((Target::open(path)?, format));
         }
+        let cycles = self.cycles.as_ref().map(cycles_target).transpose()?;
         let mut progress = Progress::new(global);
         input.typed.refuse(&["refit"], "a filtration has no values")?;
         let recipe = self.pipeline.recipe()?;
         let (weighed, _) = pipeline::weighted_points(input, &recipe, &mut progress)?;
         let filtration = progress.watch(|| pipeline::filtration(&weighed))?;
         let ordered = progress.stage(Stage::Order, || filtration.simplices())?;
-        if global.json || targets.iter().any(|(_, format)| format.pairs) {
+        if global.json || cycles.is_some() || targets.iter().any(|(_, format)| format.pairs) {
             progress.stage(Stage::Pairs, || ordered.loops())?;
         }
         progress.stage(Stage::Write, || {
@@ -124,16 +134,35 @@ impl Filtration {
                 let ordered = &ordered;
                 let content = move |out: &mut dyn Write| format.write(ordered, out);
                 (target, Box::new(content) as Content<'_>)
-            }))
+            }))?;
+            let write = |out: &mut dyn Write| {
+                write_cycles(
+                    &ordered,
+                    self.cycles_above,
+                    weighed.origin.coordinates,
+                    &input.input,
+                    out,
+                )
+            };
+            cycles.map_or(Ok(()), |target| target.write(write))
         })?;
         let mut facts = FiltrationSummary::new(&input.input, &weighed, &ordered);
         if global.json {
             facts.persistence = Some(Persistence::of(&ordered)?);
         }
-        facts.files = self.output.iter().map(|path| path.display().to_string()).collect();
+        let files = self.output.iter().chain(&self.cycles);
+        facts.files = files.map(|path| path.display().to_string()).collect();
         facts.seconds = progress.finish().into_iter().collect();
         print_summary(global, &facts)
     }
+}
+
+/// The file of cycles.
+fn cycles_target(path: &PathBuf) -> Result<Target> {
+    if !path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("vtp")) {
+        return Err(UnknownFormat::new(path, "cycles", ["vtp"]).into());
+    }
+    Ok(Target::open(path)?)
 }
 
 impl FiltrationSummary {

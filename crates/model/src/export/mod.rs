@@ -25,6 +25,7 @@
 mod about;
 mod claim;
 mod colour;
+mod cycles;
 mod empty;
 mod exporter;
 mod filtration;
@@ -49,6 +50,7 @@ mod vtu;
 mod wkt;
 
 pub use claim::{claim, placed_complex};
+pub use cycles::{MOST_CYCLES, longest, write_cycles};
 pub use empty::{EmptyShape, Needs};
 pub use exporter::{ExportOptions, Exporter};
 pub use filtration::{FILTRATION_FORMATS, FiltrationFormat};
