@@ -3,6 +3,7 @@
 use std::num::NonZeroU64;
 use std::sync::{Arc, OnceLock};
 
+use numpy::ndarray::Array2;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use rayon::prelude::*;
@@ -197,6 +198,24 @@ self_cell! {
     }
 }
 
+/// The arrays of a loop.
+type PyLoop<'py> = (
+    Bound<'py, PyArray1<u32>>,
+    Bound<'py, PyArray2<f64>>,
+    Bound<'py, PyArray1<u32>>,
+    Bound<'py, PyArray1<i32>>,
+);
+
+/// The arrays of a void.
+type PyVoid<'py> =
+    (Bound<'py, PyArray1<u32>>, Bound<'py, PyArray2<u32>>, Bound<'py, PyArray2<f64>>);
+
+/// Rows of three as an array.
+fn array2<T>(rows: Vec<[T; 3]>) -> Array2<T> {
+    let count = rows.len();
+    Array2::from_shape_vec((count, 3), rows.into_flattened()).expect("three numbers in each row")
+}
+
 /// All simplices of a filtration by their numbers, which never change. Results that take time are computed when they are first
 /// requested.
 #[pyclass(frozen, module = "walpha._walpha")]
@@ -338,6 +357,46 @@ impl Simplices {
     fn void_pairs<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray2<u32>>> {
         // SAFETY: the simplices are frozen, and what was found once stays.
         unsafe { lend(&slf.get().pairs(slf.py())?.voids, slf.as_any()) }
+    }
+
+    /// Of the loop that each of these edges creates, if it does: the vertices of a walk and their positions, and the edges and coefficients of a cycle.
+    fn loop_cycles<'py>(
+        &self,
+        py: Python<'py>,
+        edges: PyReadonlyArray1<'py, u32>,
+    ) -> PyResult<Vec<Option<PyLoop<'py>>>> {
+        let edges = numbers(edges)?;
+        let found = self.work(py, move |ordered| {
+            let cycles = ordered.cycles();
+            edges.into_iter().map(|edge| cycles.of_loop(edge)).collect::<Result<Vec<_>, _>>()
+        })?;
+        let array = |cycle: ladder::LoopCycle| {
+            let (edges, coefficients): (Vec<u32>, Vec<i32>) = cycle.chain.into_iter().unzip();
+            let path = PyArray2::from_owned_array(py, array2(cycle.path));
+            let edges = edges.into_pyarray(py);
+            (cycle.walk.into_pyarray(py), path, edges, coefficients.into_pyarray(py))
+        };
+        Ok(found.into_iter().map(|cycle| cycle.map(array)).collect())
+    }
+
+    /// Of the void that each of these cells ends, if it does: its cells, and the facets around it with the positions of their corners, nine numbers each.
+    fn void_cycles<'py>(
+        &self,
+        py: Python<'py>,
+        cells: PyReadonlyArray1<'py, u32>,
+    ) -> PyResult<Vec<Option<PyVoid<'py>>>> {
+        let cells = numbers(cells)?;
+        let found = self.work(py, move |ordered| {
+            let cycles = ordered.cycles();
+            Ok(cells.into_iter().map(|cell| cycles.of_void(cell)).collect::<Vec<_>>())
+        })?;
+        let array = |cycle: ladder::VoidCycle| {
+            let corners: Vec<[f64; 3]> = cycle.corners.into_iter().flatten().collect();
+            let facets = PyArray2::from_owned_array(py, array2(cycle.facets));
+            let corners = PyArray2::from_owned_array(py, array2(corners));
+            (cycle.cells.into_pyarray(py), facets, corners)
+        };
+        Ok(found.into_iter().map(|cycle| cycle.map(array)).collect())
     }
 
     /// Simplices that begin something of this dimension, from 0 to 3, which never ends.

@@ -36,6 +36,7 @@ from ._pipeline import Selected, difference, haar, label_shape, pipeline, select
 from ._points import PointFile, read_points, write_points
 from ._shape import AlphaShape
 from ._simplices import Simplices
+from ._cycles import LoopCycle, VoidCycle
 from ._triangulation import PowerDiagram, Triangulation, triangulation
 from ._volume import Volume, read
 
@@ -62,6 +63,7 @@ __all__ = [
     "Finding",
     "Gradients",
     "Level",
+    "LoopCycle",
     "Outline",
     "Page",
     "Picture",
@@ -76,6 +78,7 @@ __all__ = [
     "Triangulation",
     "Verdict",
     "Void",
+    "VoidCycle",
     "Volume",
     "alpha_shape",
     "check",

@@ -2,13 +2,15 @@ from __future__ import annotations
 
 import functools
 import json
-from typing import TYPE_CHECKING, Any
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
 from . import _alpha, _arrays, _pictures, _walpha
 from ._classified import Frozen
 from ._curves import BettiCurve, Level, Suggestions, TorusBettiCurve
+from ._cycles import LoopCycle, VoidCycle
 from ._meshes import wanted
 from ._parts import Void
 from ._shape import AlphaShape
@@ -147,6 +149,105 @@ class Filtration(Frozen):
             with task(progress, threads) as how:
                 self._simplices = Simplices._of(self._filtration.simplices(how))
         return self._simplices
+
+    def cycle(self, pair: Sequence[int]) -> LoopCycle | VoidCycle:
+        """A cycle that represents a persistence pair of dimension 1 or 2.
+
+        Parameters
+        ----------
+        pair : sequence of int
+            The numbers of the simplices that begin and end it: a row of :attr:`Simplices.loop_pairs` or :attr:`Simplices.void_pairs`;
+            of a loop that never ends, the edge alone.
+
+        Returns
+        -------
+        LoopCycle or VoidCycle
+
+        Raises
+        ------
+        ValueError
+            Numbers that are no pair of these dimensions.
+        """
+        simplices = self.simplices()
+        begins, *ends = (int(number) for number in pair)
+        loops, voids = simplices.loop_pairs, simplices.void_pairs
+        is_loop = ends in loops[loops[:, 0] == begins, 1:].tolist() or (not ends and begins in simplices.lasting[1])
+        if is_loop:
+            return self._loops([begins], [ends[0] if ends else None])[0]
+        if ends in voids[voids[:, 0] == begins, 1:].tolist():
+            return self._voids([begins], ends)[0]
+        raise ValueError(f"{tuple(pair)} is not a pair: give a row of simplices().loop_pairs or simplices().void_pairs")
+
+    def cycles(self, dimension: Literal[1, 2], *, minimum: float | None = None) -> list[LoopCycle] | list[VoidCycle]:
+        """Cycles that represent persistence pairs, the most persistent first.
+
+        Parameters
+        ----------
+        dimension : {1, 2}
+            Loops or voids. Surfaces that never end, of a periodic box, are not among them.
+        minimum : float, optional
+            Of all pairs whose death is at least this much above their birth, a squared length. By default of the 100 of largest
+            persistence.
+
+        Returns
+        -------
+        list of LoopCycle or of VoidCycle
+
+        Examples
+        --------
+        Four points on a square:
+
+        >>> [loop] = walpha.filtration([[0, 0], [2, 0], [2, 2], [0, 2]]).cycles(1)
+        >>> loop.birth, loop.death, sorted(loop.walk.tolist())
+        (1.0, 2.0, [0, 1, 2, 3])
+        """
+        if dimension not in (1, 2):
+            raise ValueError(f"dimension={dimension}: there are cycles of dimensions 1 and 2")
+        simplices = self.simplices()
+        pairs = simplices.loop_pairs if dimension == 1 else simplices.void_pairs
+        pairs = pairs[simplices.ranks[pairs[:, 0]] != simplices.ranks[pairs[:, 1]]]
+        begins, ends = pairs[:, 0], pairs[:, 1]
+        persistence = simplices.values[ends] - simplices.values[begins]
+        if dimension == 1:
+            lasting = simplices.lasting[1]
+            begins = np.concatenate([begins, lasting])
+            ends = np.concatenate([ends, np.full(len(lasting), -1)])
+            persistence = np.concatenate([persistence, np.full(len(lasting), np.inf)])
+        order = np.argsort(-persistence, kind="stable")
+        order = order[:100] if minimum is None else order[persistence[order] >= minimum]
+        if dimension == 2:
+            return self._voids(begins[order].tolist(), ends[order].tolist())
+        return self._loops(begins[order].tolist(), [None if end < 0 else end for end in ends[order].tolist()])
+
+    def _loops(self, begins: list[int], ends: list[int | None]) -> list[LoopCycle]:
+        simplices = self.simplices()
+        found = simplices._simplices.loop_cycles(np.array(begins, np.uint32))
+        first = len(simplices.vertices)
+        loops = []
+        for begin, end, cycle in zip(begins, ends, found):
+            assert cycle is not None, "a loop begins with this edge"
+            walk, path, edges, coefficients = cycle
+            death = np.inf if end is None else float(simplices.values[end])
+            rows = simplices.edges[edges.astype(np.int64) - first]
+            loop = LoopCycle(
+                float(simplices.values[begin]), death, (begin, end), walk.astype(np.int64), path, rows, coefficients.astype(np.int64)
+            )
+            loops.append(loop)
+        return loops
+
+    def _voids(self, begins: list[int], ends: list[int]) -> list[VoidCycle]:
+        simplices = self.simplices()
+        found = simplices._simplices.void_cycles(np.array(ends, np.uint32))
+        first = len(simplices.values) - len(simplices.cells)
+        voids = []
+        for begin, end, cycle in zip(begins, ends, found):
+            assert cycle is not None, "a void ends with this cell"
+            cells, facets, corners = cycle
+            birth, death = float(simplices.values[begin]), float(simplices.values[end])
+            rows = simplices.cells[cells.astype(np.int64) - first]
+            void = VoidCycle(birth, death, (begin, end), rows, facets.astype(np.int64), corners.reshape(-1, 3, 3))
+            voids.append(void)
+        return voids
 
     def derivatives(self, simplices: Arrays) -> tuple[Floats, Floats]:
         """How the values of Gabriel simplices change with their points.
