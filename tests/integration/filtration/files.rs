@@ -267,3 +267,46 @@ fn the_command_writes_checks_and_compares() {
     common::ok(f, &["shape", "sample:phantom@12", "-o", "shape.json"]);
     assert_eq!(common::run(f, &["compare", "shape.json", "a.json"]).0, 1);
 }
+
+/// The cycles of the pairs that last, or of those above a persistence.
+#[test]
+fn cycles_are_written_for_lasting_pairs() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    let mut random = Random::new(3);
+    let points: String = (0..60)
+        .map(|_| [0; 3].map(|_| random.unit()))
+        .map(|[x, y, z]| format!("{x} {y} {z}\n"))
+        .collect();
+    std::fs::write(f.join("p.xyz"), points).unwrap();
+    let lasting = |name: &str, above: f64| {
+        let pairs = common::json(f, &["filtration", "p.xyz"])["persistence"][name].clone();
+        let pairs: Vec<[f64; 2]> = serde_json::from_value(pairs).unwrap();
+        pairs.iter().filter(|[birth, death]| death - birth > above).count()
+    };
+    let header = |more: &[&str]| {
+        common::ok(f, &[&["filtration", "p.xyz", "--cycles", "c.vtp"], more].concat());
+        let bytes = std::fs::read(f.join("c.vtp")).unwrap();
+        let text = String::from_utf8_lossy(&bytes).into_owned();
+        let number = |name: &str| -> usize {
+            let from = text.split_once(&format!("{name}=\"")).unwrap().1;
+            from.split_once('"').unwrap().0.parse().unwrap()
+        };
+        [number("NumberOfLines"), number("NumberOfPolys")]
+    };
+    let [lines, triangles] = header(&[]);
+    assert_eq!(lines, lasting("loops", 0.0).min(100));
+    assert!(lines > 10 && triangles >= 4 * lasting("voids", 0.0).min(100), "{lines} {triangles}");
+    for above in [0.005, 0.02] {
+        let [lines, triangles] = header(&["--cycles-above", &above.to_string()]);
+        assert_eq!(lines, lasting("loops", above));
+        assert!(triangles >= 4 * lasting("voids", above));
+    }
+    let refused = |args: &[&str], words: &str| {
+        let (code, _, said) = common::run(f, args);
+        assert!(code == 2 && said.contains(words), "{code}: {said}");
+    };
+    refused(&["filtration", "p.xyz", "--cycles", "c.ply"], "vtp");
+    refused(&["filtration", "p.xyz", "--cycles-above", "1"], "--cycles");
+    refused(&["filtration", "p.xyz", "--cycles", "c.vtp", "--cycles-above", "-1"], "-1");
+}
