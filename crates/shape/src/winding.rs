@@ -39,6 +39,11 @@ impl Directions {
         others.0.iter().for_each(|&way| _ = self.add(way));
     }
 
+    /// For each vector of the box, whether one of them leads along it.
+    pub fn along(&self) -> [bool; 3] {
+        [0, 1, 2].map(|k| self.0.iter().any(|way| way[k] != 0))
+    }
+
     /// Whether one of them leads along an axis of space.
     pub fn have(&self, axis: usize, torus: Torus) -> bool {
         self.0.iter().any(|&way| torus.moved([0.0; 3], way)[axis] != 0.0)

@@ -39,7 +39,8 @@ pub use filtration::Filtration;
 pub use levels::{ByLevel, LevelRows};
 pub use levels::{Levels, Span};
 pub use ordered::{
-    Cycles, Derivative, Entry, Interval, LoopCycle, Loops, Ordered, Pairs, VoidCycle,
+    Cycles, Derivative, Entry, Interval, LoopCycle, Loops, Ordered, Pairs, PorePart, PoreSphere,
+    Pores, VoidCycle,
 };
 #[doc(hidden)]
 pub use small::Covering;

@@ -6,6 +6,7 @@ mod intervals;
 mod loops;
 mod numbers;
 mod pairs;
+mod pores;
 mod rank;
 
 use std::sync::OnceLock;
@@ -25,6 +26,7 @@ pub use gradient::Derivative;
 pub use intervals::Interval;
 pub use loops::Loops;
 use numbers::Numbers;
+pub use pores::{PorePart, PoreSphere, Pores};
 use rank::{NONE, Ranks};
 
 /// All simplices of a regular triangulation with their values of α: each simplex has the values at which it enters the shape,
