@@ -24,7 +24,7 @@ use commands::reproduce;
 use commands::view;
 use commands::{
     balls, blocks, check, compare, completions, filtration, haar, info, interpolate, ladder, man,
-    points, shape, shape_in_blocks,
+    points, pores, shape, shape_in_blocks,
 };
 use options::global::{Global, INTERRUPTED, SUCCESS, USAGE};
 use options::{config, formats, help, typed};
@@ -64,6 +64,7 @@ enum Command {
     Ladder(ladder::Ladder),
     Filtration(filtration::Filtration),
     Balls(balls::Balls),
+    Pores(pores::Pores),
     Interpolate(interpolate::Interpolate),
     Check(check::Check),
     Compare(compare::Compare),
@@ -211,6 +212,7 @@ fn execute(global: Global, command: Command, ranks: &Ranks) -> Result<u8> {
         Command::Points(points) => points.run(global)?,
         Command::Haar(haar) => haar.run(global)?,
         Command::Balls(balls) => balls.run(global)?,
+        Command::Pores(pores) => pores.run(global)?,
         Command::Interpolate(interpolate) => interpolate.run(global)?,
         #[cfg(feature = "zarr")]
         Command::Convert(convert) => convert.run(global)?,

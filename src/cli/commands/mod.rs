@@ -17,6 +17,7 @@ pub(super) mod man;
 mod outline;
 pub(super) mod pipeline;
 pub(super) mod points;
+pub(super) mod pores;
 #[cfg(feature = "paper")]
 pub(super) mod reproduce;
 pub(super) mod shape;

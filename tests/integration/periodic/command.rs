@@ -358,6 +358,54 @@ fn primitive_and_conventional_cells_agree() {
     assert_eq!(counted("four.xyz", "1,1,1", 4.0), expected);
 }
 
+/// Spheres in a brick of one point, through and between its sides, and what is refused.
+#[test]
+fn pores_of_a_brick() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    std::fs::write(f.join("one.xyz"), "0 0 0\n").unwrap();
+    let args = ["pores", "one.xyz", "--periodic", "1,1,3", "--alpha-radius", "0.25"];
+    let told = common::json(f, &[&args[..], &["--probe", "0.25"]].concat());
+    let is = |value: &serde_json::Value, expected: f64| {
+        assert!((value.as_f64().unwrap() - expected).abs() < 1e-12, "{value} is not {expected}");
+    };
+    // The diagonals of the brick and of its sides, less the balls at their ends.
+    let pores = &told["pores"];
+    is(&pores["included"]["diameter"], 11f64.sqrt() - 0.5);
+    is(&pores["free"]["diameter"], 10f64.sqrt() - 0.5);
+    for (k, square) in [(0, 10.0f64), (1, 10.0), (2, 2.0)] {
+        is(&pores["free_along"][k]["diameter"], square.sqrt() - 0.5);
+    }
+    assert_eq!(told["probe"]["channels"], serde_json::json!([3]));
+    is(&told["probe"]["void_fraction"], 1.0 - std::f64::consts::PI / 6.0 / 3.0);
+    assert_eq!(told["power_distance"], false);
+    // A larger one passes between planes of points only.
+    let told = common::json(f, &[&args[..], &["--probe", "0.6"]].concat());
+    assert_eq!(
+        (&told["probe"]["channels"], &told["probe"]["pockets"]),
+        (&serde_json::json!([2]), &0.into())
+    );
+    let said = common::ok(f, &args);
+    assert!(said.contains("free      2.66228 unit; along a 2.66228 unit"), "{said}");
+    let refused = |args: &[&str], code: i32, words: &str| {
+        let (found, _, said) = common::run(f, args);
+        assert!(found == code && said.contains(words), "{found}: {said}");
+    };
+    refused(&["pores", "one.xyz"], 1, "does not state a cell");
+    refused(&["pores", "sample:phantom@8", "--periodic", "1,1,1"], 2, "pores are between points");
+    refused(
+        &["pores", "one.xyz", "--periodic", "1,1,1", "--alpha", "auto"],
+        2,
+        "squared radius of all balls",
+    );
+    refused(&["pores", "one.xyz", "--periodic", "1,1,1", "--probe", "-1"], 2, "-1");
+    // Radii of two kinds.
+    std::fs::write(f.join("two.csv"), "x,y,z,radius\n0,0,0,0.25\n0.5,0.5,0.5,0.5\n").unwrap();
+    let told = common::json(f, &["pores", "two.csv", "--periodic", "2,2,2", "--probe", "0.1"]);
+    assert_eq!((&told["power_distance"], &told["points"]), (&true.into(), &2.into()));
+    assert_eq!(told["probe"]["channels"], serde_json::json!([3]));
+}
+
 /// A lone point, through all commands that take a periodic box.
 #[test]
 fn a_lone_point_goes_through_every_command() {

@@ -1,0 +1,312 @@
+//! `walpha pores`: the spheres that fit into a periodic box, and how far they get.
+
+use std::collections::BTreeMap;
+use std::fmt::{self, Display};
+
+use clap::Args;
+use serde::Serialize;
+use walpha_base::shown::{counted, rounded};
+
+use crate::balls::BallUnion;
+use crate::cli::commands::pipeline;
+use crate::cli::options::global::Global;
+use crate::cli::options::{self, Declared, InputArgs, Periodic, WithAlpha};
+use crate::cli::process::errors::{Result, command_error, fail_usage, option};
+use crate::cli::process::output::{name, print_summary};
+use crate::cli::process::progress::Progress;
+use crate::cli::report::{MovedIntoBox, SCHEMA_VERSION, ending};
+use crate::ladder::{Filtration, PoreSphere};
+use crate::pipeline::{AlphaRule, Input, Origin, PeriodicBox, Values};
+use crate::progress::Stage;
+use crate::shape::Torus;
+use crate::{Alpha, Coordinates, WeightedPoints};
+
+/// Find the pores of a periodic box: the largest spheres between its balls, channels and pockets.
+///
+/// For a crystal, a zeolite, a foam or a packing whose points repeat: the largest sphere that fits, the largest one that can move from a place to another
+/// copy of it (also along each vector of the box), and the largest that fits on its way. With --probe R, how many channels a sphere of
+/// that radius can pass and in how many directions, how many pockets it cannot leave, and which share of the box its centre can be at.
+/// Points without radii are balls of radius 0. The box is the cell that the file states, unless --periodic gives another.
+///
+/// Examples:
+///
+/// walpha pores zeolite.cif --probe 1.2
+///
+/// walpha pores foam.csv --periodic 20,20,20
+///
+/// walpha pores mof.xyz --radii none --json
+#[derive(Args)]
+pub(crate) struct Pores {
+    /// The radius of a sphere, in the unit of the points: 1.2 for an atom of helium or 1.86 for a molecule of nitrogen in Å.
+    #[arg(long, value_name = "R", value_parser = options::not_negative)]
+    probe: Option<f64>,
+    // What `input` refuses comes after it, as what comes before is no longer there when it looks.
+    #[command(flatten)]
+    input: InputArgs,
+    #[command(flatten)]
+    weights: Declared<WithAlpha>,
+    #[command(flatten)]
+    periodic: Declared<Periodic>,
+}
+
+impl Pores {
+    pub(crate) fn run(self, global: Global) -> Result<()> {
+        let input = &self.input;
+        let recipe = input.recipe()?;
+        let periodic = recipe.periodic.unwrap_or(PeriodicBox::Stated);
+        let recipe = recipe.periodic(periodic);
+        let mut progress = Progress::new(global);
+        let read = pipeline::read(input, &recipe, &mut progress)?;
+        pipeline::accept(&read, input)?;
+        let Input::Points(points, metadata) = read else {
+            fail_usage!("{} holds a volume, and pores are between points", name(&input.input) => "give a crystal, or a table of points");
+        };
+        let molecule = points.molecule.clone();
+        let alpha = match recipe.alpha {
+            AlphaRule::Given(alpha) => alpha,
+            AlphaRule::Default => Alpha::ZERO,
+            _ => {
+                fail_usage!("--alpha finds α for a shape, and here it is the squared radius of all balls" => "give a number, or omit it")
+            }
+        };
+        // α is settled, so nothing looks for it.
+        let recipe = recipe.alpha(AlphaRule::Given(alpha));
+        let weigh = || recipe.weigh(Input::Points(points, metadata), Values::Written);
+        let (weighed, _) = progress.watch(weigh)?;
+        let Origin { coordinates, torus, folded, .. } = weighed.origin;
+        let torus = torus.expect("the box was asked for");
+        let balls = Balls::of(weighed.points, alpha, torus)?;
+        let frame = progress.watch(|| {
+            Stage::Filtration.begin()?;
+            balls.filtration(0.0)
+        })?;
+        let ordered = progress.stage(Stage::Order, || frame.filtration.simplices())?;
+        let found = ordered.pores().expect("a filtration of a torus");
+        let sphere = |sphere: &PoreSphere| Sphere::of(sphere, &balls, &frame.filtration);
+        let probe =
+            self.probe.map(|radius| progress.stage(Stage::Measure, || Probe::of(radius, &balls)));
+        let summary = PoresSummary {
+            schema_version: SCHEMA_VERSION,
+            input: input.input.to_string(),
+            molecule: molecule.map(|molecule| molecule.summary().with_names(option)),
+            points: balls.radii.len(),
+            folded,
+            coordinates,
+            box_volume: torus.volume(),
+            vectors: torus.vectors(),
+            radii: balls.range(),
+            power_distance: balls.common.is_none(),
+            pores: Spheres {
+                included: sphere(&found.included),
+                free: sphere(&found.free),
+                free_along: found.free_along.each_ref().map(sphere),
+                included_along_free: sphere(&found.included_along_free),
+            },
+            probe: probe.transpose()?,
+            seconds: progress.finish().into_iter().collect(),
+        };
+        print_summary(global, &summary)
+    }
+}
+
+/// The balls of a box.
+struct Balls {
+    positions: Vec<[f64; 3]>,
+    radii: Vec<f64>,
+    /// The radius of all of them, if they have the same.
+    common: Option<f64>,
+    torus: Torus,
+}
+
+/// A filtration, and the α at which its balls are those that were asked for.
+struct Frame {
+    filtration: Filtration,
+    alpha: Alpha,
+}
+
+impl Balls {
+    fn of(points: WeightedPoints, alpha: Alpha, torus: Torus) -> Result<Self> {
+        let (positions, weights, _) = points.into_parts();
+        let mut radii = Vec::with_capacity(weights.len());
+        for (row, weight) in weights.iter().enumerate() {
+            let squared = alpha.squared() + weight;
+            if squared < 0.0 {
+                return Err(
+                    command_error!("point {row} has a negative squared radius, {squared}" => "give weights that are squares of radii, or a larger --alpha"),
+                );
+            }
+            radii.push(squared.sqrt());
+        }
+        let first = radii.first().copied();
+        let common = first.filter(|first| radii.iter().all(|radius| radius == first));
+        Ok(Self { positions, radii, common, torus })
+    }
+
+    /// The smallest and the largest radius.
+    fn range(&self) -> [f64; 2] {
+        let of = |choose: fn(f64, f64) -> f64| self.radii.iter().copied().reduce(choose);
+        [of(f64::min), of(f64::max)].map(Option::unwrap_or_default)
+    }
+
+    /// The filtration whose balls, at its α, have radii larger by a probe's. Of balls of one radius it is the one without weights, in which nothing
+    /// is rounded.
+    fn filtration(&self, probe: f64) -> Result<Frame> {
+        let (weights, alpha) = match self.common {
+            Some(radius) => (vec![0.0; self.radii.len()], (radius + probe).powi(2)),
+            None => (self.radii.iter().map(|radius| (radius + probe).powi(2)).collect(), 0.0),
+        };
+        let points = WeightedPoints::new(self.positions.clone(), weights);
+        let points = points.expect("a weight for each point");
+        let filtration = Filtration::on(Some(self.torus), points)?;
+        Ok(Frame { filtration, alpha: Alpha::from_squared(alpha)? })
+    }
+}
+
+#[derive(Serialize)]
+struct PoresSummary {
+    schema_version: u32,
+    input: String,
+    /// The atoms, in words; null unless INPUT is a molecule.
+    molecule: Option<String>,
+    points: usize,
+    /// Points outside the periodic box that were moved into it.
+    folded: Option<usize>,
+    /// The unit of lengths.
+    coordinates: Coordinates,
+    box_volume: f64,
+    /// The vectors of the box, reduced, as rows.
+    vectors: [[f64; 3]; 3],
+    /// The smallest and the largest radius.
+    radii: [f64; 2],
+    /// Whether radii differ, so that spheres are those of the power distance: they fit, and larger ones may fit elsewhere.
+    power_distance: bool,
+    pores: Spheres,
+    probe: Option<Probe>,
+    seconds: BTreeMap<&'static str, f64>,
+}
+
+#[derive(Clone, Copy, Serialize)]
+struct Spheres {
+    /// The largest.
+    included: Sphere,
+    /// The largest that can move to another copy of its place: the narrowest place on its way.
+    free: Sphere,
+    /// The same along each vector of the box.
+    free_along: [Sphere; 3],
+    /// The largest on the way of the free one.
+    included_along_free: Sphere,
+}
+
+/// A sphere that touches balls.
+#[derive(Clone, Copy, Serialize)]
+struct Sphere {
+    /// Negative where the balls leave no way.
+    diameter: f64,
+    center: [f64; 3],
+}
+
+impl Sphere {
+    fn of(sphere: &PoreSphere, balls: &Balls, filtration: &Filtration) -> Self {
+        let weights = filtration.points().weights();
+        let free = |&v: &u32| {
+            (sphere.alpha + weights[v as usize]).max(0.0).sqrt() - balls.radii[v as usize]
+        };
+        let radius = sphere.points.iter().map(free).fold(f64::INFINITY, f64::min);
+        Self { diameter: 2.0 * radius, center: sphere.center }
+    }
+}
+
+#[derive(Serialize)]
+struct Probe {
+    radius: f64,
+    /// In how many independent directions each channel winds round the box.
+    channels: Vec<usize>,
+    /// Parts of the pores without a way out.
+    pockets: usize,
+    /// The share of the box in which the centre of the probe can be, of channels and pockets together.
+    void_fraction: f64,
+    void_fraction_bound: f64,
+}
+
+impl Probe {
+    fn of(radius: f64, balls: &Balls) -> Result<Self> {
+        let Frame { filtration, alpha } = balls.filtration(radius)?;
+        let parts = filtration.pore_parts(alpha)?.expect("a filtration of a torus");
+        let shape = filtration.shape(alpha);
+        let union = BallUnion::new(&shape)?;
+        let filled = union.box_fraction().expect("a shape of a torus");
+        let dimensions = parts.iter().map(|part| part.dimension);
+        Ok(Self {
+            radius,
+            channels: dimensions.clone().filter(|&dimension| dimension > 0).collect(),
+            pockets: dimensions.filter(|&dimension| dimension == 0).count(),
+            void_fraction: 1.0 - filled.value,
+            void_fraction_bound: filled.bound + f64::EPSILON,
+        })
+    }
+}
+
+impl Display for PoresSummary {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let unit = self.coordinates.unit.symbol();
+        writeln!(f, "input     {}", name(&self.input))?;
+        if let Some(molecule) = &self.molecule {
+            writeln!(f, "molecule  {molecule}")?;
+        }
+        let points = counted(self.points as u64, "ball");
+        writeln!(f, "balls     {points}{}", MovedIntoBox(self.folded))?;
+        let [least, most] = self.radii.map(rounded);
+        if self.power_distance {
+            writeln!(
+                f,
+                "radii     {least} to {most} {unit}, so spheres are those of the power distance: they fit, and larger ones may fit elsewhere"
+            )?;
+        } else {
+            writeln!(f, "radii     {least} {unit}")?;
+        }
+        writeln!(f, "box       {} {unit}³; spheres by diameter:", rounded(self.box_volume))?;
+        let Spheres { included, free, free_along, included_along_free } = self.pores;
+        let at = included.center.map(rounded).join(", ");
+        writeln!(f, "included  {}, at {at}", included.words(unit))?;
+        let [a, b, c] = free_along.map(|sphere| sphere.words(unit));
+        writeln!(f, "free      {}; along a {a}, b {b}, c {c}", free.words(unit))?;
+        writeln!(
+            f,
+            "on way    {}: the largest where the free one passes",
+            included_along_free.words(unit)
+        )?;
+        if let Some(Probe { radius, channels, pockets, void_fraction, .. }) = &self.probe {
+            let dimensions: Vec<String> =
+                channels.iter().map(|dimension| format!("{dimension}-dimensional")).collect();
+            let channels = match dimensions.len() {
+                0 => "no channel".to_owned(),
+                count => {
+                    format!("{} ({})", counted(count as u64, "channel"), dimensions.join(", "))
+                }
+            };
+            let (radius, share) = (rounded(*radius), rounded(100.0 * void_fraction));
+            let pockets = counted(*pockets as u64, "pocket");
+            writeln!(
+                f,
+                "probe     radius {radius} {unit}: {channels}, {pockets} without a way out; its centre can be in {share} % of the box"
+            )?;
+        }
+        ending(
+            f,
+            &[],
+            &["read", "points", "filtration", "order", "measure", "total"],
+            &self.seconds,
+        )
+    }
+}
+
+impl Sphere {
+    /// Its diameter.
+    fn words(&self, unit: &str) -> String {
+        if self.diameter > 0.0 {
+            format!("{} {unit}", rounded(self.diameter))
+        } else {
+            "none".into()
+        }
+    }
+}
