@@ -188,7 +188,7 @@ pub(crate) fn accept(input: &Input, args: &InputArgs) -> Result<()> {
             args.typed.refuse(&options::of_volumes(), what)?;
             // A part of a molecule is read unless options ask for more.
             if let Some(molecule) = points.molecule.as_ref().filter(|molecule| molecule.is_part()) {
-                tracing::warn!("{}", molecule.summary().with_names(option));
+                tracing::info!("{}", molecule.summary().with_names(option));
             }
             Ok(())
         }

@@ -17,6 +17,8 @@ use crate::{Frame, Volume, VolumeError};
 
 /// The existing samples, as a user writes them.
 pub const SAMPLES: [&str; 4] = ["sample:ct", "sample:skull", "sample:phantom", "sample:phantom@N"];
+/// The samples that are points, which the readers of points know.
+const POINT_SAMPLES: [&str; 2] = ["sample:peptide", "sample:tile"];
 /// The number of samples along each axis of the phantom, unless `@N` says otherwise: as many as the skull has.
 const PHANTOM_SIZE: u64 = 64;
 
@@ -43,7 +45,8 @@ pub fn sample(name: &str) -> Result<Volume, VolumeError> {
             }
         }
         _ => {
-            let meant = nearest(name, SAMPLES).map(|near| format!("did you mean {near}?"));
+            let known = SAMPLES.into_iter().chain(POINT_SAMPLES);
+            let meant = nearest(name, known).map(|near| format!("did you mean {near}?"));
             let advice = meant.map_or("name one of these, or a file".into(), Advice::from);
             Err(unknown(name, advice))
         }
@@ -51,7 +54,8 @@ pub fn sample(name: &str) -> Result<Volume, VolumeError> {
 }
 
 fn unknown(name: &str, advice: Advice) -> VolumeError {
-    VolumeError::UnknownSample { name: name.into(), known: SAMPLES.join(", "), advice }
+    let known: Vec<&str> = SAMPLES.into_iter().chain(POINT_SAMPLES).collect();
+    VolumeError::UnknownSample { name: name.into(), known: known.join(", "), advice }
 }
 
 #[cfg(test)]
@@ -65,6 +69,7 @@ mod tests {
         for name in ["sample:skul", "sample:phantom@", "sample:phantom@-3", "phantom"] {
             let text = sample(name).unwrap_err().to_string();
             assert!(text.contains(name) && text.contains("sample:phantom@N"), "{text}");
+            assert!(text.contains("sample:peptide") && text.contains("sample:tile"), "{text}");
         }
         let advice = sample("sample:skul").unwrap_err().advice().unwrap().to_string();
         assert_eq!(advice, "did you mean sample:skull?");
