@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicPtr, AtomicUsize, Ordering};
 use std::thread;
 use std::time::Duration;
 
-use crate::call::Call;
+use crate::workers::starve;
 
 /// The system's allocator, with patience.
 ///
@@ -101,7 +101,7 @@ fn patiently(ask: impl Fn() -> *mut u8) -> *mut u8 {
 /// Asks until there is memory; not for what may be refused, nor in threads of others. Allocates nothing.
 #[cold]
 fn wait(ask: &dyn Fn() -> *mut u8) -> *mut u8 {
-    if walpha::is_asking() || !Call::starve() {
+    if walpha::is_asking() || !starve() {
         return ptr::null_mut();
     }
     let mut pauses = 0;
