@@ -16,7 +16,11 @@ def threads():
     "The threads of calls, and what each has for a name."
     found = {}
     for task in pathlib.Path("/proc/self/task").iterdir():
-        name = (task / "comm").read_text().strip()
+        try:
+            name = (task / "comm").read_text().strip()
+        except OSError:
+            # It has ended.
+            continue
         if name.startswith("walpha"):
             found[task.name] = name
     return found
