@@ -15,7 +15,7 @@ use crate::workers::starve;
 /// it may wait. So the call's [`Reserve`] is given up, and a thread that works for the call waits here until there is memory
 /// again, while the call raises `MemoryError` ([`crate::work::run`]). The call's other threads stop, which frees their memory, as
 /// does everything that the caller gives up. Then this thread continues to the point where it learns that its work is no longer
-/// needed.
+/// needed. Only then do its threads work for another call ([`crate::workers`]).
 struct Patient;
 
 #[global_allocator]
@@ -26,7 +26,7 @@ const PAUSE: Duration = Duration::from_millis(20);
 /// After how many pauses a thread no longer lets those that start go first: one of them may wait for it.
 const PATIENCE: usize = 250;
 
-/// The number of calls that are starting their threads.
+/// The number of calls that are starting threads.
 static STARTING: AtomicUsize = AtomicUsize::new(0);
 
 /// Starts threads, and meanwhile leaves all memory to them. A thread that starts takes memory for what is its own, and where there is none,

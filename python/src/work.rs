@@ -25,11 +25,11 @@ const GRACE: Duration = Duration::from_secs(2);
 pub struct Task<'py>(Option<NonZeroUsize>, Option<Bound<'py, PyAny>>);
 
 impl Task<'_> {
-    /// The task with one thread, unless another number was asked for, if it works on so few points that more threads would take
-    /// longer to start than the work.
+    /// The task with one thread, unless another number was asked for, if it works on so few points that more threads would not
+    /// shorten it.
     #[must_use]
     pub fn of(self, points: usize) -> Self {
-        /// They take some milliseconds.
+        /// As measured with a filtration.
         const FEW: usize = 2000;
         let Self(threads, progress) = self;
         Self(threads.or_else(|| (points <= FEW).then_some(NonZeroUsize::MIN)), progress)

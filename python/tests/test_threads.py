@@ -154,18 +154,3 @@ expected = shape(points[:3000])
 with multiprocessing.get_context("fork").Pool(2) as pool:
     assert pool.map(shape, [points[:3000]] * 8) == [expected] * 8
 """)
-
-
-@pytest.mark.parametrize("engine", ["native", "cgal"])
-def test_the_end_of_a_process_with_cancelled_work(engine):
-    run("""
-big = np.random.default_rng(1).random((300_000, 3))
-
-def wrong(stage, done, total):
-    raise LookupError
-
-try:
-    shape(big, engine=sys.argv[1], progress=wrong)
-except LookupError:
-    print("ended")
-""", engine)
