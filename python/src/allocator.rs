@@ -47,10 +47,11 @@ pub struct Reserve(AtomicPtr<u8>);
 const RESERVE: Layout = Layout::new::<[u8; 8 << 20]>();
 
 impl Reserve {
-    /// Keeps memory, if there is any.
-    pub fn new() -> Self {
+    /// Keeps memory; `None` if there is not enough.
+    pub fn new() -> Option<Self> {
         // SAFETY: the layout is not empty.
-        Self(AtomicPtr::new(unsafe { System.alloc(RESERVE) }))
+        let block = unsafe { System.alloc(RESERVE) };
+        (!block.is_null()).then_some(Self(AtomicPtr::new(block)))
     }
 
     /// Gives it back; the second call has no effect.

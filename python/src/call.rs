@@ -31,11 +31,12 @@ pub struct Step {
 }
 
 impl Call {
-    /// A call that nothing was heard of. It keeps memory for its end, should it run out.
-    pub fn new() -> Self {
+    /// A call that nothing was heard of. It keeps memory for its end, should it run out; `None` if there is not even that.
+    pub fn new() -> Option<Self> {
+        let reserve = Reserve::new()?;
         let steps = Arc::<Steps>::default();
         let monitor = Monitor::new(Heard(Arc::clone(&steps)));
-        Self { steps, monitor, starved: AtomicBool::new(false), reserve: Reserve::new() }
+        Some(Self { steps, monitor, starved: AtomicBool::new(false), reserve })
     }
 
     /// The monitor of the work.

@@ -51,7 +51,7 @@ where
     E: Advise + Send + 'static,
 {
     let workers = Workers::take(*threads)?;
-    let call = Arc::new(Call::new());
+    let call = Call::new().map(Arc::new).ok_or_else(no_memory_to_begin)?;
     let monitor = call.monitor().clone();
     let wanted = Wanted(call);
     let (sender, mut receiver) = sync_channel(1);
@@ -88,6 +88,11 @@ where
             Err(RecvTimeoutError::Disconnected) => unreachable!("an outcome is always sent"),
         }
     }
+}
+
+/// Memory has run out before the work began.
+fn no_memory_to_begin() -> PyErr {
+    PyMemoryError::new_err("not enough memory to begin the work; give it more")
 }
 
 /// Memory ran out where no estimate had foreseen it. What the work holds comes free when it ends, which it may have to
