@@ -18,8 +18,12 @@ class Renewed {
 
   ~Renewed() {
     if (std::uncaught_exceptions() > before_) {
-      kept_.~T();
-      new (&kept_) T();
+      // GCC 12 leaves out some of the constructor where it is inlined here.
+      void (*volatile renew)(T &) = [](T &kept) {
+        kept.~T();
+        new (&kept) T();
+      };
+      renew(kept_);
     }
   }
 
