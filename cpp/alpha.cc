@@ -3,6 +3,8 @@
 #include <cmath>
 #include <limits>
 
+#include "walpha/cpp/kernel.h"
+
 #include <CGAL/Alpha_shape_3.h>
 #include <CGAL/Alpha_shape_cell_base_3.h>
 #include <CGAL/Alpha_shape_vertex_base_3.h>
@@ -13,7 +15,6 @@
 
 #include "walpha/cpp/bridge.h"
 #include "walpha/cpp/copy.h"
-#include "walpha/cpp/kernel.h"
 #include "walpha/cpp/nearest.h"
 
 namespace walpha {

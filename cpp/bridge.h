@@ -33,4 +33,8 @@ namespace walpha {
 // Makes a failed CGAL check throw without writing to the terminal: the caller prints it.
 void throw_quietly();
 
+// Allocates what C++ and MPFR keep for each thread: when they first need it, as while an exception is thrown for want of memory,
+// there may be none, and the C library would end the process.
+void prepare_thread() noexcept;
+
 }  // namespace walpha

@@ -3,11 +3,12 @@
 #include <array>
 #include <map>
 
+#include "walpha/cpp/kernel.h"
+
 #include <CGAL/Periodic_3_regular_triangulation_3.h>
 #include <CGAL/Periodic_3_regular_triangulation_traits_3.h>
 
 #include "walpha/cpp/bridge.h"
-#include "walpha/cpp/kernel.h"
 
 namespace walpha {
 namespace {

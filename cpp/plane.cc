@@ -9,6 +9,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "walpha/cpp/kernel.h"
+
 #include <CGAL/Exact_predicates_exact_constructions_kernel.h>
 #include <CGAL/Regular_triangulation_2.h>
 #include <CGAL/Regular_triangulation_face_base_2.h>
@@ -16,7 +18,6 @@
 #include <CGAL/Triangulation_vertex_base_with_info_2.h>
 
 #include "walpha/cpp/bridge.h"
-#include "walpha/cpp/kernel.h"
 
 namespace walpha {
 namespace {

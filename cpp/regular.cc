@@ -2,6 +2,8 @@
 
 #include <limits>
 
+#include "walpha/cpp/kernel.h"
+
 #include <CGAL/Regular_triangulation_3.h>
 #include <CGAL/Regular_triangulation_cell_base_3.h>
 #include <CGAL/Regular_triangulation_vertex_base_3.h>
@@ -9,7 +11,6 @@
 #include <CGAL/Triangulation_vertex_base_with_info_3.h>
 
 #include "walpha/cpp/bridge.h"
-#include "walpha/cpp/kernel.h"
 
 namespace walpha {
 namespace {

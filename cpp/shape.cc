@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "walpha/cpp/kernel.h"
+
 #include <CGAL/Fixed_alpha_shape_3.h>
 #include <CGAL/Fixed_alpha_shape_cell_base_3.h>
 #include <CGAL/Fixed_alpha_shape_vertex_base_3.h>
@@ -16,7 +18,6 @@
 #include "walpha/cpp/bridge.h"
 #include "walpha/cpp/classes.h"
 #include "walpha/cpp/copy.h"
-#include "walpha/cpp/kernel.h"
 #include "walpha/cpp/points.h"
 
 namespace walpha {

@@ -91,4 +91,4 @@ pub use shape::{
 pub use volume::{
     Coordinates, Dims, Frame, Gray, GrayRange, LengthUnit, Space, Volume, VolumeError,
 };
-pub use walpha_base::memory::{NoMemory, is_asking};
+pub use walpha_base::memory::{NoMemory, is_asking, try_with_capacity};

@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicPtr, AtomicUsize, Ordering};
 use std::thread;
 use std::time::Duration;
 
-use crate::call::Call;
+use crate::workers::starve;
 
 /// The system's allocator, with patience.
 ///
@@ -15,7 +15,7 @@ use crate::call::Call;
 /// it may wait. So the call's [`Reserve`] is given up, and a thread that works for the call waits here until there is memory
 /// again, while the call raises `MemoryError` ([`crate::work::run`]). The call's other threads stop, which frees their memory, as
 /// does everything that the caller gives up. Then this thread continues to the point where it learns that its work is no longer
-/// needed.
+/// needed. Only then do its threads work for another call ([`crate::workers`]).
 struct Patient;
 
 #[global_allocator]
@@ -26,7 +26,7 @@ const PAUSE: Duration = Duration::from_millis(20);
 /// After how many pauses a thread no longer lets those that start go first: one of them may wait for it.
 const PATIENCE: usize = 250;
 
-/// The number of calls that are starting their threads.
+/// The number of calls that are starting threads.
 static STARTING: AtomicUsize = AtomicUsize::new(0);
 
 /// Starts threads, and meanwhile leaves all memory to them. A thread that starts takes memory for what is its own, and where there is none,
@@ -47,10 +47,11 @@ pub struct Reserve(AtomicPtr<u8>);
 const RESERVE: Layout = Layout::new::<[u8; 8 << 20]>();
 
 impl Reserve {
-    /// Keeps memory, if there is any.
-    pub fn new() -> Self {
+    /// Keeps memory; `None` if there is not enough.
+    pub fn new() -> Option<Self> {
         // SAFETY: the layout is not empty.
-        Self(AtomicPtr::new(unsafe { System.alloc(RESERVE) }))
+        let block = unsafe { System.alloc(RESERVE) };
+        (!block.is_null()).then_some(Self(AtomicPtr::new(block)))
     }
 
     /// Gives it back; the second call has no effect.
@@ -101,7 +102,7 @@ fn patiently(ask: impl Fn() -> *mut u8) -> *mut u8 {
 /// Asks until there is memory; not for what may be refused, nor in threads of others. Allocates nothing.
 #[cold]
 fn wait(ask: &dyn Fn() -> *mut u8) -> *mut u8 {
-    if walpha::is_asking() || !Call::starve() {
+    if walpha::is_asking() || !starve() {
         return ptr::null_mut();
     }
     let mut pauses = 0;

@@ -1,17 +1,11 @@
 //! A call from Python: its progress, and whether its result is still needed.
 
-use std::cell::RefCell;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use walpha::progress::{Listener, Monitor};
 
 use crate::allocator::Reserve;
-
-thread_local! {
-    /// The call that this thread works for, which the allocator ends where memory runs out.
-    static CALL: RefCell<Option<Arc<Call>>> = const { RefCell::new(None) };
-}
 
 /// The progress of a call from Python, and whether its result is still needed.
 #[derive(Debug)]
@@ -19,7 +13,7 @@ pub struct Call {
     steps: Arc<Steps>,
     monitor: Monitor,
     starved: AtomicBool,
-    reserve: OnceLock<Reserve>,
+    reserve: Reserve,
 }
 
 /// The reports that Python does not know of yet.
@@ -37,11 +31,12 @@ pub struct Step {
 }
 
 impl Call {
-    /// A call that nothing was heard of.
-    pub fn new() -> Self {
+    /// A call that nothing was heard of. It keeps memory for its end, should it run out; `None` if there is not even that.
+    pub fn new() -> Option<Self> {
+        let reserve = Reserve::new()?;
         let steps = Arc::<Steps>::default();
         let monitor = Monitor::new(Heard(Arc::clone(&steps)));
-        Self { steps, monitor, starved: AtomicBool::new(false), reserve: OnceLock::new() }
+        Some(Self { steps, monitor, starved: AtomicBool::new(false), reserve })
     }
 
     /// The monitor of the work.
@@ -49,35 +44,16 @@ impl Call {
         &self.monitor
     }
 
-    /// Keeps memory for the end of the call, should it run out.
-    pub fn reserve(&self) {
-        self.reserve.get_or_init(Reserve::new);
-    }
-
-    /// Makes this thread work for this call.
-    pub fn enter(self: Arc<Self>) {
-        CALL.set(Some(self));
-    }
-
     /// Ends the work the next time it asks.
     pub fn stop(&self) {
         self.monitor.cancel();
     }
 
-    /// Says that memory has run out for the call that this thread works for, if there is one, and ends it. Allocates
-    /// nothing.
-    pub fn starve() -> bool {
-        let starve = |call: &RefCell<Option<Arc<Self>>>| {
-            let call = call.try_borrow().ok()?;
-            let call = call.as_ref()?;
-            call.starved.store(true, Ordering::Relaxed);
-            call.stop();
-            if let Some(reserve) = call.reserve.get() {
-                reserve.give_up();
-            }
-            Some(())
-        };
-        CALL.try_with(starve).is_ok_and(|starved| starved.is_some())
+    /// Says that memory has run out, and ends the work. Allocates nothing.
+    pub fn starve(&self) {
+        self.starved.store(true, Ordering::Relaxed);
+        self.stop();
+        self.reserve.give_up();
     }
 
     /// Whether memory has run out.

@@ -12,7 +12,7 @@ use walpha::check::schema::BoxVectors;
 use walpha::ladder::{self, Ordered};
 use walpha::progress::Stage;
 use walpha::shape::ShapeError;
-use walpha::{Alpha, WeightedPoints};
+use walpha::{Alpha, NoMemory, WeightedPoints, try_with_capacity};
 
 use crate::arrays::{column, lend, numbers};
 use crate::errors::{told, wrong};
@@ -228,20 +228,22 @@ pub struct Simplices {
 struct Entries {
     /// The α from which on each simplex is present, on the boundary of another, and inside: one row for each.
     intervals: Vec<[f64; 3]>,
-    ranks: Vec<u32>,
-    gabriel: Vec<bool>,
+    /// The rank of each simplex, and whether it is a Gabriel simplex.
+    kinds: Vec<(u32, bool)>,
 }
 
 impl Entries {
-    fn of(ordered: &Ordered<'_>) -> Self {
+    fn of(ordered: &Ordered<'_>) -> Result<Self, NoMemory> {
         let entry = |number: u32| {
             let ladder::Entry { value, rank, gabriel, regular, interior, .. } =
                 ordered.simplex(number);
             ([value, regular, interior], (rank, gabriel))
         };
+        let mut intervals = try_with_capacity(ordered.len(), || "intervals of simplices".into())?;
+        let mut kinds = try_with_capacity(ordered.len(), || "ranks of simplices".into())?;
         let entries = (0..ordered.len() as u32).into_par_iter().map(entry);
-        let (intervals, (ranks, gabriel)) = entries.unzip();
-        Self { intervals, ranks, gabriel }
+        entries.unzip_into_vecs(&mut intervals, &mut kinds);
+        Ok(Self { intervals, kinds })
     }
 }
 
@@ -254,7 +256,7 @@ impl Simplices {
         if let Some(entries) = self.entries.get() {
             return Ok(entries);
         }
-        let entries = self.work(py, |ordered| Ok(Entries::of(ordered)))?;
+        let entries = self.work(py, |ordered| Ok(Entries::of(ordered)?))?;
         Ok(self.entries.get_or_init(|| entries))
     }
 
@@ -323,12 +325,12 @@ impl Simplices {
 
     #[getter]
     fn ranks<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<u32>>> {
-        column(py, self.entries(py)?.ranks.iter().copied())
+        column(py, self.entries(py)?.kinds.iter().map(|&(rank, _)| rank))
     }
 
     #[getter]
     fn gabriel<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<bool>>> {
-        column(py, self.entries(py)?.gabriel.iter().copied())
+        column(py, self.entries(py)?.kinds.iter().map(|&(_, gabriel)| gabriel))
     }
 
     #[getter]

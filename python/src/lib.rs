@@ -14,6 +14,7 @@ mod shape;
 mod triangulation;
 mod volume;
 mod work;
+mod workers;
 
 /// The module.
 ///

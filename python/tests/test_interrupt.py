@@ -1,4 +1,3 @@
-import pathlib
 import signal
 import subprocess
 import sys
@@ -101,25 +100,6 @@ def test_calls_at_the_same_time_have_progress_of_their_own():
 
     with ThreadPoolExecutor(2) as pool:
         assert list(pool.map(work, ["shape", "filtration"])) == [{"points", "shape"}, {"filtration"}]
-
-
-@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="needs /proc")
-@pytest.mark.parametrize("threads", [1, 2, 3])
-def test_as_many_threads_as_asked_for(threads):
-    points = np.random.default_rng(0).random((60_000, 3))
-    seen = set()
-
-    def progress(stage, done, total):
-        for name in pathlib.Path("/proc/self/task").glob("*/comm"):
-            try:
-                text = name.read_text().strip()
-            except OSError:
-                continue
-            if text.startswith("walpha "):
-                seen.add(text)
-
-    walpha.alpha_shape(points, 1e-3, engine="native", threads=threads, progress=progress)
-    assert seen == {f"walpha {k}" for k in range(threads)}
 
 
 def test_progress_on_standard_error(cloud, capsys):

@@ -32,12 +32,7 @@ print(len(walpha.alpha_shape(corner, alpha=9).cells), "cell")
 def limited(megabytes, given, asked):
     """What came of it in a process with so many more MB of address space."""
     command = [sys.executable, "-c", LIMITED, str(megabytes), given, asked]
-    # Threads of a call that ends may take what was found for one that starts, and the C library ends the process then. That is
-    # known and happens now and then (about one process in six of the hardest case); it must not be the rule.
-    for _ in range(4):
-        ran = subprocess.run(command, capture_output=True, text=True, timeout=300)
-        if "cannot allocate memory for thread-local data" not in ran.stderr:
-            break
+    ran = subprocess.run(command, capture_output=True, text=True, timeout=300)
     assert ran.returncode == 0, f"{asked} with {megabytes} MB: {ran.stderr}"
     told, after = ran.stdout.splitlines()
     assert after == "1 cell"
@@ -63,9 +58,8 @@ CLOUD = "points = np.random.default_rng(0).random((100_000, 3))"
 )
 def test_too_little_memory(given, asked):
     told = [limited(megabytes, given, asked).split(":")[0] for megabytes in (5, 30, 60, 120, 250, 3000)]
-    # A little more memory may be enough, and less is not again.
-    assert told == sorted(told), told
-    assert told[-1] == "done", told
+    # How much of what a process holds is free differs from run to run, so less may be enough where more was not.
+    assert set(told) <= {"done", "MemoryError"} and told[-1] == "done", told
 
 
 @pytest.mark.parametrize("megabytes", [30, 75, 120, 150, 200, 250])
@@ -89,6 +83,29 @@ def call_after_call():
             pass
 """
     assert limited(megabytes, given, "call_after_call()") == "done"
+
+
+def test_cgal_after_cgal_ran_out_of_memory(monkeypatch):
+    """What CGAL keeps for a thread is not left half changed, wherever it ran out of memory."""
+    # Else threads grow within addresses that the GNU C library reserved for them before the limit.
+    monkeypatch.setenv("MALLOC_ARENA_MAX", "1")
+    given = """
+cloud = np.random.default_rng(0).random((16_000, 3))
+def again_and_again():
+    for count in range(4_000, 16_000, 1_000):
+        points = cloud[:count]
+        held = int(open("/proc/self/statm").read().split()[0]) * resource.getpagesize()
+        # The reserve of a call, and less than it needs.
+        resource.setrlimit(resource.RLIMIT_AS, (held + (9 << 20), hard))
+        try:
+            walpha.alpha_shape(points, alpha=1e-3, engine="cgal", threads=1)
+        except MemoryError:
+            pass
+        resource.setrlimit(resource.RLIMIT_AS, (soft, hard))
+        shape = walpha.alpha_shape(points, alpha=1e-3, engine="cgal", threads=1)
+        assert np.array_equal(shape.cells, walpha.alpha_shape(points, alpha=1e-3, engine="native").cells)
+"""
+    assert limited(3000, given, "again_and_again()") == "done"
 
 
 @pytest.mark.parametrize(
@@ -143,23 +160,21 @@ def tiff(side):
 
 @pytest.mark.parametrize("name, content", [("slices/1.png", png(16000)), ("bomb.tif", tiff(16000))], ids=["png", "tiff"])
 def test_pictures_larger_than_memory(tmp_path, name, content):
-    """Again and again: what was refused leaves neither a thread nor memory behind, so that the last work is done as the first."""
+    """Again and again: what was refused leaves no memory behind and its threads to the next, so that the last work is done as the first."""
     path = tmp_path / name
     path.parent.mkdir(exist_ok=True)
     path.write_bytes(content)
     given = f"""
-import os, time
+import os
 def read(path):
-    # Threads of a call end beside Python.
-    time.sleep(0.5)
-    before = len(os.listdir("/proc/self/task"))
+    threads = []
     for _ in range(6):
         try:
             walpha.read(path)
         except MemoryError as error:
             last = error
-    time.sleep(0.5)
-    assert len(os.listdir("/proc/self/task")) == before
+        threads.append(set(os.listdir("/proc/self/task")))
+    assert threads == threads[:1] * 6
     raise last
 path = {str(path if path.suffix == ".tif" else path.parent)!r}
 """

@@ -19,6 +19,7 @@ pub(super) mod bridge {
         fn edge_classes(self: &Complex) -> &[u8];
         fn vertex_classes(self: &Complex) -> &[u8];
 
+        fn prepare_thread();
         fn shape(positions: &[f64], weights: &[f64], alpha: f64) -> Result<UniquePtr<Complex>>;
     }
 }

@@ -79,6 +79,12 @@ use walpha_regular::SitesError;
 use walpha_regular::internals::Sites;
 use walpha_shape::CgalError;
 
+/// Allocates what C++ keeps for the calling thread. Otherwise that is done when it is first needed, and where there is no memory then,
+/// the C library ends the process. For threads of programs that must not end.
+pub fn prepare_thread() {
+    ffi::bridge::prepare_thread();
+}
+
 /// Converts an exception that C++ threw in a stage.
 fn thrown(stage: &'static str) -> impl Fn(cxx::Exception) -> CgalError {
     move |exception| match exception.what() {

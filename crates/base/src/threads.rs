@@ -23,8 +23,14 @@ pub fn processors() -> usize {
 pub fn wanted(asked: Option<usize>) -> usize {
     let stated = || std::env::var("RAYON_NUM_THREADS").ok()?.parse().ok();
     // As in rayon, 0 means no preference.
-    let stated = asked.or_else(stated).filter(|&count| count > 0);
-    stated.unwrap_or_else(processors).min(most())
+    match asked.or_else(stated).filter(|&count| count > 0) {
+        // Never too many. The system takes a tenth of a millisecond to count the processors.
+        Some(count) if count <= MOST_EACH => count,
+        stated => {
+            let processors = processors();
+            stated.unwrap_or(processors).min(MOST_EACH * processors)
+        }
+    }
 }
 
 /// How many of `wanted` threads, with stacks of `stack` bytes, the system can start at once: fewer where processes or memory are

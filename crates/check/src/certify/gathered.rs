@@ -1,6 +1,7 @@
 //! Reorders the points of a claim so that points near each other are also close in memory.
 
 use rayon::prelude::*;
+use walpha_base::memory::afford;
 use walpha_complex::canonical::{smallest_even, sorted};
 
 use super::claim::Claim;
@@ -22,7 +23,7 @@ const PARTS: usize = 1 << 8;
 pub(super) fn gathered(claim: &Claim) -> Option<PlacedComplex> {
     let Placed { positions, complex, .. } = claim.placed;
     let pays = is_scattered(complex.cells.rows(), positions.len());
-    let fits = || Vec::<u8>::new().try_reserve_exact(bytes(complex, positions.len())).is_ok();
+    let fits = || afford(bytes(complex, positions.len()), || "a copy".into()).is_ok();
     (pays && fits()).then(|| renumbered(claim)).flatten()
 }
 

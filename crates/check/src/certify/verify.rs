@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use std::ops::ControlFlow;
 
 use dashu_int::IBig;
+use walpha_base::memory::asking;
 use walpha_base::{Cancelled, Monitor};
 
 use super::certificate::{Certificate, CertifyError, NotJudged, Verdict};
@@ -62,12 +63,23 @@ impl Claim<'_> {
         monitor: &Monitor,
     ) -> Result<(Vec<Finding>, Certificate), CertifyError> {
         let mut all = Vec::new();
+        let mut fits = true;
         let visitor = &mut |finding| {
-            all.push(finding);
-            ControlFlow::Continue(())
+            fits = asking(|| all.try_reserve(1)).is_ok();
+            if fits {
+                all.push(finding);
+                ControlFlow::Continue(())
+            } else {
+                ControlFlow::Break(())
+            }
         };
         let certificate = self.visit_on(torus, visitor, monitor)?;
-        Ok((all, certificate))
+        if fits {
+            Ok((all, certificate))
+        } else {
+            let (cells, bytes) = (self.placed.complex.cells.len(), 2 * size_of_val(&*all));
+            Err(CertifyError::Memory { cells, bytes })
+        }
     }
 
     /// Judges the complex, and passes each finding to `visitor` until it breaks.
@@ -198,7 +210,8 @@ impl Claim<'_> {
 fn afford(complex: &Complex, copies: usize) -> Result<(), CertifyError> {
     let bytes = Structure::bytes(complex) + copies * size_of::<WeightedPoint>();
     let cells = complex.cells.len();
-    Vec::<u8>::new().try_reserve_exact(bytes).map_err(|_| CertifyError::Memory { cells, bytes })
+    asking(|| Vec::<u8>::new().try_reserve_exact(bytes))
+        .map_err(|_| CertifyError::Memory { cells, bytes })
 }
 
 /// Why the remaining rules are not applied.

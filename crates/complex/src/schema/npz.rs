@@ -4,6 +4,7 @@ use std::io::{Read, Seek, SeekFrom};
 
 use rayon::prelude::*;
 use walpha_base::foreign::decode;
+use walpha_base::memory::asking;
 use walpha_base::npy::Header;
 use zip::ZipArchive;
 use zip::read::ZipFile;
@@ -535,10 +536,12 @@ fn decoded<T: Send, const N: usize>(
     }
     let mut rows = Vec::<T>::new();
     let count = count / N as u64;
-    rows.try_reserve_exact(usize::try_from(count).unwrap_or(usize::MAX)).map_err(|_| {
-        let bytes = u128::from(count) * size_of::<T>() as u128;
-        SchemaError::Memory { name, bytes }
-    })?;
+    asking(|| rows.try_reserve_exact(usize::try_from(count).unwrap_or(usize::MAX))).map_err(
+        |_| {
+            let bytes = u128::from(count) * size_of::<T>() as u128;
+            SchemaError::Memory { name, bytes }
+        },
+    )?;
     let batch = |bytes: &[u8]| -> Result<Vec<T>, SchemaError> {
         let mut numbers = Vec::with_capacity(bytes.len() / size);
         decode(bytes, &mut numbers);
