@@ -353,7 +353,7 @@ class Filtration(Frozen):
         return made
 
     def _refuse_copies(self, name: str) -> None:
-        """A simplicial complex is asked for, where vertices do not tell simplices."""
+        """A simplicial complex is asked for, where vertices do not identify simplices."""
         if len(self.copies):
             raise ValueError(
                 f"{name}: in this periodic box several simplices have the same points, so it is no simplicial complex: "

@@ -242,7 +242,7 @@ class AlphaShape(Classified):
     def copies(self) -> Indices:
         """ndarray of int64, (k,): of which points the last k are copies, in a shape laid out, or in a small periodic box.
 
-        In a box in which an edge spans half of a vector or more, vertices do not tell simplices. Rows name copies of points
+        In a box in which an edge spans half of a vector or more, vertices do not identify simplices. Rows name copies of points
         there, which come after all points: ``points[cells]`` are the corners of the cells, and the first vertex of each row is a
         point of the box.
         """

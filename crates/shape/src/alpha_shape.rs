@@ -23,7 +23,7 @@ pub struct AlphaShape {
     pub(super) squared: Option<Vec<f64>>,
     pub(super) complex: Complex,
     /// The points that the last points are copies of, if the shape is that of a torus unwrapped into space, or of a box that is too
-    /// small for vertices to tell simplices.
+    /// small for vertices to identify simplices.
     pub(super) copies: Vec<u32>,
     /// The multiples of the vectors of the box by which each of these copies is moved.
     pub(super) shifts: Vec<Winding>,

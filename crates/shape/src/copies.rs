@@ -33,7 +33,7 @@ impl Copier {
     }
 }
 
-/// The vertices of a simplex of a torus in order, with their shifts; the first shift is 0. It tells the simplex also where its vertices do not.
+/// The vertices of a simplex of a torus in order, with their shifts; the first shift is 0. It identifies the simplex also where its vertices alone do not.
 pub(crate) type Key<const N: usize> = [Copied; N];
 
 /// The vertices in order, moved so that the first shift is 0; and that shift.

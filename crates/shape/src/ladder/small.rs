@@ -1,4 +1,4 @@
-//! The filtration of a box that is too small for its simplices to be told by their vertices: an edge spans half of it or more.
+//! The filtration of a box that is too small for vertices to identify simplices: an edge spans half of it or more.
 //!
 //! It is that of the torus that the box makes, taken from a larger torus, the *cover*: n₁ × n₂ × n₃ copies of the box, in which all edges are
 //! short enough. Moving the cover by a vector of the box maps its triangulation to itself, as ties are broken by differences of
@@ -6,7 +6,7 @@
 //! simplices of the cover fall into classes of n₁n₂n₃ that differ by a translation, and these classes are the simplices of the
 //! box.
 //!
-//! A simplex is told by its vertices with the multiples of the vectors by which each is moved, its *shifts*. Sorted by index and then by shift,
+//! A simplex is identified by its vertices with the multiples of the vectors by which each is moved, its *shifts*. Sorted by index and then by shift,
 //! and moved so that the first shift is 0, it is the same for each member of a class; and as a translation keeps this order,
 //! faces are ordered as in the simplex, and boundaries have the usual signs. (It is a Δ-complex: Hatcher, Algebraic Topology, section 2.1.)
 
