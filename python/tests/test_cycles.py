@@ -67,3 +67,7 @@ def test_what_is_not_a_pair_is_refused():
         filtration.cycle((0, 1))
     with pytest.raises(ValueError, match="dimension=0"):
         filtration.cycles(0)
+    with pytest.raises(ValueError, match="pair="):
+        filtration.cycle([])
+    with pytest.raises(ValueError, match="minimum=-1"):
+        filtration.cycles(1, minimum=-1)

@@ -115,6 +115,8 @@ CALLS = {
         {"alphas": (lambda number: [0.5, 0.75, number], INFINITE)},
     ),
     "Filtration.voids": (walpha.filtration(CLOUD).voids, {"alpha": (itself, INFINITE)}),
+    "Filtration.cycle": (walpha.filtration(CLOUD).cycle, {"pair": (lambda number: [0, number], ())}),
+    "Filtration.cycles": (lambda minimum: walpha.filtration(CLOUD).cycles(1, minimum=minimum), {"minimum": (itself, {INF, 1e308})}),
     "Filtration.derivatives": (walpha.filtration(CLOUD).derivatives, {"simplices": (lambda number: [[0.0, number]], ())}),
     "AlphaShape.at": (
         lambda **given: shape().at(**{"places": CLOUD, **given}),
@@ -269,8 +271,8 @@ CALLS = {
 }  # fmt: skip
 #: What nobody calls: the results of others.
 RESULTS = {
-    "BallSurface", "Chart", "Page", "Picture", "Betti", "BettiCurve", "Boundary", "Bounded", "BoundedArray", "Cavity", "Class", "Comparison", "Component", "Contacts", "Cuts", "Finding", "Gradients", "Level", "Outline", "PointFile", "Polygon",
-    "PowerDiagram", "Selected", "Simplices", "Suggestions", "TorusBetti", "TorusBettiCurve", "Verdict", "Void",
+    "BallSurface", "Chart", "Page", "Picture", "Betti", "BettiCurve", "Boundary", "Bounded", "BoundedArray", "Cavity", "Class", "Comparison", "Component", "Contacts", "Cuts", "Finding", "Gradients", "Level", "LoopCycle", "Outline", "PointFile", "Polygon",
+    "PowerDiagram", "Selected", "Simplices", "Suggestions", "TorusBetti", "TorusBettiCurve", "Verdict", "Void", "VoidCycle",
 }  # fmt: skip
 
 

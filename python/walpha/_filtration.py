@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import functools
 import json
+import operator
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -166,17 +167,20 @@ class Filtration(Frozen):
         Raises
         ------
         ValueError
-            Numbers that are no pair of these dimensions.
+            Numbers that are not a pair of these dimensions.
         """
         simplices = self.simplices()
-        begins, *ends = (int(number) for number in pair)
+        try:
+            begins, *ends = (operator.index(number) for number in pair)
+        except (TypeError, ValueError):
+            raise ValueError(f"pair={pair}: give the numbers of the simplices that begin and end it") from None
         loops, voids = simplices.loop_pairs, simplices.void_pairs
         is_loop = ends in loops[loops[:, 0] == begins, 1:].tolist() or (not ends and begins in simplices.lasting[1])
         if is_loop:
             return self._loops([begins], [ends[0] if ends else None])[0]
         if ends in voids[voids[:, 0] == begins, 1:].tolist():
             return self._voids([begins], ends)[0]
-        raise ValueError(f"{tuple(pair)} is not a pair: give a row of simplices().loop_pairs or simplices().void_pairs")
+        raise ValueError(f"pair={tuple(pair)} is not a pair: give a row of simplices().loop_pairs or simplices().void_pairs")
 
     def cycles(self, dimension: Literal[1, 2], *, minimum: float | None = None) -> list[LoopCycle] | list[VoidCycle]:
         """Cycles that represent persistence pairs, the most persistent first.
@@ -203,6 +207,8 @@ class Filtration(Frozen):
         """
         if dimension not in (1, 2):
             raise ValueError(f"dimension={dimension}: there are cycles of dimensions 1 and 2")
+        if minimum is not None and not minimum >= 0:
+            raise ValueError(f"minimum={minimum}: give a persistence that is not negative")
         simplices = self.simplices()
         pairs = simplices.loop_pairs if dimension == 1 else simplices.void_pairs
         pairs = pairs[simplices.ranks[pairs[:, 0]] != simplices.ranks[pairs[:, 1]]]

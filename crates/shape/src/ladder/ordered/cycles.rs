@@ -5,11 +5,12 @@ use std::collections::{BTreeMap, BinaryHeap, HashMap, HashSet};
 use std::sync::OnceLock;
 
 use walpha_base::Monitor;
-use walpha_base::vector::{add, length, sub};
+use walpha_base::vector::{length, sub};
 
 use super::Ordered;
 use super::loops::{PRIME, Reduced, plus_mod};
 use crate::ShapeError;
+use crate::copies::Copied;
 use crate::ladder::build::Incidence;
 use crate::winding::{minus, plus};
 
@@ -117,16 +118,23 @@ impl Cycles<'_> {
         };
         let steps = self.shortest(edge);
         let whole = ordered.filtration().whole();
+        let torus = ordered.filtration().torus();
+        let place = |(v, shift): Copied| {
+            let place = whole.points().positions()[v as usize];
+            torus.map_or(place, |torus| torus.moved(place, shift))
+        };
         let (mut walk, mut path) = (Vec::with_capacity(steps.len()), Vec::new());
+        let mut so_far = [0; 3];
         for &(step, forward) in &steps {
-            let row = ordered.edges()[(step - edges) as usize];
-            let [a, b] = whole.corners(row);
-            let (from, way) = if forward { (row[0], sub(b, a)) } else { (row[1], sub(a, b)) };
-            walk.push(whole.copied(from).0);
+            let [(a, _), (b, shift)] = whole.shifted(ordered.edges()[(step - edges) as usize]);
+            let (from, to, way) =
+                if forward { (a, b, shift) } else { (b, a, minus([0; 3], shift)) };
             if path.is_empty() {
-                path.push(if forward { a } else { b });
+                path.push(place((from, so_far)));
             }
-            path.extend(path.last().map(|&at| add(at, way)));
+            so_far = plus(so_far, way);
+            walk.push(from);
+            path.push(place((to, so_far)));
         }
         let chain = match reduced.column(edge) {
             Some(column) => self.closed(column),
@@ -510,7 +518,9 @@ mod tests {
 
     fn random_filtration(random: &mut Random, k: usize) -> Filtration {
         let count = 4 + random.below(12);
-        let mut number = || random.below(64) as f64 / 16.0;
+        // On a grid or not.
+        let step = if k % 2 == 0 { 16.0 } else { 15.3 };
+        let mut number = || random.below(61) as f64 / step;
         let flat = k % 5 == 4;
         let positions: Vec<[f64; 3]> =
             (0..count).map(|_| [number(), number(), if flat { 0.0 } else { number() }]).collect();
