@@ -83,7 +83,7 @@ impl AlphaShape {
             let options = ShapeOptions { periodic: Some(cover.torus), ..*self.options() };
             in_large_box(cover.repeated(), &options, monitor)
         })?;
-        Ok(Some(Covering { times, shape }))
+        Ok(Some(Covering { shape, times }))
     }
 }
 

@@ -108,14 +108,7 @@ impl Cycles<'_> {
         if !(edges..facets).contains(&edge) || self.forest().is_in(ordered, edge) {
             return Ok(None);
         }
-        let reduced = match self.reduced.get() {
-            Some(reduced) => reduced,
-            None => {
-                let monitor = &*Monitor::current();
-                let (_, reduced) = ordered.reduce(monitor)?;
-                self.reduced.get_or_init(|| reduced)
-            }
-        };
+        let reduced = self.reduced()?;
         let steps = self.shortest(edge);
         let whole = ordered.filtration().whole();
         let torus = ordered.filtration().torus();
@@ -136,16 +129,13 @@ impl Cycles<'_> {
             walk.push(from);
             path.push(place((to, so_far)));
         }
-        let chain = match reduced.column(edge) {
-            Some(column) => self.closed(column),
-            None => {
-                let mut chain: Vec<(u32, i32)> = steps
-                    .iter()
-                    .map(|&(step, forward)| (step, if forward { 1 } else { -1 }))
-                    .collect();
-                chain.sort_unstable();
-                chain
-            }
+        let chain = if let Some(column) = reduced.column(edge) {
+            self.closed(column)
+        } else {
+            let sign = |&(step, forward): &(u32, bool)| (step, if forward { 1 } else { -1 });
+            let mut chain: Vec<(u32, i32)> = steps.iter().map(sign).collect();
+            chain.sort_unstable();
+            chain
         };
         Ok(Some(LoopCycle { walk, path, chain }))
     }
@@ -218,6 +208,15 @@ impl Cycles<'_> {
             }
         }
         (facets, corners)
+    }
+
+    fn reduced(&self) -> Result<&Reduced, ShapeError> {
+        let monitor = &*Monitor::current();
+        if let Some(reduced) = self.reduced.get() {
+            return Ok(reduced);
+        }
+        let (_, reduced) = self.ordered.reduce(monitor)?;
+        Ok(self.reduced.get_or_init(|| reduced))
     }
 
     fn graph(&self) -> &Graph {
@@ -426,7 +425,7 @@ impl Parts {
     /// The components of the complement as they are when they are merged with older ones, backwards.
     fn of(ordered: &Ordered<'_>) -> Self {
         let cells = ordered.cell_rows.len();
-        let mut next: Vec<u32> = (0..cells as u32 + 1).collect();
+        let mut next: Vec<u32> = (0..=cells as u32).collect();
         // Each component is a list from its eldest cell; the younger one is added at the end of the older one.
         let mut ends = next.clone();
         let mut counts = vec![1_u32; cells + 1];
@@ -519,7 +518,7 @@ mod tests {
     fn random_filtration(random: &mut Random, k: usize) -> Filtration {
         let count = 4 + random.below(12);
         // On a grid or not.
-        let step = if k % 2 == 0 { 16.0 } else { 15.3 };
+        let step = if k.is_multiple_of(2) { 16.0 } else { 15.3 };
         let mut number = || random.below(61) as f64 / step;
         let flat = k % 5 == 4;
         let positions: Vec<[f64; 3]> =
@@ -569,7 +568,7 @@ mod tests {
                 match ordered.filtration().torus() {
                     None => assert_eq!(path.first(), path.last()),
                     Some(torus) => {
-                        assert_eq!(torus.wrap(path[0]), torus.wrap(*path.last().unwrap()))
+                        assert_eq!(torus.wrap(path[0]), torus.wrap(*path.last().unwrap()));
                     }
                 }
                 if let Some((basis, last)) = ends {

@@ -8,7 +8,7 @@ use walpha_regular::internals::centre_shares;
 
 use super::Ordered;
 use crate::ladder::Filtration;
-use crate::winding::{United, WindingSets};
+use crate::winding::{Directions, United, WindingSets};
 use crate::{Alpha, ShapeError};
 
 /// A sphere orthogonal to points, which limits the spheres that fit between them.
@@ -81,7 +81,7 @@ impl Ordered<'_> {
             if free.is_none() {
                 free = Some((number, largest[root as usize]));
             }
-            let directions = sets.rounds(root).map(|rounds| rounds.along());
+            let directions = sets.rounds(root).map(Directions::along);
             for (slot, is_along) in along.iter_mut().zip(directions.unwrap_or_default()) {
                 if is_along && slot.is_none() {
                     *slot = Some(number);
@@ -156,7 +156,7 @@ impl Filtration {
         }
         let roots = (0..).zip(counts).filter(|&(_, count)| count > 0);
         let part = |(root, cells): (u32, usize)| PorePart {
-            dimension: sets.rounds(root).map_or(0, |rounds| rounds.rank()),
+            dimension: sets.rounds(root).map_or(0, Directions::rank),
             cells,
         };
         let mut parts: Vec<PorePart> = roots.map(part).collect();
@@ -208,7 +208,7 @@ mod tests {
         assert_eq!(parts(&|[x, y, z]| !(inside(x) && inside(y) && inside(z))), [0]);
         assert_eq!(parts(&|[x, y, _]| !(inside(x) && inside(y))), [1]);
         assert_eq!(parts(&|[x, _, _]| !inside(x)), [2]);
-        assert_eq!(parts(&|[x, y, z]| [x, y, z].iter().any(|&x| x == 0.0) && y + z == 0.0), [3]);
+        assert_eq!(parts(&|[x, y, z]| [x, y, z].contains(&0.0) && y + z == 0.0), [3]);
         assert!(
             Filtration::new(&[[0.0; 3], [1.0; 3]])
                 .unwrap()
