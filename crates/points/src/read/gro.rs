@@ -28,13 +28,13 @@ pub(crate) fn read(
     let path = file.path();
     let text = text(file)?;
     let frames = frames(path, &text)?;
-    let Frame { rows, edges } = frames[first_frame(path, frames.len(), options.frame)?];
+    let Frame { rows, cell } = frames[first_frame(path, frames.len(), options.frame)?];
     let mut found = Found::default();
     let lines = (rows.line..).zip(rows.text.lines());
     for (number, line) in lines {
         atom(path, number, line, &mut found)?;
     }
-    found.cell = edges_of(path, edges)?;
+    found.cell = cell;
     found.select(path, &options.atoms, options)
 }
 
@@ -45,11 +45,11 @@ struct Part<'a> {
     text: &'a str,
 }
 
-/// The lines of atoms, and that of the box.
+/// The lines of atoms, and the box.
 #[derive(Clone, Copy)]
 struct Frame<'a> {
     rows: Part<'a>,
-    edges: Part<'a>,
+    cell: Option<Cell>,
 }
 
 /// Divides a text into its frames: a title, the number of atoms, their lines, and the box.
@@ -78,7 +78,7 @@ fn frames<'a>(path: &Path, text: &'a str) -> Result<Vec<Frame<'a>>, PointsError>
             let what = format!("claims 0 atoms in line {}", first + 1);
             return Err(format(path, Reason::content(what, "name another file")));
         }
-        frames.push(Frame { rows, edges });
+        frames.push(Frame { rows, cell: box_of(path, edges)? });
     }
     Ok(frames)
 }
@@ -156,7 +156,7 @@ fn angstroms(text: &str) -> Option<f64> {
 
 /// The box: lengths along the axes, and for one that is not along them the other six coordinates of its vectors. `None` where all are
 /// 0, as without a box.
-fn edges_of(path: &Path, edges: Part<'_>) -> Result<Option<Cell>, PointsError> {
+fn box_of(path: &Path, edges: Part<'_>) -> Result<Option<Cell>, PointsError> {
     let numbers: Option<Vec<f64>> = edges.text.split_whitespace().map(angstroms).collect();
     let vectors = match numbers.as_deref() {
         Some(&[x, y, z]) => [[x, 0.0, 0.0], [0.0, y, 0.0], [0.0, 0.0, z]],
