@@ -4,6 +4,7 @@
 use std::path::Path;
 
 use walpha_base::advice::Setting;
+use walpha_base::memory::afford;
 use walpha_base::shown::shown;
 
 use super::cif::{Token, Words, number, without_charge};
@@ -319,6 +320,10 @@ impl Block<'_> {
             let what = "has no atom with coordinates";
             return Err(format(path, Reason::content(what, "name another file")));
         }
+        // Few sites are on symmetry elements, so that most have as many images as there are operations.
+        let most = self.sites.len() * self.operations.len().max(1);
+        let bytes = size_of::<Atom>() + size_of::<([f64; 3], usize)>() + size_of::<[f64; 3]>();
+        afford(most.saturating_mul(bytes), || "the atoms of a cell".into())?;
         let mut content = Content::new(&cell);
         for (index, site) in self.sites.iter().enumerate() {
             content.add(index, site.place, &self.operations)?;

@@ -90,7 +90,7 @@ pub(super) struct Content<'a> {
     cell: &'a Cell,
     /// The number of boxes along each vector, which are wider than [`Self::NEAR`].
     boxes: [f64; 3],
-    /// The atoms in each box.
+    /// The images of the last site in each box.
     taken: HashMap<[i64; 3], Vec<usize>>,
     /// Of each atom its place, in fractions of the cell, and its site.
     pub atoms: Vec<([f64; 3], usize)>,
@@ -124,10 +124,11 @@ impl<'a> Content<'a> {
         place: [f64; 3],
         operations: &[Operation],
     ) -> Result<(), NoMemory> {
+        self.taken.clear();
         for operation in [&Operation::IDENTITY].into_iter().chain(operations) {
             let image = operation.of(place);
             let at = [0, 1, 2].map(|k| (image[k] * self.boxes[k]).floor() as i64);
-            if self.has_near(at, image, site) {
+            if self.has_near(at, image) {
                 continue;
             }
             try_reserve(&mut self.atoms, 1, || "the atoms of a cell".into())?;
@@ -137,16 +138,13 @@ impl<'a> Content<'a> {
         Ok(())
     }
 
-    /// Whether an image of a site is near a place in a box.
-    fn has_near(&self, at: [i64; 3], place: [f64; 3], site: usize) -> bool {
+    /// Whether an image of the last site is near a place in a box.
+    fn has_near(&self, at: [i64; 3], place: [f64; 3]) -> bool {
         (0..27).any(|index| {
             let beside = [index % 3, index / 3 % 3, index / 9];
             let at = [0, 1, 2].map(|k| (at[k] + beside[k] - 1).rem_euclid(self.boxes[k] as i64));
             self.taken.get(&at).is_some_and(|atoms| {
-                atoms.iter().any(|&atom| {
-                    let (other, of) = self.atoms[atom];
-                    of == site && self.distance(place, other) < Self::NEAR
-                })
+                atoms.iter().any(|&atom| self.distance(place, self.atoms[atom].0) < Self::NEAR)
             })
         })
     }
