@@ -224,6 +224,10 @@ def mmcif():
     cell = "_cell.length_a 10\n_cell.length_b 20\n_cell.length_c 30\n_cell.angle_alpha 90\n_cell.angle_beta 80\n_cell.angle_gamma 90\n"
     return [
         f"data_1ABC\n# a comment\n{cell}_symmetry.space_group_name_H-M 'P 1'\nloop_\n{tags}{rows}#\n".encode(),
+        # A crystal by its operations.
+        b"data_q\n_cell_length_a 4.916(1)\n_cell_length_b 4.916\n_cell_length_c 5.4\n_cell_angle_gamma 120\n_symmetry_space_group_name_H-M 'P 32'\n"
+        b"loop_\n_space_group_symop_operation_xyz\nx,y,z\n'-y, x-y, z+2/3'\n-x+y,-x,1/3+z\nloop_\n_atom_site_label\n_atom_site_type_symbol\n"
+        b"_atom_site_fract_x\n_atom_site_fract_y\n_atom_site_fract_z\n_atom_site_occupancy\nSi1 Si4+ 0.47(1) 0 .667 1\nO1 . -0.4 1.27 ? 0.5\nO2 O 0 0 0 .\n",
         b"data_x\nsave_y\n_atom_site.type_symbol C\n_atom_site.Cartn_x 1\n_atom_site.Cartn_y 2\n_atom_site.Cartn_z 3\nsave_\n",
     ]
 
@@ -232,6 +236,40 @@ def pqr():
     return [
         b"REMARK 1\nATOM 1 N ALA A 1 0 0 0 -0.5 1.85\nATOM 2 CA ALA 1 1 0 0 0.25 2.0\nHETATM100003 ZN ZN B1000C 1 2 3 2.0 1.1\nTER\nEND\n",
         b"ATOM      1  N   ALA     1       1.000   2.000   3.000 -0.500 1.850\n",
+    ]
+
+
+def gro():
+    return [
+        b"Slanted\n    2\n    1SOL     OW    1   0.230   0.628   0.113  0.1000  0.2000  0.3000\n    2ALA     CA    2  -1.000   2.345   3.210\n"
+        b"   2.00000   3.00000   4.00000   0.00000   0.00000   0.50000   0.00000  -0.25000   1.00000\n",
+        b"t\n1\n    1ALA     CA    1   0.23012   0.62834   0.11356\n 0 0 0\n" * 2,
+    ]
+
+
+def lammps_data():
+    head = "units = real\n\n2 atoms\n2 atom types\n\n-1 9 xlo xhi\n2 10 ylo yhi\n0 6 zlo zhi\n3 -2 1 xy xz yz\n\nMasses\n\n1 28.0855 # Si\n2 15.9994\n\nAtoms"
+    return [
+        f"{head} # full\n\n1 1 1 0.5 -1 2 0 0 0 0\n2 1 2 -0.25 20 5 -3 0 0 1\n\nVelocities\n\n1 0 0 0\n".encode(),
+        f"{head}\n\n1 1 0.5 -1 2 0\n2 2 -0.25 20 5 -3\n".encode(),
+        f"{head} # sphere\n\n1 1 3.0 1.0 -1 2 0\n2 2 0.5 1 20 5 -3\n\nAtom Type Labels\n\n1 Si\n2 O\n".encode(),
+    ]
+
+
+def lammps_dump():
+    frame = ("ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS xy xz yz pp pp ff\n-3 12 3\n2 11 -2\n0 6 1\nITEM: ATOMS id element mass q radius xs ys zs\n"
+             "1 Si 28.0855 0.5 1 0 0 0\n2 O 15.9994 -0.25 2 0.25 0.5 0.75\n")
+    return [
+        f"ITEM: UNITS\nreal\n{frame}".encode(), (frame * 2).encode(),
+        b"ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n1\nITEM: BOX BOUNDS abc origin pp pp pp\n10 0 0 -1\n3 8 0 2\n-2 1 6 0\nITEM: ATOMS id type x y z\n1 1 1 2 3\n",
+    ]
+
+
+def poscar():
+    cell = "quartz\n 2.0\n 1.0 0.0 0.0\n -0.5 1.0 0.0\n 0.0 0.0 2.0\n"
+    return [
+        f"{cell} Si_pv O\n 1 2\nSelective dynamics\nDirect\n 0.5 0 0.25 T T F\n 0 0.5 0.5 T T F\n -0.5 1.5 0 T T F\n\n 0 0 0\n".encode(),
+        f"{cell} 1\nCartesian\n 0.5 0 0.25\n".replace("2.0", "-16", 1).encode(),
     ]
 
 
@@ -530,7 +568,7 @@ def plan_files(*names):
 TARGETS = {
     "inrimage": inrimage, "mgh": mgh, "npy": npys, "npz": npz, "nrrd": nrrd, "metaimage": metaimage, "nifti": nifti,
     "nifti_gzip": lambda: [gzip.compress(file) for file in nifti()], "vtk_legacy": vtk_legacy, "vti": vti,
-    "tiff": tiffs, "table": table, "xyz": xyz, "pdb": pdb, "mmcif": mmcif, "pqr": pqr, "pwn": pwn, "npy_points": npy_points, "ply": ply, "vtk_geometry": vtk_geometry,
+    "tiff": tiffs, "table": table, "xyz": xyz, "pdb": pdb, "mmcif": mmcif, "pqr": pqr, "gro": gro, "lammps_data": lammps_data, "lammps_dump": lammps_dump, "poscar": poscar, "pwn": pwn, "npy_points": npy_points, "ply": ply, "vtk_geometry": vtk_geometry,
     "off": off, "obj": obj, "stl": stl, "gmsh": gmsh, "medit": medit, "tetgen": tetgen, "vtk_mesh": vtk_mesh, "weights": weights,
     "pcd": pcd, "las": las, "wvm": wvm, "dicom": dicom, "zarr": zarr, "slices": slices, "complex": complexes, "check_json": check_json, "check_npz": check_npz, "filtration": filtrations,
     "plan": plan_files("plan.json"), "block": plan_files("block-00000.walpha", "block-00001.walpha"),

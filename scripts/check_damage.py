@@ -25,7 +25,7 @@ ADDRESSES = 2 << 30
 # The targets of formats, with the extension of their files.
 EXTENSIONS = {
     "inrimage": "inr", "mgh": "mgh", "npy": "npy", "npz": "npz", "nrrd": "nrrd", "metaimage": "mha", "nifti": "nii", "nifti_gzip": "nii.gz",
-    "vtk_legacy": "vtk", "vti": "vti", "tiff": "tif", "table": "csv", "xyz": "xyz", "pdb": "pdb", "mmcif": "cif", "pqr": "pqr", "pwn": "pwn", "npy_points": "npy", "ply": "ply",
+    "vtk_legacy": "vtk", "vti": "vti", "tiff": "tif", "table": "csv", "xyz": "xyz", "pdb": "pdb", "mmcif": "cif", "pqr": "pqr", "gro": "gro", "lammps_data": "lmp", "lammps_dump": "dump", "poscar": "vasp", "pwn": "pwn", "npy_points": "npy", "ply": "ply",
     "vtk_geometry": "vtu", "off": "off", "obj": "obj", "stl": "stl", "gmsh": "msh", "medit": "mesh", "tetgen": "node", "vtk_mesh": "vtk",
     "pcd": "pcd", "las": "las", "wvm": "wvm", "check_json": "json", "check_npz": "npz",
 }

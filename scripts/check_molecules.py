@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
-"""Checks walpha's readers of molecules against gemmi and FreeSASA, and `walpha balls` against Voronota-LT, FreeSASA and published numbers.
+"""Checks walpha's readers of molecules and crystals against gemmi, ASE and FreeSASA, and `walpha balls` against Voronota-LT, FreeSASA and published numbers.
 
     scripts/check_molecules.py [--walpha target/release/walpha] [--env /tmp/walpha-molecules] [--alphamol FOLDER] [FILE...]
 
 Makes a Python environment (once) with gemmi, FreeSASA, Voronota-LT, and MDAnalysisTests, which ships files of many programs, and reads each PDB,
 mmCIF and PQR file of it, or those named: atoms, places and elements of the first model are those of gemmi, with everything and by default, and
-the default has as many atoms as FreeSASA takes. PQR is compared with its own words. Files that walpha refuses are listed with the reason.
+the default has as many atoms as FreeSASA takes. CIF of crystals, which ASE ships, is compared with gemmi, and GRO and LAMMPS with ASE, in the
+order of the file; dumps are not, as ASE puts parts of a tilted box elsewhere. PQR is compared with its own words. Files that walpha refuses are listed with the reason.
 
 Then, unless files are named, it measures balls: of HIV protease (1HVR) against published numbers, and of some molecules against Voronota-LT, for
 each atom, and against FreeSASA. The balls of the crate voronota-ltr are measured if cargo has it, and the examples of AlphaMol if
@@ -25,7 +26,7 @@ import tempfile
 
 from environment import enter
 
-PACKAGES = ["numpy", "gemmi", "freesasa", "voronotalt"]
+PACKAGES = ["numpy", "scipy", "ase", "gemmi", "freesasa", "voronotalt"]
 # It ships files and needs MDAnalysis only for its tests.
 FILES = "MDAnalysisTests"
 # Seconds for the installation of all of them.
@@ -130,8 +131,49 @@ def of_pqr(path):
     return rows
 
 
+def check_crystal(checker, path, refused):
+    """Compares all atoms of a cell with those of gemmi, up to whole vectors."""
+    found, why = checker.read(path, "--radii", checker.table)
+    if why:
+        refused[why.split(": ", 1)[-1]].append(path.name)
+        return
+    structure = gemmi.read_small_structure(str(path))
+    sites = structure.get_all_unit_cell_sites()
+    if len(found) != len(sites):
+        checker.judge(path.name, f"{len(found)} atoms, not {len(sites)}")
+        return
+    theirs = np.array([[*site.fract.tolist(), site.element.atomic_number ** 2] for site in sites])
+    fractions = np.array([structure.cell.fractionalize(gemmi.Position(*row[:3])).tolist() for row in found])
+    way = fractions[:, None] - theirs[None, :, :3]
+    near = (abs(way - way.round()) < 1e-3).all(axis=2) & (found[:, None, 3] == theirs[None, :, 3])
+    checker.judge(path.name, None if near.any(axis=0).all() and near.any(axis=1).all() else "atoms differ")
+
+
+def check_simulation(checker, path, refused):
+    """Compares places with those of ASE, in the order of the file."""
+    kind = "gromacs" if ".gro" in path.name else "lammps-data"
+    options = ["--hydrogens", "--waters"] if kind == "gromacs" else []
+    found, why = checker.read(path, *options, "--radii", "none")
+    if why:
+        refused[why.split(": ", 1)[-1]].append(path.name)
+        return
+    try:
+        atoms = ase.io.read(path, format=kind, **({"sort_by_id": False} if kind == "lammps-data" else {}))
+    except Exception as error:  # noqa: BLE001
+        print(f"passed over by ASE: {path.name} ({error})")
+        return
+    same = len(atoms) == len(found) and np.allclose(atoms.positions, found[:, :3], rtol=0, atol=1e-6)
+    checker.judge(path.name, None if same else f"{len(found)} atoms, not {len(atoms)}, or at other places")
+
+
 def check(checker, path, refused):
     name = path.name
+    if ".gro" in name or name.endswith(".data"):
+        check_simulation(checker, path, refused)
+        return
+    if name.endswith(".cif") and "_atom_site_fract_x" in path.read_text(errors="replace"):
+        check_crystal(checker, path, refused)
+        return
     if ".pqr" in name:
         found, why = checker.read(path)
         if why:
@@ -248,8 +290,9 @@ def main():
     files = [pathlib.Path(file) for file in args.files]
     if not files:
         folder = next(pathlib.Path(sys.prefix).glob(f"lib/python*/site-packages/{FILES}"))
-        kinds = (".pdb", ".ent", ".cif", ".mmcif", ".pqr")
+        kinds = (".pdb", ".ent", ".cif", ".mmcif", ".pqr", ".gro", ".data")
         files = sorted(file for file in folder.rglob("*") if file.name.removesuffix(".gz").endswith(kinds))
+        files += sorted(folder.parent.glob("ase/test/testdata/minerals/*.cif"))
     refused = collections.defaultdict(list)
     with tempfile.TemporaryDirectory() as folder:
         checker = Checker(args.walpha, folder)
@@ -265,6 +308,7 @@ def main():
 
 if __name__ == "__main__":
     if "--inside" in sys.argv:
+        import ase.io
         import freesasa
         import gemmi
         import numpy as np

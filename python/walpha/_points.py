@@ -110,7 +110,7 @@ def read_points(
     Parameters
     ----------
     path : str or path-like
-        CSV, XYZ, PTS, PDB, mmCIF, PQR, PLY, OFF, OBJ, STL, PCD, LAS, LAZ, VTU, VTP, VTK, NPY or WVM; text, molecules, PLY,
+        CSV, XYZ, PTS, PDB, mmCIF, CIF, PQR, GRO, LAMMPS data and dumps, POSCAR, PLY, OFF, OBJ, STL, PCD, LAS, LAZ, VTU, VTP, VTK, NPY or WVM; text, molecules, PLY,
         OFF, OBJ, STL and PCD also compressed with gzip, or alone in a ZIP archive. Weights are a column ``weight``, or else
         the squares of a column ``radius``; a fourth column without a name has values. Of PDB and mmCIF the heavy atoms of
         the polymers in the first model are read; the weight of an atom is its squared radius, of the file or Bondi's. Or

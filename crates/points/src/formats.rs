@@ -12,13 +12,15 @@ use walpha_check::meshes::Mesh;
 use super::model::MODEL;
 use super::read::xyz::{self, TextLayout};
 use super::read::{format, npy};
-use super::read::{mmcif, obj, off, pcd, pdb, ply, pqr, stated, stl, vtk};
+use super::read::{gro, lammps_data, lammps_dump, mmcif, poscar};
+use super::read::{obj, off, pcd, pdb, ply, pqr, stated, stl, vtk};
 use super::write;
 use super::wvm;
 use super::{CellCount, ModelMetadata, Packing, PointOptions, Points, PointsError, WeightedPoints};
 use walpha_volume::VtkPoints;
 use walpha_volume::{
-    OpenFile, Reason, UnknownFormat, built, is_cif, is_npy, is_pdb, is_vtk, is_vtk_xml,
+    OpenFile, Reason, UnknownFormat, built, is_cif, is_gro, is_lammps_data, is_lammps_dump, is_npy,
+    is_pdb, is_poscar, is_vtk, is_vtk_xml,
 };
 
 /// Reads the points of a file and their metadata, which is empty where the format has none.
@@ -92,7 +94,7 @@ const PLAIN: PointFormat = PointFormat {
 
 /// The formats of points, in the order in which they are tried. The first is the default for files of no
 /// recognised format.
-pub static FORMATS: [PointFormat; 18] = [
+pub static FORMATS: [PointFormat; 22] = [
     PointFormat {
         name: "CSV, TSV",
         extensions: &["csv", "tsv"],
@@ -154,7 +156,7 @@ pub static FORMATS: [PointFormat; 18] = [
         ..PLAIN
     },
     PointFormat {
-        name: "mmCIF",
+        name: "mmCIF, CIF",
         extensions: &["cif", "mmcif"],
         chooses: OF_ATOMS,
         fuzzed_by: "mmcif",
@@ -171,6 +173,46 @@ pub static FORMATS: [PointFormat; 18] = [
         begins: is_pdb,
         is_packed: true,
         read: Some(pqr::read),
+        ..PLAIN
+    },
+    PointFormat {
+        name: "GRO",
+        extensions: &["gro"],
+        chooses: &[Setting::Radii, Setting::Hydrogens, Setting::Waters, Setting::Frame],
+        fuzzed_by: "gro",
+        begins: is_gro,
+        is_packed: true,
+        read: Some(gro::read),
+        ..PLAIN
+    },
+    PointFormat {
+        name: "LAMMPS data",
+        extensions: &["lmp", "lammps"],
+        chooses: &[Setting::Radii],
+        fuzzed_by: "lammps_data",
+        begins: is_lammps_data,
+        is_packed: true,
+        read: Some(lammps_data::read),
+        ..PLAIN
+    },
+    PointFormat {
+        name: "LAMMPS dump",
+        extensions: &["lammpstrj", "dump"],
+        chooses: &[Setting::Radii, Setting::Frame],
+        fuzzed_by: "lammps_dump",
+        begins: is_lammps_dump,
+        is_packed: true,
+        read: Some(lammps_dump::read),
+        ..PLAIN
+    },
+    PointFormat {
+        name: "POSCAR",
+        extensions: &["vasp", "poscar", "contcar"],
+        chooses: &[Setting::Radii],
+        fuzzed_by: "poscar",
+        begins: is_poscar,
+        is_packed: true,
+        read: Some(poscar::read),
         ..PLAIN
     },
     PointFormat {

@@ -44,6 +44,11 @@ impl Cell {
         (is_finite && exists).then_some(Self { vectors, repeats: [true; 3] })
     }
 
+    /// The sum of the vectors, each times its part.
+    pub(crate) fn place(&self, parts: [f64; 3]) -> [f64; 3] {
+        [0, 1, 2].map(|axis| (0..3).map(|k| parts[k] * self.vectors[k][axis]).sum())
+    }
+
     /// The sides, if the cell is an axis-aligned box that repeats along all axes: the points then lie on a torus.
     pub fn sides(&self) -> Option<[f64; 3]> {
         let [[x, a, b], [c, y, d], [e, f, z]] = self.vectors;
@@ -68,7 +73,7 @@ impl fmt::Display for Cell {
     }
 }
 
-/// The metadata of weighted points. A `.wvm` stores all of it except the cell, which comes from extended XYZ, and the notes. Of
+/// The metadata of weighted points. A `.wvm` stores all of it except the cell, which comes from formats of molecules and crystals, and the notes. Of
 /// the other formats, text may state a unit.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]

@@ -44,8 +44,8 @@ pub struct PointOptions {
     pub thin: Option<f64>,
     /// Where the radii of atoms come from; `None` takes those of the file, or else Bondi's.
     pub radii: Option<Radii>,
-    /// Which atoms of PDB, mmCIF and the sample `sample:peptide` are read. PQR and XYZ are read as a whole, but for `chains`
-    /// of PQR.
+    /// Which atoms of PDB, mmCIF and the sample `sample:peptide` are read, and of GRO as to hydrogens and water. Other formats
+    /// are read as a whole, but for `chains` of PQR.
     pub atoms: AtomSelection,
 }
 
@@ -205,7 +205,10 @@ pub fn is_point_file(path: &Path) -> Result<bool, PointsError> {
 /// - LAS and LAZ: coordinates, and the intensity as value, without the points that are withheld.
 /// - NPY: an array n×3 (x, y, z) or n×4 (…, value), or what `columns` say; of a structured array the fields of these names.
 /// - PDB, mmCIF: the heavy atoms of the polymers in the first model ([`AtomSelection`] has more), with the squares of Bondi's
-///   radii as weights ([`Radii`]). PQR: all atoms, with the radii of the file. XYZ with elements is read so, too.
+///   radii as weights ([`Radii`]). GRO: the heavy atoms but water. PQR: all atoms, with the radii of the file. XYZ with elements
+///   is read so, too.
+/// - CIF of crystals: all atoms of the cell, by the symmetry operations that are listed. POSCAR, LAMMPS data and dumps: all
+///   atoms; of types that are not elements points without radii.
 /// - WVM: all layers ([`read_model`] can leave some out).
 ///
 /// Text, molecules, OFF, OBJ, STL, PCD and PLY may be compressed with gzip, or be alone in a ZIP archive.
@@ -310,7 +313,9 @@ fn of_another_kind(known: &PointFormat, file: &OpenFile) -> Option<Reason> {
 /// Refuses settings that the format has no use for.
 fn accept(format: &PointFormat, path: &Path, options: &PointOptions) -> Result<(), PointsError> {
     let PointOptions { columns, level, frame, classes, withheld, radii, atoms, .. } = options;
-    let of_atoms = if format.chooses.contains(&Setting::Radii) {
+    let of_atoms = if format.chooses.contains(&Setting::Waters) {
+        "is of a format that states nothing of this kind"
+    } else if format.chooses.contains(&Setting::Radii) {
         "is of a format of which all atoms are read"
     } else {
         "has no atoms"

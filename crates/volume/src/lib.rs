@@ -63,7 +63,8 @@ pub use walpha_base::{Conversion, Coordinates, LengthUnit, Space};
 pub use error::io_error;
 #[doc(hidden)]
 pub use formats::{
-    begins_as_volume, built, is_cif, is_npy, is_pdb, is_vtk, is_vtk_xml, other_kind, read_file,
+    begins_as_volume, built, is_cif, is_gro, is_lammps_data, is_lammps_dump, is_npy, is_pdb,
+    is_poscar, is_vtk, is_vtk_xml, other_kind, read_file,
 };
 #[doc(hidden)]
 pub use grid::{any_size, inverse};

@@ -51,8 +51,8 @@ const HELP: &[(&str, &str, &str)] = &[
         "SET",
         "Radii of atoms, whose squares are weights: bondi (van der Waals, by element), protor (amino acids, hydrogens included), column (of the file), none, or a FILE with lines as 'C 1.70' and 'ALA CB 1.88' [default: of the file, otherwise bondi]",
     ),
-    ("hydrogens", "", "Also take hydrogens of PDB and mmCIF"),
-    ("waters", "", "Also take water of PDB and mmCIF"),
+    ("hydrogens", "", "Also take hydrogens of PDB, mmCIF and GRO"),
+    ("waters", "", "Also take water of PDB, mmCIF and GRO"),
     ("hetero", "", "Also take ligands, ions and modified residues of PDB and mmCIF (HETATM)"),
     ("chains", "A,B,…", "Chains to read from PDB, mmCIF and PQR [default: all]"),
     (
@@ -73,7 +73,7 @@ const HELP: &[(&str, &str, &str)] = &[
     (
         "frame",
         "K",
-        "Volume to read from a file with several (a fourth axis; times, echoes or stacks of DICOM), or scan or step of points (PTS, XYZ), counted from 0",
+        "Volume to read from a file with several (a fourth axis; times, echoes or stacks of DICOM), or scan or step of points (PTS, XYZ, GRO, LAMMPS dump), counted from 0",
     ),
     (
         "series",

@@ -170,7 +170,7 @@ fn files_of_no_known_format_are_refused() {
         (b"version https://git-lfs.github.com/spec/v1", "a pointer of Git LFS", "git lfs pull"),
         (b"MATLAB 5.0 MAT-file", "is a MATLAB file", "numpy.save"),
         (b"HEADER    HYDROLASE", "is a PDB or PQR file of a molecule", "call it .pdb or .pqr"),
-        (b"ITEM: TIMESTEP\n0\n", "is a LAMMPS dump", "x,y,z"),
+        (b"ITEM: TIMESTEP\n0\n", "is a LAMMPS dump", "call it .lammpstrj"),
         (b"ASTM-E57", "is an E57 scan", "LAS or PLY"),
         (b"\x80\x04\x95", "is a pickle of Python", "numpy.save"),
         (b"<?xml version=\"1.0\"?><gpx/>", "is XML, and no file of VTK", "name a file"),

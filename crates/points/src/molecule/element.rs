@@ -29,6 +29,103 @@ const SYMBOLS: [&str; 118] = [
     "Fl", "Mc", "Lv", "Ts", "Og",
 ];
 
+/// Standard atomic weights up to uranium, or the mass number of an isotope where there is none (Meija et al. 2016,
+/// doi:10.1515/pac-2015-0305).
+const WEIGHTS: [f64; 92] = [
+    1.008,
+    4.002602,
+    6.94,
+    9.0121831,
+    10.81,
+    12.011,
+    14.007,
+    15.999,
+    18.99840316,
+    20.1797,
+    22.98976928,
+    24.305,
+    26.9815385,
+    28.085,
+    30.973762,
+    32.06,
+    35.45,
+    39.948,
+    39.0983,
+    40.078,
+    44.955908,
+    47.867,
+    50.9415,
+    51.9961,
+    54.938044,
+    55.845,
+    58.933194,
+    58.6934,
+    63.546,
+    65.38,
+    69.723,
+    72.63,
+    74.921595,
+    78.971,
+    79.904,
+    83.798,
+    85.4678,
+    87.62,
+    88.90584,
+    91.224,
+    92.90637,
+    95.95,
+    97.90721,
+    101.07,
+    102.9055,
+    106.42,
+    107.8682,
+    112.414,
+    114.818,
+    118.71,
+    121.76,
+    127.6,
+    126.90447,
+    131.293,
+    132.905452,
+    137.327,
+    138.90547,
+    140.116,
+    140.90766,
+    144.242,
+    144.91276,
+    150.36,
+    151.964,
+    157.25,
+    158.92535,
+    162.5,
+    164.93033,
+    167.259,
+    168.93422,
+    173.054,
+    174.9668,
+    178.49,
+    180.94788,
+    183.84,
+    186.207,
+    190.23,
+    192.217,
+    195.084,
+    196.966569,
+    200.592,
+    204.38,
+    207.2,
+    208.9804,
+    208.98243,
+    209.98715,
+    222.01758,
+    223.01974,
+    226.02541,
+    227.02775,
+    232.0377,
+    231.03588,
+    238.02891,
+];
+
 impl Element {
     /// Hydrogen, of any mass.
     pub const HYDROGEN: Self = Self(1);
@@ -45,6 +142,15 @@ impl Element {
     /// The element of an atomic number.
     pub fn numbered(number: u64) -> Option<Self> {
         u8::try_from(number).ok().filter(|n| (1..=SYMBOLS.len()).contains(&(*n).into())).map(Self)
+    }
+
+    /// The element of an atom of this mass, in units of atomic mass: a file rounds it to a few digits, so a thousandth may be missing,
+    /// or 0.01. Groups of atoms that are one particle (CH2 of 14.027) are further from elements.
+    pub(crate) fn of_mass(mass: f64) -> Option<Self> {
+        let off = |at: &usize| (WEIGHTS[*at] - mass).abs();
+        let nearest = (0..WEIGHTS.len()).min_by(|one, other| off(one).total_cmp(&off(other)))?;
+        let most = f64::max(0.0101, 1e-3 * WEIGHTS[nearest]);
+        if off(&nearest) <= most { Self::numbered(nearest as u64 + 1) } else { None }
     }
 
     /// Its symbol, as in `Ca`.
@@ -110,6 +216,26 @@ impl Element {
             _ => None,
         }
     }
+
+    /// The element of a label of a crystal's atom: the letters it begins with, of which the second is small in symbols of two, as in
+    /// `Si1`, `Ow` and `CA1`. `None` where two readings differ (`CL1`), and for T, which is a tetrahedral site of a zeolite.
+    pub(crate) fn of_label(label: &str) -> Option<Self> {
+        let end = label.find(|c: char| !c.is_ascii_alphabetic()).unwrap_or(label.len());
+        let letters = &label[..end];
+        if letters.eq_ignore_ascii_case("T") {
+            return None;
+        }
+        let one = Self::named(letters.get(..1)?);
+        match letters.get(..2) {
+            None => one,
+            Some(two) if two.as_bytes()[1].is_ascii_lowercase() => Self::named(two).or(one),
+            Some(two) => match (Self::named(two), one) {
+                (Some(_), Some(Self::HYDROGEN)) => one,
+                (Some(_), Some(_)) => None,
+                (two, one) => two.or(one),
+            },
+        }
+    }
 }
 
 impl fmt::Display for Element {
@@ -133,6 +259,61 @@ mod tests {
             assert_eq!(Element::named(symbol), None, "{symbol}");
         }
         assert_eq!([0, 119, 257].map(Element::numbered), [None; 3]);
+    }
+
+    #[test]
+    fn masses_tell_elements() {
+        for (mass, element) in [
+            (1.0, "H"),
+            (1.00794, "H"),
+            (12.0, "C"),
+            (12.0112, "C"),
+            (14.0, "N"),
+            (15.9994, "O"),
+            (28.0855, "Si"),
+            (35.453, "Cl"),
+            (58.93, "Co"),
+            (58.69, "Ni"),
+            (65.409, "Zn"),
+            (238.03, "U"),
+            // Hydrocarbons, water, kilograms per mole, and no number.
+            (13.019, "-"),
+            (14.027, "-"),
+            (15.035, "-"),
+            (16.043, "-"),
+            (18.015, "-"),
+            (0.012, "-"),
+            (0.0, "-"),
+            (f64::NAN, "-"),
+        ] {
+            assert_eq!(Element::of_mass(mass).map_or("-", Element::symbol), element, "{mass}");
+        }
+    }
+
+    #[test]
+    fn labels_of_crystals_tell_elements() {
+        let labels = [
+            ("Si1", "Si"),
+            ("O2", "O"),
+            ("Zn1", "Zn"),
+            ("Ow", "O"),
+            ("Ca1", "Ca"),
+            ("C1A", "C"),
+            ("C", "C"),
+            ("ZN1", "Zn"),
+            ("HA", "H"),
+            ("OH2", "O"),
+            // Calcium, or a carbon called A; chlorine, or a carbon called L.
+            ("CA1", "-"),
+            ("CL1", "-"),
+            ("T1", "-"),
+            ("D1", "H"),
+            ("1", "-"),
+            ("", "-"),
+        ];
+        for (label, element) in labels {
+            assert_eq!(Element::of_label(label).map_or("-", Element::symbol), element, "{label}");
+        }
     }
 
     #[test]

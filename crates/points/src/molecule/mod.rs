@@ -79,6 +79,8 @@ pub(crate) struct Found {
     pub radii: Option<Vec<f64>>,
     /// The cell in which they repeat.
     pub cell: Option<Cell>,
+    /// Whether their places have no unit that is known; otherwise they are in ångströms.
+    pub is_unitless: bool,
     names: HashSet<Arc<str>>,
 }
 
@@ -118,7 +120,7 @@ impl Found {
         options: &PointOptions,
     ) -> Result<(Points, ModelMetadata), PointsError> {
         let (kept, left_out) = selection.of(path, &self.atoms)?;
-        let Self { positions, atoms, radii, cell, .. } = self;
+        let Self { positions, atoms, radii, cell, is_unitless, .. } = self;
         let molecule = Molecule { atoms, left_out };
         let mut points = Points { molecule: Some(molecule), ..Points::new(positions) };
         points.keep(&kept);
@@ -132,8 +134,47 @@ impl Found {
             1 => tracing::warn!("{}: an atom lies exactly where another does", shown(path)),
             n => tracing::warn!("{}: {n} atoms lie exactly where others do", shown(path)),
         }
-        let coordinates = Coordinates { unit: LengthUnit::Angstrom, space: Space::default() };
+        let unit = if is_unitless { LengthUnit::Unstated } else { LengthUnit::Angstrom };
+        let coordinates = Coordinates { unit, space: Space::default() };
         Ok((points, ModelMetadata::default().coordinates(coordinates).cell(cell)))
+    }
+}
+
+impl Found {
+    /// The points of all atoms. Names of which none is an element are labels, unless radii are asked for: the points are those of no
+    /// molecule, and have the radii of the file, if it states any.
+    ///
+    /// # Errors
+    /// A radius is not known.
+    pub(crate) fn all(
+        self,
+        path: &Path,
+        options: &PointOptions,
+    ) -> Result<(Points, ModelMetadata), PointsError> {
+        let are_labels = self.atoms.iter().all(|atom| atom.element.is_none());
+        let asked = options.radii.as_ref();
+        if !are_labels || asked.is_some_and(|radii| *radii != Radii::None) {
+            return self.select(path, &AtomSelection::ALL, options);
+        }
+        let mut options = options.clone();
+        if asked.is_none() && self.radii.is_none() {
+            warn_of_labels(path, self.atoms.first());
+            options.radii = Some(Radii::None);
+        }
+        let (mut points, metadata) = self.select(path, &AtomSelection::ALL, &options)?;
+        points.molecule = None;
+        Ok((points, metadata))
+    }
+}
+
+/// Says that atoms have no radii, as their names are not elements.
+pub(crate) fn warn_of_labels(path: &Path, first: Option<&Atom>) {
+    if let Some(first) = first {
+        tracing::warn!(
+            "{}: its names of atoms are not elements ({:?}), so they have no radii; `radii` FILE gives them",
+            shown(path),
+            first.name
+        );
     }
 }
 

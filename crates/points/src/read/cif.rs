@@ -1,6 +1,11 @@
 //! The syntax of CIF 1.1 (Hall, Allen & Brown 1991, doi:10.1107/S010876739101067X; International Tables G, 2.2.7): tags with a
 //! value each, and loops of tags with rows of values.
 
+use std::path::Path;
+
+use super::{PointsError, format};
+use walpha_volume::Reason;
+
 /// A word of a file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Token<'a> {
@@ -145,6 +150,122 @@ impl<'a> Tokens<'a> {
 
     fn pass(&mut self, bytes: usize) {
         (self.rest, self.begins_line) = (&self.rest[bytes..], false);
+    }
+}
+
+/// The words of a file, with errors that name it.
+pub(super) struct Words<'a> {
+    path: &'a Path,
+    tokens: Tokens<'a>,
+}
+
+impl<'a> Words<'a> {
+    pub(super) fn new(path: &'a Path, text: &'a str) -> Self {
+        Self { path, tokens: Tokens::new(text) }
+    }
+
+    pub(super) fn next(&mut self) -> Result<Option<Token<'a>>, PointsError> {
+        self.tokens.next().map_err(|SyntaxError { what, is_cut }| {
+            let reason = if is_cut {
+                Reason::truncated(format!("{what}: it is truncated"))
+            } else {
+                Reason::value(what)
+            };
+            format(self.path, reason)
+        })
+    }
+
+    /// The value of the tag that came last.
+    pub(super) fn value_of(&mut self, tag: &str) -> Result<Token<'a>, PointsError> {
+        match self.next()? {
+            Some(value @ Token::Value(..)) => Ok(value),
+            Some(_) => Err(self.wrong_here(&format!("has no value behind {tag}"))),
+            None => {
+                let what = format!("ends behind the tag {tag}: it is truncated");
+                Err(format(self.path, Reason::truncated(what)))
+            }
+        }
+    }
+
+    /// The tags of a loop, and the word behind them.
+    pub(super) fn tags(&mut self) -> Result<(Vec<&'a str>, Option<Token<'a>>), PointsError> {
+        let mut tags = Vec::new();
+        let mut ahead = self.next()?;
+        while let Some(Token::Tag(tag)) = ahead {
+            tags.push(tag);
+            ahead = self.next()?;
+        }
+        if tags.is_empty() {
+            return Err(self.wrong_here("has a loop_ without tags"));
+        }
+        Ok((tags, ahead))
+    }
+
+    /// Reads the next row of a loop; returns whether there is one. `ahead` is the word behind the tags, and in the end that behind the
+    /// rows.
+    pub(super) fn row(
+        &mut self,
+        tags: &[&str],
+        row: &mut Vec<Token<'a>>,
+        ahead: &mut Option<Token<'a>>,
+    ) -> Result<bool, PointsError> {
+        row.clear();
+        while row.len() < tags.len() {
+            let word = match ahead.take() {
+                None => self.next()?,
+                word => word,
+            };
+            match word {
+                Some(value @ Token::Value(..)) => row.push(value),
+                other => {
+                    *ahead = other;
+                    break;
+                }
+            }
+        }
+        if row.is_empty() || row.len() == tags.len() {
+            return Ok(!row.is_empty());
+        }
+        let (found, all, first) = (row.len(), tags.len(), tags[0]);
+        let what = format!("{found} of {all} values in the last row of the loop of {first}");
+        Err(match ahead {
+            None => {
+                format(self.path, Reason::truncated(format!("ends behind {what}: it is truncated")))
+            }
+            Some(_) => self.wrong_here(&format!("comes behind {what}")),
+        })
+    }
+
+    /// The error for a value that has no tag.
+    pub(super) fn without_tag(&self, value: &str) -> PointsError {
+        let value: String = value.chars().take(20).collect();
+        self.wrong_here(&format!("has a value without a tag, {value:?}"))
+    }
+
+    /// The error for what is in the line of the last word.
+    pub(super) fn wrong_here(&self, what: &str) -> PointsError {
+        format(self.path, Reason::value(format!("line {} {what}", self.tokens.line())))
+    }
+}
+
+/// A finite number, which may have its uncertainty in parentheses.
+pub(super) fn number(text: &str) -> Option<f64> {
+    let text = match text.split_once('(') {
+        Some((number, uncertainty)) => {
+            let digits = uncertainty.strip_suffix(')')?;
+            (!digits.is_empty() && digits.bytes().all(|byte| byte.is_ascii_digit()))
+                .then_some(number)?
+        }
+        None => text,
+    };
+    text.parse().ok().filter(|number: &f64| number.is_finite())
+}
+
+/// A symbol without the charge behind it, as in `Fe3+`.
+pub(super) fn without_charge(symbol: &str) -> &str {
+    match symbol.strip_suffix(['+', '-']) {
+        Some(rest) => rest.trim_end_matches(|c: char| c.is_ascii_digit()),
+        None => symbol,
     }
 }
 

@@ -4,9 +4,9 @@
 use std::path::Path;
 
 use super::cell::UnitCell;
-use super::cif::{SyntaxError, Token, Tokens};
+use super::cif::{Token, Words, number, without_charge};
 use super::text::text;
-use super::{COLUMNS, Points, PointsError, format};
+use super::{COLUMNS, Points, PointsError, crystal, format};
 use crate::molecule::{Atom, Element, Found};
 use crate::{ModelMetadata, PointOptions};
 use walpha_volume::{OpenFile, Reason};
@@ -52,75 +52,36 @@ pub(crate) fn read(
 ) -> Result<(Points, ModelMetadata), PointsError> {
     let path = file.path();
     let text = text(file)?;
+    if crystal::is_one(&text) {
+        return crystal::read(path, &text, options);
+    }
     let mut reader = Reader {
         path,
-        tokens: Tokens::new(&text),
+        words: Words::new(path, &text),
         found: Found::default(),
         single: Vec::new(),
-        instead: Instead::default(),
+        has_block: false,
     };
     let cell = reader.all()?;
     reader.found.cell = cell;
     if reader.found.last().is_none() {
-        return Err(format(path, reader.instead.reason()));
+        let reason = if reader.has_block {
+            Reason::content("has no atoms (_atom_site)", "name a file of coordinates")
+        } else {
+            Reason::other("has no data_ block, with which CIF begins")
+        };
+        return Err(format(path, reason));
     }
     reader.found.select(path, &options.atoms, options)
 }
 
-/// What is there in place of atoms.
-#[derive(Clone, Copy, Default, PartialEq, PartialOrd)]
-enum Instead {
-    #[default]
-    Nothing,
-    /// Blocks of other things.
-    Blocks,
-    /// Tags of atoms without a category, as in CIF of small molecules.
-    Uncategorised,
-    /// Places as fractions of a unit cell.
-    Fractions,
-}
-
-impl Instead {
-    fn of(tag: &str) -> Self {
-        let begins =
-            |name: &str| tag.get(..name.len()).is_some_and(|own| own.eq_ignore_ascii_case(name));
-        if begins("_atom_site_fract_x") || begins("_atom_site.fract_x") {
-            Self::Fractions
-        } else if begins("_atom_site_") && !tag.contains('.') {
-            Self::Uncategorised
-        } else {
-            Self::Nothing
-        }
-    }
-
-    /// Why a file without atoms is not read.
-    fn reason(self) -> Reason {
-        const CONVERT: &str = "convert it to coordinates in ångströms: mmCIF, PDB or extended XYZ";
-        match self {
-            Self::Fractions => {
-                let what = "states places as fractions of a unit cell (_atom_site_fract_x), as CIF of crystals does";
-                Reason::unsupported(what, CONVERT)
-            }
-            Self::Uncategorised => {
-                let what =
-                    "is CIF of small molecules, whose tags have no category (_atom_site_label)";
-                Reason::unsupported(what, CONVERT)
-            }
-            Self::Blocks => {
-                Reason::content("has no atoms (_atom_site)", "name a file of coordinates")
-            }
-            Self::Nothing => Reason::other("has no data_ block, with which CIF begins"),
-        }
-    }
-}
-
 struct Reader<'a> {
     path: &'a Path,
-    tokens: Tokens<'a>,
+    words: Words<'a>,
     found: Found,
     /// Items of atoms outside of a loop: those of a single atom.
     single: Vec<(&'a str, Token<'a>)>,
-    instead: Instead,
+    has_block: bool,
 }
 
 impl<'a> Reader<'a> {
@@ -128,22 +89,12 @@ impl<'a> Reader<'a> {
     fn all(&mut self) -> Result<Option<crate::Cell>, PointsError> {
         let mut cell = [None; CELL.len()];
         let mut group = None;
-        let mut ahead = self.token()?;
+        let mut ahead = self.words.next()?;
         while let Some(token) = ahead {
             ahead = match token {
                 Token::Loop => self.looped()?,
                 Token::Tag(tag) => {
-                    let value = match self.token()? {
-                        Some(value @ Token::Value(..)) => value,
-                        Some(_) => {
-                            return Err(self.wrong_here(&format!("has no value behind {tag}")));
-                        }
-                        None => {
-                            let what = format!("ends behind the tag {tag}: it is truncated");
-                            return Err(format(self.path, Reason::truncated(what)));
-                        }
-                    };
-                    self.note(Instead::of(tag));
+                    let value = self.words.value_of(tag)?;
                     if of_atoms(tag).is_some() {
                         self.single.push((tag, value));
                     }
@@ -153,18 +104,15 @@ impl<'a> Reader<'a> {
                     } else if GROUPS.iter().any(is) {
                         group = value.value().or(group);
                     }
-                    self.token()?
+                    self.words.next()?
                 }
                 Token::Block => {
-                    self.note(Instead::Blocks);
+                    self.has_block = true;
                     self.finish_single()?;
-                    self.token()?
+                    self.words.next()?
                 }
-                Token::Frame => self.token()?,
-                Token::Value(text, _) => {
-                    let text: String = text.chars().take(20).collect();
-                    return Err(self.wrong_here(&format!("has a value without a tag, {text:?}")));
-                }
+                Token::Frame => self.words.next()?,
+                Token::Value(text, _) => return Err(self.words.without_tag(text)),
             };
         }
         self.finish_single()?;
@@ -179,48 +127,19 @@ impl<'a> Reader<'a> {
 
     /// Reads the tags and rows of a loop; returns the token behind it.
     fn looped(&mut self) -> Result<Option<Token<'a>>, PointsError> {
-        let mut tags = Vec::new();
-        let mut ahead = self.token()?;
-        while let Some(Token::Tag(tag)) = ahead {
-            self.note(Instead::of(tag));
-            tags.push(tag);
-            ahead = self.token()?;
-        }
-        if tags.is_empty() {
-            return Err(self.wrong_here("has a loop_ without tags"));
-        }
+        let (tags, mut ahead) = self.words.tags()?;
         let columns = match of_atoms(tags[0]) {
             Some(_) => {
                 self.begin_atoms()?;
-                Some(Columns::of(&tags).map_err(|what| self.wrong_here(&what))?)
+                Some(Columns::of(&tags).map_err(|what| self.words.wrong_here(&what))?)
             }
             None => None,
         };
         let mut row = Vec::new();
-        while let Some(value @ Token::Value(..)) = ahead {
-            row.push(value);
-            if row.len() == tags.len() {
-                if let Some(columns) = &columns {
-                    self.atom(columns, &row)?;
-                }
-                row.clear();
+        while self.words.row(&tags, &mut row, &mut ahead)? {
+            if let Some(columns) = &columns {
+                self.atom(columns, &row)?;
             }
-            ahead = self.token()?;
-        }
-        if !row.is_empty() {
-            let what = format!(
-                "{} of {} values in the last row of the loop of {}",
-                row.len(),
-                tags.len(),
-                tags[0]
-            );
-            return Err(match ahead {
-                None => format(
-                    self.path,
-                    Reason::truncated(format!("ends behind {what}: it is truncated")),
-                ),
-                Some(_) => self.wrong_here(&format!("comes behind {what}")),
-            });
         }
         Ok(ahead)
     }
@@ -233,7 +152,7 @@ impl<'a> Reader<'a> {
         }
         self.begin_atoms()?;
         let (tags, row): (Vec<&str>, Vec<Token<'_>>) = items.into_iter().unzip();
-        let columns = Columns::of(&tags).map_err(|what| self.wrong_here(&what))?;
+        let columns = Columns::of(&tags).map_err(|what| self.words.wrong_here(&what))?;
         self.atom(&columns, &row)
     }
 
@@ -266,14 +185,15 @@ impl<'a> Reader<'a> {
         for (k, text) in [x, y, z].into_iter().enumerate() {
             position[k] = text.and_then(number).ok_or_else(|| {
                 let text = text.unwrap_or("none");
-                self.wrong_here(&format!("has {text:?} as {}, which is not a number", COLUMNS[k]))
+                self.words
+                    .wrong_here(&format!("has {text:?} as {}, which is not a number", COLUMNS[k]))
             })?;
         }
         let character = |text: Option<&str>, what: &str| {
             let mut characters = text.unwrap_or_default().chars();
             match (characters.next(), characters.next()) {
                 (first, None) => Ok(first),
-                _ => Err(self.wrong_here(&format!("has {what} of more than one character"))),
+                _ => Err(self.words.wrong_here(&format!("has {what} of more than one character"))),
             }
         };
         let (alternate, insertion) =
@@ -281,19 +201,21 @@ impl<'a> Reader<'a> {
         let whole = |text: Option<&str>, what: &str| match text {
             None => Ok(None),
             Some(text) => text.parse::<i32>().map(Some).map_err(|_| {
-                self.wrong_here(&format!("has {text:?} as {what}, which is not a whole number"))
+                self.words
+                    .wrong_here(&format!("has {text:?} as {what}, which is not a whole number"))
             }),
         };
         let residue_number = whole(sequence, "the number of a residue")?;
         let model = match whole(model, "the number of a model")? {
             None => 1,
-            Some(model) => u32::try_from(model)
-                .map_err(|_| self.wrong_here(&format!("has a model of the number {model}")))?,
+            Some(model) => u32::try_from(model).map_err(|_| {
+                self.words.wrong_here(&format!("has a model of the number {model}"))
+            })?,
         };
         let occupancy = match occupancy {
             None => None,
             Some(text) => Some(number(text).ok_or_else(|| {
-                self.wrong_here(&format!("has {text:?} as occupancy, which is not a number"))
+                self.words.wrong_here(&format!("has {text:?} as occupancy, which is not a number"))
             })?),
         };
         let (name, residue) = (name.unwrap_or_default(), residue.unwrap_or_default());
@@ -314,28 +236,6 @@ impl<'a> Reader<'a> {
             charge: None,
         };
         Ok(self.found.push(position, atom)?)
-    }
-
-    fn note(&mut self, found: Instead) {
-        if found > self.instead {
-            self.instead = found;
-        }
-    }
-
-    fn token(&mut self) -> Result<Option<Token<'a>>, PointsError> {
-        self.tokens.next().map_err(|SyntaxError { what, is_cut }| {
-            let reason = if is_cut {
-                Reason::truncated(format!("{what}: it is truncated"))
-            } else {
-                Reason::value(what)
-            };
-            format(self.path, reason)
-        })
-    }
-
-    /// The error for what is in the line of the last token.
-    fn wrong_here(&self, what: &str) -> PointsError {
-        format(self.path, Reason::value(format!("line {} {what}", self.tokens.line())))
     }
 }
 
@@ -361,7 +261,7 @@ impl Columns {
             if k < 3 && columns[k].is_none() {
                 let is_fraction = items.iter().any(|item| item == "fract_x");
                 let instead = if is_fraction {
-                    ", but fractions of a unit cell, which are not read"
+                    ", but fractions of a unit cell, which are read of CIF of crystals (_atom_site_fract_x)"
                 } else {
                     ""
                 };
@@ -379,25 +279,4 @@ impl Columns {
 fn of_atoms(tag: &str) -> Option<&str> {
     let (category, item) = tag.split_at_checked(ATOMS.len())?;
     category.eq_ignore_ascii_case(ATOMS).then_some(item)
-}
-
-/// A finite number, which may have its uncertainty in parentheses.
-fn number(text: &str) -> Option<f64> {
-    let text = match text.split_once('(') {
-        Some((number, uncertainty)) => {
-            let digits = uncertainty.strip_suffix(')')?;
-            (!digits.is_empty() && digits.bytes().all(|byte| byte.is_ascii_digit()))
-                .then_some(number)?
-        }
-        None => text,
-    };
-    text.parse().ok().filter(|number: &f64| number.is_finite())
-}
-
-/// A symbol without the charge behind it, as in `Fe3+`.
-fn without_charge(symbol: &str) -> &str {
-    match symbol.strip_suffix(['+', '-']) {
-        Some(rest) => rest.trim_end_matches(|c: char| c.is_ascii_digit()),
-        None => symbol,
-    }
 }

@@ -6,9 +6,14 @@ mod columns;
 pub(super) mod content;
 #[cfg(feature = "las")]
 mod crs;
+mod crystal;
 mod dialect;
 mod extended;
+pub(super) mod gro;
 mod header;
+mod lammps;
+pub(super) mod lammps_data;
+pub(super) mod lammps_dump;
 #[cfg(feature = "las")]
 pub(super) mod las;
 #[cfg(feature = "las")]
@@ -23,10 +28,12 @@ pub(super) mod off;
 pub(super) mod pcd;
 pub(super) mod pdb;
 pub(super) mod ply;
+pub(super) mod poscar;
 pub(super) mod pqr;
 mod rows;
 pub(super) mod stated;
 pub(super) mod stl;
+mod symmetry;
 pub(super) mod text;
 pub(super) mod vtk;
 pub(super) mod xyz;
@@ -37,7 +44,7 @@ pub use columns::{Columns, UnknownColumns};
 
 use std::path::Path;
 
-use walpha_base::advice::Advise;
+use walpha_base::advice::{Advise, Setting, advice};
 use walpha_base::shown::shown;
 use walpha_check::meshes::MeshError;
 
@@ -48,6 +55,36 @@ use walpha_volume::Reason;
 /// The error for a file of points.
 pub(super) fn format(path: &Path, reason: Reason) -> PointsError {
     PointsError::Format { path: path.into(), reason }
+}
+
+/// The index of the frame that is asked for.
+///
+/// # Errors
+/// There is no such frame; or none is asked for, and there are several.
+fn choose_frame(path: &Path, count: usize, asked: Option<u64>) -> Result<usize, PointsError> {
+    let last = count - 1;
+    let several = match asked {
+        None if count == 1 => return Ok(0),
+        Some(frame) if frame <= last as u64 => return Ok(frame as usize),
+        Some(frame) => format!("has no frame {frame}: it holds {count}"),
+        None => format!("holds {count} frames: scans, or steps of a trajectory"),
+    };
+    let advice = advice!["choose one with ", Setting::Frame, format!(", from 0 to {last}")];
+    Err(format(path, Reason::choice(Setting::Frame, several, advice)))
+}
+
+/// The index of the frame of a trajectory that is asked for, or else the first.
+///
+/// # Errors
+/// There is no such frame.
+fn first_frame(path: &Path, count: usize, asked: Option<u64>) -> Result<usize, PointsError> {
+    if asked.is_none() && count > 1 {
+        tracing::warn!(
+            "{}: it holds {count} frames, of which the first is read; `frame` takes another",
+            shown(path)
+        );
+    }
+    choose_frame(path, count, asked.or(Some(0)))
 }
 
 /// The error for a mesh that the checker's reader refuses.

@@ -2,7 +2,6 @@ use std::collections::HashSet;
 use std::path::Path;
 use std::sync::Arc;
 
-use walpha_base::advice::{Setting, advice};
 use walpha_base::memory::{NoMemory, try_reserve, try_with_capacity};
 use walpha_base::shown::shown;
 
@@ -12,8 +11,8 @@ use super::header::Header;
 use super::lines::{Frame, Miscount, Numbered, count, frames, is_comment};
 use super::rows::TextRows;
 use super::text::text;
-use super::{Columns, Points, PointsError, format};
-use crate::molecule::{Atom, Element, Molecule, Radii};
+use super::{Columns, Points, PointsError, choose_frame, format};
+use crate::molecule::{Atom, Element, Molecule, Radii, warn_of_labels};
 use crate::{Attributes, Cell, ModelMetadata, PointOptions};
 use walpha_volume::{Coordinates, LengthUnit, OpenFile, Reason};
 
@@ -69,33 +68,20 @@ pub(crate) fn read(
         return Err(format(path, Reason::content("has no rows of numbers", "name another file")));
     }
     if lines.contents().next().is_none_or(|(_, line)| count(line).is_none()) {
-        choose(path, 1, options.frame)?;
+        choose_frame(path, 1, options.frame)?;
         let rows = rows(path, &lines, columns, layout, &options.attributes)?;
         return Ok((rows, in_unit(unit)));
     }
     if layout == TextLayout::PointsThenNormals {
-        choose(path, 1, options.frame)?;
+        choose_frame(path, 1, options.frame)?;
         return Ok((points_then_normals(path, lines)?, in_unit(unit)));
     }
     let frames = counted(path, &lines, layout)?;
-    let frame = &frames[choose(path, frames.len(), options.frame)?];
+    let frame = &frames[choose_frame(path, frames.len(), options.frame)?];
     let (points, cell) = of_frame(path, frame, columns, layout, options)?;
     // Elements are those of atoms, whose places chemistry states in this unit.
     let unit = if points.molecule.is_some() { LengthUnit::Angstrom } else { unit };
     Ok((points, in_unit(unit).cell(cell)))
-}
-
-/// The index of the requested frame.
-fn choose(path: &Path, count: usize, asked: Option<u64>) -> Result<usize, PointsError> {
-    let last = count - 1;
-    let several = match asked {
-        None if count == 1 => return Ok(0),
-        Some(frame) if frame <= last as u64 => return Ok(frame as usize),
-        Some(frame) => format!("has no frame {frame}: it holds {count}"),
-        None => format!("holds {count} frames: scans, or steps of a trajectory"),
-    };
-    let advice = advice!["choose one with ", Setting::Frame, format!(", from 0 to {last}")];
-    Err(format(path, Reason::choice(Setting::Frame, several, advice)))
 }
 
 /// The frames of lines that begin with a count. In chemistry's XYZ a comment line follows it; if the numbers of rows show that
@@ -235,12 +221,8 @@ fn take_atoms(
     let molecule = Molecule { atoms: list, ..Molecule::default() };
     let is_asked = radii.is_some_and(|radii| *radii != Radii::None);
     if !is_asked && molecule.atoms.iter().all(|atom| atom.element.is_none()) {
-        if let (None, Some(first)) = (radii, molecule.atoms.first()) {
-            tracing::warn!(
-                "{}: its names of atoms are not elements ({:?}), so they have no radii; `radii` FILE gives them",
-                shown(path),
-                first.name
-            );
+        if radii.is_none() {
+            warn_of_labels(path, molecule.atoms.first());
         }
         return Ok(());
     }

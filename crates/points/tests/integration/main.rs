@@ -1,5 +1,6 @@
 //! Tests of what the crate offers: in Rust alone, without the command.
 
+mod crystals;
 mod haar;
 mod molecules;
 mod points;

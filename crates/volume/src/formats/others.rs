@@ -28,12 +28,11 @@ macro_rules! kind {
 const SLICES: &str = "give the folder of all slices, as PNG, JPEG or TIFF";
 const CONVERT: &str = "convert it to NRRD, NIfTI or TIFF";
 const UNPACK: &str = "unpack it, and name the file in it";
-const TABLE: &str = "save the places of its atoms as a table, x,y,z in each line (.csv or .xyz)";
 const SAVE_TABLE: &str = "save it as CSV";
 const DOWNLOAD: &str = "download the file itself: this is what a server said instead";
 
 /// The kinds, in the order in which they are tried.
-static KINDS: [Kind; 49] = [
+static KINDS: [Kind; 51] = [
     kind!(b"\x89PNG", "a PNG picture, one slice", SLICES),
     kind!(b"\xff\xd8\xff", "a JPEG picture, one slice", SLICES),
     kind!(b"GIF8", "a GIF picture", SLICES),
@@ -147,8 +146,26 @@ static KINDS: [Kind; 49] = [
         what: "a CIF file of a molecule or crystal, which has points and no samples",
         advice: "read it as points: call it .cif",
     },
-    Kind { begins: is_gro, what: "a GRO file of GROMACS, which is not read", advice: TABLE },
-    kind!(b"ITEM: TIMESTEP" | b"ITEM: UNITS", "a LAMMPS dump, which is not read", TABLE),
+    Kind {
+        begins: is_gro,
+        what: "a GRO file of GROMACS, which has points and no samples",
+        advice: "read it as points: call it .gro",
+    },
+    Kind {
+        begins: is_lammps_dump,
+        what: "a LAMMPS dump, which has points and no samples",
+        advice: "read it as points: call it .lammpstrj",
+    },
+    Kind {
+        begins: is_lammps_data,
+        what: "a LAMMPS data file, which has points and no samples",
+        advice: "read it as points: call it .lmp",
+    },
+    Kind {
+        begins: is_poscar,
+        what: "a POSCAR file of VASP, which has points and no samples",
+        advice: "read it as points: call it .vasp",
+    },
     kind!(
         b"\x7fELF" | b"MZ\x90\0" | b"\xcf\xfa\xed\xfe",
         "a program",
@@ -224,7 +241,7 @@ fn is_other_xml(start: &[u8]) -> bool {
 
 /// Whether the file is in GROMACS's GRO format: a title, a count, and a line of a residue's number and name, an atom's name and
 /// number, and a position, each in columns of fixed width.
-fn is_gro(start: &[u8]) -> bool {
+pub fn is_gro(start: &[u8]) -> bool {
     let mut lines = start.split(|&byte| byte == b'\n').skip(1);
     let mut next = || str::from_utf8(lines.next()?).ok();
     let (Some(count), Some(atom)) = (next(), next()) else { return false };
@@ -241,6 +258,45 @@ fn is_gro(start: &[u8]) -> bool {
         && whole(15, 20)
         && atom.get(5..15).is_some_and(is_name)
         && (0..3).all(place)
+}
+
+/// Whether the file begins as a dump of LAMMPS.
+pub fn is_lammps_dump(start: &[u8]) -> bool {
+    ["ITEM: TIMESTEP", "ITEM: UNITS", "ITEM: TIME\n"]
+        .iter()
+        .any(|item| start.starts_with(item.as_bytes()))
+}
+
+/// Whether the file is a data file of LAMMPS: behind a title it has lines with the numbers of atoms and of their types.
+pub fn is_lammps_data(start: &[u8]) -> bool {
+    let counts = |line: &[u8], what: &[&str]| {
+        let line = str::from_utf8(line).unwrap_or_default();
+        let line = line.split('#').next().unwrap_or_default();
+        let mut words = line.split_whitespace();
+        words.next().is_some_and(|word| word.parse::<u64>().is_ok())
+            && words.eq(what.iter().copied())
+    };
+    let has =
+        |what: &[&str]| start.split(|&byte| byte == b'\n').skip(1).any(|line| counts(line, what));
+    has(&["atoms"]) && has(&["atom", "types"])
+}
+
+/// Whether the file is a POSCAR of VASP: a title, a scale, three vectors, names of elements, and as many numbers of atoms.
+pub fn is_poscar(start: &[u8]) -> bool {
+    let text = String::from_utf8_lossy(start);
+    let mut lines = text.lines().skip(1).map(|line| line.split_whitespace().collect::<Vec<_>>());
+    let mut next = || lines.next().unwrap_or_default();
+    let are_numbers = |words: &[&str], count: usize| {
+        words.len() == count && words.iter().all(|word| word.parse::<f64>().is_ok())
+    };
+    let (scale, vectors) = (next(), [next(), next(), next()]);
+    let (names, counts) = (next(), next());
+    (are_numbers(&scale, 1) || are_numbers(&scale, 3))
+        && vectors.iter().all(|vector| are_numbers(vector, 3))
+        && !names.is_empty()
+        && names.iter().all(|name| name.starts_with(|c: char| c.is_ascii_alphabetic()))
+        && counts.len() == names.len()
+        && counts.iter().all(|count| count.parse::<u64>().is_ok())
 }
 
 /// Whether the first lines contain words that CIF files have.
@@ -309,6 +365,9 @@ mod tests {
             ),
             (b"ATOM 1 N ALA 1 0.0 0.0 0.0 -0.4 1.85\n", "PQR"),
             (b"water\n 2\n    1SOL     OW    1   0.126   1.624   1.679\n", "GROMACS"),
+            (b"ITEM: TIMESTEP\n0\n", "LAMMPS dump"),
+            (b"title\n\n2 atoms\n1 atom types # no\n", "LAMMPS data"),
+            (b"quartz\n1.0\n4.9 0 0\n-2.4 4.2 0\n0 0 5.4\nSi O\n3 6\nDirect\n", "POSCAR"),
             (b"\x80\x04\x95", "pickle"),
             (b"P5\n# a remark\n3 2\n255\n", "PGM"),
             (b"\0\0\0\x20ftypisom", "video"),
@@ -327,6 +386,8 @@ mod tests {
             b"data_x,data_y\n1,2\n",
             b"BMI,age\n1,2\n",
             b"TITLE,x",
+            b"2 atoms\n1 2 3\n",
+            b"a\n1\n1 2 3\n1 2 3\n1 2 3\n1 2 3\n1 2 3\n",
         ] {
             assert_eq!(told(start), None);
         }

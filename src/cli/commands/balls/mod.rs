@@ -32,7 +32,7 @@ use tables::Table;
 
 /// Measure the union of balls: volume and area, those of each ball, contacts, voids and pockets.
 ///
-/// A point with a radius is a ball: an atom of a molecule (PDB, mmCIF, PQR, XYZ), or a row of a table with a column radius. Volumes
+/// A point with a radius is a ball: an atom of a molecule (PDB, mmCIF, PQR, GRO, XYZ), or a row of a table with a column radius. Volumes
 /// and areas are those of the balls, not of tetrahedra. Each has a bound on its error; the report prints the digits that are
 /// certain. With --probe R all radii grow by R: the area is then the solvent-accessible surface of a molecule.
 ///
