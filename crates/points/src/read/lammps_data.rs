@@ -1,4 +1,4 @@
-//! Data files of LAMMPS: a header with the box, and sections (LAMMPS documentation, "read_data command").
+//! Data files of LAMMPS: a header with the box, and sections (LAMMPS documentation, "`read_data` command").
 
 use std::collections::HashMap;
 use std::path::Path;
@@ -111,7 +111,7 @@ pub(crate) fn read(
     data.finish(units, options)
 }
 
-/// The units that a title states, as write_data does.
+/// The units that a title states, as `write_data` does.
 fn stated_units(title: &str) -> Option<Units> {
     let (_, behind) = title.split_once("units =")?;
     Units::named(behind.trim().split([',', ' ']).next()?)
@@ -271,26 +271,8 @@ impl<'a> Data<'a> {
     }
 
     fn atom(&mut self, line: u64, words: &[&'a str]) -> Result<Row<'a>, PointsError> {
-        let style = match self.style {
-            Some(style) => style,
-            None => {
-                let style = self.style_of(words).ok_or_else(|| {
-                    let what = format!(
-                        "has {} fields, and the file does not name the style of its atoms (Atoms # full)",
-                        words.len()
-                    );
-                    wrong(self.path, line, &what)
-                })?;
-                if style.name != FULL.name {
-                    tracing::warn!(
-                        "{}: it does not name the style of its atoms (Atoms # …): their columns are taken for those of {}",
-                        shown(self.path),
-                        style.name
-                    );
-                }
-                *self.style.insert(style)
-            }
-        };
+        let style = self.style.map_or_else(|| self.guess(line, words), Ok)?;
+        self.style = Some(style);
         if ![style.place + 3, style.place + 6].contains(&words.len()) {
             let what = format!(
                 "has {} fields, not {} as atoms of the style {}",
@@ -314,6 +296,25 @@ impl<'a> Data<'a> {
             charge: of(style.charge, "charge")?,
             radius: of(style.diameter, "diameter")?.map(|diameter| diameter / 2.0),
         })
+    }
+
+    /// The style of the atoms, which the file does not name, from its first row.
+    fn guess(&self, line: u64, words: &[&str]) -> Result<Style, PointsError> {
+        let style = self.style_of(words).ok_or_else(|| {
+            let what = format!(
+                "has {} fields, and the file does not name the style of its atoms (Atoms # full)",
+                words.len()
+            );
+            wrong(self.path, line, &what)
+        })?;
+        if style.name != FULL.name {
+            tracing::warn!(
+                "{}: it does not name the style of its atoms (Atoms # …): their columns are taken for those of {}",
+                shown(self.path),
+                style.name
+            );
+        }
+        Ok(style)
     }
 
     /// The style of rows like this one.

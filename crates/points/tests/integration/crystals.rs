@@ -259,7 +259,7 @@ fn wrong_crystals_are_errors() {
 /// Two waters and a residue in a slanted box.
 const GRO: &str = "Slanted
     4
-    1SOL     OW    1   0.230   0.628   0.113  0.1000  0.2000  0.3000
+    1SOL     OW    1   0.230   0.629   0.113  0.1000  0.2000  0.3000
     1SOL    HW1    2   0.137   0.626   0.150
     2ALA     CA    3  -1.000   2.345   3.210
     2ALA    HA1    4   9.999   0.001   0.000
@@ -276,7 +276,7 @@ fn gro_is_read_in_angstroms() {
     // Exactly as decimals.
     assert_eq!(
         points.positions,
-        [[2.3, 6.28, 1.13], [1.37, 6.26, 1.5], [-10.0, 23.45, 32.1], [99.99, 0.01, 0.0]]
+        [[2.3, 6.29, 1.13], [1.37, 6.26, 1.5], [-10.0, 23.45, 32.1], [99.99, 0.01, 0.0]]
     );
     assert_eq!(symbols(&points), ["O", "H", "C", "H"]);
     assert_eq!(metadata.coordinates.unit.symbol(), "Å");
