@@ -94,6 +94,12 @@ fn reader_files(folder: &Path) {
         )
     };
     write("1crn.pdb", &atoms.clone().map(of_pdb).collect::<Vec<_>>());
+    // Cristobalite, idealised.
+    let cif = "data_z\n_cell_length_a 7.16\n_cell_length_b 7.16\n_cell_length_c 7.16\n\
+               _cell_angle_alpha 90\n_cell_angle_beta 90\n_cell_angle_gamma 90\n\
+               loop_\n_atom_site_label\n_atom_site_fract_x\n_atom_site_fract_y\n_atom_site_fract_z\n\
+               Si1 0 0 0\nSi2 0.25 0.25 0.25\nO1 0.125 0.125 0.125\n";
+    fs::write(folder.join("zeolite.cif"), cif).expect("a file");
     let names = [
         "group_PDB",
         "id",

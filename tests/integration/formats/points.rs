@@ -72,7 +72,7 @@ fn commands_open_a_pipe_once() {
         ("check", "p.xyz", xyz, 0, "over 5 points"),
         ("info", "t.mesh", mesh, 0, "1 tetrahedra"),
         ("check", "t.mesh", mesh, 0, "over 4 points"),
-        ("check", "c.json", complex, 0, "over 1 points"),
+        ("check", "c.json", complex, 0, "over 1 point"),
         ("info", "p.off", off, 1, "copy it"),
         ("check", "p.off", off, 1, "copy it"),
         ("check", "u.json", unnamed, 1, "Illegal seek"),
