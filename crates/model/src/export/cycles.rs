@@ -9,13 +9,10 @@ use walpha_volume::{Coordinates, annotation};
 use super::vtu::{Appended, Ids, bytes};
 
 /// How many pairs of each dimension have their cycles written, unless a persistence is given.
-pub const MOST_CYCLES: usize = 100;
+const MOST: usize = 100;
 
-/// The intervals of a dimension, 1 or 2, that last longer than this, a squared length; without it the [`MOST_CYCLES`] that last longest. Longest first.
-///
-/// # Errors
-/// See [`Ordered::loops`].
-pub fn longest(
+/// The intervals of a dimension, 1 or 2, that last longer than this, a squared length; without it the [`MOST`] that last longest. Longest first.
+fn longest(
     ordered: &Ordered<'_>,
     dimension: usize,
     above: Option<f64>,
@@ -30,12 +27,13 @@ pub fn longest(
     });
     match above {
         Some(above) => intervals.retain(|interval| lasts(interval) > above),
-        None => intervals.truncate(MOST_CYCLES),
+        None => intervals.truncate(MOST),
     }
     Ok(intervals)
 }
 
-/// Writes the cycles of the [longest](longest()) intervals as VTP: for each loop a closed line, its
+/// Writes cycles of persistence pairs as VTP: of those that last longer than `above`, a squared length, or without it of the 100 of each dimension that last
+/// longest. For each loop a closed line, its
 /// [walk](walpha_shape::ladder::LoopCycle::walk), and for each void the triangles around it. Cell data are `dimension`, `birth`, `death` (infinite for a loop
 /// that never ends) and `interval`, the rank among those of its dimension from 0. Surfaces of a torus that never end have no cycles here. On a
 /// torus cycles are laid out in space. Points are repeated for each cycle.

@@ -50,7 +50,7 @@ mod vtu;
 mod wkt;
 
 pub use claim::{claim, placed_complex};
-pub use cycles::{MOST_CYCLES, longest, write_cycles};
+pub use cycles::write_cycles;
 pub use empty::{EmptyShape, Needs};
 pub use exporter::{ExportOptions, Exporter};
 pub use filtration::{FILTRATION_FORMATS, FiltrationFormat};
