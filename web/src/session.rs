@@ -2,6 +2,7 @@
 
 use std::io;
 use std::path::Path;
+use std::sync::Arc;
 
 use serde_json::json;
 use walpha_base::advice::{Advise, told};
@@ -14,8 +15,8 @@ use walpha_model::progress::{Listener, Monitor, Stage};
 use walpha_model::settings::PRESETS;
 use walpha_model::{Recipe, Settings};
 use walpha_points::{
-    ModelMetadata, Packing, PointOptions, PointWriter, Points, SampleGrid, bounding_box,
-    read_model_file,
+    Attributes, Column, ModelMetadata, Packing, PointOptions, PointWriter, Points, SampleGrid,
+    bounding_box, read_model_file,
 };
 use walpha_shape::ladder::{Filtration, Span};
 use walpha_shape::{Alpha, AlphaShape, Betti, ByClass, Class, NO_COMPONENT, WeightedPoints};
@@ -64,6 +65,8 @@ struct Made {
     /// The offset that is subtracted from coordinates for the page: in single precision, the coordinates of a map would be metres
     /// apart.
     centre: [f64; 3],
+    /// The further columns of the points, which some formats hold.
+    columns: Arc<[Column]>,
 }
 
 /// The data of which shapes are made.
@@ -282,7 +285,9 @@ impl Session {
             OpenInput::Volume(file) => file,
             OpenInput::Made(points, metadata) => return Ok(self.keep(points, metadata)),
             OpenInput::Points(file) => {
-                let of_points = PointOptions::default().columns(recipe.columns.clone());
+                let of_points = PointOptions::default()
+                    .columns(recipe.columns.clone())
+                    .attributes(Attributes::All);
                 let (points, metadata) = read_model_file(&file, &of_points)?;
                 return Ok(self.keep(points, metadata));
             }
@@ -334,9 +339,14 @@ impl Session {
         if matches!(recipe.alpha, AlphaRule::Given(alpha) if alpha.squared().is_infinite()) {
             return Err(Failure::new("α of the weights has to be finite here"));
         }
+        let mut columns = Vec::new();
         let input =
             match self.opened.as_ref().ok_or_else(|| Failure::new("nothing has been opened"))? {
-                Opened::Points(points, metadata) => Input::Points(points.clone(), metadata.clone()),
+                Opened::Points(points, metadata) => {
+                    let mut points = points.clone();
+                    columns = std::mem::take(&mut points.columns);
+                    Input::Points(points, metadata.clone())
+                }
                 Opened::Volume(volume) if recipe.labels.is_some() || recipe.surface.is_some() => {
                     let model = recipe.run(volume.clone())?;
                     return Ok(self.made_without_alpha(settings, recipe, model));
@@ -361,6 +371,7 @@ impl Session {
             all: None,
             domain,
             centre: [0, 1, 2].map(|k| f64::midpoint(low[k], high[k])),
+            columns: columns.into(),
             what: What::Weighed(weighed),
         };
         let answer = made.described(&shape);
@@ -382,6 +393,7 @@ impl Session {
             all: None,
             domain: [0, 1, 2].iter().map(|&k| high[k] - low[k]).product(),
             centre: [0, 1, 2].map(|k| f64::midpoint(low[k], high[k])),
+            columns: Arc::default(),
             what: What::Solid(model),
         };
         let answer = made.described(&shape);
@@ -709,7 +721,10 @@ impl Made {
                 return Err(Failure::new(why));
             }
             let exporter = format.exporter(
-                &ExportOptions::default().solid(solid && is_shape).input(Some(input.to_owned())),
+                &ExportOptions::default()
+                    .solid(solid && is_shape)
+                    .input(Some(input.to_owned()))
+                    .columns(Arc::clone(&self.columns)),
             );
             let shape = match &self.what {
                 What::Solid(model) => model.shape.clone(),
