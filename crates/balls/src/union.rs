@@ -215,12 +215,7 @@ impl<'a> BallUnion<'a> {
             union.contacts.get(row.expect("a translate of each edge"))
         };
         let sizes = Measured::collect(edges.len(), "contacts", size)?;
-        let own = shape.own_points() as u32;
-        let original = |v: u32| match v.checked_sub(own) {
-            None => v,
-            Some(copy) => shape.copies()[copy as usize],
-        };
-        let pairs = edges.iter().map(|edge| edge.map(original)).collect();
+        let pairs = edges.iter().map(|edge| edge.map(|v| shape.copied(v).0)).collect();
         union.of_box = Some(OfBox { pairs, sizes, copies });
         Ok(union)
     }

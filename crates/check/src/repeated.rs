@@ -16,10 +16,6 @@ const MOST: usize = 1 << 15;
 pub(crate) fn repeated(file: ComplexFile) -> Result<(ComplexFile, usize), SchemaError> {
     let Some(copies) = &file.copies else { return Ok((file, 1)) };
     let Some(vectors) = file.periodic else { return Err(SchemaError::Missing("periodic")) };
-    if !Period::is_sound(vectors) {
-        // Which the reader reports.
-        return Ok((file, 1));
-    }
     let named = Named::of(&file, copies, Period::new(vectors))?;
     let times = named.times(&file)?;
     let count = times.iter().product::<i32>() as usize;

@@ -77,7 +77,8 @@ impl AlphaShape {
     }
 
     /// The point that a vertex is a copy of, and the multiples of the vectors by which it is moved.
-    pub(crate) fn copied(&self, v: u32) -> Copied {
+    #[doc(hidden)]
+    pub fn copied(&self, v: u32) -> (u32, [i32; 3]) {
         match (v as usize).checked_sub(self.own_points()) {
             None => (v, [0; 3]),
             Some(copy) => (self.copies[copy], self.shifts[copy]),

@@ -231,7 +231,7 @@ struct Probe {
 impl Probe {
     fn of(radius: f64, balls: &Balls) -> Result<Self> {
         let Frame { filtration, alpha } = balls.filtration(radius)?;
-        let parts = filtration.pore_parts(alpha)?.expect("a filtration of a torus");
+        let parts = filtration.pore_parts(alpha).expect("a filtration of a torus");
         let shape = filtration.shape(alpha);
         let union = BallUnion::new(&shape)?;
         let filled = union.box_fraction().expect("a shape of a torus");

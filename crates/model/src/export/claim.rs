@@ -14,10 +14,9 @@ pub(super) fn complex_file(shape: &AlphaShape) -> ComplexFile {
     let mut file = ComplexFile::from(claim(shape));
     file.periodic = shape.options().periodic.map(|torus| BoxVectors(torus.vectors()));
     file.copies = point_copies(shape);
-    if let Some(copies) = &file.copies {
-        let own = file.points.len() - copies.len();
-        file.points.truncate(own);
-        file.weights.iter_mut().for_each(|weights| weights.truncate(own));
+    if file.copies.is_some() {
+        file.points.truncate(shape.own_points());
+        file.weights.iter_mut().for_each(|weights| weights.truncate(shape.own_points()));
     }
     file.voxels = shape.voxels().cloned();
     file.isovalue = shape.isovalue();

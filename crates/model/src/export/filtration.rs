@@ -283,15 +283,11 @@ fn write_csv(ordered: &Ordered<'_>, out: &mut dyn Write, monitor: &Monitor) -> i
 /// Writes the vertices of a simplex, separated by spaces. `3:0:0:1` is the copy of point 3 that is moved by the third vector of a periodic box.
 fn write_vertices(ordered: &Ordered<'_>, vertices: &[u32], out: &mut dyn Write) -> io::Result<()> {
     let whole = ordered.filtration().whole();
-    let own = whole.own_points();
     vertices.iter().enumerate().try_for_each(|(at, &v)| {
         let space = if at == 0 { "" } else { " " };
-        match (v as usize).checked_sub(own) {
-            None => write!(out, "{space}{v}"),
-            Some(copy) => {
-                let (of, [a, b, c]) = (whole.copies()[copy], whole.shifts()[copy]);
-                write!(out, "{space}{of}:{a}:{b}:{c}")
-            }
+        match whole.copied(v) {
+            (v, [0, 0, 0]) => write!(out, "{space}{v}"),
+            (v, [a, b, c]) => write!(out, "{space}{v}:{a}:{b}:{c}"),
         }
     })
 }

@@ -29,10 +29,10 @@ type Times = [u32; 3];
 impl Filtration {
     /// The filtration of the smallest cover in which no edge spans half of the torus, divided by the translations.
     pub(crate) fn of_small_box(torus: Torus, points: WeightedPoints) -> Result<Self, ShapeError> {
-        let (times, covering) = covered(torus, &points, |cover| {
+        let (cover, covering) = covered(torus, &points, |cover| {
             Self::of_large_box(Some(cover.torus), cover.repeated())
         })?;
-        Ok(Cover::new(torus, times, points)?.divide(covering))
+        Ok(cover.divide(covering))
     }
 }
 
@@ -48,7 +48,7 @@ pub struct Covering {
 impl Covering {
     /// The number of copies.
     pub fn copies(&self) -> usize {
-        self.times.iter().map(|&n| n as usize).product()
+        product(self.times)
     }
 
     /// The row of one of the translates of a simplex of the box.
@@ -79,23 +79,29 @@ impl AlphaShape {
             weights: weights[..own].to_vec(),
             values: None,
         };
-        let (times, shape) = covered(torus, &points, |cover| {
+        let (cover, shape) = covered(torus, &points, |cover| {
             let options = ShapeOptions { periodic: Some(cover.torus), ..*self.options() };
             in_large_box(cover.repeated(), &options, monitor)
         })?;
-        Ok(Some(Covering { shape, times }))
+        Ok(Some(Covering { shape, times: cover.times }))
     }
 }
 
-/// Finds something of the smallest cover in which no edge of it spans half of the torus.
+/// The number of copies of a box.
+fn product(times: Times) -> usize {
+    times.iter().map(|&n| n as usize).product()
+}
+
+/// Finds something of the smallest cover in which no edge of it spans half of the torus; returns both.
 fn covered<T>(
     torus: Torus,
     points: &WeightedPoints,
     find: impl Fn(&Cover) -> Result<T, ShapeError>,
-) -> Result<(Times, T), ShapeError> {
+) -> Result<(Cover, T), ShapeError> {
     let mut times = [1; 3];
     loop {
-        match find(&Cover::new(torus, times, points.clone())?) {
+        let cover = Cover::new(torus, times, points.clone())?;
+        match find(&cover) {
             Err(ShapeError::Wraps { axis, span, side, .. }) => {
                 let k = AXES.iter().chain(&VECTORS).position(|&name| name == axis);
                 let k = k.expect("the name of an axis or of a vector") % 3;
@@ -103,7 +109,7 @@ fn covered<T>(
                 let enough = (2.0 * f64::from(times[k]) * span / side).floor() as u32 + 1;
                 times[k] = enough.max(times[k] + 1);
             }
-            found => return Ok((times, found?)),
+            found => return Ok((cover, found?)),
         }
     }
 }
@@ -138,7 +144,7 @@ impl Cover {
     }
 
     fn copies(&self) -> usize {
-        self.times.iter().map(|&n| n as usize).product()
+        product(self.times)
     }
 
     /// The points of all copies, copy after copy.

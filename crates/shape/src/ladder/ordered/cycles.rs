@@ -79,8 +79,10 @@ const NONE: u32 = u32::MAX;
 struct Parts {
     /// The next cell of each, by row. Those of a void at its birth follow the cell that ends it.
     next: Vec<u32>,
-    /// Their number.
+    /// How many these are.
     sizes: Vec<u32>,
+    /// The number of the cell of each row.
+    numbers: Vec<u32>,
 }
 
 impl Ordered<'_> {
@@ -146,7 +148,7 @@ impl Cycles<'_> {
         let ordered = self.ordered;
         let cells = ordered.numbers.first[3];
         let first = *ordered.cell_rows.get(cell.checked_sub(cells)? as usize)?;
-        let Parts { next, sizes } = self.parts.get_or_init(|| Parts::of(ordered));
+        let Parts { next, sizes, numbers } = self.parts.get_or_init(|| Parts::of(ordered));
         let size = Some(sizes[first as usize]).filter(|&size| size > 0)?;
         let mut rows = Vec::with_capacity(size as usize);
         let mut at = first;
@@ -155,9 +157,8 @@ impl Cycles<'_> {
             at = next[at as usize];
         }
         let (facets, corners) = self.boundary(&rows);
-        let rows: HashSet<u32> = rows.into_iter().collect();
-        let number = |(number, row): (u32, &u32)| rows.contains(row).then_some(number);
-        let cells = (cells..).zip(&ordered.cell_rows).filter_map(number).collect();
+        let mut cells: Vec<u32> = rows.iter().map(|&row| numbers[row as usize]).collect();
+        cells.sort_unstable();
         Some(VoidCycle { cells, facets, corners })
     }
 
@@ -436,7 +437,11 @@ impl Parts {
             ends[older as usize] = ends[younger as usize];
             counts[older as usize] += counts[younger as usize];
         });
-        Self { next, sizes }
+        let mut numbers = vec![0; cells];
+        (ordered.numbers.first[3]..)
+            .zip(&ordered.cell_rows)
+            .for_each(|(number, &row)| numbers[row as usize] = number);
+        Self { next, sizes, numbers }
     }
 }
 

@@ -7,9 +7,9 @@
 use walpha_regular::internals::centre_shares;
 
 use super::Ordered;
+use crate::Alpha;
 use crate::ladder::Filtration;
 use crate::winding::{Directions, United, WindingSets};
-use crate::{Alpha, ShapeError};
 
 /// A sphere orthogonal to points, which limits the spheres that fit between them.
 #[derive(Clone, Debug, PartialEq)]
@@ -137,12 +137,10 @@ impl Filtration {
         [sum(0), sum(1), sum(2)]
     }
 
-    /// The parts of a periodic box that balls of squared radius α + ω leave, those of most cells first; `None` in space. O(n log n).
-    ///
-    /// # Errors
-    /// Out of memory.
-    pub fn pore_parts(&self, alpha: Alpha) -> Result<Option<Vec<PorePart>>, ShapeError> {
-        let Some(torus) = self.torus() else { return Ok(None) };
+    /// The parts of a periodic box that balls of squared radius α + ω leave, those that wind round in most directions first, then those of most cells;
+    /// `None` in space. O(n log n).
+    pub fn pore_parts(&self, alpha: Alpha) -> Option<Vec<PorePart>> {
+        let torus = self.torus()?;
         let levels = self.levels(&[alpha]);
         let is_out = |level: u32| level > 0;
         let mut sets = WindingSets::new(levels.cells.len());
@@ -162,7 +160,7 @@ impl Filtration {
         let mut parts: Vec<PorePart> = roots.map(part).collect();
         parts
             .sort_by_key(|part| (std::cmp::Reverse(part.dimension), std::cmp::Reverse(part.cells)));
-        Ok(Some(parts))
+        Some(parts)
     }
 }
 
@@ -200,7 +198,7 @@ mod tests {
         let parts = |keep: &dyn Fn([f64; 3]) -> bool| {
             let positions: Vec<_> = all().filter(|&p| keep(p)).collect();
             let filtration = Filtration::on(Some(torus), positions).unwrap();
-            let parts = filtration.pore_parts(Alpha::from_squared(0.8).unwrap()).unwrap().unwrap();
+            let parts = filtration.pore_parts(Alpha::from_squared(0.8).unwrap()).unwrap();
             parts.into_iter().map(|part| part.dimension).collect::<Vec<_>>()
         };
         let inside = |x: f64| (2.0..6.0).contains(&x);
@@ -209,13 +207,7 @@ mod tests {
         assert_eq!(parts(&|[x, y, _]| !(inside(x) && inside(y))), [1]);
         assert_eq!(parts(&|[x, _, _]| !inside(x)), [2]);
         assert_eq!(parts(&|[x, y, z]| [x, y, z].contains(&0.0) && y + z == 0.0), [3]);
-        assert!(
-            Filtration::new(&[[0.0; 3], [1.0; 3]])
-                .unwrap()
-                .pore_parts(Alpha::ZERO)
-                .unwrap()
-                .is_none()
-        );
+        assert!(Filtration::new(&[[0.0; 3], [1.0; 3]]).unwrap().pore_parts(Alpha::ZERO).is_none());
     }
 
     /// The distance from the nearest point, at the places of a grid, and the widest ways along the grid.
