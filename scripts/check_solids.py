@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
-"""Has trimesh and admesh judge what `--solid` writes, as slicers do, who take equal coordinates for one vertex.
+"""Has trimesh, admesh and PrusaSlicer judge what `--solid` writes: programs that take equal coordinates for one vertex.
 
-    scripts/check_solids.py [--walpha target/release/walpha] [--env /tmp/walpha-solids] [--shapes 300]
+    scripts/check_solids.py [--walpha target/release/walpha] [--env /tmp/walpha-solids] [--shapes 300] [VOLUME...]
 
-Makes a Python environment (once) with trimesh, and solids of scattered points, of lattices and of sample:ct as STL, PLY, OBJ and 3MF. For
-trimesh each is watertight, winds one way and bounds a volume, which is that of the shape. For admesh, if it is installed (Debian's package
-admesh), an STL has no facet to turn, no backwards and no disconnected edge. Prints a line for what is wrong, and a summary; exits with 1 when
-anything is, and with 77 when the packages cannot be had.
+Makes a Python environment (once) with trimesh, and solids of scattered points, of lattices, of samples and of VOLUMES as STL, PLY, OBJ and 3MF.
+For trimesh each is watertight, winds one way and bounds a volume, which is that of the shape. For admesh, if it is installed (Debian's package
+admesh), an STL has no facet to turn, no backwards and no disconnected edge. For PrusaSlicer, if it is installed (Debian's package prusa-slicer), STL,
+OBJ and 3MF of samples and VOLUMES are manifold. Prints a line for what is wrong, and a summary; exits with 1 when anything is, and with 77 when the
+packages cannot be had.
 """
 
 import argparse
@@ -28,10 +29,13 @@ FORMATS = ["stl", "ply", "obj", "3mf"]
 CLOSE = 2e-3
 # What admesh counts of a mesh that is fine, in the words of its report.
 NOTHING = ["Facets reversed", "Backwards edges", "Total disconnected facets"]
+# The formats that PrusaSlicer reads; each run takes it a second.
+SLICED = [".stl", ".obj", ".3mf"]
+SAMPLES = [["sample:ct"], ["sample:phantom@64"], ["sample:ct", "--surface", "250"]]
 
 
-def sources(folder, shapes):
-    """Inputs and squared radii: points at random, points of lattices, and a CT."""
+def sources(folder, shapes, volumes):
+    """Inputs with their options, and whether they are sliced: points at random, points of lattices, samples, and volumes."""
     random = np.random.default_rng(1)
     for i in range(shapes):
         if i % 2:
@@ -43,12 +47,13 @@ def sources(folder, shapes):
             alpha = random.uniform(0.3, 0.9) / len(points) ** (2 / 3)
         file = folder / f"{i}.csv"
         np.savetxt(file, points, delimiter=",", fmt="%.17g", header="x,y,z", comments="")
-        yield f"{'lattice' if i % 2 else 'random'} {i}", [file, "--alpha", alpha]
-    yield "sample:ct", ["sample:ct"]
+        yield f"{'lattice' if i % 2 else 'random'} {i}", [file, "--alpha", alpha], False
+    for source in [*SAMPLES, *([volume] for volume in volumes)]:
+        yield " ".join(source), source, True
 
 
-def complaints(file, volume):
-    """What trimesh, and admesh of an STL, find wrong with a file."""
+def complaints(file, volume, sliced):
+    """What trimesh, admesh of an STL, and PrusaSlicer, if the file is sliced, find wrong with it."""
     mesh = trimesh.load_mesh(file)
     for what in ["is_watertight", "is_winding_consistent", "is_volume"]:
         if not getattr(mesh, what):
@@ -61,6 +66,10 @@ def complaints(file, volume):
             count = int(re.search(rf"{name}\s*:\s*(\d+)", report)[1])
             if count:
                 yield f"admesh: {name} {count}"
+    if sliced and file.suffix in SLICED and shutil.which("prusa-slicer"):
+        report = subprocess.run(["prusa-slicer", "--info", file], capture_output=True, text=True, check=True).stdout
+        if "manifold = yes" not in report:
+            yield f"PrusaSlicer: {' '.join(report.split())}"
 
 
 def main():
@@ -68,6 +77,7 @@ def main():
     parser.add_argument("--walpha", default="target/release/walpha")
     parser.add_argument("--env", default="/tmp/walpha-solids")
     parser.add_argument("--shapes", type=int, default=300)
+    parser.add_argument("volumes", nargs="*", metavar="VOLUME")
     options = parser.parse_args([word for word in sys.argv[1:] if word != "--inside"])
     walpha = str(pathlib.Path(options.walpha).resolve())
     if "--inside" not in sys.argv:
@@ -76,7 +86,7 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         folder = pathlib.Path(folder)
         files = [folder / f"solid.{extension}" for extension in FORMATS]
-        for name, source in sources(folder, options.shapes):
+        for name, source, sliced in sources(folder, options.shapes, options.volumes):
             command = [walpha, "shape", *source, "--solid", "--json", "-o", *files]
             run = subprocess.run(list(map(str, command)), capture_output=True, text=True)
             if "no regular facet" in run.stderr:
@@ -87,7 +97,7 @@ def main():
                 continue
             report = json.loads(run.stdout)
             cuts, volume = report["solid"], report["shape"]["volume"]
-            found = [f"{file.suffix}: {text}" for file in files for text in complaints(file, volume)]
+            found = [f"{file.suffix}: {text}" for file in files for text in complaints(file, volume, sliced)]
             if cuts["together"]:
                 found.append(f"{cuts['together']} vertices are together")
             done += 1
@@ -96,8 +106,8 @@ def main():
             wrong += bool(found)
             for text in found:
                 print(f"WRONG {name} ({cuts}): {text}")
-    judges = "trimesh and admesh" if shutil.which("admesh") else "trimesh (admesh is not installed)"
-    print(f"{done} solids as {', '.join(FORMATS)} for {judges}: {pinched} were cut apart, {moved} vertices moved, {wrong} wrong")
+    judges = ", ".join(f"{judge}{'' if shutil.which(judge) else ' (not installed)'}" for judge in ["admesh", "prusa-slicer"])
+    print(f"{done} solids as {', '.join(FORMATS)} for trimesh, {judges}: {pinched} were cut apart, {moved} vertices moved, {wrong} wrong")
     return 1 if wrong or not done else 0
 
 
