@@ -26,7 +26,7 @@ impl Rgb {
     }
 }
 
-/// Eight colours to distinguish classes, also with any common colour blindness: vermillion, blue,
+/// Eight colours to distinguish classes, also with any common colour blindness: vermilion, blue,
 /// bluish green, orange, sky blue, reddish purple, yellow, black (Okabe and Ito, "Color Universal
 /// Design", 2002).
 pub const PALETTE: [Rgb; 8] = [
