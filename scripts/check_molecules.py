@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Checks walpha's readers of molecules and crystals against gemmi, ASE and FreeSASA, and `walpha balls` against Voronota-LT, FreeSASA and published numbers.
 
-    scripts/check_molecules.py [--walpha target/release/walpha] [--env /tmp/walpha-molecules] [--alphamol FOLDER] [FILE...]
+    scripts/check_molecules.py [--walpha target/release/walpha] [--env /tmp/walpha-molecules] [--alphamol FOLDER] [--poreblazer FOLDER] [FILE...]
 
 Makes a Python environment (once) with gemmi, FreeSASA, Voronota-LT, and MDAnalysisTests, which ships files of many programs, and reads each PDB,
 mmCIF and PQR file of it, or those named: atoms, places and elements of the first model are those of gemmi, with everything and by default, and
@@ -10,7 +10,8 @@ order of the file; dumps are not, as ASE puts parts of a tilted box elsewhere. P
 
 Then, unless files are named, it measures balls: of HIV protease (1HVR) against published numbers, and of some molecules against Voronota-LT, for
 each atom, and against FreeSASA. The balls of the crate voronota-ltr are measured if cargo has it, and the examples of AlphaMol if
---alphamol names their folder, each against the number that is published for them.
+--alphamol names their folder, each against the number that is published for them; and the pores of HKUST-1, if --poreblazer names the folder of that
+example, against what PoreBlazer prints for it.
 Prints a line for each difference; exits with 1 when there is one, and with 77 when the packages cannot be had.
 """
 
@@ -44,6 +45,11 @@ OF_VORONOTA = {
 }
 # Of its examples, AlphaMol prints ten digits.
 OF_ALPHAMOL = ["Vol1", "Vol2", "Vol3", "Vol4", "Vol10", "Vol30", "Vol100"]
+
+
+# What PoreBlazer 4 prints of HKUST-1, whose atoms are half as wide as their Lennard-Jones σ: the volume outside of them, sampled to about a
+# thousandth, and the diameters of the spheres that pass and that fit, on a grid of 0.2 Å.
+OF_POREBLAZER = {"box": 26.28791, "volume": 12757.117, "free": 6.38, "included": 12.86, "grid": 0.2}
 
 
 class Checker:
@@ -284,11 +290,29 @@ def check_measures(checker, files, alphamol):
             checker.judge(f"{name}, {words}", None if f"{found:.8f}" == expected else f"{found}, not {expected}")
 
 
+def check_pores(checker, folder):
+    side, grid = OF_POREBLAZER["box"], OF_POREBLAZER["grid"]
+    sigmas = (line.split() for line in (folder / "UFF.atoms").read_text().splitlines())
+    wanted = {words[0]: float(words[1]) / 2 for words in sigmas if words and words[0] in ("H", "C", "O", "Cu")}
+    table = checker.folder / "uff.txt"
+    table.write_text("".join(f"{element} {radius}\n" for element, radius in wanted.items()))
+    options = ["--periodic", f"{side},{side},{side}", "--radii", table, "--json"]
+    run = lambda name: json.loads(  # noqa: E731
+        subprocess.run([checker.walpha, name, folder / "HKUST1.xyz", *options], capture_output=True, text=True, check=True).stdout
+    )
+    checker.near("HKUST-1", "volume outside", side**3 - run("balls")["balls"]["volume"], OF_POREBLAZER["volume"], 1e-3)
+    pores = run("pores")["pores"]
+    for name, found in (("free", pores["free"]["diameter"]), ("included", pores["included"]["diameter"])):
+        expected = OF_POREBLAZER[name]
+        checker.judge(f"HKUST-1, {name} sphere", None if abs(found - expected) < grid else f"{found}, not {expected}")
+
+
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--walpha", default="target/release/walpha")
     parser.add_argument("--env", default="/tmp/walpha-molecules")
     parser.add_argument("--alphamol", type=pathlib.Path, help="AlphaMol's folder of examples")
+    parser.add_argument("--poreblazer", type=pathlib.Path, help="PoreBlazer's folder of the example HKUST-1")
     parser.add_argument("--inside", action="store_true", help=argparse.SUPPRESS)
     parser.add_argument("files", nargs="*")
     args = parser.parse_args()
@@ -308,6 +332,8 @@ def main():
             check(checker, file, refused)
         if not args.files:
             check_measures(checker, files, args.alphamol)
+        if args.poreblazer:
+            check_pores(checker, args.poreblazer)
     for why, names in sorted(refused.items()):
         print(f"refused: {', '.join(names)}: {why}")
     print(f"{len(files)} files, {checker.done} comparisons, {checker.wrong} wrong, {sum(map(len, refused.values()))} refused")
