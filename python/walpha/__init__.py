@@ -30,6 +30,7 @@ from ._check import Comparison, Complex, Finding, Verdict, check, compare
 from ._class import Class
 from ._curves import BettiCurve, Level, Suggestions, TorusBettiCurve
 from ._filtration import Filtration, filtration
+from ._molecule import Molecule, read_molecule
 from ._parts import Betti, Boundary, Component, Cuts, Outline, Polygon, TorusBetti, Void
 from ._pictures import Chart, Page, Picture
 from ._pipeline import Selected, difference, haar, label_shape, pipeline, select, surface_shape, weigh
@@ -64,6 +65,7 @@ __all__ = [
     "Gradients",
     "Level",
     "LoopCycle",
+    "Molecule",
     "Outline",
     "Page",
     "Picture",
@@ -89,6 +91,7 @@ __all__ = [
     "label_shape",
     "pipeline",
     "read",
+    "read_molecule",
     "read_points",
     "select",
     "surface_shape",

@@ -1,6 +1,6 @@
 """What the Python modules of walpha ask of the library. Not for users: see the modules."""
 
-from typing import Literal, TypeAlias, final
+from typing import Literal, TypeAlias, TypedDict, final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -191,6 +191,19 @@ def columns(names: list[str]) -> list[str | None]: ...
 def read_points(
     path: str, reading: dict[str, object]
 ) -> tuple[Floats, Floats | None, Floats | None, list[int] | None, float | None, list[str]]: ...
+class _Molecule(TypedDict):
+    positions: Floats
+    radii: Floats | None
+    elements: list[str]
+    names: list[str]
+    residues: list[str]
+    numbers: list[int | None]
+    chains: list[str]
+    cell: tuple[list[list[float]], list[bool]] | None
+    coordinates: str
+    summary: str
+
+def read_molecule(path: str, choice: dict[str, object]) -> _Molecule: ...
 def point_columns(path: str, reading: dict[str, object]) -> list[str]: ...
 def point_column(path: str, name: str, reading: dict[str, object]) -> Floats: ...
 def write_points(
