@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import functools
 import json
 import operator
 import warnings
@@ -432,7 +433,7 @@ def surface_shape(
     -------
     AlphaShape
         Its points are the vertices of its boundary and the samples inside near it; deep within it has no others. Its values are
-        ``isovalue`` at the former, and those of the samples. It cannot be pickled.
+        ``isovalue`` at the former, and those of the samples. It holds the samples of the volume, of which a pickle consists.
 
     Raises
     ------
@@ -450,9 +451,23 @@ def surface_shape(
     samples, is_gray, frame = _grid(volume, spacing, origin)
     surface = _settings.surface(value, closed)
     settings = _settings.written(surface=surface, nan=_settings.replacement(nan, _masked(volume)))
+    # An array of the caller's may change.
+    is_own = isinstance(volume, Volume) or (samples.base is None and samples is not volume)
+    return _inside(is_gray, frame, settings, samples if is_own else samples.copy(), progress, threads)
+
+
+def _inside(
+    is_gray: bool,
+    frame: str | None,
+    settings: list[tuple[str, str]],
+    samples: Samples,
+    progress: Progress = None,
+    threads: int | None = None,
+) -> AlphaShape:
+    """The solid inside an isosurface of samples; a pickle calls this again."""
     with task(progress, threads) as how:
         shape = _walpha.pipeline(samples, is_gray, frame, settings, how)
-    return AlphaShape._of(shape)
+    return AlphaShape._of(shape, (functools.partial(_inside, is_gray, frame, settings), samples))
 
 
 def _decomposition(name: str) -> str:

@@ -53,8 +53,8 @@ class AlphaShape(Classified):
     """
 
     _shape: _walpha.Shape
-    #: How it was made of another shape, if it was: the call that makes it, and the other.
-    _made: tuple[Callable[[AlphaShape], AlphaShape], AlphaShape] | None
+    #: How it was made, if of more than its points: the call that makes it, and the other shape or the samples that it is made of.
+    _made: tuple[Callable[[Any], AlphaShape], Any] | None
 
     def __init__(self) -> None:
         raise TypeError("an AlphaShape is made by walpha.alpha_shape(points, alpha)")
@@ -63,7 +63,7 @@ class AlphaShape(Classified):
     def _of(
         cls,
         shape: _walpha.Shape,
-        made: tuple[Callable[[AlphaShape], AlphaShape], AlphaShape] | None = None,
+        made: tuple[Callable[[Any], AlphaShape], Any] | None = None,
     ) -> AlphaShape:
         one = cls.__new__(cls)
         one._shape, one._made = shape, made
@@ -73,8 +73,6 @@ class AlphaShape(Classified):
         if self._made is not None:
             call, other = self._made
             return call, (other,)
-        if self.isovalue is not None:
-            raise TypeError("the solid inside an isosurface cannot be pickled, as its volume decided it: save it as NPZ")
         own = len(self.points) - len(self.copies)
         values = None if self.values is None else self.values[:own]
         return _restored, (self.points[:own], self.weights[:own], values, self._shape.state())
