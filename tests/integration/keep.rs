@@ -77,6 +77,14 @@ fn what_cannot_be_kept_is_an_error() {
     }
     fails(f, 2, &format!("{shape} --keep 1 --exterior -o a.vtu"), &["--exterior has no effect"]);
     fails(f, 2, &format!("{shape} --keep 1 --periodic 99,9,9"), &["--keep", "--periodic"]);
+    let ladder = "ladder cubes.csv --alpha-ref 0.75 --alphas 1 -o out";
+    fails(f, 2, &format!("{ladder} --keep 1 --periodic 99,9,9"), &["--keep", "--periodic"]);
+    fails(
+        f,
+        1,
+        &format!("{ladder} --min-volume 28"),
+        &["no component of the shape has a volume of 28"],
+    );
     fails(f, 2, &format!("{shape} --keep 1 -o a.pvtu"), &["--keep", "there are blocks"]);
 }
 
@@ -121,4 +129,51 @@ fn a_page_shows_the_largest_component() {
     assert_eq!((points, &kept["components"], &kept["of"]), (64, &1.into(), &4.into()));
     names(&ok(f, &["view", "cubes.csv", "--keep", "2", "-o", "a.html"]), &["2 of 4 components"]);
     assert_eq!(view(&["--min-volume", "8"]).0, 64 + 27);
+}
+
+/// A ladder is of the points of the components alone, and a level of detail is what is kept of its shape.
+#[test]
+fn ladders_are_of_the_largest_component() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    cubes(f);
+    let over_alpha =
+        ["ladder", "cubes.csv", "--alpha-ref", "0.75", "--alphas", "0.75,inf", "-o", "out"];
+    let facts = json(f, &[&over_alpha[..], &["--keep", "largest"]].concat());
+    assert_eq!((&facts["kept"]["components"], &facts["kept"]["of"]), (&1.into(), &4.into()));
+    assert_eq!(facts["points"], 64);
+    for level in facts["levels"].as_array().unwrap() {
+        assert_eq!((&level["volume"], &level["betti"][0]), (&27.0.into(), &1.into()));
+    }
+    let all = json(f, &over_alpha);
+    assert_eq!((&all["points"], &all["kept"]), (&100.into(), &serde_json::Value::Null));
+    let text = ok(f, &[&over_alpha[..], &["--min-volume", "8"]].concat());
+    names(&text, &["kept      2 of 4 components, which had a volume of 36 unit³ together"]);
+
+    let mut balls = Vec::new();
+    for at in 0..24 * 24 * 24_i32 {
+        let place = [at % 24, at / 24 % 24, at / 576];
+        let away = |centre: i32| place.iter().map(|x| (x - centre) * (x - centre)).sum::<i32>();
+        balls.push(if away(7) <= 36 || away(19) <= 9 { 200u8 } else { 0 });
+    }
+    fs::write(f.join("balls.raw"), balls).unwrap();
+    let over_detail = "ladder balls.raw --dims 24,24,24 --dtype u8 --gray-min 100 --count 800 --counts 120 -o detail --mesh ply";
+    let ladder = |options: &str| {
+        let args: Vec<&str> = over_detail.split(' ').chain(options.split_whitespace()).collect();
+        json(f, &args)
+    };
+    let (all, kept) = (ladder(""), ladder("--keep largest"));
+    let [of, one] = [&all, &kept].map(|facts| &facts["levels"][0]);
+    assert_eq!(one["betti"][0], 1);
+    assert_eq!(
+        (&one["kept_components"]["components"], &one["kept_components"]["of"]),
+        (&1.into(), &of["betti"][0])
+    );
+    assert!(
+        of["betti"][0].as_u64().unwrap() > 1 && one["kept_components"]["of_volume"] == of["volume"]
+    );
+    let volume = |facts: &serde_json::Value| facts["volume"].as_f64().unwrap();
+    assert!(volume(one) > 0.0 && volume(one) < volume(of));
+    assert!(volume(&kept["full"]) < volume(&all["full"]));
+    assert_eq!(kept["full"]["kept"]["components"], 1);
 }

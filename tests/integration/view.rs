@@ -256,7 +256,8 @@ fn stops_show_something_else_each() {
     );
 }
 
-/// A level of detail is the page of that number of points, except for the parts that are the same at all levels.
+/// A level of detail has some of the points of the shape, spread over all of them, so that it does not fall apart; that of the shape
+/// is its page without others, except for the parts that are the same at all levels.
 #[test]
 fn levels_of_detail_are_pages_of_fewer_points() {
     let folder = tempfile::tempdir().unwrap();
@@ -277,24 +278,34 @@ fn levels_of_detail_are_pages_of_fewer_points() {
     assert_eq!(Unpacked::of(&all, "page").content["points"], Value::from(vec![100, 300, 600]));
     let rmse = |k: usize| made["details"][k]["rmse_filled"].as_f64().unwrap();
     assert!(rmse(0) > rmse(1) && rmse(1) > rmse(2) && rmse(2) > 0.0, "{made}");
-    for (k, count) in ["100", "300", "600"].into_iter().enumerate() {
-        let (alone, one) = page(&args(count));
-        assert_eq!(alone["details"][0], made["details"][k]);
-        // Positions are as seen from a centre, which is that of all levels of detail.
-        let mut places = Vec::new();
-        let details = [(&one, 0), (&all, k)].map(|(html, k)| {
-            let mut detail = Unpacked::of(html, &format!("detail-{k}"));
-            let centre = &Unpacked::of(html, "page").content["centre"];
-            let at = |(k, x): (usize, f32)| f64::from(x) + centre[k % 3].as_f64().unwrap();
-            let seen = detail.f32("positions").into_iter().enumerate();
-            places.push(seen.map(at).collect::<Vec<_>>());
-            detail.arrays.remove("positions");
-            detail
-        });
-        assert!(details[0] == details[1] && places[0] == places[1], "{count} points");
-    }
+    let (alone, one) = page(&args("600"));
+    assert_eq!(alone["details"][0], made["details"][2]);
+    // Positions are as seen from a centre, which is that of all levels of detail.
+    let places = |html: &str, detail: usize| -> Vec<[String; 3]> {
+        let centre = &Unpacked::of(html, "page").content["centre"];
+        let positions = Unpacked::of(html, &format!("detail-{detail}")).f32("positions");
+        let at = |k: usize, x: f32| format!("{:.3}", f64::from(x) + centre[k].as_f64().unwrap());
+        positions.chunks(3).map(|place| [0, 1, 2].map(|k| at(k, place[k]))).collect()
+    };
+    let details = [(&one, 0), (&all, 2)].map(|(html, k)| {
+        let mut detail = Unpacked::of(html, &format!("detail-{k}"));
+        detail.arrays.remove("positions");
+        detail
+    });
+    assert!(details[0] == details[1] && places(&one, 0) == places(&all, 2));
+    let [coarse, middle, fine] = [0, 1, 2].map(|k| places(&all, k));
+    let within = |some: &[[String; 3]], of: &[[String; 3]]| some.iter().all(|at| of.contains(at));
+    assert_eq!(coarse.len(), 100);
+    assert!(within(&coarse, &middle) && within(&middle, &fine));
+    // The coarsest level reaches nearly as far as the finest.
+    let extent = |places: &[[String; 3]], k: usize| {
+        let along = places.iter().map(|place| place[k].parse::<f64>().unwrap());
+        let (low, high) =
+            along.fold((f64::MAX, f64::MIN), |(low, high), x| (low.min(x), high.max(x)));
+        high - low
+    };
+    (0..3).for_each(|k| assert!(extent(&coarse, k) >= 0.8 * extent(&fine, k)));
     let whole = Unpacked::of(&all, "page");
-    let (_, one) = page(&args("600"));
     assert_eq!(Unpacked::of(&one, "page").arrays["triangles"], whole.arrays["triangles"]);
     assert!(!whole.arrays["triangles"].is_empty());
     fs::write(f.join("points.xyz"), "0 0 0\n1 0 0\n0 1 0\n0 0 1\n").unwrap();

@@ -54,7 +54,7 @@ pub(crate) struct View {
     /// the picture.
     #[arg(long, value_name = "A,A,…", default_value = "auto", allow_hyphen_values = true)]
     alphas: Alphas,
-    /// Further levels of detail to switch between: numbers of points, chosen as those of the shape are.
+    /// Further levels of detail to switch between: numbers of points, as in `walpha ladder --counts`.
     #[arg(long, value_name = "N,N,…", value_delimiter = ',', value_parser = clap::value_parser!(u64).range(1..))]
     counts: Vec<u64>,
     /// Level of the isosurface, for volumes: a gray level, as in 50, or a value of INPUT, as in 300v
@@ -148,10 +148,10 @@ impl View {
         let mut counts = self.counts.clone();
         counts.sort_unstable();
         counts.dedup();
-        let selected = |count| recipe.clone().choice(recipe.choice.with_count(count));
-        let coarse: Vec<Recipe> = counts.into_iter().map(selected).collect();
-        let weigh = |recipe: &Recipe| progress.watch(|| recipe.weighed(&source, Values::Written));
-        let details = coarse.iter().chain([&recipe]).map(weigh).collect::<Result<_, _>>()?;
+        let whole = progress.watch(|| recipe.weighed(&source, Values::Written))?;
+        let level = |count| progress.watch(|| recipe.level(&source, &whole, count));
+        let mut details = counts.into_iter().map(level).collect::<Result<Vec<_>, _>>()?;
+        details.push(whole);
         Ok((details, Some(source), String::new()))
     }
 

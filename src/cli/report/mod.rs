@@ -406,7 +406,7 @@ pub(super) fn print_cuts(f: &mut fmt::Formatter<'_>, cuts: &Cuts, unit: LengthUn
 }
 
 /// What was kept of a shape.
-pub(super) fn print_kept(f: &mut fmt::Formatter<'_>, kept: &Kept, unit: LengthUnit) -> fmt::Result {
+pub(crate) fn print_kept(f: &mut fmt::Formatter<'_>, kept: &Kept, unit: LengthUnit) -> fmt::Result {
     let volume = measure(kept.of_volume, unit, 3);
     writeln!(f, "kept      {kept}, which had a volume of {volume} together")
 }

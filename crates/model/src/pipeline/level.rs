@@ -5,8 +5,12 @@ use walpha_base::UnionFind;
 use walpha_base::vector::{dot, sub};
 use walpha_regular::{TriangulationError, triangulate};
 
-use super::{AlphaRule, Model, Parameter, ParameterOrigin, PipelineError, PlacedVolume, Recipe};
-use walpha_points::{Points, WeightedPoints, weigh};
+use super::weighed::Importance;
+use super::{
+    AlphaRule, Model, Parameter, ParameterOrigin, PipelineError, PlacedVolume, Recipe, Values,
+    Weighed,
+};
+use walpha_points::{Points, WeightedPoints, spread_order, weigh};
 use walpha_shape::{Alpha, ShapeError};
 
 impl Recipe {
@@ -38,6 +42,37 @@ impl Recipe {
         }
         let weighted: WeightedPoints = weigh(points.clone(), weighting, Alpha::INFINITE)?;
         Ok(Parameter::find(self.alpha, &weighted, None, unit)?)
+    }
+
+    /// A level of detail: `count` points of a volume, with weights for their own α ([`Recipe::level_parameter`]). They are some of those that this recipe
+    /// selects by differences, spread over all of these ([`spread_order`]); where these are fewer, or were selected otherwise, those that the recipe selects
+    /// with this count. `weighed` is what [`Recipe::weighed`] makes of the same volume.
+    ///
+    /// # Errors
+    /// The errors of its stages.
+    pub fn level(
+        &self,
+        source: &PlacedVolume,
+        weighed: &Weighed,
+        count: u64,
+    ) -> Result<Weighed, PipelineError> {
+        let Some(Importance::Differences(differences)) =
+            weighed.importance.as_ref().filter(|_| count <= weighed.points.len() as u64)
+        else {
+            let recipe = self.clone().choice(self.choice.with_count(count));
+            return recipe.weighed(source, Values::Written);
+        };
+        let (positions, _, values) = weighed.points.clone().into_parts();
+        let mut points = Points::new(positions);
+        (points.values, points.differences) = (values, Some(differences.clone()));
+        let mut is_kept = vec![false; points.len()];
+        let order = spread_order(&points)?;
+        order[..count as usize].iter().for_each(|&index| is_kept[index as usize] = true);
+        points.keep(&is_kept);
+        let parameter = self.level_parameter(&points, source)?;
+        let recipe = weighed.recipe.clone();
+        let level = Weighed::new(points, weighed.origin, weighed.rule, Some(parameter))?;
+        Ok(Weighed { recipe, ..level })
     }
 }
 

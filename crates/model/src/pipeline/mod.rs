@@ -262,8 +262,11 @@ impl Recipe {
         Ok((weighed.only(&is_kept), shape.kept(), is_kept))
     }
 
-    /// The components of a shape that are to be kept.
-    fn kept(&self, shape: AlphaShape, unit: LengthUnit) -> Result<AlphaShape, PipelineError> {
+    /// The components of a shape that are [to be kept](Recipe::keep). `unit` is that of its points.
+    ///
+    /// # Errors
+    /// [`PipelineError::NoComponent`].
+    pub fn kept(&self, shape: AlphaShape, unit: LengthUnit) -> Result<AlphaShape, PipelineError> {
         if self.keep.is_all() {
             return Ok(shape);
         }

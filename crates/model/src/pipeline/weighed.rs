@@ -28,7 +28,7 @@ pub struct Weighed {
     /// from.
     pub recipe: Option<String>,
     /// The order of importance of the points, if they were selected from a volume.
-    importance: Option<Importance>,
+    pub(super) importance: Option<Importance>,
 }
 
 /// The order of importance of points.

@@ -15,14 +15,14 @@ use crate::cli::options::global::Global;
 use crate::cli::process::errors::{Result, fail, fail_usage};
 use crate::cli::process::output::{name, print_summary};
 use crate::cli::process::progress::Progress;
-use crate::cli::report::SCHEMA_VERSION;
 use crate::cli::report::offsets::FileOffset;
+use crate::cli::report::{SCHEMA_VERSION, print_kept};
 use crate::distance::SurfaceDistance;
 use crate::haar::smooth;
 use crate::pipeline::{Input, Parameter, PipelineError, PlacedVolume};
 use crate::points::{Points, Region, difference, focus, select, spread_order, weigh};
 use crate::progress::Stage;
-use crate::shape::{Alpha, AlphaShape, Betti, Measures, ShapeOptions, Surface, alpha_shape};
+use crate::shape::{Alpha, AlphaShape, Betti, Kept, Measures, ShapeOptions, Surface, alpha_shape};
 use crate::{
     Coordinates, HaarOptions, Recipe, Selection, SelectionRule, Tolerance, Truncation, Volume,
     Weighting,
@@ -79,7 +79,7 @@ impl Ladder {
         }
         let shape_at = |points: Points, alpha: Alpha| -> Result<AlphaShape> {
             let shape = alpha_shape(weigh(points, weighting, alpha)?, &ShapeOptions::new(alpha))?;
-            Ok(shape.with_coordinates(coordinates))
+            Ok(recipe.kept(shape.with_coordinates(coordinates), coordinates.unit)?)
         };
         let found = || self.level_points(&mut front_end, selection, &full, truncation);
         let levels = progress.stage(Stage::Points, found)?;
@@ -251,6 +251,9 @@ pub(super) struct DetailSummary {
 #[derive(Serialize)]
 pub(super) struct FullDetail {
     points: usize,
+    /// How many components were kept, if not all were to be; all else is of what was kept.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    kept: Option<Kept>,
     largest_part: Option<f64>,
     #[serde(flatten)]
     measures: Measures,
@@ -259,7 +262,7 @@ pub(super) struct FullDetail {
 impl FullDetail {
     fn of(shape: &AlphaShape) -> Self {
         let (points, measures) = (shape.points().len(), shape.measures());
-        Self { points, largest_part: largest_part(shape), measures }
+        Self { points, kept: shape.kept(), largest_part: largest_part(shape), measures }
     }
 }
 
@@ -273,6 +276,9 @@ fn largest_part(shape: &AlphaShape) -> Option<f64> {
 pub(super) struct Row {
     pub points: usize,
     pub alpha: Parameter,
+    /// How many components were kept, if not all were to be; all else is of what was kept.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub kept_components: Option<Kept>,
     /// Of the wavelet stage: coefficients kept, ‖f − f̂‖ and its root mean square, gray levels.
     pub kept: u64,
     pub epsilon: f64,
@@ -312,6 +318,7 @@ impl Row {
             errors,
             distance,
             alpha,
+            kept_components: shape.kept(),
             largest_part: largest_part(shape),
             points: shape.points().len(),
             kept: truncation.kept,
@@ -338,13 +345,16 @@ impl Display for DetailSummary {
         writeln!(f, "input     {}", name(&self.input))?;
         writeln!(f, "lengths   in {}", self.coordinates)?;
         writeln!(f, "weights   {}", self.weights)?;
-        let FullDetail { points, measures, .. } = &self.full;
+        let FullDetail { points, kept, measures, .. } = &self.full;
         let unit = self.coordinates.unit.symbol();
         writeln!(
             f,
             "full      {points} points, volume {:.1} {unit}³, {}",
             measures.volume, self.alpha
         )?;
+        if let Some(kept) = kept {
+            print_kept(f, kept, self.coordinates.unit)?;
+        }
         if let Some(points) = self.points_in_region {
             writeln!(
                 f,
@@ -391,6 +401,11 @@ impl Display for DetailSummary {
                 row.bytes,
                 row.files.join(", ")
             )?;
+        }
+        for row in &self.levels {
+            if let Some(kept) = &row.kept_components {
+                writeln!(f, "kept      of {} points {kept}", row.points)?;
+            }
         }
         let offsets = self.levels.iter().flat_map(|row| &row.offsets);
         offsets.into_iter().try_for_each(|offset| offset.fmt(f))?;

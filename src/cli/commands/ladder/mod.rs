@@ -13,7 +13,7 @@ use crate::cli::commands::folder::Folder;
 use crate::cli::commands::outline;
 use crate::cli::commands::pipeline::{self, filled_in};
 use crate::cli::options::{self, global::Global};
-use crate::cli::options::{Alphas, Declared, FrozenPipelineArgs, Groups, Periodic};
+use crate::cli::options::{Alphas, Declared, FrozenPipelineArgs, Groups, Kept, Periodic};
 use crate::cli::process::errors::{CommandError, Result, fail_usage};
 use crate::cli::process::output::print_summary;
 use crate::cli::process::progress::Progress;
@@ -88,6 +88,9 @@ pub(crate) struct Ladder {
     pipeline: FrozenPipelineArgs,
     #[command(flatten)]
     periodic: Declared<Periodic>,
+    /// Over α those of the shape at --alpha-ref, whose points alone make the ladder; of levels of detail, those of each.
+    #[command(flatten)]
+    kept: Declared<Kept>,
 }
 
 /// α of levels of detail.
@@ -139,14 +142,20 @@ impl Ladder {
         input.typed.refuse(&options::names(&[Group::Weights]), why)?;
         let reference = input.settings().alpha_ref().copied().unwrap_or_default();
         let recipe = self.pipeline.recipe()?.alpha(reference);
-        let (weighed, volume) = pipeline::weighted_points(input, &recipe, &mut progress)?;
+        let (mut weighed, volume) = pipeline::weighted_points(input, &recipe, &mut progress)?;
         outline::check(meshes.iter().map(|mesh| mesh.format), weighed.points.positions())?;
         let domain = pipeline::domain(&weighed, volume.as_ref());
-        let filtration = progress.watch(|| pipeline::filtration(&weighed))?;
+        let mut filtration = progress.watch(|| pipeline::filtration(&weighed))?;
         let coordinates = weighed.origin.coordinates;
         let found = || weighed.rule.on(&filtration, coordinates.unit);
         let reference = weighed.parameter.unwrap_or_else(found);
+        let mut kept = None;
+        if !recipe.keep.is_all() {
+            (weighed, kept, _) = progress.watch(|| recipe.part(&weighed, reference.alpha))?;
+            filtration = progress.watch(|| pipeline::filtration(&weighed))?;
+        }
         let mut facts = LadderSummary::new(&self.pipeline.input.input, &weighed, reference, domain);
+        facts.kept = kept;
         let curve = progress.stage(Stage::Curve, || filtration.curve());
         let suggested = progress.stage(Stage::Curve, || filtration.suggest(&curve));
         let alphas = match &self.alphas {

@@ -10,12 +10,12 @@ use walpha_base::shown::rounded;
 use crate::Coordinates;
 use crate::ladder::{Curve, Filtration, Ladder, Level, Suggestions};
 use crate::pipeline::{Parameter, Weighed};
-use crate::shape::{Alpha, Betti, ByClass, Measures, Void};
+use crate::shape::{Alpha, Betti, ByClass, Kept, Measures, Void};
 
 use crate::cli::commands::pipeline::Domain;
 use crate::cli::process::output::name;
 use crate::cli::report::offsets::FileOffset;
-use crate::cli::report::{SCHEMA_VERSION, WeightsReport, ending, rounded_up};
+use crate::cli::report::{SCHEMA_VERSION, WeightsReport, ending, print_kept, rounded_up};
 
 /// Summary of `walpha ladder` over α.
 #[derive(Serialize)]
@@ -29,6 +29,9 @@ pub(super) struct LadderSummary {
     coordinates: Coordinates,
     alpha_ref: Parameter,
     weights: WeightsReport,
+    /// How many components of the shape at `alpha_ref` were kept, if not all were to be; the ladder is of their points.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) kept: Option<Kept>,
     domain: Domain,
     /// Cells, facets, edges, vertices of the triangulation.
     simplices: [usize; 4],
@@ -79,6 +82,7 @@ impl LadderSummary {
             coordinates: weighed.origin.coordinates,
             alpha_ref,
             weights: WeightsReport::of(weighed),
+            kept: None,
             domain,
             simplices: [0; 4],
             critical_values: 0,
@@ -144,6 +148,9 @@ impl Display for LadderSummary {
         )?;
         writeln!(f, "lengths   in {}", self.coordinates)?;
         writeln!(f, "weights   {} (squared lengths), frozen at {}", self.weights, self.alpha_ref)?;
+        if let Some(kept) = &self.kept {
+            print_kept(f, kept, self.coordinates.unit)?;
+        }
         writeln!(
             f,
             "whole     {cells} cells, {facets} facets, {edges} edges, {vertices} vertices"
