@@ -297,14 +297,17 @@ fn levels_of_detail_are_pages_of_fewer_points() {
     let within = |some: &[[String; 3]], of: &[[String; 3]]| some.iter().all(|at| of.contains(at));
     assert_eq!(coarse.len(), 100);
     assert!(within(&coarse, &middle) && within(&middle, &fine));
-    // The coarsest level reaches nearly as far as the finest.
-    let extent = |places: &[[String; 3]], k: usize| {
-        let along = places.iter().map(|place| place[k].parse::<f64>().unwrap());
-        let (low, high) =
-            along.fold((f64::MAX, f64::MIN), |(low, high), x| (low.min(x), high.max(x)));
-        high - low
+    // No point is as far from the coarsest level as from as many points of largest difference.
+    let farthest = |from: &[[String; 3]]| {
+        let number = |text: &String| text.parse::<f64>().unwrap();
+        let squared = |a: &[String; 3], b: &[String; 3]| -> f64 {
+            (0..3).map(|k| (number(&a[k]) - number(&b[k])).powi(2)).sum()
+        };
+        let nearest = |at| from.iter().map(|other| squared(at, other)).fold(f64::MAX, f64::min);
+        fine.iter().map(nearest).fold(0.0, f64::max)
     };
-    (0..3).for_each(|k| assert!(extent(&coarse, k) >= 0.8 * extent(&fine, k)));
+    let (spread, largest) = (farthest(&coarse), farthest(&places(&page(&args("100")).1, 0)));
+    assert!(2.0 * spread < largest, "{spread}, {largest}");
     let whole = Unpacked::of(&all, "page");
     assert_eq!(Unpacked::of(&one, "page").arrays["triangles"], whole.arrays["triangles"]);
     assert!(!whole.arrays["triangles"].is_empty());
