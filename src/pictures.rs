@@ -100,11 +100,11 @@ pub fn page(
     let [low, high] = bounding_box(shape.points().positions());
     let ladder = levels.ladder((0..3).map(|k| high[k] - low[k]).product());
     let first = levels.alphas().partition_point(|alpha| *alpha <= opening).saturating_sub(1);
-    let detail = Detail { levels: &levels, ladder: &ladder, first, differences: None };
+    let detail = Detail { levels: &levels, ladder: &ladder, first, differences: None, atoms: None };
     let page = Page::new(&Subject {
         title,
         facts,
-        unit: shape.coordinates().unit.symbol(),
+        coordinates: shape.coordinates(),
         value: "the values of the points",
         difference: "values",
         details: &[detail],
