@@ -180,7 +180,7 @@ function choose(input, files, kept = null) {
     byId("remarks").replaceChildren();
     byId("series").replaceChildren();
     for (const id of Object.keys(READING)) {
-      const value = kept?.form[id] ?? "";
+      const value = kept?.form?.[id] ?? "";
       if (id === "series" && value) byId(id).append(element("option", { value }));
       byId(id).value = value;
     }
@@ -247,7 +247,7 @@ async function open() {
   }
   rows(byId("facts"), factsOf(facts));
   if (!state.suited) suit(facts);
-  if (!state.suited && state.kept) fill(state.kept.form);
+  if (!state.suited && state.kept?.form) fill(state.kept.form);
   state.suited = true;
   labelled();
   if (isVolume) {
@@ -520,13 +520,14 @@ let slices = null;
 
 const history = new History(
   () => (state.computed && panel.alpha !== null && panel.made?.alphas ? { form: state.computed, shown: shownNow() } : null),
-  (now, before) => task("Computing …", async () => {
-    if (JSON.stringify(now.form) !== JSON.stringify(before.form)) {
+  (now, before) => {
+    if (JSON.stringify(now.form) === JSON.stringify(before.form)) return showAgain(now.shown).catch(quietly);
+    return task("Computing …", async () => {
       fill(now.form);
       await compute();
-    }
-    await showAgain(now.shown);
-  }),
+      await showAgain(now.shown);
+    });
+  },
   persist,
 );
 
@@ -677,7 +678,7 @@ async function reopen() {
   const example = EXAMPLES.find((example) => kept.isMade && example.input === input);
   const go = (found) => {
     restoring(true);
-    return choose(input, found, before ?? { form: {} });
+    return choose(input, found, before ?? {});
   };
   const known = example ? filesOfExample(example) : files;
   if (known && !failed) return go(known);

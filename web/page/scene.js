@@ -148,7 +148,7 @@ export class ShapeScene {
       element.textContent = "This browser has no WebGL, so the shape is not drawn. Numbers, slices and files work as usual.";
     }
     this.labels = make("div", { className: "labels", hidden: true });
-    this.length = make("div", { className: "labels", hidden: true }, make("span"));
+    this.length = make("div", { className: "length", hidden: true }, make("span"));
     element.append(this.labels, this.length);
     this.scene = new Scene();
     this.camera = new PerspectiveCamera(35, 1, 0.1, 1000);

@@ -238,6 +238,7 @@ export class ShapePanel {
   // Shows a void, or none. Its box is there at once, its faces a little later.
   async light(item, row, low, high) {
     this.lit = item;
+    if (this.cycle) this.showCycle(null);
     if (!item) return this.scene.light(null);
     const { alpha } = this;
     if (this.around?.alpha !== alpha) {
