@@ -21,9 +21,9 @@ pub fn page(report: &Report, files: &[File]) -> String {
          <title>{}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n",
         escape(&title)
     );
-    contents(&mut html, report);
     html.push_str("<main>\n");
     head(&mut html, report);
+    contents(&mut html, report);
     summary(&mut html, report);
     volume(&mut html, report);
     for item in &report.items {

@@ -309,10 +309,10 @@ export class ShapePanel {
     const { min, max } = this.scene.box;
     const extent = Math.max(max.x - min.x, max.y - min.y, max.z - min.z);
     const at = [0, 1, 2].map((k) => placed(positions[3 * v + k] + centre[k], extent)).join(", ");
-    const value = values ? `, F = ${short(values[v])}` : "";
+    const value = values ? `, value F = ${short(values[v])}` : "";
     const difference = differences ? `, difference ${short(differences[v])}` : "";
     const symbol = elements?.[atoms?.[v]]?.symbol;
-    return `point ${v}${symbol ? ` (${symbol})` : ""} at (${at}) ${unit}${value}${difference}, ω = ${short(weights[v])}, ${CLASSES[this.shape.classes[v]]}`;
+    return `point ${v}${symbol ? ` (${symbol})` : ""} at (${at}) ${unit}${value}${difference}, weight ω = ${short(weights[v])}, ${CLASSES[this.shape.classes[v]]}`;
   }
 
   startMeasuring() {

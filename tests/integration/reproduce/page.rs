@@ -151,8 +151,6 @@ fn of_head(report: &Value) -> Vec<Shown> {
     let verdicts = ["reproduced", "not reproduced", "cannot be decided"];
     let mut all = [
         words(&report["paper"]),
-        // The table of contents.
-        each(&report["items"], |item| words(&item["title"])),
         words(&report["paper"]),
         words(&report["source"]),
         words(&report["version"]),
@@ -171,6 +169,8 @@ fn of_head(report: &Value) -> Vec<Shown> {
         all.extend(rounded(&input["haar"][number]));
     }
     all.extend(said("α = 10 with ω = 0, √10"));
+    // The table of contents.
+    all.extend(each(&report["items"], |item| words(&item["title"])));
     for verdict in verdicts {
         all.extend(rounded(&report["verdicts"][verdict]));
     }
