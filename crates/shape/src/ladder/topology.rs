@@ -338,7 +338,7 @@ impl LevelComplement<'_> {
 
 #[cfg(test)]
 mod tests {
-    use walpha_base::Random;
+    use walpha_base::random::Random;
 
     use crate::ladder::Filtration;
     use crate::{Alpha, WeightedPoints, six_volumes};
@@ -368,7 +368,7 @@ mod tests {
                         .map(|facet| facet.map(|v| filtration.points().positions()[v as usize]))
                         .collect();
                     let cones = corners.iter().map(|&[a, b, c]| six_volumes([[9.0; 3], a, b, c]));
-                    assert!((cones.sum::<f64>() / 6.0 + void.volume).abs() < 1e-9);
+                    assert!((cones.sum::<f64>() / 6.0 - void.volume).abs() < 1e-9);
                     for axis in 0..3 {
                         let along = || corners.as_flattened().iter().map(|corner| corner[axis]);
                         assert_eq!(along().fold(f64::INFINITY, f64::min), void.low[axis]);
