@@ -15,6 +15,7 @@ import base64
 import json
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -109,6 +110,46 @@ class Checks:
     def say(self, name, right, detail=""):
         self.failed += not right
         print(f"{'ok   ' if right else 'WRONG'} {name} {detail}")
+
+
+# What axe-core finds, as it is kept beside the page's sources by npm; it is a tool for this alone.
+AXE = pathlib.Path(__file__).parent.parent / "web/page/node_modules/axe-core/axe.min.js"
+# Text is readable from this contrast on (WCAG 1.4.3).
+READABLE = 4.5
+
+
+def accessible(browser, checks, state):
+    """Nothing is wrong with the page for those who use it with other means, as axe-core sees it."""
+    if not AXE.exists():
+        print("skipped: there is no axe-core (npm ci in web/page)")
+        return
+    browser.evaluate(AXE.read_text() + "; null")
+    found = browser.evaluate("axe.run().then(({ violations }) => violations.map(({ id, nodes }) => [id, nodes.map(({ html }) => html.slice(0, 90))]))")
+    checks.say(f"{state}: axe-core finds nothing", not found, str(found) if found else "")
+
+
+def luminance(colour):
+    """The relative luminance of #rgb or #rrggbb."""
+    digits = colour.lstrip("#")
+    digits = digits if len(digits) == 6 else "".join(2 * digit for digit in digits)
+    linear = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in (int(digits[k:k + 2], 16) / 255 for k in (0, 2, 4))]
+    return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
+
+
+def contrast(one, other):
+    low, high = sorted([luminance(one), luminance(other)])
+    return (high + 0.05) / (low + 0.05)
+
+
+def readable_charts(checks):
+    """The text of charts, which are drawn on canvases where axe-core sees nothing, stands out from the page."""
+    sources = pathlib.Path(__file__).parent.parent / "web/page"
+    charts, style = (sources / "charts.js").read_text(), (sources / "page.css").read_text()
+    back, text = (re.search(rf"--{name}: light-dark\((#\w+), (#\w+)\)", style).groups() for name in ("back", "text"))
+    for k, name in enumerate(["ON_LIGHT", "ON_DARK"]):
+        colours = re.findall(r"#\w{6}", re.search(rf"{name} = \[(.*?)\]", charts)[1])
+        least = min(contrast(colour, back[k]) for colour in [*colours, text[k]])
+        checks.say(f"the text of charts is readable, {name}", len(colours) == 3 and least >= READABLE, f"{least:.1f} : 1")
 
 
 def faults(events):
@@ -209,7 +250,7 @@ EMPTY = """(async () => {
   return [...ends(rows), ...ends(columns)];
 })()"""
 # Captions lie on the picture, and are not part of it.
-BARE = "document.getElementById('captions').hidden = %s"
+BARE = "['captions', 'axes'].forEach((id) => document.getElementById(id).toggleAttribute('hidden', %s))"
 
 
 # The entries of the legend: what, how many, in which colour.
@@ -358,6 +399,7 @@ def look(browser, checks, page, screen, out):
     before = browser.evaluate("[...document.querySelectorAll('.drawer')].filter((drawer) => drawer.checkVisibility()).length")
     checks.say(f"{screen}: drawers are as they were left", (before > 0) == (screen == "phone"), f"{before} open")
     checks.say(f"{screen}: at most 12 controls before a drawer is opened", controls <= 12, str(controls))
+    accessible(browser, checks, screen)
     if mobile:
         small = browser.evaluate(SMALL)
         checks.say(f"{screen}: every target is 44 pixels high", not small, str(small))
@@ -371,6 +413,7 @@ def look(browser, checks, page, screen, out):
     # Drawers stay open from here on, so that the picture keeps its size.
     browser.evaluate("document.querySelectorAll('[data-drawer]').forEach((button) => button.ariaExpanded === 'true' || button.click())")
     settle(browser)
+    accessible(browser, checks, f"{screen}, with drawers")
     there = browser.evaluate("[...document.querySelectorAll('.drawer')].filter((drawer) => drawer.checkVisibility()).map((drawer) => drawer.id)")
     checks.say(f"{screen}: drawers open", set(there) >= {"display", "numbers"}, str(there))
     change(browser, "colour", "class")
@@ -471,12 +514,41 @@ def look(browser, checks, page, screen, out):
     checks.say(f"{screen}: a plane cuts the shape open", not same(browser, picture(browser), first))
     change(browser, "cut", "")
     checks.say(f"{screen}: and it is whole again", same(browser, picture(browser), first))
-    if browser.evaluate("document.querySelector('#voids li').textContent !== 'none'"):
-        browser.evaluate("document.querySelector('#voids li').focus()")
+    if browser.evaluate("document.querySelector('#voids button') !== null"):
+        browser.evaluate("document.querySelector('#voids button').focus()")
         settle(browser)
         lit = picture(browser)
-        browser.evaluate("document.querySelector('#voids li').blur()")
-        checks.say(f"{screen}: a void lights up", not same(browser, lit, first))
+        filled = browser.evaluate(HUED % (lit, [213, 94, 0]))
+        browser.evaluate("document.querySelector('#voids button').blur()")
+        checks.say(f"{screen}: a void is filled, in the faded shape", not same(browser, lit, first) and filled > 0.0005, f"{100 * filled:.2f} % of the pixels")
+    # What was changed is undone, and done again.
+    opened = browser.evaluate("document.body.dataset.alpha")
+    move(browser, 0.3)
+    moved = browser.evaluate("document.body.dataset.alpha")
+    press_keys = "dispatchEvent(new KeyboardEvent('keydown', { key: 'z', ctrlKey: true, shiftKey: %s }))"
+    for keys, expected, name in [("false", opened, "undone"), ("true", moved, "done again"), ("false", opened, "undone once more")]:
+        browser.evaluate("delete document.body.dataset.measured")
+        browser.evaluate(press_keys % keys)
+        there = browser.wait(f"document.body.dataset.alpha === '{expected}'", 10)
+        settle(browser)
+        checks.say(f"{screen}: a change of the radius is {name}", there and opened != moved, browser.evaluate("document.body.dataset.alpha"))
+    # Two places on the surface have a distance.
+    press(browser, "measure")
+    x, y = browser.evaluate("(() => { const e = document.getElementById('scene'); e.scrollIntoView({ block: 'center' }); const b = e.getBoundingClientRect(); return [b.x + b.width / 2, b.y + b.height / 2] })()")
+    said = ""
+    for step in range(16):
+        for kind in ["mousePressed", "mouseReleased"]:
+            browser.call("Input.dispatchMouseEvent", type=kind, button="left", clickCount=1, x=x + 11 * step - 70, y=y + 9 * step - 60)
+        said = browser.evaluate("document.getElementById('picked').textContent")
+        if said.startswith("Length"):
+            break
+    unit = browser.evaluate("document.getElementById('bar').textContent").split(" ")[-1]
+    settle(browser)
+    checks.say(f"{screen}: two places are measured", said.startswith("Length ") and said.endswith(unit), said)
+    press(browser, "measure")
+    letters = browser.evaluate("[...document.querySelectorAll('#axes text')].map((e) => e.textContent).join('')")
+    checks.say(f"{screen}: the axes have letters", letters in ("LRPASI", "xyz"), letters)
+    browser.evaluate("scrollTo(0, 0)")
     with tempfile.TemporaryDirectory() as folder:
         browser.call("Page.setDownloadBehavior", behavior="allow", downloadPath=folder)
         browser.evaluate("document.getElementById('save-png').click()")
@@ -506,6 +578,7 @@ def main():
     options.out.mkdir(parents=True, exist_ok=True)
     checks = Checks()
     size = pathlib.Path(options.page).stat().st_size
+    readable_charts(checks)
     checks.say("size", size < 15e6, f"{size / 1e6:.1f} MB")
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
         browser = Browser(options.chromium, profile)

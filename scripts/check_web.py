@@ -23,7 +23,7 @@ import sys
 import tempfile
 import time
 
-from check_view import Browser, Checks, faults
+from check_view import Browser, Checks, accessible, faults
 
 SIZE = 20
 SCREENS = {"desk": (1400, 950, False), "phone": (390, 844, True)}
@@ -347,6 +347,7 @@ def look_at_all(browser, page, checks, files, downloads, out, large):
     (out / "web-empty.png").write_bytes(browser.screenshot())
     cards, controls = browser.evaluate("[document.querySelectorAll('#cards button').length, [...document.querySelectorAll('button, input, select')].filter((e) => e.checkVisibility() && !e.closest('#cards, footer')).map((e) => e.id)]")
     checks.say("the empty page has three examples, and controls for files alone", (cards, controls) == (3, ["choose", "choose-folder", "examples"]), f"{cards}, {controls}")
+    accessible(browser, checks, "empty")
     page.forget()
     browser.evaluate("document.querySelector('#cards button').click()")
     if agrees(page, checks, "the first example"):
@@ -461,6 +462,68 @@ def look_at_all(browser, page, checks, files, downloads, out, large):
     there = [float(birth) <= alpha < float(death) for _, birth, death, *_ in voids]
     checks.say("a click on a pair sets α", there == [True] and alpha != opened, f"{alpha}; {voids}")
 
+    # It also draws the cycle of the pair, until Escape.
+    drawn = browser.wait("document.body.dataset.cycle !== undefined && document.getElementById('picked').textContent.startsWith('void, ')", 20)
+    faces = int((page.state().get("cycle") or "0,0").split(",")[1]) // 3
+    checks.say("and draws the void", drawn and faces >= 4, f"{faces} triangles; {page.text('picked')}")
+    with_cycle = browser.evaluate(SCENE)
+    (out / "web-cycle.png").write_bytes(browser.screenshot())
+    browser.evaluate("dispatchEvent(new KeyboardEvent('keydown', { key: 'Escape' }))")
+    time.sleep(0.5)
+    checks.say("and Escape hides it", browser.evaluate(SCENE) != with_cycle and page.text("picked") == "")
+
+    # A molecule is its atoms, in the colours of their elements, and its balls are measured as the command does.
+    page.example("sample:peptide")
+    page.settled()
+    for probe in ["0", "1.4"]:
+        browser.evaluate(f"(() => {{ delete document.body.dataset.balls; const e = document.getElementById('probe'); e.value = '{probe}'; e.dispatchEvent(new Event('change')); }})()")
+        browser.wait("document.body.dataset.balls !== undefined", 30)
+        theirs = json.loads(page.run(page.text("balls-command") + " --json"))["balls"]
+        volume, area = (float(number) for number in page.state()["balls"].split(","))
+        near = abs(volume - theirs["volume"]) <= theirs["volume_bound"] and abs(area - theirs["area"]) <= theirs["area_bound"]
+        checks.say(f"balls with a probe of {probe} are the command's", near, f"{volume}, {area}; {page.text('balls-command')}")
+    named = page.text("legend")
+    checks.say("elements are named in their colours", browser.evaluate("document.getElementById('colour').value") == "element" and all(f" {symbol}" in named for symbol in "CNO"), named)
+    (out / "web-molecule.png").write_bytes(browser.screenshot())
+
+    # A reload finds the file, its options, the radius and the cut again.
+    for name in ["ball.nii.gz", "sample:phantom"]:
+        if name.startswith("sample:"):
+            page.example(name)
+        else:
+            page.choose(name)
+        page.settled()
+        browser.evaluate("(() => { const e = document.getElementById('cut'); e.value = '1'; e.dispatchEvent(new Event('change')); const k = document.getElementById('keep-largest'); k.checked = true; })()")
+        page.forget()
+        browser.evaluate("document.getElementById('options').requestSubmit()")
+        page.settled()
+        page.forget()
+        browser.evaluate("(() => { const e = document.getElementById('radius-value'); e.value = '2.5'; document.body.dataset.state = 'ready'; e.dispatchEvent(new Event('change')); })()")
+        page.settled()
+        time.sleep(0.5)
+        before = [page.state().get("alpha"), page.state().get("betti"), page.text("command")]
+        browser.call("Page.reload")
+        browser.wait("document.body?.dataset.looked !== undefined", 60)
+        browser.wait(f"document.body.dataset.alpha === '{before[0]}'", 60)
+        page.settled()
+        time.sleep(0.5)
+        after = [page.state().get("alpha"), page.state().get("betti"), page.text("command")]
+        kept = browser.evaluate("[document.getElementById('keep-largest').checked, document.getElementById('cut').value]")
+        checks.say(f"a reload finds {name} as it was", before == after and kept == [True, "1"], f"{before}; {after}; {kept}")
+    # What was changed is undone, options too.
+    browser.evaluate("dispatchEvent(new KeyboardEvent('keydown', { key: 'z', ctrlKey: true }))")
+    browser.evaluate("(() => { document.getElementById('keep-largest').checked = false; document.getElementById('options').requestSubmit(); })()")
+    page.forget()
+    page.settled()
+    time.sleep(0.5)
+    whole = page.state().get("betti")
+    page.forget()
+    browser.evaluate("document.getElementById('undo').click()")
+    page.settled()
+    time.sleep(0.5)
+    checks.say("undo brings options back", browser.evaluate("document.getElementById('keep-largest').checked") and page.state().get("alpha") == "6.25" and page.state().get("betti") != whole, f"{page.state().get('alpha')}, {page.state().get('betti')}; {whole}")
+    browser.evaluate("(() => { const e = document.getElementById('cut'); e.value = ''; e.dispatchEvent(new Event('change')); document.getElementById('keep-largest').checked = false; })()")
+
     # Points, balls and hidden points are drawn on request, and a click on the surface names a point.
     page.example("hard:duplicates")
     page.settled()
@@ -492,7 +555,7 @@ def look_at_all(browser, page, checks, files, downloads, out, large):
     page.settled()
     page.drawer("numbers")
     lit = browser.evaluate(SCENE)
-    browser.evaluate("document.querySelector('#voids li').focus()")
+    browser.evaluate("document.querySelector('#voids button').focus()")
     time.sleep(0.7)
     checks.say("a void lights up", browser.evaluate(SCENE) != lit)
 
@@ -506,6 +569,7 @@ def look_at_all(browser, page, checks, files, downloads, out, large):
     shown = "[...document.querySelectorAll('#options label')].filter((e) => e.offsetParent).map((e) => e.querySelector('input, select').id)"
     left = browser.evaluate(shown) + [page.text("facts")]
     checks.say("and has no options, facts or slices of a file before", left == [""] and browser.evaluate("document.getElementById('slices').hidden"), str(left))
+    accessible(browser, checks, "failed")
     # Where an option helps it is offered.
     (page.folder / "unnamed.csv").write_text("a,b,c\n0,0,0\n1,0,0\n0,1,0\n0,0,1\n1,1,1\n")
     page.choose("unnamed.csv")
@@ -575,6 +639,8 @@ def look_at_all(browser, page, checks, files, downloads, out, large):
         scheme = "dark" if name == "phone" else "light"
         browser.call("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": scheme}])
         time.sleep(1)
+        browser.evaluate("document.querySelectorAll('[data-drawer]').forEach((button) => button.ariaExpanded === 'true' || button.click())")
+        accessible(browser, checks, f"loaded, drawers open, {name}, {scheme}")
         wide = browser.evaluate("document.documentElement.scrollWidth") - width
         checks.say(f"nothing is wider than the {name}", wide <= 0, f"{wide} pixels")
         (out / f"web-{name}.png").write_bytes(browser.screenshot())

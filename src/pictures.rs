@@ -3,8 +3,8 @@
 use crate::ladder::Filtration;
 use crate::points::bounding_box;
 use crate::render::{
-    Background, Camera, Colouring, Detail, Page, Projection, RenderError, Scene, ShapeStyle, Size,
-    Subject, View,
+    Background, Camera, Colouring, Detail, Page, Picture, Projection, RenderError, Scene,
+    ShapeStyle, Size, Subject, View,
 };
 use crate::shape::{Alpha, AlphaShape, ShapeError, suggested};
 use walpha_base::advice::{Advice, Advise, Category, wrapped};
@@ -30,6 +30,19 @@ pub fn png(
     colouring: Colouring<'_>,
     size: Size,
 ) -> Result<Vec<u8>, RenderError> {
+    picture(shape, look, colouring, size)?.to_png()
+}
+
+/// The pixels of [`png`].
+///
+/// # Errors
+/// Those of [`png`].
+pub fn picture(
+    shape: &AlphaShape,
+    look: Look,
+    colouring: Colouring<'_>,
+    size: Size,
+) -> Result<Picture, RenderError> {
     let positions = shape.points().positions();
     let bounds = bounding_box(positions);
     let diagonal = (0..3).map(|k| (bounds[1][k] - bounds[0][k]).powi(2)).sum::<f64>().sqrt();
@@ -41,7 +54,7 @@ pub fn png(
         Look::Camera(camera) => camera,
         Look::View(view) => Camera::fit(bounds, view, Projection::Perspective, size)?,
     };
-    scene.render(&camera, size, Background::White)?.to_png()
+    scene.render(&camera, size, Background::White)
 }
 
 /// Why there is no page of a shape.
@@ -100,11 +113,11 @@ pub fn page(
     let [low, high] = bounding_box(shape.points().positions());
     let ladder = levels.ladder((0..3).map(|k| high[k] - low[k]).product());
     let first = levels.alphas().partition_point(|alpha| *alpha <= opening).saturating_sub(1);
-    let detail = Detail { levels: &levels, ladder: &ladder, first, differences: None };
+    let detail = Detail { levels: &levels, ladder: &ladder, first, differences: None, atoms: None };
     let page = Page::new(&Subject {
         title,
         facts,
-        unit: shape.coordinates().unit.symbol(),
+        coordinates: shape.coordinates(),
         value: "the values of the points",
         difference: "values",
         details: &[detail],

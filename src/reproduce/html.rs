@@ -21,7 +21,9 @@ pub fn page(report: &Report, files: &[File]) -> String {
          <title>{}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n",
         escape(&title)
     );
+    html.push_str("<main>\n");
     head(&mut html, report);
+    contents(&mut html, report);
     summary(&mut html, report);
     volume(&mut html, report);
     for item in &report.items {
@@ -30,9 +32,20 @@ pub fn page(report: &Report, files: &[File]) -> String {
     html.push_str(
         "<section><p class=\"soft\">All numbers of this page are in report.json beside it, with \
          more digits; times too, which are all that differs between two runs.</p></section>\n\
-         </body>\n</html>\n",
+         </main>\n</body>\n</html>\n",
     );
     html
+}
+
+/// Links to the sections.
+fn contents(html: &mut String, report: &Report) {
+    html.push_str("<nav aria-label=\"Contents\">\n<ul>\n");
+    let fixed = [("claims", "Claims and verdicts"), ("volume", "The volume")];
+    let items = report.items.iter().map(|item| (item.id, item.title.as_str()));
+    for (id, title) in fixed.into_iter().chain(items) {
+        let _ = writeln!(html, "<li><a href=\"#{id}\">{}</a></li>", escape(title));
+    }
+    html.push_str("</ul>\n</nav>\n");
 }
 
 fn head(html: &mut String, report: &Report) {
@@ -117,7 +130,7 @@ fn summary(html: &mut String, report: &Report) {
         .collect();
     let _ = write!(
         html,
-        "<p>Claims: {}.</p>\n<div class=\"wide\"><table class=\"summary\"><thead><tr><th>item</th>\
+        "<p id=\"claims\">Claims: {}.</p>\n<div class=\"wide\" tabindex=\"0\"><table class=\"summary\"><thead><tr><th>item</th>\
          <th>claim</th><th>verdict</th></tr></thead><tbody>\n",
         counts.join(", ")
     );
@@ -148,7 +161,7 @@ fn volume(html: &mut String, report: &Report) {
     if let Some(sum) = &origin.sha256 {
         let _ = writeln!(
             html,
-            "<div class=\"wide\"><table class=\"facts\"><caption>SHA-256</caption><tbody><tr><td>of the file read</td><td>{}</td></tr>\
+            "<div class=\"wide\" tabindex=\"0\"><table class=\"facts\"><caption>SHA-256</caption><tbody><tr><td>of the file read</td><td>{}</td></tr>\
              <tr><td>expected</td><td>{}</td></tr></tbody></table></div>",
             sum.read, sum.expected
         );
@@ -174,7 +187,7 @@ fn section(html: &mut String, item: &Item, files: &[File]) {
         let _ = writeln!(
             html,
             "<figure><a href=\"{}\"><img alt=\"{}\" src=\"data:image/png;base64,{}\"></a>\
-             <figcaption>Tap the figure to open it large.</figcaption></figure>",
+             <figcaption>The figure opens in full size.</figcaption></figure>",
             escape(&file.name),
             escape(&item.title),
             BASE64_STANDARD.encode(&file.bytes)
@@ -187,7 +200,7 @@ fn section(html: &mut String, item: &Item, files: &[File]) {
     shapes(html, &item.shapes);
     if !item.facts.is_empty() {
         html.push_str(
-            "<div class=\"wide\"><table class=\"facts\"><caption>Numbers</caption><tbody>\n",
+            "<div class=\"wide\" tabindex=\"0\"><table class=\"facts\"><caption>Numbers</caption><tbody>\n",
         );
         for fact in &item.facts {
             let _ = writeln!(
@@ -229,11 +242,16 @@ fn judgement(html: &mut String, finding: &Finding) {
 
 fn rows(html: &mut String, table: &Table) {
     let cells = |tag: &str, row: &[String]| -> String {
-        row.iter().map(|cell| format!("<{tag}>{}</{tag}>", escape(cell))).collect()
+        let cell = |text: &String| {
+            // Nothing is no heading.
+            let tag = if text.is_empty() { "td" } else { tag };
+            format!("<{tag}>{}</{tag}>", escape(text))
+        };
+        row.iter().map(cell).collect()
     };
     let _ = writeln!(
         html,
-        "<div class=\"wide\"><table><caption>{}</caption><thead><tr>{}</tr></thead><tbody>",
+        "<div class=\"wide\" tabindex=\"0\"><table><caption>{}</caption><thead><tr>{}</tr></thead><tbody>",
         escape(&table.caption),
         cells("th", &table.head)
     );
@@ -249,7 +267,7 @@ fn shapes(html: &mut String, shapes: &[ShapeNumbers]) {
         return;
     }
     html.push_str(
-        "<div class=\"wide\"><table class=\"shapes\"><caption>Shapes</caption><thead><tr><th></th>",
+        "<div class=\"wide\" tabindex=\"0\"><table class=\"shapes\"><caption>Shapes</caption><thead><tr><td></td>",
     );
     for shape in shapes {
         let _ = write!(html, "<th>{}</th>", escape(&shape.label));

@@ -6,6 +6,8 @@ use std::io::Read;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
+use base64::prelude::{BASE64_STANDARD, Engine};
+
 use crate::common::{fails, json, ok, run};
 
 /// The three lines of an error: what, why, next.
@@ -432,4 +434,87 @@ fn presets_are_options() {
         (&15956.into(), &"min-max".into())
     );
     fails(f, 2, "shape sample:ct --preset bone", &["ct-bone"]);
+}
+
+/// The pixels of sixels, red, green and blue, row by row.
+fn decoded(sixels: &str) -> (usize, Vec<[u8; 3]>) {
+    let body = sixels.strip_prefix("\x1bPq\"1;1;").unwrap().strip_suffix("\x1b\\").unwrap();
+    let (size, mut rest) = body.split_at(body.find('#').unwrap());
+    let (width, height) = size.split_once(';').unwrap();
+    let (width, height): (usize, usize) = (width.parse().unwrap(), height.parse().unwrap());
+    let mut pixels = vec![[0; 3]; width * height];
+    let (mut palette, mut colour, mut x, mut band) = (vec![[0u8; 3]; 256], 0, 0, 0);
+    let number = |rest: &mut &str| {
+        let end = rest.find(|c: char| !c.is_ascii_digit()).unwrap_or(rest.len());
+        let (digits, after) = rest.split_at(end);
+        *rest = after;
+        digits.parse::<usize>().unwrap()
+    };
+    while let Some(sign) = rest.chars().next() {
+        rest = &rest[1..];
+        match sign {
+            '#' => {
+                colour = number(&mut rest);
+                if rest.starts_with(";2;") {
+                    rest = &rest[2..];
+                    palette[colour] = [0, 1, 2].map(|_| {
+                        rest = &rest[1..];
+                        (number(&mut rest) * 255 / 100) as u8
+                    });
+                }
+            }
+            '!' => {
+                let count = number(&mut rest);
+                let bits = rest.as_bytes()[0] - b'?';
+                rest = &rest[1..];
+                for column in x..x + count {
+                    for row in (0..6).filter(|row| bits >> row & 1 == 1) {
+                        pixels[(6 * band + row) * width + column] = palette[colour];
+                    }
+                }
+                x += count;
+            }
+            '$' => x = 0,
+            '-' => (x, band) = (0, band + 1),
+            other => panic!("{other:?} in sixels"),
+        }
+    }
+    (width, pixels)
+}
+
+/// A shape is shown by the protocol that is asked for, as a file has it, and not at all in what is no terminal.
+#[test]
+fn pictures_are_shown_in_terminals() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    let shape = ["shape", "sample:phantom@16"];
+    let shown = |more: &[&str]| ok(f, &[&shape, more].concat());
+    assert!(!shown(&[]).contains('\x1b'), "a pipe is no terminal");
+    shown(&["-o", "a.png", "--size", "800x680"]);
+    let png = fs::read(f.join("a.png")).unwrap();
+    let of_kitty = shown(&["--picture", "kitty"]);
+    let (picture, report) = of_kitty.rsplit_once("\x1b\\\n").unwrap();
+    assert!(report.starts_with("input ") && report.contains("nothing written"), "{report}");
+    let parts: Vec<&str> = picture.split("\x1b\\").collect();
+    let payload = parts.iter().enumerate().map(|(k, part)| {
+        let (how, text) = part.split_once(';').unwrap();
+        let more = u8::from(k + 1 < parts.len());
+        let first = if k == 0 { "a=T,f=100," } else { "" };
+        assert_eq!(how, format!("\x1b_G{first}m={more}"));
+        text
+    });
+    assert_eq!(BASE64_STANDARD.decode(payload.collect::<String>()).unwrap(), png);
+    let of_iterm2 = shown(&["--picture", "iterm2"]);
+    let start = format!("\x1b]1337;File=inline=1;size={}:", png.len());
+    let text = of_iterm2.strip_prefix(&start).unwrap().split_once('\x07').unwrap().0;
+    assert_eq!(BASE64_STANDARD.decode(text).unwrap(), png);
+    let of_sixel = shown(&["--picture", "sixel"]);
+    let (width, pixels) = decoded(of_sixel.split_once('\n').unwrap().0);
+    let expected = image::load_from_memory(&png).unwrap().to_rgb8();
+    assert_eq!((width, pixels.len()), (800, 800 * 680));
+    let is_near = |(a, b): (&[u8; 3], &image::Rgb<u8>)| (0..3).all(|k| a[k].abs_diff(b.0[k]) < 16);
+    let near = pixels.iter().zip(expected.pixels()).filter(|&pair| is_near(pair)).count();
+    assert!(near > 8 * 680 * 99, "{near} of 544000 pixels");
+    let [_, why, next] = complaint(f, 2, "shape sample:phantom@16 --picture kitty --json");
+    assert!(why.contains("standard output") && next == "omit it", "{why} {next}");
 }

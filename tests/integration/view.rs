@@ -68,6 +68,12 @@ impl Unpacked {
         numbers.iter().map(|&number| f32::from_le_bytes(number)).collect()
     }
 
+    fn u32(&self, name: &str) -> Vec<u32> {
+        let (numbers, rest) = self.arrays[name].as_chunks::<4>();
+        assert!(rest.is_empty());
+        numbers.iter().map(|&number| u32::from_le_bytes(number)).collect()
+    }
+
     fn alphas(&self) -> Vec<f64> {
         let (numbers, rest) = self.arrays["alphas"].as_chunks::<8>();
         assert!(rest.is_empty());
@@ -136,6 +142,49 @@ fn the_page_holds_every_level() {
         }
         assert!(count(facets, k as u8, 2) > 0);
     }
+    // Each void has the facets around it: a cone over them has its volume.
+    let voids: Vec<&Value> =
+        page.levels().iter().flat_map(|level| level["voids"].as_array().unwrap()).collect();
+    let (counts, corners) = (page.u32("voidCounts"), page.u32("voidFacets"));
+    assert_eq!((counts.len(), whole.content["space"].as_str()), (voids.len(), Some("unknown")));
+    assert!(voids.len() > 3);
+    let positions = page.f32("positions");
+    let place = |v: &u32| [0, 1, 2].map(|k| f64::from(positions[3 * *v as usize + k]));
+    let mut rest = &corners[..];
+    for (void, count) in voids.iter().zip(counts) {
+        let (own, after) = rest.split_at(3 * count as usize);
+        let six: f64 = own
+            .chunks(3)
+            .map(|row| {
+                let [[a, b, c], [d, e, f], [g, h, i]] = [0, 1, 2].map(|k| place(&row[k]));
+                a * (e * i - f * h) + b * (f * g - d * i) + c * (d * h - e * g)
+            })
+            .sum();
+        let volume = void["volume"].as_f64().unwrap();
+        assert!((six / 6.0 - volume).abs() < 1e-3 * volume.max(1.0), "{six} {void}");
+        rest = after;
+    }
+    assert!(rest.is_empty());
+}
+
+/// Atoms have their elements in the page, with the colours of these.
+#[test]
+fn the_page_knows_elements() {
+    let folder = tempfile::tempdir().unwrap();
+    ok(folder.path(), &["view", "sample:peptide", "-o", "page.html", "-q"]);
+    let page =
+        Unpacked::of(&fs::read_to_string(folder.path().join("page.html")).unwrap(), "detail-0");
+    let atoms = &page.arrays["atoms"];
+    assert_eq!(atoms.len(), page.f32("weights").len());
+    let elements = page.content["elements"].as_object().unwrap();
+    let named: Vec<(&str, &str)> = elements
+        .iter()
+        .map(|(number, known)| (number.as_str(), known["symbol"].as_str().unwrap()))
+        .collect();
+    assert_eq!(named, [("6", "C"), ("7", "N"), ("8", "O")]);
+    assert_eq!(elements["8"]["colour"], serde_json::json!([255, 13, 13]));
+    // Between two nitrogens of a chain are two carbons, of which the second bears an oxygen.
+    assert_eq!(atoms[..5], [7, 6, 6, 8, 6]);
 }
 
 #[test]

@@ -254,10 +254,17 @@ export class Diagram extends Chart {
   constructor(canvas, chosen) {
     super(canvas);
     canvas.addEventListener("click", (event) => this.choose(event, chosen));
+    // With many pairs, it is looked for when the mouse rests.
+    let resting = null;
+    canvas.addEventListener("pointermove", (event) => {
+      clearTimeout(resting);
+      resting = setTimeout(() => { canvas.title = this.tell(this.nearest(...this.at(event))); }, 80);
+    });
   }
 
-  set(scale, pairs) {
-    Object.assign(this, { scale, pairs, drawn: null });
+  // Pairs of each dimension: birth, death, and the simplex that names it.
+  set(scale, pairs, unit) {
+    Object.assign(this, { scale, pairs, unit, drawn: null });
     this.draw();
   }
 
@@ -337,15 +344,27 @@ export class Diagram extends Chart {
   // Between a birth and a death, in the middle of the scale, what they bound is there.
   choose(event, chosen) {
     const [x, y] = this.at(event);
+    const near = this.nearest(x, y);
+    if (!near) return;
+    const [birth, death] = near.pair;
+    const end = Number.isFinite(death) ? this.scale.share(death) : 1;
+    chosen(Math.max(birth, this.scale.alpha((this.scale.share(birth) + end) / 2)), near);
+  }
+
+  // The pair at a place, with its dimension.
+  nearest(x, y) {
     let [near, least] = [null, 12];
-    for (const pair of this.pairs?.flat() ?? []) {
+    this.pairs?.forEach((pairs, dimension) => pairs.forEach((pair) => {
       const [px, py] = this.place(pair);
       const distance = Math.hypot(px - x, py - y);
-      if (distance < least) [near, least] = [pair, distance];
-    }
-    if (!near) return;
-    const [birth, death] = near;
-    const end = Number.isFinite(death) ? this.scale.share(death) : 1;
-    chosen(Math.max(birth, this.scale.alpha((this.scale.share(birth) + end) / 2)));
+      if (distance < least) [near, least] = [{ dimension, pair }, distance];
+    }));
+    return near;
+  }
+
+  tell(near) {
+    if (!near) return "";
+    const [birth, death] = near.pair.map((alpha) => `${tick(alpha)} ${this.unit}`);
+    return `${["component", "tunnel", "void"][near.dimension]}, born at ball radius ${birth}, gone at ${death}`;
   }
 }

@@ -38,8 +38,14 @@ export function short(number) {
   return Number(Number(number).toPrecision(4)).toLocaleString("en", { maximumSignificantDigits: 4, useGrouping: false });
 }
 
-// A number for people: four digits at most, and thousands apart by thin spaces.
+// A number for people: four digits at most, and thousands apart by thin spaces; very large and very small ones with a power of ten.
 export function brief(number) {
+  const size = Math.abs(number);
+  if (Number.isFinite(size) && size > 0 && (size >= 1e9 || size < 1e-4)) {
+    const [digits, power] = Number(number).toExponential(3).split("e");
+    const raised = String(Number(power)).replace(/[-0-9]/g, (c) => "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"["-0123456789".indexOf(c)]);
+    return `${Number(digits)}·10${raised}`;
+  }
   const text = short(number);
   if (!/^-?\d+(\.\d+)?$/.test(text)) return text;
   const [whole, fraction] = text.split(".");

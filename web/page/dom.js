@@ -11,6 +11,15 @@ export function element(name, properties = {}, ...children) {
 // A name of a file with what is not seen escaped, as marks that turn the direction of letters: as `walpha_base::shown` does.
 export const shown = (name) => name.replace(/[\p{Cc}\p{Cf}\p{Zl}\p{Zp}\p{DI}]/gu, (c) => `\\u{${c.codePointAt(0).toString(16)}}`);
 
+// The value of a control, and those of several by their names.
+export const valueOf = (control) => (control.type === "checkbox" ? control.checked : control.value);
+export const valuesOf = (controls) => Object.fromEntries(controls.map((control) => [control.id, valueOf(control)]));
+
+export function setValue(control, value) {
+  if (control.type === "checkbox") control.checked = value;
+  else control.value = value;
+}
+
 // Fills a table with names and values.
 export function rows(table, facts) {
   table.replaceChildren(...facts.map(([name, value]) =>

@@ -47,7 +47,7 @@ function tile() {
 
 // Drawings of the examples, in their colours.
 const drawing = (inner) => `<svg viewBox="0 0 200 100" aria-hidden="true">${inner}</svg>`;
-const SKULL = drawing('<path d="M100 8c30 0 48 19 48 43 0 14-6 22-13 27l-2 14H85l-3-12-14-3-2-12-8-3 9-16C69 23 76 8 100 8z" fill="#ded4c2" stroke="#a89878" stroke-width="1.5"/><ellipse cx="83" cy="54" rx="9" ry="8" fill="#6b5f4c"/><path d="M92 80h36" stroke="#a89878" stroke-width="2"/>');
+const SKULL = drawing('<g stroke="#a89878" stroke-width="1.5"><path d="M106 6c30 0 50 18 50 42 0 13-6 23-17 27l-26 2-31-2-7-9-6-3 3-11-3-7c-1-22 11-39 37-39z" fill="#ded4c2"/><path d="M82 76l31 2 20-3-4 12c-9 8-31 9-42 5z" fill="#d3c7b1"/></g><ellipse cx="88" cy="48" rx="10" ry="9" fill="#6b5f4c"/><path d="M77 60l7-3 3 8-7 2z" fill="#6b5f4c"/><path d="M84 78h26" stroke="#6b5f4c" stroke-width="3" stroke-dasharray="3 2"/>');
 const HILLS = drawing('<path d="M0 78q40-34 80-16t60-14 60-8v60H0z" fill="#21918c"/><path d="M0 88q50-20 100-8t100-14v34H0z" fill="#3b528b"/><path d="M96 62V46l16-10 16 10v16z" fill="#fde725"/><circle cx="48" cy="46" r="11" fill="#5ec962"/><circle cx="160" cy="34" r="12" fill="#5ec962"/>');
 const ATOMS = drawing('<g stroke="#555" stroke-width="1"><circle cx="60" cy="58" r="20" fill="#909090"/><circle cx="88" cy="42" r="20" fill="#3050f8"/><circle cx="114" cy="60" r="21" fill="#909090"/><circle cx="142" cy="46" r="19" fill="#ff0d0d"/><circle cx="104" cy="30" r="12" fill="#eee"/></g>');
 

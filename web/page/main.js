@@ -1,27 +1,43 @@
 // The page: what the user does, what the worker answers, and what is seen of it.
 
 import { AlphaScale, Diagram, Histogram } from "./charts.js";
-import { brief, grouped, placed, short } from "./colours.js";
-import { byId, download, element, remark, rows, showNotices, shown, unpacked } from "./dom.js";
+import { brief, grouped, measured, placed, short } from "./colours.js";
+import { byId, download, element, remark, rows, setValue, showNotices, shown, unpacked, valuesOf } from "./dom.js";
 import { Cancelled, Engine, Failure } from "./engine.js";
 import { EXAMPLES } from "./examples.js";
-import { openDrawer, ShapePanel, wireDrawers } from "./shape.js";
+import { History } from "./history.js";
+import { lookNow, openDrawer, setLook, ShapePanel, wireDrawers } from "./shape.js";
 import { Slices } from "./slices.js";
+import { keepInput, keepState, restored, restoring } from "./store.js";
 
 // The presets of the command for volumes, and for points.
 const OF_VOLUMES = ["ct-bone", "ct-skin", "mri", "paper"];
 const OF_POINTS = ["points", "molecule"];
+// Names no simplex.
+const NEVER = 0xffffffff;
 const FORMATS = [
   ["ply", "PLY"], ["stl", "STL, solid"], ["3mf", "3MF"], ["glb", "GLB"], ["vtu", "VTU"], ["npz", "NPZ"], ["csv", "points, CSV"], ["wvm", "points, WVM"],
 ];
 
-const state = { input: null, facts: null, grayMin: null, surface: null, opened: null, presets: {} };
+// Atoms whose balls are measured without being asked to.
+const FEW_BALLS = 20000;
+
+const state = { input: null, facts: null, grayMin: null, surface: null, opened: null, presets: {}, computed: null, kept: null, isHome: false };
 let engine = null;
 const panel = new ShapePanel({
   at: (alpha) => engine.call({ do: "at", alpha }),
   measure: (alpha) => engine.call({ do: "measure", alpha }),
+  voids: (alpha, most) => engine.call({ do: "voids", alpha, most }),
   section: (alpha, axis, place) => engine.call({ do: "section", alpha, axis, place }),
-}, { failed: quietly, moved: (alpha) => diagram.mark(alpha), rested: () => command() });
+}, {
+  failed: quietly,
+  moved: (alpha) => diagram.mark(alpha),
+  rested: async () => {
+    await command();
+    history.note();
+  },
+  changed: () => history.later(),
+});
 
 // Shows what is being done, or that nothing is.
 let working = false;
@@ -30,11 +46,27 @@ function busy(text) {
   byId("working").hidden = !working;
   // What is shown of a shape that is gone, or not there yet, does nothing.
   byId("shape").inert = !panel.made;
-  byId("drop").hidden = working || Boolean(panel.made) || !byId("failure").hidden;
+  arrange();
   for (const id of ["alpha-row", "cut-row", "marks", "numbers", "output"]) byId(id).inert = working || !panel.made?.alphas;
   byId("slices").inert = working || !state.opened;
   document.body.dataset.state = text === null ? "ready" : "busy";
   if (text !== null) byId("status").textContent = text;
+}
+
+// What is there to open, over the picture or without one.
+function arrange() {
+  const isEmpty = !panel.made;
+  byId("drop").hidden = working || !(state.isHome || (isEmpty && byId("failure").hidden));
+  byId("open").hidden = isEmpty && !byId("drop").hidden;
+  byId("open").ariaExpanded = !byId("drop").hidden;
+  byId("open").disabled = working;
+  byId("back").hidden = isEmpty;
+  byId("history").hidden = isEmpty;
+}
+
+function goHome(isHome) {
+  state.isHome = isHome;
+  arrange();
 }
 
 function fail(error) {
@@ -61,13 +93,13 @@ function show(error) {
   const close = element("button", { type: "button", textContent: "Close", onclick: () => { failure.hidden = true; busy(null); } });
   failure.append(other, close);
   failure.hidden = false;
-  byId("drop").hidden = true;
+  goHome(false);
   if (!(error instanceof Failure)) console.error(error);
 }
 
 const STAGES = {
   read: "Reading", haar: "Wavelets", points: "Selecting points", alpha: "Finding α", filtration: "Computing all shapes", curve: "Counting what each α changes",
-  order: "Sorting simplices", pairs: "Pairing births and deaths", shape: "Computing the shape",
+  order: "Sorting simplices", pairs: "Pairing births and deaths", shape: "Computing the shape", measure: "Measuring balls",
 };
 
 function progress({ stage, share }) {
@@ -141,13 +173,19 @@ function inputName() {
   return element("span", {}, `${state.input} `, button);
 }
 
-// A file, several, or a folder, or a sample by its name.
-function choose(input, files) {
+// A file, several, or a folder, or a sample by its name; as it was kept, if it was.
+function choose(input, files, kept = null) {
+  if (!kept) keepInput(input, files, isMade(input));
   return task("Reading …", async () => {
     byId("remarks").replaceChildren();
-    for (const id of ["frame", "downsample", "columns", "series"]) byId(id).value = "";
     byId("series").replaceChildren();
-    Object.assign(state, { input, facts: null, opened: null, suited: false });
+    for (const id of Object.keys(READING)) {
+      const value = kept?.form?.[id] ?? "";
+      if (id === "series" && value) byId(id).append(element("option", { value }));
+      byId(id).value = value;
+    }
+    Object.assign(state, { input, facts: null, opened: null, suited: false, computed: null, kept, isHome: false });
+    history.forget();
     rows(byId("facts"), []);
     offer(null);
     panel.clear();
@@ -209,6 +247,7 @@ async function open() {
   }
   rows(byId("facts"), factsOf(facts));
   if (!state.suited) suit(facts);
+  if (!state.suited && state.kept?.form) fill(state.kept.form);
   state.suited = true;
   labelled();
   if (isVolume) {
@@ -321,9 +360,11 @@ function optionsOfForm() {
 
 async function compute() {
   byId("remarks").replaceChildren();
+  pending(false);
   if (state.opened !== JSON.stringify(reading())) await open();
   if (state.facts.kind === "series") return;
   panel.clear();
+  const form = formNow();
   const made = await engine.call({ do: "shape", options: optionsOfForm() });
   made.domain = state.facts.kind === "volume" && !made.labels ? "the volume" : "the box";
   state.toml = null;
@@ -351,8 +392,19 @@ async function compute() {
   byId("status").textContent = "";
   if (made.labels) byId("status").textContent = `${made.labels}.`;
   if (made.kept) byId("status").textContent += ` ${made.kept}.`;
+  state.computed = form;
   await panel.open(all, diagram.scale);
+  const { kept } = state;
+  state.kept = null;
+  if (kept?.shown) await showAgain(kept.shown);
+  if (kept?.camera) panel.scene.look(kept.camera);
+  restoring(false);
+  byId("balls").hidden = !state.facts.weights || Boolean(made.labels);
+  byId("balls-measured").replaceChildren();
+  byId("balls-command").textContent = ballsCommand();
+  byId("probe-unit").textContent = made.unit;
   if (made.labels) return;
+  if (!byId("balls").hidden && made.points <= FEW_BALLS) balls(made).catch(quietly);
   // Nobody waits for these.
   engine.call({ do: "suggest" }).then((found) => {
     if (panel.made !== made) return;
@@ -360,6 +412,29 @@ async function compute() {
       ["all points from", found.all_points], ["one piece from", found.one_region], ["no void from", found.no_void], ["steadiest from", found.plateau[0]],
     ]);
   }, quietly);
+}
+
+// Volume and area of the union of the balls that the input has, as `walpha balls` measures them.
+async function balls(made = panel.made) {
+  const probe = Number(byId("probe").value) || 0;
+  byId("balls-command").textContent = ballsCommand();
+  const { volume, volumeBound, area, areaBound } = await engine.call({ do: "balls", probe });
+  if (panel.made !== made || probe !== (Number(byId("probe").value) || 0)) return;
+  rows(byId("balls-measured"), [["volume", measured(volume, made.unit, 3)], ["surface", measured(area, made.unit, 2)]]);
+  byId("balls-measured").title = `${volume} ± ${volumeBound} ${made.unit}³, ${area} ± ${areaBound} ${made.unit}²`;
+  document.body.dataset.balls = `${volume},${area}`;
+}
+
+function ballsCommand() {
+  const probe = Number(byId("probe").value) || 0;
+  return `walpha balls ${quotedInput()}${probe > 0 ? ` --probe ${probe}` : ""}`;
+}
+
+// As `shell.rs` quotes it.
+function quotedInput() {
+  const { input } = state;
+  const word = input.startsWith("-") ? `./${input}` : input;
+  return /^[A-Za-z0-9_./:=,@%+-]+$/.test(word) ? word : `'${word.replaceAll("'", "'\\''")}'`;
 }
 
 // Buttons for α: the one that the shape opens at, and others at which something happens.
@@ -425,8 +500,74 @@ const histogram = new Histogram(byId("histogram"), (mark, value, done) => {
   marks();
   if (done) byId("options").requestSubmit();
 });
-const diagram = new Diagram(byId("diagram"), (alpha) => panel.moveTo(alpha));
+const diagram = new Diagram(byId("diagram"), async (alpha, near) => {
+  const { dimension, pair: [, , simplex] } = near;
+  try {
+    await panel.setAlpha(alpha);
+    if (dimension === 0 || simplex === NEVER) return panel.showCycle(null);
+    const { places } = await engine.call({ do: "cycle", dimension, simplex });
+    if (panel.alpha !== alpha || places.length === 0) return undefined;
+    document.body.dataset.cycle = `${dimension},${places.length / 3}`;
+    const of = dimension === 1 ? `a closed way along ${places.length / 3 - 1} edges` : `its boundary, ${places.length / 9} triangles`;
+    return panel.showCycle({ isWalk: dimension === 1, places, text: `${diagram.tell(near)}: ${of}. Escape hides it.` });
+  } catch (error) {
+    return quietly(error);
+  }
+});
 let slices = null;
+
+// ---- What was before
+
+const history = new History(
+  () => (state.computed && panel.alpha !== null && panel.made?.alphas ? { form: state.computed, shown: shownNow() } : null),
+  (now, before) => {
+    if (JSON.stringify(now.form) === JSON.stringify(before.form)) return showAgain(now.shown).catch(quietly);
+    return task("Computing …", async () => {
+      fill(now.form);
+      await compute();
+      await showAgain(now.shown);
+    });
+  },
+  persist,
+);
+
+function persist() {
+  if (!state.computed || !panel.made?.alphas) return;
+  keepState({ form: state.computed, shown: shownNow(), camera: panel.scene.seenFrom() });
+}
+
+// The form as it is, with what no field of it has.
+const fields = () => [byId("preset"), ...byId("options").querySelectorAll("input, select")];
+
+function formNow() {
+  const { grayMin, surface } = state;
+  return { ...valuesOf(fields()), grayMin, surface };
+}
+
+function fill({ grayMin, surface, ...values }) {
+  for (const field of fields()) if (field.id in values) setValue(field, values[field.id]);
+  Object.assign(state, { grayMin, surface });
+  ruled();
+  labelled();
+  marks();
+}
+
+// What is seen of a shape.
+const shownNow = () => ({ alpha: panel.alpha, look: lookNow() });
+
+async function showAgain({ alpha, look }) {
+  setLook(look);
+  if (alpha !== panel.alpha) await panel.setAlpha(alpha);
+}
+
+// Whether the form says other than what is shown.
+function pending(isPending) {
+  const submit = byId("options").querySelector("[type=submit]");
+  submit.classList.toggle("pending", isPending);
+  submit.textContent = isPending ? "Apply changes" : "Compute";
+}
+
+const isMade = (input) => /^(sample|hard):/.test(input) || EXAMPLES.some((example) => example.input === input && example.make);
 
 function keepLeast() {
   if (state.grayMin === null) return;
@@ -440,6 +581,14 @@ function wire() {
     return task("Computing …", compute);
   });
   byId("cancel").addEventListener("click", () => engine.cancel());
+  byId("options").addEventListener("input", () => pending(true));
+  byId("probe").addEventListener("change", () => balls().catch(quietly));
+  byId("open").addEventListener("click", () => goHome(byId("drop").hidden));
+  byId("back").addEventListener("click", () => goHome(false));
+  addEventListener("keydown", (event) => {
+    if (event.key === "Escape" && state.isHome) goHome(false);
+  });
+  addEventListener("pagehide", persist);
   for (const id of ["of-grays", "of-shape"]) {
     byId(id).addEventListener("input", ({ target }) => {
       if (target !== byId("preset")) state.surface = null;
@@ -460,11 +609,14 @@ function wire() {
   byId("alpha-value").addEventListener("change", ({ target }) => target.value !== "" && panel.moveTo(Number(target.value)));
   byId("save-png").addEventListener("click", () => panel.savePicture(nameOf("png")));
   byId("compute-diagram").addEventListener("click", () => task("Sorting simplices …", async () => {
-    const { pairs0, pairs1, pairs2 } = await engine.call({ do: "diagram" });
-    const pairs = [pairs0, pairs1, pairs2].map((flat) => Array.from({ length: flat.length / 2 }, (_, k) => [flat[2 * k], flat[2 * k + 1]]));
+    const found = await engine.call({ do: "diagram" });
+    const pairs = [0, 1, 2].map((dimension) => {
+      const [flat, simplices] = [found[`pairs${dimension}`], found[`simplices${dimension}`]];
+      return Array.from(simplices, (simplex, k) => [flat[2 * k], flat[2 * k + 1], simplex]);
+    });
     byId("diagram").hidden = false;
     byId("compute-diagram").hidden = true;
-    diagram.set(diagram.scale, pairs);
+    diagram.set(diagram.scale, pairs, panel.made.unit);
     document.body.dataset.pairs = pairs.map((list) => list.length).join(",");
   }));
   byId("formats").replaceChildren(...FORMATS.map(([extension, name]) =>
@@ -499,10 +651,7 @@ function wire() {
     });
     return Promise.all(dropped.map(filesOf)).then((files) => take(files.flat())).catch(quietly);
   });
-  const show = (example) => {
-    const files = example.make ? [{ path: example.input, file: new File([example.make()], example.input) }] : [];
-    return choose(example.input, files);
-  };
+  const show = (example) => choose(example.input, filesOfExample(example));
   byId("examples").append(...EXAMPLES.map(({ input, name }) => element("option", { value: input, textContent: name })));
   byId("examples").addEventListener("change", ({ target }) => {
     const example = EXAMPLES.find(({ input }) => input === target.value);
@@ -517,6 +666,31 @@ function wire() {
   }));
   wireDrawers();
   offer(null);
+}
+
+const filesOfExample = ({ input, make }) => (make ? [{ path: input, file: new File([make()], input) }] : []);
+
+// What a reload has lost, as it was; or a card for it, if its bytes were not kept or it has ended the page before.
+async function reopen() {
+  const kept = await restored();
+  if (!kept) return;
+  const { input, files, state: before = null, failed } = kept;
+  const example = EXAMPLES.find((example) => kept.isMade && example.input === input);
+  const go = (found) => {
+    restoring(true);
+    return choose(input, found, before ?? {});
+  };
+  const known = example ? filesOfExample(example) : files;
+  if (known && !failed) return go(known);
+  const card = element("button", { type: "button", id: "reopen" }, element("b", { textContent: `Reopen ${shown(input)}` }),
+    element("span", { textContent: known ? "as it was before the reload" : "Choose it again: it is shown as it was before the reload" }));
+  card.addEventListener("click", () => {
+    if (known) return go(known);
+    state.reopening = { input, before };
+    return byId(input.includes(".") ? "files" : "folder").click();
+  });
+  byId("cards").prepend(card);
+  return undefined;
 }
 
 // What was dropped, with paths: a file, or those of a folder. Chromium opens no entries of pages from disk, but has handles.
@@ -559,7 +733,13 @@ function take(files) {
   const folder = first.path.includes("/") ? first.path.slice(0, first.path.indexOf("/")) : null;
   if (folder !== null) return choose(folder, files);
   const header = files.find(({ path }) => HEADERS.test(path));
-  if (files.length === 1 || header) return choose((header ?? first).path, files);
+  if (files.length === 1 || header) {
+    const input = (header ?? first).path;
+    const again = state.reopening?.input === input ? state.reopening.before : null;
+    state.reopening = null;
+    if (again) keepInput(input, files, false);
+    return choose(input, files, again);
+  }
   // Slices, chosen one by one: for the command they have to lie in a folder.
   return choose("slices", files.map(({ path, file }) => ({ path: `slices/${path}`, file })));
 }
@@ -570,6 +750,7 @@ try {
   slices = new Slices(byId("planes"), engine, quietly);
   wire();
   document.body.dataset.state = "ready";
+  await reopen();
 } catch (error) {
   fail(error);
 }

@@ -6,6 +6,9 @@ import {
   Sphere, Vector2, Vector3, WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+import { LineMaterial } from "three/addons/lines/LineMaterial.js";
+import { LineSegments2 } from "three/addons/lines/LineSegments2.js";
+import { LineSegmentsGeometry } from "three/addons/lines/LineSegmentsGeometry.js";
 import { BONE, EDGES, EXTERIOR, HIDDEN, INTERIOR, LOOSE, OF_CLASS, range, REGULAR, short, SINGULAR, viridis } from "./colours.js";
 import { element as make } from "./dom.js";
 
@@ -64,7 +67,12 @@ void main() {
 }`;
 
 // The opacity of a surface through which something is shown.
-const FADED = 0.25;
+const FADED = 0.15;
+// The colour of what is shown so.
+const SHOWN = "#d55e00";
+// The ends of the axes of a patient (LPS), and the letters of axes without a known meaning.
+const PATIENT = [["L", "R"], ["P", "A"], ["S", "I"]];
+const AXES = [["x"], ["y"], ["z"]];
 // Pixels that a scale bar is long, about.
 const BAR = 110;
 // The colour of what a plane cuts, beside a material.
@@ -140,7 +148,8 @@ export class ShapeScene {
       element.textContent = "This browser has no WebGL, so the shape is not drawn. Numbers, slices and files work as usual.";
     }
     this.labels = make("div", { className: "labels", hidden: true });
-    element.append(this.labels);
+    this.length = make("div", { className: "length", hidden: true }, make("span"));
+    element.append(this.labels, this.length);
     this.scene = new Scene();
     this.camera = new PerspectiveCamera(35, 1, 0.1, 1000);
     this.camera.up.set(0, 0, 1);
@@ -165,7 +174,7 @@ export class ShapeScene {
   }
 
   // Other points: what was drawn goes. The camera stays where it is to be kept.
-  setPoints({ positions, weights, values, differences, original, centre, unit }, box, keep = false) {
+  setPoints({ positions, weights, values, differences, atoms, elements, original, centre, unit, space }, box, keep = false) {
     this.group.traverse((object) => {
       object.geometry?.dispose();
       object.material?.dispose();
@@ -176,7 +185,8 @@ export class ShapeScene {
     this.box = box;
     // Heights are drawn by the coordinates of the input.
     const heights = () => Float32Array.from({ length: positions.length / 3 }, (_, v) => positions[3 * v + 2] + centre[2]);
-    this.data = { positions, weights, values, differences, heights };
+    this.data = { positions, weights, values, differences, heights, atoms, elements };
+    this.setAxes(space === "LPS" ? PATIENT : AXES);
     this.weightRange = range(weights);
     this.position = new BufferAttribute(positions, 3);
     this.colour = new BufferAttribute(new Float32Array(positions.length), 3);
@@ -212,8 +222,19 @@ export class ShapeScene {
     this.parts.hidden.renderOrder = 1;
     this.section = new Mesh(new BufferGeometry(), new MeshBasicMaterial({ side: DoubleSide, vertexColors: true }));
     this.section.frustumCulled = false;
-    this.lit = new Box3Helper(new Box3(), new Color("#d55e00"));
+    this.lit = new Box3Helper(new Box3(), new Color(SHOWN));
     this.lit.visible = false;
+    // Triangles within the surface, and lines: what a list or a diagram points at, and a length that is measured.
+    this.inner = new Mesh(new BufferGeometry(), new MeshLambertMaterial({ color: SHOWN, side: DoubleSide, flatShading: true }));
+    this.inner.frustumCulled = false;
+    const wide = (color) => {
+      const line = new LineSegments2(new LineSegmentsGeometry(), new LineMaterial({ color, linewidth: 3, depthTest: false }));
+      Object.assign(line, { visible: false, frustumCulled: false, renderOrder: 2 });
+      return line;
+    };
+    [this.walk, this.ruler] = [wide(SHOWN), wide("#d6006c")];
+    this.ends = [];
+    this.length.hidden = true;
     // A surface to compare with, the same at every α.
     add("original", Mesh, new MeshLambertMaterial({ color: "#bebebe", flatShading: true, side: DoubleSide, transparent: true, opacity: 0.5, depthWrite: false }),
       { position: new BufferAttribute(original?.positions ?? new Float32Array(), 3) });
@@ -225,7 +246,7 @@ export class ShapeScene {
       const [low, high] = [box.min, box.max].map((corner) => short(corner[axis] + centre[k]));
       return make("span", { textContent: `${axis}: ${low} to ${high} ${unit}` });
     }));
-    this.group.add(this.section, this.lit, this.parts.box);
+    this.group.add(this.section, this.lit, this.inner, this.walk, this.ruler, this.parts.box);
     this.unit = unit;
     this.fade(this.opacity);
     if (keep) return;
@@ -275,7 +296,7 @@ export class ShapeScene {
       rows.forEach((v, k) => {
         at.set(positions.subarray(3 * v, 3 * v + 3), 3 * k);
         radius[k] = name === "balls" ? Math.sqrt(this.alpha + weights[v]) : dot(weights[v]);
-        if (this.scale) tint.set(this.colour.array.subarray(3 * v, 3 * v + 3), 3 * k);
+        if (this.isTinted) tint.set(this.colour.array.subarray(3 * v, 3 * v + 3), 3 * k);
         else colours[this.classes[v]].toArray(tint, 3 * k);
       });
       part.geometry.setAttribute("position", new BufferAttribute(at, 3));
@@ -287,9 +308,11 @@ export class ShapeScene {
 
   // Colours of the material, by class, or by numbers of the points.
   setColour(by) {
-    const { values, weights, differences, heights } = this.data;
+    const { values, weights, differences, heights, atoms, elements } = this.data;
     const scale = by === "height" ? heights() : { value: values, weight: weights, difference: differences }[by];
     this.plain = by === "plain";
+    const byElement = by === "element";
+    this.isTinted = Boolean(scale) || byElement;
     this.scale = scale && range(scale);
     this.valueScale = by === "value" ? this.scale : null;
     if (scale) {
@@ -301,12 +324,18 @@ export class ShapeScene {
       });
       this.colour.needsUpdate = true;
     }
+    if (byElement) {
+      const colours = Object.fromEntries(Object.entries(elements).map(([number, { colour: [r, g, b] }]) => [number, new Color().setRGB(r / 255, g / 255, b / 255, "srgb")]));
+      const unknown = new Color(BONE);
+      atoms.forEach((number, v) => (colours[number] ?? unknown).toArray(this.colour.array, 3 * v));
+      this.colour.needsUpdate = true;
+    }
     const colours = this.plain ? [BONE, LOOSE, LOOSE] : [OF_CLASS[REGULAR], OF_CLASS[SINGULAR], EDGES];
     for (const [k, name] of ["regular", "singular", "edges"].entries()) {
       const colour = colours[k];
       const { material } = this.parts[name];
-      material.vertexColors = scale !== undefined;
-      material.color.set(scale ? "#ffffff" : colour);
+      material.vertexColors = this.isTinted;
+      material.color.set(this.isTinted ? "#ffffff" : colour);
       material.needsUpdate = true;
     }
     this.paintSection();
@@ -346,7 +375,7 @@ export class ShapeScene {
     if (!this.shades) return;
     const { values } = this.data;
     const [low, high] = this.scale && values && this.scale === this.valueScale ? range(values) : [0, 0];
-    const plain = new Color(this.plain ? CUT : OF_CLASS[INTERIOR]);
+    const plain = new Color(this.plain || this.isTinted ? CUT : OF_CLASS[INTERIOR]);
     const colours = new Float32Array(3 * this.shades.length);
     const colour = new Color();
     this.shades.forEach((shade, k) => {
@@ -357,13 +386,121 @@ export class ShapeScene {
     this.section.geometry.setAttribute("color", new BufferAttribute(colours, 3));
   }
 
-  // A box around what is pointed at in a list, or nothing.
-  light(low, high) {
-    this.lit.visible = low !== undefined;
-    if (low) this.lit.box.set(new Vector3(...low), new Vector3(...high));
+  // What is pointed at in a list, or nothing: its triangles, by the indices of points, or a box around it where these are not known.
+  light(hole) {
+    this.lit.visible = Boolean(hole && !hole.facets);
+    if (this.lit.visible) this.lit.box.set(new Vector3(...hole.low), new Vector3(...hole.high));
+    const { positions } = this.data;
+    const places = new Float32Array(3 * (hole?.facets?.length ?? 0));
+    hole?.facets?.forEach((v, k) => places.set(positions.subarray(3 * v, 3 * v + 3), 3 * k));
+    this.setInner(places);
+    this.walk.visible = false;
     // What lies within is seen through the surface.
-    this.fade(low ? Math.min(this.opacity, FADED) : this.opacity);
+    this.seeThrough(Boolean(hole));
+  }
+
+  // The cycle of a persistence pair, or nothing: the places along a closed walk, or the corners of triangles.
+  setCycle(cycle) {
+    this.lit.visible = false;
+    this.setInner(cycle?.isWalk ? new Float32Array() : cycle?.places ?? new Float32Array());
+    this.walk.visible = Boolean(cycle?.isWalk);
+    if (cycle?.isWalk) this.setLine(this.walk, cycle.places);
+    this.seeThrough(Boolean(cycle));
+  }
+
+  setInner(places) {
+    this.inner.geometry.dispose();
+    this.inner.geometry = new BufferGeometry();
+    this.inner.geometry.setAttribute("position", new BufferAttribute(places, 3));
+  }
+
+  // A line along places.
+  setLine(line, places) {
+    const ends = [];
+    for (let at = 0; at + 5 < places.length; at += 3) ends.push(...places.subarray(at, at + 6));
+    line.geometry.dispose();
+    line.geometry = new LineSegmentsGeometry();
+    line.geometry.setPositions(ends);
+  }
+
+  seeThrough(isInner) {
+    this.fade(isInner ? Math.min(this.opacity, FADED) : this.opacity);
     this.draw();
+  }
+
+  // Brings a box to the middle, as large as it can be seen with what is around it.
+  zoomTo(low, high) {
+    const sphere = new Box3(new Vector3(...low), new Vector3(...high)).getBoundingSphere(new Sphere());
+    const arm = this.camera.position.clone().sub(this.controls.target);
+    const distance = 3 * sphere.radius / Math.tan(Math.PI / 360 * this.camera.fov);
+    this.turned = true;
+    this.controls.target.copy(sphere.center);
+    this.camera.position.copy(sphere.center).add(arm.setLength(Math.min(arm.length(), distance)));
+    this.camera.near = Math.min(this.camera.near, distance / 500);
+    this.camera.updateProjectionMatrix();
+    this.controls.update();
+    this.draw();
+  }
+
+  // Measures from place to place on the surface; a third place begins anew. Returns the length, when there is one.
+  measureAt(event) {
+    const hit = this.hit(event);
+    if (!hit) return null;
+    if (this.ends.length === 2) this.ends = [];
+    this.ends.push(hit.point.clone());
+    const [a, b] = [this.ends[0], this.ends.at(-1)];
+    this.setLine(this.ruler, new Float32Array([...a, ...b]));
+    this.ruler.visible = true;
+    this.draw();
+    return this.ends.length === 2 ? a.distanceTo(b) : null;
+  }
+
+  endMeasuring() {
+    this.ends = [];
+    if (this.ruler) this.ruler.visible = false;
+    this.draw();
+  }
+
+  // The length, beside the middle of its line; and its first end, before there is a second.
+  labelLength() {
+    this.length.hidden = this.ends.length === 0;
+    if (this.length.hidden) return;
+    const [a, b] = [this.ends[0], this.ends.at(-1)];
+    const at = a.clone().lerp(b, 0.5).project(this.camera);
+    const label = this.length.firstChild;
+    label.textContent = this.ends.length === 2 ? `${short(a.distanceTo(b))} ${this.unit}` : "+";
+    Object.assign(label.style, { left: `${50 + 50 * at.x}%`, top: `${50 - 50 * at.y}%` });
+  }
+
+  // The letters at the ends of the axes, in a corner of the picture.
+  setAxes(letters) {
+    if (!this.axes) return;
+    const drawn = (name, properties) => {
+      const made = document.createElementNS("http://www.w3.org/2000/svg", name);
+      for (const [key, value] of Object.entries(properties)) made.setAttribute(key, value);
+      return made;
+    };
+    this.letters = letters.flatMap((ends, axis) => ends.map((letter, end) => {
+      const text = drawn("text", { "text-anchor": "middle", dy: "0.35em" });
+      text.textContent = letter;
+      return { axis, sign: end === 0 ? 1 : -1, text, line: drawn("line", { x1: 0, y1: 0 }) };
+    }));
+    this.axes.replaceChildren(...this.letters.map(({ line }) => line), ...this.letters.map(({ text }) => text));
+  }
+
+  turnAxes() {
+    const back = this.camera.quaternion.clone().invert();
+    for (const { axis, sign, text, line } of this.letters ?? []) {
+      const { x, y, z } = new Vector3().setComponent(axis, sign).applyQuaternion(back);
+      line.setAttribute("x2", 28 * x);
+      line.setAttribute("y2", -28 * y);
+      text.setAttribute("x", 38 * x);
+      text.setAttribute("y", -38 * y);
+      // What points away is thinner.
+      for (const part of [text, line]) part.setAttribute("class", z < -0.05 ? "far" : "near");
+      // An axis along the view is a point, whose letters would hide each other.
+      text.style.display = z < -0.95 ? "none" : "";
+    }
   }
 
   // How opaque the surface is, from 0 to 1.
@@ -381,10 +518,11 @@ export class ShapeScene {
     }
   }
 
-  // The point of the shape at a place on the screen, if there is one: the dot there, where points are drawn, or the nearest corner.
+  // The point of the shape at a place on the screen, if there is one: the dot or the ball there, where these are drawn, or the nearest
+  // corner.
   pick(event) {
     const rectangle = this.element.getBoundingClientRect();
-    return this.dotAt(event.clientX - rectangle.left, event.clientY - rectangle.top) ?? this.cornerAt(event, rectangle);
+    return this.dotAt(event.clientX - rectangle.left, event.clientY - rectangle.top) ?? this.ballAt(event) ?? this.cornerAt(event);
   }
 
   // Of the dots within five pixels the one in front.
@@ -402,15 +540,49 @@ export class ShapeScene {
     return found;
   }
 
-  cornerAt(event, rectangle) {
+  // The ray from the viewer through a place on the screen.
+  rayTo(event) {
+    const rectangle = this.element.getBoundingClientRect();
     const at = new Vector2(
       2 * (event.clientX - rectangle.left) / rectangle.width - 1,
       1 - 2 * (event.clientY - rectangle.top) / rectangle.height,
     );
     const ray = new Raycaster();
     ray.setFromCamera(at, this.camera);
+    return ray;
+  }
+
+  // The ball that is in front at a place on the screen, where balls are drawn.
+  ballAt(event) {
+    if (!this.parts.balls.visible) return null;
+    const { ray } = this.rayTo(event);
+    const arm = new Vector3();
+    let [found, least] = [null, Infinity];
+    for (let v = 0; v < this.position.count; v++) {
+      const squared = this.alpha + this.data.weights[v];
+      if (!(squared > 0)) continue;
+      arm.fromBufferAttribute(this.position, v).sub(ray.origin);
+      const along = arm.dot(ray.direction);
+      const inside = squared - arm.lengthSq() + along * along;
+      if (inside < 0) continue;
+      const distance = along - Math.sqrt(inside);
+      if (distance > 0 && distance < least) [found, least] = [v, distance];
+    }
+    return found;
+  }
+
+  // Where the surface is met at a place on the screen; of a ball the centre.
+  hit(event) {
+    const ball = this.ballAt(event);
+    if (ball !== null) return { point: new Vector3().fromBufferAttribute(this.position, ball) };
+    const ray = this.rayTo(event);
     const visible = (hit) => !this.parts.regular.material.clippingPlanes?.some((plane) => plane.distanceToPoint(hit.point) < 0);
-    const [hit] = ray.intersectObjects([this.parts.regular, this.parts.singular]).filter(visible);
+    const drawn = [this.parts.regular, this.parts.singular].filter((part) => part.visible);
+    return ray.intersectObjects(drawn).find(visible) ?? null;
+  }
+
+  cornerAt(event) {
+    const hit = this.hit(event);
     if (!hit) return null;
     const corner = new Vector3();
     const distance = (v) => corner.fromBufferAttribute(this.position, v).distanceTo(hit.point);
@@ -471,6 +643,20 @@ export class ShapeScene {
       middle.addScaledVector(one.axis, (most + least) / 2);
     }
     return { upright: axes[0].distance, across: axes[1].distance, middle };
+  }
+
+  // From where it is seen, and towards where, relative to the box.
+  seenFrom() {
+    return { from: this.camera.position.toArray(), to: this.controls.target.toArray(), turned: this.turned };
+  }
+
+  look({ from, to, turned }) {
+    this.turned = turned;
+    if (!turned) return;
+    this.camera.position.fromArray(from);
+    this.controls.target.fromArray(to);
+    this.controls.update();
+    this.draw();
   }
 
   // All of it, from the front and a little above.
@@ -605,6 +791,8 @@ export class ShapeScene {
       this.measure(started);
     }
     this.label();
+    this.labelLength();
+    this.turnAxes();
     this.measureBar();
     if (this.moving) {
       clearTimeout(this.timer);

@@ -3,8 +3,11 @@
 import { Box3, Vector3 } from "three";
 import { Curve } from "./charts.js";
 import { BONE, brief, CLASSES, EDGES, grouped, INTERIOR, LOOSE, measured, OF_CLASS, placed, REGULAR, short, SINGULAR } from "./colours.js";
-import { byId, download, element, rows } from "./dom.js";
+import { byId, download, element, rows, setValue, valueOf, valuesOf } from "./dom.js";
 import { ShapeScene } from "./scene.js";
+
+// Voids that are listed at most.
+const VOIDS = 200;
 
 // Drawers beside the picture, of which those open are remembered.
 const DRAWERS = "walpha-drawers";
@@ -41,9 +44,23 @@ export function wireDrawers() {
   }
 }
 
+// What is chosen of how a shape is drawn.
+const choices = () => [...byId("display").querySelectorAll("input, select"), byId("cut"), byId("cut-place")];
+export const lookNow = () => valuesOf(choices());
+
+export function setLook(look) {
+  for (const control of choices()) {
+    if (!(control.id in look) || valueOf(control) === look[control.id]) continue;
+    setValue(control, look[control.id]);
+    control.dispatchEvent(new Event(control.type === "range" ? "input" : "change", { bubbles: true }));
+  }
+}
+
 export class ShapePanel {
-  // A source has `at(α)` and `measure(α)`, which promise simplices and numbers, and may have `section(α, axis, place)`, which promises
-  // the cut cells. Listeners: `failed`, with an error; `moved`, with each α; `rested`, when the numbers of an α are there.
+  // A source has `at(α)` and `measure(α)`, which promise simplices and numbers, and `voids(α)`, which promises the corners of the facets
+  // around each void, and where those of the next begin. It may have `section(α, axis, place)`, which promises
+  // the cut cells. Listeners: `failed`, with an error; `moved`, with each α; `rested`, when the numbers of an α are there; `changed`, when
+  // something else is shown.
   constructor(source, heard) {
     [this.source, this.heard] = [source, heard];
     this.curve = new Curve(byId("curve"), (alpha) => this.made && this.moveTo(this.stop(alpha)));
@@ -55,7 +72,7 @@ export class ShapePanel {
 
   // Nothing is known any more.
   clear() {
-    [this.made, this.shape, this.alpha] = [null, null, null];
+    [this.made, this.shape, this.alpha, this.around, this.cycle] = [null, null, null, null, null];
   }
 
   // Points, and the first look at their shape. The view stays if it is to be kept.
@@ -63,7 +80,7 @@ export class ShapePanel {
     [this.made, this.shape, this.alpha] = [made, made, null];
     for (const id of ["shape", "cut-row", "alpha-row"]) byId(id).hidden = false;
     this.scene ??= new ShapeScene(byId("scene"));
-    this.scene.bar = byId("bar");
+    [this.scene.bar, this.scene.axes] = [byId("bar"), byId("axes")];
     const { scene } = this;
     const box = new Box3();
     box.setFromArray(made.positions);
@@ -73,15 +90,17 @@ export class ShapePanel {
     const colour = byId("colour");
     // Weights that are all the same say nothing.
     const weights = made.weights.some((weight) => weight !== made.weights[0]);
-    const scales = { value: made.values, difference: made.differences, weight: weights };
+    const scales = { value: made.values, difference: made.differences, weight: weights, element: made.atoms };
     for (const option of colour.options) {
       option.hidden = option.value in scales && !scales[option.value];
       if (option.hidden && option.selected) colour.value = "plain";
     }
-    // A scan has much that is a surface without an inside, and its height shows it best; a solid has a material.
-    const isScan = made.singular.length > 0.1 * made.regular.length;
-    if (!keep && ["plain", "height"].includes(colour.value)) colour.value = isScan ? "height" : "plain";
+    // A scan has much that is a surface without an inside, and its height shows it best; atoms are balls; a solid has a material.
+    const isScan = !made.atoms && made.singular.length > 0.1 * made.regular.length;
+    if (!keep && ["plain", "height", "element"].includes(colour.value)) colour.value = made.atoms ? "element" : isScan ? "height" : "plain";
     if (!keep) byId("show-singular").checked = isScan || colour.value !== "plain";
+    if (!keep) byId("show-balls").checked = Boolean(made.atoms);
+    this.stopMeasuring();
     byId("show-original").parentElement.hidden = !made.original;
     scene.setColour(colour.value);
     for (const name of ["points", "balls", "hidden", "original", "box"]) scene.show(name, byId(`show-${name}`).checked);
@@ -126,6 +145,7 @@ export class ShapePanel {
   async setAlpha(alpha) {
     if (!this.made || Number.isNaN(alpha)) return;
     [this.next, this.alpha] = [alpha, alpha];
+    if (this.cycle && this.cycle.alpha !== alpha) this.showCycle(null);
     byId("alpha").value = this.scale.share(alpha);
     const { unit } = this.made;
     byId("alpha").ariaValueText = alpha >= 0 ? `${short(Math.sqrt(alpha))} ${unit}` : `α = ${short(alpha)} ${unit}²`;
@@ -189,7 +209,8 @@ export class ShapePanel {
     const [b0, b1, b2] = level.betti;
     const [volume, area] = [measured(level.volume, unit, 3), measured(level.area, unit, 2)];
     const topology = [counted(b0, "part"), counted(b1, "tunnel"), counted(b2, "void")].join(", ");
-    byId("summary").textContent = `Volume ${volume}, surface ${area}, ${topology}`;
+    // Of atoms, the volume of the balls is in the details.
+    byId("summary").textContent = `${this.made.atoms ? "Tetrahedra: volume" : "Volume"} ${volume}, surface ${area}, ${topology}`;
     byId("summary").title = `${level.volume} ${unit}³, ${level.area} ${unit}²`;
     const radius = this.alpha >= 0 ? [["ball radius", `${brief(Math.sqrt(this.alpha))} ${unit}`]] : [];
     rows(byId("measures"), [
@@ -201,15 +222,44 @@ export class ShapePanel {
       ...(this.made.rows ?? []),
     ]);
     document.body.dataset.cells = level.cells;
-    const shown = (level.voids ?? []).slice(0, 200).map((hole) => {
+    const shown = (level.voids ?? []).slice(0, VOIDS).map((hole, row) => {
       const [low, high] = [hole.low, hole.high].map((corner) => corner.map((x, k) => x - centre[k]));
-      const item = element("li", { tabIndex: 0, textContent: `${measured(hole.volume, unit, 3)}, filled by a ball of radius ${brief(Math.sqrt(Math.max(0, hole.filling_alpha)))} ${unit}` });
-      item.title = `${hole.volume} ${unit}³, ${hole.cells} cells, filled at α = ${hole.filling_alpha}`;
-      item.onpointerenter = item.onfocus = () => this.scene.light(low, high);
-      item.onpointerleave = item.onblur = () => this.scene.light();
-      return item;
+      const text = `${measured(hole.volume, unit, 3)}, filled by a ball of radius ${brief(Math.sqrt(Math.max(0, hole.filling_alpha)))} ${unit}`;
+      const item = element("button", { type: "button", textContent: text });
+      item.title = `${hole.volume} ${unit}³, ${hole.cells} cells, filled at α = ${hole.filling_alpha}. A click zooms to it.`;
+      item.onpointerenter = item.onfocus = () => this.light(item, row, low, high);
+      item.onpointerleave = item.onblur = () => this.light(null);
+      item.onclick = () => this.scene.zoomTo(low, high);
+      return element("li", {}, item);
     });
     byId("voids").replaceChildren(...(shown.length ? shown : [element("li", { textContent: level.voids ? "none" : "not listed" })]));
+  }
+
+  // Shows a void, or none. Its box is there at once, its faces a little later.
+  async light(item, row, low, high) {
+    this.lit = item;
+    if (this.cycle) this.showCycle(null);
+    if (!item) return this.scene.light(null);
+    const { alpha } = this;
+    if (this.around?.alpha !== alpha) {
+      this.scene.light({ low, high });
+      this.around = { alpha, facets: this.source.voids(alpha, VOIDS) };
+    }
+    try {
+      const found = await this.around.facets;
+      if (this.lit === item && this.alpha === alpha) this.scene.light({ low, high, facets: found?.facets.subarray(found.starts[row], found.starts[row + 1]) });
+    } catch (error) {
+      this.around = null;
+      this.heard.failed(error);
+    }
+    return undefined;
+  }
+
+  // Shows the cycle of a persistence pair, which stays as long as α does, or none.
+  showCycle(cycle) {
+    this.cycle = cycle && { ...cycle, alpha: this.alpha };
+    this.scene?.setCycle(cycle);
+    byId("picked").textContent = cycle?.text ?? "";
   }
 
   // What is drawn, in its colours.
@@ -223,6 +273,14 @@ export class ShapePanel {
       return;
     }
     const { regular, singular, edges, classes } = this.shape;
+    if (by === "element") {
+      const counts = new Map();
+      for (const number of this.made.atoms) counts.set(number, (counts.get(number) ?? 0) + 1);
+      const named = [...counts].map(([number, count]) => ({ count, ...(this.made.elements[number] ?? { symbol: "not known", colour: null }) }));
+      byId("legend").replaceChildren(...named.sort((a, b) => b.count - a.count).map(({ count, symbol, colour }) =>
+        element("span", {}, box(colour ? `rgb(${colour.join(" ")})` : BONE), `${grouped(count)} ${symbol}`)));
+      return;
+    }
     const plain = by === "plain";
     const parts = [[plain ? BONE : OF_CLASS[REGULAR], regular.length / 3, plain ? "boundary triangles" : "regular facets"]];
     if (byId("show-singular").checked) {
@@ -247,18 +305,42 @@ export class ShapePanel {
 
   // The index of a point, and what is known of it.
   wordsOf(v) {
-    const { positions, weights, values, differences, centre, unit } = this.made;
+    const { positions, weights, values, differences, atoms, elements, centre, unit } = this.made;
     const { min, max } = this.scene.box;
     const extent = Math.max(max.x - min.x, max.y - min.y, max.z - min.z);
     const at = [0, 1, 2].map((k) => placed(positions[3 * v + k] + centre[k], extent)).join(", ");
-    const value = values ? `, F = ${short(values[v])}` : "";
+    const value = values ? `, value F = ${short(values[v])}` : "";
     const difference = differences ? `, difference ${short(differences[v])}` : "";
-    return `point ${v} at (${at}) ${unit}${value}${difference}, ω = ${short(weights[v])}, ${CLASSES[this.shape.classes[v]]}`;
+    const symbol = elements?.[atoms?.[v]]?.symbol;
+    return `point ${v}${symbol ? ` (${symbol})` : ""} at (${at}) ${unit}${value}${difference}, weight ω = ${short(weights[v])}, ${CLASSES[this.shape.classes[v]]}`;
+  }
+
+  startMeasuring() {
+    byId("measure").ariaPressed = true;
+    byId("scene").classList.add("measuring");
+    byId("picked").textContent = "Click two places on the surface.";
+  }
+
+  stopMeasuring() {
+    byId("measure").ariaPressed = false;
+    byId("scene").classList.remove("measuring");
+    this.scene?.endMeasuring();
+  }
+
+  get measuring() {
+    return byId("measure").ariaPressed === "true";
+  }
+
+  measureAt(event) {
+    if (!this.shape) return;
+    const length = this.scene.measureAt(event);
+    byId("picked").textContent = length === null ? "Click a place on the surface to measure to." : `Length ${brief(length)} ${this.made.unit}`;
+    byId("picked").title = length === null ? "" : `${length} ${this.made.unit}`;
   }
 
   // Says what is known of the point at a place on the screen.
   tell(event) {
-    if (!this.shape) return;
+    if (!this.shape || this.measuring || this.cycle) return;
     const v = this.scene.pick(event);
     byId("picked").textContent = v === null ? "" : this.wordsOf(v);
   }
@@ -277,6 +359,7 @@ export class ShapePanel {
   cut() {
     const on = byId("cut").value !== "";
     byId("cut-place").hidden = !on;
+    this.heard.changed?.();
     if (!on) return this.scene?.setCut(null);
     return this.alpha === null ? undefined : this.moveTo(this.alpha);
   }
@@ -328,6 +411,22 @@ export class ShapePanel {
       this.scene.setColour(byId("colour").value);
       this.legend();
     });
+    byId("measure").addEventListener("click", () => {
+      if (!this.measuring) return this.startMeasuring();
+      this.stopMeasuring();
+      byId("picked").textContent = "";
+      return undefined;
+    });
+    byId("full").addEventListener("click", () => {
+      if (document.fullscreenElement) document.exitFullscreen();
+      else document.documentElement.requestFullscreen?.().catch(this.heard.failed);
+    });
+    byId("full").hidden = !document.fullscreenEnabled;
+    addEventListener("keydown", (event) => {
+      if (event.key !== "Escape") return;
+      if (this.measuring) byId("measure").click();
+      if (this.cycle) this.showCycle(null);
+    });
     byId("show-singular").addEventListener("change", () => {
       this.showSingular();
       this.legend();
@@ -340,13 +439,17 @@ export class ShapePanel {
     }
     byId("cut").addEventListener("change", () => this.cut());
     byId("cut-place").addEventListener("input", () => this.cut());
+    byId("display").addEventListener("change", () => this.heard.changed?.());
+    byId("cut-place").addEventListener("change", () => this.heard.changed?.());
     byId("opacity").addEventListener("input", ({ target }) => this.scene?.setOpacity(Number(target.value)));
     byId("home").addEventListener("click", () => this.scene.home());
     let down = null;
     byId("scene").addEventListener("pointerdown", (event) => { down = [event.clientX, event.clientY]; });
     byId("scene").addEventListener("pointerup", (event) => {
       if (!down || Math.hypot(event.clientX - down[0], event.clientY - down[1]) > 4) return;
-      this.tell(event);
+      if (this.measuring) this.measureAt(event);
+      else if (this.cycle) this.showCycle(null);
+      else this.tell(event);
     });
     // A mouse need not click: it is enough that it rests.
     let resting = null;

@@ -1,9 +1,10 @@
 // The page that `walpha view` writes: shapes at several α, with their numbers, are in it.
 
 import { StopScale } from "./charts.js";
-import { EXTERIOR, HIDDEN, INTERIOR, REGULAR, SINGULAR } from "./colours.js";
+import { EXTERIOR, grouped, HIDDEN, INTERIOR, REGULAR, SINGULAR } from "./colours.js";
 import { byId, element, remark, rows, showNotices, unpacked } from "./dom.js";
-import { ShapePanel, wireDrawers } from "./shape.js";
+import { History } from "./history.js";
+import { lookNow, setLook, ShapePanel, wireDrawers } from "./shape.js";
 
 // The first level of what is in no shape, whatever α: the point is hidden.
 const NEVER = 255;
@@ -56,6 +57,15 @@ const source = {
     };
   },
   measure: async (alpha) => detail.levels[detail.alphas.indexOf(alpha)],
+  // The voids of all levels follow each other.
+  async voids(alpha) {
+    const { alphas, levels, voidCounts, voidFacets } = detail;
+    if (!voidCounts) return null;
+    const before = levels.slice(0, alphas.indexOf(alpha)).reduce((sum, { voids }) => sum + voids.length, 0);
+    const starts = [0];
+    voidCounts.forEach((count, k) => starts.push(starts[k] + 3 * count));
+    return { facets: voidFacets, starts: starts.slice(before) };
+  },
 };
 
 function fail(error) {
@@ -64,7 +74,19 @@ function fail(error) {
   console.error(error);
 }
 
-const panel = new ShapePanel(source, { failed: fail });
+const panel = new ShapePanel(source, { failed: fail, rested: () => history.note(), changed: () => history.later() });
+
+const history = new History(
+  () => (panel.alpha === null ? null : { detail: byId("detail").value, alpha: panel.alpha, look: lookNow() }),
+  async (now, before) => {
+    if (now.detail !== before.detail) {
+      byId("detail").value = now.detail;
+      await choose(Number(now.detail));
+    }
+    setLook(now.look);
+    await panel.setAlpha(now.alpha);
+  },
+);
 
 // Shows a level of detail, at the α that it opens at, or at the last of its own up to the one that is shown.
 const details = [];
@@ -77,10 +99,10 @@ async function choose(number) {
   if (simplified) remark(`The picture is ${simplified}`);
   const above = before === null ? first + 1 : alphas.findIndex((alpha) => alpha > before);
   const reference = alphas[Math.max(0, (above < 0 ? alphas.length : above) - 1)];
-  const { unit, domain, centre, titles, original } = page;
+  const { unit, space, domain, centre, titles, original } = page;
   const betti = (k) => detail.levels.map((level) => level.betti[k]);
   const all = { b0: betti(0), b1: betti(1), b2: betti(2) };
-  panel.look({ ...detail, unit, domain, centre, titles, original, reference, ...await source.at(reference) }, before !== null);
+  panel.look({ ...detail, rows: detail.rows.map(([name, value]) => [name, /^\d+$/.test(value) ? grouped(value) : value]), unit, space, domain, centre, titles, original, reference, ...await source.at(reference) }, before !== null);
   await panel.open(all, new StopScale(alphas));
   document.body.dataset.detail = number;
 }
@@ -99,6 +121,7 @@ try {
   showNotices();
   wireDrawers();
   await choose(page.points.length - 1);
+  byId("history").hidden = false;
   document.body.dataset.state = "ready";
 } catch (error) {
   fail(error);

@@ -4,7 +4,9 @@ use std::io;
 use std::path::Path;
 use std::sync::Arc;
 
-use serde_json::json;
+use self_cell::self_cell;
+use serde_json::{Map, Value, json};
+use walpha_balls::{BallUnion, with_probe};
 use walpha_base::advice::{Advise, told};
 use walpha_model::export::{EmptyShape, ExportOptions, Format};
 use walpha_model::pipeline::{
@@ -15,11 +17,14 @@ use walpha_model::progress::{Listener, Monitor, Stage};
 use walpha_model::settings::PRESETS;
 use walpha_model::{Recipe, Settings};
 use walpha_points::{
-    Attributes, Column, ModelMetadata, Packing, PointOptions, PointWriter, Points, SampleGrid,
-    bounding_box, read_model_file,
+    Attributes, Column, Element, ModelMetadata, Packing, PointOptions, PointWriter, Points,
+    SampleGrid, bounding_box, read_model_file,
 };
-use walpha_shape::ladder::{Filtration, Span};
-use walpha_shape::{Alpha, AlphaShape, Betti, ByClass, Class, NO_COMPONENT, WeightedPoints};
+use walpha_shape::ladder::{Cycles, Filtration, Interval, Ordered, Span};
+use walpha_shape::{
+    Alpha, AlphaShape, Betti, ByClass, Class, NO_COMPONENT, ShapeOptions, WeightedPoints,
+    alpha_shape,
+};
 use walpha_volume::{
     self as volume, Dims, Hounsfield, Labels, ReadOptions, SampleStats, Series, Volume,
 };
@@ -67,6 +72,8 @@ struct Made {
     centre: [f64; 3],
     /// The further columns of the points, which some formats hold.
     columns: Arc<[Column]>,
+    /// Of atoms, where they are known; empty if the points are not atoms.
+    elements: Vec<Option<Element>>,
 }
 
 /// The data of which shapes are made.
@@ -97,12 +104,32 @@ impl What {
 /// The shapes at all α. A solid without α stands at α = 0 alone.
 struct All {
     /// `None` of a solid.
-    filtration: Option<Filtration>,
+    filtration: Option<Arc<Filtration>>,
     stops: Shown,
+    /// Cycles of the persistence pairs, after the diagram is requested.
+    cycles: Option<CyclesInOrder>,
+}
+
+self_cell! {
+    /// A filtration with its simplices in order.
+    struct InOrder {
+        owner: Arc<Filtration>,
+        #[covariant]
+        dependent: Ordered,
+    }
+}
+
+self_cell! {
+    /// What finds cycles of persistence pairs, with what it is made of.
+    struct CyclesInOrder {
+        owner: InOrder,
+        #[covariant]
+        dependent: Cycles,
+    }
 }
 
 impl All {
-    fn filtration(&self) -> Result<&Filtration, Failure> {
+    fn filtration(&self) -> Result<&Arc<Filtration>, Failure> {
         let none = || Failure::new("a solid without α is the same at all α");
         self.filtration.as_ref().ok_or_else(none)
     }
@@ -186,6 +213,10 @@ impl Failure {
         Self { why: why.into(), next: None }
     }
 
+    fn of_no_shape() -> Self {
+        Self::new("there is no shape yet")
+    }
+
     /// The page moves α by its slider.
     fn of_empty(error: EmptyShape) -> Self {
         match error.suggested {
@@ -254,9 +285,12 @@ impl Session {
             Request::Filtration => self.filtration(),
             Request::At { alpha } => self.made()?.at(alpha),
             Request::Measure { alpha } => self.made()?.measure(alpha),
+            Request::Voids { alpha, most } => self.made()?.voids(alpha, most),
+            Request::Balls { probe } => self.balls(probe),
             Request::Section { alpha, axis, place } => self.made()?.section(alpha, axis, place),
             Request::Suggest => self.made()?.suggest(),
-            Request::Diagram => self.made()?.diagram(),
+            Request::Diagram => self.made.as_mut().ok_or_else(Failure::of_no_shape)?.diagram(),
+            Request::Cycle { dimension, simplex } => self.made()?.cycle(dimension, simplex),
             Request::Save { name, alpha, solid } => {
                 self.made()?.save(&self.input, &name, alpha, solid)
             }
@@ -267,7 +301,7 @@ impl Session {
     }
 
     fn made(&self) -> Result<&Made, Failure> {
-        self.made.as_ref().ok_or_else(|| Failure::new("there is no shape yet"))
+        self.made.as_ref().ok_or_else(Failure::of_no_shape)
     }
 
     fn open(&mut self, input: String, settings: &Settings) -> Result<Answer, Failure> {
@@ -339,12 +373,14 @@ impl Session {
         if matches!(recipe.alpha, AlphaRule::Given(alpha) if alpha.squared().is_infinite()) {
             return Err(Failure::new("α of the weights has to be finite here"));
         }
-        let mut columns = Vec::new();
+        let (mut columns, mut elements) = (Vec::new(), Vec::new());
         let input =
             match self.opened.as_ref().ok_or_else(|| Failure::new("nothing has been opened"))? {
                 Opened::Points(points, metadata) => {
                     let mut points = points.clone();
                     columns = std::mem::take(&mut points.columns);
+                    let atoms = points.molecule.iter().flat_map(|molecule| &molecule.atoms);
+                    elements = atoms.map(|atom| atom.element).collect();
                     Input::Points(points, metadata.clone())
                 }
                 Opened::Volume(volume) if recipe.labels.is_some() || recipe.surface.is_some() => {
@@ -372,6 +408,7 @@ impl Session {
             domain,
             centre: [0, 1, 2].map(|k| f64::midpoint(low[k], high[k])),
             columns: columns.into(),
+            elements,
             what: What::Weighed(weighed),
         };
         let answer = made.described(&shape);
@@ -394,6 +431,7 @@ impl Session {
             domain: [0, 1, 2].iter().map(|&k| high[k] - low[k]).product(),
             centre: [0, 1, 2].map(|k| f64::midpoint(low[k], high[k])),
             columns: Arc::default(),
+            elements: Vec::new(),
             what: What::Solid(model),
         };
         let answer = made.described(&shape);
@@ -402,13 +440,14 @@ impl Session {
     }
 
     fn filtration(&mut self) -> Result<Answer, Failure> {
-        let made = self.made.as_mut().ok_or_else(|| Failure::new("there is no shape yet"))?;
+        let made = self.made.as_mut().ok_or_else(Failure::of_no_shape)?;
         Stage::Filtration.begin()?;
         let weighed = match &made.what {
             What::Weighed(weighed) => weighed,
             What::Solid(model) => {
                 let stops = Shown::of(&model.shape)?;
-                return Ok(made.all.insert(All { filtration: None, stops }).described());
+                let all = All { filtration: None, stops, cycles: None };
+                return Ok(made.all.insert(all).described());
             }
         };
         let filtration = Filtration::on(None, weighed.points.clone())?;
@@ -416,14 +455,36 @@ impl Session {
         let mut alphas = filtration.coarse_alphas(STOPS);
         alphas.push(made.reference.alpha);
         let stops = Shown::at(&filtration, &alphas);
-        Ok(made.all.insert(All { filtration: Some(filtration), stops }).described())
+        let all = All { filtration: Some(Arc::new(filtration)), stops, cycles: None };
+        Ok(made.all.insert(all).described())
+    }
+
+    /// The union of the balls of the input: what `walpha balls` says of the file.
+    fn balls(&self, probe: f64) -> Result<Answer, Failure> {
+        let Some(Opened::Points(Points { positions, weights: Some(weights), .. }, _)) =
+            &self.opened
+        else {
+            return Err(Failure::new("the points have no radii"));
+        };
+        Stage::Measure.begin()?;
+        let points = WeightedPoints::new(positions.clone(), weights.clone())
+            .map_err(|error| Failure::new(error.to_string()))?;
+        let (points, alpha) = with_probe(points, Alpha::ZERO, probe)?;
+        let shape = alpha_shape(points, &ShapeOptions::new(alpha))?;
+        let union = BallUnion::new(&shape)?;
+        let (volume, area) = (union.volume(), union.area());
+        let head = json!({
+            "volume": volume.value, "volumeBound": volume.bound,
+            "area": area.value, "areaBound": area.bound,
+        });
+        Ok(Answer::of(head, Vec::new()))
     }
 }
 
 /// The settings of each preset, by their names.
 fn presets() -> Answer {
     let settings = |name| json!(Settings::preset(name));
-    let presets: serde_json::Map<_, _> =
+    let presets: Map<_, _> =
         PRESETS.iter().map(|(name, _)| ((*name).to_owned(), settings(name))).collect();
     Answer::of(json!({ "presets": presets }), Vec::new())
 }
@@ -507,6 +568,16 @@ impl Made {
             arrays.push(Array::U32("samples", samples));
         }
         arrays.extend(drawn(shape));
+        // By atomic number, and 0 where it is not known.
+        let mut elements: Map<String, Value> = Map::new();
+        if self.elements.len() == points.len() && !self.elements.is_empty() {
+            for element in self.elements.iter().flatten() {
+                let known = json!({ "symbol": element.symbol(), "colour": element.colour() });
+                elements.insert(element.number().to_string(), known);
+            }
+            let number = |element: &Option<Element>| element.map_or(0, Element::number);
+            arrays.push(Array::U8("atoms", self.elements.iter().map(number).collect()));
+        }
         let truncation = origin.truncation.map(|t| json!({ "kept": t.kept, "total": t.total }));
         let labels = match &self.what {
             What::Solid(model) => {
@@ -522,6 +593,8 @@ impl Made {
             "reference": self.reference.alpha.squared(),
             "origin": self.reference,
             "unit": origin.coordinates.unit.symbol(),
+            "space": origin.coordinates.space,
+            "elements": elements,
             "centre": self.centre,
             "largestWeight": points.weights().iter().copied().fold(f64::NEG_INFINITY, f64::max),
             "truncation": truncation,
@@ -597,8 +670,23 @@ impl Made {
         Ok(Answer::of(level, Vec::new()))
     }
 
+    /// The corners of the facets around each of the first voids, and where those of the next begin.
+    fn voids(&self, alpha: f64, most: usize) -> Result<Answer, Failure> {
+        let alpha = Alpha::from_squared(alpha)?;
+        let voids = self.all()?.filtration()?.levels(&[alpha]).void_facets(most).remove(0);
+        let starts = voids.iter().scan(0, |so_far, facets| {
+            *so_far += 3 * facets.len() as u32;
+            Some(*so_far)
+        });
+        let arrays = vec![
+            Array::U32("starts", std::iter::once(0).chain(starts).collect()),
+            Array::U32("facets", voids.into_iter().flatten().flatten().collect()),
+        ];
+        Ok(Answer::of(json!({}), arrays))
+    }
+
     /// The numbers of a solid, as those of a level.
-    fn measured(&self, shape: &AlphaShape) -> serde_json::Value {
+    fn measured(&self, shape: &AlphaShape) -> Value {
         let complex = shape.complex();
         let counts = |counts: ByClass<usize>| {
             json!({
@@ -675,18 +763,44 @@ impl Made {
         Ok(Answer::of(suggested, Vec::new()))
     }
 
-    fn diagram(&self) -> Result<Answer, Failure> {
+    fn diagram(&mut self) -> Result<Answer, Failure> {
+        let none = || Failure::new("the shapes at other α are not computed yet");
+        let all = self.all.as_mut().ok_or_else(none)?;
         Stage::Order.begin()?;
-        let simplices = self.all()?.filtration()?.simplices()?;
+        let owner = Arc::clone(all.filtration()?);
+        let simplices = InOrder::try_new(owner, |filtration| filtration.simplices())?;
         Stage::Pairs.begin()?;
-        simplices.loops()?;
+        simplices.borrow_dependent().loops()?;
         let mut arrays = Vec::new();
-        for (dimension, name) in ["pairs0", "pairs1", "pairs2"].into_iter().enumerate() {
-            let pairs = simplices.persistence(dimension)?;
+        let names = [("pairs0", "simplices0"), ("pairs1", "simplices1"), ("pairs2", "simplices2")];
+        for (dimension, (name, simplex)) in names.into_iter().enumerate() {
+            let pairs = simplices.borrow_dependent().persistence(dimension)?;
             let flat = pairs.iter().flat_map(|pair| [pair.birth, pair.death]).collect();
             arrays.push(Array::F64(name, flat));
+            // A loop is found by what begins it, and a void by what ends it.
+            let named = |pair: &Interval| {
+                if dimension < 2 { pair.begins } else { pair.ends.unwrap_or(u32::MAX) }
+            };
+            arrays.push(Array::U32(simplex, pairs.iter().map(named).collect()));
         }
+        all.cycles =
+            Some(CyclesInOrder::new(simplices, |simplices| simplices.borrow_dependent().cycles()));
         Ok(Answer::of(json!({}), arrays))
+    }
+
+    /// The cycle of a pair at its birth: the places along a closed walk, or the corners of the triangles around a void. Without places if the pair has none.
+    fn cycle(&self, dimension: usize, simplex: u32) -> Result<Answer, Failure> {
+        let none = || Failure::new("the persistence diagram is not computed yet");
+        let cycles = self.all()?.cycles.as_ref().ok_or_else(none)?.borrow_dependent();
+        let places = match dimension {
+            1 => cycles.path_of_loop(simplex).unwrap_or_default(),
+            2 => {
+                cycles.of_void(simplex).map_or_else(Vec::new, |void| void.corners.into_flattened())
+            }
+            _ => Vec::new(),
+        };
+        let places = places.into_iter().flat_map(|place| self.seen(place)).collect();
+        Ok(Answer::of(json!({}), vec![Array::F32("places", places)]))
     }
 
     /// Whether the command `shape` makes this shape: weights that are proportional to α are frozen otherwise.

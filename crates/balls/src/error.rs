@@ -56,6 +56,16 @@ pub enum BallsError {
         /// The ball, by input index.
         ball: u32,
     },
+    /// A point without a ball has no radius that a probe could add to.
+    #[error(
+        "point {row} has a negative squared radius, {squared}, so no probe can roll over its ball"
+    )]
+    NoRadius {
+        /// The point, by input index.
+        row: usize,
+        /// α + ω.
+        squared: f64,
+    },
     /// Other numbers of weights than of points.
     #[error("{weights} weights for {points} balls: each ball needs one")]
     Weights {
@@ -95,6 +105,9 @@ impl Advise for BallsError {
                 "move or remove that ball by a little, or give coordinates nearer to 0".into()
             }
             Self::Weights { .. } => "give a weight for each ball, in the order of the input".into(),
+            Self::NoRadius { .. } => {
+                "take no probe, or give weights that are squares of radii".into()
+            }
             Self::SmallBox { .. } => {
                 "repeat the points along the vectors of the box, and give the box that holds them"
                     .into()

@@ -46,6 +46,7 @@ pub use curve::{UnionLevel, union_curve};
 pub use discs::DiscUnion;
 pub use error::BallsError;
 pub use gradient::{Gradient, Gradients};
+pub use points::with_probe;
 pub use real::Bounded;
 pub use surface::BallSurface;
 pub use union::{BallUnion, Contacts, Measured};

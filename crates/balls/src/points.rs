@@ -4,10 +4,36 @@ use std::borrow::Cow;
 
 use walpha_base::vector::V3;
 use walpha_regular::internals::Scaled;
-use walpha_shape::{AlphaShape, Torus};
+use walpha_shape::{Alpha, AlphaShape, Torus, WeightedPoints};
 
+use crate::BallsError;
 use crate::real::{Bounded, Single};
 use crate::simplex::Ball;
+
+/// Balls whose radii are larger by that of a probe, and the α of their weights, 0. Without a probe nothing changes, and nothing is
+/// rounded.
+///
+/// # Errors
+/// A point without a ball: its squared radius α + ω is negative.
+pub fn with_probe(
+    points: WeightedPoints,
+    alpha: Alpha,
+    probe: f64,
+) -> Result<(WeightedPoints, Alpha), BallsError> {
+    if probe == 0.0 {
+        return Ok((points, alpha));
+    }
+    let (positions, mut weights, _) = points.into_parts();
+    for (row, weight) in weights.iter_mut().enumerate() {
+        let squared = alpha.squared() + *weight;
+        if squared < 0.0 {
+            return Err(BallsError::NoRadius { row, squared });
+        }
+        *weight = (squared.sqrt() + probe).powi(2);
+    }
+    let points = WeightedPoints::new(positions, weights).expect("a weight for each point");
+    Ok((points, Alpha::ZERO))
+}
 
 /// The balls of a shape, by input index.
 #[derive(Debug)]

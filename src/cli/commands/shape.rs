@@ -18,8 +18,9 @@ use crate::cli::options::global::Global;
 use crate::cli::options::picture::PictureArgs;
 use crate::cli::options::{Declared, Kept, OfShape, OutputArgs, Periodic, PipelineArgs};
 use crate::cli::process::errors::{CommandError, Result, fail_usage, option};
-use crate::cli::process::output::{OF_OUTPUTS, print_summary};
+use crate::cli::process::output::{OF_OUTPUTS, print_summary, print_with};
 use crate::cli::process::progress::Progress;
+use crate::cli::process::terminal::{Inline, Protocol};
 use crate::cli::process::usage;
 use crate::cli::report::Report;
 use crate::cli::report::offsets::offsets;
@@ -113,6 +114,16 @@ pub(crate) struct Shape {
     pub(crate) format: OutputArgs,
     #[command(flatten)]
     picture: PictureArgs,
+    /// Show a picture of the shape in the terminal, before the report. By itself it is shown where no file is written and
+    /// the terminal is known to show pictures.
+    #[arg(
+        long = "picture",
+        value_enum,
+        value_name = "HOW",
+        default_value = "auto",
+        help_heading = "Pictures (.png)"
+    )]
+    inline: Inline,
 }
 
 /// The formats of shapes among the outputs with these names.
@@ -165,8 +176,9 @@ impl Shape {
         if self.require_3d {
             outline::refuse(formats.iter().copied(), "--require-3d refuses these")?;
         }
-        if !names.iter().any(|name| PictureArgs::wanted(name)) {
-            input.typed.refuse(&PictureArgs::NAMES, "no picture (.png) is written")?;
+        let is_shown = self.inline.protocol(self.output.is_empty()).is_some();
+        if !names.iter().any(|name| PictureArgs::wanted(name)) && !is_shown {
+            input.typed.refuse(&PictureArgs::NAMES, "no picture (.png) is written or shown")?;
         }
         if !written(|format| format.ascii) {
             let why = format!("only {} has a binary form and a text form", known(|f| f.ascii));
@@ -212,9 +224,23 @@ impl Shape {
         self.output.iter().map(|path| self.format.named(path)).collect()
     }
 
+    /// How a picture is shown in the terminal, if one is.
+    fn protocol(&self, global: Global) -> Result<Option<Protocol>> {
+        let what = if global.piped { "a file" } else { "the report as JSON" };
+        if self.inline.is_asked_for() && (global.piped || global.json) {
+            fail_usage!("--picture writes to standard output, which has {what}" => "omit it");
+        }
+        let is_free = self.output.is_empty() && !global.json && !global.quiet;
+        Ok(self.inline.protocol(is_free))
+    }
+
     pub(crate) fn run(self, global: Global, team: &dyn Team) -> Result<()> {
         // Before the long work, a bad option, extension or path costs nothing yet.
         let recipe = self.recipe()?;
+        let protocol = self.protocol(global)?;
+        if self.each_label || self.by.is_some() {
+            unused("--picture", self.inline.is_asked_for(), "there are several shapes")?;
+        }
         if self.each_label {
             return self.each_label(&recipe, global);
         }
@@ -225,7 +251,8 @@ impl Shape {
         let in_blocks =
             team.size() > 1 || self.output.iter().any(|path| BlockwiseFormat::of(path).is_some());
         let working = (in_blocks && !global.in_place).then(|| Working::folder(&folder));
-        let outputs = Outputs::open(&self)?;
+        let mut outputs = Outputs::open(&self)?;
+        outputs.protocol = protocol;
         // From here on, blocks are written to the working folder.
         drop(working);
         let mut progress = Progress::new(global);
@@ -238,6 +265,9 @@ impl Shape {
         report.finish(progress.finish(), files);
         if team.size() > 1 {
             report.peak_memory_bytes = shape_in_blocks::peak(team);
+        }
+        if let Some(picture) = report.picture.take() {
+            print_with(|out| out.write_all(&picture))?;
         }
         print_summary(global, &report)
     }
@@ -258,6 +288,7 @@ impl Shape {
         let parts = "it takes the whole boundary, and there are blocks";
         unused("--solid", self.solid, parts)?;
         unused("--flat", self.flat, "points of a plane are not cut into blocks")?;
+        unused("--picture", self.inline.is_asked_for(), "there are blocks")?;
         let given = &self.pipeline.input.typed;
         given.refuse(&["refit", "periodic", "keep", "min_volume"], "there are blocks")?;
         if let Some((target, _)) = outputs.models.first() {
@@ -270,11 +301,11 @@ impl Shape {
         work.lead(outputs, progress, team)
     }
 
-    /// The columns of points that outputs with these names hold, or that pictures need.
-    fn columns(&self, names: &[PathBuf]) -> Attributes {
+    /// The columns of points that outputs with these names hold, or that pictures need, also one that is shown.
+    fn columns(&self, names: &[PathBuf], shows: bool) -> Attributes {
         if formats(names).any(|format| format.columns) {
             Attributes::All
-        } else if names.iter().any(|name| PictureArgs::wanted(name)) {
+        } else if shows || names.iter().any(|name| PictureArgs::wanted(name)) {
             self.picture.columns()
         } else {
             Attributes::None
@@ -291,7 +322,7 @@ impl Shape {
         let input = &self.pipeline.input;
         let names = self.names()?;
         // If the input is a CT, the recipe may be chosen for it.
-        let attributes = self.columns(&names);
+        let attributes = self.columns(&names, outputs.protocol.is_some());
         let mut recipe = recipe.clone().attributes(attributes);
         let mut read = pipeline::read_suited(input, &mut recipe, progress)?;
         let recipe = &recipe;
@@ -348,8 +379,20 @@ impl Shape {
         }
         let remarks = outputs.remarks(shape);
         report.offsets = offsets(&outputs.whole, shape);
+        let Outputs { protocol, ref columns, is_scan, .. } = outputs;
+        let columns = Arc::clone(columns);
         progress.stage(Stage::Write, || outputs.write(shape, facts))?;
         remarks.iter().for_each(|text| tracing::info!(target: OF_OUTPUTS, "{text}"));
+        // There may be nothing that a picture shows, as of points alone.
+        if let Some(protocol) = protocol
+            && EmptyShape::check(shape, Needs::FacetOrLine).is_ok()
+        {
+            let draw = || {
+                let picture = self.picture.in_terminal(shape, columns, is_scan)?;
+                protocol.encode(&picture)
+            };
+            report.picture = Some(progress.stage(Stage::Write, draw)?);
+        }
         Ok(report)
     }
 }
@@ -363,6 +406,11 @@ pub(crate) struct Outputs {
     pub whole: Vec<(Target, Box<dyn Exporter>)>,
     /// Outputs made from the points, with all data needed to make the shape again.
     pub models: Vec<(Target, &'static PointWriter)>,
+    /// How the shape is shown in the terminal, if it is.
+    protocol: Option<Protocol>,
+    /// The columns of the points, as far as outputs need them, and whether the points are those of a laser scan.
+    columns: Arc<[Column]>,
+    is_scan: bool,
 }
 
 impl Outputs {
@@ -397,6 +445,7 @@ impl Outputs {
         columns: Vec<Column>,
     ) -> Result<()> {
         let columns: Arc<[Column]> = columns.into();
+        (self.columns, self.is_scan) = (columns.clone(), facts.scan.is_some());
         let export = shape.export().crs(facts.crs.clone()).columns(columns.clone());
         for (target, exporter) in &mut self.whole {
             let name = shape.format.named(target.path())?;

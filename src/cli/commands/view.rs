@@ -1,7 +1,7 @@
 //! `walpha view`: writes an interactive page.
 
 use std::borrow::Cow;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::{self, Display};
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -23,8 +23,9 @@ use crate::interpolate::{Deviation, Grid, Interpolant};
 use crate::ladder::Filtration;
 use crate::pictures;
 use crate::pipeline::{AlphaRule, Input, Parameter, PipelineError, PlacedVolume, Values, Weighed};
+use crate::points::{Element, Molecule};
 use crate::progress::Stage;
-use crate::render::{self, Differences, Original, Page, Subject};
+use crate::render::{self, Atoms, Differences, Original, Page, Subject};
 use crate::shape::Kept;
 use crate::volume::UnknownFormat;
 use crate::{Alpha, Frame, GrayRange, Recipe, Units};
@@ -68,6 +69,24 @@ pub(crate) struct View {
     kept: Declared<options::Kept>,
 }
 
+/// What points come from.
+struct Source {
+    volume: Option<PlacedVolume>,
+    /// Without a volume, what the values of the points are.
+    column: String,
+    /// The elements of points that are atoms.
+    atoms: Option<Atoms>,
+}
+
+fn atoms_of(molecule: &Molecule) -> Atoms {
+    let elements = || molecule.atoms.iter().map(|atom| atom.element);
+    let known: BTreeSet<Element> = elements().flatten().collect();
+    Atoms {
+        numbers: elements().map(|element| element.map_or(0, Element::number)).collect(),
+        elements: known.iter().map(|e| (e.number(), e.symbol(), e.colour())).collect(),
+    }
+}
+
 impl View {
     pub(crate) fn run(self, global: Global) -> Result<()> {
         let html = self.output.extension().is_some_and(|e| e.eq_ignore_ascii_case("html"));
@@ -82,10 +101,10 @@ impl View {
         }
         let target = Target::open(&self.output)?;
         let mut progress = Progress::new(global);
-        let (weighed, source, column) = self.weighed(&mut progress)?;
+        let (weighed, source) = self.weighed(&mut progress)?;
         let recipe = self.pipeline.recipe()?;
         let details = weighed.into_iter().map(|weighed| {
-            let detail = Detail::new(weighed, source.as_ref(), &mut progress)?;
+            let detail = Detail::new(weighed, source.volume.as_ref(), &mut progress)?;
             if recipe.keep.is_all() {
                 Ok(detail)
             } else {
@@ -93,7 +112,7 @@ impl View {
             }
         });
         let details = details.collect::<Result<Vec<_>>>()?;
-        let (page, facts) = self.page(&details, source.as_ref(), &column, &mut progress)?;
+        let (page, facts) = self.page(&details, &source, &mut progress)?;
         if let Some(simplified) = &page.simplified {
             tracing::info!(target: OF_OUTPUTS, "{simplified}");
         }
@@ -110,12 +129,8 @@ impl View {
         print_summary(global, &facts)
     }
 
-    /// The weighted points of each level of detail, the fewest first and those of the shape last; the volume that they come
-    /// from; and without one what their values are.
-    fn weighed(
-        &self,
-        progress: &mut Progress,
-    ) -> Result<(Vec<Weighed>, Option<PlacedVolume>, String)> {
+    /// The weighted points of each level of detail, the fewest first and those of the shape last, and what they come from.
+    fn weighed(&self, progress: &mut Progress) -> Result<(Vec<Weighed>, Source)> {
         let input = &self.pipeline.input;
         let mut recipe = self.pipeline.recipe()?;
         let read = pipeline::read_suited(input, &mut recipe, progress)?;
@@ -135,10 +150,12 @@ impl View {
                     recipe.value = Some("height".into());
                 }
                 let column = recipe.value.clone().unwrap_or_else(|| "value".into());
+                let atoms = points.molecule.as_ref().map(atoms_of);
                 let read = Input::Points(points, facts);
                 let weigh = || recipe.weigh(read, Values::Written);
                 let (weighed, _) = progress.watch(weigh)?;
-                return Ok((vec![weighed], None, format!("the column {column} of the input")));
+                let column = format!("the column {column} of the input");
+                return Ok((vec![weighed], Source { volume: None, column, atoms }));
             }
             Input::Labels(..) => return Err(PipelineError::OfLabels.into()),
             Input::Surface(..) => return Err(PipelineError::OfSurface.into()),
@@ -152,17 +169,18 @@ impl View {
         let level = |count| progress.watch(|| recipe.level(&source, &whole, count));
         let mut details = counts.into_iter().map(level).collect::<Result<Vec<_>, _>>()?;
         details.push(whole);
-        Ok((details, Some(source), String::new()))
+        Ok((details, Source { volume: Some(source), column: String::new(), atoms: None }))
     }
 
     /// Makes the page of the shapes, and a summary of each level of detail.
     fn page(
         &self,
         details: &[Detail],
-        source: Option<&PlacedVolume>,
-        column: &str,
+        source: &Source,
         progress: &mut Progress,
     ) -> Result<(Page, Vec<DetailSummary>)> {
+        let Source { volume: source, column, atoms } = source;
+        let source = source.as_ref();
         let last = details.last().expect("the level of the shape");
         let facts = source.map(VolumeSummary::of);
         let facts = facts.as_ref();
@@ -207,7 +225,10 @@ impl View {
         }
         let rendered = details.iter().zip(&shown).map(|(detail, (levels, ladder, first))| {
             let differences = detail.differences.as_ref();
-            render::Detail { levels, ladder, first: *first, differences }
+            // What is kept of a shape has other points than the file.
+            let is_all = |atoms: &&Atoms| atoms.numbers.len() == levels.points().len();
+            let atoms = atoms.as_ref().filter(is_all);
+            render::Detail { levels, ladder, first: *first, differences, atoms }
         });
         let rendered: Vec<_> = rendered.collect();
         let title = format!("Alpha shapes of {}", name(&self.pipeline.input.input));
@@ -215,7 +236,7 @@ impl View {
         let subject = Subject {
             title: &title,
             facts: &facts_shown,
-            unit: last.weighed.origin.coordinates.unit.symbol(),
+            coordinates: last.weighed.origin.coordinates,
             value: match facts {
                 Some(_) if grays => "value of the original volume, in gray levels",
                 Some(_) => "value of the original volume",
@@ -250,18 +271,24 @@ impl View {
                 format!("{x}×{y}×{z} samples, values {low} to {high} are gray 0 to 255"),
             ));
             facts_shown.push((
-                "Haar".into(),
+                "detail kept".into(),
                 format!(
-                    "{} of {} coefficients kept, rms {:.4} gray levels",
-                    t.kept, t.total, t.rms
+                    "{} % of the wavelet coefficients, error {} gray levels (root mean square)",
+                    rounded(100.0 * t.kept as f64 / t.total as f64),
+                    rounded(t.rms)
                 ),
             ));
         }
         facts_shown.push(("lengths in".into(), weighed.origin.coordinates.to_string()));
-        facts_shown.push((
-            "weights ω".into(),
-            format!("{}, frozen at {reference}", WeightsReport::of(weighed)),
-        ));
+        // Weights that are all 0 say nothing.
+        if weighed.points.weights().iter().all(|&weight| weight == 0.0) {
+            facts_shown.push(("opens at".into(), reference.to_string()));
+        } else {
+            facts_shown.push((
+                "weights ω".into(),
+                format!("{}, frozen at {reference}", WeightsReport::of(weighed)),
+            ));
+        }
         if let Some(kept) = kept {
             facts_shown.push(("kept".into(), kept.to_string()));
         }

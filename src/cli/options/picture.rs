@@ -14,7 +14,8 @@ use crate::export::{Exporter, Needs};
 use crate::pictures::{self, Look};
 use crate::points::{Attributes, Column};
 use crate::render::{
-    Background, Ball, Camera, ColourMap, Colouring, Projection, RenderError, Rgb, Scene, Size, View,
+    self, Background, Ball, Camera, ColourMap, Colouring, Projection, RenderError, Rgb, Scene,
+    Size, View,
 };
 
 use crate::cli::process::errors::{Result, command_error, fail};
@@ -31,23 +32,33 @@ pub(crate) struct SightArgs {
     #[arg(long, value_name = "EX,EY,EZ,TX,TY,TZ", value_parser = camera, group = "eye",
           allow_hyphen_values = true)]
     camera: Option<Camera>,
-    /// Size of the picture in pixels.
-    #[arg(long, value_name = "WxH", value_parser = size, default_value = "1600x1360")]
-    size: Size,
+    /// Size of the picture in pixels [default: 1600x1360, and half of it in a terminal].
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    size: Option<Size>,
 }
+
+/// The width and height of pictures.
+const SIZE: [u32; 2] = [1600, 1360];
 
 impl SightArgs {
     /// The names of these options.
     pub(crate) const NAMES: [&str; 3] = ["view", "camera", "size"];
 
+    /// The size that is asked for, or the default one divided by a number.
+    fn size(&self, divided_by: u32) -> Result<Size, RenderError> {
+        let [width, height] = SIZE.map(|side| side / divided_by);
+        self.size.map_or_else(|| Size::new(width, height), Ok)
+    }
+
     /// The picture of a scene within a box, as PNG.
     fn draw(&self, scene: &Scene, bounds: [[f64; 3]; 2]) -> Result<Vec<u8>, RenderError> {
         let view = self.view.map_or(View::ThreeQuarter, View::from);
+        let size = self.size(1)?;
         let camera = match self.camera {
             Some(camera) => camera,
-            None => Camera::fit(bounds, view, Projection::Perspective, self.size)?,
+            None => Camera::fit(bounds, view, Projection::Perspective, size)?,
         };
-        scene.render(&camera, self.size, Background::White)?.to_png()
+        scene.render(&camera, size, Background::White)?.to_png()
     }
 
     /// The picture of balls with radii and colours, as PNG; those without a colour have that of bone.
@@ -163,6 +174,16 @@ impl PictureArgs {
         Box::new(Picture { args: self, columns, is_scan })
     }
 
+    /// The picture of a shape for a terminal: half as large as that of a file.
+    pub(crate) fn in_terminal(
+        self,
+        shape: &AlphaShape,
+        columns: Arc<[Column]>,
+        is_scan: bool,
+    ) -> Result<render::Picture, RenderError> {
+        Picture { args: self, columns, is_scan }.draw(shape, 2)
+    }
+
     /// The columns that the colours need: without an option, those that are there.
     pub(crate) fn columns(self) -> Attributes {
         match self.colour {
@@ -224,7 +245,7 @@ impl Picture {
         }
     }
 
-    fn draw(&self, shape: &AlphaShape) -> Result<Vec<u8>, RenderError> {
+    fn draw(&self, shape: &AlphaShape, divided_by: u32) -> Result<render::Picture, RenderError> {
         let positions = shape.points().positions();
         let (values, colours) = (shape.points().values(), self.colours());
         let heights: Vec<f64> = match self.colour() {
@@ -240,9 +261,10 @@ impl Picture {
             (.., Some(colours)) => Colouring::Points(colours),
             _ => Colouring::Plain,
         };
-        let SightArgs { view, camera, size } = self.args.sight;
+        let SightArgs { view, camera, .. } = self.args.sight;
         let view = view.map_or(View::ThreeQuarter, View::from);
-        pictures::png(shape, camera.map_or(Look::View(view), Look::Camera), colouring, size)
+        let size = self.args.sight.size(divided_by)?;
+        pictures::picture(shape, camera.map_or(Look::View(view), Look::Camera), colouring, size)
     }
 }
 
@@ -253,7 +275,8 @@ impl Exporter for Picture {
                 "the points have no values to colour by; choose --colour plain, height or class",
             ));
         }
-        out.write_all(&self.draw(shape).map_err(io::Error::other)?)
+        let png = self.draw(shape, 1).and_then(|picture| picture.to_png());
+        out.write_all(&png.map_err(io::Error::other)?)
     }
 
     fn needs(&self) -> Needs {

@@ -7,5 +7,6 @@ pub(super) mod output;
 pub(super) mod progress;
 pub(super) mod ranks;
 pub(super) mod signals;
+pub(super) mod terminal;
 pub(super) mod threads;
 pub(super) mod usage;

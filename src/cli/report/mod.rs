@@ -86,6 +86,9 @@ pub(super) struct Report {
     #[serde(skip_serializing_if = "Option::is_none")]
     solid: Option<Cuts>,
     files: Vec<String>,
+    /// What shows the shape in the terminal, before the report.
+    #[serde(skip)]
+    pub(super) picture: Option<Vec<u8>>,
     /// Outputs that the command could have written.
     #[serde(skip)]
     pub(super) example: &'static str,
@@ -117,6 +120,7 @@ impl Report {
             kept: None,
             solid: None,
             files: Vec::new(),
+            picture: None,
             example: "bone.ply (or .stl, .vtu, .png)",
             offsets: Vec::new(),
             seconds: BTreeMap::new(),

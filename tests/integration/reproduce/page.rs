@@ -49,6 +49,12 @@ fn each<'a>(list: &'a Value, shown: impl Fn(&'a Value) -> Vec<Shown>) -> Vec<Sho
 pub fn numbers_stand_in_the_report(files: &BTreeMap<String, Vec<u8>>, report: &Value) {
     let html = String::from_utf8(files["report.html"].clone()).unwrap();
     // The letters alone may stand in a picture, which is written in 64 signs without a colon.
+    assert_eq!(html.matches("<main>").count(), 1);
+    assert!(!html.contains("<th></th>"), "a heading says something");
+    for item in report["items"].as_array().unwrap() {
+        let link = format!("<li><a href=\"#{}\">", item["id"].as_str().unwrap());
+        assert!(html.contains(&link), "contents: {link}");
+    }
     let elsewhere = ["<script", "http:", "https:"].into_iter().find(|part| html.contains(part));
     assert_eq!(elsewhere, None, "a page on its own");
     let made =
@@ -163,6 +169,8 @@ fn of_head(report: &Value) -> Vec<Shown> {
         all.extend(rounded(&input["haar"][number]));
     }
     all.extend(said("α = 10 with ω = 0, √10"));
+    // The table of contents.
+    all.extend(each(&report["items"], |item| words(&item["title"])));
     for verdict in verdicts {
         all.extend(rounded(&report["verdicts"][verdict]));
     }

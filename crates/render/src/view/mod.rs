@@ -6,13 +6,13 @@
 mod pack;
 mod subject;
 
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 use walpha_shape::SinglePrecision;
 use walpha_shape::ladder::Level;
 
 use crate::error::RenderError;
 use pack::Packed;
-pub use subject::{Detail, Differences, Original, Subject};
+pub use subject::{Atoms, Detail, Differences, Original, Subject};
 
 /// A self-contained HTML page.
 #[derive(Clone, Debug)]
@@ -47,7 +47,7 @@ impl Page {
         let pack = |detail: &Detail<'_>| {
             let levels = detail.levels.len();
             assert!((1..=Self::MOST_LEVELS).contains(&levels), "{levels} levels");
-            Packed::of(detail, centre, Self::MOST_FACETS)
+            Packed::of(detail, centre, Self::MOST_FACETS, MOST_VOIDS)
         };
         let packed: Vec<_> = subject.details.iter().map(pack).collect();
         let simplified = simplified(subject, &packed);
@@ -92,7 +92,8 @@ fn whole(subject: &Subject<'_>, centre: [f64; 3]) -> Value {
     );
     json!({
         "facts": facts(subject, centre),
-        "unit": subject.unit,
+        "unit": subject.coordinates.unit.symbol(),
+        "space": subject.coordinates.space,
         "centre": centre,
         "domain": if subject.original.is_some() { "the volume" } else { "the box" },
         "titles": { "value": format!("F ({})", subject.value), "difference": difference },
@@ -138,7 +139,14 @@ fn detail(subject: &Subject<'_>, detail: &Detail<'_>, simplified: Option<&str>) 
         let text = format!("{rmse} {} (root mean square, on all samples)", subject.difference);
         rows.push(["error of F".to_owned(), text]);
     }
+    let elements = detail.atoms.into_iter().flat_map(|atoms| &atoms.elements);
+    let elements: Map<String, Value> = elements
+        .map(|(number, symbol, colour)| {
+            (number.to_string(), json!({ "symbol": symbol, "colour": colour }))
+        })
+        .collect();
     json!({
+        "elements": elements,
         "levels": detail.ladder.levels.iter().map(level).collect::<Vec<_>>(),
         "first": detail.first,
         "rows": rows,

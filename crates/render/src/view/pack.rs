@@ -88,7 +88,12 @@ const NEVER: u32 = 255;
 const ISOSURFACE_SAMPLES: usize = 64;
 
 impl Packed {
-    pub(super) fn of(detail: &Detail<'_>, centre: [f64; 3], most_facets: usize) -> Self {
+    pub(super) fn of(
+        detail: &Detail<'_>,
+        centre: [f64; 3],
+        most_facets: usize,
+        most_voids: usize,
+    ) -> Self {
         let points = detail.levels.points();
         let mut facets = detail.levels.facets();
         let mut edges = detail.levels.singular_edges();
@@ -113,6 +118,16 @@ impl Packed {
         arrays.u8("facetSpans", bytes(facets.iter().map(|facet| &facet.1)));
         arrays.u32("edges", edges.iter().flat_map(|edge| edge.0));
         arrays.u8("edgeSpans", bytes(edges.iter().map(|edge| &edge.1)));
+        if let Some(atoms) = detail.atoms {
+            arrays.u8("atoms", atoms.numbers.iter().copied());
+        }
+        let voids = detail.levels.void_facets(most_voids);
+        let all = || voids.iter().flatten();
+        // Where they are too many, voids are shown by their boxes.
+        if all().map(Vec::len).sum::<usize>() <= most_facets {
+            arrays.u32("voidCounts", all().map(|facets| facets.len() as u32));
+            arrays.u32("voidFacets", all().flatten().flatten().copied());
+        }
         Self { arrays, simplified }
     }
 }

@@ -1,5 +1,5 @@
 use walpha_shape::ladder::{Ladder, Levels};
-use walpha_volume::{Frame, Volume};
+use walpha_volume::{Coordinates, Frame, Volume};
 
 /// The content of a page.
 #[derive(Clone, Copy)]
@@ -8,8 +8,8 @@ pub struct Subject<'a> {
     pub title: &'a str,
     /// Further facts, as pairs of a name and a value.
     pub facts: &'a [(String, String)],
-    /// The unit of coordinates, such as "voxels".
-    pub unit: &'a str,
+    /// The unit of coordinates, and the directions of their axes.
+    pub coordinates: Coordinates,
     /// The meaning of F with its unit, such as "value of the original volume, in gray levels".
     pub value: &'a str,
     /// The unit of differences to the original, such as "gray levels".
@@ -31,6 +31,17 @@ pub struct Detail<'a> {
     pub first: usize,
     /// The differences of F from the original, if they are known.
     pub differences: Option<&'a Differences>,
+    /// The elements of the points, if they are atoms.
+    pub atoms: Option<&'a Atoms>,
+}
+
+/// The elements of atoms.
+#[derive(Clone, Debug)]
+pub struct Atoms {
+    /// The atomic number of each; 0 where it is not known.
+    pub numbers: Vec<u8>,
+    /// Each element among them: its atomic number, its symbol, and its colour as red, green and blue.
+    pub elements: Vec<(u8, &'static str, [u8; 3])>,
 }
 
 /// Differences of an interpolant from a volume.

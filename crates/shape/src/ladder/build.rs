@@ -91,6 +91,12 @@ pub(super) struct Incidence {
 impl Incidence {
     /// Stands for the missing cell of a facet of the hull.
     pub(super) const OUTSIDE: u32 = u32::MAX;
+
+    /// The corners of the facet opposite a corner of a cell, counter-clockwise seen from outside the cell.
+    pub(super) fn outward(opposite: usize) -> [usize; 3] {
+        let [a, b, c] = [1, 2, 3].map(|step| (opposite + step) % 4);
+        if opposite % 2 == 1 { [a, c, b] } else { [a, b, c] }
+    }
 }
 
 /// The incidences and radii of all simplices. Expected O(n log d), where d is the degree of a vertex, and exact arithmetic

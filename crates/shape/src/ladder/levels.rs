@@ -397,11 +397,7 @@ impl Levels<'_> {
         let facets = &incidence.cell_facets[inside as usize];
         let opposite = facets.iter().position(|&facet| facet as usize == row).expect("its facet");
         let cell = self.filtration.whole.complex().cells.rows()[inside as usize];
-        // Seen from outside a positive cell, the corners after an even one turn clockwise.
-        let mut facet = [1, 2, 3].map(|step| cell[(opposite + step) % 4]);
-        if opposite % 2 == 1 {
-            facet.swap(1, 2);
-        }
+        let mut facet = Incidence::outward(opposite).map(|k| cell[k]);
         let whole = &self.filtration.whole;
         if !whole.copies().is_empty() {
             // The corners of the cell may be other copies than those of the row.

@@ -147,6 +147,16 @@ impl Levels<'_> {
         voids
     }
 
+    /// The facets around the first [voids](Self::voids) of each level, this many at most: corners by input index, counter-clockwise
+    /// seen from outside the void. A facet with the void on both sides hangs into it, and is not listed. O(n α(n)), and the
+    /// number of cells of the voids.
+    #[doc(hidden)]
+    pub fn void_facets(&self, most: usize) -> Vec<Vec<Vec<[u32; 3]>>> {
+        let mut facets = vec![Vec::new(); self.len()];
+        self.descend(|level, complement| facets[level] = complement.void_facets(most));
+        facets
+    }
+
     /// Visits the complement of each level, from the last to the first.
     pub(super) fn descend(&self, mut visit: impl FnMut(usize, &mut LevelComplement<'_>)) {
         let incidence = &self.filtration.incidence;
@@ -257,17 +267,50 @@ impl LevelComplement<'_> {
     }
 
     pub(super) fn voids(&mut self) -> Vec<Void> {
+        self.voids_and_roots().into_iter().map(|(void, _)| void).collect()
+    }
+
+    /// The voids with their roots.
+    fn voids_and_roots(&mut self) -> Vec<(Void, u32)> {
         let mut roots = std::mem::take(&mut self.roots);
         // A component that winds round will always do so.
         roots.retain(|&root| self.sets.find(root) == root && self.is_bounded(root));
         let void = |&root: &u32| {
             let alpha = self.filling(root);
-            self.hollows[root as usize].void(alpha)
+            (self.hollows[root as usize].void(alpha), root)
         };
-        let mut voids: Vec<Void> = roots.iter().map(void).collect();
-        voids.sort_by(Void::order);
+        let mut voids: Vec<(Void, u32)> = roots.iter().map(void).collect();
+        voids.sort_by(|(a, _), (b, _)| a.order(b));
         self.roots = roots;
         voids
+    }
+
+    /// The facets around the first voids, this many at most.
+    fn void_facets(&mut self, most: usize) -> Vec<Vec<[u32; 3]>> {
+        let roots = self.voids_and_roots();
+        roots.iter().take(most).map(|&(_, root)| self.facets_around(root)).collect()
+    }
+
+    fn facets_around(&mut self, root: u32) -> Vec<[u32; 3]> {
+        let filtration = self.levels.filtration;
+        let Incidence { cell_facets, facet_cells, .. } = &filtration.incidence;
+        let cells = filtration.whole.complex().cells.rows();
+        let mut facets = Vec::new();
+        let mut at = root;
+        loop {
+            for (opposite, facet) in cell_facets[at as usize].into_iter().enumerate() {
+                let sides = facet_cells[facet as usize];
+                let other = if sides[0] == at { sides[1] } else { sides[0] };
+                if other == Incidence::OUTSIDE || self.sets.find(other) != root {
+                    let corner = |k: usize| filtration.whole.copied(cells[at as usize][k]).0;
+                    facets.push(Incidence::outward(opposite).map(corner));
+                }
+            }
+            at = self.next[at as usize];
+            if at == root {
+                return facets;
+            }
+        }
     }
 
     /// The smallest double at which all cells of a component fit.
@@ -290,5 +333,54 @@ impl LevelComplement<'_> {
         }
         self.known.insert(root, (hollow.cells(), alpha));
         alpha
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use walpha_base::random::Random;
+
+    use crate::ladder::Filtration;
+    use crate::{Alpha, WeightedPoints, six_volumes};
+
+    /// The facets around each void are closed: a cone over them from any place has the volume of the void, and they have its box.
+    #[test]
+    fn facets_enclose_the_voids() {
+        let mut random = Random::new(61);
+        let mut compared = 0;
+        for k in 0..60 {
+            // On a lattice or not; some lie in others.
+            let step = if k % 2 == 0 { 16.0 } else { 15.3 };
+            let mut number = || random.below(61) as f64 / step;
+            let positions = (0..60).map(|_| [number(), number(), number()]).collect();
+            let weights = (0..60).map(|_| number() / 40.0).collect();
+            let points = WeightedPoints::new(positions, weights).unwrap();
+            let filtration = Filtration::new(points).unwrap();
+            let alphas: Vec<Alpha> =
+                (0..24).map(|k| Alpha::from_squared(0.05 * f64::from(k)).unwrap()).collect();
+            let levels = filtration.levels(&alphas);
+            let facets = levels.void_facets(usize::MAX);
+            for (voids, facets) in levels.voids().iter().zip(&facets) {
+                assert_eq!(voids.len(), facets.len());
+                for (void, facets) in voids.iter().zip(facets) {
+                    let corners: Vec<[[f64; 3]; 3]> = facets
+                        .iter()
+                        .map(|facet| facet.map(|v| filtration.points().positions()[v as usize]))
+                        .collect();
+                    let cones = corners.iter().map(|&[a, b, c]| six_volumes([[9.0; 3], a, b, c]));
+                    assert!((cones.sum::<f64>() / 6.0 - void.volume).abs() < 1e-9);
+                    for axis in 0..3 {
+                        let along = || corners.as_flattened().iter().map(|corner| corner[axis]);
+                        assert_eq!(along().fold(f64::INFINITY, f64::min), void.low[axis]);
+                        assert_eq!(along().fold(f64::NEG_INFINITY, f64::max), void.high[axis]);
+                    }
+                    compared += 1;
+                }
+            }
+            let first: Vec<_> =
+                facets.iter().map(|level| level[..level.len().min(1)].to_vec()).collect();
+            assert_eq!(levels.void_facets(1), first);
+        }
+        assert!(compared > 300, "{compared}");
     }
 }

@@ -12,12 +12,12 @@ use clap::Args;
 use serde::Serialize;
 use walpha_base::shown::rounded;
 
-use crate::balls::{BallUnion, BallsError, Cavity, DiscUnion, Pocket};
+use crate::balls::{BallUnion, BallsError, Cavity, DiscUnion, Pocket, with_probe};
 use crate::cli::commands::pipeline;
 use crate::cli::options::global::Global;
 use crate::cli::options::picture::SightArgs;
 use crate::cli::options::{self, Declared, InputArgs, OutputArgs, Periodic, WithAlpha};
-use crate::cli::process::errors::{Result, command_error, fail_usage, option};
+use crate::cli::process::errors::{Result, fail_usage, option};
 use crate::cli::process::output::{name, print_summary};
 use crate::cli::process::progress::Progress;
 use crate::cli::report::{MovedIntoBox, SCHEMA_VERSION, certain, ending};
@@ -26,7 +26,7 @@ use crate::pipeline::{AlphaRule, Input, Origin, Values};
 use crate::points::Molecule;
 use crate::progress::Stage;
 use crate::shape::{Betti, Engine, ShapeOptions};
-use crate::{Alpha, AlphaShape, Coordinates, WeightedPoints};
+use crate::{Alpha, AlphaShape, Coordinates};
 use outputs::{Looks, Output};
 use tables::Table;
 
@@ -141,7 +141,7 @@ impl Balls {
         let Origin { coordinates, torus, folded, .. } = weighed.origin;
         // A periodic box is triangulated as a whole only where voids are asked for: that takes short edges.
         let exterior = !is_periodic || has_table(Table::Voids);
-        let (points, alpha) = enlarged(weighed.points, alpha, self.probe.unwrap_or_default())?;
+        let (points, alpha) = with_probe(weighed.points, alpha, self.probe.unwrap_or_default())?;
         let shape = progress.stage(Stage::Shape, || {
             let options = ShapeOptions::new(alpha).engine(Engine::Native).exterior(exterior);
             crate::alpha_shape(points, &options.periodic(torus))
@@ -213,25 +213,6 @@ fn refuse_on_torus(targets: &[(Target, Output)]) -> Result<()> {
         fail_usage!("pockets are open to the outside, and a periodic box has no outside" => "write voids.csv, or omit --periodic");
     }
     Ok(())
-}
-
-/// Balls whose radii are larger by that of a probe, and their α. Without a probe nothing changes, and nothing is rounded.
-fn enlarged(points: WeightedPoints, alpha: Alpha, probe: f64) -> Result<(WeightedPoints, Alpha)> {
-    if probe == 0.0 {
-        return Ok((points, alpha));
-    }
-    let (positions, mut weights, _) = points.into_parts();
-    for (row, weight) in weights.iter_mut().enumerate() {
-        let squared = alpha.squared() + *weight;
-        if squared < 0.0 {
-            return Err(
-                command_error!("point {row} has a negative squared radius, {squared}, so no probe can roll over its ball" => "omit --probe, or give weights that are squares of radii"),
-            );
-        }
-        *weight = (squared.sqrt() + probe).powi(2);
-    }
-    let points = WeightedPoints::new(positions, weights).expect("a weight for each point");
-    Ok((points, Alpha::ZERO))
 }
 
 /// What is measured of balls.

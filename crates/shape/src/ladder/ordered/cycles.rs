@@ -105,13 +105,39 @@ impl Cycles<'_> {
     /// # Errors
     /// Out of memory.
     pub fn of_loop(&self, edge: u32) -> Result<Option<LoopCycle>, ShapeError> {
-        let ordered = self.ordered;
-        let [_, edges, facets, _] = ordered.numbers.first;
-        if !(edges..facets).contains(&edge) || self.forest().is_in(ordered, edge) {
+        if !self.begins_loop(edge) {
             return Ok(None);
         }
         let reduced = self.reduced()?;
         let steps = self.shortest(edge);
+        let (walk, path) = self.laid_out(&steps);
+        let chain = if let Some(column) = reduced.column(edge) {
+            self.closed(column)
+        } else {
+            let sign = |&(step, forward): &(u32, bool)| (step, if forward { 1 } else { -1 });
+            let mut chain: Vec<(u32, i32)> = steps.iter().map(sign).collect();
+            chain.sort_unstable();
+            chain
+        };
+        Ok(Some(LoopCycle { walk, path, chain }))
+    }
+
+    /// The [path](LoopCycle::path) of a loop alone, which needs no reduction: the first call takes O(n log n).
+    #[doc(hidden)]
+    pub fn path_of_loop(&self, edge: u32) -> Option<Vec<[f64; 3]>> {
+        self.begins_loop(edge).then(|| self.laid_out(&self.shortest(edge)).1)
+    }
+
+    /// Whether a simplex is an edge that creates a loop.
+    fn begins_loop(&self, edge: u32) -> bool {
+        let [_, edges, facets, _] = self.ordered.numbers.first;
+        (edges..facets).contains(&edge) && !self.forest().is_in(self.ordered, edge)
+    }
+
+    /// The vertices of a walk, without the return to the first, and their positions with it.
+    fn laid_out(&self, steps: &[(u32, bool)]) -> (Vec<u32>, Vec<[f64; 3]>) {
+        let ordered = self.ordered;
+        let edges = ordered.numbers.first[1];
         let whole = ordered.filtration().whole();
         let torus = ordered.filtration().torus();
         let place = |(v, shift): Copied| {
@@ -120,7 +146,7 @@ impl Cycles<'_> {
         };
         let (mut walk, mut path) = (Vec::with_capacity(steps.len()), Vec::new());
         let mut so_far = [0; 3];
-        for &(step, forward) in &steps {
+        for &(step, forward) in steps {
             let [(a, _), (b, shift)] = whole.shifted(ordered.edges()[(step - edges) as usize]);
             let (from, to, way) =
                 if forward { (a, b, shift) } else { (b, a, minus([0; 3], shift)) };
@@ -131,15 +157,7 @@ impl Cycles<'_> {
             walk.push(from);
             path.push(place((to, so_far)));
         }
-        let chain = if let Some(column) = reduced.column(edge) {
-            self.closed(column)
-        } else {
-            let sign = |&(step, forward): &(u32, bool)| (step, if forward { 1 } else { -1 });
-            let mut chain: Vec<(u32, i32)> = steps.iter().map(sign).collect();
-            chain.sort_unstable();
-            chain
-        };
-        Ok(Some(LoopCycle { walk, path, chain }))
+        (walk, path)
     }
 
     /// A void at its birth, by the number of the cell that ends it; `None` if none ends with that simplex. The first call takes O(n α(n)), each the
@@ -196,11 +214,7 @@ impl Cycles<'_> {
                 if other != Incidence::OUTSIDE && shifts.contains_key(&other) {
                     continue;
                 }
-                // Seen from outside a positive cell, the corners after an even one turn clockwise.
-                let mut order = [1, 2, 3].map(|step| (opposite + step) % 4);
-                if opposite % 2 == 1 {
-                    order.swap(1, 2);
-                }
+                let order = Incidence::outward(opposite);
                 facets.push(order.map(|k| whole.copied(cell[k]).0));
                 let shift = shifts[&row];
                 let place =
@@ -564,6 +578,7 @@ mod tests {
                 assert!(boundary_of_edges(&ordered, &chain).is_empty());
                 let youngest = chain.keys().max_by_key(|&&edge| places[edge as usize]);
                 assert_eq!(youngest, Some(&edge));
+                assert_eq!(cycles.path_of_loop(edge).as_ref(), Some(&path));
                 // Walks are measured by their edges: each pair of consecutive places is one that is there.
                 assert_eq!(path.len(), walk.len() + 1);
                 large += usize::from(walk.len() > 4);
@@ -597,6 +612,7 @@ mod tests {
             if let Some(&[vertex, edge]) = ordered.pairs().components.first() {
                 assert_eq!(cycles.of_loop(edge).unwrap(), None);
                 assert_eq!(cycles.of_loop(vertex).unwrap(), None);
+                assert_eq!([edge, vertex].map(|number| cycles.path_of_loop(number)), [None, None]);
             }
         }
         assert!(compared > 5000 && large > 100, "{compared} {large}");
