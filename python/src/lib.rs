@@ -9,6 +9,7 @@ mod call;
 mod complex;
 mod errors;
 mod filtration;
+mod many;
 mod points;
 mod shape;
 mod triangulation;
@@ -30,6 +31,8 @@ mod _walpha {
     use super::complex::{Complex, compare};
     #[pymodule_export]
     use super::filtration::{Filtration, Simplices};
+    #[pymodule_export]
+    use super::many::{alpha_shapes, diagrams, filtrations};
     #[pymodule_export]
     use super::points::{columns, point_column, point_columns, read_points, write_points};
     #[pymodule_export]
