@@ -131,7 +131,8 @@ class Markdown:
 
         def role(match):
             name = match[1].removeprefix("walpha.")
-            for heading in (f"{owner}.{name}", name, name.split(".")[0]):
+            module = owner.rpartition(".")[0]
+            for heading in (f"{owner}.{name}", f"{module}.{name}", name, name.split(".")[0]):
                 if heading in self.anchors:
                     return keep(self.link(heading, name))
             return keep(f"`{name}`")
@@ -217,22 +218,28 @@ def fields(node):
     return [ast.unparse(member) for member in made]
 
 
+def titled(prefix, node):
+    """A name as it is written after `walpha.`: several modules may have the same."""
+    return prefix.removeprefix("walpha.") + node.name
+
+
 def of_class(sources, markdown, prefix, module, node):
     """The blocks of a class, below its heading."""
+    title = titled(prefix, node)
     members = sources.members(module, node)
     docstring = ast.get_docstring(node)
     made = []
     if "Parameters\n---" in docstring:
         starts = [member for member in node.body if isinstance(member, ast.FunctionDef) and member.name == "__init__"]
         made.append(signature(prefix + node.name, arguments(starts[0]) if starts else fields(node)))
-    made += markdown.blocks(docstring, node.name)
-    constants = [f"- `{written}`: {markdown.inline(text, node.name)}" for written, text in sources.constants(module, node)]
+    made += markdown.blocks(docstring, title)
+    constants = [f"- `{written}`: {markdown.inline(text, title)}" for written, text in sources.constants(module, node)]
     if constants:
         made.append("\n".join(constants))
     properties = []
     for name, member in members.items():
         if is_property(member):
-            first, *rest = markdown.blocks(ast.get_docstring(member), node.name)
+            first, *rest = markdown.blocks(ast.get_docstring(member), title)
             kind, colon, text = first.partition(": ")
             head = f"- `{name}` ({kind}): {text}" if colon else f"- `{name}` ({kind.rstrip('.')})"
             properties.append("\n\n".join([head, *(re.sub("(?m)^", "  ", block) for block in rest)]))
@@ -240,38 +247,40 @@ def of_class(sources, markdown, prefix, module, node):
         made += ["**Properties**", "\n".join(properties)]
     for name, member in members.items():
         if not is_property(member):
-            made.append(f"### {node.name}.{name}")
+            made.append(f"### {title}.{name}")
             made.append(signature(f"{node.name}.{name}", arguments(member), member.returns))
-            made += markdown.blocks(ast.get_docstring(member), node.name)
+            made += markdown.blocks(ast.get_docstring(member), title)
     return made
 
 
 def page():
     sources = Sources()
     parts = [("walpha.", *sources.find(name, "__init__")) for name in sources.public("__init__")]
-    parts += [("walpha.tda.", *sources.find(name, "tda")) for name in sources.public("tda")]
+    for module in ("tda", "torch"):
+        parts += [(f"walpha.{module}.", *sources.find(name, module)) for name in sources.public(module)]
     parts.sort(key=lambda part: (isinstance(part[2], ast.ClassDef), part[2].name.lower()))
     headings = []
-    for _, module, node in parts:
-        headings.append(node.name)
+    for prefix, module, node in parts:
+        title = titled(prefix, node)
+        headings.append(title)
         if isinstance(node, ast.ClassDef):
-            headings += [f"{node.name}.{name}" for name, member in sources.members(module, node).items() if not is_property(member)]
+            headings += [f"{title}.{name}" for name, member in sources.members(module, node).items() if not is_property(member)]
     markdown = Markdown(headings)
     made = [HEAD.strip()]
     for title, is_class in (("Functions", False), ("Classes", True)):
         rows = [
-            f"| {markdown.link(node.name, node.name)} | {markdown.inline(summary(ast.get_docstring(node)), node.name)} |"
-            for _, _, node in parts
+            f"| {markdown.link(titled(prefix, node), titled(prefix, node))} | {markdown.inline(summary(ast.get_docstring(node)), node.name)} |"
+            for prefix, _, node in parts
             if isinstance(node, ast.ClassDef) == is_class
         ]
         made += [f"**{title}**", "| name | summary |\n|---|---|\n" + "\n".join(rows)]
     for prefix, module, node in parts:
-        made.append(f"## {node.name}")
+        made.append(f"## {titled(prefix, node)}")
         if isinstance(node, ast.ClassDef):
             made += of_class(sources, markdown, prefix, module, node)
         else:
             made.append(signature(prefix + node.name, arguments(node), node.returns))
-            made += markdown.blocks(ast.get_docstring(node), node.name)
+            made += markdown.blocks(ast.get_docstring(node), titled(prefix, node))
     return "\n\n".join(made) + "\n"
 
 

@@ -3,7 +3,7 @@
 //! The caller must release what is read: numpy keeps track of the readers of an array, by its shape, and panics if that is
 //! different when the reader is done. So reading must be done before any Python code runs, such as a callback for progress.
 
-use numpy::ndarray::{Array3, ArrayView2, Ix1, Ix2, Ix3};
+use numpy::ndarray::{Array2, Array3, ArrayView2, Ix1, Ix2, Ix3};
 use numpy::{Element, IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray};
 use pyo3::exceptions::PyMemoryError;
 use pyo3::prelude::*;
@@ -59,6 +59,12 @@ pub fn column<'py, T: Element>(
     let mut column = room(numbers.len())?;
     column.extend(numbers);
     Ok(column.into_pyarray(py))
+}
+
+/// Rows of `N` as an array.
+pub fn array2<const N: usize, T>(rows: Vec<[T; N]>) -> Array2<T> {
+    let count = rows.len();
+    Array2::from_shape_vec((count, N), rows.into_flattened()).expect("as many numbers in each row")
 }
 
 /// A copy of a slice.

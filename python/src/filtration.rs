@@ -3,7 +3,6 @@
 use std::num::NonZeroU64;
 use std::sync::{Arc, OnceLock};
 
-use numpy::ndarray::Array2;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use rayon::prelude::*;
@@ -14,14 +13,14 @@ use walpha::progress::Stage;
 use walpha::shape::ShapeError;
 use walpha::{Alpha, NoMemory, WeightedPoints, try_with_capacity};
 
-use crate::arrays::{column, lend, numbers};
+use crate::arrays::{array2, column, lend, numbers};
 use crate::errors::{told, wrong};
 use crate::shape::{Shape, json, numbers_of_box, torus, weighted};
 use crate::work::{Task, run};
 
 /// A filtration, which is never changed.
 #[pyclass(frozen, module = "walpha._walpha")]
-pub struct Filtration(Arc<ladder::Filtration>);
+pub struct Filtration(pub Arc<ladder::Filtration>);
 
 /// The columns of a curve: just above each critical value α, b0, b1, b2, solid components, and of a torus b3.
 type Columns<'py> = (Bound<'py, PyArray1<f64>>, Vec<Bound<'py, PyArray1<u64>>>);
@@ -210,12 +209,6 @@ type PyLoop<'py> = (
 type PyVoid<'py> =
     (Bound<'py, PyArray1<u32>>, Bound<'py, PyArray2<u32>>, Bound<'py, PyArray2<f64>>);
 
-/// Rows of three as an array.
-fn array2<T>(rows: Vec<[T; 3]>) -> Array2<T> {
-    let count = rows.len();
-    Array2::from_shape_vec((count, 3), rows.into_flattened()).expect("three numbers in each row")
-}
-
 /// All simplices of a filtration by their numbers, which never change. Results that take time are computed when they are first
 /// requested.
 #[pyclass(frozen, module = "walpha._walpha")]
@@ -336,6 +329,11 @@ impl Simplices {
     #[getter]
     fn gabriel_simplices<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<u32>>> {
         Ok(self.work(py, |ordered| Ok(ordered.gabriel_simplices()))?.into_pyarray(py))
+    }
+
+    #[getter]
+    fn cech_values<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        Ok(self.work(py, |ordered| Ok(ordered.cech_values()))?.into_pyarray(py))
     }
 
     #[getter]

@@ -9,6 +9,7 @@ mod call;
 mod complex;
 mod errors;
 mod filtration;
+mod many;
 mod molecule;
 mod points;
 mod shape;
@@ -31,6 +32,8 @@ mod _walpha {
     use super::complex::{Complex, compare};
     #[pymodule_export]
     use super::filtration::{Filtration, Simplices};
+    #[pymodule_export]
+    use super::many::{alpha_shapes, diagrams, filtrations};
     #[pymodule_export]
     use super::molecule::read_molecule;
     #[pymodule_export]

@@ -1,7 +1,7 @@
 """Documentation: every example runs, everything public is annotated and has the sections of numpydoc."""
 
 import doctest
-import importlib
+import importlib.util
 import inspect
 import pathlib
 
@@ -12,11 +12,14 @@ import walpha
 import walpha.tda
 
 MODULES = sorted(path.stem for path in pathlib.Path(walpha.__file__).parent.glob("*.py"))
+# It cannot be imported where PyTorch is not there.
+HAS_TORCH = importlib.util.find_spec("torch") is not None
 
 
 def public():
     """Functions, classes and methods by name."""
-    for module in (walpha, walpha.tda):
+    with_torch = [importlib.import_module("walpha.torch")] if HAS_TORCH else []
+    for module in (walpha, walpha.tda, *with_torch):
         for name in module.__all__:
             item = getattr(module, name)
             yield name, item
@@ -30,10 +33,12 @@ def public():
 @pytest.mark.parametrize("name", MODULES)
 def test_examples_run(name, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
+    if name == "torch" and not HAS_TORCH:
+        pytest.skip("PyTorch is not installed")
     module = walpha if name == "__init__" else importlib.import_module(f"walpha.{name}")
     ran = doctest.testmod(module, extraglobs={"np": np, "walpha": walpha}, optionflags=doctest.NORMALIZE_WHITESPACE)
     assert ran.failed == 0
-    documented = {"__init__", "_alpha_shape", "_check", "_filtration", "_pipeline", "_shape", "_triangulation", "_volume", "tda"}
+    documented = {"__init__", "_alpha_shape", "_check", "_filtration", "_pipeline", "_shape", "_many", "_triangulation", "_volume", "tda", "torch"}
     assert name not in documented or ran.attempted > 1
 
 

@@ -216,3 +216,47 @@ def test_slanted_boxes():
     for wrong in ([[1, 2, 3]], [1, 2], np.ones((3, 3))):
         with pytest.raises(ValueError, match="periodic"):
             walpha.alpha_shape(points, alpha=1, periodic=wrong)
+
+
+def smallest_ball(corners):
+    """The squared radius of the smallest ball around a few points: that of the smallest circumscribed one which holds all."""
+    found = []
+    for count in range(1, len(corners) + 1):
+        for some in itertools.combinations(corners, count):
+            first, rest = some[0], np.array(some[1:]).reshape(-1, 3) - some[0]
+            # The centre is in their span.
+            along = np.linalg.lstsq(2 * rest @ rest.T, (rest**2).sum(axis=1), rcond=None)[0] @ rest
+            squares = ((corners - first - along) ** 2).sum(axis=1)
+            if squares.max() <= (along**2).sum() * (1 + 1e-9):
+                found.append(squares.max())
+    return min(found)
+
+
+def test_cech_values_are_those_of_smallest_balls(cloud):
+    simplices = walpha.filtration(cloud[:150]).simplices()
+    values = simplices.cech_values
+    assert (values <= simplices.values).all() and 0.1 < (values < simplices.values).mean() < 0.9
+    tables = [row for table in simplices._tables() for row in table]
+    for number in range(0, len(tables), 7):
+        assert values[number] == pytest.approx(smallest_ball(cloud[tables[number]]), rel=1e-9, abs=1e-30)
+
+
+def test_cech_values_have_the_same_persistence(cloud):
+    gudhi = pytest.importorskip("gudhi")
+    points = cloud[:200]
+    simplices = walpha.filtration(points).simplices()
+    tree, first = gudhi.SimplexTree(), 0
+    for table in simplices._tables():
+        for row, value in zip(table.tolist(), simplices.cech_values[first:]):
+            tree.insert(row, value)
+        first += len(table)
+    # Faces come first: nothing has to be lowered.
+    assert not tree.make_filtration_non_decreasing()
+    tree.compute_persistence(homology_coeff_field=2)
+    for dimension in (0, 1, 2):
+        theirs = tree.persistence_intervals_in_dimension(dimension)
+        ours = simplices.persistence(dimension)
+        assert len(theirs) == len(ours) and np.allclose(np.sort(theirs, axis=0), np.sort(ours, axis=0), rtol=1e-12)
+    theirs = gudhi.DelaunayCechComplex(points, precision="exact").create_simplex_tree()
+    for number, row in enumerate(row for table in simplices._tables() for row in table.tolist()):
+        assert theirs.filtration(row) == pytest.approx(simplices.cech_values[number], rel=1e-9)

@@ -21,9 +21,10 @@ CORNERS = np.eye(4, 3)
 OTHER = {
     "self", "cls", "progress", "threads", "engine", "exterior", "hidden", "balls", "path", "level", "columns", "classes", "format",
     "array", "frame", "series", "skip_damaged", "shape", "dtype", "offset", "decomposition", "weighting", "select", "exchange",
-    "refit", "roi", "keep", "largest", "solid", "allow_empty", "labels", "masked", "resample", "withheld", "what", "ranks", "dimension", "homology_dimensions", "radius", "reduced_homology", "deep",
+    "refit", "roi", "keep", "largest", "solid", "allow_empty", "labels", "masked", "resample", "withheld", "what", "ranks", "dimension", "homology_dimensions", "radius", "reduced_homology",
+    "n_jobs", "weighted", "resolution", "n_layers", "input_features", "transform",
     "view", "colour", "size", "height", "low", "high", "value",
-    "parameters", "y", "duplicates", "cells", "facets", "edges", "vertices", "cell_classes", "facet_classes", "edge_classes",
+    "y", "duplicates", "cells", "facets", "edges", "vertices", "cell_classes", "facet_classes", "edge_classes",
     "vertex_classes", "closed", "most", "ties", "a", "b", "space", "unit", "gray", "copy", "components", "coefficients", "count", "downsample",
 }  # fmt: skip
 
@@ -68,6 +69,14 @@ def samples(number):
     return wrong
 
 
+DIAGRAM = [[[0.0, 1.0, 1.0], [0.5, 0.75, 1.0]]]
+
+
+def interval(number):
+    """A diagram whose row 7 has a wrong death."""
+    return [DIAGRAM[0] * 3 + [[0.0, 1.0, 1.0], [0.0, number, 1.0]]]
+
+
 def complex_of(**given):
     return walpha.Complex(**{"points": CORNERS, "alpha": 1.0, "cells": [[0, 1, 2, 3]], **given})
 
@@ -104,6 +113,21 @@ CALLS = {
     "filtration": (
         lambda **given: walpha.filtration(**{"points": CLOUD, **given}),
         {"points": (rows(), ()), "weights": (column(), ()), "periodic": (triple, ())},
+    ),
+    "filtrations": (
+        lambda **given: walpha.filtrations(**{"clouds": [CLOUD, CLOUD], **given}),
+        {"clouds": (lambda number: [CLOUD, rows()(number)], ()), "weights": (lambda number: [column()(0), column()(number)], ()), "periodic": (triple, ())},
+    ),
+    "alpha_shapes": (
+        lambda **given: walpha.alpha_shapes(**{"clouds": [CLOUD, CLOUD], **given}),
+        {
+            "clouds": (lambda number: [CLOUD, rows()(number)], ()),
+            "weights": (lambda number: [column()(0), column()(number)], ()),
+            "values": (lambda number: [column()(0), column()(number)], HUGE),
+            "alpha": (itself, INFINITE),
+            "alpha_radius": (itself, {INF}),
+            "periodic": (triple, ()),
+        },
     ),
     "Filtration": (
         lambda **given: walpha.Filtration(**{"points": CLOUD, **given}),
@@ -261,13 +285,19 @@ CALLS = {
             "alpha_radius": (itself, {INF}),
         },
     ),
+    "tda.AlphaPersistence": (lambda periodic: tda.AlphaPersistence(periodic=periodic).transform([CLOUD]), {"periodic": (triple, ())}),
     "tda.AlphaPersistence.transform": (tda.AlphaPersistence().transform, {"X": (lambda number: [rows()(number)], ())}),
-    "tda.AlphaPersistence.fit_transform": (
-        tda.AlphaPersistence().fit_transform,
-        {"X": (lambda number: [rows()(number)], ())},
-    ),
     # Not looked at.
     "tda.AlphaPersistence.fit": (tda.AlphaPersistence().fit, {"X": (lambda number: [rows()(number)], set(WRONG))}),
+    "tda.PersistenceImage": (
+        lambda **given: tda.PersistenceImage(**given).fit(DIAGRAM),
+        {"bandwidth": (itself, HUGE), "power": (itself, HUGE)},
+    ),
+    **{
+        f"tda.{name}.{method}": (getattr(getattr(tda, name)().fit(DIAGRAM), method), {"X": (interval, {INF, 1e308})})
+        for name in ("PersistenceImage", "PersistenceLandscape", "BettiCurve")
+        for method in ("fit", "transform")
+    },
 }  # fmt: skip
 #: What nobody calls: the results of others.
 RESULTS = {
@@ -294,7 +324,8 @@ def public():
             continue
         yield prefix + name, thing
         for method, of in inspect.getmembers(thing, callable):
-            if not method.startswith("_"):
+            # What scikit-learn gives to its transformers is not ours.
+            if not method.startswith("_") and of.__module__.startswith("walpha"):
                 yield f"{prefix}{name}.{method}", of
 
 

@@ -30,6 +30,7 @@ from ._check import Comparison, Complex, Finding, Verdict, check, compare
 from ._class import Class
 from ._curves import BettiCurve, Level, Suggestions, TorusBettiCurve
 from ._filtration import Filtration, filtration
+from ._many import alpha_shapes, filtrations
 from ._molecule import Molecule, read_molecule
 from ._parts import Betti, Boundary, Component, Cuts, Outline, Polygon, TorusBetti, Void
 from ._pictures import Chart, Page, Picture
@@ -83,10 +84,12 @@ __all__ = [
     "VoidCycle",
     "Volume",
     "alpha_shape",
+    "alpha_shapes",
     "check",
     "compare",
     "difference",
     "filtration",
+    "filtrations",
     "haar",
     "label_shape",
     "pipeline",

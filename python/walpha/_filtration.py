@@ -82,6 +82,12 @@ class Filtration(Frozen):
             self._filtration = _walpha.Filtration(cloud.points, cloud.weights, _arrays.sides(periodic), how)
         self._simplices: Simplices | None = None
 
+    @classmethod
+    def _of(cls, given: _walpha.Filtration) -> Filtration:
+        made = cls.__new__(cls)
+        made._filtration, made._simplices = given, None
+        return made
+
     def __reduce__(self) -> tuple[Any, ...]:
         own = self._own_points()
         return _again, (self.points[:own], self.weights[:own], self.periodic)

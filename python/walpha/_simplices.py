@@ -87,6 +87,15 @@ class Simplices:
         return _arrays.kept(self._simplices.gabriel_simplices)
 
     @functools.cached_property
+    def cech_values(self) -> Floats:
+        """ndarray of float64, (n,): Delaunay–Čech values, squared lengths: the α from which on the balls of all points of each have a point in common.
+
+        Without weights that is the squared radius of the smallest ball that encloses the simplex, as the exact number's nearest double.
+        It is at most the value, and at least that of each face; for points in general position the persistent homology is the same.
+        """
+        return _arrays.frozen(self._simplices.cech_values)
+
+    @functools.cached_property
     def order(self) -> Indices:
         """ndarray of int64, (n,): numbers in the order in which simplices come: by exact value, dimension, vertices.
 
@@ -183,18 +192,22 @@ class Simplices:
         >>> walpha.filtration([[0, 0], [2, 0], [2, 2], [0, 2]]).simplices().persistence(1)
         array([[1., 2.]])
         """
-        if dimension not in (0, 1, 2):
-            raise ValueError(f"dimension={dimension}: there are 0, 1 and 2")
+        pairs, lasting = self._lasting_some_time(dimension)
+        never = np.column_stack([self.values[lasting], np.full(len(lasting), np.inf)])
+        return np.vstack([self.values[pairs], never])
+
+    def _lasting_some_time(self, dimension: int) -> tuple[Indices, Indices]:
+        """Pairs of a dimension whose values differ, and what begins something that never ends."""
         # Loops are found only for those who ask for them.
         if dimension == 0:
             pairs, lasting = self.component_pairs, self._lasting_components
         elif dimension == 1:
             pairs, lasting = self.loop_pairs, self._lasting_loops
-        else:
+        elif dimension == 2:
             pairs, lasting = self.void_pairs, self._lasting_voids
-        pairs = pairs[self.ranks[pairs[:, 0]] != self.ranks[pairs[:, 1]]]
-        never = np.column_stack([self.values[lasting], np.full(len(lasting), np.inf)])
-        return np.vstack([self.values[pairs], never])
+        else:
+            raise ValueError(f"dimension={dimension}: there are 0, 1 and 2")
+        return pairs[self.ranks[pairs[:, 0]] != self.ranks[pairs[:, 1]]], lasting
 
     def persistence_diagram(self) -> list[tuple[int, tuple[float, float]]]:
         """The persistence diagrams of all dimensions in GUDHI's form.

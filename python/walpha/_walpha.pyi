@@ -5,6 +5,7 @@ from typing import Literal, TypeAlias, TypedDict, final
 import numpy as np
 from numpy.typing import NDArray
 
+from ._arrays import Cloud
 from ._typing import Classes, Floats, Indices, Listener, Samples
 
 __version__: str
@@ -111,6 +112,7 @@ class Simplices:
     ranks: _Rows
     gabriel: NDArray[np.bool_]
     gabriel_simplices: _Rows
+    cech_values: Floats
     order: _Rows
     component_pairs: _Rows
     loop_pairs: _Rows
@@ -182,6 +184,11 @@ def alpha_shape(
     settings: _Settings,
     task: _Task,
 ) -> Shape: ...
+def alpha_shapes(clouds: list[Cloud], settings: _Settings, task: _Task) -> list[Shape]: ...
+def filtrations(clouds: list[Cloud], periodic: list[float] | None, task: _Task) -> list[Filtration]: ...
+def diagrams(
+    clouds: list[Cloud], dimensions: list[int], periodic: list[float] | None, task: _Task
+) -> list[list[Floats]]: ...
 def restored(
     points: Floats, weights: Floats, values: Floats | None, state: _State
 ) -> Shape: ...

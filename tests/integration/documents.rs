@@ -11,7 +11,7 @@ use walpha_base::random::Random;
 use crate::common::ok;
 
 /// Documents that teach by commands: that one of them has none is a mistake of [`shell_lines`].
-const TEACHING: [&str; 7] = [
+const TEACHING: [&str; 8] = [
     "README.md",
     "docs/clusters.md",
     "docs/gallery.md",
@@ -19,6 +19,7 @@ const TEACHING: [&str; 7] = [
     "docs/tutorials/ct.md",
     "docs/tutorials/lidar.md",
     "docs/tutorials/molecules.md",
+    "docs/tutorials/zeolite.md",
 ];
 
 /// Commands whose help has examples that are run, in an order in which each finds the files of those before.
@@ -100,6 +101,8 @@ fn reader_files(folder: &Path) {
                loop_\n_atom_site_label\n_atom_site_fract_x\n_atom_site_fract_y\n_atom_site_fract_z\n\
                Si1 0 0 0\nSi2 0.25 0.25 0.25\nO1 0.125 0.125 0.125\n";
     fs::write(folder.join("zeolite.cif"), cif).expect("a file");
+    let chabazite = include_str!("../../docs/tutorials/chabazite.cif");
+    fs::write(folder.join("chabazite.cif"), chabazite).expect("a file");
     let names = [
         "group_PDB",
         "id",

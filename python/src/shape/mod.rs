@@ -29,7 +29,9 @@ use crate::errors::{Refused, told, wrong};
 use crate::work::{Task, run};
 pub use balls::Union;
 use boundary::{Boundary, boundary};
-pub use make::{Written, alpha_shape, numbers_of_box, recipe_from, settings_of, torus, weighted};
+pub use make::{
+    Written, alpha_shape, numbers_of_box, recipe_from, recipe_of, settings_of, torus, weighted,
+};
 use outline::{Outline, outline};
 pub use pictures::write_whole;
 pub use state::restored;

@@ -1,5 +1,6 @@
 //! All simplices of a filtration in the order in which they enter.
 
+mod cech;
 mod cycles;
 mod gradient;
 mod intervals;
