@@ -438,7 +438,7 @@ impl Outputs {
         });
         let models = self.models.into_iter().map(|(target, writer)| {
             let content = move |out: &mut dyn Write| {
-                writer.write_model(shape.points(), facts, &Packing::default(), out)
+                writer.write_model(shape.points(), &[], facts, &Packing::default(), out)
             };
             (target, Box::new(content) as Content<'_>)
         });
