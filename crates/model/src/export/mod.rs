@@ -33,6 +33,8 @@ mod findings;
 mod format;
 mod geographic;
 mod geojson;
+#[cfg(all(feature = "las", not(target_family = "wasm")))]
+mod geopackage;
 mod glb;
 mod json;
 mod labelled;
@@ -58,6 +60,8 @@ pub use filtration::{FILTRATION_FORMATS, FiltrationFormat};
 pub use findings::write_findings;
 pub use format::{FORMATS, Format};
 pub use geojson::{GeoJson, OutlineFeature, write_features};
+#[cfg(all(feature = "las", not(target_family = "wasm")))]
+pub use geopackage::{GeoPackage, write_geopackage};
 pub use glb::Glb;
 pub use json::Json;
 // For the surface of balls, which the command writes. Not covered by semantic versioning.
