@@ -75,7 +75,8 @@ class PointFile(NamedTuple):
         Of lengths: "mm", say; "voxel" where coordinates are indices, "ft" and "ftUS" for the two feet, "unit" where
         nobody says.
     classes : dict of int to int, or None
-        How many points of LAS and LAZ have each class, by its ASPRS code, whether it was read or not.
+        How many points of LAS and LAZ have each class, by its ASPRS code, whether it was read or not; with ``roi`` those in the
+        box.
     crs : dict or None
         The coordinate reference system, where the file states one: "epsg" and "name" (or None), "geographic", "unit", and
         "vertical" for heights.
@@ -185,7 +186,7 @@ def _box(roi: Iterable[tuple[float | None, float | None]]) -> list[list[float]]:
     infinity = float("inf")
     ends = [[-infinity if low is None else float(low), infinity if high is None else float(high)] for low, high in roi]
     if len(ends) != 3 or not all(low <= high for low, high in ends):
-        raise ValueError(f"roi={roi!r}: give three pairs along x, y and z, the smaller number first, as in ((0, 10), (0, 10), (None, None))")
+        raise ValueError("roi: give three pairs along x, y and z, the smaller number first, as in ((0, 10), (0, 10), (None, None))")
     return ends
 
 

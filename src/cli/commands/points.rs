@@ -28,7 +28,7 @@ use crate::cli::report::Report;
 ///
 /// walpha points hard:voxels -o ties.csv
 ///
-/// walpha points tile.laz --roi 691000:691030,:,: --thin 0.5 -o part.laz
+/// walpha points sample:tile --roi 691000:691030,:,: --thin 0.5 -o part.csv
 ///
 /// walpha points sample:skull --select adaptive --target-rmse 2 --value-error 3 -o skull.wvm
 #[derive(Args)]

@@ -89,7 +89,7 @@ pub(crate) struct Shape {
     #[arg(long, help_heading = "Labels", group = "each")]
     each_label: bool,
     /// Make a shape for each value of a column of points, such as treeID, class or label, all at one α. Outputs are a table
-    /// (.csv), outlines from above (.geojson), or a folder for meshes.
+    /// (.csv), outlines from above (.geojson, .gpkg), or a folder for meshes.
     #[arg(long, value_name = "COLUMN", help_heading = "Groups of points", group = "each")]
     pub(crate) by: Option<String>,
     /// With --each-label, or --by and a folder: formats to write, by extension, as in ply,vtu [default: stl].

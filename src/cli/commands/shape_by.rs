@@ -20,11 +20,9 @@ use crate::cli::process::output::{name, print_summary, remark};
 use crate::cli::process::progress::Progress;
 use crate::cli::report::offsets::FileOffset;
 use crate::cli::report::{SCHEMA_VERSION, ending};
-use crate::export::{EmptyShape, GeoJson, OutlineFeature, Target, write_features};
-#[cfg(feature = "las")]
-use crate::export::{GeoPackage, write_geopackage};
+use crate::export::{EmptyShape, FeatureFormat, OutlineFeature, Target};
 use crate::pipeline::{GroupShape, Groups, Input, Parameter, Values};
-use crate::points::{Attributes, Crs};
+use crate::points::Attributes;
 use crate::progress::Stage;
 use crate::{Alpha, Coordinates};
 
@@ -35,8 +33,8 @@ const MOST_PRINTED: usize = 30;
 enum Output {
     /// A table with a row for each.
     Table(Target),
-    /// Outlines from above, with a feature for each, as `GeoJSON` or else `GeoPackage`.
-    Outlines(Target, bool),
+    /// Outlines from above, with a feature for each.
+    Outlines(Target, FeatureFormat),
     /// A folder with meshes of each.
     Meshes(Folder),
 }
@@ -87,15 +85,16 @@ impl Shape {
                     let write = |out: &mut dyn io::Write| write_table(column, &rows, out);
                     filled.push(progress.stage(Stage::Write, || target.fill(write))?);
                 }
-                Output::Outlines(target, is_json) => {
+                Output::Outlines(target, format) => {
                     files.push(target.path().display().to_string());
                     let features = shapes.iter().zip(&rows).map(|(shape, row)| OutlineFeature {
                         shape: &shape.from_above,
                         properties: row.properties(column, unit),
                     });
                     let features: Vec<_> = features.collect();
-                    let (write, text) = outlines(is_json, &features, crs.as_ref());
-                    if let (false, Some(text)) = (global.quiet, text) {
+                    let crs = crs.as_ref();
+                    let write = |out: &mut dyn io::Write| format.write(&features, crs, out);
+                    if let (false, Some(text)) = (global.quiet, format.remark(crs)) {
                         remark(&format!("walpha: {}: {text}", shown(target.path())));
                     }
                     filled.push(progress.stage(Stage::Write, || target.fill(write))?);
@@ -150,7 +149,7 @@ impl Shape {
         for path in &self.output {
             outputs.push(match kind(&self.format.named(path)?) {
                 Some(Kind::Table) => Output::Table(Target::open(path)?),
-                Some(Kind::Outlines(is_json)) => Output::Outlines(Target::open(path)?, is_json),
+                Some(Kind::Outlines(format)) => Output::Outlines(Target::open(path)?, format),
                 Some(Kind::Meshes) => Output::Meshes(Folder::open(path, "--output", &[])?),
                 None => {
                     fail_usage!("{} is one file, and --by makes a shape for each value", shown(path) => "name a table (.csv), outlines from above (.geojson, .gpkg), or a folder for meshes, as in -o trees")
@@ -164,8 +163,7 @@ impl Shape {
 #[derive(PartialEq)]
 enum Kind {
     Table,
-    /// Whether they are `GeoJSON`.
-    Outlines(bool),
+    Outlines(FeatureFormat),
     Meshes,
 }
 
@@ -175,29 +173,9 @@ fn kind(path: &std::path::Path) -> Option<Kind> {
     match extension.as_deref() {
         _ if path.is_dir() => Some(Kind::Meshes),
         Some("csv") => Some(Kind::Table),
-        Some("geojson") => Some(Kind::Outlines(true)),
-        Some("gpkg") if cfg!(feature = "las") => Some(Kind::Outlines(false)),
         None => Some(Kind::Meshes),
-        Some(_) => None,
+        Some(extension) => FeatureFormat::of(extension).map(Kind::Outlines),
     }
-}
-
-/// What writes outlines, and a remark on their coordinate system, if there is one.
-type WriteOutlines<'a> = (Box<dyn Fn(&mut dyn io::Write) -> io::Result<()> + 'a>, Option<String>);
-
-fn outlines<'a>(
-    is_json: bool,
-    features: &'a [OutlineFeature<'a>],
-    crs: Option<&'a Crs>,
-) -> WriteOutlines<'a> {
-    #[cfg(feature = "las")]
-    if !is_json {
-        let write = move |out: &mut dyn io::Write| write_geopackage(features, crs, out);
-        return (Box::new(write), GeoPackage::not_stated(crs).map(str::to_owned));
-    }
-    debug_assert!(is_json, "the other format is of the feature `las`");
-    let write = move |out: &mut dyn io::Write| write_features(features, crs, out);
-    (Box::new(write), GeoJson::not_converted(crs))
 }
 
 /// The name of a column as a part of a file name.

@@ -8,9 +8,8 @@ use rusqlite::{Connection, MAIN_DB, params, params_from_iter};
 use serde_json::Value;
 use walpha_base::advice::Advice;
 
-use super::geojson::OutlineFeature;
 use super::planar::{self, Planar};
-use super::{ExportOptions, Exporter, Needs};
+use super::{ExportOptions, Exporter, Needs, OutlineFeature};
 use walpha_points::Crs;
 use walpha_shape::{AlphaShape, Outline, Polygon};
 
@@ -25,7 +24,7 @@ pub struct GeoPackage(pub ExportOptions);
 ///
 /// # Errors
 /// Errors of `out`; too large a file for `SQLite` in memory.
-pub fn write_geopackage(
+pub(super) fn write_features(
     features: &[OutlineFeature<'_>],
     crs: Option<&Crs>,
     out: &mut dyn Write,
@@ -53,7 +52,7 @@ pub fn write_geopackage(
 
 impl GeoPackage {
     /// Why the coordinate system is not stated; `None` if it is.
-    pub fn not_stated(crs: Option<&Crs>) -> Option<&'static str> {
+    pub(super) fn not_stated(crs: Option<&Crs>) -> Option<&'static str> {
         (System::of(crs).id == System::UNKNOWN).then_some(
             "the coordinate system of the points is not known, so the file states none: tell your program which it is",
         )
