@@ -18,7 +18,7 @@ import numpy as np
 import pandas
 import pyproj
 
-# Fields of bits have no name of their own in laspy's format; times of layers are not decompressed.
+# Fields of bits have no name of their own in laspy's format.
 SKIPPED = {"X", "Y", "Z", "bit_fields", "classification_flags", "raw_classification", "scan_angle_rank", "scan_angle"}
 
 
@@ -61,8 +61,7 @@ def compare(walpha, path, folder):
     if crs is not None:
         code = crs.sub_crs_list[0].to_epsg() if crs.sub_crs_list else crs.to_epsg()
         assert told["crs"]["epsg"] == code, (path, told["crs"], code)
-    layered = path.suffix == ".laz" and tile.point_format.id > 5
-    names = set(tile.point_format.dimension_names) - SKIPPED - ({"gps_time"} if layered else set())
+    names = set(tile.point_format.dimension_names) - SKIPPED
     compared = 0
     for name in sorted(names & set(told["columns"])):
         expected = np.asarray(tile[name], dtype=float)
@@ -71,13 +70,20 @@ def compare(walpha, path, folder):
             there = expected[expected != -1] if name == "treeID" else expected
             assert np.isclose([column["min"], column["max"]], [there.min(), there.max()], atol=1e-9).all(), (path, name, column)
             compared += 1
+    written_again(walpha, path, tile, folder)
     by = "treeID" if "treeID" in names else "classification"
-    table, outlines = folder / "t.csv", folder / "t.geojson"
-    made = run(walpha, "shape", path, "--withheld", "--by", by, "-o", table, outlines)
+    table, outlines, package = folder / "t.csv", folder / "t.geojson", folder / "t.gpkg"
+    made = run(walpha, "shape", path, "--withheld", "--by", by, "-o", table, outlines, package)
     rows = pandas.read_csv(table)
     expected = np.asarray(tile[by], dtype=float)
     expected = expected[expected != -1] if by == "treeID" else expected
     assert dict(zip(rows[by], rows.points)) == {k: (expected == k).sum() for k in np.unique(expected)}, path
+    in_place = geopandas.read_file(package)
+    assert list(in_place[by]) == list(rows[by]) and np.allclose(in_place.area, rows.outline_area), path
+    low, high = np.array(in_place.total_bounds).reshape(2, 2)
+    assert (low >= tile.xyz.min(0)[:2]).all() and (high <= tile.xyz.max(0)[:2]).all(), path
+    if told["crs"] and told["crs"]["epsg"]:
+        assert in_place.crs.to_epsg() == told["crs"]["epsg"], (path, in_place.crs)
     placed = geopandas.read_file(outlines)
     if told["crs"] and told["crs"]["epsg"]:
         placed = placed[~placed.geometry.isna()].to_crs(told["crs"]["epsg"])
@@ -87,6 +93,32 @@ def compare(walpha, path, folder):
         inside = (low >= tile.xyz.min(0)[:2] - near).all() and (high <= tile.xyz.max(0)[:2] + near).all()
         assert inside and np.allclose(placed.area, placed.outline_area, rtol=1e-5), path
     print(f"{path.name}: {compared} columns, {len(rows)} shapes by {by}, {made['volume']:.6g} {told['unit']}³")
+
+
+def written_again(walpha, path, tile, folder):
+    """Compares what walpha writes of a tile, as LAS and LAZ, with the tile: the header, records and all dimensions."""
+    for suffix in ["las", "laz"]:
+        out = folder / f"again.{suffix}"
+        run(walpha, "points", path, "--withheld", "-o", out)
+        again = laspy.read(out)
+        assert (again.header.version, again.point_format.id) == (tile.header.version, tile.point_format.id), path
+        assert (again.header.scales == tile.header.scales).all() and (again.header.offsets == tile.header.offsets).all(), path
+        assert again.header.global_encoding.gps_time_type == tile.header.global_encoding.gps_time_type, path
+        assert again.header.are_points_compressed == (suffix == "laz"), path
+        assert np.allclose(again.header.mins, tile.xyz.min(0)) and np.allclose(again.header.maxs, tile.xyz.max(0)), path
+        crs, before = again.header.parse_crs(), tile.header.parse_crs()
+        assert crs == before, (path, crs, before)
+        for dimension in tile.point_format.dimensions:
+            found = again[dimension.name]
+            assert np.array_equal(np.asarray(found), np.asarray(tile[dimension.name]), equal_nan=dimension.kind.name == "FloatingPoint"), (path, dimension.name)
+            of_file = again.point_format.dimension_by_name(dimension.name)
+            assert (of_file.dtype, of_file.description) == (dimension.dtype, dimension.description), (path, dimension.name)
+    table = folder / "again.csv"
+    run(walpha, "points", path, "--withheld", "-o", table)
+    rows = pandas.read_csv(table)
+    assert np.array_equal(rows[["x", "y", "z"]], tile.xyz) and np.array_equal(rows.intensity, tile.intensity), path
+    if "gps_time" in tile.point_format.dimension_names:
+        assert np.array_equal(rows.gps_time, tile.gps_time), path
 
 
 def main():

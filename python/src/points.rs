@@ -7,7 +7,8 @@ use pyo3::prelude::*;
 use walpha::export::Target;
 use walpha::points::internal::describe_file;
 use walpha::points::{
-    Attributes, Columns, ModelMetadata, Packing, PointOptions, PointWriter, read_model,
+    Attributes, Column, Columns, LasHeader, ModelMetadata, Packing, PointOptions, PointWriter,
+    Region, read_model,
 };
 use walpha::progress::Stage;
 use walpha::volume::OpenFile;
@@ -29,7 +30,7 @@ type Read<'py> = (
 );
 
 /// How a file of points is read: without this number of its last layers, with these columns of a table, one frame of several, of these
-/// classes, with the withheld ones, thinned to one point in each cube of this side, and with the values of this column.
+/// classes, with the withheld ones, in this box, thinned to one point in each cube of this side, and with the values of this column.
 #[derive(FromPyObject)]
 pub struct Reading {
     #[pyo3(item)]
@@ -42,6 +43,8 @@ pub struct Reading {
     classes: Option<Vec<u8>>,
     #[pyo3(item)]
     withheld: bool,
+    #[pyo3(item)]
+    roi: Option<[[f64; 2]; 3]>,
     #[pyo3(item)]
     thin: Option<f64>,
     #[pyo3(item)]
@@ -57,6 +60,10 @@ impl Reading {
             .frame(self.frame)
             .classes(self.classes)
             .withheld(self.withheld)
+            .region(self.roi.map(|ends| Region {
+                low: ends.map(|[low, _]| low),
+                high: ends.map(|[_, high]| high),
+            }))
             .thin(self.thin)
             .value(self.value))
     }
@@ -115,14 +122,17 @@ pub fn columns(names: Vec<String>) -> PyResult<Vec<Option<String>>> {
     Ok(columns.meanings().into_iter().map(|name| name.map(str::to_owned)).collect())
 }
 
-/// Writes points under an extension of points.
+/// Writes points under an extension of points, with further columns by name, and as the LAS file `like` where it is given.
 #[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "they are keywords")]
 pub fn write_points(
     py: Python<'_>,
     path: PathBuf,
     points: PyReadonlyArray2<'_, f64>,
     weights: Option<PyReadonlyArray1<'_, f64>>,
     values: Option<PyReadonlyArray1<'_, f64>>,
+    columns: Vec<(String, PyReadonlyArray1<'_, f64>)>,
+    like: Option<PathBuf>,
     alpha: Option<f64>,
     value_error: f64,
 ) -> PyResult<()> {
@@ -130,19 +140,31 @@ pub fn write_points(
     if !writer.packs && (alpha.is_some() || value_error != 0.0) {
         return Err(wrong("alpha and value_error are for .wvm; omit them"));
     }
+    if !writer.columns && !columns.is_empty() {
+        return Err(wrong("columns are for .csv, .npy, .las and .laz; omit them"));
+    }
+    if !["las", "laz"].contains(&writer.extension) && like.is_some() {
+        return Err(wrong("like is for .las and .laz; omit it"));
+    }
     if value_error.is_nan() || value_error < 0.0 {
         return Err(wrong("value_error must be a number from 0 up"));
     }
     let alpha = alpha.map(Alpha::from_squared).transpose().map_err(told)?;
     let points = weighted(points, weights, values)?;
-    let facts = ModelMetadata::default().alpha(alpha);
+    let column = |(name, values): (String, PyReadonlyArray1<'_, f64>)| Column {
+        name,
+        values: values.as_array().to_vec(),
+    };
+    let columns: Vec<Column> = columns.into_iter().map(column).collect();
     let packing = Packing::default().value_error(value_error);
     let target = Target::open(&path).map_err(told)?;
+    let las = like.map(LasHeader::read).transpose().map_err(told)?;
+    let facts = ModelMetadata::default().alpha(alpha).las(las);
     run(py, &Task::default(), move || {
         let weights = points.weights.unwrap_or_else(|| vec![0.0; points.positions.len()]);
         let weighted = WeightedPoints::new(points.positions, weights)
             .and_then(|weighted| weighted.with_values(points.values))
             .expect("columns of one length");
-        target.write(|out| writer.write_model(&weighted, &facts, &packing, out))
+        target.write(|out| writer.write_model(&weighted, &columns, &facts, &packing, out))
     })
 }

@@ -75,7 +75,8 @@ class PointFile(NamedTuple):
         Of lengths: "mm", say; "voxel" where coordinates are indices, "ft" and "ftUS" for the two feet, "unit" where
         nobody says.
     classes : dict of int to int, or None
-        How many points of LAS and LAZ have each class, by its ASPRS code, whether it was read or not.
+        How many points of LAS and LAZ have each class, by its ASPRS code, whether it was read or not; with ``roi`` those in the
+        box.
     crs : dict or None
         The coordinate reference system, where the file states one: "epsg" and "name" (or None), "geographic", "unit", and
         "vertical" for heights.
@@ -102,6 +103,7 @@ def read_points(
     frame: int | None = None,
     classes: Iterable[int | Ground] | None = None,
     withheld: bool = False,
+    roi: Iterable[tuple[float | None, float | None]] | None = None,
     thin: float | None = None,
     value: str | None = None,
 ) -> PointFile:
@@ -128,8 +130,12 @@ def read_points(
         "unclassified".
     withheld : bool
         For LAS and LAZ: also take the points that are flagged as withheld, which are not to be processed.
+    roi : iterable of pairs of float, optional
+        The box to read: the least and the greatest x, y and z, in the unit of the points; ``None`` is no bound. Of LAS and
+        LAZ only what is in it takes memory, and of COPC only cells that meet it are decompressed.
     thin : float, optional
-        Keep the first point in each cube of this side, in the unit of the points.
+        Keep the first point in each cube of this side, in the unit of the points. Of LAS and LAZ only the points that are
+        kept take memory.
     value : str, optional
         The column whose numbers are F: "height" (z), or one of ``columns``. By default a column value, or the intensity.
 
@@ -152,6 +158,7 @@ def read_points(
            [0., 1., 0.],
            [0., 0., 1.]])
     """
+    box = None if roi is None else _box(roi)
     if thin is not None and not 0 < thin < float("inf"):
         raise ValueError(f"thin={thin} is not the side of a cube: give a length above 0")
     named = None if columns is None else ",".join([columns] if isinstance(columns, str) else columns)
@@ -161,6 +168,7 @@ def read_points(
         "frame": frame,
         "classes": None if classes is None else _codes(classes),
         "withheld": withheld,
+        "roi": box,
         "thin": thin,
         "value": value,
     }
@@ -172,6 +180,14 @@ def read_points(
     where = os.path.abspath(path) if os.path.exists(path) else os.fspath(path)
     columns_of_file = PointColumns(where, reading)
     return PointFile(points, weights, values, grid, alpha, coordinates["unit"], by_class, crs, columns_of_file)
+
+
+def _box(roi: Iterable[tuple[float | None, float | None]]) -> list[list[float]]:
+    infinity = float("inf")
+    ends = [[-infinity if low is None else float(low), infinity if high is None else float(high)] for low, high in roi]
+    if len(ends) != 3 or not all(low <= high for low, high in ends):
+        raise ValueError("roi: give three pairs along x, y and z, the smaller number first, as in ((0, 10), (0, 10), (None, None))")
+    return ends
 
 
 def _codes(classes: Iterable[int | Ground]) -> list[int]:
@@ -191,6 +207,8 @@ def write_points(
     *,
     weights: Arrays | None = None,
     values: Arrays | None = None,
+    columns: Mapping[str, Arrays] | None = None,
+    like: str | os.PathLike[str] | None = None,
     alpha: float | None = None,
     value_error: float = 0.0,
 ) -> None:
@@ -199,12 +217,18 @@ def write_points(
     Parameters
     ----------
     path : str or path-like
-        Its extension says the format: ``.csv``, ``.npy`` (a structured array with fields of the names of columns), or
-        ``.wvm``, which is small where points lie at whole numbers.
+        Its extension says the format: ``.csv``, ``.npy`` (a structured array with fields of the names of columns), ``.las``
+        or ``.laz``, or ``.wvm``, which is small where points lie at whole numbers.
     points : array_like, (n, 3)
         x, y, z.
     weights, values : array_like, (n,), optional
         ω, squared lengths (0 by default), and F.
+    columns : mapping of str to array_like, (n,), optional
+        Further columns, such as those of :class:`PointFile`; not for WVM. In LAS each has the field of its name, as
+        "classification", or is stored as extra bytes; NaN stands for no number.
+    like : str or path-like, optional
+        For LAS: a file of LAS or LAZ whose version, point format, scales, offsets, coordinate system and other records the
+        file gets. Otherwise scales are the coarsest powers of ten that move no point, or the finest that 32 bits allow.
     alpha : float, optional
         For WVM: the α that the shape is meant to be made at, a **squared** length.
     value_error : float
@@ -215,15 +239,22 @@ def write_points(
     OSError
         The file cannot be written. Nothing is left behind.
     ValueError
-        No format has this extension, columns are not one for each point, or a number is not finite.
+        No format has this extension, columns are not one for each point, a number is not finite, or its field in LAS cannot
+        hold it.
 
     Examples
     --------
     >>> walpha.write_points("weighted.csv", np.eye(3), weights=[1, 2, 3])
+    >>> walpha.write_points("trees.csv", np.eye(3), columns={"treeID": [1, 1, 2]})
+    >>> walpha.read_points("trees.csv").columns["treeID"]
+    array([1., 1., 2.])
     """
+    further = [] if columns is None else [(name, _arrays.column(f"columns[{name!r}]", columns[name])) for name in columns]
     _walpha.write_points(
         os.fspath(path),
         *_arrays.finite_cloud(points, weights, values),
+        further,
+        None if like is None else os.fspath(like),
         None if alpha is None else _alpha.squared(alpha, None, ""),
         float(value_error),
     )

@@ -218,6 +218,8 @@ def write_points(
     points: Floats,
     weights: Floats | None,
     values: Floats | None,
+    columns: list[tuple[str, Floats]],
+    like: str | None,
     alpha: float | None,
     value_error: float,
 ) -> None: ...

@@ -207,8 +207,9 @@ fn is_run_here(command: &str) -> bool {
     // Minutes each; the reproduction is a step of CI.
     let long = has(&["--count 100000", "--curve", "walpha reproduce"]);
     let without_zarr = !cfg!(feature = "zarr") && has(&[".zarr", "walpha blocks"]);
+    let without_las = !cfg!(feature = "las") && has(&[".laz", ".gpkg"]);
     let without_skull = has(&["sample:skull", "skull.json"]) && !crate::common::has_skull();
-    !(of_others || long || without_zarr || without_skull)
+    !(of_others || long || without_zarr || without_las || without_skull)
 }
 
 /// Runs a command in a shell that finds the built program.

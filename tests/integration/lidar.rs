@@ -83,9 +83,7 @@ fn info_tells_what_a_scan_knows() {
         assert_eq!(made["version"], "1.4");
         assert_eq!(made["compressed"], name == "tile.laz");
         assert_eq!(made["flags"]["overlap"], 9);
-        // Times in layers are not decompressed.
-        let time = if name == "tile.las" { json!([-1.0, 9.0]) } else { Value::Null };
-        assert_eq!(made["time"], time);
+        assert_eq!(made["time"], json!([-1.0, 9.0]));
         let columns = &made["columns"];
         let tree = json!({"type": "int32", "min": 7.0, "max": 9.0, "missing": 9});
         assert_eq!(columns["treeID"], tree);
@@ -170,6 +168,248 @@ fn meshes_carry_columns() {
     }
 }
 
+/// What comes in goes out: all columns, the coordinate system, scales and offsets, whether compressed or not, and twice.
+#[test]
+fn scans_are_written_as_they_are_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    tile(&f.join("tile.laz"));
+    ok(f, &["points", "tile.laz", "-o", "a.las"]);
+    ok(f, &["points", "a.las", "-o", "b.laz"]);
+    ok(f, &["points", "b.laz", "-o", "c.las"]);
+    assert_eq!(fs::read(f.join("a.las")).unwrap(), fs::read(f.join("c.las")).unwrap());
+    let facts = |name: &str| {
+        let mut made = told(f, &["info", name]);
+        let object = made.as_object_mut().unwrap();
+        ["input", "bytes", "compressed", "seconds"].map(|of_file| object.remove(of_file));
+        made
+    };
+    for name in ["a.las", "b.laz"] {
+        assert_eq!(facts(name), facts("tile.laz"), "{name}");
+        let read = |name: &str| {
+            let options = PointOptions::default().attributes(Attributes::All);
+            read_model(f.join(name), &options).unwrap().0
+        };
+        assert!(read(name) == read("tile.laz"), "{name}");
+    }
+    let header = |name: &str| las::Reader::from_path(f.join(name)).unwrap().header().clone();
+    let (first, second) = (header("tile.laz"), header("b.laz"));
+    assert_eq!(first.transforms(), second.transforms());
+    assert_eq!(first.point_format(), second.point_format());
+    assert_eq!(first.bounds(), second.bounds());
+    // A part has all columns, too.
+    ok(f, &["points", "b.laz", "--class", "ground", "-o", "ground.laz"]);
+    assert_eq!(told(f, &["info", "ground.laz"])["columns"]["treeID"]["missing"], 9);
+    assert_eq!(told(f, &["info", "ground.laz"])["flags"]["overlap"], 9);
+}
+
+/// A table becomes a scan: columns have the fields of their names, or are extra bytes; and a scan becomes a table.
+#[test]
+fn tables_become_scans_and_scans_become_tables() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    let rows = "x,y,z,weight,value,class,treeID,species,dbh\n0.25,1,5000000.5,0,1.5,2,7,oak,0.31\n1,1,5,2,2.5,5,8,ash,nan\n";
+    fs::write(f.join("t.csv"), rows).unwrap();
+    ok(f, &["points", "t.csv", "-o", "t.laz"]);
+    let made = told(f, &["info", "t.laz"]);
+    assert_eq!(made["classes"], json!({"2": 1, "5": 1}));
+    assert_eq!(made["columns"]["treeID"]["type"], "float64");
+    assert_eq!(made["columns"]["dbh"]["missing"], 1);
+    ok(f, &["points", "t.laz", "-o", "back.csv"]);
+    let back = fs::read_to_string(f.join("back.csv")).unwrap();
+    let lines: Vec<&str> = back.lines().collect();
+    names(lines[0], &["x,y,z,weight,value,intensity,", ",classification,", ",treeID,dbh"]);
+    names(lines[1], &["0.25,1,5000000.5,0,1.5,", ",7,0.31"]);
+    names(lines[2], &["1,1,5,2,2.5,", ",8,nan"]);
+    // NPY has them, too, and what is read again is written again.
+    ok(f, &["points", "back.csv", "-o", "t.npy"]);
+    ok(f, &["points", "t.npy", "-o", "again.csv"]);
+    assert_eq!(fs::read_to_string(f.join("again.csv")).unwrap(), back);
+    // Values that can be intensities are.
+    fs::write(f.join("i.csv"), "x,y,z,intensity\n0,0,0,9\n1,0,0,65535\n").unwrap();
+    ok(f, &["points", "i.csv", "-o", "i.las"]);
+    assert_eq!(told(f, &["info", "i.las"])["columns"]["intensity"]["max"], 65535.0);
+    fs::write(f.join("c.csv"), "x,y,z,class\n0,0,0,9\n1,0,0,256\n").unwrap();
+    fails(f, 1, "points c.csv -o c.las", &["point 1: classification is 256", "uint8"]);
+    assert!(!f.join("c.las").exists());
+    // What no scale stores exactly is rounded, and said.
+    fs::write(f.join("r.csv"), "x,y,z\n0.333333333333,0,0\n1000,0,0\n").unwrap();
+    let (code, _, said) = run(f, &["points", "r.csv", "-o", "r.las"]);
+    assert_eq!(code, 0, "{said}");
+    names(&said, &["multiples of 0.000001, 1, 1", "moves points by 3.3"]);
+    // The coordinate system of the built-in tile is carried on.
+    ok(f, &["points", "sample:tile", "-o", "tile.laz"]);
+    let made = told(f, &["info", "tile.laz"]);
+    assert_eq!((&made["crs"]["epsg"], &made["unit"]), (&json!(25832), &json!("m")));
+    assert_eq!(made["columns"]["treeID"]["type"], "int32");
+}
+
+/// A region and thinning while a scan is read give what they give of a table that is read whole.
+#[test]
+fn parts_of_scans_are_those_of_tables() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    for name in ["tile.las", "tile.laz", "tile.csv"] {
+        ok(f, &["points", "sample:tile", "-o", name]);
+    }
+    let options: [&[&str]; 3] = [
+        &["--roi", "691000.5:691030,5334010:,:523.25"],
+        &["--thin", "1.5"],
+        &["--roi", ":691030.125,:,521:", "--thin", "2", "--value", "height"],
+    ];
+    for option in options {
+        let rows = |name: &str| {
+            let args = [&["points", name, "-o", "-", "--output-format", "csv"], option].concat();
+            let text = ok(f, &args);
+            let places = text.lines().map(|line| {
+                let fields: Vec<&str> = line.split(',').take(5).collect();
+                fields.join(",")
+            });
+            places.collect::<Vec<_>>()
+        };
+        let wanted = rows("sample:tile");
+        assert!(wanted.len() > 50, "{option:?}: {}", wanted.len());
+        for name in ["tile.las", "tile.laz", "tile.csv"] {
+            assert!(rows(name) == wanted, "{name} {option:?}");
+        }
+    }
+    let nowhere = "points tile.laz --roi 0:1,0:1,:";
+    fails(f, 1, nowhere, &["has no point in 0:1,0:1", "--roi", "691000"]);
+    fails(f, 1, "points sample:phantom@8 --roi 0.5:2,:,:", &["region of places", "--roi"]);
+}
+
+/// Of COPC, cells outside of the region are not decompressed: damage there is not noticed, and no point inside is missing.
+#[test]
+fn cells_of_copc_outside_a_region_are_skipped() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    let place = copc(&f.join("t.copc.laz"));
+    let rows = |roi: &str| {
+        ok(f, &["points", "t.copc.laz", "--roi", roi, "-o", "-", "--output-format", "csv"])
+    };
+    let (all, half) = (rows(":,:,:"), rows("10:,:,:"));
+    assert_eq!((all.lines().count(), half.lines().count()), (201, 101));
+    let mut bytes = fs::read(f.join("t.copc.laz")).unwrap();
+    bytes[place..place + 40].fill(0x55);
+    fs::write(f.join("t.copc.laz"), bytes).unwrap();
+    assert_eq!(rows("10:,:,:"), half);
+    assert_ne!(run(f, &["points", "t.copc.laz", "-o", "-", "--output-format", "csv"]).1, all);
+}
+
+/// 100 points near x = 4 and 100 near x = 12, each in a cell of an octree of its own. Returns a place within the layers of the
+/// first cell.
+fn copc(path: &Path) -> usize {
+    use std::io::{Cursor, Seek, SeekFrom, Write};
+    let mut random = 1u32;
+    let mut points = Vec::new();
+    for k in 0..200 {
+        let mut next = || {
+            random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            f64::from(random >> 20) / 1000.0
+        };
+        let x = if k < 100 { 1.0 } else { 11.0 } + next();
+        points.push([x, 2.0 + next(), 2.0 + next()]);
+    }
+    let mut builder = las::Builder::from((1, 4));
+    builder.point_format = las::point::Format::new(6).unwrap();
+    builder.point_format.is_compressed = true;
+    // The record must come first; the library puts that of the compression behind it.
+    let record = |user: &str, number: u16, data: Vec<u8>| las::Vlr {
+        user_id: user.into(),
+        record_id: number,
+        description: String::new(),
+        data,
+    };
+    builder.vlrs.push(record("copc", 1, vec![0; 160]));
+    builder.evlrs.push(record("copc", 1000, vec![0; 64]));
+    // Two chunks: the library of points writes one, so each half is a file of its own, whose chunk is taken.
+    let file = |points: &[[f64; 3]]| {
+        let header = builder.clone().into_header().unwrap();
+        let mut writer = las::Writer::new(Cursor::new(Vec::new()), header).unwrap();
+        for &[x, y, z] in points {
+            let point = las::Point { x, y, z, gps_time: Some(x), ..las::Point::default() };
+            writer.write_point(point).unwrap();
+        }
+        writer.into_inner().unwrap().into_inner()
+    };
+    let number =
+        |bytes: &[u8], at: usize| u64::from_le_bytes(bytes[at..at + 8].try_into().unwrap());
+    let data = |bytes: &[u8]| u32::from_le_bytes(bytes[96..100].try_into().unwrap()) as usize;
+    let chunk = |bytes: &[u8]| {
+        let start = data(bytes) + 8;
+        let table = number(bytes, data(bytes)) as usize;
+        bytes[start..table].to_vec()
+    };
+    let (whole, second) = (file(&points), chunk(&file(&points[100..])));
+    let first = chunk(&file(&points[..100]));
+    let start = data(&whole);
+    let mut out = Cursor::new(whole[..start].to_vec());
+    out.seek(SeekFrom::End(0)).unwrap();
+    let table = start + 8 + first.len() + second.len();
+    out.write_all(&(table as u64).to_le_bytes()).unwrap();
+    out.write_all(&first).unwrap();
+    out.write_all(&second).unwrap();
+    // A table of chunks that is not read, as each chunk says how many points it has.
+    out.write_all(&[0; 8]).unwrap();
+    let records = out.position();
+    let entry = |x: i32, offset: usize, size: usize| -> Vec<u8> {
+        let key = [1, x, 0, 0].map(i32::to_le_bytes).concat();
+        let rest = [size as i32, 100].map(i32::to_le_bytes).concat();
+        [key, (offset as u64).to_le_bytes().to_vec(), rest].concat()
+    };
+    let page = [entry(0, start + 8, first.len()), entry(1, start + 8 + first.len(), second.len())];
+    let mut head = vec![0u8; 60];
+    head[2..6].copy_from_slice(b"copc");
+    head[18..20].copy_from_slice(&1000u16.to_le_bytes());
+    head[20..28].copy_from_slice(&64u64.to_le_bytes());
+    out.write_all(&head).unwrap();
+    out.write_all(&page.concat()).unwrap();
+    let mut bytes = out.into_inner();
+    bytes[235..243].copy_from_slice(&records.to_le_bytes());
+    // The octree: its centre, half of its side, the spacing, and where its entries are.
+    let info = bytes.windows(4).position(|at| at == b"copc").unwrap() - 2 + 54;
+    for (k, number) in [8.0f64, 8.0, 8.0, 8.0, 1.0].into_iter().enumerate() {
+        bytes[info + 8 * k..info + 8 * k + 8].copy_from_slice(&number.to_le_bytes());
+    }
+    bytes[info + 40..info + 48].copy_from_slice(&(records + 60).to_le_bytes());
+    bytes[info + 48..info + 56].copy_from_slice(&64u64.to_le_bytes());
+    fs::write(path, bytes).unwrap();
+    start + 8 + first.len() / 2
+}
+
+/// Points that do not fit in memory are refused, with the figure and what to do.
+#[test]
+fn too_many_points_are_refused_with_the_figure() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    ok(f, &["points", "sample:tile", "-o", "tile.laz"]);
+    let mut bytes = fs::read(f.join("tile.laz")).unwrap();
+    // Points in one stream can be any number; of those in layers each chunk is checked.
+    bytes[247..255].copy_from_slice(&(1u64 << 50).to_le_bytes());
+    fs::write(f.join("tile.laz"), bytes).unwrap();
+    fails(f, 1, "points tile.laz", &["chunk"]);
+    let header = las::Builder::from((1, 2));
+    let mut header = header;
+    header.point_format.is_compressed = true;
+    let mut writer =
+        las::Writer::from_path(f.join("old.laz"), header.into_header().unwrap()).unwrap();
+    for k in 0..9 {
+        writer.write_point(las::Point { x: f64::from(k), ..las::Point::default() }).unwrap();
+    }
+    writer.close().unwrap();
+    let mut bytes = fs::read(f.join("old.laz")).unwrap();
+    bytes[107..111].copy_from_slice(&u32::MAX.to_le_bytes());
+    fs::write(f.join("old.laz"), bytes).unwrap();
+    // 4 billion points take 128 GiB, which few machines have.
+    let (code, _, said) = run(f, &["points", "old.laz"]);
+    assert!(
+        code != 0
+            && (said.contains("--roi") && said.contains("131071 MiB")
+                || said.contains("truncated")),
+        "{said}"
+    );
+}
+
 /// A shape for each tree, at one α: a table, crowns on the Earth, and meshes.
 #[test]
 fn each_value_of_a_column_has_its_shape() {
@@ -177,7 +417,7 @@ fn each_value_of_a_column_has_its_shape() {
     let f = folder.path();
     tile(&f.join("tile.laz"));
     let by = ["shape", "tile.laz", "--by", "treeID", "--alpha-radius", "2"];
-    let outputs = ["-o", "trees.csv", "crowns.geojson", "trees"];
+    let outputs = ["-o", "trees.csv", "crowns.geojson", "crowns.gpkg", "trees"];
     let made = told(f, &[&by[..], &outputs].concat());
     assert_eq!((&made["points"], &made["left_out"]), (&json!(27), &json!(9)));
     assert_eq!((&made["volume"], &made["alpha"]["squared"]), (&json!(16.0), &json!(4.0)));
@@ -206,6 +446,28 @@ fn each_value_of_a_column_has_its_shape() {
     let [x, y] = [0, 1].map(|k| place[k].as_f64().unwrap());
     assert!((x - 9.0).abs() < 1e-9 && (y - 49.652_542_923_6).abs() < 1e-9, "{x} {y}");
     assert_eq!(second["properties"]["treeID"], 9);
+    let package = package(&f.join("crowns.gpkg"));
+    let crowns = package.prepare("SELECT treeID, volume, outline_area, unit, geom FROM outlines");
+    let rows: Vec<(i64, f64, f64, String, Vec<u8>)> = crowns
+        .unwrap()
+        .query_map([], |row| Ok((row.get(0)?, row.get(1)?, row.get(2)?, row.get(3)?, row.get(4)?)))
+        .unwrap()
+        .map(Result::unwrap)
+        .collect();
+    assert_eq!(rows[0].0, 7);
+    assert_eq!((rows[1].1, rows[1].2, rows[1].3.as_str()), (8.0, 4.0, "m"));
+    let box_of: Vec<f64> =
+        rows[1].4[8..40].as_chunks().0.iter().map(|&end| f64::from_le_bytes(end)).collect();
+    assert_eq!(box_of, [500_020.0, 500_022.0, 5_500_000.0, 5_500_002.0]);
+    let of = |sql: &str| package.query_row(sql, [], |row| row.get::<_, String>(0)).unwrap();
+    names(
+        &of("SELECT definition FROM gpkg_spatial_ref_sys WHERE srs_id = 25832"),
+        &["UTM zone 32N"],
+    );
+    assert_eq!(
+        of("SELECT srs_id || geometry_type_name FROM gpkg_geometry_columns"),
+        "25832MULTIPOLYGON"
+    );
     for name in ["treeID-7.stl", "treeID-9.stl"] {
         assert!(f.join("trees").join(name).exists(), "{name}");
     }
@@ -228,6 +490,16 @@ fn each_value_of_a_column_has_its_shape() {
     fails(f, 2, "shape t.csv --by label --mesh ply -o t2.csv", &["--mesh has no effect"]);
     fails(f, 2, "shape sample:phantom@8 --by label", &["holds a volume", "--each-label"]);
     fails(f, 2, "shape t.csv --by label --each-label -o x", &["--each-label"]);
+}
+
+/// The database of a `GeoPackage`.
+fn package(path: &Path) -> rusqlite::Connection {
+    let package = rusqlite::Connection::open(path).unwrap();
+    let number: i64 = package.query_row("PRAGMA application_id", [], |row| row.get(0)).unwrap();
+    assert_eq!(number, i64::from(u32::from_be_bytes(*b"GPKG")));
+    let wrong: String = package.query_row("PRAGMA integrity_check", [], |row| row.get(0)).unwrap();
+    assert_eq!(wrong, "ok");
+    package
 }
 
 /// Each polygon is a feature, in longitude and latitude, and points of space are seen from above.
@@ -253,6 +525,15 @@ fn outlines_lie_on_the_earth() {
     fs::write(f.join("t.csv"), "x,y\n0,0\n1,0\n0,1\n").unwrap();
     let (_, _, said) = run(f, &["shape", "t.csv", "--alpha", "inf", "-o", "t.geojson"]);
     names(&said, &["coordinates are those of the points, as their coordinate system is not known"]);
+    let (_, _, said) = run(f, &["shape", "t.csv", "--alpha", "inf", "-o", "t.gpkg"]);
+    names(&said, &["the coordinate system of the points is not known"]);
+    let areas = package(&f.join("t.gpkg"));
+    let (area, system): (f64, i32) = areas
+        .query_row("SELECT area, srs_id FROM polygons, gpkg_contents", [], |row| {
+            Ok((row.get(0)?, row.get(1)?))
+        })
+        .unwrap();
+    assert_eq!((area, system), (0.5, -1));
     fails(f, 2, "shape sample:phantom@8 --flat -o a.svg", &["--flat has no effect"]);
 }
 

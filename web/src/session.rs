@@ -824,7 +824,9 @@ impl Made {
             let What::Weighed(weighed) = &self.what else {
                 return Err(Failure::new("the corners of voxels are not points to select"));
             };
-            writer.write_model(&weighed.points, &metadata, &Packing::default(), &mut bytes)?;
+            let columns = &self.columns;
+            let packing = Packing::default();
+            writer.write_model(&weighed.points, columns, &metadata, &packing, &mut bytes)?;
         } else {
             let format = Format::of(name)?;
             if format.whole && !self.recipe.keep.is_all() {

@@ -139,7 +139,7 @@ impl ColumnSummary {
 }
 
 /// Whether two names are of one column: equal but for letter case, or both of the class of LAS.
-fn is_same(name: &str, other: &str) -> bool {
+pub(crate) fn is_same(name: &str, other: &str) -> bool {
     const CLASS: [&str; 2] = ["class", "classification"];
     let is_class = |name: &str| CLASS.iter().any(|known| known.eq_ignore_ascii_case(name));
     name.eq_ignore_ascii_case(other) || is_class(name) && is_class(other)

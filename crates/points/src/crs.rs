@@ -19,6 +19,9 @@ pub struct Crs {
     /// The unit of x and y, if it is a known length.
     #[serde(skip)]
     pub length: LengthUnit,
+    /// The well-known text, if the file states the system so.
+    #[serde(skip)]
+    pub text: Option<String>,
 }
 
 /// The system of heights.
@@ -40,6 +43,16 @@ impl Crs {
         return self.epsg.and_then(crs_definitions::from_code).map(|known| known.proj4);
         #[cfg(not(feature = "las"))]
         return None;
+    }
+
+    /// The system as well-known text: that of the file, or else that of EPSG's register, which is not known without the feature
+    /// `las` and in WebAssembly.
+    pub fn well_known_text(&self) -> Option<&str> {
+        #[cfg(all(feature = "las", not(target_family = "wasm")))]
+        let registered = self.epsg.and_then(crs_definitions::from_code).map(|known| known.wkt);
+        #[cfg(not(all(feature = "las", not(target_family = "wasm"))))]
+        let registered = None;
+        self.text.as_deref().or(registered)
     }
 
     /// The name, and the code of EPSG, as far as they are stated.

@@ -1,7 +1,7 @@
 use std::path::PathBuf;
 
-use walpha_base::advice::{Advice, Advise, Setting, advice, wrapped};
-use walpha_base::memory::NoMemory;
+use walpha_base::advice::{Advice, Advise, Category, Setting, advice, wrapped};
+use walpha_base::memory::{NoMemory, readable};
 use walpha_base::shown::shown;
 use walpha_complex::Alpha;
 use walpha_regular::TriangulationError;
@@ -135,6 +135,16 @@ pub enum PointsError {
         /// The problem.
         reason: Reason,
     },
+    /// The points of a file do not fit in memory.
+    #[error("{} holds {points} points, which need {} of memory", shown(path), readable(*bytes))]
+    Room {
+        /// The file.
+        path: PathBuf,
+        /// The number of points, as far as they are known to be taken.
+        points: u64,
+        /// The number of bytes that they need.
+        bytes: u64,
+    },
     /// There is not enough memory for the samples.
     #[error(transparent)]
     Memory(#[from] NoMemory),
@@ -145,6 +155,13 @@ pub enum PointsError {
 
 impl Advise for PointsError {
     wrapped!(Lengths, Neighbours, Memory, File);
+
+    fn category(&self) -> Category {
+        match self {
+            Self::Room { .. } => Category::Memory,
+            _ => self.wrapped().map_or(Category::Input, Advise::category),
+        }
+    }
 
     fn advice(&self) -> Option<Advice> {
         Some(match self {
@@ -183,6 +200,13 @@ impl Advise for PointsError {
             Self::NoColumn => "add it, or use common=C".into(),
             Self::Weight { .. } => "correct the input".into(),
             Self::Format { reason, .. } => reason.advice(),
+            Self::Room { .. } => advice![
+                "read a part of them (",
+                Setting::Region,
+                "), or one in each cube (",
+                Setting::Thin,
+                ")"
+            ],
             _ => return self.wrapped()?.advice(),
         })
     }

@@ -1,7 +1,15 @@
-use super::Points;
+use std::path::Path;
 
-/// A box of full detail, including its boundary, in the units of the points.
-#[derive(Clone, Copy, Debug, PartialEq)]
+use serde::{Deserialize, Serialize};
+use walpha_base::advice::{Setting, advice};
+
+use super::{Points, PointsError};
+use crate::read::format as in_file;
+use walpha_volume::Reason;
+
+/// A box, including its boundary, in the units of the points.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(into = "Ends", from = "Ends")]
 pub struct Region {
     /// The smallest coordinates, (x, y, z).
     pub low: [f64; 3],
@@ -9,10 +17,46 @@ pub struct Region {
     pub high: [f64; 3],
 }
 
+/// The ends of a region along x, y and z, without those that are infinite.
+type Ends = [[Option<f64>; 2]; 3];
+
+impl From<Region> for Ends {
+    fn from(Region { low, high }: Region) -> Self {
+        let end = |number: f64| Some(number).filter(|number| number.is_finite());
+        [0, 1, 2].map(|k| [end(low[k]), end(high[k])])
+    }
+}
+
+impl From<Ends> for Region {
+    fn from(ends: Ends) -> Self {
+        let all = Self::EVERYWHERE;
+        let [low, high] = [0, 1].map(|side| ends.map(|range| range[side]));
+        Self {
+            low: [0, 1, 2].map(|k| low[k].unwrap_or(all.low[k])),
+            high: [0, 1, 2].map(|k| high[k].unwrap_or(all.high[k])),
+        }
+    }
+}
+
 impl Region {
+    /// The box of all positions.
+    pub const EVERYWHERE: Self = Self { low: [f64::NEG_INFINITY; 3], high: [f64::INFINITY; 3] };
+
     /// Whether a position is in the box.
     pub fn contains(&self, position: [f64; 3]) -> bool {
         (0..3).all(|k| (self.low[k]..=self.high[k]).contains(&position[k]))
+    }
+
+    /// The error for a file none of whose points, with these least and greatest coordinates, is in the box.
+    pub(crate) fn without_points(&self, path: &Path, [low, high]: [[f64; 3]; 2]) -> PointsError {
+        let ranges = |low: [f64; 3], high: [f64; 3]| {
+            let range = |k: usize| format!("{}:{}", low[k], high[k]);
+            [0, 1, 2].map(range).join(",")
+        };
+        let what = format!("has no point in {}", ranges(self.low, self.high));
+        let there = ranges(low, high);
+        let advice = advice!["give ", Setting::Region, format!(" a box that meets {there}")];
+        in_file(path, Reason::choice(Setting::Region, what, advice))
     }
 }
 

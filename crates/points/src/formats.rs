@@ -14,9 +14,11 @@ use super::read::xyz::{self, TextLayout};
 use super::read::{format, npy};
 use super::read::{gro, lammps_data, lammps_dump, mmcif, poscar};
 use super::read::{obj, off, pcd, pdb, ply, pqr, stated, stl, vtk};
-use super::write;
+use super::write::{self, Content};
 use super::wvm;
-use super::{CellCount, ModelMetadata, Packing, PointOptions, Points, PointsError, WeightedPoints};
+use super::{
+    CellCount, Column, ModelMetadata, Packing, PointOptions, Points, PointsError, WeightedPoints,
+};
 use walpha_volume::VtkPoints;
 use walpha_volume::{
     OpenFile, Reason, UnknownFormat, built, is_cif, is_gro, is_lammps_data, is_lammps_dump, is_npy,
@@ -54,6 +56,8 @@ pub struct PointFormat {
     pub(super) is_packed: bool,
     /// Whether its reader describes all columns, also those that it does not keep.
     pub(super) describes: bool,
+    /// Whether its reader leaves out points outside the region, and all but the first in each cube.
+    pub(super) reduces: bool,
     /// Its reader, unless it was left out of the build.
     read: Option<Read>,
     /// Counts its cells, if the format has any.
@@ -67,13 +71,15 @@ pub struct PointFormat {
 pub struct PointWriter {
     /// The extension without its dot.
     pub extension: &'static str,
-    /// Whether it stores metadata ([`ModelMetadata`]) and compresses ([`Packing`]).
+    /// Whether it stores all metadata ([`ModelMetadata`]) and compresses ([`Packing`]).
     pub packs: bool,
+    /// Whether it stores further columns.
+    pub columns: bool,
     write: WriteAll,
 }
 
-/// Writes points and their metadata.
-type WriteAll = fn(&WeightedPoints, &ModelMetadata, &Packing, &mut dyn Write) -> io::Result<()>;
+/// Writes points, their columns and metadata.
+type WriteAll = fn(&Content<'_>, &mut dyn Write) -> io::Result<()>;
 
 /// A format recognised by extension only.
 const PLAIN: PointFormat = PointFormat {
@@ -87,6 +93,7 @@ const PLAIN: PointFormat = PointFormat {
     writers: &[],
     is_packed: false,
     describes: false,
+    reduces: false,
     read: None,
     cells: None,
     read_complex: None,
@@ -105,7 +112,8 @@ pub static FORMATS: [PointFormat; 22] = [
         writers: &[PointWriter {
             extension: "csv",
             packs: false,
-            write: |points, _, _, out| write::csv(points, out),
+            columns: true,
+            write: write::csv,
         }],
         ..PLAIN
     },
@@ -301,7 +309,8 @@ pub static FORMATS: [PointFormat; 22] = [
         writers: &[PointWriter {
             extension: "npy",
             packs: false,
-            write: |points, _, _, out| write::npy(points, out),
+            columns: true,
+            write: write::npy,
         }],
         ..PLAIN
     },
@@ -313,6 +322,8 @@ pub static FORMATS: [PointFormat; 22] = [
         begins: |start| start.starts_with(b"LASF"),
         chooses: &[Setting::Class, Setting::Withheld],
         describes: true,
+        reduces: true,
+        writers: SCAN_WRITERS,
         read: built!("las", super::read::las::read),
         ..PLAIN
     },
@@ -338,9 +349,32 @@ const OF_ATOMS: &[Setting] = &[
     Setting::Models,
 ];
 
-/// The writers of `.wvm`, if built in.
-const MODEL_WRITERS: &[PointWriter] =
-    &[PointWriter { extension: "wvm", packs: true, write: wvm::write }];
+/// The writer of `.wvm`.
+const MODEL_WRITERS: &[PointWriter] = &[PointWriter {
+    extension: "wvm",
+    packs: true,
+    columns: false,
+    write: |content, out| wvm::write(content.points, content.metadata, content.packing, out),
+}];
+
+/// The writers of LAS, if built in.
+#[cfg(feature = "las")]
+const SCAN_WRITERS: &[PointWriter] = &[
+    PointWriter {
+        extension: "las",
+        packs: false,
+        columns: true,
+        write: |content, out| write::las::write(content, false, out),
+    },
+    PointWriter {
+        extension: "laz",
+        packs: false,
+        columns: true,
+        write: |content, out| write::las::write(content, true, out),
+    },
+];
+#[cfg(not(feature = "las"))]
+const SCAN_WRITERS: &[PointWriter] = &[];
 
 /// Points of a format without metadata.
 fn plain(points: Result<Points, PointsError>) -> Result<(Points, ModelMetadata), PointsError> {
@@ -416,17 +450,18 @@ impl PointWriter {
     /// # Errors
     /// Whatever `out` returns; a number that is not finite, which no reader would take, or a negative error.
     pub fn write(&self, points: &WeightedPoints, out: &mut dyn Write) -> io::Result<()> {
-        self.write_model(points, &ModelMetadata::default(), &Packing::default(), out)
+        self.write_model(points, &[], &ModelMetadata::default(), &Packing::default(), out)
     }
 
-    /// [`write`](Self::write) with metadata and packing options, which only formats that
-    /// [pack](Self::packs) use.
+    /// [`write`](Self::write) with further columns, which only formats that [have them](Self::columns) use, and with metadata and
+    /// packing options, which only formats that [pack](Self::packs) use. LAS takes its header and types of columns from metadata.
     ///
     /// # Errors
-    /// As [`write`](Self::write).
+    /// As [`write`](Self::write); a column without a number for each point; for LAS, a number that its field cannot hold.
     pub fn write_model(
         &self,
         points: &WeightedPoints,
+        columns: &[Column],
         metadata: &ModelMetadata,
         packing: &Packing,
         out: &mut dyn Write,
@@ -438,16 +473,21 @@ impl PointWriter {
                 packing.value_error
             ));
         }
-        let columns = [Some(points.weights()), points.values()];
+        if let Some(column) = columns.iter().find(|column| column.values.len() != points.len()) {
+            let Column { name, values } = column;
+            let (numbers, points) = (values.len(), points.len());
+            return refused(format!("column {name} has {numbers} numbers for {points} points"));
+        }
+        let own = [Some(points.weights()), points.values()];
         for (index, place) in points.positions().iter().enumerate() {
-            let others = columns.iter().flatten().map(|column| column[index]);
+            let others = own.iter().flatten().map(|column| column[index]);
             if let Some(number) = place.iter().copied().chain(others).find(|x| !x.is_finite()) {
                 return refused(format!(
                     "point {index} has {number}, which is not a finite number"
                 ));
             }
         }
-        (self.write)(points, metadata, packing, out)
+        (self.write)(&Content { points, columns, metadata, packing }, out)
     }
 }
 

@@ -3,7 +3,7 @@ use std::fmt;
 use walpha_base::setters;
 use walpha_complex::Alpha;
 
-use super::{ColumnSummary, Crs, ScanSummary, Units};
+use super::{ColumnSummary, Crs, LasHeader, ScanSummary, Units};
 use walpha_volume::{Coordinates, Dims, Frame, GrayRange};
 
 /// The grid that points are samples of.
@@ -96,6 +96,8 @@ pub struct ModelMetadata {
     pub crs: Option<Crs>,
     /// What the file of a laser scan says about all its points.
     pub scan: Option<ScanSummary>,
+    /// What a LAS file states beside its points, to be written again.
+    pub las: Option<LasHeader>,
     /// The columns beside x, y and z: of LAS all, of other files those that were [kept](crate::Attributes).
     pub columns: Vec<ColumnSummary>,
     /// Remarks of a file on some of its points, for people: how many are synthetic, or noise.
@@ -125,6 +127,7 @@ impl ModelMetadata {
         cell: Option<Cell>,
         crs: Option<Crs>,
         scan: Option<ScanSummary>,
+        las: Option<LasHeader>,
         columns: Vec<ColumnSummary>,
         notes: Vec<String>,
     }

@@ -12,7 +12,7 @@ use super::molecule::{AtomSelection, PEPTIDE, Radii, peptide};
 use super::read::content::Packed;
 use super::read::{COLUMNS, format};
 use super::tile::{TILE, tile};
-use super::{Attributes, Columns, ModelMetadata, Points, PointsError, hard};
+use super::{Attributes, Columns, ModelMetadata, Points, PointsError, Region, bounding_box, hard};
 use walpha_volume::{OpenFile, Reason, begins_as_volume, other_kind};
 
 /// What a user may state about a file of points.
@@ -40,7 +40,10 @@ pub struct PointOptions {
     pub(crate) describe: bool,
     /// Whether a column that is not a weight by its name is one where the file has no other: the values.
     pub weights: bool,
-    /// Keeps the first point in each cube of this side, in the unit of the points; `None` keeps all.
+    /// Reads only the points in this box; `None` reads all.
+    pub region: Option<Region>,
+    /// Keeps the first point in each cube of this side, in the unit of the points; `None` keeps all. The cubes start at the least
+    /// coordinates of the points that are read.
     pub thin: Option<f64>,
     /// Where the radii of atoms come from; `None` takes those of the file, or else Bondi's.
     pub radii: Option<Radii>,
@@ -60,6 +63,7 @@ impl PointOptions {
         value: Option<String>,
         attributes: Attributes,
         weights: bool,
+        region: Option<Region>,
         thin: Option<f64>,
         radii: Option<Radii>,
         atoms: AtomSelection,
@@ -122,10 +126,21 @@ impl PointOptions {
         let names: Vec<String> = points.columns.iter().map(|column| column.name.clone()).collect();
         self.take_columns(name, &mut points, || Ok(names))?;
         points.columns.retain(|column| self.attributes.keeps(&column.name));
-        if let Some(side) = self.thin {
-            points.thin(side)?;
-        }
+        self.reduce(name, &mut points)?;
         Ok(Some((points, metadata)))
+    }
+
+    /// Keeps the points in the region, and the first in each cube.
+    fn reduce(&self, path: &Path, points: &mut Points) -> Result<(), PointsError> {
+        if let Some(region) = &self.region {
+            let kept: Vec<bool> =
+                points.positions.iter().map(|&place| region.contains(place)).collect();
+            if !kept.contains(&true) {
+                return Err(region.without_points(path, bounding_box(&points.positions)));
+            }
+            points.keep(&kept);
+        }
+        self.thin.map_or(Ok(()), |side| points.thin(side))
     }
 
     /// Whether a file holds points rather than a volume under these options; see [`is_point_file`].
@@ -283,8 +298,8 @@ pub fn read_model_file(
     if options.radii == Some(Radii::None) && points.of_radii {
         (points.weights, points.of_radii) = (None, false);
     }
-    if let Some(side) = options.thin {
-        points.thin(side)?;
+    if !known.reduces {
+        options.reduce(path, &mut points)?;
     }
     Ok((points, metadata))
 }

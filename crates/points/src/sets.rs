@@ -73,18 +73,10 @@ impl Points {
     /// # Errors
     /// The side is not a finite number above 0.
     pub fn thin(&mut self, side: f64) -> Result<(), PointsError> {
-        if !(side > 0.0 && side.is_finite()) {
-            let (what, need) = ("cubes of side", "a length above 0");
-            return Err(PointsError::Number { what, given: side, need });
-        }
+        Cubes::check(side)?;
         let [least, _] = bounding_box(&self.positions);
-        // Floats are used, as a side may be so small that the number of a cube fits no integer.
-        let cube = |place: &[f64; 3]| {
-            [0, 1, 2].map(|axis| ((place[axis] - least[axis]) / side).floor().to_bits())
-        };
-        let mut taken = HashSet::new();
-        let kept: Vec<bool> =
-            self.positions.iter().map(|place| taken.insert(cube(place))).collect();
+        let mut cubes = Cubes::new(least, side);
+        let kept: Vec<bool> = self.positions.iter().map(|&place| cubes.takes(place)).collect();
         self.keep(&kept);
         Ok(())
     }
@@ -115,6 +107,36 @@ impl Points {
 fn column(name: &'static str, column: Vec<f64>, points: usize) -> Result<Vec<f64>, PointsError> {
     LengthsError::unless_equal(name, column.len(), points)?;
     Ok(column)
+}
+
+/// The cubes of a grid that have a point.
+pub(crate) struct Cubes {
+    least: [f64; 3],
+    side: f64,
+    taken: HashSet<[u64; 3]>,
+}
+
+impl Cubes {
+    /// Cubes of this side from the least coordinates on, all of them empty.
+    pub(crate) fn new(least: [f64; 3], side: f64) -> Self {
+        Self { least, side, taken: HashSet::new() }
+    }
+
+    /// Refuses a side that is not a finite number above 0.
+    pub(crate) fn check(side: f64) -> Result<(), PointsError> {
+        if side > 0.0 && side.is_finite() {
+            return Ok(());
+        }
+        let (what, need) = ("cubes of side", "a length above 0");
+        Err(PointsError::Number { what, given: side, need })
+    }
+
+    /// Whether a position is the first one in its cube.
+    pub(crate) fn takes(&mut self, place: [f64; 3]) -> bool {
+        // Floats are used, as a side may be so small that the number of a cube fits no integer.
+        let cube = |axis: usize| ((place[axis] - self.least[axis]) / self.side).floor().to_bits();
+        self.taken.insert([0, 1, 2].map(cube))
+    }
 }
 
 /// The least and the greatest corner of the box around some points, infinite without any. O(n).

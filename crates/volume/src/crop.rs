@@ -26,6 +26,9 @@ pub struct Region {
 }
 
 impl Region {
+    /// A part of no volume: what stands for a region that has no whole indices.
+    pub const NOWHERE: Self = Self { first: [usize::MAX; 3], end: [None; 3] };
+
     /// Cuts this part out of a volume. Its samples stay where they are in the world.
     ///
     /// # Errors

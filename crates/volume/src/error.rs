@@ -51,10 +51,7 @@ pub enum VolumeError {
         high: f64,
     },
     /// A region contains no samples, or reaches beyond the volume.
-    #[error(
-        "the region {}:{},{}:{},{}:{} is not part of a volume of {}×{}×{} samples",
-        first[0], end[0], first[1], end[1], first[2], end[2], dims[0], dims[1], dims[2]
-    )]
+    #[error("the region {} is not part of a volume of {}×{}×{} samples", ranges(first, end), dims[0], dims[1], dims[2])]
     Region {
         /// The first index along each axis.
         first: [usize; 3],
@@ -137,6 +134,14 @@ impl VolumeError {
             _ => false,
         }
     }
+}
+
+/// The ranges of a region, unless it is [nowhere](crate::Region::NOWHERE).
+fn ranges(first: &[usize; 3], end: &[usize; 3]) -> String {
+    if *first == crate::Region::NOWHERE.first {
+        return "of places".to_owned();
+    }
+    [0, 1, 2].map(|k| format!("{}:{}", first[k], end[k])).join(",")
 }
 
 impl Advise for VolumeError {

@@ -5,10 +5,11 @@ use std::path::PathBuf;
 use clap::Args;
 
 use crate::export::Target;
-use crate::points::{Packing, PointWriter};
+use crate::pipeline::{Input, Values};
+use crate::points::{Attributes, ModelMetadata, Packing, PointWriter};
 use crate::progress::Stage;
 
-use crate::cli::commands::pipeline;
+use crate::cli::commands::pipeline::{self, VolumeSummary};
 use crate::cli::options::formats::points_output;
 use crate::cli::options::global::Global;
 use crate::cli::options::{OutputArgs, PipelineArgs, not_negative};
@@ -26,6 +27,8 @@ use crate::cli::report::Report;
 /// walpha points sample:skull --count 15956 --weights min-max -o skull.csv
 ///
 /// walpha points hard:voxels -o ties.csv
+///
+/// walpha points sample:tile --roi 691000:691030,:,: --thin 0.5 -o part.csv
 ///
 /// walpha points sample:skull --select adaptive --target-rmse 2 --value-error 3 -o skull.wvm
 #[derive(Args)]
@@ -65,19 +68,32 @@ impl Points {
         }
         let mut progress = Progress::new(global);
         let PipelineArgs { input, .. } = &self.pipeline;
-        let recipe = self.pipeline.recipe()?;
-        let (weighed, volume) = pipeline::weighted_points(input, &recipe, &mut progress)?;
+        let holds_columns = target.as_ref().is_some_and(|(_, writer)| writer.columns);
+        let attributes = if holds_columns { Attributes::All } else { Attributes::None };
+        let mut recipe = self.pipeline.recipe()?.attributes(attributes);
+        let mut read = pipeline::read_suited(input, &mut recipe, &mut progress)?;
+        let (mut columns, mut of_file) = (Vec::new(), ModelMetadata::default());
+        if let Input::Points(points, facts) = &mut read {
+            columns = std::mem::take(&mut points.columns);
+            of_file = facts.clone();
+        }
+        let (weighed, volume) =
+            pipeline::weigh(read, input, &recipe, Values::Written, &mut progress)?;
+        let volume = volume.as_ref().map(VolumeSummary::of);
         if self.layers > 1 && weighed.order().is_none() {
             fail_usage!("--layers has no effect: the order of importance is known only of points selected from a volume" => "omit it");
         }
         if let Some((target, writer)) = target {
             let facts =
                 weighed.metadata(volume.map(|volume| volume.written)).order(weighed.order());
+            let facts = facts.crs(of_file.crs).las(of_file.las).columns(of_file.columns);
             let step = facts.range.filter(|_| volume.is_some()).map_or(1.0, |range| range.step());
             let packing =
                 Packing::default().value_error(self.value_error * step).layers(self.layers);
             progress.stage(Stage::Write, || {
-                target.write(|out| writer.write_model(&weighed.points, &facts, &packing, out))
+                target.write(|out| {
+                    writer.write_model(&weighed.points, &columns, &facts, &packing, out)
+                })
             })?;
         }
         let mut report = Report::of_points(&self.pipeline.input.input, &weighed, volume.as_ref());

@@ -90,7 +90,7 @@ pub(crate) struct Shape {
     #[arg(long, help_heading = "Labels", group = "each")]
     each_label: bool,
     /// Make a shape for each value of a column of points, such as treeID, class or label, all at one α. Outputs are a table
-    /// (.csv), outlines from above (.geojson), or a folder for meshes.
+    /// (.csv), outlines from above (.geojson, .gpkg), or a folder for meshes.
     #[arg(long, value_name = "COLUMN", help_heading = "Groups of points", group = "each")]
     pub(crate) by: Option<String>,
     /// With --each-label, or --by and a folder: formats to write, by extension, as in ply,vtu [default: stl].
@@ -487,7 +487,7 @@ impl Outputs {
         });
         let models = self.models.into_iter().map(|(target, writer)| {
             let content = move |out: &mut dyn Write| {
-                writer.write_model(shape.points(), facts, &Packing::default(), out)
+                writer.write_model(shape.points(), &[], facts, &Packing::default(), out)
             };
             (target, Box::new(content) as Content<'_>)
         });

@@ -20,7 +20,7 @@ use crate::cli::process::output::{name, print_summary, remark};
 use crate::cli::process::progress::Progress;
 use crate::cli::report::offsets::FileOffset;
 use crate::cli::report::{SCHEMA_VERSION, ending};
-use crate::export::{EmptyShape, GeoJson, OutlineFeature, Target, write_features};
+use crate::export::{EmptyShape, FeatureFormat, OutlineFeature, Target};
 use crate::pipeline::{GroupShape, Groups, Input, Parameter, Values};
 use crate::points::Attributes;
 use crate::progress::Stage;
@@ -34,7 +34,7 @@ enum Output {
     /// A table with a row for each.
     Table(Target),
     /// Outlines from above, with a feature for each.
-    Outlines(Target),
+    Outlines(Target, FeatureFormat),
     /// A folder with meshes of each.
     Meshes(Folder),
 }
@@ -85,18 +85,16 @@ impl Shape {
                     let write = |out: &mut dyn io::Write| write_table(column, &rows, out);
                     filled.push(progress.stage(Stage::Write, || target.fill(write))?);
                 }
-                Output::Outlines(target) => {
+                Output::Outlines(target, format) => {
                     files.push(target.path().display().to_string());
                     let features = shapes.iter().zip(&rows).map(|(shape, row)| OutlineFeature {
                         shape: &shape.from_above,
                         properties: row.properties(column, unit),
                     });
                     let features: Vec<_> = features.collect();
-                    let write =
-                        |out: &mut dyn io::Write| write_features(&features, crs.as_ref(), out);
-                    if let (false, Some(text)) =
-                        (global.quiet, GeoJson::not_converted(crs.as_ref()))
-                    {
+                    let crs = crs.as_ref();
+                    let write = |out: &mut dyn io::Write| format.write(&features, crs, out);
+                    if let (false, Some(text)) = (global.quiet, format.remark(crs)) {
                         remark(&format!("walpha: {}: {text}", shown(target.path())));
                     }
                     filled.push(progress.stage(Stage::Write, || target.fill(write))?);
@@ -151,10 +149,10 @@ impl Shape {
         for path in &self.output {
             outputs.push(match kind(&self.format.named(path)?) {
                 Some(Kind::Table) => Output::Table(Target::open(path)?),
-                Some(Kind::Outlines) => Output::Outlines(Target::open(path)?),
+                Some(Kind::Outlines(format)) => Output::Outlines(Target::open(path)?, format),
                 Some(Kind::Meshes) => Output::Meshes(Folder::open(path, "--output", &[])?),
                 None => {
-                    fail_usage!("{} is one file, and --by makes a shape for each value", shown(path) => "name a table (.csv), outlines from above (.geojson), or a folder for meshes, as in -o trees")
+                    fail_usage!("{} is one file, and --by makes a shape for each value", shown(path) => "name a table (.csv), outlines from above (.geojson, .gpkg), or a folder for meshes, as in -o trees")
                 }
             });
         }
@@ -165,7 +163,7 @@ impl Shape {
 #[derive(PartialEq)]
 enum Kind {
     Table,
-    Outlines,
+    Outlines(FeatureFormat),
     Meshes,
 }
 
@@ -175,9 +173,8 @@ fn kind(path: &std::path::Path) -> Option<Kind> {
     match extension.as_deref() {
         _ if path.is_dir() => Some(Kind::Meshes),
         Some("csv") => Some(Kind::Table),
-        Some("geojson") => Some(Kind::Outlines),
         None => Some(Kind::Meshes),
-        Some(_) => None,
+        Some(extension) => FeatureFormat::of(extension).map(Kind::Outlines),
     }
 }
 

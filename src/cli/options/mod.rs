@@ -140,12 +140,13 @@ pub(super) fn of_points() -> Vec<&'static str> {
         .collect()
 }
 
-/// The names of the settings that apply to volumes only. `--level` and `--gray-out` apply to some files of points, too.
+/// The names of the settings that apply to volumes only. `--roi` applies to points, and `--level` and `--gray-out` to some files of
+/// them, too.
 pub(super) fn of_volumes() -> Vec<&'static str> {
     let groups =
         [Group::Part, Group::Labels, Group::Haar, Group::Points, Group::Coordinates, Group::Refit];
     let names = names(&groups).into_iter().chain(["gray"]);
-    names.filter(|name| !["frame", "level"].contains(name)).collect()
+    names.filter(|name| !["frame", "level", "roi"].contains(name)).collect()
 }
 
 /// Refuses typed options that have no effect on the solid of labels.

@@ -94,7 +94,7 @@ const HELP: &[(&str, &str, &str)] = &[
     (
         "roi",
         "X0:X1,Y0:Y1,Z0:Z1",
-        "Crop to a range of indices along x, y and z, each end exclusive; ends may be omitted, as in 20:40,:,10:",
+        "Read a part: of a volume a range of indices along x, y and z, each end exclusive; of points those in a box, in their unit. Ends may be omitted, as in 20:40,:,10:",
     ),
     ("downsample", "N", "Average blocks of N×N×N samples; of labels take the most frequent one"),
     ("dims", "X,Y,Z", "Sizes of a raw file along x, y and z (x fastest)"),

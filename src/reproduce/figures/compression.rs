@@ -169,7 +169,7 @@ fn through_file(
     let packing = Packing::default().value_error(value_error);
     let writer = PointWriter::of(format!("model{NAME}")).map_err(std::io::Error::other)?;
     let mut bytes = Vec::new();
-    writer.write_model(points, &facts, &packing, &mut bytes)?;
+    writer.write_model(points, &[], &facts, &packing, &mut bytes)?;
     let file = Scratch::of(&mut &bytes[..], NAME)?;
     let (read, _) = read_model(file.path(), &PointOptions::default())?;
     Ok((bytes.len(), weigh(read, Weighting::Column, Alpha::INFINITE)?))

@@ -46,8 +46,11 @@ const PLAIN: Format = Format {
     exporter: |_| Box::new(Json),
 };
 
-/// All formats.
-pub static FORMATS: [Format; 13] = [
+/// The number of formats.
+const COUNT: usize = if cfg!(all(feature = "las", not(target_family = "wasm"))) { 14 } else { 13 };
+
+/// All formats. `GeoPackage` is part of the feature `las`, and not of WebAssembly.
+pub static FORMATS: [Format; COUNT] = [
     Format {
         name: "PLY",
         extension: "ply",
@@ -139,6 +142,15 @@ pub static FORMATS: [Format; 13] = [
         about: "Points in a plane: polygons with holes, with area and perimeter; singular edges and vertices.",
         outline: true,
         exporter: |options| Box::new(GeoJson(options)),
+        ..PLAIN
+    },
+    #[cfg(all(feature = "las", not(target_family = "wasm")))]
+    Format {
+        name: "GeoPackage",
+        extension: "gpkg",
+        about: "Points in a plane: polygons with holes, with area and perimeter, in the coordinate system of the points.",
+        outline: true,
+        exporter: |options| Box::new(super::GeoPackage(options)),
         ..PLAIN
     },
     Format {

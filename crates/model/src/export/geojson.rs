@@ -6,7 +6,7 @@ use walpha_base::advice::Advice;
 
 use super::geographic::ToWgs84;
 use super::planar::{self, Planar};
-use super::{ExportOptions, Exporter, Needs};
+use super::{ExportOptions, Exporter, Needs, OutlineFeature};
 use walpha_points::Crs;
 use walpha_shape::{AlphaShape, Outline};
 
@@ -18,21 +18,12 @@ use walpha_shape::{AlphaShape, Outline};
 #[derive(Clone, Debug, Default)]
 pub struct GeoJson(pub ExportOptions);
 
-/// An outline to write as one feature: its shape, whose points lie in a plane, and properties in their order.
-#[derive(Clone, Debug)]
-pub struct OutlineFeature<'a> {
-    /// The shape.
-    pub shape: &'a AlphaShape,
-    /// The properties of the feature.
-    pub properties: Map<String, Value>,
-}
-
 /// Writes a collection of features, one for each outline: a `MultiPolygon` of all its polygons, or no geometry if it has none.
 /// Coordinates are as in [`GeoJson`].
 ///
 /// # Errors
 /// Errors of `out`, and a shape without an outline that is not on a line.
-pub fn write_features(
+pub(super) fn write_features(
     features: &[OutlineFeature<'_>],
     crs: Option<&Crs>,
     out: &mut dyn Write,
@@ -54,7 +45,7 @@ pub fn write_features(
 
 impl GeoJson {
     /// Why coordinates are those of the points; `None` if they are longitude and latitude.
-    pub fn not_converted(crs: Option<&Crs>) -> Option<String> {
+    pub(super) fn not_converted(crs: Option<&Crs>) -> Option<String> {
         let why = match crs {
             None => "their coordinate system is not known".to_owned(),
             Some(crs) => ToWgs84::of(crs).err()?,

@@ -28,11 +28,14 @@ mod colour;
 mod cycles;
 mod empty;
 mod exporter;
+mod features;
 mod filtration;
 mod findings;
 mod format;
 mod geographic;
 mod geojson;
+#[cfg(all(feature = "las", not(target_family = "wasm")))]
+mod geopackage;
 mod glb;
 mod json;
 mod labelled;
@@ -53,11 +56,14 @@ pub use claim::{claim, placed_complex};
 pub use cycles::write_cycles;
 pub use empty::{EmptyShape, Needs};
 pub use exporter::{ExportOptions, Exporter};
+pub use features::{FeatureFormat, OutlineFeature};
 pub use filtration::{FILTRATION_FORMATS, FiltrationFormat};
 #[doc(hidden)]
 pub use findings::write_findings;
 pub use format::{FORMATS, Format};
-pub use geojson::{GeoJson, OutlineFeature, write_features};
+pub use geojson::GeoJson;
+#[cfg(all(feature = "las", not(target_family = "wasm")))]
+pub use geopackage::GeoPackage;
 pub use glb::Glb;
 pub use json::Json;
 // For the surface of balls, which the command writes. Not covered by semantic versioning.

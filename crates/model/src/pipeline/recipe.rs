@@ -13,8 +13,8 @@ use crate::surface::SurfaceChoice;
 use walpha_points::haar::{HaarOptions, Tolerance};
 use walpha_points::internal::LEAST_GRAY;
 use walpha_points::{
-    AtomSelection, Attributes, Columns, PointOptions, Points, PointsError, Radii, Selection, Units,
-    Weighting,
+    AtomSelection, Attributes, Columns, PointOptions, Points, PointsError, Radii, Region,
+    Selection, Units, Weighting,
 };
 use walpha_shape::{Alpha, Balls, Classifier, Engine, Keep, ShapeError, ShapeOptions};
 use walpha_volume::{Coordinates, Frame, Gray, GrayRange, LengthUnit, ReadOptions, Space};
@@ -65,6 +65,9 @@ pub struct Recipe {
     /// The columns of points that are kept beside them ([`PointOptions::attributes`]). They are not stored with the other options.
     #[serde(skip)]
     pub attributes: Attributes,
+    /// Reads only the points in this box ([`PointOptions::region`]); of a volume, [`ReadOptions::region`] is a part.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub region: Option<Region>,
     /// Keeps the first point in each cube of this side ([`PointOptions::thin`]).
     pub thin: Option<f64>,
     /// Where the radii of atoms come from ([`PointOptions::radii`]); not looked up where weights come from elsewhere.
@@ -147,6 +150,7 @@ impl Recipe {
         withheld: bool,
         value: Option<String>,
         attributes: Attributes,
+        region: Option<Region>,
         thin: Option<f64>,
         radii: Option<Radii>,
         atoms: AtomSelection,
@@ -231,6 +235,7 @@ impl Recipe {
             .value(self.value.clone())
             .attributes(self.attributes.clone())
             .weights(self.weighting == Some(Weighting::Column))
+            .region(self.region)
             .thin(self.thin)
     }
 

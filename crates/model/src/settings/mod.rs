@@ -17,7 +17,7 @@ use walpha_points::{
     AtomSelection, Columns, Models, Radii, Selection, SelectionRule, Units, Weighting,
 };
 use walpha_shape::{Alpha, Balls, Engine, Keep, Largest};
-use walpha_volume::{Dims, Dtype, Endian, GrayRange, Nan, RawLayout, ReadOptions, Region, Space};
+use walpha_volume::{Dims, Dtype, Endian, GrayRange, Nan, RawLayout, ReadOptions, Space};
 
 use crate::Recipe;
 use crate::interpolate::Refit;
@@ -25,6 +25,7 @@ use crate::labels::LabelChoice;
 use crate::pipeline::{AlphaRule, Choice, Goal, PeriodicBox};
 use crate::surface::SurfaceChoice;
 pub use choices::Select;
+use parse::Part;
 
 /// An error of a setting, and advice about it. Both may name settings.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -212,8 +213,8 @@ settings! {
         no_resample: bool = parse::switch,
         /// What replaces NaN.
         nan: Nan = parse::nan,
-        /// Part of the volume.
-        roi: Region = parse::samples,
+        /// Part of the input.
+        roi: Part = parse::part,
         /// Samples along each axis that become one.
         downsample: NonZeroUsize = parse::plain,
     }
@@ -435,7 +436,7 @@ impl Settings {
             .skip_damaged(self.skip_damaged == Some(true))
             .no_resample(self.no_resample == Some(true))
             .nan(self.nan)
-            .region(self.roi)
+            .region(self.roi.map(|part| part.samples))
             .downsample(self.downsample)
     }
 
@@ -558,6 +559,7 @@ impl Settings {
             .classes(self.class.clone())
             .withheld(is_set(self.withheld))
             .value(self.value.clone())
+            .region(self.roi.map(|part| part.places))
             .thin(self.thin)
             .radii(self.radii.clone())
             .atoms(self.atoms())

@@ -262,21 +262,29 @@ fn ends(text: &str) -> Result<[[&str; 2]; 3], SettingError> {
     Ok(ends)
 }
 
-/// Parses a range of samples along each axis, from a first index to an exclusive end; ends may be omitted.
-pub(super) fn samples(text: &str) -> Result<Region, SettingError> {
-    let mut region = Region::default();
-    for (k, [first, end]) in ends(text)?.into_iter().enumerate() {
-        let index = |text: &str| {
-            match text {
-            "" => Ok(None),
-            text => text.parse().map(Some).map_err(
-                |_| error!("`{text}` is not an index of a sample" => "give whole numbers, as in 20:40"),
-            ),
+/// A part of an input: of a volume a range of samples along each axis, from a first index to an exclusive end; of points a box in
+/// their unit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Part {
+    /// The range of samples, which is [nowhere](Region::NOWHERE) unless all ends are whole numbers from 0 on.
+    pub samples: Region,
+    /// The box, infinite where ends are missing.
+    pub places: walpha_points::Region,
+}
+
+/// Parses a part of an input; ends may be omitted.
+pub(super) fn part(text: &str) -> Result<Part, SettingError> {
+    let ends = ends(text)?;
+    let places = region(ends, true)?;
+    let index = |text: &str| if text.is_empty() { Ok(None) } else { text.parse().map(Some) };
+    let samples = || -> Result<Region, std::num::ParseIntError> {
+        let mut region = Region::default();
+        for (k, [first, end]) in ends.into_iter().enumerate() {
+            (region.first[k], region.end[k]) = (index(first)?.unwrap_or(0), index(end)?);
         }
-        };
-        (region.first[k], region.end[k]) = (index(first)?.unwrap_or(0), index(end)?);
-    }
-    Ok(region)
+        Ok(region)
+    };
+    Ok(Part { samples: samples().unwrap_or(Region::NOWHERE), places })
 }
 
 /// Parses a box in the units of the points, including its boundary: `X0:X1,Y0:Y1,Z0:Z1`.
@@ -284,13 +292,23 @@ pub(super) fn samples(text: &str) -> Result<Region, SettingError> {
 /// # Errors
 /// The text is not three ranges of finite numbers.
 pub fn places(text: &str) -> Result<walpha_points::Region, SettingError> {
-    let mut region = walpha_points::Region { low: [0.0; 3], high: [0.0; 3] };
-    for (k, [low, high]) in ends(text)?.into_iter().enumerate() {
-        let finite = |text: &str| match text.parse() {
-            Ok(number) if f64::is_finite(number) => Ok(number),
+    region(ends(text)?, false)
+}
+
+/// The box between these ends, which may be missing if it is `open`.
+fn region(ends: [[&str; 2]; 3], open: bool) -> Result<walpha_points::Region, SettingError> {
+    let mut region = walpha_points::Region::EVERYWHERE;
+    for (k, [low, high]) in ends.into_iter().enumerate() {
+        let set = |end: &mut f64, text: &str| match text.parse() {
+            Ok(number) if f64::is_finite(number) => {
+                *end = number;
+                Ok(())
+            }
+            _ if open && text.is_empty() => Ok(()),
             _ => Err(error!("`{text}` is not a finite number" => "give one, as in 20 or 2.5")),
         };
-        (region.low[k], region.high[k]) = (finite(low)?, finite(high)?);
+        set(&mut region.low[k], low)?;
+        set(&mut region.high[k], high)?;
         if region.low[k] > region.high[k] {
             fail!("`{low}:{high}` is not a range" => "give the smaller number first, as in 20:40");
         }
@@ -304,16 +322,18 @@ mod tests {
 
     #[test]
     fn both_kinds_of_ranges_are_read() {
-        let region = samples("20:40, : ,10:").unwrap();
-        assert_eq!((region.first, region.end), ([20, 0, 10], [Some(40), None, None]));
+        let Part { samples, places: open } = part("20:40, : ,10:").unwrap();
+        assert_eq!((samples.first, samples.end), ([20, 0, 10], [Some(40), None, None]));
+        assert_eq!((open.low[0], open.high[0], open.low[2]), (20.0, 40.0, 10.0));
+        assert_eq!((open.low[1], open.high[2]), (f64::NEG_INFINITY, f64::INFINITY));
         let region = places("-1:2.5,0:0, 1e3 :2e3").unwrap();
         assert_eq!((region.low, region.high), ([-1.0, 0.0, 1e3], [2.5, 0.0, 2e3]));
-        for text in ["1:2,3:4", "1:2,3:4,5", "1:2,3:4,5:x", "1:2,3:4,5:6,7:8"] {
-            assert!(samples(text).is_err() && places(text).is_err(), "{text}");
+        for text in ["1:2,3:4", "1:2,3:4,5", "1:2,3:4,5:x", "1:2,3:4,5:6,7:8", "1:2,3:4,6:5"] {
+            assert!(part(text).is_err() && places(text).is_err(), "{text}");
         }
-        for text in ["1:2,3:4,:", "1:2,3:4,6:5", "1:2,3:4,5:inf"] {
+        for text in ["1:2,3:4,:", "1:2,3:4,5:inf"] {
             assert!(places(text).is_err(), "{text}");
         }
-        assert!(samples("1.5:2,3:4,5:6").is_err());
+        assert_eq!(part("1.5:2,3:4,5:6").unwrap().samples, Region::NOWHERE);
     }
 }

@@ -130,7 +130,7 @@ fn numbers_of_options_are_named() {
     let with_values = points().with_values(vec![0.5; 30]).unwrap();
     let wvm = PointWriter::of("a.wvm").unwrap();
     let packed =
-        wvm.write_model(&with_values, &ModelMetadata::default(), &packing, &mut Vec::new());
+        wvm.write_model(&with_values, &[], &ModelMetadata::default(), &packing, &mut Vec::new());
     names(packed, &["error", "NaN"], "value_error");
     for wrong in [1e200, 1e-200] {
         names(Alpha::from_radius(wrong), &["square"], "radius");

@@ -19,6 +19,8 @@ pub(super) struct ReferenceSystem {
     names: [Option<String>; 2],
     /// The codes of EPSG of the systems of x and y, and of z.
     codes: [Option<u16>; 2],
+    /// The well-known text, if it is stated so.
+    text: Option<String>,
 }
 
 /// A unit of lengths.
@@ -43,10 +45,15 @@ impl ReferenceSystem {
         for record in records {
             let own = match record.record_id {
                 DIRECTORY => Self::of_keys(&record.data, ascii),
-                TEXT => Self::of_text(&String::from_utf8_lossy(&record.data)),
+                TEXT => {
+                    let text = String::from_utf8_lossy(&record.data);
+                    let text = text.trim_end_matches(['\0', ' ']);
+                    Self { text: Some(text.to_owned()), ..Self::of_text(text) }
+                }
                 _ => continue,
             };
             all.is_geographic |= own.is_geographic;
+            all.text = own.text.or(all.text.take());
             for (unit, own) in all.units.iter_mut().zip(own.units) {
                 *unit = own.or(unit.take());
             }
@@ -83,6 +90,7 @@ impl ReferenceSystem {
             geographic: self.is_geographic,
             unit: name(unit),
             vertical: Vertical { epsg: self.codes[1], name: vertical, unit: name(height) },
+            text: None,
             length: unit.as_ref().map_or(LengthUnit::Unstated, |unit| {
                 if self.is_geographic {
                     LengthUnit::Unstated
@@ -91,7 +99,7 @@ impl ReferenceSystem {
                 }
             }),
         };
-        (crs != Crs::default()).then_some(crs)
+        (crs != Crs::default()).then(|| Crs { text: self.text.clone(), ..crs })
     }
 
     /// Refuses angles, and heights in another unit than x and y.
@@ -158,6 +166,7 @@ impl ReferenceSystem {
             units: UNITS.map(|key| value(key).and_then(Unit::of_code)),
             names,
             codes: codes.map(|code| code.filter(|&code| code != 0 && code != UNDEFINED)),
+            text: None,
         }
     }
 

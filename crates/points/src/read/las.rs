@@ -1,97 +1,218 @@
 //! LAS and LAZ, the formats of laser scanners.
 
+use std::collections::HashSet;
 use std::io::{self, Read, Seek, SeekFrom};
 use std::ops::Range;
 use std::path::Path;
 
 use walpha_base::advice::{Setting, advice};
+use walpha_base::memory::try_reserve;
 use walpha_base::shown::shown;
 
 use super::crs::ReferenceSystem;
 use super::las_fields::{Field, GPS_TIME, fields};
 use super::laz::{Claims, Records};
 use super::{COLUMNS, Points, PointsError, format};
-use crate::{Column, ColumnSummary, Crs, Flags, ModelMetadata, PointOptions, ScanSummary};
+use crate::sets::Cubes;
+use crate::{
+    Column, ColumnSummary, Crs, Flags, LasHeader, ModelMetadata, PointOptions, Region, ScanSummary,
+};
 use walpha_volume::{Coordinates, OpenFile, Reason, io_error};
 
 /// The number of bytes of points read at once: a header may claim records of up to 64 KiB, and more of them than the file has.
 const BATCH: u64 = 1 << 22;
 
-/// Reads the positions of the points, of some classes (ASPRS codes) or of all, and their intensities as values. Withheld points
-/// are left out unless they are requested. Coordinates are doubles, computed with the file's scales and offsets.
+/// Reads the positions of the points, of some classes (ASPRS codes) or of all, and their intensities as values, or what columns
+/// `weight` and `value` have. Withheld points are left out unless they are requested. Coordinates are doubles, computed with the
+/// file's scales and offsets. Points outside a region, and all but the first in each cube, are left out while they are read; of
+/// COPC, cells outside the region are not even decompressed.
 pub(crate) fn read(
     file: &OpenFile,
     options: &PointOptions,
 ) -> Result<(Points, ModelMetadata), PointsError> {
     let path = file.path();
-    let (header, claims) = check(file)?;
-    let claimed = count(&header);
-    let fail = |error| unreadable(path, error);
-    let reader = file.owned_reader()?;
-    let reader = if claimed == u64::from(header.number_of_point_records) {
-        las::Reader::new(reader)
-    } else {
-        las::Reader::new(WithoutOldCount { reader, at: 0 })
-    };
-    let mut reader = reader.map_err(fail)?;
-    let records = || reader.header().vlrs().iter().chain(reader.header().evlrs());
-    let system = ReferenceSystem::of(records());
+    let mut source = Source::open(file)?;
+    let records = source.header.vlrs().iter().chain(source.header.evlrs());
+    let system = ReferenceSystem::of(records);
     if !options.describe {
         system.check().map_err(|reason| format(path, reason))?;
     }
-    let described = records()
-        .find(|record| (record.user_id.as_str(), record.record_id) == ("LASF_Spec", EXTRA_BYTES));
-    let described = described.map_or(&[][..], |record| &record.data);
-    let mut taken = Taken::new(reader.header(), described, options);
-    let record = u64::from(reader.header().point_format().len()).max(1);
-    let at_once = (BATCH / record).max(1);
-    let mut batch = las::PointDataBuilder::new().for_header(reader.header()).build();
-    let mut found = 0;
+    if let Some(region) = &options.region {
+        source.leave_out(region);
+    }
+    let mut cubes = None;
+    if let Some(side) = options.thin {
+        Cubes::check(side)?;
+        // The cubes start at the least coordinates of the points that are taken without them.
+        let mut first = Taken::new(&source.header, options, None);
+        let mut least = [f64::INFINITY; 3];
+        source.each(false, |record| {
+            if first.takes(record) {
+                least = [0, 1, 2].map(|axis| least[axis].min(record.place[axis]));
+            }
+            Ok(())
+        })?;
+        cubes = Some(Cubes::new(least, side));
+    }
+    let mut taken = Taken::new(&source.header, options, cubes);
+    if options.classes.is_none() && options.region.is_none() && options.thin.is_none() {
+        taken.reserve(path, source.count())?;
+    }
     let whole = options.describe || !taken.kept.is_empty();
-    let mut packed = match claims {
-        None => None,
-        Some(claims) => {
-            let description = reader.header().laz_vlr().map_err(fail)?;
-            let records = Records::new(
-                file.owned_reader()?,
-                claims.data,
-                claims.compressor,
-                description,
-                whole,
-            );
-            Some(records.map_err(|error| fail(error.into()))?)
-        }
-    };
-    while found < claimed {
-        match &mut packed {
-            None => {
-                if reader.fill_points(at_once, &mut batch).map_err(fail)? == 0 {
-                    break;
-                }
-            }
-            Some(records) => {
-                let records = records.fill(batch.resize_for(at_once.min(claimed - found) as usize));
-                records.map_err(|error| fail(error.into()))?;
-            }
-        }
-        let places = batch.x().zip(batch.y()).zip(batch.z()).map(|((x, y), z)| [x, y, z]);
-        let records = batch.raw_bytes().chunks_exact(batch.record_len());
-        let rows = places.zip(batch.intensity()).zip(batch.classification()).zip(records);
-        for (((place, intensity), class), record) in rows {
-            found += 1;
-            taken.take(place, intensity, class, record);
-        }
-    }
-    if found != claimed {
-        let reason =
-            Reason::truncated(format!("claims {claimed} points, but has {found}: it is truncated"));
-        return Err(format(path, reason));
-    }
-    if reader.header().point_format().has_waveform {
+    source.each(whole, |record| taken.take(path, record))?;
+    if source.header.point_format().has_waveform {
         tracing::warn!("{}: waveforms of its points are passed over", shown(path));
     }
-    taken.finish(path, system.crs())
+    taken.finish(path, system.crs(), source.header)
 }
+
+/// The least number of points for which room is made at once.
+const ROOM: u64 = 1 << 16;
+
+/// A record of a point.
+struct Record<'a> {
+    place: [f64; 3],
+    intensity: u16,
+    class: u8,
+    bytes: &'a [u8],
+}
+
+impl Record<'_> {
+    /// The flags of the point. In formats 0 to 5 they are above the class, in the others in the byte before it (LAS 1.4 R15,
+    /// tables 8 and 16).
+    fn flags(&self, is_extended: bool) -> u8 {
+        if is_extended { self.bytes[15] & 15 } else { self.bytes[15] >> 5 }
+    }
+}
+
+/// A file whose claims have been checked, which can be read several times.
+struct Source<'a> {
+    file: &'a OpenFile,
+    header: las::Header,
+    /// Whether the two numbers of points differ.
+    counts_twice: bool,
+    /// The number of points that the file claims.
+    claimed: u64,
+    claims: Option<Claims>,
+}
+
+impl<'a> Source<'a> {
+    fn open(file: &'a OpenFile) -> Result<Self, PointsError> {
+        let (raw, claims) = check(file)?;
+        let claimed = count(&raw);
+        let counts_twice = claimed != u64::from(raw.number_of_point_records);
+        let header = las::Header::default();
+        let mut source = Self { file, header, counts_twice, claimed, claims };
+        source.header = source.reader()?.header().clone();
+        Ok(source)
+    }
+
+    fn reader(&self) -> Result<las::Reader, PointsError> {
+        let reader = self.file.owned_reader()?;
+        let reader = if self.counts_twice {
+            las::Reader::new(WithoutOldCount { reader, at: 0 })
+        } else {
+            las::Reader::new(reader)
+        };
+        reader.map_err(|error| unreadable(self.file.path(), error))
+    }
+
+    /// The number of points that are read.
+    fn count(&self) -> u64 {
+        match &self.claims {
+            Some(claims) if !claims.chunks.is_empty() => {
+                claims.chunks.iter().map(|chunk| chunk.points).sum()
+            }
+            _ => self.claimed,
+        }
+    }
+
+    /// Leaves out the chunks whose cells of a COPC octree are outside a region. An index that is damaged is of no use.
+    fn leave_out(&mut self, region: &Region) {
+        let Some(claims) = &mut self.claims else { return };
+        let (Some(info), Some(index)) =
+            (self.header.copc_info_vlr(), self.header.copc_hierarchy_evlr())
+        else {
+            return;
+        };
+        let mut outside = HashSet::new();
+        for entry in index.iter_entries() {
+            let Ok(entry) = entry else { return };
+            if !(0..=MOST_LEVELS).contains(&entry.key.l) {
+                return;
+            }
+            let cell = entry.key.bounds(&info);
+            let pairs =
+                [(cell.min.x, cell.max.x), (cell.min.y, cell.max.y), (cell.min.z, cell.max.z)];
+            // Coordinates are rounded, and so are the sides of cells.
+            let margin = info.halfsize * 1e-6;
+            let apart = |axis: usize| {
+                let (low, high) = pairs[axis];
+                low - margin > region.high[axis] || high + margin < region.low[axis]
+            };
+            if entry.point_count > 0 && (0..3).any(apart) {
+                outside.insert(entry.offset);
+            }
+        }
+        let kept = claims.chunks.iter().filter(|chunk| !outside.contains(&chunk.start));
+        let kept: Vec<_> = kept.copied().collect();
+        // Without a chunk there would be nothing that says which points there are.
+        if !kept.is_empty() {
+            claims.chunks = kept;
+        }
+    }
+
+    /// Calls `take` for each point in turn. Without `whole`, only coordinates, intensities, classes and flags are read of layers.
+    fn each(
+        &self,
+        whole: bool,
+        mut take: impl FnMut(&Record<'_>) -> Result<(), PointsError>,
+    ) -> Result<(), PointsError> {
+        let path = self.file.path();
+        let fail = |error| unreadable(path, error);
+        let mut reader = self.reader()?;
+        let record = u64::from(self.header.point_format().len()).max(1);
+        let at_once = (BATCH / record).max(1);
+        let mut batch = las::PointDataBuilder::new().for_header(&self.header).build();
+        let mut packed = match &self.claims {
+            None => None,
+            Some(claims) => {
+                let description = self.header.laz_vlr().map_err(fail)?;
+                let records = Records::new(self.file.owned_reader()?, claims, description, whole);
+                Some(records.map_err(|error| fail(error.into()))?)
+            }
+        };
+        let (mut found, count) = (0, self.count());
+        while found < count {
+            match &mut packed {
+                None => {
+                    if reader.fill_points(at_once, &mut batch).map_err(fail)? == 0 {
+                        break;
+                    }
+                }
+                Some(records) => {
+                    let room = batch.resize_for(at_once.min(count - found) as usize);
+                    records.fill(room).map_err(|error| fail(error.into()))?;
+                }
+            }
+            let places = batch.x().zip(batch.y()).zip(batch.z()).map(|((x, y), z)| [x, y, z]);
+            let records = batch.raw_bytes().chunks_exact(batch.record_len());
+            let rows = places.zip(batch.intensity()).zip(batch.classification()).zip(records);
+            for (((place, intensity), class), bytes) in rows {
+                found += 1;
+                take(&Record { place, intensity, class, bytes })?;
+            }
+        }
+        if found == count {
+            return Ok(());
+        }
+        let what = format!("claims {count} points, but has {found}: it is truncated");
+        Err(format(path, Reason::truncated(what)))
+    }
+}
+
+/// The number of levels of an octree from which on cells are smaller than any scan resolves.
+const MOST_LEVELS: i32 = 30;
 
 /// The points that were read, and what is counted of all.
 struct Taken<'a> {
@@ -100,6 +221,11 @@ struct Taken<'a> {
     fields: Vec<Field>,
     /// The indices of the fields whose columns are kept.
     kept: Vec<usize>,
+    /// The indices of the fields that are weights and values.
+    weight: Option<usize>,
+    value: Option<usize>,
+    /// The cubes of which one point each is taken.
+    cubes: Option<Cubes>,
     summaries: Vec<ColumnSummary>,
     scan: ScanSummary,
     withheld: u64,
@@ -108,10 +234,14 @@ struct Taken<'a> {
 }
 
 impl<'a> Taken<'a> {
-    fn new(header: &las::Header, described: &[u8], options: &'a PointOptions) -> Self {
+    fn new(header: &las::Header, options: &'a PointOptions, cubes: Option<Cubes>) -> Self {
         let format = *header.point_format();
-        let fields = fields(format, described);
-        let is_kept = |&index: &usize| options.attributes.keeps(&fields[index].name);
+        let fields = fields(format, described(header));
+        let named = |name: &str| fields.iter().position(|field| field.name == name);
+        let (weight, value) = (named("weight"), named("value"));
+        let is_kept = |&index: &usize| {
+            ![weight, value].contains(&Some(index)) && options.attributes.keeps(&fields[index].name)
+        };
         let kept: Vec<usize> = (0..fields.len()).filter(is_kept).collect();
         let column =
             |&index: &usize| Column { name: fields[index].name.clone(), values: Vec::new() };
@@ -120,10 +250,14 @@ impl<'a> Taken<'a> {
             is_extended: format.is_extended,
             points: Points {
                 values: Some(Vec::new()),
+                weights: weight.map(|_| Vec::new()),
                 columns: kept.iter().map(column).collect(),
                 ..Points::default()
             },
             kept,
+            weight,
+            value,
+            cubes,
             summaries: fields.iter().map(Field::summary).collect(),
             fields,
             scan: scan(header),
@@ -132,37 +266,90 @@ impl<'a> Taken<'a> {
         }
     }
 
-    /// Counts a point, and takes it unless the options leave it out.
-    fn take(&mut self, place: [f64; 3], intensity: u16, class: u8, record: &[u8]) {
-        let Self { options, scan, points, .. } = self;
-        // In formats 0 to 5 the flags are above the class, in the others in the byte before it (LAS 1.4 R15, tables 8 and 16).
-        let flags = if self.is_extended { record[15] & 15 } else { record[15] >> 5 };
-        let number = if self.is_extended { record[14] & 15 } else { record[14] & 7 };
+    /// Makes room for so many points more.
+    fn reserve(&mut self, path: &Path, count: u64) -> Result<(), PointsError> {
+        let Points { positions, values, weights, columns, .. } = &mut self.points;
+        let points = positions.len() as u64 + count;
+        let numbers = 3 + [&values, &weights].iter().filter(|column| column.is_some()).count();
+        let bytes = 8 * (numbers + columns.len()) as u64;
+        let columns = columns.iter_mut().map(|column| &mut column.values);
+        let mut columns = values.iter_mut().chain(weights).chain(columns);
+        let more = usize::try_from(count).unwrap_or(usize::MAX);
+        let room = try_reserve(positions, more, String::new);
+        room.and_then(|()| columns.try_for_each(|column| try_reserve(column, more, String::new)))
+            .map_err(|_| PointsError::Room {
+                path: path.into(),
+                points,
+                bytes: points.saturating_mul(bytes),
+            })
+    }
+
+    /// Counts a point. Returns whether it is taken, as far as cubes do not decide.
+    fn takes(&mut self, record: &Record<'_>) -> bool {
+        let Self { options, scan, .. } = self;
+        if options.region.as_ref().is_some_and(|region| !region.contains(record.place)) {
+            return false;
+        }
+        let (bytes, class) = (record.bytes, record.class);
+        let flags = record.flags(self.is_extended);
+        let number = if self.is_extended { bytes[14] & 15 } else { bytes[14] & 7 };
         *scan.classes.entry(class).or_default() += 1;
         *scan.returns.entry(number).or_default() += 1;
         count_flags(&mut scan.flags, flags);
-        if options.describe {
-            for (summary, field) in self.summaries.iter_mut().zip(&self.fields) {
-                summary.add(field.value(record));
-            }
-        }
         if options.classes.as_ref().is_some_and(|classes| !classes.contains(&class)) {
-            return;
+            return false;
         }
         self.withheld += u64::from(flags & WITHHELD != 0);
-        if flags & WITHHELD == 0 || options.withheld {
-            self.kinds.count(flags, class);
-            points.positions.push(place);
-            points.values.get_or_insert_default().push(f64::from(intensity));
-            for (column, &index) in points.columns.iter_mut().zip(&self.kept) {
-                column.values.push(self.fields[index].value(record));
+        flags & WITHHELD == 0 || options.withheld
+    }
+
+    /// Counts a point, and takes it unless the options leave it out.
+    fn take(&mut self, path: &Path, record: &Record<'_>) -> Result<(), PointsError> {
+        if self.points.positions.len() == self.points.positions.capacity() {
+            self.reserve(path, ROOM)?;
+        }
+        let is_taken = self.takes(record);
+        let Self { options, points, fields, .. } = self;
+        let is_described =
+            options.region.as_ref().is_none_or(|region| region.contains(record.place));
+        if options.describe && is_described {
+            for (summary, field) in self.summaries.iter_mut().zip(&*fields) {
+                summary.add(field.value(record.bytes));
             }
         }
+        if !is_taken {
+            return Ok(());
+        }
+        self.kinds.count(record.flags(self.is_extended), record.class);
+        if self.cubes.as_mut().is_some_and(|cubes| !cubes.takes(record.place)) {
+            return Ok(());
+        }
+        let number = |index: usize| fields[index].value(record.bytes);
+        points.positions.push(record.place);
+        let value = self.value.map_or(f64::from(record.intensity), number);
+        points.values.get_or_insert_default().push(value);
+        if let (Some(weights), Some(weight)) = (&mut points.weights, self.weight) {
+            weights.push(number(weight));
+        }
+        for (column, &index) in points.columns.iter_mut().zip(&self.kept) {
+            column.values.push(number(index));
+        }
+        Ok(())
     }
 
     /// The points and their metadata. Says how many are withheld, and refuses a file without any of those that are asked for.
-    fn finish(self, path: &Path, crs: Option<Crs>) -> Result<(Points, ModelMetadata), PointsError> {
+    fn finish(
+        self,
+        path: &Path,
+        crs: Option<Crs>,
+        header: las::Header,
+    ) -> Result<(Points, ModelMetadata), PointsError> {
         let Self { options, points, mut scan, withheld, .. } = self;
+        if let (true, Some(region)) = (scan.returns.is_empty(), &options.region) {
+            let bounds = header.bounds();
+            let [low, high] = [bounds.min, bounds.max].map(|corner| [corner.x, corner.y, corner.z]);
+            return Err(region.without_points(path, [low, high]));
+        }
         if withheld > 0 && !options.withheld {
             if points.is_empty() {
                 let reason = Reason::choice(
@@ -191,14 +378,38 @@ impl<'a> Taken<'a> {
             .coordinates(Coordinates { unit, ..Coordinates::default() })
             .crs(crs)
             .scan(Some(scan))
+            .las(Some(LasHeader::of(header)))
             .columns(self.summaries)
             .notes(self.kinds.notes());
         Ok((points, metadata))
     }
 }
 
+/// What a file states beside its points.
+///
+/// # Errors
+/// Those of [`read`], as far as they are not about points.
+pub(crate) fn header(file: &OpenFile) -> Result<las::Header, PointsError> {
+    if !file.start().starts_with(b"LASF") {
+        return Err(format(file.path(), Reason::other("is not a LAS file")));
+    }
+    Ok(Source::open(file)?.header)
+}
+
+/// The descriptions of extra bytes of a file.
+pub(crate) fn described(header: &las::Header) -> &[u8] {
+    let mut records = header.vlrs().iter().chain(header.evlrs());
+    let found = records.find(|record| is_of(record, "LASF_Spec", EXTRA_BYTES));
+    found.map_or(&[], |record| &record.data)
+}
+
+/// Whether a record has this user and number.
+pub(crate) fn is_of(record: &las::Vlr, user: &str, number: u16) -> bool {
+    (record.user_id.as_str(), record.record_id) == (user, number)
+}
+
 /// The id of the record that describes extra bytes.
-const EXTRA_BYTES: u16 = 4;
+pub(crate) const EXTRA_BYTES: u16 = 4;
 
 /// What the header states of a scan, before its points are counted.
 fn scan(header: &las::Header) -> ScanSummary {
@@ -330,7 +541,7 @@ fn check_compression(
         _ => io_error(path)(error).into(),
     };
     let Some(claims) = Claims::of(reader, header, length).map_err(io)? else { return Ok(None) };
-    let claims = claims.map_err(|reason| format(path, reason))?;
+    let mut claims = claims.map_err(|reason| format(path, reason))?;
     claims.check(reader).map_err(io)?.map_err(|reason| format(path, reason))?;
     Ok(Some(claims))
 }

@@ -1,4 +1,5 @@
-//! The fields of a point of LAS beside its coordinates: those of its format, and the extra bytes that a record describes.
+//! The fields of a point of LAS beside its coordinates: those of its format, and the extra bytes that a record describes. They are
+//! read from records, and stored in them.
 //!
 //! Source: LAS 1.4 R15, tables 7 to 16 and 24 to 26. The names are those of laspy.
 
@@ -7,10 +8,12 @@ use las::point::Format;
 use crate::ColumnSummary;
 
 /// The name of the time of a point.
-pub(super) const GPS_TIME: &str = "gps_time";
+pub(crate) const GPS_TIME: &str = "gps_time";
+/// The size in bytes of a description of extra bytes.
+pub(crate) const DESCRIPTION: usize = 192;
 
 /// A field: its name, its type, and how it is read.
-pub(super) struct Field {
+pub(crate) struct Field {
     pub name: String,
     kind: &'static str,
     place: usize,
@@ -24,7 +27,7 @@ pub(super) struct Field {
 }
 
 /// How a number is stored.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq)]
 enum Code {
     /// Some bits of a byte: the lowest, and how many.
     Bits(u8, u8),
@@ -77,6 +80,43 @@ impl Code {
         };
         number.unwrap_or(f64::NAN)
     }
+
+    /// Stores a number at the start of some bytes. Returns whether it is one of this type.
+    #[expect(clippy::cast_lossless, reason = "of some types it loses bits")]
+    fn store(self, number: f64, bytes: &mut [u8]) -> bool {
+        macro_rules! put {
+            ($kind:ty) => {{
+                let stored = number as $kind;
+                let of_kind = stored.to_le_bytes();
+                bytes[..of_kind.len()].copy_from_slice(&of_kind);
+                // As a double, the greatest number of 64 bits is one more.
+                stored as f64 == number && number < <$kind>::MAX as f64 + 1.0
+            }};
+        }
+        match self {
+            Self::Bits(low, count) => {
+                let greatest = ((1u16 << count) - 1) as u8;
+                bytes[0] = bytes[0] & !(greatest << low) | (number as u8 & greatest) << low;
+                number.fract() == 0.0 && (0.0..=f64::from(greatest)).contains(&number)
+            }
+            Self::U8 => put!(u8),
+            Self::I8 => put!(i8),
+            Self::U16 => put!(u16),
+            Self::I16 => put!(i16),
+            Self::U32 => put!(u32),
+            Self::I32 => put!(i32),
+            Self::U64 => put!(u64),
+            Self::I64 => put!(i64),
+            Self::F32 => {
+                bytes[..4].copy_from_slice(&(number as f32).to_le_bytes());
+                number.is_nan() || (number as f32).is_finite() == number.is_finite()
+            }
+            Self::F64 => {
+                bytes[..8].copy_from_slice(&number.to_le_bytes());
+                true
+            }
+        }
+    }
 }
 
 impl Field {
@@ -101,12 +141,32 @@ impl Field {
     }
 
     /// The number of a point; NaN if it has none.
-    pub(super) fn value(&self, record: &[u8]) -> f64 {
+    pub(crate) fn value(&self, record: &[u8]) -> f64 {
         let stored = self.code.read(record.get(self.place..).unwrap_or_default());
         if self.missing == Some(stored) {
             return f64::NAN;
         }
         stored * self.scale + self.offset
+    }
+
+    /// Stores the number of a point in its record; NaN stands for none.
+    ///
+    /// # Errors
+    /// Why the field cannot hold it.
+    pub(crate) fn store(&self, number: f64, record: &mut [u8]) -> Result<(), String> {
+        let bytes = &mut record[self.place..];
+        if let (true, Some(missing)) = (number.is_nan(), self.missing) {
+            self.code.store(missing, bytes);
+            return Ok(());
+        }
+        let mut stored = (number - self.offset) / self.scale;
+        if self.scale != 1.0 && !matches!(self.code, Code::F32 | Code::F64) {
+            stored = stored.round();
+        }
+        if self.code.store(stored, bytes) {
+            return Ok(());
+        }
+        Err(format!("{} is {number}, and is stored as {}", self.name, self.kind))
     }
 
     /// A description without its range.
@@ -116,7 +176,7 @@ impl Field {
 }
 
 /// The fields of a format, in the order of its bytes, and the described extra bytes.
-pub(super) fn fields(format: Format, described: &[u8]) -> Vec<Field> {
+pub(crate) fn fields(format: Format, described: &[u8]) -> Vec<Field> {
     let mut all = vec![Field::new("intensity", 12, Code::U16)];
     let mut bits = |named: &[(&str, usize, u8, u8)]| {
         let field =
@@ -156,11 +216,7 @@ pub(super) fn fields(format: Format, described: &[u8]) -> Vec<Field> {
     }
     let mut place = if format.is_extended { 22 } else { 20 };
     if format.has_gps_time {
-        // In layers the library decodes changes of their sequence by recursion, which damaged data can repeat until the stack is
-        // exhausted; so these are not decompressed.
-        if !(format.is_compressed && format.is_extended) {
-            all.push(Field::new(GPS_TIME, place, Code::F64));
-        }
+        all.push(Field::new(GPS_TIME, place, Code::F64));
         place += 8;
     }
     if format.has_color {
@@ -179,21 +235,16 @@ pub(super) fn fields(format: Format, described: &[u8]) -> Vec<Field> {
 
 /// The fields that descriptions of extra bytes, 192 bytes each, place behind those of the format. An array of several numbers has
 /// a field for each.
-fn extra(mut place: usize, described: &[u8]) -> Vec<Field> {
-    const SIZE: usize = 192;
+pub(crate) fn extra(mut place: usize, described: &[u8]) -> Vec<Field> {
     let mut fields = Vec::new();
-    for one in described.as_chunks::<SIZE>().0 {
+    for one in described.as_chunks::<DESCRIPTION>().0 {
         let (kind, options) = (usize::from(one[2]), one[3]);
         if kind == 0 {
             // Bytes without a meaning: the options are their number.
             place += usize::from(options);
             continue;
         }
-        let Some(&(code, size)) = Code::EXTRA.get((kind - 1) % 10) else { break };
-        let count = (kind - 1) / 10 + 1;
-        if count > 3 {
-            break;
-        }
+        let Some((code, size, count)) = kind_of(kind) else { break };
         let name = one[4..36].split(|&byte| byte == 0).next().unwrap_or_default();
         let name = String::from_utf8_lossy(name).trim().to_owned();
         let number = |start: usize, k: usize| Code::F64.read(&one[start + 8 * k..]);
@@ -217,6 +268,38 @@ fn extra(mut place: usize, described: &[u8]) -> Vec<Field> {
         }
     }
     fields
+}
+
+/// The type of a description of extra bytes from 1 on, its size in bytes, and how many numbers there are; `None` for one that is
+/// not known.
+fn kind_of(kind: usize) -> Option<(Code, usize, usize)> {
+    let &(code, size) = Code::EXTRA.get((kind - 1) % 10)?;
+    let count = (kind - 1) / 10 + 1;
+    (count <= 3).then_some((code, size, count))
+}
+
+/// The descriptions of extra bytes that are numbers, and how many bytes they describe. Bytes without a meaning are left out, so the
+/// fields lie one after another.
+pub(crate) fn of_numbers(described: &[u8]) -> (Vec<u8>, usize) {
+    let all = described.as_chunks::<DESCRIPTION>().0;
+    let known = all.iter().filter(|one| one[2] > 0);
+    let known: Vec<_> =
+        known.map_while(|one| kind_of(one[2].into()).map(|kind| (one, kind))).collect();
+    let size = known.iter().map(|(_, (_, size, count))| size * count).sum();
+    (known.iter().flat_map(|(one, _)| **one).collect(), size)
+}
+
+/// A description of extra bytes that hold a column, and their number. `kind` is the type that is stated for it; doubles are the
+/// default.
+pub(crate) fn description(name: &str, kind: &str) -> ([u8; DESCRIPTION], usize) {
+    let known = |&(code, _): &(Code, usize)| Field::new("", 0, code).kind == kind;
+    let position = Code::EXTRA.iter().position(known).unwrap_or(Code::EXTRA.len() - 1);
+    let mut one = [0; DESCRIPTION];
+    one[2] = position as u8 + 1;
+    // Names have 32 bytes; one that is cut ends with a whole character.
+    let end = (0..=name.len().min(32)).rev().find(|&end| name.is_char_boundary(end)).unwrap_or(0);
+    one[4..4 + end].copy_from_slice(&name.as_bytes()[..end]);
+    (one, Code::EXTRA[position].1)
 }
 
 #[cfg(test)]

@@ -17,7 +17,7 @@ pub(super) mod lammps_dump;
 #[cfg(feature = "las")]
 pub(super) mod las;
 #[cfg(feature = "las")]
-mod las_fields;
+pub(super) mod las_fields;
 #[cfg(feature = "las")]
 mod laz;
 mod lines;

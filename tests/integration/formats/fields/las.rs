@@ -62,6 +62,31 @@ fn las_with_system(number: u16, content: &[u8]) -> Vec<u8> {
     [head, &record, content, records].concat()
 }
 
+/// A file with a weight and a value for each point in extra bytes, as doubles.
+fn las_with_weights() -> Vec<u8> {
+    const DOUBLE: u8 = 10;
+    let mut record = vec![0; 54];
+    record[2..11].copy_from_slice(b"LASF_Spec");
+    record[18] = 4;
+    for name in ["weight", "value"] {
+        let mut described = vec![0; 192];
+        described[2] = DOUBLE;
+        described[4..4 + name.len()].copy_from_slice(name.as_bytes());
+        record.extend(described);
+    }
+    record[20..22].copy_from_slice(&384u16.to_le_bytes());
+    let offset = u32::from(HEADER) + record.len() as u32;
+    let length = RECORD + 16;
+    let changes: [(usize, &[u8]); 3] =
+        [(96, &offset.to_le_bytes()), (100, &[1]), (105, &length.to_le_bytes())];
+    let whole = las([2, 6], &changes, b"");
+    let (head, records) = whole.split_at(HEADER.into());
+    let numbers = [[0.5f64, 7.5], [1.5, 8.5]].map(|pair| pair.map(f64::to_le_bytes).concat());
+    let records = records.chunks(RECORD.into()).zip(numbers);
+    let records = records.flat_map(|(record, numbers)| [record, &numbers].concat());
+    [head, &record].concat().into_iter().chain(records).collect()
+}
+
 const WITHHELD: u8 = 0x80;
 
 #[test]
@@ -193,6 +218,16 @@ fn each_field_of_the_table() {
                     br#"COMPD_CS["c",PROJCS["p",UNIT["metre",1]],VERT_CS["v",UNIT["foot",0.3048]]]"#
                 ),
                 Fate::Refused(&["metre of x and y and foot of z", "in one unit"])
+            ),
+            row!(
+                "columns `weight` and `value` of extra bytes",
+                "a.las",
+                las_with_weights(),
+                Fate::Read(|path| {
+                    let read = points(path);
+                    assert_eq!(read.weights, Some(vec![0.5, 1.5]));
+                    assert_eq!(read.values, Some(vec![7.5, 8.5]));
+                })
             ),
             row!(
                 "other fields",

@@ -48,15 +48,26 @@ const ITEMS: [&[(u16, u16)]; 11] = [
 pub(in crate::read) struct Claims {
     /// The compressor, and the type and size in bytes of each item.
     pub(in crate::read) compressor: u16,
-    items: Vec<(u16, u16)>,
+    pub(super) items: Vec<(u16, u16)>,
     /// The size of a point in bytes.
-    record: u64,
+    pub(super) record: u64,
     /// The number of points.
-    points: u64,
+    pub(super) points: u64,
     /// The position of the points.
     pub(in crate::read) data: u64,
     /// The size of the file in bytes.
-    length: u64,
+    pub(super) length: u64,
+    /// The chunks of layers, once they have been checked.
+    pub(in crate::read) chunks: Vec<Chunk>,
+}
+
+/// A chunk of layers.
+#[derive(Clone, Copy)]
+pub(in crate::read) struct Chunk {
+    /// Its position in the file.
+    pub start: u64,
+    /// The number of its points.
+    pub points: u64,
 }
 
 impl Claims {
@@ -104,6 +115,7 @@ impl Claims {
                 points: count(header),
                 data,
                 length,
+                chunks: Vec::new(),
             })));
         }
         Ok(Some(Err(Reason::header("is compressed, and has no record that says how"))))
@@ -114,7 +126,7 @@ impl Claims {
     /// # Errors
     /// Errors of the file system, including an early end of the file.
     pub(in crate::read) fn check(
-        &self,
+        &mut self,
         reader: &mut (impl Read + Seek),
     ) -> io::Result<Result<(), Reason>> {
         match self.compressor {
@@ -159,8 +171,8 @@ impl Claims {
     }
 
     /// Checks the chunks of layers. Such a chunk is an uncompressed point, the number of points, the size of each layer, and the
-    /// layers.
-    fn check_layers(&self, reader: &mut (impl Read + Seek)) -> io::Result<Result<(), Reason>> {
+    /// layers. Keeps where they are.
+    fn check_layers(&mut self, reader: &mut (impl Read + Seek)) -> io::Result<Result<(), Reason>> {
         let layers_of = |&(item, bytes): &(u16, u16)| match (item, bytes) {
             POINT_14 => 9,
             RGB_NIR_14 => 2,
@@ -168,8 +180,9 @@ impl Claims {
             _ => 1,
         };
         let layers: u64 = self.items.iter().map(layers_of).sum();
-        let (mut at, mut points, mut chunk) = (self.data + 8, 0, 0);
+        let (mut at, mut points) = (self.data + 8, 0);
         while points < self.points {
+            let start = at;
             reader.seek(SeekFrom::Start(at + self.record))?;
             let count = u32::from_le_bytes(array(reader)?);
             let mut bytes = 0;
@@ -179,11 +192,13 @@ impl Claims {
             at += self.record + 4 + 4 * layers + bytes;
             if count == 0 || at > self.length {
                 return Ok(Err(Reason::claims_more(format!(
-                    "has a chunk ({chunk}) of {count} points in {bytes} bytes, which are not there"
+                    "has a chunk ({}) of {count} points in {bytes} bytes, which are not there",
+                    self.chunks.len()
                 ))));
             }
-            points += u64::from(count);
-            chunk += 1;
+            let count = u64::from(count).min(self.points - points);
+            self.chunks.push(Chunk { start, points: count });
+            points += count;
         }
         Ok(Ok(()))
     }

@@ -4,6 +4,7 @@
 //! data can repeat until the stack is exhausted.
 
 mod claims;
+mod layers;
 mod records;
 mod times;
 

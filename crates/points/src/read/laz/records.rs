@@ -2,11 +2,15 @@
 
 use std::io::{self, Read, Seek, SeekFrom};
 
+use laz::las::{v3, v4};
 use laz::laszip::ChunkTable;
-use laz::record::{RecordDecompressor, SequentialPointRecordDecompressor};
-use laz::{DecompressionSelection, LasZipDecompressor, LasZipError, LazItemType, LazVlr};
+use laz::record::{
+    LayeredPointRecordDecompressor, RecordDecompressor, SequentialPointRecordDecompressor,
+};
+use laz::{DecompressionSelection, LasZipError, LazItemType, LazVlr};
 
-use super::claims::{LAYERED, POINTWISE};
+use super::claims::{Chunk, Claims, LAYERED, POINTWISE};
+use super::layers::WithTimes;
 use super::times::GpsTimes;
 
 /// Decompresses records, one after another.
@@ -22,38 +26,35 @@ enum Kind<R: Read + Seek + Send + Sync + 'static> {
         /// The number of points left in this chunk.
         left: u64,
     },
-    /// Formats 6 to 10: in layers. Fields that are not needed stay 0, including GPS times.
-    Layered(LasZipDecompressor<'static, R>),
+    /// Formats 6 to 10: in chunks of layers. Fields that are not needed stay 0.
+    Layered {
+        description: LazVlr,
+        decompressor: LayeredPointRecordDecompressor<'static, R>,
+        chunks: std::vec::IntoIter<Chunk>,
+        left: u64,
+        whole: bool,
+    },
 }
 
 impl<R: Read + Seek + Send + Sync + 'static> Records<R> {
-    /// Decompresses the points that begin at byte `data`, with the compressor that the file names: of layers those of coordinates,
-    /// intensities, classes and flags, or, with `whole`, all but the times.
+    /// Decompresses the points of a file with these claims: all, or, of layers, those of the chunks that are left there. Of layers
+    /// those of coordinates, returns, intensities, classes and flags, or, with `whole`, all but waveforms.
     ///
     /// # Errors
     /// Errors of the stream, or of the record that describes the compression.
     pub(in crate::read) fn new(
         mut stream: R,
-        data: u64,
-        compressor: u16,
+        claims: &Claims,
         description: LazVlr,
         whole: bool,
     ) -> Result<Self, LasZipError> {
-        stream.seek(SeekFrom::Start(data))?;
-        if compressor == LAYERED {
-            let selection = if whole {
-                DecompressionSelection::all().skip_gps_time().skip_wavepacket()
-            } else {
-                DecompressionSelection::base()
-                    .decompress_z()
-                    .decompress_intensity()
-                    .decompress_classification()
-                    .decompress_flags()
-            };
-            let decompressor = LasZipDecompressor::selective(stream, description, selection)?;
-            return Ok(Self(Kind::Layered(decompressor)));
+        stream.seek(SeekFrom::Start(claims.data))?;
+        if claims.compressor == LAYERED {
+            let decompressor = LayeredPointRecordDecompressor::new(stream);
+            let chunks = claims.chunks.clone().into_iter();
+            return Ok(Self(Kind::Layered { description, decompressor, chunks, left: 0, whole }));
         }
-        let chunks: Box<dyn Iterator<Item = u64> + Send> = if compressor == POINTWISE {
+        let chunks: Box<dyn Iterator<Item = u64> + Send> = if claims.compressor == POINTWISE {
             Box::new(std::iter::once(u64::MAX))
         } else if description.uses_variable_size_chunks() {
             let table = ChunkTable::read_from(&mut stream, &description)?;
@@ -73,7 +74,18 @@ impl<R: Read + Seek + Send + Sync + 'static> Records<R> {
     /// Errors of the stream; `UnexpectedEof` behind the last chunk; `InvalidData` for data that no writer creates.
     pub(in crate::read) fn fill(&mut self, records: &mut [u8]) -> io::Result<()> {
         match &mut self.0 {
-            Kind::Layered(decompressor) => decompressor.decompress_many(records),
+            Kind::Layered { description, decompressor, chunks, left, whole } => {
+                for record in records.chunks_exact_mut(description.items_size() as usize) {
+                    if *left == 0 {
+                        let chunk = chunks.next().ok_or(io::ErrorKind::UnexpectedEof)?;
+                        begin_layers(decompressor, description, chunk.start, *whole)?;
+                        *left = chunk.points;
+                    }
+                    decompressor.decompress_next(record)?;
+                    *left -= 1;
+                }
+                Ok(())
+            }
             Kind::Sequential { description, decompressor, chunks, left } => {
                 for record in records.chunks_exact_mut(description.items_size() as usize) {
                     if *left == 0 {
@@ -108,6 +120,40 @@ fn begin<R: Read>(
     Ok(())
 }
 
+/// Begins the chunk of layers at this place in the file.
+fn begin_layers<R: Read + Seek>(
+    decompressor: &mut LayeredPointRecordDecompressor<'_, R>,
+    description: &LazVlr,
+    start: u64,
+    whole: bool,
+) -> io::Result<()> {
+    decompressor.get_mut().seek(SeekFrom::Start(start))?;
+    decompressor.reset();
+    for item in description.items() {
+        match (item.item_type(), item.version()) {
+            (LazItemType::Point14, 3) if whole => {
+                decompressor.add_field_decompressor(WithTimes::<v3::LasPoint6Decompressor>::new());
+            }
+            (LazItemType::Point14, 4) if whole => {
+                decompressor.add_field_decompressor(WithTimes::<v4::LasPoint6Decompressor>::new());
+            }
+            _ => decompressor
+                .set_fields_from(&vec![*item])
+                .map_err(|error| io::Error::new(io::ErrorKind::InvalidData, error))?,
+        }
+    }
+    decompressor.set_selection(if whole {
+        DecompressionSelection::all().skip_wavepacket()
+    } else {
+        DecompressionSelection::base()
+            .decompress_z()
+            .decompress_intensity()
+            .decompress_classification()
+            .decompress_flags()
+    });
+    Ok(())
+}
+
 fn damaged(what: &str) -> io::Error {
     io::Error::new(io::ErrorKind::InvalidData, what)
 }
@@ -121,44 +167,117 @@ mod tests {
     use super::super::claims::CHUNKED;
     use super::*;
 
-    /// The size in bytes of a point of format 1.
+    /// The size in bytes of a point of format 1, and of one of format 6, and where their times are.
     const BYTES: usize = 28;
+    const LAYERED_BYTES: usize = 30;
 
-    /// Records whose times use all ways of storing them: equal times, steps that are similar, dissimilar, multiples and reversed,
-    /// several sequences that alternate, and times far from all of them.
-    fn records(count: usize) -> Vec<u8> {
-        let mut random = 0x2545_f491_4f6c_dd1d_u64;
-        let mut next = move |bound: u64| {
-            random ^= random << 13;
-            random ^= random >> 7;
-            random ^= random << 17;
-            random % bound
-        };
+    /// Random numbers below a bound.
+    struct Random(u64);
+
+    impl Random {
+        fn next(&mut self, bound: u64) -> u64 {
+            self.0 ^= self.0 << 13;
+            self.0 ^= self.0 >> 7;
+            self.0 ^= self.0 << 17;
+            self.0 % bound
+        }
+    }
+
+    /// Times that use all ways of storing them: equal times, steps that are similar, dissimilar, multiples and reversed, several
+    /// sequences that alternate, and times far from all of them.
+    fn times(count: usize) -> Vec<f64> {
+        let mut random = Random(0x2545_f491_4f6c_dd1d);
         let mut times = [4.1e5_f64, 4.2e5, 4.3e5, 4.4e5, 9.9e8];
         let (mut way, mut of) = (0, 0);
-        let mut records = vec![0; count * BYTES];
-        for (k, record) in records.chunks_exact_mut(BYTES).enumerate() {
-            if k % 97 == 0 {
-                (way, of) = (next(7), next(5) as usize);
+        let next = |k: usize| {
+            if k.is_multiple_of(97) {
+                (way, of) = (random.next(7), random.next(5) as usize);
             }
             let step = match way {
                 0 => 0.0,
                 1 => 1e-6,
-                2 => 1e-6 * next(600) as f64,
-                3 => -1e-6 * next(12) as f64,
-                4 => next(1 << 40) as f64,
-                5 => f64::from_bits(times[of].to_bits() + next(20)) - times[of],
+                2 => 1e-6 * random.next(600) as f64,
+                3 => -1e-6 * random.next(12) as f64,
+                4 => random.next(1 << 40) as f64,
+                5 => f64::from_bits(times[of].to_bits() + random.next(20)) - times[of],
                 _ => {
-                    of = next(5) as usize;
+                    of = random.next(5) as usize;
                     1e-6
                 }
             };
             times[of] += step;
-            record[0] = next(256) as u8;
-            record[12] = next(4) as u8;
-            record[20..].copy_from_slice(&times[of].to_le_bytes());
+            times[of]
+        };
+        (0..count).map(next).collect()
+    }
+
+    fn records(count: usize) -> Vec<u8> {
+        let mut random = Random(7);
+        let mut records = vec![0; count * BYTES];
+        for (record, time) in records.chunks_exact_mut(BYTES).zip(times(count)) {
+            record[0] = random.next(256) as u8;
+            record[12] = random.next(4) as u8;
+            record[20..].copy_from_slice(&time.to_le_bytes());
         }
         records
+    }
+
+    /// Records of format 6 with all numbers of returns, in all channels of the scanner.
+    fn layered(count: usize) -> Vec<u8> {
+        let mut random = Random(11);
+        let mut records = vec![0; count * LAYERED_BYTES];
+        let mut place = [0i32; 2];
+        let mut channel = 0;
+        for (k, (record, time)) in
+            records.chunks_exact_mut(LAYERED_BYTES).zip(times(count)).enumerate()
+        {
+            for (axis, place) in place.iter_mut().enumerate() {
+                let step =
+                    if k.is_multiple_of(50) { random.next(1 << 31) } else { random.next(90) };
+                *place = place.wrapping_add(step as i32);
+                record[4 * axis..4 * axis + 4].copy_from_slice(&place.to_le_bytes());
+            }
+            record[8] = random.next(256) as u8;
+            record[12] = random.next(4) as u8;
+            record[14] = random.next(256) as u8;
+            if k.is_multiple_of(31) {
+                channel = random.next(4) as u8;
+            }
+            record[15] = channel << 4 | random.next(16) as u8;
+            record[16] = random.next(20) as u8;
+            record[20] = random.next(3) as u8;
+            record[22..].copy_from_slice(&time.to_le_bytes());
+        }
+        records
+    }
+
+    fn packed(whole: &[u8], size: usize, description: &LazVlr, ends: &[usize]) -> Cursor<Vec<u8>> {
+        let mut packed = Cursor::new(vec![0; 9]);
+        packed.set_position(9);
+        let mut compressor = LasZipCompressor::new(packed, description.clone()).unwrap();
+        compressor.reserve_offset_to_chunk_table().unwrap();
+        for (k, record) in whole.chunks_exact(size).enumerate() {
+            if ends.contains(&k) {
+                compressor.finish_current_chunk().unwrap();
+            }
+            compressor.compress_one(record).unwrap();
+        }
+        compressor.done().unwrap();
+        let mut packed = compressor.into_inner();
+        packed.set_position(0);
+        packed
+    }
+
+    fn claims(compressor: u16, items: &[(u16, u16)], points: usize, packed: &[u8]) -> Claims {
+        Claims {
+            compressor,
+            items: items.to_vec(),
+            record: items.iter().map(|&(_, bytes)| u64::from(bytes)).sum(),
+            points: points as u64,
+            data: 9,
+            length: packed.len() as u64,
+            chunks: Vec::new(),
+        }
     }
 
     /// The records that the library compresses are decompressed to the same bytes, in chunks of one size and of varying sizes.
@@ -173,25 +292,14 @@ mod tests {
         };
         for variable in [false, true] {
             let builder = LazVlrBuilder::new(items());
-            let description = if variable {
-                builder.with_variable_chunk_size().build()
+            let (description, ends) = if variable {
+                (builder.with_variable_chunk_size().build(), &[5, 6, 80_000][..])
             } else {
-                builder.with_fixed_chunk_size(7_001).build()
+                (builder.with_fixed_chunk_size(7_001).build(), &[][..])
             };
-            let mut packed = Cursor::new(vec![0; 9]);
-            packed.set_position(9);
-            let mut compressor = LasZipCompressor::new(packed, description.clone()).unwrap();
-            compressor.reserve_offset_to_chunk_table().unwrap();
-            for (k, record) in whole.chunks_exact(BYTES).enumerate() {
-                if variable && [5, 6, 80_000].contains(&k) {
-                    compressor.finish_current_chunk().unwrap();
-                }
-                compressor.compress_one(record).unwrap();
-            }
-            compressor.done().unwrap();
-            let mut packed = compressor.into_inner();
-            packed.set_position(0);
-            let mut read = Records::new(packed, 9, CHUNKED, description, false).unwrap();
+            let packed = packed(&whole, BYTES, &description, ends);
+            let claims = claims(CHUNKED, &[], 0, packed.get_ref());
+            let mut read = Records::new(packed, &claims, description, false).unwrap();
             let mut found = vec![0; whole.len()];
             let (begin, rest) = found.split_at_mut(BYTES * 777);
             read.fill(begin).unwrap();
@@ -201,5 +309,34 @@ mod tests {
                 assert!(read.fill(&mut [0; BYTES]).is_err());
             }
         }
+    }
+
+    /// Records in layers are decompressed to the same bytes, with their times; and some of their chunks.
+    #[test]
+    fn layers_are_those_that_were_compressed() {
+        let whole = layered(60_000);
+        let items = LazItemRecordBuilder::new().add_item(LazItemType::Point14).build();
+        let description = LazVlrBuilder::new(items).with_fixed_chunk_size(7_001).build();
+        let packed = packed(&whole, LAYERED_BYTES, &description, &[]);
+        let mut claims = claims(LAYERED, &[(10, 30)], 60_000, packed.get_ref());
+        claims.check(&mut packed.clone()).unwrap().unwrap();
+        assert_eq!(claims.chunks.len(), 9);
+        let mut found = vec![0; whole.len()];
+        let read = |claims: &Claims, whole: bool, room: &mut [u8]| {
+            let records = Records::new(packed.clone(), claims, description.clone(), whole);
+            records.unwrap().fill(room).unwrap();
+        };
+        read(&claims, true, &mut found);
+        let differs = found.chunks(LAYERED_BYTES).zip(whole.chunks(LAYERED_BYTES));
+        assert_eq!(differs.enumerate().find(|(_, (found, whole))| found != whole), None);
+        claims.chunks.retain(|chunk| chunk.points < 7_001);
+        let mut last = vec![0; 60_000 % 7_001 * LAYERED_BYTES];
+        read(&claims, true, &mut last);
+        assert!(whole.ends_with(&last));
+        // Not all layers are needed for places.
+        read(&claims, false, &mut last);
+        assert!(!whole.ends_with(&last));
+        let places = last.chunks(LAYERED_BYTES).zip(whole.chunks(LAYERED_BYTES).skip(8 * 7_001));
+        places.for_each(|(found, whole)| assert_eq!(found[..17], whole[..17]));
     }
 }

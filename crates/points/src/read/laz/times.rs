@@ -1,6 +1,8 @@
-//! GPS times of points in formats 1 and 3 to 5.
+//! GPS times: of points in formats 1 and 3 to 5, where they are a field of their own, and of those in formats 6 to 10, where they
+//! are a layer.
 //!
-//! Source: `LASzip`'s item `GPSTIME11`, version 2 (Isenburg, "`LASzip`: lossless compression of `LiDAR` data", 2013).
+//! Source: `LASzip`'s items `GPSTIME11`, version 2, and `POINT14`, version 3 (Isenburg, "`LASzip`: lossless compression of `LiDAR`
+//! data", 2013).
 
 use std::io::{self, Read};
 
@@ -39,6 +41,8 @@ struct Sequence {
 
 /// A decoder of GPS times. Lasers alternate, so it follows four sequences of times.
 pub(super) struct GpsTimes {
+    /// Whether symbols say that a time is the same. In layers, another one says that it changes, and they lack these symbols.
+    may_stay: bool,
     sequences: [Sequence; 4],
     current: usize,
     newest: usize,
@@ -49,12 +53,25 @@ pub(super) struct GpsTimes {
 
 impl GpsTimes {
     pub(super) fn new() -> Self {
+        Self::with(true, 0)
+    }
+
+    /// Those of a layer, which begins with a time (the bits of a double).
+    pub(super) fn in_layer(first: i64) -> Self {
+        Self::with(false, first)
+    }
+
+    fn with(may_stay: bool, first: i64) -> Self {
+        let mut sequences = [Sequence::default(); 4];
+        sequences[0].time = first;
+        let symbols = |all: u32| ArithmeticModelBuilder::new(all - u32::from(!may_stay)).build();
         Self {
-            sequences: [Sequence::default(); 4],
+            may_stay,
+            sequences,
             current: 0,
             newest: 0,
-            still: ArithmeticModelBuilder::new(STILL_SYMBOLS).build(),
-            steps: ArithmeticModelBuilder::new(STEP_SYMBOLS).build(),
+            still: symbols(STILL_SYMBOLS),
+            steps: symbols(STEP_SYMBOLS),
             differences: IntegerDecompressorBuilder::new().bits(32).contexts(9).build_initialized(),
         }
     }
@@ -64,10 +81,13 @@ impl GpsTimes {
     /// # Errors
     /// Errors of the stream; `InvalidData` if the sequence changes more often than there are sequences, as a writer changes it at
     /// most once.
-    fn next<R: Read>(&mut self, decoder: &mut ArithmeticDecoder<R>) -> io::Result<i64> {
+    pub(super) fn next<R: Read>(&mut self, decoder: &mut ArithmeticDecoder<R>) -> io::Result<i64> {
+        // The numbers of symbols from this one on are one less where there is none for the same time.
+        let lacks = !self.may_stay;
+        let symbol = |read: u32, same: u32| read + u32::from(lacks && read >= same);
         for _ in 0..=self.sequences.len() {
             let change = if self.sequences[self.current].step == 0 {
-                match decoder.decode_symbol(&mut self.still)? {
+                match symbol(decoder.decode_symbol(&mut self.still)?, STILL) {
                     STILL => 0,
                     STEP => {
                         let step = self.differences.decompress(decoder, 0, 0)?;
@@ -82,7 +102,7 @@ impl GpsTimes {
                     symbol => symbol - WHOLE,
                 }
             } else {
-                match decoder.decode_symbol(&mut self.steps)? {
+                match symbol(decoder.decode_symbol(&mut self.steps)?, SAME) {
                     symbol @ ..SAME => {
                         self.step(decoder, symbol)?;
                         0

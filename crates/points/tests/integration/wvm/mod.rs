@@ -19,7 +19,7 @@ use crate::Told;
 fn written(points: &WeightedPoints, facts: &ModelMetadata, packing: Packing) -> Vec<u8> {
     let mut bytes = Vec::new();
     let writer = PointWriter::of("m.wvm").unwrap();
-    writer.write_model(points, facts, &packing, &mut bytes).unwrap();
+    writer.write_model(points, &[], facts, &packing, &mut bytes).unwrap();
     bytes
 }
 
