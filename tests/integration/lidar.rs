@@ -181,7 +181,9 @@ fn scans_are_written_as_they_are_read() {
     let facts = |name: &str| {
         let mut made = told(f, &["info", name]);
         let object = made.as_object_mut().unwrap();
-        ["input", "bytes", "compressed", "seconds"].map(|of_file| object.remove(of_file));
+        for of_file in ["input", "bytes", "compressed", "seconds"] {
+            object.remove(of_file);
+        }
         made
     };
     for name in ["a.las", "b.laz"] {
@@ -382,14 +384,7 @@ fn copc(path: &Path) -> usize {
 fn too_many_points_are_refused_with_the_figure() {
     let folder = tempfile::tempdir().unwrap();
     let f = folder.path();
-    ok(f, &["points", "sample:tile", "-o", "tile.laz"]);
-    let mut bytes = fs::read(f.join("tile.laz")).unwrap();
-    // Points in one stream can be any number; of those in layers each chunk is checked.
-    bytes[247..255].copy_from_slice(&(1u64 << 50).to_le_bytes());
-    fs::write(f.join("tile.laz"), bytes).unwrap();
-    fails(f, 1, "points tile.laz", &["chunk"]);
-    let header = las::Builder::from((1, 2));
-    let mut header = header;
+    let mut header = las::Builder::from((1, 2));
     header.point_format.is_compressed = true;
     let mut writer =
         las::Writer::from_path(f.join("old.laz"), header.into_header().unwrap()).unwrap();

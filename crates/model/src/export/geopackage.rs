@@ -185,12 +185,15 @@ impl Geometry {
     }
 }
 
+/// A feature: its geometry, if it has one, and its properties by name.
+type Row = (Option<Geometry>, Vec<(String, Value)>);
+
 /// A table of features.
 struct Layer {
     name: &'static str,
     kind: Kind,
     has_z: bool,
-    rows: Vec<(Option<Geometry>, Vec<(String, Value)>)>,
+    rows: Vec<Row>,
 }
 
 impl Layer {
@@ -264,7 +267,7 @@ impl Layer {
 }
 
 /// The type of a column with these values.
-fn type_of<'a>(values: &mut dyn Iterator<Item = &'a Value>) -> &'static str {
+fn type_of(values: &mut dyn Iterator<Item = &Value>) -> &'static str {
     let known = values.filter(|value| !value.is_null());
     let kinds: Vec<_> = known.map(|value| (value.is_i64(), value.is_number())).collect();
     match &kinds[..] {

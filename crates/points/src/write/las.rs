@@ -244,7 +244,7 @@ fn packed(
     }
     if let most @ 1e-300.. = moved.into_iter().fold(0.0, f64::max) {
         tracing::warn!(
-            "coordinates are stored as multiples of {}, which moves points by {most:.2} at most",
+            "coordinates are stored as multiples of {}, which moves points by {most:.1e} at most",
             axes.map(|axis| axis.scale.to_string()).join(", ")
         );
     }
