@@ -71,8 +71,11 @@ function goHome(isHome) {
 
 function fail(error) {
   busy(null);
-  // An input that cannot be read has no options but those that may help.
-  if (state.facts === null) offer(null, Object.keys(READING).filter((id) => error.next?.includes(`“${id}”`)));
+  // An input that cannot be read has no picture, and no options but those that may help.
+  if (state.facts === null) {
+    for (const id of ["shape", "alpha-row", "cut-row"]) byId(id).hidden = true;
+    offer(null, Object.keys(READING).filter((id) => error.next?.includes(`“${id}”`)));
+  }
   if (error instanceof Cancelled) {
     const again = element("button", { type: "button", textContent: "Compute again", onclick: () => task("Computing …", compute) });
     byId("status").replaceChildren("Cancelled. ", ...(state.input === null ? [] : [again]));
@@ -257,7 +260,7 @@ async function open() {
   }
 }
 
-// The options that suit an input: a CT's bone, or the defaults.
+// The options that suit an input: a CT's bone, a molecule's balls, or the defaults.
 function suit(facts) {
   const isVolume = facts.kind === "volume";
   const names = isVolume ? ["", ...OF_VOLUMES] : ["", ...OF_POINTS];
@@ -269,7 +272,8 @@ function suit(facts) {
   const weights = [["", isVolume || !facts.weights ? "none" : "of the file"], ["common=0", "none"], ["min-max", "min-max (4.1)"], ["barycentric", "barycentric (4.2)"], ["barycentric-n", "barycentric, times N"]];
   const offered = isVolume || !facts.weights ? weights.filter(([name]) => name !== "common=0") : weights;
   byId("weights").replaceChildren(...offered.map(([value, textContent]) => element("option", { value, textContent })));
-  apply(facts.hounsfield ? "ct-bone" : "");
+  // Atoms are balls of their radii.
+  apply(facts.hounsfield ? "ct-bone" : facts.atoms && facts.weights ? "molecule" : "");
 }
 
 // Fills the form with a preset.

@@ -347,7 +347,9 @@ export class ShapeScene {
   }
 
   show(name, visible) {
+    const isOther = this.parts[name].visible !== visible;
     this.parts[name].visible = visible;
+    if (name === "balls" && isOther && !this.turned) this.home();
     if (this.classes) this.refill();
     this.draw();
   }
@@ -618,6 +620,11 @@ export class ShapeScene {
     });
   }
 
+  // The radius of the largest ball that is drawn.
+  largestBall() {
+    return this.parts.balls.visible ? Math.sqrt(Math.max(0, this.alpha + this.weightRange[1])) || 0 : 0;
+  }
+
   // From how far all of it is just seen, as the height of the picture allows and as its width does, and the place to look at: for
   // a few thousand of the points.
   fit(width, height) {
@@ -639,7 +646,9 @@ export class ShapeScene {
         least = Math.min(least, along - depth);
         most = Math.max(most, along + depth);
       }
-      one.distance = (most - least) / 2 / one.tangent;
+      // Balls reach beyond their centres, seen from aside.
+      const beyond = this.largestBall() * Math.hypot(1, one.tangent);
+      one.distance = ((most - least) / 2 + beyond) / one.tangent;
       middle.addScaledVector(one.axis, (most + least) / 2);
     }
     return { upright: axes[0].distance, across: axes[1].distance, middle };

@@ -106,6 +106,9 @@ export class ShapePanel {
     for (const name of ["points", "balls", "hidden", "original", "box"]) scene.show(name, byId(`show-${name}`).checked);
     this.showSingular();
     scene.setShape(made, made.reference);
+    if (!keep) scene.home();
+    // The numbers follow when α rests.
+    if (!keep) byId("summary").textContent = "";
     this.legend();
     this.tellAlpha(made.reference);
     document.body.dataset.looked = made.positions.length / 3;
@@ -224,7 +227,7 @@ export class ShapePanel {
     document.body.dataset.cells = level.cells;
     const shown = (level.voids ?? []).slice(0, VOIDS).map((hole, row) => {
       const [low, high] = [hole.low, hole.high].map((corner) => corner.map((x, k) => x - centre[k]));
-      const text = `${measured(hole.volume, unit, 3)}, filled by a ball of radius ${brief(Math.sqrt(Math.max(0, hole.filling_alpha)))} ${unit}`;
+      const text = `${measured(hole.volume, unit, 3)}, filled from radius ${brief(Math.sqrt(Math.max(0, hole.filling_alpha)))} ${unit}`;
       const item = element("button", { type: "button", textContent: text });
       item.title = `${hole.volume} ${unit}³, ${hole.cells} cells, filled at α = ${hole.filling_alpha}. A click zooms to it.`;
       item.onpointerenter = item.onfocus = () => this.light(item, row, low, high);

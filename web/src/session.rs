@@ -511,6 +511,7 @@ fn describe_points(points: &Points, metadata: &ModelMetadata) -> Answer {
         "low": low,
         "high": high,
         "weights": points.weights.is_some(),
+        "atoms": points.molecule.is_some(),
         "values": points.values.is_some(),
         "unit": metadata.coordinates.unit.symbol(),
     });
