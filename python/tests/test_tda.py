@@ -9,7 +9,7 @@ base = pytest.importorskip("sklearn.base")
 tda = pytest.importorskip("walpha.tda")
 AlphaPersistence, BettiCurve = tda.AlphaPersistence, tda.BettiCurve
 PersistenceImage, PersistenceLandscape = tda.PersistenceImage, tda.PersistenceLandscape
-FEATURES = [PersistenceImage(7), PersistenceLandscape(3, resolution=11), BettiCurve(resolution=9)]
+FEATURES = [PersistenceImage(7, power=0), PersistenceLandscape(3, resolution=11), BettiCurve(resolution=9)]
 BOX = [[1, 0, 0], [0.3, 1, 0], [0, 0, 1]]
 
 
@@ -120,8 +120,9 @@ def test_features_are_tables(diagrams, transformer):
     table = fitted.set_output(transform="pandas").transform(diagrams)
     assert isinstance(table, pandas.DataFrame) and table.columns.tolist() == names.tolist() and np.array_equal(table, rows)
     # What fills diagrams, and the order of intervals, change nothing.
-    filled = np.concatenate([diagrams[:, ::-1], np.tile([[0.5, 0.5, 1]], (3, 4, 1))], axis=1)
+    filled = np.concatenate([diagrams[:, ::-1], np.tile([[-1, -1, 1]], (3, 4, 1))], axis=1)
     assert np.allclose(fitted.transform(filled), rows, rtol=1e-12)
+    assert np.allclose(base.clone(transformer).fit(filled).transform(diagrams), rows, rtol=1e-12)
     # Fewer intervals than layers, none, and a dimension that was not there.
     assert fitted.transform(np.zeros((2, 0, 3))).shape == (2, rows.shape[1])
     assert not np.asarray(fitted.transform([[[0, 1, 7]]])).any()

@@ -5,9 +5,9 @@ with, and has its derivatives (:meth:`walpha.Filtration.derivatives`). All is co
 the tensors are, and given back as they are; gradients need float64 tensors to be as precise.
 
 Functions are continuous, and differentiable but where the choice of the simplex changes: where points coincide, where a point
-lies on the smallest sphere of a simplex, as cospherical points do, or where two simplices that may give a value have equal ones. There the gradient is
-that of one choice, the same on any number of threads. What a diagram has no rows for, as intervals that last no time, has no
-gradient. Second derivatives are not there.
+lies on the smallest sphere of a simplex, as cospherical points do, or where two simplices that may give a value have equal ones.
+There the gradient is that of one choice, the same on any number of threads. What a diagram has no rows for, as intervals that
+last no time, has no gradient. Second derivatives are not there.
 
 Examples
 --------
