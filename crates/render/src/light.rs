@@ -327,6 +327,10 @@ impl DepthMap {
         *texel = texel.max(height as f32);
     }
 
+    #[expect(
+        clippy::needless_bitwise_bool,
+        reason = "several texels are done at a time where there is no branch"
+    )]
     fn draw_triangle(&mut self, [a, b, c]: [V3; 3]) {
         // Most triangles of a large mesh lie between the centres of texels.
         let (x0, x1) = texels(a[0].min(b[0]).min(c[0]), a[0].max(b[0]).max(c[0]));
@@ -344,7 +348,6 @@ impl DepthMap {
             let py = y as f64 + 0.5 - a[1];
             let (sy, ty) = (py * ac[0], py * ab[0]);
             let row = &mut self.heights[y * Self::SIDE..][x0..x1];
-            // Without a branch, so that several texels are done at a time.
             for (x, texel) in (x0 as i32..).zip(row) {
                 let px = f64::from(x) + 0.5 - a[0];
                 let s = (px * ac[1] - sy) * inverse;
