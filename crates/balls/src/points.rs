@@ -15,6 +15,7 @@ use crate::simplex::Ball;
 ///
 /// # Errors
 /// A point without a ball: its squared radius α + ω is negative.
+#[expect(clippy::missing_panics_doc, reason = "there is a weight for each point")]
 pub fn with_probe(
     points: WeightedPoints,
     alpha: Alpha,

@@ -41,11 +41,10 @@ impl Inline {
     /// The protocol to show a picture by, or `None` to show none. `is_free` says whether nothing else is written.
     pub(crate) fn protocol(self, is_free: bool) -> Option<Protocol> {
         match self {
-            Self::Never => None,
             Self::Auto if is_free && io::stdout().is_terminal() => {
                 Protocol::of(|name| env::var(name).ok())
             }
-            Self::Auto => None,
+            Self::Auto | Self::Never => None,
             Self::Kitty => Some(Protocol::Kitty),
             Self::Iterm2 => Some(Protocol::Iterm2),
             Self::Sixel => Some(Protocol::Sixel),
