@@ -57,12 +57,12 @@ impl Cloud {
 #[error("cloud {cloud}: {error}")]
 struct InCloud {
     cloud: usize,
-    error: PipelineError,
+    error: Box<PipelineError>,
 }
 
 impl Advise for InCloud {
     fn wrapped(&self) -> Option<&dyn Advise> {
-        Some(&self.error)
+        Some(&*self.error)
     }
 }
 
@@ -78,7 +78,7 @@ fn each<T: Send + 'static>(
     let points = clouds.iter().map(|cloud| cloud.positions.len()).sum();
     run(py, &task.of(points), move || {
         let monitor = &*Monitor::current();
-        let in_cloud = |cloud| move |error| InCloud { cloud, error };
+        let in_cloud = |cloud| move |error: PipelineError| InCloud { cloud, error: error.into() };
         monitor.stage(stage.name()).map_err(PipelineError::from).map_err(in_cloud(0))?;
         let units = monitor.units(clouds.len() as u64);
         let one = |cloud: Cloud| {

@@ -515,6 +515,9 @@ fn pictures_are_shown_in_terminals() {
     let is_near = |(a, b): (&[u8; 3], &image::Rgb<u8>)| (0..3).all(|k| a[k].abs_diff(b.0[k]) < 16);
     let near = pixels.iter().zip(expected.pixels()).filter(|&pair| is_near(pair)).count();
     assert!(near > 8 * 680 * 99, "{near} of 544000 pixels");
-    let [_, why, next] = complaint(f, 2, "shape sample:phantom@16 --picture kitty --json");
-    assert!(why.contains("standard output") && next == "omit it", "{why} {next}");
+    let (code, report, _) = run(f, &[&shape[..], &["--picture", "kitty", "--json"]].concat());
+    let error: serde_json::Value = serde_json::from_str(&report).unwrap();
+    let error = &error["error"];
+    assert!(code == 2 && error["why"].as_str().unwrap().contains("standard output"), "{error}");
+    assert_eq!(error["next"], "omit it");
 }

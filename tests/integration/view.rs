@@ -147,7 +147,7 @@ fn the_page_holds_every_level() {
         page.levels().iter().flat_map(|level| level["voids"].as_array().unwrap()).collect();
     let (counts, corners) = (page.u32("voidCounts"), page.u32("voidFacets"));
     assert_eq!((counts.len(), whole.content["space"].as_str()), (voids.len(), Some("unknown")));
-    assert!(voids.len() > 3);
+    assert!(voids.len() > 1);
     let positions = page.f32("positions");
     let place = |v: &u32| [0, 1, 2].map(|k| f64::from(positions[3 * *v as usize + k]));
     let mut rest = &corners[..];

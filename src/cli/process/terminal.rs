@@ -16,7 +16,7 @@ pub(crate) enum Inline {
     Auto,
     /// Not at all.
     Never,
-    /// By the protocol of kitty, which Ghostty, `WezTerm` and Konsole have, too.
+    /// By the protocol of kitty, which Ghostty, Konsole and others have, too.
     Kitty,
     /// By that of iTerm2, which mintty has, too.
     Iterm2,

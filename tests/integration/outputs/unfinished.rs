@@ -126,7 +126,7 @@ fn a_lack_of_memory_leaves_nothing() {
     ];
     let mut failed = 0;
     for args in cases {
-        for megabytes in [50, 80, 110, 140, 200, 300] {
+        for megabytes in [60, 80, 110, 140, 200, 300] {
             let output = limited(folder.path(), Resource::RLIMIT_AS, megabytes << 20, args);
             let said = String::from_utf8_lossy(&output.stderr);
             let code = output.status.code();

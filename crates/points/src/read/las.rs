@@ -56,7 +56,7 @@ pub(crate) fn read(
     }
     let mut taken = Taken::new(&source.header, options, cubes);
     if options.classes.is_none() && options.region.is_none() && options.thin.is_none() {
-        taken.reserve(path, source.count())?;
+        taken.reserve(path, source.count().min(source.most()))?;
     }
     let whole = options.describe || !taken.kept.is_empty();
     source.each(whole, |record| taken.take(path, record))?;
@@ -125,6 +125,11 @@ impl<'a> Source<'a> {
             }
             _ => self.claimed,
         }
+    }
+
+    /// The number of points for which room may be made at once: compressed points may take less than a byte, and their number may be damaged.
+    fn most(&self) -> u64 {
+        self.claims.as_ref().map_or(u64::MAX, |claims| claims.length.saturating_mul(16))
     }
 
     /// Leaves out the chunks whose cells of a COPC octree are outside a region. An index that is damaged is of no use.

@@ -56,7 +56,7 @@ pub(in crate::read) struct Claims {
     /// The position of the points.
     pub(in crate::read) data: u64,
     /// The size of the file in bytes.
-    pub(super) length: u64,
+    pub(in crate::read) length: u64,
     /// The chunks of layers, once they have been checked.
     pub(in crate::read) chunks: Vec<Chunk>,
 }
