@@ -56,7 +56,9 @@ function busy(text) {
 // What is there to open, over the picture or without one.
 function arrange() {
   const isEmpty = !panel.made;
-  byId("drop").hidden = working || !(state.isHome || (isEmpty && byId("failure").hidden));
+  // After an input that cannot be read, there is another to choose; after options that cannot be, there are these to mend.
+  const isFree = isEmpty && (byId("failure").hidden || state.facts === null);
+  byId("drop").hidden = working || !(state.isHome || isFree);
   byId("open").hidden = isEmpty && !byId("drop").hidden;
   byId("open").ariaExpanded = !byId("drop").hidden;
   byId("open").disabled = working;
