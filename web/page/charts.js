@@ -165,7 +165,7 @@ export class StopScale {
 const tick = (alpha) => (alpha >= 0 ? (Number.isFinite(alpha) ? brief(Number(Math.sqrt(alpha).toPrecision(2))) : "∞") : "0");
 
 // The place of a chart's axes: pixels at its left and below it.
-const [LEFT, BELOW] = [38, 34];
+const [LEFT, BELOW] = [48, 34];
 
 // Components, tunnels and voids over α, which is told as the radius of the ball.
 export class Curve extends Chart {

@@ -56,7 +56,9 @@ function busy(text) {
 // What is there to open, over the picture or without one.
 function arrange() {
   const isEmpty = !panel.made;
-  byId("drop").hidden = working || !(state.isHome || (isEmpty && byId("failure").hidden));
+  // Without an input, or after one that cannot be read, there is one to choose; otherwise there are options to mend, or to try again.
+  const isFree = isEmpty && (state.facts === null || state.facts.kind === "series");
+  byId("drop").hidden = working || !(state.isHome || isFree);
   byId("open").hidden = isEmpty && !byId("drop").hidden;
   byId("open").ariaExpanded = !byId("drop").hidden;
   byId("open").disabled = working;
