@@ -60,14 +60,14 @@ def compare(walpha, path, folder):
     crs = tile.header.parse_crs()
     if crs is not None:
         code = crs.sub_crs_list[0].to_epsg() if crs.sub_crs_list else crs.to_epsg()
-        assert told["crs"]["epsg"] == code, (path, told["crs"], code)
+        assert (told["crs"] or {}).get("epsg") == code, (path, told["crs"], code)
     names = set(tile.point_format.dimension_names) - SKIPPED
     compared = 0
     for name in sorted(names & set(told["columns"])):
         expected = np.asarray(tile[name], dtype=float)
         if expected.ndim == 1:
             column = told["columns"][name]
-            there = expected[expected != -1] if name == "treeID" else expected
+            there = with_a_number(expected) if name == "treeID" else expected
             assert np.isclose([column["min"], column["max"]], [there.min(), there.max()], atol=1e-9).all(), (path, name, column)
             compared += 1
     written_again(walpha, path, tile, folder)
@@ -76,10 +76,10 @@ def compare(walpha, path, folder):
     made = run(walpha, "shape", path, "--withheld", "--by", by, "-o", table, outlines, package)
     rows = pandas.read_csv(table)
     expected = np.asarray(tile[by], dtype=float)
-    expected = expected[expected != -1] if by == "treeID" else expected
+    expected = with_a_number(expected) if by == "treeID" else expected
     assert dict(zip(rows[by], rows.points)) == {k: (expected == k).sum() for k in np.unique(expected)}, path
     in_place = geopandas.read_file(package)
-    assert list(in_place[by]) == list(rows[by]) and np.allclose(in_place.area, rows.outline_area), path
+    assert list(in_place[by]) == list(rows[by]) and np.allclose(in_place.area.fillna(0), rows.outline_area), path
     low, high = np.array(in_place.total_bounds).reshape(2, 2)
     assert (low >= tile.xyz.min(0)[:2]).all() and (high <= tile.xyz.max(0)[:2]).all(), path
     if told["crs"] and told["crs"]["epsg"]:
@@ -95,17 +95,25 @@ def compare(walpha, path, folder):
     print(f"{path.name}: {compared} columns, {len(rows)} shapes by {by}, {made['volume']:.6g} {told['unit']}³")
 
 
+def with_a_number(trees):
+    """Without the points of no tree: ours have −1, and lidR's the greatest double."""
+    return trees[(trees != -1) & (trees != np.finfo(float).max)]
+
+
 def written_again(walpha, path, tile, folder):
     """Compares what walpha writes of a tile, as LAS and LAZ, with the tile: the header, records and all dimensions."""
     for suffix in ["las", "laz"]:
         out = folder / f"again.{suffix}"
         run(walpha, "points", path, "--withheld", "-o", out)
         again = laspy.read(out)
-        assert (again.header.version, again.point_format.id) == (tile.header.version, tile.point_format.id), path
+        assert again.point_format.id == tile.point_format.id, path
+        # The header of earlier versions has no room for a sixth return.
+        assert again.header.version == ("1.4" if tile.return_number.max() > 5 else tile.header.version), path
         assert (again.header.scales == tile.header.scales).all() and (again.header.offsets == tile.header.offsets).all(), path
         assert again.header.global_encoding.gps_time_type == tile.header.global_encoding.gps_time_type, path
         assert again.header.are_points_compressed == (suffix == "laz"), path
-        assert np.allclose(again.header.mins, tile.xyz.min(0)) and np.allclose(again.header.maxs, tile.xyz.max(0)), path
+        step = 1.5 * tile.header.scales
+        assert (abs(again.header.mins - tile.xyz.min(0)) < step).all() and (abs(again.header.maxs - tile.xyz.max(0)) < step).all(), path
         crs, before = again.header.parse_crs(), tile.header.parse_crs()
         assert crs == before, (path, crs, before)
         for dimension in tile.point_format.dimensions:

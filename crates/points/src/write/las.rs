@@ -177,8 +177,12 @@ fn layout(
             format.extra_bytes += size as u16;
         }
     }
-    if !builder.version.supports_point_format(*format) {
-        builder.version = Version::new(1, 4);
+    // Before 1.4 the header counts points by five returns only, and the library refuses, with a panic, points of others.
+    let returns = sources.iter().find(|source| is_same(source.name, RETURNS[0]));
+    let beyond = returns.is_some_and(|source| source.numbers.iter().any(|&number| number > 5.0));
+    let version = Version::new(1, 4);
+    if !builder.version.supports_point_format(*format) || beyond && builder.version < version {
+        builder.version = version;
     }
     let mut free: Vec<usize> = (0..sources.len()).collect();
     let mut take = |field: &Field| {
