@@ -84,9 +84,10 @@ fn moved_to_first(all: &[[f64; 3]]) -> Option<Vec<[f64; 3]>> {
 /// # Errors
 /// [`SitesError::Flat`].
 pub fn check_span(sites: &Sites<'_>) -> Result<(), SitesError> {
-    let copies = sites.torus().zip(sites.positions().first()).map(|(torus, &place)| {
-        [[1, 0, 0], [0, 1, 0], [0, 0, 1]].map(|by| torus.moved(place, by))
-    });
+    let copies = sites
+        .torus()
+        .zip(sites.positions().first())
+        .map(|(torus, &place)| [[1, 0, 0], [0, 1, 0], [0, 0, 1]].map(|by| torus.moved(place, by)));
     match spanning_of(sites.positions().iter().chain(copies.as_slice().as_flattened())).len() {
         4 => Ok(()),
         count => Err(SitesError::flat(sites.positions().len(), count as i32 - 1)),

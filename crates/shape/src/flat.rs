@@ -81,9 +81,10 @@ pub(super) fn flat_on_torus(
     if let Some(long) = long {
         return Err(too_long(torus, long));
     }
-    let covers = complex.facets.iter().all(|(row, class)| {
-        class != Class::Exterior || !row.iter().any(|&v| own(v))
-    });
+    let covers = complex
+        .facets
+        .iter()
+        .all(|(row, class)| class != Class::Exterior || !row.iter().any(|&v| own(v)));
     let is_sheet = covers && torus.dimension() == 2 && complex.facets.len() > 0;
     let complex = Complex {
         cells: Simplices::default(),
@@ -92,7 +93,8 @@ pub(super) fn flat_on_torus(
         vertices: of_box(&complex.vertices, &block, |_| true),
     };
     let b2 = u64::from(is_sheet);
-    let betti = Betti::with_euler(components(&complex), b2, Some(0), complex.euler_characteristic());
+    let betti =
+        Betti::with_euler(components(&complex), b2, Some(0), complex.euler_characteristic());
     Ok(FlatShape { complex, betti })
 }
 
@@ -103,7 +105,8 @@ fn of_box<const N: usize>(
     is_listed: impl Fn(Class) -> bool,
 ) -> Simplices<N> {
     let input = |v: &u32| block.input[*v as usize];
-    let in_box = |row: &[u32; N]| row.iter().min_by_key(|v| input(v)).is_some_and(|&v| v < block.own);
+    let in_box =
+        |row: &[u32; N]| row.iter().min_by_key(|v| input(v)).is_some_and(|&v| v < block.own);
     let mut rows: Vec<([u32; N], Class)> = simplices
         .iter()
         .filter(|&(row, class)| is_listed(class) && in_box(row))
