@@ -31,10 +31,8 @@ enum Written {
 /// The names of directions, one for each vector.
 const DIRECTIONS: [char; 3] = ['x', 'y', 'z'];
 
-/// The vectors along which points repeat, by the names of directions: x, y and z stand for the first, the second and the third vector.
-///
-/// # Errors
-/// Another character, a direction twice, or none.
+/// The vectors along which points repeat, by the names of directions: x, y and z stand for the first, the second and the third vector. `None` for another
+/// character, a direction twice, or none.
 pub(crate) fn directions(text: &str) -> Option<[bool; 3]> {
     let mut repeats = [false; 3];
     for name in text.chars() {

@@ -317,6 +317,25 @@ pub fn places(text: &str) -> Result<walpha_points::Region, SettingError> {
 mod tests {
     use super::*;
 
+    /// Directions follow numbers, or stand for the cell that the file states.
+    #[test]
+    fn boxes_repeat_in_the_directions_named() {
+        let given = |text: &str| periodic(text).unwrap().given().unwrap();
+        assert_eq!(given("4,5,6").repeats(), [true; 3]);
+        let slab = given("4,5,6:xz");
+        assert_eq!(slab.sides(), Some([4.0, 0.0, 6.0]));
+        assert_eq!(given("4,4,6,90,90,120:xy").repeats(), [true, true, false]);
+        assert_eq!(given("0,2,2,1,0,0,0,0,0:x").vectors()[0], [0.0, 2.0, 2.0]);
+        assert_eq!(periodic("yx").unwrap(), PeriodicBox::StatedAlong([true, true, false]));
+        for text in ["4,5,6:", "4,5,6:xx", "4,5,6:ab", "4,5,0", "4,5,0:xz", "xxy", "cell:xy", ""] {
+            assert!(periodic(text).is_err(), "{text}");
+        }
+        for recipe in [r#""xy""#, "[4.0,0.0,6.0]", r#""cell""#] {
+            let read: PeriodicBox = serde_json::from_str(recipe).unwrap();
+            assert_eq!(serde_json::to_string(&read).unwrap(), recipe);
+        }
+    }
+
     #[test]
     fn both_kinds_of_ranges_are_read() {
         let region = samples("20:40, : ,10:").unwrap();

@@ -44,10 +44,12 @@ fn slabs_and_rods_are_certified() {
                     assert_eq!(certificate.verdict, Verdict::Exact);
                     if alpha == f64::INFINITY && !placed.complex.cells.is_empty() {
                         whole += 1;
-                        placed.complex.cells = placed.complex.cells.iter().skip(1).map(|(r, c)| (*r, c)).collect();
+                        placed.complex.cells =
+                            placed.complex.cells.iter().skip(1).map(|(r, c)| (*r, c)).collect();
                         let (found, _) = placed.findings().unwrap();
                         wrong += usize::from(!found.is_empty());
-                        let is_volume = |finding: &Finding| matches!(finding, Finding::Volume { .. });
+                        let is_volume =
+                            |finding: &Finding| matches!(finding, Finding::Volume { .. });
                         assert!(found.iter().any(is_volume) || found.len() > 1, "{found:?}");
                     }
                 }
