@@ -61,6 +61,7 @@ def alpha_shape(
         points are those of a torus, moved into the box (:attr:`AlphaShape.points`). Vectors are reduced
         (:attr:`AlphaShape.periodic`). A row of input indices means the copies nearest to its first vertex,
         along each vector; where an edge spans half of the box, rows name copies instead (:attr:`AlphaShape.copies`).
+        Points do not repeat along sides or vectors that are 0, as in ``atoms.cell[:] * atoms.pbc[:, None]`` of ASE.
         ``betti.b3`` is 1 where the shape is the whole torus.
     progress : callable or True, optional
         ``progress(stage, done, total)``, called in this thread, at most 20 times a second: so many

@@ -255,9 +255,9 @@ impl<'a> BallUnion<'a> {
         self.complex.euler_characteristic() / copies
     }
 
-    /// On a torus, the part of the box that the balls fill.
+    /// In a periodic box that repeats along all three vectors, the part of it that the balls fill.
     pub fn box_fraction(&self) -> Option<Bounded> {
-        let torus = self.shape.options().periodic?;
+        let torus = self.shape.options().periodic.filter(|torus| torus.dimension() == 3)?;
         let [a, b, c] = torus.vectors();
         let signed = Single::triple(Single::cross(a, b), c);
         let volume = if signed.value < 0.0 { -signed } else { signed };

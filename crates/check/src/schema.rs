@@ -97,7 +97,7 @@ impl TryFrom<ComplexFile> for PlacedComplex {
             return Err(SchemaError::Value {
                 name: "periodic",
                 value: format!("{vectors:?}"),
-                expected: "positive sides, or vectors that span a volume",
+                expected: "positive sides or independent vectors, and 0 where points do not repeat",
             });
         }
         let lowest = lowest_listed(&file);

@@ -79,12 +79,16 @@ fn moved_to_first(all: &[[f64; 3]]) -> Option<Vec<[f64; 3]>> {
     (largest(&near) < largest(all)).then_some(near)
 }
 
-/// Checks that sites span a volume. O(n) if they do not, usually less if they do.
+/// Checks that sites, on a torus with their copies, span a volume. O(n) if they do not, usually less if they do.
 ///
 /// # Errors
 /// [`SitesError::Flat`].
 pub fn check_span(sites: &Sites<'_>) -> Result<(), SitesError> {
-    match spanning(sites.positions()).len() {
+    let copies = sites
+        .torus()
+        .zip(sites.positions().first())
+        .map(|(torus, &place)| [[1, 0, 0], [0, 1, 0], [0, 0, 1]].map(|by| torus.moved(place, by)));
+    match spanning_of(sites.positions().iter().chain(copies.as_slice().as_flattened())).len() {
         4 => Ok(()),
         count => Err(SitesError::flat(sites.positions().len(), count as i32 - 1)),
     }
@@ -93,6 +97,10 @@ pub fn check_span(sites: &Sites<'_>) -> Result<(), SitesError> {
 /// At most four of the positions, affinely independent, with the same affine hull as all: four if they span a volume, three in a
 /// plane, two on a line. Exact. O(n) if they span no volume, usually less if they do.
 pub fn spanning(all: &[[f64; 3]]) -> Vec<[f64; 3]> {
+    spanning_of(all.iter())
+}
+
+fn spanning_of<'a>(all: impl Iterator<Item = &'a [f64; 3]>) -> Vec<[f64; 3]> {
     let mut spanning = Vec::new();
     for &position in all {
         if spanning.len() == 4 {

@@ -1,12 +1,14 @@
-//! Periodic boxes: sets of points that repeat along three vectors.
+//! Periodic boxes: sets of points that repeat along three vectors, or along one or two.
 
 use std::cmp::Ordering;
 
 use dashu_int::IBig;
 use dashu_int::ops::DivEuclid;
+use rayon::prelude::*;
 use walpha_base::advice::{Advice, Advise, Setting, advice};
 
-use crate::number::{cross, dot, integer, lowest_bit};
+use crate::internals::parallel::Coarse;
+use crate::number::{Number, cross, dot, integer, lowest_bit};
 
 /// A box whose opposite faces are identified: a flat three-dimensional torus. A point stands for all its
 /// copies, which are displaced by multiples of three vectors. The box is one along the axes, or the
@@ -20,6 +22,9 @@ use crate::number::{cross, dot, integer, lowest_bit};
 ///
 /// Vectors are reduced ([`Self::of_vectors`]), so the copies that count are near: at most half of each vector
 /// away, as measured along the three of them.
+///
+/// A box may repeat along one or two of its vectors only ([`Self::repeating`]): then a point has copies along these, space is not
+/// closed along the others, and the others are 0. A part along a vector is measured perpendicular to what the vectors do not span.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Torus {
     /// Along the axes, if `is_box`.
@@ -28,6 +33,8 @@ pub struct Torus {
     inverse: [[f64; 3]; 3],
     step: f64,
     is_box: bool,
+    /// Half of each side of a box along the axes; +∞ where it does not repeat.
+    halves: [f64; 3],
 }
 
 /// Why a box cannot be periodic.
@@ -69,6 +76,19 @@ pub enum TorusError {
         /// Its length.
         length: f64,
     },
+    /// No vector repeats.
+    #[error("none of the three vectors of a periodic box repeats")]
+    Lone,
+    /// Points are far from the origin along directions in which a slanted box does not repeat: rounding there would be too coarse.
+    #[error(
+        "a point is {reach} from the origin, and the longest vector of the periodic box is {longest}: copies along slanted vectors would be rounded"
+    )]
+    Far {
+        /// The largest coordinate.
+        reach: f64,
+        /// The length of the longest vector.
+        longest: f64,
+    },
     /// The three vectors lie in one plane, or nearly.
     #[error(
         "the vectors of a periodic box span almost no volume: the longest is {longest} long, and the box is {height} high"
@@ -91,7 +111,11 @@ impl Advise for TorusError {
             Self::Vector { .. } => {
                 advice!["give ", Setting::Periodic, " three vectors, in the unit of the points"]
             }
-            Self::Flat { .. } => "give three vectors that span a volume".into(),
+            Self::Flat { .. } => "give vectors that are independent of each other".into(),
+            Self::Lone => {
+                advice!["omit ", Setting::Periodic, ", or name a direction in which points repeat"]
+            }
+            Self::Far { .. } => "move the points near the origin".into(),
         })
     }
 }
@@ -118,6 +142,9 @@ impl Torus {
     /// The largest ratio of the longest side to the shortest.
     pub const MAX_ASPECT_RATIO: f64 = 1000.0;
 
+    /// The largest distance of points from the origin, in units of the longest vector, where a slanted box does not repeat.
+    const MAX_REACH: f64 = 1e5;
+
     /// Bits that differences of coordinates of copies have beyond those of the longest side: copies are searched
     /// within one diagonal, at most √3 times that side, so all coordinates are below 4 times that side, and
     /// differences below 8 times. Of a slanted box, that side is the longest of its bounding box.
@@ -138,8 +165,14 @@ impl Torus {
                 return Err(TorusError::Side { axis, side });
             }
         }
-        let shortest = sides.into_iter().fold(f64::INFINITY, f64::min);
-        let longest = sides.into_iter().fold(0.0, f64::max);
+        Self::of_sides(sides)
+    }
+
+    /// A box by its sides along the axes, 0 where it does not repeat.
+    fn of_sides(sides: [f64; 3]) -> Result<Self, TorusError> {
+        let repeating = || sides.into_iter().filter(|&side| side > 0.0);
+        let shortest = repeating().fold(f64::INFINITY, f64::min);
+        let longest = repeating().fold(0.0, f64::max);
         if longest > Self::MAX_ASPECT_RATIO * shortest {
             return Err(TorusError::Elongated { shortest, longest });
         }
@@ -155,9 +188,21 @@ impl Torus {
     /// # Errors
     /// Numbers out of range, or vectors that span almost no volume; see [`TorusError`].
     pub fn of_vectors(vectors: [[f64; 3]; 3]) -> Result<Self, TorusError> {
+        Self::repeating(vectors, [true; 3])
+    }
+
+    /// Like [`Self::of_vectors`], for points that repeat along some of the vectors only. The others are ignored.
+    ///
+    /// # Errors
+    /// No vector that repeats, numbers out of range, or vectors that nearly depend on each other; see [`TorusError`].
+    pub fn repeating(vectors: [[f64; 3]; 3], repeats: [bool; 3]) -> Result<Self, TorusError> {
+        if repeats == [false; 3] {
+            return Err(TorusError::Lone);
+        }
         let length = |v: &[f64; 3]| v[0].hypot(v[1]).hypot(v[2]);
-        for (name, vector) in VECTORS.into_iter().zip(&vectors) {
-            let length = length(vector);
+        let vectors = [0, 1, 2].map(|k| if repeats[k] { vectors[k] } else { [0.0; 3] });
+        for k in (0..3).filter(|&k| repeats[k]) {
+            let (name, length) = (VECTORS[k], length(&vectors[k]));
             if !(Self::MIN_SIDE..=Self::MAX_SIDE).contains(&length) {
                 return Err(TorusError::Vector { name, length });
             }
@@ -165,31 +210,56 @@ impl Torus {
         let longest = vectors.iter().map(length).fold(0.0, f64::max);
         let coarse = step_of(extent(&vectors));
         let steps = vectors.map(|v| v.map(|x| (x / coarse).round_ties_even() as i128));
-        let reduced = reduced(steps);
+        let reduced = reduced(steps, repeats);
         let vectors = reduced.map(|v| v.map(|x| x as f64 * coarse));
-        let [a, b, c] = &vectors;
-        let volume = dot(a, &cross(b, c)).abs();
-        let heights = [0, 1, 2].map(|k| {
-            let [u, v] = [(k + 1) % 3, (k + 2) % 3].map(|other| vectors[other]);
-            volume / length(&cross(&u, &v))
-        });
-        let height = heights.into_iter().fold(f64::INFINITY, f64::min);
-        // Vectors of length 0 have heights that are not numbers.
-        if volume == 0.0 || height * Self::MAX_ASPECT_RATIO < longest {
-            let height = if volume == 0.0 { 0.0 } else { height };
+        let inverse = inverse(&vectors, repeats, coarse);
+        let heights = inverse.iter().zip(repeats).filter(|(_, repeats)| *repeats);
+        // Vectors that depend on each other have none: rows are infinite or no numbers. `max` is 0 for these.
+        let heights = heights.map(|(row, _)| (1.0 / length(row)).max(0.0));
+        let height = heights.fold(f64::INFINITY, f64::min);
+        if height * Self::MAX_ASPECT_RATIO < longest {
             return Err(TorusError::Flat { longest, height });
         }
-        if let Some(sides) = sides_of(&vectors) {
-            return Self::new(sides);
+        if let Some(sides) = sides_of(&vectors, repeats) {
+            return Self::of_sides(sides);
         }
         Ok(Self::of_reduced(vectors, step_of(extent(&vectors)), false))
     }
 
     fn of_reduced(vectors: [[f64; 3]; 3], step: f64, is_box: bool) -> Self {
-        let [a, b, c] = vectors;
-        let rows = [cross(&b, &c), cross(&c, &a), cross(&a, &b)];
-        let volume = dot(&a, &rows[0]);
-        Self { vectors, inverse: rows.map(|row| row.map(|x| x / volume)), step, is_box }
+        let inverse = inverse(&vectors, vectors.map(|v| v != [0.0; 3]), step);
+        let half = |k: usize| match vectors[k][k] {
+            side if is_box && side != 0.0 => side / 2.0,
+            _ => f64::INFINITY,
+        };
+        Self { vectors, inverse, step, is_box, halves: [0, 1, 2].map(half) }
+    }
+
+    /// This box with a step that is coarse enough for copies of these positions to be exact. They matter only if the box is slanted
+    /// and does not repeat along all vectors: otherwise all positions that are moved into the box are near.
+    ///
+    /// # Errors
+    /// [`TorusError::Far`].
+    pub fn holding(&self, positions: &[[f64; 3]]) -> Result<Self, TorusError> {
+        if self.is_box || self.repeats() == [true; 3] {
+            return Ok(*self);
+        }
+        let moves = self.moves();
+        let reach = |place: &[f64; 3]| {
+            let parts = self.parts(*place).map(f64::floor);
+            let near = |axis: usize| {
+                place[axis] - (0..3).map(|k| parts[k] * self.vectors[k][axis]).sum::<f64>()
+            };
+            (0..3).filter(|&axis| moves[axis]).map(|axis| near(axis).abs()).fold(0.0, f64::max)
+        };
+        let reach = positions.par_iter().coarse().map(reach).reduce(|| 0.0, f64::max);
+        let longest = extent(&self.vectors);
+        if reach > Self::MAX_REACH * longest {
+            return Err(TorusError::Far { reach, longest });
+        }
+        let step = step_of(longest + reach).max(self.step);
+        let vectors = self.vectors.map(|v| v.map(|x| (x / step).round_ties_even() * step));
+        Ok(Self::of_reduced(vectors, step, false))
     }
 
     /// This box and the box of several of its copies, as many along each vector as stated. The step of both is the larger one's, so
@@ -204,18 +274,36 @@ impl Torus {
             [0, 1, 2].map(|k| vectors[k].map(|x| f64::from(copies[k]) * x))
         };
         let longest = large(self.vectors);
+        // Where a slanted box does not repeat, points may be as far from it as the box is long.
+        let beyond = if self.is_box || self.repeats() == [true; 3] { 1.0 } else { 2.0 };
         // Rounding may lengthen the vectors to the next power of two.
-        let step = step_of(extent(&longest) * (1.0 + f64::EPSILON)).max(self.step);
+        let step = step_of(extent(&longest) * (1.0 + f64::EPSILON)).max(self.step) * beyond;
         let small = self.vectors.map(|v| v.map(|x| (x / step).round_ties_even() * step));
         [small, large(small)].map(|vectors| Self::of_reduced(vectors, step, self.is_box))
     }
 
-    /// The three vectors; along x, y and z if the box is.
+    /// The three vectors; along x, y and z if the box is. Those along which it does not repeat are 0.
     pub fn vectors(&self) -> [[f64; 3]; 3] {
         self.vectors
     }
 
-    /// The sides along x, y and z, if the box is along the axes.
+    /// Along which of its vectors the box repeats.
+    #[inline]
+    pub fn repeats(&self) -> [bool; 3] {
+        self.vectors.map(|vector| vector != [0.0; 3])
+    }
+
+    /// The number of vectors along which the box repeats.
+    pub fn dimension(&self) -> usize {
+        self.repeats().into_iter().filter(|repeats| *repeats).count()
+    }
+
+    /// The axes along which vectors move a point. Coordinates along the others are as given, not rounded.
+    fn moves(&self) -> [bool; 3] {
+        [0, 1, 2].map(|axis| self.vectors.iter().any(|vector| vector[axis] != 0.0))
+    }
+
+    /// The sides along x, y and z, if the box is along the axes; 0 where it does not repeat.
     pub fn sides(&self) -> Option<[f64; 3]> {
         self.is_box.then(|| self.diagonal_components())
     }
@@ -237,18 +325,26 @@ impl Torus {
         self.step
     }
 
-    /// The volume of the box.
-    pub fn volume(&self) -> f64 {
+    /// The volume of the box; `None` if it does not repeat along all vectors.
+    pub fn volume(&self) -> Option<f64> {
         let [a, b, c] = self.vectors;
-        dot(&a, &cross(&b, &c)).abs()
+        (self.repeats() == [true; 3]).then(|| dot(&a, &cross(&b, &c)).abs())
     }
 
-    /// The part of a way along each vector: the way is the sum of the vectors, each times its part. Rounded.
+    /// The height of the box over the vectors other than one, which repeats: how long a way along the vectors is at least whose part along
+    /// that one is 1. Rounded.
+    pub fn height(&self, k: usize) -> f64 {
+        let [x, y, z] = self.inverse[k];
+        1.0 / x.hypot(y).hypot(z)
+    }
+
+    /// The part of a way along each vector: the way is the sum of the vectors, each times its part, and of a way perpendicular to all of them.
+    /// 0 along vectors that do not repeat. Rounded.
     pub fn parts(&self, way: [f64; 3]) -> [f64; 3] {
         [0, 1, 2].map(|k| dot(&self.inverse[k], &way))
     }
 
-    /// A range of the part along a vector of the ways in a box from `low` to `high`. Rounded outward.
+    /// A range of the part along a vector that repeats of the ways in a box from `low` to `high`. Rounded outward.
     pub fn part_range(&self, k: usize, low: [f64; 3], high: [f64; 3]) -> [f64; 2] {
         let mut range = [0.0; 2];
         for axis in 0..3 {
@@ -262,10 +358,10 @@ impl Torus {
     /// The copy of a position in the box, rounded to the step. Its part along each vector is at least 0 and less than 1.
     pub fn wrap(&self, position: [f64; 3]) -> [f64; 3] {
         let mut position = position;
-        for x in &mut position {
+        for (x, moves) in position.iter_mut().zip(self.moves()) {
             let steps = *x / self.step;
             // Doubles of 2⁵² steps or more are multiples of the step already.
-            if steps.abs() < (1u64 << 52) as f64 {
+            if moves && steps.abs() < (1u64 << 52) as f64 {
                 *x = steps.round_ties_even() * self.step;
             }
         }
@@ -278,8 +374,8 @@ impl Torus {
         }
         for (x, side) in position.iter_mut().zip(self.diagonal_components()) {
             // Exact. −0 becomes 0.
-            *x = x.rem_euclid(side) + 0.0;
-            if *x >= side {
+            *x = if side == 0.0 { *x } else { x.rem_euclid(side) } + 0.0;
+            if side != 0.0 && *x >= side {
                 *x = 0.0;
             }
         }
@@ -288,31 +384,64 @@ impl Torus {
 
     /// The copy in a slanted box of a position that is a multiple of the step.
     fn wrap_exactly(&self, position: [f64; 3]) -> [f64; 3] {
-        let parts = self.parts(position);
-        let clearly = |part: f64| {
-            part.abs() < 1.0 / Self::PART_MARGIN
-                && (part - part.round()).abs() > Self::PART_MARGIN * (1.0 + part.abs())
+        let (parts, repeats, moves) = (self.parts(position), self.repeats(), self.moves());
+        let clearly = |k: usize| {
+            let terms: f64 =
+                (0..3).map(|axis| (self.inverse[k][axis] * position[axis]).abs()).sum();
+            terms < 1.0 / Self::PART_MARGIN
+                && (parts[k] - parts[k].round()).abs() > Self::PART_MARGIN * (1.0 + terms)
         };
-        if parts.iter().all(|&part| clearly(part) && part > 0.0 && part < 1.0) {
+        let is_clearly_in_box =
+            |k: usize| !repeats[k] || (clearly(k) && parts[k] > 0.0 && parts[k] < 1.0);
+        if (0..3).all(is_clearly_in_box) {
             return position.map(|x| x + 0.0);
         }
         let unit = self.unit();
-        let way = position.map(|x| integer(x, unit));
+        let way = self.steps(&position);
         let vectors = self.vectors.map(|v| v.map(|x| integer(x, unit)));
         let whole = [0, 1, 2].map(|k| {
-            if clearly(parts[k]) {
+            if !repeats[k] {
+                return IBig::ZERO;
+            }
+            if clearly(k) {
                 return IBig::from(parts[k].floor() as i64);
             }
-            let [part, volume] = part_of(&vectors, k, &way);
+            let [part, volume] = part_of(&vectors, repeats, k, &way);
             part.div_euclid(volume)
         });
         let in_box = |axis: usize| {
+            if !moves[axis] {
+                return position[axis] + 0.0;
+            }
             let moved = dot(&whole, &[0, 1, 2].map(|k| vectors[k][axis].clone()));
-            let steps = i64::try_from(&way[axis] - moved).expect("positions in the box are small");
+            let steps = i64::try_from(&way[axis] - moved).unwrap_or(i64::MAX);
             // Exact: positions in the box have at most 53 bits.
             steps as f64 * self.step
         };
         [in_box(0), in_box(1), in_box(2)]
+    }
+
+    /// A way in units of the step. Vectors have no part along an axis along which they do not move: 0 there.
+    fn steps(&self, way: &[f64; 3]) -> [IBig; 3] {
+        let (unit, moves) = (self.unit(), self.moves());
+        [0, 1, 2].map(|axis| if moves[axis] { integer(way[axis], unit) } else { IBig::ZERO })
+    }
+
+    /// On which side of the plane of two vectors a way leads, if the box repeats along two: upwards, if the two vectors, in the order of
+    /// their names beginning after the one that does not repeat, and the way are right-handed. Exact for multiples of the step.
+    #[expect(clippy::missing_panics_doc, reason = "finite numbers compare")]
+    pub fn across(&self, way: [f64; 3]) -> Option<Ordering> {
+        let out =
+            self.repeats().iter().position(|repeats| !repeats).filter(|_| self.dimension() == 2)?;
+        let [u, v] = [(out + 1) % 3, (out + 2) % 3].map(|k| self.vectors[k]);
+        if let Some(axis) = self.moves().iter().position(|moves| !moves) {
+            // Both vectors lie in the plane of the two other axes.
+            let up = cross(&u.map(|x| x / self.step), &v.map(|x| x / self.step))[axis];
+            return (up.signum() * way[axis]).partial_cmp(&0.0);
+        }
+        let unit = self.unit();
+        let [u, v] = [u, v].map(|vector| vector.map(|x| integer(x, unit)));
+        Some(dot(&cross(&u, &v), &self.steps(&way)).cmp(&IBig::ZERO))
     }
 
     /// The exponent of the step.
@@ -324,10 +453,11 @@ impl Torus {
     pub fn holds(&self, position: [f64; 3]) -> bool {
         if self.is_box {
             let mut sides = position.iter().zip(self.diagonal_components());
-            return sides.all(|(x, side)| (0.0..side).contains(x));
+            return sides.all(|(x, side)| side == 0.0 || (0.0..side).contains(x));
         }
-        let is_multiple = |x: f64| (x / self.step).fract() == 0.0;
-        if position.into_iter().all(|x| x.is_finite() && is_multiple(x)) {
+        let is_multiple = |(x, moves): (f64, bool)| !moves || (x / self.step).fract() == 0.0;
+        let is_finite = position.iter().all(|x| x.is_finite());
+        if is_finite && position.into_iter().zip(self.moves()).all(is_multiple) {
             self.wrap_exactly(position) == position
         } else {
             self.parts(position).iter().all(|part| (0.0..1.0).contains(part))
@@ -342,7 +472,7 @@ impl Torus {
             let mut near = to;
             for k in 0..3 {
                 let side = self.vectors[k][k];
-                near[k] -= f64::from(beyond_half(to[k] - from[k], side)) * side;
+                near[k] -= f64::from(beyond_half(to[k] - from[k], self.halves[k])) * side;
             }
             return near;
         }
@@ -355,7 +485,7 @@ impl Torus {
     pub fn windings(&self, from: [f64; 3], to: [f64; 3]) -> [i32; 3] {
         let way = [0, 1, 2].map(|k| to[k] - from[k]);
         if self.is_box {
-            return [0, 1, 2].map(|k| -beyond_half(way[k], self.vectors[k][k]));
+            return [0, 1, 2].map(|k| -beyond_half(way[k], self.halves[k]));
         }
         [0, 1, 2].map(|k| {
             let part = dot(&self.inverse[k], &way);
@@ -369,7 +499,7 @@ impl Torus {
     pub fn are_near(&self, from: [f64; 3], to: [f64; 3]) -> bool {
         let way = [0, 1, 2].map(|k| to[k] - from[k]);
         if self.is_box {
-            return (0..3).all(|k| 2.0 * way[k].abs() < self.vectors[k][k]);
+            return (0..3).all(|k| way[k].abs() < self.halves[k]);
         }
         let parts = self.parts(way);
         (0..3).all(|k| self.compare_with_half(k, &way, parts[k]).is_lt())
@@ -389,7 +519,7 @@ impl Torus {
     fn compare_exactly(&self, k: usize, way: &[f64; 3]) -> Ordering {
         let unit = self.unit();
         let vectors = self.vectors.map(|v| v.map(|x| integer(x, unit)));
-        let [part, volume] = part_of(&vectors, k, &way.map(|x| integer(x, unit)));
+        let [part, volume] = part_of(&vectors, self.repeats(), k, &self.steps(way));
         let magnitude = if part < IBig::ZERO { -part } else { part };
         (magnitude << 1).cmp(&volume)
     }
@@ -428,8 +558,7 @@ impl Torus {
 
 /// The multiple of a side by which a way along an axis is to be shortened: 1 or −1 beyond half of the side, else 0.
 #[inline(always)]
-fn beyond_half(way: f64, side: f64) -> i32 {
-    let half = side / 2.0;
+fn beyond_half(way: f64, half: f64) -> i32 {
     i32::from(way > half) - i32::from(way < -half)
 }
 
@@ -444,17 +573,44 @@ fn extent(vectors: &[[f64; 3]; 3]) -> f64 {
     (0..3).map(|k| vectors.iter().map(|vector| vector[k].abs()).sum()).fold(0.0, f64::max)
 }
 
-/// The part of a way along vector `k`, times the volume of the box, and that volume.
-fn part_of(vectors: &[[IBig; 3]; 3], k: usize, way: &[IBig; 3]) -> [IBig; 2] {
-    let normal = cross(&vectors[(k + 1) % 3], &vectors[(k + 2) % 3]);
+/// The normal of the other vectors that repeat, in the span of all of them: a scalar product with it, divided by that of vector `k`, is the
+/// part of a way along the vector. That of the vector itself is not negative unless there are three.
+fn normal<T: Number + Clone>(vectors: &[[T; 3]; 3], repeats: [bool; 3], k: usize) -> [T; 3] {
+    let [i, j] = [(k + 1) % 3, (k + 2) % 3];
+    let other = match [repeats[i], repeats[j]] {
+        [true, true] => return cross(&vectors[i], &vectors[j]),
+        [false, false] => return vectors[k].clone(),
+        [true, false] => i,
+        [false, true] => j,
+    };
+    cross(&vectors[other], &cross(&vectors[k], &vectors[other]))
+}
+
+/// The rows of the inverse matrix of vectors that are multiples of a step, a power of two: those of the vectors that do not repeat are 0.
+fn inverse(vectors: &[[f64; 3]; 3], repeats: [bool; 3], step: f64) -> [[f64; 3]; 3] {
+    // So that products stay within the range of doubles.
+    let vectors = vectors.map(|v| v.map(|x| x / step));
+    [0, 1, 2].map(|k| {
+        if !repeats[k] {
+            return [0.0; 3];
+        }
+        let normal = normal(&vectors, repeats, k);
+        let volume = dot(&vectors[k], &normal);
+        normal.map(|x| x / volume / step)
+    })
+}
+
+/// The part of a way along vector `k`, which repeats, times a positive number, and that number: of three vectors, the volume of the box.
+fn part_of(vectors: &[[IBig; 3]; 3], repeats: [bool; 3], k: usize, way: &[IBig; 3]) -> [IBig; 2] {
+    let normal = normal(vectors, repeats, k);
     let [part, volume] = [way, &vectors[k]].map(|of| dot(of, &normal));
     if volume < IBig::ZERO { [-part, -volume] } else { [part, volume] }
 }
 
-/// Sides along x, y and z, if each vector is along another axis.
-fn sides_of(vectors: &[[f64; 3]; 3]) -> Option<[f64; 3]> {
+/// Sides along x, y and z, if each vector that repeats is along another axis; 0 along those of none.
+fn sides_of(vectors: &[[f64; 3]; 3], repeats: [bool; 3]) -> Option<[f64; 3]> {
     let mut sides = [0.0; 3];
-    for vector in vectors {
+    for (vector, _) in vectors.iter().zip(repeats).filter(|(_, repeats)| *repeats) {
         let axis = (0..3).find(|&k| vector[k] != 0.0)?;
         if vector[axis + 1..].iter().any(|x| *x != 0.0) || sides[axis] != 0.0 {
             return None;
@@ -464,18 +620,18 @@ fn sides_of(vectors: &[[f64; 3]; 3]) -> Option<[f64; 3]> {
     Some(sides)
 }
 
-/// A Minkowski-reduced basis of the same lattice: no vector is longer than its sum with another two, each of them
+/// A Minkowski-reduced basis of the lattice of the vectors that repeat: no vector is longer than its sum with another two, each of them
 /// added, subtracted or left out (which suffices in three dimensions). Vectors that are reduced already stay as they are.
-fn reduced(mut vectors: [Steps; 3]) -> [Steps; 3] {
+fn reduced(mut vectors: [Steps; 3], repeats: [bool; 3]) -> [Steps; 3] {
     let dot = |u: &Steps, v: &Steps| (0..3).map(|k| u[k] * v[k]).sum::<i128>();
     let with = |u: &Steps, n: i128, v: &Steps| [0, 1, 2].map(|k| u[k] + n * v[k]);
     loop {
         let mut shorter = false;
-        for i in 0..3 {
+        for i in (0..3).filter(|&i| repeats[i]) {
             let [j, k] = [(i + 1) % 3, (i + 2) % 3];
             let mut best = vectors[i];
             // A whole multiple of one other vector, which takes long steps, then sums with both.
-            for other in [j, k] {
+            for other in [j, k].into_iter().filter(|&other| repeats[other]) {
                 let square = dot(&vectors[other], &vectors[other]);
                 if square == 0 {
                     return vectors;
@@ -534,13 +690,13 @@ mod tests {
     #[test]
     fn vectors_are_reduced() {
         let torus = Torus::of_vectors(FCC).unwrap();
-        assert_eq!((torus.vectors(), torus.sides(), torus.volume()), (FCC, None, 0.25));
+        assert_eq!((torus.vectors(), torus.sides(), torus.volume()), (FCC, None, Some(0.25)));
         // A long basis of the same lattice.
         let [a, b, c] = FCC;
         let sum = |u: [f64; 3], n: f64, v: [f64; 3]| [0, 1, 2].map(|k| u[k] + n * v[k]);
         let long = [sum(sum(a, 7.0, b), -3.0, c), sum(b, 11.0, c), c];
         let reduced = Torus::of_vectors(long).unwrap();
-        assert_eq!(reduced.volume(), 0.25);
+        assert_eq!(reduced.volume(), Some(0.25));
         for [x, y, z] in reduced.vectors() {
             assert_eq!(x * x + y * y + z * z, 0.5);
         }
@@ -576,7 +732,7 @@ mod tests {
                 let vectors = torus.vectors().map(|v| v.map(|x| integer(x, unit)));
                 let way = [0, 1, 2].map(|k| integer(q[k], unit) - integer(p[k], unit));
                 let expected = [0, 1, 2].map(|k| {
-                    let [part, volume] = part_of(&vectors, k, &way);
+                    let [part, volume] = part_of(&vectors, [true; 3], k, &way);
                     halves += u32::from(&part + &part == volume || &part + &part == -&volume);
                     i32::from(-(&part << 1) > volume) - i32::from(part << 1 > volume)
                 });
@@ -613,6 +769,81 @@ mod tests {
         for scale in [1e-99, 1e99] {
             let torus = Torus::of_vectors(FCC.map(|v| v.map(|x| scale * x))).unwrap();
             assert!(torus.holds(torus.wrap([scale, 0.1 * scale, -0.3 * scale])));
+        }
+    }
+
+    /// A lattice in a plane and on a line, along the axes and not, with parts that are measured perpendicular to the rest.
+    #[test]
+    fn boxes_repeat_along_some_vectors() {
+        let slab = Torus::repeating(
+            [[4.0, 0.0, 0.0], [9.0, 9.0, 9.0], [0.0, 0.0, 2.0]],
+            [true, false, true],
+        );
+        let slab = slab.unwrap();
+        assert_eq!((slab.sides(), slab.volume()), (Some([4.0, 0.0, 2.0]), None));
+        assert_eq!((slab.repeats(), slab.dimension()), ([true, false, true], 2));
+        // What does not repeat is not rounded.
+        assert_eq!(slab.wrap([5.0, -7e300, -0.5]), [1.0, -7e300, 1.5]);
+        assert_eq!(slab.windings([0.0, 0.0, 0.0], [3.0, 1e9, 0.75]), [-1, 0, 0]);
+        assert_eq!(slab.near([0.0; 3], [3.0, 1e9, 0.75]), [-1.0, 1e9, 0.75]);
+        assert!(
+            slab.are_near([0.0; 3], [1.5, 50.0, 0.5]) && !slab.are_near([0.0; 3], [2.0, 0.0, 0.5])
+        );
+        assert!(slab.holds([3.0, -1e200, 1.0]) && !slab.holds([3.0, 0.0, 2.0]));
+        // z, x and up are right-handed.
+        assert_eq!(slab.across([1.0, 1e-300, 0.0]), Some(Ordering::Greater));
+        assert_eq!(slab.across([1.0, 0.0, 0.0]), Some(Ordering::Equal));
+
+        // A long basis of hexagons in a tilted plane; whatever is perpendicular to it has no part.
+        let [a, b] = [[1.0, -1.0, 0.0], [0.0, 1.0, -1.0]];
+        let long = [[0.0; 3], [0, 1, 2].map(|k| a[k] + 5.0 * b[k]), b];
+        let tilted = Torus::repeating(long, [false, true, true]).unwrap();
+        let tilted = tilted.holding(&[[70.0, 70.0, 70.0]]).unwrap();
+        assert_eq!((tilted.vectors()[0], tilted.dimension(), tilted.sides()), ([0.0; 3], 2, None));
+        let squares = tilted.vectors().map(|v| dot(&v, &v));
+        assert_eq!(squares, [0.0, 2.0, 2.0]);
+        let far = [70.25, 69.5, 70.5];
+        let place = tilted.wrap(far);
+        assert!(tilted.holds(place) && (place[0] + place[1] + place[2] - 210.25).abs() == 0.0);
+        for by in [[0, 3, -2], [0, -1, 1]] {
+            let moved = tilted.moved(place, by);
+            assert_eq!(tilted.wrap(moved), place);
+        }
+        let [_, u, v] = tilted.vectors();
+        let up = cross(&u, &v);
+        assert_eq!(tilted.across(up), Some(Ordering::Greater));
+        assert_eq!(tilted.across(a), Some(Ordering::Equal));
+        assert_eq!(tilted.across(up.map(|x| -x)), Some(Ordering::Less));
+        assert!(matches!(tilted.holding(&[[1e7, 1e7, 1e7]]), Err(TorusError::Far { .. })));
+        // Along the plane, points are near wherever they are.
+        assert_eq!(tilted.holding(&[[1e7, -1e7, 0.0]]).unwrap(), tilted);
+
+        let rod =
+            Torus::repeating([[1.0, 2.0, 2.0], [0.0; 3], [0.0; 3]], [true, false, false]).unwrap();
+        assert_eq!((rod.dimension(), rod.across([1.0, 0.0, 0.0])), (1, None));
+        // Four ninths and five ninths of the vector along it.
+        assert_eq!(rod.windings([0.0; 3], [0.0, 2.0, 0.0]), [0; 3]);
+        assert_eq!(rod.windings([0.0; 3], [0.0, 2.0, 0.5]), [-1, 0, 0]);
+        // A half stays.
+        assert_eq!(rod.windings([0.0; 3], [0.5, 2.0, 0.0]), [0; 3]);
+        assert!(!rod.are_near([0.0; 3], [0.5, 2.0, 0.0]));
+        assert_eq!(rod.wrap([-0.5, -2.0, 0.0]), [0.5, 0.0, 2.0]);
+        assert!(matches!(Torus::repeating([[1.0; 3]; 3], [false; 3]), Err(TorusError::Lone)));
+        let parallel = Torus::repeating([a, a, b], [true, true, false]);
+        assert!(matches!(parallel, Err(TorusError::Flat { height: 0.0, .. })));
+    }
+
+    /// Far away, doubles do not tell on which side of a boundary a position is.
+    #[test]
+    fn far_positions_near_a_boundary_are_moved_into_the_box() {
+        let torus = Torus::of_vectors([[1.0, 0.0, 0.0], [0.0, 1.0, 0.3], [0.1, 0.0, 1.0]]).unwrap();
+        for steps in [-3, -1, 0, 1, 3] {
+            for far in [1 << 20, 1 << 30] {
+                let near = f64::from(steps) * torus.step();
+                let place = torus.moved([near, 0.0, 0.0], [0, far, 1 - far]);
+                let wrapped = torus.wrap(place);
+                assert!(torus.holds(wrapped), "{steps} {far} {wrapped:?}");
+            }
         }
     }
 

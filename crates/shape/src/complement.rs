@@ -31,33 +31,39 @@ pub(super) fn sides(whole: &Complex, of: impl Fn(Class) -> bool + Sync) -> Vec<(
     sides
 }
 
-/// The complement of a shape within the *whole* triangulation of a torus: exterior cells joined through
-/// exterior facets. Each cell stands for the copy whose first vertex is in the box. O(n log n).
+/// The complement of a shape within the *whole* triangulation of a torus: exterior cells, and what is
+/// [outside](WindingSets::with_outside), joined through exterior facets. Each cell stands for the copy whose first vertex is in the box. What is
+/// outside winds round, so that no way to it matters. O(n log n).
 pub(super) fn complement_on(torus: Torus, shape: &AlphaShape) -> WindingSets {
     if shape.nearest().is_none() {
-        return complement_by_copies(shape);
+        return complement_by_copies(torus, shape);
     }
     let (whole, positions) = (shape.complex(), &shape.points().positions);
     let cells = whole.cells.rows();
-    let mut sets = WindingSets::new(cells.len());
+    let outside = cells.len() as u32;
+    let mut sets = WindingSets::with_outside(cells.len(), torus);
     let sides = sides(whole, |class| class == Class::Exterior);
     let mut pairs = sides.chunk_by(|a, b| a.0 == b.0);
     // Exterior facets are sorted rows in ascending order, so both lists run side by side.
     for facet in whole.facets.of(Class::Exterior) {
         let sides = pairs.find(|sides| sides[0].0 == *facet);
-        let Some(&[(_, a), (_, b)]) = sides else {
-            unreachable!("an exterior facet of a torus has exterior cells on both sides")
-        };
-        let pair = [cells[a as usize], cells[b as usize]];
-        sets.unite(a, b, between(torus, pair, facet[0], positions));
+        match sides {
+            Some(&[(_, a), (_, b)]) => {
+                let pair = [cells[a as usize], cells[b as usize]];
+                sets.unite(a, b, between(torus, pair, facet[0], positions));
+            }
+            Some(&[(_, a)]) => _ = sets.unite(a, outside, [0; 3]),
+            _ => unreachable!("an exterior facet has exterior cells beside it"),
+        }
     }
     sets
 }
 
 /// The complement where rows name copies of points.
-fn complement_by_copies(shape: &AlphaShape) -> WindingSets {
+fn complement_by_copies(torus: Torus, shape: &AlphaShape) -> WindingSets {
     let whole = shape.complex();
-    let mut sets = WindingSets::new(whole.cells.len());
+    let outside = whole.cells.len() as u32;
+    let mut sets = WindingSets::with_outside(whole.cells.len(), torus);
     let mut sides = BTreeMap::<Key<3>, Vec<(u32, Winding)>>::new();
     for (cell, (&row, class)) in (0..).zip(whole.cells.iter()) {
         if class == Class::Exterior {
@@ -68,11 +74,11 @@ fn complement_by_copies(shape: &AlphaShape) -> WindingSets {
         }
     }
     for &facet in whole.facets.of(Class::Exterior) {
-        let Some([(a, of_a), (b, of_b)]) = sides.get(&key(shape.shifted(facet)).0).map(|s| &s[..])
-        else {
-            unreachable!("an exterior facet of a torus has exterior cells on both sides")
-        };
-        sets.unite(*a, *b, minus(*of_a, *of_b));
+        match sides.get(&key(shape.shifted(facet)).0).map(|sides| &sides[..]) {
+            Some(&[(a, of_a), (b, of_b)]) => _ = sets.unite(a, b, minus(of_a, of_b)),
+            Some(&[(a, _)]) => _ = sets.unite(a, outside, [0; 3]),
+            _ => unreachable!("an exterior facet has exterior cells beside it"),
+        }
     }
     sets
 }

@@ -110,7 +110,13 @@ impl AlphaShape {
             component.rounds = Some(directions.rank());
             let [low, high] = torus.extent();
             for axis in (0..3).filter(|&axis| directions.have(axis, torus)) {
-                (component.low[axis], component.high[axis]) = (low[axis], high[axis]);
+                let (lowest, highest) = (&mut component.low[axis], &mut component.high[axis]);
+                // Where the box does not repeat, points may lie beyond it.
+                (*lowest, *highest) = if torus.dimension() == 3 {
+                    (low[axis], high[axis])
+                } else {
+                    (low[axis].min(*lowest), high[axis].max(*highest))
+                };
             }
         }
     }

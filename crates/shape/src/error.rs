@@ -5,7 +5,7 @@ use walpha_base::monitor::wraps;
 use walpha_regular::internals::is_flat;
 use walpha_regular::{MAX_COORDINATE, SitesError, TriangulationError};
 
-use super::{Disagreement, IsosurfaceError, VoxelsError};
+use super::{Disagreement, IsosurfaceError, TorusError, VoxelsError};
 
 /// Why a shape cannot be computed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -82,6 +82,9 @@ pub enum ShapeError {
         /// The side of the box along that axis, or the length of that vector.
         side: f64,
     },
+    /// The points cannot lie in the periodic box.
+    #[error(transparent)]
+    Torus(#[from] TorusError),
     /// The voxels have no solid.
     #[error(transparent)]
     Voxels(#[from] VoxelsError),
@@ -149,7 +152,7 @@ impl Whole {
 }
 
 impl Advise for ShapeError {
-    wrapped!(Triangulation, Cgal, Plan, Cancelled, Memory, Voxels, Isosurface, Differ);
+    wrapped!(Triangulation, Cgal, Plan, Cancelled, Memory, Torus, Voxels, Isosurface, Differ);
 
     fn advice(&self) -> Option<Advice> {
         Some(match self {

@@ -6,8 +6,9 @@
 use walpha_base::Monitor;
 use walpha_regular::internals::{Predicates, Sites, triangulate_flat};
 
-use super::topology::flat_betti;
-use super::{Betti, Class, Complex, ShapeError, Simplices};
+use super::blocks::{Block, Long, Partition, Reach, too_long};
+use super::topology::{components, flat_betti};
+use super::{Betti, Class, Complex, ShapeError, Simplices, Torus};
 
 /// A flat shape.
 pub(super) struct FlatShape {
@@ -48,6 +49,75 @@ pub(super) fn flat(
     };
     let betti = flat_betti(&complex);
     Ok(FlatShape { complex, betti })
+}
+
+/// The same for sites of a torus that repeats along one or two vectors, which span no volume with their copies. Exterior simplices, other than
+/// vertices, are listed if they are wanted.
+///
+/// The simplices at the points of the box are those of their triangulation with the copies that a block of the whole triangulation has.
+pub(super) fn flat_on_torus(
+    sites: &Sites<'_>,
+    torus: Torus,
+    alpha: f64,
+    exterior: bool,
+    monitor: &Monitor,
+) -> Result<FlatShape, ShapeError> {
+    let block = Partition::new(sites, 1).block(sites, Reach::whole(sites), 0);
+    let all = Sites::any(&block.positions, &block.weights)?;
+    let FlatShape { complex, .. } = flat(&all, alpha, monitor)?;
+    let own = |v: u32| v < block.own;
+    let is_listed = |class: Class| exterior || class != Class::Exterior;
+    let place = |v: u32| block.positions[v as usize];
+    let input = |v: u32| block.input[v as usize];
+    let mut long = None;
+    for (&edge, class) in complex.edges.iter() {
+        let [a, b] = edge;
+        if is_listed(class) && (own(a) || own(b)) && !torus.are_near(place(a), place(b)) {
+            let [a, b] = if input(a) <= input(b) { [a, b] } else { [b, a] };
+            let found = Long { edge: [a, b].map(input), ends: [a, b].map(place) };
+            long = long.into_iter().chain([found]).min_by_key(|long: &Long| long.edge);
+        }
+    }
+    if let Some(long) = long {
+        return Err(too_long(torus, long));
+    }
+    let covers = complex
+        .facets
+        .iter()
+        .all(|(row, class)| class != Class::Exterior || !row.iter().any(|&v| own(v)));
+    let is_sheet = covers && torus.dimension() == 2 && complex.facets.len() > 0;
+    let complex = Complex {
+        cells: Simplices::default(),
+        facets: of_box(&complex.facets, &block, is_listed),
+        edges: of_box(&complex.edges, &block, is_listed),
+        vertices: of_box(&complex.vertices, &block, |_| true),
+    };
+    let b2 = u64::from(is_sheet);
+    let betti =
+        Betti::with_euler(components(&complex), b2, Some(0), complex.euler_characteristic());
+    Ok(FlatShape { complex, betti })
+}
+
+/// The simplices whose smallest vertex, by input index, is in the box, by input indices.
+fn of_box<const N: usize>(
+    simplices: &Simplices<N>,
+    block: &Block,
+    is_listed: impl Fn(Class) -> bool,
+) -> Simplices<N> {
+    let input = |v: &u32| block.input[*v as usize];
+    let in_box =
+        |row: &[u32; N]| row.iter().min_by_key(|v| input(v)).is_some_and(|&v| v < block.own);
+    let mut rows: Vec<([u32; N], Class)> = simplices
+        .iter()
+        .filter(|&(row, class)| is_listed(class) && in_box(row))
+        .map(|(row, class)| {
+            let mut row = row.map(|v| input(&v));
+            row.sort_unstable();
+            (row, class)
+        })
+        .collect();
+    rows.sort_unstable_by_key(|&(row, _)| row);
+    rows.into_iter().collect()
 }
 
 /// A simplex, and a coface: its other vertex, and whether it is in the shape.

@@ -9,7 +9,7 @@ use walpha_regular::{SitesError, Torus};
 use super::agreement::agree;
 use super::blocks::{self, BlockParams, Limits, Plan, Reach};
 use super::derived::Derived;
-use super::flat::{self, flat};
+use super::flat::{FlatShape, flat, flat_on_torus};
 use super::ladder::Filtration;
 use super::topology::{components, connected_on_torus, sheet_betti, torus_betti};
 use super::{
@@ -113,6 +113,8 @@ fn shape_by(
     options.check()?;
     if let Some(torus) = options.periodic {
         check_numbers(&points.positions, &points.weights)?;
+        let torus = torus.holding(&points.positions)?;
+        options.periodic = Some(torus);
         points.positions.par_iter_mut().coarse().for_each(|place| *place = torus.wrap(*place));
     }
     if let Some(values) = points.values()
@@ -191,9 +193,7 @@ fn in_small_box(
     let weights = squared.as_ref().unwrap_or(&points.weights).clone();
     let power = WeightedPoints { positions: points.positions, weights, values: None };
     let filtration = monitor.watch(|| Filtration::of_small_box(torus, power))?;
-    let levels = filtration.levels(&[options.power_alpha()]);
-    let [betti] = levels.betti()[..] else { unreachable!("one level") };
-    let shape = levels.shape(0, options.exterior, betti);
+    let shape = filtration.shape_with(options.power_alpha(), options.exterior);
     Ok(shape.of_points(points.weights, points.values, squared, options))
 }
 
@@ -230,9 +230,21 @@ fn in_plane(
     options: &ShapeOptions,
     monitor: &Monitor,
 ) -> Result<Found, ShapeError> {
-    let sites = Sites::any(positions, weights)?;
-    let flat::FlatShape { complex, betti } =
-        flat(&sites, options.power_alpha().squared(), monitor)?;
+    let alpha = options.power_alpha().squared();
+    let (sites, shape) = match options.periodic {
+        None => {
+            let sites = Sites::any(positions, weights)?;
+            let shape = flat(&sites, alpha, monitor)?;
+            (sites, shape)
+        }
+        Some(torus) => {
+            let sites = Sites::on_torus(positions, weights, torus)?;
+            let listed = options.exterior || options.hidden;
+            let shape = flat_on_torus(&sites, torus, alpha, listed, monitor)?;
+            (sites, shape)
+        }
+    };
+    let FlatShape { complex, betti } = shape;
     let hidden = Some(hidden(sites.input(), &complex.vertices));
     let duplicates = sites.duplicates().to_vec();
     Ok(Found { complex, boundary: None, hidden, duplicates, betti: Some(betti) })

@@ -72,6 +72,28 @@ impl WindingSets {
         Self { parents: (0..n as u32).map(|v| (v, [0; 3])).collect(), rounds: BTreeMap::new() }
     }
 
+    /// Sets of one member each, and one more for what is outside of the points of a torus that does not repeat along all vectors. Around such
+    /// points there is room: they lie in a torus that repeats along three, with vectors of any length in place of those along which they do
+    /// not repeat, and what is outside is the gap between their copies. Around a slab the gap winds round along its two vectors, around a rod
+    /// or a body along all three. Where there is no gap, nothing is united with the last set.
+    pub(crate) fn with_outside(members: usize, torus: Torus) -> Self {
+        let mut sets = Self::new(members + 1);
+        let outside = members as u32;
+        for (k, repeats) in torus.repeats().into_iter().enumerate() {
+            let winds = match torus.dimension() {
+                3 => false,
+                2 => repeats,
+                _ => true,
+            };
+            if winds {
+                let mut way = [0; 3];
+                way[k] = 1;
+                sets.unite(outside, outside, way);
+            }
+        }
+        sets
+    }
+
     /// The smallest member of the set of `member`, and the winding of `member` relative to it.
     pub fn find(&mut self, member: u32) -> (u32, Winding) {
         let mut at = member;

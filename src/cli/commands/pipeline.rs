@@ -226,7 +226,9 @@ pub(crate) fn domain(weighed: &Weighed, volume: Option<&VolumeSummary>) -> Domai
         return Domain { volume: volume.extent, unit, of: "the box of the samples" };
     }
     if let Some(torus) = weighed.origin.torus {
-        return Domain { volume: torus.volume(), unit, of: "the periodic box" };
+        if let Some(volume) = torus.volume() {
+            return Domain { volume, unit, of: "the periodic box" };
+        }
     }
     let [low, high] = bounding_box(weighed.points.positions());
     let volume = [0, 1, 2].map(|k| high[k] - low[k]).iter().product();

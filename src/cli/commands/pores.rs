@@ -11,7 +11,7 @@ use crate::balls::BallUnion;
 use crate::cli::commands::pipeline;
 use crate::cli::options::global::Global;
 use crate::cli::options::{self, Declared, InputArgs, Periodic, WithAlpha};
-use crate::cli::process::errors::{Result, command_error, fail_usage, option};
+use crate::cli::process::errors::{Result, command_error, fail, fail_usage, option};
 use crate::cli::process::output::{name, print_summary};
 use crate::cli::process::progress::Progress;
 use crate::cli::report::{MovedIntoBox, SCHEMA_VERSION, ending};
@@ -75,6 +75,9 @@ impl Pores {
         let (weighed, _) = progress.watch(weigh)?;
         let Origin { coordinates, torus, folded, .. } = weighed.origin;
         let torus = torus.expect("the box was asked for");
+        let Some(box_volume) = torus.volume() else {
+            fail!("pores are of boxes that repeat along all three vectors, and this one does not" => "measure the voids of its balls: walpha balls FILE -o voids.csv");
+        };
         let balls = Balls::of(weighed.points, alpha, torus)?;
         let frame = progress.watch(|| {
             Stage::Filtration.begin()?;
@@ -92,7 +95,7 @@ impl Pores {
             points: balls.radii.len(),
             folded,
             coordinates,
-            box_volume: torus.volume(),
+            box_volume,
             vectors: torus.vectors(),
             radii: balls.range(),
             power_distance: balls.common.is_none(),

@@ -196,7 +196,7 @@ const HELP: &[(&str, &str, &str)] = &[
     (
         "periodic",
         "BOX",
-        "Periodic box, in the unit of the points, which then lie on a torus: its sides, as in 10,10,20; lengths and angles, as in 10,10,15,90,90,120; three vectors, as nine numbers; or cell, that of the file",
+        "Periodic box, in the unit of the points, which then lie on a torus: its sides, as in 10,10,20; lengths and angles, as in 10,10,15,90,90,120; three vectors, as nine numbers; or cell, that of the file. Where points repeat in some directions only, these follow, as in 10,10,20:xy, or stand alone for the cell of the file, as xy",
     ),
     (
         "keep",

@@ -42,7 +42,7 @@ impl fmt::Display for Finding {
             Self::HullWraps { first, facet } => wraps(f, first, facet),
             Self::OpenFacet { facet } => write!(
                 f,
-                "{facet} has a cell on one side only, and a whole triangulation of a torus has no boundary"
+                "{facet} has a cell on one side only, and a whole triangulation of a torus has no boundary there"
             ),
             Self::Volume { cells, hull } => volume(f, cells, hull),
             Self::Class { simplex, given, expected, radius_squared, refuted_by } => {

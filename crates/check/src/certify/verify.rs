@@ -272,6 +272,8 @@ fn apply(
     let boundary = match (claim.extent, torus) {
         (Extent::Shape, _) => Boundary::Any,
         (Extent::Whole, None) => Boundary::Hull,
+        // The boundary is judged where the points of the box are known.
+        (Extent::Whole, Some(torus)) if torus.has_hull() => Boundary::Any,
         (Extent::Whole, Some(torus)) => Boundary::NoneAt { box_points: torus.points },
     };
     let judge = Judge {

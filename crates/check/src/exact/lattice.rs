@@ -96,6 +96,30 @@ impl Lattice {
     }
 }
 
+/// Compares the part along vector `k` of a way with `halves` halves, where some of three vectors are 0: the way is the sum of the others, each
+/// times its part, and of a way that is perpendicular to all of them.
+pub(crate) fn compare_part(
+    vectors: [[f64; 3]; 3],
+    k: usize,
+    way: [f64; 3],
+    halves: i32,
+) -> Ordering {
+    let lattice = Lattice::through(vectors.into_iter().chain([way]));
+    let is_other = |other: &usize| vectors[*other] != [0.0; 3];
+    let others: Vec<usize> = [(k + 1) % 3, (k + 2) % 3].into_iter().filter(is_other).collect();
+    let way = lattice.big(way);
+    let vectors = vectors.map(|vector| lattice.big(vector));
+    // Perpendicular to the others, and in the span of all.
+    let normal = match others[..] {
+        [] => vectors[k].clone(),
+        [u] => cross(&vectors[u], &cross(&vectors[k], &vectors[u])),
+        _ => cross(&vectors[others[0]], &vectors[others[1]]),
+    };
+    let unit = dot(&vectors[k], &normal);
+    let beyond = (dot(&way, &normal) << 1) - &unit * IBig::from(halves);
+    if sign(&unit).is_lt() { sign(&beyond).reverse() } else { sign(&beyond) }
+}
+
 fn det4<T: Number>([a, b, c, d]: [[T; 3]; 4]) -> T {
     dot(&cross(&minus(&b, &a), &minus(&c, &a)), &minus(&d, &a))
 }

@@ -16,7 +16,7 @@ mod wide;
 
 pub(crate) use center::RoundedSphere;
 pub(crate) use frame::WeightedPoint;
-pub(crate) use lattice::{Lattice, Lift, Star};
+pub(crate) use lattice::{Lattice, Lift, Star, compare_part};
 pub(crate) use predicates::{Side, collinear, in_conflict, orientation, radius, side};
 pub use value::Exact;
 pub(crate) use value::{power_value, radius_value, six_volume};

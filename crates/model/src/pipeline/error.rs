@@ -83,11 +83,6 @@ pub enum PipelineError {
     /// The periodic box was to be the cell that the input states, and it states none.
     #[error("the input does not state a cell in which its points repeat")]
     NoCell,
-    /// The periodic box was to be the cell that the input states, along some of whose vectors points do not repeat.
-    #[error(
-        "the points of the input repeat along some vectors of its cell only, which is not supported"
-    )]
-    PartlyPeriodic,
     /// The cell that the input states cannot be periodic.
     #[error(transparent)]
     Torus(#[from] TorusError),
@@ -123,11 +118,6 @@ impl Advise for PipelineError {
                 advice!["give weights as a column of the input, or omit ", Setting::Periodic]
             }
             Self::NoCell => advice!["give ", Setting::Periodic, " the sides or vectors of the box"],
-            Self::PartlyPeriodic => advice![
-                "give ",
-                Setting::Periodic,
-                " vectors that are long enough to keep copies apart where points do not repeat"
-            ],
             Self::Radii { radius } => {
                 advice!["give a number, as in ", Setting::Alpha, format!(" {radius}")]
             }

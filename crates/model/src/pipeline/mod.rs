@@ -18,6 +18,7 @@ pub use groups::{GroupShape, Groups, GroupsError};
 pub use input::{GrayVolume, Input, Opened, PlacedVolume, Values};
 pub use parameter::{AlphaRule, Parameter, ParameterOrigin};
 pub use periodic::PeriodicBox;
+pub(crate) use periodic::directions;
 pub use recipe::Recipe;
 #[doc(hidden)]
 pub use recipe::paper;

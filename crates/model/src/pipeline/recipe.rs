@@ -425,7 +425,7 @@ mod tests {
         assert_eq!(serde_json::from_str::<Recipe>("{}").unwrap(), Recipe::new());
         assert_eq!(Recipe::new().to_json(), "{}");
         assert_eq!(Recipe::new().hidden(true).to_json(), r#"{"hidden":true}"#);
-        let wrong = [r#"{"alfa": "1"}"#, r#"{"alpha": "nan"}"#, r#"{"periodic": [1, 0, 1]}"#];
+        let wrong = [r#"{"alfa": "1"}"#, r#"{"alpha": "nan"}"#, r#"{"periodic": [1, -1, 1]}"#];
         for text in wrong {
             assert!(serde_json::from_str::<Recipe>(text).is_err(), "{text}");
         }

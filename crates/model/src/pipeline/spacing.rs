@@ -82,13 +82,18 @@ fn eighth(tree: &RTree<Neighbour>, from: &[f64; 3], torus: Option<Torus>) -> f64
         return squares.get(NEIGHBOURS).or(squares.last()).copied().unwrap_or_default();
     };
     // Within this distance along the shortest vector, in both directions, there are eight copies of the position itself.
-    let shortest = torus.vectors().map(|[x, y, z]| x.hypot(y).hypot(z));
-    let enough = (NEIGHBOURS / 2) as f64 * shortest.into_iter().fold(f64::INFINITY, f64::min);
+    let lengths = torus.vectors().map(|[x, y, z]| x.hypot(y).hypot(z));
+    let shortest = lengths.into_iter().filter(|length| *length > 0.0).fold(f64::INFINITY, f64::min);
+    let enough = (NEIGHBOURS / 2) as f64 * shortest;
     let steps = |k: usize| {
+        if !torus.repeats()[k] {
+            return 0..=0;
+        }
         let [below, above] = torus.part_range(k, [-enough; 3], [enough; 3]);
         below.floor() as i32 - 1..=above.ceil() as i32 + 1
     };
-    let extent = torus.extent();
+    let envelope = tree.root().envelope();
+    let extent = [envelope.lower(), envelope.upper()];
     let copies =
         steps(0).flat_map(|x| steps(1).flat_map(move |y| steps(2).map(move |z| [x, y, z])));
     for windings in copies.filter(|&windings| windings != [0; 3]) {

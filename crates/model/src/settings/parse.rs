@@ -4,13 +4,14 @@ use std::fmt::Display;
 use std::str::FromStr;
 
 use walpha_base::advice::Advise;
+use walpha_complex::schema::BoxVectors;
 use walpha_points::{Cell, Models, Radii};
 use walpha_shape::{Alpha, Torus};
 use walpha_volume::{Dims, GrayRange, Nan, Region};
 
 use super::SettingError;
 use super::choices::Named;
-use crate::pipeline::PeriodicBox;
+use crate::pipeline::{PeriodicBox, directions};
 
 /// Returns an error: what is wrong, and after `=>` what to do.
 macro_rules! fail {
@@ -222,25 +223,39 @@ pub(super) fn alpha_radius(text: &str) -> Result<Alpha, SettingError> {
     Alpha::from_radius(number(text)?).map_err(|error| SettingError::of(&error))
 }
 
-/// Three sides, three lengths and angles, or three vectors of a periodic box, or that of the input.
+/// Three sides, three lengths and angles, or three vectors of a periodic box, or that of the input; and the directions in which points repeat,
+/// if not in all.
 pub(super) fn periodic(text: &str) -> Result<PeriodicBox, SettingError> {
     if text == "cell" {
         return Ok(PeriodicBox::Stated);
     }
+    if let Some(repeats) = directions(text) {
+        return Ok(PeriodicBox::StatedAlong(repeats));
+    }
+    let (text, repeats) = match text.split_once(':') {
+        None => (text, [true; 3]),
+        Some((text, names)) => match directions(names) {
+            Some(repeats) => (text, repeats),
+            None => {
+                fail!("`{names}` does not name directions in which points repeat" => "give some of x, y and z, which stand for the three vectors, as in 10,10,20:xy")
+            }
+        },
+    };
     let numbers: Vec<f64> = text.split(',').map(number).collect::<Result<_, _>>()?;
     let torus = match numbers[..] {
-        [x, y, z] => Torus::new([x, y, z]),
+        [x, y, z] if repeats == [true; 3] => Torus::new([x, y, z]),
+        [x, y, z] => Torus::repeating(BoxVectors::of_sides([x, y, z]).0, repeats),
         [a, b, c, alpha, beta, gamma] => {
             let Some(cell) = Cell::of_angles([a, b, c], [alpha, beta, gamma]) else {
                 fail!("no three vectors have the angles {alpha}°, {beta}° and {gamma}°" => "give the angles of b with c, a with c, and a with b in degrees, as in 10,10,15,90,90,120");
             };
-            Torus::of_vectors(cell.vectors)
+            Torus::repeating(cell.vectors, repeats)
         }
         [ax, ay, az, bx, by, bz, cx, cy, cz] => {
-            Torus::of_vectors([[ax, ay, az], [bx, by, bz], [cx, cy, cz]])
+            Torus::repeating([[ax, ay, az], [bx, by, bz], [cx, cy, cz]], repeats)
         }
         _ => {
-            fail!("{} numbers do not describe a periodic box", numbers.len() => "give three sides, as in 10,10,20, three lengths and three angles, as in 10,10,15,90,90,120, nine numbers of three vectors, or `cell` for the cell that the file states")
+            fail!("{} numbers do not describe a periodic box", numbers.len() => "give three sides, as in 10,10,20, three lengths and three angles, as in 10,10,15,90,90,120, nine numbers of three vectors, `cell` for the cell that the file states, or xy for that cell along its first two vectors")
         }
     };
     torus.map(PeriodicBox::Given).map_err(|error| SettingError::of(&error))
@@ -319,6 +334,25 @@ fn region(ends: [[&str; 2]; 3], open: bool) -> Result<walpha_points::Region, Set
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Directions follow numbers, or stand for the cell that the file states.
+    #[test]
+    fn boxes_repeat_in_the_directions_named() {
+        let given = |text: &str| periodic(text).unwrap().given().unwrap();
+        assert_eq!(given("4,5,6").repeats(), [true; 3]);
+        let slab = given("4,5,6:xz");
+        assert_eq!(slab.sides(), Some([4.0, 0.0, 6.0]));
+        assert_eq!(given("4,4,6,90,90,120:xy").repeats(), [true, true, false]);
+        assert_eq!(given("0,2,2,1,0,0,0,0,0:x").vectors()[0], [0.0, 2.0, 2.0]);
+        assert_eq!(periodic("yx").unwrap(), PeriodicBox::StatedAlong([true, true, false]));
+        for text in ["4,5,6:", "4,5,6:xx", "4,5,6:ab", "4,5,0", "4,5,0:xz", "xxy", "cell:xy", ""] {
+            assert!(periodic(text).is_err(), "{text}");
+        }
+        for recipe in [r#""xy""#, "[4.0,0.0,6.0]", r#""cell""#] {
+            let read: PeriodicBox = serde_json::from_str(recipe).unwrap();
+            assert_eq!(serde_json::to_string(&read).unwrap(), recipe);
+        }
+    }
 
     #[test]
     fn both_kinds_of_ranges_are_read() {

@@ -4,6 +4,7 @@ mod levels;
 mod numbers;
 mod outofcore;
 mod progress;
+mod slabs;
 mod solid;
 
 /// Whether `sample:skull` can be read. It comes with CGAL's demo package, which a machine need

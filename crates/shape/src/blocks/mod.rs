@@ -25,9 +25,11 @@ mod run;
 mod spanning;
 mod torus;
 
-pub(super) use block::BlockParams;
+pub(super) use block::{Block, BlockParams};
 pub use block_shape::{BlockShape, Own, Side, block_shape};
-pub(crate) use partition::Reach;
+pub(crate) use classify::Long;
+pub(crate) use partition::{Partition, Reach};
 pub use plan::AT_WORK;
 pub(super) use plan::{Limits, Plan};
 pub(super) use run::run;
+pub(crate) use torus::too_long;

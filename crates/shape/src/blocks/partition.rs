@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use rayon::prelude::*;
+use walpha_regular::Torus;
 use walpha_regular::internals::Sites;
 
 use super::block::{Block, Copies};
@@ -130,8 +131,12 @@ impl Partition {
     ) {
         let leaf = self.leaves[block];
         let own = &self.nodes[leaf];
-        let near =
-            |low, high, heaviest| own.reaches(low, high, reach.distance(own.heaviest, heaviest));
+        let near = |low, high, heaviest| match reach {
+            Reach::Along(distance) => {
+                sites.torus().is_none_or(|torus| own.reaches_along(torus, low, high, distance))
+            }
+            _ => own.reaches(low, high, reach.distance(own.heaviest, heaviest)),
+        };
         for windings in self.windings(sites, own, reach) {
             let moved = |position| match sites.torus() {
                 None => position,
@@ -169,6 +174,9 @@ impl Partition {
         let low = [0, 1, 2].map(|k| own.low[k] - all.high[k] - reach);
         let high = [0, 1, 2].map(|k| own.high[k] - all.low[k] + reach);
         let along = |k: usize| {
+            if !torus.repeats()[k] {
+                return 0..=0;
+            }
             // Rounded outward, so that no copy in reach is missed.
             let [below, above] = torus.part_range(k, low, high);
             below.floor() as i32..=above.ceil() as i32
@@ -190,6 +198,8 @@ pub(crate) enum Reach {
     Balls(f64),
     /// The points within this distance, for balls of any size.
     Distance(f64),
+    /// The points within this distance as measured along the vectors of a torus that does not repeat along all of them, and possibly more.
+    Along(f64),
 }
 
 impl Reach {
@@ -198,15 +208,28 @@ impl Reach {
     /// Of the copies of the heaviest point, one is within half a diagonal of any place z, so the
     /// largest empty orthogonal sphere has R² + max ω ≤ (diagonal / 2)². A vertex v of it is at √(R² + ω(v))
     /// from its centre, no more than half a diagonal, and so is any point that could refute it.
+    ///
+    /// On a torus that does not repeat along all vectors, empty spheres may have any size. But a vertex of one is the nearest to its centre among
+    /// its own copies. So it is at most half a diagonal from the centre along the vectors, and all vertices of a simplex are within a
+    /// diagonal of each other. Hence the points within a diagonal of the block have all simplices at its points, which fill the space around
+    /// these as far as there is any within the hull: no triangulation of these points has others there.
     pub(crate) fn whole(sites: &Sites<'_>) -> Self {
-        Self::Distance(sites.torus().map_or(f64::INFINITY, |torus| torus.diagonal()))
+        match sites.torus() {
+            None => Self::Distance(f64::INFINITY),
+            Some(torus) if torus.dimension() < 3 => Self::Along(torus.diagonal()),
+            Some(torus) => Self::Distance(torus.diagonal()),
+        }
     }
 
     /// The extent that decides the shape at α.
     pub(crate) fn at(sites: &Sites<'_>, alpha: f64, heaviest: f64) -> Self {
         let whole = Self::whole(sites);
         match whole {
-            Self::Distance(most) if 2.0 * (alpha + heaviest).max(0.0).sqrt() >= most => whole,
+            Self::Distance(most) | Self::Along(most)
+                if 2.0 * (alpha + heaviest).max(0.0).sqrt() >= most =>
+            {
+                whole
+            }
             _ => Self::Balls(alpha),
         }
     }
@@ -217,7 +240,7 @@ impl Reach {
     pub(crate) fn distance(self, weight: f64, other: f64) -> f64 {
         match self {
             Self::Balls(alpha) => (alpha + weight).max(0.0).sqrt() + (alpha + other).sqrt(),
-            Self::Distance(distance) => distance,
+            Self::Distance(distance) | Self::Along(distance) => distance,
         }
     }
 }
@@ -282,6 +305,19 @@ impl Node {
         let side = |k: usize| self.high[k] - self.low[k];
         // Of equal sides, choose the last, along which the samples of a volume are farthest apart in memory.
         (0..3).max_by(|&a, &b| side(a).total_cmp(&side(b))).unwrap_or(2)
+    }
+
+    /// Whether a box may be within a distance of this one, as measured along the vectors of a torus.
+    fn reaches_along(&self, torus: Torus, low: [f64; 3], high: [f64; 3], distance: f64) -> bool {
+        let least = [0, 1, 2].map(|axis| self.low[axis] - high[axis]);
+        let most = [0, 1, 2].map(|axis| self.high[axis] - low[axis]);
+        let repeats = torus.repeats();
+        (0..3).filter(|&k| repeats[k]).all(|k| {
+            let [below, above] = torus.part_range(k, least, most);
+            // A way has no larger part than its length in units of the height of the box over the other vectors.
+            let part = distance / torus.height(k) * (1.0 + MARGIN);
+            below <= part && above >= -part
+        })
     }
 
     /// Whether the distance of a box from this one is at most `reach`; `false` for NaN.

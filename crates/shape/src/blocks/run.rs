@@ -21,7 +21,7 @@ pub(crate) fn run(
     monitor: &Monitor,
 ) -> Result<MergedComplex, ShapeError> {
     let partition = &plan.partition;
-    if sites.torus().is_none() {
+    if sites.torus().is_none_or(|torus| torus.dimension() < 3) {
         check_span(sites).map_err(TriangulationError::from)?;
     }
     tracing::debug!(blocks = partition.len(), at_once = plan.at_once, "cut");

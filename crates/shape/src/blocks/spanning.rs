@@ -20,6 +20,9 @@ pub(super) fn spanning(
             // Weights below −α make the balls empty; the factor 2 allows for roundings.
             block.weights.extend(auxiliary.iter().map(|_| -(2.0 * alpha.max(0.0) + 1.0).ceil()));
             block.input.extend((next..).take(auxiliary.len()));
+            if let Some(copies) = &mut block.copies {
+                copies.windings.extend(auxiliary.iter().map(|_| [0; 3]));
+            }
             block.positions.extend(auxiliary);
             triangulate(block, work)
         }

@@ -9,6 +9,7 @@ use walpha_regular::{SitesError, Torus, TriangulationError};
 use super::block::{Block, BlockParams, triangulate};
 use super::classify::Long;
 use super::partition::{Partition, Reach};
+use super::run::in_space;
 use crate::ShapeError;
 
 /// A block with its halo, its triangulation, and the lattice of its points. The halo is as large as the largest empty
@@ -21,7 +22,10 @@ pub(super) fn on_torus(
     params: &BlockParams,
     work: &Units<'_>,
 ) -> Result<(Block, CellArrays, Lattice), ShapeError> {
-    for reach in params.reaches(sites, torus) {
+    let Some(volume) = torus.volume() else {
+        return on_slab(sites, partition, block, params, work);
+    };
+    for reach in params.reaches(sites, volume) {
         let points = partition.block(sites, reach, block);
         match triangulate(&points, work) {
             Err(TriangulationError::Sites(SitesError::Flat { .. })) => {}
@@ -34,6 +38,24 @@ pub(super) fn on_torus(
     Ok((points, made, params.lattice))
 }
 
+/// The same for a torus that does not repeat along all vectors: the points may have an outside, as in space.
+fn on_slab(
+    sites: &Sites<'_>,
+    partition: &Partition,
+    block: usize,
+    params: &BlockParams,
+    work: &Units<'_>,
+) -> Result<(Block, CellArrays, Lattice), ShapeError> {
+    match params.wanted(sites) {
+        Reach::Balls(_) => in_space(sites, partition, block, params, work),
+        whole => {
+            let points = partition.block(sites, whole, block);
+            let made = triangulate(&points, work)?;
+            Ok((points, made, params.lattice))
+        }
+    }
+}
+
 /// Squared radii of spheres for which halos are tried, in squares of the mean spacing of points. The largest empty spheres of
 /// evenly distributed points have radii of at most about twice the spacing, so the first halo is usually enough, and it is much
 /// smaller than the halo for a large α.
@@ -41,14 +63,20 @@ const SQUARED_RADII: [f64; 3] = [4.0, 16.0, 64.0];
 
 impl BlockParams {
     /// The halos to try, in this order, before that of the whole triangulation.
-    fn reaches(&self, sites: &Sites<'_>, torus: Torus) -> Vec<Reach> {
-        let heaviest = sites.weights().iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    fn reaches(&self, sites: &Sites<'_>, volume: f64) -> Vec<Reach> {
+        let heaviest = heaviest(sites);
         let wanted = if self.exterior { f64::INFINITY } else { self.alpha };
-        let spacing = (torus.volume() / sites.input().len() as f64).cbrt();
+        let spacing = (volume / sites.input().len() as f64).cbrt();
         let squares = SQUARED_RADII.map(|times| times * spacing * spacing);
         let fewer = squares.into_iter().filter(|square| 4.0 * square <= wanted + heaviest);
-        let reaches = fewer.map(|square| square - heaviest).chain([wanted]);
-        reaches.map(|alpha| Reach::at(sites, alpha, heaviest)).collect()
+        let fewer = fewer.map(|square| Reach::at(sites, square - heaviest, heaviest));
+        fewer.chain([self.wanted(sites)]).collect()
+    }
+
+    /// The halo that decides what is asked for, whatever the points.
+    fn wanted(&self, sites: &Sites<'_>) -> Reach {
+        let alpha = if self.exterior { f64::INFINITY } else { self.alpha };
+        Reach::at(sites, alpha, heaviest(sites))
     }
 
     /// Whether the triangulation of a block with a halo decides the block. A halo for a smaller α does if no
@@ -66,8 +94,12 @@ impl BlockParams {
     }
 }
 
+fn heaviest(sites: &Sites<'_>) -> f64 {
+    sites.weights().iter().copied().fold(f64::NEG_INFINITY, f64::max)
+}
+
 /// The error for an edge that spans half of the box.
-pub(super) fn too_long(torus: Torus, Long { edge, ends }: Long) -> ShapeError {
+pub(crate) fn too_long(torus: Torus, Long { edge, ends }: Long) -> ShapeError {
     let parts = torus.parts([0, 1, 2].map(|k| ends[1][k] - ends[0][k]));
     let longest = (0..3).max_by(|&a, &b| parts[a].abs().total_cmp(&parts[b].abs())).unwrap_or(0);
     let [x, y, z] = torus.vectors()[longest];
@@ -114,7 +146,7 @@ mod tests {
             (f64::INFINITY, false, vec![one, two, all, all]),
             (1.0, true, vec![one, two, all, all]),
         ] {
-            assert_eq!(params(alpha, exterior, &sites).reaches(&sites, torus), expected);
+            assert_eq!(params(alpha, exterior, &sites).reaches(&sites, 512.0), expected);
         }
     }
 

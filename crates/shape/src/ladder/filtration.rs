@@ -1,3 +1,5 @@
+use std::cmp::Ordering;
+
 use walpha_base::{Monitor, memory};
 use walpha_regular::Torus;
 use walpha_regular::internals::Predicates;
@@ -6,7 +8,7 @@ use super::build::Incidence;
 use super::build::incidence_and_radii;
 use super::build::{Radii, Radius};
 use crate::make::in_large_box;
-use crate::winding::Winding;
+use crate::winding::{Winding, WindingSets};
 use crate::{
     Alpha, AlphaShape, Complex, Engine, ShapeError, ShapeOptions, WeightedPoints, between,
 };
@@ -73,10 +75,19 @@ impl Filtration {
         let rest = monitor.part(4, 8, 8);
         let done = |parts| rest.report(parts, 4);
         let WeightedPoints { positions, weights, .. } = whole.points();
-        let spheres = Predicates::on_torus(positions, weights, torus);
+        let spheres = Predicates::on_torus(positions, weights, whole.options().periodic);
         let (incidence, radii) = incidence_and_radii(complex, positions, &spheres, done)?;
         rest.report(4, 4)?;
         Ok(Self { whole, incidence, radii })
+    }
+
+    /// The way from a facet to the corner of a cell, by row, that is opposite; `None` if there is no cell.
+    fn apex_of(&self, cell: u32, facet: usize) -> Option<[f64; 3]> {
+        let facets = self.incidence.cell_facets.get(cell as usize)?;
+        let apex = facets.iter().position(|&of| of as usize == facet)?;
+        let corners = self.whole.corners(self.whole.complex().cells.rows()[cell as usize]);
+        let [to, from] = [apex, (apex + 1) % 4].map(|at| corners[at]);
+        Some([0, 1, 2].map(|axis| to[axis] - from[axis]))
     }
 
     /// The bytes of a filtration of these simplices, without the simplices and levels.
@@ -110,9 +121,14 @@ impl Filtration {
 
     /// The shape at α, equal to that of [`alpha_shape`](crate::alpha_shape()). O(n log n).
     pub fn shape(&self, alpha: Alpha) -> AlphaShape {
+        self.shape_with(alpha, false)
+    }
+
+    /// The shape at α, with exterior simplices if they are wanted.
+    pub(crate) fn shape_with(&self, alpha: Alpha, exterior: bool) -> AlphaShape {
         let levels = self.levels(&[alpha]);
         let [betti] = levels.betti()[..] else { unreachable!("one level") };
-        levels.shape(0, false, betti)
+        levels.shape(0, exterior, betti)
     }
 
     pub(super) fn spheres(&self) -> Predicates<'_> {
@@ -120,8 +136,34 @@ impl Filtration {
         Predicates::on_torus(positions, weights, self.whole.nearest())
     }
 
-    /// The multiples of the vectors by which the second cell of a facet of a torus is to be moved so that the facet coincides in both.
+    /// The sets of a union-find over cells on a torus, and over what is [outside](WindingSets::with_outside), whose number follows that of the
+    /// last cell.
+    pub(super) fn complement_sets(&self, torus: Torus) -> WindingSets {
+        WindingSets::with_outside(self.whole.complex().cells.len(), torus)
+    }
+
+    /// What is on both sides of a facet: the rows of cells, and the number that follows that of the last cell for what is outside.
+    pub(super) fn sides(&self, facet: usize) -> [u32; 2] {
+        let outside = self.whole.complex().cells.len() as u32;
+        let sides = self.incidence.facet_cells[facet];
+        sides.map(|side| if side == Incidence::OUTSIDE { outside } else { side })
+    }
+
+    /// The multiples of the vectors by which what is on the second side of a facet of a torus is to be moved so that the facet coincides in both.
+    /// What is outside of a slab, below and above, is one: below is what is above, moved down by one of the vectors of a torus in which the slab
+    /// would lie.
     pub(super) fn way_across(&self, torus: Torus, facet: usize) -> Winding {
+        let out = torus.repeats().iter().position(|repeats| !repeats);
+        if let (Some(out), [side, Incidence::OUTSIDE]) = (out, self.incidence.facet_cells[facet]) {
+            let mut way = [0; 3];
+            if torus.dimension() == 2 {
+                way[out] = match self.apex_of(side, facet) {
+                    None => 1,
+                    Some(apex) => -i32::from(torus.across(apex) == Some(Ordering::Greater)),
+                };
+            }
+            return way;
+        }
         if let Some(&way) = self.incidence.ways.get(facet) {
             return way;
         }

@@ -28,6 +28,8 @@ mod critical;
 mod filtration;
 mod levels;
 mod ordered;
+#[cfg(test)]
+mod slabs;
 mod small;
 mod table;
 mod topology;

@@ -21,7 +21,9 @@ use super::build::{Incidence, Radii};
 use crate::copies::{Copier, Divided, Key, faces, key};
 use crate::make::in_large_box;
 use crate::winding::{minus, plus};
-use crate::{AlphaShape, Class, Complex, ShapeError, ShapeOptions, Simplices, WeightedPoints};
+use crate::{
+    Alpha, AlphaShape, Class, Complex, ShapeError, ShapeOptions, Simplices, WeightedPoints,
+};
 
 /// Copies of a box along its three vectors.
 type Times = [u32; 3];
@@ -132,7 +134,7 @@ impl Cover {
             Some(copies) if u32::try_from(copies).is_ok() => {}
             _ => return Err(SitesError::TooMany(copies.unwrap_or(usize::MAX)).into()),
         }
-        let [small, torus] = torus.covered(times);
+        let [small, torus] = torus.holding(&points.positions)?.covered(times);
         points.positions.iter_mut().for_each(|place| *place = small.wrap(*place));
         Ok(Self { small, torus, times, points })
     }
@@ -233,7 +235,8 @@ impl Cover {
             .iter()
             .map(|sides| match sides[..] {
                 [(a, of_a), (b, of_b)] => ([a, b], minus(of_a, of_b)),
-                _ => unreachable!("a facet of a torus has cells on both sides"),
+                [(a, _)] => ([a, Incidence::OUTSIDE], [0; 3]),
+                _ => ([Incidence::OUTSIDE; 2], [0; 3]),
             })
             .unzip();
         let mut vertex_rows = vec![0; self.points.len()];
@@ -253,7 +256,7 @@ impl Cover {
         let hidden =
             whole.hidden().map(|hidden| hidden.iter().copied().filter(|&v| is_own(v)).collect());
         let duplicates = whole.duplicates().iter().copied().filter(|&[v, _]| is_own(v)).collect();
-        // All of the torus is solid.
+        // All of a torus is solid.
         let complex = Complex {
             cells: interior(cell_rows),
             facets: interior(facet_rows),
@@ -263,7 +266,12 @@ impl Cover {
         let Self { small: torus, points, .. } = self;
         let by = Divided { torus, points, complex, hidden, duplicates, copied };
         let whole = whole.divided(by);
-        Filtration { whole, incidence, radii }
+        let mut divided = Filtration { whole, incidence, radii };
+        if torus.dimension() < 3 {
+            // There is a boundary.
+            divided.whole = divided.shape_with(Alpha::INFINITE, true);
+        }
+        divided
     }
 }
 
@@ -311,7 +319,7 @@ fn interior<const N: usize>(rows: Vec<[u32; N]>) -> Simplices<N> {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use walpha_base::random::Random;
 
     use super::*;
@@ -329,7 +337,7 @@ mod tests {
     }
 
     /// The points of a box, with or without weights.
-    fn random_points(seed: u64, count: usize, weight: f64) -> WeightedPoints {
+    pub(in crate::ladder) fn random_points(seed: u64, count: usize, weight: f64) -> WeightedPoints {
         let mut random = Random::new(seed);
         let positions = (0..count).map(|_| [0; 3].map(|_| 4.0 * random.unit())).collect();
         let weights = (0..count).map(|_| weight * random.unit()).collect();
@@ -427,7 +435,7 @@ mod tests {
             assert_eq!(ordered.values().last().unwrap().squared(), largest);
             let whole = filtration.whole();
             assert_eq!(whole.betti(), Some(Betti { b0: 1, b1: 3, b2: 3, b3: Some(1) }));
-            assert_eq!(whole.measures().volume, whole.options().periodic.unwrap().volume());
+            assert_eq!(Some(whole.measures().volume), whole.options().periodic.unwrap().volume());
             assert_eq!(whole.components().len(), 1);
             assert!(whole.complex().cells.rows().iter().all(|cell| cell[0] == 0));
         }
@@ -466,7 +474,7 @@ mod tests {
     }
 
     /// Rational Betti numbers of the simplices up to a rank, by the ranks of boundary matrices modulo a prime.
-    fn betti_by_ranks(ordered: &Ordered<'_>, rank: u32) -> [usize; 4] {
+    pub(in crate::ladder) fn betti_by_ranks(ordered: &Ordered<'_>, rank: u32) -> [usize; 4] {
         const PRIME: i64 = 1_000_003;
         let incidence = &ordered.filtration().incidence;
         let is_in = |number: usize| ordered.simplex(number as u32).rank <= rank;

@@ -11,7 +11,6 @@ use walpha_regular::Torus;
 use walpha_regular::internals::{Interval, Predicates};
 
 use super::Levels;
-use super::build::Incidence;
 use super::levels::ByLevel;
 use crate::{Betti, Directions, Hollow, United, Void, WindingSets};
 
@@ -125,7 +124,7 @@ pub(super) struct UpperBetti {
 enum Sets {
     /// Includes the outside, whose number follows that of the last cell.
     InSpace(UnionFind),
-    /// Includes the directions in which all of them together wind round.
+    /// Includes what is [outside](WindingSets::with_outside), and the directions in which all of them together wind round.
     OnTorus(Box<Torus>, WindingSets, Directions),
 }
 
@@ -159,7 +158,6 @@ impl Levels<'_> {
 
     /// Visits the complement of each level, from the last to the first.
     pub(super) fn descend(&self, mut visit: impl FnMut(usize, &mut LevelComplement<'_>)) {
-        let incidence = &self.filtration.incidence;
         let cells = ByLevel::new(self.len(), self.cells.iter().copied());
         let facets = ByLevel::new(self.len(), self.facets.iter().map(|span| span.first));
         let whole = &self.filtration.whole;
@@ -167,12 +165,12 @@ impl Levels<'_> {
             let radius = Interval::around(self.filtration.radii.cells[row]);
             Hollow::of(radius, whole.corners(cell))
         };
-        let outside = self.cells.len() as u32;
         let (sets, count) = match self.filtration.torus() {
             None => (Sets::InSpace(UnionFind::new(self.cells.len() + 1)), 1),
             Some(torus) => {
-                let sets = WindingSets::new(self.cells.len());
-                (Sets::OnTorus(Box::new(torus), sets, Directions::default()), 0)
+                let sets = self.filtration.complement_sets(torus);
+                let (rounds, count) = (sets.directions(), sets.winding_sets() as u64);
+                (Sets::OnTorus(Box::new(torus), sets, rounds), count)
             }
         };
         let mut complement = LevelComplement {
@@ -182,7 +180,7 @@ impl Levels<'_> {
             hollows: whole.complex().cells.rows().iter().enumerate().map(hollow).collect(),
             roots: Vec::new(),
             count,
-            next: (0..outside).collect(),
+            next: (0..self.cells.len() as u32).collect(),
             known: BTreeMap::new(),
         };
         for level in (0..self.len()).rev() {
@@ -190,9 +188,7 @@ impl Levels<'_> {
             complement.count += gone.len() as u64;
             complement.roots.extend_from_slice(gone);
             for &facet in facets.at(level + 1) {
-                let sides = incidence.facet_cells[facet as usize]
-                    .map(|side| if side == Incidence::OUTSIDE { outside } else { side });
-                complement.join(sides, facet);
+                complement.join(self.filtration.sides(facet as usize), facet);
             }
             visit(level, &mut complement);
         }
@@ -216,7 +212,10 @@ impl LevelComplement<'_> {
                 if let United::Round(way) = united {
                     rounds.add(way);
                 }
-                self.hollows[high as usize].moved(**torus, sets.find(high).1);
+                // What is outside has no sums.
+                if let Some(hollow) = self.hollows.get_mut(high as usize) {
+                    hollow.moved(**torus, sets.find(high).1);
+                }
                 united == United::Two
             }
         };
@@ -238,7 +237,8 @@ impl LevelComplement<'_> {
 
     /// The Betti numbers that the number of components determines, and on a torus the directions in which they
     /// go round: b2 and b3 (Alexander duality, and on a torus the exact sequence of the pair of it and the
-    /// complement: H₁(complement) → H₁(torus) → H²(shape) → H₀(complement) → H₀(torus) → H³(shape)).
+    /// complement: H₁(complement) → H₁(torus) → H²(shape) → H₀(complement) → H₀(torus) → H³(shape)). A torus that does not repeat along
+    /// all vectors is one in which the shape leaves a gap.
     pub(super) fn closed(&self) -> UpperBetti {
         match &self.sets {
             Sets::InSpace(_) => UpperBetti { b2: self.count - 1, b3: None },

@@ -28,7 +28,7 @@ pub(in crate::blocks) struct Owned {
 
 /// An edge by its input indices, and its ends.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::blocks) struct Long {
+pub(crate) struct Long {
     pub edge: [u32; 2],
     pub ends: [[f64; 3]; 2],
 }

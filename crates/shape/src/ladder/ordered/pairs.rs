@@ -7,7 +7,6 @@ use walpha_regular::internals::parallel::join;
 
 use super::{Ordered, Pairs};
 use crate::ladder::Filtration;
-use crate::ladder::build::Incidence;
 use crate::{Directions, Torus, United, WindingSets};
 
 impl Ordered<'_> {
@@ -64,7 +63,7 @@ impl Ordered<'_> {
             .torus()
             .map(|torus| ComplementWindings::new(torus, self.filtration()));
         let mut found = Pairs { voids: Vec::with_capacity(cells), ..Pairs::default() };
-        if ways.is_some() {
+        if ways.as_ref().is_some_and(|ways| ways.torus.dimension() == 3) {
             found.last = self.order.iter().rev().copied().find(|&s| s >= of_cells);
         }
         self.each_facet_of_complement(|simplex, row, sides, merged| {
@@ -90,13 +89,12 @@ impl Ordered<'_> {
         });
     }
 
-    /// Visits the facets, backwards, with their numbers, their rows, the rows of the cells on both sides, and the eldest cells of the
+    /// Visits the facets, backwards, with their numbers, their rows, what is on [both sides](Filtration::sides), and the eldest cells of the
     /// two components that each merges, if it does.
     fn each_facet_of_complement(
         &self,
         mut visit: impl FnMut(u32, usize, [u32; 2], Option<[u32; 2]>),
     ) {
-        let incidence = &self.filtration().incidence;
         let [_, _, of_facets, of_cells] = self.numbers.first;
         let cells = self.cells.len();
         let mut sets = ElderSets::new(cells + 1);
@@ -107,10 +105,8 @@ impl Ordered<'_> {
                 sets.add(self.cell_rows[(simplex - of_cells) as usize], age);
             } else if simplex >= of_facets {
                 let row = (simplex - of_facets) as usize;
-                let sides = incidence.facet_cells[row];
-                let [a, b] =
-                    sides.map(|side| if side == Incidence::OUTSIDE { cells as u32 } else { side });
-                visit(simplex, row, sides, sets.unite(a, b));
+                let sides = self.filtration().sides(row);
+                visit(simplex, row, sides, sets.unite(sides[0], sides[1]));
             }
         }
     }
@@ -126,11 +122,12 @@ struct ComplementWindings<'a> {
 
 impl<'a> ComplementWindings<'a> {
     fn new(torus: Torus, filtration: &'a Filtration) -> Self {
-        let sets = WindingSets::new(filtration.whole.complex().cells.len());
-        Self { torus, filtration, sets, rounds: Directions::default() }
+        let sets = filtration.complement_sets(torus);
+        let rounds = sets.directions();
+        Self { torus, filtration, sets, rounds }
     }
 
-    /// Joins the cells of a facet; returns whether the complement now winds round in a new direction.
+    /// Joins what is on both sides of a facet; returns whether the complement now winds round in a new direction.
     fn open(&mut self, facet: usize, sides: [u32; 2]) -> bool {
         let way = self.filtration.way_across(self.torus, facet);
         match self.sets.unite(sides[0], sides[1], way) {

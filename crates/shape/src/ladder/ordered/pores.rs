@@ -49,11 +49,11 @@ pub struct PorePart {
 }
 
 impl Ordered<'_> {
-    /// The largest spheres between the points of a periodic box; `None` in space. O(n α(n)).
+    /// The largest spheres between the points of a periodic box; `None` unless it repeats along all three vectors. O(n α(n)).
     #[expect(clippy::missing_panics_doc, reason = "an invariant")]
     pub fn pores(&self) -> Option<Pores> {
         let filtration = self.filtration();
-        let torus = filtration.torus()?;
+        let torus = filtration.torus().filter(|torus| torus.dimension() == 3)?;
         let [_, _, of_facets, of_cells] = self.numbers.first;
         let included = self.order().iter().rev().find(|&&number| number >= of_cells);
         let included = self.pore_sphere(*included.expect("a torus has cells"));
@@ -138,9 +138,9 @@ impl Filtration {
     }
 
     /// The parts of a periodic box that balls of squared radius α + ω leave, those that wind round in most directions first, then those of most cells;
-    /// `None` in space. O(n log n).
+    /// `None` unless it repeats along all three vectors. O(n log n).
     pub fn pore_parts(&self, alpha: Alpha) -> Option<Vec<PorePart>> {
-        let torus = self.torus()?;
+        let torus = self.torus().filter(|torus| torus.dimension() == 3)?;
         let levels = self.levels(&[alpha]);
         let is_out = |level: u32| level > 0;
         let mut sets = WindingSets::new(levels.cells.len());
