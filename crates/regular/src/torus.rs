@@ -429,7 +429,6 @@ impl Torus {
 
     /// On which side of the plane of two vectors a way leads, if the box repeats along two: upwards, if the two vectors, in the order of
     /// their names beginning after the one that does not repeat, and the way are right-handed. Exact for multiples of the step.
-    #[expect(clippy::missing_panics_doc, reason = "finite numbers compare")]
     pub fn across(&self, way: [f64; 3]) -> Option<Ordering> {
         let out =
             self.repeats().iter().position(|repeats| !repeats).filter(|_| self.dimension() == 2)?;

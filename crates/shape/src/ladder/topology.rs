@@ -11,6 +11,7 @@ use walpha_regular::Torus;
 use walpha_regular::internals::{Interval, Predicates};
 
 use super::Levels;
+use super::build::Incidence;
 use super::levels::ByLevel;
 use crate::{Betti, Directions, Hollow, United, Void, WindingSets};
 
