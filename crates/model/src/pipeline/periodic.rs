@@ -44,7 +44,7 @@ pub(crate) fn directions(text: &str) -> Option<[bool; 3]> {
     (repeats != [false; 3]).then_some(repeats)
 }
 
-#[derive(Serialize, Deserialize)]
+#[derive(Clone, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
 enum Stated {
     Cell,
