@@ -85,7 +85,7 @@ pub(super) fn flat_on_torus(
         .facets
         .iter()
         .all(|(row, class)| class != Class::Exterior || !row.iter().any(|&v| own(v)));
-    let is_sheet = covers && torus.dimension() == 2 && complex.facets.len() > 0;
+    let is_sheet = covers && torus.dimension() == 2 && !complex.facets.is_empty();
     let complex = Complex {
         cells: Simplices::default(),
         facets: of_box(&complex.facets, &block, is_listed),

@@ -225,10 +225,8 @@ pub(crate) fn domain(weighed: &Weighed, volume: Option<&VolumeSummary>) -> Domai
     if let Some(volume) = volume {
         return Domain { volume: volume.extent, unit, of: "the box of the samples" };
     }
-    if let Some(torus) = weighed.origin.torus {
-        if let Some(volume) = torus.volume() {
-            return Domain { volume, unit, of: "the periodic box" };
-        }
+    if let Some(volume) = weighed.origin.torus.and_then(|torus| torus.volume()) {
+        return Domain { volume, unit, of: "the periodic box" };
     }
     let [low, high] = bounding_box(weighed.points.positions());
     let volume = [0, 1, 2].map(|k| high[k] - low[k]).iter().product();

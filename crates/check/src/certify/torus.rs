@@ -278,14 +278,12 @@ impl Hull {
         let in_plane = |origin: [f64; 3], one: [f64; 3], other: [f64; 3]| {
             places.iter().all(|&place| orientation(origin, one, other, place).is_eq())
         };
-        match self.vectors[..] {
-            [u, v] => self.corners.iter().any(|&p| in_plane(p, sum(p, u), sum(p, v))),
-            _ => {
-                let next = self.corners.iter().cycle().skip(1);
-                let mut sides = self.corners.iter().zip(next);
-                sides.any(|(&p, &q)| in_plane(p, q, sum(p, self.vectors[0])))
-            }
+        if let [u, v] = self.vectors[..] {
+            return self.corners.iter().any(|&p| in_plane(p, sum(p, u), sum(p, v)));
         }
+        let next = self.corners.iter().cycle().skip(1);
+        let mut sides = self.corners.iter().zip(next);
+        sides.any(|(&p, &q)| in_plane(p, q, sum(p, self.vectors[0])))
     }
 
     /// Cells that together have the volume of the hull in one box, some of them several times: by their corners.
