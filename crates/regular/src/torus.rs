@@ -241,43 +241,52 @@ impl Torus {
     /// # Errors
     /// [`TorusError::Far`].
     pub fn holding(&self, positions: &[[f64; 3]]) -> Result<Self, TorusError> {
-        if self.is_box || self.repeats() == [true; 3] {
+        let (reach, longest) = (self.reach(positions), extent(&self.vectors));
+        if reach > Self::MAX_REACH * longest {
+            return Err(TorusError::Far { reach, longest });
+        }
+        let step = step_of(longest + reach);
+        if step <= self.step {
             return Ok(*self);
         }
+        let vectors = self.vectors.map(|v| v.map(|x| (x / step).round_ties_even() * step));
+        Ok(Self::of_reduced(vectors, step, self.is_box))
+    }
+
+    /// The largest coordinate of positions, moved into the box, along the axes along which copies differ: 0 where it is no larger than the box.
+    fn reach(&self, positions: &[[f64; 3]]) -> f64 {
+        if self.is_box || self.repeats() == [true; 3] {
+            return 0.0;
+        }
         let moves = self.moves();
-        let reach = |place: &[f64; 3]| {
+        let of = |place: &[f64; 3]| {
             let parts = self.parts(*place).map(f64::floor);
             let near = |axis: usize| {
                 place[axis] - (0..3).map(|k| parts[k] * self.vectors[k][axis]).sum::<f64>()
             };
             (0..3).filter(|&axis| moves[axis]).map(|axis| near(axis).abs()).fold(0.0, f64::max)
         };
-        let reach = positions.par_iter().coarse().map(reach).reduce(|| 0.0, f64::max);
-        let longest = extent(&self.vectors);
-        if reach > Self::MAX_REACH * longest {
-            return Err(TorusError::Far { reach, longest });
-        }
-        let step = step_of(longest + reach).max(self.step);
-        let vectors = self.vectors.map(|v| v.map(|x| (x / step).round_ties_even() * step));
-        Ok(Self::of_reduced(vectors, step, false))
+        positions.par_iter().coarse().map(of).reduce(|| 0.0, f64::max)
     }
 
     /// This box and the box of several of its copies, as many along each vector as stated. The step of both is the larger one's, so
     /// that each point of the larger box is exactly a point of this one, moved by multiples of the vectors. Vectors are
-    /// rounded to that step: by at most 2⁻⁵⁰ of the longest side of the larger bounding box.
+    /// rounded to that step: by at most 2⁻⁵⁰ of the longest side of the larger bounding box. The step also [holds](Self::holding) the positions and
+    /// their copies.
     ///
     /// # Panics
     /// If a number of copies is 0.
-    pub fn covered(&self, copies: [u32; 3]) -> [Self; 2] {
+    pub fn covered(&self, copies: [u32; 3], positions: &[[f64; 3]]) -> [Self; 2] {
         assert!(!copies.contains(&0), "a box has at least one copy along each vector");
         let large = |vectors: [[f64; 3]; 3]| {
             [0, 1, 2].map(|k| vectors[k].map(|x| f64::from(copies[k]) * x))
         };
         let longest = large(self.vectors);
-        // Where a slanted box does not repeat, points may be as far from it as the box is long.
-        let beyond = if self.is_box || self.repeats() == [true; 3] { 1.0 } else { 2.0 };
+        let reach = self.reach(positions);
+        // A copy is as far away as the larger box is long, and as its point is.
+        let size = extent(&longest) + if reach > 0.0 { extent(&longest) + reach } else { 0.0 };
         // Rounding may lengthen the vectors to the next power of two.
-        let step = step_of(extent(&longest) * (1.0 + f64::EPSILON)).max(self.step) * beyond;
+        let step = step_of(size * (1.0 + f64::EPSILON)).max(self.step);
         let small = self.vectors.map(|v| v.map(|x| (x / step).round_ties_even() * step));
         [small, large(small)].map(|vectors| Self::of_reduced(vectors, step, self.is_box))
     }
@@ -808,6 +817,14 @@ mod tests {
             let moved = tilted.moved(place, by);
             assert_eq!(tilted.wrap(moved), place);
         }
+        // What is rounded once stays.
+        let places = [[70.0, 70.0, 70.0]];
+        let [small, large] = tilted.covered([1, 3, 40], &places);
+        assert!(small.step() == large.step() && large.step() > tilted.step());
+        assert_eq!(small.covered([1, 3, 40], &places), [small, large]);
+        assert_eq!(small.holding(&places).unwrap(), small);
+        let copies = [small.moved(places[0], [0, 2, 39])];
+        assert_eq!(large.holding(&copies).unwrap(), large);
         let [_, u, v] = tilted.vectors();
         let up = cross(&u, &v);
         assert_eq!(tilted.across(up), Some(Ordering::Greater));

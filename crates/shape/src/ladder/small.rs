@@ -134,7 +134,7 @@ impl Cover {
             Some(copies) if u32::try_from(copies).is_ok() => {}
             _ => return Err(SitesError::TooMany(copies.unwrap_or(usize::MAX)).into()),
         }
-        let [small, torus] = torus.holding(&points.positions)?.covered(times);
+        let [small, torus] = torus.covered(times, &points.positions);
         points.positions.iter_mut().for_each(|place| *place = small.wrap(*place));
         Ok(Self { small, torus, times, points })
     }
