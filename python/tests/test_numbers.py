@@ -301,7 +301,7 @@ CALLS = {
 }  # fmt: skip
 #: What nobody calls: the results of others.
 RESULTS = {
-    "BallSurface", "Chart", "Page", "Picture", "Betti", "BettiCurve", "Boundary", "Bounded", "BoundedArray", "Cavity", "Class", "Comparison", "Component", "Contacts", "Cuts", "Finding", "Gradients", "Level", "LoopCycle", "Outline", "PointFile", "Polygon",
+    "BallSurface", "Chart", "Page", "Picture", "Betti", "BettiCurve", "Boundary", "Bounded", "BoundedArray", "Cavity", "Class", "Comparison", "Component", "Contacts", "Cuts", "Finding", "Gradients", "Level", "LoopCycle", "Molecule", "Outline", "PointFile", "Polygon",
     "PowerDiagram", "Selected", "Simplices", "Suggestions", "TorusBetti", "TorusBettiCurve", "Verdict", "Void", "VoidCycle",
 }  # fmt: skip
 

@@ -475,7 +475,42 @@ fn the_cell_of_the_file_is_used() {
     assert!(told.contains("--periodic cell makes its torus"), "{told}");
     let slab = head.replace("Properties", "pbc=\"T T F\" Properties");
     std::fs::write(f.join("slab.xyz"), format!("{slab}\n{atoms}")).unwrap();
-    let (code, _, said) =
-        common::run(f, &["shape", "slab.xyz", "--periodic", "cell", "--radii", "none"]);
-    assert!(code == 1 && said.contains("along some vectors of its cell only"), "{code}: {said}");
+    // Four layers between five of points; the way up is as long as it is.
+    let of = |file: &str, cell: &str| {
+        let more = ["--periodic", cell, "--radii", "none", "--alpha", "0.6"];
+        let report = common::json(f, &[&["shape", file, "-o", "slab.json"][..], &more].concat());
+        assert!(common::ok(f, &["check", "slab.json"]).contains("exact: no findings"), "{cell}");
+        report["shape"].clone()
+    };
+    let slab = of("slab.xyz", "cell");
+    assert_eq!(slab["betti"], serde_json::json!([1, 2, 1, 0]));
+    assert_eq!(slab["volume"], 6.0 * 5.25 * 4.0);
+    let written = std::fs::read_to_string(f.join("slab.json")).unwrap();
+    let written: serde_json::Value = serde_json::from_str(&written).unwrap();
+    assert_eq!(written["periodic"][2], serde_json::json!([0.0, 0.0, 0.0]));
+    for cell in ["xy", "6,0,0,-3,5.25,0,0,0,1:xy"] {
+        assert_eq!(of("a.xyz", cell), slab, "{cell}");
+    }
+    // A bar of 6 × 5 by 5 columns and rows is a rod along the third vector.
+    let rod = of("slab.xyz", "z");
+    assert_eq!(rod["betti"], serde_json::json!([1, 1, 0, 0]));
+    assert_eq!(rod["volume"], 5.0 * 0.875 * 5.0 * 5.0);
+    let pores = ["pores", "slab.xyz", "--periodic", "cell", "--radii", "none"];
+    let (code, _, said) = common::run(f, &pores);
+    assert!(code == 1 && said.contains("repeat along all three vectors"), "{code}: {said}");
+    let radius = ["--radii", "none", "--alpha-radius", "0.25", "--json"];
+    let balls = ["balls", "slab.xyz", "--periodic", "cell"];
+    let balls: serde_json::Value =
+        serde_json::from_str(&common::ok(f, &[&balls[..], &radius].concat())).unwrap();
+    let volume = balls["balls"]["volume"].as_f64().or(balls["volume"].as_f64()).unwrap();
+    assert!((volume / (180.0 * std::f64::consts::PI / 48.0) - 1.0).abs() < 1e-9, "{volume}");
+    let pairs =
+        ["filtration", "slab.xyz", "--periodic", "xy", "--radii", "none", "-o", "pairs.csv"];
+    common::ok(f, &pairs);
+    let pairs = std::fs::read_to_string(f.join("pairs.csv")).unwrap();
+    let lasting = |dimension: &str| {
+        let of = pairs.lines().filter(|line| line.split(',').next() == Some(dimension));
+        of.filter(|line| line.split(',').nth(2) == Some("inf")).count()
+    };
+    assert_eq!(["0", "1", "2", "3"].map(lasting), [1, 2, 1, 0], "{}", &pairs[..200]);
 }

@@ -34,7 +34,7 @@ fn copies_of_points_are_exact() {
 
 #[test]
 fn sides_are_positive_numbers() {
-    for side in [0.0, -8.0, f64::NAN, f64::INFINITY] {
+    for side in [-0.5, -8.0, f64::NAN, f64::INFINITY] {
         let mut file = ComplexFile::of_points(vec![[0.0; 3]], Alpha::ZERO);
         file.vertices = Some(vec![0]);
         file.periodic = Some(BoxVectors::of_sides([8.0, side, 8.0]));
