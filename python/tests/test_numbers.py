@@ -22,6 +22,7 @@ OTHER = {
     "self", "cls", "progress", "threads", "engine", "exterior", "hidden", "balls", "path", "level", "columns", "classes", "format",
     "array", "frame", "series", "skip_damaged", "shape", "dtype", "offset", "decomposition", "weighting", "select", "exchange",
     "refit", "roi", "keep", "largest", "solid", "allow_empty", "labels", "masked", "resample", "withheld", "what", "ranks", "dimension", "homology_dimensions", "radius", "reduced_homology",
+    "radii", "hydrogens", "waters", "hetero", "chains", "model", "like",
     "n_jobs", "weighted", "resolution", "n_layers", "input_features", "transform",
     "view", "colour", "size", "height", "low", "high", "value",
     "y", "duplicates", "cells", "facets", "edges", "vertices", "cell_classes", "facet_classes", "edge_classes",
