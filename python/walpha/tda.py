@@ -137,7 +137,7 @@ class AlphaPersistence(TransformerMixin, BaseEstimator, auto_wrap_output_keys=No
         dimensions = [int(dimension) for dimension in self.homology_dimensions]
         clouds, weights = _weighed(X) if self.weighted else (X, None)
         given = many(clouds, weights, valued=False)
-        with task(None, joblib.effective_n_jobs(self.n_jobs)) as how:
+        with task(None, joblib.effective_n_jobs(self.n_jobs)) as how:  # pyright: ignore
             found = _walpha.diagrams(given, dimensions, _arrays.sides(self.periodic), how)
         blocks = []
         for dimension, of_one in zip(dimensions, zip(*found)):
@@ -158,7 +158,7 @@ class AlphaPersistence(TransformerMixin, BaseEstimator, auto_wrap_output_keys=No
             raise ValueError(f"radius=True: α is {intervals.min():g} where points with weights begin, and has no root: give radius=False")
         return np.sqrt(intervals)
 
-    def set_output(self, *, transform: str | None = None) -> AlphaPersistence:
+    def set_output(self, *, transform: str | None = None) -> AlphaPersistence:  # pyright: ignore
         """For pipelines that are asked for tables: diagrams are not tables, and stay arrays.
 
         Parameters

@@ -1,3 +1,5 @@
+# pyright: reportAttributeAccessIssue=false
+# Where PyTorch is not installed, none of its names are known.
 """Values of simplices, persistence and balls as differentiable functions of points and weights, for PyTorch.
 
 The value of a simplex is the squared radius of the smallest orthogonal sphere of a Gabriel simplex, its own or the one it comes
