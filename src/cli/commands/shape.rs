@@ -20,7 +20,7 @@ use crate::cli::options::{Declared, Kept, OfShape, OutputArgs, Periodic, Pipelin
 use crate::cli::process::errors::{CommandError, Result, fail_usage, option};
 use crate::cli::process::output::{OF_OUTPUTS, print_summary, print_with};
 use crate::cli::process::progress::Progress;
-use crate::cli::process::terminal::{Inline, Protocol};
+use crate::cli::process::terminal::{InlineArgs, Protocol};
 use crate::cli::process::usage;
 use crate::cli::report::Report;
 use crate::cli::report::offsets::offsets;
@@ -114,16 +114,8 @@ pub(crate) struct Shape {
     pub(crate) format: OutputArgs,
     #[command(flatten)]
     picture: PictureArgs,
-    /// Show a picture of the shape in the terminal, before the report. By itself it is shown where no file is written and
-    /// the terminal is known to show pictures.
-    #[arg(
-        long = "picture",
-        value_enum,
-        value_name = "HOW",
-        default_value = "auto",
-        help_heading = "Pictures (.png)"
-    )]
-    inline: Inline,
+    #[command(flatten)]
+    inline: InlineArgs,
 }
 
 /// The formats of shapes among the outputs with these names.

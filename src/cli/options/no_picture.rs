@@ -1,10 +1,12 @@
 //! Replaces pictures if the command is built without them: there are no options and no files.
 
+use std::convert::Infallible;
 use std::path::Path;
 use std::sync::Arc;
 
 use clap::Args;
 
+use crate::AlphaShape;
 use crate::export::Exporter;
 use crate::points::{Attributes, Column};
 
@@ -37,6 +39,16 @@ impl PictureArgs {
     #[expect(clippy::unused_self, reason = "there are no options")]
     pub(crate) fn exporter(self, _: Arc<[Column]>, _: bool) -> Box<dyn Exporter> {
         unreachable!("no path asks for a picture")
+    }
+
+    #[expect(clippy::unused_self, reason = "there are no options")]
+    pub(crate) fn in_terminal(
+        self,
+        _: &AlphaShape,
+        _: Arc<[Column]>,
+        _: bool,
+    ) -> Result<Infallible, std::io::Error> {
+        unreachable!("no terminal asks for a picture")
     }
 
     #[expect(clippy::unused_self, reason = "there are no options")]

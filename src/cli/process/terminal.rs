@@ -5,13 +5,28 @@ use std::env;
 use std::io::{self, IsTerminal, Write};
 
 use base64::prelude::{BASE64_STANDARD, Engine};
-use clap::ValueEnum;
+use clap::{Args, ValueEnum};
 
 use crate::render::{Picture, RenderError};
 
+/// The option for pictures in the terminal.
+#[derive(Args, Clone, Copy)]
+pub(crate) struct InlineArgs {
+    /// Show a picture of the shape in the terminal, before the report. By itself it is shown where no file is written and
+    /// the terminal is known to show pictures.
+    #[arg(
+        long = "picture",
+        value_enum,
+        value_name = "HOW",
+        default_value = "auto",
+        help_heading = "Pictures (.png)"
+    )]
+    inline: Inline,
+}
+
 /// Whether a picture is shown in the terminal, and how.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Inline {
+enum Inline {
     /// Where nothing is written to files, and the terminal is one that is known to show pictures.
     Auto,
     /// Not at all.
@@ -32,22 +47,22 @@ pub(crate) enum Protocol {
     Sixel,
 }
 
-impl Inline {
+impl InlineArgs {
     /// Whether the user wants a picture wherever output goes.
     pub(crate) fn is_asked_for(self) -> bool {
-        !matches!(self, Self::Auto | Self::Never)
+        !matches!(self.inline, Inline::Auto | Inline::Never)
     }
 
     /// The protocol to show a picture by, or `None` to show none. `is_free` says whether nothing else is written.
     pub(crate) fn protocol(self, is_free: bool) -> Option<Protocol> {
-        match self {
-            Self::Auto if is_free && io::stdout().is_terminal() => {
+        match self.inline {
+            Inline::Auto if is_free && io::stdout().is_terminal() => {
                 Protocol::of(|name| env::var(name).ok())
             }
-            Self::Auto | Self::Never => None,
-            Self::Kitty => Some(Protocol::Kitty),
-            Self::Iterm2 => Some(Protocol::Iterm2),
-            Self::Sixel => Some(Protocol::Sixel),
+            Inline::Auto | Inline::Never => None,
+            Inline::Kitty => Some(Protocol::Kitty),
+            Inline::Iterm2 => Some(Protocol::Iterm2),
+            Inline::Sixel => Some(Protocol::Sixel),
         }
     }
 }
