@@ -22,6 +22,7 @@ impl InlineArgs {
 pub(crate) enum Protocol {}
 
 impl Protocol {
+    #[expect(clippy::trivially_copy_pass_by_ref, reason = "as with pictures")]
     pub(crate) fn encode(self, _: &Infallible) -> Result<Vec<u8>, std::io::Error> {
         match self {}
     }
