@@ -160,7 +160,7 @@ def faults(events):
         if method == "Runtime.exceptionThrown":
             found.append(params["exceptionDetails"].get("text", "exception"))
         elif method == "Runtime.consoleAPICalled" and params["type"] in ("error", "assert"):
-            found.append(str([argument.get("value") for argument in params["args"]]))
+            found.append(str([argument.get("value", argument.get("description")) for argument in params["args"]]))
         elif method == "Log.entryAdded" and params["entry"]["level"] == "error":
             found.append(params["entry"]["text"])
         elif method == "Network.requestWillBeSent":

@@ -162,6 +162,8 @@ export class ShapePanel {
         const wanted = this.next;
         this.next = null;
         const shape = await this.source.at(wanted);
+        // A failure may have cleared it meanwhile.
+        if (!this.made) return;
         this.shape = shape;
         this.scene.setShape(shape, wanted);
         this.legend();
