@@ -71,9 +71,17 @@ fn tables() -> String {
     text
 }
 
+/// The rows that say what this build can do: not those of writers that are part of the feature `las` alone.
+fn built_in(text: &str) -> String {
+    let left_out =
+        if cfg!(feature = "las") { vec![] } else { vec!["| LAS, LAZ |", "| GeoPackage |"] };
+    let is_kept = |line: &&str| !left_out.iter().any(|row| line.starts_with(row));
+    text.lines().filter(is_kept).map(|line| format!("{line}\n")).collect()
+}
+
 #[test]
 fn the_documentation_has_the_tables() {
-    let (page, tables) = (file("docs/formats.md"), tables());
+    let (page, tables) = (built_in(&file("docs/formats.md")), built_in(&tables()));
     assert!(page.contains(&tables), "docs/formats.md lacks these tables:\n\n{tables}");
 }
 
