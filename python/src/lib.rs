@@ -5,6 +5,7 @@
 
 mod allocator;
 mod arrays;
+mod boxes;
 mod call;
 mod complex;
 mod errors;
@@ -28,6 +29,8 @@ mod workers;
 mod _walpha {
     use pyo3::prelude::*;
 
+    #[pymodule_export]
+    use super::boxes::{periodic_power_diagram, pores};
     #[pymodule_export]
     use super::complex::{Complex, compare};
     #[pymodule_export]

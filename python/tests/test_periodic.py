@@ -117,3 +117,47 @@ def test_filtrations_and_balls_of_small_boxes():
     expected = 4 / 3 * np.pi * 1.5**3 - 12 * np.pi * height**2 * (3 * 1.5 - height) / 3
     assert abs(balls.volume.value - expected) < 1e-12 and len(balls.volumes.values) == 1
     assert balls.contacts.pairs.tolist() == [[0, 0]] * 6
+
+
+def test_power_cells_fill_the_box():
+    rng = np.random.default_rng(5)
+    vectors = np.array([[4, 0, 0], [1, 3.5, 0], [-0.5, 0.25, 5]])
+    points = rng.random((300, 3)) @ vectors
+    made = walpha.periodic_power_diagram(points, vectors, rng.random(300) * 0.1)
+    assert np.isclose(made.volumes.sum(), np.linalg.det(vectors))
+    assert len(made.facets) == len(made.shifts) == len(made.areas) > 1500 and (made.areas > 0).all()
+    # The volume of each cell from the pyramids over its facets, as without weights half of the way is the height.
+    made = walpha.periodic_power_diagram(points, vectors)
+    ends = points[made.facets]
+    # Points were in the box of the given vectors, and shifts are of reduced ones: of the same length here.
+    assert np.allclose(made.vectors, vectors)
+    inside = ends - np.floor(ends @ np.linalg.inv(vectors)) @ vectors
+    way = inside[:, 1] + made.shifts @ made.vectors - inside[:, 0]
+    pyramids = made.areas * np.linalg.norm(way, axis=1) / 6
+    volumes = np.bincount(made.facets.ravel(), np.repeat(pyramids, 2), minlength=300)
+    assert np.allclose(volumes, made.volumes)
+    # Without a side to repeat along, cells have no end.
+    slab = walpha.periodic_power_diagram(points, vectors * [[1], [1], [0]])
+    assert np.isinf(slab.volumes).any() and np.isfinite(slab.volumes).any()
+    for wrong in [{"weights": [1]}, {"points": np.full((3, 3), np.nan)}, {"points": np.empty((0, 3))}, {"periodic": None}]:
+        with pytest.raises(ValueError):
+            walpha.periodic_power_diagram(**{"points": points, "periodic": vectors, **wrong})
+
+
+def test_pores_of_balls():
+    # A simple cubic lattice, and the same cell twice: channels in all directions.
+    one = walpha.pores([[0, 0, 0]], 1, [0.3], probe=0.2)
+    two = walpha.pores([[0, 0, 0], [1, 0, 0]], (2, 1, 1), [0.3, 0.3], probe=0.2)
+    assert np.isclose(one.included.diameter, 3**0.5 - 0.6) and np.isclose(one.free.diameter, 2**0.5 - 0.6)
+    assert one.included.diameter == two.included.diameter and one.channels == two.channels == (3,)
+    assert abs(one.void_fraction.value - (1 - 4 / 3 * np.pi * 0.125)) <= one.void_fraction.bound
+    assert not one.by_power_distance and one.pockets == 0
+    # A probe that cannot pass the windows stays in its pocket.
+    assert walpha.pores([[0, 0, 0]], 1, [0.3], probe=0.45).channels == ()
+    assert walpha.pores([[0, 0, 0]], 1, [0.3], probe=0.45).pockets == 1
+    assert walpha.pores(BCC, 4, np.tile([0.1, 0.2], 64)).by_power_distance
+    found = walpha.pores(BCC, 4)
+    assert found.channels is found.pockets is found.void_fraction is None and found.included.center.shape == (3,)
+    for wrong in [{"radii": [-1.0]}, {"radii": [1, 2]}, {"probe": -1}, {"probe": np.inf}, {"periodic": (1, 1, 0)}, {"periodic": None}]:
+        with pytest.raises(ValueError):
+            walpha.pores(**{"points": [[0, 0, 0]], "periodic": 1, **wrong})

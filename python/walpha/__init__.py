@@ -26,9 +26,11 @@ import atexit as _atexit
 from . import _walpha
 from ._alpha_shape import alpha_shape
 from ._balls import Balls, BallSurface, Bounded, BoundedArray, Cavity, Contacts, Gradients
+from ._boxes import FreeSphere, PeriodicPowerDiagram, Pores, periodic_power_diagram, pores
 from ._check import Comparison, Complex, Finding, Verdict, check, compare
 from ._class import Class
 from ._curves import BettiCurve, Level, Suggestions, TorusBettiCurve
+from ._cycles import LoopCycle, VoidCycle
 from ._filtration import Filtration, filtration
 from ._many import alpha_shapes, filtrations
 from ._molecule import Molecule, read_molecule
@@ -38,7 +40,6 @@ from ._pipeline import Selected, difference, haar, label_shape, pipeline, select
 from ._points import PointFile, read_points, write_points
 from ._shape import AlphaShape
 from ._simplices import Simplices
-from ._cycles import LoopCycle, VoidCycle
 from ._triangulation import PowerDiagram, Triangulation, triangulation
 from ._volume import Volume, read
 
@@ -63,15 +64,18 @@ __all__ = [
     "Cuts",
     "Filtration",
     "Finding",
+    "FreeSphere",
     "Gradients",
     "Level",
     "LoopCycle",
     "Molecule",
     "Outline",
     "Page",
+    "PeriodicPowerDiagram",
     "Picture",
     "PointFile",
     "Polygon",
+    "Pores",
     "PowerDiagram",
     "Selected",
     "Simplices",
@@ -92,7 +96,9 @@ __all__ = [
     "filtrations",
     "haar",
     "label_shape",
+    "periodic_power_diagram",
     "pipeline",
+    "pores",
     "read",
     "read_molecule",
     "read_points",

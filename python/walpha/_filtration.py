@@ -33,8 +33,7 @@ class Filtration(Frozen):
     weights : array_like, (n,), optional
         ω, squared lengths, the same for every α. By default 0.
     periodic : array_like, (3,) or (3, 3), or float, optional
-        Sides of a box that repeats, as in :func:`alpha_shape`. No edge of the whole triangulation may
-        span half of it.
+        Sides of a box that repeats, or its vectors as rows, as in :func:`alpha_shape`.
     progress, threads
         As in :func:`alpha_shape`.
 

@@ -142,6 +142,13 @@ class PowerDiagram:
     facets: _Rows
     areas: Floats
 
+def periodic_power_diagram(
+    points: Floats, weights: Floats | None, periodic: list[float], task: _Task
+) -> tuple[tuple[Floats, Indices, Indices, Floats], Floats]: ...
+def pores(
+    points: Floats, radii: Floats, periodic: list[float], probe: float | None, task: _Task
+) -> tuple[list[tuple[float, list[float]]], bool, tuple[list[int], int, tuple[float, float]] | None]: ...
+
 @final
 class Complex:
     points: Floats

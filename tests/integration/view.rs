@@ -187,6 +187,57 @@ fn the_page_knows_elements() {
     assert_eq!(atoms[..5], [7, 6, 6, 8, 6]);
 }
 
+/// Simplices of a periodic box are laid out in space, with copies of points beyond its sides, and the box is drawn.
+#[test]
+fn a_periodic_box_is_laid_out_and_drawn() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    let lattice = (0..64).map(|i| format!("{} {} {}\n", i % 4, i / 4 % 4, i / 16));
+    fs::write(f.join("cubic.xyz"), lattice.collect::<String>()).unwrap();
+    fs::write(f.join("one.xyz"), "0 0 0\n").unwrap();
+    for (input, sides, points) in [("cubic.xyz", "4,4,4", 64), ("one.xyz", "1,1,1", 1)] {
+        let args =
+            ["view", input, "--periodic", sides, "--alphas", "0.3,0.6,inf", "-o", "page.html"];
+        let made = json(f, &[&args[..], &["-q"]].concat());
+        assert_eq!(made["details"][0]["points"], points);
+        let html = fs::read_to_string(f.join("page.html")).unwrap();
+        let (page, detail) = (Unpacked::of(&html, "page"), Unpacked::of(&html, "detail-0"));
+        let centre = |k: usize| page.content["centre"][k].as_f64().unwrap();
+        let cell = page.content["cell"].as_array().unwrap();
+        let side: f64 = sides[..1].parse().unwrap();
+        assert_eq!(cell[0].as_array().unwrap().len(), 3);
+        assert_eq!([0, 1, 2].map(|k| cell[0][k].as_f64().unwrap() + centre(k)), [0.0; 3]);
+        assert_eq!([1, 2, 3].map(|k| cell[k][k - 1].as_f64().unwrap()), [side; 3]);
+        let copies = detail.u32("copies");
+        let positions = detail.f32("positions");
+        assert_eq!(positions.len() / 3, points + copies.len());
+        // A cubic lattice has three squares for each point at its second level, halved by diagonals: each facet spans one spacing.
+        let facets = detail.u32("facets");
+        assert!(facets.len() / 3 >= 6 * points && copies.len() >= 7, "{}", copies.len());
+        for corners in facets.chunks(3) {
+            for k in 0..3 {
+                let along = corners.iter().map(|v| positions[3 * *v as usize + k]);
+                let [low, high] = [f32::min, f32::max].map(|of| along.clone().reduce(of).unwrap());
+                assert!(high - low <= 1.0 && f64::from(low) + centre(k) < side, "{corners:?}");
+            }
+        }
+        // A copy is as far from its point as multiples of the sides.
+        for (copy, of) in (points..).zip(copies) {
+            let way = |k: usize| positions[3 * copy + k] - positions[3 * of as usize + k];
+            assert!((0..3).all(|k| f64::from(way(k)) % side == 0.0));
+        }
+        assert!(page.content["facts"].to_string().contains("periodic box"));
+    }
+    let refused = |more: &[&str]| {
+        let args = ["view", "cubic.xyz", "--periodic", "4,4,4", "-o", "page.html"];
+        let (code, _, told) = run(f, &[&args[..], more].concat());
+        assert_eq!(code, 2, "{told}");
+        told
+    };
+    assert!(refused(&["--keep", "largest"]).contains("--keep"));
+    assert!(refused(&["--counts", "20"]).contains("--counts"));
+}
+
 #[test]
 fn the_same_input_gives_the_same_page_on_any_number_of_threads() {
     let folder = tempfile::tempdir().unwrap();

@@ -134,6 +134,16 @@ function smoothNormals(positions, rows, oriented) {
   return normals;
 }
 
+// The twelve edges of the box at an origin along three vectors.
+function framed([origin, ...vectors]) {
+  const ends = [];
+  for (let corner = 0; corner < 8; corner++) {
+    const at = (bits) => vectors.reduce((place, vector, k) => (bits >> k & 1 ? place.add(new Vector3(...vector)) : place), new Vector3(...origin));
+    for (let k = 0; k < 3; k++) if (!(corner >> k & 1)) ends.push(at(corner), at(corner | 1 << k));
+  }
+  return new BufferGeometry().setFromPoints(ends);
+}
+
 export class ShapeScene {
   constructor(element) {
     this.element = element;
@@ -174,7 +184,7 @@ export class ShapeScene {
   }
 
   // Other points: what was drawn goes. The camera stays where it is to be kept.
-  setPoints({ positions, weights, values, differences, atoms, elements, original, centre, unit, space }, box, keep = false) {
+  setPoints({ positions, weights, values, differences, atoms, elements, original, centre, unit, space, cell }, box, keep = false) {
     this.group.traverse((object) => {
       object.geometry?.dispose();
       object.material?.dispose();
@@ -240,14 +250,16 @@ export class ShapeScene {
       { position: new BufferAttribute(original?.positions ?? new Float32Array(), 3) });
     this.parts.original.geometry.setIndex(new BufferAttribute(original?.triangles ?? new Uint32Array(), 1));
     this.parts.original.visible = false;
-    this.parts.box = new Box3Helper(box, new Color("#888888"));
+    // The box of what is drawn, or the one that repeats.
+    const frame = new Color("#888888");
+    this.parts.box = cell ? new LineSegments(framed(cell), new LineBasicMaterial({ color: frame })) : new Box3Helper(box, frame);
     this.parts.box.visible = false;
     this.labels.replaceChildren(...["x", "y", "z"].map((axis, k) => {
       const [low, high] = [box.min, box.max].map((corner) => short(corner[axis] + centre[k]));
       return make("span", { textContent: `${axis}: ${low} to ${high} ${unit}` });
     }));
     this.group.add(this.section, this.lit, this.inner, this.walk, this.ruler, this.parts.box);
-    this.unit = unit;
+    [this.unit, this.isPeriodic] = [unit, Boolean(cell)];
     this.fade(this.opacity);
     if (keep) return;
     this.turned = false;
@@ -606,7 +618,7 @@ export class ShapeScene {
 
   // Writes what the box measures beside three of its edges that the viewer sees, within the picture.
   label() {
-    this.labels.hidden = !this.parts?.box.visible;
+    this.labels.hidden = !this.parts?.box.visible || this.isPeriodic;
     if (this.labels.hidden) return;
     const { min, max } = this.box;
     const { position } = this.camera;

@@ -100,6 +100,7 @@ export class ShapePanel {
     if (!keep && ["plain", "height", "element"].includes(colour.value)) colour.value = made.atoms ? "element" : isScan ? "height" : "plain";
     if (!keep) byId("show-singular").checked = isScan || colour.value !== "plain";
     if (!keep) byId("show-balls").checked = Boolean(made.atoms);
+    if (!keep && made.cell) byId("show-box").checked = true;
     this.stopMeasuring();
     byId("show-original").parentElement.hidden = !made.original;
     scene.setColour(colour.value);
@@ -280,7 +281,7 @@ export class ShapePanel {
     const { regular, singular, edges, classes } = this.shape;
     if (by === "element") {
       const counts = new Map();
-      for (const number of this.made.atoms) counts.set(number, (counts.get(number) ?? 0) + 1);
+      for (const number of this.made.atoms.subarray(0, this.own)) counts.set(number, (counts.get(number) ?? 0) + 1);
       const named = [...counts].map(([number, count]) => ({ count, ...(this.made.elements[number] ?? { symbol: "not known", colour: null }) }));
       byId("legend").replaceChildren(...named.sort((a, b) => b.count - a.count).map(({ count, symbol, colour }) =>
         element("span", {}, box(colour ? `rgb(${colour.join(" ")})` : BONE), `${grouped(count)} ${symbol}`)));
@@ -294,7 +295,7 @@ export class ShapePanel {
     }
     if (byId("show-points").checked) {
       const counts = CLASSES.map(() => 0);
-      for (const kind of classes) counts[kind] += 1;
+      for (const kind of classes.subarray(0, this.own)) counts[kind] += 1;
       for (const kind of [INTERIOR, REGULAR, SINGULAR]) parts.push([OF_CLASS[kind], counts[kind], `${CLASSES[kind]} points`]);
     }
     const shown = parts.filter(([, count]) => count > 0);
@@ -308,16 +309,22 @@ export class ShapePanel {
     for (const name of ["singular", "edges"]) this.scene.show(name, byId("show-singular").checked);
   }
 
+  // The number of points that are not copies, which follow them.
+  get own() {
+    return this.made.positions.length / 3 - (this.made.copies?.length ?? 0);
+  }
+
   // The index of a point, and what is known of it.
   wordsOf(v) {
-    const { positions, weights, values, differences, atoms, elements, centre, unit } = this.made;
+    const { positions, weights, values, differences, atoms, elements, centre, unit, copies } = this.made;
     const { min, max } = this.scene.box;
     const extent = Math.max(max.x - min.x, max.y - min.y, max.z - min.z);
     const at = [0, 1, 2].map((k) => placed(positions[3 * v + k] + centre[k], extent)).join(", ");
     const value = values ? `, value F = ${short(values[v])}` : "";
     const difference = differences ? `, difference ${short(differences[v])}` : "";
     const symbol = elements?.[atoms?.[v]]?.symbol;
-    return `point ${v}${symbol ? ` (${symbol})` : ""} at (${at}) ${unit}${value}${difference}, weight ω = ${short(weights[v])}, ${CLASSES[this.shape.classes[v]]}`;
+    const name = v < this.own ? `point ${v}` : `a copy of point ${copies[v - this.own]}`;
+    return `${name}${symbol ? ` (${symbol})` : ""} at (${at}) ${unit}${value}${difference}, weight ω = ${short(weights[v])}, ${CLASSES[this.shape.classes[v]]}`;
   }
 
   startMeasuring() {

@@ -99,10 +99,10 @@ async function choose(number) {
   if (simplified) remark(`The picture is ${simplified}`);
   const above = before === null ? first + 1 : alphas.findIndex((alpha) => alpha > before);
   const reference = alphas[Math.max(0, (above < 0 ? alphas.length : above) - 1)];
-  const { unit, space, domain, centre, titles, original } = page;
+  const { unit, space, domain, centre, titles, original, cell } = page;
   const betti = (k) => detail.levels.map((level) => level.betti[k]);
   const all = { b0: betti(0), b1: betti(1), b2: betti(2) };
-  panel.look({ ...detail, rows: detail.rows.map(([name, value]) => [name, /^\d+$/.test(value) ? grouped(value) : value]), unit, space, domain, centre, titles, original, reference, ...await source.at(reference) }, before !== null);
+  panel.look({ ...detail, rows: detail.rows.map(([name, value]) => [name, /^\d+$/.test(value) ? grouped(value) : value]), unit, space, domain, centre, titles, original, cell, reference, ...await source.at(reference) }, before !== null);
   await panel.open(all, new StopScale(alphas));
   document.body.dataset.detail = number;
 }

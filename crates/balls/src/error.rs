@@ -41,6 +41,9 @@ pub enum BallsError {
         /// What was asked for.
         what: &'static str,
     },
+    /// Pores are asked for, and the box does not repeat along all three vectors.
+    #[error("pores are of boxes that repeat along all three vectors, and this one does not")]
+    Slab,
     /// A surface is asked for, and the shape is that of a torus.
     #[error("the sides of a periodic box would cut the surface open")]
     Seam,
@@ -99,6 +102,7 @@ impl Advise for BallsError {
             Self::NoExterior { .. } => advice!["set ", Setting::Exterior],
             Self::Solid => "measure the balls in space".into(),
             Self::Periodic => "measure the balls of the box".into(),
+            Self::Slab => "measure the voids of its balls".into(),
             Self::Seam => "repeat the points without a periodic box".into(),
             Self::Tolerance { .. } => "give a part of the radius, such as 0.01".into(),
             Self::Unresolved { .. } => {

@@ -51,24 +51,34 @@ impl Cell {
 
     /// The sides, if the cell is an axis-aligned box that repeats along all axes: the points then lie on a torus.
     pub fn sides(&self) -> Option<[f64; 3]> {
+        self.lengths().filter(|_| self.repeats == [true; 3])
+    }
+
+    /// The sides, if the cell is an axis-aligned box.
+    fn lengths(&self) -> Option<[f64; 3]> {
         let [[x, a, b], [c, y, d], [e, f, z]] = self.vectors;
         let is_box = [a, b, c, d, e, f] == [0.0; 6] && [x, y, z].iter().all(|&side| side > 0.0);
-        (is_box && self.repeats == [true; 3]).then_some([x, y, z])
+        is_box.then_some([x, y, z])
     }
 }
 
 impl fmt::Display for Cell {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let list = |numbers: [f64; 3]| numbers.map(|x| x.to_string()).join(",");
-        match self.sides() {
-            Some(sides) => write!(f, "a box of sides {}", list(sides)),
-            None if self.repeats == [true; 3] => {
-                let [a, b, c] = self.vectors.map(list);
-                write!(f, "the vectors ({a}), ({b}), ({c})")
-            }
-            None => f.write_str(
-                "one along some of whose vectors only points repeat, which is not supported",
-            ),
+        if let Some(sides) = self.lengths() {
+            write!(f, "a box of sides {}", list(sides))?;
+        } else {
+            let [a, b, c] = self.vectors.map(list);
+            write!(f, "the vectors ({a}), ({b}), ({c})")?;
+        }
+        let named = ["first", "second", "third"].into_iter().zip(self.repeats);
+        let along: Vec<&str> =
+            named.filter(|(_, repeats)| *repeats).map(|(name, _)| name).collect();
+        match &along[..] {
+            [] => f.write_str(", along which points do not repeat"),
+            [one] => write!(f, ", repeating along the {one} alone"),
+            [one, other] => write!(f, ", repeating along the {one} and the {other}"),
+            _ => Ok(()),
         }
     }
 }

@@ -65,32 +65,18 @@ impl PowerDiagram {
         let zeros = if weights.is_none() { filled(positions.len(), 0.0)? } else { Vec::new() };
         let weights = weights.unwrap_or(&zeros);
         check(positions, weights)?;
-        let arrays = &triangulation.arrays;
-        // The threads allocate this memory piece by piece.
-        with_capacity::<u8>(arrays.cells.len().saturating_mul(BYTES_OF_A_CELL))?;
-        let predicates = Predicates::new(positions, weights);
-        let spheres = Spheres::of(arrays, &predicates, &monitor.part(0, 1, 3))?;
-        let centre = |&cell: &u32| {
-            let corners = arrays.cells[cell as usize];
-            Centre { near: corners[0], offset: predicates.centre(corners) }
-        };
-        let centres: Vec<Centre> = spheres.first.par_iter().map(centre).collect();
-        let dual = Dual { arrays, positions, spheres: &spheres, centres: &centres };
-        let facets = dual.facets(&monitor.part(1, 3, 3))?;
+        let DualFacets { spheres, centres, facets } =
+            DualFacets::of(&triangulation.arrays, positions, weights, monitor)?;
         let sides = Sides::of(&facets, positions.len())?;
         let facets = sides.of_solid_cells(facets);
 
         let mut volumes: Vec<f64> = filled(positions.len(), 0.0)?;
         for &([p, q], area) in facets.iter().filter(|(_, area)| *area != f64::INFINITY) {
             let [p, q] = [p, q].map(|v| v as usize);
-            let distance = length(sub(positions[q], positions[p]));
-            // Six times the pyramids with this base and one of the two points as apex: twice the height is the distance, and more
-            // for the heavier point.
-            let more = (weights[p] - weights[q]) / distance;
-            let is_held = area == 0.0 || area * distance >= f64::MIN_POSITIVE;
-            let area = if is_held { area } else { f64::NAN };
-            volumes[p] += area * (distance + more);
-            volumes[q] += area * (distance - more);
+            let way = sub(positions[q], positions[p]);
+            let [of_p, of_q] = six_pyramids(way, area, weights[p] - weights[q]);
+            volumes[p] += of_p;
+            volumes[q] += of_q;
         }
         for volume in &mut volumes {
             *volume = if volume.is_finite() { *volume / 6.0 } else { f64::NAN };
@@ -135,6 +121,60 @@ impl PowerDiagram {
     pub fn areas(&self) -> &[f64] {
         &self.areas
     }
+}
+
+/// The vertices and facets of the diagram that is dual to cells.
+struct DualFacets {
+    spheres: Spheres,
+    centres: Vec<Centre>,
+    facets: Vec<([u32; 2], f64)>,
+}
+
+impl DualFacets {
+    fn of(
+        arrays: &CellArrays,
+        positions: &[[f64; 3]],
+        weights: &[f64],
+        monitor: &Monitor,
+    ) -> Result<Self, TriangulationError> {
+        // The threads allocate this memory piece by piece.
+        with_capacity::<u8>(arrays.cells.len().saturating_mul(BYTES_OF_A_CELL))?;
+        let predicates = Predicates::new(positions, weights);
+        let spheres = Spheres::of(arrays, &predicates, &monitor.part(0, 1, 3))?;
+        let centre = |&cell: &u32| {
+            let corners = arrays.cells[cell as usize];
+            Centre { near: corners[0], offset: predicates.centre(corners) }
+        };
+        let centres: Vec<Centre> = spheres.first.par_iter().map(centre).collect();
+        let dual = Dual { arrays, positions, spheres: &spheres, centres: &centres };
+        let facets = dual.facets(&monitor.part(1, 3, 3))?;
+        Ok(Self { spheres, centres, facets })
+    }
+}
+
+/// The facets of the power diagram that is dual to cells, between their two points in ascending order, with their areas: infinite ones, too, and
+/// those of cells without volume, but none that degenerate. Sorted.
+///
+/// # Errors
+/// Out of memory.
+pub fn dual_facets(
+    arrays: &CellArrays,
+    positions: &[[f64; 3]],
+    weights: &[f64],
+    monitor: &Monitor,
+) -> Result<Vec<([u32; 2], f64)>, TriangulationError> {
+    Ok(DualFacets::of(arrays, positions, weights, monitor)?.facets)
+}
+
+/// Six times the volumes of the two pyramids over a finite facet of the diagram, with its points as apexes: the way from one to the other, and by how much the
+/// weight of the first is greater.
+pub fn six_pyramids(way: [f64; 3], area: f64, heavier: f64) -> [f64; 2] {
+    let distance = length(way);
+    // Twice the height is the distance, and more for the heavier point.
+    let more = heavier / distance;
+    let is_held = area == 0.0 || area * distance >= f64::MIN_POSITIVE;
+    let area = if is_held { area } else { f64::NAN };
+    [area * (distance + more), area * (distance - more)]
 }
 
 /// Memory for a cell: its sphere, its part of about 1.2 edges, and the memory for collecting both.
@@ -311,15 +351,60 @@ fn largest(numbers: &[f64]) -> f64 {
 ///
 /// A cell with a volume has a vertex, because points span a volume, and therefore at least three facets. A cell that is a polygon
 /// has two: the polygon from both sides, where the next points are in line with its own. Segments and places have none.
-struct Sides(Vec<u8>);
+#[derive(Debug)]
+pub struct Sides(Vec<u8>);
+
+/// A facet between a point, and a point or a copy of one.
+pub trait Facet: Copy + Ord {
+    /// The points.
+    fn ends(self) -> [u32; 2];
+
+    /// The multiples of the vectors of a periodic box by which the second one is moved.
+    fn shift(self) -> [i32; 3];
+
+    /// The facet between these.
+    fn between(ends: [u32; 2], shift: [i32; 3]) -> Self;
+}
+
+impl Facet for [u32; 2] {
+    fn ends(self) -> [u32; 2] {
+        self
+    }
+
+    fn shift(self) -> [i32; 3] {
+        [0; 3]
+    }
+
+    fn between(ends: [u32; 2], _: [i32; 3]) -> Self {
+        ends
+    }
+}
+
+impl Facet for ([u32; 2], [i32; 3]) {
+    fn ends(self) -> [u32; 2] {
+        self.0
+    }
+
+    fn shift(self) -> [i32; 3] {
+        self.1
+    }
+
+    fn between(ends: [u32; 2], shift: [i32; 3]) -> Self {
+        (ends, shift)
+    }
+}
 
 impl Sides {
     const OF_POLYGON: u8 = 2;
 
-    fn of(facets: &[([u32; 2], f64)], points: usize) -> Result<Self, TriangulationError> {
+    /// Counts the facets of all cells.
+    ///
+    /// # Errors
+    /// Out of memory.
+    pub fn of<F: Facet>(facets: &[(F, f64)], points: usize) -> Result<Self, TriangulationError> {
         let mut sides: Vec<u8> = filled(points, 0)?;
-        for v in facets.iter().flat_map(|(facet, _)| facet) {
-            let count = &mut sides[*v as usize];
+        for v in facets.iter().flat_map(|(facet, _)| facet.ends()) {
+            let count = &mut sides[v as usize];
             *count = count.saturating_add(1);
         }
         Ok(Self(sides))
@@ -329,47 +414,60 @@ impl Sides {
         self.0[v as usize] == Self::OF_POLYGON
     }
 
-    fn is_solid(&self, v: u32) -> bool {
+    /// Whether the cell of a point has a volume.
+    pub fn is_solid(&self, v: u32) -> bool {
         self.0[v as usize] > Self::OF_POLYGON
     }
 
     /// The facets between cells with a volume: the facet of a polygon belongs to the cells on both sides of all polygons there.
-    fn of_solid_cells(&self, facets: Vec<([u32; 2], f64)>) -> Vec<([u32; 2], f64)> {
+    pub fn of_solid_cells<F: Facet + Send>(&self, facets: Vec<(F, f64)>) -> Vec<(F, f64)> {
         if !self.0.contains(&Self::OF_POLYGON) {
             return facets;
         }
-        let mut next: HashMap<u32, Vec<u32>> = HashMap::new();
-        for &([p, q], _) in &facets {
-            for (v, other) in [(p, q), (q, p)].into_iter().filter(|&(v, _)| self.is_polygon(v)) {
-                next.entry(v).or_default().push(other);
+        // The neighbours of each polygon, with their shifts against it.
+        let mut next: HashMap<u32, Vec<(u32, [i32; 3])>> = HashMap::new();
+        for &(facet, _) in &facets {
+            let ([p, q], shift) = (facet.ends(), facet.shift());
+            for (v, other, way) in [(p, q, shift), (q, p, shift.map(|by| -by))] {
+                if self.is_polygon(v) {
+                    next.entry(v).or_default().push((other, way));
+                }
             }
         }
-        let beyond = |from: u32, polygon: u32| {
-            let (mut last, mut at) = (from, polygon);
+        // From a point to a polygon and on, to the first cell with a volume, and its shift against the point.
+        let beyond = |from: u32, polygon: u32, shift: [i32; 3]| {
+            let (mut last, mut at) = ((from, [0; 3]), (polygon, shift));
             for _ in 0..next.len() {
-                let onwards = next.get(&at)?.iter().copied().find(|&v| v != last)?;
+                let neighbours = next.get(&at.0)?.iter();
+                let placed = neighbours.map(|&(v, way)| (v, [0, 1, 2].map(|k| at.1[k] + way[k])));
+                let onwards = placed.into_iter().find(|neighbour| *neighbour != last)?;
                 (last, at) = (at, onwards);
-                if !self.is_polygon(at) {
+                if !self.is_polygon(at.0) {
                     return Some(at);
                 }
             }
             None
         };
-        let between = |([p, q], area): ([u32; 2], f64)| {
-            let (from, polygon) = match [p, q].map(|v| self.is_polygon(v)) {
-                [false, false] => return Some(([p, q], area)),
+        let between = |(facet, area): (F, f64)| {
+            let ([p, q], shift) = (facet.ends(), facet.shift());
+            let (from, (to, shift)) = match [p, q].map(|v| self.is_polygon(v)) {
+                [false, false] => return Some((facet, area)),
                 [true, true] => return None,
-                [false, true] => (p, q),
-                [true, false] => (q, p),
+                [false, true] => (p, beyond(p, q, shift)?),
+                [true, false] => (q, beyond(q, p, shift.map(|by| -by))?),
             };
             // Only once, because it is reached from both ends.
-            let to = beyond(from, polygon).filter(|&to| from < to)?;
-            Some(([from, to], area))
+            is_listed(from, to, shift).then(|| (F::between([from, to], shift), area))
         };
         let mut solid: Vec<_> = facets.into_iter().filter_map(between).collect();
-        solid.par_sort_unstable_by_key(|&(edge, _)| edge);
+        solid.par_sort_unstable_by_key(|&(facet, _)| facet);
         solid
     }
+}
+
+/// Whether a facet is listed from this point to the other, which is moved by this shift, and not the other way round.
+pub fn is_listed(from: u32, to: u32, shift: [i32; 3]) -> bool {
+    (from, [0; 3]) < (to, shift)
 }
 
 #[cfg(test)]

@@ -26,7 +26,7 @@ impl fmt::Display for Betti {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { b0, b1, b2, b3 } = *self;
         if let Some(b3) = b3 {
-            return write!(f, "b0 = {b0}, b1 = {b1}, b2 = {b2}, b3 = {b3} on the torus");
+            return write!(f, "b0 = {b0}, b1 = {b1}, b2 = {b2}, b3 = {b3} in the periodic box");
         }
         let (components, tunnels, voids) =
             (counted(b0, "component"), counted(b1, "tunnel"), counted(b2, "void"));

@@ -31,6 +31,33 @@ impl Copier {
             (self.points + self.copied.len()) as u32 - 1
         })
     }
+
+    /// A row in the copy whose lowest parts along the vectors are in the box, so that simplices extend beyond only the upper
+    /// faces of the box.
+    pub(crate) fn lay_out<const N: usize>(
+        &mut self,
+        shape: &AlphaShape,
+        row: [u32; N],
+    ) -> [u32; N] {
+        let copied = shape.shifted(row);
+        let lowest = [0, 1, 2].map(|k| copied.iter().map(|(_, way)| way[k]).min().unwrap_or(0));
+        copied.map(|(v, way)| self.number((v, minus(way, lowest))))
+    }
+}
+
+impl WeightedPoints {
+    /// Gives the points, which are the first so many, these copies in place of those that they have.
+    pub(crate) fn set_copies(&mut self, own: usize, torus: Torus, copied: &[Copied]) {
+        self.positions.truncate(own);
+        self.weights.truncate(own);
+        self.values.iter_mut().for_each(|values| values.truncate(own));
+        for &(v, shift) in copied {
+            let at = v as usize;
+            self.positions.push(torus.moved(self.positions[at], shift));
+            self.weights.push(self.weights[at]);
+            self.values.iter_mut().for_each(|values| values.push(values[at]));
+        }
+    }
 }
 
 /// The vertices of a simplex of a torus in order, with their shifts; the first shift is 0. It identifies the simplex also where its vertices alone do not.
@@ -88,17 +115,10 @@ impl AlphaShape {
     /// Gives the shape these copies of its points, in place of those that it has.
     pub(crate) fn set_copies(&mut self, torus: Torus, copied: Vec<Copied>) {
         let own = self.own_points();
-        let points = &mut self.points;
-        points.positions.truncate(own);
-        points.weights.truncate(own);
-        points.values.iter_mut().for_each(|values| values.truncate(own));
-        self.squared.iter_mut().for_each(|squared| squared.truncate(own));
-        for &(v, shift) in &copied {
-            let at = v as usize;
-            points.positions.push(torus.moved(points.positions[at], shift));
-            points.weights.push(points.weights[at]);
-            points.values.iter_mut().for_each(|values| values.push(values[at]));
-            self.squared.iter_mut().for_each(|squared| squared.push(squared[at]));
+        self.points.set_copies(own, torus, &copied);
+        if let Some(squared) = &mut self.squared {
+            squared.truncate(own);
+            copied.iter().for_each(|&(v, _)| squared.push(squared[v as usize]));
         }
         (self.copies, self.shifts) = copied.into_iter().unzip();
     }

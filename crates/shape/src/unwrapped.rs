@@ -3,23 +3,14 @@
 use std::collections::BTreeMap;
 
 use super::copies::Copier;
-use super::winding::minus;
 use super::{AlphaShape, Simplices};
 
-/// Places each simplex in the copy whose lowest parts along the vectors are in the box, so that simplices extend beyond only the upper
-/// faces of the box.
 fn lay_out<const N: usize>(
     shape: &AlphaShape,
     simplices: &Simplices<N>,
     copier: &mut Copier,
 ) -> Simplices<N> {
-    let row = |row: [u32; N]| {
-        let copied = shape.shifted(row);
-        let lowest = [0, 1, 2].map(|k| copied.iter().map(|(_, way)| way[k]).min().unwrap_or(0));
-        copied.map(|(v, way)| copier.number((v, minus(way, lowest))))
-    };
-    let mut row = row;
-    simplices.iter().map(|(&vertices, class)| (row(vertices), class)).collect()
+    simplices.iter().map(|(&row, class)| (copier.lay_out(shape, row), class)).collect()
 }
 
 impl AlphaShape {

@@ -216,7 +216,7 @@ impl AtomsSummary {
 impl From<Cell> for CellSummary {
     fn from(cell: Cell) -> Self {
         let use_of_it =
-            if cell.repeats == [false; 3] { "" } else { ": --periodic cell makes its torus" };
+            if cell.repeats == [false; 3] { "" } else { ": --periodic cell makes points repeat" };
         let text = format!("{cell}{use_of_it}");
         Self { vectors: cell.vectors, repeats: cell.repeats, sides: cell.sides(), text }
     }

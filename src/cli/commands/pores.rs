@@ -7,15 +7,14 @@ use clap::Args;
 use serde::Serialize;
 use walpha_base::shown::{counted, rounded};
 
-use crate::balls::BallUnion;
+use crate::balls::{Bounded, FreeSphere, PeriodicBalls, ProbedPores};
 use crate::cli::commands::pipeline;
 use crate::cli::options::global::Global;
 use crate::cli::options::{self, Declared, InputArgs, Periodic, WithAlpha};
-use crate::cli::process::errors::{Result, command_error, fail, fail_usage, option};
+use crate::cli::process::errors::{CommandError, Result, command_error, fail, fail_usage, option};
 use crate::cli::process::output::{name, print_summary};
 use crate::cli::process::progress::Progress;
 use crate::cli::report::{MovedIntoBox, SCHEMA_VERSION, ending};
-use crate::ladder::{Filtration, PoreSphere};
 use crate::pipeline::{AlphaRule, Input, Origin, PeriodicBox, Values};
 use crate::progress::Stage;
 use crate::shape::Torus;
@@ -78,91 +77,58 @@ impl Pores {
         let Some(box_volume) = torus.volume() else {
             fail!("pores are of boxes that repeat along all three vectors, and this one does not" => "measure the voids of its balls: walpha balls FILE -o voids.csv");
         };
-        let balls = Balls::of(weighed.points, alpha, torus)?;
-        let frame = progress.watch(|| {
+        let balls = balls_of(weighed.points, alpha, torus)?;
+        let found = progress.watch(|| {
             Stage::Filtration.begin()?;
-            balls.filtration(0.0)
+            balls.pores()
         })?;
-        let ordered = progress.stage(Stage::Order, || frame.filtration.simplices())?;
-        let found = ordered.pores().expect("a filtration of a torus");
-        let sphere = |sphere: &PoreSphere| Sphere::of(sphere, &balls, &frame.filtration);
-        let probe =
-            self.probe.map(|radius| progress.stage(Stage::Measure, || Probe::of(radius, &balls)));
+        let probed = self.probe.map(|radius| {
+            let found = progress.watch(|| {
+                Stage::Measure.begin()?;
+                balls.probed(radius)
+            });
+            Ok::<_, CommandError>(Probe::of(radius, found?))
+        });
+        let radii = balls.radii().iter().copied();
+        let range = [f64::min, f64::max].map(|of| radii.clone().reduce(of).unwrap_or_default());
         let summary = PoresSummary {
             schema_version: SCHEMA_VERSION,
             input: input.input.to_string(),
             molecule: molecule.map(|molecule| molecule.summary().with_names(option)),
-            points: balls.radii.len(),
+            points: balls.radii().len(),
             folded,
             coordinates,
             box_volume,
             vectors: torus.vectors(),
-            radii: balls.range(),
-            power_distance: balls.common.is_none(),
+            radii: range,
+            power_distance: balls.is_by_power_distance(),
             pores: Spheres {
-                included: sphere(&found.included),
-                free: sphere(&found.free),
-                free_along: found.free_along.each_ref().map(sphere),
-                included_along_free: sphere(&found.included_along_free),
+                included: found.included.into(),
+                free: found.free.into(),
+                free_along: found.free_along.map(Sphere::from),
+                included_along_free: found.included_along_free.into(),
             },
-            probe: probe.transpose()?,
+            probe: probed.transpose()?,
             seconds: progress.finish().into_iter().collect(),
         };
         print_summary(global, &summary)
     }
 }
 
-/// The balls of a box.
-struct Balls {
-    positions: Vec<[f64; 3]>,
-    radii: Vec<f64>,
-    /// The radius of all of them, if they have the same.
-    common: Option<f64>,
-    torus: Torus,
-}
-
-/// A filtration, and the α at which its balls are those that were asked for.
-struct Frame {
-    filtration: Filtration,
-    alpha: Alpha,
-}
-
-impl Balls {
-    fn of(points: WeightedPoints, alpha: Alpha, torus: Torus) -> Result<Self> {
-        let (positions, weights, _) = points.into_parts();
-        let mut radii = Vec::with_capacity(weights.len());
-        for (row, weight) in weights.iter().enumerate() {
-            let squared = alpha.squared() + weight;
-            if squared < 0.0 {
-                return Err(
-                    command_error!("point {row} has a negative squared radius, {squared}" => "give weights that are squares of radii, or a larger --alpha"),
-                );
-            }
-            radii.push(squared.sqrt());
+/// The balls of points at α.
+fn balls_of(points: WeightedPoints, alpha: Alpha, torus: Torus) -> Result<PeriodicBalls> {
+    let (positions, weights, _) = points.into_parts();
+    let mut radii = Vec::with_capacity(weights.len());
+    for (row, weight) in weights.iter().enumerate() {
+        let squared = alpha.squared() + weight;
+        if squared < 0.0 {
+            return Err(
+                command_error!("point {row} has a negative squared radius, {squared}" => "give weights that are squares of radii, or a larger --alpha"),
+            );
         }
-        let first = radii.first().copied();
-        let common = first.filter(|first| radii.iter().all(|radius| radius == first));
-        Ok(Self { positions, radii, common, torus })
+        radii.push(squared.sqrt());
     }
-
-    /// The smallest and the largest radius.
-    fn range(&self) -> [f64; 2] {
-        let of = |choose: fn(f64, f64) -> f64| self.radii.iter().copied().reduce(choose);
-        [of(f64::min), of(f64::max)].map(Option::unwrap_or_default)
-    }
-
-    /// The filtration whose balls, at its α, have radii larger by a probe's. Of balls of one radius it is the one without weights, in which nothing
-    /// is rounded.
-    fn filtration(&self, probe: f64) -> Result<Frame> {
-        let (weights, alpha) = match self.common {
-            Some(radius) => (vec![0.0; self.radii.len()], (radius + probe).powi(2)),
-            None => (self.radii.iter().map(|radius| (radius + probe).powi(2)).collect(), 0.0),
-        };
-        let points = WeightedPoints::new(self.positions.clone(), weights);
-        let points = points.expect("a weight for each point");
-        let filtration = Filtration::on(Some(self.torus), points)?;
-        Ok(Frame { filtration, alpha: Alpha::from_squared(alpha)? })
-    }
+    Ok(PeriodicBalls::new(torus, positions, radii)?)
 }
 
 #[derive(Serialize)]
@@ -208,14 +174,9 @@ struct Sphere {
     center: [f64; 3],
 }
 
-impl Sphere {
-    fn of(sphere: &PoreSphere, balls: &Balls, filtration: &Filtration) -> Self {
-        let weights = filtration.points().weights();
-        let free = |&v: &u32| {
-            (sphere.alpha + weights[v as usize]).max(0.0).sqrt() - balls.radii[v as usize]
-        };
-        let radius = sphere.points.iter().map(free).fold(f64::INFINITY, f64::min);
-        Self { diameter: 2.0 * radius, center: sphere.center }
+impl From<FreeSphere> for Sphere {
+    fn from(FreeSphere { diameter, center }: FreeSphere) -> Self {
+        Self { diameter, center }
     }
 }
 
@@ -232,20 +193,10 @@ struct Probe {
 }
 
 impl Probe {
-    fn of(radius: f64, balls: &Balls) -> Result<Self> {
-        let Frame { filtration, alpha } = balls.filtration(radius)?;
-        let parts = filtration.pore_parts(alpha).expect("a filtration of a torus");
-        let shape = filtration.shape(alpha);
-        let union = BallUnion::new(&shape)?;
-        let filled = union.box_fraction().expect("a shape of a torus");
-        let dimensions = parts.iter().map(|part| part.dimension);
-        Ok(Self {
-            radius,
-            channels: dimensions.clone().filter(|&dimension| dimension > 0).collect(),
-            pockets: dimensions.filter(|&dimension| dimension == 0).count(),
-            void_fraction: 1.0 - filled.value,
-            void_fraction_bound: filled.bound + f64::EPSILON,
-        })
+    fn of(radius: f64, found: ProbedPores) -> Self {
+        let ProbedPores { channels, pockets, void_fraction, .. } = found;
+        let Bounded { value, bound } = void_fraction;
+        Self { radius, channels, pockets, void_fraction: value, void_fraction_bound: bound }
     }
 }
 
@@ -294,12 +245,7 @@ impl Display for PoresSummary {
                 "probe     radius {radius} {unit}: {channels}, {pockets} without a way out; its centre can be in {share} % of the box"
             )?;
         }
-        ending(
-            f,
-            &[],
-            &["read", "points", "filtration", "order", "measure", "total"],
-            &self.seconds,
-        )
+        ending(f, &[], &["read", "points", "filtration", "measure", "total"], &self.seconds)
     }
 }
 

@@ -12,7 +12,7 @@ use walpha_base::shown::{number, rounded};
 
 use crate::cli::commands::pipeline::{self, VolumeSummary, filled_in};
 use crate::cli::options::global::Global;
-use crate::cli::options::{self, Alphas, Declared, FrozenPipelineArgs};
+use crate::cli::options::{self, Alphas, Declared, FrozenPipelineArgs, Periodic};
 use crate::cli::process::errors::{CommandError, Result, fail, fail_usage};
 use crate::cli::process::output::{OF_OUTPUTS, name, print_summary};
 use crate::cli::process::progress::Progress;
@@ -23,7 +23,7 @@ use crate::interpolate::{Deviation, Grid, Interpolant};
 use crate::ladder::Filtration;
 use crate::pictures;
 use crate::pipeline::{AlphaRule, Input, Parameter, PipelineError, PlacedVolume, Values, Weighed};
-use crate::points::{Element, Molecule};
+use crate::points::{Cell, Element, Molecule};
 use crate::progress::Stage;
 use crate::render::{self, Atoms, Differences, Original, Page, Subject};
 use crate::shape::Kept;
@@ -64,6 +64,8 @@ pub(crate) struct View {
     isovalue: Option<Isovalue>,
     #[command(flatten)]
     pipeline: FrozenPipelineArgs,
+    #[command(flatten)]
+    periodic: Declared<Periodic>,
     /// The page shows their points alone.
     #[command(flatten)]
     kept: Declared<options::Kept>,
@@ -99,10 +101,17 @@ impl View {
             );
             return Err(CommandError { next: Some(next), ..error.into() });
         }
+        let recipe = self.pipeline.recipe()?;
+        if recipe.periodic.is_some() {
+            if !self.counts.is_empty() {
+                fail_usage!("levels of detail are of volumes, and points repeat in a periodic box" => "omit --counts");
+            }
+            let why = "points of a periodic box repeat, and those of a part would not fill it";
+            self.pipeline.input.typed.refuse(&["keep", "min_volume"], why)?;
+        }
         let target = Target::open(&self.output)?;
         let mut progress = Progress::new(global);
         let (weighed, source) = self.weighed(&mut progress)?;
-        let recipe = self.pipeline.recipe()?;
         let details = weighed.into_iter().map(|weighed| {
             let detail = Detail::new(weighed, source.volume.as_ref(), &mut progress)?;
             if recipe.keep.is_all() {
@@ -226,7 +235,7 @@ impl View {
         let rendered = details.iter().zip(&shown).map(|(detail, (levels, ladder, first))| {
             let differences = detail.differences.as_ref();
             // What is kept of a shape has other points than the file.
-            let is_all = |atoms: &&Atoms| atoms.numbers.len() == levels.points().len();
+            let is_all = |atoms: &&Atoms| atoms.numbers.len() == levels.own_points();
             let atoms = atoms.as_ref().filter(is_all);
             render::Detail { levels, ladder, first: *first, differences, atoms }
         });
@@ -289,6 +298,10 @@ impl View {
                 format!("{}, frozen at {reference}", WeightsReport::of(weighed)),
             ));
         }
+        if let Some(torus) = weighed.origin.torus {
+            let cell = Cell { vectors: torus.vectors(), repeats: torus.repeats() };
+            facts_shown.push(("periodic box".into(), cell.to_string()));
+        }
         if let Some(kept) = kept {
             facts_shown.push(("kept".into(), kept.to_string()));
         }
@@ -314,11 +327,11 @@ impl Detail {
     ) -> Result<Self> {
         let filtration = progress.watch(|| pipeline::filtration(&weighed))?;
         let differences = match source {
-            Some(source) => {
+            Some(source) if weighed.origin.torus.is_none() => {
                 let measure = || differences(&weighed, source, &filtration);
                 progress.stage(Stage::Interpolate, measure)?
             }
-            None => None,
+            _ => None,
         };
         Ok(Self { weighed, filtration, differences, kept: None })
     }
@@ -476,7 +489,7 @@ pub(crate) struct DetailSummary {
 impl DetailSummary {
     pub(crate) fn of(detail: &render::Detail<'_>) -> Self {
         Self {
-            points: detail.levels.points().len(),
+            points: detail.levels.own_points(),
             levels: detail.levels.len(),
             rmse_filled: detail.differences.map(|differences| differences.rmse),
             kept: None,

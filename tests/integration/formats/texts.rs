@@ -90,7 +90,7 @@ fn extended_xyz_states_columns_and_a_cell() {
     assert_eq!((points.positions.as_slice(), points.values), (&PLACES[..], None));
     assert!(facts.cell.is_some());
     let told = ok(f, &["info", "e.xyz"]);
-    names(&told, &["sides 10,20,30", "--periodic cell makes its torus"]);
+    names(&told, &["sides 10,20,30", "--periodic cell makes points repeat"]);
     let facts = json(f, &["info", "e.xyz"]);
     assert_eq!(facts["cell"]["sides"], serde_json::json!([10.0, 20.0, 30.0]));
     assert_eq!(
@@ -101,11 +101,11 @@ fn extended_xyz_states_columns_and_a_cell() {
     for (oblique, words) in [
         (
             "Lattice='1 0 0 0.5 1 0 0 0 1'",
-            "the vectors (1,0,0), (0.5,1,0), (0,0,1): --periodic cell makes its torus",
+            "the vectors (1,0,0), (0.5,1,0), (0,0,1): --periodic cell makes points repeat",
         ),
         (
             "Lattice=\"1 0 0 0 1 0 0 0 1\" pbc=\"T T F\"",
-            "one along some of whose vectors only points repeat, which is not supported",
+            "a box of sides 1,1,1, repeating along the first and the second: --periodic cell makes points repeat",
         ),
     ] {
         assert_eq!(read(oblique).unwrap().1.cell.unwrap().sides(), None);

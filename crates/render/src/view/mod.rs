@@ -7,8 +7,9 @@ mod pack;
 mod subject;
 
 use serde_json::{Map, Value, json};
-use walpha_shape::SinglePrecision;
-use walpha_shape::ladder::Level;
+use walpha_base::vector::{along, dot, scale, unit};
+use walpha_shape::ladder::{Drawn, Level};
+use walpha_shape::{SinglePrecision, Torus};
 
 use crate::error::RenderError;
 use pack::Packed;
@@ -43,18 +44,20 @@ impl Page {
     /// If there is no level of detail, or one of them has no α or more than [`Page::MOST_LEVELS`].
     pub fn new(subject: &Subject<'_>) -> Result<Self, RenderError> {
         assert!(!subject.details.is_empty(), "nothing to show");
-        let centre = centre(subject);
-        let pack = |detail: &Detail<'_>| {
+        let drawn = subject.details.iter().map(|detail| {
             let levels = detail.levels.len();
             assert!((1..=Self::MOST_LEVELS).contains(&levels), "{levels} levels");
-            Packed::of(detail, centre, Self::MOST_FACETS, MOST_VOIDS)
-        };
-        let packed: Vec<_> = subject.details.iter().map(pack).collect();
+            detail.levels.drawn(MOST_VOIDS)
+        });
+        let drawn: Vec<Drawn<'_>> = drawn.collect();
+        let centre = centre(&drawn);
+        let whole = whole(subject, &drawn, centre);
+        let pack = |(detail, drawn)| Packed::of(detail, drawn, centre, Self::MOST_FACETS);
+        let packed: Vec<_> = subject.details.iter().zip(drawn).map(pack).collect();
         let simplified = simplified(subject, &packed);
         let original = subject.original.as_ref();
         let surface = original.map(|original| pack::surface(original, centre)).transpose()?;
-        let mut elements =
-            element("page", &surface.unwrap_or_default().packed(whole(subject, centre)));
+        let mut elements = element("page", &surface.unwrap_or_default().packed(whole));
         for (k, (of, packed)) in subject.details.iter().zip(packed).enumerate() {
             let content = detail(subject, of, packed.simplified.as_deref());
             elements += &element(&format!("detail-{k}"), &packed.arrays.packed(content));
@@ -71,7 +74,7 @@ impl Page {
 /// Tells what was simplified at each level of detail.
 fn simplified(subject: &Subject<'_>, packed: &[Packed]) -> Option<String> {
     let of = |(detail, packed): (&Detail<'_>, &Packed)| {
-        let points = detail.levels.points().len();
+        let points = detail.levels.own_points();
         Some(format!("{points} points are {}", packed.simplified.as_ref()?))
     };
     let texts: Vec<String> = subject.details.iter().zip(packed).filter_map(of).collect();
@@ -85,28 +88,40 @@ const PAGE: &str = include_str!("page.html");
 const MOST_VOIDS: usize = 200;
 
 /// The content that does not depend on the level of detail.
-fn whole(subject: &Subject<'_>, centre: [f64; 3]) -> Value {
+fn whole(subject: &Subject<'_>, drawn: &[Drawn<'_>], centre: [f64; 3]) -> Value {
     let difference = format!(
         "difference to the original (root mean square of F, filled in, around each point), in {}",
         subject.difference
     );
+    let torus = subject.details.iter().find_map(|detail| detail.levels.torus());
+    let cell = torus.map(|torus| {
+        let [mut origin, a, b, c] = cell(torus, drawn);
+        (0..3).for_each(|k| origin[k] -= centre[k]);
+        [origin, a, b, c]
+    });
+    let domain = match (cell, subject.original) {
+        (Some(_), _) => "the periodic box",
+        (None, Some(_)) => "the volume",
+        (None, None) => "the box",
+    };
     json!({
-        "facts": facts(subject, centre),
+        "facts": facts(subject, drawn, centre),
+        "cell": cell,
         "unit": subject.coordinates.unit.symbol(),
         "space": subject.coordinates.space,
         "centre": centre,
-        "domain": if subject.original.is_some() { "the volume" } else { "the box" },
+        "domain": domain,
         "titles": { "value": format!("F ({})", subject.value), "difference": difference },
         "isovalue": subject.original.map(|original| original.isovalue),
-        "points": subject.details.iter().map(|detail| detail.levels.points().len()).collect::<Vec<_>>(),
+        "points": subject.details.iter().map(|detail| detail.levels.own_points()).collect::<Vec<_>>(),
     })
 }
 
 /// The facts that the page lists: those of the subject, and the centre of the picture if single precision would not suffice
 /// otherwise.
-fn facts(subject: &Subject<'_>, centre: [f64; 3]) -> Vec<(String, String)> {
+fn facts(subject: &Subject<'_>, drawn: &[Drawn<'_>], centre: [f64; 3]) -> Vec<(String, String)> {
     let mut facts = subject.facts.to_vec();
-    let single = |at: [f64; 3]| subject.details.iter().map(move |detail| single(detail, at));
+    let single = |at: [f64; 3]| drawn.iter().map(move |drawn| single(drawn, at));
     if single([0.0; 3]).any(|single| single.remark().is_some()) {
         let [x, y, z] = centre.map(walpha_base::shown::number);
         let mut text = format!(
@@ -122,18 +137,52 @@ fn facts(subject: &Subject<'_>, centre: [f64; 3]) -> Vec<(String, String)> {
 }
 
 /// The conversion of the positions of a level of detail, as seen from a place, to single precision.
-fn single(detail: &Detail<'_>, from: [f64; 3]) -> SinglePrecision {
+fn single(drawn: &Drawn<'_>, from: [f64; 3]) -> SinglePrecision {
     let seen = |place: &[f64; 3]| [0, 1, 2].map(|k| place[k] - from[k]);
-    let places: Vec<[f64; 3]> = detail.levels.points().positions().iter().map(seen).collect();
-    let facets = detail.levels.facets().into_iter();
-    let sides = facets.flat_map(|([a, b, c], _)| [[a, b], [b, c], [c, a]]);
-    let edges = detail.levels.singular_edges().into_iter().map(|(edge, _)| edge);
-    SinglePrecision::of(&places, sides.chain(edges))
+    let places: Vec<[f64; 3]> = drawn.points.positions().iter().map(seen).collect();
+    let sides = drawn.facets.iter().flat_map(|&([a, b, c], _)| [[a, b], [b, c], [c, a]]);
+    SinglePrecision::of(&places, sides.chain(drawn.edges.iter().map(|(edge, _)| *edge)))
+}
+
+/// The origin of a periodic box and its three vectors. Across a slab or a rod, the box is as large as the points need it.
+fn cell(torus: Torus, drawn: &[Drawn<'_>]) -> [[f64; 3]; 4] {
+    let mut vectors = torus.vectors();
+    let mut origin = [0.0; 3];
+    for k in 0..3 {
+        if torus.repeats()[k] {
+            continue;
+        }
+        // Perpendicular to the vectors that are there, and near an axis: the longest of what is left of the axes.
+        let rest = |axis: usize| {
+            let mut rest = [0.0; 3];
+            rest[axis] = 1.0;
+            // Twice, since vectors may be far from perpendicular to each other.
+            for _ in 0..2 {
+                for vector in vectors {
+                    let share = dot(rest, vector) / dot(vector, vector).max(f64::MIN_POSITIVE);
+                    rest = along(rest, -share, vector);
+                }
+            }
+            rest
+        };
+        let longest =
+            [0, 1, 2].map(rest).into_iter().max_by(|a, b| dot(*a, *a).total_cmp(&dot(*b, *b)));
+        let Some(direction) = longest.and_then(unit) else { continue };
+        let heights =
+            drawn.iter().flat_map(|drawn| drawn.points.positions()).map(|p| dot(*p, direction));
+        let (low, high) = heights
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), h| (h.min(low), h.max(high)));
+        if low <= high {
+            origin = along(origin, low, direction);
+            vectors[k] = scale(direction, high - low);
+        }
+    }
+    [origin, vectors[0], vectors[1], vectors[2]]
 }
 
 /// A level of detail, without its arrays.
 fn detail(subject: &Subject<'_>, detail: &Detail<'_>, simplified: Option<&str>) -> Value {
-    let mut rows = vec![["points".to_owned(), detail.levels.points().len().to_string()]];
+    let mut rows = vec![["points".to_owned(), detail.levels.own_points().to_string()]];
     if let Some(differences) = detail.differences {
         let rmse = significant(differences.rmse);
         let text = format!("{rmse} {} (root mean square, on all samples)", subject.difference);
@@ -161,9 +210,9 @@ fn level(level: &Level) -> Value {
     serde_json::to_value(level).expect("numbers and lists of them")
 }
 
-/// The centre of the box of the points: positions are relative to it.
-fn centre(subject: &Subject<'_>) -> [f64; 3] {
-    let points = || subject.details.iter().flat_map(|detail| detail.levels.points().positions());
+/// The centre of the box of what is drawn: positions are relative to it.
+fn centre(drawn: &[Drawn<'_>]) -> [f64; 3] {
+    let points = || drawn.iter().flat_map(|drawn| drawn.points.positions());
     [0, 1, 2].map(|k| {
         let (low, high) = points().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), p| {
             (p[k].min(low), p[k].max(high))

@@ -5,7 +5,7 @@ use flate2::Compression;
 use flate2::write::GzEncoder;
 use ndarray::s;
 use serde_json::{Map, Value, json};
-use walpha_shape::ladder::Span;
+use walpha_shape::ladder::{Drawn, Span};
 
 use super::subject::{Detail, Original};
 use crate::error::RenderError;
@@ -90,13 +90,11 @@ const ISOSURFACE_SAMPLES: usize = 64;
 impl Packed {
     pub(super) fn of(
         detail: &Detail<'_>,
+        drawn: Drawn<'_>,
         centre: [f64; 3],
         most_facets: usize,
-        most_voids: usize,
     ) -> Self {
-        let points = detail.levels.points();
-        let mut facets = detail.levels.facets();
-        let mut edges = detail.levels.singular_edges();
+        let Drawn { points, copies, mut facets, mut edges, vertices, voids } = drawn;
         let simplified = simplify(points.positions(), &mut facets, &mut edges, most_facets);
         let mut arrays = Arrays::default();
         arrays.positions(points.positions().iter(), centre);
@@ -105,10 +103,11 @@ impl Packed {
             arrays.f32("values", values.iter().copied());
         }
         if let Some(differences) = detail.differences {
+            // They are those of a volume, which has no copies.
             arrays.f32("differences", differences.local.iter().copied());
         }
         let mut spans = vec![Span { first: NEVER, regular: NEVER, interior: NEVER }; points.len()];
-        for (v, span) in detail.levels.vertices() {
+        for (v, span) in vertices {
             spans[v as usize] = span;
         }
         arrays.u8("pointSpans", bytes(spans.iter()));
@@ -119,9 +118,10 @@ impl Packed {
         arrays.u32("edges", edges.iter().flat_map(|edge| edge.0));
         arrays.u8("edgeSpans", bytes(edges.iter().map(|edge| &edge.1)));
         if let Some(atoms) = detail.atoms {
-            arrays.u8("atoms", atoms.numbers.iter().copied());
+            let of_copies = copies.iter().map(|&v| atoms.numbers[v as usize]);
+            arrays.u8("atoms", atoms.numbers.iter().copied().chain(of_copies));
         }
-        let voids = detail.levels.void_facets(most_voids);
+        arrays.u32("copies", copies.iter().copied());
         let all = || voids.iter().flatten();
         // Where they are too many, voids are shown by their boxes.
         if all().map(Vec::len).sum::<usize>() <= most_facets {

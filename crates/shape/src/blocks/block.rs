@@ -57,7 +57,7 @@ pub(crate) struct Copies {
 
 impl Block {
     /// The multiples of the vectors by which a point is moved; 0 for the block's own.
-    pub(super) fn windings(&self, v: u32) -> [i32; 3] {
+    pub(crate) fn windings(&self, v: u32) -> [i32; 3] {
         let beyond = v.checked_sub(self.own).zip(self.copies.as_ref());
         beyond.map_or([0; 3], |(at, copies)| copies.windings[at as usize])
     }

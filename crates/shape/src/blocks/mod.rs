@@ -32,4 +32,4 @@ pub(crate) use partition::{Partition, Reach};
 pub use plan::AT_WORK;
 pub(super) use plan::{Limits, Plan};
 pub(super) use run::run;
-pub(crate) use torus::too_long;
+pub(crate) use torus::{too_long, whole_on_torus};

@@ -1,12 +1,13 @@
 //! The halo of a block of a torus, which is smaller than the halo for α if that is enough to decide the block.
 
 use rayon::prelude::*;
+use walpha_base::Monitor;
 use walpha_base::monitor::Units;
 use walpha_regular::internals::Lattice;
 use walpha_regular::internals::{AXES, CellArrays, Predicates, Sites, VECTORS};
 use walpha_regular::{SitesError, Torus, TriangulationError};
 
-use super::block::{Block, BlockParams, triangulate};
+use super::block::{Block, BlockParams, WORK, triangulate};
 use super::classify::Long;
 use super::partition::{Partition, Reach};
 use super::run::in_space;
@@ -36,6 +37,18 @@ pub(super) fn on_torus(
     let points = partition.block(sites, Reach::whole(sites), block);
     let made = triangulate(&points, work)?;
     Ok((points, made, params.lattice))
+}
+
+/// All points of a torus, with the halo that decides their triangulation, and that triangulation.
+pub(crate) fn whole_on_torus(
+    sites: &Sites<'_>,
+    torus: Torus,
+    params: &BlockParams,
+    monitor: &Monitor,
+) -> Result<(Block, CellArrays), ShapeError> {
+    let work = monitor.units(WORK * sites.input().len() as u64);
+    let (points, made, _) = on_torus(sites, torus, &Partition::new(sites, 1), 0, params, &work)?;
+    Ok((points, made))
 }
 
 /// The same for a torus that does not repeat along all vectors: the points may have an outside, as in space.
@@ -110,8 +123,6 @@ pub(crate) fn too_long(torus: Torus, Long { edge, ends }: Long) -> ShapeError {
 
 #[cfg(test)]
 mod tests {
-    use walpha_base::Monitor;
-
     use super::*;
 
     fn params(alpha: f64, exterior: bool, sites: &Sites<'_>) -> BlockParams {

@@ -7,7 +7,7 @@ use walpha_regular::internals::{Interval, Predicates};
 use super::Filtration;
 use super::build::Incidence;
 use super::small::is_even;
-use crate::{Alpha, AlphaShape, Betti, Class, Complex, WeightedPoints};
+use crate::{Alpha, AlphaShape, Betti, Class, Complex, Torus, WeightedPoints};
 
 /// The levels at which the class of a simplex changes. Levels count from 0; the number of levels stands for never. The fields are
 /// public because this is plain data.
@@ -202,6 +202,16 @@ impl Levels<'_> {
     /// The points and their frozen weights.
     pub fn points(&self) -> &WeightedPoints {
         self.filtration.points()
+    }
+
+    /// The torus on which the points are, if they are on one.
+    pub fn torus(&self) -> Option<Torus> {
+        self.filtration.torus()
+    }
+
+    /// The number of points without the copies that rows of a small periodic box name.
+    pub fn own_points(&self) -> usize {
+        self.filtration.whole.own_points()
     }
 
     /// The α of each level, ascending.

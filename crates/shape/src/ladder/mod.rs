@@ -25,6 +25,7 @@
 
 mod build;
 mod critical;
+mod drawn;
 mod filtration;
 mod levels;
 mod ordered;
@@ -36,6 +37,8 @@ mod topology;
 mod values;
 
 pub use critical::{Curve, Suggestions};
+#[doc(hidden)]
+pub use drawn::Drawn;
 pub use filtration::Filtration;
 #[doc(hidden)]
 pub use levels::{ByLevel, LevelRows};
@@ -46,4 +49,6 @@ pub use ordered::{
 };
 #[doc(hidden)]
 pub use small::Covering;
+#[cfg(test)]
+pub(crate) use small::tests::random_points;
 pub use table::{Ladder, Level};

@@ -337,7 +337,7 @@ pub(super) mod tests {
     }
 
     /// The points of a box, with or without weights.
-    pub(in crate::ladder) fn random_points(seed: u64, count: usize, weight: f64) -> WeightedPoints {
+    pub(crate) fn random_points(seed: u64, count: usize, weight: f64) -> WeightedPoints {
         let mut random = Random::new(seed);
         let positions = (0..count).map(|_| [0; 3].map(|_| 4.0 * random.unit())).collect();
         let weights = (0..count).map(|_| weight * random.unit()).collect();

@@ -147,7 +147,7 @@ impl Levels<'_> {
         voids
     }
 
-    /// The facets around the first [voids](Self::voids) of each level, this many at most: corners by input index, counter-clockwise
+    /// The facets around the first [voids](Self::voids) of each level, this many at most: corners counter-clockwise
     /// seen from outside the void. A facet with the void on both sides hangs into it, and is not listed. O(n α(n)), and the
     /// number of cells of the voids.
     #[doc(hidden)]
@@ -303,8 +303,7 @@ impl LevelComplement<'_> {
                 let sides = facet_cells[facet as usize];
                 let other = if sides[0] == at { sides[1] } else { sides[0] };
                 if other == Incidence::OUTSIDE || self.sets.find(other) != root {
-                    let corner = |k: usize| filtration.whole.copied(cells[at as usize][k]).0;
-                    facets.push(Incidence::outward(opposite).map(corner));
+                    facets.push(Incidence::outward(opposite).map(|k| cells[at as usize][k]));
                 }
             }
             at = self.next[at as usize];

@@ -1,0 +1,166 @@
+//! The pores between the balls of a periodic box.
+
+use walpha_shape::ladder::{Filtration, PoreSphere};
+use walpha_shape::{Alpha, Torus, WeightedPoints};
+
+use crate::{BallUnion, BallsError, Bounded};
+
+/// Balls in a box that repeats along all three vectors, between which spheres and channels are looked for.
+///
+/// ```
+/// use walpha_balls::PeriodicBalls;
+/// use walpha_shape::Torus;
+///
+/// // One ball in a cube: from window to window of its lattice a sphere of diameter √2 − 0.6 can pass.
+/// let balls = PeriodicBalls::new(Torus::new([1.0; 3])?, vec![[0.0; 3]], vec![0.3])?;
+/// let pores = balls.pores()?;
+/// assert!((pores.included.diameter - (3f64.sqrt() - 0.6)).abs() < 1e-15);
+/// assert!((pores.free.diameter - (2f64.sqrt() - 0.6)).abs() < 1e-15);
+/// let probed = balls.probed(0.2)?;
+/// assert_eq!((probed.channels, probed.pockets), (vec![3], 0));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct PeriodicBalls {
+    torus: Torus,
+    positions: Vec<[f64; 3]>,
+    radii: Vec<f64>,
+    /// The radius of all of them, if they have the same.
+    common: Option<f64>,
+}
+
+/// A sphere that touches balls.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FreeSphere {
+    /// Its diameter; negative where the balls leave no way.
+    pub diameter: f64,
+    /// Its centre, in the box.
+    pub center: [f64; 3],
+}
+
+/// The largest spheres between balls.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct BallPores {
+    /// The largest that fits.
+    pub included: FreeSphere,
+    /// The largest that can move to another copy of its place: the narrowest place on its way.
+    pub free: FreeSphere,
+    /// The same along each vector of the box.
+    pub free_along: [FreeSphere; 3],
+    /// The largest on the way of the free one.
+    pub included_along_free: FreeSphere,
+}
+
+/// What the centre of a probe can reach between balls.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct ProbedPores {
+    /// In how many independent directions each channel winds round the box.
+    pub channels: Vec<usize>,
+    /// The number of parts without a way out.
+    pub pockets: usize,
+    /// The share of the box in which the centre of the probe can be, of channels and pockets together.
+    pub void_fraction: Bounded,
+}
+
+/// A filtration, and the α at which its balls are those that were asked for.
+struct Frame {
+    filtration: Filtration,
+    alpha: Alpha,
+}
+
+impl PeriodicBalls {
+    /// Balls by their centres and radii.
+    ///
+    /// # Errors
+    /// [`BallsError::Slab`] for a box that does not repeat along all three vectors; other numbers of radii than of centres.
+    ///
+    /// # Panics
+    /// If a radius is negative or not a number.
+    pub fn new(
+        torus: Torus,
+        positions: Vec<[f64; 3]>,
+        radii: Vec<f64>,
+    ) -> Result<Self, BallsError> {
+        assert!(radii.iter().all(|radius| *radius >= 0.0), "radii are not negative");
+        if radii.len() != positions.len() {
+            let (weights, points) = (radii.len(), positions.len());
+            return Err(BallsError::Weights { weights, points });
+        }
+        if torus.dimension() < 3 {
+            return Err(BallsError::Slab);
+        }
+        let first = radii.first().copied();
+        let common = first.filter(|first| radii.iter().all(|radius| radius == first));
+        Ok(Self { torus, positions, radii, common })
+    }
+
+    /// The radii.
+    pub fn radii(&self) -> &[f64] {
+        &self.radii
+    }
+
+    /// Whether radii differ. Then spheres are those of the power distance: they fit, and larger ones may fit elsewhere.
+    pub fn is_by_power_distance(&self) -> bool {
+        self.common.is_none()
+    }
+
+    /// The largest spheres between the balls. O(n log n), expected, for evenly distributed balls.
+    ///
+    /// # Errors
+    /// Those of [`Filtration::on`].
+    #[expect(clippy::missing_panics_doc, reason = "an invariant")]
+    pub fn pores(&self) -> Result<BallPores, BallsError> {
+        let Frame { filtration, .. } = self.filtration(0.0)?;
+        let found = filtration.simplices()?.pores().expect("the box repeats along all vectors");
+        let weights = filtration.points().weights();
+        let sphere = |sphere: &PoreSphere| {
+            let free = |&v: &u32| {
+                (sphere.alpha + weights[v as usize]).max(0.0).sqrt() - self.radii[v as usize]
+            };
+            let radius = sphere.points.iter().map(free).fold(f64::INFINITY, f64::min);
+            FreeSphere { diameter: 2.0 * radius, center: sphere.center }
+        };
+        Ok(BallPores {
+            included: sphere(&found.included),
+            free: sphere(&found.free),
+            free_along: found.free_along.each_ref().map(sphere),
+            included_along_free: sphere(&found.included_along_free),
+        })
+    }
+
+    /// Channels, pockets and void fraction for a probe of this radius. O(n log n), expected, for evenly distributed balls.
+    ///
+    /// # Errors
+    /// Those of [`Filtration::on`] and [`BallUnion::new`].
+    #[expect(clippy::missing_panics_doc, reason = "an invariant")]
+    pub fn probed(&self, radius: f64) -> Result<ProbedPores, BallsError> {
+        let Frame { filtration, alpha } = self.filtration(radius)?;
+        let parts = filtration.pore_parts(alpha).expect("the box repeats along all vectors");
+        let shape = filtration.shape(alpha);
+        let filled = BallUnion::new(&shape)?.box_fraction().expect("a shape of a torus");
+        let dimensions = parts.iter().map(|part| part.dimension);
+        let void_fraction =
+            Bounded { value: 1.0 - filled.value, bound: filled.bound + f64::EPSILON };
+        Ok(ProbedPores {
+            channels: dimensions.clone().filter(|&dimension| dimension > 0).collect(),
+            pockets: dimensions.filter(|&dimension| dimension == 0).count(),
+            void_fraction,
+        })
+    }
+
+    /// The filtration whose balls, at its α, have radii larger by a probe's. Of balls of one radius it is the one without weights, in which nothing
+    /// is rounded.
+    fn filtration(&self, probe: f64) -> Result<Frame, BallsError> {
+        let (weights, alpha) = match self.common {
+            Some(radius) => (vec![0.0; self.radii.len()], (radius + probe).powi(2)),
+            None => (self.radii.iter().map(|radius| (radius + probe).powi(2)).collect(), 0.0),
+        };
+        let points = WeightedPoints::new(self.positions.clone(), weights);
+        let points = points.expect("a weight for each point");
+        let filtration = Filtration::on(Some(self.torus), points)?;
+        let alpha = Alpha::from_squared(alpha).expect("a square that is a number");
+        Ok(Frame { filtration, alpha })
+    }
+}
