@@ -64,9 +64,9 @@ pub enum PageError {
     /// The cells of a solid of labels or inside an isosurface do not depend on α.
     #[error("a page moves through α, on which the cells of this shape do not depend")]
     WithoutAlpha,
-    /// A torus has no place in space.
-    #[error("a page shows shapes in space, and this is one of a torus")]
-    Torus,
+    /// The shape of a periodic box that was unwrapped into space has copies of points in it.
+    #[error("a page moves through α, and this shape is unwrapped from a periodic box at one α")]
+    Unwrapped,
     /// The points have no filtration.
     #[error(transparent)]
     Shape(#[from] ShapeError),
@@ -78,7 +78,8 @@ pub enum PageError {
 impl Advise for PageError {
     fn advice(&self) -> Option<Advice> {
         match self {
-            Self::WithoutAlpha | Self::Torus => Some("write a picture, as .png".into()),
+            Self::WithoutAlpha => Some("write a picture, as .png".into()),
+            Self::Unwrapped => Some("make the page of the shape in its box".into()),
             other => other.wrapped()?.advice(),
         }
     }
@@ -95,25 +96,28 @@ impl Advise for PageError {
 /// Computes the filtration of the points.
 ///
 /// # Errors
-/// The shape is one of a torus, or has no α.
+/// The shape has no α, or it is unwrapped from a periodic box.
 pub fn page(
     shape: &AlphaShape,
     title: &str,
     facts: &[(String, String)],
 ) -> Result<Page, PageError> {
-    if shape.options().periodic.is_some() {
-        return Err(PageError::Torus);
+    let torus = shape.options().periodic;
+    if torus.is_none() && !shape.copies().is_empty() {
+        return Err(PageError::Unwrapped);
     }
     if shape.voxels().is_some() || shape.isovalue().is_some() {
         return Err(PageError::WithoutAlpha);
     }
     let opening = shape.options().alpha;
-    let filtration = Filtration::on(None, shape.points().clone())?;
+    let filtration = Filtration::on(torus, shape.without_copies())?;
     let levels = filtration.levels(&stops(&filtration, opening));
     let [low, high] = bounding_box(shape.points().positions());
-    let ladder = levels.ladder((0..3).map(|k| high[k] - low[k]).product());
+    let of_box = torus.and_then(|torus| torus.volume());
+    let domain = of_box.unwrap_or_else(|| (0..3).map(|k| high[k] - low[k]).product());
+    let ladder = levels.ladder(domain);
     let first = levels.alphas().partition_point(|alpha| *alpha <= opening).saturating_sub(1);
-    let detail = Detail { levels: &levels, ladder: &ladder, first, differences: None, atoms: None };
+    let detail = Detail::new(&levels, &ladder, first);
     let page = Page::new(&Subject {
         title,
         facts,

@@ -1,5 +1,9 @@
 """Pictures, charts and pages: what notebooks show, and files."""
 
+import base64
+import gzip
+import json
+import re
 import struct
 import subprocess
 import sys
@@ -45,12 +49,17 @@ def test_values_are_needed_to_colour_by(cloud):
         walpha.alpha_shape(cloud).plot(colour="value")
 
 
-def test_a_torus_is_drawn_and_has_no_page(cloud):
+def test_a_torus_is_drawn_and_has_a_page(cloud, monkeypatch):
     torus = walpha.alpha_shape(cloud, alpha=0.003, periodic=1.0)
     assert pixels(torus.plot(size=(60, 50))) == (60, 50)
     assert "walpha.AlphaShape" in torus._repr_html_()
-    with pytest.raises(ValueError, match="torus"):
-        torus.show()
+    monkeypatch.setattr("webbrowser.open", lambda _: True)
+    packed = re.search('<script id="page"[^>]*>([^<]+)', torus.show().html)[1]
+    unpacked = gzip.decompress(base64.b64decode(packed))
+    content = json.loads(unpacked[4 : 4 + int.from_bytes(unpacked[:4], "little")])
+    assert content["cell"][1:] == [[1, 0, 0], [0, 1, 0], [0, 0, 1]] and content["points"] == [len(cloud)]
+    with pytest.raises(ValueError, match="unwrapped"):
+        torus.unwrapped().show()
 
 
 def test_the_page_is_that_of_the_shape(shape, tmp_path, monkeypatch):

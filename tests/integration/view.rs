@@ -179,7 +179,7 @@ fn the_page_knows_elements() {
     let elements = page.content["elements"].as_object().unwrap();
     let named: Vec<(&str, &str)> = elements
         .iter()
-        .map(|(number, known)| (number.as_str(), known["symbol"].as_str().unwrap()))
+        .map(|(number, known)| (number.as_str(), known["name"].as_str().unwrap()))
         .collect();
     assert_eq!(named, [("6", "C"), ("7", "N"), ("8", "O")]);
     assert_eq!(elements["8"]["colour"], serde_json::json!([255, 13, 13]));

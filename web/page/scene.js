@@ -184,7 +184,7 @@ export class ShapeScene {
   }
 
   // Other points: what was drawn goes. The camera stays where it is to be kept.
-  setPoints({ positions, weights, values, differences, atoms, elements, original, centre, unit, space, cell }, box, keep = false) {
+  setPoints({ positions, weights, values, differences, atoms, elements, codes, classNames, tints, original, centre, unit, space, cell }, box, keep = false) {
     this.group.traverse((object) => {
       object.geometry?.dispose();
       object.material?.dispose();
@@ -195,7 +195,7 @@ export class ShapeScene {
     this.box = box;
     // Heights are drawn by the coordinates of the input.
     const heights = () => Float32Array.from({ length: positions.length / 3 }, (_, v) => positions[3 * v + 2] + centre[2]);
-    this.data = { positions, weights, values, differences, heights, atoms, elements };
+    this.data = { positions, weights, values, differences, heights, tints, kinds: { element: { numbers: atoms, known: elements }, asprs: { numbers: codes, known: classNames } } };
     this.setAxes(space === "LPS" ? PATIENT : AXES);
     this.weightRange = range(weights);
     this.position = new BufferAttribute(positions, 3);
@@ -320,11 +320,11 @@ export class ShapeScene {
 
   // Colours of the material, by class, or by numbers of the points.
   setColour(by) {
-    const { values, weights, differences, heights, atoms, elements } = this.data;
+    const { values, weights, differences, heights, tints, kinds } = this.data;
     const scale = by === "height" ? heights() : { value: values, weight: weights, difference: differences }[by];
     this.plain = by === "plain";
-    const byElement = by === "element";
-    this.isTinted = Boolean(scale) || byElement;
+    const kind = kinds[by];
+    this.isTinted = Boolean(scale || kind) || by === "rgb";
     this.scale = scale && range(scale);
     this.valueScale = by === "value" ? this.scale : null;
     if (scale) {
@@ -336,10 +336,15 @@ export class ShapeScene {
       });
       this.colour.needsUpdate = true;
     }
-    if (byElement) {
-      const colours = Object.fromEntries(Object.entries(elements).map(([number, { colour: [r, g, b] }]) => [number, new Color().setRGB(r / 255, g / 255, b / 255, "srgb")]));
+    const colourOf = ([r, g, b]) => new Color().setRGB(r / 255, g / 255, b / 255, "srgb");
+    if (kind) {
+      const colours = Object.fromEntries(Object.entries(kind.known).map(([number, { colour }]) => [number, colourOf(colour)]));
       const unknown = new Color(BONE);
-      atoms.forEach((number, v) => (colours[number] ?? unknown).toArray(this.colour.array, 3 * v));
+      kind.numbers.forEach((number, v) => (colours[number] ?? unknown).toArray(this.colour.array, 3 * v));
+      this.colour.needsUpdate = true;
+    }
+    if (by === "rgb") {
+      for (let v = 0; v < tints.length; v += 3) colourOf(tints.subarray(v, v + 3)).toArray(this.colour.array, v);
       this.colour.needsUpdate = true;
     }
     const colours = this.plain ? [BONE, LOOSE, LOOSE] : [OF_CLASS[REGULAR], OF_CLASS[SINGULAR], EDGES];

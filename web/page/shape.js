@@ -90,14 +90,15 @@ export class ShapePanel {
     const colour = byId("colour");
     // Weights that are all the same say nothing.
     const weights = made.weights.some((weight) => weight !== made.weights[0]);
-    const scales = { value: made.values, difference: made.differences, weight: weights, element: made.atoms };
+    const scales = { value: made.values, difference: made.differences, weight: weights, element: made.atoms, asprs: made.codes, rgb: made.tints };
     for (const option of colour.options) {
       option.hidden = option.value in scales && !scales[option.value];
       if (option.hidden && option.selected) colour.value = "plain";
     }
     // A scan has much that is a surface without an inside, and its height shows it best; atoms are balls; a solid has a material.
     const isScan = !made.atoms && made.singular.length > 0.1 * made.regular.length;
-    if (!keep && ["plain", "height", "element"].includes(colour.value)) colour.value = made.atoms ? "element" : isScan ? "height" : "plain";
+    const suits = made.atoms ? "element" : made.codes ? "asprs" : isScan ? "height" : "plain";
+    if (!keep && ["plain", "height", "element", "asprs"].includes(colour.value)) colour.value = suits;
     if (!keep) byId("show-singular").checked = isScan || colour.value !== "plain";
     if (!keep) byId("show-balls").checked = Boolean(made.atoms);
     if (!keep && made.cell) byId("show-box").checked = true;
@@ -278,13 +279,18 @@ export class ShapePanel {
       byId("legend").replaceChildren(element("span", {}, `${title}: ${short(low)} `, element("i", { className: "scale" }), ` ${short(high)}`));
       return;
     }
+    if (by === "rgb") {
+      byId("legend").textContent = "The colours of the points.";
+      return;
+    }
     const { regular, singular, edges, classes } = this.shape;
-    if (by === "element") {
+    const kind = this.scene.data.kinds[by];
+    if (kind) {
       const counts = new Map();
-      for (const number of this.made.atoms.subarray(0, this.own)) counts.set(number, (counts.get(number) ?? 0) + 1);
-      const named = [...counts].map(([number, count]) => ({ count, ...(this.made.elements[number] ?? { symbol: "not known", colour: null }) }));
-      byId("legend").replaceChildren(...named.sort((a, b) => b.count - a.count).map(({ count, symbol, colour }) =>
-        element("span", {}, box(colour ? `rgb(${colour.join(" ")})` : BONE), `${grouped(count)} ${symbol}`)));
+      for (const number of kind.numbers.subarray(0, this.own)) counts.set(number, (counts.get(number) ?? 0) + 1);
+      const named = [...counts].map(([number, count]) => ({ count, ...(kind.known[number] ?? { name: "not known", colour: null }) }));
+      byId("legend").replaceChildren(...named.sort((a, b) => b.count - a.count).map(({ count, name, colour }) =>
+        element("span", {}, box(colour ? `rgb(${colour.join(" ")})` : BONE), `${grouped(count)} ${name}`)));
       return;
     }
     const plain = by === "plain";
@@ -316,15 +322,15 @@ export class ShapePanel {
 
   // The index of a point, and what is known of it.
   wordsOf(v) {
-    const { positions, weights, values, differences, atoms, elements, centre, unit, copies } = this.made;
+    const { positions, weights, values, differences, atoms, elements, codes, classNames, centre, unit, copies } = this.made;
     const { min, max } = this.scene.box;
     const extent = Math.max(max.x - min.x, max.y - min.y, max.z - min.z);
     const at = [0, 1, 2].map((k) => placed(positions[3 * v + k] + centre[k], extent)).join(", ");
     const value = values ? `, value F = ${short(values[v])}` : "";
     const difference = differences ? `, difference ${short(differences[v])}` : "";
-    const symbol = elements?.[atoms?.[v]]?.symbol;
+    const kind = elements?.[atoms?.[v]]?.name ?? classNames?.[codes?.[v]]?.name;
     const name = v < this.own ? `point ${v}` : `a copy of point ${copies[v - this.own]}`;
-    return `${name}${symbol ? ` (${symbol})` : ""} at (${at}) ${unit}${value}${difference}, weight ω = ${short(weights[v])}, ${CLASSES[this.shape.classes[v]]}`;
+    return `${name}${kind ? ` (${kind})` : ""} at (${at}) ${unit}${value}${difference}, weight ω = ${short(weights[v])}, ${CLASSES[this.shape.classes[v]]}`;
   }
 
   startMeasuring() {

@@ -16,9 +16,10 @@ use walpha_model::pipeline::{
 use walpha_model::progress::{Listener, Monitor, Stage};
 use walpha_model::settings::PRESETS;
 use walpha_model::{Recipe, Settings};
+use walpha_points::colours::{has_classes, scan_classes, scan_colours};
 use walpha_points::{
     Attributes, Column, Element, ModelMetadata, Packing, PointOptions, PointWriter, Points,
-    SampleGrid, bounding_box, read_model_file,
+    SampleGrid, ScanSummary, bounding_box, read_model_file,
 };
 use walpha_shape::ladder::{Cycles, Filtration, Interval, Ordered, Span};
 use walpha_shape::{
@@ -74,6 +75,8 @@ struct Made {
     columns: Arc<[Column]>,
     /// Of atoms, where they are known; empty if the points are not atoms.
     elements: Vec<Option<Element>>,
+    /// Whether the columns are those of a laser scan.
+    is_scan: bool,
 }
 
 /// The data of which shapes are made.
@@ -373,11 +376,12 @@ impl Session {
         if matches!(recipe.alpha, AlphaRule::Given(alpha) if alpha.squared().is_infinite()) {
             return Err(Failure::new("α of the weights has to be finite here"));
         }
-        let (mut columns, mut elements) = (Vec::new(), Vec::new());
+        let (mut columns, mut elements, mut is_scan) = (Vec::new(), Vec::new(), false);
         let input =
             match self.opened.as_ref().ok_or_else(|| Failure::new("nothing has been opened"))? {
                 Opened::Points(points, metadata) => {
                     let mut points = points.clone();
+                    is_scan = metadata.scan.is_some();
                     columns = std::mem::take(&mut points.columns);
                     let atoms = points.molecule.iter().flat_map(|molecule| &molecule.atoms);
                     elements = atoms.map(|atom| atom.element).collect();
@@ -409,6 +413,7 @@ impl Session {
             centre: [0, 1, 2].map(|k| f64::midpoint(low[k], high[k])),
             columns: columns.into(),
             elements,
+            is_scan,
             what: What::Weighed(weighed),
         };
         let answer = made.described(&shape);
@@ -432,6 +437,7 @@ impl Session {
             centre: [0, 1, 2].map(|k| f64::midpoint(low[k], high[k])),
             columns: Arc::default(),
             elements: Vec::new(),
+            is_scan: false,
             what: What::Solid(model),
         };
         let answer = made.described(&shape);
@@ -573,11 +579,25 @@ impl Made {
         let mut elements: Map<String, Value> = Map::new();
         if self.elements.len() == points.len() && !self.elements.is_empty() {
             for element in self.elements.iter().flatten() {
-                let known = json!({ "symbol": element.symbol(), "colour": element.colour() });
+                let known = json!({ "name": element.symbol(), "colour": element.colour() });
                 elements.insert(element.number().to_string(), known);
             }
             let number = |element: &Option<Element>| element.map_or(0, Element::number);
             arrays.push(Array::U8("atoms", self.elements.iter().map(number).collect()));
+        }
+        let mut class_names: Map<String, Value> = Map::new();
+        let is_all = |count: usize| self.is_scan && count == points.len();
+        let classes =
+            scan_classes(&self.columns).filter(|all| is_all(all.len()) && has_classes(all));
+        if let Some(classes) = classes {
+            for &class in &classes {
+                let known = || json!({ "name": ScanSummary::class_name(class), "colour": ScanSummary::class_colour(class) });
+                class_names.entry(class.to_string()).or_insert_with(known);
+            }
+            arrays.push(Array::U8("codes", classes));
+        }
+        if let Some(colours) = scan_colours(&self.columns).filter(|all| is_all(all.len())) {
+            arrays.push(Array::U8("tints", colours.into_flattened()));
         }
         let truncation = origin.truncation.map(|t| json!({ "kept": t.kept, "total": t.total }));
         let labels = match &self.what {
@@ -596,6 +616,7 @@ impl Made {
             "unit": origin.coordinates.unit.symbol(),
             "space": origin.coordinates.space,
             "elements": elements,
+            "classNames": class_names,
             "centre": self.centre,
             "largestWeight": points.weights().iter().copied().fold(f64::NEG_INFINITY, f64::max),
             "truncation": truncation,

@@ -27,6 +27,7 @@ pub mod haar;
 
 mod attributes;
 mod cell_count;
+pub mod colours;
 mod crs;
 mod difference;
 mod error;

@@ -49,7 +49,7 @@ pub use marching::Isosurface;
 pub use pixels::{Picture, Size};
 pub use scene::{Background, Ball, Camera, Colours, Mesh, Projection, Scene, Shading, Tube, View};
 pub use shape::{Colouring, ShapeStyle, class_colours, plain_colours};
-pub use view::{Atoms, Detail, Differences, Original, Page, Subject};
+pub use view::{Detail, Differences, Kinds, Original, Page, Subject};
 pub use walpha_base::advice::Advise;
 
 // For the figures and the report of walpha. Not covered by semantic versioning.

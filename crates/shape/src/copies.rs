@@ -46,11 +46,16 @@ impl Copier {
 }
 
 impl WeightedPoints {
+    /// Keeps this many, the first.
+    fn truncate(&mut self, count: usize) {
+        self.positions.truncate(count);
+        self.weights.truncate(count);
+        self.values.iter_mut().for_each(|values| values.truncate(count));
+    }
+
     /// Gives the points, which are the first so many, these copies in place of those that they have.
     pub(crate) fn set_copies(&mut self, own: usize, torus: Torus, copied: &[Copied]) {
-        self.positions.truncate(own);
-        self.weights.truncate(own);
-        self.values.iter_mut().for_each(|values| values.truncate(own));
+        self.truncate(own);
         for &(v, shift) in copied {
             let at = v as usize;
             self.positions.push(torus.moved(self.positions[at], shift));
@@ -101,6 +106,14 @@ impl AlphaShape {
     /// The number of points that are not [copies](Self::copies).
     pub fn own_points(&self) -> usize {
         self.points.len() - self.copies.len()
+    }
+
+    /// The points without [copies](Self::copies). O(n).
+    pub fn without_copies(&self) -> WeightedPoints {
+        let own = self.own_points();
+        let mut points = self.points.clone();
+        points.truncate(own);
+        points
     }
 
     /// The point that a vertex is a copy of, and the multiples of the vectors by which it is moved.

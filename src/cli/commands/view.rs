@@ -23,9 +23,12 @@ use crate::interpolate::{Deviation, Grid, Interpolant};
 use crate::ladder::Filtration;
 use crate::pictures;
 use crate::pipeline::{AlphaRule, Input, Parameter, PipelineError, PlacedVolume, Values, Weighed};
-use crate::points::{Cell, Element, Molecule};
+use crate::points::colours::{
+    CLASS_COLUMN, COLOUR_COLUMNS, has_classes, scan_classes, scan_colours,
+};
+use crate::points::{Attributes, Cell, Column, Element, Molecule, ScanSummary};
 use crate::progress::Stage;
-use crate::render::{self, Atoms, Differences, Original, Page, Subject};
+use crate::render::{self, Differences, Kinds, Original, Page, Subject};
 use crate::shape::Kept;
 use crate::volume::UnknownFormat;
 use crate::{Alpha, Frame, GrayRange, Recipe, Units};
@@ -77,16 +80,26 @@ struct Source {
     /// Without a volume, what the values of the points are.
     column: String,
     /// The elements of points that are atoms.
-    atoms: Option<Atoms>,
+    atoms: Option<Kinds>,
+    /// The classes and colours of points of a laser scan.
+    classes: Option<Kinds>,
+    colours: Option<Vec<[u8; 3]>>,
 }
 
-fn atoms_of(molecule: &Molecule) -> Atoms {
+fn elements_of(molecule: &Molecule) -> Kinds {
     let elements = || molecule.atoms.iter().map(|atom| atom.element);
     let known: BTreeSet<Element> = elements().flatten().collect();
-    Atoms {
+    Kinds {
         numbers: elements().map(|element| element.map_or(0, Element::number)).collect(),
-        elements: known.iter().map(|e| (e.number(), e.symbol(), e.colour())).collect(),
+        known: known.iter().map(|e| (e.number(), e.symbol(), e.colour())).collect(),
     }
+}
+
+fn classes_of(columns: &[Column]) -> Option<Kinds> {
+    let numbers = scan_classes(columns).filter(|classes| has_classes(classes))?;
+    let known: BTreeSet<u8> = numbers.iter().copied().collect();
+    let kind = |class| (class, ScanSummary::class_name(class), ScanSummary::class_colour(class));
+    Some(Kinds { numbers, known: known.into_iter().map(kind).collect() })
 }
 
 impl View {
@@ -142,6 +155,8 @@ impl View {
     fn weighed(&self, progress: &mut Progress) -> Result<(Vec<Weighed>, Source)> {
         let input = &self.pipeline.input;
         let mut recipe = self.pipeline.recipe()?;
+        let shown = [CLASS_COLUMN].into_iter().chain(COLOUR_COLUMNS).map(str::to_owned);
+        recipe = recipe.attributes(Attributes::IfThere(shown.collect()));
         let read = pipeline::read_suited(input, &mut recipe, progress)?;
         pipeline::accept(&read, input)?;
         let grays = match read {
@@ -159,12 +174,19 @@ impl View {
                     recipe.value = Some("height".into());
                 }
                 let column = recipe.value.clone().unwrap_or_else(|| "value".into());
-                let atoms = points.molecule.as_ref().map(atoms_of);
+                let atoms = points.molecule.as_ref().map(elements_of);
+                let columns = std::mem::take(&mut points.columns);
+                let of_scan = || facts.scan.is_some().then_some(&columns[..]);
+                let classes = of_scan().and_then(classes_of);
+                let colours = of_scan().and_then(scan_colours);
                 let read = Input::Points(points, facts);
                 let weigh = || recipe.weigh(read, Values::Written);
                 let (weighed, _) = progress.watch(weigh)?;
                 let column = format!("the column {column} of the input");
-                return Ok((vec![weighed], Source { volume: None, column, atoms }));
+                return Ok((
+                    vec![weighed],
+                    Source { volume: None, column, atoms, classes, colours },
+                ));
             }
             Input::Labels(..) => return Err(PipelineError::OfLabels.into()),
             Input::Surface(..) => return Err(PipelineError::OfSurface.into()),
@@ -178,7 +200,10 @@ impl View {
         let level = |count| progress.watch(|| recipe.level(&source, &whole, count));
         let mut details = counts.into_iter().map(level).collect::<Result<Vec<_>, _>>()?;
         details.push(whole);
-        Ok((details, Source { volume: Some(source), column: String::new(), atoms: None }))
+        let volume = Some(source);
+        let of_points =
+            Source { volume, column: String::new(), atoms: None, classes: None, colours: None };
+        Ok((details, of_points))
     }
 
     /// Makes the page of the shapes, and a summary of each level of detail.
@@ -188,7 +213,7 @@ impl View {
         source: &Source,
         progress: &mut Progress,
     ) -> Result<(Page, Vec<DetailSummary>)> {
-        let Source { volume: source, column, atoms } = source;
+        let Source { volume: source, column, atoms, classes, colours } = source;
         let source = source.as_ref();
         let last = details.last().expect("the level of the shape");
         let facts = source.map(VolumeSummary::of);
@@ -235,9 +260,11 @@ impl View {
         let rendered = details.iter().zip(&shown).map(|(detail, (levels, ladder, first))| {
             let differences = detail.differences.as_ref();
             // What is kept of a shape has other points than the file.
-            let is_all = |atoms: &&Atoms| atoms.numbers.len() == levels.own_points();
-            let atoms = atoms.as_ref().filter(is_all);
-            render::Detail { levels, ladder, first: *first, differences, atoms }
+            let is_all = |count: usize| count == levels.own_points();
+            let of_all = |kinds: &&Kinds| is_all(kinds.numbers.len());
+            let [atoms, classes] = [atoms, classes].map(|kinds| kinds.as_ref().filter(of_all));
+            let colours = colours.as_deref().filter(|colours| is_all(colours.len()));
+            render::Detail { levels, ladder, first: *first, differences, atoms, classes, colours }
         });
         let rendered: Vec<_> = rendered.collect();
         let title = format!("Alpha shapes of {}", name(&self.pipeline.input.input));

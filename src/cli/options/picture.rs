@@ -12,7 +12,10 @@ use clap::{Args, ValueEnum};
 use crate::AlphaShape;
 use crate::export::{Exporter, Needs};
 use crate::pictures::{self, Look};
-use crate::points::{Attributes, Column};
+use crate::points::colours::{
+    CLASS_COLUMN, COLOUR_COLUMNS, has_classes, scan_classes, scan_colours,
+};
+use crate::points::{Attributes, Column, ScanSummary};
 use crate::render::{
     self, Background, Ball, Camera, ColourMap, Colouring, Projection, RenderError, Rgb, Scene,
     Size, View,
@@ -129,33 +132,6 @@ enum ColourArg {
     Rgb,
 }
 
-/// The columns of classes and of colours.
-const CLASS: &str = "classification";
-const RGB: [&str; 3] = ["red", "green", "blue"];
-
-/// The colours of the ASPRS classes 0 to 18, as QGIS has them.
-const ASPRS: [Rgb; 19] = [
-    Rgb([170, 170, 170]),
-    Rgb([170, 170, 170]),
-    Rgb([170, 85, 0]),
-    Rgb([0, 170, 170]),
-    Rgb([85, 255, 85]),
-    Rgb([0, 128, 0]),
-    Rgb([255, 85, 85]),
-    Rgb([170, 0, 0]),
-    Rgb([85, 85, 85]),
-    Rgb([85, 170, 255]),
-    Rgb([170, 0, 170]),
-    Rgb([60, 60, 60]),
-    Rgb([85, 85, 85]),
-    Rgb([255, 255, 85]),
-    Rgb([255, 255, 85]),
-    Rgb([85, 85, 255]),
-    Rgb([255, 85, 255]),
-    Rgb([85, 85, 85]),
-    Rgb([170, 0, 0]),
-];
-
 impl PictureArgs {
     /// The names of these options.
     pub(crate) const NAMES: [&str; 4] = ["view", "camera", "colour", "size"];
@@ -187,9 +163,9 @@ impl PictureArgs {
     /// The columns that the colours need: without an option, those that are there.
     pub(crate) fn columns(self) -> Attributes {
         match self.colour {
-            None => Attributes::IfThere(vec![CLASS.to_owned()]),
-            Some(ColourArg::Asprs) => Attributes::Named(vec![CLASS.to_owned()]),
-            Some(ColourArg::Rgb) => Attributes::Named(RGB.map(str::to_owned).to_vec()),
+            None => Attributes::IfThere(vec![CLASS_COLUMN.to_owned()]),
+            Some(ColourArg::Asprs) => Attributes::Named(vec![CLASS_COLUMN.to_owned()]),
+            Some(ColourArg::Rgb) => Attributes::Named(COLOUR_COLUMNS.map(str::to_owned).to_vec()),
             Some(_) => Attributes::None,
         }
     }
@@ -203,18 +179,9 @@ struct Picture {
 }
 
 impl Picture {
-    fn column(&self, name: &str) -> Option<&[f64]> {
-        let named = |column: &&Column| {
-            column.name.eq_ignore_ascii_case(name)
-                || name == CLASS && column.name.eq_ignore_ascii_case("class")
-        };
-        self.columns.iter().find(named).map(|column| &column.values[..])
-    }
-
     /// What colours show: what was asked for, or what suits the points.
     fn colour(&self) -> ColourArg {
-        // 0 and 1 stand for points without a class.
-        let has_classes = || self.column(CLASS).is_some_and(|all| all.iter().any(|&c| c > 1.0));
+        let has_classes = || scan_classes(&self.columns).is_some_and(|all| has_classes(&all));
         match self.args.colour {
             Some(colour) => colour,
             None if self.is_scan && has_classes() => ColourArg::Asprs,
@@ -227,20 +194,10 @@ impl Picture {
     fn colours(&self) -> Option<Vec<Rgb>> {
         match self.colour() {
             ColourArg::Asprs => {
-                let class = |class: &f64| ASPRS.get(*class as usize).copied().unwrap_or(ASPRS[0]);
-                Some(self.column(CLASS)?.iter().map(class).collect())
+                let classes = scan_classes(&self.columns)?.into_iter();
+                Some(classes.map(|class| Rgb(ScanSummary::class_colour(class))).collect())
             }
-            ColourArg::Rgb => {
-                let [red, green, blue] = RGB.map(|name| self.column(name));
-                let (red, green, blue) = (red?, green?, blue?);
-                // LAS has 16 bits, of which some writers use the lower 8 alone.
-                let most =
-                    [red, green, blue].into_iter().flatten().fold(0.0, |a: f64, &b| a.max(b));
-                let scale = if most > 255.0 { 256.0 } else { 1.0 };
-                let byte = |number: f64| (number / scale) as u8;
-                let colours = red.iter().zip(green).zip(blue);
-                Some(colours.map(|((&r, &g), &b)| Rgb([byte(r), byte(g), byte(b)])).collect())
-            }
+            ColourArg::Rgb => Some(scan_colours(&self.columns)?.into_iter().map(Rgb).collect()),
             _ => None,
         }
     }

@@ -13,7 +13,7 @@ use walpha_shape::{SinglePrecision, Torus};
 
 use crate::error::RenderError;
 use pack::Packed;
-pub use subject::{Atoms, Detail, Differences, Original, Subject};
+pub use subject::{Detail, Differences, Kinds, Original, Subject};
 
 /// A self-contained HTML page.
 #[derive(Clone, Debug)]
@@ -188,19 +188,23 @@ fn detail(subject: &Subject<'_>, detail: &Detail<'_>, simplified: Option<&str>) 
         let text = format!("{rmse} {} (root mean square, on all samples)", subject.difference);
         rows.push(["error of F".to_owned(), text]);
     }
-    let elements = detail.atoms.into_iter().flat_map(|atoms| &atoms.elements);
-    let elements: Map<String, Value> = elements
-        .map(|(number, symbol, colour)| {
-            (number.to_string(), json!({ "symbol": symbol, "colour": colour }))
-        })
-        .collect();
     json!({
-        "elements": elements,
+        "elements": known(detail.atoms),
+        "classNames": known(detail.classes),
         "levels": detail.ladder.levels.iter().map(level).collect::<Vec<_>>(),
         "first": detail.first,
         "rows": rows,
         "simplified": simplified,
     })
+}
+
+/// Kinds by their numbers.
+fn known(kinds: Option<&Kinds>) -> Map<String, Value> {
+    let known = kinds.into_iter().flat_map(|kinds| &kinds.known);
+    let kind = |(number, name, colour): &(u8, &str, [u8; 3])| {
+        (number.to_string(), json!({ "name": name, "colour": colour }))
+    };
+    known.map(kind).collect()
 }
 
 /// The numbers of a level, with as many voids as are listed.

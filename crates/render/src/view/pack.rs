@@ -7,7 +7,7 @@ use ndarray::s;
 use serde_json::{Map, Value, json};
 use walpha_shape::ladder::{Drawn, Span};
 
-use super::subject::{Detail, Original};
+use super::subject::{Detail, Kinds, Original};
 use crate::error::RenderError;
 use crate::marching::Isosurface;
 use base64::prelude::{BASE64_STANDARD, Engine};
@@ -117,9 +117,15 @@ impl Packed {
         arrays.u8("facetSpans", bytes(facets.iter().map(|facet| &facet.1)));
         arrays.u32("edges", edges.iter().flat_map(|edge| edge.0));
         arrays.u8("edgeSpans", bytes(edges.iter().map(|edge| &edge.1)));
-        if let Some(atoms) = detail.atoms {
-            let of_copies = copies.iter().map(|&v| atoms.numbers[v as usize]);
-            arrays.u8("atoms", atoms.numbers.iter().copied().chain(of_copies));
+        for (name, kinds) in [("atoms", detail.atoms), ("codes", detail.classes)] {
+            if let Some(Kinds { numbers, .. }) = kinds {
+                let of_copies = copies.iter().map(|&v| numbers[v as usize]);
+                arrays.u8(name, numbers.iter().copied().chain(of_copies));
+            }
+        }
+        if let Some(colours) = detail.colours {
+            let of_copies = copies.iter().map(|&v| colours[v as usize]);
+            arrays.u8("tints", colours.iter().copied().chain(of_copies).flatten());
         }
         arrays.u32("copies", copies.iter().copied());
         let all = || voids.iter().flatten();

@@ -31,17 +31,29 @@ pub struct Detail<'a> {
     pub first: usize,
     /// The differences of F from the original, if they are known.
     pub differences: Option<&'a Differences>,
-    /// The elements of the points, if they are atoms.
-    pub atoms: Option<&'a Atoms>,
+    /// The elements of the points, if they are atoms: by atomic number, and 0 where it is not known.
+    pub atoms: Option<&'a Kinds>,
+    /// The classes of the points, if they are those of a laser scan.
+    pub classes: Option<&'a Kinds>,
+    /// The colours of the points, if they have their own, as red, green and blue.
+    pub colours: Option<&'a [[u8; 3]]>,
 }
 
-/// The elements of atoms.
+impl<'a> Detail<'a> {
+    /// Shapes with their numbers, and the level shown first; what may be known besides is not.
+    pub fn new(levels: &'a Levels<'a>, ladder: &'a Ladder, first: usize) -> Self {
+        let (differences, atoms, classes, colours) = (None, None, None, None);
+        Self { levels, ladder, first, differences, atoms, classes, colours }
+    }
+}
+
+/// Points of several kinds.
 #[derive(Clone, Debug)]
-pub struct Atoms {
-    /// The atomic number of each; 0 where it is not known.
+pub struct Kinds {
+    /// The number of the kind of each.
     pub numbers: Vec<u8>,
-    /// Each element among them: its atomic number, its symbol, and its colour as red, green and blue.
-    pub elements: Vec<(u8, &'static str, [u8; 3])>,
+    /// Each kind that has a name: its number, its name, and its colour as red, green and blue.
+    pub known: Vec<(u8, &'static str, [u8; 3])>,
 }
 
 /// Differences of an interpolant from a volume.
