@@ -472,7 +472,7 @@ fn the_cell_of_the_file_is_used() {
     assert!(common::ok(f, &["check", "a.json"]).contains("exact: no findings"));
     assert_eq!(make("6,0,0,-3,5.25,0,0,0,5")["shape"], stated["shape"]);
     let told = common::ok(f, &["info", "a.xyz", "--radii", "none"]);
-    assert!(told.contains("--periodic cell makes its torus"), "{told}");
+    assert!(told.contains("--periodic cell makes points repeat"), "{told}");
     let slab = head.replace("Properties", "pbc=\"T T F\" Properties");
     std::fs::write(f.join("slab.xyz"), format!("{slab}\n{atoms}")).unwrap();
     // Four layers between five of points; the way up is as long as it is.
