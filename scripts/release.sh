@@ -5,6 +5,7 @@
 #   scripts/release.sh binary      the command for Linux (glibc 2.28) and Windows, as archives
 #   scripts/release.sh deb         the command as a Debian package
 #   scripts/release.sh web         walpha.html, the page that computes
+#   scripts/release.sh npm         the package for JavaScript
 #   scripts/release.sh wheels      wheels (manylinux_2_28) and the source distribution of the Python package
 #   scripts/release.sh rehearse    looks at the texts, then makes all of these, and the binary twice
 #
@@ -13,7 +14,7 @@
 # PyPI it gets itself.
 #
 # Ends with a table. What this machine cannot do is in it as skipped, with the reason; what fails ends the script. To publish after a
-# rehearsal: fill in `repository` in Cargo.toml, commit, tag, `cargo publish --workspace`, `twine upload dist/wheels/*`, and add the other
+# rehearsal: fill in `repository` in Cargo.toml, commit, tag, `cargo publish --workspace`, `twine upload dist/wheels/*`, `npm publish dist/*.tgz`, and add the other
 # files of dist/ to the release.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -252,6 +253,18 @@ web() {
   esac
 }
 
+npm_package() {
+  say "npm"
+  local file=$dist/walpha-$version.tgz status=0
+  mkdir -p "$dist"
+  scripts/npm.sh "$file" || status=$?
+  case $status in
+    0) made "$file" "Node, a bundle, TypeScript" ;;
+    77) skip "walpha-$version.tgz" "rustup, Node or its packages cannot be had" ;;
+    *) return "$status" ;;
+  esac
+}
+
 wheel() { portably maturin build --release --locked --zig --compatibility manylinux_2_28 --manifest-path python/Cargo.toml --out "$dist/wheels" --target "$@"; }
 
 wheels() {
@@ -341,12 +354,14 @@ rehearse() {
   again
   deb
   web
+  npm_package
   wheels
 }
 
 case ${1:-} in
   crates | binary | deb | web | wheels | rehearse) ;;
-  *) sed -n '4,9s/^# *//p' "$0" && exit 2 ;;
+  npm) set -- npm_package ;;
+  *) sed -n '4,10s/^# *//p' "$0" && exit 2 ;;
 esac
 trap finish EXIT
 "$1"
