@@ -217,6 +217,9 @@ impl ReferenceSystem {
         if system.is_geographic {
             (system.names[0], system.codes[0]) = angles;
         }
+        // A geocentric system, say, has a name, too: that of the text, which comes first.
+        let whole = || text.split_once(['[', '(']).and_then(|(_, content)| quoted_name(content));
+        system.names[0] = system.names[0].take().or_else(|| whole().map(str::to_owned));
         system
     }
 
@@ -447,6 +450,10 @@ mod tests {
         let degrees = of_text(r#"GEOGCS*,AUTHORITY["EPSG","4326"]]"#);
         assert_eq!((degrees.epsg, degrees.geographic), (Some(4326), true));
         assert_eq!(degrees.length, LengthUnit::Unstated);
+        for geocentric in ["GEOCCS*]", "GEODCRS*,CS[Cartesian,3]]"] {
+            let crs = of_text(geocentric);
+            assert_eq!((crs.name.as_deref(), crs.geographic), (Some("WGS 84"), false));
+        }
         let keys = [
             [1, 1, 0, 4],
             [1024, 0, 1, 1],

@@ -53,6 +53,12 @@ pub(crate) fn write(
         None => new_builder(content),
     };
     let described = kept.map_or(&[][..], described);
+    let nameless = kept.map_or(0, |header| nameless(header, described));
+    if nameless > 0 {
+        tracing::warn!(
+            "{nameless} bytes of each point are not described as numbers, and are not written"
+        );
+    }
     let (described, fields) = layout(&mut builder, described, &sources);
     builder.point_format.is_compressed = is_compressed;
     if kept.is_none() {
@@ -144,6 +150,12 @@ fn is_carried(record: &Vlr) -> bool {
     let is_own = number == EXTRA_BYTES || WAVEFORMS.contains(&number) || number == PACKETS;
     !(["laszip encoded", "copc"].contains(&record.user_id.as_str())
         || record.user_id == SPECIFICATION && is_own)
+}
+
+/// How many extra bytes of each point no description makes numbers.
+fn nameless(header: &las::Header, described: &[u8]) -> usize {
+    let (_, known) = of_numbers(described);
+    usize::from(header.point_format().extra_bytes).saturating_sub(known)
 }
 
 /// Makes the point format hold the columns. Returns the descriptions of extra bytes, and all fields, each with its source.
@@ -308,6 +320,19 @@ mod tests {
     fn of(numbers: &[f64]) -> (f64, f64) {
         let Transform { scale, offset } = transform(numbers.iter().copied());
         (scale, offset)
+    }
+
+    #[test]
+    fn bytes_without_a_description_are_counted() {
+        let nameless = |extra: u16, described: &[u8]| {
+            let mut builder = Builder::from((1, 4));
+            builder.point_format = Format::new(6).unwrap();
+            builder.point_format.extra_bytes = extra;
+            super::nameless(&builder.into_header().unwrap(), described)
+        };
+        let (tree, _) = description("treeID", "uint32");
+        assert_eq!((nameless(4, &tree), nameless(7, &tree), nameless(7, &[])), (0, 3, 7));
+        assert_eq!(nameless(0, &[]), 0);
     }
 
     #[test]
