@@ -134,13 +134,15 @@ function smoothNormals(positions, rows, oriented) {
   return normals;
 }
 
-// The twelve edges of the box at an origin along three vectors.
-function framed([origin, ...vectors]) {
-  const ends = [];
-  for (let corner = 0; corner < 8; corner++) {
-    const at = (bits) => vectors.reduce((place, vector, k) => (bits >> k & 1 ? place.add(new Vector3(...vector)) : place), new Vector3(...origin));
-    for (let k = 0; k < 3; k++) if (!(corner >> k & 1)) ends.push(at(corner), at(corner | 1 << k));
-  }
+// The eight corners of the box at an origin along three vectors: bit k of their numbers is a step along vector k.
+function cornersOf([origin, ...vectors]) {
+  const at = (bits) => vectors.reduce((place, vector, k) => (bits >> k & 1 ? place.add(new Vector3(...vector)) : place), new Vector3(...origin));
+  return Array.from({ length: 8 }, (_, bits) => at(bits));
+}
+
+// Its twelve edges.
+function framed(corners) {
+  const ends = corners.flatMap((from, bits) => [1, 2, 4].filter((step) => !(bits & step)).flatMap((step) => [from, corners[bits | step]]));
   return new BufferGeometry().setFromPoints(ends);
 }
 
@@ -192,6 +194,8 @@ export class ShapeScene {
     this.group.clear();
     this.parts = {};
     [this.classes, this.shades, this.standsFor] = [null, null, null];
+    this.corners = cell ? cornersOf(cell) : [];
+    this.corners.forEach((corner) => box.expandByPoint(corner));
     this.box = box;
     // Heights are drawn by the coordinates of the input.
     const heights = () => Float32Array.from({ length: positions.length / 3 }, (_, v) => positions[3 * v + 2] + centre[2]);
@@ -252,7 +256,7 @@ export class ShapeScene {
     this.parts.original.visible = false;
     // The box of what is drawn, or the one that repeats.
     const frame = new Color("#888888");
-    this.parts.box = cell ? new LineSegments(framed(cell), new LineBasicMaterial({ color: frame })) : new Box3Helper(box, frame);
+    this.parts.box = cell ? new LineSegments(framed(this.corners), new LineBasicMaterial({ color: frame })) : new Box3Helper(box, frame);
     this.parts.box.visible = false;
     this.labels.replaceChildren(...["x", "y", "z"].map((axis, k) => {
       const [low, high] = [box.min, box.max].map((corner) => short(corner[axis] + centre[k]));
@@ -657,12 +661,14 @@ export class ShapeScene {
     const step = Math.ceil(positions.length / 3 / FITTED);
     for (const one of axes) {
       let [least, most] = [Infinity, -Infinity];
-      for (let v = 0; v < positions.length / 3; v += step) {
-        place.fromArray(positions, 3 * v).sub(middle);
+      const see = () => {
+        place.sub(middle);
         const [along, depth] = [place.dot(one.axis), one.tangent * place.dot(towards)];
         least = Math.min(least, along - depth);
         most = Math.max(most, along + depth);
-      }
+      };
+      for (let v = 0; v < positions.length / 3; v += step) see(place.fromArray(positions, 3 * v));
+      for (const corner of this.corners) see(place.copy(corner));
       // Balls reach beyond their centres, seen from aside.
       const beyond = this.largestBall() * Math.hypot(1, one.tangent);
       one.distance = ((most - least) / 2 + beyond) / one.tangent;

@@ -100,7 +100,7 @@ export class ShapePanel {
     const suits = made.atoms ? "element" : made.codes ? "asprs" : isScan ? "height" : "plain";
     if (!keep && ["plain", "height", "element", "asprs"].includes(colour.value)) colour.value = suits;
     if (!keep) byId("show-singular").checked = isScan || colour.value !== "plain";
-    if (!keep) byId("show-balls").checked = Boolean(made.atoms);
+    if (!keep) byId("show-balls").checked = Boolean(made.atoms) && made.weights.some((weight) => weight !== 0);
     if (!keep && made.cell) byId("show-box").checked = true;
     this.stopMeasuring();
     byId("show-original").parentElement.hidden = !made.original;
@@ -215,7 +215,9 @@ export class ShapePanel {
     const counted = (count, noun) => `${grouped(count)} ${noun}${count === 1 ? "" : "s"}`;
     const [b0, b1, b2] = level.betti;
     const [volume, area] = [measured(level.volume, unit, 3), measured(level.area, unit, 2)];
-    const topology = [counted(b0, "part"), counted(b1, "tunnel"), counted(b2, "void")].join(", ");
+    // In a periodic box some loops and surfaces go round it: they are neither tunnels nor voids.
+    const [loops, surfaces] = this.made.cell ? ["loop", "closed surface"] : ["tunnel", "void"];
+    const topology = [counted(b0, "part"), counted(b1, loops), counted(b2, surfaces)].join(", ");
     // Of atoms, the volume of the balls is in the details.
     byId("summary").textContent = `${this.made.atoms ? "Tetrahedra: volume" : "Volume"} ${volume}, surface ${area}, ${topology}`;
     byId("summary").title = `${level.volume} ${unit}³, ${level.area} ${unit}²`;
@@ -224,7 +226,7 @@ export class ShapePanel {
       ...(this.made.labels ? [["labels", this.made.labels]] : [...radius, ["α", `${brief(this.alpha)} ${unit}²`]]),
       ["volume", `${volume}, ${(100 * level.coverage).toFixed(1)} % of ${domain}`],
       ["surface", area],
-      ["parts", grouped(b0)], ["tunnels", grouped(b1)], ["voids", grouped(b2)],
+      ["parts", grouped(b0)], [`${loops}s`, grouped(b1)], [`${surfaces}s`, grouped(b2)],
       ["cells", grouped(level.cells)], ["facets", classes(level.facets)], ["edges", classes(level.edges)], ["vertices", classes(level.vertices)],
       ...(this.made.rows ?? []),
     ]);
@@ -308,6 +310,10 @@ export class ShapePanel {
     byId("legend").replaceChildren(...shown.map(([colour, count, name]) => element("span", {}, box(colour), `${grouped(count)} ${name}`)));
     if (regular.length + singular.length + edges.length > 0) return;
     const pointsToo = [INTERIOR, REGULAR, SINGULAR].some((kind) => classes.includes(kind));
+    if (this.made.cell && classes.includes(INTERIOR)) {
+      byId("legend").append("The shape fills the box at this α, and has no boundary.");
+      return;
+    }
     byId("legend").append(`${pointsToo ? "Only points are" : "Nothing is"} in the shape at this α.`);
   }
 
