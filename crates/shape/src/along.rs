@@ -3,7 +3,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 use rayon::prelude::*;
 use walpha_regular::internals::along_curve;
-use walpha_regular::internals::parallel::Coarse;
+use walpha_regular::internals::parallel::{Coarse, FEW};
 
 use super::Complex;
 
@@ -22,6 +22,8 @@ pub(crate) struct Along {
 
 /// Vertices that one thread visits at a time.
 const CHUNK: usize = 1 << 6;
+/// The number of vertices with whose simplices, some twenty-five each, one thread is done before others are awake.
+const FEW_VERTICES: usize = FEW / 4;
 
 impl Along {
     /// O(n log n).
@@ -37,7 +39,9 @@ impl Along {
 
     /// Visits all rows of a dimension on all threads, given the first ones of each vertex.
     pub(crate) fn each(&self, starts: &[u32], visit: impl Fn(usize) + Sync) {
-        self.order.par_chunks(CHUNK).for_each(|chunk| {
+        let few = self.order.len() <= FEW_VERTICES;
+        let length = if few { FEW_VERTICES } else { CHUNK };
+        self.order.par_chunks(length).for_each(|chunk| {
             for &v in chunk {
                 rows(starts, v).for_each(&visit);
             }

@@ -2,6 +2,7 @@
 //! steps.
 
 use rayon::iter::{IndexedParallelIterator, MinLen};
+use rayon::slice::ParallelSliceMut;
 
 /// The number of items, each of which takes some ten nanoseconds, that one thread does alone.
 pub const FEW: usize = 1 << 11;
@@ -16,6 +17,11 @@ pub trait Coarse: IndexedParallelIterator {
 }
 
 impl<I: IndexedParallelIterator> Coarse for I {}
+
+/// Sorts items, on all threads if they are many.
+pub fn sort_unstable<T: Ord + Send>(items: &mut [T]) {
+    if items.len() <= 4 * FEW { items.sort_unstable() } else { items.par_sort_unstable() }
+}
 
 /// Calls two functions, at the same time if they work on more than [`FEW`] items.
 pub fn join<A: Send, B: Send>(

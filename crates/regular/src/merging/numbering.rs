@@ -6,6 +6,7 @@ use rayon::iter::repeat_n;
 use rayon::prelude::*;
 
 use super::slots::Slots;
+use crate::internals::parallel::Coarse;
 use crate::{Cell, CellArrays, DELETED, TriangulationError, with_capacity};
 
 /// The even permutations that bring the smallest of four first and the smallest of the others second. Entry 3·p + r is for a
@@ -101,8 +102,8 @@ pub(super) fn number(slots: Slots, at_infinity: u32) -> Result<CellArrays, Trian
     let (mut cells, mut from): (Vec<[u32; 4]>, Vec<u32>) =
         (with_capacity(count)?, with_capacity(count)?);
     // This is parallel because the kernel takes much of the time, for new pages.
-    cells.par_extend(repeat_n([0; 4], count));
-    from.par_extend(repeat_n(0, count));
+    cells.par_extend(repeat_n([0; 4], count).coarse());
+    from.par_extend(repeat_n(0, count).coarse());
     let mask = (1 << bits) - 1;
     let at = |slot: u32| &old[(slot >> bits) as usize][(slot & mask) as usize];
     let (mut rest, mut rest_from, mut start) = (&mut cells[..], &mut from[..], 0);

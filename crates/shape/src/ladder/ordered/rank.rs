@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 use walpha_base::memory::{self, NoMemory};
-use walpha_regular::internals::parallel::{Coarse, FEW};
+use walpha_regular::internals::parallel::{Coarse, FEW, sort_unstable};
 use walpha_regular::internals::{Predicates, Ratio, SmallRadius};
 
 use super::numbers::Numbers;
@@ -46,7 +46,7 @@ impl Ranks {
             format!("the order of {} simplices", numbers.all())
         })?;
         collect(filtration, numbers, &mut radii);
-        radii.par_sort_unstable();
+        sort_unstable(&mut radii);
         let radii_count = radii.len();
         let lattice = is_small_lattice(filtration.points(), filtration.torus());
         let exact = ExactOrder { filtration, numbers, spheres, lattice };
@@ -57,7 +57,7 @@ impl Ranks {
         let mut steps: Vec<u32> = (several.into_par_iter().with_min_len(least))
             .flat_map_iter(|run| exact.split_ties(run))
             .collect();
-        steps.par_sort_unstable();
+        sort_unstable(&mut steps);
         let is_first = |at: usize| {
             let (key, simplex) = radii[at];
             at == 0 || radii[at - 1].0 != key || steps.binary_search(&simplex).is_ok()
