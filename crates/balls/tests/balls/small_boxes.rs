@@ -104,3 +104,41 @@ fn voids_of_small_boxes_are_refused() {
     let union = BallUnion::new(&shape).unwrap();
     assert_eq!(union.voids().unwrap_err(), BallsError::SmallBox { what: "voids" });
 }
+
+/// Balls that repeat along one or two vectors are those of a box that repeats along all, with a gap between the layers or rods.
+#[test]
+fn slabs_and_rods_are_boxes_with_a_gap() {
+    const FAR: f64 = 6.0;
+    let mut meet_themselves = 0;
+    for (seed, vectors, repeats) in [
+        (1, SLANTED, [true, true, false]),
+        (2, FCC, [true, false, true]),
+        (3, SLANTED, [false, true, false]),
+        (4, SLANTED, [true, true, false]),
+    ] {
+        let count = 1 + seed as usize % 3;
+        // The other vectors are so long that copies along them are apart.
+        let long = [0, 1, 2].map(|k| vectors[k].map(|x| if repeats[k] { x } else { FAR * x }));
+        let part = Torus::repeating(vectors, repeats).unwrap();
+        let whole = Torus::of_vectors(long).unwrap();
+        for alpha in [0.5, 2.0, 4.5] {
+            let of = |torus| {
+                let options = ShapeOptions::new(Alpha::from_squared(alpha).unwrap());
+                alpha_shape(points(seed, count), &options.periodic(Some(torus))).unwrap()
+            };
+            let (part, whole) = (of(part), of(whole));
+            let (one, other) = (BallUnion::new(&part).unwrap(), BallUnion::new(&whole).unwrap());
+            assert!(agree(one.volume(), other.volume()), "{seed} {alpha}");
+            assert!(agree(one.area(), other.area()));
+            assert!(agree(one.mean_curvature(), other.mean_curvature()));
+            assert_eq!(one.euler_characteristic(), other.euler_characteristic());
+            assert_eq!(one.box_fraction(), None);
+            for v in 0..count {
+                assert!(agree(one.volumes().get(v), other.volumes().get(v)));
+                assert!(agree(one.areas().get(v), other.areas().get(v)));
+            }
+            meet_themselves += one.contacts().pairs.iter().filter(|[a, b]| a == b).count();
+        }
+    }
+    assert!(meet_themselves > 5, "{meet_themselves}");
+}
