@@ -187,6 +187,28 @@ fn the_page_knows_elements() {
     assert_eq!(atoms[..5], [7, 6, 6, 8, 6]);
 }
 
+/// Points of a scan have their classes in the page, with the names and colours of these.
+#[test]
+fn the_page_knows_classes() {
+    let folder = tempfile::tempdir().unwrap();
+    ok(folder.path(), &["view", "sample:tile", "-o", "page.html", "-q"]);
+    let html = fs::read_to_string(folder.path().join("page.html")).unwrap();
+    let page = Unpacked::of(&html, "detail-0");
+    let codes = &page.arrays["codes"];
+    assert_eq!(codes.len(), page.f32("weights").len());
+    let told = json(folder.path(), &["info", "sample:tile"]);
+    let names = page.content["classNames"].as_object().unwrap();
+    assert_eq!(names["2"], serde_json::json!({ "name": "ground", "colour": [170, 85, 0] }));
+    assert_eq!(names.len(), told["classes"].as_object().unwrap().len());
+    for (class, count) in told["classes"].as_object().unwrap() {
+        assert!(names.contains_key(class), "{class}");
+        let class: u8 = class.parse().unwrap();
+        let counted = codes.iter().filter(|&&code| code == class).count();
+        assert_eq!(count.as_u64(), Some(counted as u64));
+    }
+    assert!(!page.arrays.contains_key("atoms"));
+}
+
 /// Simplices of a periodic box are laid out in space, with copies of points beyond its sides, and the box is drawn.
 #[test]
 fn a_periodic_box_is_laid_out_and_drawn() {
