@@ -115,12 +115,8 @@ impl View {
             return Err(CommandError { next: Some(next), ..error.into() });
         }
         let recipe = self.pipeline.recipe()?;
-        if recipe.periodic.is_some() {
-            if !self.counts.is_empty() {
-                fail_usage!("levels of detail are of volumes, and points repeat in a periodic box" => "omit --counts");
-            }
-            let why = "points of a periodic box repeat, and those of a part would not fill it";
-            self.pipeline.input.typed.refuse(&["keep", "min_volume"], why)?;
+        if recipe.periodic.is_some() && !self.counts.is_empty() {
+            fail_usage!("levels of detail are of volumes, and points repeat in a periodic box" => "omit --counts");
         }
         let target = Target::open(&self.output)?;
         let mut progress = Progress::new(global);
