@@ -7,6 +7,7 @@ one names the output and says why. Texts for people are not among them. Standard
 """
 
 import concurrent.futures
+import datetime
 import hashlib
 import json
 import os
@@ -20,8 +21,9 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 RECORD = ROOT / "tests" / "golden.txt"
 
-# What differs from run to run: measured, not computed.
+# What differs from run to run: measured, not computed; and, in the report of the paper, the day.
 MEASURED = {"seconds", "peak_memory_bytes"}
+TODAY = datetime.datetime.now(datetime.timezone.utc).date().isoformat()
 
 SHAPES = "ply off obj stl glb vtp vtu npz json png wvm 3mf".split()
 VOLUMES = "nrrd nii nii.gz mha vti tif npy raw".split()
@@ -68,20 +70,25 @@ def commands():
     yield "reproduce", "walpha reproduce --out paper --json"
 
 
+def unnamed(said, folder):
+    """A text without the name of the folder and the day."""
+    return said.replace(folder, ".").replace(TODAY, "TODAY")
+
+
 def plain(value, folder):
-    """JSON without what was measured, and without the name of the folder."""
+    """JSON without what was measured, the name of the folder and the day."""
     if isinstance(value, dict):
         return {key: plain(item, folder) for key, item in value.items() if key not in MEASURED}
     if isinstance(value, list):
         return [plain(item, folder) for item in value]
-    return value.replace(folder, ".") if isinstance(value, str) else value
+    return unnamed(value, folder) if isinstance(value, str) else value
 
 
 def text(output, folder):
     try:
         return json.dumps(plain(json.loads(output), folder), indent=1)
     except ValueError:
-        return output.replace(folder, ".")
+        return unnamed(output, folder)
 
 
 def digest(content):

@@ -172,14 +172,20 @@ def faults(events):
 
 def picture(browser):
     """The scene as PNG, in base64."""
+    # What is scrolled out of sight may not be drawn. Without captions the scene may be larger: it is drawn coarsely, then at rest.
+    browser.evaluate("scrollTo({ top: 0, behavior: 'instant' })")
+    browser.evaluate(BARE % "true")
+    settle(browser)
+    settle(browser)
     box = browser.evaluate(
         "(() => { const b = document.getElementById('scene').getBoundingClientRect();"
         " return [b.x + scrollX, b.y + scrollY, b.width, b.height] })()"
     )
     clip = dict(zip(["x", "y", "width", "height"], box), scale=1)
-    browser.evaluate(BARE % "true")
     data = browser.call("Page.captureScreenshot", format="png", clip=clip)["data"]
     browser.evaluate(BARE % "false")
+    settle(browser)
+    settle(browser)
     return data
 
 

@@ -115,6 +115,14 @@ CALLS = {
         lambda **given: walpha.filtration(**{"points": CLOUD, **given}),
         {"points": (rows(), ()), "weights": (column(), ()), "periodic": (triple, ())},
     ),
+    "periodic_power_diagram": (
+        lambda **given: walpha.periodic_power_diagram(**{"points": CLOUD, "periodic": 2, **given}),
+        {"points": (rows(), ()), "weights": (column(), ()), "periodic": (triple, ())},
+    ),
+    "pores": (
+        lambda **given: walpha.pores(**{"points": CLOUD, "periodic": 2, **given}),
+        {"points": (rows(), ()), "radii": (column(), ()), "periodic": (triple, ()), "probe": (itself, ())},
+    ),
     "filtrations": (
         lambda **given: walpha.filtrations(**{"clouds": [CLOUD, CLOUD], **given}),
         {"clouds": (lambda number: [CLOUD, rows()(number)], ()), "weights": (lambda number: [column()(0), column()(number)], ()), "periodic": (triple, ())},
@@ -303,7 +311,7 @@ CALLS = {
 #: What nobody calls: the results of others.
 RESULTS = {
     "BallSurface", "Chart", "Page", "Picture", "Betti", "BettiCurve", "Boundary", "Bounded", "BoundedArray", "Cavity", "Class", "Comparison", "Component", "Contacts", "Cuts", "Finding", "Gradients", "Level", "LoopCycle", "Molecule", "Outline", "PointFile", "Polygon",
-    "PowerDiagram", "Selected", "Simplices", "Suggestions", "TorusBetti", "TorusBettiCurve", "Verdict", "Void", "VoidCycle",
+    "FreeSphere", "PeriodicPowerDiagram", "Pores", "PowerDiagram", "Selected", "Simplices", "Suggestions", "TorusBetti", "TorusBettiCurve", "Verdict", "Void", "VoidCycle",
 }  # fmt: skip
 
 

@@ -182,7 +182,11 @@ export class ShapeScene {
     element.addEventListener("keydown", (event) => this.key(event));
     [this.waiting, this.moving, this.slow, this.turned] = [false, false, false, false];
     this.opacity = 1;
-    this.controls.addEventListener("start", () => { this.turned = true; });
+    // A click alone does not turn it.
+    let held = false;
+    this.controls.addEventListener("start", () => { held = true; });
+    this.controls.addEventListener("change", () => { this.turned ||= held; });
+    this.controls.addEventListener("end", () => { held = false; });
   }
 
   // Other points: what was drawn goes. The camera stays where it is to be kept.
