@@ -44,6 +44,12 @@ pub enum BallsError {
     /// Pores are asked for, and the box does not repeat along all three vectors.
     #[error("pores are of boxes that repeat along all three vectors, and this one does not")]
     Slab,
+    /// A probe is so large that doubles do not hold the squared radii of balls that are larger by it.
+    #[error("a probe of radius {radius:e} is too large: doubles do not hold its square")]
+    Probe {
+        /// Its radius.
+        radius: f64,
+    },
     /// A surface is asked for, and the shape is that of a torus.
     #[error("the sides of a periodic box would cut the surface open")]
     Seam,
@@ -103,6 +109,7 @@ impl Advise for BallsError {
             Self::Solid => "measure the balls in space".into(),
             Self::Periodic => "measure the balls of the box".into(),
             Self::Slab => "measure the voids of its balls".into(),
+            Self::Probe { .. } => "give its radius in the unit of the points".into(),
             Self::Seam => "repeat the points without a periodic box".into(),
             Self::Tolerance { .. } => "give a part of the radius, such as 0.01".into(),
             Self::Unresolved { .. } => {

@@ -133,7 +133,7 @@ impl PeriodicBalls {
     /// Channels, pockets and void fraction for a probe of this radius. O(n log n), expected, for evenly distributed balls.
     ///
     /// # Errors
-    /// Those of [`Filtration::on`] and [`BallUnion::new`].
+    /// [`BallsError::Probe`], and those of [`Filtration::on`] and [`BallUnion::new`].
     #[expect(clippy::missing_panics_doc, reason = "an invariant")]
     pub fn probed(&self, radius: f64) -> Result<ProbedPores, BallsError> {
         let Frame { filtration, alpha } = self.filtration(radius)?;
@@ -153,6 +153,9 @@ impl PeriodicBalls {
     /// The filtration whose balls, at its α, have radii larger by a probe's. Of balls of one radius it is the one without weights, in which nothing
     /// is rounded.
     fn filtration(&self, probe: f64) -> Result<Frame, BallsError> {
+        if self.radii.iter().any(|radius| !(radius + probe).powi(2).is_finite()) {
+            return Err(BallsError::Probe { radius: probe });
+        }
         let (weights, alpha) = match self.common {
             Some(radius) => (vec![0.0; self.radii.len()], (radius + probe).powi(2)),
             None => (self.radii.iter().map(|radius| (radius + probe).powi(2)).collect(), 0.0),

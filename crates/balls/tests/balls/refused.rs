@@ -1,6 +1,6 @@
 //! What has no union of balls.
 
-use walpha_balls::{BallUnion, BallsError, DiscUnion};
+use walpha_balls::{BallUnion, BallsError, DiscUnion, PeriodicBalls};
 use walpha_base::advice::Advise;
 use walpha_shape::{Alpha, ShapeOptions, Torus, alpha_shape};
 
@@ -30,4 +30,17 @@ fn shapes_without_balls_are_refused() {
     assert_eq!(union.pockets(), Err(BallsError::NoOutside));
     let unwrapped = shape.unwrapped();
     assert_eq!(BallUnion::new(&unwrapped).err(), Some(BallsError::Unwrapped));
+}
+
+#[test]
+fn boxes_and_probes_without_pores_are_refused() {
+    let slab = Torus::repeating([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0; 3]], [true, true, false]);
+    let balls = |torus, radii: &[f64]| PeriodicBalls::new(torus, vec![[0.0; 3]], radii.to_vec());
+    assert_eq!(balls(slab.unwrap(), &[0.1]).unwrap_err(), BallsError::Slab);
+    let cube = Torus::new([1.0; 3]).unwrap();
+    let other = BallsError::Weights { weights: 2, points: 1 };
+    assert_eq!(balls(cube, &[0.1, 0.2]).unwrap_err(), other);
+    let one = balls(cube, &[0.1]).unwrap();
+    assert_eq!(one.probed(1e200).unwrap_err(), BallsError::Probe { radius: 1e200 });
+    assert!(one.probed(0.1).is_ok());
 }
