@@ -156,7 +156,7 @@ impl Peers {
 }
 
 fn bench(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("benches").join(name)
+    Path::new(env!("CARGO_MANIFEST_DIR")).join(name)
 }
 
 fn take_part(name: &str, compiled: Result<()>) -> bool {
