@@ -135,12 +135,11 @@ fn described(shape: &AlphaShape) -> (Vec<f64>, Vec<Vec<u32>>) {
         }
         None => (rows(&of_class(Class::Regular)), of_class(Class::Singular)),
     };
-    let (edges, lone) = match outline {
-        Some(outline) => (outline.edges.clone(), outline.points.clone()),
-        None => {
-            let lone = complex.vertices.of(Class::Singular).map(|&[v]| v).collect();
-            (complex.edges.of(Class::Singular).copied().collect(), lone)
-        }
+    let (edges, lone): (Vec<[u32; 2]>, Vec<u32>) = if let Some(outline) = outline {
+        (outline.edges.clone(), outline.points.clone())
+    } else {
+        let lone = complex.vertices.of(Class::Singular).map(|&[v]| v).collect();
+        (complex.edges.of(Class::Singular).copied().collect(), lone)
     };
     // Rings one after the other; how long each is; and how many rings each polygon has.
     let (mut corners, mut lengths, mut rings) = (Vec::new(), Vec::new(), Vec::new());

@@ -328,7 +328,7 @@ mod tests {
             let mut builder = Builder::from((1, 4));
             builder.point_format = Format::new(6).unwrap();
             builder.point_format.extra_bytes = extra;
-            super::nameless(&builder.into_header().unwrap(), described)
+            nameless(&builder.into_header().unwrap(), described)
         };
         let (tree, _) = description("treeID", "uint32");
         assert_eq!((nameless(4, &tree), nameless(7, &tree), nameless(7, &[])), (0, 3, 7));
