@@ -182,8 +182,10 @@ def pores(
     given = np.zeros(count) if radii is None else _arrays.doubles("radii", _arrays.numbers("radii", radii))
     if given.shape != (count,):
         raise ValueError(f"radii have shape {given.shape}: give one for each of {count} points")
-    if not np.all(given >= 0):
-        raise ValueError("radii must not be negative or NaN")
+    with np.errstate(over="ignore"):
+        wrong = np.flatnonzero(~((given >= 0) & np.isfinite(np.square(given))))
+    if len(wrong) > 0:
+        raise ValueError(f"radii: row {wrong[0]} is {given[wrong[0]]:g}: give a length from 0 up, whose square a double holds")
     if probe is not None and not 0 <= probe < np.inf:
         raise ValueError(f"probe={probe!r}: give a radius, a finite number from 0 up")
     box = _box(periodic)

@@ -44,6 +44,14 @@ pub enum BallsError {
     /// Pores are asked for, and the box does not repeat along all three vectors.
     #[error("pores are of boxes that repeat along all three vectors, and this one does not")]
     Slab,
+    /// A radius is negative or not a number, or doubles do not hold its square.
+    #[error("ball {row} has a radius of {radius:e}")]
+    Radius {
+        /// The ball, by input index.
+        row: usize,
+        /// Its radius.
+        radius: f64,
+    },
     /// A probe is so large that doubles do not hold the squared radii of balls that are larger by it.
     #[error("a probe of radius {radius:e} is too large: doubles do not hold its square")]
     Probe {
@@ -109,6 +117,7 @@ impl Advise for BallsError {
             Self::Solid => "measure the balls in space".into(),
             Self::Periodic => "measure the balls of the box".into(),
             Self::Slab => "measure the voids of its balls".into(),
+            Self::Radius { .. } => "give a length from 0 up, whose square a double holds".into(),
             Self::Probe { .. } => "give its radius in the unit of the points".into(),
             Self::Seam => "repeat the points without a periodic box".into(),
             Self::Tolerance { .. } => "give a part of the radius, such as 0.01".into(),

@@ -74,16 +74,16 @@ impl PeriodicBalls {
     /// Balls by their centres and radii.
     ///
     /// # Errors
-    /// [`BallsError::Slab`] for a box that does not repeat along all three vectors; other numbers of radii than of centres.
-    ///
-    /// # Panics
-    /// If a radius is negative or not a number.
+    /// [`BallsError::Slab`] for a box that does not repeat along all three vectors; [`BallsError::Radius`]; other numbers of radii than of centres.
     pub fn new(
         torus: Torus,
         positions: Vec<[f64; 3]>,
         radii: Vec<f64>,
     ) -> Result<Self, BallsError> {
-        assert!(radii.iter().all(|radius| *radius >= 0.0), "radii are not negative");
+        let is_length = |radius: &f64| *radius >= 0.0 && radius.powi(2).is_finite();
+        if let Some(row) = radii.iter().position(|radius| !is_length(radius)) {
+            return Err(BallsError::Radius { row, radius: radii[row] });
+        }
         if radii.len() != positions.len() {
             let (weights, points) = (radii.len(), positions.len());
             return Err(BallsError::Weights { weights, points });

@@ -40,6 +40,10 @@ fn boxes_and_probes_without_pores_are_refused() {
     let cube = Torus::new([1.0; 3]).unwrap();
     let other = BallsError::Weights { weights: 2, points: 1 };
     assert_eq!(balls(cube, &[0.1, 0.2]).unwrap_err(), other);
+    for radius in [-1.0, f64::INFINITY, 1e200] {
+        let error = balls(cube, &[radius]).unwrap_err();
+        assert_eq!(error, BallsError::Radius { row: 0, radius });
+    }
     let one = balls(cube, &[0.1]).unwrap();
     assert_eq!(one.probed(1e200).unwrap_err(), BallsError::Probe { radius: 1e200 });
     assert!(one.probed(0.1).is_ok());
