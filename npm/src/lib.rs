@@ -2,7 +2,6 @@
 
 use std::sync::{Mutex, PoisonError};
 
-use walpha_base::Monitor;
 use walpha_base::advice::Advise;
 use walpha_shape::ladder::Filtration;
 use walpha_shape::{
@@ -95,13 +94,13 @@ fn found(
     let positions = positions.as_chunks().0.to_vec();
     let weights = if weights.is_empty() { vec![0.0; points] } else { weights.to_vec() };
     let points = WeightedPoints::new(positions, weights).expect("as many weights as points");
-    let alpha = if alpha.is_nan() {
-        Filtration::new(points.clone())?.one_region()
+    let shape = if alpha.is_nan() {
+        let filtration = Filtration::new(points)?;
+        filtration.shape(filtration.one_region())
     } else {
-        Alpha::from_squared(alpha).expect("a number")
+        let alpha = Alpha::from_squared(alpha).expect("a number");
+        alpha_shape(points, &ShapeOptions::new(alpha).engine(Engine::Native))?
     };
-    let options = ShapeOptions::new(alpha).engine(Engine::Native);
-    let shape = Monitor::noop().watch(|| alpha_shape(points, &options))?;
     Ok(described(&shape))
 }
 

@@ -16,7 +16,7 @@ pub use crate::kernel::{
 };
 pub use crate::lattice::{BitRange, Lattice};
 pub use crate::merging::triangulate_along;
-pub use crate::power_diagram::{Sides, dual_facets, is_listed, six_pyramids};
+pub use crate::power_diagram::{Sides, cell_volumes, dual_facets, is_listed};
 pub use crate::scaled::Scaled;
 pub use crate::sites::{Sites, check as check_numbers};
 pub use crate::torus::{AXES, VECTORS};

@@ -70,17 +70,8 @@ impl PowerDiagram {
         let sides = Sides::of(&facets, positions.len())?;
         let facets = sides.of_solid_cells(facets);
 
-        let mut volumes: Vec<f64> = filled(positions.len(), 0.0)?;
-        for &([p, q], area) in facets.iter().filter(|(_, area)| *area != f64::INFINITY) {
-            let [p, q] = [p, q].map(|v| v as usize);
-            let way = sub(positions[q], positions[p]);
-            let [of_p, of_q] = six_pyramids(way, area, weights[p] - weights[q]);
-            volumes[p] += of_p;
-            volumes[q] += of_q;
-        }
-        for volume in &mut volumes {
-            *volume = if volume.is_finite() { *volume / 6.0 } else { f64::NAN };
-        }
+        let way = |[p, q]: [u32; 2]| sub(positions[q as usize], positions[p as usize]);
+        let mut volumes = cell_volumes(&facets, weights, way)?;
         for v in triangulation.hull_facets().flatten().filter(|&v| sides.is_solid(v)) {
             volumes[v as usize] = f64::INFINITY;
         }
@@ -166,15 +157,32 @@ pub fn dual_facets(
     Ok(DualFacets::of(arrays, positions, weights, monitor)?.facets)
 }
 
-/// Six times the volumes of the two pyramids over a finite facet of the diagram, with its points as apexes: the way from one to the other, and by how much the
-/// weight of the first is greater.
-pub fn six_pyramids(way: [f64; 3], area: f64, heavier: f64) -> [f64; 2] {
-    let distance = length(way);
-    // Twice the height is the distance, and more for the heavier point.
-    let more = heavier / distance;
-    let is_held = area == 0.0 || area * distance >= f64::MIN_POSITIVE;
-    let area = if is_held { area } else { f64::NAN };
-    [area * (distance + more), area * (distance - more)]
+/// The volumes of cells as far as their facets are finite, given the way between the two points of each facet; NaN where doubles do not hold products of
+/// lengths.
+///
+/// # Errors
+/// Out of memory.
+pub fn cell_volumes<F: Facet>(
+    facets: &[(F, f64)],
+    weights: &[f64],
+    way: impl Fn(F) -> [f64; 3],
+) -> Result<Vec<f64>, TriangulationError> {
+    let mut volumes: Vec<f64> = filled(weights.len(), 0.0)?;
+    for &(facet, area) in facets.iter().filter(|(_, area)| *area != f64::INFINITY) {
+        let [p, q] = facet.ends().map(|v| v as usize);
+        let distance = length(way(facet));
+        // Six times the pyramids with this base and one of the two points as apex: twice the height is the distance, and more
+        // for the heavier point.
+        let more = (weights[p] - weights[q]) / distance;
+        let is_held = area == 0.0 || area * distance >= f64::MIN_POSITIVE;
+        let area = if is_held { area } else { f64::NAN };
+        volumes[p] += area * (distance + more);
+        volumes[q] += area * (distance - more);
+    }
+    for volume in &mut volumes {
+        *volume = if volume.is_finite() { *volume / 6.0 } else { f64::NAN };
+    }
+    Ok(volumes)
 }
 
 /// Memory for a cell: its sphere, its part of about 1.2 edges, and the memory for collecting both.

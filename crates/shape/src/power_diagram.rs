@@ -3,7 +3,7 @@
 use walpha_base::Monitor;
 use walpha_base::vector::sub;
 use walpha_regular::internals::{
-    Lattice, Sides, Sites, check_numbers, check_span, dual_facets, is_listed, lattice, six_pyramids,
+    Lattice, Sides, Sites, cell_volumes, check_numbers, check_span, dual_facets, is_listed, lattice,
 };
 use walpha_regular::{Torus, TriangulationError};
 
@@ -80,17 +80,10 @@ impl PeriodicPowerDiagram {
         facets.sort_unstable_by_key(|&(facet, _)| facet);
         let sides = Sides::of(&facets, positions.len())?;
         let facets = sides.of_solid_cells(facets);
-        let mut volumes = vec![0.0; positions.len()];
-        for &((ends, shift), area) in facets.iter().filter(|(_, area)| *area != f64::INFINITY) {
-            let [p, q] = ends.map(|v| v as usize);
-            let way = sub(torus.moved(wrapped[q], shift), wrapped[p]);
-            let [of_p, of_q] = six_pyramids(way, area, weights[p] - weights[q]);
-            volumes[p] += of_p;
-            volumes[q] += of_q;
-        }
-        for volume in &mut volumes {
-            *volume = if volume.is_finite() { *volume / 6.0 } else { f64::NAN };
-        }
+        let way = |([p, q], shift): ([u32; 2], [i32; 3])| {
+            sub(torus.moved(wrapped[q as usize], shift), wrapped[p as usize])
+        };
+        let mut volumes = cell_volumes(&facets, weights, way)?;
         let open = made.cells().iter().filter(|cell| cell.contains(&made.infinite_vertex()));
         for &v in open.flatten().filter(|v| **v < block.own) {
             let input = block.input[v as usize];
