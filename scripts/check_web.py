@@ -139,6 +139,9 @@ def make_files(folder):
     facets = "".join(f"facet normal 0 0 0\nouter loop\nvertex {lines[k]}\nvertex {lines[k + 1]}\nvertex {lines[k + 2]}\nendloop\nendfacet\n" for k in range(0, 396, 3))
     (folder / "ball.stl").write_text(f"solid ball\n{facets}endsolid ball\n")
     (folder / "ball.las").write_bytes(las(points))
+    # An oxygen lattice in a slanted cell, with a silicon atom in each.
+    atoms = "Si 0.1 0.2 0.3\nO 1.2 0.4 0.5\nO 0.3 1.6 0.2\nO 1.9 1.4 1.5\n"
+    (folder / "crystal.xyz").write_text(f'4\nLattice="2.5 0 0 1.25 2.25 0 0.5 0.75 2.5" Properties=species:S:1:pos:R:3 pbc="T T T"\n{atoms}')
     return [
         "ball.nii.gz", "ball.nrrd", "ball.mha", "two.mhd", "ball.npy", "ball.tif", "series",
         "ball.xyz", "it's a ball.csv", "ball.obj", "cloud.ply", "ball.stl", "ball.las",
@@ -485,6 +488,30 @@ def look_at_all(browser, page, checks, files, downloads, out, large):
     named = page.text("legend")
     checks.say("elements are named in their colours", browser.evaluate("document.getElementById('colour').value") == "element" and all(f" {symbol}" in named for symbol in "CNO"), named)
     (out / "web-molecule.png").write_bytes(browser.screenshot())
+
+    # A crystal repeats in the cell of its file, and in a box.
+    page.choose("crystal.xyz")
+    page.settled()
+    in_space = page.state().get("betti")
+    for repeats, box in [("cell", ""), ("box", "4,4,4:xy")]:
+        page.forget()
+        browser.evaluate(f"(() => {{ for (const [id, value] of [['periodic', '{repeats}'], ['box', '{box}']]) {{ const e = document.getElementById(id); e.value = value; e.dispatchEvent(new Event('change')); }} document.getElementById('options').requestSubmit(); }})()")
+        name = f"a crystal, {repeats} {box}"
+        agrees(page, checks, name)
+        checks.say(f"{name}: it is another shape than in space", page.state().get("betti") != in_space, page.state().get("betti"))
+        # Between two stops other copies are needed than at these.
+        for radius in ["1.3", "100", "1.31"]:
+            page.forget()
+            browser.evaluate(f"(() => {{ const e = document.getElementById('radius-value'); e.value = '{radius}'; document.body.dataset.state = 'ready'; e.dispatchEvent(new Event('change')); }})()")
+            agrees(page, checks, f"{name}, radius {radius}")
+        whole = browser.evaluate(SCENE)
+        browser.evaluate("(() => { const e = document.getElementById('cut'); e.value = '2'; e.dispatchEvent(new Event('change')); })()")
+        time.sleep(0.7)
+        checks.say(f"{name}: it is cut", browser.evaluate(SCENE) != whole)
+        (out / f"web-crystal-{repeats}.png").write_bytes(browser.screenshot())
+        browser.evaluate("(() => { const e = document.getElementById('cut'); e.value = ''; e.dispatchEvent(new Event('change')); })()")
+        saved(page, checks, downloads, "npz")
+        saved(page, checks, downloads, "vtu")
 
     # A reload finds the file, its options, the radius and the cut again.
     for name in ["ball.nii.gz", "sample:phantom"]:

@@ -150,6 +150,7 @@ function factsOf(facts) {
     return [
       ["input", inputName()], ["points", grouped(facts.count)], ["box", `${corner(facts.low)} to ${corner(facts.high)} ${facts.unit}`],
       ["also", [facts.weights && "weights", facts.values && "values"].filter(Boolean).join(", ") || "no weights, no values"],
+      ...(facts.cell ? [["cell", facts.cell]] : []),
     ];
   }
   const list = [
@@ -210,6 +211,7 @@ function offer(kind, others = []) {
     byId(id).parentElement.hidden = !(isKnown || kinds.includes(kind) || others.includes(id));
   }
   byId("of-volume").hidden = kind !== "volume";
+  byId("of-points").hidden = kind !== "points";
   byId("of-shape").hidden = kind !== "volume" && kind !== "points";
   byId("options").hidden = kind === null && others.length === 0;
   byId("preset-label").hidden = kind !== "volume" && kind !== "points";
@@ -274,6 +276,10 @@ function suit(facts) {
   const weights = [["", isVolume || !facts.weights ? "none" : "of the file"], ["common=0", "none"], ["min-max", "min-max (4.1)"], ["barycentric", "barycentric (4.2)"], ["barycentric-n", "barycentric, times N"]];
   const offered = isVolume || !facts.weights ? weights.filter(([name]) => name !== "common=0") : weights;
   byId("weights").replaceChildren(...offered.map(([value, textContent]) => element("option", { value, textContent })));
+  const repeats = [["", "not"], ...(facts.cell ? [["cell", "in the cell of the file"]] : []), ["box", "in a box"]];
+  byId("periodic").replaceChildren(...repeats.map(([value, textContent]) => element("option", { value, textContent })));
+  byId("box").value = "";
+  repeated();
   // Atoms are balls of their radii.
   apply(facts.hounsfield ? "ct-bone" : facts.atoms && facts.weights ? "molecule" : "");
 }
@@ -308,6 +314,19 @@ function ruled() {
   byId("rule-value").ariaLabel = { threshold: "Least difference in gray levels", count: "Number of samples", ratio: "Share of all samples" }[rule];
   byId("rule-value").step = rule === "count" ? 1 : "any";
   byId("rule-value").placeholder = rule === "ratio" ? "0.0609" : "";
+}
+
+// The periodic box, as the command takes it.
+const periodic = () => {
+  const { value } = byId("periodic");
+  return (value === "box" ? byId("box").value.trim() : value) || undefined;
+};
+
+// A part of a shape is kept in space alone.
+function repeated() {
+  byId("box-label").hidden = byId("periodic").value !== "box";
+  byId("keep-label").hidden = state.facts?.kind === "points" && byId("periodic").value !== "";
+  if (byId("keep-label").hidden) byId("keep-largest").checked = false;
 }
 
 // Whether the shape is the solid of labels, which no gray level, weight or α has a part in.
@@ -348,7 +367,7 @@ function optionsOfForm() {
   const number = (id) => (given(id) === undefined ? undefined : Number(given(id)));
   const keep = byId("keep-largest").checked ? "largest" : undefined;
   const options = { ...reading(), weights: given("weights"), alpha: given("alpha-ref"), keep };
-  if (state.facts.kind === "points") return options;
+  if (state.facts.kind === "points") return { ...options, periodic: periodic() };
   if (ofLabels()) return { ...reading(), label: byId("labels").value, keep };
   if (state.surface) return { ...reading(), surface: state.surface, keep };
   if (given("gray-low") !== undefined || given("gray-high") !== undefined) options.gray = grayRange().join("..");
@@ -372,7 +391,7 @@ async function compute() {
   panel.clear();
   const form = formNow();
   const made = await engine.call({ do: "shape", options: optionsOfForm() });
-  made.domain = state.facts.kind === "volume" && !made.labels ? "the volume" : "the box";
+  made.domain = made.cell ? "the periodic box" : state.facts.kind === "volume" && !made.labels ? "the volume" : "the box";
   state.toml = null;
   byId("command").textContent = "";
   // The first look, while the shapes at all other α are computed.
@@ -433,7 +452,8 @@ async function balls(made = panel.made) {
 
 function ballsCommand() {
   const probe = Number(byId("probe").value) || 0;
-  return `walpha balls ${quotedInput()}${probe > 0 ? ` --probe ${probe}` : ""}`;
+  const box = periodic() === undefined ? "" : ` --periodic ${periodic()}`;
+  return `walpha balls ${quotedInput()}${probe > 0 ? ` --probe ${probe}` : ""}${box}`;
 }
 
 // As `shell.rs` quotes it.
@@ -555,6 +575,7 @@ function fill({ grayMin, surface, ...values }) {
   Object.assign(state, { grayMin, surface });
   ruled();
   labelled();
+  repeated();
   marks();
 }
 
@@ -605,6 +626,7 @@ function wire() {
     byId("options").requestSubmit();
   });
   byId("rule").addEventListener("change", ruled);
+  byId("periodic").addEventListener("change", repeated);
   byId("labels").addEventListener("change", labelled);
   byId("value-min").addEventListener("input", () => { state.grayMin = null; marks(); });
   for (const id of ["gray-low", "gray-high"]) byId(id).addEventListener("input", () => { keepLeast(); marks(); });

@@ -413,11 +413,12 @@ export class ShapeScene {
     this.section.geometry.setAttribute("color", new BufferAttribute(colours, 3));
   }
 
-  // What is pointed at in a list, or nothing: its triangles, by the indices of points, or a box around it where these are not known.
+  // What is pointed at in a list, or nothing: its triangles, by the indices of points or of positions of its own, or a box around it where these are
+  // not known.
   light(hole) {
     this.lit.visible = Boolean(hole && !hole.facets);
     if (this.lit.visible) this.lit.box.set(new Vector3(...hole.low), new Vector3(...hole.high));
-    const { positions } = this.data;
+    const positions = hole?.positions ?? this.data.positions;
     const places = new Float32Array(3 * (hole?.facets?.length ?? 0));
     hole?.facets?.forEach((v, k) => places.set(positions.subarray(3 * v, 3 * v + 3), 3 * k));
     this.setInner(places);

@@ -56,6 +56,21 @@ export function setLook(look) {
   }
 }
 
+// Gives copies of points, which follow these, what their points have.
+function copyKinds(made) {
+  const { positions, copies } = made;
+  if (!copies) return;
+  const own = positions.length / 3 - copies.length;
+  for (const [name, width] of [["weights", 1], ["values", 1], ["differences", 1], ["atoms", 1], ["codes", 1], ["tints", 3]]) {
+    const before = made[name];
+    if (!before || before.length === width * (own + copies.length)) continue;
+    const all = new before.constructor(width * (own + copies.length));
+    all.set(before.subarray(0, width * own));
+    copies.forEach((v, k) => all.set(before.subarray(width * v, width * (v + 1)), width * (own + k)));
+    made[name] = all;
+  }
+}
+
 export class ShapePanel {
   // A source has `at(α)` and `measure(α)`, which promise simplices and numbers, and `voids(α)`, which promises the corners of the facets
   // around each void, and where those of the next begin. It may have `section(α, axis, place)`, which promises
@@ -82,10 +97,8 @@ export class ShapePanel {
     this.scene ??= new ShapeScene(byId("scene"));
     [this.scene.bar, this.scene.axes] = [byId("bar"), byId("axes")];
     const { scene } = this;
-    const box = new Box3();
-    box.setFromArray(made.positions);
-    if (box.isEmpty()) box.set(new Vector3(), new Vector3(1, 1, 1));
-    scene.setPoints(made, box, keep);
+    copyKinds(made);
+    this.setPoints(keep);
     byId("picked").textContent = "";
     const colour = byId("colour");
     // Weights that are all the same say nothing.
@@ -104,9 +117,7 @@ export class ShapePanel {
     if (!keep && made.cell) byId("show-box").checked = true;
     this.stopMeasuring();
     byId("show-original").parentElement.hidden = !made.original;
-    scene.setColour(colour.value);
-    for (const name of ["points", "balls", "hidden", "original", "box"]) scene.show(name, byId(`show-${name}`).checked);
-    this.showSingular();
+    this.paint();
     scene.setShape(made, made.reference);
     if (!keep) scene.home();
     // The numbers follow when α rests.
@@ -114,6 +125,31 @@ export class ShapePanel {
     this.legend();
     this.tellAlpha(made.reference);
     document.body.dataset.looked = made.positions.length / 3;
+  }
+
+  setPoints(keep) {
+    const { made, scene } = this;
+    const box = new Box3();
+    box.setFromArray(made.positions);
+    if (box.isEmpty()) box.set(new Vector3(), new Vector3(1, 1, 1));
+    scene.setPoints(made, box, keep);
+  }
+
+  // As the controls say.
+  paint() {
+    this.scene.setColour(byId("colour").value);
+    for (const name of ["points", "balls", "hidden", "original", "box"]) this.scene.show(name, byId(`show-${name}`).checked);
+    this.showSingular();
+  }
+
+  // In a periodic box other simplices need other copies of the points.
+  setCopies({ positions, copies }) {
+    const same = (a, b) => a.length === b.length && a.every((x, k) => x === b[k]);
+    if (same(copies, this.made.copies) && same(positions, this.made.positions)) return;
+    Object.assign(this.made, { positions, copies });
+    copyKinds(this.made);
+    this.setPoints(true);
+    this.paint();
   }
 
   // What there is at all α: stops with their Betti numbers.
@@ -167,6 +203,7 @@ export class ShapePanel {
         // A failure may have cleared it meanwhile.
         if (!this.made) return;
         this.shape = shape;
+        if (shape.copies) this.setCopies(shape);
         this.scene.setShape(shape, wanted);
         this.legend();
         document.body.dataset.alpha = wanted;
@@ -256,7 +293,8 @@ export class ShapePanel {
     }
     try {
       const found = await this.around.facets;
-      if (this.lit === item && this.alpha === alpha) this.scene.light({ low, high, facets: found?.facets.subarray(found.starts[row], found.starts[row + 1]) });
+      if (this.lit !== item || this.alpha !== alpha) return undefined;
+      this.scene.light({ low, high, positions: found?.positions, facets: found?.facets.subarray(found.starts[row], found.starts[row + 1]) });
     } catch (error) {
       this.around = null;
       this.heard.failed(error);

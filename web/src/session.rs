@@ -21,7 +21,7 @@ use walpha_points::{
     Attributes, Column, Element, ModelMetadata, Packing, PointOptions, PointWriter, Points,
     SampleGrid, ScanSummary, bounding_box, read_model_file,
 };
-use walpha_shape::ladder::{Cycles, Filtration, Interval, Ordered, Span};
+use walpha_shape::ladder::{Cycles, Drawn, Filtration, Interval, Ordered, Span, frame_of};
 use walpha_shape::{
     Alpha, AlphaShape, Betti, ByClass, Class, NO_COMPONENT, ShapeOptions, WeightedPoints,
     alpha_shape,
@@ -146,20 +146,31 @@ struct Shown {
     vertices: Vec<(u32, Span)>,
     cells: Vec<([u32; 4], u32)>,
     betti: Vec<Betti>,
+    /// In a periodic box, what is laid out in space.
+    copies: Option<Copies>,
+}
+
+/// The points of a periodic box followed by copies of them, which the page draws beyond the box.
+struct Copies {
+    positions: Vec<[f64; 3]>,
+    /// The point that each copy is of.
+    of: Vec<u32>,
 }
 
 impl Shown {
     /// Decided exactly at each α.
     fn at(filtration: &Filtration, alphas: &[Alpha]) -> Self {
         let levels = filtration.levels(alphas);
-        Self {
-            facets: levels.facets(),
-            edges: levels.singular_edges(),
-            vertices: levels.vertices(),
-            cells: levels.cells(),
-            betti: levels.betti(),
-            alphas: levels.alphas().to_vec(),
-        }
+        let Drawn { points, copies, facets, edges, vertices, .. } = levels.drawn(0);
+        let copies = filtration.torus().map(|_| Copies::new(&points, copies));
+        let (cells, betti) = (levels.cells(), levels.betti());
+        Self { facets, edges, vertices, copies, cells, betti, alphas: levels.alphas().to_vec() }
+    }
+}
+
+impl Copies {
+    fn new(points: &WeightedPoints, of: Vec<u32>) -> Self {
+        Self { positions: points.positions().to_vec(), of }
     }
 }
 
@@ -184,6 +195,7 @@ impl Shown {
             betti: vec![
                 shape.betti().ok_or_else(|| Failure::new("its Betti numbers are not known"))?,
             ],
+            copies: None,
         })
     }
 }
@@ -398,7 +410,8 @@ impl Session {
         let [low, high] = bounding_box(weighed.points.positions());
         let domain = match &source {
             Some(source) => source.units.box_volume(&source.volume),
-            None => [0, 1, 2].iter().map(|&k| high[k] - low[k]).product(),
+            None => (weighed.origin.torus.and_then(|torus| torus.volume()))
+                .unwrap_or_else(|| [0, 1, 2].iter().map(|&k| high[k] - low[k]).product()),
         };
         drop(source);
         let reference = weighed.find_parameter()?;
@@ -456,7 +469,7 @@ impl Session {
                 return Ok(made.all.insert(all).described());
             }
         };
-        let filtration = Filtration::on(None, weighed.points.clone())?;
+        let filtration = Filtration::on(weighed.origin.torus, weighed.points.clone())?;
         Stage::Curve.begin()?;
         let mut alphas = filtration.coarse_alphas(STOPS);
         alphas.push(made.reference.alpha);
@@ -476,7 +489,8 @@ impl Session {
         let points = WeightedPoints::new(positions.clone(), weights.clone())
             .map_err(|error| Failure::new(error.to_string()))?;
         let (points, alpha) = with_probe(points, Alpha::ZERO, probe)?;
-        let shape = alpha_shape(points, &ShapeOptions::new(alpha))?;
+        let torus = self.made()?.what.origin().torus;
+        let shape = alpha_shape(points, &ShapeOptions::new(alpha).periodic(torus))?;
         let union = BallUnion::new(&shape)?;
         let (volume, area) = (union.volume(), union.area());
         let head = json!({
@@ -520,6 +534,7 @@ fn describe_points(points: &Points, metadata: &ModelMetadata) -> Answer {
         "atoms": points.molecule.is_some(),
         "values": points.values.is_some(),
         "unit": metadata.coordinates.unit.symbol(),
+        "cell": metadata.cell.filter(|cell| cell.repeats != [false; 3]).map(|cell| cell.to_string()),
     });
     Answer::of(head, Vec::new())
 }
@@ -562,11 +577,20 @@ impl Made {
     /// The points, the shape to look at first, and what is known besides.
     fn described(&self, shape: &AlphaShape) -> Answer {
         let (points, origin) = (self.what.points(), self.what.origin());
-        let flat = points.positions().iter().flat_map(|&p| self.seen(p)).collect();
-        let mut arrays = vec![
-            Array::F32("positions", flat),
-            Array::F32("weights", points.weights().iter().map(|&w| w as f32).collect()),
-        ];
+        let weights = points.weights().iter().map(|&w| w as f32).collect();
+        let mut arrays = vec![Array::F32("weights", weights)];
+        let mut cell = None;
+        if let Some(torus) = origin.torus {
+            let laid_out = shape.unwrapped();
+            let copies = Copies::new(laid_out.points(), laid_out.copies().to_vec());
+            let [start, vectors @ ..] = frame_of(torus, copies.positions.iter());
+            cell = Some((self.seen(start), vectors));
+            arrays.extend(drawn(&laid_out));
+            arrays.extend(self.laid_out(&copies));
+        } else {
+            arrays.push(Array::F32("positions", self.places(points.positions())));
+            arrays.extend(drawn(shape));
+        }
         if let Some(values) = points.values() {
             arrays.push(Array::F32("values", values.iter().map(|&value| value as f32).collect()));
         }
@@ -574,7 +598,6 @@ impl Made {
         if let Some(samples) = samples {
             arrays.push(Array::U32("samples", samples));
         }
-        arrays.extend(drawn(shape));
         // By atomic number, and 0 where it is not known.
         let mut elements: Map<String, Value> = Map::new();
         if self.elements.len() == points.len() && !self.elements.is_empty() {
@@ -617,6 +640,7 @@ impl Made {
             "space": origin.coordinates.space,
             "elements": elements,
             "classNames": class_names,
+            "cell": cell.map(|(start, [a, b, c])| json!([start, a, b, c])),
             "centre": self.centre,
             "largestWeight": points.weights().iter().copied().fold(f64::NEG_INFINITY, f64::max),
             "truncation": truncation,
@@ -629,6 +653,16 @@ impl Made {
     /// A position as the page sees it.
     fn seen(&self, position: [f64; 3]) -> [f32; 3] {
         [0, 1, 2].map(|k| (position[k] - self.centre[k]) as f32)
+    }
+
+    fn places(&self, positions: &[[f64; 3]]) -> Vec<f32> {
+        positions.iter().flat_map(|&place| self.seen(place)).collect()
+    }
+
+    /// The places of points and copies, and the point that each copy is of.
+    fn laid_out(&self, copies: &Copies) -> [Array; 2] {
+        let positions = Array::F32("positions", self.places(&copies.positions));
+        [positions, Array::U32("copies", copies.of.clone())]
     }
 
     /// The simplices to draw at an α, and their level: of the stops, or else computed now.
@@ -665,17 +699,19 @@ impl Made {
         let edges = shown.edges.iter().filter(|(_, span)| span.class(level) == Class::Singular);
         let edges: Vec<u32> = edges.flat_map(|(row, _)| *row).collect();
         // Points that are not vertices are hidden.
-        let mut classes = vec![HIDDEN; self.what.points().len()];
+        let copied = shown.copies.as_ref().map_or(0, |copies| copies.of.len());
+        let mut classes = vec![HIDDEN; self.what.points().len() + copied];
         for (v, span) in &shown.vertices {
             classes[*v as usize] = number(span.class(level));
         }
         let head = json!({ "betti": shown.betti[level as usize] });
-        let arrays = vec![
+        let mut arrays = vec![
             Array::U32("regular", regular),
             Array::U32("singular", singular),
             Array::U32("edges", edges),
             Array::U8("classes", classes),
         ];
+        arrays.extend(shown.copies.iter().flat_map(|copies| self.laid_out(copies)));
         Ok(Answer::of(head, arrays))
     }
 
@@ -694,16 +730,21 @@ impl Made {
 
     /// The corners of the facets around each of the first voids, and where those of the next begin.
     fn voids(&self, alpha: f64, most: usize) -> Result<Answer, Failure> {
-        let alpha = Alpha::from_squared(alpha)?;
-        let voids = self.all()?.filtration()?.levels(&[alpha]).void_facets(most).remove(0);
+        let levels = self.all()?.filtration()?.levels(&[Alpha::from_squared(alpha)?]);
+        let Drawn { points, copies, mut voids, .. } = levels.drawn(most);
+        let voids = voids.remove(0);
         let starts = voids.iter().scan(0, |so_far, facets| {
             *so_far += 3 * facets.len() as u32;
             Some(*so_far)
         });
-        let arrays = vec![
+        let mut arrays = vec![
             Array::U32("starts", std::iter::once(0).chain(starts).collect()),
             Array::U32("facets", voids.into_iter().flatten().flatten().collect()),
         ];
+        // Copies have numbers of their own.
+        if !copies.is_empty() {
+            arrays.push(Array::F32("positions", self.places(points.positions())));
+        }
         Ok(Answer::of(json!({}), arrays))
     }
 
@@ -735,6 +776,8 @@ impl Made {
         let (shown, level) = self.shown(alpha)?;
         let points = self.what.points();
         let (positions, values) = (points.positions(), points.values());
+        // In a periodic box, cells are laid out as their facets are.
+        let on_torus = self.all()?.filtration.as_ref().filter(|all| all.torus().is_some());
         let (mut corners, mut shades) = (Vec::new(), Vec::new());
         let kept = self.kept(alpha)?.map(|shape| shape.component_numbers());
         let is_kept =
@@ -743,7 +786,9 @@ impl Made {
             if *first > level || !is_kept(cell[0]) {
                 continue;
             }
-            let side = cell.map(|v| positions[v as usize][axis] - place);
+            let places = on_torus
+                .map_or_else(|| cell.map(|v| positions[v as usize]), |all| all.places(*cell));
+            let side = places.map(|at| at[axis] - place);
             // A cell that only touches the plane is not cut.
             let [below, above] = [false, true]
                 .map(|up| (0..4).filter(|&k| (side[k] > 0.0) == up).collect::<Vec<usize>>());
@@ -752,7 +797,7 @@ impl Made {
             }
             let cut = |&(a, b): &(usize, usize)| {
                 let t = side[a] / (side[a] - side[b]);
-                let [p, q] = [cell[a], cell[b]].map(|v| positions[v as usize]);
+                let [p, q] = [places[a], places[b]];
                 let at = self.seen([0, 1, 2].map(|k| p[k] + t * (q[k] - p[k])));
                 let value = values.map_or(0.0, |values| {
                     let [f, g] = [cell[a], cell[b]].map(|v| values[v as usize]);

@@ -7,9 +7,8 @@ mod pack;
 mod subject;
 
 use serde_json::{Map, Value, json};
-use walpha_base::vector::{along, dot, scale, unit};
-use walpha_shape::ladder::{Drawn, Level};
-use walpha_shape::{SinglePrecision, Torus};
+use walpha_shape::SinglePrecision;
+use walpha_shape::ladder::{Drawn, Level, frame_of};
 
 use crate::error::RenderError;
 use pack::Packed;
@@ -95,7 +94,8 @@ fn whole(subject: &Subject<'_>, drawn: &[Drawn<'_>], centre: [f64; 3]) -> Value 
     );
     let torus = subject.details.iter().find_map(|detail| detail.levels.torus());
     let cell = torus.map(|torus| {
-        let [mut origin, a, b, c] = cell(torus, drawn);
+        let places = drawn.iter().flat_map(|drawn| drawn.points.positions());
+        let [mut origin, a, b, c] = frame_of(torus, places);
         (0..3).for_each(|k| origin[k] -= centre[k]);
         [origin, a, b, c]
     });
@@ -142,42 +142,6 @@ fn single(drawn: &Drawn<'_>, from: [f64; 3]) -> SinglePrecision {
     let places: Vec<[f64; 3]> = drawn.points.positions().iter().map(seen).collect();
     let sides = drawn.facets.iter().flat_map(|&([a, b, c], _)| [[a, b], [b, c], [c, a]]);
     SinglePrecision::of(&places, sides.chain(drawn.edges.iter().map(|(edge, _)| *edge)))
-}
-
-/// The origin of a periodic box and its three vectors. Across a slab or a rod, the box is as large as the points need it.
-fn cell(torus: Torus, drawn: &[Drawn<'_>]) -> [[f64; 3]; 4] {
-    let mut vectors = torus.vectors();
-    let mut origin = [0.0; 3];
-    for k in 0..3 {
-        if torus.repeats()[k] {
-            continue;
-        }
-        // Perpendicular to the vectors that are there, and near an axis: the longest of what is left of the axes.
-        let rest = |axis: usize| {
-            let mut rest = [0.0; 3];
-            rest[axis] = 1.0;
-            // Twice, since vectors may be far from perpendicular to each other.
-            for _ in 0..2 {
-                for vector in vectors {
-                    let share = dot(rest, vector) / dot(vector, vector).max(f64::MIN_POSITIVE);
-                    rest = along(rest, -share, vector);
-                }
-            }
-            rest
-        };
-        let longest =
-            [0, 1, 2].map(rest).into_iter().max_by(|a, b| dot(*a, *a).total_cmp(&dot(*b, *b)));
-        let Some(direction) = longest.and_then(unit) else { continue };
-        let heights =
-            drawn.iter().flat_map(|drawn| drawn.points.positions()).map(|p| dot(*p, direction));
-        let (low, high) = heights
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), h| (h.min(low), h.max(high)));
-        if low <= high {
-            origin = along(origin, low, direction);
-            vectors[k] = scale(direction, high - low);
-        }
-    }
-    [origin, vectors[0], vectors[1], vectors[2]]
 }
 
 /// A level of detail, without its arrays.

@@ -2,9 +2,12 @@
 
 use std::borrow::Cow;
 
-use super::{Levels, Span};
-use crate::WeightedPoints;
+use walpha_base::vector::{along, dot, scale, unit};
+
+use super::{Filtration, Levels, Span};
 use crate::copies::Copier;
+use crate::winding::minus;
+use crate::{Torus, WeightedPoints};
 
 /// What a picture of all [levels](Levels) shows. On a torus each simplex is laid out in space as by
 /// [`AlphaShape::unwrapped`](crate::AlphaShape::unwrapped), with copies of points beyond the upper sides of the box.
@@ -54,13 +57,65 @@ impl Levels<'_> {
     }
 }
 
+impl Filtration {
+    /// The corners of a simplex as [`Drawn`] lays it out.
+    #[doc(hidden)]
+    pub fn places<const N: usize>(&self, row: [u32; N]) -> [[f64; 3]; N] {
+        let positions = self.points().positions();
+        let Some(torus) = self.torus() else { return row.map(|v| positions[v as usize]) };
+        let copied = self.whole.shifted(row);
+        let lowest = [0, 1, 2].map(|k| copied.iter().map(|(_, way)| way[k]).min().unwrap_or(0));
+        copied.map(|(v, way)| torus.moved(positions[v as usize], minus(way, lowest)))
+    }
+}
+
+/// The frame of a periodic box around these places: its origin and its three vectors. Across a slab or a rod, it is as large as
+/// the places need it.
+#[doc(hidden)]
+pub fn frame_of<'a>(
+    torus: Torus,
+    places: impl Iterator<Item = &'a [f64; 3]> + Clone,
+) -> [[f64; 3]; 4] {
+    let mut vectors = torus.vectors();
+    let mut origin = [0.0; 3];
+    for k in 0..3 {
+        if torus.repeats()[k] {
+            continue;
+        }
+        // Perpendicular to the vectors that are there, and near an axis: the longest of what is left of the axes.
+        let rest = |axis: usize| {
+            let mut rest = [0.0; 3];
+            rest[axis] = 1.0;
+            // Twice, since vectors may be far from perpendicular to each other.
+            for _ in 0..2 {
+                for vector in vectors {
+                    let share = dot(rest, vector) / dot(vector, vector).max(f64::MIN_POSITIVE);
+                    rest = along(rest, -share, vector);
+                }
+            }
+            rest
+        };
+        let longest =
+            [0, 1, 2].map(rest).into_iter().max_by(|a, b| dot(*a, *a).total_cmp(&dot(*b, *b)));
+        let Some(direction) = longest.and_then(unit) else { continue };
+        let heights = places.clone().map(|p| dot(*p, direction));
+        let (low, high) = heights
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), h| (h.min(low), h.max(high)));
+        if low <= high {
+            origin = along(origin, low, direction);
+            vectors[k] = scale(direction, high - low);
+        }
+    }
+    [origin, vectors[0], vectors[1], vectors[2]]
+}
+
 #[cfg(test)]
 mod tests {
     use std::collections::{BTreeMap, BTreeSet};
 
     use super::*;
     use crate::ladder::{Filtration, random_points};
-    use crate::{Alpha, Class, Torus};
+    use crate::{Alpha, Class};
 
     /// The corners of a row, in order: what is drawn, whatever the numbers of copies.
     fn placed<const N: usize>(points: &WeightedPoints, row: [u32; N]) -> [[u64; 3]; N] {
@@ -109,6 +164,13 @@ mod tests {
                     let facets: BTreeSet<_> = (shape.complex().facets.rows().iter())
                         .map(|row| placed(shape.points(), *row))
                         .collect();
+                    for (&row, _) in
+                        filtration.shape(levels.alphas()[level as usize]).complex().facets.iter()
+                    {
+                        let mut places = filtration.places(row).map(|p| p.map(f64::to_bits));
+                        places.sort_unstable();
+                        assert!(facets.contains(&places));
+                    }
                     for row in drawn.voids[level as usize].iter().flatten() {
                         assert!(facets.contains(&placed(&drawn.points, *row)));
                         hollow += 1;

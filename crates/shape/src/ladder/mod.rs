@@ -38,7 +38,7 @@ mod values;
 
 pub use critical::{Curve, Suggestions};
 #[doc(hidden)]
-pub use drawn::Drawn;
+pub use drawn::{Drawn, frame_of};
 pub use filtration::Filtration;
 #[doc(hidden)]
 pub use levels::{ByLevel, LevelRows};

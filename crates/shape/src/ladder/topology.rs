@@ -153,6 +153,9 @@ impl Levels<'_> {
     #[doc(hidden)]
     pub fn void_facets(&self, most: usize) -> Vec<Vec<Vec<[u32; 3]>>> {
         let mut facets = vec![Vec::new(); self.len()];
+        if most == 0 {
+            return facets;
+        }
         self.descend(|level, complement| facets[level] = complement.void_facets(most));
         facets
     }
