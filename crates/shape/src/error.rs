@@ -85,6 +85,9 @@ pub enum ShapeError {
     /// The points cannot lie in the periodic box.
     #[error(transparent)]
     Torus(#[from] TorusError),
+    /// Power cells cannot end at these walls.
+    #[error(transparent)]
+    Walls(#[from] WallsError),
     /// The voxels have no solid.
     #[error(transparent)]
     Voxels(#[from] VoxelsError),
@@ -152,7 +155,18 @@ impl Whole {
 }
 
 impl Advise for ShapeError {
-    wrapped!(Triangulation, Cgal, Plan, Cancelled, Memory, Torus, Voxels, Isosurface, Differ);
+    wrapped!(
+        Triangulation,
+        Cgal,
+        Plan,
+        Cancelled,
+        Memory,
+        Torus,
+        Walls,
+        Voxels,
+        Isosurface,
+        Differ
+    );
 
     fn advice(&self) -> Option<Advice> {
         Some(match self {
@@ -236,6 +250,60 @@ impl Advise for OutlineError {
             Self::Line => "take its edges and vertices".into(),
             Self::Coordinate { .. } => "clean or rescale the input".into(),
             Self::Torus => advice!["omit ", Setting::Periodic],
+        })
+    }
+}
+
+/// Why power cells cannot end at walls.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum WallsError {
+    /// The box repeats along all three vectors.
+    #[error("the box repeats along all three vectors, which leaves no place for walls")]
+    Everywhere,
+    /// The vectors along which the box repeats are not perpendicular to the axes across which there would be walls.
+    #[error(
+        "walls are perpendicular to axes, and the vectors along which the box repeats are not parallel to such walls"
+    )]
+    Slanted,
+    /// The lower wall is not below the upper one.
+    #[error("the walls across {} are at {low} and {high}, not at two numbers in ascending order", AXES[*axis])]
+    Order {
+        /// The axis, 0 for x.
+        axis: usize,
+        /// The given place of the lower wall.
+        low: f64,
+        /// The given place of the upper wall.
+        high: f64,
+    },
+    /// A point lies beyond a wall.
+    #[error("point {index} has {} = {at}, and the walls are at {low} and {high}", AXES[*axis])]
+    Beyond {
+        /// Index of the point.
+        index: usize,
+        /// The axis, 0 for x.
+        axis: usize,
+        /// Its coordinate.
+        at: f64,
+        /// The place of the lower wall.
+        low: f64,
+        /// The place of the upper wall.
+        high: f64,
+    },
+}
+
+/// The names of the axes.
+const AXES: [char; 3] = ['x', 'y', 'z'];
+
+impl Advise for WallsError {
+    fn advice(&self) -> Option<Advice> {
+        Some(match self {
+            Self::Everywhere => "omit the walls, or a vector of the box".into(),
+            Self::Slanted => {
+                "turn the points and vectors so that an axis is perpendicular to the vectors".into()
+            }
+            Self::Order { .. } => "give the lowest and the highest corner of the walls".into(),
+            Self::Beyond { .. } => "leave the point out, or move the walls".into(),
         })
     }
 }

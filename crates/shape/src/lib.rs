@@ -64,7 +64,7 @@ pub use alpha_shape::AlphaShape;
 pub use arrays::ArrayError;
 pub use betti::{Betti, BettiError};
 pub use components::NO_COMPONENT;
-pub use error::{CgalError, OutlineError, PlanError, ShapeError, Whole};
+pub use error::{CgalError, OutlineError, PlanError, ShapeError, WallsError, Whole};
 pub use isosurface::{Extent, IsosurfaceError, SampleLattice, isosurface_shape};
 pub use keep::{Keep, KeepError, Kept, Largest};
 pub use make::alpha_shape;

@@ -1,5 +1,7 @@
 //! The power diagram of points in a periodic box.
 
+mod walls;
+
 use walpha_base::Monitor;
 use walpha_base::vector::sub;
 use walpha_regular::internals::{
@@ -14,7 +16,7 @@ use crate::blocks::{self, BlockParams};
 ///
 /// The power cell of a point is the set where no other point, and no copy of any, has a smaller power distance; without weights it is the Voronoi cell. As
 /// in [`PowerDiagram`](walpha_regular::PowerDiagram), it is decided exactly which facets there are, none degenerates and none is one of a cell without
-/// volume, and areas and volumes are rounded.
+/// volume, and areas and volumes are rounded. Where the box does not repeat, cells may be unbounded, or end at [walls](Self::between).
 ///
 /// ```
 /// use walpha_shape::{PeriodicPowerDiagram, Torus};
@@ -35,6 +37,8 @@ pub struct PeriodicPowerDiagram {
     facets: Vec<[u32; 2]>,
     shifts: Vec<[i32; 3]>,
     areas: Vec<f64>,
+    /// The areas of each cell on the lower and the upper wall across each axis.
+    walls: Option<Vec<[[f64; 3]; 2]>>,
 }
 
 impl PeriodicPowerDiagram {
@@ -93,7 +97,7 @@ impl PeriodicPowerDiagram {
         }
         let (facets, areas): (Vec<([u32; 2], [i32; 3])>, _) = facets.into_iter().unzip();
         let (facets, shifts) = facets.into_iter().unzip();
-        Ok(Self { torus, volumes, facets, shifts, areas })
+        Ok(Self { torus, volumes, facets, shifts, areas, walls: None })
     }
 
     /// The box, whose vectors are reduced.
@@ -122,6 +126,12 @@ impl PeriodicPowerDiagram {
     /// The area of each facet: ∞ if it is unbounded.
     pub fn areas(&self) -> &[f64] {
         &self.areas
+    }
+
+    /// For each point the areas that its cell has on the lower and on the upper wall across x, y and z, 0 where there is none; `None` of a diagram
+    /// without [walls](Self::between).
+    pub fn walls(&self) -> Option<&[[[f64; 3]; 2]]> {
+        self.walls.as_deref()
     }
 }
 
