@@ -20,21 +20,29 @@ type Diagram<'py> = (
     Bound<'py, PyArray1<f64>>,
 );
 
-/// The power diagram of points in a periodic box.
+/// The power diagram of points in a periodic box, the vectors of that box, and with walls the areas of each cell on the lower ones across x, y and z,
+/// and on the upper ones.
 #[pyfunction]
+#[expect(clippy::type_complexity, reason = "a tuple of arrays")]
 pub fn periodic_power_diagram<'py>(
     py: Python<'py>,
     points: PyReadonlyArray2<'_, f64>,
     weights: Option<PyReadonlyArray1<'_, f64>>,
     periodic: Vec<f64>,
+    walls: Option<[[f64; 3]; 2]>,
     task: Task<'_>,
-) -> PyResult<(Diagram<'py>, Bound<'py, PyArray2<f64>>)> {
+) -> PyResult<(Diagram<'py>, Bound<'py, PyArray2<f64>>, Option<Bound<'py, PyArray2<f64>>>)> {
     let torus = torus(Some(&periodic))?.ok_or_else(|| wrong("the box has no vectors"))?;
     let Points { positions, weights, .. } = weighted(points, weights, None)?;
     let task = task.of(positions.len());
     let made = run(py, &task, move || {
         Monitor::current().stage("power diagram")?;
-        PeriodicPowerDiagram::of(torus, &positions, weights.as_deref())
+        match walls {
+            None => PeriodicPowerDiagram::of(torus, &positions, weights.as_deref()),
+            Some(walls) => {
+                PeriodicPowerDiagram::between(torus, walls, &positions, weights.as_deref())
+            }
+        }
     })?;
     let facets = made.facets().iter().map(|facet| facet.map(i64::from)).collect();
     let shifts = made.shifts().iter().map(|shift| shift.map(i64::from)).collect();
@@ -44,7 +52,10 @@ pub fn periodic_power_diagram<'py>(
         array2(shifts).into_pyarray(py),
         column(py, made.areas().iter().copied())?,
     );
-    Ok((diagram, array2(made.torus().vectors().to_vec()).into_pyarray(py)))
+    let vectors = array2(made.torus().vectors().to_vec()).into_pyarray(py);
+    let of_both = |&[[a, b, c], [d, e, f]]: &[[f64; 3]; 2]| [a, b, c, d, e, f];
+    let on_walls = |walls: &[[[f64; 3]; 2]]| array2(walls.iter().map(of_both).collect());
+    Ok((diagram, vectors, made.walls().map(|walls| on_walls(walls).into_pyarray(py))))
 }
 
 /// A diameter and a centre.

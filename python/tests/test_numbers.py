@@ -116,8 +116,8 @@ CALLS = {
         {"points": (rows(), ()), "weights": (column(), ()), "periodic": (triple, ())},
     ),
     "periodic_power_diagram": (
-        lambda **given: walpha.periodic_power_diagram(**{"points": CLOUD, "periodic": 2, **given}),
-        {"points": (rows(), ()), "weights": (column(), ()), "periodic": (triple, ())},
+        lambda **given: walpha.periodic_power_diagram(**{"points": CLOUD, "periodic": (2, 2, 0), "walls": [[-9] * 3, [9] * 3], **given}),
+        {"points": (rows(), ()), "weights": (column(), ()), "periodic": (triple, ()), "walls": (lambda number: [[0, 0, -9], [0, 0, number]], ())},
     ),
     "pores": (
         lambda **given: walpha.pores(**{"points": CLOUD, "periodic": 2, **given}),

@@ -139,9 +139,55 @@ def test_power_cells_fill_the_box():
     # Without a side to repeat along, cells have no end.
     slab = walpha.periodic_power_diagram(points, vectors * [[1], [1], [0]])
     assert np.isinf(slab.volumes).any() and np.isfinite(slab.volumes).any()
+    assert slab.walls is None
     for wrong in [{"weights": [1]}, {"points": np.full((3, 3), np.nan)}, {"points": np.empty((0, 3))}, {"periodic": None}]:
         with pytest.raises(ValueError):
             walpha.periodic_power_diagram(**{"points": points, "periodic": vectors, **wrong})
+
+
+def test_power_cells_end_at_walls():
+    """Each cell is an intersection of half-spaces, whose volume qhull finds."""
+    from scipy.optimize import linprog
+    from scipy.spatial import ConvexHull, HalfspaceIntersection
+
+    rng = np.random.default_rng(6)
+    vectors = np.array([[2.0, 0, 0], [0.5, 1.75, 0], [0, 0, 0]])
+    points = np.column_stack([rng.random((40, 2)) @ vectors[:2, :2], rng.random(40)])
+    # Some on the walls.
+    points[:6, 2] = [0, 0, 0, 1, 1, 1]
+    weights = rng.random(40) * 0.02
+    made = walpha.periodic_power_diagram(points, vectors, weights, walls=[[0, 0, 0], [9, 9, 1]])
+    assert np.isclose(made.volumes.sum(), 2 * 1.75)
+    assert np.allclose(made.walls.sum(axis=0), [[0, 0, 3.5]] * 2) and made.walls.shape == (40, 2, 3)
+    shifts = np.array([[i, j, 0] for i in range(-2, 3) for j in range(-2, 3)])
+    copies = (points[None] + (shifts @ vectors)[:, None]).reshape(-1, 3)
+    of_copies = np.tile(weights, len(shifts))
+    for at in range(40):
+        way = copies - points[at]
+        other = (way != 0).any(axis=1)
+        # 2 x · (q - p) ≤ |q|² - ω_q - |p|² + ω_p
+        limit = (copies**2).sum(axis=1) - of_copies - points[at] @ points[at] + weights[at]
+        sides = np.column_stack([2 * way, -limit])[other]
+        sides = np.vstack([sides, [[0, 0, -1, 0], [0, 0, 1, -1]]])
+        # The largest ball inside.
+        reach = np.column_stack([sides[:, :3], np.linalg.norm(sides[:, :3], axis=1)])
+        *centre, radius = linprog([0, 0, 0, -1], A_ub=reach, b_ub=-sides[:, 3], bounds=[(None, None)] * 3 + [(0, None)]).x
+        assert radius > 1e-6
+        corners = HalfspaceIntersection(sides, np.array(centre)).intersections
+        assert np.isclose(ConvexHull(corners).volume, made.volumes[at]), at
+    # Facets and walls close each cell.
+    sums = np.zeros((40, 3))
+    inside = points.copy()
+    inside[:, :2] -= np.floor(points[:, :2] @ np.linalg.inv(vectors[:2, :2])) @ vectors[:2, :2]
+    assert np.allclose(made.vectors[:2], vectors[:2])
+    way = inside[made.facets[:, 1]] + made.shifts @ made.vectors - inside[made.facets[:, 0]]
+    pull = way * (made.areas / np.linalg.norm(way, axis=1))[:, None]
+    np.add.at(sums, made.facets[:, 0], pull)
+    np.add.at(sums, made.facets[:, 1], -pull)
+    assert np.allclose(sums + made.walls[:, 1] - made.walls[:, 0], 0, atol=1e-9)
+    for wrong in [{"walls": [[0, 0, 0]]}, {"walls": [[0, 0, 1], [0, 0, 0]]}, {"walls": [[0, 0, 0.5], [0, 0, 1]]}, {"periodic": (2, 2, 2)}, {"periodic": vectors + [[0, 0, 0], [0, 0, 1], [0, 0, 0]]}]:
+        with pytest.raises(ValueError):
+            walpha.periodic_power_diagram(**{"points": points, "periodic": vectors, "walls": [[0, 0, 0], [0, 0, 1]], **wrong})
 
 
 def test_pores_of_balls():

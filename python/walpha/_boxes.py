@@ -20,7 +20,7 @@ class PeriodicPowerDiagram(NamedTuple):
     ----------
     volumes : ndarray of float64, (n,)
         Of the power cell of each point: 0 for hidden points and duplicates, which have none, and for cells without volume; infinite where it is
-        unbounded, as it may be where the box does not repeat.
+        unbounded, as it may be where the box neither repeats nor has walls.
     facets : ndarray of int64, (f, 2)
         The two points whose cells share a facet, ascending. Two cells may share several, and a cell may meet copies of itself: such a facet is
         listed once, although the cell has it twice.
@@ -30,6 +30,8 @@ class PeriodicPowerDiagram(NamedTuple):
         Of each facet; infinite if it is unbounded.
     vectors : ndarray of float64, (3, 3)
         Those of the box, reduced, as rows.
+    walls : ndarray of float64, (n, 2, 3), or None
+        The areas that each cell has on the lower walls across x, y and z, and on the upper ones; 0 where there is none. None if no walls were given.
     """
 
     volumes: Floats
@@ -37,6 +39,7 @@ class PeriodicPowerDiagram(NamedTuple):
     shifts: Indices
     areas: Floats
     vectors: Floats
+    walls: Floats | None = None
 
 
 def periodic_power_diagram(
@@ -44,6 +47,7 @@ def periodic_power_diagram(
     periodic: Arrays,
     weights: Arrays | None = None,
     *,
+    walls: Arrays | None = None,
     progress: Progress = None,
     threads: int | None = None,
 ) -> PeriodicPowerDiagram:
@@ -57,6 +61,9 @@ def periodic_power_diagram(
         As in :func:`alpha_shape`.
     weights : array_like, (n,), optional
         ω, squared lengths. By default 0: the Voronoi diagram.
+    walls : array_like, (2, 3), optional
+        The lowest and the highest corner of walls at which cells end, in a box that repeats along one or two vectors: planes perpendicular to the
+        axes along which no vector leads. The coordinates along the other axes mean nothing. Points lie between the walls, or on them.
     progress, threads
         As in :func:`alpha_shape`.
 
@@ -67,7 +74,8 @@ def periodic_power_diagram(
     Raises
     ------
     ValueError
-        No points; numbers that are NaN, infinite or absurd; points in one plane, in a box that does not repeat along all three vectors.
+        No points; numbers that are NaN, infinite or absurd; without walls, points in one plane, in a box that does not repeat along all three vectors.
+        Points beyond a wall; walls where the box repeats along all three vectors, or along vectors that are not parallel to the walls.
     MemoryError
         The system gives no more.
 
@@ -78,12 +86,28 @@ def periodic_power_diagram(
     >>> fcc = walpha.periodic_power_diagram([[0, 0, 0]], [[0, 1, 1], [1, 0, 1], [1, 1, 0]])
     >>> len(fcc.facets), fcc.volumes.round(12)
     (6, array([2.]))
+
+    A layer of atoms between walls: each cell is a brick.
+
+    >>> layer = walpha.periodic_power_diagram([[0, 0, 1], [1, 0, 1]], (2, 1, 0), walls=[[0, 0, 0], [0, 0, 3]])
+    >>> layer.volumes.round(12), layer.walls[0].round(12)
+    (array([3., 3.]), array([[0., 0., 1.],
+           [0., 0., 1.]]))
     """
     cloud = _arrays.cloud(points, weights, valued=False)
     box = _box(periodic)
+    corners = None if walls is None else _corners(walls)
     with task(progress, threads) as how:
-        (volumes, facets, shifts, areas), vectors = _walpha.periodic_power_diagram(cloud.points, cloud.weights, box, how)
-    return PeriodicPowerDiagram(volumes, facets, shifts, areas, vectors)
+        diagram, vectors, areas = _walpha.periodic_power_diagram(cloud.points, cloud.weights, box, corners, how)
+    return PeriodicPowerDiagram(*diagram, vectors, None if areas is None else areas.reshape(-1, 2, 3))
+
+
+def _corners(walls: Arrays) -> list[list[float]]:
+    """The lowest and the highest corner. Those along axes without walls may be any number."""
+    array = _arrays.numbers("walls", walls)
+    if array.shape != (2, 3):
+        raise ValueError(f"walls has shape {array.shape}: give the lowest and the highest corner, (2, 3)")
+    return [[float(x) for x in corner] for corner in _arrays.doubles("walls", array)]
 
 
 class FreeSphere(NamedTuple):

@@ -143,8 +143,8 @@ class PowerDiagram:
     areas: Floats
 
 def periodic_power_diagram(
-    points: Floats, weights: Floats | None, periodic: list[float], task: _Task
-) -> tuple[tuple[Floats, Indices, Indices, Floats], Floats]: ...
+    points: Floats, weights: Floats | None, periodic: list[float], walls: list[list[float]] | None, task: _Task
+) -> tuple[tuple[Floats, Indices, Indices, Floats], Floats, Floats | None]: ...
 def pores(
     points: Floats, radii: Floats, periodic: list[float], probe: float | None, task: _Task
 ) -> tuple[list[tuple[float, list[float]]], bool, tuple[list[int], int, tuple[float, float]] | None]: ...
