@@ -71,11 +71,15 @@ function goHome(isHome) {
   arrange();
 }
 
+function hideShape() {
+  for (const id of ["shape", "alpha-row", "cut-row"]) byId(id).hidden = true;
+}
+
 function fail(error) {
   busy(null);
   // An input that cannot be read has no picture, and no options but those that may help.
   if (state.facts === null) {
-    for (const id of ["shape", "alpha-row", "cut-row"]) byId(id).hidden = true;
+    hideShape();
     offer(null, Object.keys(READING).filter((id) => error.next?.includes(`“${id}”`)));
   }
   if (error instanceof Cancelled) {
@@ -109,6 +113,8 @@ const STAGES = {
 
 function progress({ stage, share }) {
   const bar = byId("progress");
+  // What is computed while nobody waits is not told.
+  if (!working) return;
   if (stage !== undefined) {
     byId("status").textContent = `${STAGES[stage] ?? stage} …`;
     bar.removeAttribute("value");
@@ -194,6 +200,7 @@ function choose(input, files, kept = null) {
     history.forget();
     rows(byId("facts"), []);
     offer(null);
+    hideShape();
     panel.clear();
     busy("Reading …");
     engine.put(files);

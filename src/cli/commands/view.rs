@@ -36,7 +36,7 @@ use crate::{Alpha, Frame, GrayRange, Recipe, Units};
 /// Write an interactive page for the browser: self-contained, no network needed.
 ///
 /// A slider moves through α with the weights frozen. Colours show classes, F, weights, or how far the
-/// interpolant is from the volume there. Singular facets and edges, points sized by weight, their balls
+/// interpolant is from the volume there, unless only a tissue was selected. Singular facets and edges, points sized by weight, their balls
 /// and an isosurface of the volume can be shown or hidden, and a plane cuts the shape open.
 ///
 /// Examples:
@@ -77,6 +77,8 @@ pub(crate) struct View {
 /// What points come from.
 struct Source {
     volume: Option<PlacedVolume>,
+    /// Whether points were selected among the samples of a tissue alone. F then says nothing of the rest of the volume.
+    is_of_tissue: bool,
     /// Without a volume, what the values of the points are.
     column: String,
     /// The elements of points that are atoms.
@@ -122,7 +124,8 @@ impl View {
         let mut progress = Progress::new(global);
         let (weighed, source) = self.weighed(&mut progress)?;
         let details = weighed.into_iter().map(|weighed| {
-            let detail = Detail::new(weighed, source.volume.as_ref(), &mut progress)?;
+            let compared = source.volume.as_ref().filter(|_| !source.is_of_tissue);
+            let detail = Detail::new(weighed, compared, &mut progress)?;
             if recipe.keep.is_all() {
                 Ok(detail)
             } else {
@@ -179,10 +182,9 @@ impl View {
                 let weigh = || recipe.weigh(read, Values::Written);
                 let (weighed, _) = progress.watch(weigh)?;
                 let column = format!("the column {column} of the input");
-                return Ok((
-                    vec![weighed],
-                    Source { volume: None, column, atoms, classes, colours },
-                ));
+                let (volume, is_of_tissue) = (None, false);
+                let source = Source { volume, is_of_tissue, column, atoms, classes, colours };
+                return Ok((vec![weighed], source));
             }
             Input::Labels(..) => return Err(PipelineError::OfLabels.into()),
             Input::Surface(..) => return Err(PipelineError::OfSurface.into()),
@@ -196,9 +198,15 @@ impl View {
         let level = |count| progress.watch(|| recipe.level(&source, &whole, count));
         let mut details = counts.into_iter().map(level).collect::<Result<Vec<_>, _>>()?;
         details.push(whole);
-        let volume = Some(source);
-        let of_points =
-            Source { volume, column: String::new(), atoms: None, classes: None, colours: None };
+        let selection = recipe.selection(&source.range);
+        let of_points = Source {
+            is_of_tissue: selection.is_some_and(|selection| selection.gray_min.is_some()),
+            volume: Some(source),
+            column: String::new(),
+            atoms: None,
+            classes: None,
+            colours: None,
+        };
         Ok((details, of_points))
     }
 
@@ -209,7 +217,7 @@ impl View {
         source: &Source,
         progress: &mut Progress,
     ) -> Result<(Page, Vec<DetailSummary>)> {
-        let Source { volume: source, column, atoms, classes, colours } = source;
+        let Source { volume: source, column, atoms, classes, colours, .. } = source;
         let source = source.as_ref();
         let last = details.last().expect("the level of the shape");
         let facts = source.map(VolumeSummary::of);
@@ -502,7 +510,7 @@ pub(crate) struct ViewSummary {
 pub(crate) struct DetailSummary {
     points: usize,
     levels: usize,
-    /// The RMSE of F, filled in, on all samples, in written values; null without a volume.
+    /// The RMSE of F, filled in, on all samples, in written values; null without a volume, and where samples of a tissue alone were selected.
     rmse_filled: Option<f64>,
     /// How many components the points are of, if not all were to be kept.
     #[serde(skip_serializing_if = "Option::is_none")]

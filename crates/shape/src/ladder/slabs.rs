@@ -161,8 +161,8 @@ fn betti_numbers_are_those_of_boundary_matrices() {
                 let levels = filtration.levels(&values);
                 assert_eq!(levels.len(), curve.len());
                 let (of_levels, of_voids) = (levels.betti(), levels.voids());
-                for (rank, &betti) in (0..).zip(&curve) {
-                    let expected = betti_by_ranks(&ordered, rank);
+                let by_ranks = betti_by_ranks(&ordered);
+                for (rank, (&betti, expected)) in (0..).zip(curve.iter().zip(by_ranks)) {
                     let context = format!("{seed} {repeats:?} {kind} {count} {rank}");
                     assert_eq!(Vec::from(betti), expected.map(|b| b as u64), "{context}");
                     let alive = diagrams.iter().map(|intervals| {
@@ -180,7 +180,9 @@ fn betti_numbers_are_those_of_boundary_matrices() {
                     let open = betti.b2.checked_sub(void_count);
                     sheets += open.expect("each void has a surface");
                     voids += void_count;
-                    if rank % 5 == 0 || kind > 0 {
+                    // Each shape costs more than all numbers of a filtration.
+                    let step = if count == 30 { 40 } else { 5 - kind };
+                    if rank % step == 0 {
                         let options = ShapeOptions::new(values[rank as usize]);
                         for exterior in [false, true] {
                             let options = options.periodic(Some(torus)).exterior(exterior);
@@ -228,7 +230,7 @@ fn simplices(shape: &AlphaShape) -> Vec<(Vec<u32>, Class)> {
 /// Far from the copies along a third vector, the shape of a torus is that of the slab or rod.
 #[test]
 fn shapes_are_those_of_a_torus_with_a_gap() {
-    const GAP: f64 = 48.0;
+    const GAP: f64 = 16.0;
     let mut regular = 0;
     for (seed, vectors) in [(1, AXES), (2, TILTED), (3, SLANTED)] {
         for repeats in SLABS.into_iter().chain(RODS) {

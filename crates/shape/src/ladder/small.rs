@@ -473,11 +473,11 @@ pub(super) mod tests {
         }
     }
 
-    /// Rational Betti numbers of the simplices up to a rank, by the ranks of boundary matrices modulo a prime.
-    pub(in crate::ladder) fn betti_by_ranks(ordered: &Ordered<'_>, rank: u32) -> [usize; 4] {
+    /// Rational Betti numbers of the simplices up to each value, by the ranks of boundary matrices modulo a prime: columns are added in order.
+    pub(in crate::ladder) fn betti_by_ranks(ordered: &Ordered<'_>) -> Vec<[usize; 4]> {
         const PRIME: i64 = 1_000_003;
         let incidence = &ordered.filtration().incidence;
-        let is_in = |number: usize| ordered.simplex(number as u32).rank <= rank;
+        let value_of = |number: usize| ordered.simplex(number as u32).rank as usize;
         let counts = [0, 1, 2, 3].map(|dimension| ordered.count(dimension));
         let first = [0, counts[0], counts[0] + counts[1], counts[0] + counts[1] + counts[2]];
         let boundary = |dimension: usize, row: usize| -> Vec<(usize, i64)> {
@@ -500,7 +500,11 @@ pub(super) mod tests {
                 }
             }
         };
-        let mut ranks = [0; 5];
+        // What each value adds.
+        let mut added = vec![([0; 4], [0; 5]); ordered.values().len()];
+        for row in 0..counts[0] {
+            added[value_of(row)].0[0] += 1;
+        }
         for dimension in 1..4 {
             // The boundary of a boundary is nothing.
             if dimension > 1 {
@@ -515,7 +519,11 @@ pub(super) mod tests {
                 }
             }
             let mut pivots = BTreeMap::<usize, BTreeMap<usize, i64>>::new();
-            for row in (0..counts[dimension]).filter(|&row| is_in(first[dimension] + row)) {
+            let mut rows: Vec<usize> = (0..counts[dimension]).collect();
+            rows.sort_by_key(|&row| value_of(first[dimension] + row));
+            for row in rows {
+                let (counts, ranks) = &mut added[value_of(first[dimension] + row)];
+                counts[dimension] += 1;
                 let mut column = BTreeMap::<usize, i64>::new();
                 for (face, sign) in boundary(dimension, row) {
                     *column.entry(face).or_default() += sign;
@@ -538,6 +546,7 @@ pub(super) mod tests {
                             .0;
                         column.values_mut().for_each(|v| *v = (*v * inverse).rem_euclid(PRIME));
                         pivots.insert(last, std::mem::take(&mut column));
+                        ranks[dimension] += 1;
                         break;
                     };
                     for (&at, &pivot) in pivot {
@@ -547,12 +556,14 @@ pub(super) mod tests {
                     column.retain(|_, value| *value != 0);
                 }
             }
-            ranks[dimension] = pivots.len();
         }
-        [0, 1, 2, 3].map(|dimension| {
-            let count = (0..counts[dimension]).filter(|&row| is_in(first[dimension] + row)).count();
-            count - ranks[dimension] - ranks[dimension + 1]
-        })
+        let (mut counts, mut ranks) = ([0; 4], [0; 5]);
+        let betti = |(more, higher): ([usize; 4], [usize; 5])| {
+            (0..4).for_each(|dimension| counts[dimension] += more[dimension]);
+            (0..5).for_each(|dimension| ranks[dimension] += higher[dimension]);
+            [0, 1, 2, 3].map(|d| counts[d] - ranks[d] - ranks[d + 1])
+        };
+        added.into_iter().map(betti).collect()
     }
 
     /// Betti numbers and pairs of small boxes follow from the ranks of boundary matrices, at each value.
@@ -575,8 +586,9 @@ pub(super) mod tests {
                 let curve = ordered.betti_curve();
                 let diagrams: Vec<Vec<_>> =
                     (0..4).map(|dimension| ordered.persistence(dimension).unwrap()).collect();
-                for (rank, &betti) in (0..).zip(&curve) {
-                    let expected = betti_by_ranks(&ordered, rank);
+                let by_ranks = betti_by_ranks(&ordered);
+                assert_eq!(by_ranks.len(), curve.len());
+                for (rank, (&betti, expected)) in (0..).zip(curve.iter().zip(by_ranks)) {
                     let found = Vec::from(betti);
                     assert_eq!(found, expected.map(|b| b as u64), "{seed} {count} {rank}");
                     let alive = diagrams.iter().map(|intervals| {
