@@ -6,6 +6,7 @@ use divan::Bencher;
 use walpha::haar::{HaarOptions, smooth};
 use walpha::ladder::Filtration;
 use walpha::points::{Selection, Units, difference, select, weigh};
+use walpha::render::{Background, Camera, Projection, Scene, ShapeStyle, Size, View};
 use walpha::shape::{Engine, ShapeOptions, claim};
 use walpha::{
     Alpha, AlphaShape, Gray, Points, Volume, WeightedPoints, Weighting, alpha_shape, volume,
@@ -53,6 +54,27 @@ fn weights(bencher: Bencher, weighting: &str) {
     let (points, weighting) = (selected(128), parsed(weighting));
     let alpha = Alpha::from_squared(10.0).expect("a number");
     bencher.bench_local(|| weigh(points.clone(), weighting, alpha));
+}
+
+/// The hull of points around a wavy sphere as PNG, 1900×1300.
+#[divan::bench(args = [25_000, 250_000])]
+fn picture(bencher: Bencher, count: usize) {
+    let place = |k: usize| {
+        let z = 1.0 - 2.0 * (k as f64 + 0.5) / count as f64;
+        // By the golden angle.
+        let (flat, turn) = ((1.0 - z * z).sqrt(), 2.399_963_229_728_653 * k as f64);
+        [flat * turn.cos(), flat * turn.sin(), z]
+    };
+    let points: Vec<[f64; 3]> = (0..count).map(place).collect();
+    let shape = alpha_shape(points, &ShapeOptions::new(Alpha::INFINITE)).expect("a hull");
+    let size = Size::new(1900, 1300).expect("a size");
+    let style = ShapeStyle::default();
+    bencher.bench_local(|| {
+        let scene = Scene::of_shape(shape.points().positions(), shape.complex(), &style)?;
+        let bounds = [[-1.0; 3], [1.0; 3]];
+        let camera = Camera::fit(bounds, View::Front, Projection::Perspective, size)?;
+        scene.render(&camera, size, Background::White)?.to_png()
+    });
 }
 
 #[divan::bench(args = WEIGHTINGS)]

@@ -8,6 +8,7 @@ use rayon::prelude::*;
 use walpha_base::vector::{V3, add, along, cross, dot, length, scale, sub, unit};
 
 use crate::normals::vertex_normals;
+use crate::primitives::Facing;
 use crate::scene::{Lens, Mesh, Projection, Scene, Shading};
 
 /// The lamps, fixed to the camera as in a photographer's studio, so that every panel of a figure has the same light.
@@ -105,6 +106,10 @@ pub(crate) struct Light {
     pub key: f64,
 }
 
+impl Light {
+    const NONE: Self = Self { mean: 0.0, toward: [0.0; 3], key: 0.0 };
+}
+
 /// The side of a mesh that is seen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Side {
@@ -112,12 +117,25 @@ pub(crate) enum Side {
     Back,
 }
 
-/// Normals and light at the vertices of a mesh.
+/// Normals and light at the vertices of a mesh: dark where no triangle shows the eye that side.
 pub(crate) struct LitMesh {
     pub normals: Vec<V3>,
     front: Vec<Light>,
     /// Empty when the mesh has no visible back.
     back: Vec<Light>,
+}
+
+/// The vertices of the triangles that show the eye a side.
+fn seen(mesh: &Mesh, side: Side, lens: &Lens) -> Vec<u32> {
+    let places: Vec<V3> = mesh.positions.par_iter().map(|&place| lens.view(place)).collect();
+    let mut is_seen = vec![false; places.len()];
+    for corners in &mesh.triangles {
+        let facing = Facing::of(&corners.map(|c| places[c as usize]), lens);
+        if facing.front == (side == Side::Front) {
+            corners.iter().for_each(|&c| is_seen[c as usize] = true);
+        }
+    }
+    (0..places.len() as u32).filter(|&vertex| is_seen[vertex as usize]).collect()
 }
 
 impl LitMesh {
@@ -142,19 +160,22 @@ const KEY_DIRECTIONS: usize = 16;
 const MAPS_AT_ONCE: usize = 8;
 
 impl Exposure {
-    pub(crate) fn new(scene: &Scene, studio: &Studio) -> Self {
+    pub(crate) fn new(scene: &Scene, studio: &Studio, lens: &Lens) -> Self {
         let normals: Vec<Vec<V3>> = scene.meshes.par_iter().map(mesh_normals).collect();
         let mut receivers = Vec::new();
+        let mut lit = Vec::new();
         for (mesh, normals) in scene.meshes.iter().zip(&normals) {
-            let sides: &[f64] = if mesh.two_sided { &[1.0, -1.0] } else { &[1.0] };
-            for &side in sides {
-                let pairs = mesh.positions.iter().zip(normals);
-                receivers.extend(pairs.map(|(&place, &normal)| Receiver {
-                    place,
-                    normal: scale(normal, side),
+            let of = |side: Side, sign: f64, receivers: &mut Vec<Receiver>| {
+                let vertices = seen(mesh, side, lens);
+                receivers.extend(vertices.iter().map(|&vertex| Receiver {
+                    place: mesh.positions[vertex as usize],
+                    normal: scale(normals[vertex as usize], sign),
                     radius: 0.0,
                 }));
-            }
+                vertices
+            };
+            let front = of(Side::Front, 1.0, &mut receivers);
+            lit.push((front, mesh.two_sided.then(|| of(Side::Back, -1.0, &mut receivers))));
         }
         let round = |place, radius| Receiver { place, normal: [0.0; 3], radius };
         receivers.extend(scene.balls.iter().map(|b| round(b.centre, b.radius)));
@@ -162,14 +183,18 @@ impl Exposure {
 
         let mut light = measure(scene, studio, &receivers).into_iter();
         let mut take = |count: usize| light.by_ref().take(count).collect::<Vec<_>>();
-        let meshes = scene
-            .meshes
-            .iter()
+        let meshes = lit
+            .into_iter()
             .zip(normals)
-            .map(|(mesh, normals)| {
-                let count = mesh.positions.len();
-                let front = take(count);
-                let back = take(if mesh.two_sided { count } else { 0 });
+            .map(|((front, back), normals)| {
+                let mut all = |vertices: Vec<u32>| {
+                    let mut all = vec![Light::NONE; normals.len()];
+                    let light = take(vertices.len());
+                    vertices.iter().zip(light).for_each(|(&v, light)| all[v as usize] = light);
+                    all
+                };
+                let front = all(front);
+                let back = back.map_or_else(Vec::new, all);
                 LitMesh { normals, front, back }
             })
             .collect();
@@ -192,7 +217,7 @@ fn measure(scene: &Scene, studio: &Studio, receivers: &[Receiver]) -> Vec<Light>
     let sky = sphere_directions(SKY_DIRECTIONS);
     let lamp = cone_directions(studio.key, KEY_DIRECTIONS);
     let directions: Vec<V3> = sky.into_iter().chain(lamp).collect();
-    let mut light = vec![Light { mean: 0.0, toward: [0.0; 3], key: 0.0 }; receivers.len()];
+    let mut light = vec![Light::NONE; receivers.len()];
     let space = Space::around(scene);
     for (chunk, some) in directions.chunks(MAPS_AT_ONCE).enumerate() {
         let maps: Option<Vec<DepthMap>> = space
@@ -306,7 +331,12 @@ impl DepthMap {
         for mesh in scene.meshes.iter().filter(|m| m.opacity >= 1.0) {
             let places: Vec<V3> = mesh.positions.iter().map(|&p| map.place(p)).collect();
             for corners in &mesh.triangles {
-                map.draw_triangle(corners.map(|c| places[c as usize]));
+                let [a, b, c] = corners.map(|c| places[c as usize]);
+                // The outermost surface of a solid faces the light.
+                let up = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+                if up > 0.0 || mesh.two_sided {
+                    map.draw_triangle([a, b, c]);
+                }
             }
         }
         for ball in &scene.balls {
@@ -379,7 +409,7 @@ impl DepthMap {
         let [x, y, height] = self.place(along(receiver.place, 1.5 * self.texel, receiver.normal));
         let height = height + receiver.radius + 1.5 * self.texel;
         let (x, y) = (x - 0.5, y - 0.5);
-        let (left, top) = (x.floor(), y.floor());
+        let (left, top) = (floor(x), floor(y));
         let (u, v) = (x - left, y - top);
         let open = |dx: usize, dy: usize| {
             let (x, y) = (left as usize + dx, top as usize + dy);
@@ -396,5 +426,14 @@ impl DepthMap {
 
 /// Texels whose centre may lie between two positions.
 fn texels(low: f64, high: f64) -> (usize, usize) {
-    ((low - 0.5).max(0.0).ceil() as usize, ((high + 0.5).max(0.0) as usize).min(DepthMap::SIDE))
+    let low = (low - 0.5).max(0.0);
+    let whole = low as u32;
+    let first = whole + u32::from(f64::from(whole) < low);
+    (first as usize, ((high + 0.5).max(0.0) as u32 as usize).min(DepthMap::SIDE))
+}
+
+/// The largest whole number not above one that is far smaller than 2³¹: faster than a call of the library of the system.
+fn floor(x: f64) -> f64 {
+    let whole = f64::from(x as i32);
+    if whole > x { whole - 1.0 } else { whole }
 }

@@ -11,6 +11,7 @@ use crate::pixels::{Patch, PixelBox, Size};
 use crate::scene::{Lens, Scene};
 use capsule::Capsule;
 use sphere::Sphere;
+pub(crate) use triangle::Facing;
 use triangle::Triangle;
 
 /// A triangle, ball or tube.

@@ -33,13 +33,7 @@ impl Triangle {
         size: Size,
     ) -> Vec<Self> {
         let v = mesh.triangles[triangle].map(|c| lens.view(mesh.positions[c as usize]));
-        let normal = cross(sub(v[1], v[0]), sub(v[2], v[0]));
-        let offset = dot(normal, v[0]);
-        // The eye's axes are left-handed, so this normal points away from the outside.
-        let (front, divisor, constant) = match lens.projection {
-            Projection::Perspective => (offset > 0.0, offset, normal[2]),
-            Projection::Orthographic => (normal[2] > 0.0, normal[2], -offset),
-        };
+        let Facing { front, normal, divisor, constant } = Facing::of(&v, lens);
         if !(front || mesh.two_sided) {
             return Vec::new();
         }
@@ -141,6 +135,30 @@ impl Triangle {
         let sky = blend(light.map(|l| l.toward));
         let [mean, key, _] = blend(light.map(|l| [l.mean, l.key, 0.0]));
         stage.studio.shade(albedo, normal, to_eye, mean + 2.0 * dot(sky, normal), key)
+    }
+}
+
+/// Which side of a triangle is seen, and the numbers of its plane.
+pub(crate) struct Facing {
+    pub front: bool,
+    normal: V3,
+    divisor: f64,
+    constant: f64,
+}
+
+impl Facing {
+    /// Of corners in the eye's axes. These are left-handed, so that the normal points away from the outside.
+    pub(crate) fn of(v: &[V3; 3], lens: &Lens) -> Self {
+        let normal = cross(sub(v[1], v[0]), sub(v[2], v[0]));
+        let offset = dot(normal, v[0]);
+        match lens.projection {
+            Projection::Perspective => {
+                Self { front: offset > 0.0, normal, divisor: offset, constant: normal[2] }
+            }
+            Projection::Orthographic => {
+                Self { front: normal[2] > 0.0, normal, divisor: normal[2], constant: -offset }
+            }
+        }
     }
 }
 

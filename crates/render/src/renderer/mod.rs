@@ -34,7 +34,7 @@ impl Scene {
             try_with_capacity(width * height, || format!("a picture of {width}×{height} pixels"))?;
         pixels.resize(width * height, [0; 4]);
         let studio = Studio::new(&lens);
-        let exposure = Exposure::new(self, &studio);
+        let exposure = Exposure::new(self, &studio, &lens);
         let stage = Stage { scene: self, lens, studio, exposure };
         let primitives = Primitive::all(self, &lens, size);
         let tiles = Tiles::new(&primitives, size);

@@ -45,7 +45,7 @@ pub struct Mesh {
     pub normals: Option<Vec<[f64; 3]>>,
     /// One colour, or one for each vertex.
     pub colours: Colours,
-    /// Whether triangles are seen from behind as well. A closed surface needs only its outside.
+    /// Whether triangles are seen from behind as well, and hide light from behind. A closed surface needs only its outside.
     pub two_sided: bool,
     /// Flat or smooth.
     pub shading: Shading,
