@@ -191,6 +191,7 @@ export class ShapeScene {
 
   // Other points: what was drawn goes. The camera stays where it is to be kept.
   setPoints({ positions, weights, values, differences, atoms, elements, codes, classNames, tints, original, centre, unit, space, cell }, box, keep = false) {
+    const before = Object.entries(this.parts ?? {}).map(([name, { visible }]) => [name, visible]);
     this.group.traverse((object) => {
       object.geometry?.dispose();
       object.material?.dispose();
@@ -269,7 +270,10 @@ export class ShapeScene {
     this.group.add(this.section, this.lit, this.inner, this.walk, this.ruler, this.parts.box);
     [this.unit, this.isPeriodic] = [unit, Boolean(cell)];
     this.fade(this.opacity);
-    if (keep) return;
+    if (keep) {
+      for (const [name, visible] of before) this.parts[name].visible = visible;
+      return;
+    }
     this.turned = false;
     this.resize();
   }
