@@ -142,7 +142,7 @@ impl Gathered<'_> {
                 self.outward[q as usize][axis] -= share;
             }
         }
-        // Otherwise rounding of an image has made a facet of what is none: its area is 0 but for rounding.
+        // Otherwise the rounding of an image has made this facet, and its area is 0 but for rounding.
     }
 
     /// The areas on the walls on which points lie: what the other facets leave open.
