@@ -64,7 +64,7 @@ type Sphere = (f64, [f64; 3]);
 /// Dimensions of channels, pockets, and the void fraction with its bound.
 type Probed = (Vec<usize>, usize, (f64, f64));
 
-/// The spheres included, free, free along each vector, and included along the free one's way; whether radii differ; and what a probe finds.
+/// The spheres included, free, free along each vector, and included along the free one's way; and what a probe finds.
 #[pyfunction]
 pub fn pores(
     py: Python<'_>,
@@ -73,11 +73,10 @@ pub fn pores(
     periodic: Vec<f64>,
     probe: Option<f64>,
     task: Task<'_>,
-) -> PyResult<(Vec<Sphere>, bool, Option<Probed>)> {
+) -> PyResult<(Vec<Sphere>, Option<Probed>)> {
     let torus = torus(Some(&periodic))?.ok_or_else(|| wrong("the box has no vectors"))?;
     let (positions, radii) = (rows("points", points)?, numbers(radii)?);
     let balls = PeriodicBalls::new(torus, positions, radii).map_err(told)?;
-    let is_by_power_distance = balls.is_by_power_distance();
     let (found, probed) = run(py, &task.of(balls.radii().len()), move || {
         Stage::Filtration.begin().map_err(ShapeError::from)?;
         let found = balls.pores()?;
@@ -91,5 +90,5 @@ pub fn pores(
         let share = probed.void_fraction;
         (probed.channels, probed.pockets, (share.value, share.bound))
     });
-    Ok((spheres, is_by_power_distance, probed))
+    Ok((spheres, probed))
 }

@@ -197,11 +197,19 @@ def test_pores_of_balls():
     assert np.isclose(one.included.diameter, 3**0.5 - 0.6) and np.isclose(one.free.diameter, 2**0.5 - 0.6)
     assert one.included.diameter == two.included.diameter and one.channels == two.channels == (3,)
     assert abs(one.void_fraction.value - (1 - 4 / 3 * np.pi * 0.125)) <= one.void_fraction.bound
-    assert not one.by_power_distance and one.pockets == 0
+    assert one.pockets == 0
     # A probe that cannot pass the windows stays in its pocket.
     assert walpha.pores([[0, 0, 0]], 1, [0.3], probe=0.45).channels == ()
     assert walpha.pores([[0, 0, 0]], 1, [0.3], probe=0.45).pockets == 1
-    assert walpha.pores(BCC, 4, np.tile([0.1, 0.2], 64)).by_power_distance
+    # Of two radii: the largest sphere on a fine grid is hardly smaller.
+    rng = np.random.default_rng(7)
+    points, radii = rng.random((12, 3)) * 4, rng.uniform(0.2, 1.0, 12)
+    steps = (np.arange(64) + 0.5) / 16
+    grid = np.stack(np.meshgrid(steps, steps, steps), axis=-1).reshape(-1, 3)
+    way = grid[:, None] - points
+    way -= 4 * np.round(way / 4)
+    best = 2 * (np.linalg.norm(way, axis=2) - radii).min(axis=1).max()
+    assert best <= walpha.pores(points, 4, radii).included.diameter < best + 2 * 3**0.5 / 32
     found = walpha.pores(BCC, 4)
     assert found.channels is found.pockets is found.void_fraction is None and found.included.center.shape == (3,)
     for wrong in [{"radii": [-1.0]}, {"radii": [1, 2]}, {"probe": -1}, {"probe": np.inf}, {"periodic": (1, 1, 0)}, {"periodic": None}]:

@@ -116,7 +116,7 @@ class FreeSphere(NamedTuple):
     Attributes
     ----------
     diameter : float
-        Negative where the balls leave no way.
+        Negative where the balls leave no way, down to twice the smallest radius.
     center : ndarray of float64, (3,)
         In the box.
     """
@@ -138,8 +138,6 @@ class Pores(NamedTuple):
         The same along each vector of the box.
     included_along_free : FreeSphere
         The largest on the way of the free one.
-    by_power_distance : bool
-        Whether radii differ. Spheres are then those of the power distance: they fit, and larger ones may fit elsewhere.
     channels : tuple of int, or None
         In how many independent directions each channel for the probe winds round the box; None without a probe.
     pockets : int or None
@@ -152,7 +150,6 @@ class Pores(NamedTuple):
     free: FreeSphere
     free_along: tuple[FreeSphere, FreeSphere, FreeSphere]
     included_along_free: FreeSphere
-    by_power_distance: bool
     channels: tuple[int, ...] | None
     pockets: int | None
     void_fraction: Bounded | None
@@ -214,7 +211,7 @@ def pores(
         raise ValueError(f"probe={probe!r}: give a radius, a finite number from 0 up")
     box = _box(periodic)
     with task(progress, threads) as how:
-        spheres, differ, probed = _walpha.pores(cloud.points, np.ascontiguousarray(given), box, probe, how)
+        spheres, probed = _walpha.pores(cloud.points, np.ascontiguousarray(given), box, probe, how)
     included, free, a, b, c, on_way = (FreeSphere(diameter, np.array(center)) for diameter, center in spheres)
     channels, pockets, share = (None, None, None) if probed is None else probed
     return Pores(
@@ -222,7 +219,6 @@ def pores(
         free,
         (a, b, c),
         on_way,
-        differ,
         None if channels is None else tuple(channels),
         pockets,
         None if share is None else Bounded(*share),

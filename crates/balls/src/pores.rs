@@ -1,6 +1,6 @@
 //! The pores between the balls of a periodic box.
 
-use walpha_shape::ladder::{Filtration, PoreSphere};
+use walpha_shape::ladder::{Filtration, PoreSphere, Pores};
 use walpha_shape::{Alpha, Torus, WeightedPoints};
 
 use crate::{BallUnion, BallsError, Bounded};
@@ -32,7 +32,7 @@ pub struct PeriodicBalls {
 /// A sphere that touches balls.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FreeSphere {
-    /// Its diameter; negative where the balls leave no way.
+    /// Its diameter; negative where the balls leave no way, down to twice the smallest radius where they leave none if all are smaller by that.
     pub diameter: f64,
     /// Its centre, in the box.
     pub center: [f64; 3],
@@ -96,31 +96,45 @@ impl PeriodicBalls {
         Ok(Self { torus, positions, radii, common })
     }
 
+    /// The box.
+    pub fn torus(&self) -> Torus {
+        self.torus
+    }
+
     /// The radii.
     pub fn radii(&self) -> &[f64] {
         &self.radii
     }
 
-    /// Whether radii differ. Then spheres are those of the power distance: they fit, and larger ones may fit elsewhere.
-    pub fn is_by_power_distance(&self) -> bool {
-        self.common.is_none()
-    }
-
-    /// The largest spheres between the balls. O(n log n), expected, for evenly distributed balls.
+    /// The largest spheres between the balls. O(n log n), expected, for evenly distributed balls; where radii differ, some thirty times as long.
+    ///
+    /// A sphere of radius p finds place where balls whose radii are larger by p leave a place, and passes where these leave a way, which is decided
+    /// exactly for any p. Where radii differ, the largest p is found by Newton's method, between bounds.
     ///
     /// # Errors
     /// Those of [`Filtration::on`].
     #[expect(clippy::missing_panics_doc, reason = "an invariant")]
     pub fn pores(&self) -> Result<BallPores, BallsError> {
-        let Frame { filtration, .. } = self.filtration(0.0)?;
-        let found = filtration.simplices()?.pores().expect("the box repeats along all vectors");
-        let weights = filtration.points().weights();
-        let sphere = |sphere: &PoreSphere| {
-            let free = |&v: &u32| {
-                (sphere.alpha + weights[v as usize]).max(0.0).sqrt() - self.radii[v as usize]
-            };
-            let radius = sphere.points.iter().map(free).fold(f64::INFINITY, f64::min);
-            FreeSphere { diameter: 2.0 * radius, center: sphere.center }
+        let found = self.between(0.0)?;
+        let Some(radius) = self.common else {
+            let largest = |of: fn(&Pores) -> &PoreSphere| self.largest(&found, of);
+            let free_along = [
+                largest(|found| &found.free_along[0])?,
+                largest(|found| &found.free_along[1])?,
+                largest(|found| &found.free_along[2])?,
+            ];
+            // Every way to another copy leads along one of the vectors.
+            let widest = free_along.into_iter().max_by(|a, b| a.diameter.total_cmp(&b.diameter));
+            return Ok(BallPores {
+                included: largest(|found| &found.included)?,
+                free: widest.expect("three directions"),
+                free_along,
+                included_along_free: largest(|found| &found.included_along_free)?,
+            });
+        };
+        let sphere = |sphere: &PoreSphere| FreeSphere {
+            diameter: 2.0 * (sphere.alpha.max(0.0).sqrt() - radius),
+            center: sphere.center,
         };
         Ok(BallPores {
             included: sphere(&found.included),
@@ -128,6 +142,50 @@ impl PeriodicBalls {
             free_along: found.free_along.each_ref().map(sphere),
             included_along_free: sphere(&found.included_along_free),
         })
+    }
+
+    /// The spheres of the power distance to the balls, whose radii are enlarged.
+    fn between(&self, by: f64) -> Result<Pores, BallsError> {
+        let Frame { filtration, .. } = self.filtration(by)?;
+        Ok(filtration.simplices()?.pores().expect("the box repeats along all vectors"))
+    }
+
+    /// The sphere that vanishes where the balls are larger by its radius, beginning with the spheres between the balls themselves.
+    fn largest(
+        &self,
+        first: &Pores,
+        of: impl Fn(&Pores) -> &PoreSphere,
+    ) -> Result<FreeSphere, BallsError> {
+        const MOST_STEPS: usize = 60;
+        let ends = self.radii.iter().copied();
+        let (least, most) =
+            ends.fold((f64::INFINITY, 0.0), |(low, high), r| (f64::min(low, r), f64::max(high, r)));
+        // The radius is between these.
+        let (mut low, mut high) = (-least, f64::INFINITY);
+        let (mut radius, mut sphere) = (0.0, of(first).clone());
+        for _ in 0..MOST_STEPS {
+            // How far the surface of a ball of this radius is from that of a sphere of the present radius around a place of this power.
+            let room = |ball: f64| {
+                let from = ball + radius;
+                let to = (sphere.alpha + from * from).max(0.0).sqrt();
+                if sphere.alpha == 0.0 { 0.0 } else { (sphere.alpha / (to + from)).max(-from) }
+            };
+            let bounds = [least, most].map(|ball| radius + room(ball));
+            low = low.max(bounds[0].min(bounds[1]));
+            high = high.min(bounds[0].max(bounds[1]));
+            let touched = sphere.points.iter().map(|&v| room(self.radii[v as usize]));
+            let mut next = radius + touched.fold(f64::INFINITY, f64::min);
+            if !(low..=high).contains(&next) {
+                next = f64::midpoint(low, high);
+            }
+            let step = (next - radius).abs();
+            radius = next;
+            if step.min(high - low) <= 4.0 * f64::EPSILON * (most + radius.abs()) {
+                break;
+            }
+            sphere = of(&self.between(radius)?).clone();
+        }
+        Ok(FreeSphere { diameter: 2.0 * radius, center: sphere.center })
     }
 
     /// Channels, pockets and void fraction for a probe of this radius. O(n log n), expected, for evenly distributed balls.

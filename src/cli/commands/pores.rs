@@ -101,7 +101,6 @@ impl Pores {
             box_volume,
             vectors: torus.vectors(),
             radii: range,
-            power_distance: balls.is_by_power_distance(),
             pores: Spheres {
                 included: found.included.into(),
                 free: found.free.into(),
@@ -147,8 +146,6 @@ struct PoresSummary {
     vectors: [[f64; 3]; 3],
     /// The smallest and the largest radius.
     radii: [f64; 2],
-    /// Whether radii differ, so that spheres are those of the power distance: they fit, and larger ones may fit elsewhere.
-    power_distance: bool,
     pores: Spheres,
     probe: Option<Probe>,
     seconds: BTreeMap<&'static str, f64>,
@@ -210,14 +207,9 @@ impl Display for PoresSummary {
         let points = counted(self.points as u64, "ball");
         writeln!(f, "balls     {points}{}", MovedIntoBox(self.folded))?;
         let [least, most] = self.radii.map(rounded);
-        if self.power_distance {
-            writeln!(
-                f,
-                "radii     {least} to {most} {unit}, so spheres are those of the power distance: they fit, and larger ones may fit elsewhere"
-            )?;
-        } else {
-            writeln!(f, "radii     {least} {unit}")?;
-        }
+        let range =
+            if self.radii[0] == self.radii[1] { least } else { format!("{least} to {most}") };
+        writeln!(f, "radii     {range} {unit}")?;
         writeln!(f, "box       {} {unit}³; spheres by diameter:", rounded(self.box_volume))?;
         let Spheres { included, free, free_along, included_along_free } = self.pores;
         let at = included.center.map(rounded).join(", ");

@@ -378,7 +378,6 @@ fn pores_of_a_brick() {
     }
     assert_eq!(told["probe"]["channels"], serde_json::json!([3]));
     is(&told["probe"]["void_fraction"], 1.0 - std::f64::consts::PI / 6.0 / 3.0);
-    assert_eq!(told["power_distance"], false);
     // A larger one passes between planes of points only.
     let told = common::json(f, &[&args[..], &["--probe", "0.6"]].concat());
     assert_eq!(
@@ -400,9 +399,20 @@ fn pores_of_a_brick() {
     );
     refused(&["pores", "one.xyz", "--periodic", "1,1,1", "--probe", "-1"], 2, "-1");
     // Radii of two kinds.
-    std::fs::write(f.join("two.csv"), "x,y,z,radius\n0,0,0,0.25\n0.5,0.5,0.5,0.5\n").unwrap();
+    std::fs::write(f.join("two.csv"), "x,y,z,radius\n0,0,0,0.25\n1,1,1,0.5\n").unwrap();
     let told = common::json(f, &["pores", "two.csv", "--periodic", "2,2,2", "--probe", "0.1"]);
-    assert_eq!((&told["power_distance"], &told["points"]), (&true.into(), &2.into()));
+    assert_eq!((&told["radii"], &told["points"]), (&serde_json::json!([0.25, 0.5]), &2.into()));
+    // Among four neighbours, (1, 1 − t, 0) is √(1 + t²) − ½ from the larger balls, and √(1 + (1 − t)²) − ¼ from the smaller ones.
+    let t = {
+        let (mut low, mut high) = (0.0f64, 1.0f64);
+        for _ in 0..60 {
+            let t = f64::midpoint(low, high);
+            let is_short = 1f64.hypot(t) - 0.5 < 1f64.hypot(1.0 - t) - 0.25;
+            (low, high) = if is_short { (t, high) } else { (low, t) };
+        }
+        low
+    };
+    is(&told["pores"]["included"]["diameter"], 2.0 * (1f64.hypot(t) - 0.5));
     assert_eq!(told["probe"]["channels"], serde_json::json!([3]));
 }
 

@@ -5,6 +5,7 @@ mod closed_forms;
 mod discs;
 mod gradients;
 mod levels;
+mod pores;
 mod random_sets;
 mod refused;
 mod small_boxes;
