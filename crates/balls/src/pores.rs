@@ -117,20 +117,21 @@ impl PeriodicBalls {
     pub fn pores(&self) -> Result<BallPores, BallsError> {
         let found = self.between(0.0)?;
         let Some(radius) = self.common else {
-            let largest = |of: fn(&Pores) -> &PoreSphere| self.largest(&found, of);
+            // Each begins where a similar one has ended.
+            let mut known = (0.0, found.clone());
+            let included = self.largest(&mut known, |found| &found.included)?;
+            let included_along_free =
+                self.largest(&mut known, |found| &found.included_along_free)?;
+            known = (0.0, found);
             let free_along = [
-                largest(|found| &found.free_along[0])?,
-                largest(|found| &found.free_along[1])?,
-                largest(|found| &found.free_along[2])?,
+                self.largest(&mut known, |found| &found.free_along[0])?,
+                self.largest(&mut known, |found| &found.free_along[1])?,
+                self.largest(&mut known, |found| &found.free_along[2])?,
             ];
             // Every way to another copy leads along one of the vectors.
             let widest = free_along.into_iter().max_by(|a, b| a.diameter.total_cmp(&b.diameter));
-            return Ok(BallPores {
-                included: largest(|found| &found.included)?,
-                free: widest.expect("three directions"),
-                free_along,
-                included_along_free: largest(|found| &found.included_along_free)?,
-            });
+            let free = widest.expect("three directions");
+            return Ok(BallPores { included, free, free_along, included_along_free });
         };
         let sphere = |sphere: &PoreSphere| FreeSphere {
             diameter: 2.0 * (sphere.alpha.max(0.0).sqrt() - radius),
@@ -150,10 +151,11 @@ impl PeriodicBalls {
         Ok(filtration.simplices()?.pores().expect("the box repeats along all vectors"))
     }
 
-    /// The sphere that vanishes where the balls are larger by its radius, beginning with the spheres between the balls themselves.
+    /// The sphere that vanishes where the balls are larger by its radius. It is looked for from a radius for which the spheres are known, and the last
+    /// of these is left there.
     fn largest(
         &self,
-        first: &Pores,
+        known: &mut (f64, Pores),
         of: impl Fn(&Pores) -> &PoreSphere,
     ) -> Result<FreeSphere, BallsError> {
         const MOST_STEPS: usize = 60;
@@ -162,8 +164,8 @@ impl PeriodicBalls {
             ends.fold((f64::INFINITY, 0.0), |(low, high), r| (f64::min(low, r), f64::max(high, r)));
         // The radius is between these.
         let (mut low, mut high) = (-least, f64::INFINITY);
-        let (mut radius, mut sphere) = (0.0, of(first).clone());
         for _ in 0..MOST_STEPS {
+            let (radius, sphere) = (known.0, of(&known.1));
             // How far the surface of a ball of this radius is from that of a sphere of the present radius around a place of this power.
             let room = |ball: f64| {
                 let from = ball + radius;
@@ -179,13 +181,12 @@ impl PeriodicBalls {
                 next = f64::midpoint(low, high);
             }
             let step = (next - radius).abs();
-            radius = next;
-            if step.min(high - low) <= 4.0 * f64::EPSILON * (most + radius.abs()) {
-                break;
+            if step.min(high - low) <= 16.0 * f64::EPSILON * (most + next.abs()) {
+                return Ok(FreeSphere { diameter: 2.0 * next, center: sphere.center });
             }
-            sphere = of(&self.between(radius)?).clone();
+            *known = (next, self.between(next)?);
         }
-        Ok(FreeSphere { diameter: 2.0 * radius, center: sphere.center })
+        Ok(FreeSphere { diameter: 2.0 * known.0, center: of(&known.1).center })
     }
 
     /// Channels, pockets and void fraction for a probe of this radius. O(n log n), expected, for evenly distributed balls.
