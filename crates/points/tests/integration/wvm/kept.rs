@@ -58,9 +58,17 @@ fn files_that_were_kept_are_read_and_written_as_ever() {
             // The second writing stores the middle of each step.
             assert_eq!(written(&found, &facts, packing), file, "{name}");
         } else {
-            let known = (points.values(), facts.clone().order(None));
-            assert_eq!((found.values(), told), known, "{name}");
+            let known = (points.values(), &facts.clone().order(None));
+            assert_eq!((found.values(), &told), known, "{name}");
         }
-        assert_eq!(written(&points, &facts, packing), file, "{name}");
+        let again = written(&points, &facts, packing);
+        if name == "layers.wvm" {
+            // Its weights are deflated, which another library does in other bytes.
+            let (same, told_again) = back(&again, 0);
+            assert_eq!((same.positions(), same.weights()), (found.positions(), found.weights()));
+            assert_eq!((same.values(), told_again), (found.values(), told), "{name}");
+        } else {
+            assert_eq!(again, file, "{name}");
+        }
     }
 }
