@@ -67,7 +67,7 @@ fn deflated(write: impl FnOnce(&mut dyn Write)) -> Vec<u8> {
     ]
     .concat();
     let length = element(2, 0, b"UL", &(meta.len() as u32).to_le_bytes());
-    let mut encoder = DeflateEncoder::new(Vec::new(), Compression::fast());
+    let mut encoder = DeflateEncoder::new(Vec::new(), Compression::default());
     write(&mut encoder);
     [&[0; 128][..], b"DICM", &length, &meta, &encoder.finish().unwrap()].concat()
 }
