@@ -56,7 +56,7 @@ fn weights(bencher: Bencher, weighting: &str) {
     bencher.bench_local(|| weigh(points.clone(), weighting, alpha));
 }
 
-/// The hull of points around a wavy sphere as PNG, 1900×1300.
+/// The hull of points around a sphere as PNG, 1900×1300.
 #[divan::bench(args = [25_000, 250_000])]
 fn picture(bencher: Bencher, count: usize) {
     let place = |k: usize| {

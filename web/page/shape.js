@@ -63,7 +63,7 @@ function copyKinds(made) {
   const own = positions.length / 3 - copies.length;
   for (const [name, width] of [["weights", 1], ["values", 1], ["differences", 1], ["atoms", 1], ["codes", 1], ["tints", 3]]) {
     const before = made[name];
-    if (!before || before.length === width * (own + copies.length)) continue;
+    if (!before) continue;
     const all = new before.constructor(width * (own + copies.length));
     all.set(before.subarray(0, width * own));
     copies.forEach((v, k) => all.set(before.subarray(width * v, width * (v + 1)), width * (own + k)));

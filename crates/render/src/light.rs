@@ -125,17 +125,16 @@ pub(crate) struct LitMesh {
     back: Vec<Light>,
 }
 
-/// The vertices of the triangles that show the eye a side.
-fn seen(mesh: &Mesh, side: Side, lens: &Lens) -> Vec<u32> {
+/// The vertices of the triangles that show the eye their front, and of those that show it their back.
+fn seen(mesh: &Mesh, lens: &Lens) -> [Vec<u32>; 2] {
     let places: Vec<V3> = mesh.positions.par_iter().map(|&place| lens.view(place)).collect();
-    let mut is_seen = vec![false; places.len()];
+    let mut is_seen = [vec![false; places.len()], vec![false; places.len()]];
     for corners in &mesh.triangles {
         let facing = Facing::of(&corners.map(|c| places[c as usize]), lens);
-        if facing.front == (side == Side::Front) {
-            corners.iter().for_each(|&c| is_seen[c as usize] = true);
-        }
+        let side = &mut is_seen[usize::from(!facing.front)];
+        corners.iter().for_each(|&c| side[c as usize] = true);
     }
-    (0..places.len() as u32).filter(|&vertex| is_seen[vertex as usize]).collect()
+    is_seen.map(|side| (0..).zip(side).filter_map(|(v, is_seen)| is_seen.then_some(v)).collect())
 }
 
 impl LitMesh {
@@ -165,17 +164,19 @@ impl Exposure {
         let mut receivers = Vec::new();
         let mut lit = Vec::new();
         for (mesh, normals) in scene.meshes.iter().zip(&normals) {
-            let of = |side: Side, sign: f64, receivers: &mut Vec<Receiver>| {
-                let vertices = seen(mesh, side, lens);
+            let mut of = |vertices: &[u32], sign: f64| {
                 receivers.extend(vertices.iter().map(|&vertex| Receiver {
                     place: mesh.positions[vertex as usize],
                     normal: scale(normals[vertex as usize], sign),
                     radius: 0.0,
                 }));
-                vertices
             };
-            let front = of(Side::Front, 1.0, &mut receivers);
-            lit.push((front, mesh.two_sided.then(|| of(Side::Back, -1.0, &mut receivers))));
+            let [front, back] = seen(mesh, lens);
+            of(&front, 1.0);
+            if mesh.two_sided {
+                of(&back, -1.0);
+            }
+            lit.push((front, mesh.two_sided.then_some(back)));
         }
         let round = |place, radius| Receiver { place, normal: [0.0; 3], radius };
         receivers.extend(scene.balls.iter().map(|b| round(b.centre, b.radius)));

@@ -32,16 +32,13 @@ impl Copier {
         })
     }
 
-    /// A row in the copy whose lowest parts along the vectors are in the box, so that simplices extend beyond only the upper
-    /// faces of the box.
+    /// A row [laid out](AlphaShape::laid_out), by the numbers of copies.
     pub(crate) fn lay_out<const N: usize>(
         &mut self,
         shape: &AlphaShape,
         row: [u32; N],
     ) -> [u32; N] {
-        let copied = shape.shifted(row);
-        let lowest = [0, 1, 2].map(|k| copied.iter().map(|(_, way)| way[k]).min().unwrap_or(0));
-        copied.map(|(v, way)| self.number((v, minus(way, lowest))))
+        shape.laid_out(row).map(|copied| self.number(copied))
     }
 }
 
@@ -95,6 +92,14 @@ impl AlphaShape {
             let (v, shift) = self.copied(v);
             (v, minus(shift, first))
         })
+    }
+
+    /// A row in the copy whose lowest parts along the vectors are in the box, so that simplices extend beyond only the upper
+    /// faces of the box.
+    pub(crate) fn laid_out<const N: usize>(&self, row: [u32; N]) -> [Copied; N] {
+        let copied = self.shifted(row);
+        let lowest = [0, 1, 2].map(|k| copied.iter().map(|(_, way)| way[k]).min().unwrap_or(0));
+        copied.map(|(v, way)| (v, minus(way, lowest)))
     }
 
     /// The torus on which rows name the copies nearest to their first vertices; `None` in space, and where copies have names of their own.

@@ -2,7 +2,7 @@ use walpha_base::Cancelled;
 use walpha_base::advice::{Advice, Advise, Category, Setting, advice, wrapped};
 use walpha_base::memory::{self, NoMemory};
 use walpha_base::monitor::wraps;
-use walpha_regular::internals::is_flat;
+use walpha_regular::internals::{AXES, is_flat};
 use walpha_regular::{MAX_COORDINATE, SitesError, TriangulationError};
 
 use super::{Disagreement, IsosurfaceError, TorusError, VoxelsError};
@@ -291,9 +291,6 @@ pub enum WallsError {
         high: f64,
     },
 }
-
-/// The names of the axes.
-const AXES: [char; 3] = ['x', 'y', 'z'];
 
 impl Advise for WallsError {
     fn advice(&self) -> Option<Advice> {

@@ -6,7 +6,6 @@ use walpha_base::vector::{along, dot, scale, unit};
 
 use super::{Filtration, Levels, Span};
 use crate::copies::Copier;
-use crate::winding::minus;
 use crate::{Torus, WeightedPoints};
 
 /// What a picture of all [levels](Levels) shows. On a torus each simplex is laid out in space as by
@@ -63,9 +62,7 @@ impl Filtration {
     pub fn places<const N: usize>(&self, row: [u32; N]) -> [[f64; 3]; N] {
         let positions = self.points().positions();
         let Some(torus) = self.torus() else { return row.map(|v| positions[v as usize]) };
-        let copied = self.whole.shifted(row);
-        let lowest = [0, 1, 2].map(|k| copied.iter().map(|(_, way)| way[k]).min().unwrap_or(0));
-        copied.map(|(v, way)| torus.moved(positions[v as usize], minus(way, lowest)))
+        self.whole.laid_out(row).map(|(v, way)| torus.moved(positions[v as usize], way))
     }
 }
 

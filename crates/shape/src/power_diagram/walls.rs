@@ -40,7 +40,7 @@ impl Walls {
         Ok(Self { axes, low, high })
     }
 
-    /// A number of combinations of mirrors: bit k is the mirror across axis k of those that have walls.
+    /// The number of combinations of mirrors: bit k is the mirror across axis k of those that have walls.
     fn combinations(&self) -> usize {
         1 << self.axes.len()
     }
@@ -121,12 +121,11 @@ impl Gathered<'_> {
                 .max_by(|(_, a), (_, b)| way[*a].abs().total_cmp(&way[*b].abs()));
             let Some((bit, axis)) = own else { return };
             if across & !bit == 0 {
-                let is_low = if self.wrapped[p as usize][axis] == walls.high[axis] {
-                    true
-                } else if self.wrapped[p as usize][axis] == walls.low[axis] {
-                    false
-                } else {
-                    way[axis] < 0.0
+                // From a point on a wall it is the other wall, whichever image is found.
+                let is_low = match from[axis] {
+                    at if at == walls.low[axis] => false,
+                    at if at == walls.high[axis] => true,
+                    _ => way[axis] < 0.0,
                 };
                 self.on_walls[p as usize][usize::from(!is_low)][axis] += 2.0 * area / combinations;
             }
@@ -187,7 +186,7 @@ impl PeriodicPowerDiagram {
         let wrapped: Vec<_> = positions.iter().map(|&place| torus.wrap(place)).collect();
         let combinations = walls.combinations();
         let images: Vec<_> = (0..combinations)
-            .flat_map(|mirrors| wrapped.iter().map(|&place| (place, mirrors)).collect::<Vec<_>>())
+            .flat_map(|mirrors| wrapped.iter().map(move |&place| (place, mirrors)))
             .map(|(place, mirrors)| walls.image(place, mirrors))
             .collect();
         let all = Self::of(walls.doubled(&torus)?, &images, Some(&weights.repeat(combinations)))?;
@@ -333,7 +332,7 @@ mod tests {
         assert!(compared > 300, "{compared}");
     }
 
-    /// A grid whose outer points lie on the walls: their cells are halves, quarters and, on edges of walls, none is lost.
+    /// A grid whose outer points lie on the walls: the cells of points on one wall are halves, and those of points on two are quarters.
     #[test]
     fn points_on_walls_have_the_part_inside() {
         let walls = [[0.0; 3], [2.0; 3]];
